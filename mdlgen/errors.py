@@ -1,0 +1,68 @@
+"""What can go wrong, one class per exit code.
+
+Exit codes: 0 done, 2 bad spec, 3 input/output, 4 solver failed, 5 accuracy check failed,
+130 interrupted. A solver that fails is not an exception but a Result with a reason; the command
+line turns it into exit code 4.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Place(NamedTuple):
+    """Where a value stands in a file; line and column count from 1."""
+
+    file: str
+    line: int
+    column: int
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}:{self.column}"
+
+
+class MdlgenError(Exception):
+    """Base of all errors that are told to the user in one line."""
+
+    exit_code = 1
+
+
+class SpecError(MdlgenError):
+    """The scene cannot be meant as it is written.
+
+    `path` is the way to the value (`("sheets", "note", "thickness")`), `place` where it stands.
+    """
+
+    exit_code = 2
+
+    def __init__(self, message: str, path: tuple[str | int, ...] = (), place: Place | None = None):
+        self.message = " ".join(str(message).split())
+        self.path = tuple(path)
+        self.place = place
+        super().__init__(str(self))
+
+    def __str__(self) -> str:
+        head = [str(self.place)] if self.place else []
+        if self.path:
+            head.append(".".join(str(p) for p in self.path))
+        return ": ".join([*head, self.message])
+
+    def located(self, place: Place) -> SpecError:
+        """The same error with its place in a file."""
+        return SpecError(self.message, self.path, place)
+
+
+class RefusedError(SpecError):
+    """A valid scene that this backend cannot represent; the message names the part and the reason."""
+
+
+class OutputError(MdlgenError):
+    """A file could not be read or written."""
+
+    exit_code = 3
+
+
+class AccuracyError(MdlgenError):
+    """A result exists but missed the accuracy that was asked for."""
+
+    exit_code = 5

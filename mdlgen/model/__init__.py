@@ -1,0 +1,1 @@
+"""What every backend reads: flat, frozen numpy tables, lowered once from a Scene."""

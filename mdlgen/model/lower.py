@@ -1,0 +1,414 @@
+"""Scene -> Model, pure: the same scene always gives the same tables."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from mdlgen.model import grid, naming, press
+from mdlgen.model.pairs import find_pairs
+from mdlgen.model.parameters import parameters
+from mdlgen.model.stiffness import JointValues, joint_values
+from mdlgen.model.tables import (
+    BOX_CYLINDER,
+    BOX_PLANE,
+    CYLINDER_CYLINDER,
+    GROUND,
+    SUPPORT,
+    Anchor,
+    Bodies,
+    Bushings,
+    Clamp,
+    Contacts,
+    Floats,
+    Loads,
+    Model,
+    PlanePart,
+    Press,
+    RollerPart,
+    RunSettings,
+    SheetPart,
+)
+from mdlgen.spec.action import OnSheet
+from mdlgen.spec.machine import Roller
+from mdlgen.spec.scene import Scene
+
+# A support is a bushing to ground this much stiffer than the sheet's own k_z.
+SUPPORT_FACTOR = 100.0
+
+
+def lower(scene: Scene) -> Model:
+    """The tables that every backend reads.
+
+    Raises SpecError where names that are made from the user's meet.
+    """
+    run = _run(scene)
+    sheets, values = _sheets(scene)
+    first = sum(s.count for s in sheets)
+    contacts = _contacts(scene)
+    rollers = _rollers(scene, sheets, contacts, first)
+    planes = _planes(scene, first + len(rollers))
+    gravity = np.array(scene.gravity)
+    bodies = _bodies(sheets, values, rollers, planes)
+    bushings = _bushings(scene, sheets, values, bodies)
+    naming.check_unique("bodies", bodies.name)
+    naming.check_unique("bushings", bushings.name)
+    starts = {r.name: (r.press.touch, r.press.start) for r in rollers if r.press is not None}
+    return Model(
+        name=scene.name,
+        gravity=gravity,
+        sheets=sheets,
+        rollers=rollers,
+        planes=planes,
+        bodies=bodies,
+        bushings=bushings,
+        contacts=contacts,
+        pairs=find_pairs(
+            gravity, sheets, rollers, planes, bodies, contacts, run, scene.run.prune, scene.run.margin
+        ),
+        loads=_loads(scene, sheets),
+        probes=tuple(_anchor(name, scene.probes[name], sheets) for name in sorted(scene.probes)),
+        tension=_tension(scene, sheets),
+        parameters=parameters(scene, starts, run),
+        run=run,
+    )
+
+
+def _run(scene: Scene) -> RunSettings:
+    run = scene.run
+    print_step = run.print_step if run.print_step is not None else run.duration / 200
+    return RunSettings(run.duration, run.analysis, run.step, run.tolerance, print_step)
+
+
+def _sheets(scene: Scene) -> tuple[tuple[SheetPart, ...], list[JointValues]]:
+    parts: list[SheetPart] = []
+    values: list[JointValues] = []
+    first = 0
+    for name in sorted(scene.sheets):
+        sheet = scene.sheets[name]
+        material = scene.materials[sheet.material]
+        joint = joint_values(sheet, material)
+        angles = sheet.rotation if sheet.rotation is not None else (0.0, 0.0, sheet.turn or 0.0)
+        parts.append(
+            SheetPart(
+                name=name,
+                first=first,
+                n_x=sheet.boxes[0],
+                n_y=sheet.boxes[1],
+                d_x=joint.d_x,
+                d_y=joint.d_y,
+                thickness=sheet.thickness,
+                size=sheet.size,
+                layout=sheet.layout,
+                grid=sheet.grid,
+                center=np.array(sheet.center),
+                angles=angles,
+                rotation=grid.rotation_matrix(angles),
+                velocity=np.array(sheet.velocity),
+                spin=np.array(sheet.spin),
+                surface=sheet.surface,
+                clamp=Clamp(sheet.clamp.edge, sheet.clamped_rows()) if sheet.clamp else None,
+                bending=(
+                    "k_tx" if material.k_tx is not None else "D_cd",
+                    "k_ty" if material.k_ty is not None else "D_md",
+                ),
+                twist=material.D_twist is not None,
+                in_plane=material.k_tz is not None,
+                rotation_damping=material.damping.rotation,
+                derived=joint.derived(),
+            )
+        )
+        values.append(joint)
+        first += parts[-1].count
+    return tuple(parts), values
+
+
+def _contacts(scene: Scene) -> Contacts:
+    rows = scene.contact_pairs()
+
+    def column(read: Callable) -> Floats:
+        return np.array([read(scene.contacts[i]) for i, _, _ in rows], dtype=float)
+
+    kinds = [
+        CYLINDER_CYLINDER if a in scene.rollers else BOX_CYLINDER if b in scene.rollers else BOX_PLANE
+        for _, a, b in rows
+    ]
+    slow = column(lambda c: c.friction.stiction_velocity or c.smoothing)
+    fast = column(lambda c: c.friction.friction_velocity or 0.0)
+    return Contacts(
+        entry=np.array([i for i, _, _ in rows], dtype=np.int64),
+        part_a=tuple(a for _, a, _ in rows),
+        part_b=tuple(b for _, _, b in rows),
+        kind=np.array(kinds, dtype=np.int64),
+        stiffness=column(lambda c: c.stiffness),
+        restitution=column(lambda c: c.restitution),
+        mu_static=column(lambda c: c.friction.static),
+        mu_dynamic=column(lambda c: c.friction.dynamic),
+        stiction_velocity=slow,
+        friction_velocity=np.maximum(fast, slow),
+        smoothing=column(lambda c: c.smoothing),
+        share=tuple(scene.contacts[i].share for i, _, _ in rows),
+    )
+
+
+def _rollers(
+    scene: Scene, sheets: tuple[SheetPart, ...], contacts: Contacts, first: int
+) -> tuple[RollerPart, ...]:
+    parts = []
+    for index, name in enumerate(sorted(scene.rollers)):
+        roller = scene.rollers[name]
+        axial = 0.5 * roller.mass * roller.radius**2
+        transverse = roller.mass * (3 * roller.radius**2 + roller.width**2) / 12
+        parts.append(
+            RollerPart(
+                name=name,
+                body=first + index,
+                center=np.array(roller.center),
+                axis=np.array(roller.axis),
+                radius=roller.radius,
+                width=roller.width,
+                mass=roller.mass,
+                inertia_axial=axial,
+                inertia_transverse=transverse,
+                speed=roller.drive.speed if roller.drive else None,
+                ramp=roller.drive.ramp if roller.drive else 0.0,
+                press=_press(scene, name, sheets, contacts) if roller.press else None,
+            )
+        )
+    return tuple(parts)
+
+
+def _press(scene: Scene, name: str, sheets: tuple[SheetPart, ...], contacts: Contacts) -> Press:
+    roller = scene.rollers[name]
+    spec = roller.press
+    assert spec is not None
+    center, axis, direction = np.array(roller.center), np.array(roller.axis), np.array(spec.direction)
+    carrier = spec.carrier_mass if spec.carrier_mass is not None else roller.mass / 1000
+    mass = roller.mass + carrier
+    others, forces = [], []
+    for row in range(len(contacts)):
+        parts = (contacts.part_a[row], contacts.part_b[row])
+        if name not in parts:
+            continue
+        other = parts[0] if parts[1] == name else parts[1]
+        stiffness = float(contacts.stiffness[row])
+        if contacts.kind[row] == CYLINDER_CYLINDER:
+            partner: Roller = scene.rollers[other]
+            cylinder = press.Cylinder(np.array(partner.center), partner.radius, stiffness)
+            others.append(cylinder)
+            forces.append(press.cylinder_contact(cylinder, axis, roller.radius))
+        else:
+            sheet = next(s for s in sheets if s.name == other)
+            forces.append(press.sheet_contact(sheet, axis, roller.radius, roller.width, stiffness))
+    touch = press.touch_offset(center, axis, direction, roller.radius, others)
+    weight = mass * float(np.array(scene.gravity) @ direction)
+
+    def spring(offset: float) -> float:
+        return spec.preload - spec.stiffness * (offset - touch) + weight
+
+    return Press(
+        direction=direction,
+        stiffness=spec.stiffness,
+        damping=2.0 * spec.damping_ratio * float(np.sqrt(spec.stiffness * mass)),
+        damping_ratio=spec.damping_ratio,
+        preload=spec.preload,
+        free_length=spec.free_length,
+        carrier_mass=carrier,
+        touch=touch,
+        start=press.equilibrium(center, direction, spring, forces, roller.radius, touch),
+    )
+
+
+def _planes(scene: Scene, first: int) -> tuple[PlanePart, ...]:
+    return tuple(
+        PlanePart(
+            name=name,
+            body=first + index,
+            center=np.array(plane.center),
+            normal=np.array(plane.normal),
+            size=plane.size,
+            mass=plane.mass,
+        )
+        for index, (name, plane) in enumerate(sorted(scene.planes.items()))
+    )
+
+
+def frame(z: Floats, guide: Floats | None = None) -> Floats:
+    """A right-handed frame (columns x, y, z) with the given z; x near `guide`, or near global x or y."""
+    if guide is None:
+        guide = np.eye(3)[1 if abs(z[0]) > 0.9 else 0]
+    x = guide - z * (guide @ z)
+    x /= np.linalg.norm(x)
+    return np.stack([x, np.cross(z, x), z], axis=1)
+
+
+def _bodies(
+    sheets: tuple[SheetPart, ...],
+    values: list[JointValues],
+    rollers: tuple[RollerPart, ...],
+    planes: tuple[PlanePart, ...],
+) -> Bodies:
+    names, labels, tables = [], [], []
+    for sheet, joint in zip(sheets, values, strict=True):
+        count = sheet.count
+        node_x, node_y = grid.box_nodes(sheet)
+        names += [naming.box(sheet.name, k % sheet.n_x, k // sheet.n_x) for k in range(count)]
+        labels += [f"{sheet.name} box {k % sheet.n_x}, {k // sheet.n_x}" for k in range(count)]
+        position = grid.place(sheet, grid.local(sheet, node_x, node_y))
+        held = grid.clamped_boxes(sheet)
+        moving = ~held[:, None]
+        half = np.array([joint.d_x, joint.d_y, sheet.thickness]) / 2
+        tables.append(
+            (
+                position,
+                np.broadcast_to(sheet.rotation, (count, 3, 3)),
+                np.full(count, joint.m),
+                np.broadcast_to(np.array(joint.inertia), (count, 3)),
+                moving * (sheet.velocity + np.cross(sheet.spin, position - sheet.center)),
+                moving * np.broadcast_to(sheet.spin, (count, 3)),
+                held,
+                np.broadcast_to(half, (count, 3)),
+                grid.exposed_sides(sheet),
+            )
+        )
+    zero, none = np.zeros((1, 3)), np.zeros((1, 4), bool)
+    for roller in rollers:
+        names.append(roller.name)
+        labels.append(f"Roller {roller.name}")
+        start = roller.press.start * roller.press.direction if roller.press else np.zeros(3)
+        inertia = np.array([[roller.inertia_transverse, roller.inertia_transverse, roller.inertia_axial]])
+        tables.append(
+            (
+                (roller.center + start)[None],
+                frame(roller.axis)[None],
+                np.array([roller.mass]),
+                inertia,
+                zero,
+                zero,
+                np.array([False]),
+                zero,
+                none,
+            )
+        )
+    for plane in planes:
+        names.append(plane.name)
+        labels.append(f"Plane {plane.name}")
+        a, b, c = plane.size
+        inertia = plane.mass / 12 * np.array([[b * b + c * c, a * a + c * c, a * a + b * b]])
+        half = np.array([plane.size]) / 2
+        tables.append(
+            (
+                plane.center[None],
+                frame(plane.normal)[None],
+                np.array([plane.mass]),
+                inertia,
+                zero,
+                zero,
+                np.array([True]),
+                half,
+                none,
+            )
+        )
+    columns = [np.concatenate(column) for column in zip(*tables, strict=True)]
+    return Bodies(tuple(names), tuple(labels), *columns)
+
+
+def _bushings(
+    scene: Scene, sheets: tuple[SheetPart, ...], values: list[JointValues], bodies: Bodies
+) -> Bushings:
+    names, labels, rows = [], [], []
+    index = {s.name: k for k, s in enumerate(sheets)}
+    for number, (sheet, value) in enumerate(zip(sheets, values, strict=True)):
+        for joint in grid.joints(sheet):
+            names.append(joint.name)
+            labels.append(joint.label)
+            origin = grid.place(sheet, grid.local(sheet, *joint.node))
+            k, c = grid.joint_coefficients(joint, value)
+            rows.append((joint.kind, number, joint.a, joint.b, origin, sheet.rotation, k, c, joint.node))
+    for number, support in enumerate(scene.supports):
+        anchor = _anchor(f"support_{number}", support, sheets)
+        sheet = sheets[index[support.sheet]]
+        stiff = SUPPORT_FACTOR * sheet.derived["k_z"] * np.array([axis in support.fix for axis in "xyz"])
+        for part, (body, local, share) in enumerate(zip(anchor.body, anchor.local, anchor.share, strict=True)):
+            names.append(f"support_{number}_{part}")
+            labels.append(f"support {number} of {sheet.name}, part {part}")
+            origin = bodies.position[body] + bodies.rotation[body] @ local
+            k = np.concatenate([stiff * share, np.zeros(3)])
+            c = 2 * 0.5 * np.sqrt(k * sheet.derived["m"])
+            rows.append((SUPPORT, index[support.sheet], GROUND, body, origin, np.eye(3), k, c, anchor.node))
+    count = len(rows)
+    columns = [list(column) for column in zip(*rows, strict=True)] if rows else [[] for _ in range(9)]
+    kind, sheet_index, a, b, origin, axes, k, c, node = columns
+    return Bushings(
+        name=tuple(names),
+        label=tuple(labels),
+        kind=np.array(kind, dtype=np.int64),
+        sheet=np.array(sheet_index, dtype=np.int64),
+        a=np.array(a, dtype=np.int64),
+        b=np.array(b, dtype=np.int64),
+        origin=np.array(origin, dtype=float).reshape(count, 3),
+        axes=np.array(axes, dtype=float).reshape(count, 3, 3),
+        k=np.array(k, dtype=float).reshape(count, 6),
+        c=np.array(c, dtype=float).reshape(count, 6),
+        node=np.array(node, dtype=np.int64).reshape(count, 2),
+    )
+
+
+def _anchor(name: str, item: OnSheet, sheets: tuple[SheetPart, ...]) -> Anchor:
+    """The material point of a probe or support, or the middle of an edge."""
+    index = next(k for k, s in enumerate(sheets) if s.name == item.sheet)
+    sheet = sheets[index]
+    at = item.at if item.at is not None else grid.edge_middle(sheet, item.edge or "")
+    found = grid.boxes_at(sheet, at)
+    node = np.round([2 * at[0] / sheet.d_x + sheet.n_x, 2 * at[1] / sheet.d_y + sheet.n_y])
+    return Anchor(
+        name=name,
+        sheet=index,
+        body=np.array([body for body, _ in found], dtype=np.int64),
+        local=np.array([point for _, point in found], dtype=float),
+        share=np.full(len(found), 1.0 / len(found)),
+        node=node.astype(np.int64),
+        at=at,
+        edge=item.edge,
+    )
+
+
+def _loads(scene: Scene, sheets: tuple[SheetPart, ...]) -> Loads:
+    rows = []
+    for load in scene.loads:
+        sheet = next(s for s in sheets if s.name == load.sheet)
+        if load.at is not None:
+            targets = grid.boxes_at(sheet, load.at)
+        else:
+            targets = grid.edge_boxes(sheet, load.edge or "")
+        force, moment = np.array(load.force or (0.0, 0.0, 0.0)), np.array(load.moment or (0.0, 0.0, 0.0))
+        if load.stress is not None:
+            edge = load.edge or ""
+            across = sheet.n_y * sheet.d_y if edge[0] == "x" else sheet.n_x * sheet.d_x
+            outward = np.eye(3)[0 if edge[0] == "x" else 1] * (-1.0 if edge.endswith("min") else 1.0)
+            force = load.stress * across * sheet.thickness * outward
+        for body, local in targets:
+            share = 1.0 / len(targets)
+            rows.append((body, local, sheet.rotation @ force * share, sheet.rotation @ moment * share))
+    count = len(rows)
+    body, local, force, moment = (
+        [list(c) for c in zip(*rows, strict=True)] if rows else ([], [], [], [])
+    )
+    return Loads(
+        np.array(body, dtype=np.int64),
+        *(np.array(v, dtype=float).reshape(count, 3) for v in (local, force, moment)),
+    )
+
+
+def _tension(scene: Scene, sheets: tuple[SheetPart, ...]) -> tuple[int, float] | None:
+    """(axis, flexible length) where the first sheet is clamped and pulled by stress on the opposite edge."""
+    load = next((x for x in scene.loads if x.stress is not None), None)
+    sheet = sheets[0]
+    if load is None or sheet.clamp is None or load.edge is None or load.sheet != sheet.name:
+        return None
+    axis = 0 if load.edge[0] == "x" else 1
+    if sheet.clamp.edge[0] != load.edge[0] or sheet.clamp.edge == load.edge:
+        return None
+    count, pitch = ((sheet.n_x, sheet.d_x), (sheet.n_y, sheet.d_y))[axis]
+    return axis, (count - sheet.clamp.rows - 0.5) * pitch

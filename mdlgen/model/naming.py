@@ -1,0 +1,40 @@
+"""Identifiers and labels of the Model: short, unique without regard to case, and from an allow-list."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+from mdlgen.errors import SpecError
+
+IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,199}")
+LABEL = re.compile(r"[A-Za-z0-9 _.,:;+/#()=\-]{0,200}")
+
+
+def box(sheet: str, i: int, j: int) -> str:
+    """Box in column i, row j of a sheet."""
+    return f"{sheet}_{i}_{j}"
+
+
+def bushing(sheet: str, kind: str, i: int, j: int, end: str = "") -> str:
+    """Joint behind box (i, j) along `kind` (x, y) or at a clamp (c), at the corner `end` (a, b)."""
+    return f"{sheet}_{kind}_{i}_{j}{end and '_' + end}"
+
+
+def check_unique(kind: str, names: Iterable[str]) -> None:
+    """Raises SpecError where two names of one kind meet: 'note' with box 0 and a roller 'note_0_0'."""
+    seen: dict[str, str] = {}
+    for name in names:
+        other = seen.setdefault(name.lower(), name)
+        if other is not name:
+            raise SpecError(f"two {kind} would be called {name!r}; rename the part of that name")
+
+
+def check_text(identifiers: Iterable[str] = (), labels: Iterable[str] = ()) -> None:
+    """Second gate before a text is written. Raises SpecError for what the allow-lists do not hold."""
+    for name in identifiers:
+        if not IDENTIFIER.fullmatch(name):
+            raise SpecError(f"{name[:80]!r} is not an identifier")
+    for label in labels:
+        if not LABEL.fullmatch(label):
+            raise SpecError(f"{label[:80]!r} holds characters that a label must not have")

@@ -1,0 +1,172 @@
+"""Which contacts a scene can need: box-part pairs that may touch during the run.
+
+A sheet's boxes are swept by what can move them: their initial velocity, gravity, and the surface speed
+of every driven roller that the sheet has a contact with. A difference of those speeds across the sheet
+may turn it. A stated margin is added. A solver watches the bounds: a box whose centre leaves them ends
+the run, so that no contact is missed silently.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mdlgen.model.tables import (
+    CYLINDER_CYLINDER,
+    Bodies,
+    Contacts,
+    Floats,
+    Pairs,
+    PlanePart,
+    RollerPart,
+    RunSettings,
+    SheetPart,
+)
+
+# The centre may be beyond its bounds by one step before the solver sees it; kept pairs reach this far more.
+SLACK = 1.0  # mm
+_TURN_STEPS = 33
+
+
+def find_pairs(
+    gravity: Floats,
+    sheets: tuple[SheetPart, ...],
+    rollers: tuple[RollerPart, ...],
+    planes: tuple[PlanePart, ...],
+    bodies: Bodies,
+    contacts: Contacts,
+    run: RunSettings,
+    prune: bool,
+    margin: float,
+) -> Pairs:
+    """Possible pairs, those kept, and the bounds of each box (see the module)."""
+    parts = {p.name: p for p in (*rollers, *planes)}
+    by_name = {s.name: s for s in sheets}
+    low = np.full((len(bodies.name), 3), -np.inf)
+    high = np.full((len(bodies.name), 3), np.inf)
+    extents: dict[str, tuple[Floats, Floats]] = {}
+    possible = 0
+    kept: list[tuple[int, int, int]] = []
+    if prune:
+        for sheet in sheets:
+            rows = [r for r, a in enumerate(contacts.part_a) if a == sheet.name]
+            if not rows:
+                continue
+            touched = [parts[contacts.part_b[r]] for r in rows]
+            boxes = slice(sheet.first, sheet.first + sheet.count)
+            least, most, reach = _swept(gravity, sheet, touched, bodies, run)
+            low[boxes], high[boxes] = least - margin, most + margin
+            extents[sheet.name] = (low[boxes] - reach - SLACK, high[boxes] + reach + SLACK)
+    for row in range(len(contacts)):
+        other = parts[contacts.part_b[row]]
+        if contacts.kind[row] == CYLINDER_CYLINDER:
+            possible += 1
+            kept.append((row, parts[contacts.part_a[row]].body, other.body))
+            continue
+        sheet = by_name[contacts.part_a[row]]
+        possible += sheet.count
+        boxes = np.arange(sheet.first, sheet.first + sheet.count)
+        if prune:
+            part_low, part_high = _part_bounds(other, bodies)
+            box_low, box_high = extents[sheet.name]
+            boxes = boxes[np.all((box_low <= part_high) & (box_high >= part_low), axis=1)]
+        kept.extend((row, int(box), other.body) for box in boxes)
+    table = np.array(kept, dtype=np.int64).reshape(-1, 3)
+    return Pairs(table[:, 0].copy(), table[:, 1].copy(), table[:, 2].copy(), possible, margin, low, high)
+
+
+def _swept(
+    gravity: Floats,
+    sheet: SheetPart,
+    touched: list[RollerPart | PlanePart],
+    bodies: Bodies,
+    run: RunSettings,
+) -> tuple[Floats, Floats, Floats]:
+    """Bounds of each box centre (low, high), (count, 3), and the boxes' half extents, without margin."""
+    boxes = slice(sheet.first, sheet.first + sheet.count)
+    centers = bodies.position[boxes]
+    size = np.array([sheet.n_x * sheet.d_x, sheet.n_y * sheet.d_y])
+    diagonal = float(np.hypot(*size))
+    if run.analysis == "static":
+        reach = np.full(3, 0.5 * float(np.linalg.norm(bodies.half[sheet.first])) * 2)
+        return centers - diagonal, centers + diagonal, reach
+    time = run.duration
+    fall = 0.5 * gravity * time**2
+    shift = sheet.velocity * time
+    drives = [_drive(sheet, part, time) for part in touched if isinstance(part, RollerPart) and part.speed]
+    moves = np.array([fall, shift, *(path for path, _ in drives)])
+    # velocity and fall act together with one drive at a time
+    least = np.minimum(moves[:2], 0).sum(0) + np.minimum(moves[2:], 0).min(0, initial=0.0)
+    most = np.maximum(moves[:2], 0).sum(0) + np.maximum(moves[2:], 0).max(0, initial=0.0)
+    if sheet.count > 1:
+        # a flexible sheet may flap out of its plane by what its length allows
+        normal = np.abs(sheet.rotation[:, 2]) * 0.5 * float(size.max())
+        least, most = least - normal, most + normal
+    arms = centers - sheet.center
+    turn = _turn(sheet, drives, time)
+    around, extent = _turned(sheet, arms, turn, bodies.half[sheet.first])
+    return sheet.center + around[0] + least, sheet.center + around[1] + most, extent
+
+
+def _drive(sheet: SheetPart, roller: RollerPart, time: float) -> tuple[Floats, Floats]:
+    """Path of a driven roller's surface where it faces the sheet [mm], and its foot on the sheet."""
+    assert roller.speed is not None
+    normal = sheet.rotation[:, 2]
+    height = float((roller.center - sheet.center) @ normal)
+    toward = -np.copysign(roller.radius, height) * normal
+    toward = toward - roller.axis * (toward @ roller.axis)
+    speed = np.cross(roller.axis * roller.speed, toward)
+    ramp = min(roller.ramp, time)
+    return speed * (time - 0.5 * ramp), roller.center - height * normal
+
+
+def _turn(sheet: SheetPart, drives: list[tuple[Floats, Floats]], time: float) -> float:
+    """Angle by which the sheet may turn in its plane [rad]: differing drives over their distance."""
+    turn = abs(float(sheet.spin @ sheet.rotation[:, 2])) * time
+    off_plane = sheet.spin - sheet.rotation[:, 2] * (sheet.spin @ sheet.rotation[:, 2])
+    if np.any(off_plane != 0.0):
+        return np.inf
+    most = 0.0
+    for k, (path, foot) in enumerate(drives):
+        for other, base in drives[:k]:
+            gap = foot - base
+            distance = float(np.linalg.norm(gap))
+            across = np.linalg.norm(np.cross(path - other, gap / distance)) if distance > 0 else 0.0
+            if distance > 0:
+                most = max(most, float(across) / distance)
+    return turn + most
+
+
+def _turned(
+    sheet: SheetPart, arms: Floats, turn: float, half: Floats
+) -> tuple[tuple[Floats, Floats], Floats]:
+    """Bounds of `arms` (n, 3) turned in the sheet's plane by up to +-turn, and half extents of a box."""
+    if turn >= np.pi:
+        radius = np.linalg.norm(arms, axis=1)[:, None] * np.ones(3)
+        return (-radius, radius), np.full(3, float(np.linalg.norm(half)))
+    angles = np.linspace(-turn, turn, _TURN_STEPS)
+    flat = arms @ sheet.rotation
+    lows, highs, extent = [], [], np.zeros(3)
+    for angle in angles:
+        c, s = np.cos(angle), np.sin(angle)
+        spun = sheet.rotation @ np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        turned = flat @ spun.T
+        lows.append(turned)
+        highs.append(turned)
+        extent = np.maximum(extent, np.abs(spun) @ half)
+    # between two sampled angles a point strays from them by at most its radius times this
+    sag = (1 - np.cos(turn / (_TURN_STEPS - 1))) * np.linalg.norm(arms, axis=1)[:, None]
+    return (np.min(lows, axis=0) - sag, np.max(highs, axis=0) + sag), extent
+
+
+def _part_bounds(part: RollerPart | PlanePart, bodies: Bodies) -> tuple[Floats, Floats]:
+    """Bounding box of a part; a pressed roller may move by its radius along its slide."""
+    center = bodies.position[part.body]
+    if isinstance(part, PlanePart):
+        extent = np.abs(bodies.rotation[part.body]) @ (np.array(part.size) / 2)
+        return center - extent, center + extent
+    extent = np.abs(part.axis) * part.width / 2 + part.radius * np.sqrt(np.maximum(0, 1 - part.axis**2))
+    if part.press is not None:
+        extent = extent + part.radius * np.abs(part.press.direction)
+    return center - extent, center + extent
+
+

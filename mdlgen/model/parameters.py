@@ -1,0 +1,126 @@
+"""The named values that a user gave, in the order in which a text shows them."""
+
+from __future__ import annotations
+
+
+from mdlgen.model.tables import Parameter, RunSettings
+from mdlgen.spec.scene import Scene
+
+_NAMED_AXES = ("x", "y", "z")
+
+
+def parameters(scene: Scene, starts: dict[str, tuple[float, float]], run: RunSettings) -> tuple[Parameter, ...]:
+    """All parameters of a scene; `starts` gives (touch, start) of each pressed roller [mm]."""
+    rows: list[Parameter] = []
+    for name in sorted(scene.sheets):
+        rows += _sheet(scene, name)
+    for name in sorted(scene.rollers):
+        rows += _roller(scene, name, starts)
+    for name in sorted(scene.planes):
+        plane, base = scene.planes[name], ("planes", name)
+        rows += _center(name, plane.center, base)
+        for k, size in enumerate(plane.size):
+            axis = _NAMED_AXES[k]
+            rows.append(Parameter(name, f"L_{axis}", f"Length along its {axis}", size, "mm", (*base, "size", k)))
+        rows.append(Parameter(name, "M", "Mass", plane.mass, "g", (*base, "mass")))
+    for index, contact in enumerate(scene.contacts):
+        base, group = ("contacts", index), f"contact_{index}"
+        friction, smooth = contact.friction, contact.smoothing
+        slow = friction.stiction_velocity or smooth
+        fast = max(friction.friction_velocity or slow, slow)
+        for member, label, value, unit, path in (
+            ("k", "Stiffness k (N/mm to the 1.5)", contact.stiffness, "N/mm^1.5", "stiffness"),
+            ("c_R", "Restitution c_R", contact.restitution, "1", "restitution"),
+            ("mu_s", "Static friction", friction.static, "1", None),
+            ("mu_d", "Dynamic friction", friction.dynamic, "1", None),
+            ("v_s", "Stiction velocity", slow, "mm/ms", None),
+            ("v_d", "Friction velocity", fast, "mm/ms", None),
+            ("v_n", "Smoothing velocity of the damping", smooth, "mm/ms", "smoothing"),
+        ):
+            rows.append(Parameter(group, member, label, value, unit, (*base, path) if path else None))
+    rows.append(Parameter("run", "end", "End time", run.duration, "ms", ("run", "duration")))
+    rows.append(Parameter("run", "print", "Print interval", run.print_step, "ms", ("run", "print_step")))
+    return tuple(rows)
+
+
+def _center(name: str, center: tuple[float, ...], base: tuple[str, str]) -> list[Parameter]:
+    return [
+        Parameter(name, axis, f"Centre {axis}", center[k], "mm", (*base, "center", k))
+        for k, axis in enumerate(_NAMED_AXES)
+    ]
+
+
+def _sheet(scene: Scene, name: str) -> list[Parameter]:
+    sheet, base = scene.sheets[name], ("sheets", name)
+    material, source = scene.materials[sheet.material], ("materials", sheet.material)
+    rows = _center(name, sheet.center, base)
+    if sheet.rotation is None:
+        rows.append(Parameter(name, "turn", "Turn about z (deg)", sheet.turn or 0.0, "rad", (*base, "turn")))
+    else:
+        for k, axis in enumerate(_NAMED_AXES):
+            label = f"Rotation about {axis} (deg)"
+            rows.append(Parameter(name, f"r_{axis}", label, sheet.rotation[k], "rad", (*base, "rotation", k)))
+    rows += [
+        Parameter(name, "L_x", "Length L_x along MD", sheet.size[0], "mm", (*base, "size", 0)),
+        Parameter(name, "L_y", "Length L_y along CD", sheet.size[1], "mm", (*base, "size", 1)),
+        Parameter(name, "s", "Thickness s", sheet.thickness, "mm", (*base, "thickness")),
+        Parameter(name, "M", "Mass M of the sheet", sheet.mass, "g", (*base, "mass")),
+        Parameter(name, "E_md", "Modulus E_MD (N/mm2)", material.E_md, "MPa", (*source, "E_md")),
+        Parameter(name, "E_cd", "Modulus E_CD (N/mm2)", material.E_cd, "MPa", (*source, "E_cd")),
+    ]
+    for member, label, unit in (
+        ("k_tx", "Hinge stiffness k_tx (N mm/rad)", "N*mm/rad"),
+        ("k_ty", "Hinge stiffness k_ty (N mm/rad)", "N*mm/rad"),
+        ("k_tz", "In-plane stiffness k_tz (N mm/rad)", "N*mm/rad"),
+        ("D_md", "Bending stiffness per width D_MD (N mm)", "N*mm"),
+        ("D_cd", "Bending stiffness per width D_CD (N mm)", "N*mm"),
+        ("D_twist", "Twisting stiffness per width (N mm)", "N*mm"),
+    ):
+        value = getattr(material, member)
+        if value is not None:
+            rows.append(Parameter(name, member, label, value, unit, (*source, member)))
+    damping, ratio = material.damping, (*source, "damping", "ratio")
+    rows.append(Parameter(name, "zeta", "Relative damping zeta", damping.ratio, "1", ratio))
+    ratio_ty = damping.ratio if damping.ratio_ty is None else damping.ratio_ty
+    path = (*source, "damping", "ratio_ty")
+    rows.append(Parameter(name, "zeta_ty", "Relative damping zeta of rotation about y", ratio_ty, "1", path))
+    if any(sheet.velocity) or any(sheet.spin):
+        for k, axis in enumerate(_NAMED_AXES):
+            label = f"Initial velocity {axis}"
+            rows.append(Parameter(name, f"v_{axis}", label, sheet.velocity[k], "mm/ms", (*base, "velocity", k)))
+        for k, axis in enumerate(_NAMED_AXES):
+            label = f"Initial spin {axis} (rad/s)"
+            rows.append(Parameter(name, f"w_{axis}", label, sheet.spin[k], "rad/ms", (*base, "spin", k)))
+    return rows
+
+
+def _roller(scene: Scene, name: str, starts: dict[str, tuple[float, float]]) -> list[Parameter]:
+    roller, base = scene.rollers[name], ("rollers", name)
+    rows = _center(name, roller.center, base)
+    rows += [
+        Parameter(name, "R", "Radius R", roller.radius, "mm", (*base, "radius")),
+        Parameter(name, "w", "Width", roller.width, "mm", (*base, "width")),
+        Parameter(name, "M", "Mass", roller.mass, "g", (*base, "mass")),
+    ]
+    if roller.drive is not None:
+        drive = (*base, "drive")
+        rows.append(
+            Parameter(name, "omega", "Speed (rad/s)", roller.drive.speed, "rad/ms", (*drive, "speed"))
+        )
+        rows.append(Parameter(name, "ramp", "Ramp time", roller.drive.ramp, "ms", (*drive, "ramp")))
+    if roller.press is not None:
+        press, way = roller.press, (*base, "press")
+        carrier = press.carrier_mass if press.carrier_mass is not None else roller.mass / 1000
+        touch, start = starts[name]
+        rows += [
+            Parameter(name, "k", "Spring stiffness", press.stiffness, "N/mm", (*way, "stiffness")),
+            Parameter(name, "f", "Spring preload (N)", press.preload, "N", (*way, "preload")),
+            Parameter(name, "l", "Spring free length", press.free_length, "mm", (*way, "free_length")),
+            Parameter(name, "zeta", "Relative damping", press.damping_ratio, "1", (*way, "damping_ratio")),
+            Parameter(name, "M_c", "Carrier mass", carrier, "g", (*way, "carrier_mass")),
+            Parameter(name, "touch", "Touching position along the slide", touch, "mm", None),
+            Parameter(name, "start", "Start position along the slide (static equilibrium)", start, "mm", None),
+        ]
+    return rows
+
+

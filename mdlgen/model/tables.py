@@ -1,0 +1,272 @@
+"""The tables of a Model. Units: mm, N, g, ms, rad; rotations as 3x3 matrices, body axes in columns.
+
+Bodies are numbered: the boxes of each sheet (row by row: index = i + j n_x), then rollers, then planes.
+GROUND (-1) stands for the fixed world.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+GROUND = -1
+AXES = ("x", "y", "z")
+
+
+class Frozen:
+    """Makes the arrays of a frozen dataclass read-only."""
+
+    def __post_init__(self) -> None:
+        for item in fields(self):  # type: ignore[arg-type]
+            value = getattr(self, item.name)
+            if isinstance(value, np.ndarray):
+                value.setflags(write=False)
+
+
+@dataclass(frozen=True)
+class Bodies(Frozen):
+    """Rigid bodies at the start."""
+
+    name: tuple[str, ...]  # identifier, unique without regard to case
+    label: tuple[str, ...]
+    position: Floats  # centre of mass [mm], (n, 3)
+    rotation: Floats  # (n, 3, 3)
+    mass: Floats  # [g], (n,)
+    inertia: Floats  # principal, body axes [g mm^2], (n, 3)
+    velocity: Floats  # [mm/ms], (n, 3)
+    spin: Floats  # angular velocity, global axes [rad/ms], (n, 3)
+    fixed: NDArray[np.bool_]  # held: clamped boxes and planes, (n,)
+    half: Floats  # half lengths of a box, body axes; zero for rollers [mm], (n, 3)
+    exposed: NDArray[np.bool_]  # side faces that no neighbour covers: x_min, x_max, y_min, y_max, (n, 4)
+
+
+# kinds of bushing
+JOINT_X, JOINT_Y, CLAMP, SUPPORT = 0, 1, 2, 3
+
+
+@dataclass(frozen=True)
+class Bushings(Frozen):
+    """Six springs and dampers between body `a` and body `b` at `origin`, stress-free at the start."""
+
+    name: tuple[str, ...]
+    label: tuple[str, ...]
+    kind: Ints  # JOINT_X, JOINT_Y, CLAMP or SUPPORT, (n,)
+    sheet: Ints  # index of the sheet, (n,)
+    a: Ints  # body, or GROUND, (n,)
+    b: Ints  # body, (n,)
+    origin: Floats  # [mm], (n, 3)
+    axes: Floats  # (n, 3, 3)
+    k: Floats  # k_x, k_y, k_z [N/mm], k_tx, k_ty, k_tz [N mm/rad], (n, 6)
+    c: Floats  # the same order [N ms/mm], [N mm ms/rad], (n, 6)
+    node: Ints  # twice the grid coordinates of the origin from the corner of box (0, 0), (n, 2)
+
+    def __len__(self) -> int:
+        return len(self.name)
+
+
+@dataclass(frozen=True)
+class Clamp:
+    """A held edge: rows of boxes behind the line, and the half-cell hinges on it."""
+
+    edge: str
+    rows: int
+
+
+@dataclass(frozen=True)
+class SheetPart(Frozen):
+    """A sheet's grid; its boxes are the bodies first ... first + n_x n_y - 1."""
+
+    name: str
+    first: int
+    n_x: int
+    n_y: int
+    d_x: float
+    d_y: float
+    thickness: float
+    size: tuple[float, float]
+    layout: str
+    grid: str
+    center: Floats  # (3,)
+    angles: tuple[float, float, float]  # about the global x, then y, then z axis [rad]
+    rotation: Floats  # (3, 3)
+    velocity: Floats
+    spin: Floats
+    surface: bool
+    clamp: Clamp | None
+    bending: tuple[str, str]  # which of (k_tx, D_cd) and of (k_ty, D_md) the user gave
+    twist: bool  # whether D_twist was given
+    in_plane: bool  # whether k_tz was given
+    rotation_damping: str
+    derived: dict[str, float]
+
+    @property
+    def count(self) -> int:
+        return self.n_x * self.n_y
+
+    def body(self, i: int, j: int) -> int:
+        """Body of the box in column i (along x) and row j (along y)."""
+        return self.first + i + j * self.n_x
+
+
+@dataclass(frozen=True)
+class Press(Frozen):
+    """The slide and spring of a pressed roller; lengths along `direction` from the centre as given."""
+
+    direction: Floats  # unit vector, (3,)
+    stiffness: float  # [N/mm]
+    damping: float  # [N ms/mm]
+    damping_ratio: float
+    preload: float  # spring force at the free length [N]
+    free_length: float  # [mm]
+    carrier_mass: float  # [g]
+    touch: float  # where the spring has its free length [mm]
+    start: float  # static equilibrium at the start [mm]
+
+
+@dataclass(frozen=True)
+class RollerPart(Frozen):
+    """A cylinder; `center` is as the user gave it, the body's position includes `press.start`."""
+
+    name: str
+    body: int
+    center: Floats  # (3,)
+    axis: Floats  # unit vector, (3,)
+    radius: float
+    width: float
+    mass: float
+    inertia_axial: float  # [g mm^2]
+    inertia_transverse: float
+    speed: float | None  # prescribed [rad/ms], None: free to turn
+    ramp: float  # [ms]
+    press: Press | None
+
+
+@dataclass(frozen=True)
+class PlanePart(Frozen):
+    """A fixed plate; local axes in the columns of the body's rotation, z = normal."""
+
+    name: str
+    body: int
+    center: Floats
+    normal: Floats
+    size: tuple[float, float, float]
+    mass: float
+
+
+# kinds of contact
+BOX_CYLINDER, BOX_PLANE, CYLINDER_CYLINDER = 0, 1, 2
+
+
+@dataclass(frozen=True)
+class Contacts(Frozen):
+    """One row per pair of parts in contact."""
+
+    entry: Ints  # index in the spec's list, (n,)
+    part_a: tuple[str, ...]  # sheet or roller
+    part_b: tuple[str, ...]  # roller or plane
+    kind: Ints  # BOX_CYLINDER, BOX_PLANE or CYLINDER_CYLINDER
+    stiffness: Floats  # k [N/mm^1.5]
+    restitution: Floats  # c_R
+    mu_static: Floats
+    mu_dynamic: Floats
+    stiction_velocity: Floats  # [mm/ms]
+    friction_velocity: Floats
+    smoothing: Floats  # [mm/ms]
+    share: tuple[str, ...]  # width or pair
+
+    def __len__(self) -> int:
+        return len(self.part_a)
+
+
+@dataclass(frozen=True)
+class Pairs(Frozen):
+    """Body pairs that may touch, and the bounds from which that was decided."""
+
+    contact: Ints  # row of Contacts, (n,)
+    a: Ints  # box or roller, (n,)
+    b: Ints  # roller or plane, (n,)
+    possible: int
+    margin: float  # [mm]
+    low: Floats  # bounds of each body's centre, -inf where not watched [mm], (bodies, 3)
+    high: Floats
+
+    def __len__(self) -> int:
+        return len(self.a)
+
+
+@dataclass(frozen=True)
+class Anchor(Frozen):
+    """A material point of a sheet: the mean of points on one or more boxes."""
+
+    name: str
+    sheet: int
+    body: Ints  # (n,)
+    local: Floats  # box axes [mm], (n, 3)
+    share: Floats  # sums to 1, (n,)
+    node: Ints  # nearest grid node as in Bushings.node; for the text
+    at: tuple[float, float]  # sheet axes, from the centre [mm]
+    edge: str | None
+
+
+@dataclass(frozen=True)
+class Loads(Frozen):
+    """Dead loads on bodies, global axes: a force at a point fixed in the body, and a moment."""
+
+    body: Ints  # (n,)
+    local: Floats  # (n, 3)
+    force: Floats  # [N], (n, 3)
+    moment: Floats  # [N mm], (n, 3)
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A value that the user gave, by the name under which the text is written in it."""
+
+    data_set: str  # identifier without the ds_ prefix
+    member: str  # identifier without the real_ prefix
+    label: str
+    value: float  # internal units
+    unit: str  # internal unit, as the user may write it
+    path: tuple[str | int, ...] | None  # where it stands in the spec; None: computed
+
+
+@dataclass(frozen=True)
+class RunSettings:
+    """How the Model is run; times in ms."""
+
+    duration: float
+    analysis: str
+    step: float | None
+    tolerance: float
+    print_step: float
+
+
+@dataclass(frozen=True)
+class Model(Frozen):
+    """A scene in plain tables."""
+
+    name: str
+    gravity: Floats  # [mm/ms^2], (3,)
+    sheets: tuple[SheetPart, ...]
+    rollers: tuple[RollerPart, ...]
+    planes: tuple[PlanePart, ...]
+    bodies: Bodies
+    bushings: Bushings
+    contacts: Contacts
+    pairs: Pairs
+    loads: Loads
+    probes: tuple[Anchor, ...]
+    tension: tuple[int, float] | None  # axis and flexible length of a clamped sheet under edge stress
+    parameters: tuple[Parameter, ...]
+    run: RunSettings
+
+    def roller(self, name: str) -> RollerPart:
+        return next(r for r in self.rollers if r.name == name)
+
+    def sheet_of(self, body: int) -> SheetPart | None:
+        """The sheet that a body is a box of, or None."""
+        return next((s for s in self.sheets if s.first <= body < s.first + s.count), None)

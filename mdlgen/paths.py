@@ -1,0 +1,71 @@
+"""Where the templates and samples lie, and how files are written so that nothing is lost."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+
+from mdlgen.errors import OutputError
+
+
+def _data(folder: str) -> Path:
+    here = Path(__file__).resolve().parent
+    for place in (here / f"_{folder}", here.parent / folder):
+        if place.is_dir():
+            return place
+    raise OutputError(f"the folder {folder!r} of the installation is missing; install mdlgen again")
+
+
+def templates() -> Path:
+    """Folder of the Jinja templates: inside the installed package, or beside it in a checkout."""
+    return _data("templates")
+
+
+def samples() -> Path:
+    """Folder of the sample scenes."""
+    return _data("samples")
+
+
+def write_atomic(path: Path, content: str | bytes) -> None:
+    """Write `path` through a temporary file in the same folder, fsync and rename.
+
+    An existing file stays whole until the new one is complete. Raises OutputError (exit code 3).
+    """
+    write_together({path: content})
+
+
+def write_together(files: Mapping[Path, str | bytes]) -> None:
+    """Write several files: all are complete as temporary files before the first is renamed."""
+    staged: list[tuple[str, Path]] = []
+    path = Path()
+    try:
+        for path, content in files.items():
+            if path.is_symlink():
+                raise OutputError(f"{path}: is a symbolic link; name the file itself")
+            if path.is_dir():
+                raise OutputError(f"{path}: is a folder; name a file")
+            data = content.encode("utf-8") if isinstance(content, str) else content
+            handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+            staged.append((temporary, path))
+            with os.fdopen(handle, "wb") as stream:
+                stream.write(data)
+                stream.flush()
+                os.fsync(stream.fileno())
+            os.chmod(temporary, 0o666 & ~_umask())
+        for temporary, path in staged:
+            os.replace(temporary, path)
+    except OSError as error:
+        raise OutputError(f"{path}: cannot write: {error.strerror or error}") from None
+    finally:
+        for temporary, _ in staged:
+            with contextlib.suppress(OSError):
+                os.unlink(temporary)
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

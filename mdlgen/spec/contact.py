@@ -1,0 +1,61 @@
+"""Contact between two parts (paper section 3, Table 4)."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from mdlgen.spec.fields import SpeedScale, Strict, fail, internal, quantity
+
+
+class Friction(Strict):
+    """Coulomb friction, regularised: the coefficient rises over the slip speed (Eq. 12).
+
+    A plain number is both coefficients; the speeds follow the contact's `smoothing` where left out.
+    """
+
+    static: float = Field(ge=0, le=1e3, description="coefficient at the stiction velocity")
+    dynamic: float = Field(ge=0, le=1e3, description="coefficient from the friction velocity on")
+    stiction_velocity: SpeedScale | None = None
+    friction_velocity: SpeedScale | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _number(cls, value: Any) -> Any:
+        if isinstance(value, (int, float)) and not isinstance(value, bool):
+            return {"static": value, "dynamic": value}
+        if not isinstance(value, (dict, Friction)):
+            raise fail(f"{value!r} is not a friction; give a number, or static and dynamic"[:200])
+        return value
+
+    @model_validator(mode="after")
+    def _order(self) -> Friction:
+        slow, fast = self.stiction_velocity, self.friction_velocity
+        if slow is not None and fast is not None and fast < slow:
+            raise fail("friction_velocity is below stiction_velocity; it must be at least as high")
+        return self
+
+
+def _two(value: Any) -> Any:
+    if not isinstance(value, (list, tuple)) or len(value) != 2 or not all(isinstance(v, str) for v in value):
+        raise fail(f"between needs two names or patterns like 'motor_*', got {value!r}"[:200])
+    return tuple(value)
+
+
+class Contact(Strict):
+    """Normal force k z^1.5 with restitution (Eqs. 9-11) and friction, for each pair of parts named."""
+
+    between: Annotated[tuple[str, str], BeforeValidator(_two)] = Field(
+        description="two parts by name or pattern; every pair that matches gets this contact"
+    )
+    stiffness: quantity("N/mm^1.5", 0.0, open_low=True) = Field(description="k of one pair (Eq. 10)")
+    restitution: float = Field(0.5, ge=0, le=1, description="coefficient of restitution c_R (Eq. 11)")
+    friction: Friction = Field(default_factory=lambda: Friction(static=0.0, dynamic=0.0))
+    smoothing: SpeedScale = Field(
+        internal(1e-3), description="speed over which damping and friction change sign; 1 mm/s"
+    )
+    share: Literal["width", "pair"] = Field(
+        "width",
+        description="width: boxes under one roller share k by the area they cover; pair: k each, as MotionSolve",
+    )

@@ -1,0 +1,126 @@
+"""A scene: sheets, machine, contacts and what is asked of them."""
+
+from __future__ import annotations
+
+import re
+from fnmatch import fnmatchcase
+from itertools import product
+
+from pydantic import Field, model_validator
+
+from mdlgen.spec.action import Load, OnSheet, Probe, Support
+from mdlgen.spec.contact import Contact
+from mdlgen.spec.fields import Acceleration, Name, Strict, fail, internal
+from mdlgen.spec.machine import Plane, Roller
+from mdlgen.spec.material import Material
+from mdlgen.spec.run import Run
+from mdlgen.spec.sheet import Sheet
+
+
+class Scene(Strict):
+    """Everything that a user describes; see `mdlgen schema` for each field."""
+
+    name: Name = Field(description="name of the scene and of the files made from it")
+    gravity: Acceleration = (internal(0.0), internal(0.0), internal(-9.81e-3))
+    materials: dict[Name, Material] = Field(default_factory=dict)
+    sheets: dict[Name, Sheet] = Field(min_length=1)
+    rollers: dict[Name, Roller] = Field(default_factory=dict)
+    planes: dict[Name, Plane] = Field(default_factory=dict)
+    contacts: tuple[Contact, ...] = Field(default=(), strict=False)
+    loads: tuple[Load, ...] = Field(default=(), strict=False)
+    run: Run = Field(default_factory=lambda: Run())
+    probes: dict[Name, Probe] = Field(default_factory=dict)
+    supports: tuple[Support, ...] = Field(default=(), strict=False)
+
+    @model_validator(mode="after")
+    def _references(self) -> Scene:
+        self._names_unique()
+        for name, sheet in self.sheets.items():
+            _known(sheet.material, self.materials, "material", ("sheets", name, "material"))
+            material = self.materials[sheet.material]
+            if material.D_twist is not None and sheet.layout == "edge_to_edge":
+                raise fail(
+                    f"sheet {name}: D_twist acts with layout center_to_center only: in edge_to_edge the two "
+                    "corner bushings lock the twist; leave D_twist out or change the layout",
+                    ("materials", sheet.material, "D_twist"),
+                )
+        for kind in ("probes", "loads", "supports"):
+            items = getattr(self, kind)
+            for key, item in items.items() if isinstance(items, dict) else enumerate(items):
+                self._on_sheet(item, (kind, key))
+        self.contact_pairs()
+        return self
+
+    def _names_unique(self) -> None:
+        seen: dict[str, str] = {}
+        for kind in ("sheets", "rollers", "planes", "probes"):
+            for name in getattr(self, kind):
+                other = seen.setdefault(name.lower(), f"{kind}.{name}")
+                if other != f"{kind}.{name}":
+                    raise fail(f"the name {name!r} is used twice (also {other})", (kind, name))
+
+    def _on_sheet(self, item: OnSheet, path: tuple[str | int, ...]) -> None:
+        _known(item.sheet, self.sheets, "sheet", (*path, "sheet"))
+        if item.at is None:
+            return
+        sheet = self.sheets[item.sheet]
+        for value, count, pitch, axis in zip(item.at, sheet.boxes, sheet.pitch, "xy", strict=True):
+            half = count * pitch / 2.0
+            if abs(value) > half * (1 + 1e-9):
+                raise fail(
+                    f"at: {axis} = {value:g} mm is off the sheet; allowed -{half:g} to {half:g} mm",
+                    (*path, "at"),
+                )
+
+    def contact_pairs(self) -> list[tuple[int, str, str]]:
+        """(index of the contact, part a, part b) for every pair of parts, sheets and rollers first.
+
+        Raises the error for a part that does not exist, a pair given twice, or one that is not modelled.
+        """
+        rank = {n: i for i, n in enumerate([*self.sheets, *self.rollers, *self.planes])}
+        taken: dict[tuple[str, str], int] = {}
+        pairs: list[tuple[int, str, str]] = []
+        for index, contact in enumerate(self.contacts):
+            path = ("contacts", index, "between")
+            sides = [_matching(p, rank, (*path, i)) for i, p in enumerate(contact.between)]
+            found = False
+            for one, two in product(*sides):
+                if one == two:
+                    continue
+                a, b = sorted((one, two), key=rank.__getitem__)
+                if (a, b) in taken:
+                    if taken[a, b] == index:
+                        continue
+                    raise fail(f"the pair {a} / {b} already has contacts.{taken[a, b]}; give it one", path)
+                self._modelled(a, b, path)
+                taken[a, b] = index
+                found = True
+                pairs.append((index, a, b))
+            if not found:
+                raise fail("between names one part only; a contact needs two", path)
+        return pairs
+
+    def _modelled(self, a: str, b: str, path: tuple[str | int, ...]) -> None:
+        if a in self.sheets and b in self.sheets:
+            raise fail(f"contact between the sheets {a} and {b} is not modelled yet", path)
+        if a in self.sheets:
+            return
+        if b not in self.rollers:
+            raise fail(f"contact between {a} and {b} is not modelled: a plane touches sheets only", path)
+        one, two = self.rollers[a].axis, self.rollers[b].axis
+        if abs(abs(sum(p * q for p, q in zip(one, two, strict=True))) - 1.0) > 1e-9:
+            raise fail(f"the rollers {a} and {b} are in contact but their axes are not parallel", path)
+
+
+def _known(name: str, table: dict, kind: str, path: tuple[str | int, ...]) -> None:
+    if name not in table:
+        raise fail(f"there is no {kind} {name!r}; there are: {', '.join(table) or 'none'}", path)
+
+
+def _matching(pattern: str, parts: dict[str, int], path: tuple[str | int, ...]) -> list[str]:
+    if not re.fullmatch(r"[A-Za-z0-9_*?]{1,64}", pattern):
+        raise fail(f"{pattern[:80]!r} is not a name or a pattern of letters, digits, _, * and ?", path)
+    found = [name for name in parts if fnmatchcase(name, pattern)]
+    if not found:
+        raise fail(f"there is no part {pattern!r}; there are: {', '.join(parts)}", path)
+    return found

@@ -1,0 +1,41 @@
+"""The spec's schema: JSON schema for editors, and which model stands at a path."""
+
+from __future__ import annotations
+
+from typing import Any, get_args
+
+from pydantic import BaseModel
+
+from mdlgen.spec.scene import Scene
+
+
+def json_schema() -> dict[str, Any]:
+    """JSON schema of a scene file."""
+    schema = Scene.model_json_schema()
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
+
+
+def model_at(path: tuple[str | int, ...]) -> type[BaseModel] | None:
+    """The model that describes the mapping at `path` of a scene, or None."""
+    model: type[BaseModel] | None = Scene
+    skip = False
+    for key in path:
+        if skip:  # a name in a dict, or an index of a list: the model was found one step before
+            skip = False
+            continue
+        if model is None or key not in model.model_fields:
+            return None
+        annotation = model.model_fields[str(key)].annotation
+        model = _model_in(annotation)
+        skip = getattr(annotation, "__origin__", None) in (dict, tuple)
+    return None if skip else model
+
+
+def _model_in(annotation: Any) -> type[BaseModel] | None:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return annotation
+    for part in get_args(annotation):
+        found = _model_in(part)
+        if found:
+            return found
+    return None

@@ -1,0 +1,88 @@
+"""Quantities as text with units.
+
+Inside, one consistent set holds: mm, N, g, ms, rad (so N = g mm/ms², stress in MPa). A unit is a
+product of powers of the names in `_NAMES`; its dimension counts length, mass, time and angle.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from functools import lru_cache
+from typing import NamedTuple
+
+
+class Unit(NamedTuple):
+    """Factor to the internal set, and exponents of length, mass, time, angle."""
+
+    factor: float
+    dimension: tuple[float, float, float, float]
+
+
+_LENGTH, _MASS, _TIME, _ANGLE = (1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1)
+_FORCE, _STRESS, _RATE = (1, 1, -2, 0), (-1, 1, -2, 0), (0, 0, -1, 1)
+
+_NAMES: dict[str, Unit] = {
+    name: Unit(factor, tuple(float(d) for d in dimension))  # type: ignore[arg-type]
+    for dimension, table in (
+        (_LENGTH, {"mm": 1.0, "m": 1e3, "cm": 10.0, "um": 1e-3, "µm": 1e-3, "in": 25.4}),
+        (_MASS, {"g": 1.0, "kg": 1e3, "mg": 1e-3, "t": 1e6}),
+        (_TIME, {"ms": 1.0, "s": 1e3, "us": 1e-3, "µs": 1e-3, "min": 6e4}),
+        (_ANGLE, {"rad": 1.0, "mrad": 1e-3, "deg": math.pi / 180.0, "°": math.pi / 180.0}),
+        (_FORCE, {"N": 1.0, "mN": 1e-3, "uN": 1e-6, "kN": 1e3}),
+        (_STRESS, {"MPa": 1.0, "Pa": 1e-6, "kPa": 1e-3, "GPa": 1e3}),
+        (_RATE, {"rpm": 2.0 * math.pi / 6e4}),
+    )
+    for name, factor in table.items()
+}
+
+_NUMBER = r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
+_QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(.*?)\s*")
+_FACTOR = re.compile(r"([A-Za-zµ°]+|1)(?:\^([-+]?[0-9]+(?:\.[0-9]+)?))?")
+
+
+@lru_cache(maxsize=512)
+def parse_unit(text: str) -> Unit:
+    """`N*mm/rad`, `N/mm^1.5`, `m/s^2` as a Unit. Raises ValueError with what is wrong."""
+    factor, dimension = 1.0, (0.0, 0.0, 0.0, 0.0)
+    for sign, word in re.findall(r"(^|[*/·])([^*/·]*)", text.replace("²", "^2").replace("³", "^3")):
+        match = _FACTOR.fullmatch(word.strip())
+        if not match or (match[1] != "1" and match[1] not in _NAMES):
+            raise ValueError(f"unknown unit {word.strip()!r} in {text!r}")
+        if match[1] == "1":
+            continue
+        unit = _NAMES[match[1]]
+        power = float(match[2] or 1) * (-1.0 if sign == "/" else 1.0)
+        if abs(power) > 8:
+            raise ValueError(f"exponent {match[2]} in {text!r} has no physical use")
+        factor *= unit.factor**power
+        dimension = tuple(d + power * u for d, u in zip(dimension, unit.dimension, strict=True))
+    return Unit(factor, dimension)  # type: ignore[arg-type]
+
+
+def parse_quantity(text: object, expected: str) -> float:
+    """The value of `text` ("0.72 g") in internal units; `expected` is a unit of the right dimension.
+
+    Raises ValueError that names the unit expected, for a bare number, an unknown or a wrong unit, and
+    a value that is not finite.
+    """
+    if isinstance(text, bool) or not isinstance(text, str):
+        shown = f"{text} has no unit" if isinstance(text, (int, float)) else f"{text!r} is not a quantity"
+        raise ValueError(f"{shown}; expected text with a unit like '1 {expected}'")
+    match = _QUANTITY.fullmatch(text[:200])
+    if not match:
+        raise ValueError(f"{text[:60]!r} is not a number with a unit; expected like '1 {expected}'")
+    if not match[2]:
+        raise ValueError(f"{text.strip()} has no unit; expected like '{match[1]} {expected}'")
+    unit = parse_unit(match[2])
+    if any(abs(a - b) > 1e-9 for a, b in zip(unit.dimension, parse_unit(expected).dimension, strict=True)):
+        raise ValueError(f"{text.strip()!r} has the wrong unit; expected a unit like '{expected}'")
+    value = float(match[1]) * unit.factor
+    if not math.isfinite(value):
+        raise ValueError(f"{text.strip()!r} is not finite; allowed are values below 1.8e308")
+    return value
+
+
+def format_quantity(value: float, unit: str) -> str:
+    """The inverse of `parse_quantity`: shortest text that reads back as the same float where possible."""
+    return f"{value / parse_unit(unit).factor!r} {unit}"
