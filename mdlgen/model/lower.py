@@ -9,7 +9,7 @@ import numpy as np
 from mdlgen.model import grid, naming, press
 from mdlgen.model.pairs import find_pairs
 from mdlgen.model.parameters import parameters
-from mdlgen.model.stiffness import JointValues, joint_values
+from mdlgen.model.stiffness import SUPPORT_FACTOR, JointValues, joint_values
 from mdlgen.model.tables import (
     BOX_CYLINDER,
     BOX_PLANE,
@@ -33,9 +33,6 @@ from mdlgen.model.tables import (
 from mdlgen.spec.action import OnSheet
 from mdlgen.spec.machine import Roller
 from mdlgen.spec.scene import Scene
-
-# A support is a bushing to ground this much stiffer than the sheet's own k_z.
-SUPPORT_FACTOR = 100.0
 
 
 def lower(scene: Scene) -> Model:

@@ -36,7 +36,7 @@ def touch_offset(
         reach = radius + other.radius
         if across2 < reach**2:
             offsets.append(along - math.sqrt(reach**2 - across2))
-    return min(offsets, default=0.0)
+    return float(min(offsets, default=0.0))
 
 
 def covered_share(sheet: SheetPart, center: Floats, axis: Floats, width: float) -> float:
@@ -99,15 +99,15 @@ def equilibrium(
 
     low, high = touch - 2 * radius, touch
     if push(low) <= 0.0:
-        return low
+        return float(low)
     # Ahead of the touching position the balance is lost once a counterpart's centre is passed.
     while push(high) > 0.0 and high < touch + radius:
         high += radius / 16
     if push(high) > 0.0:
-        return touch
+        return float(touch)
     for _ in range(200):
         middle = 0.5 * (low + high)
         if middle in (low, high):
             break
         low, high = (middle, high) if push(middle) > 0.0 else (low, middle)
-    return 0.5 * (low + high)
+    return float(0.5 * (low + high))

@@ -12,6 +12,10 @@ from mdlgen.spec.material import Material
 from mdlgen.spec.sheet import Sheet
 
 
+# A support is a bushing to ground this much stiffer than the sheet's own k_z.
+SUPPORT_FACTOR = 100.0
+
+
 @dataclass(frozen=True)
 class JointValues:
     """Values of one bushing of the sheet (each of the two at a pair in `edge_to_edge`).

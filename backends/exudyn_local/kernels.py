@@ -1,0 +1,363 @@
+"""Compiled forces, jacobian and energy of a System in the solver's coordinates."""
+
+from __future__ import annotations
+
+
+import numpy as np
+from numba import njit
+
+from mdlgen.mechanics.bushing import bushing
+from mdlgen.mechanics.contact import OUT, box_cylinder, box_plane, cylinder_cylinder
+from mdlgen.mechanics.vector import add, back, cross, dot, mat, matmul, rotate, scale, vec
+
+# Perturbations of the difference quotients: positions and Euler parameters, velocities [SI]. A static run
+# takes central quotients: a joint bends 1e5 times easier than it stretches, and a one-sided quotient of the
+# stretching part would hide the bending; in a transient run the mass stands in between.
+_E_POSITION, _E_VELOCITY = 1e-9, 1e-6
+_E_CENTRAL = 1e-7
+_CYLINDER_CYLINDER, _BOX_PLANE = 2, 1
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def three(a):
+    return (a[0], a[1], a[2])
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def nine(a):
+    return (a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8])
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def place_body(bodies, body, q, v, t, x, r, u, w):
+    """Position, rotation, velocity and angular velocity (global) of one body."""
+    ref = bodies[body].reference
+    for i in range(3):
+        x[body, i] = ref[i]
+        u[body, i] = 0.0
+        w[body, i] = 0.0
+    e0, e1, e2, e3 = ref[3], ref[4], ref[5], ref[6]
+    n = bodies[body].first
+    if n >= 0:
+        for i in range(3):
+            x[body, i] += q[n + i]
+            u[body, i] = v[n + i]
+        e0 += q[n + 3]
+        e1 += q[n + 4]
+        e2 += q[n + 5]
+        e3 += q[n + 6]
+        d0, d1, d2, d3 = v[n + 3], v[n + 4], v[n + 5], v[n + 6]
+        w[body, 0] = 2 * (-e1 * d0 + e0 * d1 - e3 * d2 + e2 * d3)
+        w[body, 1] = 2 * (-e2 * d0 + e3 * d1 + e0 * d2 - e1 * d3)
+        w[body, 2] = 2 * (-e3 * d0 - e2 * d1 + e1 * d2 + e0 * d3)
+    r[body, 0] = 1 - 2 * (e2 * e2 + e3 * e3)
+    r[body, 1] = 2 * (e1 * e2 - e0 * e3)
+    r[body, 2] = 2 * (e1 * e3 + e0 * e2)
+    r[body, 3] = 2 * (e1 * e2 + e0 * e3)
+    r[body, 4] = 1 - 2 * (e1 * e1 + e3 * e3)
+    r[body, 5] = 2 * (e2 * e3 - e0 * e1)
+    r[body, 6] = 2 * (e1 * e3 - e0 * e2)
+    r[body, 7] = 2 * (e2 * e3 + e0 * e1)
+    r[body, 8] = 1 - 2 * (e1 * e1 + e2 * e2)
+    k = bodies[body].slide
+    if k >= 0:
+        for i in range(3):
+            x[body, i] += q[k] * bodies[body].way[i]
+            u[body, i] += v[k] * bodies[body].way[i]
+    rate = 0.0
+    if bodies[body].spin >= 0:
+        rate = v[bodies[body].spin]
+    elif bodies[body].drive[0] != 0.0:
+        ramp = bodies[body].drive[1]
+        rate = bodies[body].drive[0] * (min(t / ramp, 1.0) if ramp > 0.0 else 1.0)
+    for i in range(3):
+        w[body, i] += rate * bodies[body].axis[i]
+
+
+@njit(cache=True, error_model="numpy")
+def place_all(bodies, q, v, t, x, r, u, w):
+    for body in range(bodies.size):
+        place_body(bodies, body, q, v, t, x, r, u, w)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _spread(bodies, body, q, force, torque, f):
+    """Adds a force and a torque at a body's centre to the generalised forces."""
+    n = bodies[body].first
+    if n >= 0:
+        ref = bodies[body].reference
+        e0, e1, e2, e3 = ref[3] + q[n + 3], ref[4] + q[n + 4], ref[5] + q[n + 5], ref[6] + q[n + 6]
+        for i in range(3):
+            f[n + i] += force[i]
+        a, b, c = torque
+        f[n + 3] += 2 * (-e1 * a - e2 * b - e3 * c)
+        f[n + 4] += 2 * (e0 * a + e3 * b - e2 * c)
+        f[n + 5] += 2 * (-e3 * a + e0 * b + e1 * c)
+        f[n + 6] += 2 * (e2 * a - e1 * b + e0 * c)
+        return
+    if bodies[body].slide >= 0:
+        f[bodies[body].slide] += dot(force, three(bodies[body].way))
+    if bodies[body].spin >= 0:
+        f[bodies[body].spin] += dot(torque, three(bodies[body].axis))
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _bush(bodies, bush, q, x, r, u, w, f):
+    """One bushing; returns (stored energy, dissipated power)."""
+    a, b = bush.a, bush.b
+    ma, mb = mat(r, a), mat(r, b)
+    k, c = bush.k, bush.c
+    force, torque_b, torque_a, energy, power = bushing(
+        vec(x, a),
+        matmul(ma, nine(bush.fa)),
+        vec(u, a),
+        vec(w, a),
+        rotate(ma, three(bush.ra)),
+        vec(x, b),
+        matmul(mb, nine(bush.fb)),
+        vec(u, b),
+        vec(w, b),
+        rotate(mb, three(bush.rb)),
+        (k[0], k[1], k[2]),
+        (k[3], k[4], k[5]),
+        (c[0], c[1], c[2]),
+        (c[3], c[4], c[5]),
+    )
+    _spread(bodies, a, q, (-force[0], -force[1], -force[2]), torque_a, f)
+    _spread(bodies, b, q, force, torque_b, f)
+    return energy, power
+
+
+@njit(cache=True, error_model="numpy")
+def _pair(bodies, pair, q, x, r, u, w, f, out):
+    """One contact pair into `out`; returns whether it touches."""
+    out[:] = 0.0
+    a, b = pair.a, pair.b
+    row = pair.law
+    law = (row[0], row[1], row[2], row[3], row[4], row[5])
+    half = three(bodies[a].half)
+    if pair.kind == _CYLINDER_CYLINDER:
+        cylinder_cylinder(
+            out,
+            vec(x, a),
+            vec(u, a),
+            vec(w, a),
+            bodies[a].size[0],
+            bodies[a].size[1],
+            vec(x, b),
+            vec(u, b),
+            vec(w, b),
+            bodies[b].size[0],
+            bodies[b].size[1],
+            three(bodies[b].axis),
+            pair.k,
+            law,
+        )
+    elif pair.kind == _BOX_PLANE:
+        box_plane(
+            out, vec(x, a), mat(r, a), vec(u, a), vec(w, a), half, vec(x, b), mat(r, b), three(bodies[b].half),
+            pair.k, law,
+        )  # fmt: skip
+    else:
+        box_cylinder(
+            out, vec(x, a), mat(r, a), vec(u, a), vec(w, a), half, bodies[a].exposed, vec(x, b), three(bodies[b].axis),
+            vec(u, b), vec(w, b), bodies[b].size[0], bodies[b].size[1], pair.k, pair.shared != 0, law,
+        )  # fmt: skip
+    if out[12] == 0.0:
+        return False
+    _spread(bodies, a, q, (out[0], out[1], out[2]), (out[3], out[4], out[5]), f)
+    _spread(bodies, b, q, (out[6], out[7], out[8]), (out[9], out[10], out[11]), f)
+    return True
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _slide(bodies, gravity, body, q, v, f, level):
+    """Spring, damper and weight on a slide; `level` scales the preload's rest in a static run."""
+    k = bodies[body].slide
+    p = bodies[body].press
+    f[k] += p[2] - p[0] * q[k] - p[1] * v[k] + level * p[3] * dot(three(bodies[body].way), three(gravity))
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _load(bodies, load, q, r, f, level):
+    body = load.body
+    force = scale(level, three(load.force))
+    arm = rotate(mat(r, body), three(load.local))
+    moment = scale(level, three(load.moment))
+    _spread(bodies, body, q, force, add(moment, cross(arm, force)), f)
+
+
+@njit(cache=True, error_model="numpy")
+def forces(bodies, bushings, pairs, loads, gravity, q, v, t, level, x, r, u, w, out, f):
+    """Generalised forces f; `level` scales gravity and loads. Returns the number of touching pairs."""
+    place_all(bodies, q, v, t, x, r, u, w)
+    f[:] = 0.0
+    for body in range(bodies.size - 1):
+        n = bodies[body].first
+        if n >= 0:
+            for i in range(3):
+                f[n + i] += level * bodies[body].mass * gravity[i]
+        if bodies[body].slide >= 0:
+            _slide(bodies, gravity, body, q, v, f, level)
+    for i in range(bushings.size):
+        _bush(bodies, bushings[i], q, x, r, u, w, f)
+    touching = 0
+    for i in range(pairs.size):
+        if _pair(bodies, pairs[i], q, x, r, u, w, f, out):
+            touching += 1
+    for i in range(loads.size):
+        _load(bodies, loads[i], q, r, f, level)
+    return touching
+
+
+@njit(cache=True, error_model="numpy")
+def _element(bodies, bushings, pairs, loads, gravity, block_start, element, q, v, x, r, u, w, f, out, level):
+    """Generalised forces of one element, added to f. Returns False where a pair does not touch."""
+    blocks = block_start.size - 1
+    if element < blocks:
+        for i in range(block_start[element], block_start[element + 1]):
+            _bush(bodies, bushings[i], q, x, r, u, w, f)
+        return True
+    element -= blocks
+    if element < pairs.size:
+        return _pair(bodies, pairs[element], q, x, r, u, w, f, out)
+    element -= pairs.size
+    for body in range(bodies.size - 1):
+        if bodies[body].slide >= 0:
+            if element == 0:
+                _slide(bodies, gravity, body, q, v, f, level)
+                return True
+            element -= 1
+    _load(bodies, loads[element], q, r, f, level)
+    return True
+
+
+@njit(cache=True, error_model="numpy")
+def owners(bodies, free):
+    """Body of each coordinate."""
+    owner = np.empty(free, np.int64)
+    for body in range(bodies.size):
+        n = bodies[body].first
+        if n >= 0:
+            for i in range(7):
+                owner[n + i] = body
+        if bodies[body].slide >= 0:
+            owner[bodies[body].slide] = body
+        if bodies[body].spin >= 0:
+            owner[bodies[body].spin] = body
+    return owner
+
+
+@njit(cache=True, error_model="numpy")
+def jacobian(bodies, bushings, pairs, loads, gravity, elements, q, v, t, level, by_q, by_v, central, owner, x, r, u, w, out, f, data):
+    """data = -(by_q dF/dq + by_v dF/dv) in the slots of the pattern, by difference quotients.
+
+    One quotient per coordinate gives both parts: q and v are moved together in the ratio wanted.
+    """
+    block_start, dofs, dof_start, slots, slot_start = elements
+    place_all(bodies, q, v, t, x, r, u, w)
+    data[:] = 0.0
+    step = 1e30
+    if by_q != 0.0:
+        step = (_E_CENTRAL if central else _E_POSITION) / abs(by_q)
+    if by_v != 0.0:
+        step = min(step, _E_VELOCITY / abs(by_v))
+    base = np.empty(32)
+    for element in range(dof_start.size - 1):
+        begin, end = dof_start[element], dof_start[element + 1]
+        if begin == end:
+            continue
+        count = end - begin
+        for i in range(begin, end):
+            f[dofs[i]] = 0.0
+        if not _element(bodies, bushings, pairs, loads, gravity, block_start, element, q, v, x, r, u, w, f, out, level):
+            continue
+        for i in range(count):
+            base[i] = f[dofs[begin + i]]
+        slot = slot_start[element]
+        width = 2.0 * step if central else step
+        for j in range(count):
+            dof = dofs[begin + j]
+            body = owner[dof]
+            kept_q, kept_v = q[dof], v[dof]
+            if central:
+                q[dof] -= step * by_q
+                v[dof] -= step * by_v
+                place_body(bodies, body, q, v, t, x, r, u, w)
+                for i in range(begin, end):
+                    f[dofs[i]] = 0.0
+                _element(bodies, bushings, pairs, loads, gravity, block_start, element, q, v, x, r, u, w, f, out, level)
+                for i in range(count):
+                    base[i] = f[dofs[begin + i]]
+                q[dof], v[dof] = kept_q, kept_v
+            q[dof] += step * by_q
+            v[dof] += step * by_v
+            place_body(bodies, body, q, v, t, x, r, u, w)
+            for i in range(begin, end):
+                f[dofs[i]] = 0.0
+            _element(bodies, bushings, pairs, loads, gravity, block_start, element, q, v, x, r, u, w, f, out, level)
+            q[dof], v[dof] = kept_q, kept_v
+            place_body(bodies, body, q, v, t, x, r, u, w)
+            for i in range(count):
+                data[slots[slot + i * count + j]] -= (f[dofs[begin + i]] - base[i]) / width
+
+
+@njit(cache=True, error_model="numpy")
+def ledger(bodies, bushings, pairs, loads, gravity, q, v, t, x, r, u, w, f, pair_out, totals):
+    """Energy and power at a state: totals = (kinetic, elastic, potential, dissipated power, driving power).
+
+    Also leaves the result of each pair in `pair_out` (p, OUT) and the bodies' states in x, r, u, w.
+    """
+    place_all(bodies, q, v, t, x, r, u, w)
+    kinetic = elastic = potential = lost = driven = 0.0
+    for body in range(bodies.size - 1):
+        if bodies[body].first >= 0:
+            spin = back(mat(r, body), vec(w, body))
+            kinetic += 0.5 * bodies[body].mass * dot(vec(u, body), vec(u, body))
+            for i in range(3):
+                kinetic += 0.5 * bodies[body].inertia[i] * spin[i] * spin[i]
+            potential -= bodies[body].mass * dot(three(gravity), vec(x, body))
+        k = bodies[body].slide
+        if k >= 0:
+            p = bodies[body].press
+            kinetic += 0.5 * p[3] * v[k] * v[k]
+            potential -= p[3] * dot(three(gravity), three(bodies[body].way)) * q[k] + p[2] * q[k]
+            elastic += 0.5 * p[0] * q[k] * q[k]
+            lost += p[1] * v[k] * v[k]
+        if bodies[body].spin >= 0:
+            kinetic += 0.5 * bodies[body].press[4] * v[bodies[body].spin] ** 2
+    for i in range(bushings.size):
+        energy, power = _bush(bodies, bushings[i], q, x, r, u, w, f)
+        elastic += energy
+        lost += power
+    for i in range(pairs.size):
+        if not _pair(bodies, pairs[i], q, x, r, u, w, f, pair_out[i]):
+            continue
+        row = pair_out[i]
+        elastic += row[13]
+        lost += row[14]
+        for body, at in ((pairs[i].a, 0), (pairs[i].b, 6)):
+            if bodies[body].first < 0 and bodies[body].spin < 0:
+                driven -= row[at + 3] * w[body, 0] + row[at + 4] * w[body, 1] + row[at + 5] * w[body, 2]
+    for i in range(loads.size):
+        load = loads[i]
+        body = load.body
+        arm = rotate(mat(r, body), three(load.local))
+        at = add(vec(u, body), cross(vec(w, body), arm))
+        driven += dot(three(load.force), at) + dot(three(load.moment), vec(w, body))
+    totals[0], totals[1], totals[2], totals[3], totals[4] = kinetic, elastic, potential, lost, driven
+
+
+def workspace(system) -> tuple:
+    """x, r, u, w, out, f for the functions above."""
+    n = len(system.bodies)
+    return (
+        np.zeros((n, 3)),
+        np.zeros((n, 9)),
+        np.zeros((n, 3)),
+        np.zeros((n, 3)),
+        np.zeros(OUT),
+        np.zeros(max(1, system.free)),
+    )
+
+

@@ -1,0 +1,194 @@
+"""Keeps what a run passes through: stored states, contact statistics, the energy balance, the bounds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from backends.exudyn_local import kernels
+from backends.exudyn_local.system import MM, MS, PER_MM, System, quaternions
+from mdlgen.model.tables import Model
+from mdlgen.results.result import ContactStatistics, Energy, Result
+
+# Two rollers with a sheet between them clear each other by a few micrometres and may graze.
+GRAZE = 0.05
+
+
+class Recorder:
+    """Called after every step of the solver; turns SI into the Model's units when the result is made."""
+
+    def __init__(self, model: Model, system: System, progress: Callable | None):
+        self.model, self.system, self.progress = model, system, progress
+        self.steps = 0
+        self.time = 0.0  # [s]
+        self.reason: str | None = None
+        self._due = np.zeros(0)  # times at which a state is stored [s]
+        self._work = kernels.workspace(system)
+        self._pairs = np.zeros((len(system.pairs), kernels.OUT))
+        self._totals = np.zeros(5)
+        self._touched = np.zeros(len(system.pairs), bool)
+        rows = len(model.contacts)
+        self._max_depth, self._max_force = np.zeros(rows), np.zeros(rows)
+        self._sum_depth, self._sum_force = np.zeros(rows), np.zeros(rows)
+        self._in_contact, self._last = np.zeros(rows), np.zeros(rows)
+        self._acting = np.zeros(rows, bool)
+        self._stored: dict[str, list] = {name: [] for name in ("t", "x", "e", "u", "w", "f")}
+        self._first: np.ndarray | None = None
+        self._lost = self._driven = 0.0
+        self._through = 0.0
+        self._low, self._high = model.pairs.low * MM, model.pairs.high * MM
+        self._last_stored = -1
+
+    def plan(self, h: float) -> None:
+        """Which times are stored: the print times, at the first step that reaches them, and the end."""
+        run = self.model.run
+        outputs = max(1, round(run.duration / run.print_step))
+        # a hair early, so that rounding never delays an output by a whole step
+        self._due = np.arange(1, outputs + 1) * (run.duration / outputs) * MS - 1e-6 * h
+
+    def after_step(self, mbs, t: float) -> bool:
+        """Exudyn's post-step function; False ends the run."""
+        if t <= self.time:  # Exudyn also calls at the start
+            return True
+        data = mbs.systemData
+        q, v = data.GetODE2Coordinates(), data.GetODE2Coordinates_t()
+        self.steps += 1
+        step = t - self.time
+        if not (np.isfinite(q).all() and np.isfinite(v).all()):
+            self.reason = f"the state went non-finite at {t / MS:.6g} ms (step {step / MS:.3g} ms)"
+            return False
+        self._observe(q, v, t)
+        done = len(self._stored["t"]) - 1
+        if done < len(self._due) and t >= self._due[done]:
+            self._store(t)
+        if self.reason is None:
+            self._watch(t)
+        if self.progress is not None and self.steps % 20 == 0:
+            self.progress(t / MS, self.model.run.duration, self.steps, self.touching)
+        return self.reason is None
+
+    @property
+    def touching(self) -> int:
+        """Pairs that touch at the state last observed."""
+        return int((self._pairs[:, 12] > 0).sum())
+
+    def store(self, q: np.ndarray, v: np.ndarray, t: float) -> None:
+        """Observe and store one state outside the stepping (the start, or a static result)."""
+        self._observe(q, v, t)
+        self._store(t)
+
+    def _observe(self, q: np.ndarray, v: np.ndarray, t: float) -> None:
+        x, r, u, w, _, f = self._work
+        before = self._totals.copy()
+        self._pairs[:] = 0.0
+        kernels.ledger(*self.system.tables, q, v, t, x, r, u, w, f, self._pairs, self._totals)
+        step, self.time = t - self.time, t
+        self._lost += 0.5 * step * (before[3] + self._totals[3])
+        self._driven += 0.5 * step * (before[4] + self._totals[4])
+        self._through += 0.5 * step * (abs(before[4]) + abs(self._totals[4]))
+        if self._first is None:
+            self._first = self._totals[:3].copy()
+        self._contacts(step, t)
+
+    def _contacts(self, step: float, t: float) -> None:
+        if not self._pairs.size:
+            return
+        rows = len(self._max_depth)
+        row = self.model.pairs.contact
+        force = np.bincount(row, weights=self._pairs[:, 12], minlength=rows)
+        depth = np.zeros(rows)
+        np.maximum.at(depth, row, self._pairs[:, 15])
+        # a graze below a twentieth of the greatest force is not counted as the nip still acting
+        acting = force > GRAZE * np.maximum(self._max_force, force)
+        self._touched |= self._pairs[:, 12] > 0.0
+        self._max_depth = np.maximum(self._max_depth, depth)
+        self._max_force = np.maximum(self._max_force, force)
+        self._sum_depth += step * depth
+        self._sum_force += step * force
+        self._in_contact += step * (force > 0.0)
+        self._last = np.where(self._acting & ~acting, t, self._last)
+        self._acting = acting
+        self._force = force
+
+    def _store(self, t: float) -> None:
+        if self._last_stored == self.steps:
+            return
+        self._last_stored = self.steps
+        x, r, u, w = self._work[:4]
+        rows = len(self.model.contacts)
+        self._stored["t"].append(t)
+        self._stored["x"].append(x[:-1].copy())
+        self._stored["e"].append(quaternions(r[:-1].reshape(-1, 3, 3)))
+        self._stored["u"].append(u[:-1].copy())
+        self._stored["w"].append(w[:-1].copy())
+        self._stored["f"].append(self._force.copy() if self._pairs.size else np.zeros(rows))
+
+    def _watch(self, t: float) -> None:
+        x = self._work[0][:-1]
+        out = np.flatnonzero(((x < self._low) | (x > self._high)).any(axis=1))
+        if out.size:
+            name = self.model.bodies.name[int(out[0])]
+            at = ", ".join(f"{value:.4g}" for value in x[out[0]] * PER_MM)
+            self.reason = (
+                f"box {name} left the bounds from which its contacts were chosen at {t / MS:.6g} ms "
+                f"(it is at {at} mm); set run.prune: false, or a run.margin above {self.model.pairs.margin:g} mm"
+            )
+
+    def result(self, solver: str, reason: str | None) -> Result:
+        """The Result in mm, N, g, ms."""
+        held = self._stored
+        count, rows = len(self.model.bodies.name), len(self.model.contacts)
+        times = len(held["t"])
+
+        def array(name: str, *shape: int) -> np.ndarray:
+            return np.array(held[name], dtype=float).reshape(times, *shape)
+
+        contact_time = np.where(self._in_contact > 0, self._in_contact, 1.0)
+        static = self.steps == 0
+        now = self._force if self._pairs.size else np.zeros(rows)
+        return Result(
+            model=self.model,
+            solver=solver,
+            status=reason or "ok",
+            time=array("t") / MS,
+            position=array("x", count, 3) / MM,
+            rotation=_continuous(array("e", count, 4)),
+            velocity=array("u", count, 3) * MS / MM,
+            spin=array("w", count, 3) * MS,
+            contact_force=array("f", rows),
+            statistics=ContactStatistics(
+                max_depth=self._max_depth / MM,
+                mean_depth=(self._max_depth if static else self._sum_depth / contact_time) / MM,
+                max_force=self._max_force,
+                mean_force=now if static else self._sum_force / contact_time,
+                last_force_at=np.where(self._acting, np.nan, self._last / MS),
+            ),
+            touched=int(self._touched.sum()),
+            energy=self._balance(),
+        )
+
+    def _balance(self) -> Energy:
+        if self._first is None:
+            return Energy()
+        kinetic, elastic, potential = self._totals[:3]
+        first = self._first
+        change = kinetic + elastic + potential - first.sum()
+        scale = max(abs(self._lost), self._through, abs(kinetic - first[0]), abs(potential - first[2]), 1e-15)
+        to_nmm = 1.0 / MM
+        return Energy(
+            kinetic=kinetic * to_nmm,
+            elastic=elastic * to_nmm,
+            dissipated=self._lost * to_nmm,
+            driven=self._driven * to_nmm,
+            balance_error=float((change + self._lost - self._driven) / scale) if self.steps else 0.0,
+        )
+
+
+def _continuous(quaternions: np.ndarray) -> np.ndarray:
+    """Signs such that each body's Euler parameters do not jump between stored times."""
+    if len(quaternions) < 2:
+        return quaternions
+    signs = np.sign(np.einsum("tbi,tbi->tb", quaternions[1:], quaternions[:-1]))
+    signs[signs == 0] = 1.0
+    return np.concatenate([quaternions[:1], quaternions[1:] * np.cumprod(signs, axis=0)[:, :, None]])

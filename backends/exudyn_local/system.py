@@ -1,0 +1,242 @@
+"""The Model as arrays in SI units, in the order in which the solver numbers its coordinates.
+
+A free box has seven coordinates (position, Euler parameters); a free roller one for its spin; a pressed
+roller one for its slide. Everything else is prescribed. Row -1 of the body arrays is the ground.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mdlgen.errors import RefusedError
+from mdlgen.model.tables import Floats, Ints, Model
+
+MM, G, MS = 1e-3, 1e-3, 1e-3
+PER_MM, PER_MS = 1e3, 1e3
+# N/mm^1.5 in N/m^1.5
+HERTZ = 1e3**1.5
+
+
+BODY = np.dtype(
+    [
+        ("reference", "f8", 7),  # position [m], Euler parameters
+        ("mass", "f8"),  # [kg]
+        ("inertia", "f8", 3),  # [kg m^2]
+        ("half", "f8", 3),  # half lengths of a box [m]
+        ("axis", "f8", 3),  # of a roller
+        ("way", "f8", 3),  # direction of a roller's slide
+        ("press", "f8", 5),  # k [N/m], c [N s/m], force at the start [N], sliding mass [kg], axial inertia
+        ("drive", "f8", 2),  # speed [rad/s], ramp [s]
+        ("size", "f8", 2),  # radius, width of a roller [m]
+        ("first", "i8"),  # first of a box's 7 coordinates, -1: not free
+        ("slide", "i8"),  # coordinate of a roller's slide, -1: none
+        ("spin", "i8"),  # coordinate of a roller's spin, -1: prescribed
+        ("exposed", "i8"),  # side faces of a box as a bit mask
+    ]
+)
+BUSHING = np.dtype(
+    [
+        ("a", "i8"),
+        ("b", "i8"),
+        ("ra", "f8", 3),  # arms in body axes [m]
+        ("rb", "f8", 3),
+        ("fa", "f8", 9),  # frames in body axes
+        ("fb", "f8", 9),
+        ("k", "f8", 6),  # [N/m], [N m/rad]
+        ("c", "f8", 6),
+    ]
+)
+PAIR = np.dtype(
+    [
+        ("kind", "i8"),
+        ("a", "i8"),
+        ("b", "i8"),
+        ("shared", "i8"),
+        ("k", "f8"),  # [N/m^1.5]
+        ("law", "f8", 6),  # as in mechanics.contact
+    ]
+)
+LOAD = np.dtype([("body", "i8"), ("local", "f8", 3), ("force", "f8", 3), ("moment", "f8", 3)])
+
+
+class Elements(NamedTuple):
+    """What the jacobian is a sum of: blocks of bushings between two bodies, pairs, slides, loads."""
+
+    block_start: Ints  # bushings of block i: block_start[i] ... block_start[i + 1] - 1
+    dofs: Ints  # coordinates of each element, concatenated
+    dof_start: Ints
+    slots: Ints  # where each element's entries go in the sparse data, row by row
+    slot_start: Ints
+
+
+class System(NamedTuple):
+    """Record arrays for compiled code; `tables` are the arguments that every kernel starts with."""
+
+    bodies: np.ndarray  # BODY, (n + 1,), the last is the ground
+    bushings: np.ndarray  # BUSHING, sorted by block
+    pairs: np.ndarray  # PAIR
+    loads: np.ndarray  # LOAD
+    gravity: Floats  # [m/s^2]
+    elements: Elements
+    free: int  # number of coordinates
+
+    @property
+    def tables(self) -> tuple:
+        return self.bodies, self.bushings, self.pairs, self.loads, self.gravity
+
+
+class Pattern(NamedTuple):
+    """Sparsity of the jacobian (CSR)."""
+
+    indptr: NDArray[np.int32]
+    indices: NDArray[np.int32]
+
+
+def check(model: Model) -> None:
+    """Raises RefusedError for what this backend cannot represent."""
+    for roller in model.rollers:
+        if roller.press is not None and abs(float(roller.press.direction @ roller.axis)) > 1e-9:
+            raise RefusedError(f"roller {roller.name}: a press along its own axis is not modelled by exudyn")
+
+
+def build(model: Model) -> tuple[System, Pattern]:
+    """Arrays and jacobian pattern of a Model."""
+    check(model)
+    moving = model.run.analysis == "transient"
+    bodies, free = _bodies(model, moving)
+    bushings, blocks = _bushings(model)
+    pairs = _pairs(model)
+    loads = np.zeros(len(model.loads.body), LOAD)
+    loads["body"], loads["local"] = model.loads.body, model.loads.local * MM
+    loads["force"], loads["moment"] = model.loads.force, model.loads.moment * MM
+    elements, pattern = _pattern(_couplings(bodies, bushings, blocks, pairs, loads), blocks, free)
+    gravity = model.gravity * MM / MS**2
+    return System(bodies, bushings, pairs, loads, gravity, elements, free), pattern
+
+
+def _bodies(model: Model, moving: bool) -> tuple[np.ndarray, int]:
+    """Record array of the bodies, and the number of coordinates."""
+    table = model.bodies
+    count = len(table.name)
+    bodies = np.zeros(count + 1, BODY)
+    bodies["reference"][:, 3] = 1.0
+    bodies["reference"][:count, :3] = table.position * MM
+    bodies["reference"][:count, 3:] = quaternions(table.rotation)
+    bodies["mass"][:count] = table.mass * G
+    bodies["inertia"][:count] = table.inertia * G * MM**2
+    bodies["half"][:count] = table.half * MM
+    bodies["exposed"][:count] = table.exposed @ np.array([1, 2, 4, 8])
+    bodies["size"] = 1.0
+    for name in ("first", "slide", "spin"):
+        bodies[name] = -1
+    free = 0
+    for sheet in model.sheets:
+        for body in range(sheet.first, sheet.first + sheet.count):
+            if not table.fixed[body]:
+                bodies["first"][body] = free
+                free += 7
+    for roller in model.rollers:
+        row = bodies[roller.body]
+        row["axis"], row["size"] = roller.axis, (roller.radius * MM, roller.width * MM)
+        row["press"][4] = roller.inertia_axial * G * MM**2
+        if roller.press is not None:
+            spring = roller.press
+            row["way"] = spring.direction
+            force = spring.preload - spring.stiffness * (spring.start - spring.touch)
+            mass = (roller.mass + spring.carrier_mass) * G
+            row["press"][:4] = (spring.stiffness * PER_MM, spring.damping * MS * PER_MM, force, mass)
+            row["slide"], free = free, free + 1
+        if roller.speed is not None:
+            row["drive"] = (roller.speed * PER_MS, roller.ramp * MS)
+        elif moving:  # in a static analysis a free roller does not turn
+            row["spin"], free = free, free + 1
+    return bodies, free
+
+
+def quaternions(rotations: Floats) -> Floats:
+    """Euler parameters (scalar first) of rotation matrices, (n, 3, 3) -> (n, 4)."""
+    from scipy.spatial.transform import Rotation
+
+    if len(rotations) == 0:
+        return np.zeros((0, 4))
+    return np.roll(Rotation.from_matrix(rotations).as_quat(canonical=True), 1, axis=1)
+
+
+def _bushings(model: Model) -> tuple[np.ndarray, list[int]]:
+    """Record array sorted so that the bushings of one pair of bodies stand together, and where they begin."""
+    table = model.bushings
+    order = np.lexsort((np.arange(len(table)), table.b, table.a))
+    bushings = np.zeros(len(table), BUSHING)
+    position = np.concatenate([model.bodies.position, np.zeros((1, 3))])
+    rotation = np.concatenate([model.bodies.rotation, np.eye(3)[None]])
+    axes, origin = table.axes[order], table.origin[order]
+    for end in "ab":
+        body = getattr(table, end)[order]
+        bushings[end] = body
+        bushings["r" + end] = np.einsum("nji,nj->ni", rotation[body], origin - position[body]) * MM
+        bushings["f" + end] = np.einsum("nji,njk->nik", rotation[body], axes).reshape(-1, 9)
+    scale = np.array([PER_MM] * 3 + [MM] * 3)
+    bushings["k"] = table.k[order] * scale
+    bushings["c"] = table.c[order] * scale * MS
+    changed = (np.diff(bushings["a"]) != 0) | (np.diff(bushings["b"]) != 0)
+    starts = [0, *(np.flatnonzero(changed) + 1).tolist()] if len(bushings) else []
+    return bushings, [*starts, len(bushings)]
+
+
+def _pairs(model: Model) -> np.ndarray:
+    rows, chosen = model.contacts, model.pairs.contact
+    pairs = np.zeros(len(chosen), PAIR)
+    pairs["kind"] = rows.kind[chosen]
+    pairs["a"], pairs["b"] = model.pairs.a, model.pairs.b
+    pairs["shared"] = np.array([share == "width" for share in rows.share], dtype=int)[chosen]
+    pairs["k"] = rows.stiffness[chosen] * HERTZ
+    speed = MM / MS
+    for column, values in enumerate(
+        (
+            (1 - rows.restitution**2) / (1 + rows.restitution**2),
+            rows.mu_static,
+            rows.mu_dynamic,
+            rows.stiction_velocity * speed,
+            rows.friction_velocity * speed,
+            rows.smoothing * speed,
+        )
+    ):
+        pairs["law"][:, column] = values[chosen]
+    return pairs
+
+
+def _couplings(
+    bodies: np.ndarray, bushings: np.ndarray, blocks: list[int], pairs: np.ndarray, loads: np.ndarray
+) -> list[list[int]]:
+    """Coordinates that each element couples."""
+
+    def of(body: int) -> list[int]:
+        row = bodies[body]
+        box = list(range(row["first"], row["first"] + 7)) if row["first"] >= 0 else []
+        return box + [int(row[name]) for name in ("slide", "spin") if row[name] >= 0]
+
+    elements = [of(bushings["a"][b]) + of(bushings["b"][b]) for b in blocks[:-1]]
+    elements += [of(a) + of(b) for a, b in zip(pairs["a"], pairs["b"], strict=True)]
+    elements += [[int(s)] for s in bodies["slide"] if s >= 0]
+    return elements + [of(body) for body in loads["body"]]
+
+
+def _pattern(couplings: list[list[int]], blocks: list[int], free: int) -> tuple[Elements, Pattern]:
+    """CSR pattern of the sum of all elements, and where each element's entries go."""
+    sizes = np.array([len(e) for e in couplings], dtype=np.int64)
+    rows = np.concatenate([np.repeat(e, len(e)) for e in couplings] or [[]]).astype(np.int64)
+    columns = np.concatenate([np.tile(e, len(e)) for e in couplings] or [[]]).astype(np.int64)
+    diagonal = np.arange(free) * (free + 1)
+    keys, slots = np.unique(np.concatenate([rows * free + columns, diagonal]), return_inverse=True)
+    elements = Elements(
+        block_start=np.array(blocks, dtype=np.int64),
+        dofs=np.array([d for e in couplings for d in e], dtype=np.int64),
+        dof_start=np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64),
+        slots=slots[: len(rows)].astype(np.int64),
+        slot_start=np.concatenate([[0], np.cumsum(sizes**2)]).astype(np.int64),
+    )
+    indptr = np.searchsorted(keys, np.arange(free + 1) * free).astype(np.int32)
+    return elements, Pattern(indptr, (keys % max(free, 1)).astype(np.int32))

@@ -1,0 +1,65 @@
+"""The bushing: six springs and dampers between two bodies, right for any rotation.
+
+Displacement and rotation are measured in the frame halfway between the two bodies' frames, and the force
+acts at the point halfway between the two attachment points. So the law does not depend on which body is
+called the first, is unchanged when the world is rotated, and conserves linear and angular momentum.
+"""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from mdlgen.mechanics.vector import (
+    add,
+    back,
+    cross,
+    dot,
+    exp_rotation,
+    log_rotation,
+    matmul,
+    rotate,
+    scale,
+    sub,
+    transpose_matmul,
+)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def bushing(xa, fa, va, wa, ra, xb, fb, vb, wb, rb, k, kt, c, ct):
+    """Force and torque that a bushing puts on body b at its centre, and the torque on body a.
+
+    Args, per body: x centre, f bushing frame (global), v and w velocity and angular velocity (global),
+    r arm from the centre to the attachment (global). k, kt, c, ct: tuples along the bushing's axes.
+
+    Returns (force on b, torque on b, torque on a, stored energy, dissipated power); the force on a is
+    minus the force on b. Stored energy is 1/2 d.K d + 1/2 theta.K_t theta with theta the rotation vector;
+    the torque is its exact gradient in theta.
+    """
+    relative = transpose_matmul(fa, fb)
+    theta = log_rotation(relative)
+    middle = matmul(fa, exp_rotation(scale(0.5, theta)))
+    gap = sub(add(xb, rb), add(xa, ra))
+    rate = sub(add(vb, cross(wb, rb)), add(va, cross(wa, ra)))
+    # the rate of the gap as seen from the middle frame, which turns with the mean of the two
+    rate = sub(rate, cross(scale(0.5, add(wa, wb)), gap))
+    d, v = back(middle, gap), back(middle, rate)
+    w = back(middle, sub(wb, wa))
+    spring = (k[0] * d[0], k[1] * d[1], k[2] * d[2])
+    damper = (c[0] * v[0], c[1] * v[1], c[2] * v[2])
+    twist = (kt[0] * theta[0], kt[1] * theta[1], kt[2] * theta[2])
+    brake = (ct[0] * w[0], ct[1] * w[1], ct[2] * w[2])
+    energy = 0.5 * (dot(d, spring) + dot(theta, twist))
+    power = dot(v, damper) + dot(w, brake)
+    angle2 = dot(theta, theta)
+    if angle2 > 1e-12:
+        # gradient of 1/2 theta.K theta in the middle frame: across theta it grows as (t/2)/sin(t/2)
+        half = 0.5 * math.sqrt(angle2)
+        along = scale(dot(twist, theta) / angle2, theta)
+        twist = add(along, scale(half / math.sin(half), sub(twist, along)))
+    force = scale(-1.0, rotate(middle, add(spring, damper)))
+    torque = scale(-1.0, rotate(middle, add(twist, brake)))
+    torque_b = add(torque, cross(sub(rb, scale(0.5, gap)), force))
+    torque_a = scale(-1.0, add(torque, cross(add(ra, scale(0.5, gap)), force)))
+    return force, torque_b, torque_a, energy, power

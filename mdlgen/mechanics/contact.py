@@ -1,0 +1,228 @@
+"""Contact between a box and a cylinder, a box and a plane, and two parallel cylinders.
+
+The force of one box under a roller is k z^1.5 (Eq. 10), z the depth of the point of its face nearest to the
+roller's axis, times the part of the roller's width that the box covers. Where boxes lie side by side under
+one roller (`share: width`), they also share k across it: each takes its part of the elastic foundation that
+has the same law. A pressure K zeta per area, zeta the depth of each point, under a roller of radius R and
+width w pressed z deep into a flat face, gives F = K w 4/3 sqrt(2R) z^1.5; with K = 3 k/(4 w sqrt(2 R)) that
+is k z^1.5 again. So a roller that passes from box to box feels one sheet. Beyond a free edge nothing takes
+over: there the box keeps the whole. `share: pair` gives every box the full k, as MotionSolve does.
+
+Each law adds to `out`: force and torque on the first body (0-5), on the second (6-11), normal force (12),
+stored energy (13), dissipated power (14), and keeps the greatest depth (15).
+"""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from mdlgen.mechanics.laws import friction_over_speed, sign_step
+from mdlgen.mechanics.vector import add, back, cross, dot, rotate, scale, sub
+
+OUT = 16
+_GAUSS = 1.0 / math.sqrt(3.0)
+
+
+@njit(cache=True, error_model="numpy")
+def _push(out, point, normal, spring, depth, energy, xa, va, wa, xb, vb, wb, law):
+    """Adds the force of one contact point; `normal` points to the first body, `spring` is its elastic force.
+
+    law: (beta, mu_static, mu_dynamic, stiction velocity, friction velocity, smoothing velocity).
+    """
+    ra, rb = sub(point, xa), sub(point, xb)
+    slip = sub(add(va, cross(wa, ra)), add(vb, cross(wb, rb)))
+    rate = -dot(slip, normal)
+    slip = add(slip, scale(rate, normal))
+    speed = math.sqrt(dot(slip, slip))
+    damped = spring * law[0] * sign_step(rate, law[5])
+    force = spring + damped
+    drag = force * friction_over_speed(speed, law[1], law[2], law[3], law[4])
+    f = sub(scale(force, normal), scale(drag, slip))
+    ta, tb = cross(ra, f), cross(rb, f)
+    for i in range(3):
+        out[i] += f[i]
+        out[3 + i] += ta[i]
+        out[6 + i] -= f[i]
+        out[9 + i] -= tb[i]
+    out[12] += force
+    out[13] += energy
+    out[14] += damped * rate + drag * speed * speed
+    out[15] = max(out[15], depth)
+
+
+@njit(cache=True, error_model="numpy")
+def _face(
+    out, p, r, q, sign, free, half, l0, al, xa, ra, va, wa, xb, vb, wb, radius, width, k, shared, law
+):
+    """One face of a box (normal axis q, in-plane axes p, r) against a cylinder; l0, al: its centre and axis
+    in box axes; free: edges p_min, p_max, r_min, r_max of the face without a neighbour, as a bit mask."""
+    na = math.hypot(al[p], al[r])
+    if na < 0.2:  # the roller stands on its end
+        return
+    up, ur = al[p] / na, al[r] / na  # along the axis in the face; across it: (-ur, up)
+    lean = sign * al[q]
+    height = sign * l0[q] - half[q]
+    # corners of the face along the axis
+    c1, c2 = abs(up) * half[p], abs(ur) * half[r]
+    base = -(l0[p] * up + l0[r] * ur)
+    low = max(base - c1 - c2, (-0.5 * width + height * lean) / na)
+    high = min(base + c1 + c2, (0.5 * width + height * lean) / na)
+    if high <= low:
+        return
+    inner = abs(c1 - c2)
+    foundation = 3.0 / (4.0 * math.sqrt(2.0 * radius))
+    for part in range(3):
+        # between two corners the face's edges are straight, so two points integrate along the axis
+        begin = max(low, base - inner) if part == 1 else max(low, base + inner) if part == 2 else low
+        end = min(high, base - inner) if part == 0 else min(high, base + inner) if part == 1 else high
+        if not shared:
+            if part > 0:
+                break
+            begin, end = low, high
+        if end - begin <= 1e-12 * width:
+            continue
+        # the station's part of k
+        weight = 0.5 * k * ((end - begin) * na / width if shared else 1.0)
+        for station in range(2):
+            u = 0.5 * (begin + end) + (station - 0.5) * _GAUSS * (end - begin)
+            e = height * na + u * lean  # distance of the axis from the face
+            if e <= 0.0 or e >= radius:
+                continue
+            # span of the face across the axis at this station, and whether its ends are free edges
+            first, last, open_first, open_last = -1e30, 1e30, False, False
+            for axis in range(2):
+                at = l0[p] + u * up if axis == 0 else l0[r] + u * ur
+                step = -ur if axis == 0 else up
+                h = half[p] if axis == 0 else half[r]
+                if abs(step) < 1e-12:
+                    if abs(at) > h:
+                        last = first - 1.0
+                    continue
+                open_low, open_high = free & (1 << (2 * axis)) != 0, free & (2 << (2 * axis)) != 0
+                t1, t2 = (-h - at) / step, (h - at) / step
+                if t1 > t2:
+                    t1, t2, open_low, open_high = t2, t1, open_high, open_low
+                if t1 > first:
+                    first, open_first = t1, open_low
+                if t2 < last:
+                    last, open_last = t2, open_high
+            if last <= first:
+                continue
+            nearest = min(max(0.0, first), last)
+            depth = radius - math.hypot(nearest, e)
+            if depth <= 0.0:
+                continue
+            edge = (first > 0.0 and open_first) or (last < 0.0 and open_last)
+            spread = shared and not edge
+            reach = math.sqrt(radius * radius - e * e)
+            left = -reach if open_first else max(first, -reach)
+            right = reach if open_last else min(last, reach)
+            for point in range(2 if spread else 1):
+                t = nearest
+                if spread:
+                    t = 0.5 * (left + right) + (point - 0.5) * _GAUSS * (right - left)
+                distance = math.hypot(t, e)
+                zeta = radius - distance
+                if spread:
+                    # the 2-point rule and the lean of the pressure cost 0.75 z/R of the force
+                    length = 0.5 * (right - left) * (1.0 + 0.75 * (radius - e) / radius)
+                    spring = weight * foundation * length * zeta
+                    energy = 0.5 * spring * zeta
+                else:
+                    spring = weight * zeta * math.sqrt(zeta)
+                    energy = 0.4 * spring * zeta
+                # from the axis to the point: t across, e back along the face's normal turned with the lean
+                cp = t * -ur - e * (-lean * up)
+                cr = t * up - e * (-lean * ur)
+                cq = -e * na * sign
+                normal = _local(p, r, q, cp / distance, cr / distance, cq / distance)
+                t = min(max(t, first), last)
+                at = _local(p, r, q, l0[p] + u * up - t * ur, l0[r] + u * ur + t * up, sign * half[q])
+                _push(
+                    out,
+                    add(xa, rotate(ra, at)),
+                    rotate(ra, normal),
+                    spring,
+                    depth,
+                    energy,
+                    xa,
+                    va,
+                    wa,
+                    xb,
+                    vb,
+                    wb,
+                    law,
+                )
+
+
+@njit(cache=True, error_model="numpy")
+def _local(p, r, q, a, b, c):
+    """The vector with components a, b, c on the axes p, r, q."""
+    x = a if p == 0 else b if r == 0 else c
+    y = a if p == 1 else b if r == 1 else c
+    z = a if p == 2 else b if r == 2 else c
+    return (x, y, z)
+
+
+@njit(cache=True, error_model="numpy")
+def box_cylinder(out, xa, ra, va, wa, half, exposed, xb, axis, vb, wb, radius, width, k, shared, law):
+    """Box a (centre xa, rotation ra, half lengths) against cylinder b; exposed: 4 side faces as a bit mask."""
+    gap = sub(xb, xa)
+    near = math.sqrt(dot(half, half)) + math.hypot(radius, 0.5 * width)
+    if dot(gap, gap) > near * near:
+        return
+    l0, al = back(ra, gap), back(ra, axis)
+    sign = 1.0 if l0[2] >= 0.0 else -1.0
+    if abs(l0[2]) > half[2]:
+        _face(
+            out, 0, 1, 2, sign, exposed, half, l0, al, xa, ra, va, wa, xb, vb, wb, radius, width, k, shared, law
+        )
+        return
+    # the axis lies within the thickness: the roller meets a side
+    sign = 1.0 if l0[0] >= 0.0 else -1.0
+    if exposed & (2 if sign > 0 else 1) and abs(l0[0]) > half[0]:
+        free = ((exposed >> 2) & 3) + 12  # y_min, y_max, and both faces
+        _face(out, 1, 2, 0, sign, free, half, l0, al, xa, ra, va, wa, xb, vb, wb, radius, width, k, shared, law)
+    sign = 1.0 if l0[1] >= 0.0 else -1.0
+    if exposed & (8 if sign > 0 else 4) and abs(l0[1]) > half[1]:
+        free = 3 + ((exposed & 3) << 2)
+        _face(out, 2, 0, 1, sign, free, half, l0, al, xa, ra, va, wa, xb, vb, wb, radius, width, k, shared, law)
+
+
+@njit(cache=True, error_model="numpy")
+def box_plane(out, xa, ra, va, wa, half, xb, rb, half_b, k, law):
+    """The corners of box a on the upper face of plate b; four corners share k, so a flat box gives k z^1.5."""
+    zero = (0.0, 0.0, 0.0)
+    normal = (rb[2], rb[5], rb[8])
+    for corner in range(8):
+        sx = -1.0 if corner & 1 else 1.0
+        sy = -1.0 if corner & 2 else 1.0
+        sz = -1.0 if corner & 4 else 1.0
+        point = add(xa, rotate(ra, (sx * half[0], sy * half[1], sz * half[2])))
+        at = back(rb, sub(point, xb))
+        depth = half_b[2] - at[2]
+        if depth <= 0.0 or depth > 2 * half_b[2] or abs(at[0]) > half_b[0] or abs(at[1]) > half_b[1]:
+            continue
+        spring = 0.25 * k * depth * math.sqrt(depth)
+        _push(out, point, normal, spring, depth, 0.4 * spring * depth, xa, va, wa, xb, zero, zero, law)
+
+
+@njit(cache=True, error_model="numpy")
+def cylinder_cylinder(out, xa, va, wa, radius_a, width_a, xb, vb, wb, radius_b, width_b, axis, k, law):
+    """Two parallel cylinders; k is shared by the part of the narrower one's width that they meet on."""
+    gap = sub(xa, xb)
+    offset = dot(gap, axis)
+    across = sub(gap, scale(offset, axis))
+    distance = math.sqrt(dot(across, across))
+    depth = radius_a + radius_b - distance
+    low = max(offset - 0.5 * width_a, -0.5 * width_b)
+    high = min(offset + 0.5 * width_a, 0.5 * width_b)
+    if depth <= 0.0 or distance <= 0.0 or high <= low:
+        return
+    share = (high - low) / min(width_a, width_b)
+    normal = scale(1.0 / distance, across)
+    spring = share * k * depth * math.sqrt(depth)
+    point = add(xb, add(scale(0.5 * (low + high), axis), scale(radius_b - 0.5 * depth, normal)))
+    _push(out, point, normal, spring, depth, 0.4 * spring * depth, xa, va, wa, xb, vb, wb, law)

@@ -1,0 +1,33 @@
+"""Scalar laws of contact: normal force and friction (paper section 3.2)."""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+
+@njit(cache=True, error_model="numpy")
+def sign_step(v, v_s):
+    """Smooth sign of a speed: -1 below -v_s, +1 above v_s, the cubic STEP of multibody codes between."""
+    x = v / v_s
+    if x >= 1.0:
+        return 1.0
+    if x <= -1.0:
+        return -1.0
+    return 0.5 * x * (3.0 - x * x)
+
+
+@njit(cache=True, error_model="numpy")
+def friction_over_speed(v, mu_s, mu_d, v_s, v_d):
+    """mu(v)/v of the regularised Coulomb law (Eq. 12), finite at v = 0.
+
+    mu rises to mu_s at v_s by the cubic STEP and goes to mu_d at v_d by another.
+    """
+    if v <= v_s:
+        x = v / v_s
+        return mu_s * 0.5 * (3.0 - x * x) / v_s
+    if v >= v_d:
+        return mu_d / v
+    x = (v - v_s) / (v_d - v_s)
+    return (mu_s + (mu_d - mu_s) * x * x * (3.0 - 2.0 * x)) / v

@@ -1,0 +1,144 @@
+"""Vectors (x, y, z) and rotation matrices (row by row) as tuples, for compiled code."""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def add(a, b):
+    return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def sub(a, b):
+    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def scale(s, a):
+    return (s * a[0], s * a[1], s * a[2])
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def dot(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def cross(a, b):
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def vec(array, row):
+    """Row of an (n, 3) array."""
+    return (array[row, 0], array[row, 1], array[row, 2])
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def mat(array, row):
+    """Row of an (n, 9) array."""
+    return (
+        array[row, 0],
+        array[row, 1],
+        array[row, 2],
+        array[row, 3],
+        array[row, 4],
+        array[row, 5],
+        array[row, 6],
+        array[row, 7],
+        array[row, 8],
+    )
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def rotate(m, a):
+    """m a."""
+    return (
+        m[0] * a[0] + m[1] * a[1] + m[2] * a[2],
+        m[3] * a[0] + m[4] * a[1] + m[5] * a[2],
+        m[6] * a[0] + m[7] * a[1] + m[8] * a[2],
+    )
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def back(m, a):
+    """m^T a."""
+    return (
+        m[0] * a[0] + m[3] * a[1] + m[6] * a[2],
+        m[1] * a[0] + m[4] * a[1] + m[7] * a[2],
+        m[2] * a[0] + m[5] * a[1] + m[8] * a[2],
+    )
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def matmul(m, n):
+    """m n."""
+    return (
+        m[0] * n[0] + m[1] * n[3] + m[2] * n[6],
+        m[0] * n[1] + m[1] * n[4] + m[2] * n[7],
+        m[0] * n[2] + m[1] * n[5] + m[2] * n[8],
+        m[3] * n[0] + m[4] * n[3] + m[5] * n[6],
+        m[3] * n[1] + m[4] * n[4] + m[5] * n[7],
+        m[3] * n[2] + m[4] * n[5] + m[5] * n[8],
+        m[6] * n[0] + m[7] * n[3] + m[8] * n[6],
+        m[6] * n[1] + m[7] * n[4] + m[8] * n[7],
+        m[6] * n[2] + m[7] * n[5] + m[8] * n[8],
+    )
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def transpose_matmul(m, n):
+    """m^T n."""
+    return matmul((m[0], m[3], m[6], m[1], m[4], m[7], m[2], m[5], m[8]), n)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def log_rotation(m):
+    """Rotation vector of m, |theta| <= pi."""
+    w = (0.5 * (m[7] - m[5]), 0.5 * (m[2] - m[6]), 0.5 * (m[3] - m[1]))
+    sine2 = dot(w, w)
+    cosine = 0.5 * (m[0] + m[4] + m[8] - 1.0)
+    if cosine > 0.9999:
+        # asin(x)/x = 1 + x^2/6 + 3 x^4/40 + 15 x^6/336; x^2 < 2e-4 here
+        return scale(1.0 + sine2 / 6 + 3 * sine2 * sine2 / 40 + 15 * sine2 * sine2 * sine2 / 336, w)
+    sine = math.sqrt(sine2)
+    if sine > 1e-6:
+        return scale(math.atan2(sine, cosine) / sine, w)
+    # half a turn: the axis from the symmetric part
+    x = math.sqrt(max(0.0, 0.5 * (1.0 + m[0])))
+    y = math.sqrt(max(0.0, 0.5 * (1.0 + m[4])))
+    z = math.sqrt(max(0.0, 0.5 * (1.0 + m[8])))
+    if x >= y and x >= z:
+        axis = (x, 0.5 * (m[1] + m[3]) / (2 * x), 0.5 * (m[2] + m[6]) / (2 * x))
+    elif y >= z:
+        axis = (0.5 * (m[1] + m[3]) / (2 * y), y, 0.5 * (m[5] + m[7]) / (2 * y))
+    else:
+        axis = (0.5 * (m[2] + m[6]) / (2 * z), 0.5 * (m[5] + m[7]) / (2 * z), z)
+    return scale(math.pi, axis)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def exp_rotation(theta):
+    """Rotation matrix of a rotation vector."""
+    angle2 = dot(theta, theta)
+    if angle2 < 1e-8:
+        s, c = 1.0 - angle2 / 6, 0.5 - angle2 / 24
+    else:
+        angle = math.sqrt(angle2)
+        s, c = math.sin(angle) / angle, (1.0 - math.cos(angle)) / angle2
+    x, y, z = theta
+    return (
+        1 - c * (y * y + z * z),
+        c * x * y - s * z,
+        c * x * z + s * y,
+        c * x * y + s * z,
+        1 - c * (x * x + z * z),
+        c * y * z - s * x,
+        c * x * z - s * y,
+        c * y * z + s * x,
+        1 - c * (x * x + y * y),
+    )

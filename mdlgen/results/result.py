@@ -1,0 +1,114 @@
+"""The result of a run in the Model's units: mm, N, g, ms, rad."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mdlgen.model.tables import Floats, Model
+
+
+@dataclass
+class ContactStatistics:
+    """Per row of Model.contacts, over every step of the run (not only the stored ones)."""
+
+    max_depth: Floats  # greatest penetration [mm], (rows,)
+    mean_depth: Floats  # mean over the time in contact of the greatest depth at a time [mm]
+    max_force: Floats  # greatest total normal force [N]
+    mean_force: Floats  # mean over the time in contact [N]
+    last_force_at: Floats  # end of the last interval of force above 5 % of the greatest [ms]; 0: never, nan: it still acts
+
+
+@dataclass
+class Energy:
+    """Energy at the end and over the run [N mm]; `balance_error` is relative to what passed through."""
+
+    kinetic: float = 0.0
+    elastic: float = 0.0
+    dissipated: float = 0.0
+    driven: float = 0.0
+    balance_error: float = 0.0
+
+
+@dataclass
+class Result:
+    """States at the stored times and statistics over all steps.
+
+    A failed run has a `status` that says why, and the states up to where it failed.
+    """
+
+    model: Model
+    solver: str
+    status: str  # "ok", or the reason
+    time: Floats  # [ms], (t,)
+    position: Floats  # centres [mm], (t, bodies, 3)
+    rotation: Floats  # Euler parameters, scalar first, (t, bodies, 4)
+    velocity: Floats  # [mm/ms], (t, bodies, 3)
+    spin: Floats  # global axes [rad/ms], (t, bodies, 3)
+    contact_force: Floats  # total normal force per contact row [N], (t, rows)
+    statistics: ContactStatistics
+    touched: int = 0  # pairs that touched at any step
+    energy: Energy = field(default_factory=Energy)
+    step: float = 0.0  # [ms]
+    steps: int = 0
+    wall_s: float = 0.0
+    build_s: float = 0.0
+    compile_s: float = 0.0
+    error_estimate: float | None = None  # relative to max(travel, sheet length / 10)
+    versions: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def ok(self) -> bool:
+        return self.status == "ok"
+
+    def failed(self, reason: str) -> Result:
+        """The same result with a reason for its failure."""
+        return replace(self, status=reason)
+
+    def save(self, folder: str | Path) -> None:
+        """Write summary.json, series.csv and result.h5 into `folder`. Raises OutputError."""
+        from mdlgen.results.store import save
+
+        save(self, Path(folder))
+
+    def summary(self) -> dict[str, Any]:
+        """What summary.json holds."""
+        from mdlgen.results.summary import summary
+
+        return summary(self)
+
+    def anchor_motion(self, index: int) -> tuple[Floats, Floats]:
+        """Position [mm] and velocity [mm/ms] of probe `index` at the stored times, (t, 3) each."""
+        from scipy.spatial.transform import Rotation
+
+        anchor = self.model.probes[index]
+        place, rate = np.zeros((len(self.time), 3)), np.zeros((len(self.time), 3))
+        for body, local, share in zip(anchor.body, anchor.local, anchor.share, strict=True):
+            turn = Rotation.from_quat(np.roll(self.rotation[:, body], -1, axis=1))
+            arm = turn.apply(np.array(local))
+            place += share * (self.position[:, body] + arm)
+            rate += share * (self.velocity[:, body] + np.cross(self.spin[:, body], arm))
+        return place, rate
+
+    def sheet_motion(self, index: int) -> tuple[Floats, Floats, Floats]:
+        """Centre of mass [mm], its velocity [mm/ms] and the yaw [rad] of a sheet, (t, 3), (t, 3), (t,).
+
+        The yaw is the mean over boxes of the turn about the sheet's first normal since the start, plus the
+        turn of the sheet at the start about that normal.
+        """
+        from scipy.spatial.transform import Rotation
+
+        sheet = self.model.sheets[index]
+        boxes = slice(sheet.first, sheet.first + sheet.count)
+        place = self.position[:, boxes].mean(axis=1)
+        rate = self.velocity[:, boxes].mean(axis=1)
+        quaternion = np.roll(self.rotation[:, boxes], -1, axis=2)
+        along = Rotation.from_quat(quaternion.reshape(-1, 4)).apply([1.0, 0.0, 0.0])
+        along = along.reshape(*quaternion.shape[:2], 3).mean(axis=1)
+        normal = sheet.rotation[:, 2]
+        flat = along @ np.stack([np.cross(sheet.rotation[:, 1], normal), np.cross(normal, sheet.rotation[:, 0])]).T
+        start = np.arctan2(sheet.rotation[1, 0], sheet.rotation[0, 0])
+        return place, rate, start + np.unwrap(np.arctan2(flat[:, 1], flat[:, 0]))
