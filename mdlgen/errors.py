@@ -10,6 +10,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 
+def printable(text: str) -> str:
+    """`text` in one line: what a key or a file name may hold must not look like another line."""
+    return "".join(c if c.isprintable() else " " for c in text)
+
+
 class Place(NamedTuple):
     """Where a value stands in a file; line and column count from 1."""
 
@@ -45,7 +50,7 @@ class SpecError(MdlgenError):
         head = [str(self.place)] if self.place else []
         if self.path:
             head.append(".".join(str(p) for p in self.path))
-        return ": ".join([*head, self.message])
+        return printable(": ".join([*head, self.message]))
 
     def located(self, place: Place) -> SpecError:
         """The same error with its place in a file."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-
 import numpy as np
 from numba import njit
 
@@ -249,7 +248,29 @@ def owners(bodies, free):
 
 
 @njit(cache=True, error_model="numpy")
-def jacobian(bodies, bushings, pairs, loads, gravity, elements, q, v, t, level, by_q, by_v, central, owner, x, r, u, w, out, f, data):
+def jacobian(
+    bodies,
+    bushings,
+    pairs,
+    loads,
+    gravity,
+    elements,
+    q,
+    v,
+    t,
+    level,
+    by_q,
+    by_v,
+    central,
+    owner,
+    x,
+    r,
+    u,
+    w,
+    out,
+    f,
+    data,
+):
     """data = -(by_q dF/dq + by_v dF/dv) in the slots of the pattern, by difference quotients.
 
     One quotient per coordinate gives both parts: q and v are moved together in the ratio wanted.
@@ -270,7 +291,9 @@ def jacobian(bodies, bushings, pairs, loads, gravity, elements, q, v, t, level, 
         count = end - begin
         for i in range(begin, end):
             f[dofs[i]] = 0.0
-        if not _element(bodies, bushings, pairs, loads, gravity, block_start, element, q, v, x, r, u, w, f, out, level):
+        if not _element(
+            bodies, bushings, pairs, loads, gravity, block_start, element, q, v, x, r, u, w, f, out, level
+        ):
             continue
         for i in range(count):
             base[i] = f[dofs[begin + i]]
@@ -286,7 +309,24 @@ def jacobian(bodies, bushings, pairs, loads, gravity, elements, q, v, t, level, 
                 place_body(bodies, body, q, v, t, x, r, u, w)
                 for i in range(begin, end):
                     f[dofs[i]] = 0.0
-                _element(bodies, bushings, pairs, loads, gravity, block_start, element, q, v, x, r, u, w, f, out, level)
+                _element(
+                    bodies,
+                    bushings,
+                    pairs,
+                    loads,
+                    gravity,
+                    block_start,
+                    element,
+                    q,
+                    v,
+                    x,
+                    r,
+                    u,
+                    w,
+                    f,
+                    out,
+                    level,
+                )
                 for i in range(count):
                     base[i] = f[dofs[begin + i]]
                 q[dof], v[dof] = kept_q, kept_v
@@ -295,7 +335,9 @@ def jacobian(bodies, bushings, pairs, loads, gravity, elements, q, v, t, level, 
             place_body(bodies, body, q, v, t, x, r, u, w)
             for i in range(begin, end):
                 f[dofs[i]] = 0.0
-            _element(bodies, bushings, pairs, loads, gravity, block_start, element, q, v, x, r, u, w, f, out, level)
+            _element(
+                bodies, bushings, pairs, loads, gravity, block_start, element, q, v, x, r, u, w, f, out, level
+            )
             q[dof], v[dof] = kept_q, kept_v
             place_body(bodies, body, q, v, t, x, r, u, w)
             for i in range(count):
@@ -359,5 +401,3 @@ def workspace(system) -> tuple:
         np.zeros(OUT),
         np.zeros(max(1, system.free)),
     )
-
-

@@ -106,8 +106,12 @@ def _compile(system: System, pattern: Pattern, work: tuple) -> None:
     data = np.zeros(len(pattern.indices))
     owner = kernels.owners(system.bodies, free)
     kernels.forces(*system.tables, q, v, 0.0, 1.0, x, r, u, w, out, f)
-    kernels.jacobian(*system.tables, system.elements, q, v, 0.0, 1.0, 1.0, 1.0, False, owner, x, r, u, w, out, f, data)
-    kernels.ledger(*system.tables, q, v, 0.0, x, r, u, w, f, np.zeros((len(system.pairs), kernels.OUT)), np.zeros(5))
+    kernels.jacobian(
+        *system.tables, system.elements, q, v, 0.0, 1.0, 1.0, 1.0, False, owner, x, r, u, w, out, f, data
+    )
+    kernels.ledger(
+        *system.tables, q, v, 0.0, x, r, u, w, f, np.zeros((len(system.pairs), kernels.OUT)), np.zeros(5)
+    )
 
 
 def _assemble(exu, model: Model, system: System, pattern: Pattern, work: tuple) -> Assembly:
@@ -144,9 +148,7 @@ def _assemble(exu, model: Model, system: System, pattern: Pattern, work: tuple) 
                 ]
             )
             node = mbs.AddNode(
-                NodeRigidBodyEP(
-                    referenceCoordinates=list(reference), initialVelocities=list(v[n : n + 7])
-                )
+                NodeRigidBodyEP(referenceCoordinates=list(reference), initialVelocities=list(v[n : n + 7]))
             )
             inertia = [*row["inertia"], 0.0, 0.0, 0.0]
             mbs.AddObject(ObjectRigidBody(mass=row["mass"], inertia=inertia, nodeNumber=node))

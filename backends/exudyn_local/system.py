@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mdlgen.errors import RefusedError
+from mdlgen.mechanics.laws import damping_share
 from mdlgen.model.tables import Floats, Ints, Model
 
 MM, G, MS = 1e-3, 1e-3, 1e-3
@@ -196,7 +197,7 @@ def _pairs(model: Model) -> np.ndarray:
     speed = MM / MS
     for column, values in enumerate(
         (
-            (1 - rows.restitution**2) / (1 + rows.restitution**2),
+            np.array([damping_share(c) for c in rows.restitution]),
             rows.mu_static,
             rows.mu_dynamic,
             rows.stiction_velocity * speed,

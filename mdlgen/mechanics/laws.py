@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 from numba import njit
 
 
@@ -16,6 +14,21 @@ def sign_step(v, v_s):
     if x <= -1.0:
         return -1.0
     return 0.5 * x * (3.0 - x * x)
+
+
+@njit(cache=True, error_model="numpy")
+def damping_share(restitution):
+    """beta = (1 - c_R^2)/(1 + c_R^2) of Eq. 11."""
+    return (1.0 - restitution * restitution) / (1.0 + restitution * restitution)
+
+
+@njit(cache=True, error_model="numpy")
+def damped(spring, rate, beta, v_n):
+    """Eqs. 9 and 11: the elastic force times 1 + beta s(rate), rate the growth of the depth.
+
+    Never negative, since beta <= 1.
+    """
+    return spring * (1.0 + beta * sign_step(rate, v_n))
 
 
 @njit(cache=True, error_model="numpy")

@@ -83,7 +83,9 @@ def joints(sheet: SheetPart) -> list[Joint]:
     corners = (("a", -1), ("b", 1)) if sheet.layout == "edge_to_edge" else (("", 0),)
     found: list[Joint] = []
 
-    def add(kind: int, letter: str, a: int, b: int, i: int, j: int, node: tuple[int, int], scale: float) -> None:
+    def add(
+        kind: int, letter: str, a: int, b: int, i: int, j: int, node: tuple[int, int], scale: float
+    ) -> None:
         along_x = letter == "x" or (letter == "c" and node[1] % 2 == 1)
         for end, shift in corners:
             at = (node[0], node[1] + shift) if along_x else (node[0] + shift, node[1])
@@ -124,9 +126,7 @@ def _clamp_line(sheet: SheetPart) -> int:
 
 def joint_coefficients(joint: Joint, values: JointValues) -> tuple[np.ndarray, np.ndarray]:
     """(k, c) of one bushing, six each."""
-    k, c = (
-        (values.k_joint_x, values.c_joint_x) if joint.along_x else (values.k_joint_y, values.c_joint_y)
-    )
+    k, c = (values.k_joint_x, values.c_joint_x) if joint.along_x else (values.k_joint_y, values.c_joint_y)
     return joint.scale * np.array(k), joint.scale * np.array(c)
 
 

@@ -327,7 +327,9 @@ def _bushings(
         anchor = _anchor(f"support_{number}", support, sheets)
         sheet = sheets[index[support.sheet]]
         stiff = SUPPORT_FACTOR * sheet.derived["k_z"] * np.array([axis in support.fix for axis in "xyz"])
-        for part, (body, local, share) in enumerate(zip(anchor.body, anchor.local, anchor.share, strict=True)):
+        for part, (body, local, share) in enumerate(
+            zip(anchor.body, anchor.local, anchor.share, strict=True)
+        ):
             names.append(f"support_{number}_{part}")
             labels.append(f"support {number} of {sheet.name}, part {part}")
             origin = bodies.position[body] + bodies.rotation[body] @ local
@@ -389,9 +391,7 @@ def _loads(scene: Scene, sheets: tuple[SheetPart, ...]) -> Loads:
             share = 1.0 / len(targets)
             rows.append((body, local, sheet.rotation @ force * share, sheet.rotation @ moment * share))
     count = len(rows)
-    body, local, force, moment = (
-        [list(c) for c in zip(*rows, strict=True)] if rows else ([], [], [], [])
-    )
+    body, local, force, moment = [list(c) for c in zip(*rows, strict=True)] if rows else ([], [], [], [])
     return Loads(
         np.array(body, dtype=np.int64),
         *(np.array(v, dtype=float).reshape(count, 3) for v in (local, force, moment)),

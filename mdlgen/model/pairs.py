@@ -168,5 +168,3 @@ def _part_bounds(part: RollerPart | PlanePart, bodies: Bodies) -> tuple[Floats, 
     if part.press is not None:
         extent = extent + part.radius * np.abs(part.press.direction)
     return center - extent, center + extent
-
-

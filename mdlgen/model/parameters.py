@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-
 from mdlgen.model.tables import Parameter, RunSettings
 from mdlgen.spec.scene import Scene
 
 _NAMED_AXES = ("x", "y", "z")
 
 
-def parameters(scene: Scene, starts: dict[str, tuple[float, float]], run: RunSettings) -> tuple[Parameter, ...]:
+def parameters(
+    scene: Scene, starts: dict[str, tuple[float, float]], run: RunSettings
+) -> tuple[Parameter, ...]:
     """All parameters of a scene; `starts` gives (touch, start) of each pressed roller [mm]."""
     rows: list[Parameter] = []
     for name in sorted(scene.sheets):
@@ -21,7 +22,9 @@ def parameters(scene: Scene, starts: dict[str, tuple[float, float]], run: RunSet
         rows += _center(name, plane.center, base)
         for k, size in enumerate(plane.size):
             axis = _NAMED_AXES[k]
-            rows.append(Parameter(name, f"L_{axis}", f"Length along its {axis}", size, "mm", (*base, "size", k)))
+            rows.append(
+                Parameter(name, f"L_{axis}", f"Length along its {axis}", size, "mm", (*base, "size", k))
+            )
         rows.append(Parameter(name, "M", "Mass", plane.mass, "g", (*base, "mass")))
     for index, contact in enumerate(scene.contacts):
         base, group = ("contacts", index), f"contact_{index}"
@@ -87,7 +90,9 @@ def _sheet(scene: Scene, name: str) -> list[Parameter]:
     if any(sheet.velocity) or any(sheet.spin):
         for k, axis in enumerate(_NAMED_AXES):
             label = f"Initial velocity {axis}"
-            rows.append(Parameter(name, f"v_{axis}", label, sheet.velocity[k], "mm/ms", (*base, "velocity", k)))
+            rows.append(
+                Parameter(name, f"v_{axis}", label, sheet.velocity[k], "mm/ms", (*base, "velocity", k))
+            )
         for k, axis in enumerate(_NAMED_AXES):
             label = f"Initial spin {axis} (rad/s)"
             rows.append(Parameter(name, f"w_{axis}", label, sheet.spin[k], "rad/ms", (*base, "spin", k)))
@@ -119,8 +124,8 @@ def _roller(scene: Scene, name: str, starts: dict[str, tuple[float, float]]) -> 
             Parameter(name, "zeta", "Relative damping", press.damping_ratio, "1", (*way, "damping_ratio")),
             Parameter(name, "M_c", "Carrier mass", carrier, "g", (*way, "carrier_mass")),
             Parameter(name, "touch", "Touching position along the slide", touch, "mm", None),
-            Parameter(name, "start", "Start position along the slide (static equilibrium)", start, "mm", None),
+            Parameter(
+                name, "start", "Start position along the slide (static equilibrium)", start, "mm", None
+            ),
         ]
     return rows
-
-

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from mdlgen.spec.material import Material
 from mdlgen.spec.sheet import Sheet
 
-
 # A support is a bushing to ground this much stiffer than the sheet's own k_z.
 SUPPORT_FACTOR = 100.0
 

@@ -1,1 +1,1 @@
-""""""
+"""What a run leaves, the same whichever solver ran."""

@@ -109,6 +109,9 @@ class Result:
         along = Rotation.from_quat(quaternion.reshape(-1, 4)).apply([1.0, 0.0, 0.0])
         along = along.reshape(*quaternion.shape[:2], 3).mean(axis=1)
         normal = sheet.rotation[:, 2]
-        flat = along @ np.stack([np.cross(sheet.rotation[:, 1], normal), np.cross(normal, sheet.rotation[:, 0])]).T
+        flat = (
+            along
+            @ np.stack([np.cross(sheet.rotation[:, 1], normal), np.cross(normal, sheet.rotation[:, 0])]).T
+        )
         start = np.arctan2(sheet.rotation[1, 0], sheet.rotation[0, 0])
         return place, rate, start + np.unwrap(np.arctan2(flat[:, 1], flat[:, 0]))

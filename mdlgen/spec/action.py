@@ -14,8 +14,8 @@ class OnSheet(Strict):
     """A material point `at` [x, y] from the sheet's centre in sheet axes, or an `edge`."""
 
     sheet: Name = Field(description="name of a sheet")
-    at: Point2 | None = Field(None, description="[x, y] from the sheet's centre, in sheet axes")
-    edge: Edge | None = Field(None, description="an edge of the sheet")
+    at: Point2 | None = Field(default=None, description="[x, y] from the sheet's centre, in sheet axes")
+    edge: Edge | None = Field(default=None, description="an edge of the sheet")
 
     @model_validator(mode="after")
     def _one_place(self) -> OnSheet:
@@ -31,10 +31,12 @@ class Probe(OnSheet):
 class Load(OnSheet):
     """A dead load: its direction stays that of the start, in sheet axes."""
 
-    force: ForceVector | None = Field(None, description="total force, sheet axes at the start")
-    moment: MomentVector | None = Field(None, description="total moment on an edge, sheet axes at the start")
-    stress: quantity("MPa") | None = Field(
-        None, description="tension on an edge along its outward normal, times width and thickness"
+    force: ForceVector | None = Field(default=None, description="total force, sheet axes at the start")
+    moment: MomentVector | None = Field(
+        default=None, description="total moment on an edge, sheet axes at the start"
+    )
+    stress: Annotated[float, quantity("MPa")] | None = Field(
+        default=None, description="tension on an edge along its outward normal, times width and thickness"
     )
 
     @model_validator(mode="after")

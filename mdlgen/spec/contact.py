@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from mdlgen.spec.fields import SpeedScale, Strict, fail, internal, quantity
+from mdlgen.spec.fields import SpeedScale, Strict, default, fail, quantity
 
 
 class Friction(Strict):
@@ -49,13 +49,15 @@ class Contact(Strict):
     between: Annotated[tuple[str, str], BeforeValidator(_two)] = Field(
         description="two parts by name or pattern; every pair that matches gets this contact"
     )
-    stiffness: quantity("N/mm^1.5", 0.0, open_low=True) = Field(description="k of one pair (Eq. 10)")
-    restitution: float = Field(0.5, ge=0, le=1, description="coefficient of restitution c_R (Eq. 11)")
+    stiffness: Annotated[float, quantity("N/mm^1.5", 0.0, open_low=True)] = Field(
+        description="k of one pair (Eq. 10)"
+    )
+    restitution: float = Field(default=0.5, ge=0, le=1, description="coefficient of restitution c_R (Eq. 11)")
     friction: Friction = Field(default_factory=lambda: Friction(static=0.0, dynamic=0.0))
     smoothing: SpeedScale = Field(
-        internal(1e-3), description="speed over which damping and friction change sign; 1 mm/s"
+        default=default("1 mm/s"), description="speed over which damping and friction change sign; 1 mm/s"
     )
     share: Literal["width", "pair"] = Field(
-        "width",
+        default="width",
         description="width: boxes under one roller share k by the area they cover; pair: k each, as MotionSolve",
     )

@@ -6,15 +6,18 @@ import math
 import re
 from typing import Annotated, Any
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, WithJsonSchema
-from pydantic_core import PydanticCustomError
+from pydantic import BaseModel, BeforeValidator, ConfigDict, GetCoreSchemaHandler, WithJsonSchema
+from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from mdlgen.units import parse_quantity
 
 IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,62}")
 RESERVED = frozenset(
-    "b_ground p_global_origin v_global_x v_global_y v_global_z global_frame model this parent pi time "
-    "true false left right if else elseif endif ground all none run name plane_ground".split()
+    (
+        *("b_ground", "p_global_origin", "v_global_x", "v_global_y", "v_global_z", "global_frame"),
+        *("model", "this", "parent", "pi", "time", "true", "false", "left", "right", "ground", "all"),
+        *("if", "else", "elseif", "endif", "none", "run", "name"),
+    )
 )
 
 
@@ -31,14 +34,38 @@ def fail(message: str, path: tuple[str | int, ...] | None = None) -> PydanticCus
     return PydanticCustomError("spec", "{text}", {"text": message, "path": path})  # type: ignore[arg-type]
 
 
-class _Limits:
-    """Range of a quantity in internal units, with the text to show for it."""
+class quantity:
+    """Marks a float as text with a unit of the dimension of `unit`, stored in internal units.
 
-    def __init__(self, unit: str, low: float | None, high: float | None, open_low: bool, slip: float | None):
+    `Annotated[float, quantity("mm", 0.0)]` takes "1 mm" and refuses what is below 0 mm; `slip` is the
+    factor of a likely mistake in the unit, for the hint "did you mean".
+    """
+
+    def __init__(
+        self,
+        unit: str,
+        low: float | None = None,
+        high: float | None = None,
+        *,
+        open_low: bool = False,
+        slip: float | None = None,
+    ):
         self.unit, self.low, self.high, self.open_low, self.slip = unit, low, high, open_low, slip
 
-    def __call__(self, text: Any) -> float:
-        if isinstance(text, _Internal):
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_before_validator_function(self.read, handler(source))
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: Any) -> dict[str, Any]:
+        limits = f"; {self.allowed()}" if self.low is not None else ""
+        return {
+            "type": "string",
+            "description": f"number with a unit such as {self.unit}{limits}",
+            "examples": [f"1 {self.unit}"],
+        }
+
+    def read(self, text: Any) -> float:
+        """The value in internal units; raises the error that names the unit or range expected."""
+        if isinstance(text, Default):
             return float(text)
         try:
             value = parse_quantity(text, self.unit)
@@ -50,13 +77,13 @@ class _Limits:
         return value
 
     def allowed(self) -> str:
+        """The range in words."""
         word = "more than" if self.open_low else "at least"
         if self.high is None:
             return f"{word} {self.low:g} {self.unit}"
         return f"{self.low:g} to {self.high:g} {self.unit}"
 
     def _meant(self, value: float) -> str:
-        """The unit slip that is likely: metres for millimetres and the reverse."""
         if self.slip is None:
             return ""
         for factor in (self.slip, 1.0 / self.slip):
@@ -66,30 +93,23 @@ class _Limits:
         return ""
 
 
-class _Internal(float):
-    """A default that is already in internal units."""
+class Default(float):
+    """A default in internal units that remembers how a user would write it."""
+
+    text: str
 
 
-def quantity(
-    unit: str,
-    low: float | None = None,
-    high: float | None = None,
-    *,
-    open_low: bool = False,
-    slip: float | None = None,
-) -> Any:
-    """A field type: text with a unit of the dimension of `unit`, stored as float in internal units."""
-    schema: dict[str, Any] = {"type": "string", "examples": [f"1 {unit}"]}
-    limits = _Limits(unit, low, high, open_low, slip)
-    schema["description"] = f"number with a unit such as {unit}" + (
-        f"; {limits.allowed()}" if low is not None else ""
-    )
-    return Annotated[float, BeforeValidator(limits), WithJsonSchema(schema)]
+def default(text: str) -> float:
+    """A default value like "1 mm/s", for fields that `quantity` marks."""
+    number, _, unit = text.partition(" ")
+    value = Default(parse_quantity(text, unit))
+    value.text = f"{number} {unit}"
+    return value
 
 
-def internal(value: float) -> Any:
-    """A default value in internal units, for fields that `quantity` describes."""
-    return _Internal(value)
+def origin(unit: str) -> tuple[float, float, float]:
+    """Three zeros as a default."""
+    return (default(f"0 {unit}"), default(f"0 {unit}"), default(f"0 {unit}"))
 
 
 def _fixed_length(count: int, what: str):
@@ -101,6 +121,10 @@ def _fixed_length(count: int, what: str):
     return BeforeValidator(check)
 
 
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
+
+
 def _axis(value: Any) -> tuple[float, float, float]:
     if isinstance(value, str):
         match = re.fullmatch(r"([-+]?)([xyz])", value)
@@ -108,11 +132,10 @@ def _axis(value: Any) -> tuple[float, float, float]:
             raise fail(f"{value!r} is not a direction; allowed: x, y, z, -x, -y, -z or a vector [1, 0, 0]")
         sign = -1.0 if match[1] == "-" else 1.0
         return tuple(sign * (c == match[2]) + 0.0 for c in "xyz")  # type: ignore[return-value]
-    if isinstance(value, (list, tuple)) and len(value) == 3:
-        if all(isinstance(v, (int, float)) and not isinstance(v, bool) and math.isfinite(v) for v in value):
-            length = math.hypot(*value)
-            if 1e-100 < length < 1e100:
-                return tuple(float(v) / length + 0.0 for v in value)  # type: ignore[return-value]
+    if isinstance(value, (list, tuple)) and len(value) == 3 and all(_is_number(v) for v in value):
+        length = math.hypot(*value)
+        if 1e-100 < length < 1e100:
+            return tuple(float(v) / length + 0.0 for v in value)  # type: ignore[return-value]
     raise fail(f"{value!r} is not a direction; allowed: x, y, z, -x, -y, -z or a non-zero vector"[:200])
 
 
@@ -126,32 +149,34 @@ def _name(value: Any) -> str:
     return value
 
 
-Length = quantity("mm")
-PositiveLength = quantity("mm", 0.0, open_low=True)
-Mass = quantity("g", 0.0, open_low=True)
-Time = quantity("ms", 0.0, open_low=True)
-TimeOrZero = quantity("ms", 0.0)
-Stiffness = quantity("N/mm", 0.0)
-Torsion = quantity("N*mm/rad", 0.0)
-Angle = quantity("deg")
-Force = quantity("N")
-SpeedScale = quantity("mm/s", 0.0, open_low=True)
+def _triple(unit: str) -> BeforeValidator:
+    return _fixed_length(3, f"quantities like '1 {unit}'")
 
-_schema = {"minItems": 3, "maxItems": 3, "type": "array"}
-_Quantities = {
-    unit: Annotated[
-        tuple[quantity(unit), quantity(unit), quantity(unit)],
-        _fixed_length(3, f"quantities like '1 {unit}'"),
-    ]
-    for unit in ("mm", "m/s", "rad/s", "m/s^2", "N", "N*mm", "deg")
-}
-Position = _Quantities["mm"]
-Velocity = _Quantities["m/s"]
-Spin = _Quantities["rad/s"]
-Acceleration = _Quantities["m/s^2"]
-ForceVector = _Quantities["N"]
-MomentVector = _Quantities["N*mm"]
-Angles = _Quantities["deg"]
+
+Length = Annotated[float, quantity("mm")]
+PositiveLength = Annotated[float, quantity("mm", 0.0, open_low=True)]
+Mass = Annotated[float, quantity("g", 0.0, open_low=True)]
+Time = Annotated[float, quantity("ms", 0.0, open_low=True)]
+TimeOrZero = Annotated[float, quantity("ms", 0.0)]
+Stiffness = Annotated[float, quantity("N/mm", 0.0)]
+Torsion = Annotated[float, quantity("N*mm/rad", 0.0)]
+Modulus = Annotated[float, quantity("MPa", 0.0, open_low=True)]
+Plate = Annotated[float, quantity("N*mm", 0.0, open_low=True)]
+Angle = Annotated[float, quantity("deg")]
+SpeedScale = Annotated[float, quantity("mm/s", 0.0, open_low=True)]
+_Speed = Annotated[float, quantity("m/s")]
+_Rate = Annotated[float, quantity("rad/s")]
+_Rise = Annotated[float, quantity("m/s^2")]
+_Force = Annotated[float, quantity("N")]
+_Moment = Annotated[float, quantity("N*mm")]
+
+Position = Annotated[tuple[Length, Length, Length], _triple("mm")]
+Velocity = Annotated[tuple[_Speed, _Speed, _Speed], _triple("m/s")]
+Spin = Annotated[tuple[_Rate, _Rate, _Rate], _triple("rad/s")]
+Acceleration = Annotated[tuple[_Rise, _Rise, _Rise], _triple("m/s^2")]
+ForceVector = Annotated[tuple[_Force, _Force, _Force], _triple("N")]
+MomentVector = Annotated[tuple[_Moment, _Moment, _Moment], _triple("N*mm")]
+Angles = Annotated[tuple[Angle, Angle, Angle], _triple("deg")]
 Size2 = Annotated[tuple[PositiveLength, PositiveLength], _fixed_length(2, "lengths like '1 mm'")]
 Size3 = Annotated[
     tuple[PositiveLength, PositiveLength, PositiveLength], _fixed_length(3, "lengths like '1 mm'")
@@ -161,6 +186,15 @@ Counts2 = Annotated[tuple[int, int], _fixed_length(2, "whole numbers")]
 Direction = Annotated[
     tuple[float, float, float],
     BeforeValidator(_axis),
-    WithJsonSchema({"anyOf": [{"enum": ["x", "y", "z", "-x", "-y", "-z"]}, {**_schema, "items": {"type": "number"}}]}),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"enum": ["x", "y", "z", "-x", "-y", "-z"]},
+                {"minItems": 3, "maxItems": 3, "type": "array", "items": {"type": "number"}},
+            ]
+        }
+    ),
 ]
-Name = Annotated[str, BeforeValidator(_name), WithJsonSchema({"type": "string", "pattern": IDENTIFIER.pattern})]
+Name = Annotated[
+    str, BeforeValidator(_name), WithJsonSchema({"type": "string", "pattern": IDENTIFIER.pattern})
+]

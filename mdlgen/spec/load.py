@@ -157,7 +157,9 @@ class _Open:
         if not isinstance(event, ScalarEvent):
             raise SpecError("a key must be a plain name", self.path, place)
         if event.value in self.value:
-            raise SpecError(f"the key {event.value[:80]!r} stands twice", (*self.path, event.value[:80]), place)
+            raise SpecError(
+                f"the key {event.value[:80]!r} stands twice", (*self.path, event.value[:80]), place
+            )
         self.key = event.value
         keys[(*self.path, event.value)] = place
 
@@ -192,19 +194,20 @@ def _override(document: Document, override: str) -> None:
     path_text, equals, value_text = override.partition("=")
     file = f"--set {path_text}"
     here = Place(file, 1, 1)
-    words = [w for w in path_text.strip().split(".")]
+    words = path_text.strip().split(".")
     if not equals or not all(re.fullmatch(r"[A-Za-z0-9_]{1,64}", w) for w in words):
         raise SpecError(
             f"{override[:80]!r} is not PATH=VALUE; write like sheets.note.boxes=[20,30]", place=here
         )
     value = parse(value_text, file)
-    node, path = document.data, ()
+    node: Any = document.data
+    path: SpecPath = ()
     for depth, word in enumerate(words):
         last = depth == len(words) - 1
         if isinstance(node, list):
             if not re.fullmatch(r"[0-9]{1,6}", word) or int(word) >= len(node):
                 raise SpecError(f"no item {word!r}; the list has {len(node)}, counted from 0", path, here)
-            key: str | int = int(word)
+            key: Any = int(word)
         elif isinstance(node, dict):
             key = word
             if last:

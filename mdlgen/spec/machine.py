@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 from pydantic import Field
 
 from mdlgen.spec.fields import (
@@ -13,7 +15,7 @@ from mdlgen.spec.fields import (
     Stiffness,
     Strict,
     TimeOrZero,
-    internal,
+    default,
     quantity,
 )
 
@@ -21,8 +23,10 @@ from mdlgen.spec.fields import (
 class Drive(Strict):
     """Prescribed speed about the roller's axis, reached by a linear ramp."""
 
-    speed: quantity("rad/s") = Field(description="angular speed about the axis (right-hand rule)")
-    ramp: TimeOrZero = Field(internal(0.0), description="time from 0 to the full speed, linear")
+    speed: Annotated[float, quantity("rad/s")] = Field(
+        description="angular speed about the axis (right-hand rule)"
+    )
+    ramp: TimeOrZero = Field(default=default("0 ms"), description="time from 0 to the full speed, linear")
 
 
 class Press(Strict):
@@ -30,15 +34,17 @@ class Press(Strict):
 
     direction: Direction = Field(description="where the spring pushes to")
     stiffness: Stiffness = Field(description="spring stiffness")
-    preload: quantity("N", 0.0) = Field(description="spring force at the free length")
+    preload: Annotated[float, quantity("N", 0.0)] = Field(description="spring force at the free length")
     free_length: PositiveLength = Field(
-        internal(6.0),
+        default=default("6 mm"),
         description="spring length at which the preload is stated: where the roller just touches its "
         "counterpart (a roller it has a contact with), or its centre as given where it has none",
     )
-    damping_ratio: float = Field(0.05, ge=0, le=10, description="relative damping of spring and roller")
+    damping_ratio: float = Field(
+        default=0.05, ge=0, le=10, description="relative damping of spring and roller"
+    )
     carrier_mass: Mass | None = Field(
-        None, description="mass of the slide between spring and roller; a thousandth of the roller's"
+        default=None, description="mass of the slide between spring and roller; a thousandth of the roller's"
     )
 
 
@@ -50,8 +56,10 @@ class Roller(Strict):
     radius: PositiveLength = Field(description="radius R")
     width: PositiveLength = Field(description="length along the axis")
     mass: Mass = Field(description="mass; the inertia is that of a solid cylinder")
-    drive: Drive | None = Field(None, description="prescribed rotation; without it the roller turns freely")
-    press: Press | None = Field(None, description="slide and spring; without it the axis is fixed")
+    drive: Drive | None = Field(
+        default=None, description="prescribed rotation; without it the roller turns freely"
+    )
+    press: Press | None = Field(default=None, description="slide and spring; without it the axis is fixed")
 
 
 class Plane(Strict):

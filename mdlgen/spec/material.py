@@ -6,18 +6,23 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
-from mdlgen.spec.fields import Strict, Torsion, fail, quantity
+from mdlgen.spec.fields import Modulus, Plate, Strict, Torsion, fail
 
 
 class Damping(Strict):
     """Relative damping of the joints (Eq. 7)."""
 
-    ratio: float = Field(0.12, ge=0, le=10, description="relative damping zeta of every component but ty")
+    ratio: float = Field(
+        default=0.12, ge=0, le=10, description="relative damping zeta of every component but ty"
+    )
     ratio_ty: float | None = Field(
-        None, ge=0, le=10, description="zeta of the rotation about y; the same as ratio where left out"
+        default=None,
+        ge=0,
+        le=10,
+        description="zeta of the rotation about y; the same as ratio where left out",
     )
     rotation: Literal["inertia", "paper"] = Field(
-        "inertia",
+        default="inertia",
         description="inertia: c_t = 2 zeta sqrt(k_t I), I the box inertia about its edge; "
         "paper: the paper's formula with the box mass in g in place of I, which gives Table 2",
     )
@@ -26,23 +31,24 @@ class Damping(Strict):
 class Material(Strict):
     """An orthotropic sheet material; x is the machine direction MD, y the cross direction CD."""
 
-    E_md: quantity("MPa", 0.0, open_low=True) = Field(description="Young's modulus along x (MD)")
-    E_cd: quantity("MPa", 0.0, open_low=True) = Field(description="Young's modulus along y (CD)")
-    k_tx: Torsion | None = Field(None, description="hinge stiffness per bushing for bending along y")
-    k_ty: Torsion | None = Field(None, description="hinge stiffness per bushing for bending along x")
+    E_md: Modulus = Field(description="Young's modulus along x (MD)")
+    E_cd: Modulus = Field(description="Young's modulus along y (CD)")
+    k_tx: Torsion | None = Field(default=None, description="hinge stiffness per bushing for bending along y")
+    k_ty: Torsion | None = Field(default=None, description="hinge stiffness per bushing for bending along x")
     k_tz: Torsion | None = Field(
-        None, description="in-plane stiffness per bushing; 20 times the larger of k_tx, k_ty where left out"
+        default=None,
+        description="in-plane stiffness per bushing; 20 times the larger of k_tx, k_ty where left out",
     )
-    D_md: quantity("N*mm", 0.0, open_low=True) | None = Field(
-        None, description="bending stiffness per width along x, in place of k_ty"
+    D_md: Plate | None = Field(
+        default=None, description="bending stiffness per width along x, in place of k_ty"
     )
-    D_cd: quantity("N*mm", 0.0, open_low=True) | None = Field(
-        None, description="bending stiffness per width along y, in place of k_tx"
+    D_cd: Plate | None = Field(
+        default=None, description="bending stiffness per width along y, in place of k_tx"
     )
-    D_twist: quantity("N*mm", 0.0, open_low=True) | None = Field(
-        None, description="twisting stiffness per width D66; acts with layout center_to_center only"
+    D_twist: Plate | None = Field(
+        default=None, description="twisting stiffness per width D66; acts with layout center_to_center only"
     )
-    damping: Damping = Field(default_factory=lambda: Damping())
+    damping: Damping = Field(default_factory=Damping)
 
     @model_validator(mode="after")
     def _bending(self) -> Material:

@@ -6,22 +6,24 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
-from mdlgen.spec.fields import PositiveLength, Strict, Time, fail, internal
+from mdlgen.spec.fields import PositiveLength, Strict, Time, default, fail
 
 
 class Run(Strict):
     """Duration, analysis and accuracy of a run."""
 
-    duration: Time = Field(internal(1.0), description="end time of a transient run")
+    duration: Time = Field(default=default("1 ms"), description="end time of a transient run")
     analysis: Literal["transient", "static"] = "transient"
-    step: Time | None = Field(None, description="time step; chosen from the tolerance where left out")
+    step: Time | None = Field(default=None, description="time step; chosen from the tolerance where left out")
     tolerance: float = Field(
-        1e-3, gt=0, le=0.1, description="wanted error, relative to max(travel, sheet length / 10)"
+        default=1e-3, gt=0, le=0.1, description="wanted error, relative to max(travel, sheet length / 10)"
     )
-    print_step: Time | None = Field(None, description="time between outputs; duration / 200 where left out")
-    prune: bool = Field(True, description="leave out contacts of pairs that cannot touch")
+    print_step: Time | None = Field(
+        default=None, description="time between outputs; duration / 200 where left out"
+    )
+    prune: bool = Field(default=True, description="leave out contacts of pairs that cannot touch")
     margin: PositiveLength = Field(
-        internal(5.0), description="added to the swept bounds from which contacts are kept"
+        default=default("5 mm"), description="added to the swept bounds from which contacts are kept"
     )
 
     @model_validator(mode="after")
@@ -31,5 +33,7 @@ class Run(Strict):
             if value is not None and value > self.duration:
                 raise fail(f"{name} {value:g} ms is longer than the duration {self.duration:g} ms")
             if value is not None and self.duration / value > 1e8:
-                raise fail(f"{name} {value:g} ms makes more than 1e8 steps of the duration {self.duration:g} ms")
+                raise fail(
+                    f"{name} {value:g} ms makes more than 1e8 steps of the duration {self.duration:g} ms"
+                )
         return self

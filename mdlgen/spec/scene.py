@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 
 from mdlgen.spec.action import Load, OnSheet, Probe, Support
 from mdlgen.spec.contact import Contact
-from mdlgen.spec.fields import Acceleration, Name, Strict, fail, internal
+from mdlgen.spec.fields import Acceleration, Name, Strict, default, fail
 from mdlgen.spec.machine import Plane, Roller
 from mdlgen.spec.material import Material
 from mdlgen.spec.run import Run
@@ -21,14 +21,14 @@ class Scene(Strict):
     """Everything that a user describes; see `mdlgen schema` for each field."""
 
     name: Name = Field(description="name of the scene and of the files made from it")
-    gravity: Acceleration = (internal(0.0), internal(0.0), internal(-9.81e-3))
+    gravity: Acceleration = (default("0 m/s^2"), default("0 m/s^2"), default("-9.81 m/s^2"))
     materials: dict[Name, Material] = Field(default_factory=dict)
     sheets: dict[Name, Sheet] = Field(min_length=1)
     rollers: dict[Name, Roller] = Field(default_factory=dict)
     planes: dict[Name, Plane] = Field(default_factory=dict)
     contacts: tuple[Contact, ...] = Field(default=(), strict=False)
     loads: tuple[Load, ...] = Field(default=(), strict=False)
-    run: Run = Field(default_factory=lambda: Run())
+    run: Run = Field(default_factory=Run)
     probes: dict[Name, Probe] = Field(default_factory=dict)
     supports: tuple[Support, ...] = Field(default=(), strict=False)
 

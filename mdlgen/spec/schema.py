@@ -5,13 +5,20 @@ from __future__ import annotations
 from typing import Any, get_args
 
 from pydantic import BaseModel
+from pydantic.json_schema import GenerateJsonSchema
 
 from mdlgen.spec.scene import Scene
 
 
+class _Schema(GenerateJsonSchema):
+    """Leaves out defaults in internal units silently: in a file they would be text with a unit."""
+
+    ignored_warning_kinds = {"skipped-choice", "non-serializable-default"}  # noqa: RUF012  pydantic's own form
+
+
 def json_schema() -> dict[str, Any]:
     """JSON schema of a scene file."""
-    schema = Scene.model_json_schema()
+    schema = Scene.model_json_schema(schema_generator=_Schema)
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
 
 

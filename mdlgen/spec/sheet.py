@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
@@ -17,22 +17,22 @@ from mdlgen.spec.fields import (
     Spin,
     Strict,
     Velocity,
+    default,
     fail,
-    internal,
+    origin,
     quantity,
 )
 
 MAX_BOXES = 100_000
 Edge = Literal["x_min", "x_max", "y_min", "y_max"]
-_ZERO = (internal(0.0),) * 3
 
 
 class Clamp(Strict):
     """Boxes held up to a line; beyond it a half-cell hinge of twice the joint's stiffness."""
 
     edge: Edge = Field(description="the edge that the clamp starts from")
-    length: quantity("mm", 0.0) = Field(
-        internal(0.0), description="clamped length from that edge: 0, or a line between boxes"
+    length: Annotated[float, quantity("mm", 0.0)] = Field(
+        default=default("0 mm"), description="clamped length from that edge: 0, or a line between boxes"
     )
 
 
@@ -41,24 +41,28 @@ class Sheet(Strict):
 
     material: Name = Field(description="name of a material")
     size: Size2 = Field(description="[L_x, L_y] of the outline")
-    thickness: quantity("mm", 0.01, 50.0, slip=1000.0) = Field(description="thickness s")
+    thickness: Annotated[float, quantity("mm", 0.01, 50.0, slip=1000.0)] = Field(description="thickness s")
     mass: Mass = Field(description="mass M of the whole sheet")
     boxes: Counts2 = Field(description="[n_x, n_y] boxes; [1, 1] is one rigid block")
     layout: Literal["edge_to_edge", "center_to_center"] = Field(
-        "edge_to_edge", description="two bushings per pair at the shared corners, or one at the edge's middle"
+        default="edge_to_edge",
+        description="two bushings per pair at the shared corners, or one at the edge's middle",
     )
     grid: Literal["tiled", "paper"] = Field(
-        "tiled", description="tiled: d = L/n; paper: d = L/(n-1) (Eq. 1), an outline of n boxes of that size"
+        default="tiled",
+        description="tiled: d = L/n; paper: d = L/(n-1) (Eq. 1), an outline of n boxes of that size",
     )
-    center: Position = Field(_ZERO, description="middle of the sheet's mid-plane")
-    turn: Angle | None = Field(None, description="rotation about z")
+    center: Position = Field(default=origin("mm"), description="middle of the sheet's mid-plane")
+    turn: Angle | None = Field(default=None, description="rotation about z")
     rotation: Angles | None = Field(
-        None, description="rotations about the global x, then y, then z axis, in place of turn"
+        default=None, description="rotations about the global x, then y, then z axis, in place of turn"
     )
-    velocity: Velocity = Field(_ZERO, description="initial velocity of the centre")
-    spin: Spin = Field(_ZERO, description="initial angular velocity, global axes")
-    clamp: Clamp | None = Field(None, description="an edge that is held")
-    surface: bool = Field(False, description="deformable surface on the box centres, to look at in MotionView")
+    velocity: Velocity = Field(default=origin("m/s"), description="initial velocity of the centre")
+    spin: Spin = Field(default=origin("rad/s"), description="initial angular velocity, global axes")
+    clamp: Clamp | None = Field(default=None, description="an edge that is held")
+    surface: bool = Field(
+        default=False, description="deformable surface on the box centres, to look at in MotionView"
+    )
 
     @model_validator(mode="after")
     def _counts(self) -> Sheet:
@@ -96,5 +100,3 @@ class Sheet(Strict):
                 f"the nearest are {' and '.join(lines)}"
             )
         return rows
-
-

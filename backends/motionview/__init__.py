@@ -1,0 +1,38 @@
+"""MotionView: the Model as MDL text, and a script for what that text has no known form for."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from mdlgen.model.tables import Model
+
+__all__ = ["check", "companion", "companion_reasons", "emit"]
+
+
+def emit(model: Model, *, set_contact: bool = False) -> str:
+    """The .mdl text; see `backends.motionview.text.emit`."""
+    from backends.motionview import text
+
+    return text.emit(model, set_contact=set_contact)
+
+
+def check(model: Model) -> None:
+    """Raises RefusedError by name for what the text cannot represent."""
+    from backends.motionview import text
+
+    text.check(model)
+
+
+def companion(model: Model, *, set_contact: bool = False) -> str | None:
+    """The Python script to run in MotionView after the text is loaded, or None."""
+    from backends.motionview import script
+
+    return script.companion(model, set_contact=set_contact)
+
+
+def companion_reasons(model: Model, set_contact: bool = False) -> list[str]:
+    """Why the script is needed, one line each; empty where it is not."""
+    from backends.motionview import script
+
+    return script.reasons(model, set_contact)

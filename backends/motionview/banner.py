@@ -1,0 +1,56 @@
+"""The notes above the text: units, contacts, what to check. MotionView ignores all before BeginMDL."""
+
+from __future__ import annotations
+
+from backends.motionview import script
+from backends.motionview.forms import unverified
+from backends.motionview.rows import SceneView
+from backends.motionview.units import number
+from mdlgen.model.tables import Model
+
+
+def banner(model: Model, scene: SceneView) -> list[str]:
+    """The lines of the header, without slashes."""
+    gravity = ", ".join(number(g) for g in script.gravity(model))
+    reasons = script.reasons(model, scene.set_contact)
+    lines = [
+        f"{model.name}: MotionView model, written by mdlgen",
+        "",
+        "Units : mm, N, kg, s, rad; angles in data sets in degrees",
+        f"Gravity : {gravity} mm/s2",
+    ]
+    for sheet, part in zip(scene.sheets, model.sheets, strict=True):
+        joints = sum(len(group.bushes) for group in sheet.joints)
+        lines.append(
+            f"Sheet : {sheet.name}, {part.n_x} x {part.n_y} boxes, {part.layout}, {part.grid} grid, "
+            f"{joints} bushings; its values are in ds_{sheet.name}"
+        )
+    lines += _contacts(model, scene)
+    if reasons:
+        lines += ["", "Companion script : run it once in the Python window after loading, because of"]
+        lines += [f"  {reason}" for reason in reasons]
+    lines += ["", "Not yet read by a real MotionView; look at these first if it complains :"]
+    return lines + [f"  {form}" for form in unverified(scene)]
+
+
+def _contacts(model: Model, scene: SceneView) -> list[str]:
+    if not scene.contacts:
+        return []
+    pairs = model.pairs
+    lines = [
+        f"Contacts : {pairs.possible} pairs possible, {len(pairs)} kept: those that can meet in the run, "
+        f"with a margin of {number(pairs.margin)} mm",
+        "  MotionSolve gives every pair the full stiffness. In the local run of mdlgen, share width lets",
+        "  the boxes under one part share it by the width that each covers; share pair gives it to each too.",
+    ]
+    if len(pairs) < pairs.possible:
+        lines += [
+            "  Pairs are kept for the sheets where they start : to move or turn one beyond the margin,",
+            "  write the text anew, or write it with prune: false in the run, which keeps every pair.",
+        ]
+    if any(roller.pressed for roller in scene.rollers):
+        lines.append("  Pressed rollers start in equilibrium with the sheets as written, at real_start.")
+    for contact in scene.contacts:
+        parts = contact.label.partition(": ")[2]
+        lines.append(f"  ds_{contact.data_set} : share {contact.share}, {parts}")
+    return lines

@@ -1,0 +1,44 @@
+"""The Jinja environment of the MDL templates.
+
+Delimiters are `<< >>`, `<% %>` and `<# #>`, because MDL uses braces. Inside `<% filter values("note") %>`
+a short `$L_x` stands for `ds_note.real_L_x.value`: the formulas can be read.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from backends.motionview.units import number
+from mdlgen.paths import templates
+
+_MEMBER = re.compile(r"\$([A-Za-z][A-Za-z0-9_]*)")
+
+
+def values(text: str, data_set: str) -> str:
+    """`text` with every `$member` written out as the value of that member of a data set."""
+    return _MEMBER.sub(rf"ds_{data_set}.real_\1.value", text)
+
+
+@lru_cache(maxsize=1)
+def environment() -> Environment:
+    """One environment for all texts."""
+    made = Environment(
+        loader=FileSystemLoader(templates() / "motionview"),
+        undefined=StrictUndefined,
+        autoescape=False,  # MDL is not HTML; names and labels pass the allow-list instead
+        variable_start_string="<<",
+        variable_end_string=">>",
+        block_start_string="<%",
+        block_end_string="%>",
+        comment_start_string="<#",
+        comment_end_string="#>",
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    made.filters["values"] = values
+    made.filters["number"] = number
+    return made

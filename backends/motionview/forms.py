@@ -1,0 +1,40 @@
+"""Which statements of a text nobody has seen a real MotionView read, so that a user knows where to look."""
+
+from __future__ import annotations
+
+from backends.motionview.rows import SceneView
+
+_BUSH = "SetOrientation of a Bush by two axes (seen by one axis, and by two for pairs of bushings)"
+
+
+def unverified(scene: SceneView) -> list[str]:
+    """One line for each form in this text that is documented only, or concluded from a similar one."""
+    joined = [s for s in scene.sheets if s.joints]
+    aligned = ", ".join(s.name for s in scene.sheets if not s.turned)
+    rows = (
+        (True, "SetOrientation of a marker by DXDYDZ with formulas (seen with numbers only)"),
+        (any(s.turned for s in joined), _BUSH),
+        (
+            any(not s.turned for s in joined),
+            f"inside an if, so only where an angle of {aligned} is changed from 0 : {_BUSH}",
+        ),
+        (
+            bool(aligned),
+            "if with a value of a data set (seen with options) : should a new angle move the points and "
+            "leave the axes behind, save and load the text again",
+        ),
+        (any(r.driven for r in scene.rollers), "SetMotion VEL, EXPR (documented; seen with DISP)"),
+        (any(r.pressed for r in scene.rollers), "CoilSpring and SetCoilSpring (documented; seen as pairs)"),
+        (bool(scene.supports), "Bush with zero stiffness in some directions (a form of the documented one)"),
+        (
+            any(s.moving for s in scene.sheets),
+            "Global_Frame as the marker of initial velocities in Body (documented, not seen)",
+        ),
+        (bool(scene.pairs), "Contact (documented, not seen in a file)"),
+        (
+            bool(scene.pairs) and scene.set_contact,
+            "SetContact (argument order documented; the word for compute_force_at is not known and left out)",
+        ),
+        (any(s.surface for s in scene.sheets), "DeformableSurface (documented, not seen in a file)"),
+    )
+    return [line for needed, line in rows if needed]

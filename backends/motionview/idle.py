@@ -1,0 +1,45 @@
+"""Which values of a data set the text shows but does not use: they are written NO_EDIT, with the reason.
+
+A value that a user can edit and that changes nothing would be worse than one that cannot be edited.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mdlgen.model.tables import Model
+
+_FRICTION = ("mu_s", "mu_d", "v_s", "v_d")
+_STIFFNESS = ("E_md", "E_cd", "k_tx", "k_ty", "k_tz", "D_md", "D_cd", "D_twist", "zeta", "zeta_ty")
+
+
+def idle_values(model: Model, set_contact: bool) -> dict[tuple[str, str], str]:
+    """Reason by (data set, member)."""
+    found = _contacts(model, set_contact)
+    for index, sheet in enumerate(model.sheets):
+        if not np.any(model.bushings.sheet == index):
+            found |= {(sheet.name, member): "there are no joints" for member in _STIFFNESS}
+    for roller in model.rollers:
+        if roller.speed is not None and roller.ramp <= 0.0:
+            found[roller.name, "ramp"] = "the text has no ramp"
+    if model.run.analysis == "static":
+        found |= {("run", member): "the run is static" for member in ("end", "print")}
+    return found
+
+
+def _contacts(model: Model, set_contact: bool) -> dict[tuple[str, str], str]:
+    table, found = model.contacts, {}
+    kept = set(table.entry[model.pairs.contact].tolist())
+    rubs = {int(e) for e in table.entry[(table.mu_static > 0) | (table.mu_dynamic > 0)]}
+    for entry in sorted(set(table.entry.tolist())):
+        for member in ("k", "c_R", *_FRICTION, "v_n"):
+            if entry not in kept:
+                reason = "no pair can meet"
+            elif member in _FRICTION and entry not in rubs:
+                reason = "friction is off"
+            elif not set_contact or member == "v_n":
+                reason = "the companion script sets it"
+            else:
+                continue
+            found[f"contact_{entry}", member] = reason
+    return found

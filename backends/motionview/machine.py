@@ -1,0 +1,89 @@
+"""Rows of the machine: rollers, planes, contacts and the pairs of bodies that may touch."""
+
+from __future__ import annotations
+
+from itertools import groupby
+
+import numpy as np
+
+from backends.motionview.rows import Axis, ContactView, Pair, PlaneView, RollerView, Value
+from backends.motionview.units import number
+from mdlgen.model.tables import Floats, Model, PlanePart, RollerPart
+
+
+def roller_view(model: Model, roller: RollerPart, given: list[Value]) -> RollerView:
+    """One roller; its body has z along the axis."""
+    press = roller.press
+    return RollerView(
+        name=roller.name,
+        given=given,
+        axis=_axis(f"v_{roller.name}_axis", roller.axis),
+        guide=_guide(model.bodies.rotation[roller.body]),
+        driven=roller.speed is not None,
+        ramped=roller.ramp > 0.0,
+        pressed=press is not None,
+        press=_components(press.direction if press is not None else np.zeros(3)),
+    )
+
+
+def plane_view(model: Model, plane: PlanePart, given: list[Value]) -> PlaneView:
+    """One plane; its body has z along the normal."""
+    guide = _guide(model.bodies.rotation[plane.body])
+    return PlaneView(plane.name, given, _axis(f"v_{plane.name}_normal", plane.normal), guide)
+
+
+def _axis(name: str, direction: Floats) -> Axis:
+    """The global vector along `direction`, or a vector called `name`."""
+    for k, letter in enumerate("XYZ"):
+        if np.array_equal(direction, np.eye(3)[k]):
+            return Axis(f"V_Global_{letter}", None)
+    return Axis(name, _components(direction))
+
+
+def _components(direction: Floats) -> tuple[str, str, str]:
+    x, y, z = (number(v) for v in direction)
+    return x, y, z
+
+
+def _guide(rotation: Floats) -> str:
+    """The global vector in the plane of a body's z and x axes, from which ZX gives that x axis."""
+    x, y = rotation[:, 0], rotation[:, 1]
+    k = min((0, 1), key=lambda k: (abs(y[k]) > 1e-9, -x[k]))
+    return f"V_Global_{'XY'[k]}"
+
+
+def contact_views(model: Model, given: dict[str, list[Value]]) -> list[ContactView]:
+    """One row for each entry of the spec's list that made a contact."""
+    table = model.contacts
+    views = []
+    for entry, group in groupby(range(len(table)), key=lambda row: int(table.entry[row])):
+        rows = list(group)
+        more = f" and {len(rows) - 1} more" if len(rows) > 1 else ""
+        label = f"Contact {entry}: {table.part_a[rows[0]]} / {table.part_b[rows[0]]}{more}"
+        name = f"contact_{entry}"
+        views.append(ContactView(name, label, given[name], table.share[rows[0]]))
+    return views
+
+
+def pair_rows(model: Model) -> list[Pair]:
+    """One row for each pair of bodies that is kept."""
+    bodies, table = model.bodies, model.contacts
+    graphic = [f"gbox_{name}" for name in bodies.name]
+    for roller in model.rollers:
+        graphic[roller.body] = f"gcyl_{roller.name}"
+    rubs = ["ON" if s > 0 or d > 0 else "OFF" for s, d in zip(table.mu_static, table.mu_dynamic, strict=True)]
+    data_set = [f"contact_{entry}" for entry in table.entry.tolist()]
+    columns = (c.tolist() for c in (model.pairs.contact, model.pairs.a, model.pairs.b))
+    return [
+        Pair(
+            f"con_{bodies.name[a]}_{bodies.name[b]}",
+            f"{bodies.label[a]} / {bodies.label[b]}",
+            f"b_{bodies.name[a]}",
+            graphic[a],
+            f"b_{bodies.name[b]}",
+            graphic[b],
+            rubs[row],
+            data_set[row],
+        )
+        for row, a, b in zip(*columns, strict=True)
+    ]

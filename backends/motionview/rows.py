@@ -1,0 +1,165 @@
+"""Plain rows for the templates: names, labels and numbers, already in MotionView's units.
+
+What can be a formula is not here: it stands in the templates.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+
+class Value(NamedTuple):
+    """A member of a data set that is a number."""
+
+    member: str
+    label: str
+    number: str
+    edit: str  # EDIT or NO_EDIT
+
+
+class Point(NamedTuple):
+    """A point of a sheet at cell coordinates (i, j), counted from the corner of box (0, 0)."""
+
+    name: str
+    label: str
+    i: str
+    j: str
+
+
+class Bush(NamedTuple):
+    """A bushing: its bodies and its point."""
+
+    name: str
+    label: str
+    body_1: str
+    body_2: str
+    point: str
+
+
+class JointGroup(NamedTuple):
+    """Bushings of one sheet with the same values: `factor` times the members k_*, c_*."""
+
+    factor: str
+    tx: str  # suffix of the members of rotation about x: tx or tx_twist
+    ty: str
+    bushes: list[Bush]
+
+
+@dataclass(frozen=True)
+class SheetView:
+    """One sheet."""
+
+    name: str
+    given: list[Value]
+    n_x: str
+    n_y: str
+    tiled: bool
+    parts: int  # bushings per pair
+    rotation: bool  # three angles in place of turn
+    turned: bool  # any angle is not zero; else the text orients bodies and bushings only if one is edited
+    moving: bool  # has initial velocities
+    bending: tuple[str, str]
+    in_plane: bool
+    twist: bool
+    damping: str
+    stiff: bool  # anything uses the sheet's stiffness
+    boxes: list[Point]
+    held: list[Point]
+    free: list[Point]
+    nodes: list[Point]
+    joints: list[JointGroup]
+    surface: list[list[str]]  # marker names row by row; empty: no surface
+
+
+class Axis(NamedTuple):
+    """A direction: a global vector, or one of its own with components."""
+
+    vector: str
+    own: tuple[str, str, str] | None
+
+
+@dataclass(frozen=True)
+class RollerView:
+    """One roller."""
+
+    name: str
+    given: list[Value]
+    axis: Axis
+    guide: str  # global vector that fixes the x axis of the body
+    driven: bool
+    ramped: bool
+    pressed: bool
+    press: tuple[str, str, str]
+
+
+@dataclass(frozen=True)
+class PlaneView:
+    """One plane."""
+
+    name: str
+    given: list[Value]
+    normal: Axis
+    guide: str
+
+
+class ContactView(NamedTuple):
+    """One entry of the spec's list."""
+
+    data_set: str
+    label: str
+    given: list[Value]
+    share: str
+
+
+class Pair(NamedTuple):
+    """One contact statement."""
+
+    name: str
+    label: str
+    body_1: str
+    graphic_1: str
+    body_2: str
+    graphic_2: str
+    friction: str  # ON or OFF
+    data_set: str
+
+
+@dataclass(frozen=True)
+class ProbeView:
+    """A probe: an edge's middle, or a data set with x and y."""
+
+    name: str
+    sheet: str
+    edge: str | None
+    given: list[Value]
+    markers: list[tuple[str, str]]  # (marker, body)
+
+
+@dataclass(frozen=True)
+class SupportView:
+    """A held material point: bushings to ground on each box that it lies on."""
+
+    name: str
+    sheet: str
+    given: list[Value]
+    count: int
+    fixed: tuple[bool, bool, bool]
+    bushes: list[Bush]
+
+
+@dataclass(frozen=True)
+class SceneView:
+    """Everything that the main template loops over."""
+
+    name: str
+    static: bool
+    run: list[Value]
+    sheets: list[SheetView]
+    supports: list[SupportView]
+    rollers: list[RollerView]
+    planes: list[PlaneView]
+    contacts: list[ContactView]
+    pairs: list[Pair]
+    probes: list[ProbeView]
+    set_contact: bool

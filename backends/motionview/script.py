@@ -1,0 +1,90 @@
+"""The companion: a Python script for MotionView that sets what MDL has no known form for."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from backends.motionview.environment import environment
+from backends.motionview.units import mdl_value, number
+from backends.motionview.views import scene_view
+from mdlgen.model.tables import Model
+
+# What MotionView takes where a text says nothing [mm/s^2], [mm/s].
+DEFAULT_GRAVITY = (0.0, 0.0, -9810.0)
+DEFAULT_SMOOTHING = 1.0
+
+
+class Numbers(NamedTuple):
+    """The numbers of one entry of the contacts, and the contact statements that get them."""
+
+    label: str
+    numbers: list[tuple[str, str]]  # (property of mview.Contact, number)
+    names: list[str]
+
+
+def gravity(model: Model) -> tuple[float, float, float]:
+    """Gravity [mm/s^2]."""
+    x, y, z = (mdl_value(float(g), "mm/ms^2") + 0.0 for g in model.gravity)
+    return x, y, z
+
+
+def reasons(model: Model, set_contact: bool = False) -> list[str]:
+    """Why the script is needed, one line each."""
+    found = []
+    if gravity(model) != DEFAULT_GRAVITY:
+        shown = ", ".join(number(g) for g in gravity(model))
+        found.append(f"gravity is ({shown}) mm/s2 and MDL has no documented statement for it")
+    if len(model.pairs) and not set_contact:
+        found.append("the contact numbers: the argument order of SetContact is not certain")
+    elif len(model.pairs) and _smoothing_differs(model):
+        found.append("normal_trans_vel of the contacts: SetContact has no documented place for it")
+    return found
+
+
+def companion(model: Model, *, set_contact: bool = False) -> str | None:
+    """The script, or None where the text says everything."""
+    why = reasons(model, set_contact)
+    if not why:
+        return None
+    own_gravity = gravity(model)
+    template = environment().get_template("companion.py.j2")
+    return template.render(
+        name=model.name,
+        reasons=why,
+        gravity=[number(g) for g in own_gravity] if own_gravity != DEFAULT_GRAVITY else None,
+        contacts=_numbers(model, set_contact),
+    )
+
+
+def _smoothing_differs(model: Model) -> bool:
+    used = np.unique(model.pairs.contact)
+    return any(mdl_value(float(v), "mm/ms") != DEFAULT_SMOOTHING for v in model.contacts.smoothing[used])
+
+
+def _numbers(model: Model, set_contact: bool) -> list[Numbers]:
+    if not len(model.pairs) or (set_contact and not _smoothing_differs(model)):
+        return []
+    scene = scene_view(model, set_contact)
+    names: dict[str, list[str]] = {}
+    rubs = {pair.data_set: pair.friction == "ON" for pair in scene.pairs}
+    for pair in scene.pairs:
+        names.setdefault(pair.data_set, []).append(pair.name)
+    rows = []
+    for contact in scene.contacts:
+        if contact.data_set not in names:
+            continue
+        given = {value.member: value.number for value in contact.given}
+        table = [("normal_trans_vel", given["v_n"])]
+        if not set_contact:
+            table = [("penalty", given["k"]), ("rest_coeff", given["c_R"]), *table]
+            if rubs[contact.data_set]:
+                table += [
+                    ("mu_static", given["mu_s"]),
+                    ("mu_dynamic", given["mu_d"]),
+                    ("stiction_trans_vel", given["v_s"]),
+                    ("friction_trans_vel", given["v_d"]),
+                ]
+        rows.append(Numbers(contact.label, table, names[contact.data_set]))
+    return rows

@@ -1,0 +1,48 @@
+"""Model -> .mdl text."""
+
+from __future__ import annotations
+
+from backends.motionview import gate
+from backends.motionview.banner import banner
+from backends.motionview.environment import environment
+from backends.motionview.views import scene_view
+from mdlgen.errors import RefusedError
+from mdlgen.model.tables import Model
+
+
+def check(model: Model) -> None:
+    """Raises RefusedError by name for what the text cannot represent."""
+    if len(model.loads.body):
+        raise RefusedError(
+            "MotionView text: loads are not written, because no force statement with a certain meaning is "
+            "documented; run this scene locally, or leave the loads out and add them in MotionView",
+            ("loads",),
+        )
+    for roller in model.rollers:
+        press = roller.press
+        if press is None:
+            continue
+        compressed = press.touch - press.start
+        if compressed >= press.free_length:
+            raise RefusedError(
+                f"MotionView text: the spring of roller {roller.name} would start compressed by "
+                f"{compressed:.6g} mm, all of its free length of {press.free_length:.6g} mm; "
+                "a longer free_length means the same in a local run",
+                ("rollers", roller.name, "press", "free_length"),
+            )
+
+
+def emit(model: Model, *, set_contact: bool = False) -> str:
+    """The whole .mdl text, ASCII with LF line ends; the same Model always gives the same text.
+
+    `set_contact` also writes the contact numbers with SetContact, whose argument order is documented but
+    not seen in a file; without it they are set by the companion script.
+
+    Raises RefusedError (see `check`), and SpecError where two names would meet in the text.
+    """
+    check(model)
+    gate.check_names(model)
+    scene = scene_view(model, set_contact)
+    text = environment().get_template("model.mdl.j2").render(scene=scene, banner=banner(model, scene))
+    gate.check_text(text)
+    return text

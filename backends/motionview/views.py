@@ -1,0 +1,45 @@
+"""Model -> the rows that the main template loops over."""
+
+from __future__ import annotations
+
+from backends.motionview.idle import idle_values
+from backends.motionview.machine import contact_views, pair_rows, plane_view, roller_view
+from backends.motionview.rows import SceneView, Value
+from backends.motionview.sheets import probe_view, sheet_view, support_views
+from backends.motionview.units import mdl_value, number, with_unit
+from mdlgen.model.tables import Model, Parameter
+
+
+def scene_view(model: Model, set_contact: bool) -> SceneView:
+    """All rows of a Model."""
+    given = _given(model, set_contact)
+    return SceneView(
+        name=model.name,
+        static=model.run.analysis == "static",
+        run=given["run"],
+        sheets=[sheet_view(model, k, given[s.name]) for k, s in enumerate(model.sheets)],
+        supports=support_views(model),
+        rollers=[roller_view(model, r, given[r.name]) for r in model.rollers],
+        planes=[plane_view(model, p, given[p.name]) for p in model.planes],
+        contacts=contact_views(model, given),
+        pairs=pair_rows(model),
+        probes=[probe_view(model, probe) for probe in model.probes],
+        set_contact=set_contact,
+    )
+
+
+def _given(model: Model, set_contact: bool) -> dict[str, list[Value]]:
+    """Members by data set, in the order of the parameters."""
+    idle = idle_values(model, set_contact)
+    tables: dict[str, list[Value]] = {}
+    for p in model.parameters:
+        tables.setdefault(p.data_set, []).append(_value(p, idle.get((p.data_set, p.member))))
+    return tables
+
+
+def _value(parameter: Parameter, idle: str | None) -> Value:
+    label = with_unit(parameter.label, parameter.unit)
+    text = number(mdl_value(parameter.value, parameter.unit))
+    if idle:
+        return Value(parameter.member, f"{label}; {idle}", text, "NO_EDIT")
+    return Value(parameter.member, label, text, "EDIT")

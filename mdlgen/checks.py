@@ -1,0 +1,308 @@
+"""Lints over a Model: what is allowed, but is probably not what was meant. Each has a code and a remedy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from mdlgen.model import press
+from mdlgen.model.tables import (
+    BOX_CYLINDER,
+    BOX_PLANE,
+    SUPPORT,
+    Floats,
+    Model,
+    RollerPart,
+    SheetPart,
+)
+
+PAPER_MODULUS = (100.0, 20000.0)  # MPa: from tissue to oriented board
+DENSITY = (0.05, 20.0)  # g/cm^3: from foam to tungsten
+MAX_ASPECT = 5.0  # of a box; a longer one bends in one way much more coarsely than in the other
+COARSE_SMOOTHING, FINE_SMOOTHING = 0.05, 1e-4  # of the surface speed
+FLAT = 0.1  # a roller is parallel to a sheet while |axis . normal| is below this
+
+
+@dataclass(frozen=True)
+class Lint:
+    """One finding: `where` is the path in the spec."""
+
+    code: str
+    where: str
+    message: str
+    remedy: str
+
+    def __str__(self) -> str:
+        return f"{self.code} {self.where}: {self.message}; {self.remedy}"
+
+
+def lints(model: Model) -> list[Lint]:
+    """All findings, sorted by code and place."""
+    found = {lint for check in CHECKS for lint in check(model)}
+    return sorted(found, key=lambda lint: (lint.code, lint.where, lint.message))
+
+
+def _modulus(model: Model) -> Iterator[Lint]:
+    low, high = PAPER_MODULUS
+    names = {s.name for s in model.sheets if s.count > 1}
+    for row in model.parameters:
+        if row.data_set in names and row.member in ("E_md", "E_cd") and not low <= row.value <= high:
+            where = ".".join(map(str, row.path or (row.data_set, row.member)))
+            yield Lint(
+                "W101",
+                where,
+                f"{row.value:g} MPa is an unusual modulus for paper ({low:g} to {high:g} MPa)",
+                "check the unit (MPa = N/mm^2)",
+            )
+
+
+def _aspect(model: Model) -> Iterator[Lint]:
+    for sheet in model.sheets:
+        aspect = max(sheet.d_x / sheet.d_y, sheet.d_y / sheet.d_x)
+        if sheet.count > 1 and aspect > MAX_ASPECT:
+            yield Lint(
+                "W102",
+                f"sheets.{sheet.name}.boxes",
+                f"boxes of {sheet.d_x:.3g} mm x {sheet.d_y:.3g} mm are {aspect:.3g} times as long as wide",
+                f"choose counts nearer to the sheet's shape, up to {MAX_ASPECT:g} is usual",
+            )
+
+
+def _idle_clamp(model: Model) -> Iterator[Lint]:
+    touched = set(model.contacts.part_a)
+    for sheet in model.sheets:
+        boxes = slice(sheet.first, sheet.first + sheet.count)
+        acts = (
+            np.any(model.gravity)
+            or any(sheet.first <= body < sheet.first + sheet.count for body in model.loads.body)
+            or np.any(model.bodies.velocity[boxes])
+            or np.any(model.bodies.spin[boxes])
+            or sheet.name in touched
+        )
+        if sheet.clamp is not None and not acts:
+            yield Lint(
+                "W103",
+                f"sheets.{sheet.name}.clamp",
+                "nothing acts on the clamped sheet: no gravity, load or contact",
+                "give gravity, a load or a contact",
+            )
+
+
+def _facets(model: Model) -> Iterator[Lint]:
+    for _, sheet, roller in _nips(model):
+        if sheet.count == 1:
+            continue
+        across = [abs(float(roller.axis @ sheet.rotation[:, k])) for k in range(2)]
+        length = sheet.d_x if across[0] <= across[1] else sheet.d_y
+        if roller.radius < length / 2:
+            yield Lint(
+                "W104",
+                f"rollers.{roller.name}.radius",
+                f"radius {roller.radius:g} mm is below half a box ({length / 2:.3g} mm) of {sheet.name}: "
+                "flat boxes cannot follow the roller",
+                "use more boxes along the roller's circumference",
+            )
+
+
+def _deep_nip(model: Model) -> Iterator[Lint]:
+    for row, sheet, roller in _nips(model):
+        if roller.press is None:
+            continue
+        depth = (roller.press.preload / float(model.contacts.stiffness[row])) ** (2 / 3)
+        if depth > sheet.thickness / 2:
+            yield Lint(
+                "W105",
+                f"contacts.{model.contacts.entry[row]}.stiffness",
+                f"the preload {roller.press.preload:g} N of {roller.name} presses {depth:.3g} mm deep, "
+                f"more than half of the thickness {sheet.thickness:g} mm of {sheet.name}: "
+                "the rollers meet through it",
+                "raise the stiffness or lower the preload",
+            )
+
+
+def _smoothing(model: Model) -> Iterator[Lint]:
+    speeds = {r.name: abs(r.speed) * r.radius for r in model.rollers if r.speed}
+    contacts = model.contacts
+    for row in range(len(contacts)):
+        own = [speeds[p] for p in (contacts.part_a[row], contacts.part_b[row]) if p in speeds]
+        speed = max(own or speeds.values(), default=0.0)
+        if speed == 0.0:
+            continue
+        coarse = max(float(contacts.smoothing[row]), float(contacts.stiction_velocity[row]))
+        fine = min(float(contacts.smoothing[row]), float(contacts.stiction_velocity[row]))
+        where = f"contacts.{contacts.entry[row]}.smoothing"
+        told = f"of the surface speed {speed * 1e3:.4g} mm/s"
+        if coarse > COARSE_SMOOTHING * speed:
+            yield Lint(
+                "W106",
+                where,
+                f"{coarse * 1e3:g} mm/s is {coarse / speed:.2g} {told}: the sheet creeps",
+                f"use {COARSE_SMOOTHING * speed * 1e3:.2g} mm/s or less",
+            )
+        if fine < FINE_SMOOTHING * speed:
+            yield Lint(
+                "W107",
+                where,
+                f"{fine * 1e3:g} mm/s is {fine / speed:.2g} {told}: Newton converges slowly",
+                f"use {FINE_SMOOTHING * speed * 1e3:.2g} mm/s or more unless creep below that matters",
+            )
+
+
+def _idle_drive(model: Model) -> Iterator[Lint]:
+    for roller in model.rollers:
+        where = f"rollers.{roller.name}.drive"
+        if roller.speed == 0.0:
+            yield Lint(
+                "W108",
+                f"{where}.speed",
+                "the drive holds the roller still (speed 0)",
+                "leave drive out for a roller that turns freely, or give a speed",
+            )
+        elif roller.speed is not None and roller.ramp > model.run.duration and model.run.analysis != "static":
+            yield Lint(
+                "W113",
+                f"{where}.ramp",
+                f"the ramp of {roller.ramp:g} ms is longer than the run of {model.run.duration:g} ms",
+                "run longer, or ramp faster",
+            )
+
+
+def _untouched(model: Model) -> Iterator[Lint]:
+    parts = {*model.contacts.part_a, *model.contacts.part_b}
+    if not model.rollers and not model.planes:
+        return
+    for sheet in model.sheets:
+        if sheet.name not in parts:
+            yield Lint(
+                "W109",
+                f"sheets.{sheet.name}",
+                "the sheet has no contact with any roller or plane of the scene",
+                f"add to contacts like {{between: [{sheet.name}, ...], stiffness: 300 N/mm^1.5}}",
+            )
+    for kind, part in (*(("rollers", r) for r in model.rollers), *(("planes", p) for p in model.planes)):
+        if part.name not in parts:
+            yield Lint(
+                "W111",
+                f"{kind}.{part.name}",
+                "the part has no contact, so it does nothing",
+                "add a contact, or leave the part out",
+            )
+
+
+def _free_static(model: Model) -> Iterator[Lint]:
+    if model.run.analysis != "static":
+        return
+    for index, sheet in enumerate(model.sheets):
+        free = 6 - _held(model, index, sheet)
+        if sheet.clamp is None and free > 0:
+            yield Lint(
+                "W110",
+                f"sheets.{sheet.name}",
+                f"in a static run the sheet is free to move in {free} of 6 ways as a rigid body",
+                "clamp an edge, or support enough points",
+            )
+
+
+def _held(model: Model, index: int, sheet: SheetPart) -> int:
+    """Rigid-body motions of a sheet that supports and contacts hold: the rank of their directions."""
+    rows: list[Floats] = []
+
+    def hold(point: Floats, direction: Floats) -> None:
+        arm = (point - sheet.center) / max(sheet.size)
+        rows.append(np.concatenate([direction, np.cross(arm, direction)]))
+
+    bushings = model.bushings
+    for k in np.flatnonzero((bushings.kind == SUPPORT) & (bushings.sheet == index)):
+        for axis in np.flatnonzero(bushings.k[k, :3]):
+            hold(bushings.origin[k], bushings.axes[k][:, axis])
+    for _, part, roller in _nips(model):
+        if part is sheet:
+            for end in (-0.5, 0.5):
+                hold(
+                    model.bodies.position[roller.body] + end * roller.width * roller.axis,
+                    sheet.rotation[:, 2],
+                )
+    planes = {p.name: p for p in model.planes}
+    for row in np.flatnonzero(model.contacts.kind == BOX_PLANE):
+        if model.contacts.part_a[row] == sheet.name:
+            for corner in _corners(sheet):
+                hold(corner, planes[model.contacts.part_b[row]].normal)
+    return int(np.linalg.matrix_rank(np.array(rows), tol=1e-9)) if rows else 0
+
+
+def _interference(model: Model) -> Iterator[Lint]:
+    for row, sheet, roller in _nips(model):
+        normal, center = sheet.rotation[:, 2], model.bodies.position[roller.body]
+        if abs(float(roller.axis @ normal)) > FLAT or sheet.count == 1:
+            continue
+        depth = roller.radius + sheet.thickness / 2 - abs(float((center - sheet.center) @ normal))
+        on_sheet = press.covered_share(sheet, center, roller.axis, roller.width) > 0.0
+        if on_sheet and depth > sheet.thickness / 2:
+            yield _deep_start(model, row, f"rollers.{roller.name}.center", roller.name, depth, sheet)
+    planes = {p.name: p for p in model.planes}
+    for row in np.flatnonzero(model.contacts.kind == BOX_PLANE):
+        plane = planes[model.contacts.part_b[row]]
+        sheet = next(s for s in model.sheets if s.name == model.contacts.part_a[row])
+        face = plane.center + plane.normal * plane.size[2] / 2
+        frame = model.bodies.rotation[plane.body]
+        corners = _corners(sheet)
+        over = np.all(np.abs((corners - face) @ frame[:, :2]) <= np.array(plane.size[:2]) / 2, axis=1)
+        depth = float(np.max(-((corners - face) @ plane.normal)[over], initial=0.0))
+        if sheet.thickness / 2 < depth < plane.size[2]:
+            yield _deep_start(model, int(row), f"planes.{plane.name}.center", plane.name, depth, sheet)
+
+
+def _deep_start(model: Model, row: int, where: str, part: str, depth: float, sheet: SheetPart) -> Lint:
+    force = float(model.contacts.stiffness[row]) * depth**1.5
+    return Lint(
+        "W112",
+        where,
+        f"{part} starts {depth:.3g} mm inside {sheet.name}, more than half of its thickness "
+        f"{sheet.thickness:g} mm: it is thrown off with {force:.3g} N",
+        "move the part out of the sheet",
+    )
+
+
+def _density(model: Model) -> Iterator[Lint]:
+    for sheet in model.sheets:
+        volume = sheet.count * sheet.d_x * sheet.d_y * sheet.thickness / 1e3  # cm^3
+        density = sheet.derived["m"] * sheet.count / volume
+        if not DENSITY[0] <= density <= DENSITY[1]:
+            yield Lint(
+                "W114",
+                f"sheets.{sheet.name}.mass",
+                f"{density:.3g} g/cm^3 is not in {DENSITY[0]:g} to {DENSITY[1]:g}; paper has some 0.8 g/cm^3",
+                "check the units of mass, size and thickness",
+            )
+
+
+def _nips(model: Model) -> Iterator[tuple[int, SheetPart, RollerPart]]:
+    """(row of contacts, sheet, roller) of every sheet-roller pair."""
+    sheets = {s.name: s for s in model.sheets}
+    rollers = {r.name: r for r in model.rollers}
+    for row in np.flatnonzero(model.contacts.kind == BOX_CYLINDER):
+        yield int(row), sheets[model.contacts.part_a[row]], rollers[model.contacts.part_b[row]]
+
+
+def _corners(sheet: SheetPart) -> Floats:
+    """The eight corners of the flat sheet [mm], (8, 3)."""
+    half = np.array([sheet.n_x * sheet.d_x, sheet.n_y * sheet.d_y, sheet.thickness]) / 2
+    signs = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)], dtype=float)
+    return sheet.center + signs * half @ sheet.rotation.T
+
+
+CHECKS: tuple[Callable[[Model], Iterator[Lint]], ...] = (
+    _modulus,
+    _aspect,
+    _idle_clamp,
+    _facets,
+    _deep_nip,
+    _smoothing,
+    _idle_drive,
+    _untouched,
+    _free_static,
+    _interference,
+    _density,
+)

@@ -1,0 +1,334 @@
+"""The command line: the only file that prints, exits or draws progress. What it does stands elsewhere."""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from mdlgen.errors import AccuracyError, MdlgenError, OutputError, SpecError, printable
+
+if TYPE_CHECKING:
+    from mdlgen.model.tables import Model
+
+SOLVER_FAILED, INTERRUPTED = 4, 130
+
+app = typer.Typer(
+    name="mdlgen",
+    help="Paper sheets in machines: one scene file, MotionView MDL text and a local run of the same model.",
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    add_completion=True,
+    no_args_is_help=True,
+)
+
+Spec = Annotated[Path, typer.Argument(metavar="SPEC", help="The scene: a YAML or JSON file.")]
+Sets = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set", metavar="PATH=VALUE", help="Set a value of the scene; may be given more than once."
+    ),
+]
+Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="Errors and asked-for output only.")]
+Verbose = Annotated[
+    bool, typer.Option("-v", "--verbose", help="Say more; show the traceback of internal errors.")
+]
+
+
+def main() -> None:
+    """Entry point of the command `mdlgen`."""
+    app()
+
+
+def told(command: Callable[..., None]) -> Callable[..., None]:
+    """Ends a command that raises with one line on standard error and the exit code of its error."""
+
+    @functools.wraps(command)
+    def run(*args: Any, **options: Any) -> None:
+        try:
+            command(*args, **options)
+        except (typer.Exit, BrokenPipeError):
+            raise
+        except KeyboardInterrupt:
+            _say("mdlgen: interrupted")
+            raise typer.Exit(INTERRUPTED) from None
+        except MdlgenError as error:
+            _say(str(_located(error, options.get("spec"))))
+            raise typer.Exit(error.exit_code) from None
+        except Exception as error:
+            if options.get("verbose"):
+                import traceback
+
+                traceback.print_exc()
+            hint = "" if options.get("verbose") else " (-v shows the traceback)"
+            _say(f"mdlgen: internal error: {type(error).__name__}: {error}{hint}")
+            raise typer.Exit(1) from None
+
+    return run
+
+
+@app.command()
+@told
+def new(
+    folder: Annotated[Path | None, typer.Argument(metavar="DIR", help="Where to put the scene.")] = None,
+    sample: Annotated[
+        str, typer.Option("--from", metavar="SAMPLE", help="The sample to copy.")
+    ] = "transport_4x4",
+    show: Annotated[bool, typer.Option("--list", help="List the samples instead.")] = False,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
+) -> None:
+    """Copy a commented starter scene into DIR.
+
+    Example: mdlgen new my_scene --from cantilever
+    """
+    from mdlgen import paths
+
+    root = paths.samples()
+    known = {p.relative_to(root).with_suffix("").as_posix(): p for p in sorted(root.rglob("*.yaml"))}
+    if show:
+        for name, path in known.items():
+            first = path.read_text("utf-8").partition("\n")[0].lstrip("# ")
+            typer.echo(f"{name:20} {first}")
+        return
+    if folder is None:
+        raise SpecError("name a folder: mdlgen new DIR (or --list for the samples)")
+    if sample.removesuffix(".yaml") not in known:
+        raise SpecError(f"there is no sample {sample[:80]!r}; there are: {', '.join(known)}")
+    source = known[sample.removesuffix(".yaml")]
+    target = folder / source.name
+    if target.exists() or target.is_symlink():
+        raise OutputError(f"{target}: exists already; choose another folder")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(f"{folder}: cannot make this folder: {error.strerror or error}") from None
+    paths.write_atomic(target, source.read_bytes())
+    typer.echo(target)
+    if not quiet:
+        _say(f"next: mdlgen check {target}")
+
+
+@app.command()
+@told
+def check(
+    spec: Spec,
+    sets: Sets = None,
+    as_json: Annotated[bool, typer.Option("--json", help="As JSON, in mm, N, g, ms, rad.")] = False,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
+) -> None:
+    """Validate a scene; show derived quantities, counts and lints.
+
+    Example: mdlgen check samples/transport_4x4.yaml --set sheets.note.boxes=[20,30]
+    """
+    from mdlgen.report.overview import overview
+    from mdlgen.report.text import overview_text
+
+    found = overview(_model(spec, sets))
+    if as_json:
+        _echo_json(found)
+    elif not quiet:
+        typer.echo(overview_text(found))
+    else:
+        for lint in found["lints"]:
+            typer.echo("{code} {where}: {message}; {remedy}".format(**lint))
+
+
+@app.command()
+@told
+def mdl(
+    spec: Spec,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="FILE.mdl",
+            help="Where to write: NAME.mdl if left out, - for standard output.",
+        ),
+    ] = None,
+    sets: Sets = None,
+    set_contact: Annotated[
+        bool,
+        typer.Option("--set-contact", help="Write contact numbers with SetContact, unverified in its order."),
+    ] = False,
+    companion: Annotated[
+        Path | None,
+        typer.Option(
+            "--companion", metavar="FILE", help="The script for MotionView: FILE_mview.py if left out."
+        ),
+    ] = None,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
+) -> None:
+    """Write the scene as MotionView text, and beside it a script for what the text cannot say.
+
+    Example: mdlgen mdl samples/transport_4x4.yaml -o note.mdl
+    """
+    from mdlgen import paths, registry
+
+    model = _model(spec, sets)
+    backend = registry.emitter("motionview")
+    text = backend.emit(model, set_contact=set_contact)
+    script = backend.companion(model, set_contact=set_contact)
+    to_stdout = output is not None and str(output) == "-"
+    target = Path(f"{model.name}.mdl") if output is None or to_stdout else output
+    beside = companion or target.with_name(f"{target.stem}_mview.py")
+    files: dict[Path, str | bytes] = {} if to_stdout else {target: text}
+    if script is not None and (companion is not None or not to_stdout):
+        files[beside] = script
+    if len({p.resolve() for p in (target, beside)}) == 1:
+        raise OutputError(f"{beside}: is named for both the text and the script")
+    paths.write_together(files)
+    if to_stdout:
+        typer.echo(text, nl=False)
+    elif not quiet:
+        _say(f"wrote {target}")
+    if script is not None and not quiet:
+        state = (
+            f"wrote {beside}" if beside in files else "a script is needed too (--companion FILE writes it)"
+        )
+        _say(f"{state}; run it in MotionView after the text, since MDL leaves out:")
+        for reason in backend.companion_reasons(model, set_contact):
+            _say(f"  {reason}")
+    elif script is None and not to_stdout and beside.exists() and not quiet:
+        _say(f"{beside} is not needed for this text, and may be of an older one")
+
+
+@app.command()
+@told
+def run(
+    spec: Spec,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Where the results go: out/NAME if left out."),
+    ] = None,
+    solver: Annotated[
+        str, typer.Option("--solver", metavar="auto|lattice|exudyn", help="What runs it.")
+    ] = "auto",
+    check_step: Annotated[
+        bool,
+        typer.Option("--check-step", help="Run again at half the step; the difference estimates the error."),
+    ] = False,
+    sets: Sets = None,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
+) -> None:
+    """Simulate a scene; write summary.json, series.csv, result.h5 and report.png into DIR.
+
+    Example: mdlgen run samples/transport_4x4.yaml -o out --check-step
+    """
+    from mdlgen import registry
+
+    model = _model(spec, sets)
+    registry.solver_name(solver)
+    from mdlgen.report.figures import figure
+    from mdlgen.report.text import summary_text
+    from mdlgen.results.store import check_folder, save
+
+    folder = output if output is not None else Path("out") / model.name
+    check_folder(folder)
+    # a solver may talk on standard output, which is kept for results
+    with _progress(quiet, check_step) as progress, _chatter(verbose):
+        result = registry.solve(model, solver, progress, check_step)
+    if not result.ok:
+        _say(f"{spec}: the run failed: {result.status}; nothing was written into {folder}")
+        raise typer.Exit(SOLVER_FAILED)
+    save(result, folder, {"report.png": figure(result)})
+    if not quiet:
+        typer.echo(summary_text(result.summary()))
+        typer.echo(f"wrote {folder}")
+    if check_step and result.error_estimate is None and not quiet:
+        _say("a static run has no step: --check-step compared nothing")
+    if result.error_estimate is not None and not result.error_estimate <= model.run.tolerance:
+        raise AccuracyError(
+            f"{spec}: the error estimate {result.error_estimate:.3g} is above run.tolerance "
+            f"{model.run.tolerance:g}; the files in {folder} hold this result; give a smaller run.step"
+        )
+
+
+@app.command()
+@told
+def schema(quiet: Quiet = False, verbose: Verbose = False) -> None:
+    """Print the JSON schema of a scene file, for editors.
+
+    Example: mdlgen schema > scene.schema.json
+    """
+    from mdlgen.spec.schema import json_schema
+
+    _echo_json(json_schema())
+
+
+def _model(spec: Path, sets: list[str] | None) -> Model:
+    from mdlgen.model.lower import lower
+    from mdlgen.spec.load import load
+
+    return lower(load(spec, sets or ()))
+
+
+def _echo_json(value: Any) -> None:
+    import json
+
+    typer.echo(json.dumps(value, indent=2, allow_nan=False))
+
+
+def _say(text: str) -> None:
+    """One line on standard error."""
+    typer.echo(printable(text), err=True)
+
+
+def _located(error: MdlgenError, spec: Path | None) -> MdlgenError:
+    """An error of a later stage, with the place of the value in the file."""
+    if spec is None or not isinstance(error, SpecError) or error.place is not None or not error.path:
+        return error
+    from mdlgen.spec.load import parse
+
+    try:
+        return error.located(parse(spec.read_text("utf-8-sig"), str(spec)).place(error.path))
+    except (OSError, ValueError, MdlgenError):
+        return error
+
+
+@contextlib.contextmanager
+def _chatter(verbose: bool) -> Iterator[None]:
+    import io
+
+    with contextlib.redirect_stdout(sys.stderr if verbose else io.StringIO()):
+        yield
+
+
+@contextlib.contextmanager
+def _progress(quiet: bool, twice: bool) -> Iterator[Callable[[float, float, int, int], None] | None]:
+    """A progress bar on a terminal: time, steps, pairs that touch, time left."""
+    if quiet or not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.completed:.2f} of {task.total:g} ms, step {task.fields[steps]}"),
+        TextColumn("{task.fields[touching]} pairs touch"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        tasks: list[Any] = []
+        last = 0.0
+
+        def progress(time: float, end: float, steps: int, touching: int) -> None:
+            nonlocal last
+            if not tasks or time < last:
+                name = "half the step" if tasks else "first run" if twice else "run"
+                tasks.append(bar.add_task(name, total=end, steps=0, touching=0))
+            last = time
+            bar.update(tasks[-1], completed=time, steps=steps, touching=touching)
+
+        yield progress

@@ -1,0 +1,81 @@
+"""Backends by name. A backend is imported when it is asked for, and not before."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, Protocol, cast
+
+from mdlgen.errors import SpecError
+from mdlgen.model.tables import Model
+
+if TYPE_CHECKING:
+    from mdlgen.results.result import Result
+
+Progress = Callable[[float, float, int, int], None]
+
+EMITTERS = {"motionview": "backends.motionview"}
+SOLVERS = {"exudyn": "backends.exudyn_local"}
+AUTO = "exudyn"
+
+
+class Emitter(Protocol):
+    """What a backend that writes text has."""
+
+    def emit(self, model: Model, **options: Any) -> str: ...
+
+    def check(self, model: Model) -> None: ...
+
+    def companion(self, model: Model, **options: Any) -> str | None: ...
+
+    def companion_reasons(self, model: Model, set_contact: bool = False) -> list[str]: ...
+
+
+class Solver(Protocol):
+    """What a backend that runs a Model has."""
+
+    def solve(self, model: Model, progress: Progress | None = None, step: float | None = None) -> Result: ...
+
+
+def emitter(name: str) -> Emitter:
+    """The backend that writes text. Raises SpecError for one that there is not."""
+    _known(name, EMITTERS, "text backend")
+    return cast(Emitter, import_module(EMITTERS[name]))
+
+
+def solver(name: str) -> Solver:
+    """The backend that runs a Model; `auto` is the one that we would take. Raises SpecError."""
+    return cast(Solver, import_module(SOLVERS[solver_name(name)]))
+
+
+def solver_name(name: str) -> str:
+    """The solver meant, without importing it. Raises SpecError for one that there is not."""
+    if name != "auto":
+        _known(name, SOLVERS, "solver")
+    return AUTO if name == "auto" else name
+
+
+def _known(name: str, table: dict[str, str], kind: str) -> None:
+    if name not in table:
+        names = [*(["auto"] if table is SOLVERS else []), *sorted(table)]
+        raise SpecError(f"there is no {kind} {name[:40]!r}; there are: {', '.join(names)}")
+
+
+def solve(
+    model: Model, name: str = "auto", progress: Progress | None = None, check_step: bool = False
+) -> Result:
+    """Run a Model; see `mdlgen.solve`."""
+    backend = solver(name)
+    result = backend.solve(model, progress)
+    # a static run has no step, and a failed one nothing to compare
+    if not check_step or not result.ok or result.step <= 0.0:
+        return result
+    from mdlgen.results.compare import compare
+
+    finer = backend.solve(model, progress, step=result.step / 2)
+    if not finer.ok:
+        return finer.failed(f"at half the step ({result.step / 2:.6g} ms): {finer.status}")
+    # kernels are compiled once, for the first of the two
+    compile_s = result.compile_s + finer.compile_s
+    return replace(finer, error_estimate=compare(finer, result).relative, compile_s=compile_s)

@@ -1,0 +1,64 @@
+"""What a scene amounts to before it is run: derived quantities, counts, lints."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from mdlgen.checks import lints
+from mdlgen.model.tables import Model, SheetPart
+
+UNITS = {
+    "d": "mm", "m": "g", "I": "g mm^2",
+    "k": "N/mm", "c": "N ms/mm", "kt": "N mm/rad", "ct": "N mm ms/rad", "D": "N mm",
+}  # fmt: skip
+
+
+def overview(model: Model) -> dict[str, Any]:
+    """What `check --json` prints, in mm, N, g, ms, rad: `derived` are the paper's Tables 1 and 2."""
+    return {
+        "scene": model.name,
+        "analysis": model.run.analysis,
+        "sheets": {s.name: _sheet(model, k) for k, s in enumerate(model.sheets)},
+        "rollers": len(model.rollers),
+        "planes": len(model.planes),
+        "contacts": len(model.contacts),
+        "probes": len(model.probes),
+        "boxes": sum(s.count for s in model.sheets),
+        "bushings": len(model.bushings),
+        "pairs": {
+            "possible": model.pairs.possible,
+            "kept": len(model.pairs),
+            "margin_mm": model.pairs.margin,
+        },
+        "lints": [asdict(lint) for lint in lints(model)],
+    }
+
+
+def _sheet(model: Model, index: int) -> dict[str, Any]:
+    sheet = model.sheets[index]
+    return {
+        "boxes": sheet.count,
+        "n_x": sheet.n_x,
+        "n_y": sheet.n_y,
+        "bushings": int(np.sum(model.bushings.sheet == index)),
+        "layout": sheet.layout,
+        "grid": sheet.grid,
+        "outline_mm": [sheet.n_x * sheet.d_x, sheet.n_y * sheet.d_y],
+        "derived": {name: float(value) for name, value in sheet.derived.items()},
+        "bending": bending(sheet),
+    }
+
+
+def bending(sheet: SheetPart) -> dict[str, float]:
+    """Bending in both forms: per bushing [N mm/rad], and per width [N mm] (D = k_t length / width)."""
+    parts = 2 if sheet.layout == "edge_to_edge" else 1  # bushings per pair
+    k_tx, k_ty = sheet.derived["k_tx"], sheet.derived["k_ty"]
+    return {
+        "k_tx": k_tx,
+        "k_ty": k_ty,
+        "D_cd": parts * k_tx * sheet.d_y / sheet.d_x,
+        "D_md": parts * k_ty * sheet.d_x / sheet.d_y,
+    }

@@ -1,0 +1,111 @@
+"""Overview and summary as a few lines for a terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from mdlgen.report.overview import UNITS
+
+
+def overview_text(told: dict[str, Any]) -> str:
+    """The tables of `mdlgen check`."""
+    lines = [f"scene {told['scene']}, {told['analysis']}"]
+    for name, sheet in told["sheets"].items():
+        size = " x ".join(f"{v:.5g}" for v in sheet["outline_mm"])
+        lines += [
+            "",
+            f"sheet {name}: {sheet['n_x']} x {sheet['n_y']} = {sheet['boxes']} boxes on {size} mm, "
+            f"{sheet['bushings']} bushings, {sheet['layout']}, grid {sheet['grid']}",
+            "",
+            *_derived(sheet["derived"]),
+            "",
+            *_bending(sheet["bending"]),
+        ]
+    pairs = told["pairs"]
+    lines += [
+        "",
+        f"{told['boxes']} boxes, {told['bushings']} bushings, "
+        f"{told['rollers']} rollers, {told['planes']} planes",
+        f"contact: {told['contacts']} pairs of parts; {pairs['possible']} pairs of bodies possible, "
+        f"{pairs['kept']} kept (margin {pairs['margin_mm']:g} mm)",
+        "",
+    ]
+    lines += [f"{x['code']} {x['where']}: {x['message']}; {x['remedy']}" for x in told["lints"]]
+    if not told["lints"]:
+        lines.append("no lints")
+    return "\n".join(lines)
+
+
+def _derived(values: dict[str, float]) -> list[str]:
+    """The paper's Table 1 (the box) in a line, and Table 2 (one bushing) by axis."""
+    box = [("d_x", "d"), ("d_y", "d"), ("m", "m"), ("I_x", "I"), ("I_y", "I"), ("I_z", "I")]
+    told = ", ".join(f"{n} {values[n]:.5g} {UNITS[unit]}" for n, unit in box)
+    rows = [["one bushing", "x", "y", "z", ""]]
+    for symbol, axes, unit in (
+        ("k", ("x", "y", "z"), "k"),
+        ("c", ("x", "y", "z"), "c"),
+        ("k_t", ("tx", "ty", "tz"), "kt"),
+        ("c_t", ("tx", "ty", "tz"), "ct"),
+    ):
+        rows.append([symbol, *(f"{values[f'{symbol[0]}_{a}']:.5g}" for a in axes), UNITS[unit]])
+    return [f"  box: {told}", *_table(rows)]
+
+
+def _bending(values: dict[str, float]) -> list[str]:
+    rows = [["bending", "per bushing", UNITS["kt"], "per width", UNITS["D"]]]
+    for way, hinge, plate in (("along x (MD)", "k_ty", "D_md"), ("along y (CD)", "k_tx", "D_cd")):
+        rows.append([way, hinge, f"{values[hinge]:.5g}", plate, f"{values[plate]:.5g}"])
+    return _table(rows)
+
+
+def _table(rows: Sequence[Sequence[str]]) -> list[str]:
+    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
+    return ["  " + "  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip() for row in rows]
+
+
+def summary_text(told: dict[str, Any]) -> str:
+    """What `mdlgen run` prints of a summary."""
+    pairs = told["pairs"]
+    steps = f"{told['steps']} steps of {told['step_ms']:.4g} ms" if told["step_ms"] else "static"
+    lines = [
+        f"{told['scene']} ({told['solver']}): {told['status']}, {told['t_end_ms']:.6g} ms, {steps}",
+        f"solved in {told['wall_s']:.3g} s, "
+        f"after {told['build_s']:.2g} s to build and {told['compile_s']:.2g} s to compile",
+        f"pairs: {pairs['possible']} possible, {pairs['kept']} kept, {pairs['touched']} touched",
+    ]
+    for name, sheet in told["sheets"].items():
+        lines.append(
+            f"sheet {name}: travel {_vector(sheet['travel_mm'])} mm, "
+            f"speed {_vector(sheet['speed_mm_per_s'])} mm/s, yaw {_number(sheet['yaw_deg'])} deg"
+        )
+    for name, probe in told["probes"].items():
+        lines.append(f"probe {name}: displacement {_vector(probe['displacement_mm'])} mm")
+    if told.get("strain") is not None:
+        lines.append(f"strain {told['strain']:.6g}")
+    if told["rollers"]:
+        lines += _rollers(told["rollers"])
+    if told["error_estimate"] is not None:
+        lines.append(f"error estimate {told['error_estimate']:.2g}, tolerance {told['tolerance']:g}")
+    return "\n".join(lines)
+
+
+def _rollers(rollers: dict[str, Any]) -> list[str]:
+    rows = [
+        ["roller", "rad/s", "nip N", "penetration by sheets: max mm", "mean mm", "free of counterpart at ms"]
+    ]
+    for name, roller in rollers.items():
+        keys = ("omega_rad_per_s", "nip_force_n", "max_penetration_mm", "mean_penetration_mm")
+        free = roller["free_of_counterpart_at_ms"]
+        rows.append(
+            [name, *(_number(roller[key]) for key in keys), "acts" if free is None else f"{free:.4g}"]
+        )
+    return _table(rows)
+
+
+def _number(value: float | None) -> str:
+    return "-" if value is None else f"{value:.4g}"
+
+
+def _vector(values: Sequence[float | None] | None) -> str:
+    return "-" if values is None else f"({', '.join(map(_number, values))})"

@@ -1,0 +1,40 @@
+"""The motion over time as a table: series.csv."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mdlgen.model.tables import Floats
+from mdlgen.results.result import Result
+from mdlgen.results.summary import PER_SECOND, roller_rows
+
+
+def series(result: Result) -> dict[str, Floats]:
+    """Column name -> values at the stored times: sheets (centre of mass), probes, then rollers."""
+    table: dict[str, Floats] = {"time_ms": result.time}
+    for index, sheet in enumerate(result.model.sheets):
+        place, rate, yaw = result.sheet_motion(index)
+        table |= _motion(sheet.name, place, rate)
+        table[f"{sheet.name}.yaw_deg"] = np.degrees(yaw)
+    for index, probe in enumerate(result.model.probes):
+        table |= _motion(probe.name, *result.anchor_motion(index))
+    for roller in result.model.rollers:
+        rows = list(roller_rows(result, roller))
+        table[f"{roller.name}.z_mm"] = result.position[:, roller.body, 2]
+        table[f"{roller.name}.omega_rad_per_s"] = result.spin[:, roller.body] @ roller.axis * PER_SECOND
+        table[f"{roller.name}.force_n"] = result.contact_force[:, rows].sum(axis=1)
+    return table
+
+
+def _motion(name: str, place: Floats, rate: Floats) -> dict[str, Floats]:
+    table = {f"{name}.{axis}_mm": place[:, k] for k, axis in enumerate("xyz")}
+    return table | {f"{name}.v{axis}_mm_per_s": rate[:, k] * PER_SECOND for k, axis in enumerate("xyz")}
+
+
+def csv(result: Result) -> str:
+    """`series` as text; numbers as Python writes them, so that they read back exactly."""
+    table = series(result)
+    lines = [",".join(table)]
+    for row in zip(*table.values(), strict=True):
+        lines.append(",".join(repr(float(value)) for value in row))
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,120 @@
+"""The files of a run: all of them are written, or the old ones stay."""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mdlgen.errors import OutputError
+from mdlgen.paths import write_together
+from mdlgen.results.result import Result
+from mdlgen.results.series import csv
+from mdlgen.results.summary import summary
+
+UNITS = "mm, N, g, ms, rad"
+STATES = ("time", "position", "rotation", "velocity", "spin", "contact_force")
+STATISTICS = ("max_depth", "mean_depth", "max_force", "mean_force", "last_force_at")
+
+
+def save(result: Result, folder: Path, also: Mapping[str, bytes] | None = None) -> None:
+    """Write summary.json, series.csv and result.h5 into `folder`, and the files `also` (name -> bytes).
+
+    Raises OutputError, and leaves what was there, where one of them cannot be written; and for a failed run,
+    which leaves nothing.
+    """
+    if not result.ok:
+        raise OutputError(f"{folder}: nothing written, the run failed: {result.status}")
+    files: dict[Path, str | bytes] = {
+        folder / "summary.json": json.dumps(summary(result), indent=2, allow_nan=False) + "\n",
+        folder / "series.csv": csv(result),
+        folder / "result.h5": hdf5(result),
+    }
+    files |= {folder / name: content for name, content in (also or {}).items()}
+    check_folder(folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(f"{folder}: cannot make this folder: {error.strerror or error}") from None
+    write_together(files)
+
+
+def check_folder(folder: Path) -> None:
+    """Raises OutputError where `folder` is a symbolic link, or a file stands in its way."""
+    try:
+        if folder.is_symlink():
+            raise OutputError(f"{folder}: is a symbolic link; name the folder itself")
+        for part in (folder, *folder.parents):
+            if part.exists() and not part.is_dir():
+                raise OutputError(f"{part}: is a file; name a folder")
+    except (OSError, ValueError) as error:
+        raise OutputError(f"{folder}: cannot be a folder: {error}") from None
+
+
+def hdf5(result: Result) -> bytes:
+    """result.h5: states and statistics in the Model's units, with the names of bodies and contact rows.
+
+    The same result gives the same bytes: no times of writing are kept.
+    """
+    import h5py
+
+    model = result.model
+    stream = io.BytesIO()
+    with h5py.File(stream, "w") as file:
+
+        def put(name: str, data: Any) -> None:
+            file.create_dataset(name, data=data, track_times=False)
+
+        for name in STATES:
+            put(name, np.ascontiguousarray(getattr(result, name)))
+        for name in STATISTICS:
+            put(f"statistics/{name}", np.asarray(getattr(result.statistics, name), dtype=float))
+        put("bodies", _names(model.bodies.name))
+        put("contacts", _names(_rows(result)))
+        for name, value in (
+            ("scene", model.name),
+            ("solver", result.solver),
+            ("status", result.status),
+            ("units", UNITS),
+        ):
+            file.attrs[name] = value
+    return stream.getvalue()
+
+
+def read(folder: str | Path) -> dict[str, Any]:
+    """The arrays of a saved result.h5 by name (`statistics/max_depth` ...), and its attributes as text.
+
+    `bodies` and `contacts` ("a / b") are lists of names. Raises OutputError.
+    """
+    import h5py
+
+    path = Path(folder) / "result.h5"
+    found: dict[str, Any] = {}
+    try:
+        with h5py.File(path, "r") as file:
+
+            def take(name: str, item: Any) -> None:
+                if isinstance(item, h5py.Dataset):
+                    found[name] = item[()]
+
+            file.visititems(take)
+            for name in ("bodies", "contacts"):
+                found[name] = [value.decode("ascii") for value in found[name]]
+            found |= {str(name): str(value) for name, value in file.attrs.items()}
+    except (OSError, KeyError, UnicodeDecodeError) as error:
+        raise OutputError(f"{path}: cannot read: {str(error).splitlines()[0]}") from None
+    return found
+
+
+def _rows(result: Result) -> list[str]:
+    contacts = result.model.contacts
+    return [f"{a} / {b}" for a, b in zip(contacts.part_a, contacts.part_b, strict=True)]
+
+
+def _names(names: Any) -> np.ndarray:
+    """Fixed-length bytes: variable-length strings would not be stored the same twice."""
+    return np.array([str(n).encode("ascii") for n in names], dtype=f"S{max(map(len, names), default=1)}")

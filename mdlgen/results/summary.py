@@ -1,0 +1,156 @@
+"""The numbers of a run that a person or a script reads first: summary.json."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from mdlgen.model.tables import Floats, RollerPart
+from mdlgen.results.compare import travel
+from mdlgen.results.result import Result
+from mdlgen.version import version
+
+PER_SECOND = 1000.0  # mm/ms -> mm/s, rad/ms -> rad/s
+
+
+def summary(result: Result) -> dict[str, Any]:
+    """What summary.json holds; every vector is [x, y, z], every speed the mean over boxes at the end.
+
+    A number that is not finite, or that the run did not reach, is None.
+    """
+    model = result.model
+    energy = result.energy
+    told: dict[str, Any] = {
+        "scene": model.name,
+        "solver": result.solver,
+        "status": result.status,
+        "t_end_ms": result.time[-1] if len(result.time) else 0.0,
+        "steps": result.steps,
+        "step_ms": result.step,
+        "wall_s": result.wall_s,
+        "compile_s": result.compile_s,
+        "build_s": result.build_s,
+        "pairs": {"possible": model.pairs.possible, "kept": len(model.pairs), "touched": result.touched},
+        "error_estimate": result.error_estimate,
+        "tolerance": model.run.tolerance,
+        "energy": {
+            "kinetic": energy.kinetic,
+            "elastic": energy.elastic,
+            "dissipated": energy.dissipated,
+            "driven": energy.driven,
+            "balance_error": energy.balance_error,
+        },
+        "events": [],
+        "sheets": {s.name: _sheet(result, k) for k, s in enumerate(model.sheets)},
+        "rollers": {r.name: _roller(result, r) for r in model.rollers},
+        "probes": {p.name: _probe(result, k) for k, p in enumerate(model.probes)},
+        "versions": {**result.versions, "mdlgen": version(), "numpy": np.__version__},
+    }
+    if model.tension is not None:
+        told["strain"] = strain(result) if len(result.time) else None
+    return plain(told)
+
+
+def plain(value: Any) -> Any:
+    """Only what JSON knows: Python numbers, and None for those that are not finite."""
+    if isinstance(value, dict):
+        return {str(k): plain(v) for k, v in value.items()}
+    if isinstance(value, (list, tuple, np.ndarray)):
+        return [plain(v) for v in value]
+    if isinstance(value, (bool, np.bool_)):
+        return bool(value)
+    if isinstance(value, (int, np.integer)):
+        return int(value)
+    if isinstance(value, (float, np.floating)):
+        # + 0.0: a negative zero says nothing to a reader
+        return float(value) + 0.0 if math.isfinite(value) else None
+    return value
+
+
+def strain(result: Result) -> float:
+    """Elongation over the length of the flexible part, of a clamped strip under edge stress.
+
+    The elongation is the mean displacement of the last row of box centres along the pull, from the clamp
+    line's half-cell hinge on: the flexible length is the sum of the joint lengths.
+    """
+    tension, sheet = result.model.tension, result.model.sheets[0]
+    assert tension is not None and sheet.clamp is not None, "asked only where the Model has a tension"
+    axis, length = tension
+    outward = 1.0 if sheet.clamp.edge.endswith("min") else -1.0
+    last = -1 if outward > 0 else 0
+    grid = np.arange(sheet.first, sheet.first + sheet.count).reshape(sheet.n_y, sheet.n_x)
+    pulled = grid[:, last] if axis == 0 else grid[last]
+    moved = result.position[-1, pulled] - result.model.bodies.position[pulled]
+    return float((moved @ sheet.rotation[:, axis]).mean() * outward / length)
+
+
+def _sheet(result: Result, index: int) -> dict[str, Any]:
+    sheet = result.model.sheets[index]
+    told: dict[str, Any] = {"travel_mm": None, "speed_mm_per_s": None, "yaw_deg": None}
+    if len(result.time):
+        _, rate, yaw = result.sheet_motion(index)
+        told = {
+            "travel_mm": travel(result, index),
+            "speed_mm_per_s": rate[-1] * PER_SECOND,
+            "yaw_deg": math.degrees(yaw[-1]),
+        }
+    return {**told, "boxes": sheet.count, "bushings": int(np.sum(result.model.bushings.sheet == index))}
+
+
+def roller_rows(result: Result, roller: RollerPart) -> dict[int, str]:
+    """Rows of contacts of a roller, with the name of the other part."""
+    contacts = result.model.contacts
+    sides = zip(contacts.part_a, contacts.part_b, strict=True)
+    return {k: b if a == roller.name else a for k, (a, b) in enumerate(sides) if roller.name in (a, b)}
+
+
+def _roller(result: Result, roller: RollerPart) -> dict[str, Any]:
+    rows = roller_rows(result, roller)
+    sheets = {s.name for s in result.model.sheets}
+    statistics = result.statistics
+    on_sheets = [k for k, other in rows.items() if other in sheets]
+    on_rollers = np.array([k for k, other in rows.items() if other not in sheets], dtype=np.int64)
+    told: dict[str, Any] = {"omega_rad_per_s": None, "center_mm": None, "nip_force_n": None}
+    if len(result.time):
+        told = {
+            "omega_rad_per_s": float(result.spin[-1, roller.body] @ roller.axis) * PER_SECOND,
+            "center_mm": result.position[-1, roller.body],
+            "nip_force_n": float(result.contact_force[-1, list(rows)].sum()),
+        }
+    return {
+        **told,
+        "max_penetration_mm": max((statistics.max_depth[k] for k in on_sheets), default=0.0),
+        "mean_penetration_mm": _mean(statistics.mean_depth, on_sheets, result),
+        "contacts": {
+            other: {
+                "max_penetration_mm": statistics.max_depth[k],
+                "mean_penetration_mm": statistics.mean_depth[k],
+                "max_force_n": statistics.max_force[k],
+                "mean_force_n": statistics.mean_force[k],
+            }
+            for k, other in rows.items()
+        },
+        # nan, a contact that still acts, wins: the roller is not free then
+        "free_of_counterpart_at_ms": np.max(statistics.last_force_at[on_rollers], initial=0.0),
+    }
+
+
+def _mean(depth: Floats, rows: list[int], result: Result) -> float:
+    """Mean over the time in contact; with several sheets each weighs by the stored times it touches at."""
+    if not rows:
+        return 0.0
+    weight = (result.contact_force[:, rows] > 0.0).sum(axis=0).astype(float)
+    return float(np.average(depth[rows], weights=weight if weight.any() else None))
+
+
+def _probe(result: Result, index: int) -> dict[str, Any]:
+    if not len(result.time):
+        return {"displacement_mm": None, "speed_mm_per_s": None}
+    anchor, bodies = result.model.probes[index], result.model.bodies
+    start = np.zeros(3)
+    for body, local, share in zip(anchor.body, anchor.local, anchor.share, strict=True):
+        start += share * (bodies.position[body] + bodies.rotation[body] @ local)
+    place, rate = result.anchor_motion(index)
+    return {"displacement_mm": place[-1] - start, "speed_mm_per_s": rate[-1] * PER_SECOND}

@@ -1,0 +1,90 @@
+"""Each lint fires on a scene that deserves it, and none on the samples."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from mdlgen.checks import CHECKS, Lint, lints
+from mdlgen.model.lower import lower
+from mdlgen.paths import samples
+from mdlgen.spec.load import load
+
+SAMPLES = sorted(samples().rglob("*.yaml"))
+
+
+def found(sample: str, *overrides: str) -> list[Lint]:
+    return lints(lower(load(samples() / f"{sample}.yaml", overrides)))
+
+
+@pytest.mark.parametrize("path", SAMPLES, ids=lambda p: p.stem)
+def test_no_false_alarm_on_a_sample(path: Path) -> None:
+    assert lints(lower(load(path))) == []
+
+
+CASES = [
+    ("W101", "cantilever", ["materials.eur10.E_md=3530 Pa"], "materials.eur10.E_md"),
+    ("W102", "cantilever", ["sheets.note.boxes=[2,40]"], "sheets.note.boxes"),
+    ("W103", "cantilever", ["gravity=[0 m/s^2,0 m/s^2,0 m/s^2]"], "sheets.note.clamp"),
+    ("W104", "transport_4x4", ["sheets.note.boxes=[5,20]"], "rollers.counter_1_left.radius"),
+    ("W105", "transport_4x4", ["contacts.5.stiffness=100 N/mm^1.5"], "contacts.5.stiffness"),
+    ("W106", "transport_4x4", ["contacts.4.smoothing=100 mm/s"], "contacts.4.smoothing"),
+    ("W107", "transport_4x4", ["contacts.6.smoothing=0.1 mm/s"], "contacts.6.smoothing"),
+    (
+        "W108",
+        "transport_4x4",
+        ["rollers.motor_2_left.drive.speed=0 rad/s"],
+        "rollers.motor_2_left.drive.speed",
+    ),
+    ("W109", "verify/drop", ["contacts=[]"], "sheets.block"),
+    ("W110", "cantilever", ["sheets.note.clamp=null"], "sheets.note"),
+    ("W111", "verify/drop", ["contacts=[]"], "planes.floor"),
+    (
+        "W112",
+        "transport_4x4",
+        ["rollers.motor_1_left.center=[13.5 mm,-20.5 mm,-7.4 mm]"],
+        "rollers.motor_1_left.center",
+    ),
+    ("W112", "verify/drop", ["sheets.block.center=[0 mm,0 mm,-1 mm]"], "planes.floor.center"),
+    ("W113", "transport_4x4", ["rollers.motor_1_left.drive.ramp=1 s"], "rollers.motor_1_left.drive.ramp"),
+    ("W114", "transport_4x4", ["sheets.note.mass=0.72 kg"], "sheets.note.mass"),
+]
+
+
+@pytest.mark.parametrize(
+    ("code", "sample", "overrides", "where"), CASES, ids=lambda v: v if isinstance(v, str) else ""
+)
+def test_fires(code: str, sample: str, overrides: list[str], where: str) -> None:
+    hits = [lint for lint in found(sample, *overrides) if lint.code == code]
+    assert where in {lint.where for lint in hits}
+    for lint in hits:
+        assert lint.message and lint.remedy
+        assert str(lint).isascii() and "\n" not in str(lint)
+
+
+def test_every_check_is_tested() -> None:
+    assert {code for code, *_ in CASES} == {f"W{k}" for k in range(101, 115)}
+    assert len(CHECKS) >= 11
+
+
+@pytest.mark.parametrize(
+    ("supports", "free"),
+    [
+        ("[]", 6),
+        ("[{sheet: note, at: [0 mm, 0 mm], fix: [x, y, z]}]", 3),
+        # a line of two points leaves the turn about it
+        ("[{sheet: note, edge: y_min, fix: [x, y, z]}, {sheet: note, edge: y_max, fix: [x, y, z]}]", 1),
+        (
+            "[{sheet: note, edge: y_min, fix: [x, y, z]}, {sheet: note, edge: y_max, fix: [x, z]}, "
+            "{sheet: note, edge: x_max, fix: [z]}]",
+            0,
+        ),
+    ],
+)
+def test_rigid_body_freedom_is_counted(supports: str, free: int) -> None:
+    told = found("cantilever", "sheets.note.clamp=null", "sheets.note.boxes=[3,5]", f"supports={supports}")
+    messages = [lint.message for lint in told if lint.code == "W110"]
+    assert bool(messages) == (free > 0)
+    if free:
+        assert f"in {free} of 6 ways" in messages[0]

@@ -1,0 +1,229 @@
+"""The Exudyn backend against closed forms (oracles), conservation laws, and its own checks."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from backends.exudyn_local import solve
+from mdlgen.model.lower import lower
+from mdlgen.spec.load import load, loads
+
+CANTILEVER = "samples/cantilever.yaml"
+
+
+def run(path, *overrides):
+    result = solve(lower(load(path, overrides)))
+    assert result.ok, result.status
+    return result
+
+
+def run_text(text, *overrides):
+    result = solve(lower(loads(text, overrides=overrides)))
+    assert result.ok, result.status
+    return result
+
+
+def drop_of(*overrides):
+    return -run(CANTILEVER, *overrides).anchor_motion(0)[0][-1, 2]
+
+
+def test_cantilever_is_the_heavy_elastica_and_second_order():
+    # drop of D = 2.42e-4 N m, L = 127 mm: 0.602604470 L; relative lattice errors 0.772, 0.193, 0.048 %
+    exact = 0.602604470 * 127
+    errors = [drop_of(f"sheets.note.boxes=[2,{rows}]") / exact - 1 for rows in (10, 20, 40)]
+    assert abs(errors[1]) < 0.005
+    for coarse, fine in zip(errors, errors[1:], strict=False):
+        assert math.log2(coarse / fine) >= 1.8
+    assert errors[1] == pytest.approx(0.00193, rel=0.01)  # the half-cell hinge chain, to 1 % of its error
+
+
+@pytest.mark.parametrize(("stiffness", "exact"), [("0.1 N*mm", 102.4555), ("0.5 N*mm", 47.7240)])
+def test_cantilever_of_other_stiffness(stiffness, exact):
+    drop = drop_of("sheets.note.boxes=[2,40]", f"materials.eur10.D_cd={stiffness}")
+    assert drop == pytest.approx(exact, rel=0.003)  # 40 rows are within 0.15 % of the continuum at Gamma = 17
+
+
+def test_cantilever_does_not_see_the_worlds_turn_nor_the_layout():
+    straight = drop_of("sheets.note.boxes=[2,20]")
+    turned = drop_of("sheets.note.boxes=[2,20]", "sheets.note.turn=30 deg")
+    central = drop_of("sheets.note.boxes=[2,20]", "sheets.note.layout=center_to_center")
+    assert turned == pytest.approx(straight, rel=1e-6)
+    assert central == pytest.approx(straight, rel=1e-6)
+
+
+def test_the_papers_clamp_over_two_rows():
+    # 0.234 N mm/rad gives 60.76 mm with 12.7 mm clamped on the tiled grid, to 2 % in k_tx: 1 % in the drop
+    drop = drop_of(
+        "sheets.note.boxes=[2,20]",
+        "sheets.note.layout=center_to_center",
+        "sheets.note.clamp={edge: y_min, length: 12.7 mm}",
+        "materials.eur10.k_tx=0.234 N*mm/rad",
+        "sheets.note.size=[13.4 mm, 127 mm]",  # two of the ten columns
+        "sheets.note.mass=0.144 g",
+    )
+    assert drop == pytest.approx(60.76, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    "overrides",
+    [
+        {},
+        {"contacts.0.restitution": "0.5", "contacts.0.stiffness": "300 N/mm^1.5"},
+        {"sheets.block.mass": "100 g", "contacts.0.restitution": "0.9"},
+    ],
+)
+def test_apexes_of_a_dropped_block(overrides):
+    result = run("samples/verify/drop.yaml", *(f"{k}={v}" for k, v in overrides.items()))
+    c = float(overrides.get("contacts.0.restitution", "0.7"))
+    height = result.sheet_motion(0)[0][:, 2] - 5.0
+    inner = (height[1:-1] >= height[:-2]) & (height[1:-1] > height[2:])
+    apexes = height[1:-1][inner][:3]
+    k, m, g = result.model.contacts.stiffness[0], result.model.bodies.mass[0], 9.81e-3
+    rise = 50.0
+    for apex in apexes:
+        # e^2 = c^2 - (1 - c^2) 2 g z_m / v0^2 with gravity during the contact; on the way in the force is
+        # k z^1.5 (1 + beta), which gives z_m
+        v2 = 2 * g * rise
+        depth = (5 * m * v2 / (4 * k * (2 / (1 + c**2)))) ** 0.4
+        rise *= c**2 - (1 - c**2) * 2 * g * depth / v2
+        assert apex == pytest.approx(rise, rel=0.005)
+    assert len(apexes) == 3
+
+
+@pytest.mark.parametrize(("speed", "mu"), [(1.5, 0.3), (0.8, 0.5)])
+def test_a_sliding_block_stops(speed, mu):
+    result = run(
+        "samples/verify/slide.yaml",
+        f"contacts.0.friction={mu}",
+        f"sheets.block.velocity=[{speed} m/s, 0 m/s, 0 m/s]",
+    )
+    place, rate, _ = result.sheet_motion(0)
+    assert place[-1, 0] - place[0, 0] == pytest.approx(speed**2 / (2 * mu * 9.81e-3), rel=0.005)
+    assert abs(rate[-1, 0]) < 1e-3
+
+
+def slope(angle):
+    g = 9.81
+    return f"gravity=[{g * math.sin(angle)!r} m/s^2, 0 m/s^2, {-g * math.cos(angle)!r} m/s^2]"
+
+
+@pytest.mark.parametrize(("degrees", "mu"), [(20, 0.3), (30, 0.4)])
+def test_a_block_slides_down_a_slope(degrees, mu):
+    angle = math.radians(degrees)
+    result = run("samples/verify/incline.yaml", slope(angle), f"contacts.0.friction={mu}")
+    _, rate, _ = result.sheet_motion(0)
+    half = len(result.time) // 2
+    mean = (rate[-1, 0] - rate[half, 0]) / (result.time[-1] - result.time[half])
+    assert 1e3 * mean == pytest.approx(9.81 * (math.sin(angle) - mu * math.cos(angle)), rel=0.005)
+
+
+def test_a_block_that_sticks_creeps_as_the_regularisation_says():
+    result = run("samples/verify/incline.yaml", "contacts.0.friction=0.5", "contacts.0.smoothing=1 mm/s")
+    assert result.sheet_motion(0)[1][-1, 0] == pytest.approx(0.536876e-3, rel=0.005)
+
+
+FREE = """
+name: free
+gravity: [0 m/s^2, 0 m/s^2, 0 m/s^2]
+materials: {s: {E_md: 3530 MPa, E_cd: 1113 MPa, k_tx: 0.15 N*mm/rad, k_ty: 0.185 N*mm/rad, k_tz: 5 N*mm/rad}}
+sheets:
+  note: {material: s, size: [40 mm, 60 mm], thickness: 0.1 mm, mass: 0.2 g, boxes: [3, 5],
+         spin: [20 rad/s, 30 rad/s, 200 rad/s], velocity: [1 m/s, 0 m/s, 0 m/s]}
+run: {duration: 30 ms}
+"""
+
+
+def momentum(result):
+    """Linear [g mm/ms] and angular momentum about the origin [g mm^2/ms] at the stored times."""
+    from scipy.spatial.transform import Rotation
+
+    bodies = result.model.bodies
+    linear = np.einsum("b,tbi->ti", bodies.mass, result.velocity)
+    angular = np.cross(result.position, bodies.mass[:, None] * result.velocity).sum(axis=1)
+    for b in range(len(bodies.name)):
+        turn = Rotation.from_quat(np.roll(result.rotation[:, b], -1, axis=1))
+        angular += turn.apply(bodies.inertia[b] * turn.inv().apply(result.spin[:, b]))
+    return linear, angular
+
+
+def test_a_spinning_sheet_keeps_its_momentum():
+    linear, angular = momentum(run_text(FREE, "run.step=0.02 ms"))
+    assert np.ptp(linear, axis=0) == pytest.approx(0, abs=1e-9 * np.linalg.norm(linear[0]))
+    drift = np.abs(angular - angular[0]).max() / np.linalg.norm(angular[0])
+    assert drift < 1e-4  # generalised-alpha at 0.02 ms; the law itself conserves to round-off
+
+
+def test_free_fall_has_no_bushing_force():
+    result = run_text(FREE, "gravity=[0 m/s^2, 0 m/s^2, -9.81 m/s^2]", "sheets.note.spin=[0 rad/s, 0 rad/s, 0 rad/s]",
+                      "run.step=0.1 ms")  # fmt: skip
+    fall = result.position[-1, :, 2]
+    assert fall == pytest.approx(-0.5 * 9.81e-3 * 30**2, rel=1e-9)
+    assert result.energy.elastic < 1e-12
+
+
+def test_a_block_turns_over():
+    # Euler's top about its middle axis: rotation through all angles, against the closed energy and momentum
+    text = FREE.replace("boxes: [3, 5]", "boxes: [1, 1]").replace("thickness: 0.1 mm", "thickness: 10 mm")
+    result = run_text(
+        text, "sheets.note.spin=[50 rad/s, 0.5 rad/s, 0.5 rad/s]", "run.duration=600 ms", "run.step=0.1 ms"
+    )
+    _, angular = momentum(result)
+    assert np.abs(angular - angular[0]).max() < 2e-3 * np.linalg.norm(angular[0])
+    from scipy.spatial.transform import Rotation
+
+    along = Rotation.from_quat(np.roll(result.rotation[:, 0], -1, axis=1)).apply([1, 0, 0])
+    assert result.status == "ok"
+    assert np.isfinite(along).all()
+
+
+def test_the_step_error_falls_with_second_order():
+    text = FREE.replace("spin: [20 rad/s, 30 rad/s, 200 rad/s]", "spin: [20 rad/s, 0 rad/s, 50 rad/s]")
+    ends = [run_text(text, "run.duration=5 ms", f"run.step={h} ms").position[-1] for h in (0.08, 0.04, 0.02)]
+    coarse, fine = (np.abs(a - b).max() for a, b in zip(ends, ends[1:], strict=False))
+    assert math.log2(coarse / fine) > 1.6
+
+
+def test_a_sheet_that_leaves_its_bounds_fails_by_name():
+    text = """
+name: thrown
+gravity: [0 m/s^2, 0 m/s^2, 0 m/s^2]
+materials: {s: {E_md: 1000 MPa, E_cd: 1000 MPa, k_tx: 1 N*mm/rad, k_ty: 1 N*mm/rad}}
+sheets:
+  note: {material: s, size: [20 mm, 20 mm], thickness: 1 mm, mass: 1 g, boxes: [1, 1], center: [0 mm, 0 mm, 9 mm]}
+rollers:
+  r: {center: [6 mm, 0 mm, 0 mm], axis: y, radius: 9 mm, width: 20 mm, mass: 10 g}
+contacts: [{between: [note, r], stiffness: 300 N/mm^1.5}]
+run: {duration: 100 ms}
+"""
+    result = solve(lower(loads(text)))
+    assert not result.ok
+    assert "box note_0_0 left the bounds" in result.status
+    assert "run.margin" in result.status
+    free = solve(lower(loads(text, overrides=["run.prune=false"])))
+    assert free.ok
+
+
+def test_an_unstable_static_scene_fails_with_a_reason():
+    text = FREE.replace("run: {duration: 30 ms}", "run: {analysis: static}")
+    result = solve(lower(loads(text, overrides=["gravity=[0 m/s^2, 0 m/s^2, -9.81 m/s^2]"])))
+    assert not result.ok
+    assert "Exudyn" in result.status or "residual" in result.status
+
+
+def test_energy_balances_in_a_bounce():
+    result = run("samples/verify/drop.yaml", "run.duration=300 ms")
+    assert abs(result.energy.balance_error) < 1e-3
+    assert result.energy.dissipated > 0
+
+
+def test_pruning_changes_nothing():
+    """The series of a piece of the transport is the same with all pairs kept."""
+    short = ("run.duration=4 ms",)
+    one = run("samples/transport_4x4.yaml", *short)
+    two = run("samples/transport_4x4.yaml", *short, "run.prune=false")
+    # the same forces in another order of unknowns: equal to Newton's tolerance
+    assert np.abs(one.position - two.position).max() < 1e-6
+    assert len(two.model.pairs) == 1804

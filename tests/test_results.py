@@ -1,0 +1,310 @@
+"""The files of a run, and the distance between two runs."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from synthetic import SPEED, moving, small_model
+
+import mdlgen
+from mdlgen import registry
+from mdlgen.errors import OutputError, SpecError
+from mdlgen.model.lower import lower
+from mdlgen.model.tables import Model
+from mdlgen.report.figures import figure
+from mdlgen.results import store
+from mdlgen.results.compare import compare, scale
+from mdlgen.results.result import Result
+from mdlgen.results.summary import summary
+from mdlgen.spec.load import loads
+
+FILES = ["result.h5", "series.csv", "summary.json"]
+PROMISED = {
+    "scene", "solver", "status", "t_end_ms", "steps", "step_ms", "wall_s", "compile_s", "build_s", "pairs",
+    "error_estimate", "tolerance", "energy", "events", "sheets", "rollers", "probes", "versions",
+}  # fmt: skip
+STRIP = """
+name: pull
+materials: {m: {E_md: 1 GPa, E_cd: 1 GPa, k_tx: 1 N*mm/rad, k_ty: 1 N*mm/rad}}
+sheets:
+  strip:
+    {material: m, size: [40 mm, 10 mm], thickness: 0.1 mm, mass: 1 g, boxes: [4, 2], clamp: {edge: x_min}}
+loads: [{sheet: strip, edge: x_max, stress: 1 MPa}]
+run: {analysis: static}
+"""
+
+
+@pytest.fixture(scope="module")
+def model() -> Model:
+    return small_model()
+
+
+@pytest.fixture(scope="module")
+def result(model: Model) -> Result:
+    return moving(model)
+
+
+class TestSummary:
+    def test_is_the_promised_object(self, result: Result) -> None:
+        told = summary(result)
+        assert set(told) == PROMISED
+        assert set(told["pairs"]) == {"possible", "kept", "touched"}
+        assert set(told["sheets"]["note"]) == {"travel_mm", "speed_mm_per_s", "yaw_deg", "boxes", "bushings"}
+        assert set(told["probes"]["lead"]) == {"displacement_mm", "speed_mm_per_s"}
+
+    def test_values_are_in_mm_and_s(self, result: Result) -> None:
+        told = summary(result)
+        end = result.model.run.duration
+        note = told["sheets"]["note"]
+        # a product and a mean over boxes: some ulp
+        assert note["travel_mm"] == pytest.approx([SPEED * end, 0, 0], abs=1e-12)
+        assert note["speed_mm_per_s"] == pytest.approx([SPEED * 1000, 0, 0], abs=1e-9)
+        assert (note["boxes"], note["bushings"]) == (6, 14)
+        assert told["probes"]["lead"]["displacement_mm"] == pytest.approx([SPEED * end, 0, 0], abs=1e-12)
+        assert told["rollers"]["motor_1_left"]["omega_rad_per_s"] == pytest.approx(186.7, rel=1e-12)
+
+    def test_a_roller_counts_sheets_only_in_its_penetration(self, result: Result) -> None:
+        contacts = result.model.contacts
+        roller = summary(result)["rollers"]["counter_2_left"]
+        pairs = zip(contacts.part_a, contacts.part_b, strict=True)
+        rows = {frozenset(pair): k for k, pair in enumerate(pairs)}
+        sheet = rows[frozenset(("note", "counter_2_left"))]
+        counterpart = rows[frozenset(("motor_2_left", "counter_2_left"))]
+        assert roller["max_penetration_mm"] == sheet * 0.01
+        assert roller["mean_penetration_mm"] == sheet * 0.005
+        assert roller["nip_force_n"] == sheet + counterpart
+        assert roller["contacts"]["motor_2_left"]["max_force_n"] == counterpart * 2
+        assert roller["free_of_counterpart_at_ms"] == counterpart
+
+    def test_a_counterpart_that_still_acts_is_null(self, result: Result) -> None:
+        rollers = summary(result)["rollers"]
+        first = result.model.contacts.part_a[0]
+        assert rollers[first]["free_of_counterpart_at_ms"] is None
+
+    def test_a_roller_without_counterpart_was_never_in_contact(self) -> None:
+        alone = moving(small_model("contacts=[{between: [note, motor_1_left], stiffness: 300 N/mm^1.5}]"))
+        roller = summary(alone)["rollers"]["counter_1_left"]
+        assert (roller["free_of_counterpart_at_ms"], roller["nip_force_n"], roller["contacts"]) == (
+            0.0,
+            0.0,
+            {},
+        )
+
+    def test_what_is_not_finite_is_null(self, result: Result) -> None:
+        broken = replace(result, wall_s=math.inf, error_estimate=math.nan)
+        told = json.loads(json.dumps(summary(broken), allow_nan=False))
+        assert told["wall_s"] is None and told["error_estimate"] is None
+
+    def test_a_run_without_states_has_a_summary(self, result: Result) -> None:
+        none = replace(
+            result,
+            status="it failed",
+            time=result.time[:0],
+            position=result.position[:0],
+            rotation=result.rotation[:0],
+            velocity=result.velocity[:0],
+            spin=result.spin[:0],
+            contact_force=result.contact_force[:0],
+        )
+        told = summary(none)
+        assert told["status"] == "it failed" and told["sheets"]["note"]["travel_mm"] is None
+
+    def test_static_results_are_relative_to_the_model(self, model: Model) -> None:
+        one = moving(model, times=2, shift=-3.0)
+        static = replace(
+            one,
+            time=one.time[:1],
+            position=one.position[:1],
+            rotation=one.rotation[:1],
+            velocity=0 * one.velocity[:1],
+            spin=0 * one.spin[:1],
+            contact_force=one.contact_force[:1],
+        )
+        told = summary(static)
+        assert told["sheets"]["note"]["travel_mm"] == pytest.approx([0, 0, -3], abs=1e-12)
+        assert told["probes"]["lead"]["displacement_mm"] == pytest.approx([0, 0, -3], abs=1e-12)
+
+    @pytest.mark.parametrize(("clamp", "pull", "row"), [("x_min", "x_max", -1), ("x_max", "x_min", 0)])
+    def test_strain_is_elongation_over_the_flexible_length(self, clamp: str, pull: str, row: int) -> None:
+        strip = lower(loads(STRIP, "s", [f"sheets.strip.clamp.edge={clamp}", f"loads.0.edge={pull}"]))
+        assert strip.tension == (0, 35.0)
+        result = moving(strip, times=2, speed=0.0)
+        outward = 1.0 if pull == "x_max" else -1.0
+        result.position[:, [3, 7] if row else [0, 4], 0] += outward * 0.7
+        assert summary(result)["strain"] == pytest.approx(0.02, rel=1e-12)  # 0.7 / 35
+
+
+class TestFiles:
+    def test_written_and_read_back(self, result: Result, tmp_path: Path) -> None:
+        result.save(tmp_path / "a" / "b")
+        assert sorted(p.name for p in (tmp_path / "a" / "b").iterdir()) == FILES
+        found = store.read(tmp_path / "a" / "b")
+        assert found["bodies"] == list(result.model.bodies.name)
+        assert found["contacts"][0] == "motor_1_left / counter_1_left"
+        assert (found["scene"], found["status"], found["solver"]) == ("transport_4x4", "ok", "synthetic")
+        for name in store.STATES:
+            np.testing.assert_array_equal(found[name], getattr(result, name))
+        np.testing.assert_array_equal(found["statistics/last_force_at"], result.statistics.last_force_at)
+
+    def test_summary_is_strict_json(self, result: Result, tmp_path: Path) -> None:
+        result.save(tmp_path)
+
+        def refuse(word: str) -> None:
+            raise AssertionError(word)
+
+        text = (tmp_path / "summary.json").read_text("ascii")
+        assert json.loads(text, parse_constant=refuse)["scene"] == "transport_4x4"
+
+    def test_series_has_the_promised_columns(self, result: Result, tmp_path: Path) -> None:
+        result.save(tmp_path)
+        with open(tmp_path / "series.csv", newline="") as stream:
+            rows = list(csv.DictReader(stream))
+        motion = ["x_mm", "y_mm", "z_mm", "vx_mm_per_s", "vy_mm_per_s", "vz_mm_per_s"]
+        columns = ["time_ms", *(f"note.{c}" for c in [*motion, "yaw_deg"])]
+        columns += [f"{p}.{c}" for p in ("grip", "lead") for c in motion]
+        columns += [
+            f"{r.name}.{c}" for r in result.model.rollers for c in ("z_mm", "omega_rad_per_s", "force_n")
+        ]
+        assert list(rows[0]) == columns
+        assert len(rows) == len(result.time)
+        last = rows[-1]
+        assert float(last["time_ms"]) == result.time[-1]
+        assert float(last["note.x_mm"]) == pytest.approx(SPEED * result.time[-1], rel=1e-12)
+        assert float(last["note.vx_mm_per_s"]) == pytest.approx(1400, rel=1e-12)
+
+    def test_the_same_result_gives_the_same_bytes(self, result: Result) -> None:
+        assert store.hdf5(result) == store.hdf5(result)
+        assert figure(result) == figure(result)
+
+    def test_figures_of_a_static_and_of_a_moving_result(self, result: Result) -> None:
+        static = moving(lower(loads(STRIP)), times=2)
+        for one in (result, static):
+            assert figure(one).startswith(b"\x89PNG\r\n\x1a\n")
+
+    def test_a_failed_run_leaves_the_old_files(self, result: Result, tmp_path: Path) -> None:
+        result.save(tmp_path)
+        old = {p.name: p.read_bytes() for p in tmp_path.iterdir()}
+        with pytest.raises(OutputError, match="it blew up"):
+            result.failed("it blew up").save(tmp_path)
+        assert {p.name: p.read_bytes() for p in tmp_path.iterdir()} == old
+
+    def test_old_files_stay_where_one_cannot_be_written(self, result: Result, tmp_path: Path) -> None:
+        result.save(tmp_path)
+        old = (tmp_path / "summary.json").read_bytes()
+        (tmp_path / "result.h5").unlink()
+        (tmp_path / "result.h5").mkdir()
+        with pytest.raises(OutputError, match="folder"):
+            replace(result, steps=7).save(tmp_path)
+        assert (tmp_path / "summary.json").read_bytes() == old
+        assert sorted(p.name for p in tmp_path.iterdir()) == FILES
+
+    @pytest.mark.parametrize("where", ["file", "file/below", "link"])
+    def test_a_place_that_is_no_folder_is_refused(self, result: Result, tmp_path: Path, where: str) -> None:
+        (tmp_path / "file").write_text("mine")
+        (tmp_path / "real").mkdir()
+        (tmp_path / "link").symlink_to(tmp_path / "real")
+        with pytest.raises(OutputError):
+            result.save(tmp_path / where)
+        assert (tmp_path / "file").read_text() == "mine"
+        assert not list((tmp_path / "real").iterdir())
+
+    def test_reading_nothing_is_an_error(self, tmp_path: Path) -> None:
+        with pytest.raises(OutputError, match="cannot read"):
+            store.read(tmp_path)
+        (tmp_path / "result.h5").write_bytes(b"no")
+        with pytest.raises(OutputError, match="cannot read"):
+            store.read(tmp_path)
+
+
+class TestCompare:
+    def test_a_result_is_no_distance_from_itself(self, result: Result) -> None:
+        found = mdlgen.compare(result, result)
+        assert (found.position_rms_mm, found.position_max_mm, found.travel_difference_mm) == (0, 0, 0)
+        assert set(found.nip_force.values()) == {0.0}
+
+    def test_a_shift_is_its_own_size(self, model: Model, result: Result) -> None:
+        found = compare(result, moving(model, shift=0.5))
+        assert found.position_rms_mm == pytest.approx(0.5, rel=1e-12)
+        assert found.relative == pytest.approx(0.5 / (SPEED * model.run.duration), rel=1e-12)
+
+    def test_short_travels_are_relative_to_the_sheet(self, model: Model) -> None:
+        assert scale(moving(model, speed=0.0)) == 12.7  # a tenth of 127 mm
+
+    def test_other_times_are_interpolated_by_the_cubic(self, model: Model) -> None:
+        def thrown(times: int) -> Result:
+            result = moving(model, times=times)
+            t = result.time[:, None]
+            result.position[:, :, 2] += 1e-3 * t**3
+            result.velocity[:, :, 2] += 3e-3 * t**2
+            return result
+
+        # a cubic through positions and velocities is exact for a cubic motion; values reach 125
+        assert compare(thrown(11), thrown(8)).position_max_mm < 1e-11
+
+    def test_a_shorter_run_is_compared_as_far_as_it_goes(self, model: Model, result: Result) -> None:
+        half = replace(
+            result,
+            **{name: getattr(result, name)[:5] for name in store.STATES},
+        )
+        assert compare(result, half).position_max_mm < 1e-12
+        assert compare(half, result).position_max_mm < 1e-12
+
+    def test_different_scenes_are_refused(self, result: Result) -> None:
+        with pytest.raises(SpecError, match="different boxes"):
+            compare(result, moving(small_model("sheets.note.boxes=[3,3]")))
+
+    def test_forces_are_relative_to_the_larger(self, model: Model, result: Result) -> None:
+        other = moving(model)
+        other.contact_force[:, 4] *= 2
+        assert list(compare(result, other).nip_force.values())[4] == pytest.approx(0.5)
+
+
+class TestRegistry:
+    @pytest.mark.parametrize("name", ["lattice", "", "Exudyn", "os"])
+    def test_an_unknown_solver_names_those_there_are(self, model: Model, name: str) -> None:
+        with pytest.raises(SpecError, match="there are: auto, exudyn"):
+            mdlgen.solve(model, name)
+
+    def test_an_unknown_text_backend_names_those_there_are(self, model: Model) -> None:
+        with pytest.raises(SpecError, match="there are: motionview"):
+            mdlgen.emit(model, "adams")
+
+    def test_check_step_returns_the_finer_with_its_distance(
+        self, model: Model, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        asked: list[float | None] = []
+
+        class Fake:
+            def solve(self, model: Model, progress: object = None, step: float | None = None) -> Result:
+                asked.append(step)
+                # an error that is proportional to the step
+                h = step or 0.05
+                return replace(moving(model, shift=h), step=h)
+
+        monkeypatch.setattr(registry, "solver", lambda name: Fake())
+        found = mdlgen.solve(model, check_step=True)
+        assert asked == [None, 0.025]
+        assert found.step == 0.025
+        assert found.error_estimate == pytest.approx(0.025 / scale(found), rel=1e-9)
+
+    def test_check_step_keeps_a_failure(self, model: Model, monkeypatch: pytest.MonkeyPatch) -> None:
+        class Fake:
+            def solve(self, model: Model, progress: object = None, step: float | None = None) -> Result:
+                return moving(model).failed("no") if step else moving(model)
+
+        monkeypatch.setattr(registry, "solver", lambda name: Fake())
+        assert mdlgen.solve(model, check_step=True).status == "at half the step (0.025 ms): no"
+
+
+def test_the_public_names() -> None:
+    assert mdlgen.__version__.count(".") >= 2
+    assert mdlgen.Scene.__name__ == "Scene" and mdlgen.Model is Model and mdlgen.Result is Result
+    with pytest.raises(AttributeError):
+        _ = mdlgen.nothing
+    assert mdlgen.lower(mdlgen.loads(STRIP)).name == "pull"
