@@ -19,11 +19,13 @@ class Unit(NamedTuple):
     dimension: tuple[float, float, float, float]
 
 
-_LENGTH, _MASS, _TIME, _ANGLE = (1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1)
-_FORCE, _STRESS, _RATE = (1, 1, -2, 0), (-1, 1, -2, 0), (0, 0, -1, 1)
+_LENGTH, _MASS = (1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0)
+_TIME, _ANGLE = (0.0, 0.0, 1.0, 0.0), (0.0, 0.0, 0.0, 1.0)
+_FORCE, _STRESS = (1.0, 1.0, -2.0, 0.0), (-1.0, 1.0, -2.0, 0.0)
+_RATE = (0.0, 0.0, -1.0, 1.0)
 
 _NAMES: dict[str, Unit] = {
-    name: Unit(factor, tuple(float(d) for d in dimension))  # type: ignore[arg-type]
+    name: Unit(factor, dimension)
     for dimension, table in (
         (_LENGTH, {"mm": 1.0, "m": 1e3, "cm": 10.0, "um": 1e-3, "µm": 1e-3, "in": 25.4}),
         (_MASS, {"g": 1.0, "kg": 1e3, "mg": 1e-3, "t": 1e6}),
@@ -56,8 +58,9 @@ def parse_unit(text: str) -> Unit:
         if abs(power) > 8:
             raise ValueError(f"exponent {match[2]} in {text!r} has no physical use")
         factor *= unit.factor**power
-        dimension = tuple(d + power * u for d, u in zip(dimension, unit.dimension, strict=True))
-    return Unit(factor, dimension)  # type: ignore[arg-type]
+        length, mass, time, angle = (d + power * u for d, u in zip(dimension, unit.dimension, strict=True))
+        dimension = (length, mass, time, angle)
+    return Unit(factor, dimension)
 
 
 def parse_quantity(text: object, expected: str) -> float:

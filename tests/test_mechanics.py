@@ -27,9 +27,23 @@ def roller_force(x=0.0, y=0.0, z=0.0484, yaw=0.0, shift=(0.0, 0.0), exposed=15, 
     rotation = (c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0)
     axle = (x, y, -HALF[2] - R + z)
     box_cylinder(
-        out, center, rotation, ZERO, ZERO, HALF, exposed, axle, (0.0, 1.0, 0.0), ZERO, ZERO, R, WIDTH, K, shared,
+        out,
+        center,
+        rotation,
+        ZERO,
+        ZERO,
+        HALF,
+        exposed,
+        axle,
+        (0.0, 1.0, 0.0),
+        ZERO,
+        ZERO,
+        R,
+        WIDTH,
+        K,
+        shared,
         law,
-    )  # fmt: skip
+    )
     return out
 
 
@@ -84,8 +98,19 @@ def test_flat_box_on_a_plane_gives_k_z_1_5_and_an_edge_half():
     def force(tilt):
         out = np.zeros(OUT)
         rotation = tuple(Rotation.from_rotvec([0.0, tilt, 0.0]).as_matrix().ravel())
-        box_plane(out, (0.0, 0.0, 4.99), rotation, ZERO, ZERO, (10.0, 10.0, 5.0), (0.0, 0.0, -5.0), EYE,
-                  (50.0, 50.0, 5.0), 100.0, PLAIN)  # fmt: skip
+        box_plane(
+            out,
+            (0.0, 0.0, 4.99),
+            rotation,
+            ZERO,
+            ZERO,
+            (10.0, 10.0, 5.0),
+            (0.0, 0.0, -5.0),
+            EYE,
+            (50.0, 50.0, 5.0),
+            100.0,
+            PLAIN,
+        )
         return out[2]
 
     assert force(0.0) == pytest.approx(100.0 * 0.01**1.5, rel=1e-9)
@@ -95,8 +120,9 @@ def test_flat_box_on_a_plane_gives_k_z_1_5_and_an_edge_half():
 
 def test_two_rollers():
     out = np.zeros(OUT)
-    cylinder_cylinder(out, (0.0, 0.0, 12.28), ZERO, ZERO, 5.0, 5.0, ZERO, ZERO, ZERO, R, 5.0, (0.0, 1.0, 0.0), 30.5,
-                      PLAIN)  # fmt: skip
+    cylinder_cylinder(
+        out, (0.0, 0.0, 12.28), ZERO, ZERO, 5.0, 5.0, ZERO, ZERO, ZERO, R, 5.0, (0.0, 1.0, 0.0), 30.5, PLAIN
+    )
     assert out[2] == pytest.approx(30.5 * 0.22**1.5, rel=1e-9)
     assert pytest.approx(0.222, abs=5e-4) == (3.19 / 30.5) ** (2 / 3)  # the paper's penetration
     assert out[:3] == pytest.approx(-out[6:9])
@@ -106,9 +132,24 @@ def test_forces_on_the_two_bodies_cancel_in_force_and_moment():
     law = (0.6, 1.0, 0.5, 0.01, 0.02, 0.01)
     out = np.zeros(OUT)
     a, b = (0.3, -0.2, 0.1), (1.0, 0.4, -7.4)
-    box_cylinder(out, a, tuple(Rotation.from_rotvec([0.02, 0.05, 0.3]).as_matrix().ravel()), (0.1, 0.2, -0.3),
-                 (0.01, 0.02, 0.03), HALF, 15, b, (0.0, 1.0, 0.0), (0.0, 0.0, 0.1), (0.0, 0.18, 0.0), R, WIDTH, K,
-                 True, law)  # fmt: skip
+    box_cylinder(
+        out,
+        a,
+        tuple(Rotation.from_rotvec([0.02, 0.05, 0.3]).as_matrix().ravel()),
+        (0.1, 0.2, -0.3),
+        (0.01, 0.02, 0.03),
+        HALF,
+        15,
+        b,
+        (0.0, 1.0, 0.0),
+        (0.0, 0.0, 0.1),
+        (0.0, 0.18, 0.0),
+        R,
+        WIDTH,
+        K,
+        True,
+        law,
+    )
     assert out[12] > 0
     assert np.allclose(out[:3] + out[6:9], 0, atol=1e-12)
     moment = out[3:6] + out[9:12] + np.cross(a, out[:3]) + np.cross(b, out[6:9])
@@ -127,11 +168,13 @@ def rebound(c, smooth, v0=1.0):
     def motion(_, y):
         return [y[1], -normal_force(1.0, y[0], y[1], beta, smooth)]
 
-    def out(_, y):
-        return y[0]
+    class Out:
+        terminal, direction = True, -1
 
-    out.terminal, out.direction = True, -1
-    ran = solve_ivp(motion, (0, 100), [1e-12, v0], events=out, rtol=1e-10, atol=1e-13, max_step=0.02)
+        def __call__(self, _, y):
+            return y[0]
+
+    ran = solve_ivp(motion, (0, 100), [1e-12, v0], events=Out(), rtol=1e-10, atol=1e-13, max_step=0.02)
     return -ran.y_events[0][0][1] / v0
 
 
@@ -205,9 +248,11 @@ def test_bushing_does_not_see_the_worlds_rotation_nor_the_order(seed):
     k, kt = (3.0, 2.0, 9.0), (0.4, 0.7, 1.0)
     force, torque_b, torque_a, energy, _ = bushing_between(one, two, arms, k, kt)
     world = Rotation.from_rotvec(rng.normal(size=3))
-    turned = [(tuple(world.apply(x)), world * r, tuple(world.apply(v)), tuple(world.apply(w)))
-              for x, r, v, w in (one, two)]  # fmt: skip
-    force2, torque2, _, energy2, _ = bushing_between(*turned, arms, k, kt)
+    turned = [
+        (tuple(world.apply(x)), world * r, tuple(world.apply(v)), tuple(world.apply(w)))
+        for x, r, v, w in (one, two)
+    ]
+    force2, torque2, _, energy2, _ = bushing_between(turned[0], turned[1], arms, k, kt)
     assert np.allclose(world.apply(force), force2, atol=1e-12)
     assert np.allclose(world.apply(torque_b), torque2, atol=1e-12)
     assert energy2 == pytest.approx(energy)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -94,6 +95,8 @@ def test_clamp_between_lines_names_the_two_nearest():
 def test_pressed_rollers_start_in_equilibrium():
     m = model()
     free, nip = m.roller("counter_2_left").press, m.roller("counter_1_left").press
+    assert free is not None
+    assert nip is not None
     force = 3.19 - 0.319 * (free.start - free.touch)
     weight = (0.39 + 0.39e-3) * 9.81e-3
     assert 30.5 * (free.start - free.touch) ** 1.5 == pytest.approx(force + weight, rel=1e-6)
@@ -134,7 +137,7 @@ def test_probe_on_a_line_is_the_mean_of_its_boxes():
 
 
 def test_names_that_meet_are_refused(tmp_path):
-    text = open(TRANSPORT).read().replace("motor_1_left", "note_0_0")
+    text = Path(TRANSPORT).read_text().replace("motor_1_left", "note_0_0")
     path = tmp_path / "scene.yaml"
     path.write_text(text)
     with pytest.raises(SpecError, match="note_0_0"):

@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from backends.exudyn_local.system import System
 from mdlgen.mechanics.bushing import bushing
 from mdlgen.mechanics.contact import OUT, box_cylinder, box_plane, cylinder_cylinder
 from mdlgen.mechanics.vector import add, back, cross, dot, mat, matmul, rotate, scale, vec
+from mdlgen.model.tables import Floats
 
 # Perturbations of the difference quotients: positions and Euler parameters, velocities [SI]. A static run
 # takes central quotients: a joint bends 1e5 times easier than it stretches, and a one-sided quotient of the
@@ -15,6 +17,9 @@ from mdlgen.mechanics.vector import add, back, cross, dot, mat, matmul, rotate, 
 _E_POSITION, _E_VELOCITY = 1e-9, 1e-6
 _E_CENTRAL = 1e-7
 _CYLINDER_CYLINDER, _BOX_PLANE = 2, 1
+
+# x, r, u, w, out, f: what the functions below write into
+Work = tuple[Floats, Floats, Floats, Floats, Floats, Floats]
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -154,14 +159,37 @@ def _pair(bodies, pair, q, x, r, u, w, f, out):
         )
     elif pair.kind == _BOX_PLANE:
         box_plane(
-            out, vec(x, a), mat(r, a), vec(u, a), vec(w, a), half, vec(x, b), mat(r, b), three(bodies[b].half),
-            pair.k, law,
-        )  # fmt: skip
+            out,
+            vec(x, a),
+            mat(r, a),
+            vec(u, a),
+            vec(w, a),
+            half,
+            vec(x, b),
+            mat(r, b),
+            three(bodies[b].half),
+            pair.k,
+            law,
+        )
     else:
         box_cylinder(
-            out, vec(x, a), mat(r, a), vec(u, a), vec(w, a), half, bodies[a].exposed, vec(x, b), three(bodies[b].axis),
-            vec(u, b), vec(w, b), bodies[b].size[0], bodies[b].size[1], pair.k, pair.shared != 0, law,
-        )  # fmt: skip
+            out,
+            vec(x, a),
+            mat(r, a),
+            vec(u, a),
+            vec(w, a),
+            half,
+            bodies[a].exposed,
+            vec(x, b),
+            three(bodies[b].axis),
+            vec(u, b),
+            vec(w, b),
+            bodies[b].size[0],
+            bodies[b].size[1],
+            pair.k,
+            pair.shared != 0,
+            law,
+        )
     if out[12] == 0.0:
         return False
     _spread(bodies, a, q, (out[0], out[1], out[2]), (out[3], out[4], out[5]), f)
@@ -390,7 +418,7 @@ def ledger(bodies, bushings, pairs, loads, gravity, q, v, t, x, r, u, w, f, pair
     totals[0], totals[1], totals[2], totals[3], totals[4] = kinetic, elastic, potential, lost, driven
 
 
-def workspace(system) -> tuple:
+def workspace(system: System) -> Work:
     """x, r, u, w, out, f for the functions above."""
     n = len(system.bodies)
     return (

@@ -96,7 +96,7 @@ class Recorder:
             return
         rows = len(self._max_depth)
         row = self.model.pairs.contact
-        force = np.bincount(row, weights=self._pairs[:, 12], minlength=rows)
+        force = np.asarray(np.bincount(row, weights=self._pairs[:, 12], minlength=rows), dtype=float)
         depth = np.zeros(rows)
         np.maximum.at(depth, row, self._pairs[:, 15])
         # a graze below a twentieth of the greatest force is not counted as the nip still acting
@@ -132,7 +132,8 @@ class Recorder:
             at = ", ".join(f"{value:.4g}" for value in x[out[0]] * PER_MM)
             self.reason = (
                 f"box {name} left the bounds from which its contacts were chosen at {t / MS:.6g} ms "
-                f"(it is at {at} mm); set run.prune: false, or a run.margin above {self.model.pairs.margin:g} mm"
+                f"(it is at {at} mm); set run.prune: false, "
+                f"or a run.margin above {self.model.pairs.margin:g} mm"
             )
 
     def result(self, solver: str, reason: str | None) -> Result:

@@ -10,6 +10,7 @@ import sys
 import time as clock
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -37,8 +38,8 @@ Progress = Callable[[float, float, int, int], None]
 class Assembly:
     """Exudyn's system, with the arrays that its user functions work on."""
 
-    mbs: object
-    container: object
+    mbs: Any  # of Exudyn's compiled module, whose stubs are not complete
+    container: Any
     system: System
     pattern: Pattern
     q: np.ndarray
@@ -65,22 +66,21 @@ def solve(model: Model, progress: Progress | None = None, step: float | None = N
     count, h = (1, 0.0) if static else choose_steps(model, step)
     if not static:
         recorder.plan(h)
-        assembly.mbs.SetPostStepUserFunction(recorder.after_step)  # type: ignore[attr-defined]
+        assembly.mbs.SetPostStepUserFunction(recorder.after_step)
         recorder.store(assembly.q, assembly.v, 0.0)
     begun = clock.perf_counter()
     reason = _run(exu, assembly, model, count, h, recorder.touching > 0)
     wall = clock.perf_counter() - begun
-    data = assembly.mbs.systemData  # type: ignore[attr-defined]
+    data = assembly.mbs.systemData
     q, v = np.array(data.GetODE2Coordinates()), np.array(data.GetODE2Coordinates_t())
     if static and reason is None:
         recorder.store(q, v, 0.0)
     reason = recorder.reason or reason
     if reason is None and not (np.isfinite(q).all() and np.isfinite(v).all()):
         reason = "the state went non-finite"
-    if reason is None and not static:
-        # the reached time is kept by our own step function, not by the solver's flag
-        if recorder.time < model.run.duration * MS * (1 - 1e-9):
-            reason = f"stopped at {recorder.time / MS:.6g} ms, before the end at {model.run.duration:g} ms"
+    # the reached time is kept by our own step function, not by the solver's flag
+    if reason is None and not static and recorder.time < model.run.duration * MS * (1 - 1e-9):
+        reason = f"stopped at {recorder.time / MS:.6g} ms, before the end at {model.run.duration:g} ms"
     if reason is None and static:
         reason = _unbalanced(system, q, work)
     result = recorder.result("exudyn", reason)
@@ -91,30 +91,29 @@ def solve(model: Model, progress: Progress | None = None, step: float | None = N
 
 
 def _exudyn():
-    sys.exudynFast = True  # type: ignore[attr-defined]  # skips range checks in the compiled module
+    # Exudyn looks for this attribute, unknown to sys: it skips range checks in the compiled module
+    sys.exudynFast = True  # type: ignore[attr-defined]
     import exudyn as exu
 
     exu.special.userInterface.SuppressAll(True)
     return exu
 
 
-def _compile(system: System, pattern: Pattern, work: tuple) -> None:
+def _compile(system: System, pattern: Pattern, work: kernels.Work) -> None:
     """Compile (or load from the cache) every kernel before the clock of the run starts."""
-    x, r, u, w, out, f = work
+    x, r, u, w, _, f = work
     free = system.free
     q, v = np.zeros(max(1, free)), np.zeros(max(1, free))
     data = np.zeros(len(pattern.indices))
     owner = kernels.owners(system.bodies, free)
-    kernels.forces(*system.tables, q, v, 0.0, 1.0, x, r, u, w, out, f)
-    kernels.jacobian(
-        *system.tables, system.elements, q, v, 0.0, 1.0, 1.0, 1.0, False, owner, x, r, u, w, out, f, data
-    )
+    kernels.forces(*system.tables, q, v, 0.0, 1.0, *work)
+    kernels.jacobian(*system.tables, system.elements, q, v, 0.0, 1.0, 1.0, 1.0, False, owner, *work, data)
     kernels.ledger(
         *system.tables, q, v, 0.0, x, r, u, w, f, np.zeros((len(system.pairs), kernels.OUT)), np.zeros(5)
     )
 
 
-def _assemble(exu, model: Model, system: System, pattern: Pattern, work: tuple) -> Assembly:
+def _assemble(exu, model: Model, system: System, pattern: Pattern, work: kernels.Work) -> Assembly:
     from exudyn.itemInterface import (
         Mass1D,
         Node1D,
@@ -159,7 +158,7 @@ def _assemble(exu, model: Model, system: System, pattern: Pattern, work: tuple) 
                 node = mbs.AddNode(Node1D(referenceCoordinates=[0.0]))
                 mbs.AddObject(Mass1D(mass=mass, nodeNumber=node))
                 nodes.append(node)
-    x, r, u, w, out, f = work
+    f = work[-1]
     tables = system.tables
     owner = kernels.owners(system.bodies, free)
     data = np.zeros(len(pattern.indices))
@@ -167,30 +166,32 @@ def _assemble(exu, model: Model, system: System, pattern: Pattern, work: tuple) 
     static = model.run.analysis == "static"
     rest = np.zeros_like(q)
 
-    def force(mbs, t, item, coordinates, velocities):
+    def force(mbs, t, itemNumber, q, q_t):
         kernels.forces(
             *tables,
             state.GetODE2Coordinates(copy=False),
             rest if static else state.GetODE2Coordinates_t(copy=False),
             t,
             t if static else 1.0,
-            x, r, u, w, out, f,
-        )  # fmt: skip
+            *work,
+        )
         return f
 
-    def tangent(mbs, t, item, coordinates, velocities, by_q, by_v):
+    def tangent(mbs, t, itemNumber, q, q_t, fODE2, fODE2_t):
         kernels.jacobian(
             *tables,
             system.elements,
-            np.array(coordinates),
-            rest.copy() if static else np.array(velocities),
+            np.array(q),
+            rest.copy() if static else np.array(q_t),
             t,
             t if static else 1.0,
-            by_q,
-            0.0 if static else by_v,
+            fODE2,
+            0.0 if static else fODE2_t,
             static,
-            owner, x, r, u, w, out, f, data,
-        )  # fmt: skip
+            owner,
+            *work,
+            data,
+        )
         return exu.MatrixContainer(csr_matrix((data, pattern.indices, pattern.indptr), shape=(free, free)))
 
     if nodes:
@@ -246,10 +247,8 @@ def _run(exu, assembly: Assembly, model: Model, count: int, h: float, touching: 
     settings = _settings(exu, count, count * h, touching)
     mbs = assembly.mbs
     try:
-        if model.run.analysis == "static":
-            done = mbs.SolveStatic(settings)  # type: ignore[attr-defined]
-        else:
-            done = mbs.SolveDynamic(settings)  # type: ignore[attr-defined]
+        run = mbs.SolveStatic if model.run.analysis == "static" else mbs.SolveDynamic
+        done = run(settings)
     except Exception as error:  # Exudyn raises its own kinds for a Newton that does not converge
         if isinstance(error, KeyboardInterrupt):
             raise
@@ -258,11 +257,10 @@ def _run(exu, assembly: Assembly, model: Model, count: int, h: float, touching: 
     return None if done else "Exudyn stopped before the end"
 
 
-def _unbalanced(system: System, q: np.ndarray, work: tuple) -> str | None:
+def _unbalanced(system: System, q: np.ndarray, work: kernels.Work) -> str | None:
     """Static equilibrium by our own account: the residual against the largest force in the sheet."""
-    x, r, u, w, out, f = work
-    kernels.forces(*system.tables, q, np.zeros_like(q), 1.0, 1.0, x, r, u, w, out, f)
-    residual = f.copy()
+    kernels.forces(*system.tables, q, np.zeros_like(q), 1.0, 1.0, *work)
+    residual = work[-1].copy()
     for row in system.bodies:
         n = row["first"]
         if n >= 0:  # along the Euler parameters themselves a force does no work

@@ -85,7 +85,7 @@ class System(NamedTuple):
     free: int  # number of coordinates
 
     @property
-    def tables(self) -> tuple:
+    def tables(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, Floats]:
         return self.bodies, self.bushings, self.pairs, self.loads, self.gravity
 
 

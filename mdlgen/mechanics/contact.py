@@ -165,7 +165,8 @@ def _local(p, r, q, a, b, c):
 
 @njit(cache=True, error_model="numpy")
 def box_cylinder(out, xa, ra, va, wa, half, exposed, xb, axis, vb, wb, radius, width, k, shared, law):
-    """Box a (centre xa, rotation ra, half lengths) against cylinder b; exposed: 4 side faces as a bit mask."""
+    """Box a (centre xa, rotation ra, half lengths) against cylinder b; exposed: 4 side faces
+    as a bit mask."""
     gap = sub(xb, xa)
     near = math.sqrt(dot(half, half)) + math.hypot(radius, 0.5 * width)
     if dot(gap, gap) > near * near:
@@ -214,7 +215,8 @@ def box_cylinder(out, xa, ra, va, wa, half, exposed, xb, axis, vb, wb, radius, w
 
 @njit(cache=True, error_model="numpy")
 def box_plane(out, xa, ra, va, wa, half, xb, rb, half_b, k, law):
-    """The corners of box a on the upper face of plate b; four corners share k, so a flat box gives k z^1.5."""
+    """The corners of box a on the upper face of plate b; four corners share k, so a flat box
+    gives k z^1.5."""
     zero = (0.0, 0.0, 0.0)
     normal = (rb[2], rb[5], rb[8])
     for corner in range(8):

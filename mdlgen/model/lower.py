@@ -233,9 +233,8 @@ def _planes(scene: Scene, first: int) -> tuple[PlanePart, ...]:
 
 def frame(z: Floats, guide: Floats | None = None) -> Floats:
     """A right-handed frame (columns x, y, z) with the given z; x near `guide`, or near global x or y."""
-    if guide is None:
-        guide = np.eye(3)[1 if abs(z[0]) > 0.9 else 0]
-    x = guide - z * (guide @ z)
+    near: Floats = np.eye(3)[1 if abs(z[0]) > 0.9 else 0] if guide is None else guide
+    x = near - z * (near @ z)
     x /= np.linalg.norm(x)
     return np.stack([x, np.cross(z, x), z], axis=1)
 

@@ -112,7 +112,7 @@ def _drive(sheet: SheetPart, roller: RollerPart, time: float) -> tuple[Floats, F
     assert roller.speed is not None
     normal = sheet.rotation[:, 2]
     height = float((roller.center - sheet.center) @ normal)
-    toward = -np.copysign(roller.radius, height) * normal
+    toward = -float(np.copysign(roller.radius, height)) * normal
     toward = toward - roller.axis * (toward @ roller.axis)
     speed = np.cross(roller.axis * roller.speed, toward)
     ramp = min(roller.ramp, time)

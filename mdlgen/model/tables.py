@@ -17,11 +17,12 @@ GROUND = -1
 AXES = ("x", "y", "z")
 
 
+@dataclass(frozen=True)
 class Frozen:
     """Makes the arrays of a frozen dataclass read-only."""
 
     def __post_init__(self) -> None:
-        for item in fields(self):  # type: ignore[arg-type]
+        for item in fields(self):
             value = getattr(self, item.name)
             if isinstance(value, np.ndarray):
                 value.setflags(write=False)

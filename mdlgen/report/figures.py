@@ -14,7 +14,7 @@ from mdlgen.results.result import Result
 # Okabe and Ito: told apart by all readers and in grey
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 # Curves often coincide (left and right): a later one is thinner, so that the one below shows.
-WIDTHS = (3.4, 2.2, 1.2)
+WIDEST, THINNEST = 3.8, 1.2
 # A component that moves less than this part of the largest is not drawn.
 STILL = 0.03
 STYLE: dict[Any, Any] = {
@@ -70,7 +70,7 @@ def _motion(result: Result, page: Any) -> None:
                 result.time,
                 result.contact_force[:, row],
                 color=COLOURS[k % len(COLOURS)],
-                linewidth=WIDTHS[k % len(WIDTHS)],
+                linewidth=WIDEST + (THINNEST - WIDEST) * k / max(1, len(rows) - 1),
                 label=f"{contacts.part_a[row]} / {contacts.part_b[row]}",
             )
         panels[2].set(title="normal force in the nips", ylabel="N")

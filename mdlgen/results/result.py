@@ -19,7 +19,8 @@ class ContactStatistics:
     mean_depth: Floats  # mean over the time in contact of the greatest depth at a time [mm]
     max_force: Floats  # greatest total normal force [N]
     mean_force: Floats  # mean over the time in contact [N]
-    last_force_at: Floats  # end of the last interval of force above 5 % of the greatest [ms]; 0: never, nan: it still acts
+    # end of the last interval of force above 5 % of the greatest [ms]; 0: never, nan: it still acts
+    last_force_at: Floats
 
 
 @dataclass

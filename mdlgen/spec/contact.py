@@ -59,5 +59,6 @@ class Contact(Strict):
     )
     share: Literal["width", "pair"] = Field(
         default="width",
-        description="width: boxes under one roller share k by the area they cover; pair: k each, as MotionSolve",
+        description="width: boxes under one roller share k by the area they cover; "
+        "pair: k each, as MotionSolve",
     )

@@ -31,7 +31,7 @@ class Strict(BaseModel):
 
 def fail(message: str, path: tuple[str | int, ...] | None = None) -> PydanticCustomError:
     """An error for pydantic to raise; `path` (from the scene's root) where it is not the field itself."""
-    return PydanticCustomError("spec", "{text}", {"text": message, "path": path})  # type: ignore[arg-type]
+    return PydanticCustomError("spec", "{text}", {"text": message, "path": path})
 
 
 class quantity:
@@ -131,11 +131,13 @@ def _axis(value: Any) -> tuple[float, float, float]:
         if not match:
             raise fail(f"{value!r} is not a direction; allowed: x, y, z, -x, -y, -z or a vector [1, 0, 0]")
         sign = -1.0 if match[1] == "-" else 1.0
-        return tuple(sign * (c == match[2]) + 0.0 for c in "xyz")  # type: ignore[return-value]
+        x, y, z = (sign * (c == match[2]) + 0.0 for c in "xyz")
+        return x, y, z
     if isinstance(value, (list, tuple)) and len(value) == 3 and all(_is_number(v) for v in value):
         length = math.hypot(*value)
         if 1e-100 < length < 1e100:
-            return tuple(float(v) / length + 0.0 for v in value)  # type: ignore[return-value]
+            x, y, z = (float(v) / length + 0.0 for v in value)
+            return x, y, z
     raise fail(f"{value!r} is not a direction; allowed: x, y, z, -x, -y, -z or a non-zero vector"[:200])
 
 

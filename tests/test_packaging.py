@@ -1,0 +1,66 @@
+"""The wheel carries templates and samples, and works from another folder; the README's examples run."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+
+import mdlgen
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+@pytest.fixture(scope="module")
+def installed(tmp_path_factory):
+    """Folder with the unpacked wheel."""
+    folder = tmp_path_factory.mktemp("wheel")
+    subprocess.run(
+        [sys.executable, "-m", "pip", "wheel", "-q", "--no-deps", "-w", str(folder), str(ROOT)], check=True
+    )
+    (wheel,) = folder.glob("*.whl")
+    with zipfile.ZipFile(wheel) as archive:
+        archive.extractall(folder / "site")
+    return folder / "site"
+
+
+def run_installed(installed, folder, *args):
+    environment = {**os.environ, "PYTHONPATH": str(installed)}
+    return subprocess.run(
+        [sys.executable, "-m", "mdlgen", *args],
+        cwd=folder,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def test_the_wheel_works_from_another_folder(installed, tmp_path):
+    made = run_installed(installed, tmp_path, "new", "scene")
+    assert made.returncode == 0, made.stderr
+    text = run_installed(installed, tmp_path, "mdl", "scene/transport_4x4.yaml", "-o", "note.mdl")
+    assert text.returncode == 0, text.stderr
+    assert (tmp_path / "note.mdl").read_text() == mdlgen.emit(
+        mdlgen.lower(mdlgen.load(ROOT / "samples" / "transport_4x4.yaml")), "motionview"
+    )
+
+
+def test_the_readmes_first_scene_loads():
+    (scene,) = re.findall(r"```yaml\n(.*?)```", (ROOT / "README.md").read_text("utf-8"), re.DOTALL)
+    model = mdlgen.lower(mdlgen.loads(scene))
+    assert len(scene.splitlines()) == 10
+    assert mdlgen.emit(model, "motionview")
+
+
+def test_the_readmes_two_commands_are_one_line_each():
+    blocks = re.findall(
+        r"^```sh\n(.*?)^```", (ROOT / "README.md").read_text("utf-8"), re.DOTALL | re.MULTILINE
+    )
+    assert len(blocks) >= 2
+    assert all(len(block.strip().splitlines()) == 1 for block in blocks[:2])

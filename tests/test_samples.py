@@ -1,0 +1,92 @@
+"""Every sample is run, and the transport scenes give what the paper reports."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import mdlgen
+from mdlgen.paths import samples
+
+TRANSPORT = ("transport_4x4", "transport_4x2", "transport_tilted")
+QUICK = sorted(
+    path.relative_to(samples()).with_suffix("").as_posix()
+    for path in samples().rglob("*.yaml")
+    if path.stem not in TRANSPORT
+)
+
+
+def solved(name, **options):
+    result = mdlgen.solve(mdlgen.lower(mdlgen.load(samples() / f"{name}.yaml")), "exudyn", **options)
+    assert result.ok, result.status
+    return result, result.summary()
+
+
+@pytest.mark.parametrize("name", QUICK)
+def test_sample_runs(name):
+    result, summary = solved(name)
+    assert summary["status"] == "ok"
+    assert np.isfinite(result.position).all()
+
+
+@pytest.mark.parametrize("name", [*QUICK, *TRANSPORT])
+def test_sample_has_a_text_and_a_header(name):
+    path = samples() / f"{name}.yaml"
+    assert path.read_text().startswith("# ")
+    text = mdlgen.emit(mdlgen.lower(mdlgen.load(path)), "motionview")
+    assert text.rstrip().endswith("*EndMDL()")
+
+
+def test_four_pairs_of_rollers():
+    """Paper section 4.1: 66.5 mm in 50 ms, 1400 mm/s, nips, penetrations; and half the step agrees."""
+    _, summary = solved("transport_4x4", check_step=True)
+    note = summary["sheets"]["note"]
+    assert note["travel_mm"][0] == pytest.approx(66.5, rel=0.015)
+    assert note["speed_mm_per_s"][0] == pytest.approx(1400, rel=0.02)
+    assert summary["error_estimate"] < 1e-3
+    assert summary["pairs"]["kept"] < 0.3 * summary["pairs"]["possible"]
+    for side in ("left", "right"):
+        for row in (1, 2):
+            for kind in ("motor", "counter"):
+                roller = summary["rollers"][f"{kind}_{row}_{side}"]
+                assert 0.03 < roller["mean_penetration_mm"] < 0.06
+                assert 0.03 < roller["max_penetration_mm"] < 0.06
+        nip = summary["rollers"][f"counter_2_{side}"]
+        assert 26 <= nip["free_of_counterpart_at_ms"] <= 32
+        assert nip["contacts"][f"motor_2_{side}"]["max_penetration_mm"] == pytest.approx(0.22, abs=0.01)
+    assert abs(summary["energy"]["balance_error"]) < 5e-3
+    # symmetric scene, symmetric answer
+    assert abs(note["yaw_deg"]) < 1e-3
+    assert abs(note["travel_mm"][1]) < 1e-3
+
+
+def test_two_pairs_and_two_single_rollers():
+    """Paper section 4.2: the note creeps, reaches row 2 after more than twice the time, then 1400 mm/s."""
+    result, summary = solved("transport_4x2")
+    row = [i for i, b in enumerate(result.model.contacts.part_b) if b == "counter_2_left"]
+    note = next(i for i in row if result.model.contacts.part_a[i] == "note")
+    arrived = result.time[np.flatnonzero(result.contact_force[:, note] > 0)[0]]
+    assert 90 <= arrived <= 130
+    assert summary["sheets"]["note"]["speed_mm_per_s"][0] == pytest.approx(1400, rel=0.03)
+    # friction cannot accelerate it faster than mu g, with mu = 1 at the rollers
+    before = result.time < arrived
+    speed = result.sheet_motion(0)[1][before, 0]
+    assert (speed <= 9.81e-3 * result.time[before] + 0.02).all()
+
+
+def test_a_tilted_note_is_turned_over_to_the_other_side():
+    """Paper section 4.3: the slow side near 0.9 mm/ms, the fast side near 1.6, the tilt over-corrected."""
+    result, summary = solved("transport_tilted")
+    rows = [i for i, b in enumerate(result.model.contacts.part_b) if b.endswith(("1_left", "1_right"))]
+    notes = [i for i in rows if result.model.contacts.part_a[i] == "note"]
+    held = np.flatnonzero((result.contact_force[:, notes] > 0).any(axis=1))[-1]
+    alone = slice(held + 1, None)
+    box_speed = result.velocity[alone, :200, 0]
+    # the boxes in the nips of row 2, where each roller's force acts
+    names = [p.name for p in result.model.probes]
+    slow = result.anchor_motion(names.index("slow"))[1][alone, 0]
+    fast = result.anchor_motion(names.index("fast"))[1][alone, 0]
+    assert 0.9 <= slow.mean() <= 1.1
+    assert 1.5 <= fast.mean() <= 1.85
+    assert box_speed.min() < 1.1 and box_speed.max() > 1.5
+    assert summary["sheets"]["note"]["yaw_deg"] < 0 < np.degrees(result.model.sheets[0].angles[2])
