@@ -269,17 +269,20 @@ def test_mdl_to_a_bad_place_leaves_nothing(mdl: Run, tmp_path: Path, target: str
     assert files(tmp_path) == ["link.mdl", "real.mdl"]
 
 
-def test_mdl_takes_less_than_a_second(tmp_path: Path) -> None:
-    args = [sys.executable, "-m", "mdlgen", "mdl", str(FOUR), "-o", "-", "-q"]
-    best = 10.0
-    for _ in range(3):
-        begun = time.perf_counter()
-        subprocess.run(args, cwd=tmp_path, check=True, stdout=subprocess.DEVNULL)
-        best = min(best, time.perf_counter() - begun)
-        if best < 1.0:
-            return
-    # measured 0.6 s; the best of three, since others share the machine
-    assert best < 1.0
+def cpu_of(*args: str) -> float:
+    """Processor time of a whole process [s]: wall time would measure who else is on the machine."""
+    before = os.times()
+    subprocess.run([sys.executable, *args], check=True, stdout=subprocess.DEVNULL)
+    after = os.times()
+    return after.children_user - before.children_user + after.children_system - before.children_system
+
+
+def test_mdl_is_a_small_multiple_of_importing_its_libraries() -> None:
+    libraries = ("-c", "import jinja2, numpy, pydantic, ruamel.yaml, typer")
+    ours = ("-m", "mdlgen", "mdl", str(FOUR), "-o", "-", "-q")
+    ratios = [cpu_of(*ours) / cpu_of(*libraries) for _ in range(3)]
+    # measured 2.5 (0.6 to 0.9 s); a solver's import alone would add 3
+    assert sorted(ratios)[1] < 4.0
 
 
 # ---------------------------------------------------------------- run

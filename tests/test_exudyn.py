@@ -233,3 +233,51 @@ def test_pruning_changes_nothing():
     # the same forces in another order of unknowns: equal to Newton's tolerance
     assert np.abs(one.position - two.position).max() < 1e-6
     assert len(two.model.pairs) == 1804
+
+
+def test_a_block_rests_on_a_plate_smaller_than_itself():
+    small = "planes.floor.size=[15 mm, 15 mm, 10 mm]"
+    narrow = "planes.floor.size=[6 mm, 100 mm, 10 mm]"
+    for size in (small, narrow):
+        result = run("samples/verify/drop.yaml", size, "run.duration=200 ms")
+        whole = run("samples/verify/drop.yaml", "run.duration=200 ms")
+        assert np.abs(result.position - whole.position)[:, 0].max() < 1e-6
+
+
+POST = """
+name: post
+gravity: [0 m/s^2, 0 m/s^2, 0 m/s^2]
+materials: {s: {E_md: 1000 MPa, E_cd: 1000 MPa, k_tx: 1 N*mm/rad, k_ty: 1 N*mm/rad}}
+sheets:
+  block: {material: s, size: [20 mm, 20 mm], thickness: 2 mm, mass: 2 g, boxes: [1, 1],
+          velocity: [1 m/s, 0 m/s, 0 m/s]}
+rollers:
+  post: {center: [30 mm, 0 mm, 0 mm], axis: z, radius: 5 mm, width: 20 mm, mass: 10 g}
+contacts: [{between: [block, post], stiffness: 300 N/mm^1.5, restitution: 1.0}]
+run: {duration: 30 ms}
+"""
+
+
+@pytest.mark.parametrize("height", [0.0, 0.9, 1.1, 5.0])
+def test_a_roller_that_stands_across_the_sheet_stops_it(height):
+    result = run_text(POST, f"rollers.post.center=[30 mm, 0 mm, {height} mm]")
+    assert result.velocity[-1, 0, 0] == pytest.approx(-1.0, abs=0.01)
+
+
+def test_a_run_that_makes_energy_fails():
+    result = solve(lower(load("samples/verify/drop.yaml", ["run.step=0.5 ms", "run.prune=false"])))
+    assert not result.ok
+    assert "energy" in result.status
+
+
+def test_a_pressed_roller_that_runs_away_fails_by_name():
+    text = POST.replace("axis: z", "axis: y, press: {direction: -z, stiffness: 0 N/mm, preload: 0.5 N}")
+    result = solve(lower(loads(text, overrides=["sheets.block.velocity=[0 m/s, 0 m/s, 0 m/s]"])))
+    assert not result.ok
+    assert "roller post left the bounds" in result.status
+
+
+def test_a_static_run_is_at_rest():
+    result = run(CANTILEVER, "sheets.note.boxes=[1,20]", "sheets.note.velocity=[1 m/s, 0 m/s, 0 m/s]")
+    assert not result.velocity.any()
+    assert result.energy.kinetic == 0.0

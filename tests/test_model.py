@@ -11,7 +11,7 @@ import pytest
 from mdlgen.errors import SpecError
 from mdlgen.model.lower import lower
 from mdlgen.model.tables import CLAMP, GROUND, JOINT_X, JOINT_Y
-from mdlgen.spec.load import load
+from mdlgen.spec.load import load, loads
 
 TRANSPORT, CANTILEVER = "samples/transport_4x4.yaml", "samples/cantilever.yaml"
 
@@ -142,3 +142,40 @@ def test_names_that_meet_are_refused(tmp_path):
     path.write_text(text)
     with pytest.raises(SpecError, match="note_0_0"):
         lower(load(path))
+
+
+def test_pressed_rollers_count_what_they_stand_on():
+    """The start balances the preload whatever the share rule and wherever the counterpart ends."""
+    shared = model().roller("counter_1_left").press
+    alone = model(TRANSPORT, "contacts.4.share=pair", "contacts.5.share=pair").roller("counter_1_left").press
+    # two boxes in each row share the nip's width, so the roller sinks less by 2^(2/3)
+    assert alone.start < shared.start < alone.start + 0.05
+    half = (
+        model(TRANSPORT, "rollers.counter_2_left.center=[72 mm, -18 mm, 5 mm]").roller("counter_2_left").press
+    )
+    force = 3.19 - 0.319 * (half.start - half.touch) + (0.39 + 0.39e-3) * 9.81e-3
+    assert 0.5 * 30.5 * (half.start - half.touch) ** 1.5 == pytest.approx(force, rel=1e-6)
+
+
+def test_rollers_pressed_against_each_other_are_refused():
+    press = "{direction: z, stiffness: 0.3 N/mm, preload: 3 N}"
+    with pytest.raises(SpecError, match="pressed against each other"):
+        model(TRANSPORT, f"rollers.motor_2_left.press={press}")
+
+
+def test_friction_speeds():
+    speeds = model("samples/verify/slide.yaml", "contacts.0.friction={static: 0.5, dynamic: 0.3}").contacts
+    assert (speeds.stiction_velocity[0], speeds.friction_velocity[0]) == pytest.approx((1e-3, 1.5e-3))
+    with pytest.raises(SpecError, match="below the stiction velocity"):
+        model(
+            "samples/verify/slide.yaml",
+            "contacts.0.friction={static: 0.5, dynamic: 0.3, friction_velocity: 0.2 mm/s}",
+        )
+
+
+def test_the_pulled_sheet_is_the_one_with_the_load():
+    text = Path(CANTILEVER).read_text().replace("run: {analysis: static}", "")
+    second = text + "loads: [{sheet: note, edge: y_max, stress: 1 MPa}]\nrun: {analysis: static}\n"
+    tension = lower(loads(second)).tension
+    assert tension is not None
+    assert (tension.axis, tension.length) == (1, pytest.approx(19.5 * 6.35))

@@ -8,7 +8,7 @@ import numpy as np
 
 from backends.exudyn_local import kernels
 from backends.exudyn_local.system import MM, MS, PER_MM, System, quaternions
-from mdlgen.model.tables import Model
+from mdlgen.model.tables import BOX_PLANE, Model
 from mdlgen.results.result import ContactStatistics, Energy, Result
 
 # Two rollers with a sheet between them clear each other by a few micrometres and may graze.
@@ -36,9 +36,12 @@ class Recorder:
         self._stored: dict[str, list] = {name: [] for name in ("t", "x", "e", "u", "w", "f")}
         self._first: np.ndarray | None = None
         self._lost = self._driven = 0.0
-        self._through = 0.0
+        self._through = self._most = 0.0
         self._low, self._high = model.pairs.low * MM, model.pairs.high * MM
         self._last_stored = -1
+        # depth beyond which a box is about to come out at the other side of a plate
+        plates = system.pairs["kind"] == BOX_PLANE
+        self._plate = np.where(plates, system.bodies["half"][system.pairs["b"], 2], np.inf)
 
     def plan(self, h: float) -> None:
         """Which times are stored: the print times, at the first step that reaches them, and the end."""
@@ -77,6 +80,7 @@ class Recorder:
         """Observe and store one state outside the stepping (the start, or a static result)."""
         self._observe(q, v, t)
         self._store(t)
+        self._watch(t)
 
     def _observe(self, q: np.ndarray, v: np.ndarray, t: float) -> None:
         x, r, u, w, _, f = self._work
@@ -87,6 +91,7 @@ class Recorder:
         self._lost += 0.5 * step * (before[3] + self._totals[3])
         self._driven += 0.5 * step * (before[4] + self._totals[4])
         self._through += 0.5 * step * (abs(before[4]) + abs(self._totals[4]))
+        self._most = max(self._most, self._totals[0] + self._totals[1])
         if self._first is None:
             self._first = self._totals[:3].copy()
         self._contacts(step, t)
@@ -125,13 +130,23 @@ class Recorder:
         self._stored["f"].append(self._force.copy() if self._pairs.size else np.zeros(rows))
 
     def _watch(self, t: float) -> None:
+        """Sets the reason of a failure where a body left its bounds or went deep into a plate."""
         x = self._work[0][:-1]
+        deep = np.flatnonzero(self._pairs[:, 15] > self._plate)
+        if deep.size:
+            box = self.model.bodies.name[int(self.model.pairs.a[deep[0]])]
+            plate = self.model.bodies.name[int(self.model.pairs.b[deep[0]])]
+            self.reason = (
+                f"box {box} is more than half of its thickness into plane {plate} at {t / MS:.6g} ms; "
+                "a stiffer contact or a smaller run.step would hold it"
+            )
         out = np.flatnonzero(((x < self._low) | (x > self._high)).any(axis=1))
         if out.size:
             name = self.model.bodies.name[int(out[0])]
             at = ", ".join(f"{value:.4g}" for value in x[out[0]] * PER_MM)
+            kind = "box" if self.model.sheet_of(int(out[0])) else "roller"
             self.reason = (
-                f"box {name} left the bounds from which its contacts were chosen at {t / MS:.6g} ms "
+                f"{kind} {name} left the bounds from which its contacts were chosen at {t / MS:.6g} ms "
                 f"(it is at {at} mm); set run.prune: false, "
                 f"or a run.margin above {self.model.pairs.margin:g} mm"
             )
@@ -175,7 +190,7 @@ class Recorder:
         kinetic, elastic, potential = self._totals[:3]
         first = self._first
         change = kinetic + elastic + potential - first.sum()
-        scale = max(abs(self._lost), self._through, abs(kinetic - first[0]), abs(potential - first[2]), 1e-15)
+        scale = max(abs(self._lost), self._through, self._most, abs(potential - first[2]), 1e-15)
         to_nmm = 1.0 / MM
         return Energy(
             kinetic=kinetic * to_nmm,

@@ -26,6 +26,8 @@ SPECTRAL_RADIUS = 0.6
 # Newton's tolerance: the default 1e-10 lies below the round-off of stiff bushings (k eps |x|).
 NEWTON_TOLERANCE = 1e-8
 STATIC_LOAD_STEPS = 20
+# Energy made by the integration, relative to what passed through, above which a run fails.
+ENERGY_GAIN = 0.02
 # Relative to the load of one step; what counts is our own check of the residual at the end.
 STATIC_TOLERANCE = 1e-8
 # A step may shrink to this part of the wanted one before the run fails.
@@ -73,6 +75,8 @@ def solve(model: Model, progress: Progress | None = None, step: float | None = N
     wall = clock.perf_counter() - begun
     data = assembly.mbs.systemData
     q, v = np.array(data.GetODE2Coordinates()), np.array(data.GetODE2Coordinates_t())
+    if static:
+        v[:] = 0.0  # Exudyn leaves the initial velocities there
     if static and reason is None:
         recorder.store(q, v, 0.0)
     reason = recorder.reason or reason
@@ -84,6 +88,12 @@ def solve(model: Model, progress: Progress | None = None, step: float | None = N
     if reason is None and static:
         reason = _unbalanced(system, q, work)
     result = recorder.result("exudyn", reason)
+    if result.ok and result.energy.balance_error > ENERGY_GAIN:
+        # the integrator's own damping may lose energy; nothing may make it
+        result = result.failed(
+            f"{100 * result.energy.balance_error:.3g} % of the energy came from nowhere; "
+            "take a smaller run.step"
+        )
     result.wall_s, result.build_s, result.compile_s = wall, build_s, compile_s
     result.step, result.steps = h / MS, recorder.steps
     result.versions = {"exudyn": exu.config.Version() if hasattr(exu.config, "Version") else exu.__version__}

@@ -11,6 +11,8 @@ from mdlgen.model.tables import CYLINDER_CYLINDER, Model
 FLEXIBLE_STEP = 0.05  # ms at tolerance 1e-3
 # A rigid block that bounces: steps in one contact; 50 give 0.1 % of the rebound.
 STEPS_IN_CONTACT = 50.0  # at tolerance 1e-3
+# Below this restitution the force drops sharply at the greatest depth and wants finer steps.
+SOFT_RESTITUTION = 0.4
 
 
 def choose_steps(model: Model, step: float | None = None) -> tuple[int, float]:
@@ -36,7 +38,8 @@ def _from_tolerance(model: Model) -> float:
         sheet = next(s for s in model.sheets if s.name == model.contacts.part_a[row])
         if sheet.count == 1:
             time = impact_time(model, row, sheet.derived["m"])
-            wanted = min(wanted, time / STEPS_IN_CONTACT * finer)
+            soft = SOFT_RESTITUTION / max(float(model.contacts.restitution[row]), 0.25 * SOFT_RESTITUTION)
+            wanted = min(wanted, time / (STEPS_IN_CONTACT * max(1.0, soft)) * finer)
     return wanted
 
 

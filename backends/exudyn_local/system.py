@@ -150,9 +150,9 @@ def _bodies(model: Model, moving: bool) -> tuple[np.ndarray, int]:
             mass = (roller.mass + spring.carrier_mass) * G
             row["press"][:4] = (spring.stiffness * PER_MM, spring.damping * MS * PER_MM, force, mass)
             row["slide"], free = free, free + 1
-        if roller.speed is not None:
+        if roller.speed is not None and moving:  # in a static analysis no roller turns
             row["drive"] = (roller.speed * PER_MS, roller.ramp * MS)
-        elif moving:  # in a static analysis a free roller does not turn
+        elif roller.speed is None and moving:
             row["spin"], free = free, free + 1
     return bodies, free
 

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 from numba import njit
 
 from mdlgen.mechanics.laws import damped, friction_over_speed
@@ -173,7 +174,8 @@ def box_cylinder(out, xa, ra, va, wa, half, exposed, xb, axis, vb, wb, radius, w
         return
     l0, al = back(ra, gap), back(ra, axis)
     sign = 1.0 if l0[2] >= 0.0 else -1.0
-    if abs(l0[2]) > half[2]:
+    upright = abs(al[2]) > 0.98  # a roller that stands across the sheet meets its sides only
+    if abs(l0[2]) > half[2] and not upright:
         _face(
             out,
             0,
@@ -198,7 +200,11 @@ def box_cylinder(out, xa, ra, va, wa, half, exposed, xb, axis, vb, wb, radius, w
             law,
         )
         return
-    # the axis lies within the thickness: the roller meets a side
+    # the axis lies within the thickness, or crosses it: the roller meets a side
+    if upright:
+        along = min(max(-l0[2] / al[2], -0.5 * width), 0.5 * width)
+        if abs(l0[2] + along * al[2]) > half[2]:
+            return
     sign = 1.0 if l0[0] >= 0.0 else -1.0
     if exposed & (2 if sign > 0 else 1) and abs(l0[0]) > half[0]:
         free = ((exposed >> 2) & 3) + 12  # y_min, y_max, and both faces
@@ -214,21 +220,70 @@ def box_cylinder(out, xa, ra, va, wa, half, exposed, xb, axis, vb, wb, radius, w
 
 
 @njit(cache=True, error_model="numpy")
+def _clip(points, count, axis, limit, sign):
+    """Cuts a polygon by sign * coordinate <= limit, in place; returns its number of points."""
+    kept = np.empty((12, 3))
+    found = 0
+    for i in range(count):
+        one, two = points[i], points[(i + 1) % count]
+        d1, d2 = limit - sign * one[axis], limit - sign * two[axis]
+        if d1 >= 0.0:
+            kept[found] = one
+            found += 1
+        if (d1 > 0.0 and d2 < 0.0) or (d1 < 0.0 and d2 > 0.0):
+            kept[found] = one + (two - one) * (d1 / (d1 - d2))
+            found += 1
+    points[:found] = kept[:found]
+    return found
+
+
+@njit(cache=True, error_model="numpy")
 def box_plane(out, xa, ra, va, wa, half, xb, rb, half_b, k, law):
-    """The corners of box a on the upper face of plate b; four corners share k, so a flat box
-    gives k z^1.5."""
+    """The face of box a that looks at plate b, on the plate's upper face.
+
+    The corners of the part of the box's face that lies over the plate share k, so a flat box gives
+    k z^1.5 wherever it lies.
+    """
     zero = (0.0, 0.0, 0.0)
     normal = (rb[2], rb[5], rb[8])
-    for corner in range(8):
-        sx = -1.0 if corner & 1 else 1.0
-        sy = -1.0 if corner & 2 else 1.0
-        sz = -1.0 if corner & 4 else 1.0
-        point = add(xa, rotate(ra, (sx * half[0], sy * half[1], sz * half[2])))
-        at = back(rb, sub(point, xb))
-        depth = half_b[2] - at[2]
-        if depth <= 0.0 or depth > 2 * half_b[2] or abs(at[0]) > half_b[0] or abs(at[1]) > half_b[1]:
+    offset = back(rb, sub(xa, xb))
+    reach = math.sqrt(dot(half, half))
+    if (
+        offset[2] - half_b[2] > reach
+        or abs(offset[0]) > half_b[0] + reach
+        or abs(offset[1]) > half_b[1] + reach
+    ):
+        return
+    facing = back(ra, normal)
+    q = (
+        2
+        if abs(facing[2]) >= max(abs(facing[0]), abs(facing[1]))
+        else 0
+        if abs(facing[0]) > abs(facing[1])
+        else 1
+    )
+    p, r = (q + 1) % 3, (q + 2) % 3
+    side = -half[q] if facing[q] > 0.0 else half[q]
+    points = np.empty((12, 3))
+    inside = True
+    for corner in range(4):
+        sp = half[p] if corner == 0 or corner == 3 else -half[p]
+        sr = half[r] if corner < 2 else -half[r]
+        at = back(rb, sub(add(xa, rotate(ra, _local(p, r, q, sp, sr, side))), xb))
+        inside = inside and abs(at[0]) <= half_b[0] and abs(at[1]) <= half_b[1]
+        for i in range(3):
+            points[corner, i] = at[i]
+    count = 4
+    if not inside:
+        for axis in range(2):
+            count = _clip(points, count, axis, half_b[axis], 1.0)
+            count = _clip(points, count, axis, half_b[axis], -1.0)
+    for i in range(count):
+        depth = half_b[2] - points[i, 2]
+        if depth <= 0.0 or depth > 2 * half_b[2]:
             continue
-        spring = 0.25 * k * depth * math.sqrt(depth)
+        point = add(xb, rotate(rb, (points[i, 0], points[i, 1], points[i, 2])))
+        spring = k / count * depth * math.sqrt(depth)
         _push(out, point, normal, spring, depth, 0.4 * spring * depth, xa, va, wa, xb, zero, zero, law)
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from mdlgen.errors import SpecError
 from mdlgen.model import grid, naming, press
 from mdlgen.model.pairs import find_pairs
 from mdlgen.model.parameters import parameters
@@ -29,6 +30,7 @@ from mdlgen.model.tables import (
     RollerPart,
     RunSettings,
     SheetPart,
+    Tension,
 )
 from mdlgen.spec.action import OnSheet
 from mdlgen.spec.machine import Roller
@@ -131,8 +133,6 @@ def _contacts(scene: Scene) -> Contacts:
         CYLINDER_CYLINDER if a in scene.rollers else BOX_CYLINDER if b in scene.rollers else BOX_PLANE
         for _, a, b in rows
     ]
-    slow = column(lambda c: c.friction.stiction_velocity or c.smoothing)
-    fast = column(lambda c: c.friction.friction_velocity or 0.0)
     return Contacts(
         entry=np.array([i for i, _, _ in rows], dtype=np.int64),
         part_a=tuple(a for _, a, _ in rows),
@@ -142,8 +142,8 @@ def _contacts(scene: Scene) -> Contacts:
         restitution=column(lambda c: c.restitution),
         mu_static=column(lambda c: c.friction.static),
         mu_dynamic=column(lambda c: c.friction.dynamic),
-        stiction_velocity=slow,
-        friction_velocity=np.maximum(fast, slow),
+        stiction_velocity=column(lambda c: c.friction.speeds(c.smoothing)[0]),
+        friction_velocity=column(lambda c: c.friction.speeds(c.smoothing)[1]),
         smoothing=column(lambda c: c.smoothing),
         share=tuple(scene.contacts[i].share for i, _, _ in rows),
     )
@@ -192,13 +192,19 @@ def _press(scene: Scene, name: str, sheets: tuple[SheetPart, ...], contacts: Con
         stiffness = float(contacts.stiffness[row])
         if contacts.kind[row] == CYLINDER_CYLINDER:
             partner: Roller = scene.rollers[other]
-            cylinder = press.Cylinder(np.array(partner.center), partner.radius, stiffness)
+            if partner.press is not None:
+                raise SpecError(
+                    f"{name} and {other} are pressed against each other; give one of them a fixed axis",
+                    ("rollers", name, "press"),
+                )
+            cylinder = press.Cylinder(np.array(partner.center), partner.radius, partner.width, stiffness)
             others.append(cylinder)
-            forces.append(press.cylinder_contact(cylinder, axis, roller.radius))
+            forces.append(press.cylinder_contact(cylinder, axis, roller.radius, roller.width))
         else:
             sheet = next(s for s in sheets if s.name == other)
-            forces.append(press.sheet_contact(sheet, axis, roller.radius, roller.width, stiffness))
-    touch = press.touch_offset(center, axis, direction, roller.radius, others)
+            shared = contacts.share[row] == "width"
+            forces.append(press.sheet_contact(sheet, axis, roller.radius, roller.width, stiffness, shared))
+    touch = press.touch_offset(center, axis, direction, roller.radius, roller.width, others)
     weight = mass * float(np.array(scene.gravity) @ direction)
 
     def spring(offset: float) -> float:
@@ -397,14 +403,16 @@ def _loads(scene: Scene, sheets: tuple[SheetPart, ...]) -> Loads:
     )
 
 
-def _tension(scene: Scene, sheets: tuple[SheetPart, ...]) -> tuple[int, float] | None:
-    """(axis, flexible length) where the first sheet is clamped and pulled by stress on the opposite edge."""
-    load = next((x for x in scene.loads if x.stress is not None), None)
-    sheet = sheets[0]
-    if load is None or sheet.clamp is None or load.edge is None or load.sheet != sheet.name:
-        return None
-    axis = 0 if load.edge[0] == "x" else 1
-    if sheet.clamp.edge[0] != load.edge[0] or sheet.clamp.edge == load.edge:
-        return None
-    count, pitch = ((sheet.n_x, sheet.d_x), (sheet.n_y, sheet.d_y))[axis]
-    return axis, (count - sheet.clamp.rows - 0.5) * pitch
+def _tension(scene: Scene, sheets: tuple[SheetPart, ...]) -> Tension | None:
+    """The first sheet that is pulled by stress on the edge opposite to its clamp."""
+    for load in scene.loads:
+        if load.stress is None or load.edge is None:
+            continue
+        index = next(k for k, s in enumerate(sheets) if s.name == load.sheet)
+        sheet = sheets[index]
+        if sheet.clamp is None or sheet.clamp.edge[0] != load.edge[0] or sheet.clamp.edge == load.edge:
+            continue
+        axis = 0 if load.edge[0] == "x" else 1
+        count, pitch = ((sheet.n_x, sheet.d_x), (sheet.n_y, sheet.d_y))[axis]
+        return Tension(index, axis, (count - sheet.clamp.rows - 0.5) * pitch)
+    return None

@@ -56,6 +56,12 @@ def find_pairs(
             least, most, reach = _swept(gravity, sheet, touched, bodies, run)
             low[boxes], high[boxes] = least - margin, most + margin
             extents[sheet.name] = (low[boxes] - reach - SLACK, high[boxes] + reach + SLACK)
+    if prune:
+        for roller in rollers:
+            if roller.press is not None:  # it may move by its radius along its slide
+                way = roller.radius * np.abs(roller.press.direction) + margin
+                low[roller.body] = bodies.position[roller.body] - way
+                high[roller.body] = bodies.position[roller.body] + way
     for row in range(len(contacts)):
         other = parts[contacts.part_b[row]]
         if contacts.kind[row] == CYLINDER_CYLINDER:
@@ -140,6 +146,9 @@ def _turned(
     sheet: SheetPart, arms: Floats, turn: float, half: Floats
 ) -> tuple[tuple[Floats, Floats], Floats]:
     """Bounds of `arms` (n, 3) turned in the sheet's plane by up to +-turn, and half extents of a box."""
+    if sheet.count == 1:
+        # a rigid block may tumble: its corners reach as far as its diagonal
+        half = np.full(3, float(np.linalg.norm(half)))
     if turn >= np.pi:
         radius = np.linalg.norm(arms, axis=1)[:, None] * np.ones(3)
         return (-radius, radius), np.full(3, float(np.linalg.norm(half)))
@@ -152,7 +161,7 @@ def _turned(
         turned = flat @ spun.T
         lows.append(turned)
         highs.append(turned)
-        extent = np.maximum(extent, np.abs(spun) @ half)
+        extent = half if sheet.count == 1 else np.maximum(extent, np.abs(spun) @ half)
     # between two sampled angles a point strays from them by at most its radius times this
     sag = (1 - np.cos(turn / (_TURN_STEPS - 1))) * np.linalg.norm(arms, axis=1)[:, None]
     return (np.min(lows, axis=0) - sag, np.max(highs, axis=0) + sag), extent
@@ -166,5 +175,5 @@ def _part_bounds(part: RollerPart | PlanePart, bodies: Bodies) -> tuple[Floats, 
         return center - extent, center + extent
     extent = np.abs(part.axis) * part.width / 2 + part.radius * np.sqrt(np.maximum(0, 1 - part.axis**2))
     if part.press is not None:
-        extent = extent + part.radius * np.abs(part.press.direction)
+        extent = extent + part.radius * np.abs(part.press.direction) + SLACK
     return center - extent, center + extent

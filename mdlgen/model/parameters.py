@@ -29,8 +29,7 @@ def parameters(
     for index, contact in enumerate(scene.contacts):
         base, group = ("contacts", index), f"contact_{index}"
         friction, smooth = contact.friction, contact.smoothing
-        slow = friction.stiction_velocity or smooth
-        fast = max(friction.friction_velocity or slow, slow)
+        slow, fast = friction.speeds(smooth)
         for member, label, value, unit, path in (
             ("k", "Stiffness k (N/mm to the 1.5)", contact.stiffness, "N/mm^1.5", "stiffness"),
             ("c_R", "Restitution c_R", contact.restitution, "1", "restitution"),
@@ -123,9 +122,9 @@ def _roller(scene: Scene, name: str, starts: dict[str, tuple[float, float]]) -> 
             Parameter(name, "l", "Spring free length", press.free_length, "mm", (*way, "free_length")),
             Parameter(name, "zeta", "Relative damping", press.damping_ratio, "1", (*way, "damping_ratio")),
             Parameter(name, "M_c", "Carrier mass", carrier, "g", (*way, "carrier_mass")),
-            Parameter(name, "touch", "Touching position along the slide", touch, "mm", None),
+            Parameter(name, "touch", "Touching position along the slide, as written", touch, "mm", None),
             Parameter(
-                name, "start", "Start position along the slide (static equilibrium)", start, "mm", None
+                name, "start", "Start along the slide in static equilibrium, as written", start, "mm", None
             ),
         ]
     return rows

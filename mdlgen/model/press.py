@@ -13,15 +13,22 @@ from mdlgen.model.tables import Floats, SheetPart
 
 @dataclass(frozen=True)
 class Cylinder:
-    """A counterpart: centre, radius and stiffness of the contact."""
+    """A counterpart: centre, radius, width, and stiffness of the contact."""
 
     center: Floats
     radius: float
+    width: float
     stiffness: float
+
+    def share(self, center: Floats, axis: Floats, width: float) -> float:
+        """Part of the narrower roller's width on which the two meet, 0 to 1."""
+        offset = float((center - self.center) @ axis)
+        low, high = max(offset - width / 2, -self.width / 2), min(offset + width / 2, self.width / 2)
+        return max(0.0, high - low) / min(width, self.width)
 
 
 def touch_offset(
-    center: Floats, axis: Floats, direction: Floats, radius: float, others: Sequence[Cylinder]
+    center: Floats, axis: Floats, direction: Floats, radius: float, width: float, others: Sequence[Cylinder]
 ) -> float:
     """Offset along `direction` at which the roller just touches the first counterpart ahead [mm].
 
@@ -29,6 +36,8 @@ def touch_offset(
     """
     offsets = []
     for other in others:
+        if other.share(center, axis, width) == 0.0:
+            continue
         gap = other.center - center
         gap = gap - axis * (gap @ axis)
         along = gap @ direction
@@ -39,16 +48,20 @@ def touch_offset(
     return float(min(offsets, default=0.0))
 
 
-def covered_share(sheet: SheetPart, center: Floats, axis: Floats, width: float) -> float:
-    """Part of a roller's width whose foot points lie on the (flat) sheet, 0 to 1."""
+def covered_share(sheet: SheetPart, center: Floats, axis: Floats, width: float, shared: bool) -> float:
+    """What the (flat) sheet under a roller counts of k: the part of the width that it covers, or, where
+    pairs do not share, the number of boxes that the roller stands on."""
     stations = (np.arange(200) + 0.5) / 200 - 0.5
     points = (center + np.outer(stations * width, axis) - sheet.center) @ sheet.rotation
-    half = np.array([sheet.n_x * sheet.d_x, sheet.n_y * sheet.d_y]) / 2
-    return float(np.mean(np.all(np.abs(points[:, :2]) <= half, axis=1)))
+    cells = points[:, :2] / (sheet.d_x, sheet.d_y) + np.array([sheet.n_x, sheet.n_y]) / 2
+    inside = np.all((cells >= 0) & (cells <= (sheet.n_x, sheet.n_y)), axis=1)
+    if shared:
+        return float(np.mean(inside))
+    return float(len(np.unique(np.floor(cells[inside]), axis=0)))
 
 
 def sheet_contact(
-    sheet: SheetPart, axis: Floats, radius: float, width: float, stiffness: float
+    sheet: SheetPart, axis: Floats, radius: float, width: float, stiffness: float, shared: bool
 ) -> Callable[[Floats], Floats]:
     """Force on a roller at a given centre from the flat sheet held where it starts [N], (3,)."""
     normal = sheet.rotation[:, 2]
@@ -58,13 +71,15 @@ def sheet_contact(
         depth = radius + sheet.thickness / 2 - abs(height)
         if depth <= 0.0:
             return np.zeros(3)
-        share = covered_share(sheet, center, axis, width)
+        share = covered_share(sheet, center, axis, width, shared)
         return math.copysign(stiffness * share * depth**1.5, height) * normal
 
     return force
 
 
-def cylinder_contact(other: Cylinder, axis: Floats, radius: float) -> Callable[[Floats], Floats]:
+def cylinder_contact(
+    other: Cylinder, axis: Floats, radius: float, width: float
+) -> Callable[[Floats], Floats]:
     """Force on a roller at a given centre from a parallel roller held where it starts [N], (3,)."""
 
     def force(center: Floats) -> Floats:
@@ -74,7 +89,7 @@ def cylinder_contact(other: Cylinder, axis: Floats, radius: float) -> Callable[[
         depth = radius + other.radius - distance
         if depth <= 0.0 or distance == 0.0:
             return np.zeros(3)
-        return other.stiffness * depth**1.5 / distance * gap
+        return other.share(center, axis, width) * other.stiffness * depth**1.5 / distance * gap
 
     return force
 

@@ -192,7 +192,7 @@ class Pairs(Frozen):
     b: Ints  # roller or plane, (n,)
     possible: int
     margin: float  # [mm]
-    low: Floats  # bounds of each body's centre, -inf where not watched [mm], (bodies, 3)
+    low: Floats  # bounds of boxes' and pressed rollers' centres, -inf where not watched [mm], (bodies, 3)
     high: Floats
 
     def __len__(self) -> int:
@@ -221,6 +221,15 @@ class Loads(Frozen):
     local: Floats  # (n, 3)
     force: Floats  # [N], (n, 3)
     moment: Floats  # [N mm], (n, 3)
+
+
+@dataclass(frozen=True)
+class Tension:
+    """A clamped sheet that is pulled at the opposite edge."""
+
+    sheet: int
+    axis: int  # of the pull, 0: x, 1: y
+    length: float  # sum of the joint lengths [mm]
 
 
 @dataclass(frozen=True)
@@ -261,7 +270,7 @@ class Model(Frozen):
     pairs: Pairs
     loads: Loads
     probes: tuple[Anchor, ...]
-    tension: tuple[int, float] | None  # axis and flexible length of a clamped sheet under edge stress
+    tension: Tension | None
     parameters: tuple[Parameter, ...]
     run: RunSettings
 

@@ -75,9 +75,10 @@ def strain(result: Result) -> float:
     The elongation is the mean displacement of the last row of box centres along the pull, from the clamp
     line's half-cell hinge on: the flexible length is the sum of the joint lengths.
     """
-    tension, sheet = result.model.tension, result.model.sheets[0]
-    assert tension is not None and sheet.clamp is not None, "asked only where the Model has a tension"
-    axis, length = tension
+    tension = result.model.tension
+    assert tension is not None, "asked only where the Model has a tension"
+    sheet, axis, length = result.model.sheets[tension.sheet], tension.axis, tension.length
+    assert sheet.clamp is not None, "a tension has a clamped sheet"
     outward = 1.0 if sheet.clamp.edge.endswith("min") else -1.0
     last = -1 if outward > 0 else 0
     grid = np.arange(sheet.first, sheet.first + sheet.count).reshape(sheet.n_y, sheet.n_x)

@@ -29,12 +29,13 @@ class Friction(Strict):
             raise fail(f"{value!r} is not a friction; give a number, or static and dynamic"[:200])
         return value
 
-    @model_validator(mode="after")
-    def _order(self) -> Friction:
-        slow, fast = self.stiction_velocity, self.friction_velocity
-        if slow is not None and fast is not None and fast < slow:
-            raise fail("friction_velocity is below stiction_velocity; it must be at least as high")
-        return self
+    def speeds(self, smoothing: float) -> tuple[float, float]:
+        """(stiction velocity, friction velocity) [mm/ms]; where left out the first is the smoothing and the
+        second the same, or half as much again where the two coefficients differ."""
+        slow = self.stiction_velocity if self.stiction_velocity is not None else smoothing
+        if self.friction_velocity is not None:
+            return slow, self.friction_velocity
+        return slow, slow if self.static == self.dynamic else 1.5 * slow
 
 
 def _two(value: Any) -> Any:
@@ -62,3 +63,13 @@ class Contact(Strict):
         description="width: boxes under one roller share k by the area they cover; "
         "pair: k each, as MotionSolve",
     )
+
+    @model_validator(mode="after")
+    def _order(self) -> Contact:
+        slow, fast = self.friction.speeds(self.smoothing)
+        if fast < slow:
+            raise fail(
+                f"friction.friction_velocity {1e3 * fast:g} mm/s is below the stiction velocity "
+                f"{1e3 * slow:g} mm/s (the smoothing where that is left out); it must be at least as high"
+            )
+        return self
