@@ -6,8 +6,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from mdlgen.errors import SpecError
-from mdlgen.model import grid, naming, press
+from mdlgen.model import grid, naming
+from mdlgen.model.anchors import anchor, find_tension, lower_loads
+from mdlgen.model.machine import frame, lower_planes, lower_rollers
 from mdlgen.model.pairs import find_pairs
 from mdlgen.model.parameters import parameters
 from mdlgen.model.stiffness import SUPPORT_FACTOR, JointValues, joint_values
@@ -17,23 +18,17 @@ from mdlgen.model.tables import (
     CYLINDER_CYLINDER,
     GROUND,
     SUPPORT,
-    Anchor,
     Bodies,
     Bushings,
     Clamp,
     Contacts,
     Floats,
-    Loads,
     Model,
     PlanePart,
-    Press,
     RollerPart,
     RunSettings,
     SheetPart,
-    Tension,
 )
-from mdlgen.spec.action import OnSheet
-from mdlgen.spec.machine import Roller
 from mdlgen.spec.scene import Scene
 
 
@@ -46,8 +41,8 @@ def lower(scene: Scene) -> Model:
     sheets, values = _sheets(scene)
     first = sum(s.count for s in sheets)
     contacts = _contacts(scene)
-    rollers = _rollers(scene, sheets, contacts, first)
-    planes = _planes(scene, first + len(rollers))
+    rollers = lower_rollers(scene, sheets, contacts, first)
+    planes = lower_planes(scene, first + len(rollers))
     gravity = np.array(scene.gravity)
     bodies = _bodies(sheets, values, rollers, planes)
     bushings = _bushings(scene, sheets, values, bodies)
@@ -66,9 +61,9 @@ def lower(scene: Scene) -> Model:
         pairs=find_pairs(
             gravity, sheets, rollers, planes, bodies, contacts, run, scene.run.prune, scene.run.margin
         ),
-        loads=_loads(scene, sheets),
-        probes=tuple(_anchor(name, scene.probes[name], sheets) for name in sorted(scene.probes)),
-        tension=_tension(scene, sheets),
+        loads=lower_loads(scene, sheets),
+        probes=tuple(anchor(name, scene.probes[name], sheets) for name in sorted(scene.probes)),
+        tension=find_tension(scene, sheets),
         parameters=parameters(scene, starts, run),
         run=run,
     )
@@ -147,102 +142,6 @@ def _contacts(scene: Scene) -> Contacts:
         smoothing=column(lambda c: c.smoothing),
         share=tuple(scene.contacts[i].share for i, _, _ in rows),
     )
-
-
-def _rollers(
-    scene: Scene, sheets: tuple[SheetPart, ...], contacts: Contacts, first: int
-) -> tuple[RollerPart, ...]:
-    parts = []
-    for index, name in enumerate(sorted(scene.rollers)):
-        roller = scene.rollers[name]
-        axial = 0.5 * roller.mass * roller.radius**2
-        transverse = roller.mass * (3 * roller.radius**2 + roller.width**2) / 12
-        parts.append(
-            RollerPart(
-                name=name,
-                body=first + index,
-                center=np.array(roller.center),
-                axis=np.array(roller.axis),
-                radius=roller.radius,
-                width=roller.width,
-                mass=roller.mass,
-                inertia_axial=axial,
-                inertia_transverse=transverse,
-                speed=roller.drive.speed if roller.drive else None,
-                ramp=roller.drive.ramp if roller.drive else 0.0,
-                press=_press(scene, name, sheets, contacts) if roller.press else None,
-            )
-        )
-    return tuple(parts)
-
-
-def _press(scene: Scene, name: str, sheets: tuple[SheetPart, ...], contacts: Contacts) -> Press:
-    roller = scene.rollers[name]
-    spec = roller.press
-    assert spec is not None
-    center, axis, direction = np.array(roller.center), np.array(roller.axis), np.array(spec.direction)
-    carrier = spec.carrier_mass if spec.carrier_mass is not None else roller.mass / 1000
-    mass = roller.mass + carrier
-    others, forces = [], []
-    for row in range(len(contacts)):
-        parts = (contacts.part_a[row], contacts.part_b[row])
-        if name not in parts:
-            continue
-        other = parts[0] if parts[1] == name else parts[1]
-        stiffness = float(contacts.stiffness[row])
-        if contacts.kind[row] == CYLINDER_CYLINDER:
-            partner: Roller = scene.rollers[other]
-            if partner.press is not None:
-                raise SpecError(
-                    f"{name} and {other} are pressed against each other; give one of them a fixed axis",
-                    ("rollers", name, "press"),
-                )
-            cylinder = press.Cylinder(np.array(partner.center), partner.radius, partner.width, stiffness)
-            others.append(cylinder)
-            forces.append(press.cylinder_contact(cylinder, axis, roller.radius, roller.width))
-        else:
-            sheet = next(s for s in sheets if s.name == other)
-            shared = contacts.share[row] == "width"
-            forces.append(press.sheet_contact(sheet, axis, roller.radius, roller.width, stiffness, shared))
-    touch = press.touch_offset(center, axis, direction, roller.radius, roller.width, others)
-    weight = mass * float(np.array(scene.gravity) @ direction)
-
-    def spring(offset: float) -> float:
-        return spec.preload - spec.stiffness * (offset - touch) + weight
-
-    return Press(
-        direction=direction,
-        stiffness=spec.stiffness,
-        damping=2.0 * spec.damping_ratio * float(np.sqrt(spec.stiffness * mass)),
-        damping_ratio=spec.damping_ratio,
-        preload=spec.preload,
-        free_length=spec.free_length,
-        carrier_mass=carrier,
-        touch=touch,
-        start=press.equilibrium(center, direction, spring, forces, roller.radius, touch),
-    )
-
-
-def _planes(scene: Scene, first: int) -> tuple[PlanePart, ...]:
-    return tuple(
-        PlanePart(
-            name=name,
-            body=first + index,
-            center=np.array(plane.center),
-            normal=np.array(plane.normal),
-            size=plane.size,
-            mass=plane.mass,
-        )
-        for index, (name, plane) in enumerate(sorted(scene.planes.items()))
-    )
-
-
-def frame(z: Floats, guide: Floats | None = None) -> Floats:
-    """A right-handed frame (columns x, y, z) with the given z; x near `guide`, or near global x or y."""
-    near: Floats = np.eye(3)[1 if abs(z[0]) > 0.9 else 0] if guide is None else guide
-    x = near - z * (near @ z)
-    x /= np.linalg.norm(x)
-    return np.stack([x, np.cross(z, x), z], axis=1)
 
 
 def _bodies(
@@ -329,18 +228,16 @@ def _bushings(
             k, c = grid.joint_coefficients(joint, value)
             rows.append((joint.kind, number, joint.a, joint.b, origin, sheet.rotation, k, c, joint.node))
     for number, support in enumerate(scene.supports):
-        anchor = _anchor(f"support_{number}", support, sheets)
+        held = anchor(f"support_{number}", support, sheets)
         sheet = sheets[index[support.sheet]]
         stiff = SUPPORT_FACTOR * sheet.derived["k_z"] * np.array([axis in support.fix for axis in "xyz"])
-        for part, (body, local, share) in enumerate(
-            zip(anchor.body, anchor.local, anchor.share, strict=True)
-        ):
+        for part, (body, local, share) in enumerate(zip(held.body, held.local, held.share, strict=True)):
             names.append(f"support_{number}_{part}")
             labels.append(f"support {number} of {sheet.name}, part {part}")
             origin = bodies.position[body] + bodies.rotation[body] @ local
             k = np.concatenate([stiff * share, np.zeros(3)])
             c = 2 * 0.5 * np.sqrt(k * sheet.derived["m"])
-            rows.append((SUPPORT, index[support.sheet], GROUND, body, origin, np.eye(3), k, c, anchor.node))
+            rows.append((SUPPORT, index[support.sheet], GROUND, body, origin, np.eye(3), k, c, held.node))
     count = len(rows)
     columns = [list(column) for column in zip(*rows, strict=True)] if rows else [[] for _ in range(9)]
     kind, sheet_index, a, b, origin, axes, k, c, node = columns
@@ -357,62 +254,3 @@ def _bushings(
         c=np.array(c, dtype=float).reshape(count, 6),
         node=np.array(node, dtype=np.int64).reshape(count, 2),
     )
-
-
-def _anchor(name: str, item: OnSheet, sheets: tuple[SheetPart, ...]) -> Anchor:
-    """The material point of a probe or support, or the middle of an edge."""
-    index = next(k for k, s in enumerate(sheets) if s.name == item.sheet)
-    sheet = sheets[index]
-    at = item.at if item.at is not None else grid.edge_middle(sheet, item.edge or "")
-    found = grid.boxes_at(sheet, at)
-    node = np.round([2 * at[0] / sheet.d_x + sheet.n_x, 2 * at[1] / sheet.d_y + sheet.n_y])
-    return Anchor(
-        name=name,
-        sheet=index,
-        body=np.array([body for body, _ in found], dtype=np.int64),
-        local=np.array([point for _, point in found], dtype=float),
-        share=np.full(len(found), 1.0 / len(found)),
-        node=node.astype(np.int64),
-        at=at,
-        edge=item.edge,
-    )
-
-
-def _loads(scene: Scene, sheets: tuple[SheetPart, ...]) -> Loads:
-    rows = []
-    for load in scene.loads:
-        sheet = next(s for s in sheets if s.name == load.sheet)
-        if load.at is not None:
-            targets = grid.boxes_at(sheet, load.at)
-        else:
-            targets = grid.edge_boxes(sheet, load.edge or "")
-        force, moment = np.array(load.force or (0.0, 0.0, 0.0)), np.array(load.moment or (0.0, 0.0, 0.0))
-        if load.stress is not None:
-            edge = load.edge or ""
-            across = sheet.n_y * sheet.d_y if edge[0] == "x" else sheet.n_x * sheet.d_x
-            outward = np.eye(3)[0 if edge[0] == "x" else 1] * (-1.0 if edge.endswith("min") else 1.0)
-            force = load.stress * across * sheet.thickness * outward
-        for body, local in targets:
-            share = 1.0 / len(targets)
-            rows.append((body, local, sheet.rotation @ force * share, sheet.rotation @ moment * share))
-    count = len(rows)
-    body, local, force, moment = [list(c) for c in zip(*rows, strict=True)] if rows else ([], [], [], [])
-    return Loads(
-        np.array(body, dtype=np.int64),
-        *(np.array(v, dtype=float).reshape(count, 3) for v in (local, force, moment)),
-    )
-
-
-def _tension(scene: Scene, sheets: tuple[SheetPart, ...]) -> Tension | None:
-    """The first sheet that is pulled by stress on the edge opposite to its clamp."""
-    for load in scene.loads:
-        if load.stress is None or load.edge is None:
-            continue
-        index = next(k for k, s in enumerate(sheets) if s.name == load.sheet)
-        sheet = sheets[index]
-        if sheet.clamp is None or sheet.clamp.edge[0] != load.edge[0] or sheet.clamp.edge == load.edge:
-            continue
-        axis = 0 if load.edge[0] == "x" else 1
-        count, pitch = ((sheet.n_x, sheet.d_x), (sheet.n_y, sheet.d_y))[axis]
-        return Tension(index, axis, (count - sheet.clamp.rows - 0.5) * pitch)
-    return None

@@ -1,0 +1,115 @@
+"""Rollers and planes: Scene -> tables, with the press of a roller in static equilibrium."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mdlgen.errors import SpecError
+from mdlgen.model import press
+from mdlgen.model.tables import (
+    CYLINDER_CYLINDER,
+    Contacts,
+    Floats,
+    PlanePart,
+    Press,
+    RollerPart,
+    SheetPart,
+)
+from mdlgen.spec.machine import Roller
+from mdlgen.spec.scene import Scene
+
+
+def frame(z: Floats, guide: Floats | None = None) -> Floats:
+    """A right-handed frame (columns x, y, z) with the given z; x near `guide`, or near global x or y."""
+    near: Floats = np.eye(3)[1 if abs(z[0]) > 0.9 else 0] if guide is None else guide
+    x = near - z * (near @ z)
+    x /= np.linalg.norm(x)
+    return np.stack([x, np.cross(z, x), z], axis=1)
+
+
+def lower_rollers(
+    scene: Scene, sheets: tuple[SheetPart, ...], contacts: Contacts, first: int
+) -> tuple[RollerPart, ...]:
+    parts = []
+    for index, name in enumerate(sorted(scene.rollers)):
+        roller = scene.rollers[name]
+        axial = 0.5 * roller.mass * roller.radius**2
+        transverse = roller.mass * (3 * roller.radius**2 + roller.width**2) / 12
+        parts.append(
+            RollerPart(
+                name=name,
+                body=first + index,
+                center=np.array(roller.center),
+                axis=np.array(roller.axis),
+                radius=roller.radius,
+                width=roller.width,
+                mass=roller.mass,
+                inertia_axial=axial,
+                inertia_transverse=transverse,
+                speed=roller.drive.speed if roller.drive else None,
+                ramp=roller.drive.ramp if roller.drive else 0.0,
+                press=_press(scene, name, sheets, contacts) if roller.press else None,
+            )
+        )
+    return tuple(parts)
+
+
+def _press(scene: Scene, name: str, sheets: tuple[SheetPart, ...], contacts: Contacts) -> Press:
+    roller = scene.rollers[name]
+    spec = roller.press
+    assert spec is not None
+    center, axis, direction = np.array(roller.center), np.array(roller.axis), np.array(spec.direction)
+    carrier = spec.carrier_mass if spec.carrier_mass is not None else roller.mass / 1000
+    mass = roller.mass + carrier
+    others, forces = [], []
+    for row in range(len(contacts)):
+        parts = (contacts.part_a[row], contacts.part_b[row])
+        if name not in parts:
+            continue
+        other = parts[0] if parts[1] == name else parts[1]
+        stiffness = float(contacts.stiffness[row])
+        if contacts.kind[row] == CYLINDER_CYLINDER:
+            partner: Roller = scene.rollers[other]
+            if partner.press is not None:
+                raise SpecError(
+                    f"{name} and {other} are pressed against each other; give one of them a fixed axis",
+                    ("rollers", name, "press"),
+                )
+            cylinder = press.Cylinder(np.array(partner.center), partner.radius, partner.width, stiffness)
+            others.append(cylinder)
+            forces.append(press.cylinder_contact(cylinder, axis, roller.radius, roller.width))
+        else:
+            sheet = next(s for s in sheets if s.name == other)
+            shared = contacts.share[row] == "width"
+            forces.append(press.sheet_contact(sheet, axis, roller.radius, roller.width, stiffness, shared))
+    touch = press.touch_offset(center, axis, direction, roller.radius, roller.width, others)
+    weight = mass * float(np.array(scene.gravity) @ direction)
+
+    def spring(offset: float) -> float:
+        return spec.preload - spec.stiffness * (offset - touch) + weight
+
+    return Press(
+        direction=direction,
+        stiffness=spec.stiffness,
+        damping=2.0 * spec.damping_ratio * float(np.sqrt(spec.stiffness * mass)),
+        damping_ratio=spec.damping_ratio,
+        preload=spec.preload,
+        free_length=spec.free_length,
+        carrier_mass=carrier,
+        touch=touch,
+        start=press.equilibrium(center, direction, spring, forces, roller.radius, touch),
+    )
+
+
+def lower_planes(scene: Scene, first: int) -> tuple[PlanePart, ...]:
+    return tuple(
+        PlanePart(
+            name=name,
+            body=first + index,
+            center=np.array(plane.center),
+            normal=np.array(plane.normal),
+            size=plane.size,
+            mass=plane.mass,
+        )
+        for index, (name, plane) in enumerate(sorted(scene.planes.items()))
+    )
