@@ -23,7 +23,7 @@ def _keep_compiled_code_by_content() -> None:
     digest = hashlib.sha256()
     for source in sorted(here.glob("*.py")):
         digest.update(source.read_bytes())
-    settings = vars(config)  # numba makes its settings at run time
+    settings = config.__dict__  # numba makes its settings at run time
     folder = Path(settings["CACHE_DIR"] or here / "__pycache__") / f"laws_{digest.hexdigest()[:16]}"
     with contextlib.suppress(OSError):  # a read-only installation: numba finds its own place
         folder.mkdir(parents=True, exist_ok=True)
