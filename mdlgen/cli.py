@@ -255,6 +255,38 @@ def run(
 
 @app.command()
 @told
+def lint(
+    text: Annotated[Path, typer.Argument(metavar="FILE.mdl", help="Any MotionView text.")],
+    values: Annotated[
+        Path | None, typer.Option("--values", metavar="JSON", help="Write every evaluated entity.")
+    ] = None,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
+) -> None:
+    """Read a MotionView text: syntax, names, numbers of arguments, expressions.
+
+    Example: mdlgen lint note.mdl --values note.json
+    """
+    import json
+
+    from mdlgen import paths
+    from mdlgen.registry import reader
+
+    reading = reader("motionview").read(paths.read_text(text), str(text))
+    if values is not None:
+        paths.write_atomic(values, json.dumps(reading.values, allow_nan=False, indent=1) + "\n")
+    report = reading.report
+    for finding in report.errors if quiet else report.findings:
+        typer.echo(str(finding))
+    if not quiet:
+        counts = f"{len(report.errors)} errors, {len(report.warnings)} warnings"
+        typer.echo(f"{text}: {report.statements} statements, {counts}")
+    if report.errors:
+        raise typer.Exit(SpecError.exit_code)
+
+
+@app.command()
+@told
 def schema(quiet: Quiet = False, verbose: Verbose = False) -> None:
     """Print the JSON schema of a scene file, for editors.
 

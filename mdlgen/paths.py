@@ -29,6 +29,14 @@ def samples() -> Path:
     return _data("samples")
 
 
+def read_text(path: Path) -> str:
+    """The UTF-8 text of a file; bytes that are none are shown as replacements. Raises OutputError."""
+    try:
+        return path.read_text("utf-8-sig", errors="replace")
+    except (OSError, ValueError) as error:
+        raise OutputError(f"{path}: cannot read: {getattr(error, 'strerror', None) or error}") from None
+
+
 def write_atomic(path: Path, content: str | bytes) -> None:
     """Write `path` through a temporary file in the same folder, fsync and rename.
 

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 Progress = Callable[[float, float, int, int], None]
 
 EMITTERS = {"motionview": "backends.motionview"}
+READERS = {"motionview": "backends.motionview.reader"}
 SOLVERS = {"exudyn": "backends.exudyn_local"}
 AUTO = "exudyn"
 
@@ -32,6 +33,12 @@ class Emitter(Protocol):
     def companion_reasons(self, model: Model, set_contact: bool = False) -> list[str]: ...
 
 
+class Reader(Protocol):
+    """What a backend that reads its text back has."""
+
+    def read(self, text: str, file: str = ...) -> Any: ...
+
+
 class Solver(Protocol):
     """What a backend that runs a Model has."""
 
@@ -42,6 +49,12 @@ def emitter(name: str) -> Emitter:
     """The backend that writes text. Raises SpecError for one that there is not."""
     _known(name, EMITTERS, "text backend")
     return cast(Emitter, import_module(EMITTERS[name]))
+
+
+def reader(name: str) -> Reader:
+    """The backend that reads a text back. Raises SpecError for one that there is not."""
+    _known(name, READERS, "reader")
+    return cast(Reader, import_module(READERS[name]))
 
 
 def solver(name: str) -> Solver:

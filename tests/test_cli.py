@@ -285,6 +285,26 @@ def test_mdl_is_a_small_multiple_of_importing_its_libraries() -> None:
     assert sorted(ratios)[1] < 4.0
 
 
+# ---------------------------------------------------------------- lint
+
+
+def test_lint_reads_what_mdl_writes(mdl: Run, tmp_path: Path) -> None:
+    assert mdl("mdl", FOUR, *SMALL, "-o", "note.mdl").code == 0
+    ended = mdl("lint", "note.mdl", "--values", "note.json")
+    assert (ended.code, ended.out.count("0 errors, 0 warnings")) == (0, 1)
+    found = json.loads((tmp_path / "note.json").read_text())
+    assert len(found["bushings"]) == 14
+    assert found["bodies"]["b_note_0_0"]["mass"] == pytest.approx(0.72e-3 / 6)
+
+
+def test_lint_places_errors_and_ends_with_2(mdl: Run, tmp_path: Path) -> None:
+    (tmp_path / "bad.mdl").write_text('*BeginMDL( m, "m" )\n  *Body( b, "b", p_none, , , , )\n*EndMDL()\n')
+    ended = mdl("lint", "bad.mdl", "-q")
+    assert ended.code == 2
+    assert re.match(r"bad\.mdl:2:\d+: error: ", ended.out)
+    assert mdl("lint", "none.mdl").code == 3
+
+
 # ---------------------------------------------------------------- run
 
 

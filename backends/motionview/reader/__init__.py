@@ -1,0 +1,28 @@
+"""Reads .mdl text back: statements, expressions, entities and what a lint has to say of them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from backends.motionview.reader.reading import Reading
+from backends.motionview.reader.report import Finding, Report
+
+__all__ = ["Finding", "Reading", "Report", "lint", "read", "values"]
+
+
+def read(text: str, file: str = "<text>") -> Reading:
+    """One reading, for both the report and the values.
+
+    Raises SpecError with file:line:column where the text is no model at all.
+    """
+    return Reading(text, file)
+
+
+def lint(text: str, file: str = "<text>") -> Report:
+    """What is wrong or doubtful in a text, each with its place."""
+    return Reading(text, file).report
+
+
+def values(text: str, file: str = "<text>") -> dict[str, Any]:
+    """Every evaluated entity, in mm, kg, s, N and rad, by kind and full name (`sys_a.p_top`, `b_wheel.l`)."""
+    return Reading(text, file).values

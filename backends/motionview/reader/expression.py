@@ -1,0 +1,330 @@
+"""Expression text -> a function of the scope that gives its value.
+
+Each rule of the grammar makes a closure. `Compiled.depth` is how deep closures call each other, so that the
+evaluator can stop before Python's own limit; chains such as a+b+c+... are loops and add no depth.
+"""
+
+from __future__ import annotations
+
+import operator
+import re
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from backends.motionview.reader.functions import FUNCTIONS
+from backends.motionview.reader.operators import arithmetic, compare, truth
+from backends.motionview.reader.report import Trouble
+from backends.motionview.reader.statement import SOLVER, TEXT
+
+if TYPE_CHECKING:
+    from backends.motionview.reader.scope import Scope
+
+Run = Callable[["Scope"], Any]
+MOST_NESTED = 24  # parentheses in parentheses; a real file has five
+MOST_DEEP = 230  # calls in calls, such as a.b.c.d...
+
+_TOKEN = re.compile(
+    rf"""\s*(?:
+      (?P<number>(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?)
+    | (?P<name>[A-Za-z_]\w*)
+    | (?P<string>{TEXT})
+    | (?P<solver>{SOLVER})
+    | (?P<sign>==|!=|<=|>=|&&|\|\||\*\*|[-+*/%^<>!?:()\[\]{{}},.@])
+    )""",
+    re.X,
+)
+_BARE_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?\Z")
+_ESCAPES = {"n": "\n", "t": "\t"}
+
+
+class Compiled(NamedTuple):
+    """What an expression became."""
+
+    run: Run
+    depth: int
+
+
+def literal(text: str) -> float | None:
+    """The number that a text is, or None where it is more than a number."""
+    return float(text) if _BARE_NUMBER.match(text) else None
+
+
+def compiled(text: str) -> Compiled:
+    """Raises Trouble (with the offset in `text`) for what is no expression."""
+    return _Parser(text).whole()
+
+
+def solver_parts(text: str) -> list[tuple[int, str, bool]]:
+    """A solver expression as pieces (offset, text, is an MDL expression in braces)."""
+    parts: list[tuple[int, str, bool]] = []
+    at = depth = begin = 0
+    for m in re.finditer(rf"{TEXT}|[{{}}]", text):
+        if m[0] == "{":
+            if depth == 0:
+                parts.append((at, text[at : m.start()], False))
+                begin = m.end()
+            depth += 1
+        elif m[0] == "}" and depth:
+            depth -= 1
+            if depth == 0:
+                parts.append((begin, text[begin : m.start()], True))
+                at = m.end()
+    if depth:
+        raise Trouble("syntax", "a brace in this solver expression is not closed", begin)
+    parts.append((at, text[at:], False))
+    return [p for p in parts if p[1] or p[2]]
+
+
+class _Parser:
+    def __init__(self, text: str):
+        self.text = text
+        self.tokens: list[tuple[str, str, int]] = []
+        at, end = 0, len(text.rstrip())
+        while at < end:
+            m = _TOKEN.match(text, at)
+            if m is None:
+                shift = at + len(text[at:]) - len(text[at:].lstrip())
+                raise Trouble("syntax", f"{text[shift]!r} has no meaning in an expression", shift)
+            kind = str(m.lastgroup)
+            self.tokens.append((kind, m[kind], m.start(kind)))
+            at = m.end()
+        self.tokens.append(("end", "", end))
+        self.at = 0
+        self.nested = 0
+        self.depth = 0
+
+    def whole(self) -> Compiled:
+        run = self.choice()
+        kind, value, shift = self.tokens[self.at]
+        if kind != "end":
+            raise Trouble("syntax", f"{value!r} is not expected here", shift)
+        if self.depth > MOST_DEEP:
+            raise Trouble("syntax", "this expression has more dots, indices and signs than can be followed")
+        return Compiled(run, self.depth)
+
+    # -- helpers
+
+    def sign(self, *signs: str) -> str:
+        """Takes one of the signs, or gives an empty text."""
+        kind, value, _ = self.tokens[self.at]
+        if kind == "sign" and value in signs:
+            self.at += 1
+            return value
+        return ""
+
+    def due(self, sign: str) -> None:
+        if not self.sign(sign):
+            _, value, shift = self.tokens[self.at]
+            raise Trouble("syntax", f"{sign!r} is due here" + (f", not {value!r}" if value else ""), shift)
+
+    def enter(self) -> None:
+        self.nested += 1
+        self.depth = max(self.depth, 8 * self.nested)
+        if self.nested > MOST_NESTED:
+            message = f"parentheses are nested more than {MOST_NESTED} deep"
+            raise Trouble("syntax", message, self.tokens[self.at][2])
+
+    # -- grammar, loosest first
+
+    def choice(self) -> Run:
+        self.enter()
+        condition = self.any()
+        if self.sign("?"):
+            yes = self.choice()
+            self.due(":")
+            no = self.choice()
+            chosen = condition
+            self.nested -= 1
+            return lambda scope: yes(scope) if truth(chosen(scope)) else no(scope)
+        self.nested -= 1
+        return condition
+
+    def any(self) -> Run:
+        parts = [self.all()]
+        while self.sign("||"):
+            parts.append(self.all())
+        if len(parts) == 1:
+            return parts[0]
+        return lambda scope: any(truth(part(scope)) for part in parts)
+
+    def all(self) -> Run:
+        parts = [self.equality()]
+        while self.sign("&&"):
+            parts.append(self.equality())
+        if len(parts) == 1:
+            return parts[0]
+        return lambda scope: all(truth(part(scope)) for part in parts)
+
+    def equality(self) -> Run:
+        return self._chain(self.relation, ("==", "!="), compare)
+
+    def relation(self) -> Run:
+        return self._chain(self.sum, ("<", ">", "<=", ">="), compare)
+
+    def sum(self) -> Run:
+        return self._chain(self.product, ("+", "-"), arithmetic)
+
+    def product(self) -> Run:
+        return self._chain(self.unary, ("*", "/", "%"), arithmetic)
+
+    def _chain(self, operand: Callable[[], Run], signs: tuple[str, ...], apply: Callable[..., Any]) -> Run:
+        first = operand()
+        rest: list[tuple[str, Run, int]] = []
+        while True:
+            shift = self.tokens[self.at][2]
+            sign = self.sign(*signs)
+            if not sign:
+                break
+            rest.append((sign, operand(), shift))
+        if not rest:
+            return first
+
+        def run(scope: Scope) -> Any:
+            value = first(scope)
+            for sign, part, shift in rest:
+                value = apply(sign, value, part(scope), shift)
+            return value
+
+        return run
+
+    def unary(self) -> Run:
+        signs = []
+        while sign := self.sign("-", "+", "!"):
+            signs.append(sign)
+        shift = self.tokens[self.at][2]
+        value = self.power()
+        for sign in reversed(signs):
+            if sign != "+":
+                value = _signed(sign, value, shift)
+                self.depth += 1
+        return value
+
+    def power(self) -> Run:
+        base = self.postfix()
+        shift = self.tokens[self.at][2]
+        if not self.sign("^", "**"):
+            return base
+        self.enter()
+        exponent = self.unary()
+        self.nested -= 1
+        return lambda scope: arithmetic("^", base(scope), exponent(scope), shift)
+
+    def postfix(self) -> Run:
+        value = self.atom()
+        while True:
+            shift = self.tokens[self.at][2]
+            if self.sign("."):
+                kind, name, _ = self.tokens[self.at]
+                if kind != "name":  # MotionView itself writes a dot too many now and then
+                    continue
+                self.at += 1
+                value = _attribute(value, name, shift)
+            elif self.sign("["):
+                index = self.choice()
+                self.due("]")
+                value = _indexed(value, index, shift)
+            elif self.sign("@"):
+                value = _body_at(value, self.postfix(), shift)
+            else:
+                return value
+            self.depth += 1
+
+    def atom(self) -> Run:
+        kind, value, shift = self.tokens[self.at]
+        self.at += 1
+        if kind == "number":
+            number = float(value.replace("d", "e").replace("D", "e"))
+            return lambda scope: number
+        if kind == "string":
+            string = re.sub(r"\\(.)", lambda m: _ESCAPES.get(m[1], m[1]), value[1:-1], flags=re.S)
+            return lambda scope: string
+        if kind == "solver":
+            inner = value[1:-1]
+            return lambda scope: scope.world.pasted(inner, scope)
+        if kind == "name":
+            return self._name(value, shift)
+        if value == "(":
+            inside = self.choice()
+            self.due(")")
+            return inside
+        if value == "{":
+            return self._vector()
+        what = f"{value!r} is" if value else "the end of the text is"
+        raise Trouble("syntax", f"a value is due here; {what} none", shift)
+
+    def _arguments(self, closing: str) -> list[Run]:
+        parts: list[Run] = []
+        if not self.sign(closing):
+            parts.append(self.choice())
+            while self.sign(","):
+                parts.append(self.choice())
+            self.due(closing)
+        return parts
+
+    def _vector(self) -> Run:
+        parts = self._arguments("}")
+        if len(parts) == 1:  # { text } is a computed text, not a vector
+            return parts[0]
+        return lambda scope: tuple([part(scope) for part in parts])
+
+    def _name(self, name: str, shift: int) -> Run:
+        if self.sign("("):
+            function = FUNCTIONS.get(name.lower())
+            if function is None:
+                raise Trouble("function", f"there is no function {name}(...) that is known", shift)
+            parts = self._arguments(")")
+            return lambda scope: function(scope, [part(scope) for part in parts], shift)
+
+        def run(scope: Scope) -> Any:
+            try:
+                return scope.value_of(name)
+            except Trouble as trouble:
+                if trouble.place is None and not trouble.shift:
+                    trouble.shift = shift
+                raise
+
+        return run
+
+
+def _signed(sign: str, value: Run, shift: int) -> Run:
+    if sign == "!":
+        return lambda scope: not truth(value(scope))
+    return lambda scope: arithmetic("*", -1.0, value(scope), shift)
+
+
+def _attribute(value: Run, name: str, shift: int) -> Run:
+    key = name.lower()
+
+    def run(scope: Scope) -> Any:
+        try:
+            owner = value(scope)
+        except Trouble as trouble:
+            if key == "label" and trouble.code == "dangling":
+                return ""  # `x.label != ""` is how MotionView files ask whether x exists
+            raise
+        return scope.world.attribute(owner, key, name, shift)
+
+    return run
+
+
+def _indexed(value: Run, index: Run, shift: int) -> Run:
+    def run(scope: Scope) -> Any:
+        items = value(scope)
+        try:
+            place = operator.index(int(index(scope)))
+            if place < 0:
+                raise IndexError
+            return scope.world.vector(items)[place] if not isinstance(items, (tuple, list)) else items[place]
+        except (IndexError, TypeError, ValueError):
+            raise Trouble("evaluate", "this has no such item", shift) from None
+
+    return run
+
+
+def _body_at(beam: Run, point: Run, shift: int) -> Run:
+    """`beam.body@point`: the body that a beam of many has at one of its points."""
+
+    def run(scope: Scope) -> Any:
+        return scope.world.body_at(beam(scope), point(scope), shift)
+
+    return run

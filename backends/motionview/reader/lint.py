@@ -1,0 +1,186 @@
+"""What is wrong or doubtful in a text: numbers of arguments, names, expressions, traps."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from backends.motionview.reader import arity
+from backends.motionview.reader.expand import Lost
+from backends.motionview.reader.report import Notes, Trouble
+from backends.motionview.reader.scope import Scope
+from backends.motionview.reader.statement import Statement
+from backends.motionview.reader.traps import traps
+
+if TYPE_CHECKING:
+    from backends.motionview.reader.reading import Reading
+
+# Statements whose arguments were all looked at when the values were found.
+_SEEN = {
+    *("point", "pointpair", "vector", "vectorpair", "marker", "markerpair", "polybeam", "template"),
+    *("bush", "bushpair", "coilspring", "coilspringpair", "motion", "contact", "graphic", "graphicpair"),
+    *("real", "integer", "string", "boolean", "filename", "option", "table"),
+    *("setpoint", "setvector", "setorientation", "setbodyinertia", "setbody", "setbodyic", "setbodyicflag"),
+    *("setbush", "setcoilspring", "setmotion", "setcontact", "setcoupler", "setpolybeamprops", "set"),
+    *("setreal", "setinteger", "setstring", "setboolean", "setoption", "setfilename", "setval"),
+}
+# Statements whose arguments are words for panels and ids, not values of the model.
+_WORDS = {
+    *("form", "setrowscols", "mergecells", "columnlabel", "columnwidth", "setcell", "report", "setnote"),
+    *("attachment", "attachmentcandidate", "setattachmentcandidatetag", "setsystem", "curve"),
+    *("setgraphicattributes", "setcolormaterialreference", "setentityid"),
+    *("setlocaluserdllflag", "setlocaluserfunction"),
+}
+_UNUSED = {"Point", "PointPair", "Vector", "VectorPair", "Curve", "Real", "Integer", "String", "Option"}
+_KEYWORD = re.compile(r"[A-Z][A-Z0-9_]*\Z|\d[A-Z]\w*\Z")
+_WORD = re.compile(r"[A-Za-z_]\w*")
+
+
+def lint(reading: Reading) -> None:
+    """Adds to the notes of a reading whose values were found."""
+    notes = reading.notes
+    _bytes(reading)
+    _arity(reading)
+    _includes(reading)
+    _duplicates(reading)
+    _lost(reading.expansion.lost, notes)
+    _references(reading)
+    traps(reading.world, notes)
+    _unused(reading)
+
+
+def _bytes(reading: Reading) -> None:
+    source = reading.source
+    if not source.text.isascii():
+        at = next(k for k, c in enumerate(source.text) if ord(c) > 127)
+        message = "MotionView writes plain ASCII; this character may not be read"
+        reading.notes.add("warning", "ascii", source.place(at), message)
+    at = source.text.find("\r")
+    if at >= 0:
+        reading.notes.add("warning", "ascii", source.place(at), "MotionView ends lines with LF, not CR LF")
+
+
+def _arity(reading: Reading) -> None:
+    for statement in reading.program.statements:
+        if not arity.known(statement):
+            message = f"*{statement.name} is not a statement that is known; it is left as it is"
+            reading.notes.add("warning", "unknown", statement.place(), message + arity.meant(statement))
+            continue
+        complaint = arity.complaint(statement)
+        if complaint:
+            reading.notes.add("error", "arity", statement.place(), complaint)
+
+
+def _includes(reading: Reading) -> None:
+    for statement in reading.program.includes:
+        if statement.key in ("include", "definitioninclude"):
+            message = f"{statement.arg(0)} is not read; what it makes is not known here"
+            reading.notes.add("warning", "include", statement.place(), message)
+
+
+def _duplicates(reading: Reading) -> None:
+    world = reading.world
+    for scope in world.scopes:
+        for slot in scope.slots.values():
+            if len(slot.declarations) < 2:
+                continue
+            standing = [d for d in slot.declarations if world.holds(d.guard, scope)]
+            for declaration in standing[1:]:
+                first = standing[0].statement.place().line
+                message = f"{scope.path}{slot.name} is there already, from line {first}"
+                reading.notes.add("error", "duplicate", declaration.statement.place(0), message)
+
+
+def _lost(lost: list[Lost], notes: Notes) -> None:
+    for statement, scope, external in lost:
+        target = statement.arg(0)
+        if external:
+            message = f"{target} is made by {external}; what is set here cannot be checked"
+            notes.add("warning", "external", statement.place(0), message)
+        else:
+            inside = f" in {scope.path[:-1]}" if scope.path else ""
+            notes.add("error", "dangling", statement.place(0), f"there is no {target}{inside} to set")
+
+
+def _references(reading: Reading) -> None:
+    """Evaluates what the values did not need: outputs, forces, variables, arguments of instances."""
+    world = reading.world
+    for statement, scope, guard in reading.expansion.standing:
+        key = statement.key
+        if key in _WORDS or not arity.known(statement):
+            continue
+        first = _first_value(reading, statement)
+        if first is None:
+            continue
+        if world.holds(guard, scope) and world.alive(scope):
+            for k in range(first, len(statement.args)):
+                _argument(reading, statement, k, scope)
+    for scope in world.scopes:
+        if scope.declaration is not None and world.alive(scope):
+            _parameters(reading, scope)
+
+
+def _first_value(reading: Reading, statement: Statement) -> int | None:
+    """The first argument that is worth a look; None where the values have seen them all."""
+    key = statement.key
+    if key in ("system", "analysis", "dataset"):
+        return 3
+    if key in ("graphic", "graphicpair") and statement.arg(2) in reading.program.definitions:
+        return 3
+    if key in ("body", "bodypair"):
+        return 3 if any(statement.args[3:]) else None
+    if key in _SEEN:
+        return None
+    return 1 if key.startswith("set") else 2
+
+
+def _argument(reading: Reading, statement: Statement, index: int, scope: Scope) -> None:
+    text = statement.args[index]
+    if not text or text[0] == '"' or _KEYWORD.match(text):
+        return
+    try:
+        reading.world.force(lambda: reading.world.value(statement, index, scope))
+    except Trouble as trouble:
+        reading.notes.tell(trouble, statement.place(index))
+    except RecursionError:
+        reading.notes.add("error", "evaluate", statement.place(index), "this depends on too many others")
+
+
+def _parameters(reading: Reading, scope: Scope) -> None:
+    assert scope.declaration is not None
+    given = len(scope.declaration.statement.args) - 3
+    if scope.declaration.kind != "Graphic" and given > len(scope.parameters) and scope.definition is not None:
+        message = f"{scope.definition.name} takes {len(scope.parameters)} attachments, not {given}"
+        reading.notes.add("error", "arity", scope.declaration.statement.place(), message)
+
+
+def _unused(reading: Reading) -> None:
+    words: set[str] = set()
+    for definition in reading.program.definitions.values():
+        if definition.statement is not None and definition.statement.body:
+            words |= set(_WORD.findall(definition.statement.body))
+        if definition.kind in ("form", "tableform", "report"):
+            for item in definition.items:
+                words |= {word for arg in item.statement.args for word in _WORD.findall(arg)}
+    world = reading.world
+    for scope in world.scopes:
+        if not world.alive(scope):
+            continue
+        for slot in scope.slots.values():
+            if slot.used or slot.name in words:
+                continue
+            declaration = world.declaration(slot)
+            if declaration is None or declaration.statement.name not in _UNUSED:
+                continue
+            if declaration.statement.args[-1].upper() == "NO_EDIT":  # made to be looked at
+                continue
+            message = f"{scope.path}{slot.name} is used by nothing"
+            reading.notes.add("warning", "unused", declaration.statement.place(0), message)
+    used = {s.arg(k) for s in reading.program.statements for k in (2, 3) if s.key in _USERS}
+    for name, definition in reading.program.definitions.items():
+        if not definition.used and name not in used and definition.statement is not None:
+            message = f"the definition {name} is used by nothing"
+            reading.notes.add("warning", "unused", definition.statement.place(0), message)
+
+
+_USERS = {"form", "template", "report", "table", "setcell", "analysis", "system", "dataset", "graphic"}

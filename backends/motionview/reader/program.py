@@ -1,0 +1,162 @@
+"""Statements -> definitions, conditions and contexts: the file as it is nested, before any instance."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from backends.motionview.reader.report import Notes
+from backends.motionview.reader.statement import Statement
+
+_CLOSING = {
+    "enddefine": "*Define...",
+    "endcontext": "*BeginContext",
+    "endif": "*if",
+    "elseif": "*if",
+    "else": "*if",
+    "endmdl": "*BeginMDL",
+}
+
+
+class Guard(NamedTuple):
+    """A condition under which a statement stands, and the ones around it."""
+
+    outer: Guard | None
+    condition: Statement
+    wanted: bool
+
+
+class Item(NamedTuple):
+    """A statement with the condition that it stands under, and the contexts around it."""
+
+    statement: Statement
+    guard: Guard | None
+    contexts: tuple[Statement, ...] = ()
+
+
+class Definition:
+    """A *Define... with what stands in it; also the model itself."""
+
+    def __init__(self, statement: Statement | None):
+        self.statement = statement
+        self.kind = statement.key.removeprefix("define") if statement else "model"
+        self.name = statement.arg(0) if statement else ""
+        self.items: list[Item] = []
+        self.used = False
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """Names of the arguments; three words before them say the type of a typed system."""
+        if self.statement is None:
+            return ()
+        args = self.statement.args[1:]
+        return args[3:] if args[:1] == ("TYPED",) else args
+
+
+class Program:
+    """The whole text."""
+
+    def __init__(self) -> None:
+        self.model = Definition(None)
+        self.begin: Statement | None = None
+        self.definitions: dict[str, Definition] = {}
+        self.includes: list[Statement] = []
+        self.analysis: Statement | None = None
+        self.mode = "MOTIONSOLVE"
+        self.statements: list[Statement] = []
+
+
+class _Open(NamedTuple):
+    statement: Statement
+    definition: Definition
+    guard: Guard | None
+    contexts: tuple[Statement, ...]
+
+
+def program(statements: Iterable[Statement], notes: Notes) -> Program:
+    """Raises nothing: what is not nested rightly is told and left out."""
+    made = Program()
+    open_: list[_Open] = []
+    definition, guard, contexts = made.model, None, ()
+    for statement in statements:
+        made.statements.append(statement)
+        key = statement.key
+        if key in _CLOSING:
+            if open_ and _CLOSES[key] == _block(open_[-1].statement.key):
+                last = open_[-1]
+                if key == "elseif":
+                    previous = guard if guard else Guard(last.guard, last.statement, True)
+                    guard = Guard(previous._replace(wanted=False), statement, True)
+                elif key == "else":
+                    guard = guard._replace(wanted=False) if guard else None
+                else:
+                    open_.pop()
+                    definition, guard, contexts = last.definition, last.guard, last.contexts
+            else:
+                message = f"*{statement.name} closes no {_CLOSING[key]}"
+                if open_:
+                    message += (
+                        f"; open is *{open_[-1].statement.name} of line {open_[-1].statement.place().line}"
+                    )
+                notes.add("error", "block", statement.place(), message)
+            continue
+        block = _block(key)
+        if block:
+            open_.append(_Open(statement, definition, guard, contexts))
+        if block == "define":
+            definition, guard, contexts = Definition(statement), None, ()
+            _define(made, definition, notes)
+        elif block == "context":
+            contexts = (*contexts, statement)
+        elif block == "if":
+            guard = Guard(guard, statement, True)
+        elif block == "mdl":
+            made.begin = statement
+        elif not _header(made, statement):
+            definition.items.append(Item(statement, guard, contexts))
+    for left in open_:
+        if left.statement.key != "beginmdl":
+            notes.add("error", "block", left.statement.place(), f"*{left.statement.name} is not closed")
+    return made
+
+
+_CLOSES = {
+    "enddefine": "define",
+    "endcontext": "context",
+    "endif": "if",
+    "elseif": "if",
+    "else": "if",
+    "endmdl": "mdl",
+}
+
+
+def _block(key: str) -> str:
+    if key.startswith("define"):
+        return "define"
+    return {"if": "if", "begincontext": "context", "setsystem": "", "beginmdl": "mdl"}.get(key, "")
+
+
+def _define(made: Program, definition: Definition, notes: Notes) -> None:
+    statement = definition.statement
+    assert statement is not None
+    if definition.name in made.definitions:
+        before = made.definitions[definition.name].statement
+        assert before is not None
+        message = f"{definition.name} is defined a second time; first in line {before.place().line}"
+        notes.add("error", "duplicate", statement.place(0), message)
+        return
+    made.definitions[definition.name] = definition
+
+
+def _header(made: Program, statement: Statement) -> bool:
+    """Statements about the file as a whole."""
+    key = statement.key
+    if key in ("include", "definitioninclude", "standardinclude", "loadpreferencefile"):
+        made.includes.append(statement)
+    elif key == "setcurrentsolvermode":
+        made.mode = statement.arg(0).upper()
+    elif key == "setactiveanalysis":
+        made.analysis = statement
+    else:
+        return False
+    return True

@@ -1,0 +1,121 @@
+"""Motions, contacts, couplers, solver variables and templates."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from backends.motionview.reader.report import Trouble
+from backends.motionview.reader.things.thing import Thing
+
+_FORCES = {
+    "POISSON": ("penalty", "restitution"),
+    "IMPACT": ("stiffness", "exponent", "damping", "dmax"),
+}
+_FRICTION = ("mu_static", "mu_dynamic", "stiction_velocity", "friction_velocity")
+
+
+class Motion(Thing):
+    """`*Motion( name, label, JOINT, joint, ROT|TRANS )`."""
+
+    kind = "Motion"
+
+    def p_joint(self) -> Any:
+        return self.related(3 if self.statement.arg(2).upper() == "JOINT" else 2, "Joint")
+
+    def p_law(self) -> tuple[str, str, Any] | None:
+        """DISP, VEL or ACCL; LIN, EXPR and so on; the number or the solver expression."""
+        chosen = self.chosen("setmotion")
+        if chosen is None:
+            return None
+        statement, first = chosen.statement, chosen.first
+        words = (statement.arg(first).upper(), statement.arg(first + 1).upper())
+        if words[1] in ("LIN", "EXPR"):
+            return (*words, self.given(first + 2, statement, chosen.scope))
+        return (*words, ", ".join(statement.args[first + 2 :]))
+
+    def record(self) -> dict[str, Any]:
+        law = self.ask("law") or (None, None, None)
+        return {
+            "label": self.ask("label"),
+            "joint": self.ask("joint").name,
+            "freedom": self.statement.args[-1].upper(),
+            "quantity": law[0],
+            "type": law[1],
+            "value": law[2],
+        }
+
+
+class Contact(Thing):
+    """`*Contact( name, label, force, friction, BODY, b1, n, graphic, flip, ..., BODY, b2, ... )`."""
+
+    kind = "Contact"
+
+    def p_sides(self) -> list[tuple[Any, list[Any]]]:
+        """Both bodies, each with its graphics."""
+        found = []
+        at, args = 4, self.statement.args
+        while at < len(args) and args[at].upper() == "BODY":
+            body = self.related(at + 1, "Body")
+            count = int(self.number(at + 2))
+            graphics = [
+                self.related(at + 3 + 2 * k, "Graphic") for k in range(count) if at + 3 + 2 * k < len(args)
+            ]
+            found.append((body, graphics))
+            at += 3 + 2 * count
+        return found
+
+    def p_numbers(self) -> dict[str, float]:
+        """What *SetContact says, by the documented order."""
+        chosen = self.chosen("setcontact")
+        if chosen is None:
+            return {}
+        names = _FORCES.get(self.statement.arg(2).upper(), ())
+        if self.statement.arg(3).upper() != "OFF":
+            names += _FRICTION
+        found = {}
+        for k, name in enumerate(names):
+            if chosen.first + k < len(chosen.statement.args):
+                found[name] = self.number(chosen.first + k, chosen.statement, chosen.scope)
+        return found
+
+    def record(self) -> dict[str, Any]:
+        sides = self.ask("sides")
+        return {
+            "label": self.ask("label"),
+            "type": self.statement.arg(2).upper(),
+            "friction": self.statement.arg(3).upper(),
+            "bodies": tuple(body.name for body, _ in sides),
+            "graphics": tuple(tuple(g.name for g in graphics) for _, graphics in sides),
+            **self.ask("numbers"),
+        }
+
+
+class Coupler(Thing):
+    """`*Coupler( name, label, 2JOINT, joint_1, joint_2, ... )`."""
+
+    kind = "Coupler"
+
+    def p_ratio(self) -> float:
+        """The factor of *SetCoupler."""
+        chosen = self.chosen("setcoupler")
+        return 0.0 if chosen is None else self.number(chosen.first, chosen.statement, chosen.scope)
+
+
+class SolverVariable(Thing):
+    """`*SolverVariable( name, label )`."""
+
+    kind = "SolverVariable"
+
+    def p_varval(self) -> str:
+        """The solver function that reads it."""
+        return f"VARVAL({self.name})"
+
+
+class Template(Thing):
+    """`*Template( name, label, use, definition, ... )`: text with a language of its own, not run here."""
+
+    kind = "Template"
+
+    def p_text(self) -> str:
+        """What the template writes: not known."""
+        raise Trouble("template", f"{self} is not run, so its text is not known", severity="warning")

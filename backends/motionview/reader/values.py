@@ -1,0 +1,104 @@
+"""All evaluated entities of a World, as numbers and tuples of numbers (lists, once they are JSON)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from backends.motionview.reader.report import Notes, Trouble
+from backends.motionview.reader.things.beams import PolyBeam
+from backends.motionview.reader.things.bodies import Body
+from backends.motionview.reader.things.data import Option, Table, Value
+from backends.motionview.reader.things.systems import DataSet
+from backends.motionview.reader.things.thing import Thing
+from backends.motionview.reader.world import World
+
+# Kind of thing -> where it is listed.
+LISTS = {
+    "Point": "points",
+    "Vector": "vectors",
+    "Body": "bodies",
+    "Marker": "markers",
+    "Bush": "bushings",
+    "SpringDamper": "springs",
+    "Graphic": "graphics",
+    "Joint": "joints",
+    "Motion": "motions",
+    "Contact": "contacts",
+}
+
+
+def values(world: World, notes: Notes) -> dict[str, dict[str, Any]]:
+    """What could be evaluated; what could not is told to `notes` and left out."""
+    found: dict[str, dict[str, Any]] = {name: {} for name in (*LISTS.values(), "velocities", "datasets")}
+    collect = _Collector(world, notes, found)
+    for thing in world.things():
+        collect.thing(thing)
+    return found
+
+
+class _Collector:
+    def __init__(self, world: World, notes: Notes, found: dict[str, dict[str, Any]]):
+        self.world = world
+        self.notes = notes
+        self.found = found
+
+    def thing(self, thing: Thing) -> None:
+        """One thing, with the markers that MotionView makes for it."""
+        if isinstance(thing, (Value, Option, Table)):
+            self._value(thing)
+        elif isinstance(thing, DataSet):
+            self.found["datasets"].setdefault(thing.name, {})
+        elif isinstance(thing, PolyBeam):
+            for body in self.attempt(thing, lambda: thing.ask("bodies")) or ():
+                self._entry("bodies", body)
+                self._markers(body)
+            self._markers(thing)
+        elif thing.kind in LISTS:
+            if thing.kind == "Joint" and self.attempt(thing, lambda: thing.ask("isbush")):
+                self._entry("bushings", thing.ask("bush"))
+            elif thing.kind == "Point":
+                self._put("points", thing, lambda: thing.ask("data"))
+            elif thing.kind == "Vector":
+                self._put("vectors", thing, lambda: thing.ask("data"))
+            else:
+                self._entry(LISTS[thing.kind], thing)
+            self._markers(thing)
+            if isinstance(thing, Body):
+                self._put("velocities", thing, lambda: thing.ask("velocity"))
+        elif thing.kind in ("Force", "Output"):
+            self._markers(thing)
+
+    def attempt(self, thing: Thing, find: Callable[[], Any]) -> Any:
+        """A value, or None after telling why there is none."""
+        try:
+            return self.world.force(find)
+        except Trouble as trouble:
+            self.notes.tell(trouble, thing.statement.place())
+        except RecursionError:
+            message = f"{thing} depends on too many others in one expression"
+            self.notes.add("error", "evaluate", thing.statement.place(), message)
+        return None
+
+    def _put(self, where: str, thing: Thing, find: Callable[[], Any]) -> None:
+        value = self.attempt(thing, find)
+        if value is not None:
+            self.found[where][thing.name] = value
+
+    def _entry(self, where: str, thing: Thing) -> None:
+        self._put(where, thing, thing.record)
+
+    def _markers(self, thing: Thing) -> None:
+        self.found["markers"].update(self.attempt(thing, thing.marker_records) or ())
+
+    def _value(self, thing: Value | Option | Table) -> None:
+        holder, _, name = thing.name.rpartition(".")
+        into = self.found["datasets"].setdefault(holder or "MODEL", {})
+        if isinstance(thing, Table):
+            columns = self.attempt(thing, lambda: {c: thing.cells(c) for c in thing.columns()})
+            if columns is not None:
+                into[name] = columns
+            return
+        value = self.attempt(thing, lambda: thing.ask("value"))
+        if value is not None:
+            into[name] = value

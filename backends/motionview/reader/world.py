@@ -1,0 +1,408 @@
+"""The evaluator: every value is found when it is asked for, kept, and never twice at work.
+
+A chain of points, each from the one before, may be as long as the file. So `demand` goes only so deep;
+then it stops, finds the deepest value first, and starts again with that one known.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any
+
+from backends.motionview.reader.expression import Compiled, compiled, literal, solver_parts
+from backends.motionview.reader.functions import FUNCTIONS
+from backends.motionview.reader.operators import shown, truth
+from backends.motionview.reader.pair import Pair, Unmade
+from backends.motionview.reader.program import Guard, Program
+from backends.motionview.reader.report import Notes, Trouble
+from backends.motionview.reader.scope import Declaration, Scope, Setting, Slot
+from backends.motionview.reader.statement import Statement
+
+if TYPE_CHECKING:
+    from backends.motionview.reader.things.thing import Thing
+
+Vector = tuple[float, float, float]
+Frame = tuple[Vector, tuple[Vector, Vector, Vector]]  # origin, and the axes as columns of rows
+
+MOST_CALLS = 300  # calls in calls before the evaluator starts again from below
+_PART = r"([^{}\[\],\"`]+)"
+_PLACE_IN_AXES = re.compile(rf"(loc_rel_to\(\s*\{{{_PART},{_PART},{_PART}\}}\s*,\s*([\w.]+)\s*\))\[[012]\]")
+_COORDINATES = ("[0]", "[1]", "[2]")
+_AT_WORK = object()
+_MISSING = object()
+
+
+class _Deeper(Exception):
+    def __init__(self, thing: Any, key: str):
+        super().__init__(key)
+        self.thing = thing
+        self.key = key
+
+
+class World:
+    """All scopes of a model, and the values of all that is in them."""
+
+    def __init__(self, program: Program, notes: Notes):
+        self.program = program
+        self.notes = notes
+        self.root = Scope(self, None, "", program.model)
+        self.scopes: list[Scope] = [self.root]
+        self.built_ins: dict[str, Any] = {}
+        self.calls = 0
+        self._waiting: set[tuple[int, str]] = set()  # values that wait for deeper ones
+        self._begun: tuple[int, str] = (0, "")  # the one of them that is looked at now
+        self._inside = False  # of force
+        self._compiled: dict[str, Compiled | Trouble] = {}
+        self._at: tuple[Statement, int] | None = None
+        self._on_bodies: dict[str, dict[int, list[Thing]]] = {}  # graphics and joints by their body
+
+    # -- values that are kept
+
+    def demand(self, thing: Any, key: str) -> Any:
+        """A property of a thing. Raises Trouble, always the same one for the same reason."""
+        memo = thing.memo
+        value = memo.get(key, _MISSING)
+        if value is not _MISSING:
+            if value is _AT_WORK:
+                raise Trouble("cycle", f"{thing} needs its own {key} to find its {key}")
+            if value.__class__ is Trouble:
+                raise value.with_traceback(None)  # else it grows with each that depends on it
+            return value
+        if self._waiting and (id(thing), key) in self._waiting and (id(thing), key) != self._begun:
+            raise Trouble("cycle", f"{thing} needs its own {key} to find its {key}")
+        if self.calls > MOST_CALLS:
+            raise _Deeper(thing, key)
+        memo[key] = _AT_WORK
+        self.calls += 6
+        try:
+            value = thing.compute(key)
+        except Trouble as trouble:
+            memo[key] = trouble.with_traceback(None)
+            raise
+        except BaseException:
+            del memo[key]
+            raise
+        finally:
+            self.calls -= 6
+        memo[key] = value
+        return value
+
+    def force(self, find: Callable[[], Any]) -> Any:
+        """Runs `find` to its end, however long the chain below it is."""
+        self.calls = 0
+        self._inside = True
+        try:
+            return find()
+        except _Deeper:
+            return self._forced(find)
+        finally:
+            self._inside = False
+
+    def _forced(self, find: Callable[[], Any]) -> Any:
+        tasks: list[tuple[Callable[[], Any], int, str]] = [(find, 0, "")]
+        self._waiting = set()
+        while True:
+            run, thing, key = tasks[-1]
+            self.calls = 0
+            self._begun = (thing, key)
+            try:
+                value = run()
+            except _Deeper as deeper:
+                self._waiting.add((id(deeper.thing), deeper.key))
+                tasks.append((_later(self, deeper), id(deeper.thing), deeper.key))
+                continue
+            except Trouble:
+                if len(tasks) == 1:
+                    raise
+                value = None
+            tasks.pop()
+            if not tasks:
+                return value
+            self._waiting.discard((thing, key))
+
+    # -- expressions
+
+    def compiled(self, text: str) -> Compiled:
+        """The expression of a text; each text is read once."""
+        found = self._compiled.get(text)
+        if found is None:
+            try:
+                found = compiled(text)
+            except Trouble as trouble:
+                found = trouble
+            self._compiled[text] = found
+        if isinstance(found, Trouble):  # a new one: it stands in another place
+            raise Trouble(found.code, found.message, found.shift, found.severity)
+        return found
+
+    def value(self, statement: Statement, index: int, scope: Scope) -> Any:
+        """The value of an argument."""
+        text = statement.arg(index)
+        if text.isidentifier():
+            try:
+                return scope.value_of(text)
+            except Trouble as trouble:
+                if trouble.place is None:
+                    trouble.place = statement.place(index)
+                raise
+        if text[:1] == '"' and text.count('"') == 2 and text[-1] == '"' and "\\" not in text:
+            return text[1:-1]
+        values = scope.values
+        value = values.get(text, _MISSING)
+        if value is not _MISSING:
+            return value
+        value = literal(text)
+        if value is None:
+            value = self._run(statement, index, text, scope)
+        values[text] = value
+        return value
+
+    def _run(self, statement: Statement, index: int, text: str, scope: Scope) -> Any:
+        calls, at = self.calls, self._at
+        try:
+            if text[-3:] in _COORDINATES and (call := _PLACE_IN_AXES.fullmatch(text)):
+                items = scope.values.get(call[1], _MISSING)  # the three coordinates share it
+                if items is _MISSING:
+                    items = scope.values[call[1]] = self._place_in_axes(statement, index, call, scope)
+                return items[int(text[-2])]
+            expression = self.compiled(text)
+            self.calls = calls + expression.depth
+            self._at = (statement, index)
+            return expression.run(scope)
+        except Trouble as trouble:
+            if trouble.place is None:
+                trouble.place = statement.place(index, trouble.shift)
+            raise
+        finally:
+            self.calls, self._at = calls, at
+
+    def _place_in_axes(self, statement: Statement, index: int, call: re.Match[str], scope: Scope) -> Any:
+        """loc_rel_to( {a, b, c}, marker ), whose parts are found once for all points that share them."""
+        parts = []
+        for k in (2, 3, 4, 5):
+            text = call[k].strip()
+            value = scope.values.get(text, _MISSING)
+            if value is _MISSING:
+                try:
+                    value = literal(text)
+                    if value is None:
+                        expression = self.compiled(text)
+                        self.calls += expression.depth
+                        self._at = (statement, index)
+                        value = expression.run(scope)
+                except Trouble as trouble:
+                    if trouble.place is None:
+                        lead = len(call[k]) - len(call[k].lstrip())
+                        trouble.place = statement.place(index, call.start(k) + lead + trouble.shift)
+                    raise
+                scope.values[text] = value
+            parts.append(value)
+        return FUNCTIONS["loc_rel_to"](scope, [tuple(parts[:3]), parts[3]], 0)
+
+    def remark_angle(self, name: str, angle: float) -> None:
+        """A sine of more than a turn: most likely of degrees."""
+        if self._at is not None:
+            statement, index = self._at
+            message = f"{name}({shown(angle)}) is of radians; degrees need *PI/180"
+            self.notes.add("warning", "angle", statement.place(index), message)
+
+    def evaluated(self, text: str, scope: Scope, shift: int) -> Any:
+        """The value of a text that was computed, for eval()."""
+        calls = self.calls
+        if calls > 2 * MOST_CALLS:
+            raise Trouble("evaluate", "eval in eval in eval has no end", shift)
+        expression = self.compiled(text)
+        self.calls = calls + expression.depth + 20
+        try:
+            return expression.run(scope)
+        finally:
+            self.calls = calls
+
+    def pasted(self, text: str, scope: Scope) -> str:
+        """A solver expression with the values of its braces pasted in."""
+        out = []
+        for shift, part, is_value in solver_parts(text):
+            if not is_value:
+                out.append(part)
+                continue
+            try:
+                out.append(shown(self.compiled(part).run(scope)))
+            except Trouble as trouble:
+                if trouble.place is None:
+                    trouble.shift += shift + 1
+                raise
+        return "".join(out)
+
+    # -- names
+
+    def thing(self, slot: Slot) -> Any:
+        """The Thing or Pair of a slot, or None where all its statements stand under a false condition."""
+        declaration = self.declaration(slot)
+        if declaration is None:
+            return None
+        if declaration.members is None:
+            from backends.motionview.reader.things import made
+
+            declaration.members = made(self, declaration)
+        return declaration.members
+
+    def declaration(self, slot: Slot) -> Declaration | None:
+        """The statement that makes the slot, under the conditions that hold."""
+        for declaration in slot.declarations:
+            if declaration.guard is None or self.holds(declaration.guard, slot.scope):
+                return declaration
+        return None
+
+    def holds(self, guard: Guard | None, scope: Scope) -> bool:
+        """Whether all conditions around a statement are as wanted; one without a value counts as false."""
+        while guard is not None:
+            known = scope.conditions.get(id(guard.condition))
+            if known is None:
+                known = scope.conditions[id(guard.condition)] = self._condition(guard.condition, scope)
+            if known is not guard.wanted:
+                return False
+            guard = guard.outer
+        return True
+
+    def _condition(self, statement: Statement, scope: Scope) -> bool:
+        scope.conditions[id(statement)] = False  # for a condition that asks for what stands under it
+        try:
+            if self._inside:
+                return truth(self.value(statement, 0, scope))
+            return self.force(lambda: truth(self.value(statement, 0, scope)))
+        except Trouble as trouble:
+            self.notes.add(
+                "warning",
+                "condition",
+                statement.place(0),
+                f"this condition has no value and counts as false: {trouble.message}",
+            )
+            return False
+        except _Deeper:
+            del scope.conditions[id(statement)]
+            raise
+
+    def alive(self, scope: Scope | None) -> bool:
+        """Whether the instance that a scope is stands under conditions that hold."""
+        while scope is not None and scope.declaration is not None:
+            declaration = scope.declaration
+            if self.declaration(declaration.slot) is not declaration:
+                return False
+            active = self.program.analysis
+            if active and declaration.kind == "Analysis" and active.arg(0) != declaration.slot.name:
+                return False
+            scope = scope.parent
+        return True
+
+    def argument(self, scope: Scope, name: str) -> Any:
+        """What an instance was given for an argument of its definition, else the default."""
+        return self.demand(self.system(scope), "argument " + name)
+
+    def system(self, scope: Scope) -> Any:
+        """The thing that a scope is."""
+        from backends.motionview.reader.things import system_of
+
+        return system_of(self, scope)
+
+    def built_in(self, name: str) -> Any:
+        """What the standard include makes."""
+        return self.built_ins.get(name)
+
+    def settings(self, slot: Slot, kind: str, part: str = "") -> list[Setting]:
+        """The Set statements that hold for a part of a slot, the one that counts last."""
+        if slot.settings is None:
+            return []
+        found = slot.settings.get((kind, part))
+        if not found:
+            return []
+        if len(found) == 1 and found[0].guard is None and found[0].scope.parent is None:
+            return found
+        return [s for s in found if self.holds(s.guard, s.scope) and self.alive(s.scope)]
+
+    # -- values as expressions see them
+
+    def attribute(self, owner: Any, key: str, name: str, shift: int) -> Any:
+        """`owner.name`; of a pair the pair of both, until .l or .r takes one."""
+        if owner.__class__ is Pair:
+            if key == "l":
+                return owner.l
+            if key == "r":
+                return owner.r
+            return Pair(
+                self.attribute(owner.l, key, name, shift),
+                owner.r if owner.r is owner.l else self.attribute(owner.r, key, name, shift),
+            )
+        if owner.__class__ is Unmade:
+            raise Trouble("external", f"{owner.name} is made by {owner.why}", shift, "warning")
+        if isinstance(owner, tuple):
+            if key in ("x", "y", "z") and len(owner) == 3:
+                return owner["xyz".index(key)]
+            if key in ("l", "r", "data"):
+                return owner
+            raise Trouble("property", f"a vector has no {name}", shift)
+        if isinstance(owner, (float, str, bool)):
+            if key in ("l", "r", "value"):
+                return owner
+            raise Trouble("property", f"{shown(owner)} has no {name}", shift)
+        return owner.attribute(key, name, shift)
+
+    def vector(self, value: Any) -> Vector:
+        """Three numbers, of a vector literal, a point or a vector."""
+        if value.__class__ is not tuple:
+            if not hasattr(value, "attribute"):
+                raise Trouble("evaluate", f"{shown(value)} is no vector")
+            value = value.attribute("data", "data", 0)
+        if len(value) != 3 or not all(isinstance(v, float) for v in value):
+            raise Trouble("evaluate", "a vector has three numbers")
+        return value
+
+    def frame(self, marker: Any, shift: int = 0) -> Frame:
+        """Origin of a marker, and its axes as rows of the matrix whose columns they are."""
+        if not hasattr(marker, "attribute"):
+            raise Trouble("evaluate", f"{shown(marker)} is no marker", shift)
+        return marker.attribute("frame", "frame", shift)
+
+    def graphics_of(self, body: Thing) -> list[Thing]:
+        """The graphics that are fixed to a body."""
+        return self._of_bodies("Graphic", "body").get(id(body), [])
+
+    def joined_to(self, body: Thing) -> list[Thing]:
+        """The joints whose first body this is."""
+        return self._of_bodies("Joint", "b1").get(id(body), [])
+
+    def _of_bodies(self, kind: str, key: str) -> dict[int, list[Thing]]:
+        if kind not in self._on_bodies:
+            found: dict[int, list[Thing]] = {}
+            for thing in self.things(kind):
+                try:
+                    found.setdefault(id(thing.ask(key)), []).append(thing)
+                except Trouble:  # told where the thing itself is looked at
+                    continue
+            self._on_bodies[kind] = found
+        return self._on_bodies[kind]
+
+    def things(self, *kinds: str) -> Iterator[Thing]:
+        """All things of some kinds (of every kind, without), in the order of the text."""
+        from backends.motionview.reader.things import members
+
+        for scope in self.scopes:
+            if not self.alive(scope):
+                continue
+            for slot in scope.slots.values():
+                found = self.thing(slot)
+                if found is None:
+                    continue
+                for thing in members(found):
+                    if not kinds or thing.kind in kinds:
+                        yield thing
+
+    def body_at(self, beam: Any, point: Any, shift: int) -> Any:
+        """The body of a beam at one of its points."""
+        if hasattr(beam, "at"):
+            return beam.at(point)
+        raise Trouble("evaluate", f"{shown(beam)} has no bodies at points", shift)
+
+
+def _later(world: World, deeper: _Deeper) -> Callable[[], Any]:
+    return lambda: world.demand(deeper.thing, deeper.key)
