@@ -11,6 +11,7 @@ from mdlgen.model import press
 from mdlgen.model.tables import (
     BOX_CYLINDER,
     BOX_PLANE,
+    EXTERNAL,
     SUPPORT,
     Floats,
     Model,
@@ -171,7 +172,7 @@ def _idle_drive(model: Model) -> Iterator[Lint]:
 
 def _untouched(model: Model) -> Iterator[Lint]:
     parts = {*model.contacts.part_a, *model.contacts.part_b}
-    if not model.rollers and not model.planes:
+    if not model.rollers and not model.planes and not model.externals:
         return
     for sheet in model.sheets:
         if sheet.name not in parts:
@@ -181,7 +182,12 @@ def _untouched(model: Model) -> Iterator[Lint]:
                 "the sheet has no contact with any roller or plane of the scene",
                 f"add to contacts like {{between: [{sheet.name}, ...], stiffness: 300 N/mm^1.5}}",
             )
-    for kind, part in (*(("rollers", r) for r in model.rollers), *(("planes", p) for p in model.planes)):
+    machine = (
+        *(("rollers", r) for r in model.rollers),
+        *(("planes", p) for p in model.planes),
+        *(("parts", e) for e in model.externals),
+    )
+    for kind, part in machine:
         if part.name not in parts:
             yield Lint(
                 "W111",
@@ -194,9 +200,11 @@ def _untouched(model: Model) -> Iterator[Lint]:
 def _free_static(model: Model) -> Iterator[Lint]:
     if model.run.analysis != "static":
         return
+    sides = zip(model.contacts.part_a, model.contacts.kind, strict=True)
+    unknown = {sheet for sheet, kind in sides if kind == EXTERNAL}  # what such a part holds is not known
     for index, sheet in enumerate(model.sheets):
         free = 6 - _held(model, index, sheet)
-        if sheet.clamp is None and free > 0:
+        if sheet.clamp is None and free > 0 and sheet.name not in unknown:
             yield Lint(
                 "W110",
                 f"sheets.{sheet.name}",

@@ -25,6 +25,10 @@ class Place(NamedTuple):
     def __str__(self) -> str:
         return f"{self.file}:{self.line}:{self.column}"
 
+    def seen_from(self, file: str) -> str:
+        """`line 3`, or the whole place where it is in another file."""
+        return f"line {self.line}" if self.file == file else str(self)
+
 
 class MdlgenError(Exception):
     """Base of all errors that are told to the user in one line."""

@@ -10,7 +10,7 @@ import pytest
 
 from mdlgen.errors import SpecError
 from mdlgen.model.lower import lower
-from mdlgen.model.tables import CLAMP, GROUND, JOINT_X, JOINT_Y
+from mdlgen.model.tables import CLAMP, GROUND, JOINT_X, JOINT_Y, SUPPORT
 from mdlgen.spec.load import load, loads
 
 TRANSPORT, CANTILEVER = "samples/transport_4x4.yaml", "samples/cantilever.yaml"
@@ -134,6 +134,27 @@ def test_probe_on_a_line_is_the_mean_of_its_boxes():
         s * (m.bodies.position[b] + loc) for b, loc, s in zip(lead.body, lead.local, lead.share, strict=True)
     )
     assert np.allclose(place, [33.5, 0, 0])
+
+
+def test_supports_stand_with_their_bushings():
+    m = model(
+        CANTILEVER,
+        "sheets.note.turn=20 deg",
+        'supports=[{"sheet":"note","at":["3 mm","0 mm"],"fix":["z"]},'
+        '{"sheet":"note","edge":"x_max","fix":["x","y"]}]',
+    )
+    inside, edge = m.supports
+    assert (inside.name, inside.at, inside.edge) == ("support_0", (3.0, 0.0), None)
+    assert (edge.name, edge.at, edge.edge) == ("support_1", (33.5, 0.0), "x_max")
+    b = m.bushings
+    rows = np.flatnonzero(b.kind == SUPPORT)
+    assert [b.name[r] for r in rows] == ["support_0_0", "support_0_1", "support_1_0", "support_1_1"]
+    assert b.b[rows].tolist() == [*inside.body, *edge.body]
+    turn = m.sheets[0].rotation
+    assert np.allclose(b.origin[rows], [turn @ [3, 0, 0]] * 2 + [turn @ [33.5, 0, 0]] * 2)
+    k_z = m.sheets[0].derived["k_z"]
+    assert np.allclose(b.k[rows[:2]], [0, 0, 50 * k_z, 0, 0, 0])
+    assert np.allclose(b.k[rows[2:]], [50 * k_z, 50 * k_z, 0, 0, 0, 0])
 
 
 def test_names_that_meet_are_refused(tmp_path):

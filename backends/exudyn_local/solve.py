@@ -18,6 +18,7 @@ from backends.exudyn_local import kernels
 from backends.exudyn_local.recorder import Recorder
 from backends.exudyn_local.step import choose_steps
 from backends.exudyn_local.system import MM, MS, Pattern, System, build
+from mdlgen.model.external import refuse_externals
 from mdlgen.model.tables import Model
 from mdlgen.results.result import Result
 
@@ -54,6 +55,7 @@ def solve(model: Model, progress: Progress | None = None, step: float | None = N
     `step` [ms] overrides the Model's. A failed run returns a Result with its reason; RefusedError is
     raised for what the backend cannot represent.
     """
+    refuse_externals(model, "Exudyn")
     started = clock.perf_counter()
     system, pattern = build(model)
     exu = _exudyn()

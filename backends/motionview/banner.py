@@ -8,6 +8,11 @@ from backends.motionview.rows import SceneView
 from backends.motionview.units import number
 from mdlgen.model.tables import Model
 
+SHARE = (
+    "  MotionSolve gives every pair the full stiffness. In the local run of mdlgen, share width lets",
+    "  the boxes under one part share it by the width that each covers; share pair gives it to each too.",
+)
+
 
 def banner(model: Model, scene: SceneView) -> list[str]:
     """The lines of the header, without slashes."""
@@ -19,18 +24,34 @@ def banner(model: Model, scene: SceneView) -> list[str]:
         "Units : mm, N, kg, s, rad; angles in data sets in degrees",
         f"Gravity : {gravity} mm/s2",
     ]
-    for sheet, part in zip(scene.sheets, model.sheets, strict=True):
-        joints = sum(len(group.bushes) for group in sheet.joints)
-        lines.append(
-            f"Sheet : {sheet.name}, {part.n_x} x {part.n_y} boxes, {part.layout}, {part.grid} grid, "
-            f"{joints} bushings; its values are in ds_{sheet.name}"
-        )
+    lines += sheet_lines(model, scene)
     lines += _contacts(model, scene)
     if reasons:
         lines += ["", "Companion script : run it once in the Python window after loading, because of"]
         lines += [f"  {reason}" for reason in reasons]
     lines += ["", "Not yet read by a real MotionView; look at these first if it complains :"]
     return lines + [f"  {form}" for form in unverified(scene)]
+
+
+def sheet_lines(model: Model, scene: SceneView) -> list[str]:
+    """One line for each sheet."""
+    lines = []
+    for sheet, part in zip(scene.sheets, model.sheets, strict=True):
+        joints = sum(len(group.bushes) for group in sheet.joints)
+        lines.append(
+            f"Sheet : {sheet.name}, {part.n_x} x {part.n_y} boxes, {part.layout}, {part.grid} grid, "
+            f"{joints} bushings; its values are in ds_{sheet.name}"
+        )
+    return lines
+
+
+def share_lines(scene: SceneView) -> list[str]:
+    """One line for each entry of the contacts."""
+    found = []
+    for contact in scene.contacts:
+        parts = contact.label.partition(": ")[2]
+        found.append(f"  ds_{contact.data_set} : share {contact.share}, {parts}")
+    return found
 
 
 def _contacts(model: Model, scene: SceneView) -> list[str]:
@@ -40,8 +61,7 @@ def _contacts(model: Model, scene: SceneView) -> list[str]:
     lines = [
         f"Contacts : {pairs.possible} pairs possible, {len(pairs)} kept: those that can meet in the run, "
         f"with a margin of {number(pairs.margin)} mm",
-        "  MotionSolve gives every pair the full stiffness. In the local run of mdlgen, share width lets",
-        "  the boxes under one part share it by the width that each covers; share pair gives it to each too.",
+        *SHARE,
     ]
     if len(pairs) < pairs.possible:
         lines += [
@@ -50,7 +70,4 @@ def _contacts(model: Model, scene: SceneView) -> list[str]:
         ]
     if any(roller.pressed for roller in scene.rollers):
         lines.append("  Pressed rollers start in equilibrium with the sheets as written, at real_start.")
-    for contact in scene.contacts:
-        parts = contact.label.partition(": ")[2]
-        lines.append(f"  ds_{contact.data_set} : share {contact.share}, {parts}")
-    return lines
+    return lines + share_lines(scene)

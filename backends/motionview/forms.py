@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from backends.motionview.rows import SceneView
+from backends.motionview.rows import SceneView, SystemView
 
 _BUSH = "SetOrientation of a Bush by two axes (seen by one axis, and by two for pairs of bushings)"
 
@@ -38,3 +38,17 @@ def unverified(scene: SceneView) -> list[str]:
         (any(s.surface for s in scene.sheets), "DeformableSurface (documented, not seen in a file)"),
     )
     return [line for needed, line in rows if needed]
+
+
+def unverified_system(system: SystemView) -> list[str]:
+    """The same for a text that is a system definition."""
+    rows = (
+        (True, "a file with definitions alone (concluded from Include, which reads statements anywhere)"),
+        (True, "these notes behind // above the first statement (concluded; delete them if it complains)"),
+        (True, "definitions of data sets beside that of the system (seen in models, not in such a file)"),
+        (
+            bool(system.attachments),
+            "Attachment of type Graphic, and its use in Contact (the type is documented, not seen in a file)",
+        ),
+    )
+    return [line for needed, line in rows if needed] + unverified(system.scene)

@@ -35,11 +35,19 @@ def check_names(model: Model) -> None:
             *(p.name for p in model.probes),
             *(p.data_set for p in model.parameters),
             *(p.member for p in model.parameters),
+            *(e.name for e in model.externals),
+            *(word for e in model.externals for path in (e.body, *e.graphics) for word in path.split(".")),
             *model.bodies.name,
             *model.bushings.name,
         ),
         labels=(*model.bodies.label, *model.bushings.label, *(p.label for p in model.parameters)),
     )
+
+
+def check_free(name: str) -> None:
+    """Raises SpecError for a name that MotionView has already."""
+    if name.lower() in (taken.lower() for taken in _RESERVED):
+        raise SpecError(f"the system would be called {name!r}, a name of MotionView; rename the scene")
 
 
 def check_text(text: str) -> None:

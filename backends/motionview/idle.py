@@ -5,6 +5,8 @@ A value that a user can edit and that changes nothing would be worse than one th
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from mdlgen.model.tables import Model
@@ -13,9 +15,9 @@ _FRICTION = ("mu_s", "mu_d", "v_s", "v_d")
 _STIFFNESS = ("E_md", "E_cd", "k_tx", "k_ty", "k_tz", "D_md", "D_cd", "D_twist", "zeta", "zeta_ty")
 
 
-def idle_values(model: Model, set_contact: bool) -> dict[tuple[str, str], str]:
-    """Reason by (data set, member)."""
-    found = _contacts(model, set_contact)
+def idle_values(model: Model, set_contact: bool, kept: Sequence[int]) -> dict[tuple[str, str], str]:
+    """Reason by (data set, member); `kept` are the contacts (rows) that have statements in the text."""
+    found = _contacts(model, set_contact, kept)
     for index, sheet in enumerate(model.sheets):
         if not np.any(model.bushings.sheet == index):
             found |= {(sheet.name, member): "there are no joints" for member in _STIFFNESS}
@@ -27,9 +29,9 @@ def idle_values(model: Model, set_contact: bool) -> dict[tuple[str, str], str]:
     return found
 
 
-def _contacts(model: Model, set_contact: bool) -> dict[tuple[str, str], str]:
+def _contacts(model: Model, set_contact: bool, rows: Sequence[int]) -> dict[tuple[str, str], str]:
     table, found = model.contacts, {}
-    kept = set(table.entry[model.pairs.contact].tolist())
+    kept = {int(table.entry[row]) for row in set(rows)}
     rubs = {int(e) for e in table.entry[(table.mu_static > 0) | (table.mu_dynamic > 0)]}
     for entry in sorted(set(table.entry.tolist())):
         for member in ("k", "c_R", *_FRICTION, "v_n"):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import groupby
 
 import numpy as np
@@ -52,11 +53,11 @@ def _guide(rotation: Floats) -> str:
     return f"V_Global_{'XY'[k]}"
 
 
-def contact_views(model: Model, given: dict[str, list[Value]]) -> list[ContactView]:
-    """One row for each entry of the spec's list that made a contact."""
+def contact_views(model: Model, given: dict[str, list[Value]], written: Sequence[int]) -> list[ContactView]:
+    """One row for each entry of the spec's list that made one of the contacts `written`."""
     table = model.contacts
     views = []
-    for entry, group in groupby(range(len(table)), key=lambda row: int(table.entry[row])):
+    for entry, group in groupby(written, key=lambda row: int(table.entry[row])):
         rows = list(group)
         more = f" and {len(rows) - 1} more" if len(rows) > 1 else ""
         label = f"Contact {entry}: {table.part_a[rows[0]]} / {table.part_b[rows[0]]}{more}"
@@ -81,7 +82,7 @@ def pair_rows(model: Model) -> list[Pair]:
             f"b_{bodies.name[a]}",
             graphic[a],
             f"b_{bodies.name[b]}",
-            graphic[b],
+            [graphic[b]],
             rubs[row],
             data_set[row],
         )

@@ -120,7 +120,7 @@ class Pair(NamedTuple):
     body_1: str
     graphic_1: str
     body_2: str
-    graphic_2: str
+    graphics_2: list[str]
     friction: str  # ON or OFF
     data_set: str
 
@@ -138,10 +138,11 @@ class ProbeView:
 
 @dataclass(frozen=True)
 class SupportView:
-    """A held material point: bushings to ground on each box that it lies on."""
+    """A held material point or middle of an edge: bushings to ground on each box that it lies on."""
 
     name: str
     sheet: str
+    edge: str | None
     given: list[Value]
     count: int
     fixed: tuple[bool, bool, bool]
@@ -163,3 +164,23 @@ class SceneView:
     pairs: list[Pair]
     probes: list[ProbeView]
     set_contact: bool
+
+
+class Attachment(NamedTuple):
+    """An argument of a system definition: what an entity of the model around is called inside."""
+
+    name: str
+    label: str
+    entity: str  # Body or Graphic
+    given: str  # the entity's variable in the model around, as far as the scene says it
+
+
+@dataclass(frozen=True)
+class SystemView:
+    """The sheets as one system definition; `scene` holds no machine."""
+
+    name: str
+    variable: str  # of an instance
+    definition: str
+    attachments: list[Attachment]
+    scene: SceneView

@@ -7,9 +7,10 @@ from typing import NamedTuple
 import numpy as np
 
 from backends.motionview.environment import environment
+from backends.motionview.system import kept_contacts, system_view
 from backends.motionview.units import mdl_value, number
 from backends.motionview.views import scene_view
-from mdlgen.model.tables import Model
+from mdlgen.model.tables import Ints, Model
 
 # What MotionView takes where a text says nothing [mm/s^2], [mm/s].
 DEFAULT_GRAVITY = (0.0, 0.0, -9810.0)
@@ -30,48 +31,55 @@ def gravity(model: Model) -> tuple[float, float, float]:
     return x, y, z
 
 
-def reasons(model: Model, set_contact: bool = False) -> list[str]:
-    """Why the script is needed, one line each."""
-    found = []
-    if gravity(model) != DEFAULT_GRAVITY:
+def reasons(model: Model, set_contact: bool = False, only: str | None = None) -> list[str]:
+    """Why the script is needed, one line each; for the sheets alone gravity is not its business."""
+    found, rows = [], _written(model, only)
+    if only is None and gravity(model) != DEFAULT_GRAVITY:
         shown = ", ".join(number(g) for g in gravity(model))
         found.append(f"gravity is ({shown}) mm/s2 and MDL has no documented statement for it")
-    if len(model.pairs) and not set_contact:
+    if len(rows) and not set_contact:
         found.append("the contact numbers: the argument order of SetContact is not certain")
-    elif len(model.pairs) and _smoothing_differs(model):
+    elif len(rows) and _smoothing_differs(model, rows):
         found.append("normal_trans_vel of the contacts: SetContact has no documented place for it")
     return found
 
 
-def companion(model: Model, *, set_contact: bool = False) -> str | None:
+def companion(model: Model, *, set_contact: bool = False, only: str | None = None) -> str | None:
     """The script, or None where the text says everything."""
-    why = reasons(model, set_contact)
+    why = reasons(model, set_contact, only)
     if not why:
         return None
-    own_gravity = gravity(model)
+    own_gravity = gravity(model) if only is None else DEFAULT_GRAVITY
     template = environment().get_template("companion.py.j2")
     return template.render(
         name=model.name,
         reasons=why,
         gravity=[number(g) for g in own_gravity] if own_gravity != DEFAULT_GRAVITY else None,
-        contacts=_numbers(model, set_contact),
+        system=None if only is None else system_view(model, set_contact).variable,
+        contacts=_numbers(model, set_contact, only),
     )
 
 
-def _smoothing_differs(model: Model) -> bool:
-    used = np.unique(model.pairs.contact)
+def _written(model: Model, only: str | None) -> Ints:
+    """Row of the contacts of each pair that has a statement in the text."""
+    return model.pairs.contact if only is None else kept_contacts(model)
+
+
+def _smoothing_differs(model: Model, rows: Ints) -> bool:
+    used = np.unique(rows)
     return any(mdl_value(float(v), "mm/ms") != DEFAULT_SMOOTHING for v in model.contacts.smoothing[used])
 
 
-def _numbers(model: Model, set_contact: bool) -> list[Numbers]:
-    if not len(model.pairs) or (set_contact and not _smoothing_differs(model)):
+def _numbers(model: Model, set_contact: bool, only: str | None) -> list[Numbers]:
+    rows = _written(model, only)
+    if not len(rows) or (set_contact and not _smoothing_differs(model, rows)):
         return []
-    scene = scene_view(model, set_contact)
+    scene = scene_view(model, set_contact) if only is None else system_view(model, set_contact).scene
     names: dict[str, list[str]] = {}
     rubs = {pair.data_set: pair.friction == "ON" for pair in scene.pairs}
     for pair in scene.pairs:
         names.setdefault(pair.data_set, []).append(pair.name)
-    rows = []
+    found = []
     for contact in scene.contacts:
         if contact.data_set not in names:
             continue
@@ -86,5 +94,5 @@ def _numbers(model: Model, set_contact: bool) -> list[Numbers]:
                     ("stiction_trans_vel", given["v_s"]),
                     ("friction_trans_vel", given["v_d"]),
                 ]
-        rows.append(Numbers(contact.label, table, names[contact.data_set]))
-    return rows
+        found.append(Numbers(contact.label, table, names[contact.data_set]))
+    return found

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from itertools import groupby
+from itertools import islice
 
 import numpy as np
 
@@ -86,25 +86,29 @@ def _surface(sheet: SheetPart, names: tuple[str, ...]) -> list[list[str]]:
 
 
 def support_views(model: Model) -> list[SupportView]:
-    """Held material points; their bushings share one point and one data set each."""
+    """Held material points; the bushings of one share a point and a data set."""
     table = model.bushings
-    rows = np.flatnonzero(table.kind == SUPPORT).tolist()
+    rows = iter(np.flatnonzero(table.kind == SUPPORT).tolist())
+    factor = Value("factor", "Stiffness in times k_z of the sheet", number(SUPPORT_FACTOR), "EDIT")
     views = []
-    for name, group in groupby(rows, key=lambda row: table.name[row].rpartition("_")[0]):
-        parts = list(group)
-        first = parts[0]
-        sheet = model.sheets[int(table.sheet[first])]
-        at = (table.origin[first] - sheet.center) @ sheet.rotation
-        given = [
-            *_place(at[0], at[1]),
-            Value("factor", "Stiffness in times k_z of the sheet", number(SUPPORT_FACTOR), "EDIT"),
-        ]
-        bushes = [
-            Bush(table.name[r], table.label[r], "B_Ground", f"b_{model.bodies.name[int(table.b[r])]}", name)
-            for r in parts
-        ]
-        fixed = tuple(bool(k > 0) for k in table.k[first, :3])
-        views.append(SupportView(name, sheet.name, given, len(parts), fixed, bushes))  # type: ignore[arg-type]
+    for support in model.supports:
+        parts = list(islice(rows, len(support.body)))
+        bodies = [f"b_{model.bodies.name[b]}" for b in support.body.tolist()]
+        x, y, z = (table.k[parts[0], :3] > 0).tolist()
+        views.append(
+            SupportView(
+                name=support.name,
+                sheet=model.sheets[support.sheet].name,
+                edge=support.edge,
+                given=[*([] if support.edge else _place(*support.at)), factor],
+                count=len(parts),
+                fixed=(x, y, z),
+                bushes=[
+                    Bush(table.name[row], table.label[row], "B_Ground", body, support.name)
+                    for row, body in zip(parts, bodies, strict=True)
+                ],
+            )
+        )
     return views
 
 

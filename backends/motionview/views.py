@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from backends.motionview.idle import idle_values
 from backends.motionview.machine import contact_views, pair_rows, plane_view, roller_view
 from backends.motionview.rows import SceneView, Value
@@ -12,7 +14,7 @@ from mdlgen.model.tables import Model, Parameter
 
 def scene_view(model: Model, set_contact: bool) -> SceneView:
     """All rows of a Model."""
-    given = _given(model, set_contact)
+    given = given_values(model, set_contact, model.pairs.contact.tolist())
     return SceneView(
         name=model.name,
         static=model.run.analysis == "static",
@@ -21,16 +23,16 @@ def scene_view(model: Model, set_contact: bool) -> SceneView:
         supports=support_views(model),
         rollers=[roller_view(model, r, given[r.name]) for r in model.rollers],
         planes=[plane_view(model, p, given[p.name]) for p in model.planes],
-        contacts=contact_views(model, given),
+        contacts=contact_views(model, given, range(len(model.contacts))),
         pairs=pair_rows(model),
         probes=[probe_view(model, probe) for probe in model.probes],
         set_contact=set_contact,
     )
 
 
-def _given(model: Model, set_contact: bool) -> dict[str, list[Value]]:
-    """Members by data set, in the order of the parameters."""
-    idle = idle_values(model, set_contact)
+def given_values(model: Model, set_contact: bool, kept: Sequence[int]) -> dict[str, list[Value]]:
+    """Members by data set, in the order of the parameters; `kept` as in `idle_values`."""
+    idle = idle_values(model, set_contact, kept)
     tables: dict[str, list[Value]] = {}
     for p in model.parameters:
         tables.setdefault(p.data_set, []).append(_value(p, idle.get((p.data_set, p.member))))

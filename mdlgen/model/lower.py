@@ -8,16 +8,18 @@ import numpy as np
 
 from mdlgen.model import grid, naming
 from mdlgen.model.anchors import anchor, find_tension, lower_loads
+from mdlgen.model.external import external_pairs, lower_externals
+from mdlgen.model.joints import find_joints
 from mdlgen.model.machine import frame, lower_planes, lower_rollers
 from mdlgen.model.pairs import find_pairs
 from mdlgen.model.parameters import parameters
-from mdlgen.model.stiffness import SUPPORT_FACTOR, JointValues, joint_values
+from mdlgen.model.stiffness import JointValues, joint_values
+from mdlgen.model.supports import joined, support_bushings
 from mdlgen.model.tables import (
     BOX_CYLINDER,
     BOX_PLANE,
     CYLINDER_CYLINDER,
-    GROUND,
-    SUPPORT,
+    EXTERNAL,
     Bodies,
     Bushings,
     Clamp,
@@ -43,9 +45,12 @@ def lower(scene: Scene) -> Model:
     contacts = _contacts(scene)
     rollers = lower_rollers(scene, sheets, contacts, first)
     planes = lower_planes(scene, first + len(rollers))
+    externals = lower_externals(scene)
     gravity = np.array(scene.gravity)
     bodies = _bodies(sheets, values, rollers, planes)
-    bushings = _bushings(scene, sheets, values, bodies)
+    supports = tuple(anchor(f"support_{k}", item, sheets) for k, item in enumerate(scene.supports))
+    held = support_bushings(scene.supports, supports, sheets, bodies)
+    bushings = joined([*_joints(sheets, values), *held])
     naming.check_unique("bodies", bodies.name)
     naming.check_unique("bushings", bushings.name)
     starts = {r.name: (r.press.touch, r.press.start) for r in rollers if r.press is not None}
@@ -55,14 +60,17 @@ def lower(scene: Scene) -> Model:
         sheets=sheets,
         rollers=rollers,
         planes=planes,
+        externals=externals,
         bodies=bodies,
         bushings=bushings,
         contacts=contacts,
         pairs=find_pairs(
             gravity, sheets, rollers, planes, bodies, contacts, run, scene.run.prune, scene.run.margin
         ),
+        external_pairs=external_pairs(sheets, externals, contacts),
         loads=lower_loads(scene, sheets),
         probes=tuple(anchor(name, scene.probes[name], sheets) for name in sorted(scene.probes)),
+        supports=supports,
         tension=find_tension(scene, sheets),
         parameters=parameters(scene, starts, run),
         run=run,
@@ -124,10 +132,9 @@ def _contacts(scene: Scene) -> Contacts:
     def column(read: Callable) -> Floats:
         return np.array([read(scene.contacts[i]) for i, _, _ in rows], dtype=float)
 
-    kinds = [
-        CYLINDER_CYLINDER if a in scene.rollers else BOX_CYLINDER if b in scene.rollers else BOX_PLANE
-        for _, a, b in rows
-    ]
+    with_sheet = dict.fromkeys(scene.rollers, BOX_CYLINDER)
+    with_sheet |= dict.fromkeys(scene.planes, BOX_PLANE) | dict.fromkeys(scene.parts, EXTERNAL)
+    kinds = [CYLINDER_CYLINDER if a in scene.rollers else with_sheet[b] for _, a, b in rows]
     return Contacts(
         entry=np.array([i for i, _, _ in rows], dtype=np.int64),
         part_a=tuple(a for _, a, _ in rows),
@@ -215,42 +222,25 @@ def _bodies(
     return Bodies(tuple(names), tuple(labels), *columns)
 
 
-def _bushings(
-    scene: Scene, sheets: tuple[SheetPart, ...], values: list[JointValues], bodies: Bodies
-) -> Bushings:
-    names, labels, rows = [], [], []
-    index = {s.name: k for k, s in enumerate(sheets)}
+def _joints(sheets: tuple[SheetPart, ...], values: list[JointValues]) -> list[Bushings]:
+    tables = []
     for number, (sheet, value) in enumerate(zip(sheets, values, strict=True)):
-        for joint in grid.joints(sheet):
-            names.append(joint.name)
-            labels.append(joint.label)
-            origin = grid.place(sheet, grid.local(sheet, *joint.node))
-            k, c = grid.joint_coefficients(joint, value)
-            rows.append((joint.kind, number, joint.a, joint.b, origin, sheet.rotation, k, c, joint.node))
-    for number, support in enumerate(scene.supports):
-        held = anchor(f"support_{number}", support, sheets)
-        sheet = sheets[index[support.sheet]]
-        stiff = SUPPORT_FACTOR * sheet.derived["k_z"] * np.array([axis in support.fix for axis in "xyz"])
-        for part, (body, local, share) in enumerate(zip(held.body, held.local, held.share, strict=True)):
-            names.append(f"support_{number}_{part}")
-            labels.append(f"support {number} of {sheet.name}, part {part}")
-            origin = bodies.position[body] + bodies.rotation[body] @ local
-            k = np.concatenate([stiff * share, np.zeros(3)])
-            c = 2 * 0.5 * np.sqrt(k * sheet.derived["m"])
-            rows.append((SUPPORT, index[support.sheet], GROUND, body, origin, np.eye(3), k, c, held.node))
-    count = len(rows)
-    columns = [list(column) for column in zip(*rows, strict=True)] if rows else [[] for _ in range(9)]
-    kind, sheet_index, a, b, origin, axes, k, c, node = columns
-    return Bushings(
-        name=tuple(names),
-        label=tuple(labels),
-        kind=np.array(kind, dtype=np.int64),
-        sheet=np.array(sheet_index, dtype=np.int64),
-        a=np.array(a, dtype=np.int64),
-        b=np.array(b, dtype=np.int64),
-        origin=np.array(origin, dtype=float).reshape(count, 3),
-        axes=np.array(axes, dtype=float).reshape(count, 3, 3),
-        k=np.array(k, dtype=float).reshape(count, 6),
-        c=np.array(c, dtype=float).reshape(count, 6),
-        node=np.array(node, dtype=np.int64).reshape(count, 2),
-    )
+        for joints in find_joints(sheet):
+            count = len(joints.name)
+            k, c = (np.broadcast_to(six, (count, 6)) for six in joints.coefficients(value))
+            made = Bushings(
+                name=tuple(joints.name),
+                label=tuple(name.replace("_", " ") for name in joints.name),
+                kind=np.full(count, joints.kind),
+                sheet=np.full(count, number),
+                a=joints.a,
+                b=joints.b,
+                # point by point: a product with many rows at once may round each as their number has it
+                origin=grid.place(sheet, grid.local(sheet, *joints.node.T)[:, None])[:, 0],
+                axes=np.broadcast_to(sheet.rotation, (count, 3, 3)),
+                k=k,
+                c=c,
+                node=joints.node,
+            )
+            tables.append(made)
+    return tables

@@ -3,7 +3,8 @@
 A sheet's boxes are swept by what can move them: their initial velocity, gravity, and the surface speed
 of every driven roller that the sheet has a contact with. A difference of those speeds across the sheet
 may turn it. A stated margin is added. A solver watches the bounds: a box whose centre leaves them ends
-the run, so that no contact is missed silently.
+the run, so that no contact is missed silently. A sheet that meets an external part may be moved by it in any
+way: all of its pairs are kept.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import numpy as np
 
 from mdlgen.model.tables import (
     CYLINDER_CYLINDER,
+    EXTERNAL,
     Bodies,
     Contacts,
     Floats,
@@ -49,7 +51,7 @@ def find_pairs(
     if prune:
         for sheet in sheets:
             rows = [r for r, a in enumerate(contacts.part_a) if a == sheet.name]
-            if not rows:
+            if not rows or EXTERNAL in contacts.kind[rows]:
                 continue
             touched = [parts[contacts.part_b[r]] for r in rows]
             boxes = slice(sheet.first, sheet.first + sheet.count)
@@ -62,7 +64,7 @@ def find_pairs(
                 way = roller.radius * np.abs(roller.press.direction) + margin
                 low[roller.body] = bodies.position[roller.body] - way
                 high[roller.body] = bodies.position[roller.body] + way
-    for row in range(len(contacts)):
+    for row in np.flatnonzero(contacts.kind != EXTERNAL).tolist():
         other = parts[contacts.part_b[row]]
         if contacts.kind[row] == CYLINDER_CYLINDER:
             possible += 1
@@ -71,7 +73,7 @@ def find_pairs(
         sheet = by_name[contacts.part_a[row]]
         possible += sheet.count
         boxes = np.arange(sheet.first, sheet.first + sheet.count)
-        if prune:
+        if sheet.name in extents:
             part_low, part_high = _part_bounds(other, bodies)
             box_low, box_high = extents[sheet.name]
             boxes = boxes[np.all((box_low <= part_high) & (box_high >= part_low), axis=1)]

@@ -65,13 +65,19 @@ def sheet_contact(
 ) -> Callable[[Floats], Floats]:
     """Force on a roller at a given centre from the flat sheet held where it starts [N], (3,)."""
     normal = sheet.rotation[:, 2]
+    # A move square to the sheet, along a global axis, leaves the share as it is, to the last bit.
+    across = np.any(sheet.rotation[:, :2] != 0.0, axis=1)
+    shares: dict[tuple[float, ...], float] = {}
 
     def force(center: Floats) -> Floats:
         height = float((center - sheet.center) @ normal)
         depth = radius + sheet.thickness / 2 - abs(height)
         if depth <= 0.0:
             return np.zeros(3)
-        share = covered_share(sheet, center, axis, width, shared)
+        place = tuple(center[across].tolist())
+        if place not in shares:
+            shares[place] = covered_share(sheet, center, axis, width, shared)
+        share = shares[place]
         return math.copysign(stiffness * share * depth**1.5, height) * normal
 
     return force

@@ -158,8 +158,17 @@ class PlanePart(Frozen):
     mass: float
 
 
+@dataclass(frozen=True)
+class ExternalPart:
+    """A body of the user's own MotionView model. It has no row in Bodies, since its mass is not known."""
+
+    name: str
+    body: str  # variable there, or a path of variables
+    graphics: tuple[str, ...]
+
+
 # kinds of contact
-BOX_CYLINDER, BOX_PLANE, CYLINDER_CYLINDER = 0, 1, 2
+BOX_CYLINDER, BOX_PLANE, CYLINDER_CYLINDER, EXTERNAL = 0, 1, 2, 3
 
 
 @dataclass(frozen=True)
@@ -168,8 +177,8 @@ class Contacts(Frozen):
 
     entry: Ints  # index in the spec's list, (n,)
     part_a: tuple[str, ...]  # sheet or roller
-    part_b: tuple[str, ...]  # roller or plane
-    kind: Ints  # BOX_CYLINDER, BOX_PLANE or CYLINDER_CYLINDER
+    part_b: tuple[str, ...]  # roller, plane or external part
+    kind: Ints  # BOX_CYLINDER, BOX_PLANE, CYLINDER_CYLINDER or EXTERNAL
     stiffness: Floats  # k [N/mm^1.5]
     restitution: Floats  # c_R
     mu_static: Floats
@@ -197,6 +206,18 @@ class Pairs(Frozen):
 
     def __len__(self) -> int:
         return len(self.a)
+
+
+@dataclass(frozen=True)
+class ExternalPairs(Frozen):
+    """Boxes and the external parts that they may touch; all there are, since none can be left out."""
+
+    contact: Ints  # row of Contacts, (n,)
+    box: Ints  # body, (n,)
+    part: Ints  # index in Model.externals, (n,)
+
+    def __len__(self) -> int:
+        return len(self.box)
 
 
 @dataclass(frozen=True)
@@ -264,12 +285,15 @@ class Model(Frozen):
     sheets: tuple[SheetPart, ...]
     rollers: tuple[RollerPart, ...]
     planes: tuple[PlanePart, ...]
+    externals: tuple[ExternalPart, ...]  # a Model that has one is not run here
     bodies: Bodies
     bushings: Bushings
     contacts: Contacts
     pairs: Pairs
+    external_pairs: ExternalPairs
     loads: Loads
     probes: tuple[Anchor, ...]
+    supports: tuple[Anchor, ...]  # named support_0, ... as the bushings that hold them
     tension: Tension | None
     parameters: tuple[Parameter, ...]
     run: RunSettings

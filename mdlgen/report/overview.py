@@ -24,6 +24,7 @@ def overview(model: Model) -> dict[str, Any]:
         "sheets": {s.name: _sheet(model, k) for k, s in enumerate(model.sheets)},
         "rollers": len(model.rollers),
         "planes": len(model.planes),
+        "external_parts": {e.name: {"body": e.body, "graphics": list(e.graphics)} for e in model.externals},
         "contacts": len(model.contacts),
         "probes": len(model.probes),
         "boxes": sum(s.count for s in model.sheets),
@@ -32,6 +33,7 @@ def overview(model: Model) -> dict[str, Any]:
             "possible": model.pairs.possible,
             "kept": len(model.pairs),
             "margin_mm": model.pairs.margin,
+            "external": len(model.external_pairs),
         },
         "lints": [asdict(lint) for lint in lints(model)],
     }

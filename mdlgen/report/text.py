@@ -29,8 +29,11 @@ def overview_text(told: dict[str, Any]) -> str:
         f"{told['rollers']} rollers, {told['planes']} planes",
         f"contact: {told['contacts']} pairs of parts; {pairs['possible']} pairs of bodies possible, "
         f"{pairs['kept']} kept (margin {pairs['margin_mm']:g} mm)",
-        "",
     ]
+    if told["external_parts"]:
+        parts = ", ".join(f"{name} ({part['body']})" for name, part in told["external_parts"].items())
+        lines.append(f"external parts: {parts}; {pairs['external']} pairs of bodies with them, all kept")
+    lines.append("")
     lines += [f"{x['code']} {x['where']}: {x['message']}; {x['remedy']}" for x in told["lints"]]
     if not told["lints"]:
         lines.append("no lints")

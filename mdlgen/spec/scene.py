@@ -13,6 +13,7 @@ from mdlgen.spec.contact import Contact
 from mdlgen.spec.fields import Acceleration, Name, Strict, default, fail
 from mdlgen.spec.machine import Plane, Roller
 from mdlgen.spec.material import Material
+from mdlgen.spec.part import Part
 from mdlgen.spec.run import Run
 from mdlgen.spec.sheet import Sheet
 
@@ -26,6 +27,7 @@ class Scene(Strict):
     sheets: dict[Name, Sheet] = Field(min_length=1)
     rollers: dict[Name, Roller] = Field(default_factory=dict)
     planes: dict[Name, Plane] = Field(default_factory=dict)
+    parts: dict[Name, Part] = Field(default_factory=dict)
     contacts: tuple[Contact, ...] = Field(default=(), strict=False)
     loads: tuple[Load, ...] = Field(default=(), strict=False)
     run: Run = Field(default_factory=Run)
@@ -53,7 +55,7 @@ class Scene(Strict):
 
     def _names_unique(self) -> None:
         seen: dict[str, str] = {}
-        for kind in ("sheets", "rollers", "planes", "probes"):
+        for kind in ("sheets", "rollers", "planes", "parts", "probes"):
             for name in getattr(self, kind):
                 other = seen.setdefault(name.lower(), f"{kind}.{name}")
                 if other != f"{kind}.{name}":
@@ -77,7 +79,7 @@ class Scene(Strict):
 
         Raises the error for a part that does not exist, a pair given twice, or one that is not modelled.
         """
-        rank = {n: i for i, n in enumerate([*self.sheets, *self.rollers, *self.planes])}
+        rank = {n: i for i, n in enumerate([*self.sheets, *self.rollers, *self.planes, *self.parts])}
         taken: dict[tuple[str, str], int] = {}
         pairs: list[tuple[int, str, str]] = []
         for index, contact in enumerate(self.contacts):
@@ -105,6 +107,11 @@ class Scene(Strict):
             raise fail(f"contact between the sheets {a} and {b} is not modelled yet", path)
         if a in self.sheets:
             return
+        if b in self.parts:
+            raise fail(
+                f"contact between {a} and {b} is not modelled: both are of the machine; give it where {b} is",
+                path,
+            )
         if b not in self.rollers:
             raise fail(f"contact between {a} and {b} is not modelled: a plane touches sheets only", path)
         one, two = self.rollers[a].axis, self.rollers[b].axis

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 from backends.motionview.reader.reading import Reading
@@ -10,12 +11,13 @@ from backends.motionview.reader.report import Finding, Report
 __all__ = ["Finding", "Reading", "Report", "lint", "read", "values"]
 
 
-def read(text: str, file: str = "<text>") -> Reading:
+def read(text: str, file: str = "<text>", folder: Path | None = None) -> Reading:
     """One reading, for both the report and the values.
 
-    Raises SpecError with file:line:column where the text is no model at all.
+    `folder` is where the text lies: files that it includes are read there and below. Without it the disk is
+    not touched. Raises SpecError with file:line:column where the text is no model at all.
     """
-    return Reading(text, file)
+    return Reading(text, file, folder)
 
 
 def lint(text: str, file: str = "<text>") -> Report:

@@ -49,6 +49,7 @@ class Expansion:
         self._built_ins()
         most = MOST_STATEMENTS + MOST_TIMES * len(self.program.statements)
         tasks = [(self.world.root, self.program.model)]
+        tasks += [(self._alone(definition), definition) for definition in self.program.alone()]
         contexts: list[Item] = []
         while tasks:
             scope, definition = tasks.pop()
@@ -63,6 +64,8 @@ class Expansion:
                 else:
                     self._place(item.statement, item.guard, scope, 0, inner)
             tasks += reversed(inner)
+        if self.program.begin is None:
+            self._declared()
         self._contexts(contexts)
         for statement, scope, guard, rank in self.sets:
             self._settle(statement, scope, guard, rank)
@@ -117,14 +120,41 @@ class Expansion:
         child.declaration = declaration
         declaration.child = child
         self.world.scopes.append(child)
-        attachments = {
-            item.statement.arg(0): item.statement
-            for item in definition.items
-            if item.statement.key == "attachment"
-        }
+        attachments = definition.attachments()
         for k, parameter in enumerate(definition.parameters):
             child.parameters[parameter] = Parameter(attachments.get(parameter), statement, 3 + k)
         inner.append((child, definition))
+
+    def _alone(self, definition: Definition) -> Scope:
+        """An instance of a definition whose attachments stand in the model that it is made for."""
+        made_by = definition.statement
+        assert made_by is not None
+        root, name = self.world.root, definition.name.removeprefix("def_")
+        if name in root.slots:
+            name = definition.name
+        definition.used = True
+        slot = root.slot(name)
+        declaration = Declaration(slot, made_by, "System", False, None)
+        slot.declarations.append(declaration)
+        child = declaration.child = Scope(self.world, root, name, definition)
+        child.declaration = declaration
+        self.world.scopes.append(child)
+        attachments = definition.attachments()
+        for parameter in definition.parameters:
+            attachment = attachments.get(parameter)
+            default = attachment.arg(4) if attachment is not None else ""
+            external = "" if default and self.find(root, default) is not None else default or parameter
+            child.parameters[parameter] = Parameter(attachment, made_by, len(made_by.args), external)
+        return child
+
+    def _declared(self) -> None:
+        """In a part of a model: what an attachment declares by the name that its instance gives."""
+        for scope in self.world.scopes:
+            for name, parameter in scope.parameters.items():
+                given, attachment = parameter.instance.arg(parameter.at), parameter.attachment
+                declared = attachment is not None and given and attachment.arg(4) == given
+                if declared and not parameter.external and self.find(scope.parent, given) is None:
+                    scope.parameters[name] = parameter._replace(external=given)
 
     def _undefined(self, declaration: Declaration) -> None:
         statement = declaration.statement
@@ -215,6 +245,8 @@ class Expansion:
         if slot is None:
             assert at is not None
             parameter = at.parameters[words[0]]
+            if parameter.external:
+                return None
             actual = parameter.instance.arg(parameter.at) or (
                 parameter.attachment.arg(4) if parameter.attachment else ""
             )
@@ -238,6 +270,11 @@ class Expansion:
         first = target.split(".")[0].strip()
         if first.lower() == "model":
             return "the standard include"
+        around: Scope | None = scope
+        while around is not None and first not in around.parameters:
+            around = around.parent
+        if around is not None and around.parameters[first].external:
+            return "the model that this text is made for"
         found = self.find(scope, first)
         if found and found[0].declarations and found[0].declarations[0].child is None:
             return f"an instance of {found[0].declarations[0].statement.arg(2)}"
@@ -248,6 +285,8 @@ class Expansion:
     def _built_ins(self) -> None:
         world = self.world
         begin = self.program.begin
+        if begin is None and self.program.statements:  # a part of a model, which has these all the same
+            begin = Statement(self.program.statements[0].source, "BeginMDL", ("",), 0, 0)
         if begin is None:
             return
         holder = self.standard

@@ -10,6 +10,7 @@ from backends.motionview.reader.expand import Lost
 from backends.motionview.reader.report import Notes, Trouble
 from backends.motionview.reader.scope import Scope
 from backends.motionview.reader.statement import Statement
+from backends.motionview.reader.things.external import External
 from backends.motionview.reader.traps import traps
 
 if TYPE_CHECKING:
@@ -50,14 +51,15 @@ def lint(reading: Reading) -> None:
 
 
 def _bytes(reading: Reading) -> None:
-    source = reading.source
-    if not source.text.isascii():
-        at = next(k for k, c in enumerate(source.text) if ord(c) > 127)
-        message = "MotionView writes plain ASCII; this character may not be read"
-        reading.notes.add("warning", "ascii", source.place(at), message)
-    at = source.text.find("\r")
-    if at >= 0:
-        reading.notes.add("warning", "ascii", source.place(at), "MotionView ends lines with LF, not CR LF")
+    for source in reading.includes.sources:
+        if not source.text.isascii():
+            at = next(k for k, c in enumerate(source.text) if ord(c) > 127)
+            message = "MotionView writes plain ASCII; this character may not be read"
+            reading.notes.add("warning", "ascii", source.place(at), message)
+        at = source.text.find("\r")
+        if at >= 0:
+            message = "MotionView ends lines with LF, not CR LF"
+            reading.notes.add("warning", "ascii", source.place(at), message)
 
 
 def _arity(reading: Reading) -> None:
@@ -74,7 +76,9 @@ def _arity(reading: Reading) -> None:
 def _includes(reading: Reading) -> None:
     for statement in reading.program.includes:
         if statement.key in ("include", "definitioninclude"):
-            message = f"{statement.arg(0)} is not read; what it makes is not known here"
+            reason = reading.includes.reasons.get(id(statement))
+            why = f" ({reason})" if reason else ""
+            message = f"{statement.arg(0)} is not read{why}; what it makes is not known here"
             reading.notes.add("warning", "include", statement.place(), message)
 
 
@@ -86,9 +90,10 @@ def _duplicates(reading: Reading) -> None:
                 continue
             standing = [d for d in slot.declarations if world.holds(d.guard, scope)]
             for declaration in standing[1:]:
-                first = standing[0].statement.place().line
-                message = f"{scope.path}{slot.name} is there already, from line {first}"
-                reading.notes.add("error", "duplicate", declaration.statement.place(0), message)
+                here = declaration.statement.place(0)
+                first = standing[0].statement.place().seen_from(here.file)
+                message = f"{scope.path}{slot.name} is there already, from {first}"
+                reading.notes.add("error", "duplicate", here, message)
 
 
 def _lost(lost: list[Lost], notes: Notes) -> None:
@@ -105,6 +110,7 @@ def _lost(lost: list[Lost], notes: Notes) -> None:
 def _references(reading: Reading) -> None:
     """Evaluates what the values did not need: outputs, forces, variables, arguments of instances."""
     world = reading.world
+    externals = _externals(reading)
     for statement, scope, guard in reading.expansion.standing:
         key = statement.key
         if key in _WORDS or not arity.known(statement):
@@ -114,10 +120,24 @@ def _references(reading: Reading) -> None:
             continue
         if world.holds(guard, scope) and world.alive(scope):
             for k in range(first, len(statement.args)):
+                if (id(statement), k) in externals:
+                    continue
                 _argument(reading, statement, k, scope)
     for scope in world.scopes:
         if scope.declaration is not None and world.alive(scope):
             _parameters(reading, scope)
+
+
+def _externals(reading: Reading) -> set[tuple[int, int]]:
+    """Tells the attachments that stand elsewhere; gives the arguments (statement, index) that name them."""
+    found = set()
+    for scope in reading.world.scopes:
+        for parameter in scope.parameters.values():
+            if parameter.external and reading.world.alive(scope):
+                trouble = External(parameter, parameter.external).trouble()
+                reading.notes.tell(trouble, parameter.instance.place())
+                found.add((id(parameter.instance), parameter.at))
+    return found
 
 
 def _first_value(reading: Reading, statement: Statement) -> int | None:
@@ -148,6 +168,8 @@ def _argument(reading: Reading, statement: Statement, index: int, scope: Scope) 
 
 def _parameters(reading: Reading, scope: Scope) -> None:
     assert scope.declaration is not None
+    if scope.declaration.statement.key != scope.declaration.kind.lower():  # of a definition that stands alone
+        return
     given = len(scope.declaration.statement.args) - 3
     if scope.declaration.kind != "Graphic" and given > len(scope.parameters) and scope.definition is not None:
         message = f"{scope.definition.name} takes {len(scope.parameters)} attachments, not {given}"

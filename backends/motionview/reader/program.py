@@ -44,6 +44,11 @@ class Definition:
         self.items: list[Item] = []
         self.used = False
 
+    def attachments(self) -> dict[str, Statement]:
+        """The statements that say what its arguments are, by argument."""
+        found = (item.statement for item in self.items if item.statement.key == "attachment")
+        return {statement.arg(0): statement for statement in found}
+
     @property
     def parameters(self) -> tuple[str, ...]:
         """Names of the arguments; three words before them say the type of a typed system."""
@@ -64,6 +69,14 @@ class Program:
         self.analysis: Statement | None = None
         self.mode = "MOTIONSOLVE"
         self.statements: list[Statement] = []
+
+    def alone(self) -> list[Definition]:
+        """The systems of a text that holds definitions only, but for those that others of them hold."""
+        if self.model.items:
+            return []
+        held = {s.arg(2) for s in self.statements if s.key == "system"}
+        systems = [d for d in self.definitions.values() if d.kind == "system"]
+        return [d for d in systems if d.name not in held] or systems
 
 
 class _Open(NamedTuple):
@@ -95,9 +108,9 @@ def program(statements: Iterable[Statement], notes: Notes) -> Program:
             else:
                 message = f"*{statement.name} closes no {_CLOSING[key]}"
                 if open_:
-                    message += (
-                        f"; open is *{open_[-1].statement.name} of line {open_[-1].statement.place().line}"
-                    )
+                    last = open_[-1].statement
+                    where = last.place().seen_from(statement.source.file)
+                    message += f"; open is *{last.name} of {where}"
                 notes.add("error", "block", statement.place(), message)
             continue
         block = _block(key)
@@ -142,8 +155,10 @@ def _define(made: Program, definition: Definition, notes: Notes) -> None:
     if definition.name in made.definitions:
         before = made.definitions[definition.name].statement
         assert before is not None
-        message = f"{definition.name} is defined a second time; first in line {before.place().line}"
-        notes.add("error", "duplicate", statement.place(0), message)
+        here = statement.place(0)
+        first = before.place().seen_from(here.file)
+        message = f"{definition.name} is defined a second time; first in {first}"
+        notes.add("error", "duplicate", here, message)
         return
     made.definitions[definition.name] = definition
 

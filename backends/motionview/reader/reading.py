@@ -6,24 +6,29 @@ import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
+from backends.motionview.reader.change import Changes
 from backends.motionview.reader.expand import expand
+from backends.motionview.reader.include import Includes
 from backends.motionview.reader.program import program
 from backends.motionview.reader.report import Notes, Report
-from backends.motionview.reader.scanner import statements
 from backends.motionview.reader.source import Source
 from backends.motionview.reader.values import values
 
 
 class Reading:
-    """Raises SpecError where the text cannot be meant as a model; all else is in `report`."""
+    """Raises SpecError where the text cannot be meant as a model; all else is in `report`.
 
-    def __init__(self, text: str, file: str):
-        self.source = Source(text, file)
+    Files that the text includes are read from `folder`, and none without it.
+    """
+
+    def __init__(self, text: str, file: str, folder: Path | None = None):
         self.notes = Notes()
+        self.includes = Includes(Source(text, file), self.notes, folder)
         with _without_collection():
-            self.program = program(statements(self.source, self.notes), self.notes)
+            self.program = program(self.includes.statements(), self.notes)
             self.expansion = expand(self.program, self.notes)
         self.world = self.expansion.world
 
@@ -32,6 +37,26 @@ class Reading:
         """Every evaluated entity, by kind and full name."""
         with _without_collection():
             return values(self.world, self.notes)
+
+    def changed(
+        self, path: str, text: str, without: tuple[str, ...] = ()
+    ) -> dict[str, dict[str, Any]] | None:
+        """Values of all that may depend on a number, were it `text`; see `change.Changes`."""
+        with _without_collection():
+            return self._changes.values(path, text, without)
+
+    @cached_property
+    def _changes(self) -> Changes:
+        return Changes(self.expansion)
+
+    def instances(self, definition: str) -> list[str]:
+        """What the names of things in each instance of a system definition begin with (`sys_note.`)."""
+        world = self.world
+        return [
+            scope.path
+            for scope in world.scopes
+            if scope.definition is not None and scope.definition.name == definition and world.alive(scope)
+        ]
 
     @cached_property
     def report(self) -> Report:

@@ -22,7 +22,7 @@ class Finding(NamedTuple):
 
 
 class Report(NamedTuple):
-    """All findings of a text, in the order of their places."""
+    """All findings of a text and its files, in the order of their places."""
 
     findings: tuple[Finding, ...]
     statements: int
@@ -68,4 +68,4 @@ class Notes:
 
     def findings(self) -> tuple[Finding, ...]:
         """By place."""
-        return tuple(sorted(self._found.values(), key=lambda f: (f.place.line, f.place.column, f.code)))
+        return tuple(sorted(self._found.values(), key=lambda f: (*f.place, f.code)))

@@ -11,16 +11,23 @@ from backends.motionview.reader.statement import NEXT, Split, Statement
 
 _HEAD = re.compile(r"\s*\*(\w+)[ \t]*\(")
 _BEGIN = re.compile(r"^[ \t]*\*BeginMDL[ \t]*\(", re.I | re.M)
+_DEFINITION = re.compile(r"^[ \t]*\*DefineSystem[ \t]*\(", re.I | re.M)
 _SPACE = re.compile(r"\s*")
 _PLAIN = re.compile(r"""([^()\[\]{}"`*]*)\)""")
 _LABELLED = re.compile(r"""\s*([\w.]+)\s*,\s*("[^"\\\n]*")\s*(?:,([^()\[\]{}"`*]*))?\)""")
 _TEMPLATE_END = re.compile(r"^[ \t]*\*EndDefine[ \t]*\([ \t]*\)", re.I | re.M)
 
 
-def statements(source: Source, notes: Notes) -> Iterator[Statement]:
-    """From *BeginMDL to *EndMDL; the text before and after is ignored, as MotionView does."""
+def statements(source: Source, notes: Notes, part: bool = False) -> Iterator[Statement]:
+    """From *BeginMDL to *EndMDL; the text before and after is ignored, as MotionView does.
+
+    A `part` of a model, and a file of definitions, has no *BeginMDL; all from the first statement on counts.
+    """
     text = source.text
-    begin = _BEGIN.search(text)
+    whole = None if part else _BEGIN.search(text)
+    begin = whole or (NEXT.search(text) if part or _DEFINITION.search(text) else None)
+    if begin is None and part:
+        return
     if begin is None:
         notes.add("error", "no-model", source.place(0), "there is no *BeginMDL( name, label ) in this text")
         return
@@ -30,7 +37,8 @@ def statements(source: Source, notes: Notes) -> Iterator[Statement]:
         if head is None:
             at = _stray(source, notes, at)
             if at < 0:
-                notes.add("error", "block", source.place(begin.start()), "*BeginMDL has no *EndMDL()")
+                if whole is not None:
+                    notes.add("error", "block", source.place(begin.start()), "*BeginMDL has no *EndMDL()")
                 return
             continue
         statement, at = _statement(source, notes, head)

@@ -66,6 +66,7 @@ class Parameter(NamedTuple):
     attachment: Statement | None
     instance: Statement
     at: int
+    external: str = ""  # what it is called in the model that a definition is made for, where that is not here
 
 
 class Scope:

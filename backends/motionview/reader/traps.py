@@ -8,6 +8,7 @@ from functools import partial
 from backends.motionview.reader.report import Notes, Trouble
 from backends.motionview.reader.things.bodies import Body
 from backends.motionview.reader.things.drives import Contact
+from backends.motionview.reader.things.external import External
 from backends.motionview.reader.things.forces import Bush
 from backends.motionview.reader.things.graphics import CAPS, Graphic
 from backends.motionview.reader.things.joints import Joint
@@ -122,7 +123,7 @@ def _contact(contact: Thing, notes: Notes) -> None:
         notes.add("error", "keyword", contact.statement.place(3), message)
     for body, graphics in contact.ask("sides"):
         for graphic in graphics:
-            if graphic.ask("body") is not body:
+            if not isinstance(graphic, External) and graphic.ask("body") is not body:
                 message = f"{graphic} is not on {body}"
                 notes.add("error", "contact", contact.statement.place(), message)
 

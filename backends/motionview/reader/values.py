@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 from backends.motionview.reader.report import Notes, Trouble
@@ -25,20 +25,41 @@ LISTS = {
     "Joint": "joints",
     "Motion": "motions",
     "Contact": "contacts",
+    "Output": "outputs",
+    "DeformableSurface": "surfaces",
+    "Template": "templates",
 }
+
+
+# Labels of what has no record of its own; the model itself, with what it sets of the standard include.
+_MORE = ("velocities", "datasets", "members", "labels", "model")
 
 
 def values(world: World, notes: Notes) -> dict[str, dict[str, Any]]:
     """What could be evaluated; what could not is told to `notes` and left out."""
-    found: dict[str, dict[str, Any]] = {name: {} for name in (*LISTS.values(), "velocities", "datasets")}
-    collect = _Collector(world, notes, found)
-    for thing in world.things():
+    found = values_of(world.things(), world, notes)
+    begin = world.program.begin
+    if begin is not None:
+        standard = [s.args for s in world.program.statements if s.arg(0).startswith("DS_MotionSolve")]
+        record = {"label": begin.arg(1).strip('"'), "solver": world.program.mode, "standard": tuple(standard)}
+        found["model"][begin.arg(0)] = record
+    return found
+
+
+def values_of(
+    things: Iterable[Thing], world: World, notes: Notes, made_markers: bool = True
+) -> dict[str, dict[str, Any]]:
+    """The values of some things, with or without the markers that MotionView makes for them."""
+    found: dict[str, dict[str, Any]] = {name: {} for name in (*LISTS.values(), *_MORE)}
+    collect = _Collector(world, notes, found, made_markers)
+    for thing in things:
         collect.thing(thing)
     return found
 
 
 class _Collector:
-    def __init__(self, world: World, notes: Notes, found: dict[str, dict[str, Any]]):
+    def __init__(self, world: World, notes: Notes, found: dict[str, dict[str, Any]], made_markers: bool):
+        self.made_markers = made_markers
         self.world = world
         self.notes = notes
         self.found = found
@@ -49,6 +70,7 @@ class _Collector:
             self._value(thing)
         elif isinstance(thing, DataSet):
             self.found["datasets"].setdefault(thing.name, {})
+            self._put("labels", thing, lambda: thing.ask("label"))
         elif isinstance(thing, PolyBeam):
             for body in self.attempt(thing, lambda: thing.ask("bodies")) or ():
                 self._entry("bodies", body)
@@ -57,16 +79,15 @@ class _Collector:
         elif thing.kind in LISTS:
             if thing.kind == "Joint" and self.attempt(thing, lambda: thing.ask("isbush")):
                 self._entry("bushings", thing.ask("bush"))
-            elif thing.kind == "Point":
-                self._put("points", thing, lambda: thing.ask("data"))
-            elif thing.kind == "Vector":
-                self._put("vectors", thing, lambda: thing.ask("data"))
+            elif thing.kind in ("Point", "Vector"):
+                self._put(LISTS[thing.kind], thing, lambda: thing.ask("data"))
+                self._put("labels", thing, lambda: thing.ask("label"))
             else:
                 self._entry(LISTS[thing.kind], thing)
             self._markers(thing)
             if isinstance(thing, Body):
                 self._put("velocities", thing, lambda: thing.ask("velocity"))
-        elif thing.kind in ("Force", "Output"):
+        elif thing.kind == "Force":
             self._markers(thing)
 
     def attempt(self, thing: Thing, find: Callable[[], Any]) -> Any:
@@ -89,11 +110,14 @@ class _Collector:
         self._put(where, thing, thing.record)
 
     def _markers(self, thing: Thing) -> None:
-        self.found["markers"].update(self.attempt(thing, thing.marker_records) or ())
+        if self.made_markers:
+            self.found["markers"].update(self.attempt(thing, thing.marker_records) or ())
 
     def _value(self, thing: Value | Option | Table) -> None:
         holder, _, name = thing.name.rpartition(".")
         into = self.found["datasets"].setdefault(holder or "MODEL", {})
+        edit = thing.statement.args[-1].upper()
+        self._put("members", thing, lambda: {"label": thing.ask("label"), "edit": edit})
         if isinstance(thing, Table):
             columns = self.attempt(thing, lambda: {c: thing.cells(c) for c in thing.columns()})
             if columns is not None:

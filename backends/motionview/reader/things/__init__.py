@@ -20,6 +20,7 @@ from backends.motionview.reader.things.geometry import (
 )
 from backends.motionview.reader.things.graphics import Graphic
 from backends.motionview.reader.things.joints import JOINTS, Joint
+from backends.motionview.reader.things.surfaces import DeformableSurface
 from backends.motionview.reader.things.systems import DataSet, System
 from backends.motionview.reader.things.thing import Thing
 
@@ -42,6 +43,7 @@ CLASSES: dict[str, type[Thing]] = {
     "Graphic": Graphic,
     "Motion": Motion,
     "Contact": Contact,
+    "DeformableSurface": DeformableSurface,
     "Coupler": Coupler,
     "SolverVariable": SolverVariable,
     "PolyBeam": PolyBeam,

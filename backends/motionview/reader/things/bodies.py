@@ -153,6 +153,11 @@ class Body(Thing):
         else:
             record |= {"mass": found.mass, "inertia": found.inertia, "cm": found.center}
         record["axes"] = GLOBAL if self.ask("from_graphics") else self.ask("cm_axes")
+        frames, flags = self.statement.args[5:7], self.chosen("setbodyicflag")
+        if any(frames):
+            record["velocity_frames"] = frames
+        if flags is not None:
+            record["velocity_flags"] = flags.statement.args[flags.first :]
         return record
 
     def p_velocity(self) -> tuple[float, ...] | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 from backends.motionview.reader.report import Trouble
@@ -11,6 +12,8 @@ _FORCES = {
     "POISSON": ("penalty", "restitution"),
     "IMPACT": ("stiffness", "exponent", "damping", "dmax"),
 }
+_BRACES = re.compile(r"\{([^{}]*)\}")
+_VALUE = re.compile(r"\s*[A-Za-z_]\w*(?:\.\w+)+\s*")
 _FRICTION = ("mu_static", "mu_dynamic", "stiction_velocity", "friction_velocity")
 
 
@@ -64,6 +67,11 @@ class Contact(Thing):
             at += 3 + 2 * count
         return found
 
+    def _flips(self) -> tuple[str, ...]:
+        """The words after the graphics: whether their normals are turned."""
+        words = (a.lower() for a in self.statement.args[4:])
+        return tuple(word for word in words if word in ("true", "false"))
+
     def p_numbers(self) -> dict[str, float]:
         """What *SetContact says, by the documented order."""
         chosen = self.chosen("setcontact")
@@ -86,6 +94,7 @@ class Contact(Thing):
             "friction": self.statement.arg(3).upper(),
             "bodies": tuple(body.name for body, _ in sides),
             "graphics": tuple(tuple(g.name for g in graphics) for _, graphics in sides),
+            "flips": self._flips(),
             **self.ask("numbers"),
         }
 
@@ -119,3 +128,28 @@ class Template(Thing):
     def p_text(self) -> str:
         """What the template writes: not known."""
         raise Trouble("template", f"{self} is not run, so its text is not known", severity="warning")
+
+    def p_pasted(self) -> str | None:
+        """Its text where that holds nothing but values to paste; None where it has commands of its own."""
+        definition = self.world.program.definitions.get(self.statement.arg(3))
+        if definition is None or definition.statement is None:
+            return None
+        body = definition.statement.body
+        inside = [m[1].strip() for m in _BRACES.finditer(body)]
+        if "{" in _BRACES.sub("", body) or not all(_VALUE.fullmatch(part) for part in inside):
+            return None
+        given = dict(zip(definition.parameters, self.statement.args[4:], strict=False))
+
+        def value(match: re.Match[str]) -> str:
+            first, dot, rest = match[1].strip().partition(".")
+            return self.world.pasted(f"{{{given.get(first, first)}{dot}{rest}}}", self.scope)
+
+        return _BRACES.sub(value, body)
+
+    def record(self) -> dict[str, Any]:
+        return {
+            "label": self.ask("label"),
+            "use": self.statement.arg(2).upper(),
+            "arguments": self.statement.args[3:],
+            "text": self.ask("pasted"),
+        }

@@ -272,6 +272,15 @@ class Output(_Link):
     def _by_points(self) -> bool:
         return self.statement.arg(2).upper() in ("DISP", "VEL", "ACCL") and len(self.statement.args) >= 7
 
+    def p_expressions(self) -> tuple[str, ...] | None:
+        """The six solver expressions, pasted; None for an output of another form."""
+        if self.statement.arg(2).upper() != "EXPR":
+            return None
+        return tuple(str(self.given(3 + k)) for k in range(len(self.statement.args) - 3))
+
+    def record(self) -> dict[str, Any]:
+        return {"label": self.ask("label"), "expressions": self.ask("expressions")}
+
     def markers(self) -> list[PartMarker]:
         by_entity = self.statement.arg(2).upper() == "FORCE" and self.statement.arg(3).upper() == "FORCE"
         return super().markers() if self._by_points() or by_entity else []

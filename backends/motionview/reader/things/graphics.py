@@ -143,6 +143,8 @@ class Graphic(Thing):
             "type": self.shape,
             "body": body.name if body is not None else None,
         }
+        if self.shape in ("BOX", "CYLINDER", "SPHERE"):
+            found["refinement"] = self.statement.args[-1]
         if self.shape == "BOX":
             center, axes, lengths = self.ask("box")
             found |= {"center": center, "axes": axes, "lengths": lengths}

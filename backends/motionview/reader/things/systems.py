@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from backends.motionview.reader.pair import Pair, Unmade
 from backends.motionview.reader.report import Trouble
+from backends.motionview.reader.things.external import External
 from backends.motionview.reader.things.thing import Thing
 
 if TYPE_CHECKING:
@@ -78,6 +79,12 @@ class System(Thing):
         assert outside is not None
         attachment = parameter.attachment
         pair = attachment is not None and attachment.arg(2).lower().endswith("pair")
+        if parameter.external and attachment is None:
+            return Unmade(parameter.external, "the model that this text is made for")
+        if parameter.external and pair:
+            return Pair(*(External(parameter, parameter.external, side) for side in "lr"))
+        if parameter.external:
+            return External(parameter, parameter.external)
         if parameter.instance.arg(parameter.at):
             value = self.world.value(parameter.instance, parameter.at, outside)
         elif attachment is not None and attachment.arg(4):

@@ -1,0 +1,98 @@
+"""The sheets alone, as a system definition: what of the machine they meet is an attachment of it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from backends.motionview.machine import contact_views, pair_rows
+from backends.motionview.rows import Attachment, Pair, SystemView
+from backends.motionview.views import given_values, scene_view
+from mdlgen.model.tables import CYLINDER_CYLINDER, Ints, Model
+
+
+def kept_contacts(model: Model) -> Ints:
+    """Row of the contacts of each pair of a box and a part of the machine, those of `sheet_pairs`."""
+    table = model.contacts
+    inside = model.pairs.contact[table.kind[model.pairs.contact] != CYLINDER_CYLINDER]
+    return np.sort(np.concatenate([inside, model.external_pairs.contact]), kind="stable")
+
+
+def system_view(model: Model, set_contact: bool) -> SystemView:
+    """The rows of a Model without its machine, and the attachments."""
+    table = model.contacts
+    given = given_values(model, set_contact, kept_contacts(model).tolist())
+    of_sheets = np.flatnonzero(table.kind != CYLINDER_CYLINDER).tolist()
+    scene = replace(
+        scene_view(model, set_contact),
+        rollers=[],
+        planes=[],
+        contacts=contact_views(model, given, of_sheets),
+        pairs=sheet_pairs(model),
+    )
+    return SystemView(
+        name=model.name,
+        variable=f"sys_{model.name}",
+        definition=f"def_sys_{model.name}",
+        attachments=attachments(model),
+        scene=scene,
+    )
+
+
+def attachments(model: Model) -> list[Attachment]:
+    """The body and the graphics of each part that a sheet has a contact with, by kind and name of the part.
+
+    A part stays one where no pair with it is kept, so that the arguments do not change with the run.
+    """
+    table = model.contacts
+    met = {table.part_b[row] for row in np.flatnonzero(table.kind != CYLINDER_CYLINDER)}
+    parts = [
+        *((r.name, f"b_{r.name}", (f"gcyl_{r.name}",)) for r in model.rollers),
+        *((p.name, f"b_{p.name}", (f"gbox_{p.name}",)) for p in model.planes),
+        *((e.name, e.body, e.graphics) for e in model.externals),
+    ]
+    made = []
+    for name, body, graphics in parts:
+        if name not in met:
+            continue
+        made.append(Attachment(_body(name), f"Body of {name}", "Body", body))
+        inside = _graphics(name, len(graphics))
+        for k, (own, given) in enumerate(zip(inside, graphics, strict=True)):
+            number = f" {k}" if len(graphics) > 1 else ""
+            made.append(Attachment(own, f"Graphic{number} of {name}", "Graphic", given))
+    return made
+
+
+def sheet_pairs(model: Model) -> list[Pair]:
+    """One row for each pair of a box and a part of the machine, by contact."""
+    table, bodies, pairs = model.contacts, model.bodies, model.external_pairs
+    rows = []
+    for row, pair in zip(model.pairs.contact.tolist(), pair_rows(model), strict=True):
+        if table.kind[row] != CYLINDER_CYLINDER:
+            name = table.part_b[row]
+            rows.append((row, pair._replace(body_2=_body(name), graphics_2=_graphics(name, 1))))
+    rubs = (table.mu_static > 0) | (table.mu_dynamic > 0)
+    for row, box, part in zip(pairs.contact.tolist(), pairs.box.tolist(), pairs.part.tolist(), strict=True):
+        external = model.externals[part]
+        name = bodies.name[box]
+        made = Pair(
+            name=f"con_{name}_{external.name}",
+            label=f"{bodies.label[box]} / Part {external.name}",
+            body_1=f"b_{name}",
+            graphic_1=f"gbox_{name}",
+            body_2=_body(external.name),
+            graphics_2=_graphics(external.name, len(external.graphics)),
+            friction="ON" if rubs[row] else "OFF",
+            data_set=f"contact_{table.entry[row]}",
+        )
+        rows.append((row, made))
+    return [pair for _, pair in sorted(rows, key=lambda item: item[0])]
+
+
+def _body(part: str) -> str:
+    return f"b_{part}_att"
+
+
+def _graphics(part: str, count: int) -> list[str]:
+    return [f"gra_{part}_att"] if count == 1 else [f"gra_{part}_att_{k}" for k in range(count)]

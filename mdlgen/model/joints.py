@@ -1,0 +1,94 @@
+"""The bushings of one sheet: between its boxes, and at a clamp."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mdlgen.model import naming
+from mdlgen.model.grid import clamped_boxes
+from mdlgen.model.stiffness import JointValues
+from mdlgen.model.tables import CLAMP, GROUND, JOINT_X, JOINT_Y, Clamp, Floats, Ints, SheetPart
+
+_LETTER = {JOINT_X: "x", JOINT_Y: "y", CLAMP: "c"}
+
+
+@dataclass(frozen=True)
+class Joints:
+    """Bushings of one kind, column by column."""
+
+    name: list[str]
+    kind: int
+    a: Ints  # body, or GROUND, (n,)
+    b: Ints  # body, (n,)
+    node: Ints  # as in the table of bushings, (n, 2)
+    along_x: bool
+
+    def coefficients(self, values: JointValues) -> tuple[Floats, Floats]:
+        """(k, c) of one bushing, six each; a half-cell hinge has twice the values of a joint."""
+        scale = 2.0 if self.kind == CLAMP else 1.0
+        along_x = (values.k_joint_x, values.c_joint_x)
+        k, c = along_x if self.along_x else (values.k_joint_y, values.c_joint_y)
+        return scale * np.array(k), scale * np.array(c)
+
+
+def find_joints(sheet: SheetPart) -> list[Joints]:
+    """All bushings of a sheet, by kind, then row, then column; none between two held boxes."""
+    found = [_between(sheet, along_x=True), _between(sheet, along_x=False)]
+    return found if sheet.clamp is None else [*found, _hinges(sheet, sheet.clamp)]
+
+
+def _between(sheet: SheetPart, along_x: bool) -> Joints:
+    """Joints of each box with the next one along x, or along y."""
+    right, up = (1, 0) if along_x else (0, 1)
+    j, i = np.indices((sheet.n_y - up, sheet.n_x - right)).reshape(2, -1)
+    one = i + j * sheet.n_x
+    two = one + (1 if along_x else sheet.n_x)
+    held = clamped_boxes(sheet)
+    free = ~(held[one] | held[two])
+    i, j, one, two = i[free], j[free], one[free], two[free]
+    middle = np.stack([2 * i + 1 + right, 2 * j + 1 + up], axis=1)
+    kind = JOINT_X if along_x else JOINT_Y
+    return _bushings(sheet, kind, along_x, (i, j), (sheet.first + one, sheet.first + two), middle)
+
+
+def _hinges(sheet: SheetPart, clamp: Clamp) -> Joints:
+    """Half-cell hinges between the clamp line and the centres of the first free row."""
+    across_x, from_min = clamp.edge[0] == "x", clamp.edge.endswith("min")
+    cells, others = (sheet.n_x, sheet.n_y) if across_x else (sheet.n_y, sheet.n_x)
+    free, line = (
+        (clamp.rows, 2 * clamp.rows) if from_min else (cells - 1 - clamp.rows, 2 * (cells - clamp.rows))
+    )
+    along = np.arange(others)
+    row = np.full(others, free)
+    i, j = (row, along) if across_x else (along, row)
+    on_line = np.full(others, line)
+    middle = np.stack([on_line, 2 * j + 1] if across_x else [2 * i + 1, on_line], axis=1)
+    bodies = (np.full(others, GROUND), sheet.first + i + j * sheet.n_x)
+    return _bushings(sheet, CLAMP, across_x, (i, j), bodies, middle)
+
+
+def _bushings(
+    sheet: SheetPart,
+    kind: int,
+    along_x: bool,
+    box: tuple[Ints, Ints],
+    bodies: tuple[Ints, Ints],
+    middle: Ints,
+) -> Joints:
+    """One bushing in the middle of each shared side, or one at each of its ends; named by `box` (i, j)."""
+    corners = {"a": -1, "b": 1} if sheet.layout == "edge_to_edge" else {"": 0}
+    shift = np.outer(list(corners.values()), (0, 1) if along_x else (1, 0))
+    return Joints(
+        name=[
+            naming.bushing(sheet.name, _LETTER[kind], i, j, end)
+            for i, j in zip(*(index.tolist() for index in box), strict=True)
+            for end in corners
+        ],
+        kind=kind,
+        a=np.repeat(bodies[0], len(corners)),
+        b=np.repeat(bodies[1], len(corners)),
+        node=(middle[:, None] + shift).reshape(-1, 2),
+        along_x=along_x,
+    )

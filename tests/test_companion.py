@@ -1,0 +1,126 @@
+"""What the MotionView text cannot say: what is refused, and what the companion script sets."""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import replace
+
+import pytest
+from written import Text, model_of
+
+import backends.motionview as motionview
+from mdlgen.errors import RefusedError
+
+SMALL = "sheets.note.boxes=[3,4]"
+
+
+def test_loads_are_refused_by_name():
+    model = model_of("cantilever.yaml", 'loads=[{"sheet":"note","edge":"y_max","force":["0 N","1 N","0 N"]}]')
+    with pytest.raises(RefusedError, match="loads"):
+        motionview.check(model)
+    with pytest.raises(RefusedError):
+        motionview.emit(model)
+
+
+def test_a_spring_shorter_than_its_compression_is_refused_by_name():
+    model = model_of("transport_4x4.yaml", SMALL)
+    roller = next(r for r in model.rollers if r.press is not None)
+    assert roller.press is not None
+    far = replace(
+        roller, press=replace(roller.press, start=roller.press.touch - 2 * roller.press.free_length)
+    )
+    rollers = tuple(far if r is roller else r for r in model.rollers)
+    with pytest.raises(RefusedError, match=roller.name):
+        motionview.check(replace(model, rollers=rollers))
+
+
+def test_static_analysis_writes_a_static_command():
+    assert 'analysis_type  = "Static"' in motionview.emit(model_of("cantilever.yaml"))
+    assert 'analysis_type  = "Transient"' in motionview.emit(model_of("transport_4x4.yaml", SMALL))
+
+
+def _run_script(script: str) -> tuple[dict, dict]:
+    """Runs a companion with a stand-in for MotionView; (gravity, numbers by contact)."""
+    tree = ast.parse(script)
+    tree.body = [n for n in tree.body if not isinstance(n, ast.ImportFrom)]
+    children: dict[str, dict] = {}
+
+    class Entity:
+        def __init__(self, name):
+            self.name = name
+
+        def setValues(self, **numbers):
+            children.setdefault(self.name, {}).update(numbers)
+
+    class Gravity:
+        pass
+
+    class Root:
+        gravity = Gravity()
+
+        def __getattr__(self, name):
+            return Entity(name)
+
+    root = Root()
+    space = {"mview": type("mview", (), {"getModel": staticmethod(lambda: root)}), "print": lambda *a: None}
+    exec(compile(tree, "companion", "exec"), space)
+    return vars(Root.gravity), children
+
+
+def test_companion_sets_every_contact():
+    smooth, rough = "contacts.6.friction=0", "contacts.4.friction={static: 0.9, dynamic: 0.7}"
+    model = model_of("transport_4x4.yaml", SMALL, smooth, rough)
+    script = motionview.companion(model)
+    assert script is not None and script.isascii()
+    assert len(motionview.companion_reasons(model)) == 1
+    gravity, numbers = _run_script(script)
+    assert not gravity
+    smoothing = model.contacts.smoothing[-1] * 1000
+    text = Text(motionview.emit(model))
+    assert set(numbers) == set(text.values["contacts"])
+    expected = {"penalty": 100.0, "rest_coeff": 0.5, "normal_trans_vel": smoothing}
+    assert numbers["con_note_0_0_support"] == expected
+    assert text.values["contacts"]["con_note_0_0_support"]["friction"] == "OFF"
+    driven = next(v for k, v in numbers.items() if k.startswith("con_note_") and "motor" in k)
+    assert (driven["penalty"], driven["mu_static"], driven["mu_dynamic"]) == (300.0, 0.9, 0.7)
+
+
+def test_companion_is_left_out_where_it_is_not_needed():
+    model = model_of("cantilever.yaml")
+    assert motionview.companion(model) is None
+    assert motionview.companion_reasons(model) == []
+    default = tuple(f'contacts.{k}.smoothing="1 mm/s"' for k in range(7))
+    contacts = model_of("transport_4x4.yaml", SMALL, *default)
+    assert motionview.companion(contacts, set_contact=True) is None
+    smooth = model_of("transport_4x4.yaml", SMALL, *default, 'contacts.0.smoothing="0.1 mm/s"')
+    assert any("normal_trans_vel" in r for r in motionview.companion_reasons(smooth, set_contact=True))
+    _, numbers = _run_script(motionview.companion(smooth, set_contact=True) or "")
+    assert numbers["con_motor_1_left_counter_1_left"] == {"normal_trans_vel": 0.1}
+
+
+def test_companion_sets_gravity():
+    gravity, _ = _run_script(motionview.companion(model_of("verify/incline.yaml")) or "")
+    assert gravity == {"x": 3355.2176, "y": 0.0, "z": -9218.3846}
+
+
+def test_set_contact_writes_the_numbers_in_the_documented_order():
+    overrides = ("contacts.6.friction=0", 'contacts.0.smoothing="2 mm/s"')
+    model = model_of("transport_4x4.yaml", SMALL, *overrides)
+    contacts = Text(motionview.emit(model, set_contact=True)).values["contacts"]
+    assert len(contacts) == len(model.pairs)
+    numbers = ("penalty", "restitution", "mu_static", "mu_dynamic", "stiction_velocity", "friction_velocity")
+
+    def found(name):
+        return [contacts[name][number] for number in numbers if number in contacts[name]]
+
+    assert found("con_note_0_0_support") == [100.0, 0.5]
+    assert found("con_motor_1_left_counter_1_left") == [30.5, 0.5, 1.0, 1.0, 2.0, 2.0]
+
+
+def test_banner_stands_before_the_block_and_holds_no_statement():
+    text = motionview.emit(model_of("transport_4x4.yaml", SMALL))
+    head, _, block = text.partition("*BeginMDL")
+    lines = head.splitlines()
+    assert lines[0] == "/" * 70 and "*" not in head and "//" not in block
+    assert all("//" not in line for line in lines if line != "/" * 70)
+    assert "share width" in head and "Companion script" in head
