@@ -150,7 +150,16 @@ def mdl(
             "-o",
             "--output",
             metavar="FILE.mdl",
-            help="Where to write: NAME.mdl if left out, - for standard output.",
+            help="Where to write: NAME.mdl if left out (NAME_sheets.mdl with --only sheets), "
+            "- for standard output.",
+        ),
+    ] = None,
+    only: Annotated[
+        str | None,
+        typer.Option(
+            "--only",
+            metavar="sheets",
+            help="The sheets and their contacts alone, as a system definition to bring into your own model.",
         ),
     ] = None,
     sets: Sets = None,
@@ -170,15 +179,18 @@ def mdl(
     """Write the scene as MotionView text, and beside it a script for what the text cannot say.
 
     Example: mdlgen mdl samples/transport_4x4.yaml -o note.mdl
+
+    Example: mdlgen mdl samples/transport_4x4.yaml --only sheets
     """
     from mdlgen import paths, registry
 
     model = _model(spec, sets)
     backend = registry.emitter("motionview")
-    text = backend.emit(model, set_contact=set_contact)
-    script = backend.companion(model, set_contact=set_contact)
+    text = backend.emit(model, set_contact=set_contact, only=only)
+    script = backend.companion(model, set_contact=set_contact, only=only)
     to_stdout = output is not None and str(output) == "-"
-    target = Path(f"{model.name}.mdl") if output is None or to_stdout else output
+    own_name = Path(f"{model.name}_{only}.mdl" if only else f"{model.name}.mdl")
+    target = own_name if output is None or to_stdout else output
     beside = companion or target.with_name(f"{target.stem}_mview.py")
     files: dict[Path, str | bytes] = {} if to_stdout else {target: text}
     if script is not None and (companion is not None or not to_stdout):
@@ -195,10 +207,44 @@ def mdl(
             f"wrote {beside}" if beside in files else "a script is needed too (--companion FILE writes it)"
         )
         _say(f"{state}; run it in MotionView after the text, since MDL leaves out:")
-        for reason in backend.companion_reasons(model, set_contact):
+        for reason in backend.companion_reasons(model, set_contact, only):
             _say(f"  {reason}")
     elif script is None and not to_stdout and beside.exists() and not quiet:
         _say(f"{beside} is not needed for this text, and may be of an older one")
+
+
+@app.command()
+@told
+def deck(
+    spec: Spec,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="FILE.xml",
+            help="Where to write: NAME.xml if left out, - for standard output.",
+        ),
+    ] = None,
+    sets: Sets = None,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
+) -> None:
+    """Write the scene as a MotionSolve deck, which the solver reads without MotionView.
+
+    Example: mdlgen deck samples/transport_4x4.yaml -o note.xml
+    """
+    from mdlgen import paths, registry
+
+    model = _model(spec, sets)
+    text = registry.emitter("motionsolve").emit(model)
+    if output is not None and str(output) == "-":
+        typer.echo(text, nl=False)
+        return
+    target = Path(f"{model.name}.xml") if output is None else output
+    paths.write_atomic(target, text)
+    if not quiet:
+        _say(f"wrote {target}")
 
 
 @app.command()
@@ -272,7 +318,7 @@ def lint(
     from mdlgen import paths
     from mdlgen.registry import reader
 
-    reading = reader("motionview").read(paths.read_text(text), str(text))
+    reading = reader("motionview").read(paths.read_text(text), str(text), text.parent)
     if values is not None:
         paths.write_atomic(values, json.dumps(reading.values, allow_nan=False, indent=1) + "\n")
     report = reading.report
@@ -283,6 +329,66 @@ def lint(
         typer.echo(f"{text}: {report.statements} statements, {counts}")
     if report.errors:
         raise typer.Exit(SpecError.exit_code)
+
+
+@app.command()
+@told
+def verify(
+    spec: Spec,
+    text: Annotated[
+        Path | None,
+        typer.Option("--text", metavar="FILE.mdl", help="A text to take in place of the one mdlgen writes."),
+    ] = None,
+    script: Annotated[
+        Path | None,
+        typer.Option(
+            "--script",
+            metavar="FILE.py",
+            help="Its companion script: FILE_mview.py beside --text if left out.",
+        ),
+    ] = None,
+    deck: Annotated[
+        Path | None,
+        typer.Option("--deck", metavar="FILE.xml", help="A deck to take in place of the one mdlgen writes."),
+    ] = None,
+    only: Annotated[
+        str | None,
+        typer.Option(
+            "--only", metavar="sheets", help="The sheets alone; --text may be a model that has them."
+        ),
+    ] = None,
+    turn: Annotated[
+        bool,
+        typer.Option("--turn/--no-turn", help="Also turn each value of the data sets, in text and spec."),
+    ] = True,
+    sets: Sets = None,
+    as_json: Annotated[bool, typer.Option("--json", help="The result as JSON.")] = False,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
+) -> None:
+    """Read text, script and deck back, and compare all they say with the model that is run.
+
+    Example: mdlgen verify samples/transport_4x4.yaml
+
+    Example: mdlgen verify samples/transport_4x4.yaml --text note.mdl
+    """
+    from mdlgen.model.lower import lower
+    from mdlgen.spec.load import load
+    from mdlgen.verify.report import report, report_text
+    from mdlgen.verify.verification import verify as compare
+
+    scene = load(spec, sets or ())
+    files = {"text": text, "companion": script, "deck": deck}
+    with _count(quiet, "values turned") as progress:
+        found = compare(scene, lower(scene), **files, only=only, turn=turn, progress=progress)
+    if as_json:
+        _echo_json(report(found))
+    elif not quiet:
+        typer.echo(report_text(found))
+    if not found.ok:
+        differences = found.all_differences()
+        more = f" and {len(differences) - 1} more" if len(differences) > 1 else ""
+        raise AccuracyError(f"{text or spec}: not the same as the model: {differences[0]}{more}")
 
 
 @app.command()
@@ -333,6 +439,21 @@ def _chatter(verbose: bool) -> Iterator[None]:
 
     with contextlib.redirect_stdout(sys.stderr if verbose else io.StringIO()):
         yield
+
+
+@contextlib.contextmanager
+def _count(quiet: bool, what: str) -> Iterator[Callable[[int, int], None] | None]:
+    """A progress bar on a terminal for things that are counted."""
+    if quiet or not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = (TextColumn(what), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(what, total=None)
+        yield lambda done, total: bar.update(task, completed=done, total=total)
 
 
 @contextlib.contextmanager

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from importlib import import_module
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, cast
 
 from mdlgen.errors import SpecError
+from mdlgen.model.external import refuse_externals
 from mdlgen.model.tables import Model
 
 if TYPE_CHECKING:
@@ -15,8 +17,8 @@ if TYPE_CHECKING:
 
 Progress = Callable[[float, float, int, int], None]
 
-EMITTERS = {"motionview": "backends.motionview"}
-READERS = {"motionview": "backends.motionview.reader"}
+EMITTERS = {"motionview": "backends.motionview", "motionsolve": "backends.motionsolve"}
+READERS = {"motionview": "backends.motionview.reader", "motionsolve": "backends.motionsolve.reader"}
 SOLVERS = {"exudyn": "backends.exudyn_local"}
 AUTO = "exudyn"
 
@@ -30,13 +32,21 @@ class Emitter(Protocol):
 
     def companion(self, model: Model, **options: Any) -> str | None: ...
 
-    def companion_reasons(self, model: Model, set_contact: bool = False) -> list[str]: ...
+    def companion_reasons(
+        self, model: Model, set_contact: bool = False, only: str | None = None
+    ) -> list[str]: ...
+
+
+class Validator(Protocol):
+    """What a backend has that checks its own text against a schema."""
+
+    def validate(self, text: str, file: str = ...) -> list[str]: ...
 
 
 class Reader(Protocol):
     """What a backend that reads its text back has."""
 
-    def read(self, text: str, file: str = ...) -> Any: ...
+    def read(self, text: str, file: str = ..., folder: Path | None = ...) -> Any: ...
 
 
 class Solver(Protocol):
@@ -49,6 +59,12 @@ def emitter(name: str) -> Emitter:
     """The backend that writes text. Raises SpecError for one that there is not."""
     _known(name, EMITTERS, "text backend")
     return cast(Emitter, import_module(EMITTERS[name]))
+
+
+def validator(name: str) -> Validator:
+    """The backend that checks a text of its kind. Raises SpecError for one that there is not."""
+    _known(name, {"motionsolve": ""}, "backend with a schema")
+    return cast(Validator, import_module(EMITTERS[name]))
 
 
 def reader(name: str) -> Reader:
@@ -79,6 +95,7 @@ def solve(
     model: Model, name: str = "auto", progress: Progress | None = None, check_step: bool = False
 ) -> Result:
     """Run a Model; see `mdlgen.solve`."""
+    refuse_externals(model, "local run")
     backend = solver(name)
     result = backend.solve(model, progress)
     # a static run has no step, and a failed one nothing to compare

@@ -1,0 +1,80 @@
+"""The comment at the head of a deck: units, contacts, what nobody has seen a real MotionSolve read."""
+
+from __future__ import annotations
+
+from itertools import groupby
+
+from backends.motionsolve.rows import Deck
+from backends.motionsolve.units import number
+from mdlgen.model.tables import SUPPORT, Model
+
+
+def banner(model: Model, deck: Deck) -> list[str]:
+    """The lines of the comment."""
+    lines = [
+        f"{model.name}: MotionSolve deck, written by mdlgen",
+        "",
+        "Units : mm, N, kg, s, rad",
+        f"Gravity : {', '.join(deck.gravity)} mm/s2",
+    ]
+    for k, sheet in enumerate(model.sheets):
+        joints = int(((model.bushings.sheet == k) & (model.bushings.kind != SUPPORT)).sum())
+        lines.append(
+            f"Sheet : {sheet.name}, {sheet.n_x} x {sheet.n_y} boxes, {sheet.layout}, {sheet.grid} grid, "
+            f"{joints} bushings"
+        )
+    lines += _contacts(model)
+    lines += ["", "Not yet read by a real MotionSolve; look at these first if it complains :"]
+    return lines + [f"  {form}" for form in unverified(model, deck)]
+
+
+def _contacts(model: Model) -> list[str]:
+    table, pairs = model.contacts, model.pairs
+    if not len(table):
+        return []
+    lines = [
+        f"Contacts : {pairs.possible} pairs possible, {len(pairs)} kept: those that can meet in the run, "
+        f"with a margin of {number(pairs.margin)} mm",
+        "  MotionSolve gives every pair the full stiffness. In the local run of mdlgen, share width lets",
+        "  the boxes under one part share it by the width that each covers; share pair gives it to each too.",
+    ]
+    for entry, group in groupby(range(len(table)), key=lambda row: int(table.entry[row])):
+        first, *others = group
+        more = f" and {len(others)} more" if others else ""
+        parts = f"{table.part_a[first]} / {table.part_b[first]}{more}"
+        lines.append(f"  contact {entry} : share {table.share[first]}, {parts}")
+    if any(roller.press is not None for roller in model.rollers):
+        lines.append("  Pressed rollers start in equilibrium with the sheets.")
+    return lines
+
+
+def unverified(model: Model, deck: Deck) -> list[str]:
+    """One line for each form in this deck that is documented only, or concluded from a similar one."""
+    supports = bool((model.bushings.kind == SUPPORT).any())
+    rows = (
+        (
+            True,
+            "h_max and h_min of Param_Transient (seen with other values; the rest is as MotionView has it)",
+        ),
+        (bool(deck.motions), "Motion_Joint by an expression of the speed (seen in a command, documented)"),
+        (supports, "Force_Bushing with zero stiffness in some directions (seen with positive ones)"),
+        (
+            any(body.velocity for body in deck.bodies),
+            "Body_Rigid with velocities (seen with zeros; vm_id and wm_id, for global axes, documented)",
+        ),
+        (
+            bool(deck.loads),
+            "Force_Vector_OneBody with forces and torques (seen with torques alone, documented)",
+        ),
+        (bool(deck.contacts), "Force_Contact (documented, not seen in a deck)"),
+        (
+            deck.run.static and deck.run.method == "MKEAM",
+            "Param_Static by MKEAM, since no other static method takes contacts (documented)",
+        ),
+        (bool(deck.surfaces), "Reference_DeformSurface (documented, not seen in a deck)"),
+        (
+            bool(deck.surfaces),
+            "Post_Graphic of a DeformSurface (names of attributes guessed; only the picture hangs on it)",
+        ),
+    )
+    return [line for needed, line in rows if needed]

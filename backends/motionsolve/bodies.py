@@ -1,0 +1,91 @@
+"""Rows of the bodies: ground, boxes, rollers and planes, each with its two markers, its graphic and, where
+it is held, its joint.
+
+Ids follow the Model's numbers: body k is Body_Rigid k + 2, behind ground, and has Post_Graphic k + 1.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from backends.motionsolve.axes import cosines
+from backends.motionsolve.rows import Body, Box, Cosines, Deck
+from backends.motionsolve.units import Triple, numbers, per_thousand, thousandfold, triples
+from mdlgen.model.tables import Model
+
+GROUND_ID = 1
+GLOBAL_FRAME = 1  # the first marker
+
+
+def body_id(body: int) -> int:
+    """Of a body of the Model, or of GROUND (-1)."""
+    return body + 2
+
+
+def graphic_id(body: int) -> int:
+    """Of the graphic of a body of the Model."""
+    return body + 1
+
+
+def add_frames(deck: Deck, model: Model) -> None:
+    """The global frame and the axes of the sheets, on ground."""
+    deck.marker("Global_Frame", "Global Frame", GROUND_ID, None)
+    for sheet in model.sheets:
+        at = triples(sheet.center[None])[0]
+        deck.marker(f"m_{sheet.name}", f"Axes of {sheet.name}", GROUND_ID, at, cosines(sheet.rotation))
+
+
+def add_bodies(deck: Deck, model: Model) -> None:
+    """All bodies of the Model; cylinders are added with the machine."""
+    table = model.bodies
+    positions, velocities = triples(table.position), _velocities(model)
+    turns = [cosines(rotation) for rotation in table.rotation]
+    properties = zip(table.mass.tolist(), table.inertia.tolist(), table.half.tolist(), strict=True)
+    held = table.fixed.tolist()
+    for k, (mass, inertia, half) in enumerate(properties):
+        name, label = f"b_{table.name[k]}", table.label[k]
+        add_body(deck, name, label, body_id(k), positions[k], turns[k], mass, inertia, velocities.get(k))
+        if any(half):
+            x, y, z = numbers(2.0 * h for h in half)
+            marker = deck.bodies[-1].cm
+            deck.boxes.append(Box(f"gbox_{table.name[k]}", label, graphic_id(k), marker, (x, y, z)))
+        if held[k]:
+            how = "held" if model.sheet_of(k) else "fixed"
+            _fix(deck, f"j_{table.name[k]}", f"{label} {how}", body_id(k), positions[k])
+
+
+def add_body(
+    deck: Deck,
+    name: str,
+    label: str,
+    id: int,
+    at: Triple,
+    axes: Cosines | None,
+    mass: float,
+    inertia: list[float],
+    velocity: tuple[str, ...] | None = None,
+) -> None:
+    """A body and its markers: where its coordinates start, and its mass centre along the inertia's axes."""
+    lprf = deck.marker(f"{name}.lprf", f"{label}-Marker LPRF", id, None)
+    cm = deck.marker(f"{name}.cm", f"{label}-Marker CM", id, at, axes)
+    x, y, z = (per_thousand(v) for v in inertia)
+    deck.bodies.append(Body(name, label, id, cm, lprf, per_thousand(mass), (x, y, z), velocity))
+
+
+def _velocities(model: Model) -> dict[int, tuple[str, ...]]:
+    """Initial velocities of the free boxes of sheets that move, global axes."""
+    table, found = model.bodies, {}
+    for sheet in model.sheets:
+        if np.any(sheet.velocity) or np.any(sheet.spin):
+            for k in range(sheet.first, sheet.first + sheet.count):
+                if not table.fixed[k]:
+                    six = (*table.velocity[k].tolist(), *table.spin[k].tolist())
+                    found[k] = tuple(thousandfold(v) for v in six)
+    return found
+
+
+def _fix(deck: Deck, name: str, label: str, body: int, at: Triple) -> None:
+    """A fixed joint to ground, along the global axes."""
+    i = deck.marker(f"{name}.joint_i", f"{label}-Marker I", body, at)
+    j = deck.marker(f"{name}.joint_j", f"{label}-Marker J", GROUND_ID, at)
+    deck.joint(name, label, "FIXED", i, j)

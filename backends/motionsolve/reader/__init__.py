@@ -1,0 +1,29 @@
+"""Reads a deck back into the values that the reader of MotionView text gives."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any
+
+from backends.motionsolve.parse import root
+from backends.motionsolve.reader.values import values
+
+__all__ = ["Reading", "read"]
+
+
+class Reading:
+    """A deck, read. Raises SpecError with file:line where the text cannot be meant as one."""
+
+    def __init__(self, text: str, file: str):
+        self._root = root(text, file)
+        self._file = file
+
+    @cached_property
+    def values(self) -> dict[str, Any]:
+        """Every entity by kind and name, in mm, N, kg, s, rad; see `backends.motionsolve.reader.values`."""
+        return values(self._root, self._file)
+
+
+def read(text: str, file: str = "<deck>") -> Reading:
+    """One reading of a deck. Raises SpecError with file:line where the text is none."""
+    return Reading(text, file)

@@ -1,0 +1,236 @@
+"""What the list of values says of each kind of entity. Units: mm, N, kg, s, rad."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Any, NamedTuple
+
+from backends.motionsolve.reader.entity import Entity
+from backends.motionsolve.reader.index import Index
+from backends.motionsolve.reader.markers import Marker
+
+_ID = re.compile(r"(?<![\w.])[0-9]+(?![\w.])")
+_CALL = re.compile(r"[A-Za-z]\w*\([^()]*\)")
+_CAPS = {"CLOSED": "CAPBOTH", "TOP_ONLY": "CAPEND", "BOTTOM_ONLY": "CAPBEGIN", "OPEN": "CAPNONE"}
+_QUANTITIES = {"D": "DISP", "V": "VEL", "A": "ACCL"}
+_FREEDOMS = {"R": "ROT", "T": "TRANS"}
+_FRICTION = {"COULOMB_ON": "ON", "COULOMB_OFF": "OFF", "COULOMB_DYNAMICONLY": "DYNAMIC_ONLY"}
+
+
+class Deck(NamedTuple):
+    """Where an entity finds the others."""
+
+    elements: Index
+    markers: dict[int, Marker]
+
+    def marker(self, user: Entity, attribute: str) -> Marker:
+        """The marker that an attribute names."""
+        return self.by_id(user, user.id(attribute))
+
+    def by_id(self, user: Entity, number: int) -> Marker:
+        """The marker with an id, which `user` needs."""
+        self.elements.by_id(user, number, "Reference_Marker")
+        return self.markers[number]
+
+    def ends(self, user: Entity) -> tuple[Marker, Marker]:
+        """Markers i and j."""
+        return self.marker(user, "i_marker_id"), self.marker(user, "j_marker_id")
+
+
+def _known(entity: Entity, attribute: str, words: dict[str, str]) -> str:
+    word = entity.word(attribute)
+    if word not in words:
+        raise entity.wrong(f"{attribute} is {word[:80]!r}, not {' or '.join(words)}")
+    return words[word]
+
+
+def body(deck: Deck, entity: Entity) -> dict[str, Any] | None:
+    """Mass, inertia about the axes of its inertia marker, centre of mass; None for ground."""
+    if entity.word("IsGround", "FALSE") == "TRUE":
+        return None
+    center = deck.marker(entity, "cg_id")
+    own = deck.marker(entity, "im_id") if entity.has("im_id") else center
+    return {
+        "label": entity.word("label", ""),
+        "mass": entity.number("mass"),
+        "inertia": tuple(
+            entity.number(f"inertia_{pair}", 0.0) for pair in ("xx", "yy", "zz", "xy", "yz", "xz")
+        ),
+        "cm": center.origin,
+        "axes": own.axes,
+    }
+
+
+def velocity(entity: Entity) -> tuple[float, ...]:
+    """vx, vy, vz and wx, wy, wz at the start, global axes."""
+    return tuple(entity.number(f"{kind}_ic_{axis}", 0.0) for kind in "vw" for axis in "xyz")
+
+
+def bushing(deck: Deck, entity: Entity) -> dict[str, Any]:
+    """Stiffness and damping along and about the axes of its markers."""
+    i, j = deck.ends(entity)
+
+    def three(form: str) -> tuple[float, float, float]:
+        return entity.vector(*(form.format(axis) for axis in "xyz"))
+
+    return {
+        "label": entity.word("label", ""),
+        "bodies": (i.body, j.body),
+        "origin": i.origin,
+        "axes": i.axes,
+        "k": three("k{}"),
+        "c": three("c{}"),
+        "kt": three("kt{}"),
+        "ct": three("ct{}"),
+        "force": three("preload_{}"),
+        "torque": three("preload_t{}"),
+    }
+
+
+def spring(deck: Deck, entity: Entity) -> dict[str, Any]:
+    """Stiffness, damping, and the force that it has at a length."""
+    i, j = deck.ends(entity)
+    return {
+        "label": entity.word("label", ""),
+        "bodies": (i.body, j.body),
+        "points": (i.origin, j.origin),
+        "distance": math.dist(i.origin, j.origin),
+        "k": entity.number("stiffness"),
+        "c": entity.number("damping"),
+        "force": entity.number("preload"),
+        "length": entity.number("length"),
+    }
+
+
+def graphic(deck: Deck, entity: Entity) -> dict[str, Any] | None:
+    """Boxes and cylinders (cut cones) with their numbers; None for other shapes."""
+    shape = entity.word("type")
+    if shape not in ("BoxDefinedFromCenter", "Frustum"):
+        return None
+    marker = deck.marker(entity, "center_marker_id")
+    label = entity.word("label", "")
+    if shape == "BoxDefinedFromCenter":
+        lengths = entity.vector("length_x", "length_y", "length_z")
+        sizes: dict[str, Any] = {"center": marker.origin, "axes": marker.axes, "lengths": lengths}
+        return {"label": label, "type": "BOX", "body": marker.body, **sizes}
+    return {
+        "label": label,
+        "type": "CYLINDER",
+        "body": marker.body,
+        "start": marker.origin,
+        "axis": marker.axes[2],
+        "radii": (entity.number("bottom_radius"), entity.number("top_radius")),
+        "length": entity.number("length"),
+        "caps": _known(entity, "ends_type", _CAPS),
+    }
+
+
+def joint(deck: Deck, entity: Entity) -> dict[str, Any]:
+    """Its axis is Z of marker i; a fixed joint has none."""
+    i, j = deck.ends(entity)
+    kind = entity.word("type")
+    return {
+        "label": entity.word("label", ""),
+        "type": kind,
+        "bodies": (i.body, j.body),
+        "origin": i.origin,
+        "axis": None if kind in ("FIXED", "SPHERICAL") else i.axes[2],
+        "markers": (i.name, j.name),
+    }
+
+
+def motion(deck: Deck, entity: Entity) -> dict[str, Any]:
+    """The joint, what is prescribed, and the solver expression."""
+    constant = entity.word("type") == "CONSTANT"
+    return {
+        "label": entity.word("label", ""),
+        "joint": deck.elements.get(entity, "joint_id", "Constraint_Joint").name,
+        "freedom": _known(entity, "motion_type", _FREEDOMS),
+        "quantity": _known(entity, "val_type", _QUANTITIES),
+        "type": "LIN" if constant else "EXPR",
+        "value": entity.number("q") if constant else entity.word("expr"),
+    }
+
+
+def contact(deck: Deck, entity: Entity) -> dict[str, Any]:
+    """The graphics of both sides and the numbers of both forces."""
+    sides = [
+        [deck.elements.by_id(entity, number, "Post_Graphic") for number in entity.ids(attribute)]
+        for attribute in ("i_graphics_id", "j_graphics_id")
+    ]
+    friction = _known(entity, "cff_type", _FRICTION)
+    found: dict[str, Any] = {
+        "label": entity.word("label", ""),
+        "type": entity.word("cnf_type"),
+        "friction": friction,
+        "bodies": tuple(_body_of(deck, entity, side) for side in sides),
+        "graphics": tuple(tuple(graphic.name for graphic in side) for side in sides),
+        "penalty": entity.number("penalty"),
+        "restitution": entity.number("restitution_coef"),
+        "normal_trans_vel": entity.number("normal_trans_vel"),
+    }
+    if friction != "OFF":
+        found["mu_static"] = entity.number("mu_static", 0.0)
+        found["mu_dynamic"] = entity.number("mu_dynamic")
+        found["stiction_velocity"] = entity.number("stiction_trans_vel", 0.0)
+        found["friction_velocity"] = entity.number("friction_trans_vel")
+    return found
+
+
+def _body_of(deck: Deck, contact: Entity, side: list[Entity]) -> str:
+    bodies = {deck.marker(graphic, "center_marker_id").body for graphic in side}
+    if len(bodies) != 1:
+        raise contact.wrong(f"the graphics of one side lie on {len(bodies)} bodies, not on one")
+    return bodies.pop()
+
+
+def surface(deck: Deck, entity: Entity) -> dict[str, Any]:
+    """The markers that it goes through, row by row."""
+    rows = entity.rows()
+    count, across = entity.id("num_marker_row"), entity.id("num_marker_col")
+    numbers = [number for row in rows for number in row]
+    if len(numbers) != count * across:
+        raise entity.wrong(f"{len(numbers)} markers, not {count} x {across}")
+    names = [deck.by_id(entity, number).name for number in numbers]
+    return {
+        "label": entity.word("label", ""),
+        "type": entity.word("end_type", "NATURAL"),
+        "markers": tuple(tuple(names[k * across : (k + 1) * across]) for k in range(count)),
+    }
+
+
+def output(deck: Deck, entity: Entity) -> dict[str, Any] | None:
+    """Its six expressions, with the names of the markers; None for a request of another form."""
+    if entity.word("type") != "EXPRESSION":
+        return None
+
+    def named(call: re.Match[str]) -> str:
+        return _ID.sub(lambda number: deck.by_id(entity, int(number[0])).name, call[0])
+
+    texts = [entity.word(f"expr{k}") for k in (2, 3, 4, 6, 7, 8)]
+    return {"label": entity.word("comment", ""), "expressions": [_CALL.sub(named, text) for text in texts]}
+
+
+def load(deck: Deck, entity: Entity) -> dict[str, Any]:
+    """Force and torque on a body, as numbers where they are, in the axes of its reference marker."""
+    at, reference = deck.marker(entity, "marker_id"), deck.marker(entity, "ref_marker_id")
+
+    def three(form: str) -> tuple[float | str, ...]:
+        return tuple(_constant(entity.word(form.format(axis), "0")) for axis in "xyz")
+
+    return {
+        "label": entity.word("label", ""),
+        "body": at.body,
+        "origin": at.origin,
+        "reference": reference.name,
+        "force": three("f{}_expression"),
+        "torque": three("t{}_expression"),
+    }
+
+
+def _constant(text: str) -> float | str:
+    try:
+        return float(text)
+    except ValueError:
+        return text

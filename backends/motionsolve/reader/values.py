@@ -1,0 +1,85 @@
+"""All entities of a deck, in the shape that the reader of MotionView text has for them.
+
+Kinds: bodies, markers, bushings, springs, graphics, joints, motions, contacts, velocities; surfaces, outputs,
+forces (one-body loads) by name; gravity [mm/s^2]; run. Left out are, as there, the global frame and the
+markers of graphics. A deck has no points, vectors or data sets.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import lxml.etree as etree
+
+from backends.motionsolve.parse import children, line, trouble
+from backends.motionsolve.reader import records
+from backends.motionsolve.reader.entity import Entity
+from backends.motionsolve.reader.index import Index
+from backends.motionsolve.reader.markers import markers
+
+_Record = Callable[[records.Deck, Entity], dict[str, Any] | None]
+
+# Kind of element -> where it is listed, and how it is read; None leaves it out.
+KINDS: tuple[tuple[str, str, _Record], ...] = (
+    ("Body_Rigid", "bodies", records.body),
+    ("Force_Bushing", "bushings", records.bushing),
+    ("Force_SpringDamper", "springs", records.spring),
+    ("Post_Graphic", "graphics", records.graphic),
+    ("Constraint_Joint", "joints", records.joint),
+    ("Motion_Joint", "motions", records.motion),
+    ("Force_Contact", "contacts", records.contact),
+    ("Reference_DeformSurface", "surfaces", records.surface),
+    ("Post_Request", "outputs", records.output),
+    ("Force_Vector_OneBody", "forces", records.load),
+)
+
+
+def values(root: etree._Element, file: str) -> dict[str, Any]:
+    """Every entity of the kinds above. Raises SpecError with file:line for what cannot be read."""
+    sections = {str(child.tag): child for child in children(root)}
+    for needed in ("Model", "Command"):
+        if needed not in sections:
+            raise trouble(file, line(root), f"there is no {needed}")
+    index = Index(sections["Model"], file)
+    deck = records.Deck(index, markers(index))
+    found: dict[str, Any] = {"markers": {}, "velocities": {}}
+    for tag, where, record in KINDS:
+        listed = found.setdefault(where, {})
+        for entity in index.of_kind(tag):
+            value = record(deck, entity)
+            if value is not None:
+                _put(listed, entity, value)
+    own = {graphic + "_center_marker" for graphic in found["graphics"]}
+    for entity in index.of_kind("Reference_Marker"):
+        if entity.name != "Global_Frame" and entity.name not in own:
+            _put(found["markers"], entity, deck.markers[entity.id()].record())
+    for entity in index.of_kind("Body_Rigid"):
+        if entity.has("v_ic_x"):
+            found["velocities"][entity.name] = records.velocity(entity)
+    found["gravity"] = _gravity(index)
+    found["run"] = _run(sections["Command"], file)
+    return found
+
+
+def _put(listed: dict[str, Any], entity: Entity, value: Any) -> None:
+    if listed.setdefault(entity.name, value) is not value:
+        raise entity.wrong("this name is taken by another one of its kind")
+
+
+def _gravity(index: Index) -> list[float]:
+    force = index.single.get("Force_Gravity")
+    return list(force.vector("grav_x", "grav_y", "grav_z")) if force is not None else [0.0, 0.0, 0.0]
+
+
+def _run(command: etree._Element, file: str) -> dict[str, Any]:
+    """The first analysis; times in s."""
+    for element in children(command):
+        if element.tag == "Simulate":
+            entity = Entity(element, file)
+            return {
+                "analysis": entity.word("analysis_type"),
+                "end": entity.number("end_time", 0.0),
+                "print": entity.number("print_interval", 0.0),
+            }
+    raise trouble(file, line(command), "there is no Simulate in the Command")

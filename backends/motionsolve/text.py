@@ -1,0 +1,46 @@
+"""Model -> the XML deck."""
+
+from __future__ import annotations
+
+from backends.motionsolve import gate
+from backends.motionsolve.banner import banner
+from backends.motionsolve.environment import environment
+from backends.motionsolve.views import deck_view
+from mdlgen.errors import RefusedError, SpecError
+from mdlgen.model.external import refuse_externals
+from mdlgen.model.tables import Model
+
+_BUFFERED = 4096  # pieces of text that are joined at once: a large deck has millions
+
+
+def check(model: Model) -> None:
+    """Raises RefusedError by name for what the deck cannot represent."""
+    refuse_externals(model, "MotionSolve deck")
+    for roller in model.rollers:
+        press = roller.press
+        if press is None:
+            continue
+        compressed = press.touch - press.start
+        if compressed >= press.free_length:
+            raise RefusedError(
+                f"MotionSolve deck: the spring of roller {roller.name} would start compressed by "
+                f"{compressed:.6g} mm, all of its free length of {press.free_length:.6g} mm; "
+                "a longer free_length means the same in a local run",
+                ("rollers", roller.name, "press", "free_length"),
+            )
+
+
+def emit(model: Model) -> str:
+    """The whole deck, ASCII with LF line ends; the same Model always gives the same text.
+
+    Raises RefusedError (see `check`), and SpecError where two names would meet in the deck.
+    """
+    check(model)
+    deck = deck_view(model)
+    gate.check(model, deck)
+    stream = environment().get_template("deck.xml.j2").stream(deck=deck, banner=banner(model, deck))
+    stream.enable_buffering(_BUFFERED)
+    text = "".join(stream)
+    if not text.isascii() or "\r" in text:
+        raise SpecError("the deck would hold characters other than ASCII")
+    return text

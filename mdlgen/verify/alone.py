@@ -1,0 +1,75 @@
+"""The sheets alone, in a model of the user's own: what of the Model is there, and by which names."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from mdlgen.model.tables import CYLINDER_CYLINDER, Model
+from mdlgen.verify.tables import ANY, Table
+
+MACHINE_KINDS = ("springs", "cylinders", "motions", "vectors", "run", "gravity")
+
+
+def definition(model: Model) -> str:
+    """Name of the system definition that holds the sheets of a scene."""
+    return f"def_sys_{model.name}"
+
+
+def of_sheets(said: dict[str, Table], model: Model, own_machine: bool) -> dict[str, Table]:
+    """What must be said of the sheets; with `own_machine` the parts they touch may have any name."""
+    machine = _machine(model)
+    kept = {
+        kind: table.only(lambda name: name.partition(".")[0] not in machine)
+        for kind, table in said.items()
+        if kind not in MACHINE_KINDS
+    }
+    if own_machine and "contacts" in kept:
+        kept["contacts"] = replace(kept["contacts"], words=_any_machine(kept["contacts"], model))
+    return kept
+
+
+def _machine(model: Model) -> set[str]:
+    """Names of the text that belong to the machine."""
+    names = {"ds_run"}
+    for part in (*model.rollers, *model.planes):
+        n = part.name
+        names |= {f"{kind}_{n}" for kind in ("p", "b", "gbox", "gcyl", "j", "o", "ds")}
+        names |= {f"p_{n}_anchor", f"b_{n}_carrier", f"j_{n}_slide"}
+    table = model.contacts
+    for row in range(len(table)):
+        if table.kind[row] == CYLINDER_CYLINDER:
+            names.add(f"con_{table.part_a[row]}_{table.part_b[row]}")
+    of_sheets = {int(table.entry[r]) for r in range(len(table)) if table.kind[r] != CYLINDER_CYLINDER}
+    names |= {f"ds_contact_{e}" for e in set(table.entry.tolist()) - of_sheets}
+    return names
+
+
+def _any_machine(table: Table, model: Model) -> tuple[tuple[str, ...], ...]:
+    """The words of contacts with the parts that this scene has a shape of left open."""
+    ours = {f"b_{part.name}" for part in (*model.rollers, *model.planes)}
+    return tuple((*w[:3], ANY, w[4], ANY) if w[3] in ours else w for w in table.words)
+
+
+def inside(values: dict[str, Any], prefix: str) -> dict[str, Any]:
+    """The values of what stands in one system, with the names that they have in it."""
+    if not prefix:
+        return values
+    return {
+        kind: {
+            name.removeprefix(prefix): _without(record, prefix)
+            for name, record in records.items()
+            if name.startswith(prefix)
+        }
+        for kind, records in values.items()
+    }
+
+
+def _without(value: Any, prefix: str) -> Any:
+    if isinstance(value, str):
+        return value.replace(prefix, "")
+    if isinstance(value, dict):
+        return {key: _without(v, prefix) for key, v in value.items()}
+    if isinstance(value, (tuple, list)) and value and not isinstance(value[0], float):
+        return tuple(_without(v, prefix) for v in value)
+    return value

@@ -1,0 +1,341 @@
+"""What a text must say of a Model, made from its tables and from nothing else, in the units of the text.
+
+Names follow the promise of the text: `b_` body, `p_` point, `bsh_` bushing, `gbox_`, `gcyl_` graphic, `j_`
+joint, `mot_` motion, `cs_` spring, `con_` contact, `m_` marker, `o_` output, `ds_` data set.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+
+from mdlgen.model.tables import (
+    GROUND,
+    SUPPORT,
+    Anchor,
+    Floats,
+    Model,
+    RollerPart,
+    SheetPart,
+)
+from mdlgen.verify.state import motion
+from mdlgen.verify.tables import Part, Table, table
+
+KG, SECOND = 1e-3, 1e-3  # of a gram, of a millisecond
+RAMP_STATIONS = (0.0, 0.25, 0.5, 1.0, 2.0, 10.0)  # where the law of a drive is looked at, in ramps
+_STATIONS_WITHOUT = (0.0, 1e-3, 1.0)  # [s]
+
+
+Times = Mapping[str, tuple[float, ...]]
+
+
+def expected(model: Model, times: Times) -> dict[str, Table]:
+    """All tables of a Model, by kind; `times` are those at which the laws of drives are looked at [s]."""
+    return {
+        "points": _points(model),
+        "bodies": _bodies(model),
+        "bushings": _bushings(model),
+        "springs": _springs(model),
+        "boxes": _boxes(model),
+        "cylinders": _cylinders(model),
+        "joints": _joints(model),
+        "motions": _motions(model, times),
+        "velocities": _velocities(model),
+        "markers": _markers(model),
+        "vectors": _vectors(model),
+        "surfaces": _surfaces(model),
+        "outputs": _outputs(model),
+    }
+
+
+def body_name(model: Model, body: int) -> str:
+    """Of a body in the text."""
+    return "B_Ground" if body == GROUND else f"b_{model.bodies.name[body]}"
+
+
+def reach(model: Model) -> float:
+    """Size of the scene [mm], by which coordinates are measured."""
+    size = [max(s.size) for s in model.sheets]
+    return float(max(np.abs(model.bodies.position).max(initial=0.0), *size))
+
+
+def _boxes_of(model: Model, sheet: SheetPart) -> range:
+    return range(sheet.first, sheet.first + sheet.count)
+
+
+def _anchor_points(model: Model, anchor: Anchor) -> Floats:
+    """The point of an anchor on each of its boxes [mm], (n, 3)."""
+    bodies = model.bodies
+    return bodies.position[anchor.body] + np.einsum("nij,nj->ni", bodies.rotation[anchor.body], anchor.local)
+
+
+def _spring_anchor(roller: RollerPart) -> Floats:
+    press = roller.press
+    assert press is not None
+    return roller.center + press.direction * (press.touch - press.free_length)
+
+
+def _points(model: Model) -> Table:
+    names, places = [], []
+    for index, sheet in enumerate(model.sheets):
+        names.append(f"p_{sheet.name}")
+        places.append(sheet.center[None])
+        names += [f"p_{model.bodies.name[b]}" for b in _boxes_of(model, sheet)]
+        places.append(model.bodies.position[sheet.first : sheet.first + sheet.count])
+        rows = np.flatnonzero((model.bushings.sheet == index) & (model.bushings.kind != SUPPORT))
+        nodes, first = np.unique(model.bushings.node[rows], axis=0, return_index=True)
+        names += [f"p_{sheet.name}_node_{x}_{y}" for x, y in nodes.tolist()]
+        places.append(model.bushings.origin[rows[first]])
+    for support in model.supports:
+        names.append(f"p_{support.name}")
+        places.append(_anchor_points(model, support)[:1])
+    for roller in model.rollers:
+        names.append(f"p_{roller.name}")
+        places.append(model.bodies.position[roller.body][None])
+        if roller.press is not None:
+            names.append(f"p_{roller.name}_anchor")
+            places.append(_spring_anchor(roller)[None])
+    for plane in model.planes:
+        names.append(f"p_{plane.name}")
+        places.append(plane.center[None])
+    for probe in model.probes:
+        names.append(f"p_probe_{probe.name}")
+        places.append(_anchor_points(model, probe)[:1])
+    return table(names, {"at": (np.concatenate(places), reach(model))})
+
+
+def _bodies(model: Model) -> Table:
+    bodies = model.bodies
+    pressed = [r for r in model.rollers if r.press is not None]
+    names = [f"b_{n}" for n in bodies.name] + [f"b_{r.name}_carrier" for r in pressed]
+    carrier = np.array([r.press.carrier_mass for r in pressed if r.press is not None])
+    radius = np.array([r.radius for r in pressed])
+    ball = (0.4 * carrier * radius**2)[:, None] * np.ones(3)  # a solid ball of the roller's radius
+    mass = np.concatenate([bodies.mass, carrier]) * KG
+    inertia = np.concatenate([bodies.inertia, ball]) * KG
+    position = np.concatenate([bodies.position, *(bodies.position[r.body][None] for r in pressed)])
+    axes = np.concatenate([bodies.rotation.transpose(0, 2, 1), *(np.eye(3)[None] for _ in pressed)])
+    products = np.zeros_like(inertia)
+    parts: dict[str, Part] = {
+        "mass": (mass, None),
+        "inertia": (inertia, None),
+        "products": (products, inertia.max(axis=1, keepdims=True)),
+        "cm": (position, reach(model)),
+        "axes": (axes, 1.0),
+    }
+    return table(names, parts)
+
+
+def _bushings(model: Model) -> Table:
+    rows = model.bushings
+    count = len(rows)
+    parts: dict[str, Part] = {
+        "origin": (rows.origin, reach(model)),
+        "axes": (rows.axes.transpose(0, 2, 1), 1.0),
+        "k": (rows.k[:, :3], None),
+        "c": (rows.c[:, :3] * SECOND, None),
+        "kt": (rows.k[:, 3:], None),
+        "ct": (rows.c[:, 3:] * SECOND, None),
+        "force": (np.zeros((count, 3)), 1.0),
+        "torque": (np.zeros((count, 3)), 1.0),
+    }
+    words = [
+        (body_name(model, a), body_name(model, b))
+        for a, b in zip(rows.a.tolist(), rows.b.tolist(), strict=True)
+    ]
+    return table([f"bsh_{n}" for n in rows.name], parts, words)
+
+
+def _springs(model: Model) -> Table:
+    pressed = [(r, r.press) for r in model.rollers if r.press is not None]
+    parts: dict[str, Part] = {
+        "p1": (np.array([model.bodies.position[r.body] for r, _ in pressed]).reshape(-1, 3), reach(model)),
+        "p2": (np.array([_spring_anchor(r) for r, _ in pressed]).reshape(-1, 3), reach(model)),
+        "k": (np.array([p.stiffness for _, p in pressed]), None),
+        "c": (np.array([p.damping for _, p in pressed]) * SECOND, None),
+        "force": (np.array([p.preload for _, p in pressed]), None),
+        "length": (np.array([p.free_length for _, p in pressed]), None),
+    }
+    words = [(f"b_{r.name}_carrier", "B_Ground") for r, _ in pressed]
+    return table([f"cs_{r.name}" for r, _ in pressed], parts, words)
+
+
+def _boxes(model: Model) -> Table:
+    bodies = model.bodies
+    rows = np.array(
+        [*(b for s in model.sheets for b in _boxes_of(model, s)), *(p.body for p in model.planes)], dtype=int
+    )
+    names = [f"gbox_{bodies.name[b]}" for b in rows]
+    parts: dict[str, Part] = {
+        "center": (bodies.position[rows], reach(model)),
+        "axes": (bodies.rotation[rows].transpose(0, 2, 1), 1.0),
+        "lengths": (2 * bodies.half[rows], None),
+    }
+    return table(names, parts, [(f"b_{bodies.name[b]}",) for b in rows])
+
+
+def _cylinders(model: Model) -> Table:
+    parts: dict[str, Part] = {
+        "start": (
+            np.array([model.bodies.position[r.body] - r.axis * r.width / 2 for r in model.rollers]).reshape(
+                -1, 3
+            ),
+            reach(model),
+        ),
+        "axis": (np.array([r.axis for r in model.rollers]).reshape(-1, 3), 1.0),
+        "radii": (np.array([(r.radius, r.radius) for r in model.rollers]).reshape(-1, 2), None),
+        "length": (np.array([r.width for r in model.rollers]), None),
+    }
+    words = [(f"b_{r.name}", "CAPBOTH") for r in model.rollers]
+    return table([f"gcyl_{r.name}" for r in model.rollers], parts, words)
+
+
+def _joints(model: Model) -> Table:
+    names, words, origins, axes = [], [], [], []
+
+    def add(name: str, kind: str, a: str, b: str, origin: Floats, axis: Floats) -> None:
+        names.append(name)
+        words.append((kind, a, b))
+        origins.append(origin)
+        axes.append(axis)
+
+    none = np.zeros(3)
+    for body in np.flatnonzero(model.bodies.fixed).tolist():
+        name = model.bodies.name[body]
+        add(f"j_{name}", "FIXED", f"b_{name}", "B_Ground", model.bodies.position[body], none)
+    for roller in model.rollers:
+        name, at, on = roller.name, model.bodies.position[roller.body], "B_Ground"
+        if roller.press is not None:
+            on = f"b_{name}_carrier"
+            add(f"j_{name}_slide", "TRANSLATIONAL", on, "B_Ground", at, roller.press.direction)
+        add(f"j_{name}", "REVOLUTE", f"b_{name}", on, at, roller.axis)
+    parts: dict[str, Part] = {
+        "origin": (np.array(origins).reshape(-1, 3), reach(model)),
+        "axis": (np.array(axes).reshape(-1, 3), 1.0),
+    }
+    return table(names, parts, words)
+
+
+def stations(model: Model) -> Times:
+    """Times at which the law of each drive is looked at [s], by motion."""
+    found = {}
+    for roller in model.rollers:
+        if roller.speed is not None:
+            ramp = roller.ramp * SECOND
+            found[f"mot_{roller.name}"] = (
+                tuple(s * ramp for s in RAMP_STATIONS) if ramp > 0.0 else (*_STATIONS_WITHOUT, 0.0, 0.0, 0.0)
+            )
+    return found
+
+
+def _motions(model: Model, times: Times) -> Table:
+    driven = [(r, r.speed / SECOND) for r in model.rollers if r.speed is not None]
+    laws = [
+        [speed * (min(1.0, t / (r.ramp * SECOND)) if r.ramp > 0.0 else 1.0) for t in times[f"mot_{r.name}"]]
+        for r, speed in driven
+    ]
+    speeds = np.array(laws).reshape(len(driven), -1) if driven else np.zeros((0, len(RAMP_STATIONS)))
+    scale = np.array([[abs(speed)] for _, speed in driven]).reshape(-1, 1)
+    words = [(f"j_{r.name}", "ROT", "VEL") for r, _ in driven]
+    return table([f"mot_{r.name}" for r, _ in driven], {"speed": (speeds, scale)}, words)
+
+
+def _velocities(model: Model) -> Table:
+    rows = [
+        b
+        for s in model.sheets
+        if np.any(s.velocity) or np.any(s.spin)
+        for b in _boxes_of(model, s)
+        if not model.bodies.fixed[b]
+    ]
+    rows = np.array(rows, dtype=int)
+    velocity, spin = model.bodies.velocity[rows] / SECOND, model.bodies.spin[rows] / SECOND
+    parts: dict[str, Part] = {
+        "velocity": (velocity, np.abs(velocity).max(initial=0.0)),
+        "spin": (spin, np.abs(spin).max(initial=0.0)),
+    }
+    return table([f"b_{model.bodies.name[b]}" for b in rows], parts)
+
+
+def _markers(model: Model) -> Table:
+    """The markers that the text itself makes; those of bodies and joints are where their owners are."""
+    names, bodies, places, axes = [], [], [], []
+
+    def add(name: str, body: str, place: Floats, frame: Floats) -> None:
+        names.append(name)
+        bodies.append((body,))
+        places.append(place)
+        axes.append(frame)
+
+    for sheet in model.sheets:
+        add(f"m_{sheet.name}", "B_Ground", sheet.center, sheet.rotation.T)
+        for b in _boxes_of(model, sheet) if sheet.surface else ():
+            name = model.bodies.name[b]
+            add(f"m_{name}", f"b_{name}", model.bodies.position[b], np.eye(3))
+    for probe in model.probes:
+        points = _anchor_points(model, probe)
+        for k, body in enumerate(probe.body.tolist()):
+            end = f"_{k}" if len(points) > 1 else ""
+            add(f"m_probe_{probe.name}{end}", body_name(model, body), points[k], np.eye(3))
+    parts: dict[str, Part] = {
+        "origin": (np.array(places).reshape(-1, 3), reach(model)),
+        "axes": (np.array(axes).reshape(-1, 9), 1.0),
+    }
+    return table(names, parts, bodies)
+
+
+def _vectors(model: Model) -> Table:
+    names, directions = [], []
+
+    def add(name: str, direction: Floats) -> None:
+        names.append(name)
+        directions.append(direction)
+
+    def own(name: str, direction: Floats) -> None:
+        if not any(np.array_equal(direction, axis) for axis in np.eye(3)):
+            add(name, direction)
+
+    for roller in model.rollers:
+        own(f"v_{roller.name}_axis", roller.axis)
+        if roller.press is not None:
+            add(f"v_{roller.name}_press", roller.press.direction)
+    for plane in model.planes:
+        own(f"v_{plane.name}_normal", plane.normal)
+    return table(names, {"direction": (np.array(directions).reshape(-1, 3), 1.0)})
+
+
+def _surfaces(model: Model) -> Table:
+    names, words = [], []
+    for sheet in model.sheets:
+        if sheet.surface:
+            names.append(f"defsur_{sheet.name}")
+            boxes = [f"m_{model.bodies.name[b]}" for b in _boxes_of(model, sheet)]
+            words.append(("NATURAL", f"{sheet.n_y} rows", *boxes))
+    return table(names, {}, words)
+
+
+def _outputs(model: Model) -> Table:
+    """Six numbers of each output in the made-up state: position and velocity, or position and spin."""
+    names, rows = [], []
+    for probe in model.probes:
+        names.append(f"o_{probe.name}")
+        points = _anchor_points(model, probe)
+        states = [motion(body_name(model, b)) for b in probe.body.tolist()]
+        rows.append(
+            [
+                *_mean(probe.share, (s.place(p) for s, p in zip(states, points, strict=True))),
+                *_mean(probe.share, (s.speed(p) for s, p in zip(states, points, strict=True))),
+            ]
+        )
+    for roller in model.rollers:
+        names.append(f"o_{roller.name}")
+        state = motion(f"b_{roller.name}")
+        rows.append([*state.place(model.bodies.position[roller.body]), *state.spin])
+    numbers = np.array(rows).reshape(-1, 6)
+    scale = np.repeat([reach(model), 1000.0], 3)
+    return table(names, {"value": (numbers, scale)})
+
+
+def _mean(share: Floats, vectors: Iterable[Floats]) -> Floats:
+    return np.einsum("n,nk->k", share, np.array(list(vectors)))

@@ -1,0 +1,149 @@
+"""Data sets, contacts, gravity and run settings that a text with its script must have of a Model."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from mdlgen.model.tables import Anchor, Model, SheetPart
+from mdlgen.verify.expected import KG, SECOND, body_name
+from mdlgen.verify.tables import Part, Table, table
+
+CONTACT_NUMBERS = (
+    "penalty",
+    "restitution",
+    "mu_static",
+    "mu_dynamic",
+    "stiction_velocity",
+    "friction_velocity",
+    "normal_trans_vel",
+)
+# From the Model's unit to that of the text.
+FACTORS = {
+    **dict.fromkeys(("mm", "N", "1", "MPa", "N/mm", "N*mm", "N*mm/rad", "N/mm^1.5"), 1.0),
+    "g": KG,
+    "ms": SECOND,
+    "mm/ms": 1 / SECOND,
+    "rad/ms": 1 / SECOND,
+    "rad": 180 / math.pi,
+}
+
+
+def data(model: Model) -> Table:
+    """All numbers of all data sets: those that the user gave, and those that follow from them."""
+    found: dict[str, float] = {}
+    for p in model.parameters:
+        found[f"ds_{p.data_set}.real_{p.member}"] = p.value * FACTORS[p.unit]
+    for index, sheet in enumerate(model.sheets):
+        for member, value in _derived(model, index).items():
+            # a value that the user gave stands there already
+            found.setdefault(f"ds_{sheet.name}.real_{member}", value)
+    for support in model.supports:
+        found[f"ds_{support.name}.real_factor"] = _factor(model, support)
+        found |= _place(support.name, support.at, support.edge)
+    for probe in model.probes:
+        found |= _place(f"probe_{probe.name}", probe.at, probe.edge)
+    angles = [math.degrees(1.0) if ".real_turn" in n or ".real_r_" in n else 0.0 for n in found]
+    numbers = np.array(list(found.values()))
+    places = np.array([100.0 if n.endswith(("real_x", "real_y")) else 0.0 for n in found])
+    scale = np.maximum.reduce([np.abs(numbers), np.array(angles), places]) if found else numbers
+    return table(found, {"value": (numbers, scale[:, None])})
+
+
+def _factor(model: Model, support: Anchor) -> float:
+    """Stiffness of a support in times k_z of its sheet: its bushings act side by side."""
+    mine = [k for k, name in enumerate(model.bushings.name) if name.rpartition("_")[0] == support.name]
+    return float(model.bushings.k[mine, :3].sum(axis=0).max() / model.sheets[support.sheet].derived["k_z"])
+
+
+def _place(data_set: str, at: tuple[float, float], edge: str | None) -> dict[str, float]:
+    return {} if edge else {f"ds_{data_set}.real_{a}": v for a, v in zip("xy", at, strict=True)}
+
+
+def _derived(model: Model, index: int) -> dict[str, float]:
+    """Values of a sheet that the text computes, from the tables of its boxes and bushings."""
+    sheet, rows = model.sheets[index], model.bushings
+    box = sheet.first
+    m, (d_x, d_y, s) = model.bodies.mass[box] * KG, 2 * model.bodies.half[box]
+    found = {"n_x": float(sheet.n_x), "n_y": float(sheet.n_y), "d_x": d_x, "d_y": d_y, "m": m}
+    found |= {f"I_{a}": v * KG for a, v in zip("xyz", model.bodies.inertia[box], strict=True)}
+    mine = rows.sheet == index
+    if not np.any(mine):
+        return found
+    names = ("x", "y", "z", "tx", "ty", "tz")
+    found |= {f"k_{n}": sheet.derived[f"k_{n}"] for n in names}
+    found |= {f"c_{n}": sheet.derived[f"c_{n}"] * SECOND for n in names}
+    if sheet.rotation_damping == "inertia":  # of a box about the edges and the corner that its hinges are on
+        found["J_x"], found["J_y"] = m * (d_y**2 / 3 + s**2 / 12), m * (d_x**2 / 3 + s**2 / 12)
+        found["J_z"] = m * (d_x**2 + d_y**2) / 3
+    return found | (_twist(model, sheet, found) if sheet.twist else {})
+
+
+def _twist(model: Model, sheet: SheetPart, found: dict[str, float]) -> dict[str, float]:
+    """Twisting stiffness 2 D_twist times width by length of joints along x and along y, and its damping.
+
+    A sheet may have joints one way only; the text shows both values.
+    """
+    given = {p.member: p.value for p in model.parameters if p.data_set == sheet.name}
+    twist: dict[str, float] = {}
+    for name, shape, zeta in (
+        ("tx", sheet.d_y / sheet.d_x, "zeta"),
+        ("ty", sheet.d_x / sheet.d_y, "zeta_ty"),
+    ):
+        k = 2 * given["D_twist"] * shape
+        heavy = found["m"] if sheet.rotation_damping == "paper" else found[f"J_{name[1]}"]
+        twist[f"k_{name}_twist"] = k
+        twist[f"c_{name}_twist"] = 2 * given[zeta] * math.sqrt(k * heavy * SECOND)
+    return twist
+
+
+def contacts(model: Model) -> Table:
+    """One row for each pair of bodies that may touch; without friction its four numbers are 0."""
+    rows, pairs, outside, bodies = model.contacts, model.pairs, model.external_pairs, model.bodies
+    of = np.concatenate([pairs.contact, outside.contact])
+    rubs = (rows.mu_static[of] > 0) | (rows.mu_dynamic[of] > 0)
+    numbers = np.stack(
+        [
+            rows.stiffness[of],
+            rows.restitution[of],
+            *(np.where(rubs, v, 0.0) for v in (rows.mu_static[of], rows.mu_dynamic[of])),
+            *(
+                np.where(rubs, v / SECOND, 0.0)
+                for v in (rows.stiction_velocity[of], rows.friction_velocity[of])
+            ),
+            rows.smoothing[of] / SECOND,
+        ],
+        axis=1,
+    )
+    cylinders = {r.body for r in model.rollers}
+
+    def graphic(body: int) -> str:
+        return f"{'gcyl' if body in cylinders else 'gbox'}_{bodies.name[body]}"
+
+    names, words = [], []
+    for a, b in zip(pairs.a.tolist(), pairs.b.tolist(), strict=True):
+        names.append(f"con_{bodies.name[a]}_{bodies.name[b]}")
+        words.append((body_name(model, a), body_name(model, b), graphic(a), graphic(b)))
+    for a, part in zip(outside.box.tolist(), outside.part.tolist(), strict=True):
+        other = model.externals[part]
+        names.append(f"con_{bodies.name[a]}_{other.name}")
+        given = [v.removeprefix("MODEL.") for v in (other.body, *other.graphics)]
+        words.append((body_name(model, a), given[0], graphic(a), *given[1:]))
+    said = [("POISSON", "ON" if on else "OFF", *row) for on, row in zip(rubs.tolist(), words, strict=True)]
+    parts: dict[str, Part] = {n: (numbers[:, k], None) for k, n in enumerate(CONTACT_NUMBERS)}
+    return table(names, parts, said)
+
+
+def run(model: Model) -> Table:
+    """Analysis and times [s]; a static run has none."""
+    static = model.run.analysis == "static"
+    times = (0.0, 0.0) if static else (model.run.duration * SECOND, model.run.print_step * SECOND)
+    parts: dict[str, Part] = {"end": (np.array(times[:1]), None), "print": (np.array(times[1:]), None)}
+    return table(["run"], parts, [("Static" if static else "Transient",)])
+
+
+def gravity(model: Model) -> Table:
+    """Gravity [mm/s^2]."""
+    g = model.gravity / SECOND**2
+    return table(["gravity"], {"g": (g[None], np.abs(g).max(initial=1.0))})

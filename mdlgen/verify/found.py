@@ -1,0 +1,204 @@
+"""Values that were read from a text or a deck, as the tables of `expected`."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from mdlgen.verify.expected_numbers import CONTACT_NUMBERS
+from mdlgen.verify.state import Places, Unreadable, law, request
+from mdlgen.verify.tables import Table
+
+Values = Mapping[str, Mapping[str, Any]]
+Row = tuple[list[Any], tuple[str, ...]]  # numbers, words
+
+_NAN = float("nan")
+_ATTRIBUTE = re.compile(r'\b(\w+)\s*=\s*"([^"]*)"')
+
+
+class Found:
+    """Tables of some values; `stations` are the times [s] at which the laws of drives are looked at."""
+
+    def __init__(self, stations: Mapping[str, tuple[float, ...]], markers: Mapping[str, Any] | None = None):
+        self.stations = stations
+        self.markers = markers or {}
+        self.places = Places(self.markers)
+
+    def tables(self, values: Values) -> dict[str, Table]:
+        """All kinds that `expected` has, but for data sets, contacts, gravity and run settings."""
+        of_bodies = {
+            f"{name}.cm": {"body": name, "origin": record["cm"], "axes": record["axes"]}
+            for name, record in values.get("bodies", {}).items()
+        }
+        self.places = Places(self.markers, values.get("markers", {}), of_bodies)
+        graphics = values.get("graphics", {})
+        boxes = {n: r for n, r in graphics.items() if r["type"] == "BOX"}
+        cylinders = {n: r for n, r in graphics.items() if r["type"] == "CYLINDER"}
+        return {
+            "points": _table(values.get("points", {}), lambda n, r: (list(r), ()), 3),
+            "bodies": _table(values.get("bodies", {}), _body, 19),
+            "bushings": _table(values.get("bushings", {}), _bushing, 30),
+            "springs": _table(values.get("springs", {}), _spring, 10),
+            "boxes": _table(boxes, _box, 15),
+            "cylinders": _table(cylinders, _cylinder, 9),
+            "joints": _table(values.get("joints", {}), _joint, 6),
+            "motions": _table(values.get("motions", {}), self._motion, 6),
+            "velocities": _table(values.get("velocities", {}), lambda n, r: (list(r), ()), 6),
+            "markers": _table(
+                {n: r for n, r in values.get("markers", {}).items() if "." not in n}, _marker, 12
+            ),
+            "vectors": _table(values.get("vectors", {}), _vector, 3),
+            "surfaces": _table(values.get("surfaces", {}), _surface, 0),
+            "outputs": _table(values.get("outputs", {}), self._output, 6),
+        }
+
+    def _motion(self, name: str, record: Mapping[str, Any]) -> Row:
+        words = (record["joint"] or "", record["freedom"] or "", record["quantity"] or "")
+        speeds = [self._law(record, t) for t in self.stations.get(name, (0.0,) * 6)]
+        return speeds, words
+
+    @staticmethod
+    def _law(record: Mapping[str, Any], time: float) -> float:
+        if record["type"] == "LIN":
+            return float(record["value"])
+        try:
+            return law(str(record["value"]), time)
+        except Unreadable:
+            return _NAN
+
+    def _output(self, name: str, record: Mapping[str, Any]) -> Row:
+        return [self._request(text) for text in record["expressions"] or ()], ()
+
+    def _request(self, text: str) -> float:
+        try:
+            return request(text, self.places)
+        except Unreadable:
+            return _NAN
+
+
+def _table(records: Mapping[str, Any], row: Callable[[str, Any], Row], width: int) -> Table:
+    numbers = np.full((len(records), width), _NAN)
+    words = []
+    for k, (name, record) in enumerate(records.items()):
+        values, said = row(name, record)
+        if len(values) == width:
+            numbers[k] = [v if isinstance(v, (float, int)) else _NAN for v in values]
+        words.append(said)
+    columns = tuple(str(k) for k in range(width))
+    return Table(tuple(records), columns, numbers, np.zeros_like(numbers), tuple(words))
+
+
+def _flat(axes: Any) -> list[float]:
+    return [v for axis in axes for v in axis]
+
+
+def _body(name: str, record: Mapping[str, Any]) -> Row:
+    inertia = record["inertia"] or [_NAN] * 6
+    mass = record["mass"] if record["mass"] is not None else _NAN
+    return [mass, *inertia, *record["cm"], *_flat(record["axes"])], ()
+
+
+def _bushing(name: str, record: Mapping[str, Any]) -> Row:
+    groups = [record[g] or (None,) * 3 for g in ("k", "c", "kt", "ct", "force", "torque")]
+    return [*record["origin"], *_flat(record["axes"]), *_flat(groups)], tuple(record["bodies"])
+
+
+def _spring(name: str, record: Mapping[str, Any]) -> Row:
+    numbers = [*_flat(record["points"]), *(record[k] for k in ("k", "c", "force", "length"))]
+    return numbers, tuple(record["bodies"])
+
+
+def _box(name: str, record: Mapping[str, Any]) -> Row:
+    return [*record["center"], *_flat(record["axes"]), *record["lengths"]], (record["body"],)
+
+
+def _cylinder(name: str, record: Mapping[str, Any]) -> Row:
+    numbers = [*record["start"], *record["axis"], *record["radii"], record["length"]]
+    return numbers, (record["body"], record["caps"])
+
+
+def _joint(name: str, record: Mapping[str, Any]) -> Row:
+    axis = record["axis"] if record["axis"] is not None else (0.0, 0.0, 0.0)
+    return [*record["origin"], *axis], (record["type"], *record["bodies"])
+
+
+def _marker(name: str, record: Mapping[str, Any]) -> Row:
+    return [*record["origin"], *_flat(record["axes"])], (record["body"] or "",)
+
+
+def _vector(name: str, record: Any) -> Row:
+    length = float(np.linalg.norm(record))
+    return [v / length if length else _NAN for v in record], ()
+
+
+def _surface(name: str, record: Mapping[str, Any]) -> Row:
+    rows = record["markers"]
+    return [], (record["type"], f"{len(rows)} rows", *(m for row in rows for m in row))
+
+
+def marker_table(values: Values, reach: float = 0.0) -> Table:
+    """All markers, those too that belong to bodies, joints and bushings; `reach` is the size of the scene."""
+    found = _table(values.get("markers", {}), _marker, 12)
+    return replace(found, scale=np.broadcast_to([reach] * 3 + [1.0] * 9, found.numbers.shape))
+
+
+def data_table(values: Values) -> Table:
+    """Numbers of all data sets."""
+    found = {
+        f"{holder}.{member}": value
+        for holder, members in values.get("datasets", {}).items()
+        for member, value in members.items()
+    }
+    return _table(found, lambda n, value: ([value], ()), 1)
+
+
+def contact_table(values: Values, numbers: Mapping[str, Mapping[str, float]]) -> Table:
+    """Contacts with the numbers of the text; `numbers` are those that a script gives, by contact."""
+
+    def row(name: str, record: Mapping[str, Any]) -> Row:
+        all_numbers = {**record, **numbers.get(name, {})}
+        missing = 0.0 if record["friction"] == "OFF" else _NAN
+        found = [
+            all_numbers.get(n, missing if "mu_" in n or "velocity" in n else _NAN) for n in CONTACT_NUMBERS
+        ]
+        graphics = [g for side in record["graphics"] for g in side]
+        named = [name.removeprefix("MODEL.") for name in (*record["bodies"], *graphics)]
+        return found, (record["type"], record["friction"], *named)
+
+    return _table(values.get("contacts", {}), row, len(CONTACT_NUMBERS))
+
+
+def run_table(values: Values) -> Table:
+    """Analysis and times of a deck, or of the solver commands that a text's template writes."""
+    settings: dict[str, Any] = {}
+    if "run" in values:
+        settings = dict(values["run"])
+    elif not values.get("templates"):
+        return _table({}, lambda n, r: ([], ()), 2)
+    else:
+        for record in values["templates"].values():
+            said = dict(_ATTRIBUTE.findall(record["text"] or ""))
+            settings = {
+                "analysis": said.get("analysis_type"),
+                "end": said.get("end_time"),
+                "print": said.get("print_interval", 0.0),
+            }
+    words = (str(settings.get("analysis")),)
+    times = [_float(settings.get(k)) for k in ("end", "print")]
+    return _table({"run": None}, lambda n, r: (times, words), 2)
+
+
+def gravity_table(gravity: Any) -> Table:
+    """Gravity [mm/s^2]."""
+    return _table({"gravity": gravity}, lambda n, r: (list(r), ()), 3)
+
+
+def _float(value: Any) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        return _NAN

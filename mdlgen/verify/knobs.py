@@ -1,0 +1,228 @@
+"""The values that a text can be turned by: each with what it must make of the Model.
+
+The spec leaves values out that the text has to write (a second ratio of damping, the speeds of friction);
+and two sheets may share a material while the text gives each its own. So the scene is pinned first: what is
+left out is written as what it stands for. Which boxes may touch what, and where a pressed roller begins, is
+in the text as it was found for the scene as written; it stays so here, too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import fields, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel
+
+from mdlgen.model import grid
+from mdlgen.model.lower import lower
+from mdlgen.model.stiffness import SUPPORT_FACTOR
+from mdlgen.model.supports import joined, support_bushings
+from mdlgen.model.tables import SUPPORT, Anchor, Bushings, Model, Parameter, Press
+from mdlgen.spec.scene import Scene
+from mdlgen.verify.expected_numbers import FACTORS
+
+STEP = 1.0625  # a value is turned to this many times itself, exactly
+# A stiffness is turned far: k_z and k_tz follow the larger of two, and must follow the other one too.
+FAR: dict[str, float] = {"MPa": 17.0, "N*mm": 17.0, "N*mm/rad": 17.0}
+# and 0 to this, in internal units
+FROM_ZERO = {"mm": 0.5, "rad": 0.125, "rad/ms": 0.03125, "mm/ms": 0.25, "N": 0.5, "ms": 0.25, "1": 0.0625}
+_FRICTION = {"mu_s": "static", "mu_d": "dynamic", "v_s": "stiction_velocity", "v_d": "friction_velocity"}
+
+_BEGINS = ("touch", "start")  # of a pressed roller, computed for the scene as it is written
+
+Path = tuple[str | int, ...]
+
+
+class Knob(NamedTuple):
+    """A number of a data set: where it stands, what it is turned to, and the Model that must come of it."""
+
+    path: str  # in the text: ds_note.real_L_x
+    value: float  # in the unit of the text
+    model: Callable[[], Model]
+
+
+def knobs(scene: Scene, model: Model) -> Iterator[Knob]:
+    """All numbers of the data sets of a Model that the spec, or the Model itself, has a value for."""
+    base = pinned(scene)
+    sheets = {s.name for s in model.sheets}
+    for p in model.parameters:
+        value = p.value * FAR.get(p.unit, STEP) if p.value else FROM_ZERO.get(p.unit, 0.5)
+        where = f"ds_{p.data_set}.real_{p.member}"
+        path = _path(p, sheets)
+        if path is not None:
+            yield Knob(where, value * FACTORS[p.unit], _turned(base, path, value, model))
+        elif p.member in _BEGINS:
+            yield Knob(where, value * FACTORS[p.unit], _begun(model, p.data_set, p.member, value))
+    for kind, anchors in (("probes", model.probes), ("supports", model.supports)):
+        for k, item in enumerate(anchors):
+            if item.edge is not None:
+                continue
+            key: str | int = item.name if kind == "probes" else k
+            data_set = f"probe_{item.name}" if kind == "probes" else item.name
+            for axis in range(2):
+                value = item.at[axis] / STEP if item.at[axis] else FROM_ZERO["mm"]
+                turned = _turned(base, (kind, key, "at", axis), value, model)
+                yield Knob(f"ds_{data_set}.real_{'xy'[axis]}", value, turned)
+    for item in model.supports:
+        stiffer = SUPPORT_FACTOR * STEP
+        yield Knob(f"ds_{item.name}.real_factor", stiffer, _stiffer(model, item.name))
+
+
+def pinned(scene: Scene) -> Scene:
+    """The same scene with each value that the text writes standing on its own."""
+    materials = {}
+    for name, sheet in scene.sheets.items():
+        material = scene.materials[sheet.material]
+        damping = material.damping
+        ty = damping.ratio if damping.ratio_ty is None else damping.ratio_ty
+        materials[name] = material.model_copy(update={"damping": damping.model_copy(update={"ratio_ty": ty})})
+    sheets = {name: sheet.model_copy(update={"material": name}) for name, sheet in scene.sheets.items()}
+    rollers = {}
+    for name, roller in scene.rollers.items():
+        press = roller.press
+        if press is not None and press.carrier_mass is None:
+            press = press.model_copy(update={"carrier_mass": roller.mass / 1000})
+        rollers[name] = roller.model_copy(update={"press": press})
+    contacts = []
+    for contact in scene.contacts:
+        slow, fast = contact.friction.speeds(contact.smoothing)
+        speeds = {"stiction_velocity": slow, "friction_velocity": fast}
+        contacts.append(contact.model_copy(update={"friction": contact.friction.model_copy(update=speeds)}))
+    run = scene.run
+    if run.print_step is None:
+        run = run.model_copy(update={"print_step": run.duration / 200})
+    return scene.model_copy(
+        update={
+            "materials": materials,
+            "sheets": sheets,
+            "rollers": rollers,
+            "contacts": tuple(contacts),
+            "run": run,
+        }
+    )
+
+
+def _path(parameter: Parameter, sheets: set[str]) -> Path | None:
+    """Where a parameter stands in the pinned scene."""
+    path = parameter.path
+    if path is None and parameter.member in _FRICTION:
+        index = int(parameter.data_set.removeprefix("contact_"))
+        return ("contacts", index, "friction", _FRICTION[parameter.member])
+    if path is not None and path[0] == "materials":
+        assert parameter.data_set in sheets
+        return ("materials", parameter.data_set, *path[2:])
+    return path
+
+
+def _turned(scene: Scene, path: Path, value: float, base: Model) -> Callable[[], Model]:
+    def model() -> Model:
+        changed = _with(scene, path, value)
+        if path[0] == "sheets" and path[2] == "size":
+            changed = _clamp_along(changed, str(path[1]), int(path[3]))
+        return as_written(changed, base)
+
+    return model
+
+
+def _with(owner: Any, path: Path, value: float) -> Any:
+    """A copy of `owner` with the value at a path; not validated, since it is the Model that is asked for."""
+    if not path:
+        return value
+    first, rest = path[0], path[1:]
+    if isinstance(owner, BaseModel):
+        return owner.model_copy(update={str(first): _with(getattr(owner, str(first)), rest, value)})
+    if isinstance(owner, dict):
+        return {**owner, first: _with(owner[first], rest, value)}
+    assert isinstance(first, int)
+    return (*owner[:first], _with(owner[first], rest, value), *owner[first + 1 :])
+
+
+def _clamp_along(scene: Scene, name: str, axis: int) -> Scene:
+    """The clamp line stays on its line between boxes: the text has it in cells."""
+    sheet = scene.sheets[name]
+    if sheet.clamp is None or "xy"[axis] != sheet.clamp.edge[0]:
+        return scene
+    clamp = sheet.clamp.model_copy(update={"length": sheet.clamp.length * STEP})
+    return scene.model_copy(
+        update={"sheets": {**scene.sheets, name: sheet.model_copy(update={"clamp": clamp})}}
+    )
+
+
+def _begun(model: Model, roller: str, member: str, value: float) -> Callable[[], Model]:
+    """A pressed roller that begins, or touches, elsewhere."""
+
+    def turned() -> Model:
+        starts = {
+            r.name: replace(r.press, **{member: value}) if r.name == roller else r.press
+            for r in model.rollers
+            if r.press is not None
+        }
+        return _placed(model, starts)
+
+    return turned
+
+
+def _stiffer(model: Model, support: str) -> Callable[[], Model]:
+    def turned() -> Model:
+        rows = model.bushings
+        mine = np.array([n.rpartition("_")[0] == support for n in rows.name]) & (rows.kind == SUPPORT)
+        k, c = rows.k.copy(), rows.c.copy()
+        k[mine] *= STEP
+        c[mine] *= np.sqrt(STEP)
+        return replace(model, bushings=replace(rows, k=k, c=c))
+
+    return turned
+
+
+def as_written(scene: Scene, base: Model) -> Model:
+    """The Model of a scene with what a text keeps as it was written for `base`."""
+    made = _placed(lower(scene), {r.name: r.press for r in base.rollers if r.press is not None})
+    probes = tuple(_held(new, old, made) for new, old in zip(made.probes, base.probes, strict=True))
+    supports = tuple(_held(new, old, made) for new, old in zip(made.supports, base.supports, strict=True))
+    made = replace(made, pairs=base.pairs, probes=probes, supports=supports)
+    if not supports:
+        return made
+    held = support_bushings(scene.supports, supports, made.sheets, made.bodies)
+    return replace(made, bushings=joined([_rows(made.bushings, made.bushings.kind != SUPPORT), *held]))
+
+
+def _rows(table: Bushings, keep: NDArray[np.bool_]) -> Bushings:
+    rows = np.flatnonzero(keep)
+    arrays = [getattr(table, f.name)[rows] for f in fields(Bushings)[2:]]
+    name, label = (tuple(column[row] for row in rows.tolist()) for column in (table.name, table.label))
+    return Bushings(name, label, *arrays)
+
+
+def _placed(model: Model, starts: dict[str, Press]) -> Model:
+    """Pressed rollers that touch and begin where `starts` has it."""
+    if not starts:
+        return model
+    position = model.bodies.position.copy()
+    rollers = []
+    for roller in model.rollers:
+        if roller.press is not None:
+            start = starts[roller.name]
+            press = replace(roller.press, touch=start.touch, start=start.start)
+            position[roller.body] = roller.center + press.direction * press.start
+            roller = replace(roller, press=press)
+        rollers.append(roller)
+    parameters = tuple(
+        replace(p, value=getattr(starts[p.data_set], p.member))
+        if p.data_set in starts and p.member in _BEGINS
+        else p
+        for p in model.parameters
+    )
+    bodies = replace(model.bodies, position=position)
+    return replace(model, rollers=tuple(rollers), bodies=bodies, parameters=parameters)
+
+
+def _held(new: Anchor, old: Anchor, model: Model) -> Anchor:
+    """An anchor on the boxes that it was written for, at its place now."""
+    sheet = model.sheets[old.sheet]
+    row, column = np.divmod(old.body - sheet.first, sheet.n_x)
+    centers = grid.local(sheet, 2.0 * column + 1, 2.0 * row + 1)
+    local = np.array([*new.at, 0.0]) - centers
+    return replace(new, body=old.body, local=local, share=old.share, node=old.node)

@@ -1,0 +1,48 @@
+"""What a verification found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from mdlgen.verify.tables import Compared, Difference
+
+
+@dataclass
+class Turned:
+    """What came of turning each value, in the text and in the spec."""
+
+    values: int = 0
+    largest: float = 0.0
+    where: str = ""
+    shown_only: set[str] = field(default_factory=set)  # NO_EDIT in the text
+    differences: list[Difference] = field(default_factory=list)
+
+
+@dataclass
+class Verification:
+    """What was compared: kinds by source (`text`, `deck`), what differs, and what came of turning values."""
+
+    kinds: dict[str, dict[str, Compared]] = field(default_factory=dict)
+    differences: list[Difference] = field(default_factory=list)
+    turned: Turned | None = None
+    notes: list[str] = field(default_factory=list)
+
+    @property
+    def ok(self) -> bool:
+        return not self.all_differences()
+
+    def all_differences(self) -> list[Difference]:
+        """Of the values as they are, then of those turned."""
+        return [*self.differences, *(self.turned.differences if self.turned else [])]
+
+    def add(self, source: str, compared: Compared) -> None:
+        """One kind of one source; of two texts the larger difference is kept."""
+        kinds = self.kinds.setdefault(source, {})
+        before = kinds.get(compared.kind)
+        if before is None or compared.largest > before.largest:
+            kinds[compared.kind] = compared
+        self.differences += compared.differences
+
+    def differs(self, kind: str, name: str, what: str) -> None:
+        """One difference more."""
+        self.differences.append(Difference(kind, name, what))

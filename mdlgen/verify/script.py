@@ -1,0 +1,125 @@
+"""The companion script of a text, read without running it: its numbers, and that the rest is as written."""
+
+from __future__ import annotations
+
+import ast
+import math
+from typing import Any, NamedTuple
+
+from mdlgen.errors import Place, SpecError
+
+DEFAULT_GRAVITY = (0.0, 0.0, -9810.0)  # what MotionView takes where nothing says another [mm/s^2]
+DEFAULT_SMOOTHING = 1.0  # of a contact that nothing gives one [mm/s]
+# Property of the script -> column of the contacts.
+PROPERTIES = {
+    "penalty": "penalty",
+    "rest_coeff": "restitution",
+    "mu_static": "mu_static",
+    "mu_dynamic": "mu_dynamic",
+    "stiction_trans_vel": "stiction_velocity",
+    "friction_trans_vel": "friction_velocity",
+    "normal_trans_vel": "normal_trans_vel",
+}
+_DATA = ("GRAVITY", "CONTACTS", "SYSTEM")
+
+
+class Script(NamedTuple):
+    """What a script sets: gravity [mm/s^2] (None: not set), and numbers by contact."""
+
+    gravity: tuple[float, float, float] | None
+    contacts: dict[str, dict[str, float]]
+    rest: str  # its statements without the data, in a normal form
+
+    def numbers(self, contact: str) -> dict[str, float]:
+        """Numbers of one contact, with what MotionView takes where nothing is said."""
+        return {"normal_trans_vel": DEFAULT_SMOOTHING, **self.contacts.get(contact, {})}
+
+
+NONE = Script(None, {}, "")
+
+
+def read(text: str, file: str = "<script>") -> Script:
+    """Raises SpecError with the place of what is not as the companion has it."""
+    try:
+        tree = ast.parse(text)
+    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+        place = Place(file, getattr(error, "lineno", None) or 1, getattr(error, "offset", None) or 1)
+        raise SpecError(f"this is no Python: {error}", place=place) from None
+    data: dict[str, Any] = {}
+    rest: list[ast.stmt] = []
+    for statement in tree.body:
+        name = _name(statement)
+        if name not in _DATA:
+            rest.append(statement)
+            continue
+        assert isinstance(statement, ast.Assign)
+        if name in data:
+            raise _wrong(f"{name} is given twice", statement, file)
+        data[name] = _literal(statement, file)
+    try:
+        gravity, contacts = _gravity(data.get("GRAVITY")), _contacts(data.get("CONTACTS", []))
+    except ValueError as error:
+        raise _wrong(str(error), tree.body[0], file) from None
+    return Script(gravity, contacts, ast.dump(ast.Module(_without_notes(rest), [])))
+
+
+def _name(statement: ast.stmt) -> str:
+    if isinstance(statement, ast.Assign) and len(statement.targets) == 1:
+        target = statement.targets[0]
+        return target.id if isinstance(target, ast.Name) else ""
+    return ""
+
+
+def _literal(statement: ast.Assign, file: str) -> Any:
+    try:
+        return ast.literal_eval(statement.value)
+    except (ValueError, TypeError, RecursionError, MemoryError, SyntaxError):
+        raise _wrong("only plain numbers, texts and lists are due here", statement.value, file) from None
+
+
+def _wrong(message: str, node: ast.AST, file: str) -> SpecError:
+    place = Place(file, getattr(node, "lineno", 1), getattr(node, "col_offset", 0) + 1)
+    return SpecError(message, place=place)
+
+
+def _gravity(value: Any) -> tuple[float, float, float] | None:
+    if value is None:
+        return None
+    if not isinstance(value, tuple) or len(value) != 3:
+        raise ValueError("GRAVITY has three numbers")
+    x, y, z = (_number(v) for v in value)
+    return x, y, z
+
+
+def _contacts(value: Any) -> dict[str, dict[str, float]]:
+    found: dict[str, dict[str, float]] = {}
+    if not isinstance(value, list):
+        raise ValueError("CONTACTS is a list")
+    for item in value:
+        if not (isinstance(item, tuple) and len(item) == 2 and isinstance(item[0], dict)):
+            raise ValueError("an item of CONTACTS is a pair of numbers and names")
+        given, names = item
+        unknown = [k for k in given if k not in PROPERTIES]
+        if unknown or not isinstance(names, list) or not all(isinstance(n, str) for n in names):
+            raise ValueError(
+                f"CONTACTS: {unknown[0]!r} is no property" if unknown else "CONTACTS: names are due"
+            )
+        numbers = {PROPERTIES[k]: _number(v) for k, v in given.items()}
+        for name in names:
+            if name in found:
+                raise ValueError(f"CONTACTS: {name} is there twice")
+            found[name] = numbers
+    return found
+
+
+def _number(value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+        raise ValueError(f"{value!r} is no number")
+    return float(value)
+
+
+def _without_notes(statements: list[ast.stmt]) -> list[ast.stmt]:
+    """Without the text at the head, which is for people."""
+    if statements and isinstance(statements[0], ast.Expr) and isinstance(statements[0].value, ast.Constant):
+        return statements[1:]
+    return statements

@@ -1,0 +1,111 @@
+"""What is verified: a scene, whole or its sheets alone, and the files given in place of mdlgen's own."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from mdlgen.errors import SpecError
+from mdlgen.model.tables import Model
+from mdlgen.paths import read_text
+from mdlgen.registry import emitter, reader
+from mdlgen.spec.scene import Scene
+from mdlgen.verify import alone, script
+from mdlgen.verify.expected import expected, stations
+from mdlgen.verify.expected_numbers import contacts, data, gravity, run
+from mdlgen.verify.found import Values
+from mdlgen.verify.tables import Table
+
+
+@dataclass(frozen=True)
+class File:
+    """A file that was given."""
+
+    text: str
+    path: Path
+
+    @staticmethod
+    def read(path: Path | None) -> File | None:
+        """Raises OutputError."""
+        return None if path is None else File(read_text(path), path)
+
+
+class Read:
+    """A text, read: `values` have the names of the scene, `prefix` is what the text has before them."""
+
+    def __init__(self, reading: Any, prefix: str):
+        self.reading = reading
+        self.prefix = prefix
+
+    @cached_property
+    def values(self) -> dict[str, Any]:
+        return alone.inside(self.reading.values, self.prefix)
+
+    @property
+    def has_numbers(self) -> bool:
+        """Whether the text itself gives contacts their numbers."""
+        return any("penalty" in record for record in self.values["contacts"].values())
+
+    def changed(self, path: str, number: float) -> Values | None:
+        """Values of what depends on a value of a data set, were it `number`."""
+        # of a contact without numbers there is nothing that a value could change
+        without = () if self.has_numbers else ("Contact",)
+        values = self.reading.changed(self.prefix + path, repr(number), without)
+        return None if values is None else alone.inside(values, self.prefix)
+
+
+class Subject:
+    """A scene with its Model. `only_sheets`: the text is a system definition for a model of the user's own.
+
+    Raises RefusedError for a scene that has no text, SpecError for a file that is none of its kind.
+    """
+
+    def __init__(
+        self, scene: Scene, model: Model, only_sheets: bool, text: File | None, companion: File | None
+    ):
+        self.scene = scene
+        self.model = model
+        self.only = "sheets" if only_sheets or model.externals else None
+        self.text = text
+        self.companion = companion
+        self.writer = emitter("motionview")
+        self.times = stations(model)
+
+    def said(self, model: Model | None = None) -> dict[str, Table]:
+        """What must be said of a Model."""
+        model = model or self.model
+        said = expected(model, self.times) | {"data": data(model), "contacts": contacts(model)}
+        said |= {"run": run(model), "gravity": gravity(model)}
+        return alone.of_sheets(said, model, self.text is not None) if self.only else said
+
+    def read(self, set_contact: bool) -> Read:
+        """The text that was given, or the one that mdlgen writes."""
+        if self.text is None:
+            return self.own(set_contact)
+        path = self.text.path
+        return self._read(reader("motionview").read(self.text.text, str(path), path.parent))
+
+    def own(self, set_contact: bool) -> Read:
+        """The text that mdlgen writes."""
+        text = self.writer.emit(self.model, set_contact=set_contact, only=self.only)
+        return self._read(reader("motionview").read(text, "<text>"))
+
+    def _read(self, reading: Any) -> Read:
+        if not self.only:
+            return Read(reading, "")
+        definition = alone.definition(self.model)
+        instances = reading.instances(definition)
+        if not instances:
+            raise SpecError(f"this text has no instance of {definition}, the sheets of {self.model.name}")
+        return Read(reading, instances[0])
+
+    def script(self, set_contact: bool) -> tuple[script.Script, bool]:
+        """The script that goes with a text, and whether it does what mdlgen's own does."""
+        text = self.writer.companion(self.model, set_contact=set_contact, only=self.only)
+        own = script.NONE if text is None else script.read(text)
+        if self.companion is None:
+            return own, True
+        given = script.read(self.companion.text, str(self.companion.path))
+        return given, given.rest == own.rest

@@ -1,0 +1,80 @@
+"""Turns each value of a text's data sets, and the same value of the spec, and compares what comes of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from mdlgen.verify.found import Found, Values, contact_table, data_table, run_table
+from mdlgen.verify.knobs import Knob, knobs
+from mdlgen.verify.outcome import Turned
+from mdlgen.verify.script import Script
+from mdlgen.verify.subject import Read, Subject
+from mdlgen.verify.tables import Difference, Table, compare
+
+Progress = Callable[[int, int], None]
+_MOST = 3  # differences told of one kind for one value
+
+
+def turn_all(
+    subject: Subject, text: Read, numbers: Script, before: Turned | None, progress: Progress | None
+) -> Turned:
+    """Of a second text of the same scene (`before`) only the values of contacts are turned."""
+    turned = before or Turned()
+    turner = _Turner(subject, text, numbers, turned)
+    members = text.values["members"]
+    turns = [k for k in knobs(subject.scene, subject.model) if k.path in turner.known]
+    if before is not None:
+        turns = [k for k in turns if k.path.startswith("ds_contact_")]
+    else:
+        paths = {k.path for k in turns}
+        for path, member in members.items():
+            if member["edit"] != "NO_EDIT" and path not in paths:
+                what = "can be edited, and nothing in the spec is it"
+                turned.differences.append(Difference("data", path, what))
+    for done, knob in enumerate(turns):
+        if progress is not None:
+            progress(done, len(turns))
+        if members[knob.path]["edit"] == "NO_EDIT":
+            turned.shown_only.add(knob.path)
+        else:
+            turned.shown_only.discard(knob.path)
+            turner.turn(knob)
+    return turned
+
+
+class _Turner:
+    """Turns values of one text."""
+
+    def __init__(self, subject: Subject, text: Read, numbers: Script, turned: Turned):
+        self.subject = subject
+        self.text = text
+        self.turned = turned
+        self.numbers = {name: numbers.numbers(name) for name in text.values["contacts"]}
+        self.known = set(subject.said()["data"].names) & set(text.values["members"])
+        self.kinds = set(subject.said()) - {"gravity"} - (set() if text.has_numbers else {"contacts"})
+        self.base = self._tables(text.values)
+
+    def turn(self, knob: Knob) -> None:
+        """One value, in text and spec."""
+        turned, path = self.turned, knob.path
+        changed = self.text.changed(path, knob.value)
+        if changed is None:
+            turned.differences.append(Difference("data", path, "is set by no statement"))
+            return
+        turned.values += 1
+        model = knob.model()
+        tables, said = self._tables(changed), self.subject.said(model)
+        for kind in self.kinds:
+            compared = compare(kind, said[kind], self.base[kind].updated(tables[kind]), words=False)
+            if compared.largest > turned.largest:
+                turned.largest, turned.where = compared.largest, f"{path}: {kind} {compared.where}"
+            for difference in compared.differences[:_MOST]:
+                what = f"{difference.what}, with {path} turned to {knob.value:g}"
+                turned.differences.append(Difference(kind, difference.name, what))
+
+    def _tables(self, values: Values) -> dict[str, Table]:
+        tables = Found(self.subject.times, self.text.values["markers"]).tables(values)
+        tables["data"] = data_table(values)
+        tables["contacts"] = contact_table(values, self.numbers)
+        tables["run"] = run_table(values)
+        return tables

@@ -1,0 +1,57 @@
+"""Labels, keywords and names of a text, against those of the text that mdlgen writes."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from mdlgen.verify.found import Values
+from mdlgen.verify.tables import Difference
+
+_NUMBER = re.compile(r"[-+]?\d+\.?\d*(?:[eE][-+]?\d+)?")
+# Fields whose numbers stand in a text of their own; they are compared as numbers elsewhere.
+_SOLVER_TEXT = {"value", "expressions", "text"}
+
+
+def wording(own: Values, given: Values, leave: frozenset[str] = frozenset()) -> Iterator[Difference]:
+    """What differs but for numbers; `leave` are fields of contacts that may be anything."""
+    for kind, records in own.items():
+        for name, record in records.items():
+            if name not in given[kind]:
+                yield Difference(kind, name, "is missing")
+                continue
+            if kind == "contacts":
+                record = {k: v for k, v in record.items() if k not in leave}
+            for where, mine, theirs in _leaves(record, given[kind][name], ""):
+                if not (kind == "contacts" and where in leave):
+                    yield Difference(kind, name, f"{where} is {theirs!r}, not {mine!r}")
+        for name in given[kind]:
+            if name not in records:
+                yield Difference(kind, name, "is not in the text that mdlgen writes")
+
+
+def _leaves(mine: Any, theirs: Any, where: str) -> Iterator[tuple[str, Any, Any]]:
+    """(where, mine, theirs) of all that is no number and differs."""
+    if isinstance(mine, Mapping) and isinstance(theirs, Mapping):
+        for key in {**mine, **theirs}:
+            if key not in mine or key not in theirs:
+                yield f"{where}{key}", mine.get(key), theirs.get(key)
+            elif key in _SOLVER_TEXT:
+                yield from _leaves(_masked(mine[key]), _masked(theirs[key]), f"{where}{key}")
+            else:
+                yield from _leaves(mine[key], theirs[key], f"{where}{key}")
+    elif isinstance(mine, (tuple, list)) and isinstance(theirs, (tuple, list)) and len(mine) == len(theirs):
+        for k, (one, other) in enumerate(zip(mine, theirs, strict=True)):
+            yield from _leaves(one, other, f"{where}.{k}")
+    elif isinstance(mine, float) and isinstance(theirs, float):
+        return
+    elif mine != theirs:
+        yield where or "it", mine, theirs
+
+
+def _masked(value: Any) -> Any:
+    """Solver text without its numbers and its blanks."""
+    if isinstance(value, str):
+        return "".join(_NUMBER.sub("#", value).split())
+    return tuple(_masked(v) for v in value) if isinstance(value, (tuple, list)) else value
