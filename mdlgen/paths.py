@@ -29,6 +29,16 @@ def samples() -> Path:
     return _data("samples")
 
 
+def cache(name: str) -> Path | None:
+    """A folder for what can be made anew, beside the compiled code of the package; None where none can be."""
+    folder = Path(__file__).resolve().parent / "__pycache__" / name
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return None
+    return folder if os.access(folder, os.W_OK) else None
+
+
 def read_text(path: Path) -> str:
     """The UTF-8 text of a file; bytes that are none are shown as replacements. Raises OutputError."""
     try:

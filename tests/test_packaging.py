@@ -52,10 +52,14 @@ def test_the_wheel_works_from_another_folder(installed, tmp_path):
 
 
 def test_the_readmes_first_scene_loads():
-    (scene,) = re.findall(r"```yaml\n(.*?)```", (ROOT / "README.md").read_text("utf-8"), re.DOTALL)
+    scene, parts = re.findall(r"```yaml\n(.*?)```", (ROOT / "README.md").read_text("utf-8"), re.DOTALL)
     model = mdlgen.lower(mdlgen.loads(scene))
     assert len(scene.splitlines()) == 10
     assert mdlgen.emit(model, "motionview")
+    # the part of a machine of the user's own, in the same scene
+    contact = "contacts: [{between: [note, feed], stiffness: 300 N/mm^1.5}, "
+    imported = mdlgen.lower(mdlgen.loads(scene.replace("contacts: [", parts + contact)))
+    assert [part.body for part in imported.externals] == ["MODEL.sys_feed.b_feed"]
 
 
 def test_the_readmes_two_commands_are_one_line_each():

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
 
-from mdlgen.paths import templates
+from mdlgen.paths import cache, templates
 
 
 def comment(text: str) -> str:
@@ -17,7 +17,9 @@ def comment(text: str) -> str:
 @lru_cache(maxsize=1)
 def environment() -> Environment:
     """One environment for all decks."""
+    compiled = cache("templates_motionsolve")  # compiling them takes longer than a text of 200 boxes
     made = Environment(
+        bytecode_cache=FileSystemBytecodeCache(str(compiled)) if compiled else None,
         loader=FileSystemLoader(templates() / "motionsolve"),
         undefined=StrictUndefined,
         autoescape=True,

@@ -10,10 +10,10 @@ import re
 from functools import lru_cache
 from textwrap import dedent
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
 
 from backends.motionview.units import number
-from mdlgen.paths import templates
+from mdlgen.paths import cache, templates
 
 _DEFINITION = re.compile(r"^ *\*DefineDataSet\(.*?^ *\*EndDefine\(\)\n", re.M | re.S)
 _NAMED = re.compile(r"(?<=[(,] )def_ds_")
@@ -43,7 +43,9 @@ def definitions(body: str) -> str:
 @lru_cache(maxsize=1)
 def environment() -> Environment:
     """One environment for all texts."""
+    compiled = cache("templates_motionview")  # compiling them takes longer than a text of 200 boxes
     made = Environment(
+        bytecode_cache=FileSystemBytecodeCache(str(compiled)) if compiled else None,
         loader=FileSystemLoader(templates() / "motionview"),
         undefined=StrictUndefined,
         autoescape=False,  # MDL is not HTML; names and labels pass the allow-list instead
