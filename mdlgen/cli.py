@@ -273,13 +273,17 @@ def run(
     from mdlgen import registry
 
     model = _model(spec, sets)
-    registry.solver_name(solver)
+    registry.check_solver(solver)
     from mdlgen.report.figures import figure
     from mdlgen.report.text import summary_text
     from mdlgen.results.store import check_folder, save
 
     folder = output if output is not None else Path("out") / model.name
     check_folder(folder)
+    if solver == "auto" and not quiet:
+        name, why = registry.chosen(solver, model)
+        if why:
+            _say(f"{name} runs this scene ({why})")
     # a solver may talk on standard output, which is kept for results
     with _progress(quiet, check_step) as progress, _chatter(verbose):
         result = registry.solve(model, solver, progress, check_step)
@@ -304,7 +308,13 @@ def run(
 def lint(
     text: Annotated[Path, typer.Argument(metavar="FILE.mdl", help="Any MotionView text.")],
     values: Annotated[
-        Path | None, typer.Option("--values", metavar="JSON", help="Write every evaluated entity.")
+        Path | None,
+        typer.Option(
+            "--values",
+            metavar="JSON",
+            help="Write every evaluated entity, - for standard output (remarks then go to standard error); "
+            "mm, N, kg, s, rad; inertia is xx, yy, zz, xy, yz, xz about the centre of mass.",
+        ),
     ] = None,
     quiet: Quiet = False,
     verbose: Verbose = False,
@@ -318,15 +328,17 @@ def lint(
     from mdlgen import paths
     from mdlgen.registry import reader
 
-    reading = reader("motionview").read(paths.read_text(text), str(text), text.parent)
+    reading = reader("motionview").read(paths.read_exactly(text), str(text), text.parent)
+    to_stdout = values is not None and str(values) == "-"
     if values is not None:
-        paths.write_atomic(values, json.dumps(reading.values, allow_nan=False, indent=1) + "\n")
+        found = json.dumps(reading.values, allow_nan=False, indent=1) + "\n"
+        typer.echo(found, nl=False) if to_stdout else paths.write_atomic(values, found)
     report = reading.report
     for finding in report.errors if quiet else report.findings:
-        typer.echo(str(finding))
+        typer.echo(str(finding), err=to_stdout)
     if not quiet:
         counts = f"{len(report.errors)} errors, {len(report.warnings)} warnings"
-        typer.echo(f"{text}: {report.statements} statements, {counts}")
+        typer.echo(f"{text}: {report.statements} statements, {counts}", err=to_stdout)
     if report.errors:
         raise typer.Exit(SpecError.exit_code)
 
@@ -389,6 +401,52 @@ def verify(
         differences = found.all_differences()
         more = f" and {len(differences) - 1} more" if len(differences) > 1 else ""
         raise AccuracyError(f"{text or spec}: not the same as the model: {differences[0]}{more}")
+
+
+@app.command()
+@told
+def bench(
+    suites: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="SUITE ...",
+            help="transport, elastica, impact, friction, flight, scaling, skip, stability: all if left out.",
+        ),
+    ] = None,
+    output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="Where the files go.")] = Path(
+        "out/bench"
+    ),
+    solver: Annotated[
+        list[str] | None,
+        typer.Option("--solver", metavar="NAME", help="One of the solvers: all if left out."),
+    ] = None,
+    quick: Annotated[bool, typer.Option("--quick", help="A few short cases of each suite.")] = False,
+    repeat: Annotated[int, typer.Option("--repeat", min=1, help="Runs whose median is the wall time.")] = 3,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
+) -> None:
+    """Run time against error: write bench.json, bench.md and bench.png into DIR.
+
+    Example: mdlgen bench impact friction --solver exudyn
+
+    Example: mdlgen bench stability --quick
+    """
+    from mdlgen.bench.run import bench as run_bench
+    from mdlgen.bench.table import markdown
+    from mdlgen.results.store import check_folder
+
+    check_folder(output)
+    found = run_bench(suites or (), output, solver or (), quick, repeat, (lambda _: None) if quiet else _say)
+    if not quiet:
+        typer.echo(markdown(found), nl=False)
+        typer.echo(f"wrote {output}")
+    if found.wrong:
+        row = found.wrong[0]
+        raise AccuracyError(f"{len(found.wrong)} wrong: {row.case}, {row.solver}: {row.reason}")
+    if found.failed:
+        row = found.failed[0]
+        _say(f"{len(found.failed)} failed: {row.case}, {row.solver}: {row.reason}")
+        raise typer.Exit(SOLVER_FAILED)
 
 
 @app.command()

@@ -8,7 +8,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, cast
 
-from mdlgen.errors import SpecError
+from mdlgen.errors import RefusedError, SpecError
 from mdlgen.model.external import refuse_externals
 from mdlgen.model.tables import Model
 
@@ -19,8 +19,8 @@ Progress = Callable[[float, float, int, int], None]
 
 EMITTERS = {"motionview": "backends.motionview", "motionsolve": "backends.motionsolve"}
 READERS = {"motionview": "backends.motionview.reader", "motionsolve": "backends.motionsolve.reader"}
-SOLVERS = {"exudyn": "backends.exudyn_local"}
-AUTO = "exudyn"
+SOLVERS = {"exudyn": "backends.exudyn_local", "lattice": "backends.lattice"}
+AUTO = ("lattice", "exudyn")  # in this order: the fast one where it can represent the scene
 
 
 class Emitter(Protocol):
@@ -35,6 +35,12 @@ class Emitter(Protocol):
     def companion_reasons(
         self, model: Model, set_contact: bool = False, only: str | None = None
     ) -> list[str]: ...
+
+
+class Checker(Protocol):
+    """What a backend has that says what it cannot represent."""
+
+    def check(self, model: Model) -> None: ...
 
 
 class Validator(Protocol):
@@ -74,15 +80,33 @@ def reader(name: str) -> Reader:
 
 
 def solver(name: str) -> Solver:
-    """The backend that runs a Model; `auto` is the one that we would take. Raises SpecError."""
-    return cast(Solver, import_module(SOLVERS[solver_name(name)]))
+    """The backend that runs a Model, by its name. Raises SpecError for one that there is not."""
+    _known(name, SOLVERS, "solver")
+    return cast(Solver, import_module(SOLVERS[name]))
 
 
-def solver_name(name: str) -> str:
-    """The solver meant, without importing it. Raises SpecError for one that there is not."""
+def check_solver(name: str) -> None:
+    """Raises SpecError for a solver that there is not, without importing one."""
     if name != "auto":
         _known(name, SOLVERS, "solver")
-    return AUTO if name == "auto" else name
+
+
+def chosen(name: str, model: Model) -> tuple[str, str]:
+    """The solver that runs a Model, and why it is not the first choice (empty where it is).
+
+    `auto` is the first that can represent the Model. Raises SpecError for a solver that there is not,
+    RefusedError for a Model that none can run.
+    """
+    check_solver(name)
+    refuse_externals(model, "local run")
+    if name != "auto":
+        return name, ""
+    first, second = AUTO
+    try:
+        cast(Checker, import_module(SOLVERS[first])).check(model)
+    except RefusedError as error:
+        return second, error.message
+    return first, ""
 
 
 def _known(name: str, table: dict[str, str], kind: str) -> None:
@@ -95,8 +119,7 @@ def solve(
     model: Model, name: str = "auto", progress: Progress | None = None, check_step: bool = False
 ) -> Result:
     """Run a Model; see `mdlgen.solve`."""
-    refuse_externals(model, "local run")
-    backend = solver(name)
+    backend = solver(chosen(name, model)[0])
     result = backend.solve(model, progress)
     # a static run has no step, and a failed one nothing to compare
     if not check_step or not result.ok or result.step <= 0.0:

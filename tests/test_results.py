@@ -266,7 +266,7 @@ class TestCompare:
 
 
 class TestRegistry:
-    @pytest.mark.parametrize("name", ["lattice", "", "Exudyn", "os"])
+    @pytest.mark.parametrize("name", ["Lattice", "", "Exudyn", "os"])
     def test_an_unknown_solver_names_those_there_are(self, model: Model, name: str) -> None:
         with pytest.raises(SpecError, match="there are: auto, exudyn"):
             mdlgen.solve(model, name)

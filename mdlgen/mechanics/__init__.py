@@ -12,22 +12,24 @@ from pathlib import Path
 
 from numba import config
 
+_HERE = Path(__file__).resolve().parent
+_SETTINGS = config.__dict__  # numba makes its settings at run time
+_BASE = Path(_SETTINGS["CACHE_DIR"] or _HERE / "__pycache__")
 
-def _keep_compiled_code_by_content() -> None:
-    """Gives numba a cache folder for exactly these sources.
+
+def keep_compiled_code(folder: Path | None = None) -> None:
+    """Gives numba a cache folder for exactly these laws and the sources in `folder`, from here on.
 
     numba notices that a function's own file has changed, but not a file whose functions it calls: a solver
-    would go on with an older law without a word.
+    would go on with an older law without a word. A solver calls this before its kernels are imported.
     """
-    here = Path(__file__).resolve().parent
     digest = hashlib.sha256()
-    for source in sorted(here.glob("*.py")):
+    for source in (*sorted(_HERE.glob("*.py")), *(sorted(folder.glob("*.py")) if folder else ())):
         digest.update(source.read_bytes())
-    settings = config.__dict__  # numba makes its settings at run time
-    folder = Path(settings["CACHE_DIR"] or here / "__pycache__") / f"laws_{digest.hexdigest()[:16]}"
+    place = _BASE / f"{folder.name if folder else 'laws'}_{digest.hexdigest()[:16]}"
     with contextlib.suppress(OSError):  # a read-only installation: numba finds its own place
-        folder.mkdir(parents=True, exist_ok=True)
-        settings["CACHE_DIR"] = str(folder)
+        place.mkdir(parents=True, exist_ok=True)
+        _SETTINGS["CACHE_DIR"] = str(place)
 
 
-_keep_compiled_code_by_content()
+keep_compiled_code()

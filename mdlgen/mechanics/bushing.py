@@ -63,3 +63,49 @@ def bushing(xa, fa, va, wa, ra, xb, fb, vb, wb, rb, k, kt, c, ct):
     torque_b = add(torque, cross(sub(rb, scale(0.5, gap)), force))
     torque_a = scale(-1.0, add(torque, cross(add(ra, scale(0.5, gap)), force)))
     return force, torque_b, torque_a, energy, power
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def bushing_pair(xa, fa, va, wa, ra, xb, fb, vb, wb, rb, e, k, kt, c, ct):
+    """Two equal bushings side by side, at e and -e (bushing axes) from the ends of the arms ra and rb.
+
+    Args and result as of `bushing`, with k, kt, c, ct the sums of both; the same forces as the two have,
+    since their rotation is the same and their gaps are d + D and d - D, D = (Q - Q^T) e, with Q half of the
+    relative rotation. With e = 0 it is one bushing. Also returns the middle frame and the gap.
+    """
+    relative = transpose_matmul(fa, fb)
+    theta = log_rotation(relative)
+    angle2 = dot(theta, theta)
+    middle = matmul(fa, exp_rotation(scale(0.5, theta)))
+    gap = sub(add(xb, rb), add(xa, ra))
+    rate = sub(add(vb, cross(wb, rb)), add(va, cross(wa, ra)))
+    rate = sub(rate, cross(scale(0.5, add(wa, wb)), gap))
+    d, v = back(middle, gap), back(middle, rate)
+    w = back(middle, sub(wb, wa))
+    # half the angle: its sine and cosine over it
+    if angle2 > 1e-8:
+        half = 0.5 * math.sqrt(angle2)
+        sine, cosine = math.sin(half) / half, math.cos(half)
+        curl = (1.0 - cosine) / angle2
+    else:
+        sine, cosine, curl = 1.0 - angle2 / 24, 1.0 - angle2 / 8, 0.125
+    apart = scale(sine, cross(theta, e))
+    arm = add(scale(cosine, e), scale(curl * dot(theta, e), theta))
+    parting = cross(w, arm)
+    spring = (k[0] * d[0], k[1] * d[1], k[2] * d[2])
+    damper = (c[0] * v[0], c[1] * v[1], c[2] * v[2])
+    spread = (k[0] * apart[0], k[1] * apart[1], k[2] * apart[2])
+    drag = (c[0] * parting[0], c[1] * parting[1], c[2] * parting[2])
+    twist = (kt[0] * theta[0], kt[1] * theta[1], kt[2] * theta[2])
+    brake = (ct[0] * w[0], ct[1] * w[1], ct[2] * w[2])
+    energy = 0.5 * (dot(d, spring) + dot(apart, spread) + dot(theta, twist))
+    power = dot(v, damper) + dot(parting, drag) + dot(w, brake)
+    if angle2 > 1e-12:
+        along = scale(dot(twist, theta) / angle2, theta)
+        twist = add(along, scale(1.0 / sine, sub(twist, along)))
+    force = scale(-1.0, rotate(middle, add(spring, damper)))
+    couple = add(add(twist, brake), cross(arm, add(spread, drag)))
+    torque = scale(-1.0, rotate(middle, couple))
+    torque_b = add(torque, cross(sub(rb, scale(0.5, gap)), force))
+    torque_a = scale(-1.0, add(torque, cross(add(ra, scale(0.5, gap)), force)))
+    return force, torque_b, torque_a, energy, power, middle, gap

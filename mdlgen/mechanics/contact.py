@@ -9,7 +9,10 @@ is k z^1.5 again. So a roller that passes from box to box feels one sheet. Beyon
 over: there the box keeps the whole. `share: pair` gives every box the full k, as MotionSolve does.
 
 Each law adds to `out`: force and torque on the first body (0-5), on the second (6-11), normal force (12),
-stored energy (13), dissipated power (14), and keeps the greatest depth (15).
+stored energy (13), dissipated power (14), and keeps the greatest depth (15). An `out` that is longer also
+gets the number of contact points (16) and for each of them, in POINT numbers: the point, the normal, the
+elastic force and its growth with depth, the normal force, the rate of penetration, the slip velocity. A
+solver makes its tangent from them.
 """
 
 from __future__ import annotations
@@ -23,6 +26,8 @@ from mdlgen.mechanics.laws import damped, friction_over_speed
 from mdlgen.mechanics.vector import add, back, cross, dot, rotate, scale, sub
 
 OUT = 16
+POINT = 13
+MOST_POINTS = 24  # of one pair: three parts of a face, two stations, two points; twice for a corner
 _GAUSS = 1.0 / math.sqrt(3.0)
 
 
@@ -50,6 +55,18 @@ def _push(out, point, normal, spring, depth, energy, xa, va, wa, xb, vb, wb, law
     out[13] += energy
     out[14] += (force - spring) * rate + drag * speed * speed
     out[15] = max(out[15], depth)
+    if out.size > OUT and out[OUT] < MOST_POINTS:
+        at = OUT + 1 + POINT * int(out[OUT])
+        out[OUT] += 1.0
+        for i in range(3):
+            out[at + i] = point[i]
+            out[at + 3 + i] = normal[i]
+            out[at + 10 + i] = slip[i]
+        out[at + 6] = spring
+        # F z^1.5 has stored 2/5 F z, an elastic foundation 3/5 F z: this is 3/2 F/z, and F/z
+        out[at + 7] = 0.6 * spring * spring / energy if energy > 0.0 else 0.0
+        out[at + 8] = force
+        out[at + 9] = rate
 
 
 @njit(cache=True, error_model="numpy")

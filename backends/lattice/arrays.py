@@ -1,0 +1,197 @@
+"""The Model as record arrays for compiled code, in the Model's units (mm, N, g, ms, rad).
+
+Free boxes are the nodes of the lattice, six unknowns each; they are numbered so that neighbours stand close
+(along the shorter side of the sheet first), which makes the matrix a band. Free rollers turn (one unknown),
+pressed ones also slide (one more): the border of the matrix. Everything else is held or driven.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from mdlgen.mechanics.laws import damping_share
+from mdlgen.model.tables import GROUND, Floats, Ints, Model
+
+BODY = np.dtype(
+    [
+        ("node", "i8"),  # number of a free box, -1: not free
+        ("slide", "i8"),  # number in the border, -1: none
+        ("spin", "i8"),
+        ("mass", "f8"),
+        ("inertia", "f8", 3),
+        ("half", "f8", 3),
+        ("exposed", "i8"),
+        ("axis", "f8", 3),
+        ("way", "f8", 3),  # direction of a slide, or normal of a plane
+        ("press", "f8", 5),  # k, c, force at the start, sliding mass, axial inertia
+        ("drive", "f8", 2),  # speed, ramp
+        ("size", "f8", 2),  # radius, width
+    ]
+)
+JOINT = np.dtype(
+    [
+        ("a", "i8"),
+        ("b", "i8"),
+        ("ra", "f8", 3),  # arms in body axes, to the middle of both bushings
+        ("rb", "f8", 3),
+        ("fa", "f8", 9),  # frames in body axes
+        ("fb", "f8", 9),
+        ("e", "f8", 3),  # from the middle to one of two equal bushings, in bushing axes; 0: one bushing
+        ("k", "f8", 6),  # sums of both
+        ("c", "f8", 6),
+    ]
+)
+PAIR = np.dtype(
+    [
+        ("kind", "i8"),
+        ("a", "i8"),
+        ("b", "i8"),
+        ("row", "i8"),  # of the contacts
+        ("shared", "i8"),
+        ("k", "f8"),
+        ("law", "f8", 6),  # as in mechanics.contact
+    ]
+)
+LOAD = np.dtype([("body", "i8"), ("local", "f8", 3), ("force", "f8", 3), ("moment", "f8", 3)])
+
+
+class System(NamedTuple):
+    """What a run is of. The last row of the bodies is the ground."""
+
+    bodies: np.ndarray  # BODY, (n + 1,)
+    joints: np.ndarray  # JOINT
+    pairs: np.ndarray  # PAIR
+    loads: np.ndarray  # LOAD
+    gravity: Floats
+    nodes: Ints  # body of each node
+    reach: int  # how many nodes apart two that are coupled may be
+    border: int  # unknowns of rollers
+    folded: int  # bushings that share a joint with another one
+
+
+def build(model: Model) -> System:
+    """Arrays of a Model."""
+    bodies, nodes, border = _bodies(model)
+    joints, folded = _joints(model)
+    return System(
+        bodies=bodies,
+        joints=joints,
+        pairs=_pairs(model),
+        loads=_loads(model),
+        gravity=np.array(model.gravity),
+        nodes=nodes,
+        reach=_reach(bodies, joints),
+        border=border,
+        folded=folded,
+    )
+
+
+def _bodies(model: Model) -> tuple[np.ndarray, Ints, int]:
+    table = model.bodies
+    count = len(table.name)
+    bodies = np.zeros(count + 1, BODY)
+    for name in ("node", "slide", "spin"):
+        bodies[name] = -1
+    bodies["mass"][:count] = table.mass
+    bodies["inertia"][:count] = table.inertia
+    bodies["half"][:count] = table.half
+    bodies["exposed"][:count] = table.exposed @ np.array([1, 2, 4, 8])
+    bodies["size"] = 1.0
+    nodes: list[int] = []
+    for sheet in model.sheets:
+        grid = np.arange(sheet.first, sheet.first + sheet.count).reshape(sheet.n_y, sheet.n_x)
+        order = grid.ravel() if sheet.n_x <= sheet.n_y else grid.T.ravel()
+        nodes += [int(b) for b in order if not table.fixed[b]]
+    bodies["node"][nodes] = np.arange(len(nodes))
+    border = 0
+    for roller in model.rollers:
+        row = bodies[roller.body]
+        row["axis"], row["size"] = roller.axis, (roller.radius, roller.width)
+        row["press"][4] = roller.inertia_axial
+        if roller.press is not None:
+            spring = roller.press
+            row["way"] = spring.direction
+            force = spring.preload - spring.stiffness * (spring.start - spring.touch)
+            row["press"][:4] = (spring.stiffness, spring.damping, force, roller.mass + spring.carrier_mass)
+            row["slide"], border = border, border + 1
+        if roller.speed is not None:
+            row["drive"] = (roller.speed, roller.ramp)
+        else:
+            row["spin"], border = border, border + 1
+    for plane in model.planes:
+        bodies["way"][plane.body] = plane.normal
+    return bodies, np.array(nodes, dtype=np.int64), border
+
+
+def _joints(model: Model) -> tuple[np.ndarray, int]:
+    """Bushings as joints; two equal ones between the same bodies become one, exactly."""
+    table = model.bushings
+    position = np.concatenate([model.bodies.position, np.zeros((1, 3))])
+    rotation = np.concatenate([model.bodies.rotation, np.eye(3)[None]])
+    single = np.zeros(len(table), JOINT)
+    for end in "ab":
+        body = getattr(table, end)
+        single[end] = body
+        single["r" + end] = np.einsum("nji,nj->ni", rotation[body], table.origin - position[body])
+        single["f" + end] = np.einsum("nji,njk->nik", rotation[body], table.axes).reshape(-1, 9)
+    single["k"], single["c"] = table.k, table.c
+    made: list[np.void] = []
+    waiting: dict[tuple[int, int], int] = {}
+    for row in single:
+        key = (int(row["a"]), int(row["b"]))
+        before = waiting.pop(key, None)
+        if before is not None and _alike(made[before], row):
+            made[before] = _folded(made[before], row)
+            continue
+        waiting[key] = len(made)
+        made.append(row.copy())
+    joints = np.array(made, dtype=JOINT) if made else np.zeros(0, JOINT)
+    return joints, len(single) - len(joints)
+
+
+def _alike(one: np.void, two: np.void) -> bool:
+    """Equal but for their place, which is the same seen from both bodies."""
+    same = all(np.array_equal(one[name], two[name]) for name in ("k", "c", "fa", "fb"))
+    apart = [one["f" + end].reshape(3, 3).T @ (two["r" + end] - one["r" + end]) for end in "ab"]
+    return same and bool(np.allclose(apart[0], apart[1], rtol=0, atol=1e-12 * np.abs(apart[0]).max()))
+
+
+def _folded(one: np.void, two: np.void) -> np.void:
+    both = one.copy()
+    for name in ("ra", "rb"):
+        both[name] = 0.5 * (one[name] + two[name])
+    both["e"] = one["fa"].reshape(3, 3).T @ (two["ra"] - one["ra"]) / 2
+    both["k"], both["c"] = 2 * one["k"], 2 * one["c"]
+    return both
+
+
+def _pairs(model: Model) -> np.ndarray:
+    rows, chosen = model.contacts, model.pairs.contact
+    pairs = np.zeros(len(chosen), PAIR)
+    pairs["row"], pairs["kind"] = chosen, rows.kind[chosen]
+    pairs["a"], pairs["b"] = model.pairs.a, model.pairs.b
+    pairs["shared"] = np.array([share == "width" for share in rows.share], dtype=int)[chosen]
+    pairs["k"] = rows.stiffness[chosen]
+    beta = np.array([damping_share(c) for c in rows.restitution])
+    speeds = (rows.stiction_velocity, rows.friction_velocity, rows.smoothing)
+    for column, values in enumerate((beta, rows.mu_static, rows.mu_dynamic, *speeds)):
+        pairs["law"][:, column] = values[chosen]
+    return pairs
+
+
+def _loads(model: Model) -> np.ndarray:
+    loads = np.zeros(len(model.loads.body), LOAD)
+    for name in ("body", "local", "force", "moment"):
+        loads[name] = getattr(model.loads, name)
+    return loads
+
+
+def _reach(bodies: np.ndarray, joints: np.ndarray) -> int:
+    a, b = bodies["node"][joints["a"]], bodies["node"][joints["b"]]
+    both = (a >= 0) & (b >= 0)
+    return int(np.abs(a - b)[both].max(initial=0))
+
+
+assert GROUND == -1, "the ground is the last row of the bodies"

@@ -1,0 +1,243 @@
+"""Forces of everything on everything at one state, and the contact points that a tangent is made from."""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from mdlgen.mechanics.bushing import bushing_pair
+from mdlgen.mechanics.contact import MOST_POINTS, OUT, POINT, box_cylinder, box_plane, cylinder_cylinder
+from mdlgen.mechanics.vector import add, cross, dot, exp_rotation, mat, matmul, rotate, scale, vec
+
+WIDE = OUT + 1 + POINT * MOST_POINTS
+CYLINDER_CYLINDER, BOX_PLANE = 2, 1
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def three(a):
+    return (a[0], a[1], a[2])
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def nine(a):
+    return (a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8])
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def driven(body, t):
+    """Speed of a driven roller at a time."""
+    speed, ramp = body.drive[0], body.drive[1]
+    return speed * min(t / ramp, 1.0) if ramp > 0.0 else speed
+
+
+@njit(cache=True, error_model="numpy")
+def place(bodies, nodes, h, t, u, ub, x, r, xm, rm, um, wm):
+    """The state after h at the velocities u (nodes, 6) and ub (border,), from positions x and rotations
+    r: xm, rm, and the velocities of all bodies um, wm."""
+    for n in range(nodes.size):
+        b = nodes[n]
+        turn = exp_rotation((h * u[n, 3], h * u[n, 4], h * u[n, 5]))
+        m = matmul(turn, mat(r, b))
+        for i in range(9):
+            rm[b, i] = m[i]
+        for i in range(3):
+            xm[b, i] = x[b, i] + h * u[n, i]
+            um[b, i] = u[n, i]
+            wm[b, i] = u[n, 3 + i]
+    for b in range(bodies.size - 1):
+        body = bodies[b]
+        if body.axis[0] == 0.0 and body.axis[1] == 0.0 and body.axis[2] == 0.0:
+            continue  # no roller
+        rate, turn_rate = 0.0, 0.0
+        if body.slide >= 0:
+            rate = ub[body.slide]
+        if body.spin >= 0:
+            turn_rate = ub[body.spin]
+        elif body.drive[0] != 0.0:
+            turn_rate = driven(body, t)
+        for i in range(3):
+            if body.slide >= 0:
+                xm[b, i] = x[b, i] + h * rate * body.way[i]
+            um[b, i] = rate * body.way[i]
+            wm[b, i] = turn_rate * body.axis[i]
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _add(f, b, force, torque):
+    for i in range(3):
+        f[b, i] += force[i]
+        f[b, 3 + i] += torque[i]
+
+
+@njit(cache=True, error_model="numpy")
+def joint_forces(joints, x, r, u, w, f):
+    """Adds the forces of all joints to f (bodies, 6). Returns (stored energy, dissipated power)."""
+    stored = lost = 0.0
+    last = x.shape[0] - 1
+    for j in range(joints.size):
+        joint = joints[j]
+        a, b = joint.a, joint.b
+        if a < 0:
+            a = last
+        ma, mb = mat(r, a), mat(r, b)
+        k, c = joint.k, joint.c
+        force, torque_b, torque_a, energy, power, _, _ = bushing_pair(
+            vec(x, a),
+            matmul(ma, nine(joint.fa)),
+            vec(u, a),
+            vec(w, a),
+            rotate(ma, three(joint.ra)),
+            vec(x, b),
+            matmul(mb, nine(joint.fb)),
+            vec(u, b),
+            vec(w, b),
+            rotate(mb, three(joint.rb)),
+            three(joint.e),
+            (k[0], k[1], k[2]),
+            (k[3], k[4], k[5]),
+            (c[0], c[1], c[2]),
+            (c[3], c[4], c[5]),
+        )
+        _add(f, a, (-force[0], -force[1], -force[2]), torque_a)
+        _add(f, b, force, torque_b)
+        stored += energy
+        lost += power
+    return stored, lost
+
+
+@njit(cache=True, error_model="numpy")
+def pair_force(bodies, pair, x, r, u, w, out):
+    """One contact pair into `out` (WIDE,). Returns whether it touches."""
+    for i in range(OUT + 1):
+        out[i] = 0.0
+    a, b = pair.a, pair.b
+    row = pair.law
+    law = (row[0], row[1], row[2], row[3], row[4], row[5])
+    if pair.kind == CYLINDER_CYLINDER:
+        cylinder_cylinder(
+            out,
+            vec(x, a),
+            vec(u, a),
+            vec(w, a),
+            bodies[a].size[0],
+            bodies[a].size[1],
+            vec(x, b),
+            vec(u, b),
+            vec(w, b),
+            bodies[b].size[0],
+            bodies[b].size[1],
+            three(bodies[b].axis),
+            pair.k,
+            law,
+        )
+    elif pair.kind == BOX_PLANE:
+        box_plane(
+            out,
+            vec(x, a),
+            mat(r, a),
+            vec(u, a),
+            vec(w, a),
+            three(bodies[a].half),
+            vec(x, b),
+            mat(r, b),
+            three(bodies[b].half),
+            pair.k,
+            law,
+        )
+    else:
+        box_cylinder(
+            out,
+            vec(x, a),
+            mat(r, a),
+            vec(u, a),
+            vec(w, a),
+            three(bodies[a].half),
+            bodies[a].exposed,
+            vec(x, b),
+            three(bodies[b].axis),
+            vec(u, b),
+            vec(w, b),
+            bodies[b].size[0],
+            bodies[b].size[1],
+            pair.k,
+            pair.shared != 0,
+            law,
+        )
+    return out[12] != 0.0
+
+
+@njit(cache=True, error_model="numpy")
+def near_pairs(bodies, pairs, x, r, margin, near):
+    """Lists pairs that are closer than `margin` [mm] in `near`; returns how many."""
+    count = 0
+    for p in range(pairs.size):
+        a, b = pairs[p].a, pairs[p].b
+        half = bodies[a].half
+        gap = (x[b, 0] - x[a, 0], x[b, 1] - x[a, 1], x[b, 2] - x[a, 2])
+        if pairs[p].kind == BOX_PLANE:
+            way = bodies[b].way
+            out = 0.0  # how far the box reaches along the plate's normal
+            for i in range(3):
+                out += half[i] * abs(way[0] * r[a, i] + way[1] * r[a, 3 + i] + way[2] * r[a, 6 + i])
+            height = -(gap[0] * way[0] + gap[1] * way[1] + gap[2] * way[2]) - bodies[b].half[2]
+            if height > out + margin:
+                continue
+        else:
+            reach = math.sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]) + margin
+            axis = bodies[b].axis
+            along = gap[0] * axis[0] + gap[1] * axis[1] + gap[2] * axis[2]
+            across = gap[0] * gap[0] + gap[1] * gap[1] + gap[2] * gap[2] - along * along
+            radius, width = bodies[b].size[0], 0.5 * bodies[b].size[1]
+            if pairs[p].kind == CYLINDER_CYLINDER:
+                reach = bodies[a].size[0] + margin
+                width += 0.5 * bodies[a].size[1]
+            if abs(along) > width + reach or across > (radius + reach) * (radius + reach):
+                continue
+            if pairs[p].kind != CYLINDER_CYLINDER:  # the axis above or below the face
+                up = gap[0] * r[a, 2] + gap[1] * r[a, 5] + gap[2] * r[a, 8]
+                lean = abs(axis[0] * r[a, 2] + axis[1] * r[a, 5] + axis[2] * r[a, 8])
+                if abs(up) > half[2] + radius + width * lean + margin:
+                    continue
+        near[count] = p
+        count += 1
+    return count
+
+
+@njit(cache=True, error_model="numpy")
+def pair_forces(bodies, pairs, near, close, x, r, u, w, f, touched, outs):
+    """Adds the forces of the pairs near[:close] to f. Those that touch are listed in `touched`, each with its
+    row of outs (pairs, WIDE). Returns (how many, stored energy, dissipated power)."""
+    count = 0
+    stored = lost = 0.0
+    for at in range(close):
+        p = near[at]
+        out = outs[count]
+        if not pair_force(bodies, pairs[p], x, r, u, w, out):
+            continue
+        a, b = pairs[p].a, pairs[p].b
+        for i in range(6):
+            f[a, i] += out[i]
+            f[b, i] += out[6 + i]
+        stored += out[13]
+        lost += out[14]
+        touched[count] = p
+        count += 1
+    return count, stored, lost
+
+
+@njit(cache=True, error_model="numpy")
+def other_forces(bodies, loads, gravity, level, r, u, w, f):
+    """Adds weights and loads, both times `level`. Returns the power of the loads."""
+    power = 0.0
+    for b in range(bodies.size - 1):
+        if bodies[b].node >= 0:
+            for i in range(3):
+                f[b, i] += level * bodies[b].mass * gravity[i]
+    for k in range(loads.size):
+        b = loads[k].body
+        force, moment = scale(level, three(loads[k].force)), scale(level, three(loads[k].moment))
+        arm = rotate(mat(r, b), three(loads[k].local))
+        _add(f, b, force, add(moment, cross(arm, force)))
+        power += dot(force, add(vec(u, b), cross(vec(w, b), arm))) + dot(moment, vec(w, b))
+    return power

@@ -1,0 +1,55 @@
+"""Energies and contact forces of a state, outside the stepping."""
+
+from __future__ import annotations
+
+from numba import njit
+
+from backends.lattice.forces import driven, joint_forces, near_pairs, pair_forces
+from mdlgen.mechanics.vector import back, mat, rotate
+
+
+@njit(cache=True, error_model="numpy")
+def ledger(
+    bodies, joints, pairs, gravity, nodes, t, x, r, v, l, s, vb, u, w, f, touched, outs, near, energies, force
+):
+    """Velocities of all bodies into u and w; kinetic, elastic and potential energy; total normal force for
+    each row of the contacts."""
+    u[:] = 0.0
+    w[:] = 0.0
+    f[:] = 0.0
+    kinetic = elastic = potential = 0.0
+    for n in range(nodes.size):
+        b = nodes[n]
+        m = mat(r, b)
+        j = bodies[b].inertia
+        own = back(m, (l[n, 0], l[n, 1], l[n, 2]))
+        spin = rotate(m, (own[0] / j[0], own[1] / j[1], own[2] / j[2]))
+        mass = bodies[b].mass
+        for i in range(3):
+            u[b, i], w[b, i] = v[n, i], spin[i]
+            kinetic += 0.5 * mass * v[n, i] * v[n, i] + 0.5 * l[n, i] * spin[i]
+            potential -= mass * gravity[i] * x[b, i]
+    for b in range(bodies.size - 1):
+        slide, spin_at, p = bodies[b].slide, bodies[b].spin, bodies[b].press
+        rate = 0.0
+        if slide >= 0:
+            way = bodies[b].way
+            kinetic += 0.5 * p[3] * vb[slide] * vb[slide]
+            elastic += 0.5 * p[0] * s[slide] * s[slide]
+            fall = gravity[0] * way[0] + gravity[1] * way[1] + gravity[2] * way[2]
+            potential -= (p[2] + p[3] * fall) * s[slide]
+            for i in range(3):
+                u[b, i] = vb[slide] * way[i]
+        if spin_at >= 0:
+            rate = vb[spin_at]
+            kinetic += 0.5 * p[4] * rate * rate
+        elif bodies[b].drive[0] != 0.0:
+            rate = driven(bodies[b], t)
+        for i in range(3):
+            w[b, i] += rate * bodies[b].axis[i]
+    stored, _ = joint_forces(joints, x, r, u, w, f)
+    close = near_pairs(bodies, pairs, x, r, 0.0, near)
+    count, pressed, _ = pair_forces(bodies, pairs, near, close, x, r, u, w, f, touched, outs)
+    for k in range(count):
+        force[pairs[touched[k]].row] += outs[k, 12]
+    energies[0], energies[1], energies[2] = kinetic, elastic + stored + pressed, potential

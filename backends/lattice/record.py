@@ -1,0 +1,101 @@
+"""What a run passes through: stored states, contact statistics, the energy balance."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from backends.lattice.arrays import System
+from mdlgen.model.tables import Model
+from mdlgen.results.result import ContactStatistics, Energy, Result
+
+
+class Recorder:
+    """Stores states of a run; `kept` is what the compiled code adds up."""
+
+    def __init__(self, model: Model, system: System, tables: tuple, state: tuple, mid: tuple, kept: tuple):
+        self.model, self.system, self.tables = model, system, tables
+        self.state, self.mid, self.kept = state, mid, kept
+        self._stored: dict[str, list[np.ndarray]] = {name: [] for name in ("x", "r", "u", "w", "f")}
+        self._times: list[float] = []
+        self._first: tuple[float, float, float] | None = None
+        self._last = (0.0, 0.0, 0.0)
+        self._most = 0.0
+
+    def store(self, t: float) -> None:
+        """The state at the end of a step."""
+        from backends.lattice.compiled import observe
+
+        bodies, joints, pairs, _, gravity, nodes = self.tables
+        x, r, v, l, s, vb, _, _ = self.state
+        _, _, u, w, f, touched, outs, _, near = self.mid
+        count = len(self.model.bodies.name)
+        energies = np.zeros(3)
+        force = np.zeros(len(self.model.contacts))
+        places, rates = (x, r), (v, l, s, vb)
+        work = (u, w, f, touched, outs, near)
+        observe.ledger(bodies, joints, pairs, gravity, nodes, t, *places, *rates, *work, energies, force)
+        now = (float(energies[0]), float(energies[1]), float(energies[2]))
+        if self._first is None:
+            self._first = now
+        self._last = now
+        self._most = max(self._most, now[0] + now[1])
+        self._times.append(t)
+        for name, array in (("x", x), ("r", r), ("u", u), ("w", w)):
+            self._stored[name].append(array[:count].copy())
+        # forces are those in the middle of the last step, where the rule has them; at the start as it begins
+        self._stored["f"].append(force if t == 0.0 else self.kept[0][:, 5].copy())
+
+    def result(self, solver: str, reason: str | None, work: np.ndarray) -> Result:
+        """The Result in mm, N, g, ms."""
+        rows, marks = self.kept
+        inside = np.where(rows[:, 4] > 0, rows[:, 4], 1.0)
+        held = {name: np.array(values) for name, values in self._stored.items()}
+        return Result(
+            model=self.model,
+            solver=solver,
+            status=reason or "ok",
+            time=np.array(self._times),
+            position=held["x"],
+            rotation=_quaternions(held["r"]),
+            velocity=held["u"],
+            spin=held["w"],
+            contact_force=held["f"],
+            statistics=ContactStatistics(
+                max_depth=rows[:, 0].copy(),
+                mean_depth=rows[:, 2] / inside,
+                max_force=rows[:, 1].copy(),
+                mean_force=rows[:, 3] / inside,
+                last_force_at=np.where(rows[:, 7] != 0, np.nan, rows[:, 8]),
+            ),
+            touched=int(marks.sum()),
+            energy=self._balance(work),
+            versions=_versions(),
+        )
+
+    def _balance(self, work: np.ndarray) -> Energy:
+        assert self._first is not None
+        lost, driven, through = (float(v) for v in work)
+        kinetic, elastic, potential = self._last
+        change = sum(self._last) - sum(self._first)
+        moved = abs(potential - self._first[2])
+        scale = max(abs(lost), through, self._most, moved, 1e-12)
+        return Energy(kinetic, elastic, lost, driven, float((change + lost - driven) / scale))
+
+
+def _quaternions(matrices: np.ndarray) -> np.ndarray:
+    """Euler parameters (scalar first) of rotation matrices, (t, bodies, 9) -> (t, bodies, 4); no jumps."""
+    from scipy.spatial.transform import Rotation
+
+    if not np.isfinite(matrices).all():
+        return np.full((*matrices.shape[:2], 4), np.nan)
+    found = Rotation.from_matrix(matrices.reshape(-1, 3, 3)).as_quat(canonical=True)
+    found = np.roll(found, 1, axis=1).reshape(*matrices.shape[:2], 4)
+    signs = np.sign(np.einsum("tbi,tbi->tb", found[1:], found[:-1]))
+    signs[signs == 0] = 1.0
+    return np.concatenate([found[:1], found[1:] * np.cumprod(signs, axis=0)[:, :, None]])
+
+
+def _versions() -> dict[str, str]:
+    import numba
+
+    return {"numba": numba.__version__}

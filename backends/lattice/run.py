@@ -1,0 +1,226 @@
+"""Runs a Model: fixed steps, halved where they do not converge, and the whole again at half the step until
+the difference is within the tolerance."""
+
+from __future__ import annotations
+
+import math
+import time as clock
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from backends.lattice.arrays import System, build
+from backends.lattice.record import Recorder
+from backends.lattice.scope import check
+from mdlgen.model.tables import CYLINDER_CYLINDER, Floats, Model
+from mdlgen.results.compare import compare
+from mdlgen.results.result import Result
+
+# Longest first step of a flexible sheet at a tolerance of 1e-3 [ms]; it goes with the root of the tolerance.
+FLEXIBLE_STEP = 0.2
+# Steps in the shortest impact of a rigid block at that tolerance.
+STEPS_IN_IMPACT = 100.0
+# How often the step may be halved to meet the tolerance, from the first step on.
+MOST_REFINED = 5
+# A step may shrink to this part of the wanted one where it does not converge.
+SMALLEST = 1e-4
+# Rounds of a step stop at changes of velocity of this part of tolerance times speed.
+ROUND_OFF = 0.2
+# Energy made by the integration, relative to what passed through, above which a run fails.
+ENERGY_GAIN = 0.02
+
+Progress = Callable[[float, float, int, int], None]
+
+
+def solve(model: Model, progress: Progress | None = None, step: float | None = None) -> Result:
+    """Run a Model; `progress(time, end, steps, touching)` is told where it stands (times in ms).
+
+    `step` [ms], or the Model's own, is taken as it is, and an estimate comes of a run at twice the step.
+    Without either the step follows from the tolerance: the run is repeated at half the step until both
+    differ by less. `error_estimate` is that difference, which is the error of the coarser run, and three
+    times that of the finer one where halving quarters the error. A failed run returns a Result with its
+    reason; RefusedError is raised for what the solver cannot represent.
+    """
+    check(model)
+    started = clock.perf_counter()
+    system = build(model)
+    compiled = clock.perf_counter()
+    from backends.lattice import compiled as _  # noqa: F401
+
+    _warm(model, system)
+    compile_s = clock.perf_counter() - compiled
+    build_s = clock.perf_counter() - started - compile_s
+    wanted = step or model.run.step
+    begun = clock.perf_counter()
+    if wanted is not None:
+        result = _once(model, system, wanted, progress)
+        if result.ok and step is None and model.run.duration / wanted >= 4:
+            coarse = _once(model, system, 2 * result.step, progress)
+            if coarse.ok:
+                result = replace(result, error_estimate=compare(result, coarse).relative)
+    else:
+        result = _refined(model, system, progress)
+    result.wall_s = clock.perf_counter() - begun
+    result.build_s, result.compile_s = build_s, compile_s
+    return result
+
+
+def _refined(model: Model, system: System, progress: Progress | None) -> Result:
+    """Halves the step until two runs differ by less than the tolerance."""
+    step = first_step(model)
+    before = _once(model, system, step, progress)
+    result = before
+    for _ in range(MOST_REFINED):
+        step *= 0.5
+        result = _once(model, system, step, progress)
+        if not result.ok:
+            # a run that fails at a finer step has a reason of its own; where both fail the finer one tells
+            return result
+        if before.ok:
+            result = replace(result, error_estimate=compare(result, before).relative)
+            if result.error_estimate is not None and result.error_estimate <= model.run.tolerance:
+                return result
+        before = result
+    return result
+
+
+def first_step(model: Model) -> float:
+    """Step to begin with [ms]."""
+    run = model.run
+    finer = math.sqrt(run.tolerance / 1e-3)
+    step = min(FLEXIBLE_STEP * finer, run.duration / 20)
+    for row in range(len(model.contacts)):
+        if model.contacts.kind[row] == CYLINDER_CYLINDER:
+            continue
+        sheet = next(s for s in model.sheets if s.name == model.contacts.part_a[row])
+        if sheet.count == 1:
+            step = min(step, _impact_time(model, row, sheet.derived["m"]) / STEPS_IN_IMPACT * finer)
+    return step
+
+
+def _impact_time(model: Model, row: int, mass: float) -> float:
+    """Duration of an undamped impact at the greatest speed that the scene can give [ms]:
+    T = 3.21806546 (m^2 / (k^2 v))^(1/5)."""
+    sheet = next(s for s in model.sheets if s.name == model.contacts.part_a[row])
+    part = next(p for p in (*model.rollers, *model.planes) if p.name == model.contacts.part_b[row])
+    gravity, start = math.hypot(*model.gravity), math.hypot(*sheet.velocity)
+    fall = math.dist(part.center, sheet.center)
+    speed = min(start + gravity * model.run.duration, math.hypot(start, math.sqrt(2 * gravity * fall)))
+    return 3.21806546 * (mass**2 / (float(model.contacts.stiffness[row]) ** 2 * max(speed, 1e-6))) ** 0.2
+
+
+def _speed(model: Model) -> float:
+    """What velocities are measured by [mm/ms]: drives, initial velocities, a tenth of a sheet in the run."""
+    drives = [abs(r.speed) * r.radius for r in model.rollers if r.speed is not None]
+    starts = [float(np.linalg.norm(s.velocity)) for s in model.sheets]
+    own = [max(s.size) / 10 / model.run.duration for s in model.sheets]
+    return max(*drives, *starts, *own, 0.0)
+
+
+def _once(model: Model, system: System, wanted: float, progress: Progress | None) -> Result:
+    """One run at a step, or the next smaller one that outputs fall on."""
+    from backends.lattice.compiled import step
+
+    run = model.run
+    outputs = max(1, round(run.duration / run.print_step))
+    each = max(1, math.ceil(run.duration / outputs / wanted - 1e-9))
+    dt = run.duration / outputs / each
+    if wanted > run.duration / outputs:  # steps longer than the time between outputs
+        each, outputs = 1, max(1, math.ceil(run.duration / wanted - 1e-9))
+        dt = run.duration / outputs
+    state, mid, matrix = start(model, system)
+    tables = (system.bodies, system.joints, system.pairs, system.loads, system.gravity, system.nodes)
+    kept = (np.zeros((len(model.contacts), 9)), np.zeros(len(system.pairs), bool))
+    counters, work, fresh = np.zeros(6), np.zeros(3), np.zeros(2)
+    before = (state[6].copy(), state[7].copy(), np.zeros(1))
+    recorder = Recorder(model, system, tables, state, mid, kept)
+    recorder.store(0.0)
+    tolerance = ROUND_OFF * run.tolerance * _speed(model)
+    bounds = (model.pairs.low, model.pairs.high)
+    steps = np.full(each, dt)
+    status, t = step.DONE, 0.0
+    for output in range(outputs):
+        moving = (tables, state, mid, matrix, kept, bounds)
+        status, t = step.run(*moving, t, steps, tolerance, dt * SMALLEST, fresh, counters, work, before)
+        if status != step.DONE:
+            break
+        t = (output + 1) * run.duration / outputs
+        recorder.store(t)
+        if progress is not None:
+            progress(t, run.duration, int(counters[step.STEPS]), int(counters[step.TOUCHING]))
+    reason = None if status == step.DONE else _reason(model, system, status, t, dt, state, counters)
+    result = recorder.result("lattice", reason, work)
+    result.step, result.steps = dt, int(counters[step.STEPS])
+    if result.ok and not all(np.isfinite(a).all() for a in (result.position, result.velocity, result.spin)):
+        result = result.failed("the state went non-finite")
+    if result.ok and result.energy.balance_error > ENERGY_GAIN:
+        # the rule may lose energy; nothing may make it
+        result = result.failed(
+            f"{100 * result.energy.balance_error:.3g} % of the energy came from nowhere; "
+            "take a smaller run.step"
+        )
+    return result
+
+
+def start(model: Model, system: System) -> tuple:
+    """State at the start, and the arrays of a step."""
+    from backends.lattice.compiled import forces, step
+
+    state, mid, matrix = step.empty(system, forces.WIDE)
+    x, r, v, l, _, _, u, _ = state
+    bodies = model.bodies
+    count = len(bodies.name)
+    x[:count], r[:count] = bodies.position, bodies.rotation.reshape(-1, 9)
+    r[count] = np.eye(3).ravel()
+    mid[0][:], mid[1][:] = x, r
+    nodes = system.nodes
+    turn, spin = bodies.rotation[nodes], bodies.spin[nodes]
+    v[:] = bodies.velocity[nodes]
+    own = np.einsum("nji,nj->ni", turn, spin)
+    l[:] = np.einsum("nij,nj->ni", turn, bodies.inertia[nodes] * own)
+    u[:, :3], u[:, 3:] = v, spin
+    return state, mid, matrix
+
+
+def _reason(
+    model: Model, system: System, status: int, t: float, dt: float, state: tuple, counters: Floats
+) -> str:
+    """Why a run ended before its end."""
+    from backends.lattice.compiled import step
+
+    names = model.bodies.name
+    if status == step.STOPPED:
+        body = names[int(counters[step.WORST])]
+        return (
+            f"no convergence at {t:.6g} ms with steps down to {dt * SMALLEST:.3g} ms; box {body} moved most; "
+            "larger smoothing of its contacts may help"
+        )
+    if status == step.DEEP:
+        pair = int(counters[step.WORST])
+        box, plate = names[int(model.pairs.a[pair])], names[int(model.pairs.b[pair])]
+        return (
+            f"box {box} is more than half of its thickness into plane {plate} at {t:.6g} ms; "
+            "a stiffer contact or a smaller run.step would hold it"
+        )
+    body = int(counters[step.WORST])
+    at = ", ".join(f"{value:.4g}" for value in state[0][body])
+    kind = "box" if model.sheet_of(body) else "roller"
+    return (
+        f"{kind} {names[body]} left the bounds from which its contacts were chosen at {t:.6g} ms "
+        f"(it is at {at} mm); set run.prune: false, or a run.margin above {model.pairs.margin:g} mm"
+    )
+
+
+def _warm(model: Model, system: System) -> None:
+    """Compiles, or loads from the cache, before the clock of the run starts."""
+    from backends.lattice.compiled import step
+
+    state, mid, matrix = start(model, system)
+    tables = (system.bodies, system.joints, system.pairs, system.loads, system.gravity, system.nodes)
+    kept = (np.zeros((len(model.contacts), 9)), np.zeros(len(system.pairs), bool))
+    before = (state[6].copy(), state[7].copy(), np.zeros(1))
+    bounds = (model.pairs.low, model.pairs.high)
+    moving = (tables, state, mid, matrix, kept, bounds)
+    step.run(*moving, 0.0, np.zeros(0), 1.0, 1.0, np.zeros(2), np.zeros(6), np.zeros(3), before)
+    Recorder(model, system, tables, state, mid, kept).store(0.0)

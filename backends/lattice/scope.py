@@ -1,0 +1,22 @@
+"""What this solver can represent; said without importing anything that compiles."""
+
+from __future__ import annotations
+
+from mdlgen.errors import RefusedError
+from mdlgen.model.external import refuse_externals
+from mdlgen.model.tables import Model
+
+
+def check(model: Model) -> None:
+    """Raises RefusedError by name for what it cannot."""
+    refuse_externals(model, "lattice")
+    if model.run.analysis == "static":
+        raise RefusedError("lattice: a static analysis is not there yet; take exudyn", ("run", "analysis"))
+    for roller in model.rollers:
+        if roller.press is not None and abs(float(roller.press.direction @ roller.axis)) > 1e-9:
+            raise RefusedError(
+                f"lattice: roller {roller.name} is pressed along its own axis, which is not modelled",
+                ("rollers", roller.name, "press"),
+            )
+    if bool(model.bodies.fixed[: sum(s.count for s in model.sheets)].all()) and not model.rollers:
+        raise RefusedError("lattice: nothing in this scene can move")

@@ -1,0 +1,260 @@
+"""The matrix of a step: mass, damping and stiffness in one, symmetric, in band and border.
+
+It is the derivative of the step's equations but for small parts: the turning of forces (geometric stiffness)
+and the growth of friction with the normal force, which is not symmetric. Newton's method takes a few more
+rounds for them, and the matrix stays positive.
+"""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from backends.lattice.forces import nine, three
+from mdlgen.mechanics.contact import OUT, POINT
+from mdlgen.mechanics.vector import (
+    add,
+    exp_rotation,
+    log_rotation,
+    mat,
+    matmul,
+    rotate,
+    scale,
+    sub,
+    transpose_matmul,
+    vec,
+)
+
+# Damping and friction grow steeply at small speeds and hardly at all at large ones. A step along the tangent
+# of the flat part would cross to the other side, and back; a step along the chord to zero stops there. This
+# much of the chord converges from both sides.
+CHORD = 0.7
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _conjugate(m, d):
+    """m diag(d) m^T, row by row."""
+    out = (
+        m[0] * d[0] * m[0] + m[1] * d[1] * m[1] + m[2] * d[2] * m[2],
+        m[0] * d[0] * m[3] + m[1] * d[1] * m[4] + m[2] * d[2] * m[5],
+        m[0] * d[0] * m[6] + m[1] * d[1] * m[7] + m[2] * d[2] * m[8],
+        m[3] * d[0] * m[3] + m[4] * d[1] * m[4] + m[5] * d[2] * m[5],
+        m[3] * d[0] * m[6] + m[4] * d[1] * m[7] + m[5] * d[2] * m[8],
+        m[6] * d[0] * m[6] + m[7] * d[1] * m[7] + m[8] * d[2] * m[8],
+    )
+    return (out[0], out[1], out[2], out[1], out[3], out[4], out[2], out[4], out[5])
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _hat_right(t, q):
+    """t [q]x, t a matrix row by row."""
+    x, y, z = q
+    return (
+        t[1] * z - t[2] * y,
+        t[2] * x - t[0] * z,
+        t[0] * y - t[1] * x,
+        t[4] * z - t[5] * y,
+        t[5] * x - t[3] * z,
+        t[3] * y - t[4] * x,
+        t[7] * z - t[8] * y,
+        t[8] * x - t[6] * z,
+        t[6] * y - t[7] * x,
+    )
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _hat_left(q, t):
+    """[q]x t."""
+    x, y, z = q
+    return (
+        y * t[6] - z * t[3],
+        y * t[7] - z * t[4],
+        y * t[8] - z * t[5],
+        z * t[0] - x * t[6],
+        z * t[1] - x * t[7],
+        z * t[2] - x * t[8],
+        x * t[3] - y * t[0],
+        x * t[4] - y * t[1],
+        x * t[5] - y * t[2],
+    )
+
+
+@njit(cache=True, error_model="numpy")
+def _blocks(a, column, offset, sign, t, q, p, g):
+    """Adds sign (P_q^T t P_p + g) with P_q = [1, -[q]x] to the block of `column` whose rows begin at
+    `offset`: rows are of the body with arm q, columns of that with arm p."""
+    right = _hat_right(t, p)
+    left = _hat_left(q, t)
+    both = _hat_left(q, right)
+    for c in range(3):
+        for r in range(3):
+            a[column, c, offset + r] += sign * t[3 * r + c]
+            a[column, 3 + c, offset + r] -= sign * right[3 * r + c]
+            a[column, c, offset + 3 + r] += sign * left[3 * r + c]
+            a[column, 3 + c, offset + 3 + r] += sign * (g[3 * r + c] - both[3 * r + c])
+
+
+@njit(cache=True, error_model="numpy")
+def masses(bodies, nodes, r, a):
+    """Sets the band to the mass matrix."""
+    a[:] = 0.0
+    for n in range(nodes.size):
+        b = nodes[n]
+        j = _conjugate(mat(r, b), three(bodies[b].inertia))
+        for i in range(3):
+            a[n, i, i] = bodies[b].mass
+            for k in range(3):
+                a[n, 3 + i, 3 + k] = j[3 * k + i]
+
+
+@njit(cache=True, error_model="numpy")
+def joints_into(bodies, joints, h, x, r, a):
+    """Adds h C + h^2 K of all joints."""
+    last = x.shape[0] - 1
+    for i in range(joints.size):
+        joint = joints[i]
+        one, two = joint.a, joint.b
+        if one < 0:
+            one = last
+        na, nb = bodies[one].node, bodies[two].node
+        ma, mb = mat(r, one), mat(r, two)
+        fa = matmul(ma, nine(joint.fa))
+        theta = log_rotation(transpose_matmul(fa, matmul(mb, nine(joint.fb))))
+        m = matmul(fa, exp_rotation(scale(0.5, theta)))
+        ra, rb = rotate(ma, three(joint.ra)), rotate(mb, three(joint.rb))
+        half = scale(0.5, sub(add(vec(x, two), rb), add(vec(x, one), ra)))
+        qa, qb = add(ra, half), sub(rb, half)
+        k, c, e = joint.k, joint.c, joint.e
+        s = (h * c[0] + h * h * k[0], h * c[1] + h * h * k[1], h * c[2] + h * h * k[2])
+        # two bushings at e and -e also resist rotation: [e]x^T s [e]x
+        ee = (
+            s[1] * e[2] * e[2] + s[2] * e[1] * e[1] + h * c[3] + h * h * k[3],
+            -s[2] * e[0] * e[1],
+            -s[1] * e[0] * e[2],
+            s[0] * e[2] * e[2] + s[2] * e[0] * e[0] + h * c[4] + h * h * k[4],
+            -s[0] * e[1] * e[2],
+            s[0] * e[1] * e[1] + s[1] * e[0] * e[0] + h * c[5] + h * h * k[5],
+        )
+        t = _conjugate(m, s)
+        full = (ee[0], ee[1], ee[2], ee[1], ee[3], ee[4], ee[2], ee[4], ee[5])
+        g = matmul(matmul(m, full), (m[0], m[3], m[6], m[1], m[4], m[7], m[2], m[5], m[8]))
+        if na >= 0:
+            _blocks(a, na, 0, 1.0, t, qa, qa, g)
+        if nb >= 0:
+            _blocks(a, nb, 0, 1.0, t, qb, qb, g)
+        if na >= 0 and nb >= 0:
+            if nb > na:
+                _blocks(a, na, 6 * (nb - na), -1.0, t, qb, qa, g)
+            else:
+                _blocks(a, nb, 6 * (na - nb), -1.0, t, qa, qb, g)
+
+
+@njit(cache=True, error_model="numpy")
+def _core(out, at, h, law, chord):
+    """3 x 3 matrix of one contact point: growth of the force with h times the relative velocity."""
+    n = (out[at + 3], out[at + 4], out[at + 5])
+    spring, growth, force, rate = out[at + 6], out[at + 7], out[at + 8], out[at + 9]
+    slip = (out[at + 10], out[at + 11], out[at + 12])
+    y = rate / law[5]
+    if abs(y) < 1.0:
+        sign = 0.5 * y * (3.0 - y * y)
+        steep = max(1.5 * (1.0 - y * y), chord * 0.5 * (3.0 - y * y)) / law[5]
+    else:
+        sign = math.copysign(1.0, y)
+        steep = chord / abs(rate)
+    normal = h * h * growth * (1.0 + law[0] * sign) + h * spring * law[0] * steep
+    speed = math.sqrt(slip[0] * slip[0] + slip[1] * slip[1] + slip[2] * slip[2])
+    secant = tangent = 0.0
+    if force > 0.0 and (law[1] > 0.0 or law[2] > 0.0):
+        if speed < law[3]:
+            z = speed / law[3]
+            secant = 0.5 * law[1] * (3.0 - z * z) / law[3]
+            tangent = 1.5 * law[1] * (1.0 - z * z) / law[3]
+        else:
+            mu = law[2]
+            if speed < law[4]:
+                z = (speed - law[3]) / (law[4] - law[3])
+                mu = law[1] + (law[2] - law[1]) * z * z * (3.0 - 2.0 * z)
+            secant = mu / speed
+        secant, tangent = h * force * secant, h * force * max(tangent, chord * secant)
+    i = 1.0 / speed if speed > 0.0 else 0.0
+    d = (slip[0] * i, slip[1] * i, slip[2] * i)
+    less = tangent - secant
+    n1 = normal - secant
+    return (
+        secant + n1 * n[0] * n[0] + less * d[0] * d[0],
+        n1 * n[0] * n[1] + less * d[0] * d[1],
+        n1 * n[0] * n[2] + less * d[0] * d[2],
+        n1 * n[1] * n[0] + less * d[1] * d[0],
+        secant + n1 * n[1] * n[1] + less * d[1] * d[1],
+        n1 * n[1] * n[2] + less * d[1] * d[2],
+        n1 * n[2] * n[0] + less * d[2] * d[0],
+        n1 * n[2] * n[1] + less * d[2] * d[1],
+        secant + n1 * n[2] * n[2] + less * d[2] * d[2],
+    )
+
+
+@njit(cache=True, error_model="numpy")
+def _columns(body, arm, x, sign, direction, index, count):
+    """The unknowns of a roller that move a contact point, each with the direction of its velocity."""
+    if body.slide >= 0:
+        for i in range(3):
+            direction[count, i] = sign * body.way[i]
+        index[count] = body.slide
+        count += 1
+    if body.spin >= 0:
+        ax, ay, az = body.axis[0], body.axis[1], body.axis[2]
+        direction[count, 0] = sign * (ay * arm[2] - az * arm[1])
+        direction[count, 1] = sign * (az * arm[0] - ax * arm[2])
+        direction[count, 2] = sign * (ax * arm[1] - ay * arm[0])
+        index[count] = body.spin
+        count += 1
+    return count
+
+
+@njit(cache=True, error_model="numpy")
+def contacts_into(bodies, pairs, h, x, touched, outs, count, chord, a, b, d, direction, index):
+    """Adds the contacts that touch: to the band a, to the border b (border, 6 nodes) and its corner d."""
+    zero = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    for k in range(count):
+        pair, out = pairs[touched[k]], outs[k]
+        node = bodies[pair.a].node
+        for point in range(int(out[OUT])):
+            at = OUT + 1 + POINT * point
+            where = (out[at], out[at + 1], out[at + 2])
+            t = _core(out, at, h, pair.law, chord)
+            arm = sub(where, vec(x, pair.a))
+            if node >= 0:
+                _blocks(a, node, 0, 1.0, t, arm, arm, zero)
+            moving = 0
+            if node < 0:
+                moving = _columns(bodies[pair.a], arm, x, 1.0, direction, index, moving)
+            far = sub(where, vec(x, pair.b))
+            moving = _columns(bodies[pair.b], far, x, -1.0, direction, index, moving)
+            for i in range(moving):
+                v = rotate(t, (direction[i, 0], direction[i, 1], direction[i, 2]))
+                for j in range(moving):
+                    d[index[i], index[j]] += (
+                        v[0] * direction[j, 0] + v[1] * direction[j, 1] + v[2] * direction[j, 2]
+                    )
+                if node >= 0:
+                    base = 6 * node
+                    for l in range(3):
+                        b[index[i], base + l] += v[l]
+                    b[index[i], base + 3] += arm[1] * v[2] - arm[2] * v[1]
+                    b[index[i], base + 4] += arm[2] * v[0] - arm[0] * v[2]
+                    b[index[i], base + 5] += arm[0] * v[1] - arm[1] * v[0]
+
+
+@njit(cache=True, error_model="numpy")
+def rollers_into(bodies, h, b, d):
+    """Sets border and corner to the rollers' own: masses, springs and dampers of slides."""
+    b[:] = 0.0
+    d[:] = 0.0
+    for k in range(bodies.size - 1):
+        p = bodies[k].press
+        if bodies[k].slide >= 0:
+            d[bodies[k].slide, bodies[k].slide] = p[3] + h * p[1] + h * h * p[0]
+        if bodies[k].spin >= 0:
+            d[bodies[k].spin, bodies[k].spin] = p[4]

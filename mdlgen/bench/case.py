@@ -1,0 +1,78 @@
+"""A case: one scene, how it is run, and what its result is judged by."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from mdlgen.model.tables import Model
+    from mdlgen.results.result import Result
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One number that a result is judged by; above its tolerance the result is wrong."""
+
+    quantity: str  # what the error is of, and what it is relative to
+    error: float
+    tolerance: float | None = None  # None: the step was forced, and nothing was promised
+    details: dict[str, float] = field(default_factory=dict)
+
+
+# The result and, for a case that has one, its reference.
+Measure = Callable[["Result", "Result | None"], list[Finding]]
+
+
+@dataclass(frozen=True)
+class Run:
+    """A sample scene, what is set in it, and the solver and step that run it."""
+
+    sample: str  # as `mdlgen new --list` names it
+    overrides: tuple[str, ...] = ()
+    step: float | None = None  # [ms]; None: the solver's choice
+
+    @property
+    def sets(self) -> tuple[str, ...]:
+        """All overrides, the step included."""
+        return self.overrides if self.step is None else (*self.overrides, f"run.step={self.step!r} ms")
+
+    def model(self) -> Model:
+        """The scene, lowered. Raises SpecError, OutputError."""
+        from mdlgen.model.lower import lower
+        from mdlgen.paths import samples
+        from mdlgen.spec.load import load
+
+        return lower(load(samples() / f"{self.sample}.yaml", self.sets))
+
+    def command(self, solver: str) -> str:
+        """The command that repeats it."""
+        sets = [word for item in self.sets for word in ("--set", item)]
+        return shlex.join(["mdlgen", "run", f"samples/{self.sample}.yaml", "--solver", solver, *sets])
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A finer run that a case is compared with."""
+
+    run: Run
+    solver: str
+
+
+@dataclass(frozen=True)
+class Case:
+    """One row or more of the bench."""
+
+    suite: str
+    name: str
+    run: Run
+    measure: Measure
+    reference: Reference | None = None
+    repeats: bool = True  # whether the wall time is what it is about
+    limit: float = 300.0  # [s] for one run; a solver that takes longer is stopped, and that is its result
+
+    def at(self, step: float | None) -> Case:
+        """The same case at another step [ms]."""
+        return replace(self, run=replace(self.run, step=step))

@@ -1,0 +1,1 @@
+"""Closed forms and independent solutions that results are measured against."""

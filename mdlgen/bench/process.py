@@ -1,0 +1,38 @@
+"""Runs a task in a process of its own, on one thread, with a limit of time."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import signal
+import subprocess
+import sys
+
+from mdlgen.bench.child import Task
+from mdlgen.bench.row import Outcome
+
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+# A process takes this long to import a solver and load its compiled code, beyond the run itself [s].
+STARTING = 30.0
+
+
+def run(task: Task) -> Outcome:
+    """The outcome of a task; a crash, a hang or an internal error is one with its reason."""
+    limit = task.case.limit * max(1, task.repeats) + STARTING
+    try:
+        done = subprocess.run(
+            [sys.executable, "-m", "mdlgen.bench.child"],
+            input=pickle.dumps(task),
+            capture_output=True,
+            timeout=limit,
+            env={**os.environ, **dict.fromkeys(THREADS, "1"), "PYTHONPATH": os.pathsep.join(sys.path)},
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        return Outcome(f"no end within {limit:g} s; stopped")
+    if done.returncode < 0:
+        return Outcome(f"the process crashed: {signal.Signals(-done.returncode).name}")
+    if done.returncode or not done.stdout:
+        told = done.stderr.decode("utf-8", "replace").strip().splitlines()
+        return Outcome(f"the process ended with code {done.returncode}: {told[-1] if told else ''}"[:300])
+    return pickle.loads(done.stdout)

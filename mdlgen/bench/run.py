@@ -1,0 +1,151 @@
+"""Runs suites: every case in its process, one after the other, and the files that they leave."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from mdlgen import paths, registry
+from mdlgen.bench import process
+from mdlgen.bench.case import Case, Reference, Run
+from mdlgen.bench.child import Task
+from mdlgen.bench.machine import machine, versions
+from mdlgen.bench.reference import file_of
+from mdlgen.bench.row import FAILED, OK, WRONG, Outcome, Row, rows
+from mdlgen.bench.suites import SUITES, cases
+from mdlgen.errors import OutputError
+
+Say = Callable[[str], None]
+# A scene of a moment that has every kind of force: compiles a solver before the first clock starts.
+WARM = Run("transport_4x4", ("run.duration=0.1 ms",), 0.05)
+# A reference is finer than what is measured; it may take this long [s].
+REFERENCE_LIMIT = 1800.0
+
+
+@dataclass
+class Bench:
+    """What a run of the bench found."""
+
+    machine: dict[str, Any]
+    versions: dict[str, str]
+    compile_s: dict[str, float | None]  # per solver, in a new process; small where the cache holds the code
+    rows: list[Row] = field(default_factory=list)
+
+    @property
+    def wrong(self) -> list[Row]:
+        """Rows whose solver said ok, but whose error is above its tolerance."""
+        return [row for row in self.rows if row.status == WRONG]
+
+    @property
+    def failed(self) -> list[Row]:
+        """Rows that failed where a failure is no answer: the ladder's rungs may end in one."""
+        return [row for row in self.rows if row.status == FAILED and row.suite != "stability"]
+
+    def json(self) -> dict[str, Any]:
+        """What bench.json holds."""
+        from mdlgen.bench.fits import fits
+
+        return {
+            "machine": self.machine,
+            "versions": self.versions,
+            "compile_s": self.compile_s,
+            "fits": fits(self.rows),
+            "rows": [row.json() for row in self.rows],
+        }
+
+
+def bench(
+    suites: Sequence[str],
+    folder: Path,
+    solvers: Sequence[str] = (),
+    quick: bool = False,
+    repeats: int = 3,
+    say: Say = lambda text: None,
+) -> Bench:
+    """Run `suites` (all where empty) with `solvers` (all that there are); `say` is told what is run.
+
+    Writes bench.json, bench.md and bench.png into `folder`. Raises SpecError for a suite or solver that
+    there is not, OutputError for files that cannot be written.
+    """
+    known = tuple(sorted(registry.SOLVERS))
+    for name in solvers:
+        registry.solver(name)
+    names = list(solvers) or list(known)
+    asked = list(suites) or list(SUITES)
+    plan = [(name, case) for suite in asked for name in names for case in cases(suite, name, known, quick)]
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(f"{folder}: cannot make this folder: {error.strerror or error}") from None
+    found = Bench(machine(), versions(), {name: _warm(name, say) for name in names})
+    references = References(folder, say)
+    try:
+        for count, (name, case) in enumerate(plan, 1):
+            step = "" if case.run.step is None else f" at {case.run.step:g} ms"
+            say(f"{count}/{len(plan)} {case.suite}, {name}: {case.name}{step}")
+            made = rows(case, name, _outcome(case, name, references, repeats))
+            found.rows += made
+            for row in made:
+                if row.status != OK:
+                    say(f"  {row.status}: {row.reason}")
+    finally:  # an hour's rows are worth keeping when someone interrupts it
+        write(found, folder)
+    return found
+
+
+def write(found: Bench, folder: Path) -> None:
+    """The files of the bench; all or none. Raises OutputError."""
+    from mdlgen.bench.figure import figure
+    from mdlgen.bench.table import markdown
+
+    files: dict[Path, str | bytes] = {
+        folder / "bench.json": json.dumps(found.json(), indent=1, allow_nan=False) + "\n",
+        folder / "bench.md": markdown(found),
+        folder / "bench.png": figure(found),
+    }
+    paths.write_together(files)
+
+
+def _warm(solver: str, say: Say) -> float | None:
+    """Compile time [s] of a solver in a new process, before anything is measured."""
+    say(f"{solver}: compiling, or loading what is compiled")
+    case = Case("warm", "compile", WARM, _nothing)
+    return process.run(Task(case, solver, registry.SOLVERS[solver], 1, None)).compiled
+
+
+def _nothing(result: Any, reference: Any) -> list:
+    return []
+
+
+def _outcome(case: Case, solver: str, references: References, repeats: int) -> Outcome:
+    kept = None
+    if case.reference is not None:
+        kept, reason = references.file(case, case.reference)
+        if reason is not None:
+            return Outcome(f"no reference: {reason}")
+    task = Task(case, solver, registry.SOLVERS[solver], repeats if case.repeats else 1, kept)
+    return process.run(task)
+
+
+@dataclass
+class References:
+    """The finer runs that cases are compared with, each run once and kept in `folder`."""
+
+    folder: Path
+    say: Say
+    failed: dict[Path, str] = field(default_factory=dict)
+
+    def file(self, case: Case, reference: Reference) -> tuple[str, str | None]:
+        """Where the states are, and the reason where there are none."""
+        file = file_of(reference, registry.SOLVERS[reference.solver], self.folder)
+        if not file.exists() and file not in self.failed:
+            self.say(f"  reference: {reference.solver} at {reference.run.step:g} ms")
+            finer = replace(case, run=reference.run, measure=_nothing, reference=None, limit=REFERENCE_LIMIT)
+            module = registry.SOLVERS[reference.solver]
+            outcome = process.run(Task(finer, reference.solver, module, 1, None, str(file)))
+            if outcome.status != OK:
+                self.failed[file] = outcome.status
+        return str(file), self.failed.get(file)

@@ -1,0 +1,23 @@
+"""The suites by name: each file makes the cases of one for a solver."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+from mdlgen.bench.case import Case
+from mdlgen.errors import SpecError
+
+SUITES = ("transport", "elastica", "impact", "friction", "flight", "scaling", "skip", "stability")
+# The solver whose finest run the others are compared with, where it is there.
+REFERENCE = ("lattice", "exudyn")
+
+
+def cases(suite: str, solver: str, solvers: tuple[str, ...], quick: bool) -> list[Case]:
+    """The cases of a suite for one solver; `solvers` are all that there are, for references.
+
+    Raises SpecError for a suite that there is not.
+    """
+    if suite not in SUITES:
+        raise SpecError(f"there is no suite {suite[:40]!r}; there are: {', '.join(SUITES)}")
+    known = [name for name in REFERENCE if name in solvers] or [solver]
+    return import_module(f"mdlgen.bench.suites.{suite}").cases(solver, known[0], quick)

@@ -1,0 +1,31 @@
+"""The stability ladder: scenes that break solvers. A rung ends right within its tolerance or as a failure
+with its reason; a wrong number with status ok is what the bench exits with 5 for.
+
+The rungs of each kind stand in a file of their own, with their oracles.
+"""
+
+from __future__ import annotations
+
+from mdlgen.bench.case import Case
+from mdlgen.bench.suites.ladder import blocks, machines, strips
+
+# One rung of each kind that a slow solver ends within a few seconds.
+QUICK = (
+    "step 0.02 s: note in free fall",
+    "step 2e-05 s: sliding block",
+    "membrane x 10000: static",
+    "bending x 1000: static",
+    "bending x 0.01: static",
+    "mu 0: sliding block",
+    "c_R 0: impact",
+    "c_R 1: impact",
+    "roller at 100000 rad/s: block on it",
+    "overlap 10 thicknesses: rigid note",
+    "world rotated: static strip",
+)
+
+
+def cases(solver: str, reference: str, quick: bool) -> list[Case]:
+    """All rungs, or one of each kind."""
+    rungs = [*strips.rungs(), *blocks.rungs(), *machines.rungs(reference)]
+    return [rung for rung in rungs if rung.name in QUICK] if quick else rungs

@@ -1,0 +1,70 @@
+"""The paper's note between four pairs of rollers (section 4.1) over the step, against a converged run."""
+
+from __future__ import annotations
+
+from mdlgen.bench.case import Case, Finding, Reference, Run
+from mdlgen.results.compare import compare
+from mdlgen.results.result import Result
+
+SAMPLE = "transport_4x4"
+# Steps [ms]; exudyn's shorter list because its time is minutes. The reference's step, per solver.
+STEPS = {"exudyn": (0.1, 0.05, 0.025)}
+OTHER_STEPS = (0.5, 0.2, 0.1, 0.05, 0.02, 0.01)
+FINEST = {"exudyn": 0.0125}
+OTHER_FINEST = 0.002
+QUICK = ("run.duration=4 ms", "run.print_step=0.1 ms")
+GRIDS = ((10, 20), (20, 30))
+# A nip that carries less than this part of the largest mean force is left out of the comparison.
+GRAZE = 0.05
+
+
+def cases(solver: str, reference: str, quick: bool) -> list[Case]:
+    """Every step and the solver's own choice; the paper's finer grid at the solver's choice."""
+    steps = STEPS.get(solver, OTHER_STEPS)
+    made = []
+    for grid in GRIDS[:1] if quick else GRIDS:
+        sets = (f"sheets.note.boxes=[{grid[0]},{grid[1]}]", *(QUICK if quick else ()))
+        fine = FINEST.get(reference, OTHER_FINEST)
+        exact = Reference(Run(SAMPLE, sets, fine if grid == GRIDS[0] else 2 * fine), reference)
+        name = f"{grid[0]} x {grid[1]} boxes"
+        chosen = Case("transport", f"{name}, step chosen", Run(SAMPLE, sets), promised, exact)
+        made.append(chosen)
+        if grid == GRIDS[0]:
+            forced = Case("transport", f"{name}, step given", chosen.run, forced_step, exact)
+            made += [forced.at(step) for step in (steps[:2] if quick else steps)]
+    # another solver's grid of 600 boxes costs minutes and adds nothing to the comparison
+    return made if solver != "exudyn" else [case for case in made if "20 x 30" not in case.name]
+
+
+def promised(result: Result, reference: Result | None) -> list[Finding]:
+    """Errors of a run that chose its step for `run.tolerance`."""
+    return _findings(result, reference, result.model.run.tolerance)
+
+
+def forced_step(result: Result, reference: Result | None) -> list[Finding]:
+    """Errors of a run whose step was given: no tolerance was promised."""
+    return _findings(result, reference, None)
+
+
+def _findings(result: Result, reference: Result | None, tolerance: float | None) -> list[Finding]:
+    assert reference is not None, "the cases of transport have one"
+    found = compare(result, reference)
+    mean = {
+        f"{a} / {b}": float(result.contact_force[:, row].mean())
+        for row, (a, b) in enumerate(
+            zip(result.model.contacts.part_a, result.model.contacts.part_b, strict=True)
+        )
+    }
+    carried = [row for row in found.nip_force if mean[row] > GRAZE * max(mean.values())]
+    return [
+        Finding(
+            "position, RMS over boxes and time, over the travel",
+            found.relative,
+            tolerance,
+            {"position_max_mm": found.position_max_mm, "travel_difference_mm": found.travel_difference_mm},
+        ),
+        Finding(
+            "nip force, mean difference over mean force, worst nip",
+            max((found.nip_force[row] for row in carried), default=0.0),
+        ),
+    ]

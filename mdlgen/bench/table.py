@@ -1,0 +1,89 @@
+"""The bench as text: bench.md, which is also what the command prints."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from mdlgen.bench.fits import fits
+from mdlgen.bench.row import OK, Row
+from mdlgen.errors import printable
+
+if TYPE_CHECKING:
+    from mdlgen.bench.run import Bench
+
+HEAD = ("case", "solver", "step", "status", "of what", "error", "allowed", "own estimate", "wall", "per step")
+
+
+def markdown(found: Bench) -> str:
+    """Machine, versions, one table per suite, and what the rows say together."""
+    machine, versions = found.machine, found.versions
+    parts = [
+        "# Run time against error",
+        f"{machine['cpu']}, {machine['cores']} cores, one thread used; Python {machine['python']}; "
+        + ", ".join(f"{name} {number}" for name, number in versions.items())
+        + ". Wall time is the median of the repeats, solving only.",
+    ]
+    for suite in dict.fromkeys(row.suite for row in found.rows):
+        rows = [row for row in found.rows if row.suite == suite]
+        parts += [f"## {suite}", _table(rows), _reasons(rows), f"To repeat one: `{rows[0].command}`"]
+    return "\n\n".join(part for part in [*parts, *_together(found)] if part) + "\n"
+
+
+def _table(rows: list[Row]) -> str:
+    lines = [HEAD, ("---",) * len(HEAD), *(_cells(row) for row in rows)]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def _cells(row: Row) -> tuple[str, ...]:
+    per_step = row.wall_s / row.steps if row.wall_s and row.steps else None
+    return (
+        row.case,
+        row.solver,
+        _time(row.step_s),
+        row.status if row.status == OK else f"**{row.status}**",
+        row.quantity,
+        _number(row.error),
+        _number(row.tolerance),
+        _number(row.error_estimate),
+        _time(row.wall_s),
+        _time(per_step),
+    )
+
+
+def _reasons(rows: list[Row]) -> str:
+    told = [f"- {row.case}, {row.solver}: {row.status}: {row.reason}" for row in rows if row.status != OK]
+    return "\n".join(printable(line).replace("|", "/") for line in told)
+
+
+def _together(found: Bench) -> list[str]:
+    told = fits(found.rows)
+    lines = [
+        *(f"- {label}: order {order:.2f}" for label, order in told["order"].items()),
+        *(
+            f"- {label}: {_time(at['wall_s'])} at an error of {at['error']:g}"
+            + (" (beyond what was measured)" if at["extrapolated"] else "")
+            for label, at in told["wall_at_equal_error"].items()
+        ),
+        *(
+            f"- {solver}: wall time per step grows with the boxes to the power {power:.2f}"
+            for solver, power in told["growth"].items()
+        ),
+        *(f"- not honest: {line}" for line in told["estimates_off"]),
+    ]
+    counts = {status: sum(row.status == status for row in found.rows) for status in ("ok", "failed", "wrong")}
+    summed = ", ".join(f"{count} {status}" for status, count in counts.items())
+    return ["## Together", "\n".join(lines), f"{len(found.rows)} rows: {summed}."]
+
+
+def _number(value: float | None) -> str:
+    return "" if value is None else f"{value:.3g}"
+
+
+def _time(seconds: float | None) -> str:
+    """Three figures in the unit that reads best."""
+    if seconds is None:
+        return ""
+    for unit, size in (("s", 1.0), ("ms", 1e-3), ("us", 1e-6)):
+        if seconds >= size:
+            return f"{seconds / size:.3g} {unit}"
+    return f"{seconds * 1e9:.3g} ns"

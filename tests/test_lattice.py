@@ -1,0 +1,258 @@
+"""The fast solver: the same forces, momentum kept, closed forms, and the reference solver beside it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import mdlgen
+from backends.lattice import band
+from backends.lattice.arrays import build
+from mdlgen.errors import RefusedError
+from mdlgen.mechanics.bushing import bushing, bushing_pair
+from mdlgen.mechanics.vector import exp_rotation
+from mdlgen.model.lower import lower
+from mdlgen.model.tables import Model
+from mdlgen.paths import samples
+from mdlgen.registry import chosen
+from mdlgen.results.compare import compare
+from mdlgen.results.result import Result
+from mdlgen.spec.load import load, loads
+
+SHEET = """
+name: flight
+gravity: [0 m/s^2, 0 m/s^2, 0 m/s^2]
+materials:
+  paper: {E_md: 3530 MPa, E_cd: 1113 MPa, k_tx: 0.15 N*mm/rad, k_ty: 0.185 N*mm/rad, k_tz: 5 N*mm/rad}
+sheets:
+  note: {material: paper, size: [67 mm, 127 mm], thickness: 0.1 mm, mass: 0.72 g, boxes: [4, 6],
+         velocity: [1 m/s, 0.3 m/s, -0.2 m/s], spin: [30 rad/s, -20 rad/s, 50 rad/s]}
+run: {duration: 20 ms, print_step: 1 ms}
+"""
+
+
+def model(name: str, *overrides: str) -> Model:
+    return lower(load(samples() / f"{name}.yaml", overrides))
+
+
+def run(made: Model, step: float | None = None) -> Result:
+    result = mdlgen.solve(made, "lattice") if step is None else _fixed(made, step)
+    assert result.ok, result.status
+    return result
+
+
+def _fixed(made: Model, step: float) -> Result:
+    from backends.lattice import solve
+
+    return solve(made, step=step)
+
+
+# -- the parts
+
+
+@pytest.mark.parametrize("angle", [1e-6, 1e-3, 0.5, 2.5])
+def test_a_folded_pair_of_bushings_has_the_forces_of_the_two(angle: float) -> None:
+    rng = np.random.default_rng(3)
+
+    def vector(scale: float = 1.0) -> np.ndarray:
+        return scale * rng.normal(size=3)
+
+    def plain(values: np.ndarray) -> tuple[float, ...]:
+        return tuple(float(v) for v in np.ravel(values))
+
+    def turned(v: np.ndarray) -> np.ndarray:
+        return np.array(exp_rotation(plain(v))).reshape(3, 3)
+
+    xa, va, wa, xb, vb, wb, ra, rb, e = (vector() for _ in range(9))
+    fa = turned(vector())
+    fb = turned(angle * vector() / 2) @ fa
+    k, kt, c, ct = (rng.uniform(1, 5, 3) for _ in range(4))
+    two = np.zeros(11)
+    for sign in (1.0, -1.0):
+        force, on_b, on_a, energy, power = bushing(
+            *(plain(v) for v in (xa, fa, va, wa, fa @ (ra + sign * e))),
+            *(plain(v) for v in (xb, fb, vb, wb, fb @ (rb + sign * e))),
+            *(plain(v) for v in (k, kt, c, ct)),
+        )
+        two += np.array([*force, *on_b, *on_a, energy, power])
+    force, on_b, on_a, energy, power, _, _ = bushing_pair(
+        *(plain(v) for v in (xa, fa, va, wa, fa @ ra, xb, fb, vb, wb, fb @ rb, e)),
+        *(plain(2 * v) for v in (k, kt, c, ct)),
+    )
+    folded = np.array([*force, *on_b, *on_a, energy, power])
+    assert np.abs(folded - two).max() <= 1e-13 * np.abs(two).max()
+
+
+@pytest.mark.parametrize(("nodes", "reach"), [(1, 0), (5, 1), (30, 4), (40, 11)])
+def test_the_band_is_factored_and_solved(nodes: int, reach: int) -> None:
+    rng = np.random.default_rng(nodes)
+    size, height = 6 * nodes, 6 * (reach + 1)
+    full = rng.normal(size=(size, size))
+    rows, columns = np.indices(full.shape)
+    full[np.abs(rows // 6 - columns // 6) > reach] = 0.0
+    full = full @ full.T  # twice as wide
+    full[np.abs(rows // 6 - columns // 6) > reach] = 0.0
+    full += np.eye(size) * (np.abs(full).sum(axis=1).max() + 1)
+    packed = np.zeros((nodes, 6, height))
+    for node in range(nodes):
+        for c in range(6):
+            count = min(height, size - 6 * node)
+            packed[node, c, :count] = full[6 * node : 6 * node + count, 6 * node + c]
+    wanted = rng.normal(size=size)
+    found = wanted.copy()
+    assert band.factor(packed)
+    band.solve(packed, found)
+    assert np.abs(full @ found - wanted).max() < 1e-12 * np.abs(wanted).max() * nodes
+    packed[0, 0, 0] = -1.0
+    assert not band.factor(packed)
+
+
+def test_bushings_fold_where_two_stand_side_by_side() -> None:
+    system = build(model("transport_4x4"))
+    assert (len(system.joints), system.folded, system.reach, system.border) == (370, 370, 10, 8)
+    central = build(model("transport_4x4", "sheets.note.layout=center_to_center"))
+    assert (len(central.joints), central.folded) == (370, 0)
+
+
+# -- free flight
+
+
+def momentum(result: Result) -> tuple[np.ndarray, np.ndarray]:
+    bodies = result.model.bodies
+    mass = bodies.mass[:, None]
+    linear = (mass * result.velocity).sum(axis=1)
+    e = result.rotation
+    turn = np.stack(
+        [
+            1 - 2 * (e[..., 2] ** 2 + e[..., 3] ** 2),
+            2 * (e[..., 1] * e[..., 2] - e[..., 0] * e[..., 3]),
+            2 * (e[..., 1] * e[..., 3] + e[..., 0] * e[..., 2]),
+            2 * (e[..., 1] * e[..., 2] + e[..., 0] * e[..., 3]),
+            1 - 2 * (e[..., 1] ** 2 + e[..., 3] ** 2),
+            2 * (e[..., 2] * e[..., 3] - e[..., 0] * e[..., 1]),
+            2 * (e[..., 1] * e[..., 3] - e[..., 0] * e[..., 2]),
+            2 * (e[..., 2] * e[..., 3] + e[..., 0] * e[..., 1]),
+            1 - 2 * (e[..., 1] ** 2 + e[..., 2] ** 2),
+        ],
+        axis=-1,
+    ).reshape(*e.shape[:2], 3, 3)
+    own = np.einsum("tbji,tbj->tbi", turn, result.spin)
+    spin = np.einsum("tbij,tbj->tbi", turn, bodies.inertia * own)
+    angular = (np.cross(result.position, mass * result.velocity) + spin).sum(axis=1)
+    return linear, angular
+
+
+def test_momentum_is_kept_in_free_flight() -> None:
+    result = run(lower(loads(SHEET)))
+    linear, angular = momentum(result)
+    assert np.abs(linear - linear[0]).max() < 1e-12 * np.abs(linear[0]).max()
+    assert np.abs(angular - angular[0]).max() < 1e-6 * np.abs(angular[0]).max()
+    assert np.abs(result.position[-1, 0] - result.position[0, 0]).max() > 5.0
+    bodies = result.model.bodies
+    start = 0.5 * float((bodies.mass * (bodies.velocity**2).sum(axis=1)).sum())
+    start += 0.5 * float((bodies.inertia * bodies.spin**2).sum())  # its axes are the global ones
+    # the rule is not exact in energy: its error goes with the square of the step, 3e-5 at this one
+    assert start * 0.5 < result.energy.kinetic + result.energy.elastic <= start * (1 + 1e-4)
+
+
+def test_a_turned_world_gives_the_turned_motion() -> None:
+    angles = "[20 deg, -35 deg, 50 deg]"
+    rest = "sheets.note.velocity=[0 m/s, 0 m/s, 0 m/s]"
+    plain = lower(loads(SHEET, [rest]))
+    turned = lower(loads(SHEET, [rest, f"sheets.note.rotation={angles}"]))
+    rotation = turned.sheets[0].rotation
+    spin = rotation @ plain.sheets[0].spin * 1000
+    turned = lower(
+        loads(
+            SHEET,
+            [
+                rest,
+                f"sheets.note.rotation={angles}",
+                "sheets.note.spin=[" + ", ".join(f"{v!r} rad/s" for v in spin.tolist()) + "]",
+            ],
+        )
+    )
+    one, two = run(plain, 0.1), run(turned, 0.1)
+    assert np.abs(two.position - one.position @ rotation.T).max() < 1e-8 * 127
+
+
+def test_the_error_falls_with_the_square_of_the_step() -> None:
+    made = lower(loads(SHEET, ["run.duration=5 ms"]))
+    fine = run(made, 0.00625)
+    errors = [compare(fine, run(made, step)).position_rms_mm for step in (0.1, 0.05, 0.025)]
+    assert 1.7 < math.log2(errors[0] / errors[1]) < 2.3
+    assert 1.7 < math.log2(errors[1] / errors[2]) < 2.4
+
+
+# -- contact, against closed forms
+
+
+@pytest.mark.parametrize("restitution", [0.3, 0.7])
+def test_a_dropped_block_rebounds_by_its_restitution(restitution: float) -> None:
+    result = run(model("verify/drop", f"contacts.0.restitution={restitution}", "run.duration=180 ms"))
+    height = result.position[:, 0, 2]
+    first = int(np.argmin(height))
+    fall = height[0] - height[first:].min()
+    rise = height[first:].max() - height[first:].min()
+    # gravity acts in the contact, and the smoothing lifts it: both below half a percent here
+    assert rise / fall == pytest.approx(restitution**2, rel=0.02, abs=0.002)
+    assert result.error_estimate is not None and result.error_estimate <= result.model.run.tolerance
+
+
+def test_a_block_slides_to_a_stop_where_friction_says() -> None:
+    result = run(model("verify/slide"))
+    travel = float(np.linalg.norm(result.position[-1, 0] - result.position[0, 0]))
+    # v^2 / (2 mu g) and what the cubic step of the smoothing adds: 0.382263 m
+    assert travel == pytest.approx(382.263, rel=1e-5)
+
+
+# -- a sheet in nips, against the reference solver
+
+
+def test_transport_agrees_with_the_reference_solver() -> None:
+    scene = ["sheets.note.boxes=[5,10]", "run.duration=10 ms", "run.print_step=0.5 ms"]
+    fast = run(model("transport_4x4", *scene))
+    slow = mdlgen.solve(model("transport_4x4", *scene, "run.step=25 us"), "exudyn")
+    assert slow.ok
+    away = compare(slow, fast)
+    travel = float(np.linalg.norm(slow.position[-1, 0] - slow.position[0, 0]))
+    assert away.position_rms_mm < 1e-3 * travel
+    depth = fast.statistics.mean_depth / np.where(
+        slow.statistics.mean_depth > 0, slow.statistics.mean_depth, 1
+    )
+    gripped = slow.statistics.mean_force > 1.0
+    assert gripped.sum() >= 6 and np.abs(depth[gripped] - 1).max() < 0.02
+    assert fast.error_estimate is not None and fast.error_estimate <= 1e-3
+    assert 0.3 * away.relative <= fast.error_estimate
+
+
+def test_a_fixed_step_is_taken_and_its_error_told() -> None:
+    scene = ["sheets.note.boxes=[2,3]", "run.duration=4 ms", "run.step=50 us"]
+    result = run(model("transport_4x4", *scene))
+    assert (result.step, result.steps) == (0.05, 80) or result.steps > 80
+    assert result.error_estimate is not None
+
+
+# -- what is refused, chosen, or fails
+
+
+def test_auto_takes_the_fast_solver_where_it_can() -> None:
+    assert chosen("auto", model("transport_4x4")) == ("lattice", "")
+    name, why = chosen("auto", model("cantilever"))
+    assert name == "exudyn" and "static" in why
+    with pytest.raises(RefusedError, match="static"):
+        mdlgen.solve(model("cantilever"), "lattice")
+
+
+def test_a_box_that_leaves_its_bounds_ends_the_run_by_name() -> None:
+    scene = ["sheets.note.boxes=[2,3]", "run.margin=0.1 mm", "rollers.motor_1_left.drive.speed=-186.7 rad/s"]
+    result = mdlgen.solve(model("transport_4x4", *scene, "run.step=0.1 ms"), "lattice")
+    assert not result.ok and "left the bounds" in result.status and "box note_" in result.status
+
+
+def test_a_run_that_cannot_converge_says_where() -> None:
+    scene = ["sheets.note.boxes=[2,3]", "rollers.motor_1_left.drive.speed=1e7 rad/s", "run.duration=5 ms"]
+    result = mdlgen.solve(model("transport_4x4", *scene), "lattice")
+    assert not result.ok and " ms" in result.status
