@@ -47,6 +47,14 @@ def read_text(path: Path) -> str:
         raise OutputError(f"{path}: cannot read: {getattr(error, 'strerror', None) or error}") from None
 
 
+def read_exactly(path: Path) -> str:
+    """As `read_text`, with a byte order mark and line ends as they stand in the file. Raises OutputError."""
+    try:
+        return path.read_bytes().decode("utf-8", errors="replace")
+    except (OSError, ValueError) as error:
+        raise OutputError(f"{path}: cannot read: {getattr(error, 'strerror', None) or error}") from None
+
+
 def write_atomic(path: Path, content: str | bytes) -> None:
     """Write `path` through a temporary file in the same folder, fsync and rename.
 

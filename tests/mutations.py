@@ -1,4 +1,4 @@
-"""Random single changes of a text: a number, a name or a sign, outside the notes above it."""
+"""Single changes of a text, but for its notes: a number, a name or a sign at random; a statement left out."""
 
 from __future__ import annotations
 
@@ -9,6 +9,9 @@ from typing import NamedTuple
 
 _TOKEN = re.compile(r"\d+\.?\d*(?:[eE][-+]?\d+)?|[A-Za-z_]\w*|[-+*/^<>!?:.,(){}\[\]]")
 _SIGNS = ("+", "-", "*", "/", ",", "(", ")", "")
+
+
+_STATEMENT = re.compile(r"^[ \t]*\*(\w+)[ \t]*\(.*?\)[ \t]*\n(?=[ \t]*(?:\*|\n|<|\Z))", re.M | re.S)
 
 
 class Mutation(NamedTuple):
@@ -36,3 +39,14 @@ def mutations(text: str, seed: int, count: int, begin: str = "*BeginMDL") -> Ite
             new = rng.choice([*(alike or names), f"{old}x"])
         line = text[text.rfind("\n", 0, token.start()) + 1 : text.find("\n", token.end())]
         yield Mutation(text[: token.start()] + new + text[token.end() :], old, new, line.strip())
+
+
+def omissions(text: str, seed: int, begin: str = "*BeginMDL") -> Iterator[Mutation]:
+    """One statement of each name left out."""
+    rng = random.Random(seed)
+    kinds: dict[str, list[re.Match[str]]] = {}
+    for statement in _STATEMENT.finditer(text, text.index(begin)):
+        kinds.setdefault(statement[1], []).append(statement)
+    for statement in (rng.choice(found) for found in kinds.values()):
+        where = " ".join(statement[0].split())
+        yield Mutation(text[: statement.start()] + text[statement.end() :], where, "", where)

@@ -303,7 +303,9 @@ def inside(values: dict[str, dict[str, Any]], system: str) -> dict[str, dict[str
             return value.replace(f"{system}.", "") if system else value
         if isinstance(value, (tuple, list)):
             return [plain(v) for v in value]
-        return {k: plain(v) for k, v in value.items()} if isinstance(value, dict) else value
+        if isinstance(value, dict):  # what is an argument of a system is a name of its own only there
+            return {k: plain(v) for k, v in value.items() if k != "attachments"}
+        return value
 
     return {
         kind: {plain(n): plain(v) for n, v in found.items() if n.startswith(system)}
@@ -333,7 +335,7 @@ def test_the_definition_means_what_the_whole_text_means(changes: tuple[str, ...]
 def test_two_notes_in_one_machine_do_not_meet() -> None:
     texts = [sheets_of(model_of(f"name={name}")) for name in ("one", "two")]
     bare = "\n".join(t[t.index("*DefineSystem") :] for t in texts)
-    host = f'*BeginMDL( host, "Host" )\n{bare}*EndMDL()\n'
+    host = f'*BeginMDL( host, "Host" )\n*StandardInclude(FILE)\n{bare}*EndMDL()\n'
     assert {f.code for f in lint(host).findings} == {"external"}
     assert len(read(host).values["bushings"]) == 2 * 34
 
@@ -356,7 +358,7 @@ def test_lint_of_the_definition_names_what_is_external(cli: Run, tmp_path: Path)
 
 def test_lint_in_a_model_without_an_instance() -> None:
     text = sheets_of(model_of())
-    model = f'*BeginMDL( m, "m" )\n{text[text.index("*DefineSystem") :]}*EndMDL()\n'
+    model = f'*BeginMDL( m, "m" )\n*StandardInclude(FILE)\n{text[text.index("*DefineSystem") :]}*EndMDL()\n'
     assert [f.code for f in lint(model).findings] == ["external"] * 7
 
 

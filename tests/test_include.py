@@ -13,7 +13,7 @@ BODY = '*Body( {0}, "{0}", P_Global_Origin, , , ,  )\n*SetBodyInertia( {0}, 1, 1
 
 
 def model(*lines: str) -> str:
-    return "\n".join(('*BeginMDL( m, "m" )', *lines, "*EndMDL()", ""))
+    return "\n".join(('*BeginMDL( m, "m" )', *lines, "*StandardInclude(FILE)", "*EndMDL()", ""))
 
 
 def report_of(folder: Path, text: str) -> Report:
@@ -35,7 +35,7 @@ def test_a_file_stands_where_it_is_included(tmp_path: Path) -> None:
     written(tmp_path, part="notes that no statement follows\n" + BODY.format("b"))
     text = model('*Include("part.mdl")', '*Marker( k, "k", b, P_Global_Origin )')
     report = report_of(tmp_path, text)
-    assert report.findings == () and report.statements == 5
+    assert report.findings == () and report.statements == 6
     assert set(read(text, "host.mdl", tmp_path).values["bodies"]) == {"b"}
 
 

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
+
 import pytest
 
 from backends.motionview.reader import lint
+from mdlgen.cli import app
 
+STANDARD = "*StandardInclude(FILE)"
 HEAD = (
     '*Point( p, "p" )',
     "*SetPoint( p, 0, 0, 0 )",
@@ -27,7 +32,7 @@ def law(*numbers: float) -> str:
 
 
 def text_of(*statements: str) -> str:
-    return "\n".join(('*BeginMDL( m, "m" )', *statements, "*EndMDL()", ""))
+    return "\n".join(('*BeginMDL( m, "m" )', *statements, STANDARD, "*EndMDL()", ""))
 
 
 def test_nothing_to_say() -> None:
@@ -73,6 +78,15 @@ def test_nothing_to_say() -> None:
         (('*Point( q, "q"',), "syntax", "error", 2, "no closing parenthesis"),
         ((*HEAD, '*Marker( k, "\u00e9", b, p )'), "ascii", "warning", 6, "plain ASCII"),
         (('*SetNote( b, "a\r\n" )',), "ascii", "warning", 2, "LF"),
+        (('*SetNote( b, "a\0" )',), "control", "warning", 2, "control character (0)"),
+        (("// note", "here"), "syntax", "error", 3, "a statement"),
+        # what no value acts on
+        ((*HEAD, "*Set( b.mass, 5 )"), "unread", "warning", 6, "what *Set of b.mass does is not known"),
+        ((*HEAD, "*Set( b.usecm, false )"), "unread", "warning", 6, "b.usecm"),
+        ((*HEAD, "*SetReal( b.mass, 5 )"), "unread", "warning", 6, "b.mass"),
+        ((*HEAD, "*SetPoint( b, 1, 2, 3 )"), "unread", "warning", 6, "*SetPoint of b"),
+        ((*HEAD, BUSH, law(*range(1, 13)), "*Set( bsh.kx, 5 )"), "unread", "warning", 8, "bsh.kx"),
+        ((*HEAD, "*SetOrientation( b.im, ONEAXIS, Z, VECTOR, V_Global_X )"), "unread", "warning", 6, "b.im"),
         # values
         (('*Body( c, "c", P_Global_Origin )',), "mass", "warning", 2, "has no mass"),
         ((*HEAD, "*Set( b.inertia_props_from_graphic, true )", CYLINDER.format(-5)), "mass", "warning", 4,
@@ -127,6 +141,61 @@ def test_idle_parts_of_a_conditional_are_no_findings() -> None:
     assert lint(text).findings == ()
 
 
+def test_properties_that_change_no_value_are_no_findings() -> None:
+    text = text_of(
+        *ROLLER,
+        CYLINDER.format(-5),
+        "*Set( b.usecm, true )",
+        "*Set( g.hide_in_post, true )",
+        '*Set( g.mesh_coarsening_level, "AGGRESSIVE" )',
+    )
+    assert lint(text).findings == ()
+    (waits,) = lint(text_of(*HEAD, "*if( 0 )", "*Set( b.mass, 5 )", "*endif()", "*Set( b.mass, 5 )")).findings
+    assert waits.place.line == 9
+
+
+def test_a_model_without_the_standard_include() -> None:
+    text = text_of(*HEAD)
+    assert lint(text).findings == ()
+    (warning,) = lint(text.replace(STANDARD, "")).findings
+    assert (warning.code, warning.severity, warning.place.line) == ("standard", "warning", 1)
+    assert lint("*DefineSystem( d )\n*EndDefine()\n").findings == ()  # a part of a model has it there
+
+
+def test_line_ends_and_marks_of_a_file_are_told() -> None:
+    text = text_of(*HEAD)
+    for changed, words in (
+        (text.replace("\n", "\r\n"), "LF, not CR LF"),
+        (text.replace("\n", "\r"), "LF, not CR LF"),
+        ("\ufeff" + text, "byte order mark"),
+    ):
+        report = lint(changed)
+        assert [(f.code, f.place.line) for f in report.findings] == [("ascii", 1)]
+        assert words in report.findings[0].message
+
+
+@pytest.mark.parametrize(
+    ("raw", "words"),
+    [
+        (b"", "it is empty"),
+        (text_of(*HEAD).encode("utf-16"), "UTF-16"),
+        (text_of(*HEAD).encode("utf-16-le"), "UTF-16"),
+        (bytes(range(256)) * 20, "no text at all"),
+    ],
+)
+def test_what_is_no_text_is_said_so(raw: bytes, words: str) -> None:
+    (error,) = lint(raw.decode("utf-8", errors="replace")).errors
+    assert error.code == "no-model" and words in error.message
+
+
+def test_too_few_attachments() -> None:
+    text = text_of("*DefineSystem( d, a, z )", '*Attachment( a, "a", Body, "", B_Ground,  )',
+                   '*Attachment( z, "z", Body, "", B_Ground,  )', "*EndDefine()",
+                   '*System( s, "s", d, B_Ground )')  # fmt: skip
+    (warning,) = lint(text).findings
+    assert (warning.code, warning.place.line) == ("attachment", 6) and "s is given no z" in warning.message
+
+
 def test_too_many_attachments() -> None:
     text = text_of("*DefineSystem( d, a )", '*Attachment( a, "a", Body, "", B_Ground,  )', "*EndDefine()",
                    '*System( s, "s", d, B_Ground, B_Ground )')  # fmt: skip
@@ -148,3 +217,30 @@ def test_what_an_unread_definition_makes_is_only_a_warning() -> None:
     report = lint(text)
     assert not report.errors
     assert {f.code for f in report.warnings} == {"include", "external"}
+
+
+def linted(capsys: pytest.CaptureFixture[str], *args: object) -> tuple[str, str]:
+    """Standard output and standard error of the command."""
+    with pytest.raises(SystemExit) as ended:
+        app(["lint", *map(str, args)], prog_name="mdlgen")
+    assert ended.value.code == 0
+    return capsys.readouterr()
+
+
+def test_values_go_to_standard_output(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    file = tmp_path / "t.mdl"
+    file.write_text(text_of(*HEAD[:3], "*SetBodyInertia( b, 1, 11, 12, 13, 1, 2, 3 )", "*Set( b.mass, 5 )"))
+    out, err = linted(capsys, file, "--values", "-")
+    assert json.loads(out)["bodies"]["b"]["inertia"] == [11, 12, 13, 1, 3, 2]  # xx, yy, zz, xy, yz, xz
+    assert "[unread]" in err and "1 warnings" in err
+    assert [p.name for p in tmp_path.iterdir()] == ["t.mdl"]
+
+
+def test_line_ends_of_a_file_reach_lint(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    file = tmp_path / "t.mdl"
+    file.write_bytes(b"\xef\xbb\xbf" + text_of(*HEAD).replace("\n", "\r\n").encode())
+    out, _ = linted(capsys, file)
+    assert "LF, not CR LF" in out and "byte order mark" in out and "2 warnings" in out

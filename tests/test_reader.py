@@ -25,7 +25,7 @@ DECK = 5e-8
 
 
 def model(*statements: str) -> str:
-    return "\n".join(('*BeginMDL( m, "m" )', *statements, "*EndMDL()", ""))
+    return "\n".join(('*BeginMDL( m, "m" )', *statements, "*StandardInclude(FILE)", "*EndMDL()", ""))
 
 
 def read_clean(*statements: str) -> dict[str, Any]:
@@ -810,6 +810,7 @@ def test_the_real_file_lints(pair: tuple[dict[str, Any], Report, Deck]) -> None:
     _, report, _ = pair
     assert not report.errors
     assert any("sysDefTire.mdl" in f.message for f in report.warnings)
+    assert {f.code for f in report.warnings}.isdisjoint(("unknown", "unread", "standard", "attachment"))
 
 
 @real

@@ -26,6 +26,7 @@ class Verification:
     differences: list[Difference] = field(default_factory=list)
     turned: Turned | None = None
     notes: list[str] = field(default_factory=list)
+    script: str | None = None  # the file that was read; None for the one that mdlgen writes, or none
 
     @property
     def ok(self) -> bool:
@@ -35,13 +36,16 @@ class Verification:
         """Of the values as they are, then of those turned."""
         return [*self.differences, *(self.turned.differences if self.turned else [])]
 
-    def add(self, source: str, compared: Compared) -> None:
-        """One kind of one source; of two texts the larger difference is kept."""
+    def add(self, source: str, compared: Compared, within: str = "") -> None:
+        """One kind of one source; of two texts, or of several systems, the larger difference is kept.
+
+        `within` goes before the names of what differs.
+        """
         kinds = self.kinds.setdefault(source, {})
         before = kinds.get(compared.kind)
         if before is None or compared.largest > before.largest:
             kinds[compared.kind] = compared
-        self.differences += compared.differences
+        self.differences += (d._replace(name=within + d.name) for d in compared.differences)
 
     def differs(self, kind: str, name: str, what: str) -> None:
         """One difference more."""

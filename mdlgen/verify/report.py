@@ -21,6 +21,7 @@ def report(found: Verification) -> dict[str, Any]:
         },
         "differences": [str(d) for d in found.all_differences()],
         "notes": found.notes,
+        "script": found.script,
     }
     if found.turned is not None:
         result["turned"] = {

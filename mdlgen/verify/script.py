@@ -29,6 +29,7 @@ class Script(NamedTuple):
     gravity: tuple[float, float, float] | None
     contacts: dict[str, dict[str, float]]
     rest: str  # its statements without the data, in a normal form
+    system: str | None = None  # path of the system in the model that the contacts are in
 
     def numbers(self, contact: str) -> dict[str, float]:
         """Numbers of one contact, with what MotionView takes where nothing is said."""
@@ -60,7 +61,10 @@ def read(text: str, file: str = "<script>") -> Script:
         gravity, contacts = _gravity(data.get("GRAVITY")), _contacts(data.get("CONTACTS", []))
     except ValueError as error:
         raise _wrong(str(error), tree.body[0], file) from None
-    return Script(gravity, contacts, ast.dump(ast.Module(_without_notes(rest), [])))
+    system = data.get("SYSTEM")
+    if not isinstance(system, str | None):
+        raise _wrong("SYSTEM is a text", tree.body[0], file)
+    return Script(gravity, contacts, ast.dump(ast.Module(_without_notes(rest), [])), system)
 
 
 def _name(statement: ast.stmt) -> str:

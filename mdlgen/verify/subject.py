@@ -9,7 +9,7 @@ from typing import Any
 
 from mdlgen.errors import SpecError
 from mdlgen.model.tables import Model
-from mdlgen.paths import read_text
+from mdlgen.paths import read_exactly, read_text
 from mdlgen.registry import emitter, reader
 from mdlgen.spec.scene import Scene
 from mdlgen.verify import alone, script
@@ -27,9 +27,9 @@ class File:
     path: Path
 
     @staticmethod
-    def read(path: Path | None) -> File | None:
-        """Raises OutputError."""
-        return None if path is None else File(read_text(path), path)
+    def read(path: Path | None, exactly: bool = False) -> File | None:
+        """`exactly` keeps its line ends. Raises OutputError."""
+        return None if path is None else File(read_exactly(path) if exactly else read_text(path), path)
 
 
 class Read:
@@ -62,14 +62,11 @@ class Subject:
     Raises RefusedError for a scene that has no text, SpecError for a file that is none of its kind.
     """
 
-    def __init__(
-        self, scene: Scene, model: Model, only_sheets: bool, text: File | None, companion: File | None
-    ):
+    def __init__(self, scene: Scene, model: Model, only_sheets: bool, text: File | None):
         self.scene = scene
         self.model = model
         self.only = "sheets" if only_sheets or model.externals else None
         self.text = text
-        self.companion = companion
         self.writer = emitter("motionview")
         self.times = stations(model)
 
@@ -80,32 +77,32 @@ class Subject:
         said |= {"run": run(model), "gravity": gravity(model)}
         return alone.of_sheets(said, model, self.text is not None) if self.only else said
 
-    def read(self, set_contact: bool) -> Read:
-        """The text that was given, or the one that mdlgen writes."""
+    def reads(self, set_contact: bool) -> list[Read]:
+        """The text that was given, or mdlgen's own; a host has one for each system of the sheets."""
         if self.text is None:
-            return self.own(set_contact)
+            return [self.own(set_contact)]
         path = self.text.path
-        return self._read(reader("motionview").read(self.text.text, str(path), path.parent))
+        return self._read(reader("motionview").read(self.text.text, str(path), path.parent), str(path))
 
     def own(self, set_contact: bool) -> Read:
         """The text that mdlgen writes."""
         text = self.writer.emit(self.model, set_contact=set_contact, only=self.only)
-        return self._read(reader("motionview").read(text, "<text>"))
+        return self._read(reader("motionview").read(text, "<text>"), "<text>")[0]
 
-    def _read(self, reading: Any) -> Read:
+    def _read(self, reading: Any, file: str) -> list[Read]:
+        for finding in reading.notes.findings():
+            if finding.code == "no-model":
+                raise SpecError(finding.message, place=finding.place)
         if not self.only:
-            return Read(reading, "")
+            return [Read(reading, "")]
         definition = alone.definition(self.model)
         instances = reading.instances(definition)
         if not instances:
-            raise SpecError(f"this text has no instance of {definition}, the sheets of {self.model.name}")
-        return Read(reading, instances[0])
+            what = f"no instance of {definition}, the sheets of {self.model.name}"
+            raise SpecError(f"{file}: this text has {what}")
+        return [Read(reading, instance) for instance in instances]
 
-    def script(self, set_contact: bool) -> tuple[script.Script, bool]:
-        """The script that goes with a text, and whether it does what mdlgen's own does."""
+    def script(self, set_contact: bool) -> script.Script:
+        """The script that mdlgen writes for a text; empty where it needs none."""
         text = self.writer.companion(self.model, set_contact=set_contact, only=self.only)
-        own = script.NONE if text is None else script.read(text)
-        if self.companion is None:
-            return own, True
-        given = script.read(self.companion.text, str(self.companion.path))
-        return given, given.rest == own.rest
+        return script.NONE if text is None else script.read(text)

@@ -16,14 +16,18 @@ _MOST = 3  # differences told of one kind for one value
 
 
 def turn_all(
-    subject: Subject, text: Read, numbers: Script, before: Turned | None, progress: Progress | None
-) -> Turned:
-    """Of a second text of the same scene (`before`) only the values of contacts are turned."""
-    turned = before or Turned()
+    subject: Subject,
+    text: Read,
+    numbers: Script,
+    turned: Turned,
+    contacts_only: bool,
+    progress: Progress | None,
+) -> None:
+    """Adds to `turned`. Of a second text of the same scene only the values of contacts need to be turned."""
     turner = _Turner(subject, text, numbers, turned)
     members = text.values["members"]
     turns = [k for k in knobs(subject.scene, subject.model) if k.path in turner.known]
-    if before is not None:
+    if contacts_only:
         turns = [k for k in turns if k.path.startswith("ds_contact_")]
     else:
         paths = {k.path for k in turns}
@@ -39,7 +43,6 @@ def turn_all(
         else:
             turned.shown_only.discard(knob.path)
             turner.turn(knob)
-    return turned
 
 
 class _Turner:

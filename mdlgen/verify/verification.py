@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 from mdlgen.errors import RefusedError, SpecError
 from mdlgen.model.tables import Model
 from mdlgen.registry import emitter, reader, validator
 from mdlgen.spec.scene import Scene
-from mdlgen.verify import script
+from mdlgen.verify.companion import beside, chosen, of_systems, taken
+from mdlgen.verify.elements import element_differences
 from mdlgen.verify.expected import reach
 from mdlgen.verify.found import (
     Found,
@@ -19,9 +21,13 @@ from mdlgen.verify.found import (
     marker_table,
     run_table,
 )
-from mdlgen.verify.outcome import Verification
+from mdlgen.verify.host import host_notes
+from mdlgen.verify.outcome import Turned, Verification
+from mdlgen.verify.own import Own
+from mdlgen.verify.script import DEFAULT_GRAVITY, Script
+from mdlgen.verify.statements import remarks, unaccounted
 from mdlgen.verify.subject import File, Read, Subject
-from mdlgen.verify.tables import Table, compare
+from mdlgen.verify.tables import Difference, Table, compare
 from mdlgen.verify.turning import Progress, turn_all
 from mdlgen.verify.wording import wording
 
@@ -53,30 +59,28 @@ def verify(
     """
     if only not in (None, "sheets"):
         raise SpecError(f"{only[:80]!r} cannot be verified alone; there is: sheets")
-    if companion is None and text is not None:
-        beside = text.with_name(f"{text.stem}_mview.py")
-        companion = beside if beside.is_file() else None
-    subject = Subject(scene, model, only is not None, File.read(text), File.read(companion))
+    subject = Subject(scene, model, only is not None, File.read(text, exactly=True))
     found = Verification()
     said = subject.said()
+    both = text is None and "contacts" in said and said["contacts"].names
     first: Read | None = None
-    for set_contact in (
-        (False, True) if text is None and "contacts" in said and said["contacts"].names else (False,)
-    ):
-        read = subject.read(set_contact)
-        _lint(subject, read, found)
-        numbers, as_written = subject.script(read.has_numbers)
-        if not as_written:
-            what = "its statements are not those that mdlgen writes; only its numbers may differ"
-            found.differs("script", "", f"{companion}: {what}")
-        _text(said, subject, read.values, numbers, found)
-        if text is not None:
-            own = subject.own(read.has_numbers).values
-            leave = _MACHINE if subject.only else frozenset[str]()
-            found.differences += wording(own, read.values, leave)
+    for set_contact in (False, True) if both else (False,):
+        reads = subject.reads(set_contact)
+        one = reads[0]
+        first = first or one
+        numbers = mine = subject.script(one.has_numbers)
+        if text is None:
+            _lint(subject, one, found)
+            numbers = chosen(mine, File.read(companion), found)
+        else:
+            numbers = _given(subject, text, companion, reads, mine, found)
+        for read in reads:
+            _text(said, subject, read.values, numbers, found, read.prefix if len(reads) > 1 else "")
         if turn and not found.differences:
-            found.turned = turn_all(subject, read, numbers, found.turned, progress)
-        first = first or read
+            contacts_only = found.turned is not None
+            found.turned = found.turned or Turned()
+            for read in reads:
+                turn_all(subject, read, numbers, found.turned, contacts_only, progress)
     assert first is not None
     if subject.only and deck is None:
         found.notes.append("no deck: it is of a whole machine")
@@ -88,40 +92,91 @@ def verify(
 def _lint(subject: Subject, read: Read, found: Verification) -> None:
     """A text of our own has nothing to remark, but for what is external by design."""
     _ = read.values
-    report = read.reading.report
-    own = subject.text is None
-    for finding in report.findings if own else report.errors:
+    for finding in read.reading.report.findings:
         if not (subject.only and finding.code == "external"):
             found.differs("lint", "", str(finding))
 
 
+def _given(
+    subject: Subject, text: Path, companion: Path | None, reads: list[Read], mine: Script, found: Verification
+) -> Script:
+    """What a given text has that no value shows, its wording, and its script."""
+    one = reads[0]
+    our = subject.own(one.has_numbers)
+    names = frozenset(our.reading.program.definitions) if subject.only else None
+    in_host = subject.only is not None and one.reading.program.begin is not None
+    own = Own(one.reading, names, tuple(r.prefix for r in reads) if subject.only else ())
+    _ = one.values
+    remarks(one.reading, own, found)
+    found.differences += unaccounted(our.reading, one.reading, own)
+    given, looked = (File.read(companion), []) if companion is not None else beside(text, own)
+    if given is None:
+        taken(mine, looked, found)
+    numbers = chosen(mine, given, found)
+    if in_host:
+        of_systems(mine, numbers, given, reads, found)
+    leave = _MACHINE if subject.only else frozenset[str]()
+    for read in reads:
+        within = read.prefix if len(reads) > 1 else ""
+        differences = wording(our.values, read.values, leave)
+        found.differences += (d._replace(name=within + d.name) for d in differences)
+        if in_host:
+            found.notes += host_notes(our, read)
+    return numbers
+
+
 def _text(
-    said: dict[str, Table], subject: Subject, values: Values, numbers: script.Script, found: Verification
+    said: dict[str, Table],
+    subject: Subject,
+    values: Values,
+    numbers: Script,
+    found: Verification,
+    within: str,
 ) -> None:
     tables = Found(subject.times).tables(values)
     tables["data"] = data_table(values)
     tables["contacts"] = contact_table(values, {n: numbers.numbers(n) for n in values["contacts"]})
     tables["run"] = run_table(values)
-    tables["gravity"] = gravity_table(numbers.gravity or script.DEFAULT_GRAVITY)
+    tables["gravity"] = gravity_table(numbers.gravity or _default_gravity(values))
     for kind, table in said.items():
-        found.add("text", compare(kind, table, tables[kind]))
+        found.add("text", compare(kind, table, tables[kind]), within)
     for name in sorted(set(numbers.contacts) - set(values["contacts"])):
         found.differs("script", name, "is no contact of the text")
+
+
+def _default_gravity(values: Values) -> tuple[float, float, float]:
+    """Of the standard include; without it nothing is known of gravity."""
+    has = any(record["standard_include"] for record in values["model"].values())
+    return DEFAULT_GRAVITY if has else (math.nan, math.nan, math.nan)
 
 
 def _deck(
     said: dict[str, Table], subject: Subject, text: Values, given: File | None, found: Verification
 ) -> None:
     """The deck against the Model; and its markers, which a text leaves to MotionView, against the text's."""
-    if given is None:
-        try:
-            given = File(emitter("motionsolve").emit(subject.model), Path("<deck>"))
-        except RefusedError as error:
+    try:
+        own = emitter("motionsolve").emit(subject.model)
+    except RefusedError as error:
+        own = None
+        if given is None:
             found.notes.append(f"no deck: {error.message}")
             return
-    values = reader("motionsolve").read(given.text, str(given.path)).values
-    for problem in validator("motionsolve").validate(given.text, str(given.path)):
-        found.differs("deck", "", problem)
+    if given is None:
+        assert own is not None
+        given, own = File(own, Path("<deck>")), None
+    file = str(given.path)
+    reading = reader("motionsolve").read(given.text, file)
+    problems = validator("motionsolve").validate(given.text, file)
+    found.differences += (Difference("deck", "", problem) for problem in problems)
+    try:
+        values = reading.values
+    except SpecError as error:  # a deck that lacks something is one, and differs
+        if not problems:
+            found.differs("deck", "", error.message)
+        return
+    if own is not None:
+        mine = reader("motionsolve").read(own, "<deck>")
+        found.differences += element_differences(mine, reading, file)
     tables = Found(subject.times).tables(values)
     tables["contacts"] = contact_table(values, {})
     tables["run"] = run_table(values)

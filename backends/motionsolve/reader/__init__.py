@@ -6,6 +6,7 @@ from functools import cached_property
 from typing import Any
 
 from backends.motionsolve.parse import root
+from backends.motionsolve.reader.elements import Key, elements
 from backends.motionsolve.reader.values import values
 
 __all__ = ["Reading", "read"]
@@ -22,6 +23,10 @@ class Reading:
     def values(self) -> dict[str, Any]:
         """Every entity by kind and name, in mm, N, kg, s, rad; see `backends.motionsolve.reader.values`."""
         return values(self._root, self._file)
+
+    def elements(self) -> list[tuple[Key, int, dict[str, str]]]:
+        """Key (section, kind, name), line and attributes of every element; ids are names there."""
+        return list(elements(self._root))
 
 
 def read(text: str, file: str = "<deck>") -> Reading:

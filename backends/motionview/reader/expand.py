@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from typing import NamedTuple
 
 from backends.motionview.reader.pair import Unmade
@@ -265,6 +266,11 @@ class Expansion:
         if holds and rest and rest[0] not in ("l", "r", "cm") and slot.declarations[0].child is None:
             return None
         return slot, rest
+
+    def slots(self) -> Iterator[Slot]:
+        """All names of all scopes, those too that the standard include makes."""
+        for scope in (self.standard, *self.world.scopes):
+            yield from scope.slots.values()
 
     def _why_unknown(self, scope: Scope, target: str) -> str:
         first = target.split(".")[0].strip()

@@ -85,7 +85,7 @@ class Includes:
             raise Unread(f"it cannot be read: {error.strerror or error}") from None
         self._bytes += len(raw)
         beside = Path(self.sources[0].file).parent / told
-        inner = Source(raw.decode("utf-8-sig", errors="replace"), str(beside))
+        inner = Source(raw.decode("utf-8", errors="replace"), str(beside))
         self.sources.append(inner)
         return path, inner
 

@@ -9,6 +9,7 @@ from backends.motionview.reader import arity
 from backends.motionview.reader.expand import Lost
 from backends.motionview.reader.report import Notes, Trouble
 from backends.motionview.reader.scope import Scope
+from backends.motionview.reader.settable import ACTED, acts, harmless
 from backends.motionview.reader.statement import Statement
 from backends.motionview.reader.things.external import External
 from backends.motionview.reader.traps import traps
@@ -35,6 +36,7 @@ _WORDS = {
 _UNUSED = {"Point", "PointPair", "Vector", "VectorPair", "Curve", "Real", "Integer", "String", "Option"}
 _KEYWORD = re.compile(r"[A-Z][A-Z0-9_]*\Z|\d[A-Z]\w*\Z")
 _WORD = re.compile(r"[A-Za-z_]\w*")
+_CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f]")
 
 
 def lint(reading: Reading) -> None:
@@ -43,8 +45,10 @@ def lint(reading: Reading) -> None:
     _bytes(reading)
     _arity(reading)
     _includes(reading)
+    _standard(reading)
     _duplicates(reading)
     _lost(reading.expansion.lost, notes)
+    _unread(reading)
     _references(reading)
     traps(reading.world, notes)
     _unused(reading)
@@ -56,10 +60,15 @@ def _bytes(reading: Reading) -> None:
             at = next(k for k, c in enumerate(source.text) if ord(c) > 127)
             message = "MotionView writes plain ASCII; this character may not be read"
             reading.notes.add("warning", "ascii", source.place(at), message)
-        at = source.text.find("\r")
-        if at >= 0:
+        if source.returns >= 0:
             message = "MotionView ends lines with LF, not CR LF"
-            reading.notes.add("warning", "ascii", source.place(at), message)
+            reading.notes.add("warning", "ascii", source.place(source.returns), message)
+        if source.marked:
+            message = "MotionView writes plain ASCII; here stands a byte order mark"
+            reading.notes.add("warning", "ascii", source.place(0), message)
+        if (control := _CONTROL.search(source.text)) is not None:
+            message = f"a control character ({ord(control[0])}); it may end the reading of the file"
+            reading.notes.add("warning", "control", source.place(control.start()), message)
 
 
 def _arity(reading: Reading) -> None:
@@ -80,6 +89,29 @@ def _includes(reading: Reading) -> None:
             why = f" ({reason})" if reason else ""
             message = f"{statement.arg(0)} is not read{why}; what it makes is not known here"
             reading.notes.add("warning", "include", statement.place(), message)
+
+
+def _standard(reading: Reading) -> None:
+    program = reading.program
+    if program.begin is not None and not any(s.key == "standardinclude" for s in program.includes):
+        message = "this model has no *StandardInclude(FILE), which makes units, gravity and ground"
+        reading.notes.add("warning", "standard", program.begin.place(), message)
+
+
+def _unread(reading: Reading) -> None:
+    """Set statements that no value acts on: of a property that is not known, of a thing of another kind."""
+    world = reading.world
+    for slot in reading.expansion.slots():
+        for (key, part), settings in (slot.settings or {}).items():
+            if key not in ACTED or any(acts(d.kind, key, part) for d in slot.declarations):
+                continue
+            for setting in settings:
+                statement = setting.statement
+                stands = world.holds(setting.guard, setting.scope) and world.alive(setting.scope)
+                if harmless(statement, part) or not stands:
+                    continue
+                message = f"what *{statement.name} of {statement.arg(0)} does is not known; no value shows it"
+                reading.notes.add("warning", "unread", statement.place(), message)
 
 
 def _duplicates(reading: Reading) -> None:
@@ -171,6 +203,10 @@ def _parameters(reading: Reading, scope: Scope) -> None:
     if scope.declaration.statement.key != scope.declaration.kind.lower():  # of a definition that stands alone
         return
     given = len(scope.declaration.statement.args) - 3
+    if scope.declaration.kind == "System" and given < len(scope.parameters):
+        left = ", ".join(list(scope.parameters)[given:])
+        message = f"{scope.path[:-1]} is given no {left}; the defaults of these attachments count"
+        reading.notes.add("warning", "attachment", scope.declaration.statement.place(), message)
     if scope.declaration.kind != "Graphic" and given > len(scope.parameters) and scope.definition is not None:
         message = f"{scope.definition.name} takes {len(scope.parameters)} attachments, not {given}"
         reading.notes.add("error", "arity", scope.declaration.statement.place(), message)

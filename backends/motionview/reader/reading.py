@@ -12,9 +12,12 @@ from typing import Any
 from backends.motionview.reader.change import Changes
 from backends.motionview.reader.expand import expand
 from backends.motionview.reader.include import Includes
+from backends.motionview.reader.instance import Attached, acting_on, attachments
 from backends.motionview.reader.program import program
+from backends.motionview.reader.remainder import Rest, remainder
 from backends.motionview.reader.report import Notes, Report
 from backends.motionview.reader.source import Source
+from backends.motionview.reader.statement import Statement
 from backends.motionview.reader.values import values
 
 
@@ -49,6 +52,18 @@ class Reading:
     def _changes(self) -> Changes:
         return Changes(self.expansion)
 
+    def attachments(self, instance: str) -> list[Attached]:
+        """What an instance (`sys_note.`) has for the attachments of its definition."""
+        return attachments(self.expansion, instance)
+
+    def acting_on(self, instance: str) -> list[Statement]:
+        """Statements around an instance that act on what it holds."""
+        return acting_on(self.expansion, instance)
+
+    def remainder(self) -> list[Rest]:
+        """Statements of which the values say nothing."""
+        return list(remainder(self.expansion))
+
     def instances(self, definition: str) -> list[str]:
         """What the names of things in each instance of a system definition begin with (`sys_note.`)."""
         world = self.world
@@ -78,4 +93,7 @@ def _without_collection() -> Iterator[None]:
         yield
     finally:
         if running:
+            if not gc.get_freeze_count():
+                gc.freeze()  # what was read becomes old, and is not looked through at once
+                gc.unfreeze()
             gc.enable()

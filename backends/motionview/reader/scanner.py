@@ -29,7 +29,8 @@ def statements(source: Source, notes: Notes, part: bool = False) -> Iterator[Sta
     if begin is None and part:
         return
     if begin is None:
-        notes.add("error", "no-model", source.place(0), "there is no *BeginMDL( name, label ) in this text")
+        message = f"there is no *BeginMDL( name, label ) in this text{source.hint()}"
+        notes.add("error", "no-model", source.place(0), message)
         return
     at = begin.start()
     while True:
@@ -93,9 +94,8 @@ def _stray(source: Source, notes: Notes, at: int) -> int:
         if shown.startswith("//"):
             message = "a comment inside *BeginMDL: no MotionView file has one; before *BeginMDL it is safe"
             notes.add("warning", "comment", source.place(at), message)
-            following = NEXT.search(text, end) if end >= 0 else None
-        else:
-            notes.add("error", "syntax", source.place(at), f"here a statement *Name( is due, not {shown!r}")
+            return end
+        notes.add("error", "syntax", source.place(at), f"here a statement *Name( is due, not {shown!r}")
     return following.start() if following else -1
 
 

@@ -45,6 +45,10 @@ class Statement:
         begin = Split(self.source.text, self.opening).starts[arg]
         return self.source.place(begin + shift)
 
+    def __str__(self) -> str:
+        inner = ", ".join(" ".join(a.split()) for a in self.args)
+        return f"*{self.name}( {inner} )" if inner else f"*{self.name}()"
+
     def arg(self, index: int) -> str:
         """An argument, empty where it is left out."""
         return self.args[index] if index < len(self.args) else ""

@@ -40,8 +40,13 @@ def values(world: World, notes: Notes) -> dict[str, dict[str, Any]]:
     found = values_of(world.things(), world, notes)
     begin = world.program.begin
     if begin is not None:
-        standard = [s.args for s in world.program.statements if s.arg(0).startswith("DS_MotionSolve")]
-        record = {"label": begin.arg(1).strip('"'), "solver": world.program.mode, "standard": tuple(standard)}
+        statements = world.program.statements
+        modes = [s.arg(0).upper() for s in statements if s.key == "setcurrentsolvermode"]
+        record = {
+            "label": begin.arg(1).strip('"'),
+            "solver": modes[-1] if modes else None,
+            "standard_include": tuple(s.args for s in statements if s.key == "standardinclude"),
+        }
         found["model"][begin.arg(0)] = record
     return found
 

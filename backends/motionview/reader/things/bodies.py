@@ -154,6 +154,8 @@ class Body(Thing):
             record |= {"mass": found.mass, "inertia": found.inertia, "cm": found.center}
         record["axes"] = GLOBAL if self.ask("from_graphics") else self.ask("cm_axes")
         frames, flags = self.statement.args[5:7], self.chosen("setbodyicflag")
+        if self.statement.arg(3):
+            record["im"] = self.position(3)
         if any(frames):
             record["velocity_frames"] = frames
         if flags is not None:

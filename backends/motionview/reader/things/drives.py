@@ -86,6 +86,11 @@ class Contact(Thing):
                 found[name] = self.number(chosen.first + k, chosen.statement, chosen.scope)
         return found
 
+    def _attachments(self) -> dict[str, tuple[str, ...]]:
+        """The arguments of its system among bodies and graphics, by the names that they have inside."""
+        found = tuple(a for a in self.statement.args[4:] if a in self.scope.parameters)
+        return {"attachments": found} if found else {}
+
     def record(self) -> dict[str, Any]:
         sides = self.ask("sides")
         return {
@@ -95,6 +100,7 @@ class Contact(Thing):
             "bodies": tuple(body.name for body, _ in sides),
             "graphics": tuple(tuple(g.name for g in graphics) for _, graphics in sides),
             "flips": self._flips(),
+            **self._attachments(),
             **self.ask("numbers"),
         }
 

@@ -1,0 +1,57 @@
+"""Statements of which no value speaks: those of the text that mdlgen writes must be there, and no others."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from typing import Any
+
+from mdlgen.verify.outcome import Verification
+from mdlgen.verify.own import Own
+from mdlgen.verify.tables import Difference
+
+_SHOWN = 120  # characters of a statement in a message
+# Findings of lint about statements that `unaccounted` tells itself.
+_TOLD_HERE = ("unknown", "include", "unread", "standard")
+# Findings that change nothing of what the text says.
+_HARMLESS = ("ascii", "unused", "comment", "attachment")
+_MOST_NOTES = 5
+
+
+def unaccounted(mine: Any, given: Any, own: Own) -> Iterator[Difference]:
+    """What a given text has more, or less, than the text `mine` that mdlgen writes."""
+    due = Counter(rest.key for rest in mine.remainder())
+    for rest in given.remainder():
+        if due[rest.key]:
+            due[rest.key] -= 1
+        elif own.has(rest):
+            told = f"{rest.statement.place()}: {_short(rest.statement)}"
+            yield Difference(
+                "statement", "", f"{told} is not in the text that mdlgen writes; its effect is not known"
+            )
+    for rest in mine.remainder():
+        if due[rest.key]:
+            due[rest.key] -= 1
+            yield Difference("statement", "", f"{_short(rest.statement)} is missing")
+
+
+def remarks(given: Any, own: Own, found: Verification) -> None:
+    """What lint says of a given text: of the sheets it counts, of a host only an error does."""
+    notes = []
+    for finding in given.report.findings:
+        mine = own.holds(finding.place)
+        alone = own.definitions is not None
+        if mine and (finding.code in _TOLD_HERE or (alone and finding.code == "external")):
+            continue
+        if finding.severity == "error" or (mine and finding.code not in _HARMLESS):
+            found.differs("lint", "", str(finding))
+        elif mine or finding.code != "unused":
+            notes.append(str(finding))
+    found.notes += notes[:_MOST_NOTES]
+    if len(notes) > _MOST_NOTES:
+        found.notes.append(f"and {len(notes) - _MOST_NOTES} more remarks, which mdlgen lint tells")
+
+
+def _short(statement: Any) -> str:
+    text = str(statement)
+    return text if len(text) <= _SHOWN else f"{text[: _SHOWN - 4]} ..."
