@@ -8,8 +8,8 @@ from mdlgen.mechanics import keep_compiled_code
 
 keep_compiled_code(Path(__file__).resolve().parent)
 
-from backends.lattice import band, forces, observe, step, tangent  # noqa: E402
+from backends.lattice import balance, band, forces, observe, step, tangent  # noqa: E402
 
 keep_compiled_code()
 
-__all__ = ["band", "forces", "observe", "step", "tangent"]
+__all__ = ["balance", "band", "forces", "observe", "step", "tangent"]

@@ -10,8 +10,10 @@ from mdlgen.model.tables import Model
 def check(model: Model) -> None:
     """Raises RefusedError by name for what it cannot."""
     refuse_externals(model, "lattice")
-    if model.run.analysis == "static":
-        raise RefusedError("lattice: a static analysis is not there yet; take exudyn", ("run", "analysis"))
+    if model.run.analysis == "static" and (model.rollers or len(model.pairs)):
+        raise RefusedError(
+            "lattice: a static analysis with rollers or contacts is not there yet", ("run", "analysis")
+        )
     for roller in model.rollers:
         if roller.press is not None and abs(float(roller.press.direction @ roller.axis)) > 1e-9:
             raise RefusedError(
