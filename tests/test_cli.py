@@ -380,7 +380,7 @@ def test_a_bad_folder_is_refused_before_the_run(
     assert (tmp_path / "taken").read_text() == "mine"
 
 
-def test_run_drop_in_the_reference_solver(mdl: Run, tmp_path: Path) -> None:
+def test_run_drop(mdl: Run, tmp_path: Path) -> None:
     ended = mdl("run", *DROP, "-o", "d", "--check-step")
     assert (ended.code, ended.err) == (0, "")
     told = json.loads((tmp_path / "d" / "summary.json").read_text())
@@ -390,7 +390,7 @@ def test_run_drop_in_the_reference_solver(mdl: Run, tmp_path: Path) -> None:
     assert told["error_estimate"] < 1e-6
 
 
-def test_run_cantilever_in_the_reference_solver(mdl: Run, tmp_path: Path) -> None:
+def test_run_cantilever(mdl: Run, tmp_path: Path) -> None:
     coarse = ["--set", "sheets.note.boxes=[2,20]"]
     ended = mdl("run", samples() / "cantilever.yaml", *coarse, "-o", "d", "--check-step")
     assert ended.code == 0 and "static" in ended.err

@@ -356,7 +356,7 @@ def dangling(text: str) -> set[str]:
     return set(NAME.findall(block)) - {one or two for one, two in defined}
 
 
-@settings(max_examples=80, derandomize=True, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=80, suppress_health_check=[HealthCheck.too_slow])
 @given(spec=specs(), set_contact=st.booleans())
 def test_text_of_any_scene(spec: Spec, set_contact: bool) -> None:
     written = json.dumps(spec)
@@ -502,7 +502,7 @@ PIECES = st.sampled_from(
 )
 
 
-@settings(max_examples=100, derandomize=True, deadline=None)
+@settings(max_examples=100)
 @given(place=st.sampled_from(KEYS), name=st.lists(PIECES, min_size=1, max_size=4).map("".join))
 def test_no_name_changes_the_statements(place: tuple[str, str], name: str) -> None:
     """With any name there are the statements that there are with a plain one, or none at all."""
