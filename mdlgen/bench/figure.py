@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 MARKERS = "osD^v"
 # What the ladder's errors are drawn down to, over their tolerance.
 FLOOR = 1e-6
+# Suites of many small cases against closed forms.
+CLOSED = ("impact", "friction", "flight")
 
 
 def figure(found: Bench) -> bytes:
@@ -25,13 +27,14 @@ def figure(found: Bench) -> bytes:
 
     panels = [
         (draw, rows)
-        for suite, draw in (
-            ("transport", _transport),
-            ("elastica", _elastica),
-            ("scaling", _scaling),
-            ("stability", _ladder),
+        for suites, draw in (
+            (("transport",), _transport),
+            (("elastica",), _elastica),
+            (CLOSED, _closed),
+            (("scaling",), _scaling),
+            (("stability",), _ladder),
         )
-        if (rows := [row for row in found.rows if row.suite == suite])
+        if (rows := [row for row in found.rows if row.suite in suites])
     ]
     with matplotlib.rc_context():
         matplotlib.rcdefaults()
@@ -67,6 +70,18 @@ def _elastica(axes: Any, rows: list[Row]) -> None:
         style = {"color": COLOURS[number % len(COLOURS)], "marker": MARKERS[number % len(MARKERS)]}
         axes.loglog([row.error for row in group], [row.wall_s for row in group], label=label, ls="", **style)
     axes.set(title="static cantilever", xlabel="error of the drop (elastica)", ylabel="wall time [s]")
+    _legend(axes)
+
+
+def _closed(axes: Any, rows: list[Row]) -> None:
+    groups: dict[str, list[Row]] = {}
+    for row in rows:
+        if row.error and row.wall_s:
+            groups.setdefault(f"{row.solver}, {row.suite}", []).append(row)
+    for number, (label, group) in enumerate(groups.items()):
+        style = {"color": COLOURS[number % len(COLOURS)], "marker": MARKERS[number % len(MARKERS)]}
+        axes.loglog([row.error for row in group], [row.wall_s for row in group], label=label, ls="", **style)
+    axes.set(title="closed forms", xlabel="error of each quantity", ylabel="wall time [s]")
     _legend(axes)
 
 
