@@ -231,7 +231,7 @@ def test_transport_agrees_with_the_reference_solver() -> None:
 def test_a_fixed_step_is_taken_and_its_error_told() -> None:
     scene = ["sheets.note.boxes=[2,3]", "run.duration=4 ms", "run.step=50 us"]
     result = run(model("transport_4x4", *scene))
-    assert (result.step, result.steps) == (0.05, 80) or result.steps > 80
+    assert result.step == pytest.approx(0.05) and result.steps >= 80  # one that does not converge is halved
     assert result.error_estimate is not None
 
 

@@ -7,8 +7,9 @@ from numba import njit
 
 from backends.exudyn_local.system import System
 from mdlgen.mechanics.bushing import bushing
-from mdlgen.mechanics.contact import OUT, box_cylinder, box_plane, cylinder_cylinder
-from mdlgen.mechanics.vector import add, back, cross, dot, mat, matmul, rotate, scale, vec
+from mdlgen.mechanics.contact import OUT
+from mdlgen.mechanics.pair import pair_force
+from mdlgen.mechanics.vector import add, back, cross, dot, mat, matmul, nine, rotate, scale, three, vec
 from mdlgen.model.tables import Floats
 
 # Perturbations of the difference quotients: positions and Euler parameters, velocities [SI]. A static run
@@ -16,20 +17,9 @@ from mdlgen.model.tables import Floats
 # stretching part would hide the bending; in a transient run the mass stands in between.
 _E_POSITION, _E_VELOCITY = 1e-9, 1e-6
 _E_CENTRAL = 1e-7
-_CYLINDER_CYLINDER, _BOX_PLANE = 2, 1
 
 # x, r, u, w, out, f: what the functions below write into
 Work = tuple[Floats, Floats, Floats, Floats, Floats, Floats]
-
-
-@njit(cache=True, error_model="numpy", forceinline=True)
-def three(a):
-    return (a[0], a[1], a[2])
-
-
-@njit(cache=True, error_model="numpy", forceinline=True)
-def nine(a):
-    return (a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8])
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -137,60 +127,7 @@ def _pair(bodies, pair, q, x, r, u, w, f, out):
     """One contact pair into `out`; returns whether it touches."""
     out[:] = 0.0
     a, b = pair.a, pair.b
-    row = pair.law
-    law = (row[0], row[1], row[2], row[3], row[4], row[5])
-    half = three(bodies[a].half)
-    if pair.kind == _CYLINDER_CYLINDER:
-        cylinder_cylinder(
-            out,
-            vec(x, a),
-            vec(u, a),
-            vec(w, a),
-            bodies[a].size[0],
-            bodies[a].size[1],
-            vec(x, b),
-            vec(u, b),
-            vec(w, b),
-            bodies[b].size[0],
-            bodies[b].size[1],
-            three(bodies[b].axis),
-            pair.k,
-            law,
-        )
-    elif pair.kind == _BOX_PLANE:
-        box_plane(
-            out,
-            vec(x, a),
-            mat(r, a),
-            vec(u, a),
-            vec(w, a),
-            half,
-            vec(x, b),
-            mat(r, b),
-            three(bodies[b].half),
-            pair.k,
-            law,
-        )
-    else:
-        box_cylinder(
-            out,
-            vec(x, a),
-            mat(r, a),
-            vec(u, a),
-            vec(w, a),
-            half,
-            bodies[a].exposed,
-            vec(x, b),
-            three(bodies[b].axis),
-            vec(u, b),
-            vec(w, b),
-            bodies[b].size[0],
-            bodies[b].size[1],
-            pair.k,
-            pair.shared != 0,
-            law,
-        )
-    if out[12] == 0.0:
+    if not pair_force(bodies, pair, x, r, u, w, out):
         return False
     _spread(bodies, a, q, (out[0], out[1], out[2]), (out[3], out[4], out[5]), f)
     _spread(bodies, b, q, (out[6], out[7], out[8]), (out[9], out[10], out[11]), f)

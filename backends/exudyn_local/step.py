@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from backends.exudyn_local.system import MS
+from mdlgen.model.impact import impact_time
 from mdlgen.model.tables import CYLINDER_CYLINDER, Model
 
 # A flexible sheet in nips: travel is right to 1e-4 at this step (see the bench), and second order below.
@@ -41,16 +42,3 @@ def _from_tolerance(model: Model) -> float:
             soft = SOFT_RESTITUTION / max(float(model.contacts.restitution[row]), 0.25 * SOFT_RESTITUTION)
             wanted = min(wanted, time / (STEPS_IN_CONTACT * max(1.0, soft)) * finer)
     return wanted
-
-
-def impact_time(model: Model, row: int, mass: float) -> float:
-    """Duration of an undamped impact [ms] at the greatest speed that the scene can give:
-    T = 3.21806546 (m^2 / (k^2 v))^(1/5)."""
-    sheet = next(s for s in model.sheets if s.name == model.contacts.part_a[row])
-    part = next(p for p in (*model.rollers, *model.planes) if p.name == model.contacts.part_b[row])
-    gravity, start = math.hypot(*model.gravity), math.hypot(*sheet.velocity)
-    fall = math.dist(part.center, sheet.center)
-    speed = max(
-        min(start + gravity * model.run.duration, math.hypot(start, math.sqrt(2 * gravity * fall))), 1e-6
-    )
-    return 3.21806546 * (mass**2 / (float(model.contacts.stiffness[row]) ** 2 * speed)) ** 0.2

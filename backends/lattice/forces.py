@@ -7,21 +7,23 @@ import math
 from numba import njit
 
 from mdlgen.mechanics.bushing import bushing_pair
-from mdlgen.mechanics.contact import MOST_POINTS, OUT, POINT, box_cylinder, box_plane, cylinder_cylinder
-from mdlgen.mechanics.vector import add, cross, dot, exp_rotation, mat, matmul, rotate, scale, vec
+from mdlgen.mechanics.contact import MOST_POINTS, OUT, POINT
+from mdlgen.mechanics.pair import BOX_PLANE, CYLINDER_CYLINDER, pair_force
+from mdlgen.mechanics.vector import (
+    add,
+    cross,
+    dot,
+    exp_rotation,
+    mat,
+    matmul,
+    nine,
+    rotate,
+    scale,
+    three,
+    vec,
+)
 
 WIDE = OUT + 1 + POINT * MOST_POINTS
-CYLINDER_CYLINDER, BOX_PLANE = 2, 1
-
-
-@njit(cache=True, error_model="numpy", forceinline=True)
-def three(a):
-    return (a[0], a[1], a[2])
-
-
-@njit(cache=True, error_model="numpy", forceinline=True)
-def nine(a):
-    return (a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8])
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -107,67 +109,6 @@ def joint_forces(joints, x, r, u, w, f):
 
 
 @njit(cache=True, error_model="numpy")
-def pair_force(bodies, pair, x, r, u, w, out):
-    """One contact pair into `out` (WIDE,). Returns whether it touches."""
-    for i in range(OUT + 1):
-        out[i] = 0.0
-    a, b = pair.a, pair.b
-    row = pair.law
-    law = (row[0], row[1], row[2], row[3], row[4], row[5])
-    if pair.kind == CYLINDER_CYLINDER:
-        cylinder_cylinder(
-            out,
-            vec(x, a),
-            vec(u, a),
-            vec(w, a),
-            bodies[a].size[0],
-            bodies[a].size[1],
-            vec(x, b),
-            vec(u, b),
-            vec(w, b),
-            bodies[b].size[0],
-            bodies[b].size[1],
-            three(bodies[b].axis),
-            pair.k,
-            law,
-        )
-    elif pair.kind == BOX_PLANE:
-        box_plane(
-            out,
-            vec(x, a),
-            mat(r, a),
-            vec(u, a),
-            vec(w, a),
-            three(bodies[a].half),
-            vec(x, b),
-            mat(r, b),
-            three(bodies[b].half),
-            pair.k,
-            law,
-        )
-    else:
-        box_cylinder(
-            out,
-            vec(x, a),
-            mat(r, a),
-            vec(u, a),
-            vec(w, a),
-            three(bodies[a].half),
-            bodies[a].exposed,
-            vec(x, b),
-            three(bodies[b].axis),
-            vec(u, b),
-            vec(w, b),
-            bodies[b].size[0],
-            bodies[b].size[1],
-            pair.k,
-            pair.shared != 0,
-            law,
-        )
-    return out[12] != 0.0
-
-
-@njit(cache=True, error_model="numpy")
 def near_pairs(bodies, pairs, x, r, margin, near):
     """Lists pairs that are closer than `margin` [mm] in `near`; returns how many."""
     count = 0
@@ -213,6 +154,8 @@ def pair_forces(bodies, pairs, near, close, x, r, u, w, f, touched, outs):
     for at in range(close):
         p = near[at]
         out = outs[count]
+        for i in range(OUT + 1):
+            out[i] = 0.0
         if not pair_force(bodies, pairs[p], x, r, u, w, out):
             continue
         a, b = pairs[p].a, pairs[p].b

@@ -14,6 +14,7 @@ from backends.lattice.arrays import System, build
 from backends.lattice.record import Recorder
 from backends.lattice.scope import check
 from backends.lattice.static import rest
+from mdlgen.model.impact import impact_time
 from mdlgen.model.tables import CYLINDER_CYLINDER, Floats, Model
 from mdlgen.results.compare import compare
 from mdlgen.results.result import Result
@@ -100,19 +101,8 @@ def first_step(model: Model) -> float:
             continue
         sheet = next(s for s in model.sheets if s.name == model.contacts.part_a[row])
         if sheet.count == 1:
-            step = min(step, _impact_time(model, row, sheet.derived["m"]) / STEPS_IN_IMPACT * finer)
+            step = min(step, impact_time(model, row, sheet.derived["m"]) / STEPS_IN_IMPACT * finer)
     return step
-
-
-def _impact_time(model: Model, row: int, mass: float) -> float:
-    """Duration of an undamped impact at the greatest speed that the scene can give [ms]:
-    T = 3.21806546 (m^2 / (k^2 v))^(1/5)."""
-    sheet = next(s for s in model.sheets if s.name == model.contacts.part_a[row])
-    part = next(p for p in (*model.rollers, *model.planes) if p.name == model.contacts.part_b[row])
-    gravity, start = math.hypot(*model.gravity), math.hypot(*sheet.velocity)
-    fall = math.dist(part.center, sheet.center)
-    speed = min(start + gravity * model.run.duration, math.hypot(start, math.sqrt(2 * gravity * fall)))
-    return 3.21806546 * (mass**2 / (float(model.contacts.stiffness[row]) ** 2 * max(speed, 1e-6))) ** 0.2
 
 
 def _speed(model: Model) -> float:

@@ -15,7 +15,6 @@ from numba import njit
 
 from backends.lattice.band import factor, solve
 from backends.lattice.forces import (
-    BOX_PLANE,
     driven,
     joint_forces,
     near_pairs,
@@ -24,6 +23,7 @@ from backends.lattice.forces import (
     place,
 )
 from backends.lattice.tangent import contacts_into, joints_into, masses, rollers_into
+from mdlgen.mechanics.pair import BOX_PLANE
 from mdlgen.mechanics.vector import back, exp_rotation, mat, matmul, rotate
 
 # Rounds of one step before it is given up. A new factor costs as much as this many rounds, and is made where
@@ -153,8 +153,8 @@ def midpoint(system, state, mid, matrix, t, dt, tolerance, fresh, counters):
     for _ in range(MOST_ROUNDS):
         place(bodies, nodes, h, t + h, u, ub, x, r, xm, rm, um, wm)
         f[:] = 0.0
-        stored, lost = joint_forces(joints, xm, rm, um, wm, f)
-        count, pressed, rubbed = pair_forces(bodies, pairs, near, close, xm, rm, um, wm, f, touched, outs)
+        _stored, lost = joint_forces(joints, xm, rm, um, wm, f)
+        count, _pressed, rubbed = pair_forces(bodies, pairs, near, close, xm, rm, um, wm, f, touched, outs)
         power = other_forces(bodies, loads, gravity, 1.0, rm, um, wm, f)
         _weights(bodies, gravity, f)
         _residual(bodies, nodes, h, u, ub, v, l, vb, s, rm, f, res, resb)
@@ -193,7 +193,7 @@ def midpoint(system, state, mid, matrix, t, dt, tolerance, fresh, counters):
         limit = tolerance if count > 0 else FREE * tolerance
         known = before < 1e299 and rate < 0.5
         if change <= limit or (known and change * rate / (1.0 - rate) <= 0.3 * limit):
-            totals[0], totals[1], totals[2] = lost + rubbed, power, stored + pressed
+            totals[0], totals[1] = lost + rubbed, power
             counters[TOUCHING] = count
             return True
         if before < 1e299 and (rate >= 1.0 or math.log(limit / change) < WORTH * math.log(rate)):
@@ -364,7 +364,7 @@ def empty(system, wide: int):
         np.zeros((bodies, 6)),
         np.zeros(len(system.pairs), np.int64),
         np.zeros((max(1, len(system.pairs)), wide)),
-        np.zeros(3),
+        np.zeros(2),
         np.zeros(len(system.pairs), np.int64),
     )
     matrix = (

@@ -11,7 +11,6 @@ import math
 
 from numba import njit
 
-from backends.lattice.forces import nine, three
 from mdlgen.mechanics.contact import OUT, POINT
 from mdlgen.mechanics.vector import (
     add,
@@ -19,9 +18,11 @@ from mdlgen.mechanics.vector import (
     log_rotation,
     mat,
     matmul,
+    nine,
     rotate,
     scale,
     sub,
+    three,
     transpose_matmul,
     vec,
 )

@@ -6,8 +6,9 @@ from backends.motionsolve import gate
 from backends.motionsolve.banner import banner
 from backends.motionsolve.environment import environment
 from backends.motionsolve.views import deck_view
-from mdlgen.errors import RefusedError, SpecError
+from mdlgen.errors import SpecError
 from mdlgen.model.external import refuse_externals
+from mdlgen.model.springs import refuse_compressed
 from mdlgen.model.tables import Model
 
 _BUFFERED = 4096  # pieces of text that are joined at once: a large deck has millions
@@ -16,18 +17,7 @@ _BUFFERED = 4096  # pieces of text that are joined at once: a large deck has mil
 def check(model: Model) -> None:
     """Raises RefusedError by name for what the deck cannot represent."""
     refuse_externals(model, "MotionSolve deck")
-    for roller in model.rollers:
-        press = roller.press
-        if press is None:
-            continue
-        compressed = press.touch - press.start
-        if compressed >= press.free_length:
-            raise RefusedError(
-                f"MotionSolve deck: the spring of roller {roller.name} would start compressed by "
-                f"{compressed:.6g} mm, all of its free length of {press.free_length:.6g} mm; "
-                "a longer free_length means the same in a local run",
-                ("rollers", roller.name, "press", "free_length"),
-            )
+    refuse_compressed(model, "MotionSolve deck")
 
 
 def emit(model: Model) -> str:

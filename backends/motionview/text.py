@@ -10,6 +10,7 @@ from backends.motionview.system import system_view
 from backends.motionview.views import scene_view
 from mdlgen.errors import RefusedError, SpecError
 from mdlgen.model.external import refuse_externals
+from mdlgen.model.springs import refuse_compressed
 from mdlgen.model.tables import Model
 
 
@@ -17,18 +18,7 @@ def check(model: Model) -> None:
     """Raises RefusedError by name for what the text cannot represent."""
     refuse_externals(model, "MotionView text of the whole scene")
     check_sheets(model)
-    for roller in model.rollers:
-        press = roller.press
-        if press is None:
-            continue
-        compressed = press.touch - press.start
-        if compressed >= press.free_length:
-            raise RefusedError(
-                f"MotionView text: the spring of roller {roller.name} would start compressed by "
-                f"{compressed:.6g} mm, all of its free length of {press.free_length:.6g} mm; "
-                "a longer free_length means the same in a local run",
-                ("rollers", roller.name, "press", "free_length"),
-            )
+    refuse_compressed(model, "MotionView text")
 
 
 def check_sheets(model: Model) -> None:

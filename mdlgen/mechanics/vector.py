@@ -55,6 +55,18 @@ def mat(array, row):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
+def three(a):
+    """The first three numbers of an array or a record's field."""
+    return (a[0], a[1], a[2])
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def nine(a):
+    """The first nine."""
+    return (a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8])
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
 def rotate(m, a):
     """m a."""
     return (

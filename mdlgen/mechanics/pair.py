@@ -1,0 +1,74 @@
+"""One contact pair of a solver's tables: which law it has, and what that is given."""
+
+from __future__ import annotations
+
+from numba import njit
+
+from mdlgen.mechanics.contact import box_cylinder, box_plane, cylinder_cylinder
+from mdlgen.mechanics.vector import mat, three, vec
+
+# As in mdlgen.model.tables.
+BOX_PLANE, CYLINDER_CYLINDER = 1, 2
+
+
+@njit(cache=True, error_model="numpy")
+def pair_force(bodies, pair, x, r, u, w, out):
+    """One contact pair into `out`, which must be zero (OUT numbers, and the count of points if it has one).
+
+    `bodies` are records with half, exposed, axis and size (radius, width), `pair` one with kind, a, b, k,
+    shared and law; x, r, u, w places, rotations and velocities of all bodies. Returns whether it touches.
+    """
+    a, b = pair.a, pair.b
+    row = pair.law
+    law = (row[0], row[1], row[2], row[3], row[4], row[5])
+    if pair.kind == CYLINDER_CYLINDER:
+        cylinder_cylinder(
+            out,
+            vec(x, a),
+            vec(u, a),
+            vec(w, a),
+            bodies[a].size[0],
+            bodies[a].size[1],
+            vec(x, b),
+            vec(u, b),
+            vec(w, b),
+            bodies[b].size[0],
+            bodies[b].size[1],
+            three(bodies[b].axis),
+            pair.k,
+            law,
+        )
+    elif pair.kind == BOX_PLANE:
+        box_plane(
+            out,
+            vec(x, a),
+            mat(r, a),
+            vec(u, a),
+            vec(w, a),
+            three(bodies[a].half),
+            vec(x, b),
+            mat(r, b),
+            three(bodies[b].half),
+            pair.k,
+            law,
+        )
+    else:
+        box_cylinder(
+            out,
+            vec(x, a),
+            mat(r, a),
+            vec(u, a),
+            vec(w, a),
+            three(bodies[a].half),
+            bodies[a].exposed,
+            vec(x, b),
+            three(bodies[b].axis),
+            vec(u, b),
+            vec(w, b),
+            bodies[b].size[0],
+            bodies[b].size[1],
+            pair.k,
+            pair.shared != 0,
+            law,
+        )
+    return out[12] != 0.0
