@@ -422,6 +422,14 @@ def bench(
     ] = None,
     quick: Annotated[bool, typer.Option("--quick", help="A few short cases of each suite.")] = False,
     repeat: Annotated[int, typer.Option("--repeat", min=1, help="Runs whose median is the wall time.")] = 3,
+    peers: Annotated[
+        bool | None,
+        typer.Option(
+            "--peers/--no-peers",
+            help="MuJoCo and an Exudyn script beside ours in transport: where the extra `peers` is "
+            "installed and no solver is chosen, if left out.",
+        ),
+    ] = None,
     quiet: Quiet = False,
     verbose: Verbose = False,
 ) -> None:
@@ -436,7 +444,8 @@ def bench(
     from mdlgen.results.store import check_folder
 
     check_folder(output)
-    found = run_bench(suites or (), output, solver or (), quick, repeat, (lambda _: None) if quiet else _say)
+    say = (lambda _: None) if quiet else _say
+    found = run_bench(suites or (), output, solver or (), quick, repeat, say, peers)
     if not quiet:
         typer.echo(markdown(found), nl=False)
         typer.echo(f"wrote {output}")

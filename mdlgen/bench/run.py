@@ -13,10 +13,12 @@ from mdlgen.bench import process
 from mdlgen.bench.case import Case, Reference, Run
 from mdlgen.bench.child import Task
 from mdlgen.bench.machine import machine, versions
+from mdlgen.bench.peers import MISSING, PEERS, installed
+from mdlgen.bench.peers import versions as peer_versions
 from mdlgen.bench.reference import file_of
 from mdlgen.bench.row import FAILED, OK, WRONG, Outcome, Row, rows
 from mdlgen.bench.suites import SUITES, cases
-from mdlgen.errors import OutputError
+from mdlgen.errors import OutputError, SpecError
 
 Say = Callable[[str], None]
 # A scene of a moment that has every kind of force: compiles a solver before the first clock starts.
@@ -41,8 +43,9 @@ class Bench:
 
     @property
     def failed(self) -> list[Row]:
-        """Rows that failed where a failure is no answer: the ladder's rungs may end in one."""
-        return [row for row in self.rows if row.status == FAILED and row.suite != "stability"]
+        """Rows that failed where a failure is no answer: the ladder's rungs may end in one, and a peer."""
+        ours = [row for row in self.rows if row.suite != "stability" and row.solver not in PEERS]
+        return [row for row in ours if row.status == FAILED]
 
     def json(self) -> dict[str, Any]:
         """What bench.json holds."""
@@ -64,23 +67,37 @@ def bench(
     quick: bool = False,
     repeats: int = 3,
     say: Say = lambda text: None,
+    peers: bool | None = None,
 ) -> Bench:
     """Run `suites` (all where empty) with `solvers` (all that there are); `say` is told what is run.
+
+    `peers` says whether other tools run `transport` too; None: where they are installed and no solver is
+    chosen.
 
     Writes bench.json, bench.md and bench.png into `folder`. Raises SpecError for a suite or solver that
     there is not, OutputError for files that cannot be written.
     """
     known = tuple(sorted(registry.SOLVERS))
     for name in solvers:
-        registry.solver(name)
-    names = list(solvers) or list(known)
+        if name not in PEERS:
+            registry.solver(name)
     asked = list(suites) or list(SUITES)
-    plan = [(name, case) for suite in asked for name in names for case in cases(suite, name, known, quick)]
+    names = list(solvers) or list(known)
+    if "transport" in asked:
+        names += [name for name in _peers(peers, bool(solvers), say) if name not in names]
+    plan = [
+        (name, case)
+        for suite in asked
+        for name in names
+        if suite == "transport" or name not in PEERS
+        for case in cases(suite, name, known, quick)
+    ]
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise OutputError(f"{folder}: cannot make this folder: {error.strerror or error}") from None
-    found = Bench(machine(), versions(), {name: _warm(name, say) for name in names})
+    compiled = {name: _warm(name, say) for name in names if name not in PEERS}
+    found = Bench(machine(), versions() | peer_versions(), compiled)
     references = References(folder, say)
     try:
         for count, (name, case) in enumerate(plan, 1):
@@ -94,6 +111,15 @@ def bench(
     finally:  # an hour's rows are worth keeping when someone interrupts it
         write(found, folder)
     return found
+
+
+def _peers(asked: bool | None, chosen: bool, say: Say) -> list[str]:
+    """The peers to run. Raises SpecError where they are asked for, but not installed."""
+    if asked and not installed():
+        raise SpecError(MISSING)
+    if asked is None and not chosen and not installed():
+        say(MISSING)
+    return list(PEERS) if asked or (asked is None and not chosen and installed()) else []
 
 
 def write(found: Bench, folder: Path) -> None:
@@ -126,7 +152,8 @@ def _outcome(case: Case, solver: str, references: References, repeats: int) -> O
         kept, reason = references.file(case, case.reference)
         if reason is not None:
             return Outcome(f"no reference: {reason}")
-    task = Task(case, solver, registry.SOLVERS[solver], repeats if case.repeats else 1, kept)
+    module = {**registry.SOLVERS, **PEERS}[solver]
+    task = Task(case, solver, module, repeats if case.repeats else 1, kept)
     return process.run(task)
 
 

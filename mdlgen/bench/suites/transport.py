@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from mdlgen.bench.case import Case, Finding, Reference, Run
-from mdlgen.results.compare import compare
+from mdlgen.bench.peers import PEERS, SHEETS, PeerRun
+from mdlgen.bench.peers import STEPS as PEER_STEPS
+from mdlgen.results.compare import compare, scale, travel
 from mdlgen.results.result import Result
 
 SAMPLE = "transport_4x4"
@@ -26,6 +30,10 @@ def cases(solver: str, reference: str, quick: bool) -> list[Case]:
         sets = (f"sheets.note.boxes=[{grid[0]},{grid[1]}]", *(QUICK if quick else ()))
         fine = FINEST.get(reference, OTHER_FINEST)
         exact = Reference(Run(SAMPLE, sets, fine if grid == GRIDS[0] else 2 * fine), reference)
+        if solver in PEERS:
+            run, peer_steps = PeerRun(SAMPLE, sets, quick=quick), PEER_STEPS[solver]
+            case = Case("transport", SHEETS[solver], run, peer, exact)
+            return [case.at(step) for step in (peer_steps[-1:] if quick else peer_steps)]
         name = f"{grid[0]} x {grid[1]} boxes"
         chosen = Case("transport", f"{name}, step chosen", Run(SAMPLE, sets), promised, exact)
         made.append(chosen)
@@ -44,6 +52,19 @@ def promised(result: Result, reference: Result | None) -> list[Finding]:
 def forced_step(result: Result, reference: Result | None) -> list[Finding]:
     """Errors of a run whose step was given: no tolerance was promised."""
     return _findings(result, reference, None)
+
+
+def peer(result: Result, reference: Result | None) -> list[Finding]:
+    """Errors of another tool: its sheet is its own, so that of the mean displacement stands by itself."""
+    position, _ = _findings(result, reference, None)
+    assert reference is not None
+    # a tool may store other times than the reference
+    moved, exact = (
+        np.array([travel(run, at=k) for k in range(len(run.time))]) for run in (result, reference)
+    )
+    apart = [moved[:, k] - np.interp(result.time, reference.time, exact[:, k]) for k in range(3)]
+    mean = float(np.sqrt(np.mean(np.square(apart).sum(axis=0))))
+    return [position, Finding("mean displacement, RMS over time, over the travel", mean / scale(result))]
 
 
 def _findings(result: Result, reference: Result | None, tolerance: float | None) -> list[Finding]:
