@@ -95,7 +95,7 @@ def test_the_band_is_factored_and_solved(nodes: int, reach: int) -> None:
     full = full @ full.T  # twice as wide
     full[np.abs(rows // 6 - columns // 6) > reach] = 0.0
     full += np.eye(size) * (np.abs(full).sum(axis=1).max() + 1)
-    packed = np.zeros((nodes, 6, height))
+    packed = band.empty(nodes, reach)
     for node in range(nodes):
         for c in range(6):
             count = min(height, size - 6 * node)

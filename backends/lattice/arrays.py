@@ -36,6 +36,7 @@ JOINT = np.dtype(
         ("b", "i8"),
         ("ra", "f8", 3),  # arms in body axes, to the middle of both bushings
         ("rb", "f8", 3),
+        ("plain", "i8"),  # both frames are the bodies' own
         ("fa", "f8", 9),  # frames in body axes
         ("fb", "f8", 9),
         ("e", "f8", 3),  # from the middle to one of two equal bushings, in bushing axes; 0: one bushing
@@ -148,6 +149,10 @@ def _joints(model: Model) -> tuple[np.ndarray, int]:
         waiting[key] = len(made)
         made.append(row.copy())
     joints = np.array(made, dtype=JOINT) if made else np.zeros(0, JOINT)
+    own = np.eye(3).ravel()
+    for name in ("fa", "fb"):
+        joints[name][np.abs(joints[name] - own).max(axis=1) < 1e-14] = own
+    joints["plain"] = ((joints["fa"] == own) & (joints["fb"] == own)).all(axis=1)
     return joints, len(single) - len(joints)
 
 

@@ -1,89 +1,144 @@
 """A symmetric band of 6 x 6 blocks: Cholesky factors and solves, on one thread and without allocation.
 
-Block column j holds rows j ... j + reach as an array (6 columns, 6 (reach + 1) rows); rows stand together in
-memory, so that the inner loops run over them. Only the lower half of the diagonal blocks counts.
+Block column j holds rows j ... j + reach as an array (6 columns, 6 (reach + 1) + PAD rows); rows stand
+together in memory, so that the inner loops run over them. PAD rows of zeros let these loops run in whole
+vectors: what is left over at the end of a short loop costs as much as its middle. Only the lower half of the
+diagonal blocks counts. A factor has the inverse of its pivots on the diagonal.
 """
 
 from __future__ import annotations
 
 import math
 
+import numpy as np
 from numba import njit
+
+PAD = 16
+_VECTOR = 8
+
+
+def empty(nodes: int, reach: int) -> np.ndarray:
+    """A band of zeros, (nodes, 6, 6 (reach + 1) + PAD)."""
+    return np.zeros((nodes, 6, 6 * (reach + 1) + PAD))
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False)
 def factor(a):
-    """Cholesky factor in place, a (nodes, 6, 6 (reach + 1)). Returns False where a pivot is not positive."""
-    nodes, height = a.shape[0], a.shape[2]
+    """Cholesky factor in place. Returns False where a pivot is not positive."""
+    nodes, blocks = a.shape[0], (a.shape[2] - PAD) // 6
+    height = _VECTOR * ((6 * blocks + _VECTOR - 1) // _VECTOR)
     for j in range(nodes):
         col = a[j]
-        # the six columns themselves
+        # the six columns themselves; what stands above their diagonal is worked on and never read
         for c in range(6):
+            mine = col[c]
             for l in range(c):
-                f = col[l, c]
-                for r in range(c, height):
-                    col[c, r] -= f * col[l, r]
-            pivot = col[c, c]
+                f, other = col[l, c], col[l]
+                for r in range(height):
+                    mine[r] -= f * other[r]
+            pivot = mine[c]
             if not pivot > 0.0:
                 return False
             pivot = 1.0 / math.sqrt(pivot)
-            for r in range(c, height):
-                col[c, r] *= pivot
-        # what they take off the columns behind: six at once, so that each entry is read and written once
-        last = min(height // 6, nodes - j)
-        for block in range(1, last):
+            for r in range(height):
+                mine[r] *= pivot
+        # what they take off the columns behind, two at a time, so that each entry is read once for both
+        for block in range(1, min(blocks, nodes - j)):
             begin = 6 * block
-            length = height - begin
             target = a[j + block]
-            for c in range(6):
-                f0, f1, f2 = col[0, begin + c], col[1, begin + c], col[2, begin + c]
-                f3, f4, f5 = col[3, begin + c], col[4, begin + c], col[5, begin + c]
-                out = target[c]
-                s0, s1, s2 = col[0, begin:], col[1, begin:], col[2, begin:]
-                s3, s4, s5 = col[3, begin:], col[4, begin:], col[5, begin:]
+            length = _VECTOR * ((6 * (blocks - block) + _VECTOR - 1) // _VECTOR)
+            end = begin + length
+            s0, s1, s2 = col[0, begin:end], col[1, begin:end], col[2, begin:end]
+            s3, s4, s5 = col[3, begin:end], col[4, begin:end], col[5, begin:end]
+            for c in range(0, 6, 2):
+                f0, f1, f2, f3, f4, f5 = s0[c], s1[c], s2[c], s3[c], s4[c], s5[c]
+                g0, g1, g2 = s0[c + 1], s1[c + 1], s2[c + 1]
+                g3, g4, g5 = s3[c + 1], s4[c + 1], s5[c + 1]
+                one, two = target[c], target[c + 1]
                 for r in range(length):
-                    out[r] -= f0 * s0[r] + f1 * s1[r] + f2 * s2[r] + f3 * s3[r] + f4 * s4[r] + f5 * s5[r]
+                    v0, v1, v2, v3, v4, v5 = s0[r], s1[r], s2[r], s3[r], s4[r], s5[r]
+                    one[r] -= f0 * v0 + f1 * v1 + f2 * v2 + f3 * v3 + f4 * v4 + f5 * v5
+                    two[r] -= g0 * v0 + g1 * v1 + g2 * v2 + g3 * v3 + g4 * v4 + g5 * v5
+        for c in range(6):
+            col[c, c] = 1.0 / col[c, c]
     return True
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False)
+@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False, forceinline=True)
+def _down(col, x, base, length):
+    """Forward step of one block column."""
+    for c in range(6):
+        v = x[base + c] * col[c, c]
+        x[base + c] = v
+        for r in range(c + 1, 6):
+            x[base + r] -= v * col[c, r]
+    x0, x1, x2, x3, x4, x5 = x[base], x[base + 1], x[base + 2], x[base + 3], x[base + 4], x[base + 5]
+    end = 6 + length
+    c0, c1, c2 = col[0, 6:end], col[1, 6:end], col[2, 6:end]
+    c3, c4, c5 = col[3, 6:end], col[4, 6:end], col[5, 6:end]
+    out = x[base + 6 : base + end]
+    for r in range(length):
+        out[r] -= x0 * c0[r] + x1 * c1[r] + x2 * c2[r] + x3 * c3[r] + x4 * c4[r] + x5 * c5[r]
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False, forceinline=True)
+def _up(col, x, base, length):
+    """Backward step of one block column."""
+    end = 6 + length
+    c0, c1, c2 = col[0, 6:end], col[1, 6:end], col[2, 6:end]
+    c3, c4, c5 = col[3, 6:end], col[4, 6:end], col[5, 6:end]
+    behind = x[base + 6 : base + end]
+    s0 = s1 = s2 = s3 = s4 = s5 = 0.0
+    for r in range(length):
+        v = behind[r]
+        s0 += c0[r] * v
+        s1 += c1[r] * v
+        s2 += c2[r] * v
+        s3 += c3[r] * v
+        s4 += c4[r] * v
+        s5 += c5[r] * v
+    x[base] -= s0
+    x[base + 1] -= s1
+    x[base + 2] -= s2
+    x[base + 3] -= s3
+    x[base + 4] -= s4
+    x[base + 5] -= s5
+    for c in range(5, -1, -1):
+        v = x[base + c]
+        for r in range(c + 1, 6):
+            v -= col[c, r] * x[base + r]
+        x[base + c] = v * col[c, c]
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _lengths(a):
+    """Rows of a column behind its own block, in whole vectors; the first node where fewer are left."""
+    nodes, blocks = a.shape[0], (a.shape[2] - PAD) // 6
+    length = 2 * _VECTOR * ((6 * blocks - 6 + 2 * _VECTOR - 1) // (2 * _VECTOR))
+    return length, nodes - (length + 11) // 6
+
+
+@njit(cache=True, error_model="numpy", boundscheck=False)
 def solve(a, x, first=0):
     """Solves in place with a factor; x (6 nodes,), which is zero before node `first`."""
-    nodes, height = a.shape[0], a.shape[2]
+    nodes = a.shape[0]
+    length, short = _lengths(a)
     for j in range(first, nodes):
-        col, base = a[j], 6 * j
-        end = min(height, 6 * (nodes - j))
-        for c in range(6):
-            v = x[base + c] / col[c, c]
-            x[base + c] = v
-            for r in range(c + 1, 6):
-                x[base + r] -= v * col[c, r]
-        x0, x1, x2 = x[base], x[base + 1], x[base + 2]
-        x3, x4, x5 = x[base + 3], x[base + 4], x[base + 5]
-        c0, c1, c2, c3, c4, c5 = col[0], col[1], col[2], col[3], col[4], col[5]
-        for r in range(6, end):
-            x[base + r] -= x0 * c0[r] + x1 * c1[r] + x2 * c2[r] + x3 * c3[r] + x4 * c4[r] + x5 * c5[r]
+        _down(a[j], x, 6 * j, length if j < short else min(length, 6 * (nodes - j) - 6))
     for j in range(nodes - 1, -1, -1):
-        col, base = a[j], 6 * j
-        end = min(height, 6 * (nodes - j))
-        c0, c1, c2, c3, c4, c5 = col[0], col[1], col[2], col[3], col[4], col[5]
-        s0 = s1 = s2 = s3 = s4 = s5 = 0.0
-        for r in range(6, end):
-            v = x[base + r]
-            s0 += c0[r] * v
-            s1 += c1[r] * v
-            s2 += c2[r] * v
-            s3 += c3[r] * v
-            s4 += c4[r] * v
-            s5 += c5[r] * v
-        x[base] -= s0
-        x[base + 1] -= s1
-        x[base + 2] -= s2
-        x[base + 3] -= s3
-        x[base + 4] -= s4
-        x[base + 5] -= s5
-        for c in range(5, -1, -1):
-            v = x[base + c]
-            for r in range(c + 1, 6):
-                v -= col[c, r] * x[base + r]
-            x[base + c] = v / col[c, c]
+        _up(a[j], x, 6 * j, length if j < short else min(length, 6 * (nodes - j) - 6))
+
+
+@njit(cache=True, error_model="numpy", boundscheck=False)
+def solve_six(a, x, first=0):
+    """Solves for six right-hand sides at once, x (6, 6 nodes): a column is read from memory once for all."""
+    nodes = a.shape[0]
+    length, short = _lengths(a)
+    for j in range(first, nodes):
+        many = length if j < short else min(length, 6 * (nodes - j) - 6)
+        for q in range(6):
+            _down(a[j], x[q], 6 * j, many)
+    for j in range(nodes - 1, -1, -1):
+        many = length if j < short else min(length, 6 * (nodes - j) - 6)
+        for q in range(6):
+            _up(a[j], x[q], 6 * j, many)

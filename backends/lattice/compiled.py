@@ -8,8 +8,34 @@ from mdlgen.mechanics import keep_compiled_code
 
 keep_compiled_code(Path(__file__).resolve().parent)
 
-from backends.lattice import balance, band, forces, observe, step, tangent  # noqa: E402
+from backends.lattice import (  # noqa: E402
+    alone,
+    balance,
+    band,
+    border,
+    dense,
+    forces,
+    growth,
+    march,
+    observe,
+    step,
+    tangent,
+    touching,
+)
 
 keep_compiled_code()
 
-__all__ = ["balance", "band", "forces", "observe", "step", "tangent"]
+__all__ = [
+    "alone",
+    "balance",
+    "band",
+    "border",
+    "dense",
+    "forces",
+    "growth",
+    "march",
+    "observe",
+    "step",
+    "tangent",
+    "touching",
+]

@@ -33,36 +33,43 @@ def driven(body, t):
     return speed * min(t / ramp, 1.0) if ramp > 0.0 else speed
 
 
+@njit(cache=True, error_model="numpy", forceinline=True)
+def place_box(b, h, rate, spin, x, r, xm, rm, um, wm):
+    """One free box after h at a velocity and an angular velocity."""
+    m = matmul(exp_rotation(scale(h, spin)), mat(r, b))
+    for i in range(9):
+        rm[b, i] = m[i]
+    for i in range(3):
+        xm[b, i] = x[b, i] + h * rate[i]
+        um[b, i] = rate[i]
+        wm[b, i] = spin[i]
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def place_roller(body, b, h, t, rate, turning, x, xm, um, wm):
+    """One roller after h at the rates of its slide and its spin, where it has them; t: that time."""
+    if body.spin < 0:
+        turning = driven(body, t) if body.drive[0] != 0.0 else 0.0
+    for i in range(3):
+        if body.slide >= 0:
+            xm[b, i] = x[b, i] + h * rate * body.way[i]
+        um[b, i] = rate * body.way[i]
+        wm[b, i] = turning * body.axis[i]
+
+
 @njit(cache=True, error_model="numpy")
 def place(bodies, nodes, h, t, u, ub, x, r, xm, rm, um, wm):
     """The state after h at the velocities u (nodes, 6) and ub (border,), from positions x and rotations
     r: xm, rm, and the velocities of all bodies um, wm."""
     for n in range(nodes.size):
-        b = nodes[n]
-        turn = exp_rotation((h * u[n, 3], h * u[n, 4], h * u[n, 5]))
-        m = matmul(turn, mat(r, b))
-        for i in range(9):
-            rm[b, i] = m[i]
-        for i in range(3):
-            xm[b, i] = x[b, i] + h * u[n, i]
-            um[b, i] = u[n, i]
-            wm[b, i] = u[n, 3 + i]
+        place_box(nodes[n], h, (u[n, 0], u[n, 1], u[n, 2]), (u[n, 3], u[n, 4], u[n, 5]), x, r, xm, rm, um, wm)
     for b in range(bodies.size - 1):
         body = bodies[b]
         if body.axis[0] == 0.0 and body.axis[1] == 0.0 and body.axis[2] == 0.0:
             continue  # no roller
-        rate, turn_rate = 0.0, 0.0
-        if body.slide >= 0:
-            rate = ub[body.slide]
-        if body.spin >= 0:
-            turn_rate = ub[body.spin]
-        elif body.drive[0] != 0.0:
-            turn_rate = driven(body, t)
-        for i in range(3):
-            if body.slide >= 0:
-                xm[b, i] = x[b, i] + h * rate * body.way[i]
-            um[b, i] = rate * body.way[i]
-            wm[b, i] = turn_rate * body.axis[i]
+        rate = ub[body.slide] if body.slide >= 0 else 0.0
+        turning = ub[body.spin] if body.spin >= 0 else 0.0
+        place_roller(body, b, h, t, rate, turning, x, xm, um, wm)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -73,8 +80,9 @@ def _add(f, b, force, torque):
 
 
 @njit(cache=True, error_model="numpy")
-def joint_forces(joints, x, r, u, w, f):
-    """Adds the forces of all joints to f (bodies, 6). Returns (stored energy, dissipated power)."""
+def joint_forces(joints, x, r, u, w, f, lag=0.0):
+    """Adds the forces of all joints to f (bodies, 6), with `lag` [ms] times the stiffness on top of the
+    damping. Returns (stored energy, dissipated power)."""
     stored = lost = 0.0
     last = x.shape[0] - 1
     for j in range(joints.size):
@@ -83,23 +91,26 @@ def joint_forces(joints, x, r, u, w, f):
         if a < 0:
             a = last
         ma, mb = mat(r, a), mat(r, b)
+        fa, fb = ma, mb
+        if joint.plain == 0:
+            fa, fb = matmul(ma, nine(joint.fa)), matmul(mb, nine(joint.fb))
         k, c = joint.k, joint.c
         force, torque_b, torque_a, energy, power, _, _ = bushing_pair(
             vec(x, a),
-            matmul(ma, nine(joint.fa)),
+            fa,
             vec(u, a),
             vec(w, a),
             rotate(ma, three(joint.ra)),
             vec(x, b),
-            matmul(mb, nine(joint.fb)),
+            fb,
             vec(u, b),
             vec(w, b),
             rotate(mb, three(joint.rb)),
             three(joint.e),
             (k[0], k[1], k[2]),
             (k[3], k[4], k[5]),
-            (c[0], c[1], c[2]),
-            (c[3], c[4], c[5]),
+            (c[0] + lag * k[0], c[1] + lag * k[1], c[2] + lag * k[2]),
+            (c[3] + lag * k[3], c[4] + lag * k[4], c[5] + lag * k[5]),
         )
         _add(f, a, (-force[0], -force[1], -force[2]), torque_a)
         _add(f, b, force, torque_b)
@@ -166,6 +177,44 @@ def pair_forces(bodies, pairs, near, close, x, r, u, w, f, touched, outs):
         lost += out[14]
         touched[count] = p
         count += 1
+    return count, stored, lost
+
+
+@njit(cache=True, error_model="numpy")
+def pair_forces_again(bodies, pairs, near, close, known, x, r, u, w, f, touched, outs):
+    """As pair_forces where some pairs are `known`: (those that touch, what they do, how many, whether a pair
+    is among those looked at)."""
+    had, done, many, seen = known
+    count = 0
+    stored = lost = 0.0
+    for k in range(many):
+        pair = pairs[had[k]]
+        a, b = pair.a, pair.b
+        for i in range(OUT + 1 + POINT * int(done[k, OUT])):
+            outs[count, i] = done[k, i]
+        for i in range(6):
+            f[a, i] += done[k, i]
+            f[b, i] += done[k, 6 + i]
+        stored += done[k, 13]
+        lost += done[k, 14]
+        touched[count] = had[k]
+        count += 1
+    for at in range(close):
+        p = near[at]
+        if seen[p]:
+            continue
+        out = outs[count]
+        for i in range(OUT + 1):
+            out[i] = 0.0
+        if pair_force(bodies, pairs[p], x, r, u, w, out):
+            a, b = pairs[p].a, pairs[p].b
+            for i in range(6):
+                f[a, i] += out[i]
+                f[b, i] += out[6 + i]
+            stored += out[13]
+            lost += out[14]
+            touched[count] = p
+            count += 1
     return count, stored, lost
 
 

@@ -88,7 +88,7 @@ def _quaternions(matrices: np.ndarray) -> np.ndarray:
 
     if not np.isfinite(matrices).all():
         return np.full((*matrices.shape[:2], 4), np.nan)
-    found = Rotation.from_matrix(matrices.reshape(-1, 3, 3)).as_quat(canonical=True)
+    found = Rotation.from_matrix(matrices.reshape(-1, 3, 3), assume_valid=True).as_quat(canonical=True)
     found = np.roll(found, 1, axis=1).reshape(*matrices.shape[:2], 4)
     signs = np.sign(np.einsum("tbi,tbi->tb", found[1:], found[:-1]))
     signs[signs == 0] = 1.0

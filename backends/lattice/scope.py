@@ -10,9 +10,10 @@ from mdlgen.model.tables import Model
 def check(model: Model) -> None:
     """Raises RefusedError by name for what it cannot."""
     refuse_externals(model, "lattice")
-    if model.run.analysis == "static" and (model.rollers or len(model.pairs)):
+    if model.run.analysis == "static" and any(roller.speed for roller in model.rollers):
+        # a driven roller rubs on what it touches, and the friction of rest is none
         raise RefusedError(
-            "lattice: a static analysis with rollers or contacts is not there yet", ("run", "analysis")
+            "lattice: a static analysis with driven rollers is not there yet", ("run", "analysis")
         )
     for roller in model.rollers:
         if roller.press is not None and abs(float(roller.press.direction @ roller.axis)) > 1e-9:

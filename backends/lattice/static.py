@@ -7,57 +7,134 @@ import time as clock
 import numpy as np
 
 from backends.lattice.arrays import System
+from backends.lattice.band import PAD
 from backends.lattice.record import Recorder
-from mdlgen.model.tables import Model
+from mdlgen.model.tables import BOX_PLANE, GROUND, Model
 from mdlgen.results.result import Result
 
 FIRST_PART = 1.0  # of the load
 LEAST_PART = 1e-4
-GOOD = 1e-6  # residual relative to the load, by our own account
+FEW, MOST = 30, 2000  # rounds after which a part grows, and all of them
+# Of the stiffest: holds sheets that lie on contacts only along what does not hold them.
+TETHER = 1e-9
 
 
 def rest(model: Model, system: System, moving: tuple) -> Result:
     """The Result of a Model at rest; `moving` is (state, mid, matrix) at the start."""
     from backends.lattice.compiled import balance
 
-    state, mid, matrix = moving
-    x, r, v, l = state[:4]
+    state, mid, _ = moving
+    x, r, v, l, s = state[:5]
     v[:] = 0.0
     l[:] = 0.0
-    u, w, f = np.zeros_like(x), np.zeros_like(x), mid[4]
-    a, res = matrix[0], matrix[5]
-    bodies = (system.bodies, system.joints, system.loads, system.gravity, system.nodes)
+    tables = (system.bodies, system.joints, system.pairs, system.loads, system.gravity, system.nodes)
+    lists = (mid[5], mid[6], mid[8])
     load = _load(model, system)
+    size = (system.border, 6 * (system.reach + 1) + PAD)
+    held = (TETHER if _loose(model) else 0.0, _reach(model))
+    # compiles, or loads from the cache, before the clock starts: against such a load all is in balance
+    balance.equilibrium(tables, *size, 0.0, np.inf, *held, x, r, s, lists)
     begun = clock.perf_counter()
-    level, part, rounds, left = 0.0, FIRST_PART, 0, 0.0
+    level, part, rounds = 0.0, FIRST_PART, 0
     reason = None
     while level < 1.0:
         aim = min(1.0, level + part)
-        kept = x.copy(), r.copy()
-        left, more = balance.equilibrium(*bodies, aim, load, x, r, u, w, f, a, res)
+        kept = x.copy(), r.copy(), s.copy()
+        found, more, worst, left = balance.equilibrium(tables, *size, aim, load, *held, x, r, s, lists)
         rounds += more
-        if left <= GOOD:
-            level, part = aim, 2 * part
+        if found:
+            level, part = aim, 2 * part if more <= FEW else part
             continue
-        x[:], r[:] = kept
+        reason = _outside(model, x) or _unbalanced(model, level, aim, worst, left * load)
+        x[:], r[:], s[:] = kept
         part *= 0.25
-        if part < LEAST_PART:
-            reason = f"no balance was found above {100 * level:.3g} % of the load"
+        if part < LEAST_PART or rounds > MOST:
             break
+        reason = None
     wall = clock.perf_counter() - begun
-    tables = (system.bodies, system.joints, system.pairs, system.loads, system.gravity, system.nodes)
-    kept_rows = (np.zeros((len(model.contacts), 9)), np.zeros(len(system.pairs), bool))
-    recorder = Recorder(model, system, tables, state, mid, kept_rows)
+    rows = (np.zeros((len(model.contacts), 9)), np.zeros(len(system.pairs), bool))
+    if reason is None:
+        reason = _touch(model, system, state, mid, rows) or _outside(model, x)
+    recorder = Recorder(model, system, tables, state, mid, rows)
     recorder.store(0.0)
     result = recorder.result("lattice", reason, np.zeros(3))
     result.wall_s, result.steps = wall, 0
     return result
 
 
+def _unbalanced(model: Model, level: float, aim: float, worst: int, force: float) -> str:
+    """Why a part of the load has no balance."""
+    loose = ", and friction holds nothing at rest" if len(model.pairs) else ""
+    return (
+        f"no balance was found above {100 * level:.3g} % of the load: at {100 * aim:.3g} % {force:.3g} N are "
+        f"left on {model.bodies.name[worst]}{loose}"
+    )
+
+
 def _load(model: Model, system: System) -> float:
-    """What residuals are measured by [N]: the weight, the loads, or a moment over a sheet's length."""
+    """What residuals are measured by [N]: the weight, the loads, or a moment over a sheet's length; where
+    there are none, the springs' preload."""
     weight = float(system.bodies["mass"][system.nodes].sum() * np.linalg.norm(system.gravity))
     length = max(max(s.size) for s in model.sheets)
     forces = [float(np.linalg.norm(row["force"])) for row in system.loads]
     moments = [float(np.linalg.norm(row["moment"])) / length for row in system.loads]
-    return max(weight, *forces, *moments, 1e-12)
+    springs = float(np.abs(system.bodies["press"][:, 2]).max())
+    return max(weight, *forces, *moments, 0.0) or max(springs, 1e-12)
+
+
+def _loose(model: Model) -> bool:
+    """Whether no bushing holds some sheet to the ground or to a fixed box."""
+    held = (model.bushings.a == GROUND) | model.bodies.fixed[model.bushings.a]
+    for sheet in model.sheets:
+        ends = model.bushings.b[held]
+        fixed = model.bodies.fixed[sheet.first : sheet.first + sheet.count]
+        if not (fixed.any() or ((ends >= sheet.first) & (ends < sheet.first + sheet.count)).any()):
+            return True
+    return False
+
+
+def _reach(model: Model) -> float:
+    """The longest step [mm]: half of what a box would have to cross to be behind a contact."""
+    depths = [float(model.bodies.half[plane.body, 2]) for plane in model.planes]
+    radii = [0.5 * roller.radius for roller in model.rollers]
+    return min([*depths, *radii], default=np.inf)
+
+
+def _touch(model: Model, system: System, state: tuple, mid: tuple, rows: tuple) -> str | None:
+    """Contacts at rest into the rows of the Recorder; a reason where a box is too deep in a plane."""
+    from backends.lattice.compiled import forces
+
+    x, r = state[:2]
+    f, touched, outs, near = mid[4], mid[5], mid[6], mid[8]
+    still = np.zeros_like(x)
+    close = forces.near_pairs(system.bodies, system.pairs, x, r, 0.0, near)
+    count, _, _ = forces.pair_forces(
+        system.bodies, system.pairs, near, close, x, r, still, still, f, touched, outs
+    )
+    table, marks = rows
+    for k in range(count):
+        pair, force, depth = system.pairs[touched[k]], outs[k, 12], outs[k, 15]
+        if pair["kind"] == BOX_PLANE and depth > system.bodies["half"][pair["b"], 2]:
+            names = model.bodies.name
+            return f"box {names[pair['a']]} rests more than half of its thickness in plane {names[pair['b']]}"
+        marks[touched[k]] = True
+        row = table[pair["row"]]
+        # greatest, sums over a time of 1, now; and it acts
+        row[[1, 3, 5]] += force
+        row[[0, 2, 6]] = max(row[0], depth)
+        row[[4, 7]] = 1.0
+    return None
+
+
+def _outside(model: Model, x: np.ndarray) -> str | None:
+    """A reason where a body is outside of the bounds from which its contacts were chosen."""
+    pairs = model.pairs
+    there = x[: len(pairs.low)]
+    out = ((there < pairs.low) | (there > pairs.high)).any(axis=1)
+    if not out.any():
+        return None
+    name = model.bodies.name[int(np.argmax(out))]
+    return (
+        f"{name} goes beyond the bounds from which its contacts were chosen before it rests; "
+        f"set run.prune: false, or a run.margin above {pairs.margin:g} mm"
+    )

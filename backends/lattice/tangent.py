@@ -11,9 +11,12 @@ import math
 
 from numba import njit
 
+from backends.lattice.band import PAD
 from mdlgen.mechanics.contact import OUT, POINT
+from mdlgen.mechanics.pair import BOX_PLANE
 from mdlgen.mechanics.vector import (
     add,
+    back,
     exp_rotation,
     log_rotation,
     mat,
@@ -48,7 +51,7 @@ def _conjugate(m, d):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def _hat_right(t, q):
+def hat_right(t, q):
     """t [q]x, t a matrix row by row."""
     x, y, z = q
     return (
@@ -65,7 +68,7 @@ def _hat_right(t, q):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def _hat_left(q, t):
+def hat_left(q, t):
     """[q]x t."""
     x, y, z = q
     return (
@@ -85,9 +88,9 @@ def _hat_left(q, t):
 def _blocks(a, column, offset, sign, t, q, p, g):
     """Adds sign (P_q^T t P_p + g) with P_q = [1, -[q]x] to the block of `column` whose rows begin at
     `offset`: rows are of the body with arm q, columns of that with arm p."""
-    right = _hat_right(t, p)
-    left = _hat_left(q, t)
-    both = _hat_left(q, right)
+    right = hat_right(t, p)
+    left = hat_left(q, t)
+    both = hat_left(q, right)
     for c in range(3):
         for r in range(3):
             a[column, c, offset + r] += sign * t[3 * r + c]
@@ -110,8 +113,8 @@ def masses(bodies, nodes, r, a):
 
 
 @njit(cache=True, error_model="numpy")
-def joints_into(bodies, joints, h, x, r, a):
-    """Adds h C + h^2 K of all joints."""
+def joints_into(bodies, joints, h, lag, x, r, a):
+    """Adds h (C + lag K) + h^2 K of all joints."""
     last = x.shape[0] - 1
     for i in range(joints.size):
         joint = joints[i]
@@ -127,15 +130,16 @@ def joints_into(bodies, joints, h, x, r, a):
         half = scale(0.5, sub(add(vec(x, two), rb), add(vec(x, one), ra)))
         qa, qb = add(ra, half), sub(rb, half)
         k, c, e = joint.k, joint.c, joint.e
-        s = (h * c[0] + h * h * k[0], h * c[1] + h * h * k[1], h * c[2] + h * h * k[2])
+        hk = h * (lag + h)
+        s = (h * c[0] + hk * k[0], h * c[1] + hk * k[1], h * c[2] + hk * k[2])
         # two bushings at e and -e also resist rotation: [e]x^T s [e]x
         ee = (
-            s[1] * e[2] * e[2] + s[2] * e[1] * e[1] + h * c[3] + h * h * k[3],
+            s[1] * e[2] * e[2] + s[2] * e[1] * e[1] + h * c[3] + hk * k[3],
             -s[2] * e[0] * e[1],
             -s[1] * e[0] * e[2],
-            s[0] * e[2] * e[2] + s[2] * e[0] * e[0] + h * c[4] + h * h * k[4],
+            s[0] * e[2] * e[2] + s[2] * e[0] * e[0] + h * c[4] + hk * k[4],
             -s[0] * e[1] * e[2],
-            s[0] * e[1] * e[1] + s[1] * e[0] * e[0] + h * c[5] + h * h * k[5],
+            s[0] * e[1] * e[1] + s[1] * e[0] * e[0] + h * c[5] + hk * k[5],
         )
         t = _conjugate(m, s)
         full = (ee[0], ee[1], ee[2], ee[1], ee[3], ee[4], ee[2], ee[4], ee[5])
@@ -152,11 +156,12 @@ def joints_into(bodies, joints, h, x, r, a):
 
 
 @njit(cache=True, error_model="numpy")
-def _core(out, at, h, law, chord):
-    """3 x 3 matrix of one contact point: growth of the force with h times the relative velocity."""
-    n = (out[at + 3], out[at + 4], out[at + 5])
+def core(out, at, n, slip, h, law, chord, whole):
+    """3 x 3 matrix of one contact point: what its force loses as the relative velocity grows, times h.
+
+    `whole`: with the growth of friction with the normal force, which is not symmetric.
+    """
     spring, growth, force, rate = out[at + 6], out[at + 7], out[at + 8], out[at + 9]
-    slip = (out[at + 10], out[at + 11], out[at + 12])
     y = rate / law[5]
     if abs(y) < 1.0:
         sign = 0.5 * y * (3.0 - y * y)
@@ -183,16 +188,19 @@ def _core(out, at, h, law, chord):
     d = (slip[0] * i, slip[1] * i, slip[2] * i)
     less = tangent - secant
     n1 = normal - secant
+    # the force is F (n - phi slip), phi = mu/speed: as F grows with the depth, so does the drag
+    drag = normal * secant / (h * force) if whole and force > 0.0 else 0.0
+    p = (n1 * n[0] - drag * slip[0], n1 * n[1] - drag * slip[1], n1 * n[2] - drag * slip[2])
     return (
-        secant + n1 * n[0] * n[0] + less * d[0] * d[0],
-        n1 * n[0] * n[1] + less * d[0] * d[1],
-        n1 * n[0] * n[2] + less * d[0] * d[2],
-        n1 * n[1] * n[0] + less * d[1] * d[0],
-        secant + n1 * n[1] * n[1] + less * d[1] * d[1],
-        n1 * n[1] * n[2] + less * d[1] * d[2],
-        n1 * n[2] * n[0] + less * d[2] * d[0],
-        n1 * n[2] * n[1] + less * d[2] * d[1],
-        secant + n1 * n[2] * n[2] + less * d[2] * d[2],
+        secant + p[0] * n[0] + less * d[0] * d[0],
+        p[0] * n[1] + less * d[0] * d[1],
+        p[0] * n[2] + less * d[0] * d[2],
+        p[1] * n[0] + less * d[1] * d[0],
+        secant + p[1] * n[1] + less * d[1] * d[1],
+        p[1] * n[2] + less * d[1] * d[2],
+        p[2] * n[0] + less * d[2] * d[0],
+        p[2] * n[1] + less * d[2] * d[1],
+        secant + p[2] * n[2] + less * d[2] * d[2],
     )
 
 
@@ -215,16 +223,21 @@ def _columns(body, arm, x, sign, direction, index, count):
 
 
 @njit(cache=True, error_model="numpy")
-def contacts_into(bodies, pairs, h, x, touched, outs, count, chord, a, b, d, direction, index):
-    """Adds the contacts that touch: to the band a, to the border b (border, 6 nodes) and its corner d."""
+def contacts_into(bodies, pairs, h, x, touched, outs, count, chord, planes, a, b, d, direction, index):
+    """Adds the contacts that touch, or only those with planes: to the band a, to the border b (border, 6
+    nodes) and its corner d."""
     zero = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     for k in range(count):
         pair, out = pairs[touched[k]], outs[k]
+        if planes and pair.kind != BOX_PLANE:
+            continue
         node = bodies[pair.a].node
         for point in range(int(out[OUT])):
             at = OUT + 1 + POINT * point
             where = (out[at], out[at + 1], out[at + 2])
-            t = _core(out, at, h, pair.law, chord)
+            normal = (out[at + 3], out[at + 4], out[at + 5])
+            slip = (out[at + 10], out[at + 11], out[at + 12])
+            t = core(out, at, normal, slip, h, pair.law, chord, False)
             arm = sub(where, vec(x, pair.a))
             if node >= 0:
                 _blocks(a, node, 0, 1.0, t, arm, arm, zero)
@@ -259,3 +272,38 @@ def rollers_into(bodies, h, b, d):
             d[bodies[k].slide, bodies[k].slide] = p[3] + h * p[1] + h * h * p[0]
         if bodies[k].spin >= 0:
             d[bodies[k].spin, bodies[k].spin] = p[4]
+
+
+@njit(cache=True, error_model="numpy")
+def in_box_axes(nodes, r, a, b):
+    """Turns the band and the border from global axes to those of the boxes."""
+    for n in range(nodes.size):
+        mine = mat(r, nodes[n])
+        for k in range(min((a.shape[2] - PAD) // 6, nodes.size - n)):
+            other = mat(r, nodes[n + k])
+            block = a[n, :, 6 * k : 6 * k + 6]
+            for p in range(0, 6, 3):
+                for q in range(0, 6, 3):
+                    # stored column by column: block[c, r]
+                    part = (
+                        block[p, q],
+                        block[p + 1, q],
+                        block[p + 2, q],
+                        block[p, q + 1],
+                        block[p + 1, q + 1],
+                        block[p + 2, q + 1],
+                        block[p, q + 2],
+                        block[p + 1, q + 2],
+                        block[p + 2, q + 2],
+                    )
+                    if k > 0 and part == (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0):
+                        continue
+                    turned = transpose_matmul(other, matmul(part, mine))
+                    for i in range(3):
+                        for j in range(3):
+                            block[p + j, q + i] = turned[3 * i + j]
+        for i in range(b.shape[0]):
+            for q in range(6 * n, 6 * n + 6, 3):
+                v = back(mine, (b[i, q], b[i, q + 1], b[i, q + 2]))
+                for c in range(3):
+                    b[i, q + c] = v[c]

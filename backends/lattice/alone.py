@@ -1,0 +1,175 @@
+"""What is kept of the boxes that touch something: which they are, and their compliance."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from backends.lattice.band import solve_six
+from mdlgen.mechanics.pair import BOX_PLANE
+
+# Where contacts stand: all apart; those with planes in the matrix of the sheet; all of them there.
+APART, PLANES, INSIDE = 0, 1, 2
+# Memory for columns of the inverse [bytes].
+COLUMNS = 64e6
+
+
+class Alone(NamedTuple):
+    """Arrays for the boxes that touch, made once for a run."""
+
+    slot_of: np.ndarray  # (nodes,) where a node's columns are kept, -1: nowhere
+    owner: np.ndarray  # (slots,) and whose they are
+    following: np.ndarray  # (1,) slot to be filled next
+    cols: np.ndarray  # (slots, 6, 6 nodes) columns of the inverse
+    place_of: np.ndarray  # (nodes,) place among the chosen, -1: none
+    chosen: np.ndarray  # nodes, by place
+    active: np.ndarray  # places of those that touch now, by rank
+    rank: np.ndarray  # by place, -1: does not touch
+    kept: np.ndarray  # (3,) whether factors may be used again, how many are active, how many stand in W
+    rollers: np.ndarray  # bodies
+    growth: np.ndarray  # of impulses with the velocities of active boxes and rollers
+    w: np.ndarray  # compliance of the chosen
+    jac: np.ndarray  # 1 + W growth, or its factors
+    swaps: np.ndarray  # exchanged rows
+    own: np.ndarray  # the rollers' inverse masses
+    measure: np.ndarray  # what an unknown counts as velocity
+    z: np.ndarray  # changes of velocity: chosen boxes, then rollers
+    z0: np.ndarray
+    gap: np.ndarray  # what is left of the equations
+    step: np.ndarray
+    short: np.ndarray  # the same of active boxes and rollers
+    push: np.ndarray  # and what it adds to the impulses
+    p: np.ndarray  # impulses
+    p0: np.ndarray  # at the start
+    used: np.ndarray  # as the last step took them, linear
+    forces: np.ndarray  # (bodies, 6)
+    mine: np.ndarray  # near pairs of the chosen
+    seen: np.ndarray  # (pairs,) whether a pair is one of them
+    state: np.ndarray  # (3,) how many pairs touch, whether that is where the boxes end, how many are mine
+    touched: np.ndarray  # those that touch
+    outs: np.ndarray  # and what they do
+    pair: np.ndarray  # (6, 6) growth of one pair's forces
+    direction: np.ndarray  # (4, 6) how the unknowns of a pair's rollers move them
+    index: np.ndarray  # (4,) and which they are
+
+
+def empty(system, wide: int) -> Alone:
+    """Arrays for a System; `wide` numbers hold what a pair does."""
+    nodes, border, pairs = len(system.nodes), system.border, len(system.pairs)
+    slots = int(min(nodes, max(8, COLUMNS / (288 * max(nodes, 1)))))
+    # above this a factor of the whole matrix is cheaper than one of this system
+    most = int(min(slots, max(8.0, (1.5 * nodes * system.reach**2) ** (1 / 3))))
+    size = 6 * most + border
+    return Alone(
+        slot_of=np.full(nodes, -1, np.int64),
+        owner=np.full(slots, -1, np.int64),
+        following=np.zeros(1, np.int64),
+        cols=np.zeros((slots, 6, 6 * nodes)),
+        place_of=np.full(nodes, -1, np.int64),
+        chosen=np.zeros(most, np.int64),
+        active=np.zeros(most, np.int64),
+        rank=np.full(most, -1, np.int64),
+        kept=np.zeros(3, np.int64),
+        rollers=np.flatnonzero(np.abs(system.bodies["axis"]).max(axis=1) > 0),
+        growth=np.zeros((size, size)),
+        w=np.zeros((size, size)),
+        jac=np.zeros((size, size)),
+        swaps=np.zeros(size, np.int64),
+        own=np.zeros(size),
+        measure=np.ones(size),
+        z=np.zeros(size),
+        z0=np.zeros(size),
+        gap=np.zeros(size),
+        step=np.zeros(size),
+        short=np.zeros(size),
+        push=np.zeros(size),
+        p=np.zeros(size),
+        p0=np.zeros(size),
+        used=np.zeros(size),
+        forces=np.zeros((len(system.bodies), 6)),
+        mine=np.zeros(pairs, np.int64),
+        seen=np.zeros(pairs, np.bool_),
+        state=np.zeros(3, np.int64),
+        touched=np.zeros(pairs, np.int64),
+        outs=np.zeros((max(1, pairs), wide)),
+        pair=np.zeros((6, 6)),
+        direction=np.zeros((4, 6)),
+        index=np.zeros(4, np.int64),
+    )
+
+
+@njit(cache=True, error_model="numpy")
+def forget(alone):
+    """Drops the columns of a matrix that is no more."""
+    alone.slot_of[:] = -1
+    alone.owner[:] = -1
+    alone.kept[0] = alone.kept[2] = 0
+
+
+@njit(cache=True, error_model="numpy")
+def release(alone, m):
+    """Unmarks the m chosen boxes."""
+    for i in range(m):
+        alone.place_of[alone.chosen[i]] = -1
+        alone.rank[i] = -1
+    alone.kept[:] = 0
+
+
+@njit(cache=True, error_model="numpy")
+def choose(bodies, pairs, touched, count, where, alone, m, most):
+    """Adds boxes that touch to the m chosen ones; returns how many they are, -1: more than `most`."""
+    if where == INSIDE:
+        return 0
+    for k in range(count):
+        pair = pairs[touched[k]]
+        if where == PLANES and pair.kind == BOX_PLANE:
+            continue
+        node = bodies[pair.a].node
+        if node >= 0 and alone.place_of[node] < 0:
+            if m >= most:
+                release(alone, m)
+                return -1
+            alone.place_of[node] = m
+            alone.chosen[m] = node
+            m += 1
+    return m
+
+
+@njit(cache=True, error_model="numpy")
+def columns(a, alone, m):
+    """Makes the columns of the inverse for the chosen boxes that have none, and W."""
+    slot_of, owner, cols, chosen, w = alone.slot_of, alone.owner, alone.cols, alone.chosen, alone.w
+    for i in range(m):
+        n = chosen[i]
+        if slot_of[n] >= 0:
+            continue
+        s = alone.following[0]
+        while owner[s] >= 0 and alone.place_of[owner[s]] >= 0:
+            s = (s + 1) % owner.size
+        if owner[s] >= 0:
+            slot_of[owner[s]] = -1
+        alone.following[0] = (s + 1) % owner.size
+        owner[s], slot_of[n] = n, s
+        cols[s] = 0.0
+        for p in range(6):
+            cols[s, p, 6 * n + p] = 1.0
+        solve_six(a, cols[s], n)
+    known = alone.kept[2]
+    for j in range(m):
+        s = slot_of[chosen[j]]
+        for i in range(0 if j >= known else known, m):
+            base = 6 * chosen[i]
+            for q in range(6):
+                for p in range(6):
+                    w[6 * i + p, 6 * j + q] = cols[s, q, base + p]
+    alone.kept[2] = m
+
+
+@njit(cache=True, error_model="numpy")
+def unsee(alone):
+    """Forgets which pairs were looked at."""
+    for k in range(alone.state[2]):
+        alone.seen[alone.mine[k]] = False
+    alone.state[1] = alone.state[2] = 0

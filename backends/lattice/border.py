@@ -1,0 +1,64 @@
+"""The unknowns of rollers beside the band: the matrix with its border, where contacts stand inside it."""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from backends.lattice.band import solve
+
+
+@njit(cache=True, error_model="numpy")
+def eliminate(a, b, d, y, corner):
+    """Y = A^-1 B (rows of y) and the factored corner D - B Y. Returns False where that is not regular."""
+    many = d.shape[0]
+    corner[:] = d
+    for j in range(many):
+        first = 0
+        while first < b.shape[1] and b[j, first] == 0.0:
+            first += 1
+        y[j] = b[j]
+        if first < b.shape[1]:
+            solve(a, y[j], first // 6)
+            for i in range(j, many):
+                v = 0.0
+                for l in range(b.shape[1]):
+                    v += b[i, l] * y[j, l]
+                corner[i, j] -= v
+    # Cholesky of a small dense matrix
+    for j in range(many):
+        for k in range(j):
+            for i in range(j, many):
+                corner[i, j] -= corner[i, k] * corner[j, k]
+        if not corner[j, j] > 0.0:
+            return False
+        pivot = math.sqrt(corner[j, j])
+        for i in range(j, many):
+            corner[i, j] /= pivot
+    return True
+
+
+@njit(cache=True, error_model="numpy")
+def solve_bordered(a, b, y, corner, res, resb):
+    """Solves band and border in place."""
+    solve(a, res)
+    m = resb.size
+    for j in range(m):
+        v = resb[j]
+        for l in range(res.size):
+            v -= b[j, l] * res[l]
+        resb[j] = v
+    for j in range(m):
+        for k in range(j):
+            resb[j] -= corner[j, k] * resb[k]
+        resb[j] /= corner[j, j]
+    for j in range(m - 1, -1, -1):
+        for k in range(j + 1, m):
+            resb[j] -= corner[k, j] * resb[k]
+        resb[j] /= corner[j, j]
+    for j in range(m):
+        v = resb[j]
+        if v != 0.0:
+            for l in range(res.size):
+                res[l] -= y[j, l] * v

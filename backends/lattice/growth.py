@@ -1,0 +1,171 @@
+"""The growth of contact impulses with velocities, and Newton's matrix of the boxes that touch."""
+
+from __future__ import annotations
+
+from numba import njit
+
+from backends.lattice.dense import lu_solve
+from backends.lattice.tangent import core, hat_left, hat_right
+from mdlgen.mechanics.contact import OUT, POINT
+from mdlgen.mechanics.vector import back, cross, mat, sub, three, vec
+
+
+@njit(cache=True, error_model="numpy")
+def activate(bodies, pairs, count, alone):
+    """Lists the chosen boxes that touch now, kept[1] in number. Returns whether they are those of the last
+    time."""
+    active, rank, kept = alone.active, alone.rank, alone.kept
+    found, same = 0, True
+    for i in range(kept[1]):
+        rank[active[i]] = -1
+    for k in range(count):
+        node = bodies[pairs[alone.touched[k]].a].node
+        if node >= 0 and rank[alone.place_of[node]] < 0:
+            place = alone.place_of[node]
+            same = same and found < kept[1] and active[found] == place
+            active[found] = place
+            rank[place] = found
+            found += 1
+    same = same and found == kept[1]
+    kept[1] = found
+    return same
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _put(g, row, column, sign, t):
+    """Adds a 3 x 3 matrix."""
+    for i in range(3):
+        for j in range(3):
+            g[row + i, column + j] += sign * t[3 * i + j]
+
+
+@njit(cache=True, error_model="numpy")
+def _rollers(body, arm, axes, sign, first, direction, index, found):
+    """A roller's unknowns that move it against a box, each as a velocity and an angular velocity at the box's
+    centre; `arm` goes from there to the roller's."""
+    if body.slide >= 0:
+        way = back(axes, three(body.way))
+        for c in range(3):
+            direction[found, c], direction[found, 3 + c] = sign * way[c], 0.0
+        index[found] = first + body.slide
+        found += 1
+    if body.spin >= 0:
+        axis = back(axes, three(body.axis))
+        swing = cross(arm, axis)
+        for c in range(3):
+            direction[found, c], direction[found, 3 + c] = sign * swing[c], sign * axis[c]
+        index[found] = first + body.spin
+        found += 1
+    return found
+
+
+@njit(cache=True, error_model="numpy")
+def _pair_growth(pair, out, axes, h, x, chord, growth):
+    """What the points of one pair do together: a 6 x 6 matrix of the motion of one body against the other,
+    seen from the centre of the first, in the axes of the box."""
+    growth[:] = 0.0
+    for point in range(int(out[OUT])):
+        at = OUT + 1 + POINT * point
+        normal = back(axes, (out[at + 3], out[at + 4], out[at + 5]))
+        slip = back(axes, (out[at + 10], out[at + 11], out[at + 12]))
+        t = core(out, at, normal, slip, h, pair.law, chord, True)
+        arm = back(axes, sub((out[at], out[at + 1], out[at + 2]), vec(x, pair.a)))
+        right = hat_right(t, arm)
+        _put(growth, 0, 0, 1.0, t)
+        _put(growth, 0, 3, -1.0, right)
+        _put(growth, 3, 0, 1.0, hat_left(arm, t))
+        _put(growth, 3, 3, -1.0, hat_left(arm, right))
+
+
+@njit(cache=True, error_model="numpy")
+def gradient(bodies, pairs, h, x, r, count, alone, acting, many, chord):
+    """Growth of the contact impulses with the velocities of the boxes that touch and of the rollers."""
+    growth, one, direction, index = alone.growth, alone.pair, alone.direction, alone.index
+    for i in range(many):
+        for j in range(many):
+            growth[i, j] = 0.0
+    for k in range(count):
+        pair, out = pairs[alone.touched[k]], alone.outs[k]
+        node = bodies[pair.a].node
+        axes = mat(r, pair.a)
+        _pair_growth(pair, out, axes, h, x, chord, one)
+        moving, first = 0, 0
+        if node >= 0:
+            first = 6 * alone.rank[alone.place_of[node]]
+            for i in range(6):
+                for j in range(6):
+                    growth[first + i, first + j] += one[i, j]
+        else:
+            still = (0.0, 0.0, 0.0)
+            moving = _rollers(bodies[pair.a], still, axes, 1.0, 6 * acting, direction, index, moving)
+        far = back(axes, sub(vec(x, pair.b), vec(x, pair.a)))
+        moving = _rollers(bodies[pair.b], far, axes, -1.0, 6 * acting, direction, index, moving)
+        for j in range(moving):
+            d = direction[j]
+            for i in range(6):
+                v = across = 0.0
+                for c in range(6):
+                    v += one[i, c] * d[c]
+                    across += one[c, i] * d[c]
+                if node >= 0:
+                    growth[first + i, index[j]] += v
+                    growth[index[j], first + i] += across
+                for l in range(moving):
+                    growth[index[l], index[j]] += direction[l, i] * v
+
+
+@njit(cache=True, error_model="numpy")
+def newton_matrix(alone, acting, many):
+    """1 + W growth of the boxes that touch and of the rollers."""
+    growth, w, jac, active, own = alone.growth, alone.w, alone.jac, alone.active, alone.own
+    boxes = 6 * acting
+    for i in range(boxes):
+        for c in range(boxes, many):
+            jac[i, c] = 0.0
+    for j in range(acting):
+        at, base = 6 * active[j], 6 * j
+        g0, g1, g2 = growth[base], growth[base + 1], growth[base + 2]
+        g3, g4, g5 = growth[base + 3], growth[base + 4], growth[base + 5]
+        for i in range(boxes):
+            source = w[6 * active[i // 6] + i % 6]
+            v0, v1, v2 = source[at], source[at + 1], source[at + 2]
+            v3, v4, v5 = source[at + 3], source[at + 4], source[at + 5]
+            row = jac[i]
+            for c in range(base, base + 6):
+                row[c] = v0 * g0[c] + v1 * g1[c] + v2 * g2[c] + v3 * g3[c] + v4 * g4[c] + v5 * g5[c]
+            for c in range(boxes, many):
+                row[c] += v0 * g0[c] + v1 * g1[c] + v2 * g2[c] + v3 * g3[c] + v4 * g4[c] + v5 * g5[c]
+    for i in range(boxes, many):
+        for j in range(many):
+            jac[i, j] = own[i - boxes] * growth[i, j]
+    for i in range(many):
+        jac[i, i] += 1.0
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
+def newton(alone, m, acting, many):
+    """A step of Newton's method, of all chosen boxes and the rollers, with the factored matrix."""
+    growth, w, active, gap = alone.growth, alone.w, alone.active, alone.gap
+    short, push, step = alone.short, alone.push, alone.step
+    boxes = 6 * acting
+    for j in range(acting):
+        for c in range(6):
+            short[6 * j + c] = -gap[6 * active[j] + c]
+    for i in range(boxes, many):
+        short[i] = -gap[6 * m + i - boxes]
+    lu_solve(alone.jac, alone.swaps, short, many)
+    for i in range(boxes):
+        row, v = growth[i], 0.0
+        for j in range(many):
+            v += row[j] * short[j]
+        push[i] = v
+    for i in range(6 * m):
+        v = -gap[i]
+        row = w[i]
+        for j in range(acting):
+            at = 6 * active[j]
+            for c in range(6):
+                v -= row[at + c] * push[6 * j + c]
+        step[i] = v
+    for i in range(boxes, many):
+        step[6 * m + i - boxes] = short[i]

@@ -1,0 +1,260 @@
+"""The boxes that touch something, apart from the sheet they belong to.
+
+A contact changes with every step, the lattice hardly does. So the matrix that is factored holds masses and
+bushings only, in axes that turn with each box, and its factor lasts. What impulses p of contacts do to the
+boxes they act on follows from a small dense matrix, the compliance W of these boxes (their rows and columns
+of the inverse). With z the change of their velocities, in box axes,
+
+    z = z0 + W (p(z) - p(0)),
+
+z0 being what the residual alone changes. Rollers stand in the same system with inverse masses of their own.
+Newton's method solves it with the whole derivative of the contact forces, friction's growth with the normal
+force included.
+"""
+
+from __future__ import annotations
+
+from numba import njit
+
+from backends.lattice.alone import PLANES, unsee
+from backends.lattice.dense import lu
+from backends.lattice.forces import pair_forces, place_box, place_roller
+from backends.lattice.growth import activate, gradient, newton, newton_matrix
+from mdlgen.mechanics.contact import OUT, POINT
+from mdlgen.mechanics.pair import BOX_PLANE
+from mdlgen.mechanics.vector import back, mat, rotate
+
+MOST_ROUNDS = 40
+MOST_HALVED = 4
+# How much of the chord a derivative takes (see tangent.core): little first, much where that went astray.
+LITTLE, MUCH = 0.0, 0.7
+# Factors are used again where a round left less than this of the squares.
+GOOD = 0.04
+# A round that moves less than this times what is strictly wanted is not looked at again here.
+NEAR = 10.0
+
+
+@njit(cache=True, error_model="numpy")
+def _mine(bodies, pairs, near, close, where, alone):
+    """Lists the near pairs of the chosen boxes and those between rollers."""
+    unsee(alone)
+    count = 0
+    for k in range(close):
+        pair = pairs[near[k]]
+        node = bodies[pair.a].node
+        if node < 0 or (alone.place_of[node] >= 0 and not (where == PLANES and pair.kind == BOX_PLANE)):
+            alone.mine[count] = near[k]
+            alone.seen[near[k]] = True
+            count += 1
+    alone.state[2] = count
+    return count
+
+
+@njit(cache=True, error_model="numpy")
+def _take(bodies, pairs, nodes, where, alone, m, known):
+    """Takes over what pairs do from where they are `known`: (those that touch, what they do, how many)."""
+    touched, outs, many = known
+    forces, count = alone.forces, 0
+    for i in range(m):
+        forces[nodes[alone.chosen[i]]] = 0.0
+    for b in alone.rollers:
+        forces[b] = 0.0
+    for k in range(many):
+        pair, out = pairs[touched[k]], outs[k]
+        node = bodies[pair.a].node
+        if node < 0 or (alone.place_of[node] >= 0 and not (where == PLANES and pair.kind == BOX_PLANE)):
+            alone.touched[count] = touched[k]
+            for i in range(OUT + 1 + POINT * int(out[OUT])):
+                alone.outs[count, i] = out[i]
+            for i in range(6):
+                forces[pair.a, i] += out[i]
+                forces[pair.b, i] += out[6 + i]
+            count += 1
+    return count
+
+
+@njit(cache=True, error_model="numpy")
+def _impulses(bodies, nodes, r, h, alone, m, p):
+    """Forces times h, in box axes and along the rollers' freedoms, into p."""
+    f = alone.forces
+    for i in range(m):
+        b = nodes[alone.chosen[i]]
+        axes = mat(r, b)
+        force, torque = back(axes, (f[b, 0], f[b, 1], f[b, 2])), back(axes, (f[b, 3], f[b, 4], f[b, 5]))
+        for c in range(3):
+            p[6 * i + c], p[6 * i + 3 + c] = h * force[c], h * torque[c]
+    for b in alone.rollers:
+        slide, spin = bodies[b].slide, bodies[b].spin
+        if slide >= 0:
+            way = bodies[b].way
+            p[6 * m + slide] = h * (f[b, 0] * way[0] + f[b, 1] * way[1] + f[b, 2] * way[2])
+        if spin >= 0:
+            axis = bodies[b].axis
+            p[6 * m + spin] = h * (f[b, 3] * axis[0] + f[b, 4] * axis[1] + f[b, 5] * axis[2])
+
+
+@njit(cache=True, error_model="numpy")
+def _begin(bodies, nodes, h, ub, alone, m, res, resb):
+    """Sets z to zero, z0 to what the residual changes, and the measures of both."""
+    z, z0, own, measure = alone.z, alone.z0, alone.own, alone.measure
+    for i in range(m):
+        n = alone.chosen[i]
+        size = bodies[nodes[n]].half[0] + bodies[nodes[n]].half[1]
+        for c in range(6):
+            z[6 * i + c] = 0.0
+            z0[6 * i + c] = -res[6 * n + c]
+            measure[6 * i + c] = 1.0 if c < 3 else size
+    for b in alone.rollers:
+        slide, spin, p = bodies[b].slide, bodies[b].spin, bodies[b].press
+        if slide >= 0:
+            own[slide] = 1.0 / (p[3] + h * p[1] + h * h * p[0])
+            measure[6 * m + slide] = 1.0
+        if spin >= 0:
+            own[spin] = 1.0 / p[4]
+            measure[6 * m + spin] = bodies[b].size[0]
+    for i in range(ub.size):
+        z[6 * m + i] = 0.0
+        z0[6 * m + i] = -own[i] * resb[i]
+
+
+@njit(cache=True, error_model="numpy")
+def _evaluate(bodies, pairs, nodes, h, t, state, mid, alone, m, few):
+    """Contact forces on the chosen boxes and the rollers, with their velocities changed by z; returns how
+    many pairs touch."""
+    x, r, u, ub = state
+    xm, rm, um, wm = mid
+    forces, z = alone.forces, alone.z
+    for i in range(m):
+        n = alone.chosen[i]
+        b = nodes[n]
+        for c in range(6):
+            forces[b, c] = 0.0
+        axes = mat(r, b)
+        v = rotate(axes, (z[6 * i], z[6 * i + 1], z[6 * i + 2]))
+        w = rotate(axes, (z[6 * i + 3], z[6 * i + 4], z[6 * i + 5]))
+        rate = (u[n, 0] + v[0], u[n, 1] + v[1], u[n, 2] + v[2])
+        spin = (u[n, 3] + w[0], u[n, 4] + w[1], u[n, 5] + w[2])
+        place_box(b, h, rate, spin, x, r, xm, rm, um, wm)
+    for b in alone.rollers:
+        for c in range(6):
+            forces[b, c] = 0.0
+        rate = turning = 0.0
+        if bodies[b].slide >= 0:
+            rate = ub[bodies[b].slide] + z[6 * m + bodies[b].slide]
+        if bodies[b].spin >= 0:
+            turning = ub[bodies[b].spin] + z[6 * m + bodies[b].spin]
+        place_roller(bodies[b], b, h, t, rate, turning, x, xm, um, wm)
+    count, _stored, _lost = pair_forces(
+        bodies, pairs, alone.mine, few, xm, rm, um, wm, forces, alone.touched, alone.outs
+    )
+    return count
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
+def _gap(alone, m, many):
+    """What is left of the system's equations, into `gap`; returns its square, in velocities."""
+    w, p, p0, push = alone.w, alone.p, alone.p0, alone.push
+    boxes = 6 * m
+    for i in range(many):
+        push[i] = p[i] - p0[i]
+    total = 0.0
+    for i in range(many):
+        v = alone.z[i] - alone.z0[i]
+        if i < boxes:
+            row = w[i]
+            for j in range(boxes):
+                v -= row[j] * push[j]
+        else:
+            v -= alone.own[i - boxes] * push[i]
+        alone.gap[i] = v
+        total += (alone.measure[i] * v) ** 2
+    return total
+
+
+@njit(cache=True, error_model="numpy")
+def _apply(alone, m, res, resb):
+    """Completes what is to be taken off by what the contacts add to it."""
+    for j in range(m):
+        s = alone.slot_of[alone.chosen[j]]
+        for q in range(6):
+            add = alone.used[6 * j + q] - alone.p0[6 * j + q]
+            if add != 0.0:
+                column = alone.cols[s, q]
+                for l in range(res.size):
+                    res[l] -= add * column[l]
+    for i in range(resb.size):
+        resb[i] = -alone.z[6 * m + i]
+
+
+@njit(cache=True, error_model="numpy")
+def settle(
+    bodies, pairs, nodes, h, t, where, state, mid, near, close, known, alone, m, res, resb, limit, strict
+):
+    """Solves for the velocities of the chosen boxes and of the rollers, so that what is left is below `limit`
+    (or a round moved them by less than `strict`).
+
+    `known` is what the pairs do at the start: (those that touch, outs, how many). `res` (6 nodes,) holds
+    what the lattice alone would lose of its velocities, in box axes, `resb` the rollers' residual; both
+    become what is to be taken off. Returns how many rounds that took, -1: it did not converge.
+    """
+    _x, r, _u, ub = state
+    z, step, p, used, active = alone.z, alone.step, alone.p, alone.used, alone.active
+    boxes = 6 * m
+    many = boxes + ub.size
+    if many == 0:
+        return 0
+    few = _mine(bodies, pairs, near, close, where, alone)
+    _begin(bodies, nodes, h, ub, alone, m, res, resb)
+    count = _take(bodies, pairs, nodes, where, alone, m, known)
+    _impulses(bodies, nodes, r, h, alone, m, alone.p0)
+    for i in range(many):
+        p[i] = used[i] = alone.p0[i]
+    merit = _gap(alone, m, many)
+    if merit <= 1e-2 * strict * strict:
+        _apply(alone, m, res, resb)
+        return 0
+    chord = LITTLE
+    for rounds in range(MOST_ROUNDS):
+        same = activate(bodies, pairs, count, alone)
+        acting = alone.kept[1]
+        short = 6 * acting + ub.size
+        if not (same and alone.kept[0] == 1):
+            gradient(bodies, pairs, h, mid[0], r, count, alone, acting, short, chord)
+            newton_matrix(alone, acting, short)
+            if not lu(alone.jac, alone.swaps, short):
+                return -1
+        alone.kept[0] = 1
+        newton(alone, m, acting, short)
+        # impulses as this step takes them, linear: with them the sheet moves as the chosen boxes do
+        for i in range(boxes):
+            used[i] = p[i]
+        for j in range(acting):
+            for c in range(6):
+                used[6 * active[j] + c] -= alone.push[6 * j + c]
+        change = 0.0
+        for i in range(many):
+            change = max(change, abs(alone.measure[i] * step[i]))
+            z[i] += step[i]
+        if not change < 1e30:
+            return -1
+        done = change <= NEAR * strict
+        before, part = merit, 1.0
+        for halved in range(MOST_HALVED + 1):
+            if done:
+                break
+            count = _evaluate(bodies, pairs, nodes, h, t, state, mid, alone, m, few)
+            _impulses(bodies, nodes, r, h, alone, m, p)
+            merit = _gap(alone, m, many)
+            if merit <= before * (1.0 - 0.1 * part) or merit <= strict * strict or halved == MOST_HALVED:
+                break
+            part *= 0.5
+            for i in range(many):
+                z[i] -= part * step[i]
+        chord = MUCH if part < 0.2 else LITTLE
+        if merit > GOOD * before:
+            alone.kept[0] = 0
+        if done or (part == 1.0 and merit <= limit * limit):
+            _apply(alone, m, res, resb)
+            alone.state[0], alone.state[1] = count, 0 if done else 1
+            return rounds + 1
+    return -1
