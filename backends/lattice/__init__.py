@@ -21,8 +21,13 @@ def check(model: Model) -> None:
     scope.check(model)
 
 
-def solve(model: Model, progress: Progress | None = None, step: float | None = None) -> Result:
+def solve(
+    model: Model,
+    progress: Progress | None = None,
+    step: float | None = None,
+    without: tuple[str, ...] = (),
+) -> Result:
     """Run a Model; see `backends.lattice.run.solve`."""
     from backends.lattice import run
 
-    return run.solve(model, progress, step)
+    return run.solve(model, progress, step, without)

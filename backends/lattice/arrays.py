@@ -72,10 +72,10 @@ class System(NamedTuple):
     folded: int  # bushings that share a joint with another one
 
 
-def build(model: Model) -> System:
-    """Arrays of a Model."""
+def build(model: Model, fold: bool = True) -> System:
+    """Arrays of a Model; `fold`: equal bushings side by side as one joint."""
     bodies, nodes, border = _bodies(model)
-    joints, folded = _joints(model)
+    joints, folded = _joints(model, fold)
     return System(
         bodies=bodies,
         joints=joints,
@@ -126,7 +126,7 @@ def _bodies(model: Model) -> tuple[np.ndarray, Ints, int]:
     return bodies, np.array(nodes, dtype=np.int64), border
 
 
-def _joints(model: Model) -> tuple[np.ndarray, int]:
+def _joints(model: Model, fold: bool) -> tuple[np.ndarray, int]:
     """Bushings as joints; two equal ones between the same bodies become one, exactly."""
     table = model.bushings
     position = np.concatenate([model.bodies.position, np.zeros((1, 3))])
@@ -143,7 +143,7 @@ def _joints(model: Model) -> tuple[np.ndarray, int]:
     for row in single:
         key = (int(row["a"]), int(row["b"]))
         before = waiting.pop(key, None)
-        if before is not None and _alike(made[before], row):
+        if fold and before is not None and _alike(made[before], row):
             made[before] = _folded(made[before], row)
             continue
         waiting[key] = len(made)

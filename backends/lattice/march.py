@@ -104,7 +104,8 @@ def run(
     """Takes the steps `steps` (n,) [ms] from time t. Returns (status, time reached).
 
     A step is halved, up to DEEPEST times, where it does not converge, or where the velocities miss their
-    guess by more than pace[1] [mm/ms] (0: any will do); pace[0] is how often it is halved now. `work` (3,)
+    guess by more than pace[1] [mm/ms] (0: any will do); pace[0] is how often it is halved now. With
+    pace[2] each step has a factor of its own. `work` (3,)
     adds up energies [N mm]. counters[WORST] names the body or pair of a failure. `before` holds the
     velocities of the step before and its size, for a guess.
     """
@@ -127,6 +128,8 @@ def run(
                 for i in range(ub.size):
                     ub[i] += ahead * (ub[i] - last_b[i])
             guess[:] = u
+            if pace[2] != 0.0:
+                fresh[1] = 1.0
             rounds = counters[ROUNDS]
             solved = midpoint(system, state, mid, matrix, alone, t, dt, tolerance, fresh, counters)
             missed = _missed(bodies, nodes, u, guess) if solved and pace[1] > 0.0 else 0.0

@@ -37,7 +37,16 @@ ENERGY_GAIN = 0.02
 Progress = Callable[[float, float, int, int], None]
 
 
-def solve(model: Model, progress: Progress | None = None, step: float | None = None) -> Result:
+# Rules that leave out what a run does not need, each of which a run can do without.
+FOLDING, FACTORS = "folding", "factors"
+
+
+def solve(
+    model: Model,
+    progress: Progress | None = None,
+    step: float | None = None,
+    without: tuple[str, ...] = (),
+) -> Result:
     """Run a Model; `progress(time, end, steps, touching)` is told where it stands (times in ms).
 
     `step` [ms], or the Model's own, is taken as it is, and an estimate comes of a run at twice the step.
@@ -45,10 +54,12 @@ def solve(model: Model, progress: Progress | None = None, step: float | None = N
     differ by less. `error_estimate` is that difference, which is the error of the coarser run, and three
     times that of the finer one where halving quarters the error. A failed run returns a Result with its
     reason; RefusedError is raised for what the solver cannot represent.
+
+    `without` names rules that are not to be used: FOLDING of equal bushings, keeping of FACTORS over steps.
     """
     check(model)
     started = clock.perf_counter()
-    system = build(model)
+    system = build(model, fold=FOLDING not in without)
     compiled = clock.perf_counter()
     from backends.lattice import compiled as _  # noqa: F401
 
@@ -62,14 +73,14 @@ def solve(model: Model, progress: Progress | None = None, step: float | None = N
     wanted = step or model.run.step
     begun = clock.perf_counter()
     if wanted is not None:
-        result = _once(model, system, wanted, progress)
+        result = _once(model, system, wanted, progress, anew=FACTORS in without)
         if result.ok and step is None and model.run.duration / wanted >= 4:
             coarse = _once(model, system, 2 * result.step, progress)
             if coarse.ok:
                 result = replace(result, error_estimate=compare(result, coarse).relative)
     else:
         result = _refined(model, system, progress)
-    result.wall_s = clock.perf_counter() - begun
+    result.estimate_s = clock.perf_counter() - begun - result.wall_s
     result.build_s, result.compile_s = build_s, compile_s
     return result
 
@@ -116,9 +127,15 @@ def _speed(model: Model) -> float:
 
 
 def _once(
-    model: Model, system: System, wanted: float, progress: Progress | None, miss: float = 0.0
+    model: Model,
+    system: System,
+    wanted: float,
+    progress: Progress | None,
+    miss: float = 0.0,
+    anew: bool = False,
 ) -> Result:
-    """One run at a step, or the next smaller one that outputs fall on; `miss`: see MISS, 0 for any."""
+    """One run at a step, or the next smaller one that outputs fall on; `miss`: see MISS, 0 for any; `anew`:
+    a new factor for each step."""
     from backends.lattice.compiled import march, step
 
     run = model.run
@@ -128,6 +145,7 @@ def _once(
     if wanted > run.duration / outputs:  # steps longer than the time between outputs
         each, outputs = 1, max(1, math.ceil(run.duration / wanted - 1e-9))
         dt = run.duration / outputs
+    begun = clock.perf_counter()
     moving = _arrays(model, system)
     tables, state, mid, _, _, kept, _ = moving
     counters, work, fresh = np.zeros(step.COUNTERS), np.zeros(3), np.zeros(3)
@@ -138,7 +156,7 @@ def _once(
     flexible = any(sheet.count > 1 for sheet in model.sheets)
     tolerance = (ROUND_OFF if flexible else ROUND_OFF_RIGID) * run.tolerance * speed
     steps = np.full(each, dt)
-    pace = np.array([0.0, miss * speed])
+    pace = np.array([0.0, miss * speed, float(anew)])
     status, t = march.DONE, 0.0
     for output in range(outputs):
         status, t = march.run(*moving, t, steps, tolerance, fresh, counters, work, before, pace)
@@ -151,7 +169,7 @@ def _once(
     reason = None if status == march.DONE else _reason(model, system, status, t, dt, state, counters)
     result = recorder.result("lattice", reason, work)
     result.step, result.steps = dt, int(counters[step.STEPS])
-    result.counts = counters
+    result.rounds, result.wall_s = int(counters[step.ROUNDS]), clock.perf_counter() - begun
     if result.ok and not all(np.isfinite(a).all() for a in (result.position, result.velocity, result.spin)):
         result = result.failed("the state went non-finite")
     if result.ok and result.energy.balance_error > ENERGY_GAIN:
@@ -230,5 +248,5 @@ def _warm(model: Model, system: System) -> None:
     tables, state, mid, _, _, kept, _ = moving
     before = (state[6].copy(), state[7].copy(), np.zeros(1))
     counters = np.zeros(step.COUNTERS)
-    march.run(*moving, 0.0, np.zeros(0), 1.0, np.zeros(3), counters, np.zeros(3), before, np.zeros(2))
+    march.run(*moving, 0.0, np.zeros(0), 1.0, np.zeros(3), counters, np.zeros(3), before, np.zeros(3))
     Recorder(model, system, tables, state, mid, kept).store(0.0)

@@ -55,7 +55,9 @@ class Result:
     energy: Energy = field(default_factory=Energy)
     step: float = 0.0  # [ms]
     steps: int = 0
+    rounds: int | None = None  # linear solves, where the solver counts them
     wall_s: float = 0.0
+    estimate_s: float = 0.0  # of runs at other steps, from which the error is estimated
     build_s: float = 0.0
     compile_s: float = 0.0
     error_estimate: float | None = None  # relative to max(travel, sheet length / 10)
