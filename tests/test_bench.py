@@ -6,7 +6,6 @@ import json
 import math
 import textwrap
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,11 +15,9 @@ from mdlgen import registry
 from mdlgen.bench import process
 from mdlgen.bench.case import Case, Finding, Run
 from mdlgen.bench.child import Task
-from mdlgen.bench.fits import fits, wall_at
 from mdlgen.bench.oracles import chain, elastica, friction, impact
 from mdlgen.bench.row import Outcome, rows
 from mdlgen.bench.run import bench
-from mdlgen.bench.suites import SUITES, cases, stability
 from mdlgen.bench.suites.elastica import drop
 from mdlgen.cli import app
 from mdlgen.errors import SpecError
@@ -101,22 +98,6 @@ def test_friction():
     assert pytest.approx(0.260346, abs=1e-6) == friction.STOP
     assert friction.slid(1.5, 0.3, 9.81, 1e-3, 0.1) == pytest.approx(0.15 - 0.5 * 0.3 * 9.81 * 0.01)
     assert friction.slid(1.5, 0.0, 9.81, 1e-3, 0.1) == pytest.approx(0.15)
-
-
-@pytest.mark.parametrize("suite", SUITES)
-def test_every_case_is_a_scene_with_a_command_that_repeats_it(suite):
-    for solver in ("exudyn", "another"):
-        made = cases(suite, solver, ("another", "exudyn"), quick=False)
-        assert len({(case.name, case.run.step) for case in made}) == len(made)
-        for case in made[:: max(1, len(made) // 12)]:
-            case.run.model()
-            command = case.run.command(solver)
-            assert command.startswith(f"mdlgen run samples/{case.run.sample}.yaml --solver {solver}")
-
-
-def test_the_quick_ladder_has_a_rung_of_each_name():
-    made = cases("stability", "exudyn", ("exudyn",), quick=True)
-    assert {case.name for case in made} == set(stability.QUICK)
 
 
 def test_a_quick_suite_end_to_end(tmp_path):
@@ -224,53 +205,11 @@ def test_a_failed_solver_has_its_reason_and_no_error():
     assert rows(case, "exudyn", bad)[0].status == "wrong"
 
 
-def test_a_reference_is_kept_and_used_again(tmp_path):
-    heard: list[str] = []
-    found = bench(["skip"], tmp_path, ["exudyn"], quick=True, repeats=1, say=heard.append)
-    assert sum("reference" in line for line in heard) == 1, "two cases, one reference"
-    assert len(list(tmp_path.glob("reference_*.npz"))) == 1
-    assert [row.status for row in found.rows] == ["ok", "ok"]
-    pruned, everything = (row.details["pairs"] for row in found.rows)
-    assert pruned < 0.3 * everything
-
-
-def test_order_and_equal_error():
-    case = Case("transport", "10 x 20 boxes, step given", Run("transport_4x4"), drop)
-    made = []
-    for step in (0.1, 0.05, 0.025):
-        done = Outcome("ok", [Finding("position", step**2)], step, 10, 1 / step, boxes=200)
-        made += rows(case, "exudyn", done)
-    told = fits(made)
-    assert told["order"] == {"transport, exudyn: position": pytest.approx(2.0)}
-    equal = told["wall_at_equal_error"]["exudyn, 200 boxes"]
-    assert equal["wall_s"] == pytest.approx(1 / math.sqrt(2e-3)) and not equal["extrapolated"]
-    assert wall_at(1e-3, [1e-3], [1.0]) is None
-
-
-@pytest.mark.parametrize(("estimate", "honest"), [(4e-4, False), (6e-4, True), (9e-3, True), (2e-2, False)])
-def test_an_estimate_that_is_far_from_the_error_is_named(estimate, honest):
-    done = Outcome("ok", [Finding("position", 1e-3)], 0.1, 10, 1.0, estimate=estimate)
-    made = rows(Case("transport", "x", STRIP, drop), "exudyn", done)
-    assert (fits(made)["estimates_off"] == []) == honest
-
-
 def test_an_unknown_suite_or_solver_is_named(tmp_path):
     with pytest.raises(SpecError, match="there is no suite 'speed'"):
         bench(["speed"], tmp_path)
     with pytest.raises(SpecError, match="there is no solver 'nastran'"):
         bench(["impact"], tmp_path, ["nastran"])
-
-
-def test_a_reference_of_other_code_is_another_file(tmp_path):
-    from mdlgen.bench.case import Reference
-    from mdlgen.bench.reference import file_of
-
-    run = Run("transport_4x4", ("run.duration=1 ms",), 0.1)
-    one = file_of(Reference(run, "exudyn"), "backends.exudyn_local", tmp_path)
-    assert one == file_of(Reference(run, "exudyn"), "backends.exudyn_local", tmp_path)
-    assert one != file_of(Reference(run, "exudyn"), "mdlgen.bench", tmp_path)
-    assert one != file_of(Reference(replace(run, step=0.2), "exudyn"), "backends.exudyn_local", tmp_path)
-    assert isinstance(one, Path)
 
 
 def test_an_interrupt_leaves_the_rows_so_far(tmp_path, monkeypatch):

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from backends.exudyn_local import solve
+from mdlgen.cli import app
 from mdlgen.model.lower import lower
 from mdlgen.spec.load import load, loads
 
@@ -217,6 +218,19 @@ def test_an_unstable_static_scene_fails_with_a_reason():
     result = solve(lower(loads(text, overrides=["gravity=[0 m/s^2, 0 m/s^2, -9.81 m/s^2]"])))
     assert not result.ok
     assert "Exudyn" in result.status or "residual" in result.status
+
+
+def test_a_failed_static_scene_with_contacts_ends_with_its_reason(tmp_path, capsys, monkeypatch):
+    """Nothing was observed of such a run, not even the force of its contacts."""
+    text = POST.replace("run: {duration: 30 ms}", "run: {analysis: static}")
+    text = text.replace("gravity: [0 m/s^2, 0 m/s^2, 0 m/s^2]", "gravity: [0 m/s^2, 0 m/s^2, -9.81 m/s^2]")
+    (tmp_path / "falls.yaml").write_text(text)
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SystemExit) as ended:
+        app(["run", "falls.yaml", "--solver", "exudyn", "-o", "out"], prog_name="mdlgen")
+    assert ended.value.code == 4
+    assert "the run failed: Exudyn did not converge" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
 
 
 def test_energy_balances_in_a_bounce():

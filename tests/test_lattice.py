@@ -180,8 +180,8 @@ def test_a_turned_world_gives_the_turned_motion() -> None:
 
 def test_the_error_falls_with_the_square_of_the_step() -> None:
     made = lower(loads(SHEET, ["run.duration=5 ms"]))
-    fine = run(made, 0.00625)
-    errors = [compare(fine, run(made, step)).position_rms_mm for step in (0.1, 0.05, 0.025)]
+    fine = run(made, 0.003125)
+    errors = [compare(fine, run(made, step)).position_rms_mm for step in (0.05, 0.025, 0.0125)]
     assert 1.7 < math.log2(errors[0] / errors[1]) < 2.3
     assert 1.7 < math.log2(errors[1] / errors[2]) < 2.4
 

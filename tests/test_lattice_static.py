@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import mdlgen
+from backends.lattice import static
 from backends.lattice.arrays import build
 from backends.lattice.band import empty
 from backends.lattice.run import start
@@ -71,7 +72,7 @@ def membrane(factor: float) -> tuple[str, str]:
 @pytest.mark.parametrize("spread", [1e-4, 0.3])
 def test_the_stiffness_is_the_derivative_of_the_forces(spread: float) -> None:
     """Any state, gaps and turns of `spread`; to the round-off of the differences."""
-    from backends.lattice.compiled import balance, forces
+    from backends.lattice.compiled import forces, stiffness
 
     pulled = "loads=[{sheet: note, edge: y_max, force: [0.002 N, 0 N, 0.004 N]}]"
     made = model("cantilever", "sheets.note.boxes=[2,3]", pulled)
@@ -93,7 +94,7 @@ def test_the_stiffness_is_the_derivative_of_the_forces(spread: float) -> None:
     for gap, joint in zip(gaps, system.joints, strict=True):
         a, b = joint["a"], joint["b"]
         gap[:] = x[b] + r[b].reshape(3, 3) @ joint["rb"] - x[a] - r[a].reshape(3, 3) @ joint["ra"]
-    balance.stiffness(system.bodies, system.joints, system.loads, 1.0, gaps, x, r, band)
+    stiffness.sheets_into(system.bodies, system.joints, system.loads, 1.0, gaps, x, r, band)
     full = np.zeros((6 * many, 6 * many))
     for node in range(many):
         count = min(6 * (system.reach + 1), 6 * (many - node))
@@ -226,6 +227,15 @@ def test_a_sheet_that_falls_says_so() -> None:
     assert not result.ok and "beyond the bounds" in result.status
     free = mdlgen.solve(model("cantilever", "sheets.note.clamp=null", "sheets.note.boxes=[2,3]"), "lattice")
     assert not free.ok and "no balance" in free.status
+
+
+def test_small_parts_that_all_balance_end_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Parts that take many rounds do not grow; the cap is on all of their rounds."""
+    monkeypatch.setattr(static, "FIRST_PART", 0.01)
+    monkeypatch.setattr(static, "MOST", 10 * static.FEW)
+    made = model("cantilever", "sheets.note.boxes=[1,2]")
+    reason = static._parts(made, lambda level, load: (True, static.FEW + 1, 0, 0.0), 1.0, (np.zeros(3),))
+    assert reason == f"no balance was found above 10 % of the load in {10 * (static.FEW + 1)} rounds"
 
 
 def test_driven_rollers_are_refused_and_others_are_not() -> None:

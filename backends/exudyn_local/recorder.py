@@ -33,6 +33,7 @@ class Recorder:
         self._sum_depth, self._sum_force = np.zeros(rows), np.zeros(rows)
         self._in_contact, self._last = np.zeros(rows), np.zeros(rows)
         self._acting = np.zeros(rows, bool)
+        self._force = np.zeros(rows)  # of the state last observed; a failed static run observes none [N]
         self._stored: dict[str, list] = {name: [] for name in ("t", "x", "e", "u", "w", "f")}
         self._first: np.ndarray | None = None
         self._lost = self._driven = 0.0
@@ -121,13 +122,12 @@ class Recorder:
             return
         self._last_stored = self.steps
         x, r, u, w = self._work[:4]
-        rows = len(self.model.contacts)
         self._stored["t"].append(t)
         self._stored["x"].append(x[:-1].copy())
         self._stored["e"].append(quaternions(r[:-1].reshape(-1, 3, 3)))
         self._stored["u"].append(u[:-1].copy())
         self._stored["w"].append(w[:-1].copy())
-        self._stored["f"].append(self._force.copy() if self._pairs.size else np.zeros(rows))
+        self._stored["f"].append(self._force.copy())
 
     def _watch(self, t: float) -> None:
         """Sets the reason of a failure where a body left its bounds or went deep into a plate."""
@@ -162,7 +162,6 @@ class Recorder:
 
         contact_time = np.where(self._in_contact > 0, self._in_contact, 1.0)
         static = self.steps == 0
-        now = self._force if self._pairs.size else np.zeros(rows)
         return Result(
             model=self.model,
             solver=solver,
@@ -177,7 +176,7 @@ class Recorder:
                 max_depth=self._max_depth / MM,
                 mean_depth=(self._max_depth if static else self._sum_depth / contact_time) / MM,
                 max_force=self._max_force,
-                mean_force=now if static else self._sum_force / contact_time,
+                mean_force=self._force if static else self._sum_force / contact_time,
                 last_force_at=np.where(self._acting, np.nan, self._last / MS),
             ),
             touched=int(self._touched.sum()),

@@ -14,7 +14,7 @@ DONE, STOPPED, LEFT, DEEP = 0, 1, 2, 3
 # How often a step may be halved.
 DEEPEST = 14
 # How often at most for accuracy, and how much more than wanted a step may miss before it is taken again.
-FINEST, AGAIN = 7, 4.0
+FINEST, AGAIN = 12, 4.0
 # Steps that take more rounds than the one are halved, and doubled again where they take less than the other.
 HARD, EASY = 8, 5
 # Two rollers with a sheet between them clear each other by a few micrometres and may graze: a force below
@@ -23,16 +23,25 @@ GRAZE = 0.05
 
 
 @njit(cache=True, error_model="numpy")
-def _watch(bodies, pairs, mid, count, t, dt, kept):
-    """Adds what contacts did in a step to `kept`; returns the pair that is more than half of a plate's
-    thickness deep, or -1.
+def _deep(bodies, pairs, mid, count):
+    """The pair that is more than half of a plate's thickness deep, or -1."""
+    touched, outs = mid[5], mid[6]
+    for k in range(count):
+        pair = pairs[touched[k]]
+        if pair.kind == BOX_PLANE and outs[k, 15] > bodies[pair.b].half[2]:
+            return touched[k]
+    return -1
+
+
+@njit(cache=True, error_model="numpy")
+def _watch(pairs, mid, count, t, dt, kept):
+    """Adds what contacts did in a step to `kept`.
 
     kept: per row of the contacts (rows, 9) greatest depth, greatest force, sums over time of depth and force,
     time in contact, force and depth now, whether it acts, when it last ended to; and marks of pairs.
     """
     xm, rm, um, wm, f, touched, outs, totals, near = mid
     rows, marks = kept
-    deep = -1
     for row in range(rows.shape[0]):
         rows[row, 5] = rows[row, 6] = 0.0
     for k in range(count):
@@ -40,8 +49,6 @@ def _watch(bodies, pairs, mid, count, t, dt, kept):
         marks[touched[k]] = True
         rows[pair.row, 5] += outs[k, 12]
         rows[pair.row, 6] = max(rows[pair.row, 6], outs[k, 15])
-        if pair.kind == BOX_PLANE and outs[k, 15] > bodies[pair.b].half[2]:
-            deep = touched[k]
     for row in range(rows.shape[0]):
         force, depth = rows[row, 5], rows[row, 6]
         acts = force > GRAZE * max(rows[row, 1], force)
@@ -54,7 +61,6 @@ def _watch(bodies, pairs, mid, count, t, dt, kept):
             rows[row, 2] += dt * depth
             rows[row, 3] += dt * force
             rows[row, 4] += dt
-    return deep
 
 
 @njit(cache=True, error_model="numpy")
@@ -69,14 +75,16 @@ def _outside(x, low, high):
 
 @njit(cache=True, error_model="numpy")
 def _missed(bodies, nodes, u, guess):
-    """Root mean square of what the velocities of a step turned out to be against their guess."""
-    total = mass = 0.0
+    """Root mean square over the boxes of what the velocities of a step turned out to be against their guess,
+    and of the velocities themselves."""
+    missed = fast = mass = 0.0
     for n in range(nodes.size):
         own = bodies[nodes[n]].mass
         mass += own
         for i in range(3):
-            total += own * (u[n, i] - guess[n, i]) ** 2
-    return math.sqrt(total / mass) if mass > 0.0 else 0.0
+            missed += own * (u[n, i] - guess[n, i]) ** 2
+            fast += own * u[n, i] ** 2
+    return (math.sqrt(missed / mass), math.sqrt(fast / mass)) if mass > 0.0 else (0.0, 0.0)
 
 
 @njit(cache=True, error_model="numpy")
@@ -104,15 +112,17 @@ def run(
     """Takes the steps `steps` (n,) [ms] from time t. Returns (status, time reached).
 
     A step is halved, up to DEEPEST times, where it does not converge, or where the velocities miss their
-    guess by more than pace[1] [mm/ms] (0: any will do); pace[0] is how often it is halved now. With
-    pace[2] each step has a factor of its own. `work` (3,)
-    adds up energies [N mm]. counters[WORST] names the body or pair of a failure. `before` holds the
-    velocities of the step before and its size, for a guess.
+    guess by more than pace[1] (0: any will do); pace[0] is how often it is halved now. With pace[2] each step
+    has a factor of its own. `tolerance` and pace[1] are parts of pace[3], the greatest speed so far [mm/ms].
+
+    `work` (3,) adds up energies [N mm]. counters[WORST] names the body or pair of a failure. `before` holds
+    what a guess is made from: the velocities of the step before the last, the size of the last step, and the
+    time from the middle of the one to the middle of the other (0: there is none).
     """
     bodies, joints, pairs, loads, gravity, nodes = system
     x, r, v, l, s, vb, u, ub = state
     keep_u, keep_b, guess = u.copy(), ub.copy(), u.copy()
-    last_u, last_b, last_dt = before[0], before[1], before[2][0]
+    last_u, last_b, spans = before
     for whole in steps:
         done = 0
         while done < 1 << DEEPEST:
@@ -120,8 +130,8 @@ def run(
             size = 1 << (DEEPEST - level)
             dt = whole / (1 << level)
             keep_u[:], keep_b[:] = u, ub
-            if last_dt > 0.0:
-                ahead = 0.5 * (dt + last_dt) / last_dt
+            if spans[1] > 0.0:
+                ahead = 0.5 * (dt + spans[0]) / spans[1]
                 for n in range(u.shape[0]):
                     for i in range(6):
                         u[n, i] += ahead * (u[n, i] - last_u[n, i])
@@ -131,29 +141,35 @@ def run(
             if pace[2] != 0.0:
                 fresh[1] = 1.0
             rounds = counters[ROUNDS]
-            solved = midpoint(system, state, mid, matrix, alone, t, dt, tolerance, fresh, counters)
-            missed = _missed(bodies, nodes, u, guess) if solved and pace[1] > 0.0 else 0.0
-            if not solved or (missed > AGAIN * pace[1] and level < FINEST):
+            limit = tolerance * pace[3]
+            solved = midpoint(system, state, mid, matrix, alone, t, dt, limit, fresh, counters)
+            missed, fast = _missed(bodies, nodes, u, guess) if solved else (0.0, 0.0)
+            most = pace[1] * max(fast, pace[3]) if pace[1] > 0.0 else 1e300
+            deep = _deep(bodies, pairs, mid, int(counters[TOUCHING])) if solved else -1
+            if not solved or ((missed > AGAIN * most or deep >= 0) and level < FINEST):
                 u[:], ub[:] = keep_u, keep_b
                 counters[HALVED] += 1
                 if level == DEEPEST:
                     return STOPPED, t
                 pace[0] = level + 1
                 if not solved:
-                    last_dt = 0.0
+                    spans[1] = 0.0
                 continue
             last_u[:], last_b[:] = keep_u, keep_b
-            last_dt = before[2][0] = dt
+            # between the middles of the two steps
+            spans[1] = 0.5 * (spans[0] + dt)
+            spans[0] = dt
             _account(system, mid, ub, t, dt, work)
-            deep = _watch(bodies, pairs, mid, int(counters[TOUCHING]), t, dt, kept)
+            _watch(pairs, mid, int(counters[TOUCHING]), t, dt, kept)
             carry(system, state, mid, t, dt)
             counters[STEPS] += 1
             done += size
+            pace[3] = max(pace[3], fast)
             t += dt
             rounds = counters[ROUNDS] - rounds
-            if (missed > pace[1] or rounds > HARD) and level < FINEST:
+            if (missed > most or rounds > HARD) and level < FINEST:
                 pace[0] = level + 1
-            elif level > 0 and missed <= pace[1] / 6.0 and rounds < EASY and done % (2 * size) == 0:
+            elif level > 0 and missed <= most / 6.0 and rounds < EASY and done % (2 * size) == 0:
                 pace[0] = level - 1
             outside = _outside(x, bounds[0], bounds[1])
             if deep >= 0 or outside >= 0:

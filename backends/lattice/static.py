@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time as clock
+from collections.abc import Callable
 
 import numpy as np
 
@@ -14,7 +15,10 @@ from mdlgen.results.result import Result
 
 FIRST_PART = 1.0  # of the load
 LEAST_PART = 1e-4
-FEW, MOST = 30, 2000  # rounds after which a part grows, and all of them
+FEW = 30  # rounds up to which a part grows
+MANY = 2000  # rounds after which a part that fails ends the run
+# Rounds after which no other part is begun: a hard sheet bent both ways takes many that do not fail.
+MOST = 200_000
 # Of the stiffest: holds sheets that lie on contacts only along what does not hold them.
 TETHER = 1e-9
 
@@ -32,25 +36,14 @@ def rest(model: Model, system: System, moving: tuple) -> Result:
     load = _load(model, system)
     size = (system.border, 6 * (system.reach + 1) + PAD)
     held = (TETHER if _loose(model) else 0.0, _reach(model))
+
+    def balanced(level: float, load: float) -> tuple[bool, int, int, float]:
+        return balance.equilibrium(tables, *size, level, load, *held, x, r, s, lists)
+
     # compiles, or loads from the cache, before the clock starts: against such a load all is in balance
-    balance.equilibrium(tables, *size, 0.0, np.inf, *held, x, r, s, lists)
+    balanced(0.0, np.inf)
     begun = clock.perf_counter()
-    level, part, rounds = 0.0, FIRST_PART, 0
-    reason = None
-    while level < 1.0:
-        aim = min(1.0, level + part)
-        kept = x.copy(), r.copy(), s.copy()
-        found, more, worst, left = balance.equilibrium(tables, *size, aim, load, *held, x, r, s, lists)
-        rounds += more
-        if found:
-            level, part = aim, 2 * part if more <= FEW else part
-            continue
-        reason = _outside(model, x) or _unbalanced(model, level, aim, worst, left * load)
-        x[:], r[:], s[:] = kept
-        part *= 0.25
-        if part < LEAST_PART or rounds > MOST:
-            break
-        reason = None
+    reason = _parts(model, balanced, load, (x, r, s))
     wall = clock.perf_counter() - begun
     rows = (np.zeros((len(model.contacts), 9)), np.zeros(len(system.pairs), bool))
     if reason is None:
@@ -60,6 +53,30 @@ def rest(model: Model, system: System, moving: tuple) -> Result:
     result = recorder.result("lattice", reason, np.zeros(3))
     result.wall_s, result.steps = wall, 0
     return result
+
+
+def _parts(model: Model, balanced: Callable, load: float, place: tuple) -> str | None:
+    """Brings the whole load into balance, in larger or smaller parts as it goes; a reason where that fails,
+    and the last place in balance."""
+    level, part, rounds = 0.0, FIRST_PART, 0
+    reason = None
+    while level < 1.0 and rounds < MOST:
+        aim = min(1.0, level + part)
+        kept = [array.copy() for array in place]
+        found, more, worst, left = balanced(aim, load)
+        rounds += more
+        if found:
+            level, part, reason = aim, 2 * part if more <= FEW else part, None
+            continue
+        reason = _outside(model, place[0]) or _unbalanced(model, level, aim, worst, left * load)
+        for array, old in zip(place, kept, strict=True):
+            array[:] = old
+        part *= 0.25
+        if part < LEAST_PART or rounds > MANY:
+            break
+    if level < 1.0 and reason is None:
+        reason = f"no balance was found above {100 * level:.3g} % of the load in {rounds} rounds"
+    return reason
 
 
 def _unbalanced(model: Model, level: float, aim: float, worst: int, force: float) -> str:

@@ -33,6 +33,7 @@ class Run:
     sample: str  # as `mdlgen new --list` names it
     overrides: tuple[str, ...] = ()
     step: float | None = None  # [ms]; None: the solver's choice
+    without: tuple[str, ...] = ()  # rules that the solver is not to use, of those that it can do without
 
     @property
     def sets(self) -> tuple[str, ...]:
@@ -49,6 +50,8 @@ class Run:
 
     def command(self, solver: str) -> str:
         """The command that repeats it."""
+        if self.without:  # which is no choice of a user's
+            return f"mdlgen bench skip --solver {solver}"
         sets = [word for item in self.sets for word in ("--set", item)]
         return shlex.join(["mdlgen", "run", f"samples/{self.sample}.yaml", "--solver", solver, *sets])
 

@@ -12,11 +12,16 @@ import pickle
 import signal
 import statistics
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from mdlgen.bench.case import Case
 from mdlgen.bench.row import OK, Outcome
 from mdlgen.errors import MdlgenError
+
+if TYPE_CHECKING:
+    from mdlgen.results.result import Result
 
 # After its limit and this [s] a child ends by itself; its parent would have stopped it before.
 ALONE = 60.0
@@ -42,8 +47,10 @@ def perform(task: Task) -> Outcome:
     registry.SOLVERS.setdefault(task.solver, task.module)
     try:
         model = task.case.run.model()
-        backend = registry.solver(task.solver)
-        results = [backend.solve(model) for _ in range(max(1, task.repeats))]
+        solve: Callable[..., Result] = registry.solver(task.solver).solve
+        # only a solver that can do without a rule is asked to
+        without = {"without": task.case.run.without} if task.case.run.without else {}
+        results = [solve(model, **without) for _ in range(max(1, task.repeats))]
     except MdlgenError as error:
         return Outcome(f"refused: {error}")
     last = results[-1]
@@ -59,7 +66,9 @@ def perform(task: Task) -> Outcome:
         findings=findings,
         step=last.step or None,
         steps=last.steps,
+        rounds=last.rounds,
         wall=statistics.median(result.wall_s for result in results),
+        estimating=statistics.median(result.estimate_s for result in results),
         compiled=results[0].compile_s,
         built=last.build_s,
         boxes=sum(sheet.count for sheet in model.sheets),

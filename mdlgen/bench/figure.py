@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 from typing import TYPE_CHECKING, Any
 
-from mdlgen.bench.fits import EQUAL_ERROR, lines
+from mdlgen.bench.fits import EQUAL_ERROR, fits, lines
 from mdlgen.bench.row import OK, Row
 from mdlgen.report.figures import COLOURS, STYLE
 
@@ -86,12 +86,17 @@ def _closed(axes: Any, rows: list[Row]) -> None:
 
 
 def _scaling(axes: Any, rows: list[Row]) -> None:
+    growth = fits(rows)["growth"]
     for number, solver in enumerate(dict.fromkeys(row.solver for row in rows)):
-        group = [row for row in rows if row.solver == solver and row.status == OK and row.steps]
-        per_step = [(row.wall_s or 0.0) / (row.steps or 1) for row in group]
+        group = [row for row in rows if row.solver == solver and row.status == OK and row.wall_s]
+        power = growth.get(solver)
+        label = solver if power is None else f"{solver}, power {power:.2f}"
         style = {"color": COLOURS[number % len(COLOURS)], "marker": MARKERS[number % len(MARKERS)]}
-        axes.loglog([row.boxes for row in group], per_step, label=solver, **style)
-    axes.set(title="growth with the boxes", xlabel="boxes", ylabel="wall time per step [s]")
+        axes.loglog([row.boxes for row in group], [row.wall_s for row in group], label=label, **style)
+    boxes = sorted({row.boxes for row in rows if row.boxes})
+    axes.set_xticks(boxes, [str(count) for count in boxes])
+    axes.set_xticks([], minor=True)
+    axes.set(title="growth with the boxes", xlabel="boxes", ylabel="wall time [s]")
     _legend(axes)
 
 

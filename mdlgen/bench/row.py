@@ -25,6 +25,8 @@ class Outcome:
     boxes: int | None = None
     repeats: int = 0
     estimate: float | None = None  # the solver's own, relative to max(travel, sheet length / 10)
+    estimating: float | None = None  # what the runs for it took beside the wall time, median [s]
+    rounds: int | None = None  # linear solves, where the solver counts them
 
 
 @dataclass(frozen=True)
@@ -44,6 +46,8 @@ class Row:
     quantity: str
     error_estimate: float | None
     steps: int | None
+    rounds: int | None
+    estimate_s: float | None
     compile_s: float | None
     build_s: float | None
     boxes: int | None
@@ -87,6 +91,8 @@ def _row(case: Case, solver: str, outcome: Outcome, finding: Finding, status: st
         quantity=finding.quantity,
         error_estimate=outcome.estimate,
         steps=outcome.steps,
+        rounds=outcome.rounds,
+        estimate_s=outcome.estimating,
         compile_s=outcome.compiled,
         build_s=outcome.built,
         boxes=outcome.boxes,

@@ -11,7 +11,10 @@ from mdlgen.errors import printable
 if TYPE_CHECKING:
     from mdlgen.bench.run import Bench
 
-HEAD = ("case", "solver", "step", "status", "of what", "error", "allowed", "own estimate", "wall", "per step")
+HEAD = (
+    *("case", "solver", "step", "status", "of what", "error", "allowed", "own estimate"),
+    *("wall", "for the estimate", "wall per step", "solves per step"),
+)
 
 
 def markdown(found: Bench) -> str:
@@ -21,7 +24,8 @@ def markdown(found: Bench) -> str:
         "# Run time against error",
         f"{machine['cpu']}, {machine['cores']} cores, one thread used; Python {machine['python']}; "
         + ", ".join(f"{name} {number}" for name, number in versions.items())
-        + ". Wall time is the median of the repeats, solving only.",
+        + ". Wall time is the median of the repeats, solving only; the runs at other steps from which a "
+        "solver estimates its error stand apart. A solve is one of the linear equations of a step.",
     ]
     for suite in dict.fromkeys(row.suite for row in found.rows):
         rows = [row for row in found.rows if row.suite == suite]
@@ -36,6 +40,7 @@ def _table(rows: list[Row]) -> str:
 
 def _cells(row: Row) -> tuple[str, ...]:
     per_step = row.wall_s / row.steps if row.wall_s and row.steps else None
+    solves = row.rounds / row.steps if row.rounds and row.steps else None
     return (
         row.case,
         row.solver,
@@ -46,7 +51,9 @@ def _cells(row: Row) -> tuple[str, ...]:
         _number(row.tolerance),
         _number(row.error_estimate),
         _time(row.wall_s),
+        _time(row.estimate_s or None),
         _time(per_step),
+        _number(solves),
     )
 
 
@@ -62,12 +69,14 @@ def _together(found: Bench) -> list[str]:
         *(
             f"- {label}: {_time(at['wall_s'])} at an error of {at['error']:g}"
             + (" (beyond what was measured)" if at["extrapolated"] else "")
+            + ("" if at["fastest"] == label else f", {at['times_fastest']:.3g} times {at['fastest']}")
             for label, at in told["wall_at_equal_error"].items()
         ),
         *(
-            f"- {solver}: wall time per step grows with the boxes to the power {power:.2f}"
+            f"- {solver}: wall time grows with the boxes at a fixed aspect to the power {power:.2f}"
             for solver, power in told["growth"].items()
         ),
+        *(f"- {rule}: saves {100 * part:.0f} % of the wall time" for rule, part in told["saves"].items()),
         *(f"- not honest: {line}" for line in told["estimates_off"]),
     ]
     counts = {status: sum(row.status == status for row in found.rows) for status in ("ok", "failed", "wrong")}

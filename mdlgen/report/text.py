@@ -71,9 +71,11 @@ def summary_text(told: dict[str, Any]) -> str:
     """What `mdlgen run` prints of a summary."""
     pairs = told["pairs"]
     steps = f"{told['steps']} steps of {told['step_ms']:.4g} ms" if told["step_ms"] else "static"
+    estimating = told["estimate_s"]
+    more = f"and {estimating:.2g} s more for the estimate of the error, " if estimating > 0 else ""
     lines = [
         f"{told['scene']} ({told['solver']}): {told['status']}, {told['t_end_ms']:.6g} ms, {steps}",
-        f"solved in {told['wall_s']:.3g} s, "
+        f"solved in {told['wall_s']:.3g} s, {more}"
         f"after {told['build_s']:.2g} s to build and {told['compile_s']:.2g} s to compile",
         f"pairs: {pairs['possible']} possible, {pairs['kept']} kept, {pairs['touched']} touched",
     ]

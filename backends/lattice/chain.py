@@ -1,0 +1,112 @@
+"""Chains of boxes: where boxes that turn have to stand for their joints to keep together.
+
+Boxes that turn by a finite angle and move along straight lines would stretch their joints, which are 1e5
+times stiffer along the sheet than they are to bend, and more for a hard membrane. So boxes turn as a step
+says, and stand where their joints have the gaps that it says: a chain stays a chain.
+"""
+
+from __future__ import annotations
+
+from numba import njit
+
+from backends.lattice.band import factor, solve
+from mdlgen.mechanics.vector import (
+    add,
+    cross,
+    exp_rotation,
+    mat,
+    matmul,
+    rotate,
+    scale,
+    sub,
+    three,
+    vec,
+)
+
+_LOOSE = 1e-12  # holds what hangs on nothing, where `follow` shares what the joints ask for
+
+
+@njit(cache=True, error_model="numpy")
+def link(bodies, joints, ground, a):
+    """Sets the band to the joints as springs of one stiffness between points, and factors it."""
+    a[:] = 0.0
+    for n in range(a.shape[0]):
+        for i in range(6):
+            a[n, i, i] = _LOOSE
+    for j in range(joints.size):
+        na, nb = bodies[joints[j].a if joints[j].a >= 0 else ground].node, bodies[joints[j].b].node
+        for i in range(3):
+            if na >= 0:
+                a[na, i, i] += 1.0
+            if nb >= 0:
+                a[nb, i, i] += 1.0
+            if na >= 0 and nb >= 0:
+                a[min(na, nb), i, 6 * abs(nb - na) + i] -= 1.0
+    factor(a)
+
+
+@njit(cache=True, error_model="numpy")
+def _go(bodies, nodes, part, step, before, place):
+    """Boxes turn and move by a part of a step, and rollers slide."""
+    moves, slides = step
+    x0, r0, s0 = before
+    x, r, s = place
+    for n in range(nodes.size):
+        b, k = nodes[n], 6 * n
+        m = matmul(exp_rotation(scale(part, three(moves[k + 3 :]))), mat(r0, b))
+        for i in range(9):
+            r[b, i] = m[i]
+        for i in range(3):
+            x[b, i] = x0[b, i] + part * moves[k + i]
+    for b in range(bodies.size - 1):
+        k = bodies[b].slide
+        if k >= 0:
+            s[k] = s0[k] + part * slides[k]
+            for i in range(3):
+                x[b, i] = x0[b, i] + part * slides[k] * bodies[b].way[i]
+
+
+@njit(cache=True, error_model="numpy")
+def _gap(joint, one, x, r):
+    """Arms of a joint on both bodies, and what is between their ends [mm]."""
+    ra, rb = rotate(mat(r, one), three(joint.ra)), rotate(mat(r, joint.b), three(joint.rb))
+    return ra, rb, sub(add(vec(x, joint.b), rb), add(vec(x, one), ra))
+
+
+@njit(cache=True, error_model="numpy")
+def follow(bodies, joints, nodes, links, part, step, before, place, y, gaps):
+    """The place (x, r, s) after a part of a step (of boxes, of slides) from the one before.
+
+    Boxes turn by it, and stand where the gaps of their joints (joints, 3) [mm] are what it makes of them,
+    turned with the boxes; in the mean, where not all can be. `y` is room to work in.
+    """
+    moves, x0, r0 = step[0], before[0], before[1]
+    x, r = place[0], place[1]
+    _go(bodies, nodes, part, step, before, place)
+    y[:] = 0.0
+    for j in range(joints.size):
+        one = joints[j].a if joints[j].a >= 0 else x.shape[0] - 1
+        na, nb = bodies[one].node, bodies[joints[j].b].node
+        ra, rb, gap = _gap(joints[j], one, x0, r0)
+        opens, turn = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+        if na >= 0:
+            spin = three(moves[6 * na + 3 :])
+            opens = sub(opens, add(three(moves[6 * na :]), cross(spin, ra)))
+            turn = scale(0.5, spin)
+        if nb >= 0:
+            spin = three(moves[6 * nb + 3 :])
+            opens = add(opens, add(three(moves[6 * nb :]), cross(spin, rb)))
+            turn = add(turn, scale(0.5, spin))
+        wanted = add(gap, scale(part, sub(opens, cross(turn, gap))))
+        wanted = rotate(exp_rotation(scale(part, turn)), wanted)
+        gaps[j, 0], gaps[j, 1], gaps[j, 2] = wanted
+        miss = sub(wanted, _gap(joints[j], one, x, r)[2])
+        for i in range(3):
+            if na >= 0:
+                y[6 * na + i] -= miss[i]
+            if nb >= 0:
+                y[6 * nb + i] += miss[i]
+    solve(links, y)
+    for n in range(nodes.size):
+        for i in range(3):
+            x[nodes[n], i] += y[6 * n + i]

@@ -1,0 +1,139 @@
+"""The suites of the bench: their cases, references, and what their rows say together."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from mdlgen.bench.case import Case, Finding, Run
+from mdlgen.bench.fits import EQUAL_ERROR, fits, wall_at
+from mdlgen.bench.row import Outcome, rows
+from mdlgen.bench.run import Bench, bench
+from mdlgen.bench.suites import SUITES, cases, stability
+from mdlgen.bench.suites.elastica import drop
+from mdlgen.bench.table import markdown
+
+STRIP = Run("cantilever", ("sheets.note.boxes=[1,10]",))
+
+
+@pytest.mark.parametrize("suite", SUITES)
+def test_every_case_is_a_scene_with_a_command_that_repeats_it(suite):
+    for solver in ("exudyn", "another"):
+        made = cases(suite, solver, ("another", "exudyn"), quick=False)
+        assert len({(case.name, case.run.step) for case in made}) == len(made)
+        for case in made[:: max(1, len(made) // 12)]:
+            case.run.model()
+            command = case.run.command(solver)
+            assert command.startswith(f"mdlgen run samples/{case.run.sample}.yaml --solver {solver}")
+
+
+def test_the_reference_of_the_transport_is_ten_times_finer_than_what_is_measured():
+    made = cases("transport", "lattice", ("exudyn", "lattice"), quick=False)
+    steps = [case.run.step for case in made if case.run.step is not None]
+    assert steps == [0.25, 0.125, 0.0625, 0.025]
+    for case in made:
+        assert case.reference is not None and case.reference.solver == "lattice"
+        # the finer grid runs at the step chosen, some 0.08 ms
+        finest = min(steps) if "10 x 20" in case.name else 0.08
+        assert (case.reference.run.step or 1.0) <= finest / 10
+    assert [case.name for case in made if case.run.step is None] == [
+        "10 x 20 boxes, step chosen",
+        "20 x 30 boxes, step chosen",
+    ]
+
+
+def test_work_and_the_time_of_the_estimate_are_in_a_row():
+    case = Case("transport", "x", STRIP, drop)
+    done = Outcome("ok", [Finding("position", 1e-3)], 0.1, 10, rounds=25, wall=1.0, estimating=0.5)
+    made = rows(case, "lattice", done)
+    assert (made[0].json()["rounds"], made[0].json()["estimate_s"]) == (25, 0.5)
+    text = markdown(Bench({"cpu": "x", "cores": 1, "python": "3"}, {}, {}, made))
+    assert "| 1 s | 500 ms | 100 ms | 2.5 |" in text
+
+
+def test_growth_is_of_the_whole_wall_time():
+    made = []
+    for boxes in (50, 200, 800):
+        case = Case("scaling", f"{boxes} boxes", STRIP, drop)
+        done = Outcome("ok", [Finding("q", 0.0)], 0.05, boxes, wall=1e-3 * boxes**1.5, boxes=boxes)
+        made += rows(case, "lattice", done)
+    assert fits(made)["growth"] == {"lattice": pytest.approx(1.5)}
+
+
+def test_the_quick_ladder_has_a_rung_of_each_name():
+    made = cases("stability", "exudyn", ("exudyn",), quick=True)
+    assert {case.name for case in made} == set(stability.QUICK)
+
+
+def test_a_reference_is_kept_and_used_again(tmp_path):
+    heard: list[str] = []
+    found = bench(["skip"], tmp_path, ["lattice"], quick=True, repeats=1, say=heard.append)
+    assert sum("reference" in line for line in heard) == 1, "five cases, one reference"
+    assert len(list(tmp_path.glob("reference_*.npz"))) == 1
+    assert [row.status for row in found.rows] == ["ok"] * 5, [row.reason for row in found.rows]
+    pruned, everything = (row.details["pairs"] for row in found.rows[:2])
+    assert pruned < 0.3 * everything
+    saves = fits(found.rows)["saves"]
+    names = ("pruned contacts", "idle parts left out", "folded bushings", "kept factors")
+    assert set(saves) == {f"lattice: {name}" for name in names}
+    # how much they save a run of a millisecond does not tell
+    assert "kept factors: saves" in (tmp_path / "bench.md").read_text()
+
+
+def test_what_a_rule_saves_is_of_the_time_without_it():
+    made = []
+    for solver, unit in (("lattice", 1.0), ("exudyn", 40.0)):
+        for case, wall in zip(cases("skip", "exudyn", ("exudyn",), True), (3.0, 4.0, 6.0), strict=True):
+            made += rows(case, solver, Outcome("ok", [Finding("q", 0.0)], wall=unit * wall))
+    part = {"pruned contacts": 0.25, "idle parts left out": 0.5}
+    names = [f"{solver}: {rule}" for solver in ("lattice", "exudyn") for rule in part]
+    assert fits(made)["saves"] == dict(zip(names, [*part.values()] * 2, strict=True))
+
+
+def test_a_rule_is_taken_away_only_from_a_solver_that_has_it():
+    known = ("exudyn", "lattice")
+    own = {name: [c.run.without for c in cases("skip", name, known, False)] for name in known}
+    assert not any(own["exudyn"])
+    assert [rules for rules in own["lattice"] if rules] == [("folding",), ("factors",)]
+    last = cases("skip", "lattice", known, False)[-1]
+    assert last.run.command("lattice") == "mdlgen bench skip --solver lattice"
+
+
+def test_order_and_equal_error():
+    case = Case("transport", "10 x 20 boxes, step given", Run("transport_4x4"), drop)
+    made = []
+    for step in (0.1, 0.05, 0.0125):
+        done = Outcome("ok", [Finding("position", step**2)], step, 10, 1 / step, boxes=200)
+        made += rows(case, "exudyn", done)
+    told = fits(made)
+    assert told["order"] == {"transport, exudyn: position": pytest.approx(2.0)}
+    equal = told["wall_at_equal_error"]["exudyn, 200 boxes"]
+    assert equal["wall_s"] == pytest.approx(1 / math.sqrt(EQUAL_ERROR)) and not equal["extrapolated"]
+    for step in (0.1, 0.05):
+        done = Outcome("ok", [Finding("position", step**2)], step, 10, 0.1 / step, boxes=200)
+        made += rows(case, "lattice", done)
+    equal = fits(made)["wall_at_equal_error"]["exudyn, 200 boxes"]
+    assert equal["fastest"] == "lattice, 200 boxes" and equal["times_fastest"] == pytest.approx(10.0)
+    assert wall_at(1e-3, [1e-3], [1.0]) is None
+
+
+@pytest.mark.parametrize(("estimate", "honest"), [(4e-4, False), (6e-4, True), (9e-3, True), (2e-2, False)])
+def test_an_estimate_that_is_far_from_the_error_is_named(estimate, honest):
+    done = Outcome("ok", [Finding("position", 1e-3)], 0.1, 10, 1.0, estimate=estimate)
+    made = rows(Case("transport", "x", STRIP, drop), "exudyn", done)
+    assert (fits(made)["estimates_off"] == []) == honest
+
+
+def test_a_reference_of_other_code_is_another_file(tmp_path):
+    from mdlgen.bench.case import Reference
+    from mdlgen.bench.reference import file_of
+
+    run = Run("transport_4x4", ("run.duration=1 ms",), 0.1)
+    one = file_of(Reference(run, "exudyn"), "backends.exudyn_local", tmp_path)
+    assert one == file_of(Reference(run, "exudyn"), "backends.exudyn_local", tmp_path)
+    assert one != file_of(Reference(run, "exudyn"), "mdlgen.bench", tmp_path)
+    assert one != file_of(Reference(replace(run, step=0.2), "exudyn"), "backends.exudyn_local", tmp_path)
+    assert isinstance(one, Path)
