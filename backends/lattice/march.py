@@ -107,7 +107,22 @@ def _account(system, mid, ub, t, dt, work):
 
 @njit(cache=True, error_model="numpy")
 def run(
-    system, state, mid, matrix, alone, kept, bounds, t, steps, tolerance, fresh, counters, work, before, pace
+    system,
+    state,
+    mid,
+    matrix,
+    alone,
+    free,
+    kept,
+    bounds,
+    t,
+    steps,
+    tolerance,
+    fresh,
+    counters,
+    work,
+    before,
+    pace,
 ):
     """Takes the steps `steps` (n,) [ms] from time t. Returns (status, time reached).
 
@@ -142,7 +157,7 @@ def run(
                 fresh[1] = 1.0
             rounds = counters[ROUNDS]
             limit = tolerance * pace[3]
-            solved = midpoint(system, state, mid, matrix, alone, t, dt, limit, fresh, counters)
+            solved = midpoint(system, state, mid, matrix, alone, free, t, dt, limit, fresh, counters)
             missed, fast = _missed(bodies, nodes, u, guess) if solved else (0.0, 0.0)
             most = pace[1] * max(fast, pace[3]) if pace[1] > 0.0 else 1e300
             deep = _deep(bodies, pairs, mid, int(counters[TOUCHING])) if solved else -1

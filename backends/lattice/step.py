@@ -28,6 +28,7 @@ from backends.lattice.forces import (
     pair_forces_again,
     place,
 )
+from backends.lattice.momentum import keep
 from backends.lattice.tangent import contacts_into, in_box_axes, joints_into, masses, rollers_into
 from backends.lattice.touching import settle
 from mdlgen.mechanics.vector import back, exp_rotation, mat, matmul, rotate
@@ -97,7 +98,7 @@ def _turn(nodes, r, res, inward):
 
 
 @njit(cache=True, error_model="numpy")
-def midpoint(system, state, mid, matrix, alone, t, dt, tolerance, fresh, counters):
+def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, counters):
     """Solves for the velocities at the middle of a step. Returns whether it converged.
 
     `fresh` (3,): the step that the factor was made for (0: none), whether it should be made anew, and where
@@ -167,6 +168,7 @@ def midpoint(system, state, mid, matrix, alone, t, dt, tolerance, fresh, counter
         counters[ROUNDS] += 1
         # what is free converges fast, and keeps its angular momentum as well as the rounds end
         limit = tolerance if count > 0 else FREE * tolerance
+        free[3][:] = res
         _turn(nodes, r, res, True)
         if where == INSIDE:
             solve_bordered(a, b, y, corner, res, resb)
@@ -199,6 +201,7 @@ def midpoint(system, state, mid, matrix, alone, t, dt, tolerance, fresh, counter
                 release(alone, m)
                 return False
         _turn(nodes, r, res, False)
+        keep(bodies, pairs, nodes, touched, count, free, xm, rm, res)
         change = 0.0
         for n in range(nodes.size):
             size = bodies[nodes[n]].half[0] + bodies[nodes[n]].half[1]

@@ -72,7 +72,8 @@ def summary_text(told: dict[str, Any]) -> str:
     pairs = told["pairs"]
     steps = f"{told['steps']} steps of {told['step_ms']:.4g} ms" if told["step_ms"] else "static"
     estimating = told["estimate_s"]
-    more = f"and {estimating:.2g} s more for the estimate of the error, " if estimating > 0 else ""
+    # what takes less than a millisecond is no run, but the clock between two readings
+    more = f"and {estimating:.2g} s more for the estimate of the error, " if estimating > 1e-3 else ""
     lines = [
         f"{told['scene']} ({told['solver']}): {told['status']}, {told['t_end_ms']:.6g} ms, {steps}",
         f"solved in {told['wall_s']:.3g} s, {more}"

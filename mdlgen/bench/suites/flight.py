@@ -14,8 +14,8 @@ STRIKE, FLIGHT = 10.0, 100.0  # [ms]
 SCENE = (
     "gravity=[0 m/s^2, 0 m/s^2, 0 m/s^2]",
     "sheets.note.clamp=null",
-    "sheets.note.velocity=[-4 m/s, -2 m/s, -2 m/s]",
-    "rollers={post: {center: [30 mm, 58 mm, -5.1 mm], axis: [0.8, -0.6, 0], radius: 5 mm, width: 20 mm,"
+    "sheets.note.velocity=[-3 m/s, 3 m/s, -2 m/s]",
+    "rollers={post: {center: [31 mm, 61 mm, -5.1 mm], axis: [0.8, -0.6, 0], radius: 5 mm, width: 20 mm,"
     " mass: 10 g}}",
     "contacts=[{between: [note, post], stiffness: 30 N/mm^1.5, restitution: 0.8, friction: 0.2,"
     " smoothing: 20 mm/s}]",

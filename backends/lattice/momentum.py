@@ -1,0 +1,112 @@
+"""Momentum of what is free, kept in each round.
+
+The forces inside a sheet have no sum and no moment, whatever its state; so the linear and the angular
+momentum of a change of velocities are those of the residual that it is to cure. A factor of an earlier state
+does not know how boxes have turned since, and misses that by as much: what it misses is taken off as a motion
+of the whole sheet.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from mdlgen.mechanics.vector import add, back, cross, dot, mat, rotate, scale, sub, vec
+
+
+def empty(system) -> tuple:
+    """What free sheets need: the part of each node, whether a part hangs on nothing, whether it touches
+    something now, and a residual."""
+    bodies, joints, nodes = system.bodies, system.joints, system.nodes
+    label = np.arange(len(nodes))
+    ends = [np.where(joints[end] >= 0, bodies["node"][joints[end]], -1) for end in "ab"]
+    both = (ends[0] >= 0) & (ends[1] >= 0)
+    if len(nodes):
+        from scipy.sparse import coo_array
+        from scipy.sparse.csgraph import connected_components
+
+        links = (np.ones(int(both.sum())), (ends[0][both], ends[1][both]))
+        _, label = connected_components(coo_array(links, shape=(len(nodes), len(nodes))), directed=False)
+    loose = np.ones(int(label.max(initial=-1)) + 1, np.bool_)
+    for one, two in (ends, ends[::-1]):
+        held = (one >= 0) & (two < 0)
+        loose[label[one[held]]] = False
+    return label.astype(np.int64), loose, np.zeros(len(loose), np.bool_), np.zeros(6 * len(nodes))
+
+
+@njit(cache=True, error_model="numpy")
+def _inertia(into, mass, arm):
+    """Adds the inertia of a mass at an arm."""
+    square = dot(arm, arm)
+    for i in range(3):
+        into[i, i] += mass * square
+        for j in range(3):
+            into[i, j] -= mass * arm[i] * arm[j]
+
+
+@njit(cache=True, error_model="numpy")
+def _solved(a, b):
+    """Solves a symmetric 3 x 3 system; zero where it is singular (a single line of mass)."""
+    c0 = (a[1, 1] * a[2, 2] - a[1, 2] * a[2, 1], a[1, 2] * a[2, 0] - a[1, 0] * a[2, 2])
+    c2 = a[1, 0] * a[2, 1] - a[1, 1] * a[2, 0]
+    det = a[0, 0] * c0[0] + a[0, 1] * c0[1] + a[0, 2] * c2
+    if not abs(det) > 0.0:
+        return (0.0, 0.0, 0.0)
+    r0, r1, r2 = vec(a, 0), vec(a, 1), vec(a, 2)
+    # rows are columns: b over the triple product
+    x = add(scale(b[0], cross(r1, r2)), add(scale(b[1], cross(r2, r0)), scale(b[2], cross(r0, r1))))
+    return scale(1.0 / det, x)
+
+
+@njit(cache=True, error_model="numpy")
+def keep(bodies, pairs, nodes, touched, count, free, x, r, change):
+    """Takes off `change` (6 nodes,), global axes, what it has of momentum beside the residual's; x and r are
+    places and rotations of the residual."""
+    label, loose, busy, residual = free
+    busy[:] = False
+    for k in range(count):
+        node = bodies[pairs[touched[k]].a].node
+        if node >= 0:
+            busy[label[node]] = True
+    for part in range(loose.size):
+        if busy[part] or not loose[part]:
+            continue
+        total = 0.0
+        centre, linear = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+        for n in range(nodes.size):
+            if label[n] == part:
+                b, k = nodes[n], 6 * n
+                mass = bodies[b].mass
+                total += mass
+                centre = add(centre, scale(mass, vec(x, b)))
+                moved = (change[k], change[k + 1], change[k + 2])
+                wanted = (residual[k], residual[k + 1], residual[k + 2])
+                linear = add(linear, sub(scale(mass, moved), wanted))
+        centre = scale(1.0 / total, centre)
+        drift = scale(1.0 / total, linear)
+        angular = (0.0, 0.0, 0.0)
+        inertia = np.zeros((3, 3))
+        for n in range(nodes.size):
+            if label[n] == part:
+                b, k = nodes[n], 6 * n
+                mass, j, m = bodies[b].mass, bodies[b].inertia, mat(r, b)
+                arm = sub(vec(x, b), centre)
+                _inertia(inertia, mass, arm)
+                for a in range(3):
+                    for c in range(3):
+                        for i in range(3):
+                            inertia[a, c] += m[3 * a + i] * j[i] * m[3 * c + i]
+                moved = (change[k] - drift[0], change[k + 1] - drift[1], change[k + 2] - drift[2])
+                wanted = (residual[k], residual[k + 1], residual[k + 2])
+                angular = add(angular, cross(arm, sub(scale(mass, moved), wanted)))
+                own = back(m, (change[k + 3], change[k + 4], change[k + 5]))
+                spun = rotate(m, (j[0] * own[0], j[1] * own[1], j[2] * own[2]))
+                angular = add(angular, sub(spun, (residual[k + 3], residual[k + 4], residual[k + 5])))
+        turn = _solved(inertia, angular)
+        for n in range(nodes.size):
+            if label[n] == part:
+                k = 6 * n
+                off = add(drift, cross(turn, sub(vec(x, nodes[n]), centre)))
+                for i in range(3):
+                    change[k + i] -= off[i]
+                    change[k + 3 + i] -= turn[i]
