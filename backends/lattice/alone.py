@@ -52,7 +52,7 @@ class Alone(NamedTuple):
     outs: np.ndarray  # and what they do
     pair: np.ndarray  # (6, 6) growth of one pair's forces
     direction: np.ndarray  # (4, 6) how the unknowns of a pair's rollers move them
-    index: np.ndarray  # (4,) and which they are
+    which: np.ndarray  # (4,) and which they are
 
 
 def empty(system, wide: int) -> Alone:
@@ -96,7 +96,7 @@ def empty(system, wide: int) -> Alone:
         outs=np.zeros((max(1, pairs), wide)),
         pair=np.zeros((6, 6)),
         direction=np.zeros((4, 6)),
-        index=np.zeros(4, np.int64),
+        which=np.zeros(4, np.int64),
     )
 
 

@@ -80,7 +80,7 @@ def _pair_growth(pair, out, axes, h, x, chord, growth):
 @njit(cache=True, error_model="numpy")
 def gradient(bodies, pairs, h, x, r, count, alone, acting, many, chord):
     """Growth of the contact impulses with the velocities of the boxes that touch and of the rollers."""
-    growth, one, direction, index = alone.growth, alone.pair, alone.direction, alone.index
+    growth, one, direction, index = alone.growth, alone.pair, alone.direction, alone.which
     for i in range(many):
         for j in range(many):
             growth[i, j] = 0.0

@@ -25,7 +25,9 @@ def keep_compiled_code(folder: Path | None = None) -> None:
     """
     digest = hashlib.sha256()
     for source in (*sorted(_HERE.glob("*.py")), *(sorted(folder.glob("*.py")) if folder else ())):
-        digest.update(source.read_bytes())
+        text = source.read_bytes()
+        if b"@njit" in text:
+            digest.update(text)
     place = _BASE / f"{folder.name if folder else 'laws'}_{digest.hexdigest()[:16]}"
     with contextlib.suppress(OSError):  # a read-only installation: numba finds its own place
         place.mkdir(parents=True, exist_ok=True)
