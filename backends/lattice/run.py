@@ -230,7 +230,7 @@ def _reason(
     )
 
 
-def _arrays(model: Model, system: System) -> tuple[Any, ...]:
+def _arrays(model: Model, system: System) -> tuple[Any, Any, Any, Any, Any, Any, Any, Any]:
     """What a run works on: tables, state, middle, matrix, boxes that touch, free sheets, what is kept,
     bounds."""
     from backends.lattice.compiled import alone, forces, momentum
