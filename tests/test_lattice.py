@@ -17,7 +17,7 @@ from mdlgen.model.lower import lower
 from mdlgen.model.tables import Model
 from mdlgen.paths import samples
 from mdlgen.registry import chosen
-from mdlgen.results.compare import compare
+from mdlgen.results.compare import compare, travel
 from mdlgen.results.result import Result
 from mdlgen.spec.load import load, loads
 
@@ -226,6 +226,20 @@ def test_transport_agrees_with_the_reference_solver() -> None:
     assert gripped.sum() >= 6 and np.abs(depth[gripped] - 1).max() < 0.02
     assert fast.error_estimate is not None and fast.error_estimate <= 1e-3
     assert 0.3 * away.relative <= fast.error_estimate
+
+
+def test_a_strip_swings_as_the_reference_solver_has_it() -> None:
+    scene = [
+        "sheets.note.boxes=[2,8]",
+        "run.analysis=transient",
+        "run.duration=60 ms",
+        "run.print_step=1 ms",
+    ]
+    fast = run(model("cantilever", *scene, "run.tolerance=1e-4"))
+    slow = mdlgen.solve(model("cantilever", *scene, "run.step=50 us"), "exudyn")
+    assert slow.ok
+    assert travel(slow)[2] < -5.0  # mm: it has fallen
+    assert compare(slow, fast).relative < 1e-3
 
 
 def test_a_fixed_step_is_taken_and_its_error_told() -> None:
