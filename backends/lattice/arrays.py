@@ -179,7 +179,7 @@ def _pairs(model: Model) -> np.ndarray:
     pairs["a"], pairs["b"] = model.pairs.a, model.pairs.b
     pairs["shared"] = np.array([share == "width" for share in rows.share], dtype=int)[chosen]
     pairs["k"] = rows.stiffness[chosen]
-    beta = np.array([damping_share(c) for c in rows.restitution])
+    beta = damping_share.py_func(rows.restitution)  # compiled code is for the solver alone to load
     speeds = (rows.stiction_velocity, rows.friction_velocity, rows.smoothing)
     for column, values in enumerate((beta, rows.mu_static, rows.mu_dynamic, *speeds)):
         pairs["law"][:, column] = values[chosen]
