@@ -29,8 +29,8 @@ ROUND_OFF, ROUND_OFF_RIGID = 2.0, 0.02
 # Where the step of rigid blocks is chosen, velocities may miss their guess by this part of the speed at a
 # tolerance of 1e-3; else the step is halved. Sheets flutter, and miss it always.
 MISS = 1e-3
-# Energy that the integration makes or loses, relative to what passed through, above which a run fails. Where a
-# contact goes from box to box of a sheet its stored energy is right to a few per cent only, whatever the step.
+# Energy that the integration makes or loses, relative to what passed through, above which a run fails. Where
+# a contact goes from box to box of a sheet, its stored energy is right to a few per cent only at any step.
 ENERGY_GAIN, ENERGY_LOSS, ENERGY_LOSS_RIGID = 0.02, 0.05, 0.01
 # What a scene without contacts may gain, as a part of the tolerance; its step is halved until it does not.
 FREE_GAIN = 1e-3
