@@ -88,15 +88,18 @@ def _closed(axes: Any, rows: list[Row]) -> None:
 def _scaling(axes: Any, rows: list[Row]) -> None:
     growth = fits(rows)["growth"]
     for number, solver in enumerate(dict.fromkeys(row.solver for row in rows)):
-        group = [row for row in rows if row.solver == solver and row.status == OK and row.wall_s]
+        ended = [row for row in rows if row.solver == solver and row.status == OK]
+        group = [row for row in ended if row.wall_s and row.steps]
         power = growth.get(solver)
         label = solver if power is None else f"{solver}, power {power:.2f}"
         style = {"color": COLOURS[number % len(COLOURS)], "marker": MARKERS[number % len(MARKERS)]}
-        axes.loglog([row.boxes for row in group], [row.wall_s for row in group], label=label, **style)
+        # solvers run other durations here
+        per_step = [1e3 * (row.wall_s or 0.0) / (row.steps or 1) for row in group]
+        axes.loglog([row.boxes for row in group], per_step, label=label, **style)
     boxes = sorted({row.boxes for row in rows if row.boxes})
     axes.set_xticks(boxes, [str(count) for count in boxes])
     axes.set_xticks([], minor=True)
-    axes.set(title="growth with the boxes", xlabel="boxes", ylabel="wall time [s]")
+    axes.set(title="growth with the boxes", xlabel="boxes", ylabel="wall time per step [ms]")
     _legend(axes)
 
 
