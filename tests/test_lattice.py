@@ -10,6 +10,8 @@ import pytest
 import mdlgen
 from backends.lattice import band
 from backends.lattice.arrays import build
+from mdlgen.bench.suites import flight
+from mdlgen.bench.suites.impact import thrown
 from mdlgen.errors import RefusedError
 from mdlgen.mechanics.bushing import bushing, bushing_pair
 from mdlgen.mechanics.vector import exp_rotation
@@ -292,3 +294,30 @@ def test_a_run_that_cannot_converge_says_where() -> None:
     scene = ["sheets.note.boxes=[2,3]", "rollers.motor_1_left.drive.speed=1e7 rad/s", "run.duration=5 ms"]
     result = mdlgen.solve(model("transport_4x4", *scene), "lattice")
     assert not result.ok and " ms" in result.status
+
+
+def test_a_block_that_loses_energy_unseen_has_failed() -> None:
+    # an elastic impact in two steps: the rule takes a fifth of the speed away
+    made = thrown(1.0, 1.0).model()
+    result = _fixed(made, 0.2)
+    assert not result.ok and "energy" in result.status
+    assert _fixed(made, 0.002).ok
+
+
+def test_a_tolerance_that_is_not_reached_is_a_failure(monkeypatch: pytest.MonkeyPatch) -> None:
+    from backends.lattice import run as solver
+
+    monkeypatch.setattr(solver, "MOST_REFINED", 1)
+    scene = ["sheets.note.boxes=[2,3]", "run.duration=5 ms", "run.tolerance=1e-9"]
+    result = mdlgen.solve(model("transport_4x4", *scene), "lattice")
+    assert not result.ok and "tolerance of 1e-09 was not reached" in result.status
+    assert result.error_estimate is not None and result.error_estimate > 1e-9
+
+
+def test_momentum_is_kept_after_a_touch() -> None:
+    # the factor is of a sheet that has bent and turned since
+    case = flight.cases("lattice", "lattice", quick=True)[0]
+    result = mdlgen.solve(case.run.model(), "lattice")
+    assert result.ok, result.status
+    for finding in flight.drift(result, None):
+        assert finding.tolerance is not None and finding.error <= finding.tolerance, finding

@@ -89,10 +89,10 @@ def solve(
 
 
 def _refined(model: Model, system: System, progress: Progress | None) -> Result:
-    """Halves the step until two runs differ by less than the tolerance."""
+    """Halves the step until two runs differ by less than the tolerance; fails where they never do."""
     miss = 0.0 if _flexible(model) else MISS * model.run.tolerance / 1e-3
     before = _once(model, system, first_step(model), progress, miss)
-    result = before
+    result = coarse = before
     for _ in range(MOST_REFINED):
         miss *= 0.25
         result = _once(model, system, 0.5 * before.step, progress, miss)
@@ -105,7 +105,17 @@ def _refined(model: Model, system: System, progress: Progress | None) -> Result:
         if not result.ok and result.time[-1] < model.run.duration * (1.0 - 1e-9):
             # what ends early at a finer step has a reason of its own; where both fail the finer one tells
             return result
-        before = result
+        before, coarse = result, before
+    if result.ok:
+        told = (
+            "a run at twice the step failed"
+            if result.error_estimate is None
+            else (f"it differs from a run at {coarse.step:.3g} ms by {result.error_estimate:.3g}")
+        )
+        result = result.failed(
+            f"the tolerance of {model.run.tolerance:.3g} was not reached at a step of {result.step:.3g} ms: "
+            f"{told}; a larger run.tolerance or a run.step of your own ends the search"
+        )
     return result
 
 
