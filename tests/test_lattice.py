@@ -308,6 +308,7 @@ def test_a_tolerance_that_is_not_reached_is_a_failure(monkeypatch: pytest.Monkey
     from backends.lattice import run as solver
 
     monkeypatch.setattr(solver, "MOST_REFINED", 1)
+    monkeypatch.setattr(solver, "first_step", lambda _: 0.25)
     scene = ["sheets.note.boxes=[2,3]", "run.duration=5 ms", "run.tolerance=1e-9"]
     result = mdlgen.solve(model("transport_4x4", *scene), "lattice")
     assert not result.ok and "tolerance of 1e-09 was not reached" in result.status
