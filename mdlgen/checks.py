@@ -275,7 +275,7 @@ def _deep_start(model: Model, row: int, where: str, part: str, depth: float, she
 
 def _density(model: Model) -> Iterator[Lint]:
     for sheet in model.sheets:
-        volume = sheet.count * sheet.d_x * sheet.d_y * sheet.thickness / 1e3  # cm^3
+        volume = sheet.outline[0] * sheet.outline[1] * sheet.thickness / 1e3  # cm^3
         density = sheet.derived["m"] * sheet.count / volume
         if not DENSITY[0] <= density <= DENSITY[1]:
             yield Lint(
@@ -296,7 +296,7 @@ def _nips(model: Model) -> Iterator[tuple[int, SheetPart, RollerPart]]:
 
 def _corners(sheet: SheetPart) -> Floats:
     """The eight corners of the flat sheet [mm], (8, 3)."""
-    half = np.array([sheet.n_x * sheet.d_x, sheet.n_y * sheet.d_y, sheet.thickness]) / 2
+    half = np.array([*sheet.outline, sheet.thickness]) / 2
     signs = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)], dtype=float)
     return sheet.center + signs * half @ sheet.rotation.T
 

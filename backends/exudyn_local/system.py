@@ -206,6 +206,7 @@ def _pairs(model: Model) -> np.ndarray:
         )
     ):
         pairs["law"][:, column] = values[chosen]
+    pairs["law"][:, 1:3] *= model.pair_friction[:, None]
     return pairs
 
 

@@ -183,6 +183,7 @@ def _pairs(model: Model) -> np.ndarray:
     speeds = (rows.stiction_velocity, rows.friction_velocity, rows.smoothing)
     for column, values in enumerate((beta, rows.mu_static, rows.mu_dynamic, *speeds)):
         pairs["law"][:, column] = values[chosen]
+    pairs["law"][:, 1:3] *= model.pair_friction[:, None]
     return pairs
 
 

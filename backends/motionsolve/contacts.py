@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache, partial
+
 from backends.motionsolve.bodies import graphic_id
 from backends.motionsolve.rows import Contact, Deck, Law
 from backends.motionsolve.units import number, thousandfold
@@ -11,8 +13,8 @@ from mdlgen.model.tables import Model
 def add_contacts(deck: Deck, model: Model) -> None:
     """All kept pairs; the numbers of an entry stand in each of its pairs."""
     bodies, pairs = model.bodies, model.pairs
-    laws = [_law(model, row) for row in range(len(model.contacts))]
-    columns = (c.tolist() for c in (pairs.contact, pairs.a, pairs.b))
+    law = cache(partial(_law, model))
+    columns = (c.tolist() for c in (pairs.contact, pairs.a, pairs.b, model.pair_friction))
     deck.contacts += [
         Contact(
             f"con_{bodies.name[a]}_{bodies.name[b]}",
@@ -20,20 +22,21 @@ def add_contacts(deck: Deck, model: Model) -> None:
             id,
             graphic_id(a),
             graphic_id(b),
-            laws[row],
+            law(row, rough),
         )
-        for id, (row, a, b) in enumerate(zip(*columns, strict=True), 1)
+        for id, (row, a, b, rough) in enumerate(zip(*columns, strict=True), 1)
     ]
 
 
-def _law(model: Model, row: int) -> Law:
+def _law(model: Model, row: int, rough: float) -> Law:
+    """Numbers of a contact, with friction `rough` times its own."""
     table = model.contacts
     friction = None
-    if table.mu_static[row] > 0 or table.mu_dynamic[row] > 0:
+    if rough * max(table.mu_static[row], table.mu_dynamic[row]) > 0:
         speeds = table.stiction_velocity[row], table.friction_velocity[row]
         friction = (
-            number(table.mu_static[row]),
-            number(table.mu_dynamic[row]),
+            number(table.mu_static[row] * rough),
+            number(table.mu_dynamic[row] * rough),
             thousandfold(speeds[0]),
             thousandfold(speeds[1]),
         )

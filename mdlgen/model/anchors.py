@@ -21,14 +21,13 @@ def anchor(name: str, item: OnSheet, sheets: tuple[SheetPart, ...]) -> Anchor:
     sheet = sheets[index]
     at = item.at if item.at is not None else grid.edge_middle(sheet, item.edge or "")
     found = grid.boxes_at(sheet, at)
-    node = np.round([2 * at[0] / sheet.d_x + sheet.n_x, 2 * at[1] / sheet.d_y + sheet.n_y])
     return Anchor(
         name=name,
         sheet=index,
         body=np.array([body for body, _ in found], dtype=np.int64),
         local=np.array([point for _, point in found], dtype=float),
         share=np.full(len(found), 1.0 / len(found)),
-        node=node.astype(np.int64),
+        node=grid.nearest_node(sheet, at),
         at=at,
         edge=item.edge,
     )
@@ -39,17 +38,17 @@ def lower_loads(scene: Scene, sheets: tuple[SheetPart, ...]) -> Loads:
     for load in scene.loads:
         sheet = next(s for s in sheets if s.name == load.sheet)
         if load.at is not None:
-            targets = grid.boxes_at(sheet, load.at)
+            found = grid.boxes_at(sheet, load.at)
+            targets = [(body, local, 1.0 / len(found)) for body, local in found]
         else:
             targets = grid.edge_boxes(sheet, load.edge or "")
         force, moment = np.array(load.force or (0.0, 0.0, 0.0)), np.array(load.moment or (0.0, 0.0, 0.0))
         if load.stress is not None:
             edge = load.edge or ""
-            across = sheet.n_y * sheet.d_y if edge[0] == "x" else sheet.n_x * sheet.d_x
+            across = sheet.outline[1 if edge[0] == "x" else 0]
             outward = np.eye(3)[0 if edge[0] == "x" else 1] * (-1.0 if edge.endswith("min") else 1.0)
             force = load.stress * across * sheet.thickness * outward
-        for body, local in targets:
-            share = 1.0 / len(targets)
+        for body, local, share in targets:
             rows.append((body, local, sheet.rotation @ force * share, sheet.rotation @ moment * share))
     count = len(rows)
     body, local, force, moment = [list(c) for c in zip(*rows, strict=True)] if rows else ([], [], [], [])
@@ -69,6 +68,9 @@ def find_tension(scene: Scene, sheets: tuple[SheetPart, ...]) -> Tension | None:
         if sheet.clamp is None or sheet.clamp.edge[0] != load.edge[0] or sheet.clamp.edge == load.edge:
             continue
         axis = 0 if load.edge[0] == "x" else 1
-        count, pitch = ((sheet.n_x, sheet.d_x), (sheet.n_y, sheet.d_y))[axis]
-        return Tension(index, axis, (count - sheet.clamp.rows - 0.5) * pitch)
+        lines = (sheet.lines_x, sheet.lines_y)[axis]
+        lines = lines if sheet.clamp.edge.endswith("min") else -lines[::-1]
+        # from the clamp line to the middle of the last box
+        length = 0.5 * (lines[-1] + lines[-2]) - lines[sheet.clamp.rows]
+        return Tension(index, axis, float(length))
     return None

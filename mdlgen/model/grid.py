@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from mdlgen.model.tables import Floats, SheetPart
+from mdlgen.model.tables import Floats, Ints, SheetPart
 
 
 def rotation_matrix(angles: tuple[float, float, float]) -> Floats:
@@ -27,9 +27,15 @@ def rotation_matrix(angles: tuple[float, float, float]) -> Floats:
 
 def local(sheet: SheetPart, node_x: Floats | float, node_y: Floats | float) -> Floats:
     """Position in sheet axes from its centre [mm] of grid nodes, (..., 3)."""
-    x = (np.asarray(node_x, float) / 2 - sheet.n_x / 2) * sheet.d_x
-    y = (np.asarray(node_y, float) / 2 - sheet.n_y / 2) * sheet.d_y
+    x = _between(sheet.lines_x, node_x)
+    y = _between(sheet.lines_y, node_y)
     return np.stack([x, y, np.zeros_like(x)], axis=-1)
+
+
+def _between(lines: Floats, node: Floats | Ints | float) -> Floats:
+    """Coordinate of nodes: a line, or the middle between two."""
+    whole = np.asarray(node, dtype=np.int64)
+    return 0.5 * (lines[whole // 2] + lines[(whole + 1) // 2])
 
 
 def place(sheet: SheetPart, points: Floats) -> Floats:
@@ -63,28 +69,44 @@ def clamped_boxes(sheet: SheetPart) -> np.ndarray:
 def boxes_at(sheet: SheetPart, at: tuple[float, float]) -> list[tuple[int, tuple[float, float, float]]]:
     """(body, point in box axes) of every box that holds the material point `at`; more than one on a line."""
     sides = []
-    for value, count, pitch in zip(at, (sheet.n_x, sheet.n_y), (sheet.d_x, sheet.d_y), strict=True):
-        cell = value / pitch + count / 2
-        near = round(cell)
-        cells = (near - 1, near) if abs(cell - near) < 1e-9 * max(count, 1) else (math.floor(cell),)
+    for value, lines in zip(at, (sheet.lines_x, sheet.lines_y), strict=True):
+        count = len(lines) - 1
+        near = int(np.argmin(np.abs(lines - value)))
+        if abs(lines[near] - value) < 1e-9 * (lines[-1] - lines[0]):
+            cells = (near - 1, near)
+        else:
+            cells = (int(np.searchsorted(lines, value)) - 1,)
         inside = [c for c in cells if 0 <= c < count]
-        sides.append([(c, value - (c + 0.5 - count / 2) * pitch) for c in inside])
+        sides.append([(c, float(value - 0.5 * (lines[c] + lines[c + 1]))) for c in inside])
     return [(sheet.body(i, j), (x, y, 0.0)) for j, y in sides[1] for i, x in sides[0]]
 
 
-def edge_boxes(sheet: SheetPart, edge: str) -> list[tuple[int, tuple[float, float, float]]]:
-    """(body, middle of its side on the edge) for each box along an edge."""
-    last = {"x": sheet.n_x, "y": sheet.n_y}[edge[0]] - 1
-    row = 0 if edge.endswith("min") else last
-    sign = -0.5 if edge.endswith("min") else 0.5
-    if edge[0] == "x":
-        return [(sheet.body(row, j), (sign * sheet.d_x, 0.0, 0.0)) for j in range(sheet.n_y)]
-    return [(sheet.body(i, row), (0.0, sign * sheet.d_y, 0.0)) for i in range(sheet.n_x)]
+def nearest_node(sheet: SheetPart, at: tuple[float, float]) -> np.ndarray:
+    """The grid node nearest to a material point, (2,)."""
+    return np.array(
+        [
+            np.argmin(np.abs(_between(lines, np.arange(2 * len(lines) - 1)) - value))
+            for lines, value in zip((sheet.lines_x, sheet.lines_y), at, strict=True)
+        ],
+        dtype=np.int64,
+    )
+
+
+def edge_boxes(sheet: SheetPart, edge: str) -> list[tuple[int, tuple[float, float, float], float]]:
+    """(body, middle of its side on the edge, its part of the edge) for each box along an edge."""
+    along_x = edge[0] == "y"
+    own, lines = np.diff(sheet.lines_x), np.diff(sheet.lines_y)
+    across, along = (lines, own) if along_x else (own, lines)
+    row = 0 if edge.endswith("min") else len(across) - 1
+    half = float(across[row]) * (-0.5 if edge.endswith("min") else 0.5)
+    parts = (along / along.sum()).tolist()
+    if along_x:
+        return [(sheet.body(i, row), (0.0, half, 0.0), part) for i, part in enumerate(parts)]
+    return [(sheet.body(row, j), (half, 0.0, 0.0), part) for j, part in enumerate(parts)]
 
 
 def edge_middle(sheet: SheetPart, edge: str) -> tuple[float, float]:
     """Sheet coordinates of the middle of an edge of the boxes' outline."""
-    sign = -0.5 if edge.endswith("min") else 0.5
-    if edge[0] == "x":
-        return (sign * sheet.n_x * sheet.d_x, 0.0)
-    return (0.0, sign * sheet.n_y * sheet.d_y)
+    lines = sheet.lines_x if edge[0] == "x" else sheet.lines_y
+    at = float(lines[0] if edge.endswith("min") else lines[-1])
+    return (at, 0.0) if edge[0] == "x" else (0.0, at)

@@ -8,8 +8,7 @@ import numpy as np
 
 from mdlgen.model import naming
 from mdlgen.model.grid import clamped_boxes
-from mdlgen.model.stiffness import JointValues
-from mdlgen.model.tables import CLAMP, GROUND, JOINT_X, JOINT_Y, Clamp, Floats, Ints, SheetPart
+from mdlgen.model.tables import CLAMP, GROUND, JOINT_X, JOINT_Y, Clamp, Ints, SheetPart
 
 _LETTER = {JOINT_X: "x", JOINT_Y: "y", CLAMP: "c"}
 
@@ -24,13 +23,13 @@ class Joints:
     b: Ints  # body, (n,)
     node: Ints  # as in the table of bushings, (n, 2)
     along_x: bool
+    one: Ints  # box in its sheet that the joint begins in, (n,)
+    two: Ints  # and that it ends in; the same one at a clamp
 
-    def coefficients(self, values: JointValues) -> tuple[Floats, Floats]:
-        """(k, c) of one bushing, six each; a half-cell hinge has twice the values of a joint."""
-        scale = 2.0 if self.kind == CLAMP else 1.0
-        along_x = (values.k_joint_x, values.c_joint_x)
-        k, c = along_x if self.along_x else (values.k_joint_y, values.c_joint_y)
-        return scale * np.array(k), scale * np.array(c)
+    @property
+    def scale(self) -> float:
+        """A half-cell hinge has twice the values of a joint."""
+        return 2.0 if self.kind == CLAMP else 1.0
 
 
 def find_joints(sheet: SheetPart) -> list[Joints]:
@@ -50,7 +49,7 @@ def _between(sheet: SheetPart, along_x: bool) -> Joints:
     i, j, one, two = i[free], j[free], one[free], two[free]
     middle = np.stack([2 * i + 1 + right, 2 * j + 1 + up], axis=1)
     kind = JOINT_X if along_x else JOINT_Y
-    return _bushings(sheet, kind, along_x, (i, j), (sheet.first + one, sheet.first + two), middle)
+    return _bushings(sheet, kind, along_x, (i, j), (one, two), middle)
 
 
 def _hinges(sheet: SheetPart, clamp: Clamp) -> Joints:
@@ -65,8 +64,8 @@ def _hinges(sheet: SheetPart, clamp: Clamp) -> Joints:
     i, j = (row, along) if across_x else (along, row)
     on_line = np.full(others, line)
     middle = np.stack([on_line, 2 * j + 1] if across_x else [2 * i + 1, on_line], axis=1)
-    bodies = (np.full(others, GROUND), sheet.first + i + j * sheet.n_x)
-    return _bushings(sheet, CLAMP, across_x, (i, j), bodies, middle)
+    box = i + j * sheet.n_x
+    return _bushings(sheet, CLAMP, across_x, (i, j), (box, box), middle)
 
 
 def _bushings(
@@ -74,12 +73,13 @@ def _bushings(
     kind: int,
     along_x: bool,
     box: tuple[Ints, Ints],
-    bodies: tuple[Ints, Ints],
+    boxes: tuple[Ints, Ints],
     middle: Ints,
 ) -> Joints:
     """One bushing in the middle of each shared side, or one at each of its ends; named by `box` (i, j)."""
     corners = {"a": -1, "b": 1} if sheet.layout == "edge_to_edge" else {"": 0}
     shift = np.outer(list(corners.values()), (0, 1) if along_x else (1, 0))
+    one, two = (np.repeat(box, len(corners)) for box in boxes)
     return Joints(
         name=[
             naming.bushing(sheet.name, _LETTER[kind], i, j, end)
@@ -87,8 +87,10 @@ def _bushings(
             for end in corners
         ],
         kind=kind,
-        a=np.repeat(bodies[0], len(corners)),
-        b=np.repeat(bodies[1], len(corners)),
+        a=np.full(len(one), GROUND) if kind == CLAMP else sheet.first + one,
+        b=sheet.first + two,
         node=(middle[:, None] + shift).reshape(-1, 2),
         along_x=along_x,
+        one=one,
+        two=two,
     )

@@ -8,12 +8,13 @@ import numpy as np
 
 from mdlgen.model import grid, naming
 from mdlgen.model.anchors import anchor, find_tension, lower_loads
+from mdlgen.model.cells import Cells, cells, zone_parts
 from mdlgen.model.external import external_pairs, lower_externals
 from mdlgen.model.joints import find_joints
 from mdlgen.model.machine import frame, lower_planes, lower_rollers
 from mdlgen.model.pairs import find_pairs
 from mdlgen.model.parameters import parameters
-from mdlgen.model.stiffness import JointValues, joint_values
+from mdlgen.model.stiffness import between, coefficients, derived
 from mdlgen.model.supports import joined, support_bushings
 from mdlgen.model.tables import (
     BOX_CYLINDER,
@@ -40,17 +41,17 @@ def lower(scene: Scene) -> Model:
     Raises SpecError where names that are made from the user's meet.
     """
     run = _run(scene)
-    sheets, values = _sheets(scene)
+    sheets, boxes = _sheets(scene)
     first = sum(s.count for s in sheets)
     contacts = _contacts(scene)
     rollers = lower_rollers(scene, sheets, contacts, first)
     planes = lower_planes(scene, first + len(rollers))
     externals = lower_externals(scene)
     gravity = np.array(scene.gravity)
-    bodies = _bodies(sheets, values, rollers, planes)
+    bodies = _bodies(sheets, boxes, rollers, planes)
     supports = tuple(anchor(f"support_{k}", item, sheets) for k, item in enumerate(scene.supports))
     held = support_bushings(scene.supports, supports, sheets, bodies)
-    bushings = joined([*_joints(sheets, values), *held])
+    bushings = joined([*_joints(scene, sheets, boxes), *held])
     naming.check_unique("bodies", bodies.name)
     naming.check_unique("bushings", bushings.name)
     starts = {r.name: (r.press.touch, r.press.start) for r in rollers if r.press is not None}
@@ -83,14 +84,15 @@ def _run(scene: Scene) -> RunSettings:
     return RunSettings(run.duration, run.analysis, run.step, run.tolerance, print_step)
 
 
-def _sheets(scene: Scene) -> tuple[tuple[SheetPart, ...], list[JointValues]]:
+def _sheets(scene: Scene) -> tuple[tuple[SheetPart, ...], list[Cells]]:
     parts: list[SheetPart] = []
-    values: list[JointValues] = []
+    boxes: list[Cells] = []
     first = 0
     for name in sorted(scene.sheets):
         sheet = scene.sheets[name]
         material = scene.materials[sheet.material]
-        joint = joint_values(sheet, material)
+        zones, graded = zone_parts(sheet), sheet.grading
+        lines_x, lines_y = map(np.array, sheet.lines)
         angles = sheet.rotation if sheet.rotation is not None else (0.0, 0.0, sheet.turn or 0.0)
         parts.append(
             SheetPart(
@@ -98,8 +100,12 @@ def _sheets(scene: Scene) -> tuple[tuple[SheetPart, ...], list[JointValues]]:
                 first=first,
                 n_x=sheet.boxes[0],
                 n_y=sheet.boxes[1],
-                d_x=joint.d_x,
-                d_y=joint.d_y,
+                d_x=sheet.pitch[0],
+                d_y=sheet.pitch[1],
+                lines_x=lines_x,
+                lines_y=lines_y,
+                graded=(False, False) if graded is None else (graded.x is not None, graded.y is not None),
+                zones=zones,
                 thickness=sheet.thickness,
                 size=sheet.size,
                 layout=sheet.layout,
@@ -118,12 +124,12 @@ def _sheets(scene: Scene) -> tuple[tuple[SheetPart, ...], list[JointValues]]:
                 twist=material.D_twist is not None,
                 in_plane=material.k_tz is not None,
                 rotation_damping=material.damping.rotation,
-                derived=joint.derived(),
+                derived=derived(sheet, material),
             )
         )
-        values.append(joint)
+        boxes.append(cells(sheet, zones))
         first += parts[-1].count
-    return tuple(parts), values
+    return tuple(parts), boxes
 
 
 def _contacts(scene: Scene) -> Contacts:
@@ -153,12 +159,12 @@ def _contacts(scene: Scene) -> Contacts:
 
 def _bodies(
     sheets: tuple[SheetPart, ...],
-    values: list[JointValues],
+    boxes: list[Cells],
     rollers: tuple[RollerPart, ...],
     planes: tuple[PlanePart, ...],
 ) -> Bodies:
     names, labels, tables = [], [], []
-    for sheet, joint in zip(sheets, values, strict=True):
+    for sheet, box in zip(sheets, boxes, strict=True):
         count = sheet.count
         node_x, node_y = grid.box_nodes(sheet)
         names += [naming.box(sheet.name, k % sheet.n_x, k // sheet.n_x) for k in range(count)]
@@ -166,21 +172,21 @@ def _bodies(
         position = grid.place(sheet, grid.local(sheet, node_x, node_y))
         held = grid.clamped_boxes(sheet)
         moving = ~held[:, None]
-        half = np.array([joint.d_x, joint.d_y, sheet.thickness]) / 2
         tables.append(
             (
                 position,
                 np.broadcast_to(sheet.rotation, (count, 3, 3)),
-                np.full(count, joint.m),
-                np.broadcast_to(np.array(joint.inertia), (count, 3)),
+                box.m,
+                box.inertia,
                 moving * (sheet.velocity + np.cross(sheet.spin, position - sheet.center)),
                 moving * np.broadcast_to(sheet.spin, (count, 3)),
                 held,
-                np.broadcast_to(half, (count, 3)),
+                np.stack([box.d_x, box.d_y, box.s], axis=1) / 2,
                 grid.exposed_sides(sheet),
+                box.friction,
             )
         )
-    zero, none = np.zeros((1, 3)), np.zeros((1, 4), bool)
+    zero, none, one = np.zeros((1, 3)), np.zeros((1, 4), bool), np.ones(1)
     for roller in rollers:
         names.append(roller.name)
         labels.append(f"Roller {roller.name}")
@@ -197,6 +203,7 @@ def _bodies(
                 np.array([False]),
                 zero,
                 none,
+                one,
             )
         )
     for plane in planes:
@@ -216,18 +223,21 @@ def _bodies(
                 np.array([True]),
                 half,
                 none,
+                one,
             )
         )
     columns = [np.concatenate(column) for column in zip(*tables, strict=True)]
     return Bodies(tuple(names), tuple(labels), *columns)
 
 
-def _joints(sheets: tuple[SheetPart, ...], values: list[JointValues]) -> list[Bushings]:
+def _joints(scene: Scene, sheets: tuple[SheetPart, ...], boxes: list[Cells]) -> list[Bushings]:
     tables = []
-    for number, (sheet, value) in enumerate(zip(sheets, values, strict=True)):
+    for number, (sheet, box) in enumerate(zip(sheets, boxes, strict=True)):
+        spec = scene.sheets[sheet.name]
         for joints in find_joints(sheet):
             count = len(joints.name)
-            k, c = (np.broadcast_to(six, (count, 6)) for six in joints.coefficients(value))
+            of = between(box, joints.one, joints.two, joints.along_x)
+            k, c = coefficients(spec, scene.materials[spec.material], of, joints.along_x)
             made = Bushings(
                 name=tuple(joints.name),
                 label=tuple(name.replace("_", " ") for name in joints.name),
@@ -238,8 +248,8 @@ def _joints(sheets: tuple[SheetPart, ...], values: list[JointValues]) -> list[Bu
                 # point by point: a product with many rows at once may round each as their number has it
                 origin=grid.place(sheet, grid.local(sheet, *joints.node.T)[:, None])[:, 0],
                 axes=np.broadcast_to(sheet.rotation, (count, 3, 3)),
-                k=k,
-                c=c,
+                k=joints.scale * k,
+                c=joints.scale * c,
                 node=joints.node,
             )
             tables.append(made)

@@ -92,10 +92,10 @@ def _swept(
     """Bounds of each box centre (low, high), (count, 3), and the boxes' half extents, without margin."""
     boxes = slice(sheet.first, sheet.first + sheet.count)
     centers = bodies.position[boxes]
-    size = np.array([sheet.n_x * sheet.d_x, sheet.n_y * sheet.d_y])
+    size = np.array(sheet.outline)
     diagonal = float(np.hypot(*size))
     if run.analysis == "static":
-        reach = np.full(3, 0.5 * float(np.linalg.norm(bodies.half[sheet.first])) * 2)
+        reach = np.full(3, float(np.linalg.norm(bodies.half[boxes], axis=1).max()))
         return centers - diagonal, centers + diagonal, reach
     time = run.duration
     fall = 0.5 * gravity * time**2
@@ -111,7 +111,7 @@ def _swept(
         least, most = least - normal, most + normal
     arms = centers - sheet.center
     turn = _turn(sheet, drives, time)
-    around, extent = _turned(sheet, arms, turn, bodies.half[sheet.first])
+    around, extent = _turned(sheet, arms, turn, bodies.half[boxes].max(axis=0))
     return sheet.center + around[0] + least, sheet.center + around[1] + most, extent
 
 

@@ -53,11 +53,14 @@ def covered_share(sheet: SheetPart, center: Floats, axis: Floats, width: float, 
     pairs do not share, the number of boxes that the roller stands on."""
     stations = (np.arange(200) + 0.5) / 200 - 0.5
     points = (center + np.outer(stations * width, axis) - sheet.center) @ sheet.rotation
-    cells = points[:, :2] / (sheet.d_x, sheet.d_y) + np.array([sheet.n_x, sheet.n_y]) / 2
-    inside = np.all((cells >= 0) & (cells <= (sheet.n_x, sheet.n_y)), axis=1)
+    half = np.array(sheet.outline) / 2
+    inside = np.all(np.abs(points[:, :2]) <= half, axis=1)
     if shared:
         return float(np.mean(inside))
-    return float(len(np.unique(np.floor(cells[inside]), axis=0)))
+    cells = [
+        np.searchsorted(lines, points[inside, k]) for k, lines in enumerate((sheet.lines_x, sheet.lines_y))
+    ]
+    return float(len(np.unique(np.stack(cells), axis=1).T))
 
 
 def sheet_contact(

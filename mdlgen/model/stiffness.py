@@ -1,13 +1,18 @@
-"""Joint stiffness and damping of a sheet: the paper's Eqs. 2-7, and bending from plate stiffness.
+"""Joint stiffness and damping of a sheet: the paper's Eqs. 4-7, and bending from plate stiffness.
 
-Units: mm, N, g, ms, rad.
+Each joint has a length and a width of its own, the mean of the boxes that it joins along it and the side
+that they share, and two halves in series, one in each box. Where all boxes are alike that is the paper's
+formula with d_x and d_y. Units: mm, N, g, ms, rad.
 """
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
+import numpy as np
+
+from mdlgen.model.cells import Cells
+from mdlgen.model.tables import Floats, Ints
 from mdlgen.spec.material import Material
 from mdlgen.spec.sheet import Sheet
 
@@ -16,86 +21,109 @@ SUPPORT_FACTOR = 100.0
 
 
 @dataclass(frozen=True)
-class JointValues:
-    """Values of one bushing of the sheet (each of the two at a pair in `edge_to_edge`).
+class Between:
+    """What joints lie between, one row each; a half-cell hinge has the one box that it holds twice."""
 
-    `k`, `c`: (k_x, k_y, k_z, k_tx, k_ty, k_tz) in N/mm and N mm/rad, and the dampings in N ms/mm and
-    N mm ms/rad. `k_joint_x` and `k_joint_y` are the same for the joints along x and along y; they differ
-    from `k` only where `D_twist` sets the twist of the joint.
-    """
-
-    d_x: float
-    d_y: float
-    m: float
-    inertia: tuple[float, float, float]
-    k_joint_x: tuple[float, ...]
-    k_joint_y: tuple[float, ...]
-    c_joint_x: tuple[float, ...]
-    c_joint_y: tuple[float, ...]
-
-    def derived(self) -> dict[str, float]:
-        """The paper's Tables 1 and 2 for this sheet, by symbol."""
-        names = ("x", "y", "z", "tx", "ty", "tz")
-        # the hinge about x bends the joints along y, the hinge about y those along x
-        k = (*self.k_joint_x[:3], self.k_joint_y[3], self.k_joint_x[4], self.k_joint_x[5])
-        c = (*self.c_joint_x[:3], self.c_joint_y[3], self.c_joint_x[4], self.c_joint_x[5])
-        values = {"d_x": self.d_x, "d_y": self.d_y, "m": self.m}
-        values |= {f"I_{a}": i for a, i in zip("xyz", self.inertia, strict=True)}
-        values |= {f"k_{n}": v for n, v in zip(names, k, strict=True)}
-        return values | {f"c_{n}": v for n, v in zip(names, c, strict=True)}
+    d_x: Floats  # [mm]
+    d_y: Floats
+    s: Floats
+    m: Floats  # [g]
+    membrane: Floats  # stiffness in times that of the sheet outside its zones
+    bending: Floats
 
 
-def joint_values(sheet: Sheet, material: Material) -> JointValues:
-    """Eqs. 2-7 for one sheet."""
-    d_x, d_y = sheet.pitch
-    s = sheet.thickness
-    m = sheet.mass / (sheet.boxes[0] * sheet.boxes[1])  # Eq. 2
-    inertia = (m * (d_y**2 + s**2) / 12, m * (d_x**2 + s**2) / 12, m * (d_x**2 + d_y**2) / 12)
-    parts = 2 if sheet.layout == "edge_to_edge" else 1  # bushings per pair
+def between(boxes: Cells, one: Ints, two: Ints, along_x: bool) -> Between:
+    """The joints between boxes `one` and `two`, next to each other along x, or along y."""
+    lengths = boxes.d_x if along_x else boxes.d_y
+    a, b = lengths[one], lengths[two]
+    length = 0.5 * (a + b)
 
-    k_x = material.E_md * d_y * s / d_x / parts  # Eq. 5
-    k_y = material.E_cd * d_x * s / d_y / parts  # Eq. 6
-    k_z = 10.0 * max(k_x, k_y)
-    k_tx = material.k_tx if material.k_tx is not None else _plate(material.D_cd, d_x / d_y, parts)
-    k_ty = material.k_ty if material.k_ty is not None else _plate(material.D_md, d_y / d_x, parts)
-    k_tz = material.k_tz if material.k_tz is not None else 20.0 * max(k_tx, k_ty)
-    k_along_x, k_along_y = [k_x, k_y, k_z, k_tx, k_ty, k_tz], [k_x, k_y, k_z, k_tx, k_ty, k_tz]
-    if material.D_twist is not None:
-        k_along_x[3] = 2.0 * material.D_twist * d_y / d_x
-        k_along_y[4] = 2.0 * material.D_twist * d_x / d_y
+    def series(factor: Floats) -> Floats:
+        return (a + b) / (a / factor[one] + b / factor[two])
 
-    def damping(k: list[float]) -> tuple[float, ...]:
-        return _damping(k, m, (d_x, d_y, s), parts, material)
-
-    return JointValues(
-        d_x, d_y, m, inertia, tuple(k_along_x), tuple(k_along_y), damping(k_along_x), damping(k_along_y)
+    return Between(
+        d_x=length if along_x else boxes.d_x[one],
+        d_y=boxes.d_y[one] if along_x else length,
+        s=0.5 * (boxes.s[one] + boxes.s[two]),
+        m=0.5 * (boxes.m[one] + boxes.m[two]),
+        membrane=series(boxes.membrane),
+        bending=series(boxes.bending),
     )
 
 
-def _plate(stiffness: float | None, shape: float, parts: int) -> float:
-    """Hinge stiffness of one bushing from bending stiffness per width; `shape` = width / length."""
-    assert stiffness is not None, "the spec requires one of k_t* and D_*"
-    return stiffness * shape / parts
+def plain(sheet: Sheet) -> Between:
+    """A joint between two boxes of mean length outside all zones."""
+    d_x, d_y = sheet.pitch
+    m = sheet.mass / (sheet.boxes[0] * sheet.boxes[1])  # Eq. 2
+    columns = (d_x, d_y, sheet.thickness, m, 1.0, 1.0)
+    return Between(*(np.array([value]) for value in columns))
 
 
-def _damping(
-    k: list[float], m: float, box: tuple[float, float, float], parts: int, material: Material
-) -> tuple[float, ...]:
+def coefficients(sheet: Sheet, material: Material, of: Between, along_x: bool) -> tuple[Floats, Floats]:
+    """(k, c) of one bushing of each joint along x, or along y, (n, 6) each: k_x, k_y, k_z [N/mm], k_tx, k_ty,
+    k_tz [N mm/rad], and the dampings [N ms/mm], [N mm ms/rad] (Eqs. 4-7)."""
+    parts = 2 if sheet.layout == "edge_to_edge" else 1  # bushings per pair
+    s = sheet.thickness
+    k_x = of.membrane * (material.E_md * of.d_y * s / of.d_x / parts)  # Eq. 5
+    k_y = of.membrane * (material.E_cd * of.d_x * s / of.d_y / parts)  # Eq. 6
+    k_z = 10.0 * np.maximum(k_x, k_y)
+    shape, mean = of.d_x / of.d_y, sheet.pitch[0] / sheet.pitch[1]
+    k_tx = of.bending * _hinge(material.k_tx, material.D_cd, shape, mean, parts)
+    k_ty = of.bending * _hinge(material.k_ty, material.D_md, 1.0 / shape, 1.0 / mean, parts)
+    even = np.ones_like(k_x)
+    k_tz = material.k_tz * even if material.k_tz is not None else 20.0 * np.maximum(k_tx, k_ty)
+    if material.D_twist is not None:
+        if along_x:
+            k_tx = of.bending * (2.0 * material.D_twist * of.d_y / of.d_x)
+        else:
+            k_ty = of.bending * (2.0 * material.D_twist * of.d_x / of.d_y)
+    k = np.stack([k_x, k_y, k_z, k_tx, k_ty, k_tz], axis=1)
+    return k, _damping(k, of, parts, material)
+
+
+def _hinge(given: float | None, plate: float | None, shape: Floats, mean: float, parts: int) -> Floats:
+    """Hinge stiffness of one bushing; `shape` is its width over its length, `mean` that of the mean box, for
+    which a stiffness per bushing is given."""
+    if given is not None:
+        return given * (shape / mean)
+    assert plate is not None, "the spec requires one of k_t* and D_*"
+    return plate * shape / parts
+
+
+def _damping(k: Floats, of: Between, parts: int, material: Material) -> Floats:
     """Eq. 7 for the six components of one bushing; the bushings of a pair add up to the central one."""
     damping = material.damping
     zeta_ty = damping.ratio if damping.ratio_ty is None else damping.ratio_ty
-    zeta = (damping.ratio, damping.ratio, damping.ratio, damping.ratio, zeta_ty, damping.ratio)
-    c = [2.0 * z * math.sqrt(parts * ki * m) / parts for z, ki in zip(zeta[:3], k[:3], strict=True)]
+    c = [2.0 * damping.ratio * np.sqrt(parts * k[:, i] * of.m) / parts for i in range(3)]
     if damping.rotation == "paper":
         # The paper's Table 2: Eq. 7 with the mass of the box; in e2e c_tx and c_ty follow their own k,
         # c_tz is half of the central one (physics.md). A mass in a rotation is not dimensionally right.
         shares = (1, 1, parts)
-        masses = (m, m, m)
+        masses = (of.m, of.m, of.m)
     else:
-        d_x, d_y, s = box
         shares = (parts, parts, parts)
         # about the edges and the corner of the box, where the hinges lie
-        masses = (m * (d_y**2 / 3 + s**2 / 12), m * (d_x**2 / 3 + s**2 / 12), m * (d_x**2 + d_y**2) / 3)
-    for z, ki, share, mass in zip(zeta[3:], k[3:], shares, masses, strict=True):
-        c.append(2.0 * z * math.sqrt(share * ki * mass) / share)
-    return tuple(c)
+        masses = (
+            of.m * (of.d_y**2 / 3 + of.s**2 / 12),
+            of.m * (of.d_x**2 / 3 + of.s**2 / 12),
+            of.m * (of.d_x**2 + of.d_y**2) / 3,
+        )
+    zetas = (damping.ratio, zeta_ty, damping.ratio)
+    for i, (zeta, share, mass) in enumerate(zip(zetas, shares, masses, strict=True), start=3):
+        c.append(2.0 * zeta * np.sqrt(share * k[:, i] * mass) / share)
+    return np.stack(c, axis=1)
+
+
+def derived(sheet: Sheet, material: Material) -> dict[str, float]:
+    """The paper's Tables 1 and 2 for this sheet, by symbol: of a box of mean size outside all zones."""
+    of = plain(sheet)
+    names = ("x", "y", "z", "tx", "ty", "tz")
+    (k, c), (k_across, c_across) = (coefficients(sheet, material, of, way) for way in (True, False))
+    # the hinge about x bends the joints along y, the hinge about y those along x
+    k[:, 3], c[:, 3] = k_across[:, 3], c_across[:, 3]
+    d_x, d_y, s, m = (float(v[0]) for v in (of.d_x, of.d_y, of.s, of.m))
+    values = {"d_x": d_x, "d_y": d_y, "m": m}
+    inertia = (m * (d_y**2 + s**2) / 12, m * (d_x**2 + s**2) / 12, m * (d_x**2 + d_y**2) / 12)
+    values |= {f"I_{a}": i for a, i in zip("xyz", inertia, strict=True)}
+    values |= {f"k_{n}": float(v) for n, v in zip(names, k[0], strict=True)}
+    return values | {f"c_{n}": float(v) for n, v in zip(names, c[0], strict=True)}

@@ -43,6 +43,7 @@ class Bodies(Frozen):
     fixed: NDArray[np.bool_]  # held: clamped boxes and planes, (n,)
     half: Floats  # half lengths of a box, body axes; zero for rollers [mm], (n, 3)
     exposed: NDArray[np.bool_]  # side faces that no neighbour covers: x_min, x_max, y_min, y_max, (n, 4)
+    friction: Floats  # friction of its contacts in times that of the contact, (n,)
 
 
 # kinds of bushing
@@ -78,6 +79,18 @@ class Clamp:
 
 
 @dataclass(frozen=True)
+class ZonePart(Frozen):
+    """A part of a sheet that is unlike the rest; see the spec for what the factors mean."""
+
+    name: str
+    share: Floats  # of each box that it covers, (boxes,)
+    thickness: float | None  # None: as the sheet
+    density: float
+    stiffness: float
+    friction: float
+
+
+@dataclass(frozen=True)
 class SheetPart(Frozen):
     """A sheet's grid; its boxes are the bodies first ... first + n_x n_y - 1."""
 
@@ -85,8 +98,12 @@ class SheetPart(Frozen):
     first: int
     n_x: int
     n_y: int
-    d_x: float
+    d_x: float  # mean length of a box
     d_y: float
+    lines_x: Floats  # where the lines between boxes are, from the sheet's centre [mm], (n_x + 1,)
+    lines_y: Floats  # (n_y + 1,)
+    graded: tuple[bool, bool]  # whether the lengths along x, along y are given box by box
+    zones: tuple[ZonePart, ...]
     thickness: float
     size: tuple[float, float]
     layout: str
@@ -107,6 +124,16 @@ class SheetPart(Frozen):
     @property
     def count(self) -> int:
         return self.n_x * self.n_y
+
+    @property
+    def uniform(self) -> bool:
+        """Whether all boxes, and all joints of one kind, are alike."""
+        return not any(self.graded) and not self.zones
+
+    @property
+    def outline(self) -> tuple[float, float]:
+        """Lengths of all boxes along x and along y [mm]."""
+        return float(self.lines_x[-1] - self.lines_x[0]), float(self.lines_y[-1] - self.lines_y[0])
 
     def body(self, i: int, j: int) -> int:
         """Body of the box in column i (along x) and row j (along y)."""
@@ -300,6 +327,11 @@ class Model(Frozen):
 
     def roller(self, name: str) -> RollerPart:
         return next(r for r in self.rollers if r.name == name)
+
+    @property
+    def pair_friction(self) -> Floats:
+        """Friction of each kept pair in times that of its contact, (pairs,)."""
+        return self.bodies.friction[self.pairs.a] * self.bodies.friction[self.pairs.b]
 
     def sheet_of(self, body: int) -> SheetPart | None:
         """The sheet that a body is a box of, or None."""

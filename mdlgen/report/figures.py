@@ -107,7 +107,7 @@ def _shape(result: Result, page: Any) -> None:
     panels = page.subplots(1, len(result.model.sheets), squeeze=False)[0]
     for sheet, panel in zip(result.model.sheets, panels, strict=True):
         boxes = slice(sheet.first, sheet.first + sheet.count)
-        axis = 0 if sheet.n_x * sheet.d_x > sheet.n_y * sheet.d_y else 1
+        axis = 0 if sheet.outline[0] > sheet.outline[1] else 1
         for k, (places, label) in enumerate(
             ((result.model.bodies.position[boxes], "before"), (result.position[-1, boxes], "after"))
         ):

@@ -48,7 +48,7 @@ def _sheet(model: Model, index: int) -> dict[str, Any]:
         "bushings": int(np.sum(model.bushings.sheet == index)),
         "layout": sheet.layout,
         "grid": sheet.grid,
-        "outline_mm": [sheet.n_x * sheet.d_x, sheet.n_y * sheet.d_y],
+        "outline_mm": list(sheet.outline),
         "derived": {name: float(value) for name, value in sheet.derived.items()},
         "bending": bending(sheet),
     }

@@ -66,8 +66,8 @@ class Scene(Strict):
         if item.at is None:
             return
         sheet = self.sheets[item.sheet]
-        for value, count, pitch, axis in zip(item.at, sheet.boxes, sheet.pitch, "xy", strict=True):
-            half = count * pitch / 2.0
+        for value, lines, axis in zip(item.at, sheet.lines, "xy", strict=True):
+            half = lines[-1]
             if abs(value) > half * (1 + 1e-9):
                 raise fail(
                     f"at: {axis} = {value:g} mm is off the sheet; allowed -{half:g} to {half:g} mm",

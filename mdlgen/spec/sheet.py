@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
@@ -22,8 +23,11 @@ from mdlgen.spec.fields import (
     origin,
     quantity,
 )
+from mdlgen.spec.grading import Graded, Grading
+from mdlgen.spec.zone import Zone
 
 MAX_BOXES = 100_000
+MAX_ZONES = 100
 Edge = Literal["x_min", "x_max", "y_min", "y_max"]
 
 
@@ -52,6 +56,8 @@ class Sheet(Strict):
         default="tiled",
         description="tiled: d = L/n; paper: d = L/(n-1) (Eq. 1), an outline of n boxes of that size",
     )
+    grading: Grading | None = Field(default=None, description="boxes of different sizes, finer where needed")
+    zones: dict[Name, Zone] = Field(default_factory=dict, description="rectangles that are unlike the rest")
     center: Position = Field(default=origin("mm"), description="middle of the sheet's mid-plane")
     turn: Angle | None = Field(default=None, description="rotation about z")
     rotation: Angles | None = Field(
@@ -76,12 +82,56 @@ class Sheet(Strict):
             raise fail("turn and rotation are both given; give one of them")
         if self.surface and min(n_x, n_y) < 2:
             raise fail("surface needs at least 2 x 2 boxes")
+        self._check_grading()
         self.clamped_rows()
+        self._check_zones()
         return self
+
+    def _check_grading(self) -> None:
+        if self.grading is None:
+            return
+        if self.grid == "paper":
+            raise fail("grading goes with grid: tiled; the paper's grid has equal boxes")
+        for axis, graded, count, length in zip(
+            "xy", (self.grading.x, self.grading.y), self.boxes, self.size, strict=True
+        ):
+            if graded is None:
+                continue
+            if graded.sizes and len(graded.sizes) != count:
+                raise fail(f"grading.{axis} has {len(graded.sizes)} lengths for {count} boxes; give one each")
+            for place in graded.near:
+                if abs(place) > length / 2:
+                    raise fail(
+                        f"grading.{axis}.near: {place:g} mm is off the sheet; "
+                        f"allowed -{length / 2:g} to {length / 2:g} mm"
+                    )
+
+    def _check_zones(self) -> None:
+        if len(self.zones) > MAX_ZONES:
+            raise fail(f"zones are {len(self.zones)}; allowed are {MAX_ZONES} in a sheet")
+        names = list(self.zones)
+        for k, name in enumerate(names):
+            zone = self.zones[name]
+            for axis, side, lines in zip("xy", (zone.x, zone.y), self.lines, strict=True):
+                if side[0] < lines[0] * (1 + 1e-9) or side[1] > lines[-1] * (1 + 1e-9):
+                    raise fail(
+                        f"zone {name}: {axis} from {side[0]:g} mm to {side[1]:g} mm leaves the sheet; "
+                        f"allowed {lines[0]:g} to {lines[-1]:g} mm"
+                    )
+            for other in names[:k]:
+                if zone.meets(self.zones[other]):
+                    raise fail(f"the zones {other} and {name} overlap; divide them")
+
+    @property
+    def lines(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Where the lines between boxes are, from the sheet's centre [mm]: (n_x + 1 along x, n_y + 1 along y)."""
+        graded = (None, None) if self.grading is None else (self.grading.x, self.grading.y)
+        x, y = (_lines(*side) for side in zip(self.pitch, self.boxes, graded, strict=True))
+        return x, y
 
     @property
     def pitch(self) -> tuple[float, float]:
-        """Box lengths (d_x, d_y) [mm]: L/n, or L/(n-1) on the paper's grid (Eq. 1)."""
+        """Mean box lengths (d_x, d_y) [mm]: L/n, or L/(n-1) on the paper's grid (Eq. 1)."""
         less = 1 if self.grid == "paper" else 0
         return self.size[0] / (self.boxes[0] - less), self.size[1] / (self.boxes[1] - less)
 
@@ -90,13 +140,26 @@ class Sheet(Strict):
         if self.clamp is None or self.clamp.length == 0.0:
             return 0
         axis = 0 if self.clamp.edge[0] == "x" else 1
-        pitch, count = self.pitch[axis], self.boxes[axis]
-        rows = round(self.clamp.length / pitch)
-        if abs(self.clamp.length - rows * pitch) > 1e-6 * pitch or not 0 <= rows < count:
-            low = min(int(self.clamp.length / pitch), count - 2 if count > 1 else 0)
-            lines = [f"{line * pitch:.6g} mm" for line in (low, low + 1) if line < count]
+        lines, length = self.lines[axis], self.clamp.length
+        away = [line - lines[0] for line in lines]
+        if self.clamp.edge.endswith("max"):
+            away = [lines[-1] - line for line in reversed(lines)]
+        row = min(range(len(away) - 1), key=lambda k: abs(away[k] - length))
+        if abs(length - away[row]) > 1e-6 * self.pitch[axis]:
+            near = sorted(sorted(away[:-1], key=lambda line: abs(line - length))[:2])
             raise fail(
-                f"clamp.length {self.clamp.length:.6g} mm is not a line between boxes; "
-                f"the nearest are {' and '.join(lines)}"
+                f"clamp.length {length:.6g} mm is not a line between boxes; "
+                f"the nearest are {' and '.join(f'{line:.6g} mm' for line in near)}"
             )
-        return rows
+        return row
+
+
+def _lines(pitch: float, count: int, graded: Graded | None) -> tuple[float, ...]:
+    if graded is None:
+        return tuple((k - count / 2) * pitch for k in range(count + 1))
+    length = pitch * count
+    sizes = graded.relative(count, length)
+    whole, at = math.fsum(sizes), [0.0]
+    for size in sizes:
+        at.append(at[-1] + size)
+    return tuple((value / whole - 0.5) * length for value in at)
