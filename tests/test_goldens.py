@@ -128,6 +128,11 @@ SUPPORTS = (
         ],
     ),
 )
+UNLIKE = (
+    "sheets.note.boxes=[2,2]",
+    "sheets.note.grading.y=[1,2]",
+    _put("sheets.note.zones", {"stripe": {"x": ["0 mm", "10 mm"], "y": ["-5 mm", "5 mm"], "density": 2.0}}),
+)
 PLAIN: tuple[str, ...] = ()
 ONE_OF_EACH = (
     _put("rollers", {"under": ROLLER}),
@@ -161,8 +166,10 @@ PARTS: dict[str, dict[str, tuple[str, ...]]] = {
         "the paper's damping": ("materials.paper.damping.rotation=paper",),
         "the paper's damping, twist": (C2C, *PLATES, "materials.paper.damping.rotation=paper"),
         "a block": BLOCK,
+        "lengths of their own, a zone": UNLIKE,
     },
     "sheet.mdl.j2": {
+        "lengths of their own, a zone": UNLIKE,
         "aligned, edge to edge": PLAIN,
         "turned": TURNED,
         "general rotation, in motion, twist, surface, centre to centre": FLYING,
@@ -173,7 +180,11 @@ PARTS: dict[str, dict[str, tuple[str, ...]]] = {
     "support.mdl.j2": {"in a box, on an edge between two": SUPPORTS},
     "roller.mdl.j2": {"each kind": (ROLLERS,)},
     "plane.mdl.j2": {"level, with a normal of its own": (PLANES,)},
-    "contacts.mdl.j2": {"with and without friction": CONTACTS, "none": PLAIN},
+    "contacts.mdl.j2": {
+        "a zone with its own friction": (*CONTACTS, *UNLIKE, "sheets.note.zones.stripe.friction=2"),
+        "with and without friction": CONTACTS,
+        "none": PLAIN,
+    },
     "probe.mdl.j2": {"on one, two and four boxes, on edges": PROBES},
     "run.mdl.j2": {"transient": PLAIN, "static": ("run.analysis=static",)},
     "companion.py.j2": {
@@ -192,7 +203,7 @@ LOOPED = {
     "probe.mdl.j2": "probes",
 }
 # Their text stands in the goldens of those that take them in.
-WITHIN = ("macros.mdl.j2", "notes.mdl.j2")
+WITHIN = ("cells.mdl.j2", "law.mdl.j2", "macros.mdl.j2", "notes.mdl.j2")
 WITH_SET_CONTACT = ("contacts.mdl.j2",)
 
 

@@ -21,6 +21,18 @@ def idle_values(model: Model, set_contact: bool, kept: Sequence[int]) -> dict[tu
     for index, sheet in enumerate(model.sheets):
         if not np.any(model.bushings.sheet == index):
             found |= {(sheet.name, member): "there are no joints" for member in _STIFFNESS}
+            found |= {
+                (f"{sheet.name}_zone_{z.name}", "stiffness"): "there are no joints" for z in sheet.zones
+            }
+        rubs = model.contacts.mu_static + model.contacts.mu_dynamic > 0
+        mine = np.array([part == sheet.name for part in model.contacts.part_a], dtype=bool)
+        if not set(np.flatnonzero(rubs & mine).tolist()) & set(kept):
+            why = "nothing that it may touch has friction"
+        elif not set_contact:
+            why = "the companion script sets it"
+        else:
+            continue
+        found |= {(f"{sheet.name}_zone_{zone.name}", "friction"): why for zone in sheet.zones}
     for roller in model.rollers:
         if roller.speed is not None and roller.ramp <= 0.0:
             found[roller.name, "ramp"] = "the text has no ramp"

@@ -7,6 +7,7 @@ from itertools import groupby
 
 import numpy as np
 
+from backends.motionview.cells import rough_boxes
 from backends.motionview.rows import Axis, ContactView, Pair, PlaneView, RollerView, Value
 from backends.motionview.units import number
 from mdlgen.model.tables import Floats, Model, PlanePart, RollerPart
@@ -72,7 +73,8 @@ def pair_rows(model: Model) -> list[Pair]:
     graphic = [f"gbox_{name}" for name in bodies.name]
     for roller in model.rollers:
         graphic[roller.body] = f"gcyl_{roller.name}"
-    rubs = ["ON" if s > 0 or d > 0 else "OFF" for s, d in zip(table.mu_static, table.mu_dynamic, strict=True)]
+    rubs = [s > 0 or d > 0 for s, d in zip(table.mu_static, table.mu_dynamic, strict=True)]
+    rough, rougher = rough_pairs(model), model.bodies.friction.tolist()
     data_set = [f"contact_{entry}" for entry in table.entry.tolist()]
     columns = (c.tolist() for c in (model.pairs.contact, model.pairs.a, model.pairs.b))
     return [
@@ -83,8 +85,15 @@ def pair_rows(model: Model) -> list[Pair]:
             graphic[a],
             f"b_{bodies.name[b]}",
             [graphic[b]],
-            rubs[row],
+            "ON" if rubs[row] and rougher[a] > 0 else "OFF",
             data_set[row],
+            rough.get(a, ""),
+            rougher[a],
         )
         for row, a, b in zip(*columns, strict=True)
     ]
+
+
+def rough_pairs(model: Model) -> dict[int, str]:
+    """Reference to the friction of each box whose sheet has zones."""
+    return {sheet.first + k: text for sheet in model.sheets for k, text in enumerate(rough_boxes(sheet))}

@@ -19,12 +19,62 @@ class Value(NamedTuple):
 
 
 class Point(NamedTuple):
-    """A point of a sheet at cell coordinates (i, j), counted from the corner of box (0, 0)."""
+    """A point of a sheet at cell coordinates (i, j), counted from the corner of box (0, 0).
+
+    Between the lines `x` and the lines `y`: one line, or the two that it is in the middle of.
+    """
 
     name: str
     label: str
     i: str
     j: str
+    x: tuple[int, ...]
+    y: tuple[int, ...]
+
+
+class Lengths(NamedTuple):
+    """References to what a box has of its own: lengths, and the members of its class."""
+
+    d_x: str
+    d_y: str
+    s: str
+    m: str
+    inertia: tuple[str, str, str]
+
+
+class GridView(NamedTuple):
+    """Lengths along one side that are given one by one."""
+
+    axis: str
+    data_set: str
+    given: list[Value]
+
+
+class ZoneView(NamedTuple):
+    """A zone; `thick`: it has a thickness of its own."""
+
+    name: str
+    given: list[Value]
+    thick: bool
+
+
+class CellView(NamedTuple):
+    """Boxes that are alike: how many, and the share of each zone."""
+
+    name: str
+    d_x: str
+    d_y: str
+    many: int
+    shares: list[tuple[str, str]]
+
+
+class HingeView(NamedTuple):
+    """Joints that are alike, between boxes of two classes."""
+
+    name: str
+    along_x: bool
+    one: CellView
+    two: CellView
 
 
 class Bush(NamedTuple):
@@ -38,9 +88,11 @@ class Bush(NamedTuple):
 
 
 class JointGroup(NamedTuple):
-    """Bushings of one sheet with the same values: `factor` times the members k_*, c_*."""
+    """Bushings of one sheet with the same values: `factor` times the members k_*, c_*, to which `own` makes
+    the references."""
 
     factor: str
+    own: str
     tx: str  # suffix of the members of rotation about x: tx or tx_twist
     ty: str
     bushes: list[Bush]
@@ -64,7 +116,13 @@ class SheetView:
     twist: bool
     damping: str
     stiff: bool  # anything uses the sheet's stiffness
+    graded: tuple[bool, bool]
+    grids: list[GridView]
+    zones: list[ZoneView]
+    cells: list[CellView]  # empty where all boxes are alike
+    hinges: list[HingeView]
     boxes: list[Point]
+    lengths: list[Lengths]  # of each box
     held: list[Point]
     free: list[Point]
     nodes: list[Point]
@@ -123,6 +181,8 @@ class Pair(NamedTuple):
     graphics_2: list[str]
     friction: str  # ON or OFF
     data_set: str
+    rough: str = ""  # friction of the box in times that of the contact, where that is not 1
+    rougher: float = 1.0  # and its number
 
 
 @dataclass(frozen=True)

@@ -75,24 +75,24 @@ def _numbers(model: Model, set_contact: bool, only: str | None) -> list[Numbers]
     if not len(rows) or (set_contact and not _smoothing_differs(model, rows)):
         return []
     scene = scene_view(model, set_contact) if only is None else system_view(model, set_contact).scene
-    names: dict[str, list[str]] = {}
-    rubs = {pair.data_set: pair.friction == "ON" for pair in scene.pairs}
+    names: dict[str, dict[tuple[bool, float], list[str]]] = {}
     for pair in scene.pairs:
-        names.setdefault(pair.data_set, []).append(pair.name)
+        alike = names.setdefault(pair.data_set, {})
+        alike.setdefault((pair.friction == "ON", pair.rougher), []).append(pair.name)
     found = []
     for contact in scene.contacts:
-        if contact.data_set not in names:
-            continue
         given = {value.member: value.number for value in contact.given}
-        table = [("normal_trans_vel", given["v_n"])]
-        if not set_contact:
-            table = [("penalty", given["k"]), ("rest_coeff", given["c_R"]), *table]
-            if rubs[contact.data_set]:
-                table += [
-                    ("mu_static", given["mu_s"]),
-                    ("mu_dynamic", given["mu_d"]),
-                    ("stiction_trans_vel", given["v_s"]),
-                    ("friction_trans_vel", given["v_d"]),
-                ]
-        found.append(Numbers(contact.label, table, names[contact.data_set]))
+        for (rubs, rougher), pairs in names.get(contact.data_set, {}).items():
+            label = contact.label if rougher == 1.0 else f"{contact.label}, friction times {number(rougher)}"
+            table = [("normal_trans_vel", given["v_n"])]
+            if not set_contact:
+                table = [("penalty", given["k"]), ("rest_coeff", given["c_R"]), *table]
+                if rubs:
+                    table += [
+                        ("mu_static", number(float(given["mu_s"]) * rougher)),
+                        ("mu_dynamic", number(float(given["mu_d"]) * rougher)),
+                        ("stiction_trans_vel", given["v_s"]),
+                        ("friction_trans_vel", given["v_d"]),
+                    ]
+            found.append(Numbers(label, table, pairs))
     return found

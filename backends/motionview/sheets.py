@@ -2,28 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from itertools import islice
 
 import numpy as np
 
+from backends.motionview.cells import Differences, differences, grid_views, zone_views
 from backends.motionview.rows import Bush, JointGroup, Point, ProbeView, SheetView, SupportView, Value
 from backends.motionview.units import number
 from mdlgen.model.stiffness import SUPPORT_FACTOR
-from mdlgen.model.tables import AXES, CLAMP, GROUND, JOINT_X, JOINT_Y, SUPPORT, Anchor, Model, SheetPart
+from mdlgen.model.tables import AXES, CLAMP, GROUND, JOINT_X, SUPPORT, Anchor, Model, SheetPart
 
 
-def sheet_view(model: Model, index: int, given: list[Value]) -> SheetView:
-    """One sheet with its boxes and bushings."""
+def sheet_view(model: Model, index: int, tables: dict[str, list[Value]]) -> SheetView:
+    """One sheet with its boxes and bushings; `tables` are the given values by data set."""
     sheet = model.sheets[index]
+    given = tables[sheet.name]
     members = slice(sheet.first, sheet.first + sheet.count)
     names, labels = model.bodies.name[members], model.bodies.label[members]
-    columns = _cell(range(1, 2 * sheet.n_x, 2)) * sheet.n_y
-    rows = [c for c in _cell(range(1, 2 * sheet.n_y, 2)) for _ in range(sheet.n_x)]
-    boxes = [Point(*row) for row in zip(names, labels, columns, rows, strict=True)]
+    columns = [_cell(2 * i + 1) for i in range(sheet.n_x)] * sheet.n_y
+    rows = [_cell(2 * j + 1) for j in range(sheet.n_y) for _ in range(sheet.n_x)]
+    boxes = [
+        Point(name, label, i, j, x, y)
+        for name, label, (i, x), (j, y) in zip(names, labels, columns, rows, strict=True)
+    ]
+    differ = differences(sheet)
     held = model.bodies.fixed[members].tolist()
     free = [box for box, fixed in zip(boxes, held, strict=True) if not fixed]
-    nodes, joints = _joints(model, index)
+    nodes, joints = _joints(model, index, differ)
     supported = bool(np.any((model.bushings.sheet == index) & (model.bushings.kind == SUPPORT)))
     return SheetView(
         name=sheet.name,
@@ -40,7 +45,13 @@ def sheet_view(model: Model, index: int, given: list[Value]) -> SheetView:
         twist=sheet.twist,
         damping=sheet.rotation_damping,
         stiff=bool(joints) or supported,
+        graded=sheet.graded,
+        grids=grid_views(sheet, tables),
+        zones=zone_views(sheet, tables),
+        cells=differ.cells,
+        hinges=differ.hinges if joints else [],
         boxes=boxes,
+        lengths=differ.lengths,
         held=[box for box, fixed in zip(boxes, held, strict=True) if fixed],
         free=free,
         nodes=nodes,
@@ -49,36 +60,44 @@ def sheet_view(model: Model, index: int, given: list[Value]) -> SheetView:
     )
 
 
-def _cell(nodes: Iterable[int]) -> list[str]:
-    """Cell coordinates of half-cell nodes: 1 is 0.5."""
-    return [number(n / 2) for n in nodes]
+def _cell(node: int) -> tuple[str, tuple[int, ...]]:
+    """Cell coordinate of a half-cell node (1 is 0.5), and the line, or lines, that it lies on or between."""
+    return number(node / 2), (node // 2,) if node % 2 == 0 else (node // 2, node // 2 + 1)
 
 
-def _joints(model: Model, index: int) -> tuple[list[Point], list[JointGroup]]:
+def _joints(model: Model, index: int, differ: Differences) -> tuple[list[Point], list[JointGroup]]:
     """The grid points that a sheet's bushings share, and the bushings by their values."""
     sheet, table = model.sheets[index], model.bushings
     mine = np.flatnonzero((table.sheet == index) & (table.kind != SUPPORT))
     taken: dict[tuple[int, int], str] = {}
-    groups: dict[int, list[Bush]] = {JOINT_X: [], JOINT_Y: [], CLAMP: []}
+    groups: dict[tuple[int, str], list[Bush]] = {}
     body = (*(f"b_{name}" for name in model.bodies.name), "B_Ground")
     assert body[GROUND] == "B_Ground"
     columns = (c[mine].tolist() for c in (table.kind, table.a, table.b, table.node))
-    for row, kind, a, b, (x, y) in zip(mine.tolist(), *columns, strict=True):
+    owners = differ.owners or ["$%s"] * len(mine)
+    for row, own, kind, a, b, (x, y) in zip(mine.tolist(), owners, *columns, strict=True):
         point = taken.setdefault((x, y), f"{sheet.name}_node_{x}_{y}")
-        groups[kind].append(Bush(table.name[row], table.label[row], body[a], body[b], point))
+        groups.setdefault((kind, own), []).append(
+            Bush(table.name[row], table.label[row], body[a], body[b], point)
+        )
     nodes = [
-        Point(name, f"{sheet.name} grid point {x / 2:g}, {y / 2:g}", number(x / 2), number(y / 2))
+        _node(name, sheet, x, y)
         for (x, y), name in sorted(taken.items(), key=lambda item: (item[0][1], item[0][0]))
     ]
     twist = "_twist" if sheet.twist else ""
     clamped_x = sheet.clamp is not None and sheet.clamp.edge[0] == "x"
     made = []
-    for kind, bushes in groups.items():
+    for (kind, own), bushes in groups.items():
         along_x = kind == JOINT_X or (kind == CLAMP and clamped_x)
         suffixes = (f"tx{twist}", "ty") if along_x else ("tx", f"ty{twist}")
-        if bushes:  # a clamp is a half-cell hinge of twice the joint
-            made.append(JointGroup("2*" if kind == CLAMP else "", *suffixes, bushes))
+        # a clamp is a half-cell hinge of twice the joint
+        made.append(JointGroup("2*" if kind == CLAMP else "", own, *suffixes, bushes))
     return nodes, made
+
+
+def _node(name: str, sheet: SheetPart, x: int, y: int) -> Point:
+    (i, along), (j, across) = _cell(x), _cell(y)
+    return Point(name, f"{sheet.name} grid point {x / 2:g}, {y / 2:g}", i, j, along, across)
 
 
 def _surface(sheet: SheetPart, names: tuple[str, ...]) -> list[list[str]]:

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from backends.motionview.machine import contact_views, pair_rows
+from backends.motionview.machine import contact_views, pair_rows, rough_pairs
 from backends.motionview.rows import Attachment, Pair, SystemView
 from backends.motionview.views import given_values, scene_view
 from mdlgen.model.tables import CYLINDER_CYLINDER, Ints, Model
@@ -73,6 +73,7 @@ def sheet_pairs(model: Model) -> list[Pair]:
             name = table.part_b[row]
             rows.append((row, pair._replace(body_2=_body(name), graphics_2=_graphics(name, 1))))
     rubs = (table.mu_static > 0) | (table.mu_dynamic > 0)
+    rough = rough_pairs(model)
     for row, box, part in zip(pairs.contact.tolist(), pairs.box.tolist(), pairs.part.tolist(), strict=True):
         external = model.externals[part]
         name = bodies.name[box]
@@ -83,8 +84,10 @@ def sheet_pairs(model: Model) -> list[Pair]:
             graphic_1=f"gbox_{name}",
             body_2=_body(external.name),
             graphics_2=_graphics(external.name, len(external.graphics)),
-            friction="ON" if rubs[row] else "OFF",
+            friction="ON" if rubs[row] and bodies.friction[box] > 0 else "OFF",
             data_set=f"contact_{table.entry[row]}",
+            rough=rough.get(box, ""),
+            rougher=float(bodies.friction[box]),
         )
         rows.append((row, made))
     return [pair for _, pair in sorted(rows, key=lambda item: item[0])]

@@ -23,11 +23,6 @@ def check(model: Model) -> None:
 
 def check_sheets(model: Model) -> None:
     """Raises RefusedError by name for what the text of the sheets cannot represent."""
-    for sheet in model.sheets:
-        if not sheet.uniform:
-            raise RefusedError(
-                "MotionView text: graded grids and zones are not written yet", ("sheets", sheet.name)
-            )
     if len(model.loads.body):
         raise RefusedError(
             "MotionView text: loads are not written, because no force statement with a certain meaning is "

@@ -19,7 +19,7 @@ def scene_view(model: Model, set_contact: bool) -> SceneView:
         name=model.name,
         static=model.run.analysis == "static",
         run=given["run"],
-        sheets=[sheet_view(model, k, given[s.name]) for k, s in enumerate(model.sheets)],
+        sheets=[sheet_view(model, k, given) for k in range(len(model.sheets))],
         supports=support_views(model),
         rollers=[roller_view(model, r, given[r.name]) for r in model.rollers],
         planes=[plane_view(model, p, given[p.name]) for p in model.planes],

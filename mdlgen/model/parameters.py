@@ -15,6 +15,8 @@ def parameters(
     rows: list[Parameter] = []
     for name in sorted(scene.sheets):
         rows += _sheet(scene, name)
+        rows += _grading(scene, name)
+        rows += _zones(scene, name)
     for name in sorted(scene.rollers):
         rows += _roller(scene, name, starts)
     for name in sorted(scene.planes):
@@ -95,6 +97,38 @@ def _sheet(scene: Scene, name: str) -> list[Parameter]:
         for k, axis in enumerate(_NAMED_AXES):
             label = f"Initial spin {axis} (rad/s)"
             rows.append(Parameter(name, f"w_{axis}", label, sheet.spin[k], "rad/ms", (*base, "spin", k)))
+    return rows
+
+
+def _grading(scene: Scene, name: str) -> list[Parameter]:
+    """Relative lengths of the columns and rows of boxes that are given one by one."""
+    sheet, rows = scene.sheets[name], []
+    if sheet.grading is None:
+        return rows
+    for k, (axis, graded) in enumerate((("x", sheet.grading.x), ("y", sheet.grading.y))):
+        if graded is None:
+            continue
+        what = ("column", "row")[k]
+        for index, size in enumerate(graded.relative(sheet.boxes[k], sheet.size[k])):
+            path = ("sheets", name, "grading", axis, "sizes", index)
+            label = f"Relative length of {what} {index}"
+            rows.append(Parameter(f"{name}_grid_{axis}", f"g_{index}", label, size, "1", path))
+    return rows
+
+
+def _zones(scene: Scene, name: str) -> list[Parameter]:
+    rows, sheet = [], scene.sheets[name]
+    for zone_name in sorted(sheet.zones):
+        zone, group = sheet.zones[zone_name], f"{name}_zone_{zone_name}"
+        path = ("sheets", name, "zones", zone_name)
+        if zone.thickness is not None:
+            rows.append(Parameter(group, "s", "Thickness s", zone.thickness, "mm", (*path, "thickness")))
+        for member, label in (
+            ("density", "Density in times that of the rest"),
+            ("stiffness", "Moduli in times those of the rest"),
+            ("friction", "Friction in times that of the rest"),
+        ):
+            rows.append(Parameter(group, member, label, getattr(zone, member), "1", (*path, member)))
     return rows
 
 

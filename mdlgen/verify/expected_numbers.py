@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from mdlgen.model.tables import Anchor, Model, SheetPart
+from mdlgen.verify.cells import cells
 from mdlgen.verify.expected import KG, SECOND, body_name
 from mdlgen.verify.tables import Part, Table, table
 
@@ -39,6 +40,7 @@ def data(model: Model) -> Table:
         for member, value in _derived(model, index).items():
             # a value that the user gave stands there already
             found.setdefault(f"ds_{sheet.name}.real_{member}", value)
+        found |= {k: v for k, v in cells(model, index).items() if k not in found}
     for support in model.supports:
         found[f"ds_{support.name}.real_factor"] = _factor(model, support)
         found |= _place(support.name, support.at, support.edge)
@@ -46,7 +48,7 @@ def data(model: Model) -> Table:
         found |= _place(f"probe_{probe.name}", probe.at, probe.edge)
     angles = [math.degrees(1.0) if ".real_turn" in n or ".real_r_" in n else 0.0 for n in found]
     numbers = np.array(list(found.values()))
-    places = np.array([100.0 if n.endswith(("real_x", "real_y")) else 0.0 for n in found])
+    places = np.array([100.0 if n.endswith(("real_x", "real_y")) or ".real_l_" in n else 0.0 for n in found])
     scale = np.maximum.reduce([np.abs(numbers), np.array(angles), places]) if found else numbers
     return table(found, {"value": (numbers, scale[:, None])})
 
@@ -64,10 +66,18 @@ def _place(data_set: str, at: tuple[float, float], edge: str | None) -> dict[str
 def _derived(model: Model, index: int) -> dict[str, float]:
     """Values of a sheet that the text computes, from the tables of its boxes and bushings."""
     sheet, rows = model.sheets[index], model.bushings
-    box = sheet.first
-    m, (d_x, d_y, s) = model.bodies.mass[box] * KG, 2 * model.bodies.half[box]
+    d_x, d_y, s = sheet.d_x, sheet.d_y, sheet.thickness
+    m = sheet.derived["m"] * KG
+    inertia = [sheet.derived[f"I_{axis}"] for axis in "xyz"]
+    if sheet.uniform:  # then it is that of each box
+        box = sheet.first
+        m, (d_x, d_y, s), inertia = (
+            model.bodies.mass[box] * KG,
+            2 * model.bodies.half[box],
+            model.bodies.inertia[box],
+        )
     found = {"n_x": float(sheet.n_x), "n_y": float(sheet.n_y), "d_x": d_x, "d_y": d_y, "m": m}
-    found |= {f"I_{a}": v * KG for a, v in zip("xyz", model.bodies.inertia[box], strict=True)}
+    found |= {f"I_{a}": v * KG for a, v in zip("xyz", inertia, strict=True)}
     mine = rows.sheet == index
     if not np.any(mine):
         return found
@@ -102,12 +112,13 @@ def contacts(model: Model) -> Table:
     """One row for each pair of bodies that may touch; without friction its four numbers are 0."""
     rows, pairs, outside, bodies = model.contacts, model.pairs, model.external_pairs, model.bodies
     of = np.concatenate([pairs.contact, outside.contact])
-    rubs = (rows.mu_static[of] > 0) | (rows.mu_dynamic[of] > 0)
+    rough = np.concatenate([model.pair_friction, bodies.friction[outside.box]])
+    rubs = ((rows.mu_static[of] > 0) | (rows.mu_dynamic[of] > 0)) & (rough > 0)
     numbers = np.stack(
         [
             rows.stiffness[of],
             rows.restitution[of],
-            *(np.where(rubs, v, 0.0) for v in (rows.mu_static[of], rows.mu_dynamic[of])),
+            *(np.where(rubs, v * rough, 0.0) for v in (rows.mu_static[of], rows.mu_dynamic[of])),
             *(
                 np.where(rubs, v / SECOND, 0.0)
                 for v in (rows.stiction_velocity[of], rows.friction_velocity[of])

@@ -21,7 +21,9 @@ from mdlgen.model.lower import lower
 from mdlgen.model.stiffness import SUPPORT_FACTOR
 from mdlgen.model.supports import joined, support_bushings
 from mdlgen.model.tables import SUPPORT, Anchor, Bushings, Model, Parameter, Press
+from mdlgen.spec.grading import Graded, Grading
 from mdlgen.spec.scene import Scene
+from mdlgen.spec.sheet import Sheet
 from mdlgen.verify.expected_numbers import FACTORS
 
 STEP = 1.0625  # a value is turned to this many times itself, exactly
@@ -79,7 +81,10 @@ def pinned(scene: Scene) -> Scene:
         damping = material.damping
         ty = damping.ratio if damping.ratio_ty is None else damping.ratio_ty
         materials[name] = material.model_copy(update={"damping": damping.model_copy(update={"ratio_ty": ty})})
-    sheets = {name: sheet.model_copy(update={"material": name}) for name, sheet in scene.sheets.items()}
+    sheets = {
+        name: sheet.model_copy(update={"material": name, "grading": _given_lengths(sheet)})
+        for name, sheet in scene.sheets.items()
+    }
     rollers = {}
     for name, roller in scene.rollers.items():
         press = roller.press
@@ -105,6 +110,18 @@ def pinned(scene: Scene) -> Scene:
     )
 
 
+def _given_lengths(sheet: Sheet) -> Grading | None:
+    """The lengths of boxes that are finer near some places, one by one."""
+    if sheet.grading is None:
+        return None
+    sides = (sheet.grading.x, sheet.grading.y)
+    x, y = (
+        None if side is None else Graded(sizes=side.relative(count, length))
+        for side, count, length in zip(sides, sheet.boxes, sheet.size, strict=True)
+    )
+    return Grading(x=x, y=y)
+
+
 def _path(parameter: Parameter, sheets: set[str]) -> Path | None:
     """Where a parameter stands in the pinned scene."""
     path = parameter.path
@@ -120,8 +137,8 @@ def _path(parameter: Parameter, sheets: set[str]) -> Path | None:
 def _turned(scene: Scene, path: Path, value: float, base: Model) -> Callable[[], Model]:
     def model() -> Model:
         changed = _with(scene, path, value)
-        if path[0] == "sheets" and path[2] == "size":
-            changed = _clamp_along(changed, str(path[1]), int(path[3]))
+        if path[0] == "sheets" and path[2] in ("size", "grading"):
+            changed = _along(changed, scene, str(path[1]))
         return as_written(changed, base)
 
     return model
@@ -140,15 +157,29 @@ def _with(owner: Any, path: Path, value: float) -> Any:
     return (*owner[:first], _with(owner[first], rest, value), *owner[first + 1 :])
 
 
-def _clamp_along(scene: Scene, name: str, axis: int) -> Scene:
-    """The clamp line stays on its line between boxes: the text has it in cells."""
-    sheet = scene.sheets[name]
-    if sheet.clamp is None or "xy"[axis] != sheet.clamp.edge[0]:
-        return scene
-    clamp = sheet.clamp.model_copy(update={"length": sheet.clamp.length * STEP})
-    return scene.model_copy(
-        update={"sheets": {**scene.sheets, name: sheet.model_copy(update={"clamp": clamp})}}
-    )
+def _along(scene: Scene, base: Scene, name: str) -> Scene:
+    """Clamp and zones go with the lines between boxes: the text has the one in cells, the other in shares."""
+    before, sheet = base.sheets[name], scene.sheets[name]
+    lines = list(zip(before.lines, sheet.lines, strict=True))
+
+    def moved(side: tuple[float, float], axis: int) -> tuple[float, float]:
+        low, high = np.interp(side, *lines[axis]).tolist()
+        return low, high
+
+    zones = {
+        key: zone.model_copy(update={"x": moved(zone.x, 0), "y": moved(zone.y, 1)})
+        for key, zone in sheet.zones.items()
+    }
+    clamp = sheet.clamp
+    if clamp is not None:
+        axis, low = "xy".index(clamp.edge[0]), clamp.edge.endswith("min")
+        row = before.clamped_rows()
+        away = (
+            lines[axis][1][row] - lines[axis][1][0] if low else lines[axis][1][-1] - lines[axis][1][-1 - row]
+        )
+        clamp = clamp.model_copy(update={"length": away})
+    sheet = sheet.model_copy(update={"zones": zones, "clamp": clamp})
+    return scene.model_copy(update={"sheets": {**scene.sheets, name: sheet}})
 
 
 def _begun(model: Model, roller: str, member: str, value: float) -> Callable[[], Model]:

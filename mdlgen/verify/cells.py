@@ -1,0 +1,119 @@
+"""What a text must say of the boxes and joints of a sheet that are not all alike, class by class."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from mdlgen.model.classes import JointClass, box_classes, joint_classes
+from mdlgen.model.tables import Floats, Model, SheetPart
+from mdlgen.verify.expected import KG, SECOND
+
+_SIX = ("x", "y", "z", "tx", "ty", "tz")
+
+
+def cells(model: Model, index: int) -> dict[str, float]:
+    """Members of the data sets of lengths, zones and classes, those that the user gave left out."""
+    sheet = model.sheets[index]
+    if sheet.uniform:
+        return {}
+    found = _lengths(model, sheet)
+    for zone in sheet.zones:
+        found[f"ds_{sheet.name}_zone_{zone.name}.real_s"] = (
+            sheet.thickness if zone.thickness is None else zone.thickness
+        )
+    return found | _boxes(model, sheet) | _joints(model, index)
+
+
+def _lengths(model: Model, sheet: SheetPart) -> dict[str, float]:
+    found: dict[str, float] = {}
+    for axis, graded, lines in zip("xy", sheet.graded, (sheet.lines_x, sheet.lines_y), strict=True):
+        if not graded:
+            continue
+        name = f"{sheet.name}_grid_{axis}"
+        sizes = [p.value for p in model.parameters if p.data_set == name]
+        found |= {f"ds_{name}.real_t_{k}": math.fsum(sizes[:k]) for k in range(len(lines))}
+        found |= {f"ds_{name}.real_d_{k}": float(d) for k, d in enumerate(np.diff(lines))}
+        found |= {f"ds_{name}.real_l_{k}": float(at) for k, at in enumerate(lines)}
+    return found
+
+
+def _boxes(model: Model, sheet: SheetPart) -> dict[str, float]:
+    found: dict[str, float] = {}
+    bodies, before = model.bodies, 0.0
+    classes, _ = box_classes(sheet)
+    for c in classes:
+        body = sheet.first + c.first
+        d_x, d_y, s = 2 * bodies.half[body]
+        dense = 1.0
+        for zone in sheet.zones:
+            thick = sheet.thickness if zone.thickness is None else zone.thickness
+            dense += zone.share[c.first] * (zone.density * thick / sheet.thickness - 1.0)
+        weight = d_x * d_y * dense
+        before += c.many * weight
+        i_x, i_y, i_z = bodies.inertia[body] * KG
+        members = {"s": s, "e": _stiff(sheet)[c.first], "f": bodies.friction[body], "w": weight, "a": before}
+        members |= {"m": bodies.mass[body] * KG, "I_x": i_x, "I_y": i_y, "I_z": i_z}
+        found |= {f"ds_{sheet.name}_cells.real_{k}_{c.name}": float(v) for k, v in members.items()}
+    return found
+
+
+def _stiff(sheet: SheetPart) -> Floats:
+    return 1.0 + sum((zone.share * (zone.stiffness - 1.0) for zone in sheet.zones), np.zeros(sheet.count))
+
+
+def _joints(model: Model, index: int) -> dict[str, float]:
+    """Values of each class, from the first bushing of it."""
+    sheet, rows = model.sheets[index], model.bushings
+    found: dict[str, float] = {}
+    given = {p.member: p.value for p in model.parameters if p.data_set == sheet.name}
+    for joints, classes, _ in joint_classes(sheet):
+        mine = np.flatnonzero((rows.sheet == index) & (rows.kind == joints.kind))
+        for c in classes:
+            k, c_six = rows.k[mine[c.first]] / joints.scale, rows.c[mine[c.first]] / joints.scale * SECOND
+            one, two = (int(boxes[c.first]) for boxes in (joints.one, joints.two))
+            members = _between(model, sheet, c, one, two)
+            members |= {f"k_{n}": v for n, v in zip(_SIX, k, strict=True)}
+            members |= {f"c_{n}": v for n, v in zip(_SIX, c_six, strict=True)}
+            members = _as_written(sheet, given, members, c.along_x)
+            found |= {f"ds_{sheet.name}_joints.real_{n}_{c.name}": float(v) for n, v in members.items()}
+    return found
+
+
+def _between(model: Model, sheet: SheetPart, c: JointClass, one: int, two: int) -> dict[str, float]:
+    half, mass, stiff = model.bodies.half, model.bodies.mass, _stiff(sheet)
+    first, second = sheet.first + one, sheet.first + two
+    axis = 0 if c.along_x else 1
+    a, b = 2 * half[first, axis], 2 * half[second, axis]
+    width = 2 * half[first, 1 - axis]
+    d_x, d_y = ((a + b) / 2, width) if c.along_x else (width, (a + b) / 2)
+    s, m = half[first, 2] + half[second, 2], (mass[first] + mass[second]) / 2 * KG
+    thick = [2 * half[body, 2] / sheet.thickness for body in (first, second)]
+    found = {"d_x": d_x, "d_y": d_y, "s": s, "m": m}
+    for name, power in (("p", 1), ("b", 3)):
+        parts = a / (stiff[one] * thick[0] ** power) + b / (stiff[two] * thick[1] ** power)
+        found[name] = (a + b) / parts
+    if sheet.rotation_damping == "inertia":
+        found["J_x"], found["J_y"] = m * (d_y**2 / 3 + s**2 / 12), m * (d_x**2 / 3 + s**2 / 12)
+        found["J_z"] = m * (d_x**2 + d_y**2) / 3
+    return found
+
+
+def _as_written(
+    sheet: SheetPart, given: dict[str, float], found: dict[str, float], along_x: bool
+) -> dict[str, float]:
+    """The text shows a twisted joint's own bending too, which no bushing has."""
+    if not sheet.twist:
+        return found
+    name, about = ("tx", "x") if along_x else ("ty", "y")
+    found[f"k_{name}_twist"], found[f"c_{name}_twist"] = found[f"k_{name}"], found[f"c_{name}"]
+    shape = found["d_x"] / found["d_y"]
+    hinge, plate, mean = ("k_tx", "D_cd", sheet.d_x / sheet.d_y)
+    if not along_x:
+        hinge, plate, shape, mean = "k_ty", "D_md", 1 / shape, 1 / mean
+    bent = found["b"] * (given[plate] * shape if plate in given else given[hinge] * shape / mean)
+    zeta = given["zeta"] if along_x else given["zeta_ty"]
+    heavy = found["m"] if sheet.rotation_damping == "paper" else found[f"J_{about}"]
+    found[f"k_{name}"], found[f"c_{name}"] = bent, 2 * zeta * math.sqrt(bent * heavy * SECOND)
+    return found
