@@ -133,6 +133,15 @@ UNLIKE = (
     "sheets.note.grading.y=[1,2]",
     _put("sheets.note.zones", {"stripe": {"x": ["0 mm", "10 mm"], "y": ["-5 mm", "5 mm"], "density": 2.0}}),
 )
+FOUR = "sheets.note.boxes=[2,2]"
+CURLED = (FOUR, _put("sheets.note.shape", {"curl": {"radius": "80 mm", "along": "x"}}))
+PUSHED_X = (FOUR, _put("sheets.note.shape", {"start": "flat", "curl": {"radius": "80 mm", "along": "x"}}))
+PUSHED_Y = (FOUR, _put("sheets.note.shape", {"start": "flat", "curl": {"radius": "80 mm", "along": "y"}}))
+FOLD = {"along": "y", "at": "0 mm", "angle": "30 deg", "stiffness": 0.5}
+FOLDED = (FOUR, _put("sheets.note.shape", {"folds": [FOLD]}), *SUPPORTS[1:])
+CLAMPED_BENT = ("sheets.note.clamp={edge: y_min, length: 0 mm}", *PUSHED_Y)
+EAR = {"corner": ["x_max", "y_min"], "size": ["30 mm", "20 mm"], "angle": "60 deg"}
+EARED = ("sheets.note.boxes=[3,3]", _put("sheets.note.shape", {"dog_ears": [EAR]}), *PROBES[1:])
 PLAIN: tuple[str, ...] = ()
 ONE_OF_EACH = (
     _put("rollers", {"under": ROLLER}),
@@ -167,9 +176,17 @@ PARTS: dict[str, dict[str, tuple[str, ...]]] = {
         "the paper's damping, twist": (C2C, *PLATES, "materials.paper.damping.rotation=paper"),
         "a block": BLOCK,
         "lengths of their own, a zone": UNLIKE,
+        "curled": CURLED,
+        "folded": FOLDED,
+        "a dog-ear": EARED,
     },
     "sheet.mdl.j2": {
         "lengths of their own, a zone": UNLIKE,
+        "curled": CURLED,
+        "folded": FOLDED,
+        "a dog-ear": EARED,
+        "flat, pushed to a curl along x": PUSHED_X,
+        "flat, pushed to a curl along y, held": CLAMPED_BENT,
         "aligned, edge to edge": PLAIN,
         "turned": TURNED,
         "general rotation, in motion, twist, surface, centre to centre": FLYING,
@@ -203,7 +220,7 @@ LOOPED = {
     "probe.mdl.j2": "probes",
 }
 # Their text stands in the goldens of those that take them in.
-WITHIN = ("cells.mdl.j2", "law.mdl.j2", "macros.mdl.j2", "notes.mdl.j2")
+WITHIN = ("bend.mdl.j2", "cells.mdl.j2", "law.mdl.j2", "lengths.mdl.j2", "macros.mdl.j2", "notes.mdl.j2")
 WITH_SET_CONTACT = ("contacts.mdl.j2",)
 
 

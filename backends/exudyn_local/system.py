@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from mdlgen.errors import RefusedError
 from mdlgen.mechanics.laws import damping_share
+from mdlgen.model.rotations import matrices
 from mdlgen.model.tables import Floats, Ints, Model
 
 MM, G, MS = 1e-3, 1e-3, 1e-3
@@ -174,11 +175,13 @@ def _bushings(model: Model) -> tuple[np.ndarray, list[int]]:
     position = np.concatenate([model.bodies.position, np.zeros((1, 3))])
     rotation = np.concatenate([model.bodies.rotation, np.eye(3)[None]])
     axes, origin = table.axes[order], table.origin[order]
+    # at rest the frame on b has turned onto the one on a
+    frames = {"a": axes, "b": axes @ matrices(-table.rest[order])}
     for end in "ab":
         body = getattr(table, end)[order]
         bushings[end] = body
         bushings["r" + end] = np.einsum("nji,nj->ni", rotation[body], origin - position[body]) * MM
-        bushings["f" + end] = np.einsum("nji,njk->nik", rotation[body], axes).reshape(-1, 9)
+        bushings["f" + end] = np.einsum("nji,njk->nik", rotation[body], frames[end]).reshape(-1, 9)
     scale = np.array([PER_MM] * 3 + [MM] * 3)
     bushings["k"] = table.k[order] * scale
     bushings["c"] = table.c[order] * scale * MS

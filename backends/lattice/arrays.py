@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mdlgen.mechanics.laws import damping_share
+from mdlgen.model.rotations import matrices
 from mdlgen.model.tables import GROUND, Floats, Ints, Model
 
 BODY = np.dtype(
@@ -136,7 +137,9 @@ def _joints(model: Model, fold: bool) -> tuple[np.ndarray, int]:
         body = getattr(table, end)
         single[end] = body
         single["r" + end] = np.einsum("nji,nj->ni", rotation[body], table.origin - position[body])
-        single["f" + end] = np.einsum("nji,njk->nik", rotation[body], table.axes).reshape(-1, 9)
+        # at rest the frame on b has turned onto the one on a
+        axes = table.axes if end == "a" else table.axes @ matrices(-table.rest)
+        single["f" + end] = np.einsum("nji,njk->nik", rotation[body], axes).reshape(-1, 9)
     single["k"], single["c"] = table.k, table.c
     made: list[np.void] = []
     waiting: dict[tuple[int, int], int] = {}

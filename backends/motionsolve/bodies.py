@@ -11,6 +11,7 @@ import numpy as np
 from backends.motionsolve.axes import cosines
 from backends.motionsolve.rows import Body, Box, Cosines, Deck
 from backends.motionsolve.units import Triple, numbers, per_thousand, thousandfold, triples
+from mdlgen.model.shape import ground_frames
 from mdlgen.model.tables import Model
 
 GROUND_ID = 1
@@ -30,9 +31,12 @@ def graphic_id(body: int) -> int:
 def add_frames(deck: Deck, model: Model) -> None:
     """The global frame and the axes of the sheets, on ground."""
     deck.marker("Global_Frame", "Global Frame", GROUND_ID, None)
-    for sheet in model.sheets:
+    for index, sheet in enumerate(model.sheets):
         at = triples(sheet.center[None])[0]
         deck.marker(f"m_{sheet.name}", f"Axes of {sheet.name}", GROUND_ID, at, cosines(sheet.rotation))
+        for frame in ground_frames(model, index):
+            (place,) = triples(frame.origin[None])
+            deck.marker(frame.name, frame.label, GROUND_ID, place, cosines(frame.axes))
 
 
 def add_bodies(deck: Deck, model: Model) -> None:

@@ -66,9 +66,9 @@ class Bushing(NamedTuple):
 
 
 class BushingGroup(NamedTuple):
-    """Bushings with the same values: (axis, stiffness, damping) for x, y, z, tx, ty, tz."""
+    """Bushings with the same values: (axis, stiffness, damping, preload) for x, y, z, tx, ty, tz."""
 
-    values: tuple[Triple, ...]
+    values: tuple[tuple[str, str, str, str], ...]
     bushings: list[Bushing]
 
 

@@ -6,7 +6,7 @@ from backends.motionsolve.axes import cosines
 from backends.motionsolve.bodies import body_id
 from backends.motionsolve.requests import add_request
 from backends.motionsolve.rows import Bushing, BushingGroup, Cosines, Deck, Load, Surface
-from backends.motionsolve.units import Triple, number, numbers, per_thousand, triples
+from backends.motionsolve.units import number, numbers, per_thousand, triples
 from mdlgen.model.tables import Model
 
 _AXES = ("x", "y", "z", "tx", "ty", "tz")
@@ -26,17 +26,20 @@ def add_bushings(deck: Deck, model: Model) -> None:
         axes = turns[key]
         i = deck.marker(f"{name}.i", f"{label}-Marker I", body_id(a), at, axes)
         j = deck.marker(f"{name}.j", f"{label}-Marker J", body_id(b), at, axes)
-        key = table.k[row].tobytes() + table.c[row].tobytes()
+        key = table.k[row].tobytes() + table.c[row].tobytes() + table.rest[row].tobytes()
         if key not in groups:
-            groups[key] = BushingGroup(_law(table.k[row].tolist(), table.c[row].tolist()), [])
+            # on the first body, which the second one is to turn away from
+            push = [0.0, 0.0, 0.0, *(-table.k[row, 3:] * table.rest[row]).tolist()]
+            groups[key] = BushingGroup(_law(table.k[row].tolist(), table.c[row].tolist(), push), [])
         groups[key].bushings.append(Bushing(name, label, row + 1, i, j))
     deck.bushing_groups += groups.values()
 
 
-def _law(k: list[float], c: list[float]) -> tuple[Triple, ...]:
-    """(axis, stiffness, damping); rotations are per radian (seen)."""
+def _law(k: list[float], c: list[float], push: list[float]) -> tuple[tuple[str, str, str, str], ...]:
+    """(axis, stiffness, damping, preload); rotations are per radian (seen)."""
     return tuple(
-        (axis, number(stiff), per_thousand(damp)) for axis, stiff, damp in zip(_AXES, k, c, strict=True)
+        (axis, number(stiff), per_thousand(damp), number(load))
+        for axis, stiff, damp, load in zip(_AXES, k, c, push, strict=True)
     )
 
 

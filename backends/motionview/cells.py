@@ -30,11 +30,17 @@ def differences(sheet: SheetPart) -> Differences:
     lengths = [_lengths(sheet, cells[k]) for k in range(len(cells))]
     hinges, owners = [], []
     for _, kinds, members in joint_classes(sheet):
-        made = [HingeView(c.name, c.along_x, cells[c.one], cells[c.two]) for c in kinds]
+        made = [
+            HingeView(c.name, c.along_x, cells[c.one], cells[c.two], _crease(sheet, c.crease)) for c in kinds
+        ]
         hinges += made
         own = [f"ds_{sheet.name}_joints.real_%s_{c.name}.value" for c in made]
         owners += [own[k] for k in members.tolist()]
     return Differences(cells, hinges, [lengths[k] for k in of.tolist()], owners)
+
+
+def _crease(sheet: SheetPart, index: int) -> str | None:
+    return sheet.bend.creases[index].name if sheet.bend is not None and index >= 0 else None
 
 
 def _cell(sheet: SheetPart, boxes: BoxClass) -> CellView:

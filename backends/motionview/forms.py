@@ -30,6 +30,10 @@ def unverified(scene: SceneView) -> list[str]:
             any(s.moving for s in scene.sheets),
             "Global_Frame as the marker of initial velocities in Body (documented, not seen)",
         ),
+        (
+            any(s.bend is not None and s.bend.flat for s in scene.sheets),
+            "preload torques of SetBush (documented; that they act on the first body is concluded)",
+        ),
         (bool(scene.pairs), "Contact (documented, not seen in a file)"),
         (
             bool(scene.pairs) and scene.set_contact,

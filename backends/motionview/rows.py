@@ -30,6 +30,41 @@ class Point(NamedTuple):
     j: str
     x: tuple[int, ...]
     y: tuple[int, ...]
+    frames: tuple[int, int] = (0, 0)
+
+
+class FrameView(NamedTuple):
+    """A frame of a bent sheet: the one it hangs on, or its crease."""
+
+    number: int
+    parent: int
+    line: str  # coordinate of the line that it hangs at
+    part: str  # of what the sheet turns there
+    lengths: list[str]  # of the boxes before and after the line
+    crease: str | None
+    corner: tuple[int, int] | None  # signs of a dog-ear's corner
+    pivot: tuple[str, str]  # what a dog-ear turns about
+
+
+class EarView(NamedTuple):
+    """A dog-ear's size, which is fixed in a text."""
+
+    name: str
+    a: str
+    b: str
+
+
+@dataclass(frozen=True)
+class BendView:
+    """The shape in which a sheet is free of stress."""
+
+    given: list[Value]
+    flat: bool  # begins flat
+    axis: str  # x or y; empty with dog-ears
+    curled: bool
+    ears: list[EarView]
+    frames: list[FrameView]
+    halves: list[tuple[int, int]]  # pairs of frames with joints between them
 
 
 class Lengths(NamedTuple):
@@ -75,6 +110,7 @@ class HingeView(NamedTuple):
     along_x: bool
     one: CellView
     two: CellView
+    crease: str | None
 
 
 class Bush(NamedTuple):
@@ -95,6 +131,7 @@ class JointGroup(NamedTuple):
     own: str
     tx: str  # suffix of the members of rotation about x: tx or tx_twist
     ty: str
+    frames: tuple[int, int]  # of the two sides
     bushes: list[Bush]
 
 
@@ -121,6 +158,7 @@ class SheetView:
     zones: list[ZoneView]
     cells: list[CellView]  # empty where all boxes are alike
     hinges: list[HingeView]
+    bend: BendView | None
     boxes: list[Point]
     lengths: list[Lengths]  # of each box
     held: list[Point]
@@ -187,10 +225,11 @@ class Pair(NamedTuple):
 
 @dataclass(frozen=True)
 class ProbeView:
-    """A probe: an edge's middle, or a data set with x and y."""
+    """A probe: an edge's middle, or a data set with x and y; `frame` is where its boxes lie in."""
 
     name: str
     sheet: str
+    frame: str
     edge: str | None
     given: list[Value]
     markers: list[tuple[str, str]]  # (marker, body)
@@ -202,6 +241,7 @@ class SupportView:
 
     name: str
     sheet: str
+    frame: str
     edge: str | None
     given: list[Value]
     count: int

@@ -6,9 +6,11 @@ from itertools import islice
 
 import numpy as np
 
+from backends.motionview.bend import bend_view
 from backends.motionview.cells import Differences, differences, grid_views, zone_views
 from backends.motionview.rows import Bush, JointGroup, Point, ProbeView, SheetView, SupportView, Value
 from backends.motionview.units import number
+from mdlgen.model import naming
 from mdlgen.model.stiffness import SUPPORT_FACTOR
 from mdlgen.model.tables import AXES, CLAMP, GROUND, JOINT_X, SUPPORT, Anchor, Model, SheetPart
 
@@ -21,9 +23,10 @@ def sheet_view(model: Model, index: int, tables: dict[str, list[Value]]) -> Shee
     names, labels = model.bodies.name[members], model.bodies.label[members]
     columns = [_cell(2 * i + 1) for i in range(sheet.n_x)] * sheet.n_y
     rows = [_cell(2 * j + 1) for j in range(sheet.n_y) for _ in range(sheet.n_x)]
+    frame = [0] * sheet.count if sheet.bend is None else sheet.bend.frames.box.tolist()
     boxes = [
-        Point(name, label, i, j, x, y)
-        for name, label, (i, x), (j, y) in zip(names, labels, columns, rows, strict=True)
+        Point(name, label, i, j, x, y, (f, f))
+        for name, label, (i, x), (j, y), f in zip(names, labels, columns, rows, frame, strict=True)
     ]
     differ = differences(sheet)
     held = model.bodies.fixed[members].tolist()
@@ -38,7 +41,7 @@ def sheet_view(model: Model, index: int, tables: dict[str, list[Value]]) -> Shee
         tiled=sheet.grid == "tiled",
         parts=2 if sheet.layout == "edge_to_edge" else 1,
         rotation=any(v.member == "r_x" for v in given),
-        turned=any(sheet.angles),
+        turned=any(sheet.angles) or (sheet.bend is not None and sheet.bend.start == "bent"),
         moving=bool(np.any(sheet.velocity) or np.any(sheet.spin)),
         bending=sheet.bending,
         in_plane=sheet.in_plane,
@@ -50,6 +53,7 @@ def sheet_view(model: Model, index: int, tables: dict[str, list[Value]]) -> Shee
         zones=zone_views(sheet, tables),
         cells=differ.cells,
         hinges=differ.hinges if joints else [],
+        bend=bend_view(model, index, tables),
         boxes=boxes,
         lengths=differ.lengths,
         held=[box for box, fixed in zip(boxes, held, strict=True) if fixed],
@@ -69,35 +73,33 @@ def _joints(model: Model, index: int, differ: Differences) -> tuple[list[Point],
     """The grid points that a sheet's bushings share, and the bushings by their values."""
     sheet, table = model.sheets[index], model.bushings
     mine = np.flatnonzero((table.sheet == index) & (table.kind != SUPPORT))
-    taken: dict[tuple[int, int], str] = {}
-    groups: dict[tuple[int, str], list[Bush]] = {}
+    taken: dict[str, Point] = {}
+    groups: dict[tuple[int, str, tuple[int, int]], list[Bush]] = {}
     body = (*(f"b_{name}" for name in model.bodies.name), "B_Ground")
     assert body[GROUND] == "B_Ground"
-    columns = (c[mine].tolist() for c in (table.kind, table.a, table.b, table.node))
+    columns = (c[mine].tolist() for c in (table.kind, table.a, table.b, table.node, table.frames))
     owners = differ.owners or ["$%s"] * len(mine)
-    for row, own, kind, a, b, (x, y) in zip(mine.tolist(), owners, *columns, strict=True):
-        point = taken.setdefault((x, y), f"{sheet.name}_node_{x}_{y}")
-        groups.setdefault((kind, own), []).append(
-            Bush(table.name[row], table.label[row], body[a], body[b], point)
-        )
-    nodes = [
-        _node(name, sheet, x, y)
-        for (x, y), name in sorted(taken.items(), key=lambda item: (item[0][1], item[0][0]))
-    ]
+    for row, own, kind, a, b, (x, y), (one, two) in zip(mine.tolist(), owners, *columns, strict=True):
+        point = naming.node(sheet, x, y, (one, two))
+        if point not in taken:
+            taken[point] = _node(point, sheet, x, y, (one, two))
+        bush = Bush(table.name[row], table.label[row], body[a], body[b], point)
+        groups.setdefault((kind, own, (one, two)), []).append(bush)
+    nodes = sorted(taken.values(), key=lambda point: (point.y, point.x))
     twist = "_twist" if sheet.twist else ""
     clamped_x = sheet.clamp is not None and sheet.clamp.edge[0] == "x"
     made = []
-    for (kind, own), bushes in groups.items():
+    for (kind, own, frames), bushes in groups.items():
         along_x = kind == JOINT_X or (kind == CLAMP and clamped_x)
         suffixes = (f"tx{twist}", "ty") if along_x else ("tx", f"ty{twist}")
         # a clamp is a half-cell hinge of twice the joint
-        made.append(JointGroup("2*" if kind == CLAMP else "", own, *suffixes, bushes))
+        made.append(JointGroup("2*" if kind == CLAMP else "", own, *suffixes, frames, bushes))
     return nodes, made
 
 
-def _node(name: str, sheet: SheetPart, x: int, y: int) -> Point:
+def _node(name: str, sheet: SheetPart, x: int, y: int, frames: tuple[int, int]) -> Point:
     (i, along), (j, across) = _cell(x), _cell(y)
-    return Point(name, f"{sheet.name} grid point {x / 2:g}, {y / 2:g}", i, j, along, across)
+    return Point(name, f"{sheet.name} grid point {x / 2:g}, {y / 2:g}", i, j, along, across, frames)
 
 
 def _surface(sheet: SheetPart, names: tuple[str, ...]) -> list[list[str]]:
@@ -118,6 +120,7 @@ def support_views(model: Model) -> list[SupportView]:
             SupportView(
                 name=support.name,
                 sheet=model.sheets[support.sheet].name,
+                frame=_frame(model.sheets[support.sheet], int(support.body[0])),
                 edge=support.edge,
                 given=[*([] if support.edge else _place(*support.at)), factor],
                 count=len(parts),
@@ -138,10 +141,18 @@ def probe_view(model: Model, probe: Anchor) -> ProbeView:
     return ProbeView(
         name=probe.name,
         sheet=model.sheets[probe.sheet].name,
+        frame=_frame(model.sheets[probe.sheet], int(probe.body[0])),
         edge=probe.edge,
         given=[] if probe.edge else _place(*probe.at),
         markers=[(f"m_probe_{probe.name}{end}", body) for end, body in zip(ends, bodies, strict=True)],
     )
+
+
+def _frame(sheet: SheetPart, body: int) -> str:
+    """Marker that a box lies in, without m_."""
+    bend = sheet.bend
+    frame = 0 if bend is None or bend.start == "flat" else int(bend.frames.box[body - sheet.first])
+    return f"{sheet.name}_f{frame}" if frame else sheet.name
 
 
 def _place(x: float, y: float) -> list[Value]:

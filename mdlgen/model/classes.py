@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mdlgen.model.joints import Joints, find_joints
+from mdlgen.model.shape import joint_creases
 from mdlgen.model.tables import CLAMP, JOINT_X, Ints, SheetPart
 
 
@@ -37,6 +38,7 @@ class JointClass(NamedTuple):
     two: int
     column: int
     row: int
+    crease: int  # -1: none
 
     @property
     def name(self) -> str:
@@ -61,7 +63,8 @@ def joint_classes(sheet: SheetPart) -> list[tuple[Joints, list[JointClass], Ints
     found = []
     for joints in find_joints(sheet):
         ones, twos = of_box[joints.one], of_box[joints.two]
-        first, of = _ordered(np.stack([ones, twos], axis=1))
+        creases = joint_creases(sheet, joints)
+        first, of = _ordered(np.stack([ones, twos, creases], axis=1))
         classes = [
             JointClass(
                 joints.kind,
@@ -71,6 +74,7 @@ def joint_classes(sheet: SheetPart) -> list[tuple[Joints, list[JointClass], Ints
                 int(twos[f]),
                 int(joints.one[f] % sheet.n_x),
                 int(joints.one[f] // sheet.n_x),
+                int(creases[f]),
             )
             for f in first
         ]

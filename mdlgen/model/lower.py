@@ -10,10 +10,12 @@ from mdlgen.model import grid, naming
 from mdlgen.model.anchors import anchor, find_tension, lower_loads
 from mdlgen.model.cells import Cells, cells, zone_parts
 from mdlgen.model.external import external_pairs, lower_externals
-from mdlgen.model.joints import find_joints
+from mdlgen.model.joints import Joints, find_joints
 from mdlgen.model.machine import frame, lower_planes, lower_rollers
 from mdlgen.model.pairs import find_pairs
 from mdlgen.model.parameters import parameters
+from mdlgen.model.rotations import matrices
+from mdlgen.model.shape import bend, box_rotations, joint_creases, joint_frames, joint_turns, placed
 from mdlgen.model.stiffness import between, coefficients, derived
 from mdlgen.model.supports import joined, support_bushings
 from mdlgen.model.tables import (
@@ -106,6 +108,7 @@ def _sheets(scene: Scene) -> tuple[tuple[SheetPart, ...], list[Cells]]:
                 lines_y=lines_y,
                 graded=(False, False) if graded is None else (graded.x is not None, graded.y is not None),
                 zones=zones,
+                bend=bend(sheet),
                 thickness=sheet.thickness,
                 size=sheet.size,
                 layout=sheet.layout,
@@ -169,13 +172,14 @@ def _bodies(
         node_x, node_y = grid.box_nodes(sheet)
         names += [naming.box(sheet.name, k % sheet.n_x, k // sheet.n_x) for k in range(count)]
         labels += [f"{sheet.name} box {k % sheet.n_x}, {k // sheet.n_x}" for k in range(count)]
-        position = grid.place(sheet, grid.local(sheet, node_x, node_y))
+        on = np.zeros(count, np.int64) if sheet.bend is None else sheet.bend.frames.box
+        position = grid.place(sheet, placed(sheet, grid.local(sheet, node_x, node_y), on))
         held = grid.clamped_boxes(sheet)
         moving = ~held[:, None]
         tables.append(
             (
                 position,
-                np.broadcast_to(sheet.rotation, (count, 3, 3)),
+                sheet.rotation @ box_rotations(sheet),
                 box.m,
                 box.inertia,
                 moving * (sheet.velocity + np.cross(sheet.spin, position - sheet.center)),
@@ -236,7 +240,8 @@ def _joints(scene: Scene, sheets: tuple[SheetPart, ...], boxes: list[Cells]) -> 
         spec = scene.sheets[sheet.name]
         for joints in find_joints(sheet):
             count = len(joints.name)
-            of = between(box, joints.one, joints.two, joints.along_x)
+            of = between(box, joints.one, joints.two, joints.along_x, _soft(sheet, joints))
+            origin, axes, rest = _where(sheet, joints)
             k, c = coefficients(spec, scene.materials[spec.material], of, joints.along_x)
             made = Bushings(
                 name=tuple(joints.name),
@@ -245,12 +250,39 @@ def _joints(scene: Scene, sheets: tuple[SheetPart, ...], boxes: list[Cells]) -> 
                 sheet=np.full(count, number),
                 a=joints.a,
                 b=joints.b,
-                # point by point: a product with many rows at once may round each as their number has it
-                origin=grid.place(sheet, grid.local(sheet, *joints.node.T)[:, None])[:, 0],
-                axes=np.broadcast_to(sheet.rotation, (count, 3, 3)),
+                origin=origin,
+                axes=axes,
+                rest=rest,
                 k=joints.scale * k,
                 c=joints.scale * c,
                 node=joints.node,
+                frames=np.stack(joint_frames(sheet, joints), axis=1),
             )
             tables.append(made)
     return tables
+
+
+def _soft(sheet: SheetPart, joints: Joints) -> Floats:
+    """Bending stiffness of joints on creases, in times that of the sheet."""
+    factors = [crease.stiffness for crease in sheet.bend.creases] if sheet.bend is not None else []
+    return np.array([*factors, 1.0])[joint_creases(sheet, joints)]
+
+
+def _where(sheet: SheetPart, joints: Joints) -> tuple[Floats, Floats, Floats]:
+    """Origin and axes of joints at the start, global, and their rotation at rest.
+
+    In a bent sheet they stand halfway between the two sides that they join, which only around a dog-ear are
+    not at the same place.
+    """
+    flat, turn = grid.local(sheet, *joints.node.T), joint_turns(sheet, joints)
+    one, two = joint_frames(sheet, joints)
+    if sheet.bend is None or sheet.bend.start == "flat":
+        axes = np.broadcast_to(sheet.rotation, (len(turn), 3, 3))
+        rest = turn
+    else:
+        flat = 0.5 * (placed(sheet, flat, one) + placed(sheet, flat, two))
+        half = matrices(0.5 * turn)
+        axes = sheet.rotation @ (sheet.bend.frames.rotation[one] @ half)
+        rest = np.zeros_like(turn)
+    # point by point: a product with many rows at once may round each as their number has it
+    return grid.place(sheet, flat[:, None])[:, 0], axes, rest

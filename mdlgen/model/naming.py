@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable
 
 from mdlgen.errors import SpecError
+from mdlgen.model.tables import SheetPart
 
 IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,199}")
 LABEL = re.compile(r"[A-Za-z0-9 _.,:;+/#()=\-]{0,200}")
@@ -19,6 +20,14 @@ def box(sheet: str, i: int, j: int) -> str:
 def bushing(sheet: str, kind: str, i: int, j: int, end: str = "") -> str:
     """Joint behind box (i, j) along `kind` (x, y) or at a clamp (c), at the corner `end` (a, b)."""
     return f"{sheet}_{kind}_{i}_{j}{end and '_' + end}"
+
+
+def node(sheet: SheetPart, x: int, y: int, frames: tuple[int, int]) -> str:
+    """Grid point of a sheet; around a dog-ear it is at one place on the flat side, at one on the ear, and for
+    the joints between them halfway."""
+    one, two = sorted(frames) if sheet.bend is not None and sheet.bend.axis < 0 else (0, 0)
+    end = "" if two == 0 else f"_{one}" if one == two else f"_{one}_{two}"
+    return f"{sheet.name}_node_{x}_{y}{end}"
 
 
 def check_unique(kind: str, names: Iterable[str]) -> None:

@@ -112,6 +112,8 @@ def _swept(
     arms = centers - sheet.center
     turn = _turn(sheet, drives, time)
     around, extent = _turned(sheet, arms, turn, bodies.half[boxes].max(axis=0))
+    if sheet.bend is not None:  # boxes stand at angles of their own
+        extent = np.full(3, float(np.linalg.norm(bodies.half[boxes], axis=1).max()))
     return sheet.center + around[0] + least, sheet.center + around[1] + most, extent
 
 

@@ -17,6 +17,7 @@ def parameters(
         rows += _sheet(scene, name)
         rows += _grading(scene, name)
         rows += _zones(scene, name)
+        rows += _shape(scene, name)
     for name in sorted(scene.rollers):
         rows += _roller(scene, name, starts)
     for name in sorted(scene.planes):
@@ -129,6 +130,26 @@ def _zones(scene: Scene, name: str) -> list[Parameter]:
             ("friction", "Friction in times that of the rest"),
         ):
             rows.append(Parameter(group, member, label, getattr(zone, member), "1", (*path, member)))
+    return rows
+
+
+def _shape(scene: Scene, name: str) -> list[Parameter]:
+    """Radius of a curl, and angles and stiffness of creases."""
+    shape, rows = scene.sheets[name].shape, []
+    if shape is None:
+        return rows
+    group, path = f"{name}_shape", ("sheets", name, "shape")
+    if shape.curl is not None:
+        label = f"Radius of the curl along {shape.curl.along}"
+        rows.append(Parameter(group, "radius", label, shape.curl.radius, "mm", (*path, "curl", "radius")))
+    for kind, items in (("folds", shape.folds), ("dog_ears", shape.dog_ears)):
+        for k, item in enumerate(items):
+            at, what = (*path, kind, k), "fold" if kind == "folds" else "ear"
+            for member, label, value, unit, key in (
+                ("angle", f"Angle of {what} {k} (deg)", item.angle, "rad", "angle"),
+                ("soft", f"Stiffness of the crease of {what} {k}", item.stiffness, "1", "stiffness"),
+            ):
+                rows.append(Parameter(group, f"{what}_{k}_{member}", label, value, unit, (*at, key)))
     return rows
 
 

@@ -32,8 +32,9 @@ class Between:
     bending: Floats
 
 
-def between(boxes: Cells, one: Ints, two: Ints, along_x: bool) -> Between:
-    """The joints between boxes `one` and `two`, next to each other along x, or along y."""
+def between(boxes: Cells, one: Ints, two: Ints, along_x: bool, soft: Floats) -> Between:
+    """The joints between boxes `one` and `two`, next to each other along x, or along y; `soft` is the bending
+    stiffness of creases in times that of the sheet."""
     lengths = boxes.d_x if along_x else boxes.d_y
     a, b = lengths[one], lengths[two]
     length = 0.5 * (a + b)
@@ -47,7 +48,7 @@ def between(boxes: Cells, one: Ints, two: Ints, along_x: bool) -> Between:
         s=0.5 * (boxes.s[one] + boxes.s[two]),
         m=0.5 * (boxes.m[one] + boxes.m[two]),
         membrane=series(boxes.membrane),
-        bending=series(boxes.bending),
+        bending=soft * series(boxes.bending),
     )
 
 

@@ -36,9 +36,11 @@ def _bushings(number: int, support: Support, held: Anchor, sheet: SheetPart, bod
         b=held.body,
         origin=bodies.position[held.body] + np.array(arms),
         axes=np.broadcast_to(np.eye(3), (count, 3, 3)),
+        rest=np.zeros((count, 3)),
         k=k,
         c=2 * 0.5 * np.sqrt(k * sheet.derived["m"]),
         node=np.broadcast_to(held.node, (count, 2)),
+        frames=np.zeros((count, 2), np.int64),
     )
 
 

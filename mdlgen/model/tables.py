@@ -52,7 +52,8 @@ JOINT_X, JOINT_Y, CLAMP, SUPPORT = 0, 1, 2, 3
 
 @dataclass(frozen=True)
 class Bushings(Frozen):
-    """Six springs and dampers between body `a` and body `b` at `origin`, stress-free at the start."""
+    """Six springs and dampers between body `a` and body `b` at `origin`, stress-free at the start but for
+    `rest`."""
 
     name: tuple[str, ...]
     label: tuple[str, ...]
@@ -62,9 +63,11 @@ class Bushings(Frozen):
     b: Ints  # body, (n,)
     origin: Floats  # [mm], (n, 3)
     axes: Floats  # (n, 3, 3)
+    rest: Floats  # rotation of b against a in which it is stress-free, bushing axes [rad], (n, 3)
     k: Floats  # k_x, k_y, k_z [N/mm], k_tx, k_ty, k_tz [N mm/rad], (n, 6)
     c: Floats  # the same order [N ms/mm], [N mm ms/rad], (n, 6)
     node: Ints  # twice the grid coordinates of the origin from the corner of box (0, 0), (n, 2)
+    frames: Ints  # of the two sides, see Frames, (n, 2)
 
     def __len__(self) -> int:
         return len(self.name)
@@ -91,6 +94,48 @@ class ZonePart(Frozen):
 
 
 @dataclass(frozen=True)
+class Crease:
+    """A fold, or the crease of a dog-ear."""
+
+    name: str
+    corner: tuple[int, int] | None  # signs of the corner along x and y; None: a fold
+    size: tuple[float, float]  # from the corner to the ends of the crease; of a fold zero [mm]
+    line: tuple[int, int]  # a fold is on this line along its direction; an ear turns about where both cross
+    angle: float  # [rad]
+    stiffness: float  # of its joints in bending, in times that of the sheet
+
+
+@dataclass(frozen=True)
+class Frames(Frozen):
+    """Where the boxes of a bent sheet are: each lies in its frame as it lies in the flat sheet.
+
+    Sheet axes, from the sheet's centre. Frame 0 is the flat sheet. A frame of a curl or of folds hangs on its
+    parent at a line between boxes, and is turned there by `part` of what the sheet turns on that line: by the
+    half lengths of `cells` over the curl's radius, and by a fold.
+    """
+
+    origin: Floats  # [mm], (frames, 3)
+    rotation: Floats  # (frames, 3, 3)
+    box: Ints  # frame of each box, (boxes,)
+    parent: Ints  # (frames,)
+    line: Ints
+    part: Floats
+    cells: Ints  # column or row before and after the line, -1: none, (frames, 2)
+    crease: Ints  # -1: none, (frames,)
+
+
+@dataclass(frozen=True)
+class Bend(Frozen):
+    """The stress-free shape of a sheet that is not flat."""
+
+    start: str  # bent: it begins so; flat: it begins flat
+    axis: int  # that is bent, 0: x, 1: y, -1: dog-ears
+    radius: float  # of the curl [mm], inf: none
+    creases: tuple[Crease, ...]
+    frames: Frames
+
+
+@dataclass(frozen=True)
 class SheetPart(Frozen):
     """A sheet's grid; its boxes are the bodies first ... first + n_x n_y - 1."""
 
@@ -104,6 +149,7 @@ class SheetPart(Frozen):
     lines_y: Floats  # (n_y + 1,)
     graded: tuple[bool, bool]  # whether the lengths along x, along y are given box by box
     zones: tuple[ZonePart, ...]
+    bend: Bend | None
     thickness: float
     size: tuple[float, float]
     layout: str
@@ -128,7 +174,7 @@ class SheetPart(Frozen):
     @property
     def uniform(self) -> bool:
         """Whether all boxes, and all joints of one kind, are alike."""
-        return not any(self.graded) and not self.zones
+        return not any(self.graded) and not self.zones and not (self.bend is not None and self.bend.creases)
 
     @property
     def outline(self) -> tuple[float, float]:

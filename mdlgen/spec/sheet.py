@@ -24,6 +24,7 @@ from mdlgen.spec.fields import (
     quantity,
 )
 from mdlgen.spec.grading import Graded, Grading
+from mdlgen.spec.shape import Shape
 from mdlgen.spec.zone import Zone
 
 MAX_BOXES = 100_000
@@ -58,6 +59,9 @@ class Sheet(Strict):
     )
     grading: Grading | None = Field(default=None, description="boxes of different sizes, finer where needed")
     zones: dict[Name, Zone] = Field(default_factory=dict, description="rectangles that are unlike the rest")
+    shape: Shape | None = Field(
+        default=None, description="a shape in which it is free of stress, if not flat"
+    )
     center: Position = Field(default=origin("mm"), description="middle of the sheet's mid-plane")
     turn: Angle | None = Field(default=None, description="rotation about z")
     rotation: Angles | None = Field(
@@ -85,6 +89,7 @@ class Sheet(Strict):
         self._check_grading()
         self.clamped_rows()
         self._check_zones()
+        self._check_shape()
         return self
 
     def _check_grading(self) -> None:
@@ -121,6 +126,51 @@ class Sheet(Strict):
             for other in names[:k]:
                 if zone.meets(self.zones[other]):
                     raise fail(f"the zones {other} and {name} overlap; divide them")
+
+    def _check_shape(self) -> None:
+        if self.shape is None:
+            return
+        for k, fold in enumerate(self.shape.folds):
+            lines = self.lines["xy".index(fold.along)][1:-1]
+            away = sorted(lines, key=lambda line: abs(line - fold.at))
+            if not away or abs(away[0] - fold.at) > 1e-6 * self.pitch["xy".index(fold.along)]:
+                near = " and ".join(f"{line:.6g} mm" for line in sorted(away[:2])) or "none"
+                raise fail(f"fold {k}: {fold.at:g} mm is not a line between boxes; the nearest are {near}")
+            if any(abs(other.at - fold.at) < 1e-6 * self.pitch[0] for other in self.shape.folds[:k]):
+                raise fail(f"fold {k}: there is a fold at {fold.at:g} mm already")
+            if self.clamp is not None and self.clamp.edge[0] == fold.along and self._held(fold.at):
+                raise fail(f"fold {k}: at {fold.at:g} mm the sheet is clamped")
+        half = (self.lines[0][-1], self.lines[1][-1])
+        taken: set[tuple[str, str]] = set()
+        for k, ear in enumerate(self.shape.dog_ears):
+            if ear.size[0] > half[0] or ear.size[1] > half[1]:
+                raise fail(
+                    f"dog_ears {k}: size is more than half of the sheet, {half[0]:g} mm x {half[1]:g} mm"
+                )
+            if not ear.beyond(*self._corner_box(ear.corner), half):
+                raise fail(f"dog_ears {k}: no box has its centre beyond the crease; the boxes are larger")
+            if ear.corner in taken:
+                raise fail(f"dog_ears {k}: that corner is folded already")
+            taken.add(ear.corner)
+            if self.clamp is not None and self.clamp.edge in ear.corner:
+                raise fail(f"dog_ears {k}: the edge {self.clamp.edge} is clamped")
+
+    def _corner_box(self, corner: tuple[str, str]) -> tuple[float, float]:
+        """Centre of the box at a corner, from the sheet's centre."""
+        x, y = (
+            0.5 * (lines[0] + lines[1]) if edge.endswith("min") else 0.5 * (lines[-1] + lines[-2])
+            for lines, edge in zip(self.lines, corner, strict=True)
+        )
+        return x, y
+
+    def _held(self, at: float) -> bool:
+        """Whether a coordinate along the clamp's direction lies behind the clamp line, or on it."""
+        assert self.clamp is not None
+        lines, row = self.lines["xy".index(self.clamp.edge[0])], self.clamped_rows()
+        slack = 1e-6 * self.pitch[0]
+        if self.clamp.edge.endswith("min"):
+            return at < lines[row] + slack
+        return at > lines[-1 - row] - slack
 
     @property
     def lines(self) -> tuple[tuple[float, ...], tuple[float, ...]]:

@@ -94,6 +94,8 @@ def _between(model: Model, sheet: SheetPart, c: JointClass, one: int, two: int) 
     for name, power in (("p", 1), ("b", 3)):
         parts = a / (stiff[one] * thick[0] ** power) + b / (stiff[two] * thick[1] ** power)
         found[name] = (a + b) / parts
+    if c.crease >= 0 and sheet.bend is not None:
+        found["b"] *= sheet.bend.creases[c.crease].stiffness
     if sheet.rotation_damping == "inertia":
         found["J_x"], found["J_y"] = m * (d_y**2 / 3 + s**2 / 12), m * (d_x**2 / 3 + s**2 / 12)
         found["J_z"] = m * (d_x**2 + d_y**2) / 3

@@ -10,6 +10,8 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
+from mdlgen.model import naming
+from mdlgen.model.shape import ground_frames
 from mdlgen.model.tables import (
     GROUND,
     SUPPORT,
@@ -84,9 +86,13 @@ def _points(model: Model) -> Table:
         names += [f"p_{model.bodies.name[b]}" for b in _boxes_of(model, sheet)]
         places.append(model.bodies.position[sheet.first : sheet.first + sheet.count])
         rows = np.flatnonzero((model.bushings.sheet == index) & (model.bushings.kind != SUPPORT))
-        nodes, first = np.unique(model.bushings.node[rows], axis=0, return_index=True)
-        names += [f"p_{sheet.name}_node_{x}_{y}" for x, y in nodes.tolist()]
-        places.append(model.bushings.origin[rows[first]])
+        joints = model.bushings
+        ends = zip(joints.node[rows].tolist(), joints.frames[rows].tolist(), rows.tolist(), strict=True)
+        first = {naming.node(sheet, x, y, (one, two)): row for (x, y), (one, two), row in ends}
+        names += [f"p_{name}" for name in first]
+        places.append(joints.origin[list(first.values())])
+        names += [f"p_{sheet.name}_f{k}" for k in range(1, len(_frames(sheet)))]
+        places += [(sheet.center + sheet.rotation @ origin)[None] for origin, _ in _frames(sheet)[1:]]
     for support in model.supports:
         names.append(f"p_{support.name}")
         places.append(_anchor_points(model, support)[:1])
@@ -103,6 +109,13 @@ def _points(model: Model) -> Table:
         names.append(f"p_probe_{probe.name}")
         places.append(_anchor_points(model, probe)[:1])
     return table(names, {"at": (np.concatenate(places), reach(model))})
+
+
+def _frames(sheet: SheetPart) -> list[tuple[Floats, Floats]]:
+    """Origin and rotation of each frame that a text has a marker for, sheet axes; the first is the sheet."""
+    if sheet.bend is None or sheet.bend.start == "flat":
+        return []
+    return list(zip(sheet.bend.frames.origin, sheet.bend.frames.rotation, strict=True))
 
 
 def _bodies(model: Model) -> Table:
@@ -129,7 +142,6 @@ def _bodies(model: Model) -> Table:
 
 def _bushings(model: Model) -> Table:
     rows = model.bushings
-    count = len(rows)
     parts: dict[str, Part] = {
         "origin": (rows.origin, reach(model)),
         "axes": (rows.axes.transpose(0, 2, 1), 1.0),
@@ -137,8 +149,9 @@ def _bushings(model: Model) -> Table:
         "c": (rows.c[:, :3] * SECOND, None),
         "kt": (rows.k[:, 3:], None),
         "ct": (rows.c[:, 3:] * SECOND, None),
-        "force": (np.zeros((count, 3)), 1.0),
-        "torque": (np.zeros((count, 3)), 1.0),
+        "force": (np.zeros((len(rows), 3)), 1.0),
+        # on the first body, which the second one is to turn away from
+        "torque": (-rows.k[:, 3:] * rows.rest, 1.0),
     }
     words = [
         (body_name(model, a), body_name(model, b))
@@ -268,8 +281,10 @@ def _markers(model: Model) -> Table:
         places.append(place)
         axes.append(frame)
 
-    for sheet in model.sheets:
+    for index, sheet in enumerate(model.sheets):
         add(f"m_{sheet.name}", "B_Ground", sheet.center, sheet.rotation.T)
+        for frame in ground_frames(model, index):
+            add(frame.name, "B_Ground", frame.origin, frame.axes.T)
         for b in _boxes_of(model, sheet) if sheet.surface else ():
             name = model.bodies.name[b]
             add(f"m_{name}", f"b_{name}", model.bodies.position[b], np.eye(3))

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from mdlgen.model.tables import Anchor, Model, SheetPart
+from mdlgen.verify.bend import shape
 from mdlgen.verify.cells import cells
 from mdlgen.verify.expected import KG, SECOND, body_name
 from mdlgen.verify.tables import Part, Table, table
@@ -41,6 +42,7 @@ def data(model: Model) -> Table:
             # a value that the user gave stands there already
             found.setdefault(f"ds_{sheet.name}.real_{member}", value)
         found |= {k: v for k, v in cells(model, index).items() if k not in found}
+        found |= shape(sheet)
     for support in model.supports:
         found[f"ds_{support.name}.real_factor"] = _factor(model, support)
         found |= _place(support.name, support.at, support.edge)
@@ -48,7 +50,12 @@ def data(model: Model) -> Table:
         found |= _place(f"probe_{probe.name}", probe.at, probe.edge)
     angles = [math.degrees(1.0) if ".real_turn" in n or ".real_r_" in n else 0.0 for n in found]
     numbers = np.array(list(found.values()))
-    places = np.array([100.0 if n.endswith(("real_x", "real_y")) or ".real_l_" in n else 0.0 for n in found])
+    places = np.array(
+        [
+            100.0 if n.endswith(("real_x", "real_y")) or ".real_l_" in n or "_shape.real_" in n else 0.0
+            for n in found
+        ]
+    )
     scale = np.maximum.reduce([np.abs(numbers), np.array(angles), places]) if found else numbers
     return table(found, {"value": (numbers, scale[:, None])})
 
@@ -97,11 +104,11 @@ def _twist(model: Model, sheet: SheetPart, found: dict[str, float]) -> dict[str,
     """
     given = {p.member: p.value for p in model.parameters if p.data_set == sheet.name}
     twist: dict[str, float] = {}
-    for name, shape, zeta in (
+    for name, slender, zeta in (
         ("tx", sheet.d_y / sheet.d_x, "zeta"),
         ("ty", sheet.d_x / sheet.d_y, "zeta_ty"),
     ):
-        k = 2 * given["D_twist"] * shape
+        k = 2 * given["D_twist"] * slender
         heavy = found["m"] if sheet.rotation_damping == "paper" else found[f"J_{name[1]}"]
         twist[f"k_{name}_twist"] = k
         twist[f"c_{name}_twist"] = 2 * given[zeta] * math.sqrt(k * heavy * SECOND)

@@ -178,7 +178,14 @@ def _along(scene: Scene, base: Scene, name: str) -> Scene:
             lines[axis][1][row] - lines[axis][1][0] if low else lines[axis][1][-1] - lines[axis][1][-1 - row]
         )
         clamp = clamp.model_copy(update={"length": away})
-    sheet = sheet.model_copy(update={"zones": zones, "clamp": clamp})
+    shape = sheet.shape
+    if shape is not None:
+        folds = tuple(
+            fold.model_copy(update={"at": moved((fold.at, fold.at), "xy".index(fold.along))[0]})
+            for fold in shape.folds
+        )
+        shape = shape.model_copy(update={"folds": folds})
+    sheet = sheet.model_copy(update={"zones": zones, "clamp": clamp, "shape": shape})
     return scene.model_copy(update={"sheets": {**scene.sheets, name: sheet}})
 
 
