@@ -1,75 +1,28 @@
-"""The command line: the only file that prints, exits or draws progress. What it does stands elsewhere."""
+"""The commands that make, check, write, read and run a scene. What they do stands elsewhere."""
 
 from __future__ import annotations
 
-import contextlib
-import functools
-import sys
-from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated
 
 import typer
 
-from mdlgen.errors import AccuracyError, MdlgenError, OutputError, SpecError, printable
-
-if TYPE_CHECKING:
-    from mdlgen.model.tables import Model
-
-SOLVER_FAILED, INTERRUPTED = 4, 130
-
-app = typer.Typer(
-    name="mdlgen",
-    help="Paper sheets in machines: one scene file, MotionView MDL text and a local run of the same model.",
-    rich_markup_mode=None,
-    pretty_exceptions_enable=False,
-    add_completion=True,
-    no_args_is_help=True,
+from mdlgen.cli.shell import (
+    SOLVER_FAILED,
+    Quiet,
+    Sets,
+    Spec,
+    Verbose,
+    app,
+    chatter,
+    count,
+    echo_json,
+    model_of,
+    progress_bar,
+    say,
+    told,
 )
-
-Spec = Annotated[Path, typer.Argument(metavar="SPEC", help="The scene: a YAML or JSON file.")]
-Sets = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--set", metavar="PATH=VALUE", help="Set a value of the scene; may be given more than once."
-    ),
-]
-Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="Errors and asked-for output only.")]
-Verbose = Annotated[
-    bool, typer.Option("-v", "--verbose", help="Say more; show the traceback of internal errors.")
-]
-
-
-def main() -> None:
-    """Entry point of the command `mdlgen`."""
-    app()
-
-
-def told(command: Callable[..., None]) -> Callable[..., None]:
-    """Ends a command that raises with one line on standard error and the exit code of its error."""
-
-    @functools.wraps(command)
-    def run(*args: Any, **options: Any) -> None:
-        try:
-            command(*args, **options)
-        except (typer.Exit, BrokenPipeError):
-            raise
-        except KeyboardInterrupt:
-            _say("mdlgen: interrupted")
-            raise typer.Exit(INTERRUPTED) from None
-        except MdlgenError as error:
-            _say(str(_located(error, options.get("spec"))))
-            raise typer.Exit(error.exit_code) from None
-        except Exception as error:
-            if options.get("verbose"):
-                import traceback
-
-                traceback.print_exc()
-            hint = "" if options.get("verbose") else " (-v shows the traceback)"
-            _say(f"mdlgen: internal error: {type(error).__name__}: {error}{hint}")
-            raise typer.Exit(1) from None
-
-    return run
+from mdlgen.errors import AccuracyError, OutputError, SpecError
 
 
 @app.command()
@@ -111,7 +64,7 @@ def new(
     paths.write_atomic(target, source.read_bytes())
     typer.echo(target)
     if not quiet:
-        _say(f"next: mdlgen check {target}")
+        say(f"next: mdlgen check {target}")
 
 
 @app.command()
@@ -130,9 +83,9 @@ def check(
     from mdlgen.report.overview import overview
     from mdlgen.report.text import overview_text
 
-    found = overview(_model(spec, sets))
+    found = overview(model_of(spec, sets))
     if as_json:
-        _echo_json(found)
+        echo_json(found)
     elif not quiet:
         typer.echo(overview_text(found))
     else:
@@ -184,7 +137,7 @@ def mdl(
     """
     from mdlgen import paths, registry
 
-    model = _model(spec, sets)
+    model = model_of(spec, sets)
     backend = registry.emitter("motionview")
     text = backend.emit(model, set_contact=set_contact, only=only)
     script = backend.companion(model, set_contact=set_contact, only=only)
@@ -201,16 +154,16 @@ def mdl(
     if to_stdout:
         typer.echo(text, nl=False)
     elif not quiet:
-        _say(f"wrote {target}")
+        say(f"wrote {target}")
     if script is not None and not quiet:
         state = (
             f"wrote {beside}" if beside in files else "a script is needed too (--companion FILE writes it)"
         )
-        _say(f"{state}; run it in MotionView after the text, since MDL leaves out:")
+        say(f"{state}; run it in MotionView after the text, since MDL leaves out:")
         for reason in backend.companion_reasons(model, set_contact, only):
-            _say(f"  {reason}")
+            say(f"  {reason}")
     elif script is None and not to_stdout and beside.exists() and not quiet:
-        _say(f"{beside} is not needed for this text, and may be of an older one")
+        say(f"{beside} is not needed for this text, and may be of an older one")
 
 
 @app.command()
@@ -236,7 +189,7 @@ def deck(
     """
     from mdlgen import paths, registry
 
-    model = _model(spec, sets)
+    model = model_of(spec, sets)
     text = registry.emitter("motionsolve").emit(model)
     if output is not None and str(output) == "-":
         typer.echo(text, nl=False)
@@ -244,7 +197,7 @@ def deck(
     target = Path(f"{model.name}.xml") if output is None else output
     paths.write_atomic(target, text)
     if not quiet:
-        _say(f"wrote {target}")
+        say(f"wrote {target}")
 
 
 @app.command()
@@ -272,7 +225,7 @@ def run(
     """
     from mdlgen import registry
 
-    model = _model(spec, sets)
+    model = model_of(spec, sets)
     registry.check_solver(solver)
     from mdlgen.report.figures import figure
     from mdlgen.report.text import summary_text
@@ -283,19 +236,19 @@ def run(
     if solver == "auto" and not quiet:
         name, why = registry.chosen(solver, model)
         if why:
-            _say(f"{name} runs this scene ({why})")
+            say(f"{name} runs this scene ({why})")
     # a solver may talk on standard output, which is kept for results
-    with _progress(quiet, check_step) as progress, _chatter(verbose):
+    with progress_bar(quiet, check_step) as progress, chatter(verbose):
         result = registry.solve(model, solver, progress, check_step)
     if not result.ok:
-        _say(f"{spec}: the run failed: {result.status}; nothing was written into {folder}")
+        say(f"{spec}: the run failed: {result.status}; nothing was written into {folder}")
         raise typer.Exit(SOLVER_FAILED)
     save(result, folder, {"report.png": figure(result)})
     if not quiet:
         typer.echo(summary_text(result.summary()))
         typer.echo(f"wrote {folder}")
     if check_step and result.error_estimate is None and not quiet:
-        _say("a static run has no step: --check-step compared nothing")
+        say("a static run has no step: --check-step compared nothing")
     if result.error_estimate is not None and not result.error_estimate <= model.run.tolerance:
         raise AccuracyError(
             f"{spec}: the error estimate {result.error_estimate:.3g} is above run.tolerance "
@@ -391,10 +344,10 @@ def verify(
 
     scene = load(spec, sets or ())
     files = {"text": text, "companion": script, "deck": deck}
-    with _count(quiet, "values turned") as progress:
+    with count(quiet, "values turned") as progress:
         found = compare(scene, lower(scene), **files, only=only, turn=turn, progress=progress)
     if as_json:
-        _echo_json(report(found))
+        echo_json(report(found))
     elif not quiet:
         typer.echo(report_text(found))
     if not found.ok:
@@ -444,8 +397,8 @@ def bench(
     from mdlgen.results.store import check_folder
 
     check_folder(output)
-    say = (lambda _: None) if quiet else _say
-    found = run_bench(suites or (), output, solver or (), quick, repeat, say, peers)
+    heard = (lambda _: None) if quiet else say
+    found = run_bench(suites or (), output, solver or (), quick, repeat, heard, peers)
     if not quiet:
         typer.echo(markdown(found), nl=False)
         typer.echo(f"wrote {output}")
@@ -454,7 +407,7 @@ def bench(
         raise AccuracyError(f"{len(found.wrong)} wrong: {row.case}, {row.solver}: {row.reason}")
     if found.failed:
         row = found.failed[0]
-        _say(f"{len(found.failed)} failed: {row.case}, {row.solver}: {row.reason}")
+        say(f"{len(found.failed)} failed: {row.case}, {row.solver}: {row.reason}")
         raise typer.Exit(SOLVER_FAILED)
 
 
@@ -467,88 +420,4 @@ def schema(quiet: Quiet = False, verbose: Verbose = False) -> None:
     """
     from mdlgen.spec.schema import json_schema
 
-    _echo_json(json_schema())
-
-
-def _model(spec: Path, sets: list[str] | None) -> Model:
-    from mdlgen.model.lower import lower
-    from mdlgen.spec.load import load
-
-    return lower(load(spec, sets or ()))
-
-
-def _echo_json(value: Any) -> None:
-    import json
-
-    typer.echo(json.dumps(value, indent=2, allow_nan=False))
-
-
-def _say(text: str) -> None:
-    """One line on standard error."""
-    typer.echo(printable(text), err=True)
-
-
-def _located(error: MdlgenError, spec: Path | None) -> MdlgenError:
-    """An error of a later stage, with the place of the value in the file."""
-    if spec is None or not isinstance(error, SpecError) or error.place is not None or not error.path:
-        return error
-    from mdlgen.spec.load import parse
-
-    try:
-        return error.located(parse(spec.read_text("utf-8-sig"), str(spec)).place(error.path))
-    except (OSError, ValueError, MdlgenError):
-        return error
-
-
-@contextlib.contextmanager
-def _chatter(verbose: bool) -> Iterator[None]:
-    import io
-
-    with contextlib.redirect_stdout(sys.stderr if verbose else io.StringIO()):
-        yield
-
-
-@contextlib.contextmanager
-def _count(quiet: bool, what: str) -> Iterator[Callable[[int, int], None] | None]:
-    """A progress bar on a terminal for things that are counted."""
-    if quiet or not sys.stderr.isatty():
-        yield None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
-    columns = (TextColumn(what), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(what, total=None)
-        yield lambda done, total: bar.update(task, completed=done, total=total)
-
-
-@contextlib.contextmanager
-def _progress(quiet: bool, twice: bool) -> Iterator[Callable[[float, float, int, int], None] | None]:
-    """A progress bar on a terminal: time, steps, pairs that touch, time left."""
-    if quiet or not sys.stderr.isatty():
-        yield None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
-
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn("{task.completed:.2f} of {task.total:g} ms, step {task.fields[steps]}"),
-        TextColumn("{task.fields[touching]} pairs touch"),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        tasks: list[Any] = []
-        last = 0.0
-
-        def progress(time: float, end: float, steps: int, touching: int) -> None:
-            nonlocal last
-            if not tasks or time < last:
-                name = "half the step" if tasks else "first run" if twice else "run"
-                tasks.append(bar.add_task(name, total=end, steps=0, touching=0))
-            last = time
-            bar.update(tasks[-1], completed=time, steps=steps, touching=touching)
-
-        yield progress
+    echo_json(json_schema())

@@ -1,0 +1,13 @@
+"""The command line: the only room that prints, exits or draws progress. What it does stands elsewhere."""
+
+from __future__ import annotations
+
+from mdlgen.cli import commands as commands
+from mdlgen.cli.shell import app
+
+__all__ = ["app", "main"]
+
+
+def main() -> None:
+    """Entry point of the command `mdlgen`."""
+    app()

@@ -1,0 +1,151 @@
+"""What all commands share: options, how an error ends a command, progress on a terminal."""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from mdlgen.errors import MdlgenError, SpecError, printable
+
+if TYPE_CHECKING:
+    from mdlgen.model.tables import Model
+
+SOLVER_FAILED, INTERRUPTED = 4, 130
+
+app = typer.Typer(
+    name="mdlgen",
+    help="Paper sheets in machines: one scene file, MotionView MDL text and a local run of the same model.",
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    add_completion=True,
+    no_args_is_help=True,
+)
+
+Spec = Annotated[Path, typer.Argument(metavar="SPEC", help="The scene: a YAML or JSON file.")]
+Sets = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set", metavar="PATH=VALUE", help="Set a value of the scene; may be given more than once."
+    ),
+]
+Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="Errors and asked-for output only.")]
+Verbose = Annotated[
+    bool, typer.Option("-v", "--verbose", help="Say more; show the traceback of internal errors.")
+]
+
+
+def told(command: Callable[..., None]) -> Callable[..., None]:
+    """Ends a command that raises with one line on standard error and the exit code of its error."""
+
+    @functools.wraps(command)
+    def run(*args: Any, **options: Any) -> None:
+        try:
+            command(*args, **options)
+        except (typer.Exit, BrokenPipeError):
+            raise
+        except KeyboardInterrupt:
+            say("mdlgen: interrupted")
+            raise typer.Exit(INTERRUPTED) from None
+        except MdlgenError as error:
+            say(str(_located(error, options.get("spec"))))
+            raise typer.Exit(error.exit_code) from None
+        except Exception as error:
+            if options.get("verbose"):
+                import traceback
+
+                traceback.print_exc()
+            hint = "" if options.get("verbose") else " (-v shows the traceback)"
+            say(f"mdlgen: internal error: {type(error).__name__}: {error}{hint}")
+            raise typer.Exit(1) from None
+
+    return run
+
+
+def model_of(spec: Path, sets: list[str] | None) -> Model:
+    from mdlgen.model.lower import lower
+    from mdlgen.spec.load import load
+
+    return lower(load(spec, sets or ()))
+
+
+def echo_json(value: Any) -> None:
+    import json
+
+    typer.echo(json.dumps(value, indent=2, allow_nan=False))
+
+
+def say(text: str) -> None:
+    """One line on standard error."""
+    typer.echo(printable(text), err=True)
+
+
+def _located(error: MdlgenError, spec: Path | None) -> MdlgenError:
+    """An error of a later stage, with the place of the value in the file."""
+    if spec is None or not isinstance(error, SpecError) or error.place is not None or not error.path:
+        return error
+    from mdlgen.spec.load import parse
+
+    try:
+        return error.located(parse(spec.read_text("utf-8-sig"), str(spec)).place(error.path))
+    except (OSError, ValueError, MdlgenError):
+        return error
+
+
+@contextlib.contextmanager
+def chatter(verbose: bool) -> Iterator[None]:
+    import io
+
+    with contextlib.redirect_stdout(sys.stderr if verbose else io.StringIO()):
+        yield
+
+
+@contextlib.contextmanager
+def count(quiet: bool, what: str) -> Iterator[Callable[[int, int], None] | None]:
+    """A progress bar on a terminal for things that are counted."""
+    if quiet or not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = (TextColumn(what), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(what, total=None)
+        yield lambda done, total: bar.update(task, completed=done, total=total)
+
+
+@contextlib.contextmanager
+def progress_bar(quiet: bool, twice: bool) -> Iterator[Callable[[float, float, int, int], None] | None]:
+    """A progress bar on a terminal: time, steps, pairs that touch, time left."""
+    if quiet or not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.completed:.2f} of {task.total:g} ms, step {task.fields[steps]}"),
+        TextColumn("{task.fields[touching]} pairs touch"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        tasks: list[Any] = []
+        last = 0.0
+
+        def progress(time: float, end: float, steps: int, touching: int) -> None:
+            nonlocal last
+            if not tasks or time < last:
+                name = "half the step" if tasks else "first run" if twice else "run"
+                tasks.append(bar.add_task(name, total=end, steps=0, touching=0))
+            last = time
+            bar.update(tasks[-1], completed=time, steps=steps, touching=touching)
+
+        yield progress
