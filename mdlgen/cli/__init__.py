@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from mdlgen.cli import calibrate as calibrate
 from mdlgen.cli import commands as commands
 from mdlgen.cli.shell import app
 

@@ -1,0 +1,104 @@
+"""The command that finds a value of a material from a measurement."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from mdlgen.cli.shell import (
+    SOLVER_FAILED,
+    Quiet,
+    Sets,
+    Spec,
+    Verbose,
+    app,
+    chatter,
+    count,
+    echo_json,
+    say,
+    told,
+)
+from mdlgen.errors import SpecError
+
+
+@app.command()
+@told
+def calibrate(
+    spec: Spec,
+    measured: Annotated[
+        str,
+        typer.Option(
+            "--measured",
+            metavar="DROP|FILE.csv",
+            help='A drop of the probe along gravity at rest, as "60.76 mm"; or a curve over time: a CSV file '
+            "with columns like time_ms,drop_mm.",
+        ),
+    ],
+    fit: Annotated[
+        str,
+        typer.Option(
+            "--fit",
+            metavar="NAME",
+            help="The value to find, of the probed sheet's material: k_tx, k_ty, D_cd, D_md, damping.ratio, "
+            "damping.ratio_ty. k_tx takes the place of D_cd, k_ty that of D_md, and the reverse.",
+        ),
+    ],
+    probe: Annotated[
+        str | None,
+        typer.Option("--probe", metavar="NAME", help="The measured point: the only probe if left out."),
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="FILE.yaml",
+            help="Write the value as a piece of a scene file, - for standard output.",
+        ),
+    ] = None,
+    solver: Annotated[
+        str, typer.Option("--solver", metavar="auto|lattice|exudyn", help="What runs the scene.")
+    ] = "auto",
+    sets: Sets = None,
+    as_json: Annotated[bool, typer.Option("--json", help="The result as JSON.")] = False,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
+) -> None:
+    """Find bending stiffness or damping from a measured tip drop or decay curve.
+
+    Example: mdlgen calibrate samples/cantilever.yaml --measured "60.76 mm" --fit D_cd
+
+    Example: mdlgen calibrate samples/cantilever.yaml --measured decay.csv --fit damping.ratio
+    --set run.analysis=transient --set run.duration="400 ms"
+    """
+    from mdlgen import paths, registry
+    from mdlgen.calibrate import value
+    from mdlgen.calibrate.calibration import calibrate as search
+    from mdlgen.calibrate.measured import read_measured
+    from mdlgen.calibrate.report import fragment, report, report_text
+    from mdlgen.spec.load import load
+
+    to_stdout = output is not None and str(output) == "-"
+    if to_stdout and as_json:
+        raise SpecError("--json and -o - both take standard output; give -o a file")
+    registry.check_solver(solver)
+    value.find(fit)
+    wanted = read_measured(measured)
+    scene = load(spec, sets or ())
+    with count(quiet, "runs") as progress, chatter(verbose):
+        found = search(scene, wanted, fit, probe, solver, progress)
+    if not found.ok:
+        say(f"{spec}: {found.status}; nothing was written")
+        raise typer.Exit(SOLVER_FAILED)
+    if output is not None and not to_stdout:
+        paths.write_atomic(output, fragment(found))
+    if to_stdout:
+        typer.echo(fragment(found), nl=False)
+    elif as_json:
+        echo_json(report(found))
+    elif not quiet:
+        typer.echo(report_text(found))
+    if output is not None and not to_stdout and not quiet:
+        say(f"wrote {output}")
