@@ -56,7 +56,9 @@ class TestSummary:
         told = summary(result)
         assert set(told) == PROMISED | WORK
         assert set(told["pairs"]) == {"possible", "kept", "touched"}
-        assert set(told["sheets"]["note"]) == {"travel_mm", "speed_mm_per_s", "yaw_deg", "boxes", "bushings"}
+        assert set(told["sheets"]["note"]) == {
+            "travel_mm", "speed_mm_per_s", "yaw_deg", "boxes", "bushings", "strain", "curvature", "twist",
+        }  # fmt: skip
         assert set(told["probes"]["lead"]) == {"displacement_mm", "speed_mm_per_s"}
 
     def test_values_are_in_mm_and_s(self, result: Result) -> None:

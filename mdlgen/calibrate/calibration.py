@@ -1,4 +1,4 @@
-"""The search: runs of the scene, each as any user's, until the probe moves as measured."""
+"""A calibration: what is asked, whether the scene can answer it, and what is found."""
 
 from __future__ import annotations
 

@@ -219,7 +219,7 @@ def run(
     quiet: Quiet = False,
     verbose: Verbose = False,
 ) -> None:
-    """Simulate a scene; write summary.json, series.csv, result.h5 and report.png into DIR.
+    """Simulate a scene; write summary.json, series.csv, result.h5, report.png and strain.png into DIR.
 
     Example: mdlgen run samples/transport_4x4.yaml -o out --check-step
     """
@@ -228,6 +228,7 @@ def run(
     model = model_of(spec, sets)
     registry.check_solver(solver)
     from mdlgen.report.figures import figure
+    from mdlgen.report.maps import strain_map
     from mdlgen.report.text import summary_text
     from mdlgen.results.store import check_folder, save
 
@@ -243,7 +244,7 @@ def run(
     if not result.ok:
         say(f"{spec}: the run failed: {result.status}; nothing was written into {folder}")
         raise typer.Exit(SOLVER_FAILED)
-    save(result, folder, {"report.png": figure(result)})
+    save(result, folder, {"report.png": figure(result), "strain.png": strain_map(result)})
     if not quiet:
         typer.echo(summary_text(result.summary()))
         typer.echo(f"wrote {folder}")

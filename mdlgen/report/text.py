@@ -85,6 +85,8 @@ def summary_text(told: dict[str, Any]) -> str:
             f"sheet {name}: travel {_vector(sheet['travel_mm'])} mm, "
             f"speed {_vector(sheet['speed_mm_per_s'])} mm/s, yaw {_number(sheet['yaw_deg'])} deg"
         )
+        if sheet["strain"] is not None:
+            lines.append(f"  {_bearing(sheet)}")
     for name, probe in told["probes"].items():
         lines.append(f"probe {name}: displacement {_vector(probe['displacement_mm'])} mm")
     if told.get("strain") is not None:
@@ -94,6 +96,20 @@ def summary_text(told: dict[str, Any]) -> str:
     if told["error_estimate"] is not None:
         lines.append(f"error estimate {told['error_estimate']:.2g}, tolerance {told['tolerance']:g}")
     return "\n".join(lines)
+
+
+def _bearing(sheet: dict[str, Any]) -> str:
+    """The joints that bore most, of all along x and y."""
+    strain, curvature = sheet["strain"], sheet["curvature"]
+    stretched = max(v for key, v in strain.items() if key.startswith("max_"))
+    bent = max(v for key, v in curvature.items() if key.startswith("max_"))
+    line = (
+        f"strain up to {stretched:.3g} ({strain['joint']}), "
+        f"curvature up to {bent:.3g} 1/mm ({curvature['joint']})"
+    )
+    if "margin" in strain:
+        line += f"; {strain['margin']:.0%} left to the curve's end ({strain['margin_joint']})"
+    return line
 
 
 def _rollers(rollers: dict[str, Any]) -> list[str]:

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from mdlgen.model.tables import Floats, Model
+
+if TYPE_CHECKING:
+    from mdlgen.results.strain import Strains
 
 
 @dataclass
@@ -82,6 +86,13 @@ class Result:
         from mdlgen.results.summary import summary
 
         return summary(self)
+
+    @cached_property
+    def strains(self) -> Strains | None:
+        """What the joints bear, peaks over the stored times; worked out when first asked for, and kept."""
+        from mdlgen.results.strain import strains
+
+        return strains(self)
 
     def anchor_motion(self, index: int) -> tuple[Floats, Floats]:
         """Position [mm] and velocity [mm/ms] of probe `index` at the stored times, (t, 3) each."""

@@ -56,7 +56,8 @@ def check_folder(folder: Path) -> None:
 
 
 def hdf5(result: Result) -> bytes:
-    """result.h5: states and statistics in the Model's units, with the names of bodies and contact rows.
+    """result.h5: states and statistics in the Model's units, with the names of bodies and contact rows, and
+    what the joints of the sheets bore at most (`joints/...`; see `results.strain`).
 
     The same result gives the same bytes: no times of writing are kept.
     """
@@ -73,6 +74,8 @@ def hdf5(result: Result) -> bytes:
             put(name, np.ascontiguousarray(getattr(result, name)))
         for name in STATISTICS:
             put(f"statistics/{name}", np.asarray(getattr(result.statistics, name), dtype=float))
+        for name, data in _joints(result).items():
+            put(f"joints/{name}", data)
         put("bodies", _names(model.bodies.name))
         put("contacts", _names(_rows(result)))
         for name, value in (
@@ -88,7 +91,7 @@ def hdf5(result: Result) -> bytes:
 def read(folder: str | Path) -> dict[str, Any]:
     """The arrays of a saved result.h5 by name (`statistics/max_depth` ...), and its attributes as text.
 
-    `bodies` and `contacts` ("a / b") are lists of names. Raises OutputError.
+    `bodies`, `contacts` ("a / b") and `joints/name` are lists of names. Raises OutputError.
     """
     import h5py
 
@@ -102,12 +105,35 @@ def read(folder: str | Path) -> dict[str, Any]:
                     found[name] = item[()]
 
             file.visititems(take)
-            for name in ("bodies", "contacts"):
+            for name in ("bodies", "contacts", *(["joints/name"] if "joints/name" in found else [])):
                 found[name] = [value.decode("ascii") for value in found[name]]
             found |= {str(name): str(value) for name, value in file.attrs.items()}
     except (OSError, KeyError, UnicodeDecodeError) as error:
         raise OutputError(f"{path}: cannot read: {str(error).splitlines()[0]}") from None
     return found
+
+
+def _joints(result: Result) -> dict[str, Any]:
+    """Names and places of the joints, and the peak of each over the stored times with its time."""
+    strains = result.strains
+    if strains is None:
+        return {}
+    joints = strains.joints
+    columns: dict[str, Any] = {
+        "name": _names(joints.name),
+        "sheet": joints.sheet,
+        "axis": joints.axis,
+        "at": joints.at,
+        "length": joints.length,
+    }
+    for name, peak in (
+        ("strain_max", strains.stretch),
+        ("strain_min", strains.squeeze),
+        ("curvature", strains.curvature),
+        ("twist", strains.twist),
+    ):
+        columns |= {name: peak.value, f"{name}_at": peak.at}
+    return columns if strains.margin is None else {**columns, "margin": strains.margin}
 
 
 def _rows(result: Result) -> list[str]:

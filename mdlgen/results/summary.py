@@ -99,7 +99,45 @@ def _sheet(result: Result, index: int) -> dict[str, Any]:
             "speed_mm_per_s": rate[-1] * PER_SECOND,
             "yaw_deg": math.degrees(yaw[-1]),
         }
-    return {**told, "boxes": sheet.count, "bushings": int(np.sum(result.model.bushings.sheet == index))}
+    return {
+        **told,
+        "boxes": sheet.count,
+        "bushings": int(np.sum(result.model.bushings.sheet == index)),
+        **_bearing(result, index),
+    }
+
+
+def _bearing(result: Result, index: int) -> dict[str, Any]:
+    """Peaks over joints and stored times, with place and time of the greatest; None without joints."""
+    strains = result.strains
+    if strains is None or not (strains.joints.sheet == index).any():
+        return {"strain": None, "curvature": None, "twist": None}
+    joints = strains.joints
+    mine = joints.sheet == index
+
+    def of(values: Floats, least: bool = False) -> dict[str, float]:
+        extreme = np.min if least else np.max
+        ways = ("md", mine & (joints.axis == 0)), ("cd", mine & (joints.axis == 1))
+        return {way: float(extreme(values[rows])) for way, rows in ways if rows.any()}
+
+    def place(values: Floats, at: Floats) -> dict[str, Any]:
+        row = int(np.argmax(np.where(mine, values, -np.inf)))
+        return {"at_mm": joints.at[row], "at_ms": at[row], "joint": joints.name[row]}
+
+    stretch, bend, turn = strains.stretch, np.abs(strains.curvature.value), np.abs(strains.twist.value)
+    strain = {f"max_{way}": value for way, value in of(stretch.value).items()}
+    strain |= {f"min_{way}": value for way, value in of(strains.squeeze.value, least=True).items()}
+    strain |= place(stretch.value, stretch.at)
+    margin = strains.margin
+    if margin is not None and np.isfinite(margin[mine]).any():
+        row = int(np.nanargmin(np.where(mine, margin, np.nan)))
+        strain |= {"margin": margin[row], "margin_joint": joints.name[row]}
+    curvature = {f"max_{way}_per_mm": value for way, value in of(bend).items()}
+    return {
+        "strain": strain,
+        "curvature": curvature | place(bend, strains.curvature.at),
+        "twist": {"max_per_mm": turn[mine].max(), **place(turn, strains.twist.at)},
+    }
 
 
 def roller_rows(result: Result, roller: RollerPart) -> dict[int, str]:

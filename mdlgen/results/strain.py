@@ -1,0 +1,249 @@
+"""What the joints of a sheet bear: membrane strain, curvature and twist, and their peaks over a run.
+
+A joint is what connects two boxes, or a box and its clamp: in `edge_to_edge` the two bushings at the shared
+corners together. It stands for the material between the two box centres (between line and centre at a clamp).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mdlgen.model.tables import CLAMP, GROUND, JOINT_X, SUPPORT, Floats, Frozen, Ints, Model
+from mdlgen.results.result import Result
+
+# States of joints worked on at a time: the arrays of so many stay in the cache.
+_CHUNK = 10_000
+# Peaks in the order that `_measure` gives them in.
+_KINDS = ("stretch", "squeeze", "curvature", "twist")
+
+
+@dataclass(frozen=True)
+class SheetJoints(Frozen):
+    """The joints of all sheets, in the order of the Model's bushings."""
+
+    name: tuple[str, ...]  # of its bushing, without the letter of the corner
+    sheet: Ints  # index of the sheet, (n,)
+    axis: Ints  # which sheet axis it lies along, 0: x (MD), 1: y (CD)
+    a: Ints  # body, or GROUND
+    b: Ints  # body
+    way: Floats  # 1 where b lies on the positive side along the axis, else -1
+    length: Floats  # of material that it stands for [mm]
+    spread: Floats  # half the distance of its two bushings [mm], 0 where it has one
+    origin: Floats  # middle [mm], (n, 3)
+    axes: Floats  # of its bushings, (n, 3, 3)
+    at: Floats  # middle in sheet axes from the sheet's centre [mm], (n, 2)
+
+    def __len__(self) -> int:
+        return len(self.name)
+
+
+@dataclass(frozen=True)
+class Peak(Frozen):
+    """The extreme of one quantity over the stored times, with its sign, and when it was, (joints,) each."""
+
+    value: Floats
+    at: Floats  # [ms]
+
+
+@dataclass(frozen=True)
+class Strains:
+    """Peaks over the stored times of a run, by joint.
+
+    `stretch` and `squeeze` are the greatest and the least membrane strain (elongation over length, of that
+    bushing of the joint that has more of it), `curvature` and `twist` [1/mm] the greatest in magnitude:
+    curvature is positive where the sheet bends towards its normal, twist is the turn about the joint's own
+    direction over its length.
+    """
+
+    joints: SheetJoints
+    stretch: Peak
+    squeeze: Peak
+    curvature: Peak
+    twist: Peak
+    limit: Floats | None = None  # strain at the end of the material's curve, nan where it has none, (n,)
+
+    @property
+    def margin(self) -> Floats | None:
+        """What is left up to the limit, as a part of it: 1 unloaded, 0 at the curve's end, (n,)."""
+        return None if self.limit is None else 1.0 - self.stretch.value / self.limit
+
+
+def sheet_joints(model: Model) -> SheetJoints:
+    """The joints of a Model's sheets."""
+    bushings = model.bushings
+    rows = np.flatnonzero(bushings.kind != SUPPORT)
+    key = np.stack([bushings.sheet, bushings.kind, bushings.a, bushings.b])[:, rows]
+    # the bushings of a joint follow each other
+    new = np.ones(len(rows), bool)
+    new[1:] = (key[:, 1:] != key[:, :-1]).any(axis=0)
+    starts = np.flatnonzero(new)
+    first, last = rows[starts], rows[np.append(starts, len(rows))[1:] - 1]
+    sheet, kind, a, b = key[:, starts]
+    held = [s.clamp is not None and s.clamp.edge[0] == "y" for s in model.sheets]
+    axis = np.where(kind == CLAMP, np.array(held, dtype=np.int64)[sheet], np.where(kind == JOINT_X, 0, 1))
+    origin = (bushings.origin[first] + bushings.origin[last]) / 2
+    spread = np.linalg.norm(bushings.origin[last] - bushings.origin[first], axis=1) / 2
+    axes = bushings.axes[first]
+    position = model.bodies.position
+    start = np.where((a == GROUND)[:, None], origin, position[a])
+    along = np.einsum("ni,ni->n", position[b] - start, axes[np.arange(len(a)), :, axis])
+    centers = np.array([s.center for s in model.sheets])[sheet]
+    frames = np.array([s.rotation for s in model.sheets])[sheet]
+    return SheetJoints(
+        name=tuple(_name(bushings.name[i], i != j) for i, j in zip(first, last, strict=True)),
+        sheet=sheet,
+        axis=axis,
+        a=a,
+        b=b,
+        way=np.sign(along),
+        length=np.abs(along),
+        spread=spread,
+        origin=origin,
+        axes=axes,
+        at=np.einsum("nij,ni->nj", frames, origin - centers)[:, :2],
+    )
+
+
+def _name(bushing: str, pair: bool) -> str:
+    return bushing.rpartition("_")[0] if pair else bushing
+
+
+def strains(result: Result, limit: Floats | None = None) -> Strains | None:
+    """Peaks over the stored times of a result; None where it has no state or its sheets no joints.
+
+    `limit` is the strain at the end of the material's curve by joint, nan where it has none, (n,) as
+    `sheet_joints` orders them.
+    """
+    joints = sheet_joints(result.model)
+    if not len(joints) or not len(result.time):
+        return None
+    value = np.zeros((len(_KINDS), len(joints)))
+    at = np.zeros((len(_KINDS), len(joints)))
+    for axis in (0, 1):
+        along = np.flatnonzero(joints.axis == axis)
+        for start in range(0, len(along), _CHUNK):
+            mine = along[start : start + _CHUNK]
+            value[:, mine], frame = _peaks(result, _Fixed(result.model, joints, mine), axis)
+            at[:, mine] = result.time[frame]
+    peaks = {kind: Peak(value[k], at[k]) for k, kind in enumerate(_KINDS)}
+    return Strains(joints, **peaks, limit=limit)
+
+
+def _peaks(result: Result, fixed: _Fixed, axis: int) -> tuple[Floats, Ints]:
+    """Extremes of some joints along `axis`, and the stored time of each, (4, joints) each."""
+    count = len(fixed.a)
+    frames = max(1, _CHUNK // count)
+    found = np.zeros((len(_KINDS), count))
+    most = np.full(found.shape, -np.inf)
+    when = np.zeros(found.shape, dtype=np.int64)
+    columns = np.arange(count)
+    for start in range(0, len(result.time), frames):
+        part = slice(start, start + frames)
+        side_a, side_b = _states(result, part, fixed.a), _states(result, part, fixed.b)
+        measured = _measure(side_a, side_b, fixed, axis)
+        sizes = (measured[0], -measured[1], np.abs(measured[2]), np.abs(measured[3]))
+        for k, (values, size) in enumerate(zip(measured, sizes, strict=True)):
+            row = size.argmax(axis=0)
+            larger = size[row, columns]
+            better = larger > most[k]
+            most[k, better] = larger[better]
+            found[k, better] = values[row, columns][better]
+            when[k, better] = start + row[better]
+    return found, when
+
+
+class _Fixed:
+    """What does not change over a run, of some joints; quaternions and vectors component by component."""
+
+    def __init__(self, model: Model, joints: SheetJoints, mine: Ints):
+        from scipy.spatial.transform import Rotation
+
+        # the last row stands for the ground
+        turned = np.concatenate([model.bodies.rotation, np.eye(3)[None]])
+        placed = np.concatenate([model.bodies.position, np.zeros((1, 3))])
+        self.a, self.b = joints.a[mine], joints.b[mine]
+        self.way, self.length, self.spread = joints.way[mine], joints.length[mine], joints.spread[mine]
+        axes, origin = joints.axes[mine], joints.origin[mine]
+        # bushing axes as seen from each body, and the arm to the middle as seen along these axes
+        self.frames, self.arms = [], []
+        for body in (self.a, self.b):
+            seen = np.einsum("nki,nkj->nij", turned[body], axes)
+            self.frames.append(tuple(np.roll(Rotation.from_matrix(seen).as_quat(), 1, axis=1).T))
+            self.arms.append(tuple(np.einsum("nki,nk->in", axes, origin - placed[body])))
+
+
+def _states(result: Result, part: slice, bodies: Ints) -> tuple[Floats, Floats]:
+    """Positions (3, t, n) and Euler parameters (4, t, n) of bodies, or of the ground."""
+    ground = bodies == GROUND
+    at = np.where(ground, 0, bodies)
+    position = np.ascontiguousarray(np.moveaxis(result.position[part].take(at, axis=1), 2, 0))
+    rotation = np.ascontiguousarray(np.moveaxis(result.rotation[part].take(at, axis=1), 2, 0))
+    if ground.any():
+        position[:, :, ground] = 0.0
+        rotation[:, :, ground] = np.array([1.0, 0.0, 0.0, 0.0])[:, None, None]
+    return position, rotation
+
+
+def _measure(
+    side_a: tuple[Floats, Floats], side_b: tuple[Floats, Floats], fixed: _Fixed, axis: int
+) -> tuple[Floats, ...]:
+    """Strain of the more and of the less stretched bushing, curvature and twist, (t, joints) each.
+
+    As in `mechanics.bushing`: the gap is measured along the frame halfway between the two bodies.
+    """
+    frame_a = _product(tuple(side_a[1]), fixed.frames[0])
+    frame_b = _product(tuple(side_b[1]), fixed.frames[1])
+    w, x, y, z = _product((frame_a[0], -frame_a[1], -frame_a[2], -frame_a[3]), frame_b)
+    # of q and -q, which are the same rotation, the one of less than half a turn
+    flip = np.where(w < 0.0, -1.0, 1.0)
+    w, x, y, z = w * flip, x * flip, y * flip, z * flip
+    across = x * x + y * y + z * z
+    sine = np.sqrt(across)
+    norm = np.sqrt(across + w * w)
+    # half of the relative rotation, of unit length
+    size = np.sqrt((w + norm) ** 2 + across)
+    half = ((w + norm) / size, x / size, y / size, z / size)
+    middle = _product(frame_a, half)
+    gap = side_b[0] - side_a[0]
+    apart = sum(m * g for m, g in zip(_column(middle, axis), gap, strict=True)) / sum(q * q for q in middle)
+    back = (half[0], -half[1], -half[2], -half[3])
+    # row k of a rotation is column k of its inverse
+    apart = apart + sum(h * r for h, r in zip(_column(back, axis), fixed.arms[1], strict=True))
+    apart = apart - sum(h * r for h, r in zip(_column(half, axis), fixed.arms[0], strict=True))
+    # the two corners are apart by more and by less, where the joint turns in the plane (bushing_pair)
+    corner = 2.0 * np.abs(z) / norm * fixed.spread
+    stretch = apart * fixed.way
+    # the angle over its sine; no turn, no angle
+    angle = 2.0 * np.arctan2(sine, w) / np.where(sine > 0.0, sine, 1.0) * fixed.way
+    bend = -y if axis == 0 else x
+    return (
+        (stretch + corner) / fixed.length,
+        (stretch - corner) / fixed.length,
+        angle * bend / fixed.length,
+        angle * (x, y)[axis] / fixed.length,
+    )
+
+
+Quaternion = tuple[Floats, ...]
+
+
+def _product(p: Quaternion, q: Quaternion) -> Quaternion:
+    """Rotation q, then p."""
+    pw, px, py, pz = p
+    qw, qx, qy, qz = q
+    return (
+        pw * qw - px * qx - py * qy - pz * qz,
+        pw * qx + px * qw + py * qz - pz * qy,
+        pw * qy - px * qz + py * qw + pz * qx,
+        pw * qz + px * qy - py * qx + pz * qw,
+    )
+
+
+def _column(q: Quaternion, axis: int) -> Quaternion:
+    """Column of the rotation matrix, times the square of the quaternion's length."""
+    w, x, y, z = q
+    if axis == 0:
+        return w * w + x * x - y * y - z * z, 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)
+    return 2.0 * (x * y - w * z), w * w + y * y - x * x - z * z, 2.0 * (y * z + w * x)
