@@ -9,6 +9,7 @@ import numpy as np
 from mdlgen.calibrate.calibration import Calibration
 from mdlgen.calibrate.measured import Decay
 from mdlgen.calibrate.value import FITS
+from mdlgen.model.tables import CLAMP
 
 DIGITS = 6  # of a value that is written for people; more is below what a run resolves
 
@@ -102,9 +103,13 @@ def _free_length(found: Calibration) -> float | None:
     sheet = found.model.sheets[found.probe.sheet]
     if sheet.clamp is None:
         return None
-    along_x = sheet.clamp.edge[0] == "x"
-    count, pitch = (sheet.n_x, sheet.d_x) if along_x else (sheet.n_y, sheet.d_y)
-    return (count - sheet.clamp.rows) * pitch
+    axis = 0 if sheet.clamp.edge[0] == "x" else 1
+    bodies, bushings = found.model.bodies, found.model.bushings
+    hinges = (bushings.kind == CLAMP) & (bushings.sheet == found.probe.sheet)
+    boxes = slice(sheet.first, sheet.first + sheet.count)
+    out = np.abs((bodies.position[boxes] - bushings.origin[hinges].mean(axis=0)) @ sheet.rotation[:, axis])
+    free = ~bodies.fixed[boxes]
+    return float((out + bodies.half[boxes, axis])[free].max())
 
 
 def _size(slope: np.ndarray) -> float:
