@@ -24,7 +24,8 @@ class SheetJoints(Frozen):
     """The joints of all sheets, in the order of the Model's bushings."""
 
     name: tuple[str, ...]  # of its bushing, without the letter of the corner
-    sheet: Ints  # index of the sheet, (n,)
+    bushing: Ints  # row of its bushing, the first of two, (n,)
+    sheet: Ints  # index of the sheet
     axis: Ints  # which sheet axis it lies along, 0: x (MD), 1: y (CD)
     a: Ints  # body, or GROUND
     b: Ints  # body
@@ -66,8 +67,13 @@ class Strains:
 
     @property
     def margin(self) -> Floats | None:
-        """What is left up to the limit, as a part of it: 1 unloaded, 0 at the curve's end, (n,)."""
-        return None if self.limit is None else 1.0 - self.stretch.value / self.limit
+        """What is left up to the limit, as a part of it: 1 unloaded, 0 at the curve's end, (n,).
+
+        A curve holds for tension and, with its signs turned, for compression.
+        """
+        if self.limit is None:
+            return None
+        return 1.0 - np.maximum(self.stretch.value, -self.squeeze.value) / self.limit
 
 
 def sheet_joints(model: Model) -> SheetJoints:
@@ -93,6 +99,7 @@ def sheet_joints(model: Model) -> SheetJoints:
     frames = np.array([s.rotation for s in model.sheets])[sheet]
     return SheetJoints(
         name=tuple(_name(bushings.name[i], i != j) for i, j in zip(first, last, strict=True)),
+        bushing=first,
         sheet=sheet,
         axis=axis,
         a=a,
@@ -113,8 +120,8 @@ def _name(bushing: str, pair: bool) -> str:
 def strains(result: Result, limit: Floats | None = None) -> Strains | None:
     """Peaks over the stored times of a result; None where it has no state or its sheets no joints.
 
-    `limit` is the strain at the end of the material's curve by joint, nan where it has none, (n,) as
-    `sheet_joints` orders them.
+    `limit` is the strain at the end of the curve that each bushing follows, nan where it follows none,
+    (bushings,).
     """
     joints = sheet_joints(result.model)
     if not len(joints) or not len(result.time):
@@ -128,7 +135,7 @@ def strains(result: Result, limit: Floats | None = None) -> Strains | None:
             value[:, mine], frame = _peaks(result, _Fixed(result.model, joints, mine), axis)
             at[:, mine] = result.time[frame]
     peaks = {kind: Peak(value[k], at[k]) for k, kind in enumerate(_KINDS)}
-    return Strains(joints, **peaks, limit=limit)
+    return Strains(joints, **peaks, limit=None if limit is None else limit[joints.bushing])
 
 
 def _peaks(result: Result, fixed: _Fixed, axis: int) -> tuple[Floats, Ints]:
