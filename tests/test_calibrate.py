@@ -231,8 +231,9 @@ def test_the_fragment_is_a_piece_of_a_scene(cli: Run, tmp_path: Path) -> None:
     assert "D_cd" in text and f'"{value}"' in ended.out
     # six digits are written
     assert drop_of(*NARROW, f"materials.eur10.k_tx={value}") == pytest.approx(60.76, rel=1e-5)
-    piped = cli("--measured", "60.76 mm", "--fit", "k_tx", "-o", "-")
-    assert piped == (0, text, "")
+    assert cli("--measured", "60.76 mm", "--fit", "k_tx", "-o", "-") == (0, text, "")
+    assert cli("--measured", "60.76 mm", "--fit", "k_tx", "-q") == (0, f"{value}\n", "")
+    assert cli("--measured", "60.76 mm", "--fit", "k_tx", "-q", "-o", "found.yaml") == (0, "", "")
 
 
 @pytest.mark.parametrize("target", ["missing/found.yaml", "."])

@@ -42,13 +42,13 @@ def report_text(found: Calibration) -> str:
     """A few lines for a terminal."""
     change = _size(found.sensitivity) / 100.0
     lines = [
-        f"{found.fit} of {found.material}: {_quantity(found)}",
+        f"{found.fit} of {found.material}: {quantity(found)}",
         f"probe {found.probe.name}: {_agreement(found)}",
         f"sensitivity: 1 % more {found.fit} changes the drop by {change:.3g} mm"
         + (" (root of the mean square)" if len(found.drop) > 1 else ""),
         *_step_error(found),
         f"{found.runs} runs ({found.solver}); {_sheet(found)}",
-        f'as an option: --set materials.{found.material}.{found.fit}="{_quantity(found)}"',
+        f'as an option: --set materials.{found.material}.{found.fit}="{quantity(found)}"',
     ]
     return "\n".join(lines)
 
@@ -65,12 +65,13 @@ def fragment(found: Calibration) -> str:
         "materials:",
         f"  {found.material}:",
         *(f"    {word}:" for word in outer),
-        f"{'  ' * (2 + len(outer))}{name}: {_quantity(found)}",
+        f"{'  ' * (2 + len(outer))}{name}: {quantity(found)}",
     ]
     return "\n".join(lines) + "\n"
 
 
-def _quantity(found: Calibration) -> str:
+def quantity(found: Calibration) -> str:
+    """The value as it stands in a scene file."""
     return f"{found.value:.{DIGITS}g} {found.unit}".rstrip()
 
 

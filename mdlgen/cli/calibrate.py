@@ -77,7 +77,7 @@ def calibrate(
     from mdlgen.calibrate import value
     from mdlgen.calibrate.calibration import calibrate as search
     from mdlgen.calibrate.measured import read_measured
-    from mdlgen.calibrate.report import fragment, report, report_text
+    from mdlgen.calibrate.report import fragment, quantity, report, report_text
     from mdlgen.spec.load import load
 
     to_stdout = output is not None and str(output) == "-"
@@ -100,5 +100,7 @@ def calibrate(
         echo_json(report(found))
     elif not quiet:
         typer.echo(report_text(found))
+    elif output is None:
+        typer.echo(quantity(found))
     if output is not None and not to_stdout and not quiet:
         say(f"wrote {output}")
