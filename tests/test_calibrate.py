@@ -16,6 +16,7 @@ from mdlgen import registry
 from mdlgen.calibrate.calibration import calibrate
 from mdlgen.calibrate.measured import Decay, read_measured
 from mdlgen.calibrate.search import MAX_RUNS
+from mdlgen.calibrate.value import FITS, Fit
 from mdlgen.cli import app
 from mdlgen.errors import SpecError
 from mdlgen.model.tables import Model
@@ -182,6 +183,14 @@ def test_stiffness_is_found_from_a_swing() -> None:
     found = calibrate(mdlgen.load(CANTILEVER, [*SMALL, "materials.eur10.D_cd=0.24 N*mm"]), decay(), "D_cd")
     assert found.ok and found.runs <= MAX_RUNS
     assert found.value == pytest.approx(0.3, rel=1e-3)
+
+
+def test_a_value_that_the_spec_refuses_is_not_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = mdlgen.load(CANTILEVER, [*SMALL, "materials.eur10.damping.ratio=4"])
+    measured = decay("materials.eur10.damping.ratio=9")
+    assert calibrate(scene, measured, "damping.ratio").value == pytest.approx(9, rel=1e-3)
+    monkeypatch.setitem(FITS, "damping.ratio", Fit("", greatest=8.0))
+    assert "more damping.ratio than 8" in calibrate(scene, measured, "damping.ratio").status
 
 
 @pytest.mark.parametrize(("fit", "times"), [("damping.ratio", 10.0), ("D_cd", 10.0)])

@@ -165,11 +165,15 @@ class Search:
             miss,
             [1.0],
             jac=cast(Any, slopes),  # the stubs know its names only
-            bounds=(-np.inf, self.limit - offset),
             xtol=_CURVE_PRECISION,
             ftol=1e-10,
         )
         best = offset + float(found.x[0])
+        # no bound in the search, which would slow it near there
+        if best > self.limit:
+            raise Failed(
+                f"the curve asks for more {self.runs.fit} than {math.exp(self.limit):g}, the most there is"
+            )
         missed = float(np.sqrt(np.mean(found.fun**2)) / decay.drop.max())
         if missed > _MET:
             raise Failed(
@@ -179,9 +183,8 @@ class Search:
         return best
 
     def slope(self, log_value: float) -> Floats:
-        """d drop / d ln value [mm], by one more run at a value 2 % away, inside what is allowed."""
-        near = -_NEAR if log_value + _NEAR > self.limit else _NEAR
-        return (self.runs.drop(log_value + near) - self.runs.drop(log_value)) / near
+        """d drop / d ln value [mm], by one more run at a value 2 % away."""
+        return (self.runs.drop(log_value + _NEAR) - self.runs.drop(log_value)) / _NEAR
 
     def step_error(self, log_value: float) -> float:
         """How far the step of the runs moves the value, relative: with one of second order half the step
