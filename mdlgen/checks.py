@@ -71,6 +71,17 @@ def _aspect(model: Model) -> Iterator[Lint]:
             )
 
 
+def _idle_in_plane(model: Model) -> Iterator[Lint]:
+    for sheet in model.sheets:
+        if sheet.layout == "plate" and sheet.in_plane and sheet.count > 1:
+            yield Lint(
+                "W115",
+                f"sheets.{sheet.name}.layout",
+                "k_tz of its material does not act in layout plate, where it follows from E_md and E_cd",
+                "leave k_tz out, or take another layout",
+            )
+
+
 def _idle_clamp(model: Model) -> Iterator[Lint]:
     touched = set(model.contacts.part_a)
     for sheet in model.sheets:
@@ -304,6 +315,7 @@ def _corners(sheet: SheetPart) -> Floats:
 CHECKS: tuple[Callable[[Model], Iterator[Lint]], ...] = (
     _modulus,
     _aspect,
+    _idle_in_plane,
     _idle_clamp,
     _facets,
     _deep_nip,

@@ -49,6 +49,7 @@ CASES = [
     ("W112", "verify/drop", ["sheets.block.center=[0 mm,0 mm,-1 mm]"], "planes.floor.center"),
     ("W113", "transport_4x4", ["rollers.motor_1_left.drive.ramp=1 s"], "rollers.motor_1_left.drive.ramp"),
     ("W114", "transport_4x4", ["sheets.note.mass=0.72 kg"], "sheets.note.mass"),
+    ("W115", "cantilever", ["sheets.note.layout=plate"], "sheets.note.layout"),
 ]
 
 
@@ -64,7 +65,7 @@ def test_fires(code: str, sample: str, overrides: list[str], where: str) -> None
 
 
 def test_every_check_is_tested() -> None:
-    assert {code for code, *_ in CASES} == {f"W{k}" for k in range(101, 115)}
+    assert {code for code, *_ in CASES} == {f"W{k}" for k in range(101, 116)}
     assert len(CHECKS) >= 11
 
 

@@ -56,6 +56,7 @@ CASES: dict[str, tuple[str, ...]] = {
     "turned": (FOUR, SMALL, 'sheets.note.turn="10 deg"', 'sheets.note.center=["1 mm","-2 mm","0 mm"]'),
     "general": (FOUR, SMALL, GENERAL, *LONG_SPRINGS),
     "center_to_center": (FOUR, SMALL, C2C),
+    "plate": (FOUR, SMALL, "sheets.note.layout=plate"),
     "paper_damping": (FOUR, SMALL, "materials.eur10.damping.rotation=paper"),
     "moving": (FOUR, SMALL, GENERAL, *LONG_SPRINGS, *MOVING),
     "clamp": ("cantilever.yaml", 'sheets.note.clamp.length="12.7 mm"', 'sheets.note.turn="30 deg"'),

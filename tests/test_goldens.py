@@ -68,6 +68,7 @@ PLATES = (
     "materials.paper.k_tz=null",
 )
 C2C = "sheets.note.layout=center_to_center"
+PLATE = "sheets.note.layout=plate"
 GENERAL = 'sheets.note.rotation=["20 deg","-35 deg","110 deg"]'
 MOVING = (
     'sheets.note.velocity=["1.5 m/s","0 m/s","-0.2 m/s"]',
@@ -174,6 +175,10 @@ PARTS: dict[str, dict[str, tuple[str, ...]]] = {
         ),
         "the paper's damping": ("materials.paper.damping.rotation=paper",),
         "the paper's damping, twist": (C2C, *PLATES, "materials.paper.damping.rotation=paper"),
+        "a plate": (PLATE,),
+        "a plate in full, the paper's damping": (
+            *(PLATE, *PLATES, "materials.paper.G=700 MPa", "materials.paper.damping.rotation=paper"),
+        ),
         "a block": BLOCK,
         "lengths of their own, a zone": UNLIKE,
         "curled": CURLED,
@@ -192,6 +197,7 @@ PARTS: dict[str, dict[str, tuple[str, ...]]] = {
         "general rotation, in motion, twist, surface, centre to centre": FLYING,
         "held beyond a line across x, in motion": HELD,
         "held at an edge along x, twist": HELD_Y,
+        "a plate, held at an edge along x": (*HELD_Y, PLATE),
         "a block": BLOCK,
     },
     "support.mdl.j2": {"in a box, on an edge between two": SUPPORTS},

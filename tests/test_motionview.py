@@ -27,6 +27,7 @@ RELATIVE = 1e-12
 # ---------------------------------------------------------------- the text and the Model
 
 C2C = "sheets.note.layout=center_to_center"
+PLATE = "sheets.note.layout=plate"
 SMALL = "sheets.note.boxes=[3,4]"
 PLATES = ('materials.eur10.D_cd="0.242 N*mm"', 'materials.eur10.D_md="0.4 N*mm"')
 TURN = 'sheets.note.turn="10 deg"'
@@ -62,6 +63,17 @@ CASES = {
         C2C,
         'materials.eur10.D_twist="0.1 N*mm"',
         "sheets.note.clamp.edge=x_max",
+    ),
+    "plate": ("transport_4x4.yaml", SMALL, PLATE),
+    "plate_given": (
+        "cantilever.yaml",
+        SMALL,
+        PLATE,
+        'materials.eur10.D_twist="0.2 N*mm"',
+        'materials.eur10.G="700 MPa"',
+        "materials.eur10.damping.rotation=paper",
+        "sheets.note.clamp.edge=x_max",
+        TURN,
     ),
     "soft_cd": ("transport_4x4.yaml", SMALL, 'materials.eur10.E_cd="90000 MPa"'),
     "turned": ("transport_4x4.yaml", SMALL, TURN),

@@ -57,13 +57,15 @@ def half_cells(sheet: Spec, node: tuple[int, int]) -> list[str]:
 
 
 @st.composite
-def materials(draw: st.DrawFn, twist: bool) -> Spec:
+def materials(draw: st.DrawFn, layout: str) -> Spec:
     made: Spec = {"E_md": "3530 MPa", "E_cd": draw(st.sampled_from(["1113 MPa", "9 GPa"]))}
     made |= draw(st.sampled_from([{"k_tx": "0.15 N*mm/rad"}, {"D_cd": "0.24 N*mm"}]))
     made |= draw(st.sampled_from([{"k_ty": "0 N*mm/rad"}, {"D_md": "0.4 N*mm"}]))
     made |= draw(st.sampled_from([{}, {"k_tz": "5 N*mm/rad"}]))
-    if twist and draw(st.booleans()):
+    if layout != "edge_to_edge" and draw(st.booleans()):
         made["D_twist"] = "0.1 N*mm"
+    if layout == "plate" and draw(st.booleans()):
+        made["G"] = "700 MPa"
     made["damping"] = {"ratio": draw(RATIOS), "rotation": draw(st.sampled_from(["inertia", "paper"]))}
     if draw(st.booleans()):
         made["damping"]["ratio_ty"] = draw(RATIOS)
@@ -79,7 +81,7 @@ def sheets(draw: st.DrawFn, material: str) -> Spec:
         "thickness": "0.1 mm",
         "mass": "0.6 g",
         "boxes": boxes,
-        "layout": draw(st.sampled_from(["edge_to_edge", "center_to_center"])),
+        "layout": draw(st.sampled_from(["edge_to_edge", "center_to_center", "plate"])),
         "grid": draw(st.sampled_from(["tiled", "paper"])) if min(boxes) > 1 else "tiled",
         "center": draw(triple("mm", 50)),
         "velocity": draw(st.one_of(st.just(["0 m/s"] * 3), triple("m/s", 2))),
@@ -177,7 +179,7 @@ def specs(draw: st.DrawFn) -> Spec:
     scene: Spec = {"name": "any", "gravity": draw(triple("m/s^2", 10)), "materials": {}, "sheets": {}}
     for k in range(draw(st.integers(1, 2))):
         sheet = scene["sheets"][f"sheet_{k}"] = draw(sheets(f"paper_{k}"))
-        scene["materials"][f"paper_{k}"] = draw(materials(twist=sheet["layout"] == "center_to_center"))
+        scene["materials"][f"paper_{k}"] = draw(materials(sheet["layout"]))
     scene["rollers"] = {f"roll_{k}": draw(rollers()) for k in range(draw(st.integers(0, 2)))}
     scene["planes"] = {f"plane_{k}": draw(PLANES) for k in range(draw(st.integers(0, 2)))}
     scene["contacts"] = draw(contacts(scene))
@@ -267,12 +269,16 @@ def expected_members(scene: Spec) -> int:
     total = 7 * len(scene["planes"]) + 7 * len(scene["contacts"]) + 2  # of the run
     for name, sheet in scene["sheets"].items():
         material = scene["materials"][sheet["material"]]
-        bending = [k for k in ("k_tx", "k_ty", "k_tz", "D_cd", "D_md", "D_twist") if k in material]
+        plate = sheet["layout"] == "plate"
+        bending = [k for k in ("k_tx", "k_ty", "k_tz", "D_cd", "D_md", "D_twist", "G") if k in material]
+        if plate and "k_tz" in material:
+            bending.remove("k_tz")  # it does not act there
         total += 3 + (3 if "rotation" in sheet else 1) + 6 + len(bending) + 2 + 6 * is_moving(sheet)
         total += 8  # n, d, m, I
         if bushing_nodes(sheet) or any(s["sheet"] == name for s in scene["supports"]):
-            total += 9 + sum(k in material for k in ("D_cd", "D_md")) + ("k_tz" not in material)
-            total += 4 * ("D_twist" in material) + 3 * (material["damping"]["rotation"] == "inertia")
+            total += 9 + sum(k in material for k in ("D_cd", "D_md")) + ("k_tz" not in bending)
+            total += 4 * (plate or "D_twist" in material) + 3 * (material["damping"]["rotation"] == "inertia")
+            total += 6 * plate + sum(k not in material for k in ("D_twist", "G")) * plate
     for roller in scene["rollers"].values():
         total += 6 + 2 * ("drive" in roller) + 7 * ("press" in roller)
     total += sum(2 * ("at" in probe) for probe in scene["probes"].values())

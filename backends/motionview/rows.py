@@ -129,8 +129,11 @@ class JointGroup(NamedTuple):
 
     factor: str
     own: str
-    tx: str  # suffix of the members of rotation about x: tx or tx_twist
+    x: str  # suffix of the members of displacement along x: x or x_shear
+    y: str
+    tx: str  # of rotation about x: tx or tx_twist
     ty: str
+    tz: str
     frames: tuple[int, int]  # of the two sides
     bushes: list[Bush]
 
@@ -151,6 +154,8 @@ class SheetView:
     bending: tuple[str, str]
     in_plane: bool
     twist: bool
+    plate: bool
+    ratio: str  # shear modulus over the mean of the moduli, and so for twist, where they are not given
     damping: str
     stiff: bool  # anything uses the sheet's stiffness
     graded: tuple[bool, bool]

@@ -11,6 +11,7 @@ from backends.motionview.cells import Differences, differences, grid_views, zone
 from backends.motionview.rows import Bush, JointGroup, Point, ProbeView, SheetView, SupportView, Value
 from backends.motionview.units import number
 from mdlgen.model import naming
+from mdlgen.model.plate import SHEAR_RATIO
 from mdlgen.model.stiffness import SUPPORT_FACTOR
 from mdlgen.model.tables import AXES, CLAMP, GROUND, JOINT_X, SUPPORT, Anchor, Model, SheetPart
 
@@ -46,6 +47,8 @@ def sheet_view(model: Model, index: int, tables: dict[str, list[Value]]) -> Shee
         bending=sheet.bending,
         in_plane=sheet.in_plane,
         twist=sheet.twist,
+        plate=sheet.layout == "plate",
+        ratio=number(SHEAR_RATIO),
         damping=sheet.rotation_damping,
         stiff=bool(joints) or supported,
         graded=sheet.graded,
@@ -87,11 +90,15 @@ def _joints(model: Model, index: int, differ: Differences) -> tuple[list[Point],
         groups.setdefault((kind, own, (one, two)), []).append(bush)
     nodes = sorted(taken.values(), key=lambda point: (point.y, point.x))
     twist = "_twist" if sheet.twist else ""
+    shear = "_shear" if sheet.layout == "plate" else ""
+    across = "_y" if shear and not differ.owners else ""  # where one data set holds joints of both ways
     clamped_x = sheet.clamp is not None and sheet.clamp.edge[0] == "x"
     made = []
     for (kind, own, frames), bushes in groups.items():
         along_x = kind == JOINT_X or (kind == CLAMP and clamped_x)
-        suffixes = (f"tx{twist}", "ty") if along_x else ("tx", f"ty{twist}")
+        suffixes = ("x", f"y{shear}", f"tx{twist}", "ty", "tz")
+        if not along_x:
+            suffixes = (f"x{shear}", "y", "tx", f"ty{twist}", f"tz{across}")
         # a clamp is a half-cell hinge of twice the joint
         made.append(JointGroup("2*" if kind == CLAMP else "", own, *suffixes, frames, bushes))
     return nodes, made

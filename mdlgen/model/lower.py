@@ -124,7 +124,7 @@ def _sheets(scene: Scene) -> tuple[tuple[SheetPart, ...], list[Cells]]:
                     "k_tx" if material.k_tx is not None else "D_cd",
                     "k_ty" if material.k_ty is not None else "D_md",
                 ),
-                twist=material.D_twist is not None,
+                twist=material.D_twist is not None or sheet.layout == "plate",
                 in_plane=material.k_tz is not None,
                 rotation_damping=material.damping.rotation,
                 derived=derived(sheet, material),

@@ -80,8 +80,11 @@ def _sheet(scene: Scene, name: str) -> list[Parameter]:
         ("D_md", "Bending stiffness per width D_MD (N mm)", "N*mm"),
         ("D_cd", "Bending stiffness per width D_CD (N mm)", "N*mm"),
         ("D_twist", "Twisting stiffness per width (N mm)", "N*mm"),
+        ("G", "Shear modulus G in the plane (N/mm2)", "MPa"),
     ):
         value = getattr(material, member)
+        if member == "k_tz" and sheet.layout == "plate":  # follows from E_md and E_cd there
+            continue
         if value is not None:
             rows.append(Parameter(name, member, label, value, unit, (*source, member)))
     damping, ratio = material.damping, (*source, "damping", "ratio")

@@ -1,4 +1,4 @@
-"""Joint stiffness and damping of a sheet: the paper's Eqs. 4-7, and bending from plate stiffness.
+"""Joint stiffness and damping of a sheet: the paper's Eqs. 4-7, and what follows from plate stiffness.
 
 Each joint has a length and a width of its own, the mean of the boxes that it joins along it and the side
 that they share, and two halves in series, one in each box. Where all boxes are alike that is the paper's
@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mdlgen.model import plate
 from mdlgen.model.cells import Cells
 from mdlgen.model.tables import Floats, Ints
 from mdlgen.spec.material import Material
@@ -18,6 +19,7 @@ from mdlgen.spec.sheet import Sheet
 
 # A support is a bushing to ground this much stiffer than the sheet's own k_z.
 SUPPORT_FACTOR = 100.0
+COMPONENTS: tuple[str, ...] = ("x", "y", "z", "tx", "ty", "tz")
 
 
 @dataclass(frozen=True)
@@ -73,11 +75,14 @@ def coefficients(sheet: Sheet, material: Material, of: Between, along_x: bool) -
     k_ty = of.bending * _hinge(material.k_ty, material.D_md, 1.0 / shape, 1.0 / mean, parts)
     even = np.ones_like(k_x)
     k_tz = material.k_tz * even if material.k_tz is not None else 20.0 * np.maximum(k_tx, k_ty)
-    if material.D_twist is not None:
+    twist = plate.twisting(sheet, material)
+    if twist is not None:
         if along_x:
-            k_tx = of.bending * (2.0 * material.D_twist * of.d_y / of.d_x)
+            k_tx = of.bending * (2.0 * twist * of.d_y / of.d_x)
         else:
-            k_ty = of.bending * (2.0 * material.D_twist * of.d_x / of.d_y)
+            k_ty = of.bending * (2.0 * twist * of.d_x / of.d_y)
+    if sheet.layout == "plate":
+        k_x, k_y, k_tz = plate.in_plane(material, (k_x, k_y), (of.d_x, of.d_y), of.membrane * s, along_x)
     k = np.stack([k_x, k_y, k_z, k_tx, k_ty, k_tz], axis=1)
     return k, _damping(k, of, parts, material)
 
@@ -116,15 +121,32 @@ def _damping(k: Floats, of: Between, parts: int, material: Material) -> Floats:
 
 
 def derived(sheet: Sheet, material: Material) -> dict[str, float]:
-    """The paper's Tables 1 and 2 for this sheet, by symbol: of a box of mean size outside all zones."""
+    """The paper's Tables 1 and 2 for this sheet, by symbol: of a box of mean size outside all zones.
+
+    k_x, k_ty and k_tz are those of the joints along x, k_y and k_tx those of the joints along y; layout plate
+    adds the others as k_y_shear, k_tx_twist and k_x_shear, k_ty_twist, k_tz_y, and the G [MPa] and D_twist
+    [N mm] that they follow from.
+    """
     of = plain(sheet)
-    names = ("x", "y", "z", "tx", "ty", "tz")
-    (k, c), (k_across, c_across) = (coefficients(sheet, material, of, way) for way in (True, False))
-    # the hinge about x bends the joints along y, the hinge about y those along x
-    k[:, 3], c[:, 3] = k_across[:, 3], c_across[:, 3]
+    own, shared = {True: ("x", "ty", "tz"), False: ("y", "tx")}, ("z",)
+    other = {
+        True: {"y": "y_shear", "tx": "tx_twist"},
+        False: {"x": "x_shear", "ty": "ty_twist", "tz": "tz_y"},
+    }
     d_x, d_y, s, m = (float(v[0]) for v in (of.d_x, of.d_y, of.s, of.m))
     values = {"d_x": d_x, "d_y": d_y, "m": m}
     inertia = (m * (d_y**2 + s**2) / 12, m * (d_x**2 + s**2) / 12, m * (d_x**2 + d_y**2) / 12)
     values |= {f"I_{a}": i for a, i in zip("xyz", inertia, strict=True)}
-    values |= {f"k_{n}": float(v) for n, v in zip(names, k[0], strict=True)}
-    return values | {f"c_{n}": float(v) for n, v in zip(names, c[0], strict=True)}
+    found: dict[str, float] = {}
+    for along_x in (True, False):
+        for symbol, six in zip("kc", coefficients(sheet, material, of, along_x), strict=True):
+            row = dict(zip(COMPONENTS, six[0].tolist(), strict=True))
+            found |= {f"{symbol}_{n}": row[n] for n in (*own[along_x], *shared)}
+            if sheet.layout == "plate":
+                found |= {f"{symbol}_{name}": row[n] for n, name in other[along_x].items()}
+    values |= {name: found.pop(name) for name in [f"{symbol}_{n}" for symbol in "kc" for n in COMPONENTS]}
+    if sheet.layout != "plate":
+        return values
+    twist = plate.twisting(sheet, material)
+    assert twist is not None, "a plate has one"
+    return values | found | {"G": plate.shear_modulus(material), "D_twist": twist}

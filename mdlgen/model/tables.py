@@ -162,7 +162,7 @@ class SheetPart(Frozen):
     surface: bool
     clamp: Clamp | None
     bending: tuple[str, str]  # which of (k_tx, D_cd) and of (k_ty, D_md) the user gave
-    twist: bool  # whether D_twist was given
+    twist: bool  # whether joints have a twist of their own: D_twist was given, or layout plate
     in_plane: bool  # whether k_tz was given
     rotation_damping: str
     derived: dict[str, float]

@@ -52,7 +52,17 @@ def _derived(values: dict[str, float]) -> list[str]:
         ("c_t", ("tx", "ty", "tz"), "ct"),
     ):
         rows.append([symbol, *(f"{values[f'{symbol[0]}_{a}']:.5g}" for a in axes), UNITS[unit]])
-    return [f"  box: {told}", *_table(rows)]
+    return [f"  box: {told}", *_table(rows), *(_plate(values) if "G" in values else [])]
+
+
+def _plate(values: dict[str, float]) -> list[str]:
+    """What joints of layout plate have across themselves: k_y and k_tx along x, the others along y."""
+    rows = [["its others", "x shear", "y shear", "", "tx twist", "ty twist", "tz along y", ""]]
+    for symbol in "kc":
+        named = [f"{symbol}_{name}" for name in ("x_shear", "y_shear", "tx_twist", "ty_twist", "tz_y")]
+        told = [f"{values[name]:.5g}" for name in named]
+        rows.append([symbol, *told[:2], UNITS[symbol], *told[2:], UNITS[f"{symbol}t"]])
+    return [f"  plate: G {values['G']:.5g} MPa, D_twist {values['D_twist']:.5g} {UNITS['D']}", *_table(rows)]
 
 
 def _bending(values: dict[str, float]) -> list[str]:

@@ -37,7 +37,8 @@ class Material(Strict):
     k_ty: Torsion | None = Field(default=None, description="hinge stiffness per bushing for bending along x")
     k_tz: Torsion | None = Field(
         default=None,
-        description="in-plane stiffness per bushing; 20 times the larger of k_tx, k_ty where left out",
+        description="in-plane stiffness per bushing; 20 times the larger of k_tx, k_ty where left out; "
+        "with layout plate it follows from E_md and E_cd",
     )
     D_md: Plate | None = Field(
         default=None, description="bending stiffness per width along x, in place of k_ty"
@@ -46,7 +47,13 @@ class Material(Strict):
         default=None, description="bending stiffness per width along y, in place of k_tx"
     )
     D_twist: Plate | None = Field(
-        default=None, description="twisting stiffness per width D66; acts with layout center_to_center only"
+        default=None,
+        description="twisting stiffness per width D66, with layouts plate and center_to_center; in plate "
+        "0.387 sqrt(D_md D_cd) where left out",
+    )
+    G: Modulus | None = Field(
+        default=None,
+        description="shear modulus in the plane, with layout plate; 0.387 sqrt(E_md E_cd) where left out",
     )
     damping: Damping = Field(default_factory=Damping)
 

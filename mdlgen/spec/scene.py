@@ -42,9 +42,16 @@ class Scene(Strict):
             material = self.materials[sheet.material]
             if material.D_twist is not None and sheet.layout == "edge_to_edge":
                 raise fail(
-                    f"sheet {name}: D_twist acts with layout center_to_center only: in edge_to_edge the two "
-                    "corner bushings lock the twist; leave D_twist out or change the layout",
+                    f"sheet {name}: D_twist acts with layouts plate and center_to_center only: in "
+                    "edge_to_edge the two corner bushings lock the twist; leave D_twist out or "
+                    "change the layout",
                     ("materials", sheet.material, "D_twist"),
+                )
+            if material.G is not None and sheet.layout != "plate":
+                raise fail(
+                    f"sheet {name}: G acts with layout plate only: in {sheet.layout} shear goes with the "
+                    "membrane stiffness across the joint; leave G out or change the layout",
+                    ("materials", sheet.material, "G"),
                 )
         for kind in ("probes", "loads", "supports"):
             items = getattr(self, kind)

@@ -49,9 +49,10 @@ class Sheet(Strict):
     thickness: Annotated[float, quantity("mm", 0.01, 50.0, slip=1000.0)] = Field(description="thickness s")
     mass: Mass = Field(description="mass M of the whole sheet")
     boxes: Counts2 = Field(description="[n_x, n_y] boxes; [1, 1] is one rigid block")
-    layout: Literal["edge_to_edge", "center_to_center"] = Field(
+    layout: Literal["edge_to_edge", "center_to_center", "plate"] = Field(
         default="edge_to_edge",
-        description="two bushings per pair at the shared corners, or one at the edge's middle",
+        description="two bushings per pair at the shared corners, or one at the edge's middle; plate: one "
+        "there with the bending, twist, membrane and shear stiffness of an orthotropic plate",
     )
     grid: Literal["tiled", "paper"] = Field(
         default="tiled",

@@ -77,6 +77,8 @@ def _joints(model: Model, index: int) -> dict[str, float]:
             members |= {f"k_{n}": v for n, v in zip(_SIX, k, strict=True)}
             members |= {f"c_{n}": v for n, v in zip(_SIX, c_six, strict=True)}
             members = _as_written(sheet, given, members, c.along_x)
+            if sheet.layout == "plate":
+                members |= _sheared(sheet, given, members, c.along_x)
             found |= {f"ds_{sheet.name}_joints.real_{n}_{c.name}": float(v) for n, v in members.items()}
     return found
 
@@ -119,3 +121,16 @@ def _as_written(
     heavy = found["m"] if sheet.rotation_damping == "paper" else found[f"J_{about}"]
     found[f"k_{name}"], found[f"c_{name}"] = bent, 2 * zeta * math.sqrt(bent * heavy * SECOND)
     return found
+
+
+def _sheared(
+    sheet: SheetPart, given: dict[str, float], found: dict[str, float], along_x: bool
+) -> dict[str, float]:
+    """The text shows Eqs. 5 and 6 of a joint of a plate both, and its shear beside the one it replaces."""
+    name, modulus, shape = "y", "E_cd", found["d_x"] / found["d_y"]
+    if not along_x:
+        name, modulus, shape = "x", "E_md", 1 / shape
+    k = found["p"] * given[modulus] * sheet.thickness * shape
+    c = 2 * given["zeta"] * math.sqrt(k * found["m"] * SECOND)
+    shear = {f"{symbol}_{name}_shear": found[f"{symbol}_{name}"] for symbol in "kc"}
+    return shear | {f"k_{name}": k, f"c_{name}": c}

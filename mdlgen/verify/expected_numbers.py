@@ -94,6 +94,9 @@ def _derived(model: Model, index: int) -> dict[str, float]:
     if sheet.rotation_damping == "inertia":  # of a box about the edges and the corner that its hinges are on
         found["J_x"], found["J_y"] = m * (d_y**2 / 3 + s**2 / 12), m * (d_x**2 / 3 + s**2 / 12)
         found["J_z"] = m * (d_x**2 + d_y**2) / 3
+    if sheet.layout == "plate":
+        found |= {name: sheet.derived[name] for name in ("G", "D_twist", "k_x_shear", "k_y_shear", "k_tz_y")}
+        found |= {n: sheet.derived[n] * SECOND for n in ("c_x_shear", "c_y_shear", "c_tz_y")}
     return found | (_twist(model, sheet, found) if sheet.twist else {})
 
 
@@ -108,7 +111,7 @@ def _twist(model: Model, sheet: SheetPart, found: dict[str, float]) -> dict[str,
         ("tx", sheet.d_y / sheet.d_x, "zeta"),
         ("ty", sheet.d_x / sheet.d_y, "zeta_ty"),
     ):
-        k = 2 * given["D_twist"] * slender
+        k = 2 * (given["D_twist"] if "D_twist" in given else found["D_twist"]) * slender
         heavy = found["m"] if sheet.rotation_damping == "paper" else found[f"J_{name[1]}"]
         twist[f"k_{name}_twist"] = k
         twist[f"c_{name}_twist"] = 2 * given[zeta] * math.sqrt(k * heavy * SECOND)

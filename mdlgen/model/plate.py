@@ -1,0 +1,59 @@
+"""`layout: plate`: one bushing in the middle of each shared side, its stiffness that of an orthotropic plate.
+
+A joint of length l and width w (the side that its two boxes share) gets
+
+    along l     E s w / l             membrane
+    along w     2 G s w / l           shear: the joints along x and those along y share it in series
+    about l     2 D_twist w / l       twist: both ways add up to M_xy = 2 D_twist w_xy
+    about w     D w / l               bending
+    about z     E s w^3 / (12 l)      bending in the plane: that of the strip of width w itself
+
+so bending, in the plane or out of it, membrane, shear and twist are those of the plate on any grid; Poisson's
+effect is not represented. At free edges the outer half of a box neither shears nor twists: of the plate's
+compliance the lattice has the part 1 - (1/n_x + 1/n_y)/2. Across z a joint is stiff, as in Eq. 4.
+
+Rigid boxes that twist by an angle from one to the next leave each other at the corners, by that angle times
+w/2 across the sheet. No bushing can have it otherwise: what stays closed there does not twist.
+"""
+
+from __future__ import annotations
+
+import math
+
+from mdlgen.model.tables import Floats
+from mdlgen.spec.material import Material
+from mdlgen.spec.sheet import Sheet
+
+# Shear modulus in the plane of machine-made paper over sqrt(E_md E_cd), where none is given: Baum, Brennan
+# and Habeger, Orthotropic elastic constants of paper, Tappi 64(8), 1981. Twist has the same ratio to bending.
+SHEAR_RATIO = 0.387
+
+
+def shear_modulus(material: Material) -> float:
+    """G in the plane of the sheet [MPa]."""
+    return material.G if material.G is not None else SHEAR_RATIO * math.sqrt(material.E_md * material.E_cd)
+
+
+def twisting(sheet: Sheet, material: Material) -> float | None:
+    """Twisting stiffness per width D66 [N mm]; None where none is given and the layout has no need of it."""
+    if material.D_twist is not None or sheet.layout != "plate":
+        return material.D_twist
+    shape = sheet.pitch[0] / sheet.pitch[1]
+    cd = material.D_cd if material.k_tx is None else material.k_tx / shape
+    md = material.D_md if material.k_ty is None else material.k_ty * shape
+    assert cd is not None and md is not None, "the spec requires one of k_t* and D_*"
+    return SHEAR_RATIO * math.sqrt(md * cd)
+
+
+def in_plane(
+    material: Material, membrane: tuple[Floats, Floats], box: tuple[Floats, Floats], s: Floats, along_x: bool
+) -> tuple[Floats, Floats, Floats]:
+    """k_x, k_y [N/mm] and k_tz [N mm/rad] of joints along x, or along y, (n,) each.
+
+    `membrane` is Eqs. 5 and 6 [N/mm], `box` has the lengths (d_x, d_y) [mm], `s` the thickness [mm].
+    """
+    (k_x, k_y), (d_x, d_y) = membrane, box
+    shear = 2.0 * shear_modulus(material) * s
+    if along_x:
+        return k_x, shear * d_y / d_x, k_x * d_y**2 / 12
+    return shear * d_x / d_y, k_y, k_y * d_x**2 / 12

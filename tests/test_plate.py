@@ -1,0 +1,292 @@
+"""Layout plate: an orthotropic plate in bending, twist, membrane and shear on any grid, and what holds it
+together at the corners, beside the paper's two layouts."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import mdlgen
+from mdlgen.bench.oracles.elastica import drop as elastica
+from mdlgen.errors import SpecError
+from mdlgen.model.lower import lower
+from mdlgen.model.plate import SHEAR_RATIO
+from mdlgen.model.tables import CLAMP, JOINT_X, JOINT_Y, Model
+from mdlgen.paths import samples
+from mdlgen.results.result import Result
+from mdlgen.spec.load import load, loads
+from mdlgen.verify.verification import verify
+from tests.corners import gaps
+
+PLATE = "sheets.note.layout=plate"
+C2C = "sheets.note.layout=center_to_center"
+E_MD, E_CD, D_MD, D_CD = 3530.0, 1113.0, 0.40, 0.242  # MPa, N mm: the sample cantilever
+STILL = "gravity=[0 m/s^2, 0 m/s^2, 0 m/s^2]"
+BOTH = pytest.mark.parametrize("solver", ["lattice", "exudyn"])
+PATCH = """
+name: patch
+gravity: [0 m/s^2, 0 m/s^2, 0 m/s^2]
+materials: {{p: {{E_md: 3530 MPa, E_cd: 1113 MPa, D_md: 0.40 N*mm, D_cd: 0.242 N*mm{material}}}}}
+sheets:
+  note:
+    {{material: p, size: [67 mm, 127 mm], thickness: 0.1 mm, mass: 0.72 g, boxes: {boxes}, layout: {layout}}}
+supports: {supports}
+loads: {loads}
+probes: {probes}
+run: {{analysis: static}}
+"""
+
+
+def model(name: str, *overrides: str) -> Model:
+    return lower(load(samples() / f"{name}.yaml", overrides))
+
+
+def solved(made: Model, solver: str = "lattice") -> Result:
+    result = mdlgen.solve(made, solver)
+    assert result.ok, result.status
+    return result
+
+
+def moved(made: Model, solver: str = "lattice") -> dict[str, np.ndarray]:
+    """Displacement of each probe at rest [mm]."""
+    result = solved(made, solver)
+    motions = [result.anchor_motion(k)[0] for k in range(len(made.probes))]
+    start = [made.sheets[0].center + np.array([*probe.at, 0.0]) for probe in made.probes]
+    return {p.name: m[-1] - s for p, m, s in zip(made.probes, motions, start, strict=True)}
+
+
+def free_edges(boxes: tuple[int, int]) -> float:
+    """Part of the plate's compliance that the lattice has: the outer half of boxes at its edges is rigid."""
+    return 1 - (1 / boxes[0] + 1 / boxes[1]) / 2
+
+
+# -- bending
+
+
+@BOTH
+@pytest.mark.parametrize(
+    ("edge", "length", "stiffness", "tolerance"),
+    [("y", 127.0, D_CD, 0.0025), ("x", 67.0, D_MD, 0.01)],
+    ids=["20 boxes along y", "10 boxes along x"],
+)
+def test_a_cantilever_is_the_heavy_elastica(
+    solver: str, edge: str, length: float, stiffness: float, tolerance: float
+) -> None:
+    """The hinge chain is off by 0.19 % with 20 boxes, and by four times that with 10 (oracles)."""
+    ends = (f"sheets.note.clamp.edge={edge}_min", f"probes.tip.edge={edge}_max")
+    fallen = -moved(model("cantilever", PLATE, *ends), solver)["tip"][2]
+    group = 0.72e-3 / (67 * 127) * 1e3 * 9.81e-3 * length**3 / stiffness
+    assert fallen == pytest.approx(elastica(group) * length, rel=tolerance)
+
+
+@BOTH
+@pytest.mark.parametrize(("axis", "stiffness"), [("x", D_MD), ("y", D_CD)])
+def test_an_end_moment_closes_the_strip(solver: str, axis: str, stiffness: float) -> None:
+    """M = 2 pi D W/L: a circle on any grid; what is left is the membrane's own stretch."""
+    size = {"x": 67.0, "y": 127.0}
+    boxes = [10, 20] if solver == "lattice" else [2, 8] if axis == "y" else [8, 2]
+    width = size["y" if axis == "x" else "x"]
+    moment = 2 * math.pi * stiffness * width / size[axis]
+    about = [moment, 0.0, 0.0] if axis == "y" else [0.0, -moment, 0.0]
+    told = ", ".join(f"{m!r} N*mm" for m in about)
+    made = model(
+        "cantilever",
+        PLATE,
+        STILL,
+        f"sheets.note.boxes={boxes}",
+        f"sheets.note.clamp.edge={axis}_min",
+        f"probes.tip.edge={axis}_max",
+        f"loads=[{{sheet: note, edge: {axis}_max, moment: [{told}]}}]",
+    )
+    shut = moved(made, solver)["tip"]
+    there = np.array([-67.0, 0.0, 0.0]) if axis == "x" else np.array([0.0, -127.0, 0.0])
+    assert np.abs(shut - there).max() < 1e-5 * size[axis]
+
+
+# -- twist
+
+
+def twisted(
+    boxes: tuple[int, int], layout: str, near: float, material: str = "", solver: str = "lattice"
+) -> float:
+    """D66 [N mm] of a sheet held at three corners and pressed at the fourth, w = P a b / (4 D66).
+
+    `near` is about what is expected: the corner moves by the thickness then; more would stretch the sheet.
+    """
+    force = 0.1 * 4 * near / (67 * 127)
+    corners = [(sx, sy) for sy in (-1, 1) for sx in (-1, 1)]
+    # a quarter of a box beyond the corner box's centre
+    at = [
+        f"[{sx * (0.5 - 0.25 / boxes[0]) * 67!r} mm, {sy * (0.5 - 0.25 / boxes[1]) * 127!r} mm]"
+        for sx, sy in corners
+    ]
+    fixed = ("[x, y, z]", "[y, z]", "[z]")
+    text = PATCH.format(
+        boxes=list(boxes),
+        layout=layout,
+        material=material,
+        supports=[f"{{sheet: note, at: {a}, fix: {f}}}" for a, f in zip(at, fixed, strict=False)],
+        loads=f"[{{sheet: note, at: {at[3]}, force: [0 N, 0 N, {force!r} N]}}]",
+        probes=f"{{corner: {{sheet: note, at: {at[3]}}}}}",
+    ).replace("'", "")
+    lifted = moved(lower(loads(text)), solver)["corner"][2]
+    return force * 67 * 127 / (4 * lifted)
+
+
+@BOTH
+@pytest.mark.parametrize("boxes", [(10, 20), (8, 4)], ids=str)
+def test_a_corner_twists_as_that_of_a_plate(solver: str, boxes: tuple[int, int]) -> None:
+    """Within 1 % of the lattice value, D_twist given and left out.
+
+    Exudyn needs more force, and so a stiffer sheet, than is lost in the round-off of its supports.
+    """
+    given = twisted(boxes, "plate", 20.0, ", D_twist: 20 N*mm", solver)
+    assert given * free_edges(boxes) == pytest.approx(20.0, rel=0.01)
+    if solver == "lattice":
+        own = SHEAR_RATIO * math.sqrt(D_MD * D_CD)
+        assert twisted(boxes, "plate", own) * free_edges(boxes) == pytest.approx(own, rel=0.01)
+
+
+def test_the_papers_layouts_do_not() -> None:
+    """Two corners lock the twist; one bushing has in it what the shape of its box makes of the hinges."""
+    assert twisted((10, 20), "edge_to_edge", 1e4) > 1e3
+    square, long = (
+        twisted(boxes, "center_to_center", 0.2) * free_edges(boxes) for boxes in ((10, 20), (10, 5))
+    )
+    assert long > 2 * square
+
+
+# -- in the plane
+
+
+@BOTH
+@pytest.mark.parametrize("boxes", [(10, 20), (3, 5)], ids=str)
+def test_a_sheet_shears_as_a_plate(solver: str, boxes: tuple[int, int]) -> None:
+    """Shear all round: angle = tau/G, for the part of the lattice that shears; both edges' turns added."""
+    stress = 1e-3  # MPa: far more would buckle it
+    over = {"x": stress * 0.1 * 127, "y": stress * 0.1 * 67}
+    pulls = [
+        f"{{sheet: note, edge: {axis}_{end}, force: {force}}}"
+        for axis, form in (("x", "[0 N, {} N, 0 N]"), ("y", "[{} N, 0 N, 0 N]"))
+        for end, force in (("min", form.format(-over[axis])), ("max", form.format(over[axis])))
+    ]
+    text = PATCH.format(
+        boxes=list(boxes),
+        layout="plate",
+        material=", G: 600 MPa",
+        supports="[{sheet: note, at: [3 mm, 3 mm], fix: [x, y, z]}, "
+        "{sheet: note, at: [30 mm, 3 mm], fix: [y, z]}, {sheet: note, at: [3 mm, 60 mm], fix: [z]}]",
+        loads=pulls,
+        probes="{west: {sheet: note, edge: x_min}, east: {sheet: note, edge: x_max}, "
+        "south: {sheet: note, edge: y_min}, north: {sheet: note, edge: y_max}}",
+    ).replace("'", "")
+    ends = moved(lower(loads(text)), solver)
+    angle = (ends["east"] - ends["west"])[1] / 67 + (ends["north"] - ends["south"])[0] / 127
+    assert angle == pytest.approx(stress / 600 * free_edges(boxes), rel=1e-3)
+
+
+@pytest.mark.parametrize("boxes", [(1, 20), (3, 20), (10, 20), (10, 7)], ids=str)
+def test_a_strip_bends_in_its_plane_as_a_beam(boxes: tuple[int, int]) -> None:
+    """Tip M L^2/(2 E I), I = s W^3/12, on any grid: joints side by side and their own turn add up to it.
+
+    The end has the stress of bending, a force and a moment for each box, so that the whole sheet bends alike.
+    """
+    bend, width = 1e-5, 67 / boxes[0]  # 1/mm
+    places = [(k + 0.5) * width - 33.5 for k in range(boxes[0])]
+    pulls = [
+        f"{{sheet: note, at: [{x!r} mm, 63.5 mm], force: [0 N, {E_CD * 0.1 * width * bend * x!r} N, 0 N]}}"
+        for x in places
+    ]
+    own = boxes[0] * E_CD * 0.1 * width**3 / 12 * bend
+    pulls.append(f"{{sheet: note, edge: y_max, moment: [0 N*mm, 0 N*mm, {own!r} N*mm]}}")
+    sets = (f"sheets.note.boxes={list(boxes)}", f"loads=[{', '.join(pulls)}]")
+    aside = -moved(model("cantilever", PLATE, STILL, *sets))["tip"][0]
+    assert aside == pytest.approx(bend * 127**2 / 2, rel=1e-3)
+
+
+def test_stiffness_of_each_joint() -> None:
+    """As the formulas have it, clamps twice that; the material's k_tz has no part in it."""
+    made = model("cantilever", PLATE, "materials.eur10.G=700 MPa", "materials.eur10.D_twist=0.2 N*mm")
+    rows, d_x, d_y = made.bushings, 6.7, 6.35
+    for kind, times in ((JOINT_X, 1.0), (JOINT_Y, 1.0), (CLAMP, 2.0)):
+        along_x = kind == JOINT_X
+        length, width = (d_x, d_y) if along_x else (d_y, d_x)
+        modulus, bending = (E_MD, D_MD) if along_x else (E_CD, D_CD)
+        shape = width / length
+        pull, shear = modulus * 0.1 * shape, 2 * 700 * 0.1 * shape
+        roll, bend = 2 * 0.2 * shape, bending * shape
+        across, turn = 10 * 3530 * 0.1 * d_y / d_x, pull * width**2 / 12
+        six = [pull, shear, across, roll, bend, turn] if along_x else [shear, pull, across, bend, roll, turn]
+        found = rows.k[rows.kind == kind]
+        np.testing.assert_allclose(found, np.tile(times * np.array(six), (len(found), 1)), rtol=1e-12)
+
+
+def test_what_is_left_out_does_not_depend_on_how_bending_is_given() -> None:
+    """k_tx, k_ty of a bushing and the D_cd, D_md that they stand for give the same joints."""
+    plates = model("cantilever", PLATE)
+    hinges = model(
+        "cantilever",
+        PLATE,
+        f"materials.eur10.k_tx={D_CD * 6.7 / 6.35!r} N*mm/rad",
+        f"materials.eur10.k_ty={D_MD * 6.35 / 6.7!r} N*mm/rad",
+    )
+    np.testing.assert_allclose(hinges.bushings.k, plates.bushings.k, rtol=1e-12)
+    np.testing.assert_allclose(hinges.bushings.c, plates.bushings.c, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    "given", [(), ("materials.eur10.G=700 MPa", "materials.eur10.D_twist=0.2 N*mm")], ids=len
+)
+def test_the_text_says_the_same_where_boxes_differ(given: tuple[str, ...]) -> None:
+    sets = (
+        "sheets.note.boxes=[3,4]",
+        "sheets.note.clamp.edge=x_min",
+        "sheets.note.grading={x: [1,2,1]}",
+        "sheets.note.zones={w: {x: [3 mm, 20 mm], y: [-20 mm, 5 mm], density: 0.7, stiffness: 1.5}}",
+    )
+    scene = load(samples() / "cantilever.yaml", [PLATE, *sets, *given])
+    found = verify(scene, lower(scene))
+    assert found.ok, found.differences
+    assert found.turned is not None and found.turned.values >= 19
+
+
+@pytest.mark.parametrize("layout", ["edge_to_edge", "center_to_center"])
+def test_g_is_refused_where_it_does_not_act(layout: str) -> None:
+    with pytest.raises(SpecError, match=r"materials\.eur10\.G.*sheet note: G acts with layout plate only"):
+        load(samples() / "cantilever.yaml", [f"sheets.note.layout={layout}", "materials.eur10.G=700 MPa"])
+
+
+# -- cohesion
+
+# the same bending for each layout: what two hinges of the sample have together
+SAME = (
+    "materials.eur10.D_md=0.3904 N*mm",
+    "materials.eur10.D_cd=0.2843 N*mm",
+)
+PAPER_C2C = "materials.eur10.k_tz=10 N*mm/rad"  # Table 2
+
+
+def test_corners_stay_together_where_the_sheet_is_pulled_in_its_plane() -> None:
+    """Askew at a far corner: within 10 % of edge_to_edge; center_to_center opens more than twice as far."""
+    pull = "loads=[{sheet: note, at: [20 mm, 60 mm], force: [0.1 N, 0.1 N, 0 N]}]"
+    open_ = {
+        name: gaps(solved(model("cantilever", STILL, pull, *sets))).opening.max()
+        for name, sets in {"e2e": (), "c2c": (C2C, PAPER_C2C), "plate": (PLATE,)}.items()
+    }
+    assert open_["plate"] < 1.1 * open_["e2e"]
+    assert open_["c2c"] > 2 * open_["e2e"]
+
+
+def test_corners_under_the_nips_part_by_twist_alone() -> None:
+    """In the sheet they open no more than twice as far as in edge_to_edge. Across it they part as rigid boxes
+    must that twist; but for that, no more than twice as far, too. What twists less, steps less."""
+    step = "run.step=62.5 us"
+    e2e = gaps(solved(model("transport_4x4", step, *SAME)))
+    plate = gaps(solved(model("transport_4x4", step, *SAME, PLATE)))
+    stiff = gaps(solved(model("transport_4x4", step, *SAME, PLATE, "materials.eur10.D_twist=1000 N*mm")))
+    assert plate.opening.max() < 2 * e2e.opening.max()
+    assert np.abs(plate.step - plate.twist).max() < 2 * np.abs(e2e.step - e2e.twist).max()
+    assert plate.step.max() > 10 * e2e.widest()  # the sheet does twist, which edge_to_edge does not
+    assert stiff.widest() < 2 * e2e.widest()
