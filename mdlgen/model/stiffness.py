@@ -53,8 +53,9 @@ def joint_values(sheet: Sheet, material: Material) -> JointValues:
     inertia = (m * (d_y**2 + s**2) / 12, m * (d_x**2 + s**2) / 12, m * (d_x**2 + d_y**2) / 12)
     parts = 2 if sheet.layout == "edge_to_edge" else 1  # bushings per pair
 
-    k_x = material.E_md * d_y * s / d_x / parts  # Eq. 5
-    k_y = material.E_cd * d_x * s / d_y / parts  # Eq. 6
+    e_md, e_cd = material.moduli
+    k_x = e_md * d_y * s / d_x / parts  # Eq. 5
+    k_y = e_cd * d_x * s / d_y / parts  # Eq. 6
     k_z = 10.0 * max(k_x, k_y)
     k_tx = material.k_tx if material.k_tx is not None else _plate(material.D_cd, d_x / d_y, parts)
     k_ty = material.k_ty if material.k_ty is not None else _plate(material.D_md, d_y / d_x, parts)
