@@ -8,6 +8,7 @@ import numpy as np
 
 from mdlgen.model import grid, naming
 from mdlgen.model.anchors import anchor, find_tension, lower_loads
+from mdlgen.model.curves import lower_curves
 from mdlgen.model.external import external_pairs, lower_externals
 from mdlgen.model.joints import find_joints
 from mdlgen.model.machine import frame, lower_planes, lower_rollers
@@ -63,6 +64,7 @@ def lower(scene: Scene) -> Model:
         externals=externals,
         bodies=bodies,
         bushings=bushings,
+        curves=lower_curves(scene, sheets, bushings),
         contacts=contacts,
         pairs=find_pairs(
             gravity, sheets, rollers, planes, bodies, contacts, run, scene.run.prune, scene.run.margin
