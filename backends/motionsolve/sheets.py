@@ -5,16 +5,27 @@ from __future__ import annotations
 from backends.motionsolve.axes import cosines
 from backends.motionsolve.bodies import body_id
 from backends.motionsolve.requests import add_request
-from backends.motionsolve.rows import Bushing, BushingGroup, Cosines, Deck, Load, Surface
+from backends.motionsolve.rows import (
+    Bushing,
+    BushingGroup,
+    Cosines,
+    CurvedSpring,
+    Deck,
+    Load,
+    Spline,
+    Surface,
+)
 from backends.motionsolve.units import Triple, number, numbers, per_thousand, triples
-from mdlgen.model.tables import Model
+from mdlgen.model.curves import straight_points, whole_joint
+from mdlgen.model.tables import CLAMP, Model
 
 _AXES = ("x", "y", "z", "tx", "ty", "tz")
 
 
 def add_bushings(deck: Deck, model: Model) -> None:
     """All bushings, with a marker on each body at the same place."""
-    table = model.bushings
+    table, curves = model.bushings, model.curves
+    _add_splines(deck, model)
     turns: dict[bytes, Cosines | None] = {}
     groups: dict[bytes, BushingGroup] = {}
     ends = zip(table.a.tolist(), table.b.tolist(), triples(table.origin), strict=True)
@@ -26,11 +37,38 @@ def add_bushings(deck: Deck, model: Model) -> None:
         axes = turns[key]
         i = deck.marker(f"{name}.i", f"{label}-Marker I", body_id(a), at, axes)
         j = deck.marker(f"{name}.j", f"{label}-Marker J", body_id(b), at, axes)
-        key = table.k[row].tobytes() + table.c[row].tobytes()
+        key = table.k[row].tobytes() + table.c[row].tobytes() + curves.of[row].tobytes()
         if key not in groups:
-            groups[key] = BushingGroup(_law(table.k[row].tolist(), table.c[row].tolist()), [])
+            stiff = table.k[row].tolist()
+            if curves.of[row] >= 0:
+                stiff[curves.axis[row]] = 0.0
+            groups[key] = BushingGroup(_law(stiff, table.c[row].tolist()), [])
+        if curves.of[row] >= 0:
+            floating = deck.marker(f"{name}.jfloat", f"{label}-Float Marker J", body_id(b), at, axes)
+            force = _curved(int(curves.axis[row]), int(curves.of[row]) + 1, i, j, table.kind[row] == CLAMP)
+            number_of = len(deck.curved) + 1
+            deck.curved.append(
+                CurvedSpring(f"frc_{table.name[row]}", f"{label}-Curve", number_of, i, floating, j, force)
+            )
         groups[key].bushings.append(Bushing(name, label, row + 1, i, j))
     deck.bushing_groups += groups.values()
+
+
+def _add_splines(deck: Deck, model: Model) -> None:
+    """Curves of one bushing, straight between their points."""
+    for index, name in enumerate(model.curves.name):
+        strain, stress = straight_points(model.curves, index)
+        length, area = whole_joint(model, index)
+        points = zip(numbers(length * strain), numbers(area * stress), strict=True)
+        label = f"{name.replace('_', ' ')}: force over elongation of one bushing"
+        deck.splines.append(Spline(f"crv_{name}", label, index + 1, list(points)))
+
+
+def _curved(axis: int, spline: int, i: int, j: int, half: bool) -> Triple:
+    """Force on i along each axis of j; half a cell has its strain at half of the elongation."""
+    elongation = f"{'2*' if half else ''}D{'XY'[axis]}({i},{j},{j})"
+    along = f"-LINSPL({elongation},0,{spline})"
+    return ("0", along, "0") if axis else (along, "0", "0")
 
 
 def _law(k: list[float], c: list[float]) -> tuple[Triple, ...]:

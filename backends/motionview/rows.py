@@ -44,6 +44,16 @@ class JointGroup(NamedTuple):
     tx: str  # suffix of the members of rotation about x: tx or tx_twist
     ty: str
     bushes: list[Bush]
+    curves: tuple[str, str]  # that stand for k_x and k_y, empty: none
+
+
+class CurveView(NamedTuple):
+    """A curve of force over elongation of one bushing along an axis: strains and stresses of its points."""
+
+    name: str
+    label: str
+    axis: str  # x or y
+    points: list[tuple[str, str]]
 
 
 @dataclass(frozen=True)
@@ -69,6 +79,7 @@ class SheetView:
     free: list[Point]
     nodes: list[Point]
     joints: list[JointGroup]
+    curves: list[CurveView]
     surface: list[list[str]]  # marker names row by row; empty: no surface
 
 

@@ -7,8 +7,18 @@ from itertools import islice
 
 import numpy as np
 
-from backends.motionview.rows import Bush, JointGroup, Point, ProbeView, SheetView, SupportView, Value
+from backends.motionview.rows import (
+    Bush,
+    CurveView,
+    JointGroup,
+    Point,
+    ProbeView,
+    SheetView,
+    SupportView,
+    Value,
+)
 from backends.motionview.units import number
+from mdlgen.model.curves import WAYS, straight_points
 from mdlgen.model.stiffness import SUPPORT_FACTOR
 from mdlgen.model.tables import AXES, CLAMP, GROUND, JOINT_X, JOINT_Y, SUPPORT, Anchor, Model, SheetPart
 
@@ -45,8 +55,21 @@ def sheet_view(model: Model, index: int, given: list[Value]) -> SheetView:
         free=free,
         nodes=nodes,
         joints=joints,
+        curves=_curves(model, sheet),
         surface=_surface(sheet, names) if sheet.surface else [],
     )
+
+
+def _curves(model: Model, sheet: SheetPart) -> list[CurveView]:
+    found = []
+    for index, name in enumerate(model.curves.name):
+        for axis, way in zip(AXES, WAYS, strict=False):
+            if name == f"{sheet.name}_{way}":
+                points = zip(*straight_points(model.curves, index), strict=True)
+                label = f"{sheet.name} {way.upper()}: force (N) over elongation (mm) of one bushing"
+                rows = [(number(strain), number(stress)) for strain, stress in points]
+                found.append(CurveView(f"crv_{name}", label, axis, rows))
+    return found
 
 
 def _cell(nodes: Iterable[int]) -> list[str]:
@@ -77,7 +100,9 @@ def _joints(model: Model, index: int) -> tuple[list[Point], list[JointGroup]]:
         along_x = kind == JOINT_X or (kind == CLAMP and clamped_x)
         suffixes = (f"tx{twist}", "ty") if along_x else ("tx", f"ty{twist}")
         if bushes:  # a clamp is a half-cell hinge of twice the joint
-            made.append(JointGroup("2*" if kind == CLAMP else "", *suffixes, bushes))
+            own = [f"{sheet.name}_{way}" for way in WAYS]
+            x, y = (f"crv_{n}" if n in model.curves.name and along_x == (n == own[0]) else "" for n in own)
+            made.append(JointGroup("2*" if kind == CLAMP else "", *suffixes, bushes, (x, y)))
     return nodes, made
 
 

@@ -24,7 +24,7 @@ TEXT_BEYOND = 10.0
 
 
 def lower_curves(scene: Scene, sheets: Sequence[SheetPart], bushings: Bushings) -> Curves:
-    """The curves of all sheets by sheet, MD before CD; a sheet without bushings has none."""
+    """The curves that some bushing follows, by sheet, MD before CD."""
     count = len(bushings)
     of, axis = np.full(count, -1), np.zeros(count, dtype=np.int64)
     length, area = np.zeros(count), np.zeros(count)
@@ -34,9 +34,9 @@ def lower_curves(scene: Scene, sheets: Sequence[SheetPart], bushings: Bushings) 
     for number, sheet in enumerate(sheets):
         material = scene.materials[scene.sheets[sheet.name].material]
         for way, curve in enumerate((material.curve_md, material.curve_cd)):
-            if curve is None or not np.any(bushings.sheet == number):
-                continue
             rows = _following(sheet, number, bushings, way)
+            if curve is None or not len(rows):
+                continue
             of[rows], axis[rows] = len(names), way
             length[rows], area[rows] = extent(sheet, way, bushings.kind[rows] == CLAMP)
             strain, stress = np.array(curve.points, dtype=float).T
@@ -141,6 +141,14 @@ def straight_points(curves: Curves, number: int) -> tuple[Floats, Floats]:
     strain = np.concatenate([*stations, beyond])
     strain = np.concatenate([-strain[:0:-1], strain])
     return strain, stress(curves, number, strain)
+
+
+def whole_joint(model: Model, number: int) -> tuple[float, float]:
+    """Length [mm] and area [mm^2] of one bushing of the joints that follow a curve, half cells made whole."""
+    curves = model.curves
+    row = int(np.flatnonzero(curves.of == number)[0])
+    halves = 2.0 if model.bushings.kind[row] == CLAMP else 1.0
+    return halves * float(curves.length[row]), float(curves.area[row])
 
 
 def overstretched(model: Model, row: int, strain: float, time: float | None = None) -> str:

@@ -10,7 +10,9 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
+from mdlgen.model.curves import straight_points, whole_joint
 from mdlgen.model.tables import (
+    CLAMP,
     GROUND,
     SUPPORT,
     Anchor,
@@ -36,6 +38,8 @@ def expected(model: Model, times: Times) -> dict[str, Table]:
         "points": _points(model),
         "bodies": _bodies(model),
         "bushings": _bushings(model),
+        "curves": _curves(model),
+        "curve laws": _curve_laws(model),
         "springs": _springs(model),
         "boxes": _boxes(model),
         "cylinders": _cylinders(model),
@@ -130,10 +134,13 @@ def _bodies(model: Model) -> Table:
 def _bushings(model: Model) -> Table:
     rows = model.bushings
     count = len(rows)
+    stiff = rows.k[:, :3].copy()
+    bent = np.flatnonzero(model.curves.of >= 0)
+    stiff[bent, model.curves.axis[bent]] = 0.0  # a curve stands there: see _curve_laws
     parts: dict[str, Part] = {
         "origin": (rows.origin, reach(model)),
         "axes": (rows.axes.transpose(0, 2, 1), 1.0),
-        "k": (rows.k[:, :3], None),
+        "k": (stiff, None),
         "c": (rows.c[:, :3] * SECOND, None),
         "kt": (rows.k[:, 3:], None),
         "ct": (rows.c[:, 3:] * SECOND, None),
@@ -145,6 +152,34 @@ def _bushings(model: Model) -> Table:
         for a, b in zip(rows.a.tolist(), rows.b.tolist(), strict=True)
     ]
     return table([f"bsh_{n}" for n in rows.name], parts, words)
+
+
+def _curves(model: Model) -> Table:
+    """Points of the curves: elongation [mm] and force [N] of one bushing."""
+    names, points, scales = [], [np.zeros((0, 2))], [np.zeros((0, 2))]
+    for number, name in enumerate(model.curves.name):
+        strain, stress = straight_points(model.curves, number)
+        length, area = whole_joint(model, number)
+        names += [f"crv_{name}.{k}" for k in range(len(strain))]
+        points.append(np.stack([length * strain, area * stress], axis=1))
+        scales.append(np.broadcast_to(points[-1].max(axis=0), points[-1].shape))
+    return table(names, {"point": (np.concatenate(points), np.concatenate(scales))})
+
+
+def _curve_laws(model: Model) -> Table:
+    """The curve of each bushing that has one, and its independent variable in the made-up state [mm]."""
+    rows, curves = model.bushings, model.curves
+    names, values, words = [], [], []
+    for row in np.flatnonzero(curves.of >= 0).tolist():
+        way = int(curves.axis[row])
+        a, b = (motion(body_name(model, int(ends[row]))).displacement for ends in (rows.a, rows.b))
+        # the curve is that of a whole joint: half a cell has its strain at half of the elongation
+        factor = 2.0 if rows.kind[row] == CLAMP else 1.0
+        name = f"bsh_{rows.name[row]}"
+        names.append(f"{name}.k.{way}")
+        values.append(factor * float(rows.axes[row][:, way] @ (a - b)))
+        words.append((f"crv_{curves.name[curves.of[row]]}", "LINEAR", f"{name}.i", f"{name}.j", f"{name}.j"))
+    return table(names, {"variable": (np.array(values), reach(model))}, words)
 
 
 def _springs(model: Model) -> Table:

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from mdlgen.model.curves import WAYS, whole_joint
 from mdlgen.model.tables import Anchor, Model, SheetPart
 from mdlgen.verify.expected import KG, SECOND, body_name
 from mdlgen.verify.tables import Part, Table, table
@@ -74,6 +75,10 @@ def _derived(model: Model, index: int) -> dict[str, float]:
     names = ("x", "y", "z", "tx", "ty", "tz")
     found |= {f"k_{n}": sheet.derived[f"k_{n}"] for n in names}
     found |= {f"c_{n}": sheet.derived[f"c_{n}"] * SECOND for n in names}
+    for number, name in enumerate(model.curves.name):
+        for axis, way in zip("xy", WAYS, strict=True):
+            if name == f"{sheet.name}_{way}":
+                found[f"A_{axis}"] = whole_joint(model, number)[1]
     if sheet.rotation_damping == "inertia":  # of a box about the edges and the corner that its hinges are on
         found["J_x"], found["J_y"] = m * (d_y**2 / 3 + s**2 / 12), m * (d_x**2 / 3 + s**2 / 12)
         found["J_z"] = m * (d_x**2 + d_y**2) / 3
