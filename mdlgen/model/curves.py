@@ -111,7 +111,7 @@ def stress(curves: Curves, number: int, strain: Floats) -> Floats:
     t = (size - x[i]) / h
     one, two, up = h * m[i], h * m[i + 1], y[i + 1] - y[i]
     found = y[i] + t * (one + t * (3 * up - 2 * one - two + t * (one + two - 2 * up)))
-    found = np.where(size > x[-1], y[-1] + curves.rise[number] * (size - x[-1]), found)
+    found = np.where(size >= x[-1], y[-1] + curves.rise[number] * (size - x[-1]), found)
     return np.copysign(found, strain)
 
 

@@ -100,8 +100,9 @@ def spline(deck: Deck, entity: Entity) -> dict[str, Any]:
 
 def curved_spring(
     deck: Deck, entity: Entity, bushings: dict[str, dict[str, Any]]
-) -> tuple[str, dict[str, dict[str, str]], str]:
-    """The bushing whose markers a force has, its laws by component as in the text, and the floating marker.
+) -> tuple[str, dict[str, dict[str, str]], str] | None:
+    """The bushing whose markers a force has, its laws by component as in the text, and the floating marker;
+    None for a force that is something else.
 
     A law has the name of its curve, the method, and the independent variable with the names of markers.
     """
@@ -109,7 +110,7 @@ def curved_spring(
     floating = deck.marker(entity, "j_floating_marker_id")
     name = i.name.removesuffix(".i")
     if name not in bushings or j.name != f"{name}.j" or floating.body != j.body:
-        raise entity.wrong("its markers are not those of a bushing")
+        return None
     laws = {}
     for k, axis in enumerate("xyz"):
         text = "".join(entity.word(f"f{axis}_expression").split())

@@ -53,9 +53,11 @@ def values(root: etree._Element, file: str) -> dict[str, Any]:
                 _put(listed, entity, value)
     own = {graphic + "_center_marker" for graphic in found["graphics"]}
     for entity in index.of_kind("Force_Vector_TwoBody"):
-        bushing, laws, floating = records.curved_spring(deck, entity, found["bushings"])
-        found["bushings"][bushing].setdefault("curves", {}).update(laws)
-        own.add(floating)
+        spring = records.curved_spring(deck, entity, found["bushings"])
+        if spring is not None:
+            bushing, laws, floating = spring
+            found["bushings"][bushing].setdefault("curves", {}).update(laws)
+            own.add(floating)
     for entity in index.of_kind("Reference_Marker"):
         if entity.name != "Global_Frame" and entity.name not in own:
             _put(found["markers"], entity, deck.markers[entity.id()].record())
