@@ -31,7 +31,14 @@ def mutations(text: str, seed: int, count: int, begin: str = "*BeginMDL") -> Ite
         old = token[0]
         if old[0].isdigit():
             longer = f"{old}1" if len(old) < 10 else f"1{old}"  # a seventeenth digit may be no other number
-            new = rng.choice([repr(float(old) * 1.5 + 1), "0" if float(old) else "7", f"-{old}", longer])
+            new = rng.choice(
+                [
+                    repr(float(old) * 1.5 + 1),
+                    "0" if float(old) else "7",
+                    f"-{old if float(old) else 7}",
+                    longer,
+                ]
+            )
         elif old in _SIGNS or not (old[0].isalpha() or old[0] == "_"):
             new = rng.choice([s for s in _SIGNS if s != old])
         else:

@@ -84,6 +84,16 @@ TURNED = ('sheets.note.turn="10 deg"',)
 FLYING = (C2C, GENERAL, *MOVING, *PLATES, "sheets.note.boxes=[2,2]", "sheets.note.surface=true")
 HELD = ("sheets.note.clamp={edge: x_max, length: 30 mm}", *MOVING)
 HELD_Y = ("sheets.note.clamp={edge: y_min, length: 0 mm}", C2C, *PLATES)
+# so nearly straight that few points do
+CURVED = (
+    "sheets.note.boxes=[2,2]",
+    "sheets.note.clamp={edge: x_min, length: 0 mm}",
+    _put("materials.paper.curve_md", [[0, "0 MPa"], [0.01, "35 MPa"], [0.02, "69.999 MPa"]]),
+    _put(
+        "materials.paper.curve_cd",
+        {"points": [[0, "0 MPa"], [0.01, "11 MPa"], [0.02, "21.999 MPa"]], "extrapolate": "linear"},
+    ),
+)
 BLOCK = ("sheets.note.boxes=[1,1]",)
 ROLLERS = _put(
     "rollers",
@@ -165,6 +175,7 @@ PARTS: dict[str, dict[str, tuple[str, ...]]] = {
     "system.mdl.j2": {"for a part of another model": PART, "for none": BLOCK},
     "banner.mdl.j2": {
         "a sheet only": PLAIN,
+        "curves": CURVED,
         "far from its plane": (*WORDY, 'planes.level.center=["0 mm","0 mm","-90 mm"]', *MOVING),
     },
     "sheet_data.mdl.j2": {
@@ -173,6 +184,7 @@ PARTS: dict[str, dict[str, tuple[str, ...]]] = {
             *(C2C, *PLATES, *MOVING, GENERAL),
             *("sheets.note.boxes=[2,2]", "sheets.note.grid=paper"),
         ),
+        "curves": CURVED,
         "the paper's damping": ("materials.paper.damping.rotation=paper",),
         "the paper's damping, twist": (C2C, *PLATES, "materials.paper.damping.rotation=paper"),
         "a plate": (PLATE,),
@@ -198,6 +210,7 @@ PARTS: dict[str, dict[str, tuple[str, ...]]] = {
         "held beyond a line across x, in motion": HELD,
         "held at an edge along x, twist": HELD_Y,
         "a plate, held at an edge along x": (*HELD_Y, PLATE),
+        "curves, held at an edge": CURVED,
         "a block": BLOCK,
     },
     "support.mdl.j2": {"in a box, on an edge between two": SUPPORTS},

@@ -35,19 +35,21 @@ def emitted(spec: Path, overrides: list[str] | None = None, **options) -> str:
 
 @pytest.mark.parametrize("sample", SAMPLES, ids=lambda p: p.stem)
 def test_every_sample_is_the_same_in_text_script_deck_and_model(sample: Path) -> None:
-    found = check(sample)
+    found = check(sample, ["loads=[]"])  # a text with loads is refused
     assert [str(d) for d in found.all_differences()] == []
     assert set(found.kinds) == {"text", "deck"} and not found.notes
     for kinds in found.kinds.values():
         assert all(c.largest <= 1e-12 for c in kinds.values())
-    assert found.turned is not None and found.turned.values >= 15 and found.turned.largest <= 1e-12
+    # 15 values at least, but that a curve has no modulus to turn
+    least = 14 if "curve_" in sample.read_text() else 15
+    assert found.turned is not None and found.turned.values >= least and found.turned.largest <= 1e-12
 
 
 def test_the_rich_scene_has_every_kind_and_every_value_turned() -> None:
     found = check(RICH)
     assert [str(d) for d in found.all_differences()] == []
     assert all(c.entities for c in found.kinds["text"].values()), "a kind that is not tested"
-    assert found.turned is not None and found.turned.values == 96
+    assert found.turned is not None and found.turned.values == 95
     # what is only shown is set by the script, or off
     assert all(n.startswith("ds_contact_") or n == "ds_side.real_ramp" for n in found.turned.shown_only)
 

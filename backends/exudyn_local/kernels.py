@@ -8,6 +8,7 @@ from numba import njit
 from backends.exudyn_local.system import System
 from mdlgen.mechanics.bushing import bushing
 from mdlgen.mechanics.contact import OUT
+from mdlgen.mechanics.curve import curve_excess, middle_and_gap
 from mdlgen.mechanics.pair import pair_force
 from mdlgen.mechanics.vector import add, back, cross, dot, mat, matmul, nine, rotate, scale, three, vec
 from mdlgen.model.tables import Floats
@@ -96,22 +97,24 @@ def _spread(bodies, body, q, force, torque, f):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def _bush(bodies, bush, q, x, r, u, w, f):
+def _bush(bodies, bush, points, q, x, r, u, w, f):
     """One bushing; returns (stored energy, dissipated power)."""
     a, b = bush.a, bush.b
     ma, mb = mat(r, a), mat(r, b)
+    fa, fb = matmul(ma, nine(bush.fa)), matmul(mb, nine(bush.fb))
+    ra, rb = rotate(ma, three(bush.ra)), rotate(mb, three(bush.rb))
     k, c = bush.k, bush.c
     force, torque_b, torque_a, energy, power = bushing(
         vec(x, a),
-        matmul(ma, nine(bush.fa)),
+        fa,
         vec(u, a),
         vec(w, a),
-        rotate(ma, three(bush.ra)),
+        ra,
         vec(x, b),
-        matmul(mb, nine(bush.fb)),
+        fb,
         vec(u, b),
         vec(w, b),
-        rotate(mb, three(bush.rb)),
+        rb,
         (k[0], k[1], k[2]),
         (k[3], k[4], k[5]),
         (c[0], c[1], c[2]),
@@ -119,6 +122,12 @@ def _bush(bodies, bush, q, x, r, u, w, f):
     )
     _spread(bodies, a, q, (-force[0], -force[1], -force[2]), torque_a, f)
     _spread(bodies, b, q, force, torque_b, f)
+    if bush.first >= 0:
+        middle, gap = middle_and_gap(vec(x, a), fa, ra, vec(x, b), fb, rb)
+        force, torque_b, torque_a, more = curve_excess(points, bush, middle, gap, ra, rb)
+        _spread(bodies, a, q, (-force[0], -force[1], -force[2]), torque_a, f)
+        _spread(bodies, b, q, force, torque_b, f)
+        energy += more
     return energy, power
 
 
@@ -152,7 +161,7 @@ def _load(bodies, load, q, r, f, level):
 
 
 @njit(cache=True, error_model="numpy")
-def forces(bodies, bushings, pairs, loads, gravity, q, v, t, level, x, r, u, w, out, f):
+def forces(bodies, bushings, points, pairs, loads, gravity, q, v, t, level, x, r, u, w, out, f):
     """Generalised forces f; `level` scales gravity and loads. Returns the number of touching pairs."""
     place_all(bodies, q, v, t, x, r, u, w)
     f[:] = 0.0
@@ -164,7 +173,7 @@ def forces(bodies, bushings, pairs, loads, gravity, q, v, t, level, x, r, u, w, 
         if bodies[body].slide >= 0:
             _slide(bodies, gravity, body, q, v, f, level)
     for i in range(bushings.size):
-        _bush(bodies, bushings[i], q, x, r, u, w, f)
+        _bush(bodies, bushings[i], points, q, x, r, u, w, f)
     touching = 0
     for i in range(pairs.size):
         if _pair(bodies, pairs[i], q, x, r, u, w, f, out):
@@ -175,12 +184,14 @@ def forces(bodies, bushings, pairs, loads, gravity, q, v, t, level, x, r, u, w, 
 
 
 @njit(cache=True, error_model="numpy")
-def _element(bodies, bushings, pairs, loads, gravity, block_start, element, q, v, x, r, u, w, f, out, level):
+def _element(
+    bodies, bushings, points, pairs, loads, gravity, block_start, element, q, v, x, r, u, w, f, out, level
+):
     """Generalised forces of one element, added to f. Returns False where a pair does not touch."""
     blocks = block_start.size - 1
     if element < blocks:
         for i in range(block_start[element], block_start[element + 1]):
-            _bush(bodies, bushings[i], q, x, r, u, w, f)
+            _bush(bodies, bushings[i], points, q, x, r, u, w, f)
         return True
     element -= blocks
     if element < pairs.size:
@@ -216,6 +227,7 @@ def owners(bodies, free):
 def jacobian(
     bodies,
     bushings,
+    points,
     pairs,
     loads,
     gravity,
@@ -257,7 +269,23 @@ def jacobian(
         for i in range(begin, end):
             f[dofs[i]] = 0.0
         if not _element(
-            bodies, bushings, pairs, loads, gravity, block_start, element, q, v, x, r, u, w, f, out, level
+            bodies,
+            bushings,
+            points,
+            pairs,
+            loads,
+            gravity,
+            block_start,
+            element,
+            q,
+            v,
+            x,
+            r,
+            u,
+            w,
+            f,
+            out,
+            level,
         ):
             continue
         for i in range(count):
@@ -277,6 +305,7 @@ def jacobian(
                 _element(
                     bodies,
                     bushings,
+                    points,
                     pairs,
                     loads,
                     gravity,
@@ -301,7 +330,23 @@ def jacobian(
             for i in range(begin, end):
                 f[dofs[i]] = 0.0
             _element(
-                bodies, bushings, pairs, loads, gravity, block_start, element, q, v, x, r, u, w, f, out, level
+                bodies,
+                bushings,
+                points,
+                pairs,
+                loads,
+                gravity,
+                block_start,
+                element,
+                q,
+                v,
+                x,
+                r,
+                u,
+                w,
+                f,
+                out,
+                level,
             )
             q[dof], v[dof] = kept_q, kept_v
             place_body(bodies, body, q, v, t, x, r, u, w)
@@ -310,7 +355,7 @@ def jacobian(
 
 
 @njit(cache=True, error_model="numpy")
-def ledger(bodies, bushings, pairs, loads, gravity, q, v, t, x, r, u, w, f, pair_out, totals):
+def ledger(bodies, bushings, points, pairs, loads, gravity, q, v, t, x, r, u, w, f, pair_out, totals):
     """Energy and power at a state: totals = (kinetic, elastic, potential, dissipated power, driving power).
 
     Also leaves the result of each pair in `pair_out` (p, OUT) and the bodies' states in x, r, u, w.
@@ -334,7 +379,7 @@ def ledger(bodies, bushings, pairs, loads, gravity, q, v, t, x, r, u, w, f, pair
         if bodies[body].spin >= 0:
             kinetic += 0.5 * bodies[body].press[4] * v[bodies[body].spin] ** 2
     for i in range(bushings.size):
-        energy, power = _bush(bodies, bushings[i], q, x, r, u, w, f)
+        energy, power = _bush(bodies, bushings[i], points, q, x, r, u, w, f)
         elastic += energy
         lost += power
     for i in range(pairs.size):

@@ -8,6 +8,8 @@ import numpy as np
 
 from backends.exudyn_local import kernels
 from backends.exudyn_local.system import MM, MS, PER_MM, System, quaternions
+from mdlgen.mechanics.curve import overstretched
+from mdlgen.model import curves
 from mdlgen.model.tables import BOX_PLANE, Model
 from mdlgen.results.result import ContactStatistics, Energy, Result
 
@@ -130,8 +132,15 @@ class Recorder:
         self._stored["f"].append(self._force.copy())
 
     def _watch(self, t: float) -> None:
-        """Sets the reason of a failure where a body left its bounds or went deep into a plate."""
+        """Sets the reason of a failure where a joint is beyond its curve, a body left its bounds or went deep
+        into a plate."""
         x = self._work[0][:-1]
+        if self.system.points.size:
+            joint, strain = overstretched(self.system.points, self.system.bushings, *self._work[:2])
+            if joint >= 0:
+                row = int(self.system.bushings["row"][joint])
+                time = None if self.model.run.analysis == "static" else t / MS
+                self.reason = curves.overstretched(self.model, row, float(strain), time)
         deep = np.flatnonzero(self._pairs[:, 15] > self._plate)
         if deep.size:
             box = self.model.bodies.name[int(self.model.pairs.a[deep[0]])]

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mdlgen.errors import RefusedError
+from mdlgen.mechanics.curve import FOLLOWS, curve_points, follow
 from mdlgen.mechanics.laws import damping_share
 from mdlgen.model.rotations import matrices
 from mdlgen.model.tables import Floats, Ints, Model
@@ -20,6 +21,7 @@ MM, G, MS = 1e-3, 1e-3, 1e-3
 PER_MM, PER_MS = 1e3, 1e3
 # N/mm^1.5 in N/m^1.5
 HERTZ = 1e3**1.5
+PA = 1e6  # of 1 MPa
 
 
 BODY = np.dtype(
@@ -49,6 +51,7 @@ BUSHING = np.dtype(
         ("fb", "f8", 9),
         ("k", "f8", 6),  # [N/m], [N m/rad]
         ("c", "f8", 6),
+        *FOLLOWS,
     ]
 )
 PAIR = np.dtype(
@@ -84,10 +87,11 @@ class System(NamedTuple):
     gravity: Floats  # [m/s^2]
     elements: Elements
     free: int  # number of coordinates
+    points: np.ndarray  # of the curves that bushings follow, mechanics.curve.POINT [Pa]
 
     @property
-    def tables(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, Floats]:
-        return self.bodies, self.bushings, self.pairs, self.loads, self.gravity
+    def tables(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, Floats]:
+        return self.bodies, self.bushings, self.points, self.pairs, self.loads, self.gravity
 
 
 class Pattern(NamedTuple):
@@ -116,7 +120,8 @@ def build(model: Model) -> tuple[System, Pattern]:
     loads["force"], loads["moment"] = model.loads.force, model.loads.moment * MM
     elements, pattern = _pattern(_couplings(bodies, bushings, blocks, pairs, loads), blocks, free)
     gravity = model.gravity * MM / MS**2
-    return System(bodies, bushings, pairs, loads, gravity, elements, free), pattern
+    points = curve_points(model.curves, PA)
+    return System(bodies, bushings, pairs, loads, gravity, elements, free, points), pattern
 
 
 def _bodies(model: Model, moving: bool) -> tuple[np.ndarray, int]:
@@ -185,6 +190,7 @@ def _bushings(model: Model) -> tuple[np.ndarray, list[int]]:
     scale = np.array([PER_MM] * 3 + [MM] * 3)
     bushings["k"] = table.k[order] * scale
     bushings["c"] = table.c[order] * scale * MS
+    follow(bushings, model.curves, order, MM, PA)
     changed = (np.diff(bushings["a"]) != 0) | (np.diff(bushings["b"]) != 0)
     starts = [0, *(np.flatnonzero(changed) + 1).tolist()] if len(bushings) else []
     return bushings, [*starts, len(bushings)]

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mdlgen.mechanics.curve import FOLLOWS, curve_points, follow
 from mdlgen.mechanics.laws import damping_share
 from mdlgen.model.rotations import matrices
 from mdlgen.model.tables import GROUND, Floats, Ints, Model
@@ -43,6 +44,7 @@ JOINT = np.dtype(
         ("e", "f8", 3),  # from the middle to one of two equal bushings, in bushing axes; 0: one bushing
         ("k", "f8", 6),  # sums of both
         ("c", "f8", 6),
+        *FOLLOWS,
     ]
 )
 PAIR = np.dtype(
@@ -71,6 +73,12 @@ class System(NamedTuple):
     reach: int  # how many nodes apart two that are coupled may be
     border: int  # unknowns of rollers
     folded: int  # bushings that share a joint with another one
+    points: np.ndarray  # of the curves that joints follow, mechanics.curve.POINT
+
+    @property
+    def tables(self) -> tuple[np.ndarray, ...]:
+        """What compiled code takes first."""
+        return self.bodies, self.joints, self.pairs, self.loads, self.gravity, self.nodes, self.points
 
 
 def build(model: Model, fold: bool = True) -> System:
@@ -87,6 +95,7 @@ def build(model: Model, fold: bool = True) -> System:
         reach=_reach(bodies, joints),
         border=border,
         folded=folded,
+        points=curve_points(model.curves),
     )
 
 
@@ -128,7 +137,7 @@ def _bodies(model: Model) -> tuple[np.ndarray, Ints, int]:
 
 
 def _joints(model: Model, fold: bool) -> tuple[np.ndarray, int]:
-    """Bushings as joints; two equal ones between the same bodies become one, exactly."""
+    """Bushings as joints; two equal linear ones between the same bodies become one, exactly."""
     table = model.bushings
     position = np.concatenate([model.bodies.position, np.zeros((1, 3))])
     rotation = np.concatenate([model.bodies.rotation, np.eye(3)[None]])
@@ -141,6 +150,7 @@ def _joints(model: Model, fold: bool) -> tuple[np.ndarray, int]:
         axes = table.axes if end == "a" else table.axes @ matrices(-table.rest)
         single["f" + end] = np.einsum("nji,njk->nik", rotation[body], axes).reshape(-1, 9)
     single["k"], single["c"] = table.k, table.c
+    follow(single, model.curves, np.arange(len(table)))
     made: list[np.void] = []
     waiting: dict[tuple[int, int], int] = {}
     for row in single:
@@ -160,7 +170,10 @@ def _joints(model: Model, fold: bool) -> tuple[np.ndarray, int]:
 
 
 def _alike(one: np.void, two: np.void) -> bool:
-    """Equal but for their place, which is the same seen from both bodies."""
+    """Equal but for their place, which is the same seen from both bodies; and linear, since two curves at
+    different gaps do not add up to one."""
+    if one["first"] >= 0 or two["first"] >= 0:
+        return False
     same = all(np.array_equal(one[name], two[name]) for name in ("k", "c", "fa", "fb"))
     apart = [one["f" + end].reshape(3, 3).T @ (two["r" + end] - one["r" + end]) for end in "ab"]
     return same and bool(np.allclose(apart[0], apart[1], rtol=0, atol=1e-12 * np.abs(apart[0]).max()))

@@ -35,13 +35,13 @@ _LOST = 1e30  # N, and parts of a box: what a run does not come back from
 def _residual(system, level, place, lists, blank, rest):
     """Forces on the free boxes and on slides into `rest`. Returns the largest [N], with torques over half a
     box, its body, and how many contacts touch."""
-    bodies, joints, pairs, loads, gravity, nodes = system
+    bodies, joints, pairs, loads, gravity, nodes, points = system
     x, r, s = place
     touched, outs, near = lists
     still, f = blank
     on_boxes, on_slides = rest
     f[:] = 0.0
-    joint_forces(joints, x, r, still, still, f)
+    joint_forces(joints, points, x, r, still, still, f)
     close = near_pairs(bodies, pairs, x, r, 0.0, near)
     count, _, _ = pair_forces(bodies, pairs, near, close, x, r, still, still, f, touched, outs)
     other_forces(bodies, loads, gravity, level, r, still, still, f)
@@ -131,7 +131,7 @@ def equilibrium(system, border, height, level, load, least, reach, x, r, s, list
     diagonal (for sheets that nothing but contacts holds), `reach` [mm] the longest step. Returns (whether
     balance was found, rounds, the body that is pushed most, and by how much of the load).
     """
-    bodies, joints, pairs, loads, _, nodes = system
+    bodies, joints, pairs, loads, _, nodes, points = system
     many, size = nodes.size, 6 * nodes.size
     a, links, band = np.zeros((many, 6, height)), np.zeros((many, 6, height)), np.zeros((many, 6, height))
     b, d = np.zeros((border, size)), np.zeros((border, border))
@@ -155,7 +155,7 @@ def equilibrium(system, border, height, level, load, least, reach, x, r, s, list
             return True, rounds, at, worst / load
         if not worst < _LOST:
             return False, rounds, at, worst / load
-        sheets_into(bodies, joints, loads, level, gaps, x, r, a)
+        sheets_into(bodies, joints, points, loads, level, gaps, x, r, a)
         rollers_into(bodies, b, d)
         contacts_into(bodies, pairs, lists[0], count, x, r, still, a, b, d)
         shift = _newton(matrix, plain, shift, load, rest, step)

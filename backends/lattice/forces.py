@@ -8,6 +8,7 @@ from numba import njit
 
 from mdlgen.mechanics.bushing import bushing_pair
 from mdlgen.mechanics.contact import MOST_POINTS, OUT, POINT
+from mdlgen.mechanics.curve import curve_excess
 from mdlgen.mechanics.pair import BOX_PLANE, CYLINDER_CYLINDER, pair_force
 from mdlgen.mechanics.vector import (
     add,
@@ -80,9 +81,9 @@ def _add(f, b, force, torque):
 
 
 @njit(cache=True, error_model="numpy")
-def joint_forces(joints, x, r, u, w, f, lag=0.0):
+def joint_forces(joints, points, x, r, u, w, f, lag=0.0):
     """Adds the forces of all joints to f (bodies, 6), with `lag` [ms] times the stiffness on top of the
-    damping. Returns (stored energy, dissipated power)."""
+    damping. `points` are those of the curves that some follow. Returns (stored energy, dissipated power)."""
     stored = lost = 0.0
     last = x.shape[0] - 1
     for j in range(joints.size):
@@ -95,17 +96,18 @@ def joint_forces(joints, x, r, u, w, f, lag=0.0):
         if joint.plain == 0:
             fa, fb = matmul(ma, nine(joint.fa)), matmul(mb, nine(joint.fb))
         k, c = joint.k, joint.c
-        force, torque_b, torque_a, energy, power, _, _ = bushing_pair(
+        ra, rb = rotate(ma, three(joint.ra)), rotate(mb, three(joint.rb))
+        force, torque_b, torque_a, energy, power, middle, gap = bushing_pair(
             vec(x, a),
             fa,
             vec(u, a),
             vec(w, a),
-            rotate(ma, three(joint.ra)),
+            ra,
             vec(x, b),
             fb,
             vec(u, b),
             vec(w, b),
-            rotate(mb, three(joint.rb)),
+            rb,
             three(joint.e),
             (k[0], k[1], k[2]),
             (k[3], k[4], k[5]),
@@ -116,6 +118,11 @@ def joint_forces(joints, x, r, u, w, f, lag=0.0):
         _add(f, b, force, torque_b)
         stored += energy
         lost += power
+        if joint.first >= 0:
+            force, torque_b, torque_a, energy = curve_excess(points, joint, middle, gap, ra, rb)
+            _add(f, a, (-force[0], -force[1], -force[2]), torque_a)
+            _add(f, b, force, torque_b)
+            stored += energy
     return stored, lost
 
 

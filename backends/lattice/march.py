@@ -7,10 +7,11 @@ import math
 from numba import njit
 
 from backends.lattice.forces import driven
-from backends.lattice.step import HALVED, ROUNDS, STEPS, TOUCHING, WORST, carry, midpoint
+from backends.lattice.step import HALVED, ROUNDS, STEPS, STRAIN, TOUCHING, WORST, carry, midpoint
+from mdlgen.mechanics.curve import overstretched
 from mdlgen.mechanics.pair import BOX_PLANE
 
-DONE, STOPPED, LEFT, DEEP = 0, 1, 2, 3
+DONE, STOPPED, LEFT, DEEP, STRETCHED = 0, 1, 2, 3, 4
 # How often a step may be halved.
 DEEPEST = 14
 # How often at most for accuracy, and how much more than wanted a step may miss before it is taken again.
@@ -130,11 +131,12 @@ def run(
     guess by more than pace[1] (0: any will do); pace[0] is how often it is halved now. With pace[2] each step
     has a factor of its own. `tolerance` and pace[1] are parts of pace[3], the greatest speed so far [mm/ms].
 
-    `work` (3,) adds up energies [N mm]. counters[WORST] names the body or pair of a failure. `before` holds
+    `work` (3,) adds up energies [N mm]. counters[WORST] names the body, pair or joint of a failure, and
+    counters[STRAIN] the strain of a joint beyond its curve. `before` holds
     what a guess is made from: the velocities of the step before the last, the size of the last step, and the
     time from the middle of the one to the middle of the other (0: there is none).
     """
-    bodies, joints, pairs, loads, gravity, nodes = system
+    bodies, joints, pairs, loads, gravity, nodes, points = system
     x, r, v, l, s, vb, u, ub = state
     keep_u, keep_b, guess = u.copy(), ub.copy(), u.copy()
     last_u, last_b, spans = before
@@ -190,4 +192,9 @@ def run(
             if deep >= 0 or outside >= 0:
                 counters[WORST] = outside if outside >= 0 else deep
                 return (LEFT if outside >= 0 else DEEP), t
+            if points.size > 0:
+                stretched, strain = overstretched(points, joints, x, r)
+                if stretched >= 0:
+                    counters[WORST], counters[STRAIN] = stretched, strain
+                    return STRETCHED, t
     return DONE, t

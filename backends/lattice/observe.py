@@ -10,7 +10,27 @@ from mdlgen.mechanics.vector import back, mat, rotate
 
 @njit(cache=True, error_model="numpy")
 def ledger(
-    bodies, joints, pairs, gravity, nodes, t, x, r, v, l, s, vb, u, w, f, touched, outs, near, energies, force
+    bodies,
+    joints,
+    points,
+    pairs,
+    gravity,
+    nodes,
+    t,
+    x,
+    r,
+    v,
+    l,
+    s,
+    vb,
+    u,
+    w,
+    f,
+    touched,
+    outs,
+    near,
+    energies,
+    force,
 ):
     """Velocities of all bodies into u and w; kinetic, elastic and potential energy; total normal force for
     each row of the contacts."""
@@ -47,7 +67,7 @@ def ledger(
             rate = driven(bodies[b], t)
         for i in range(3):
             w[b, i] += rate * bodies[b].axis[i]
-    stored, _ = joint_forces(joints, x, r, u, w, f)
+    stored, _ = joint_forces(joints, points, x, r, u, w, f)
     close = near_pairs(bodies, pairs, x, r, 0.0, near)
     count, pressed, _ = pair_forces(bodies, pairs, near, close, x, r, u, w, f, touched, outs)
     for k in range(count):

@@ -25,7 +25,7 @@ class Recorder:
         """The state at the end of a step."""
         from backends.lattice.compiled import observe
 
-        bodies, joints, pairs, _, gravity, nodes = self.tables
+        bodies, joints, pairs, _, gravity, nodes, points = self.tables
         x, r, v, l, s, vb, _, _ = self.state
         _, _, u, w, f, touched, outs, _, near = self.mid
         count = len(self.model.bodies.name)
@@ -33,7 +33,8 @@ class Recorder:
         force = np.zeros(len(self.model.contacts))
         places, rates = (x, r), (v, l, s, vb)
         work = (u, w, f, touched, outs, near)
-        observe.ledger(bodies, joints, pairs, gravity, nodes, t, *places, *rates, *work, energies, force)
+        sheets = (bodies, joints, points)
+        observe.ledger(*sheets, pairs, gravity, nodes, t, *places, *rates, *work, energies, force)
         now = (float(energies[0]), float(energies[1]), float(energies[2]))
         if self._first is None:
             self._first = now

@@ -15,6 +15,7 @@ from backends.lattice.arrays import System, build
 from backends.lattice.record import Recorder
 from backends.lattice.scope import check
 from backends.lattice.static import rest
+from mdlgen.model.curves import overstretched
 from mdlgen.model.tables import Floats, Model
 from mdlgen.results.compare import compare
 from mdlgen.results.result import Result
@@ -232,6 +233,9 @@ def _reason(
             f"box {box} is more than half of its thickness into plane {plate} at {t:.6g} ms; "
             "a stiffer contact or a smaller run.step would hold it"
         )
+    if status == march.STRETCHED:
+        row = int(system.joints["row"][int(counters[step.WORST])])
+        return overstretched(model, row, float(counters[step.STRAIN]), t)
     body = int(counters[step.WORST])
     at = ", ".join(f"{value:.4g}" for value in state[0][body])
     kind = "box" if model.sheet_of(body) else "roller"
@@ -246,7 +250,7 @@ def _arrays(model: Model, system: System) -> tuple[Any, Any, Any, Any, Any, Any,
     bounds."""
     from backends.lattice.compiled import alone, forces, momentum
 
-    tables = (system.bodies, system.joints, system.pairs, system.loads, system.gravity, system.nodes)
+    tables = system.tables
     kept = (np.zeros((len(model.contacts), 9)), np.zeros(len(system.pairs), bool))
     bounds = (model.pairs.low, model.pairs.high)
     return (

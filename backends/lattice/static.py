@@ -10,6 +10,7 @@ import numpy as np
 from backends.lattice.arrays import System
 from backends.lattice.band import PAD
 from backends.lattice.record import Recorder
+from mdlgen.model import curves
 from mdlgen.model.tables import BOX_PLANE, GROUND, Model
 from mdlgen.results.result import Result
 
@@ -31,7 +32,7 @@ def rest(model: Model, system: System, moving: tuple) -> Result:
     x, r, v, l, s = state[:5]
     v[:] = 0.0
     l[:] = 0.0
-    tables = (system.bodies, system.joints, system.pairs, system.loads, system.gravity, system.nodes)
+    tables = system.tables
     lists = (mid[5], mid[6], mid[8])
     load = _load(model, system)
     size = (system.border, 6 * (system.reach + 1) + PAD)
@@ -47,7 +48,8 @@ def rest(model: Model, system: System, moving: tuple) -> Result:
     wall = clock.perf_counter() - begun
     rows = (np.zeros((len(model.contacts), 9)), np.zeros(len(system.pairs), bool))
     if reason is None:
-        reason = _touch(model, system, state, mid, rows) or _outside(model, x)
+        reason = _stretched(model, system, x, r) or _touch(model, system, state, mid, rows)
+        reason = reason or _outside(model, x)
     recorder = Recorder(model, system, tables, state, mid, rows)
     recorder.store(0.0)
     result = recorder.result("lattice", reason, np.zeros(3))
@@ -141,6 +143,14 @@ def _touch(model: Model, system: System, state: tuple, mid: tuple, rows: tuple) 
         row[[0, 2, 6]] = max(row[0], depth)
         row[[4, 7]] = 1.0
     return None
+
+
+def _stretched(model: Model, system: System, x: np.ndarray, r: np.ndarray) -> str | None:
+    """A reason where a joint is beyond its curve."""
+    from mdlgen.mechanics.curve import overstretched
+
+    joint, strain = overstretched(system.points, system.joints, x, r)
+    return None if joint < 0 else curves.overstretched(model, int(system.joints["row"][joint]), float(strain))
 
 
 def _outside(model: Model, x: np.ndarray) -> str | None:

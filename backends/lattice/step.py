@@ -48,7 +48,7 @@ DAMPED, MOST_DAMPED = 1.0, 0.3
 # other side of what is flat; the latter is taken twice where a round moved more than the one before.
 LITTLE, MUCH = 0.05, 0.7
 # Counters of a run.
-STEPS, ROUNDS, FACTORS, HALVED, TOUCHING, WORST, SETTLED, COUNTERS = 0, 1, 2, 3, 4, 5, 6, 7
+STEPS, ROUNDS, FACTORS, HALVED, TOUCHING, WORST, SETTLED, STRAIN, COUNTERS = 0, 1, 2, 3, 4, 5, 6, 7, 8
 
 
 @njit(cache=True, error_model="numpy")
@@ -104,7 +104,7 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
     `fresh` (3,): the step that the factor was made for (0: none), whether it should be made anew, and where
     contacts stand (see touching.APART).
     """
-    bodies, joints, pairs, loads, gravity, nodes = system
+    bodies, joints, pairs, loads, gravity, nodes, points = system
     x, r, v, l, s, vb, u, ub = state
     xm, rm, um, wm, f, touched, outs, totals, near = mid
     a, b, d, y, corner, res, resb, direction, index = matrix
@@ -122,7 +122,7 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
     for rounds in range(MOST_ROUNDS):
         place(bodies, nodes, h, t + h, u, ub, x, r, xm, rm, um, wm)
         f[:] = 0.0
-        _stored, lost = joint_forces(joints, xm, rm, um, wm, f, lag)
+        _stored, lost = joint_forces(joints, points, xm, rm, um, wm, f, lag)
         if rounds > 0 and where == APART and alone.state[1] == 1:
             known = (alone.touched, alone.outs, alone.state[0], alone.seen)
             count, _pressed, rubbed = pair_forces_again(
@@ -149,7 +149,7 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
         if fresh[0] != dt or fresh[1] != 0.0 or fresh[2] != where:
             counters[FACTORS] += 1
             masses(bodies, nodes, rm, a)
-            joints_into(bodies, joints, h, lag, xm, rm, a)
+            joints_into(bodies, joints, points, h, lag, xm, rm, a)
             rollers_into(bodies, h, b, d)
             if where != APART:
                 chord = MUCH if careful > 0 else LITTLE
@@ -245,7 +245,7 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
 @njit(cache=True, error_model="numpy")
 def carry(system, state, mid, t, dt):
     """From the middle to the end of a step."""
-    bodies, joints, pairs, loads, gravity, nodes = system
+    bodies, joints, pairs, loads, gravity, nodes, points = system
     x, r, v, l, s, vb, u, ub = state
     for n in range(nodes.size):
         b = nodes[n]

@@ -11,6 +11,7 @@ import numpy as np
 from numba import njit
 
 from mdlgen.mechanics.contact import OUT
+from mdlgen.mechanics.curve import curve_spring
 from mdlgen.mechanics.pair import pair_force
 from mdlgen.mechanics.vector import (
     add,
@@ -92,7 +93,7 @@ def _stretch(m, k, gap):
 
 
 @njit(cache=True, error_model="numpy")
-def _growth(joint, gap, x, r, one, g):
+def _growth(joint, points, gap, x, r, one, g):
     """Change of the forces on both bodies of a joint (6 and 6), were its gap `gap`: a row of g (12, 12) for
     each move of the bodies."""
     two = joint.b
@@ -102,9 +103,17 @@ def _growth(joint, gap, x, r, one, g):
     m = matmul(fa, exp_rotation(scale(0.5, theta)))
     ra, rb = rotate(ma, three(joint.ra)), rotate(mb, three(joint.rb))
     apart = sub(vec(x, two), vec(x, one))
-    k = joint.k
-    couple, growth = _hinge(theta, three(joint.e), k)
-    force, torque = scale(-1.0, _stretch(m, k, gap)), scale(-1.0, rotate(m, couple))
+    couple, growth = _hinge(theta, three(joint.e), joint.k)
+    # of a curve the chord makes the force, and the slope its growth
+    chord, k = three(joint.k), three(joint.k)
+    if joint.first >= 0:
+        own = back(m, gap)
+        opened = own[0] if joint.way == 0 else own[1]
+        spring, slope, _ = curve_spring(points, joint, opened)
+        steep = spring / opened if opened != 0.0 else slope
+        chord = (steep, k[1], k[2]) if joint.way == 0 else (k[0], steep, k[2])
+        k = (slope, k[1], k[2]) if joint.way == 0 else (k[0], slope, k[2])
+    force, torque = scale(-1.0, _stretch(m, chord, gap)), scale(-1.0, rotate(m, couple))
     qa, qb = add(ra, scale(0.5, gap)), sub(rb, scale(0.5, gap))
     on_b, on_a = add(torque, cross(qb, force)), scale(-1.0, add(torque, cross(qa, force)))
     # the middle frame turns with the mean of both bodies, and a little across
@@ -142,14 +151,14 @@ def _growth(joint, gap, x, r, one, g):
 
 
 @njit(cache=True, error_model="numpy")
-def sheets_into(bodies, joints, loads, level, gaps, x, r, a):
+def sheets_into(bodies, joints, points, loads, level, gaps, x, r, a):
     """Sets the band to minus the derivative of the forces of joints, with `gaps` (joints, 3) [mm], and of
     loads; made symmetric, as it is where torques balance."""
     a[:] = 0.0
     g = np.empty((12, 12))
     for j in range(joints.size):
         one = joints[j].a if joints[j].a >= 0 else x.shape[0] - 1
-        _growth(joints[j], vec(gaps, j), x, r, one, g)
+        _growth(joints[j], points, vec(gaps, j), x, r, one, g)
         na, nb = bodies[one].node, bodies[joints[j].b].node
         for c in range(6):
             for i in range(6):

@@ -13,6 +13,7 @@ from numba import njit
 
 from backends.lattice.band import PAD
 from mdlgen.mechanics.contact import OUT, POINT
+from mdlgen.mechanics.curve import curve_spring
 from mdlgen.mechanics.pair import BOX_PLANE
 from mdlgen.mechanics.vector import (
     add,
@@ -113,8 +114,8 @@ def masses(bodies, nodes, r, a):
 
 
 @njit(cache=True, error_model="numpy")
-def joints_into(bodies, joints, h, lag, x, r, a):
-    """Adds h (C + lag K) + h^2 K of all joints."""
+def joints_into(bodies, joints, points, h, lag, x, r, a):
+    """Adds h (C + lag K) + h^2 K of all joints, where K of a joint that follows a curve is its slope now."""
     last = x.shape[0] - 1
     for i in range(joints.size):
         joint = joints[i]
@@ -132,6 +133,11 @@ def joints_into(bodies, joints, h, lag, x, r, a):
         k, c, e = joint.k, joint.c, joint.e
         hk = h * (lag + h)
         s = (h * c[0] + hk * k[0], h * c[1] + hk * k[1], h * c[2] + hk * k[2])
+        if joint.first >= 0:
+            own = back(m, scale(2.0, half))
+            _, slope, _ = curve_spring(points, joint, own[0] if joint.way == 0 else own[1])
+            more = h * h * (slope - k[joint.way])
+            s = (s[0] + (more if joint.way == 0 else 0.0), s[1] + (more if joint.way == 1 else 0.0), s[2])
         # two bushings at e and -e also resist rotation: [e]x^T s [e]x
         ee = (
             s[1] * e[2] * e[2] + s[2] * e[1] * e[1] + h * c[3] + hk * k[3],

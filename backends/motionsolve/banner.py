@@ -6,6 +6,7 @@ from itertools import groupby
 
 from backends.motionsolve.rows import Deck
 from backends.motionsolve.units import number
+from mdlgen.model.curves import limit
 from mdlgen.model.tables import SUPPORT, Model
 
 
@@ -23,9 +24,21 @@ def banner(model: Model, deck: Deck) -> list[str]:
             f"Sheet : {sheet.name}, {sheet.n_x} x {sheet.n_y} boxes, {sheet.layout}, {sheet.grid} grid, "
             f"{joints} bushings"
         )
+    lines += _curves(model)
     lines += _contacts(model)
     lines += ["", "Not yet read by a real MotionSolve; look at these first if it complains :"]
     return lines + [f"  {form}" for form in unverified(model, deck)]
+
+
+def _curves(model: Model) -> list[str]:
+    curves = model.curves
+    lines = []
+    for index, name in enumerate(curves.name):
+        beyond = (
+            "straight on beyond" if curves.linear[index] else "where the local run ends; MotionSolve does not"
+        )
+        lines.append(f"Curve : crv_{name}, to a strain of {number(limit(curves, index))}, {beyond}")
+    return lines
 
 
 def _contacts(model: Model) -> list[str]:
@@ -58,6 +71,12 @@ def unverified(model: Model, deck: Deck) -> list[str]:
         ),
         (bool(deck.motions), "Motion_Joint by an expression of the speed (seen in a command, documented)"),
         (supports, "Force_Bushing with zero stiffness in some directions (seen with positive ones)"),
+        (
+            bool(deck.curved),
+            "Force_Vector_TwoBody with LINSPL, for bushings with a curve (the element seen with another "
+            "force; LINSPL documented)",
+        ),
+        (bool(deck.curved), "Force_Bushing with zero stiffness along a curve (seen with positive ones)"),
         (
             any(body.velocity for body in deck.bodies),
             "Body_Rigid with velocities (seen with zeros; vm_id and wm_id, for global axes, documented)",

@@ -39,6 +39,8 @@ def _entities(deck: Deck) -> Iterator[Row]:
     yield from deck.springs
     for group in deck.bushing_groups:
         yield from group.bushings
+    yield from deck.splines
+    yield from deck.curved
     yield from deck.loads
     yield from deck.contacts
     yield from deck.surfaces

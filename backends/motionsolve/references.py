@@ -17,6 +17,7 @@ USES = {
     "body_id": "Body_Rigid",
     **dict.fromkeys(("cg_id", "im_id", "lprf_id", "vm_id", "wm_id", "center_marker_id"), MARKER),
     **dict.fromkeys(("i_marker_id", "j_marker_id", "marker_id", "ref_marker_id"), MARKER),
+    "j_floating_marker_id": MARKER,
     "joint_id": "Constraint_Joint",
     "i_graphics_id": "Post_Graphic",
     "j_graphics_id": "Post_Graphic",
@@ -26,6 +27,8 @@ _COUNTED = {"i_graphics_id": "num_i_graphics", "j_graphics_id": "num_j_graphics"
 _OWN = ("cg_id", "im_id", "lprf_id")  # markers that must be of the body itself
 # Functions of markers, by name and ids; others of the solver's take other ids.
 _CALL = re.compile(r"\b(?:[DVWFT][XYZM]|ACC[XYZM]|A[XYZ]|WDT[XYZM]|ROLL|PITCH|YAW)\(([^()]*)\)", re.I)
+# The spline of an interpolation, behind its two variables.
+_SPLINE = re.compile(r"\b(?:LIN|AKI|CUB|FIT)SPL\((?:[^()]|\([^()]*\))*,[^(),]*,\s*([0-9]+)\s*\)", re.I)
 _BIG = re.compile(r"[0-9]{11,}")
 
 
@@ -61,6 +64,8 @@ def _of(element: etree._Element, known: dict[str, dict[int, etree._Element]]) ->
         elif attribute.startswith("expr") or attribute.endswith("_expression"):
             for call in _CALL.finditer(text):
                 yield from _missing(attribute, MARKER, _numbers(call[1]), known)
+            for call in _SPLINE.finditer(text):
+                yield from _missing(attribute, "Reference_Spline", _numbers(call[1]), known)
     if element.tag == "Reference_DeformSurface":
         numbers = _numbers(element.text or "")
         yield from _missing("content", MARKER, numbers, known)

@@ -72,6 +72,27 @@ class BushingGroup(NamedTuple):
     bushings: list[Bushing]
 
 
+class Spline(NamedTuple):
+    """A curve of force over elongation: (x, y)."""
+
+    name: str
+    label: str
+    id: int
+    points: list[tuple[str, str]]
+
+
+class CurvedSpring(NamedTuple):
+    """The force of a bushing that follows a curve: marker i, a floating one on the other body, axes of j."""
+
+    name: str
+    label: str
+    id: int
+    i: int
+    floating: int
+    j: int
+    force: Triple
+
+
 class Spring(NamedTuple):
     """A spring and damper along the line between two markers, which pushes with `force` at `length`."""
 
@@ -180,6 +201,8 @@ class Deck:
     motions: list[Motion] = field(default_factory=list)
     springs: list[Spring] = field(default_factory=list)
     bushing_groups: list[BushingGroup] = field(default_factory=list)
+    splines: list[Spline] = field(default_factory=list)
+    curved: list[CurvedSpring] = field(default_factory=list)
     loads: list[Load] = field(default_factory=list)
     contacts: list[Contact] = field(default_factory=list)
     surfaces: list[Surface] = field(default_factory=list)

@@ -5,16 +5,28 @@ from __future__ import annotations
 from backends.motionsolve.axes import cosines
 from backends.motionsolve.bodies import body_id
 from backends.motionsolve.requests import add_request
-from backends.motionsolve.rows import Bushing, BushingGroup, Cosines, Deck, Load, Surface
-from backends.motionsolve.units import number, numbers, per_thousand, triples
-from mdlgen.model.tables import Model
+from backends.motionsolve.rows import (
+    Bushing,
+    BushingGroup,
+    Cosines,
+    CurvedSpring,
+    Deck,
+    Load,
+    Spline,
+    Surface,
+)
+from backends.motionsolve.units import Triple, number, numbers, per_thousand, triples
+from mdlgen.model.curves import Written, straight_points, written
+from mdlgen.model.tables import CLAMP, Model
 
 _AXES = ("x", "y", "z", "tx", "ty", "tz")
 
 
 def add_bushings(deck: Deck, model: Model) -> None:
     """All bushings, with a marker on each body at the same place."""
-    table = model.bushings
+    table, curves = model.bushings, model.curves
+    splines, follows = written(model)
+    _add_splines(deck, model, splines)
     turns: dict[bytes, Cosines | None] = {}
     groups: dict[bytes, BushingGroup] = {}
     ends = zip(table.a.tolist(), table.b.tolist(), triples(table.origin), strict=True)
@@ -26,13 +38,40 @@ def add_bushings(deck: Deck, model: Model) -> None:
         axes = turns[key]
         i = deck.marker(f"{name}.i", f"{label}-Marker I", body_id(a), at, axes)
         j = deck.marker(f"{name}.j", f"{label}-Marker J", body_id(b), at, axes)
-        key = table.k[row].tobytes() + table.c[row].tobytes() + table.rest[row].tobytes()
+        key = b"".join(column[row].tobytes() for column in (table.k, table.c, table.rest, curves.of))
         if key not in groups:
+            stiff = table.k[row].tolist()
+            if curves.of[row] >= 0:
+                stiff[curves.axis[row]] = 0.0
             # on the first body, which the second one is to turn away from
             push = [0.0, 0.0, 0.0, *(-table.k[row, 3:] * table.rest[row]).tolist()]
-            groups[key] = BushingGroup(_law(table.k[row].tolist(), table.c[row].tolist(), push), [])
+            groups[key] = BushingGroup(_law(stiff, table.c[row].tolist(), push), [])
+        if curves.of[row] >= 0:
+            floating = deck.marker(f"{name}.jfloat", f"{label}-Float Marker J", body_id(b), at, axes)
+            force = _curved(int(curves.axis[row]), int(follows[row]) + 1, i, j, table.kind[row] == CLAMP)
+            number_of = len(deck.curved) + 1
+            deck.curved.append(
+                CurvedSpring(f"frc_{table.name[row]}", f"{label}-Curve", number_of, i, floating, j, force)
+            )
         groups[key].bushings.append(Bushing(name, label, row + 1, i, j))
     deck.bushing_groups += groups.values()
+
+
+def _add_splines(deck: Deck, model: Model, curves: list[Written]) -> None:
+    """Curves of one bushing, straight between their points."""
+    for index, curve in enumerate(curves, 1):
+        strain, stress = straight_points(model.curves, curve.number)
+        points = zip(numbers(curve.length * strain), numbers(curve.area * stress), strict=True)
+        name = model.curves.name[curve.number]
+        label = f"{name.replace('_', ' ')}: force over elongation of one bushing"
+        deck.splines.append(Spline(f"crv_{curve.name}", label, index, list(points)))
+
+
+def _curved(axis: int, spline: int, i: int, j: int, half: bool) -> Triple:
+    """Force on i along each axis of j; half a cell has its strain at half of the elongation."""
+    elongation = f"{'2*' if half else ''}D{'XY'[axis]}({i},{j},{j})"
+    along = f"-LINSPL({elongation},0,{spline})"
+    return ("0", along, "0") if axis else (along, "0", "0")
 
 
 def _law(k: list[float], c: list[float], push: list[float]) -> tuple[tuple[str, str, str, str], ...]:

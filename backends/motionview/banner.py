@@ -6,6 +6,7 @@ from backends.motionview import script
 from backends.motionview.forms import unverified
 from backends.motionview.rows import SceneView
 from backends.motionview.units import number
+from mdlgen.model.curves import TEXT_BEYOND, limit
 from mdlgen.model.tables import Model
 
 SHARE = (
@@ -25,6 +26,7 @@ def banner(model: Model, scene: SceneView) -> list[str]:
         f"Gravity : {gravity} mm/s2",
     ]
     lines += sheet_lines(model, scene)
+    lines += curve_lines(model)
     lines += _contacts(model, scene)
     if reasons:
         lines += ["", "Companion script : run it once in the Python window after loading, because of"]
@@ -42,6 +44,23 @@ def sheet_lines(model: Model, scene: SceneView) -> list[str]:
             f"Sheet : {sheet.name}, {part.n_x} x {part.n_y} boxes, {part.layout}, {part.grid} grid, "
             f"{joints} bushings; its values are in ds_{sheet.name}"
         )
+    return lines
+
+
+def curve_lines(model: Model) -> list[str]:
+    """What a text does with measured curves."""
+    curves = model.curves
+    if not len(curves):
+        return []
+    lines = [
+        "Curves : straight lines, within 1e-6 of the greatest force of the monotone cubics of the local run"
+    ]
+    for index, name in enumerate(curves.name):
+        end = f"crv_{name} : measured to a strain of {number(limit(curves, index))}; "
+        if curves.linear[index]:
+            lines += [f"  {end}straight on to {number(TEXT_BEYOND)} times that"]
+        else:
+            lines += [f"  {end}the local run ends there,", "  MotionSolve does not : look at the elongations"]
     return lines
 
 

@@ -9,6 +9,7 @@ _BUSH = "SetOrientation of a Bush by two axes (seen by one axis, and by two for 
 
 def unverified(scene: SceneView) -> list[str]:
     """One line for each form in this text that is documented only, or concluded from a similar one."""
+    curved = any(s.curves for s in scene.sheets)
     joined = [s for s in scene.sheets if s.joints]
     aligned = ", ".join(s.name for s in scene.sheets if not s.turned)
     rows = (
@@ -39,6 +40,12 @@ def unverified(scene: SceneView) -> list[str]:
             bool(scene.pairs) and scene.set_contact,
             "SetContact (argument order documented; the word for compute_force_at is not known and left out)",
         ),
+        (
+            curved,
+            "CRV in SetBush (documented, not seen) : its independent variable, here the displacement of "
+            "marker i against j along j, and that the curve pulls back, as k times it does",
+        ),
+        (curved, "SetCurve with formulas (seen with numbers only)"),
         (any(s.surface for s in scene.sheets), "DeformableSurface (documented, not seen in a file)"),
     )
     return [line for needed, line in rows if needed]

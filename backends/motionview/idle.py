@@ -18,6 +18,9 @@ _STIFFNESS = ("E_md", "E_cd", "k_tx", "k_ty", "k_tz", "D_md", "D_cd", "D_twist",
 def idle_values(model: Model, set_contact: bool, kept: Sequence[int]) -> dict[tuple[str, str], str]:
     """Reason by (data set, member); `kept` are the contacts (rows) that have statements in the text."""
     found = _contacts(model, set_contact, kept)
+    for p in model.parameters:
+        if p.member in ("E_md", "E_cd") and p.path is None:
+            found[p.data_set, p.member] = "the first slope of its curve"
     for index, sheet in enumerate(model.sheets):
         if not np.any(model.bushings.sheet == index):
             found |= {(sheet.name, member): "there are no joints" for member in _STIFFNESS}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from backends.motionview import script
-from backends.motionview.banner import SHARE, share_lines, sheet_lines
+from backends.motionview.banner import SHARE, curve_lines, share_lines, sheet_lines
 from backends.motionview.forms import unverified_system
 from backends.motionview.rows import SystemView
 from backends.motionview.units import number
@@ -18,6 +18,7 @@ def notes(model: Model, system: SystemView) -> list[str]:
         "",
         "Units : mm, N, kg, s, rad; angles in data sets in degrees",
         *sheet_lines(model, system.scene),
+        *curve_lines(model),
         *_way_in(system),
         *_left_out(model),
         *_contacts(model, system),

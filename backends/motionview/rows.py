@@ -136,6 +136,18 @@ class JointGroup(NamedTuple):
     tz: str
     frames: tuple[int, int]  # of the two sides
     bushes: list[Bush]
+    curves: tuple[str, str]  # that stand for k_x and k_y, empty: none
+
+
+class CurveView(NamedTuple):
+    """A curve of force over elongation of one bushing along an axis: strains and stresses of its points."""
+
+    name: str
+    label: str
+    axis: str  # x or y
+    length: str  # reference to that of a joint
+    area: str  # reference to the section of one bushing
+    points: list[tuple[str, str]]
 
 
 @dataclass(frozen=True)
@@ -170,6 +182,7 @@ class SheetView:
     free: list[Point]
     nodes: list[Point]
     joints: list[JointGroup]
+    curves: list[CurveView]
     surface: list[list[str]]  # marker names row by row; empty: no surface
 
 

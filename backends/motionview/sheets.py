@@ -8,9 +8,19 @@ import numpy as np
 
 from backends.motionview.bend import bend_view
 from backends.motionview.cells import Differences, differences, grid_views, zone_views
-from backends.motionview.rows import Bush, JointGroup, Point, ProbeView, SheetView, SupportView, Value
+from backends.motionview.rows import (
+    Bush,
+    CurveView,
+    JointGroup,
+    Point,
+    ProbeView,
+    SheetView,
+    SupportView,
+    Value,
+)
 from backends.motionview.units import number
 from mdlgen.model import naming
+from mdlgen.model.curves import straight_points, written
 from mdlgen.model.plate import SHEAR_RATIO
 from mdlgen.model.stiffness import SUPPORT_FACTOR
 from mdlgen.model.tables import AXES, CLAMP, GROUND, JOINT_X, SUPPORT, Anchor, Model, SheetPart
@@ -63,6 +73,7 @@ def sheet_view(model: Model, index: int, tables: dict[str, list[Value]]) -> Shee
         free=free,
         nodes=nodes,
         joints=joints,
+        curves=_curves(model, index, differ),
         surface=_surface(sheet, names) if sheet.surface else [],
     )
 
@@ -70,6 +81,22 @@ def sheet_view(model: Model, index: int, tables: dict[str, list[Value]]) -> Shee
 def _cell(node: int) -> tuple[str, tuple[int, ...]]:
     """Cell coordinate of a half-cell node (1 is 0.5), and the line, or lines, that it lies on or between."""
     return number(node / 2), (node // 2,) if node % 2 == 0 else (node // 2, node // 2 + 1)
+
+
+def _curves(model: Model, index: int, differ: Differences) -> list[CurveView]:
+    """The curves of a sheet, by class where its joints are not all alike."""
+    found = []
+    for curve in (c for c in written(model)[0] if c.sheet == index):
+        points = [
+            (number(strain), number(stress))
+            for strain, stress in zip(*straight_points(model.curves, curve.number), strict=True)
+        ]
+        name = model.curves.name[curve.number]
+        label = f"{name.replace('_', ' ')}: force (N) over elongation (mm) of one bushing"
+        own = f"ds_{model.sheets[index].name}_joints.real_%s_{curve.joints}.value" if differ.cells else "$%s"
+        area = own % ("A" if differ.cells else f"A_{curve.axis}")
+        found.append(CurveView(f"crv_{curve.name}", label, curve.axis, own % f"d_{curve.axis}", area, points))
+    return found
 
 
 def _joints(model: Model, index: int, differ: Differences) -> tuple[list[Point], list[JointGroup]]:
@@ -81,6 +108,8 @@ def _joints(model: Model, index: int, differ: Differences) -> tuple[list[Point],
     body = (*(f"b_{name}" for name in model.bodies.name), "B_Ground")
     assert body[GROUND] == "B_Ground"
     columns = (c[mine].tolist() for c in (table.kind, table.a, table.b, table.node, table.frames))
+    curves, follows = written(model)
+    first = dict(zip((table.name[row] for row in mine.tolist()), mine.tolist(), strict=True))
     owners = differ.owners or ["$%s"] * len(mine)
     for row, own, kind, a, b, (x, y), (one, two) in zip(mine.tolist(), owners, *columns, strict=True):
         point = naming.node(sheet, x, y, (one, two))
@@ -99,8 +128,11 @@ def _joints(model: Model, index: int, differ: Differences) -> tuple[list[Point],
         suffixes = ("x", f"y{shear}", f"tx{twist}", "ty", "tz")
         if not along_x:
             suffixes = (f"x{shear}", "y", "tx", f"ty{twist}", f"tz{across}")
+        row = follows[first[bushes[0].name]]
+        curve = f"crv_{curves[row].name}" if row >= 0 else ""
+        x, y = (curve, "") if along_x else ("", curve)
         # a clamp is a half-cell hinge of twice the joint
-        made.append(JointGroup("2*" if kind == CLAMP else "", own, *suffixes, frames, bushes))
+        made.append(JointGroup("2*" if kind == CLAMP else "", own, *suffixes, frames, bushes, (x, y)))
     return nodes, made
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from mdlgen.model import grid, naming
 from mdlgen.model.anchors import anchor, find_tension, lower_loads
 from mdlgen.model.cells import Cells, cells, zone_parts
+from mdlgen.model.curves import lower_curves
 from mdlgen.model.external import external_pairs, lower_externals
 from mdlgen.model.joints import Joints, find_joints
 from mdlgen.model.machine import frame, lower_planes, lower_rollers
@@ -16,7 +17,7 @@ from mdlgen.model.pairs import find_pairs
 from mdlgen.model.parameters import parameters
 from mdlgen.model.rotations import matrices
 from mdlgen.model.shape import bend, box_rotations, joint_creases, joint_frames, joint_turns, placed
-from mdlgen.model.stiffness import between, coefficients, derived
+from mdlgen.model.stiffness import between, coefficients, derived, extent
 from mdlgen.model.supports import joined, support_bushings
 from mdlgen.model.tables import (
     BOX_CYLINDER,
@@ -53,7 +54,10 @@ def lower(scene: Scene) -> Model:
     bodies = _bodies(sheets, boxes, rollers, planes)
     supports = tuple(anchor(f"support_{k}", item, sheets) for k, item in enumerate(scene.supports))
     held = support_bushings(scene.supports, supports, sheets, bodies)
-    bushings = joined([*_joints(scene, sheets, boxes), *held])
+    joints, extents = _joints(scene, sheets, boxes)
+    bushings = joined([*joints, *held])
+    none = np.zeros(sum(len(table) for table in held))  # of supports
+    long, wide = (np.concatenate([*(each[k] for each in extents), none]) for k in range(2))
     naming.check_unique("bodies", bodies.name)
     naming.check_unique("bushings", bushings.name)
     starts = {r.name: (r.press.touch, r.press.start) for r in rollers if r.press is not None}
@@ -66,6 +70,7 @@ def lower(scene: Scene) -> Model:
         externals=externals,
         bodies=bodies,
         bushings=bushings,
+        curves=lower_curves(scene, sheets, bushings, long, wide),
         contacts=contacts,
         pairs=find_pairs(
             gravity, sheets, rollers, planes, bodies, contacts, run, scene.run.prune, scene.run.margin
@@ -234,8 +239,11 @@ def _bodies(
     return Bodies(tuple(names), tuple(labels), *columns)
 
 
-def _joints(scene: Scene, sheets: tuple[SheetPart, ...], boxes: list[Cells]) -> list[Bushings]:
-    tables = []
+def _joints(
+    scene: Scene, sheets: tuple[SheetPart, ...], boxes: list[Cells]
+) -> tuple[list[Bushings], list[tuple[Floats, Floats]]]:
+    """Bushings by sheet and kind, and the length and section of each."""
+    tables, extents = [], []
     for number, (sheet, box) in enumerate(zip(sheets, boxes, strict=True)):
         spec = scene.sheets[sheet.name]
         for joints in find_joints(sheet):
@@ -259,7 +267,8 @@ def _joints(scene: Scene, sheets: tuple[SheetPart, ...], boxes: list[Cells]) -> 
                 frames=np.stack(joint_frames(sheet, joints), axis=1),
             )
             tables.append(made)
-    return tables
+            extents.append(extent(spec, of, joints.along_x))
+    return tables, extents
 
 
 def _soft(sheet: SheetPart, joints: Joints) -> Floats:

@@ -70,9 +70,12 @@ def _sheet(scene: Scene, name: str) -> list[Parameter]:
         Parameter(name, "L_y", "Length L_y along CD", sheet.size[1], "mm", (*base, "size", 1)),
         Parameter(name, "s", "Thickness s", sheet.thickness, "mm", (*base, "thickness")),
         Parameter(name, "M", "Mass M of the sheet", sheet.mass, "g", (*base, "mass")),
-        Parameter(name, "E_md", "Modulus E_MD (N/mm2)", material.E_md, "MPa", (*source, "E_md")),
-        Parameter(name, "E_cd", "Modulus E_CD (N/mm2)", material.E_cd, "MPa", (*source, "E_cd")),
     ]
+    for k, way in enumerate(("md", "cd")):
+        label = f"Modulus E_{way.upper()} (N/mm2)"
+        # of a curve the modulus is its first slope, computed
+        path = (*source, f"E_{way}") if getattr(material, f"curve_{way}") is None else None
+        rows.append(Parameter(name, f"E_{way}", label, material.moduli[k], "MPa", path))
     for member, label, unit in (
         ("k_tx", "Hinge stiffness k_tx (N mm/rad)", "N*mm/rad"),
         ("k_ty", "Hinge stiffness k_ty (N mm/rad)", "N*mm/rad"),

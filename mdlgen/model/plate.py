@@ -31,7 +31,7 @@ SHEAR_RATIO = 0.387
 
 def shear_modulus(material: Material) -> float:
     """G in the plane of the sheet [MPa]."""
-    return material.G if material.G is not None else SHEAR_RATIO * math.sqrt(material.E_md * material.E_cd)
+    return material.G if material.G is not None else SHEAR_RATIO * math.sqrt(math.prod(material.moduli))
 
 
 def twisting(sheet: Sheet, material: Material) -> float | None:

@@ -54,6 +54,14 @@ def between(boxes: Cells, one: Ints, two: Ints, along_x: bool, soft: Floats) -> 
     )
 
 
+def extent(sheet: Sheet, of: Between, along_x: bool) -> tuple[Floats, Floats]:
+    """Length [mm] of each joint along x, or along y, and section [mm^2] of one of its bushings, in zones in
+    times their membrane stiffness."""
+    parts = 2 if sheet.layout == "edge_to_edge" else 1
+    long, wide = (of.d_x, of.d_y) if along_x else (of.d_y, of.d_x)
+    return long, of.membrane * (wide * sheet.thickness / parts)
+
+
 def plain(sheet: Sheet) -> Between:
     """A joint between two boxes of mean length outside all zones."""
     d_x, d_y = sheet.pitch
@@ -67,8 +75,9 @@ def coefficients(sheet: Sheet, material: Material, of: Between, along_x: bool) -
     k_tz [N mm/rad], and the dampings [N ms/mm], [N mm ms/rad] (Eqs. 4-7)."""
     parts = 2 if sheet.layout == "edge_to_edge" else 1  # bushings per pair
     s = sheet.thickness
-    k_x = of.membrane * (material.E_md * of.d_y * s / of.d_x / parts)  # Eq. 5
-    k_y = of.membrane * (material.E_cd * of.d_x * s / of.d_y / parts)  # Eq. 6
+    e_md, e_cd = material.moduli
+    k_x = of.membrane * (e_md * of.d_y * s / of.d_x / parts)  # Eq. 5
+    k_y = of.membrane * (e_cd * of.d_x * s / of.d_y / parts)  # Eq. 6
     k_z = 10.0 * np.maximum(k_x, k_y)
     shape, mean = of.d_x / of.d_y, sheet.pitch[0] / sheet.pitch[1]
     k_tx = of.bending * _hinge(material.k_tx, material.D_cd, shape, mean, parts)

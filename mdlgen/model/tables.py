@@ -74,6 +74,32 @@ class Bushings(Frozen):
 
 
 @dataclass(frozen=True)
+class Curves(Frozen):
+    """Measured stress-strain curves, and the bushings that follow one along an axis of their own.
+
+    Curve i has the points start[i] ... start[i + 1] - 1, from (0, 0) on, and is odd: compression follows it
+    with both signs turned. Between points it is a cubic with the slopes given, beyond the last one straight.
+    The force of a bushing is `area` times the stress at its elongation over `length`.
+    """
+
+    name: tuple[str, ...]  # SHEET_md or SHEET_cd
+    start: Ints  # (curves + 1,)
+    strain: Floats  # (points,)
+    stress: Floats  # [MPa]
+    slope: Floats  # [MPa]
+    energy: Floats  # of a unit volume, up to the point [N/mm^2]
+    rise: Floats  # slope beyond the last point [MPa], (curves,)
+    linear: NDArray[np.bool_]  # whether a joint may go there; else the run ends, (curves,)
+    of: Ints  # curve of each bushing, -1: none, (bushings,)
+    axis: Ints  # axis of the bushing that follows it, 0: x, 1: y, (bushings,)
+    length: Floats  # [mm], (bushings,)
+    area: Floats  # [mm^2], (bushings,)
+
+    def __len__(self) -> int:
+        return len(self.name)
+
+
+@dataclass(frozen=True)
 class Clamp:
     """A held edge: rows of boxes behind the line, and the half-cell hinges on it."""
 
@@ -361,6 +387,7 @@ class Model(Frozen):
     externals: tuple[ExternalPart, ...]  # a Model that has one is not run here
     bodies: Bodies
     bushings: Bushings
+    curves: Curves
     contacts: Contacts
     pairs: Pairs
     external_pairs: ExternalPairs

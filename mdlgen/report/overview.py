@@ -51,7 +51,25 @@ def _sheet(model: Model, index: int) -> dict[str, Any]:
         "outline_mm": list(sheet.outline),
         "derived": {name: float(value) for name, value in sheet.derived.items()},
         "bending": bending(sheet),
+        "curves": curves(model, sheet),
     }
+
+
+def curves(model: Model, sheet: SheetPart) -> dict[str, dict[str, Any]]:
+    """The measured curves that a sheet's joints follow, by md and cd; slopes in MPa."""
+    table, found = model.curves, {}
+    for number, name in enumerate(table.name):
+        if name.rpartition("_")[0] == sheet.name:
+            first, after = (int(k) for k in table.start[number : number + 2])
+            found[name.rpartition("_")[2]] = {
+                "points": after - first,
+                "greatest_strain": float(table.strain[after - 1]),
+                "greatest_stress_mpa": float(table.stress[after - 1]),
+                "initial_slope_mpa": float(table.slope[first]),
+                "final_slope_mpa": float(table.slope[after - 1]),
+                "extrapolate": "linear" if table.linear[number] else "refuse",
+            }
+    return found
 
 
 def bending(sheet: SheetPart) -> dict[str, float]:

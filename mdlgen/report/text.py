@@ -21,6 +21,7 @@ def overview_text(told: dict[str, Any]) -> str:
             *_derived(sheet["derived"]),
             "",
             *_bending(sheet["bending"]),
+            *_curves(sheet["curves"]),
         ]
     pairs = told["pairs"]
     lines += [
@@ -70,6 +71,16 @@ def _bending(values: dict[str, float]) -> list[str]:
     for way, hinge, plate in (("along x (MD)", "k_ty", "D_md"), ("along y (CD)", "k_tx", "D_cd")):
         rows.append([way, hinge, f"{values[hinge]:.5g}", plate, f"{values[plate]:.5g}"])
     return _table(rows)
+
+
+def _curves(curves: dict[str, dict[str, Any]]) -> list[str]:
+    lines = []
+    for way, curve in curves.items():
+        beyond = "straight on beyond" if curve["extrapolate"] == "linear" else "refused beyond"
+        to = f"{curve['greatest_stress_mpa']:.5g} MPa at {100 * curve['greatest_strain']:.4g} %"
+        start = f"slope {curve['initial_slope_mpa']:.5g} MPa at the start"
+        lines.append(f"  curve_{way}: {start}, {curve['points']} points to {to}, {beyond}")
+    return ["", *lines] if lines else []
 
 
 def _table(rows: Sequence[Sequence[str]]) -> list[str]:

@@ -35,6 +35,9 @@ SpecPath = tuple[str | int, ...]
 _ALTERNATIVES = (
     {"k_tx", "D_cd"},
     {"k_ty", "D_md"},
+    {"E_md", "curve_md"},
+    {"E_cd", "curve_cd"},
+    {"points", "file"},
     {"turn", "rotation"},
     {"at", "edge"},
     {"force", "moment", "stress"},
@@ -77,18 +80,21 @@ def load(path: str | Path, overrides: Iterable[str] = ()) -> Scene:
     except UnicodeDecodeError as error:
         line = raw[: error.start].count(b"\n") + 1
         raise SpecError("not UTF-8 text", place=Place(str(path), line, 1)) from None
-    return loads(text, str(path), overrides)
+    return loads(text, str(path), overrides, Path(path).parent)
 
 
-def loads(text: str, file: str = "scene", overrides: Iterable[str] = ()) -> Scene:
-    """The Scene of a YAML or JSON text. Raises SpecError with its place."""
+def loads(text: str, file: str = "scene", overrides: Iterable[str] = (), folder: Path | None = None) -> Scene:
+    """The Scene of a YAML or JSON text; files that it names are looked for in `folder`, None: not at all.
+
+    Raises SpecError with its place.
+    """
     document = parse(text, file)
     if not isinstance(document.data, dict):
         raise SpecError("a scene is a mapping of keys to values", place=document.place(()))
     for override in overrides:
         _override(document, override)
     try:
-        return Scene.model_validate(document.data)
+        return Scene.model_validate(document.data, context={"folder": folder})
     except ValidationError as error:
         raise _first_error(error, document) from None
 
@@ -241,7 +247,7 @@ def _first_error(error: ValidationError, document: Document) -> SpecError:
 
 
 def _describe(error: Any, document: Document) -> SpecError:
-    path: SpecPath = tuple(p for p in error["loc"] if p != "[key]")
+    path = _as_written(tuple(p for p in error["loc"] if p != "[key]"), document)
     kind, context = error["type"], error.get("ctx") or {}
     prefer_key = error["loc"][-1:] == ("[key]",)
     if kind == "spec":
@@ -257,6 +263,14 @@ def _describe(error: Any, document: Document) -> SpecError:
     else:
         message = f"{error['msg']}, got {error['input']!r}"[:300]
     return SpecError(message, path, document.place(path, prefer_key))
+
+
+def _as_written(path: SpecPath, document: Document) -> SpecPath:
+    """A list stands for {points: list}: without that key where the text has none."""
+    for k, key in enumerate(path):
+        if key == "points" and isinstance(_at(document.data, path[:k]), list):
+            return path[:k] + path[k + 1 :]
+    return path
 
 
 def _at(data: Any, path: Sequence[str | int]) -> Any:

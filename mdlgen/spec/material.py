@@ -6,6 +6,7 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
+from mdlgen.spec.curve import Curve
 from mdlgen.spec.fields import Modulus, Plate, Strict, Torsion, fail
 
 
@@ -31,8 +32,14 @@ class Damping(Strict):
 class Material(Strict):
     """An orthotropic sheet material; x is the machine direction MD, y the cross direction CD."""
 
-    E_md: Modulus = Field(description="Young's modulus along x (MD)")
-    E_cd: Modulus = Field(description="Young's modulus along y (CD)")
+    E_md: Modulus | None = Field(default=None, description="Young's modulus along x (MD)")
+    E_cd: Modulus | None = Field(default=None, description="Young's modulus along y (CD)")
+    curve_md: Curve | None = Field(
+        default=None, description="measured stress over strain along x, in place of E_md"
+    )
+    curve_cd: Curve | None = Field(
+        default=None, description="measured stress over strain along y, in place of E_cd"
+    )
     k_tx: Torsion | None = Field(default=None, description="hinge stiffness per bushing for bending along y")
     k_ty: Torsion | None = Field(default=None, description="hinge stiffness per bushing for bending along x")
     k_tz: Torsion | None = Field(
@@ -56,6 +63,23 @@ class Material(Strict):
         description="shear modulus in the plane, with layout plate; 0.387 sqrt(E_md E_cd) where left out",
     )
     damping: Damping = Field(default_factory=Damping)
+
+    @model_validator(mode="after")
+    def _stretching(self) -> Material:
+        for modulus, curve, way in (("E_md", "curve_md", "x"), ("E_cd", "curve_cd", "y")):
+            given = [name for name in (modulus, curve) if getattr(self, name) is not None]
+            if len(given) != 1:
+                what = "both are given" if given else "both are missing"
+                raise fail(f"stretching along {way}: {modulus} and {curve}, {what}; give exactly one of them")
+        return self
+
+    @property
+    def moduli(self) -> tuple[float, float]:
+        """Young's moduli along x and y [MPa]; of a curve the slope at its start."""
+        pairs = ((self.E_md, self.curve_md), (self.E_cd, self.curve_cd))
+        x, y = (curve.modulus if curve is not None else modulus for modulus, curve in pairs)
+        assert x is not None and y is not None, "the spec requires one of E_* and curve_*"
+        return x, y
 
     @model_validator(mode="after")
     def _bending(self) -> Material:

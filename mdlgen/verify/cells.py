@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from mdlgen.model.classes import JointClass, box_classes, joint_classes
+from mdlgen.model.curves import written
 from mdlgen.model.tables import Floats, Model, SheetPart
 from mdlgen.verify.expected import KG, SECOND
 
@@ -68,6 +69,7 @@ def _joints(model: Model, index: int) -> dict[str, float]:
     sheet, rows = model.sheets[index], model.bushings
     found: dict[str, float] = {}
     given = {p.member: p.value for p in model.parameters if p.data_set == sheet.name}
+    sections = {curve.joints: curve.area for curve in written(model)[0] if curve.sheet == index}
     for joints, classes, _ in joint_classes(sheet):
         mine = np.flatnonzero((rows.sheet == index) & (rows.kind == joints.kind))
         for c in classes:
@@ -79,6 +81,8 @@ def _joints(model: Model, index: int) -> dict[str, float]:
             members = _as_written(sheet, given, members, c.along_x)
             if sheet.layout == "plate":
                 members |= _sheared(sheet, given, members, c.along_x)
+            if c.name in sections:
+                members["A"] = sections[c.name]
             found |= {f"ds_{sheet.name}_joints.real_{n}_{c.name}": float(v) for n, v in members.items()}
     return found
 

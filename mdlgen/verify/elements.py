@@ -26,6 +26,7 @@ _COMPARED: dict[str, frozenset[str]] = {
     "Force_Bushing": frozenset(
         f"{word}{a}" for word in ("k", "c", "kt", "ct", "preload_", "preload_t") for a in _XYZ
     ),
+    "Force_Vector_TwoBody": frozenset(f"f{a}_expression" for a in _XYZ),
     "Force_Contact": frozenset(
         (
             *("penalty", "restitution_coef", "normal_trans_vel"),

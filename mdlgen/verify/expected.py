@@ -11,8 +11,10 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 
 from mdlgen.model import naming
+from mdlgen.model.curves import straight_points, written
 from mdlgen.model.shape import ground_frames
 from mdlgen.model.tables import (
+    CLAMP,
     GROUND,
     SUPPORT,
     Anchor,
@@ -38,6 +40,8 @@ def expected(model: Model, times: Times) -> dict[str, Table]:
         "points": _points(model),
         "bodies": _bodies(model),
         "bushings": _bushings(model),
+        "curves": _curves(model),
+        "curve laws": _curve_laws(model),
         "springs": _springs(model),
         "boxes": _boxes(model),
         "cylinders": _cylinders(model),
@@ -142,10 +146,13 @@ def _bodies(model: Model) -> Table:
 
 def _bushings(model: Model) -> Table:
     rows = model.bushings
+    stiff = rows.k[:, :3].copy()
+    bent = np.flatnonzero(model.curves.of >= 0)
+    stiff[bent, model.curves.axis[bent]] = 0.0  # a curve stands there: see _curve_laws
     parts: dict[str, Part] = {
         "origin": (rows.origin, reach(model)),
         "axes": (rows.axes.transpose(0, 2, 1), 1.0),
-        "k": (rows.k[:, :3], None),
+        "k": (stiff, None),
         "c": (rows.c[:, :3] * SECOND, None),
         "kt": (rows.k[:, 3:], None),
         "ct": (rows.c[:, 3:] * SECOND, None),
@@ -158,6 +165,35 @@ def _bushings(model: Model) -> Table:
         for a, b in zip(rows.a.tolist(), rows.b.tolist(), strict=True)
     ]
     return table([f"bsh_{n}" for n in rows.name], parts, words)
+
+
+def _curves(model: Model) -> Table:
+    """Points of the curves: elongation [mm] and force [N] of one bushing."""
+    names, points, scales = [], [np.zeros((0, 2))], [np.zeros((0, 2))]
+    for curve in written(model)[0]:
+        strain, stress = straight_points(model.curves, curve.number)
+        length, area, name = curve.length, curve.area, curve.name
+        names += [f"crv_{name}.{k}" for k in range(len(strain))]
+        points.append(np.stack([length * strain, area * stress], axis=1))
+        scales.append(np.broadcast_to(points[-1].max(axis=0), points[-1].shape))
+    return table(names, {"point": (np.concatenate(points), np.concatenate(scales))})
+
+
+def _curve_laws(model: Model) -> Table:
+    """The curve of each bushing that has one, and its independent variable in the made-up state [mm]."""
+    rows, curves = model.bushings, model.curves
+    entities, follows = written(model)
+    names, values, words = [], [], []
+    for row in np.flatnonzero(curves.of >= 0).tolist():
+        way = int(curves.axis[row])
+        a, b = (motion(body_name(model, int(ends[row]))).displacement for ends in (rows.a, rows.b))
+        # the curve is that of a whole joint: half a cell has its strain at half of the elongation
+        factor = 2.0 if rows.kind[row] == CLAMP else 1.0
+        name = f"bsh_{rows.name[row]}"
+        names.append(f"{name}.k.{way}")
+        values.append(factor * float(rows.axes[row][:, way] @ (a - b)))
+        words.append((f"crv_{entities[follows[row]].name}", "LINEAR", f"{name}.i", f"{name}.j", f"{name}.j"))
+    return table(names, {"variable": (np.array(values), reach(model))}, words)
 
 
 def _springs(model: Model) -> Table:

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from mdlgen.model.curves import written
 from mdlgen.model.tables import Anchor, Model, SheetPart
 from mdlgen.verify.bend import shape
 from mdlgen.verify.cells import cells
@@ -91,6 +92,8 @@ def _derived(model: Model, index: int) -> dict[str, float]:
     names = ("x", "y", "z", "tx", "ty", "tz")
     found |= {f"k_{n}": sheet.derived[f"k_{n}"] for n in names}
     found |= {f"c_{n}": sheet.derived[f"c_{n}"] * SECOND for n in names}
+    if sheet.uniform:  # where it is not, each class has its own
+        found |= {f"A_{c.axis}": c.area for c in written(model)[0] if c.sheet == index}
     if sheet.rotation_damping == "inertia":  # of a box about the edges and the corner that its hinges are on
         found["J_x"], found["J_y"] = m * (d_y**2 / 3 + s**2 / 12), m * (d_x**2 / 3 + s**2 / 12)
         found["J_z"] = m * (d_x**2 + d_y**2) / 3

@@ -17,6 +17,7 @@ Values = Mapping[str, Mapping[str, Any]]
 Row = tuple[list[Any], tuple[str, ...]]  # numbers, words
 
 _NAN = float("nan")
+_MARKER = re.compile(r"[A-Za-z_][\w.]*(?=\s*[,)])")
 _ATTRIBUTE = re.compile(r'\b(\w+)\s*=\s*"([^"]*)"')
 
 
@@ -34,7 +35,13 @@ class Found:
             f"{name}.cm": {"body": name, "origin": record["cm"], "axes": record["axes"]}
             for name, record in values.get("bodies", {}).items()
         }
-        self.places = Places(self.markers, values.get("markers", {}), of_bodies)
+        of_bushings = {
+            f"{name}.{end}": {"body": body, "origin": record["origin"], "axes": record["axes"]}
+            for name, record in values.get("bushings", {}).items()
+            if record.get("curves")
+            for end, body in zip("ij", record["bodies"], strict=True)
+        }
+        self.places = Places(self.markers, values.get("markers", {}), of_bodies, of_bushings)
         graphics = values.get("graphics", {})
         boxes = {n: r for n, r in graphics.items() if r["type"] == "BOX"}
         cylinders = {n: r for n, r in graphics.items() if r["type"] == "CYLINDER"}
@@ -42,6 +49,8 @@ class Found:
             "points": _table(values.get("points", {}), lambda n, r: (list(r), ()), 3),
             "bodies": _table(values.get("bodies", {}), _body, 19),
             "bushings": _table(values.get("bushings", {}), _bushing, 30),
+            "curves": _table(_curve_points(values.get("curves", {})), lambda n, r: (list(r), ()), 2),
+            "curve laws": _table(_curve_laws(values.get("bushings", {})), self._curve_law, 1),
             "springs": _table(values.get("springs", {}), _spring, 10),
             "boxes": _table(boxes, _box, 15),
             "cylinders": _table(cylinders, _cylinder, 9),
@@ -69,6 +78,11 @@ class Found:
             return law(str(record["value"]), time)
         except Unreadable:
             return _NAN
+
+    def _curve_law(self, name: str, record: Mapping[str, str]) -> Row:
+        variable = record["variable"]
+        # in the made-up state no axes turn: it does not show along which ones a displacement is
+        return [self._request(variable)], (record["curve"], record["method"], *_MARKER.findall(variable))
 
     def _output(self, name: str, record: Mapping[str, Any]) -> Row:
         return [self._request(text) for text in record["expressions"] or ()], ()
@@ -103,8 +117,26 @@ def _body(name: str, record: Mapping[str, Any]) -> Row:
 
 
 def _bushing(name: str, record: Mapping[str, Any]) -> Row:
-    groups = [record[g] or (None,) * 3 for g in ("k", "c", "kt", "ct", "force", "torque")]
-    return [*record["origin"], *_flat(record["axes"]), *_flat(groups)], tuple(record["bodies"])
+    groups: dict[str, list[Any]] = {
+        g: list(record[g] or (None,) * 3) for g in ("k", "c", "kt", "ct", "force", "torque")
+    }
+    for place in record.get("curves", {}):  # compared among the curve laws
+        group, k = place.split(".")
+        if isinstance(groups[group][int(k)], str):
+            groups[group][int(k)] = 0.0
+    return [*record["origin"], *_flat(record["axes"]), *_flat(groups.values())], tuple(record["bodies"])
+
+
+def _curve_points(records: Mapping[str, Any]) -> dict[str, tuple[float, float]]:
+    return {
+        f"{name}.{k}": point
+        for name, record in records.items()
+        for k, point in enumerate(zip(record["x"] or (), record["y"] or (), strict=True))
+    }
+
+
+def _curve_laws(records: Mapping[str, Any]) -> dict[str, Mapping[str, str]]:
+    return {f"{n}.{place}": law for n, r in records.items() for place, law in r.get("curves", {}).items()}
 
 
 def _spring(name: str, record: Mapping[str, Any]) -> Row:

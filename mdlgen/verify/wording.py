@@ -11,7 +11,7 @@ from mdlgen.verify.tables import Difference
 
 _NUMBER = re.compile(r"[-+]?\d+\.?\d*(?:[eE][-+]?\d+)?")
 # Fields whose numbers stand in a text of their own; they are compared as numbers elsewhere.
-_SOLVER_TEXT = {"value", "expressions", "text"}
+_SOLVER_TEXT = {"value", "variable", "expressions", "text"}
 
 
 def wording(own: Values, given: Values, leave: frozenset[str] = frozenset()) -> Iterator[Difference]:

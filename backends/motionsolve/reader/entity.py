@@ -67,6 +67,18 @@ class Entity:
         lines = (self._element.text or "").split("\n")
         return [[self._positive(part, "content") for part in row.split()] for row in lines if row.strip()]
 
+    def numbers(self) -> list[float]:
+        """The content as finite numbers."""
+        found = []
+        for part in (self._element.text or "").split():
+            try:
+                found.append(float(part))
+            except ValueError:
+                found.append(math.nan)
+            if not math.isfinite(found[-1]) or "_" in part:
+                raise self.wrong(f"content holds {part[:80]!r}, not a number")
+        return found
+
     def _positive(self, text: str, attribute: str) -> int:
         if not (text.isascii() and text.isdigit() and 0 < len(text) <= 10 and int(text)):
             raise self.wrong(f"{attribute} holds {text[:80]!r}, not a positive integer")

@@ -12,6 +12,7 @@ from backends.motionsolve.reader.markers import Marker
 
 _ID = re.compile(r"(?<![\w.])[0-9]+(?![\w.])")
 _CALL = re.compile(r"[A-Za-z]\w*\([^()]*\)")
+_CURVED = re.compile(r"-LINSPL\((.*),0,([0-9]{1,10})\)")
 _CAPS = {"CLOSED": "CAPBOTH", "TOP_ONLY": "CAPEND", "BOTTOM_ONLY": "CAPBEGIN", "OPEN": "CAPNONE"}
 _QUANTITIES = {"D": "DISP", "V": "VEL", "A": "ACCL"}
 _FREEDOMS = {"R": "ROT", "T": "TRANS"}
@@ -86,6 +87,47 @@ def bushing(deck: Deck, entity: Entity) -> dict[str, Any]:
         "force": three("preload_{}"),
         "torque": three("preload_t{}"),
     }
+
+
+def spline(deck: Deck, entity: Entity) -> dict[str, Any]:
+    """x and y of its points, as many as it says."""
+    numbers, count = entity.numbers(), entity.id("num_x")
+    if len(numbers) != 2 * count:
+        raise entity.wrong(f"{len(numbers)} numbers, not {count} times two")
+    beyond = entity.word("linear_extrap", "FALSE")
+    return {"label": entity.word("label", ""), "beyond": beyond, "x": numbers[::2], "y": numbers[1::2]}
+
+
+def curved_spring(
+    deck: Deck, entity: Entity, bushings: dict[str, dict[str, Any]]
+) -> tuple[str, dict[str, dict[str, str]], str] | None:
+    """The bushing whose markers a force has, its laws by component as in the text, and the floating marker;
+    None for a force that is something else.
+
+    A law has the name of its curve, the method, and the independent variable with the names of markers.
+    """
+    i, j = deck.marker(entity, "i_marker_id"), deck.marker(entity, "ref_marker_id")
+    floating = deck.marker(entity, "j_floating_marker_id")
+    name = i.name.removesuffix(".i")
+    if name not in bushings or j.name != f"{name}.j" or floating.body != j.body:
+        return None
+    laws = {}
+    for k, axis in enumerate("xyz"):
+        text = "".join(entity.word(f"f{axis}_expression").split())
+        if text == "0":
+            continue
+        form = _CURVED.fullmatch(text)
+        if form is None:
+            raise entity.wrong(f"f{axis}_expression is {text[:80]!r}, not -LINSPL of a curve")
+        variable = _CALL.sub(lambda call: _named(deck, entity, call[0]), form[1])
+        curve = deck.elements.by_id(entity, int(form[2]), "Reference_Spline").name
+        laws[f"k.{k}"] = {"curve": curve, "method": "LINEAR", "variable": variable}
+    return name, laws, floating.name
+
+
+def _named(deck: Deck, user: Entity, text: str) -> str:
+    """A call with the names of its markers in place of their ids."""
+    return _ID.sub(lambda number: deck.by_id(user, int(number[0])).name, text)
 
 
 def spring(deck: Deck, entity: Entity) -> dict[str, Any]:
@@ -206,7 +248,7 @@ def output(deck: Deck, entity: Entity) -> dict[str, Any] | None:
         return None
 
     def named(call: re.Match[str]) -> str:
-        return _ID.sub(lambda number: deck.by_id(entity, int(number[0])).name, call[0])
+        return _named(deck, entity, call[0])
 
     texts = [entity.word(f"expr{k}") for k in (2, 3, 4, 6, 7, 8)]
     return {"label": entity.word("comment", ""), "expressions": [_CALL.sub(named, text) for text in texts]}

@@ -2,7 +2,7 @@
 
 Kinds: bodies, markers, bushings, springs, graphics, joints, motions, contacts, velocities; surfaces, outputs,
 forces (one-body loads) by name; gravity [mm/s^2]; run. Left out are, as there, the global frame and the
-markers of graphics. A deck has no points, vectors or data sets.
+markers of graphics, and floating ones. A deck has no points, vectors or data sets.
 """
 
 from __future__ import annotations
@@ -32,6 +32,7 @@ KINDS: tuple[tuple[str, str, _Record], ...] = (
     ("Reference_DeformSurface", "surfaces", records.surface),
     ("Post_Request", "outputs", records.output),
     ("Force_Vector_OneBody", "forces", records.load),
+    ("Reference_Spline", "curves", records.spline),
 )
 
 
@@ -51,6 +52,12 @@ def values(root: etree._Element, file: str) -> dict[str, Any]:
             if value is not None:
                 _put(listed, entity, value)
     own = {graphic + "_center_marker" for graphic in found["graphics"]}
+    for entity in index.of_kind("Force_Vector_TwoBody"):
+        spring = records.curved_spring(deck, entity, found["bushings"])
+        if spring is not None:
+            bushing, laws, floating = spring
+            found["bushings"][bushing].setdefault("curves", {}).update(laws)
+            own.add(floating)
     for entity in index.of_kind("Reference_Marker"):
         if entity.name != "Global_Frame" and entity.name not in own:
             _put(found["markers"], entity, deck.markers[entity.id()].record())

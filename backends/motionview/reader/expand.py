@@ -308,7 +308,7 @@ class Expansion:
 
 
 # The usual spelling of statements, which are not case sensitive.
-_KINDS = {name.lower(): name for name in (*CLASSES, "System", "Analysis", "DataSet", "Curve")}
+_KINDS = {name.lower(): name for name in (*CLASSES, "System", "Analysis", "DataSet")}
 
 
 def _kind(name: str) -> str:

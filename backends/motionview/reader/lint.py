@@ -23,7 +23,16 @@ _SEEN = {
     *("bush", "bushpair", "coilspring", "coilspringpair", "motion", "contact", "graphic", "graphicpair"),
     *("real", "integer", "string", "boolean", "filename", "option", "table"),
     *("setpoint", "setvector", "setorientation", "setbodyinertia", "setbody", "setbodyic", "setbodyicflag"),
-    *("setbush", "setcoilspring", "setmotion", "setcontact", "setcoupler", "setpolybeamprops", "set"),
+    *(
+        "setbush",
+        "setcoilspring",
+        "setcurve",
+        "setmotion",
+        "setcontact",
+        "setcoupler",
+        "setpolybeamprops",
+        "set",
+    ),
     *("setreal", "setinteger", "setstring", "setboolean", "setoption", "setfilename", "setval"),
 }
 # Statements whose arguments are words for panels and ids, not values of the model.

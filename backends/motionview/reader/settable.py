@@ -32,6 +32,7 @@ ACTED: dict[str, Parts] = {
     "setcoilspring": {"CoilSpring": _ITSELF},
     "setmotion": {"Motion": _ITSELF},
     "setcontact": {"Contact": _ITSELF},
+    "setcurve": {"Curve": _ITSELF},
     "setcoupler": {"Coupler": _ITSELF},
     "setpolybeamprops": {"PolyBeam": _ITSELF},
     "setoption": {"Option": _ITSELF, "Op_Compliant": _ITSELF},

@@ -27,6 +27,7 @@ LISTS = {
     "Contact": "contacts",
     "Output": "outputs",
     "DeformableSurface": "surfaces",
+    "Curve": "curves",
     "Template": "templates",
 }
 

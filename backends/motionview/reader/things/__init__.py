@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from backends.motionview.reader.pair import Pair
 from backends.motionview.reader.things.beams import PolyBeam
 from backends.motionview.reader.things.bodies import Body, Ground
+from backends.motionview.reader.things.curves import Curve
 from backends.motionview.reader.things.data import BuiltInOption, Option, Table, Value
 from backends.motionview.reader.things.drives import Contact, Coupler, Motion, SolverVariable, Template
 from backends.motionview.reader.things.forces import Bush, CoilSpring, Force, Output
@@ -44,6 +45,7 @@ CLASSES: dict[str, type[Thing]] = {
     "Motion": Motion,
     "Contact": Contact,
     "DeformableSurface": DeformableSurface,
+    "Curve": Curve,
     "Coupler": Coupler,
     "SolverVariable": SolverVariable,
     "PolyBeam": PolyBeam,

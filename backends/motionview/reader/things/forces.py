@@ -30,6 +30,7 @@ class Laws:
         self.statement = chosen.statement
         self.scope = chosen.scope
         self.at = chosen.first
+        self.curves: list[tuple[str, str, str] | None] = []  # of each law so far: curve, method, variable
 
     def law(self) -> float | str:
         """A number for LIN, else the word and what follows it."""
@@ -39,9 +40,22 @@ class Laws:
             trouble.place = self.statement.place(self.at)
             raise trouble
         self.at += 1 + TOKENS[word]
+        self.curves.append(self._curve() if word == "CRV" else None)
         if word == "LIN":
             return self.thing.number(self.at - 1, self.statement, self.scope)
         return ", ".join((word, *self.statement.args[self.at - TOKENS[word] : self.at]))
+
+    def _curve(self) -> tuple[str, str, str]:
+        """Name of the curve, word of the method, solver expression of the independent variable, pasted."""
+        thing, at = self.thing, self.at - TOKENS["CRV"]
+        curve = thing.given(at, self.statement, self.scope)
+        if getattr(curve, "kind", "") != "Curve":
+            raise thing.wrong(self.statement, at, "a Curve", curve)
+        return (
+            curve.name,
+            self.statement.arg(at + 1).upper(),
+            str(thing.given(at + 2, self.statement, self.scope)),
+        )
 
     def number(self) -> float:
         """A plain number."""
@@ -159,6 +173,13 @@ class Bush(_Link):
         found: dict[str, Any] = {}
         for group in GROUPS:
             found[group] = (laws.law(), laws.law(), laws.law())
+        bent = {
+            f"{GROUPS[k // 3]}.{k % 3}": dict(zip(("curve", "method", "variable"), law, strict=True))
+            for k, law in enumerate(laws.curves)
+            if law is not None
+        }
+        if bent:
+            found["curves"] = bent
         found["force"] = (laws.number(), laws.number(), laws.number())
         found["torque"] = (laws.number(), laws.number(), laws.number())
         return found
