@@ -16,6 +16,7 @@ from mdlgen.model.plate import SHEAR_RATIO
 from mdlgen.model.tables import CLAMP, JOINT_X, JOINT_Y, Model
 from mdlgen.paths import samples
 from mdlgen.results.result import Result
+from mdlgen.results.strain import strains
 from mdlgen.spec.load import load, loads
 from mdlgen.verify.verification import verify
 from tests.corners import gaps
@@ -193,7 +194,7 @@ def test_a_strip_bends_in_its_plane_as_a_beam(boxes: tuple[int, int]) -> None:
 
     The end has the stress of bending, a force and a moment for each box, so that the whole sheet bends alike.
     """
-    bend, width = 1e-5, 67 / boxes[0]  # 1/mm
+    bend, width = 1e-6, 67 / boxes[0]  # 1/mm
     places = [(k + 0.5) * width - 33.5 for k in range(boxes[0])]
     pulls = [
         f"{{sheet: note, at: [{x!r} mm, 63.5 mm], force: [0 N, {E_CD * 0.1 * width * bend * x!r} N, 0 N]}}"
@@ -202,8 +203,12 @@ def test_a_strip_bends_in_its_plane_as_a_beam(boxes: tuple[int, int]) -> None:
     own = boxes[0] * E_CD * 0.1 * width**3 / 12 * bend
     pulls.append(f"{{sheet: note, edge: y_max, moment: [0 N*mm, 0 N*mm, {own!r} N*mm]}}")
     sets = (f"sheets.note.boxes={list(boxes)}", f"loads=[{', '.join(pulls)}]")
-    aside = -moved(model("cantilever", PLATE, STILL, *sets))["tip"][0]
-    assert aside == pytest.approx(bend * 127**2 / 2, rel=1e-3)
+    made = model("cantilever", PLATE, STILL, *sets)
+    assert -moved(made)["tip"][0] == pytest.approx(bend * 127**2 / 2, rel=1e-3)
+    told = strains(solved(made))
+    assert told is not None  # and at the sheet's edges each joint has the beam's strain
+    assert told.stretch.value.max() == pytest.approx(bend * 33.5, rel=1e-3)
+    assert told.squeeze.value.min() == pytest.approx(-bend * 33.5, rel=1e-3)
 
 
 def test_stiffness_of_each_joint() -> None:

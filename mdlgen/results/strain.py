@@ -31,7 +31,7 @@ class SheetJoints(Frozen):
     b: Ints  # body
     way: Floats  # 1 where b lies on the positive side along the axis, else -1
     length: Floats  # of material that it stands for [mm]
-    spread: Floats  # half the distance of its two bushings [mm], 0 where it has one
+    spread: Floats  # half the distance of its two bushings [mm], 0 where it has one; half a plate's side
     origin: Floats  # middle [mm], (n, 3)
     axes: Floats  # of its bushings, (n, 3, 3)
     at: Floats  # middle in sheet axes from the sheet's centre [mm], (n, 2)
@@ -91,6 +91,9 @@ def sheet_joints(model: Model) -> SheetJoints:
     axis = np.where(kind == CLAMP, np.array(held, dtype=np.int64)[sheet], np.where(kind == JOINT_X, 0, 1))
     origin = (bushings.origin[first] + bushings.origin[last]) / 2
     spread = np.linalg.norm(bushings.origin[last] - bushings.origin[first], axis=1) / 2
+    # the one bushing of a plate turns in the plane as the strip of the whole side does
+    whole = np.array([s.layout == "plate" for s in model.sheets])[sheet]
+    spread = np.where(whole, model.bodies.half[b, 1 - axis], spread)
     axes = bushings.axes[first]
     position = model.bodies.position
     start = np.where((a == GROUND)[:, None], origin, position[a])
