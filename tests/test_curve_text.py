@@ -152,6 +152,7 @@ DECK_SLIPS = {
     "no force": changed(r"(?s)<!-- MODEL.frc_note_x_0_0_a -->\s*<Force_Vector_TwoBody.*?/>\n", ""),
     "also along y": changed(r'fy_expression       = "0"', r'fy_expression       = "1"'),
     "a floating marker elsewhere": changed(r'j_floating_marker_id= "\d+"', 'j_floating_marker_id= "1"'),
+    "its place": changed(r'(?s)(jfloat -->.{200,400}?pos_x +)= "[^"]*"', r'\1= "77.0"'),
     "extrapolation": changed(r'linear_extrap       = "FALSE"', 'linear_extrap       = "TRUE"'),
     "a count": changed(r'num_x               = "(\d+)"', r'num_x               = "1\1"'),
 }

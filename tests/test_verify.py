@@ -221,10 +221,14 @@ def test_a_change_of_any_number_of_a_deck_is_caught(tmp_path: Path) -> None:
     file.write_text(text)
     assert verify(scene, model, deck=file, turn=False).ok
     tried = 0
-    for change in mutations(text, 5, 400, "<Reference_Marker"):
+    for change in mutations(text, 5, 450, "<Reference_Marker"):
         in_entity = any(f"{name}=" in change.where.replace(" ", "") for name in ENTITY_NUMBERS)
         if not change.old[0].isdigit() or not in_entity or not change.where.endswith('"'):
             continue
+        at = next(k for k, (one, other) in enumerate(zip(text, change.text, strict=False)) if one != other)
+        owner = text[:at].rpartition("<!-- MODEL.")[2].partition(" ")[0]
+        if owner.startswith("gcyl_") and change.where.startswith(("a00", "a10", "a20")):
+            continue  # a cylinder is the same round its axis
         file.write_text(change.text)
         try:
             ok = verify(scene, model, deck=file, turn=False).ok

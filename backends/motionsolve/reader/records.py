@@ -109,7 +109,7 @@ def curved_spring(
     i, j = deck.marker(entity, "i_marker_id"), deck.marker(entity, "ref_marker_id")
     floating = deck.marker(entity, "j_floating_marker_id")
     name = i.name.removesuffix(".i")
-    if name not in bushings or j.name != f"{name}.j" or floating.body != j.body:
+    if name not in bushings or j.name != f"{name}.j" or floating[2:] != j[2:]:
         return None
     laws = {}
     for k, axis in enumerate("xyz"):
