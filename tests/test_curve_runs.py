@@ -55,6 +55,12 @@ def test_any_grid_gives_the_curve_itself(solver: str, layout: str, stress: float
     assert max(found) - min(found) < 1e-9 * exact
 
 
+def test_what_is_left_to_the_end_of_the_curve() -> None:
+    found = run("lattice", "sheets.strip.boxes=[5,1]").summary()["sheets"]["strip"]["strain"]
+    assert found["margin"] == pytest.approx(1 - 0.031573804 / 0.05, rel=1e-5)
+    assert found["max_md"] == pytest.approx(0.031573804, rel=1e-5)
+
+
 @SOLVERS
 @pytest.mark.parametrize("stress", [0.1999, 0.3999968, 13.47, 24.999, -10.0])
 def test_on_and_between_points_and_in_compression(solver: str, stress: float) -> None:

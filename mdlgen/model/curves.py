@@ -131,6 +131,15 @@ def limit(curves: Curves, number: int) -> float:
     return float(curves.strain[curves.start[number + 1] - 1])
 
 
+def limits(curves: Curves) -> Floats | None:
+    """Strain at the last point of the curve that each bushing follows, nan: none, (bushings,); None without
+    curves."""
+    if not len(curves):
+        return None
+    last = np.append(curves.strain[curves.start[1:] - 1], np.nan)
+    return last[curves.of]
+
+
 def straight_points(curves: Curves, number: int) -> tuple[Floats, Floats]:
     """Strains and stresses [MPa], compression first, between which straight lines are the curve.
 

@@ -90,9 +90,10 @@ class Result:
     @cached_property
     def strains(self) -> Strains | None:
         """What the joints bear, peaks over the stored times; worked out when first asked for, and kept."""
+        from mdlgen.model.curves import limits
         from mdlgen.results.strain import strains
 
-        return strains(self)
+        return strains(self, limits(self.model.curves))
 
     def anchor_motion(self, index: int) -> tuple[Floats, Floats]:
         """Position [mm] and velocity [mm/ms] of probe `index` at the stored times, (t, 3) each."""
