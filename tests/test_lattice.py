@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import mdlgen
-from backends.lattice import band
 from backends.lattice.arrays import build
+from backends.lattice.compiled import band, dense, forces, step
 from mdlgen.bench.suites import flight
 from mdlgen.bench.suites.impact import thrown
 from mdlgen.errors import RefusedError
@@ -109,6 +109,71 @@ def test_the_band_is_factored_and_solved(nodes: int, reach: int) -> None:
     assert np.abs(full @ found - wanted).max() < 1e-12 * np.abs(wanted).max() * nodes
     packed[0, 0, 0] = -1.0
     assert not band.factor(packed)
+
+
+@pytest.mark.parametrize("nodes, reach", [(1, 0), (5, 1), (30, 7)])
+def test_six_columns_of_the_inverse_are_those_of_six_solves(nodes: int, reach: int) -> None:
+    rng = np.random.default_rng(nodes)
+    a = band.empty(nodes, reach)
+    for j in range(nodes):
+        rows = 6 * min(reach + 1, nodes - j)
+        a[j, :, :rows] = rng.normal(size=(6, rows))
+        a[j, range(6), range(6)] += 12.0 * (reach + 1)
+    assert band.factor(a)
+    node = nodes // 2
+    x = np.zeros((6, 6 * nodes))
+    x[range(6), range(6 * node, 6 * node + 6)] = 1.0
+    alone = x.copy()
+    band.solve_six(a, x, node)
+    for row in alone:
+        band.solve(a, row)
+    assert np.allclose(x, alone, rtol=0, atol=1e-15 * np.abs(alone).max() * nodes)  # sums in another order
+
+
+@pytest.mark.parametrize("many", [1, 3, 4, 6, 7, 56, 57])
+def test_a_small_matrix_is_factored_and_solved_transposed(many: int) -> None:
+    rng = np.random.default_rng(many)
+    matrix, right = rng.normal(size=(many, many)), rng.normal(size=many)
+    room, swaps = np.full((many + 2, many + 2), np.nan), np.zeros(many, np.int64)
+    room[:many, :many] = matrix
+    assert dense.lu(room, swaps, many)
+    found = right.copy()
+    dense.lu_solve_transposed(room, swaps, found, many)
+    # relative to what was to be solved; growth of a random matrix under row exchange is small
+    assert np.abs(matrix.T @ found - right).max() < 1e-13 * many * max(1.0, np.abs(found).max())
+    room[:many, :many] = matrix
+    room[:many, 0] = 0.0
+    assert not dense.lu(room, swaps, many)
+
+
+def test_what_touches_after_a_step_was_near_before_it() -> None:
+    system = build(mdlgen.lower(load(samples() / "transport_4x4.yaml")))
+    rng = np.random.default_rng(3)
+    state, mid, _ = step.empty(system, forces.WIDE)
+    model = mdlgen.lower(load(samples() / "transport_4x4.yaml"))
+    count, ahead = len(model.bodies.name), 0.25
+    (x, r), (xm, rm, um, wm, f, touched, outs, _, near) = state[:2], mid
+    seen = 0
+    for _ in range(20):
+        x[:count], r[:count] = model.bodies.position, model.bodies.rotation.reshape(-1, 9)
+        r[count] = np.eye(3).ravel()
+        xm[:], rm[:] = x, r
+        x[system.nodes, 2] += rng.uniform(-0.1, 0.6, len(system.nodes))
+        u = np.zeros((len(system.nodes), 6))
+        u[:, :3] = rng.normal(size=(len(u), 3)) * (1.4, 0.2, 1.4)
+        u[:, 3:] = rng.normal(size=(len(u), 3)) * 0.1
+        forces.place(
+            system.bodies, system.nodes, ahead, 0.0, u, np.zeros(system.border), x, r, xm, rm, um, wm
+        )
+        close = forces.near_pairs(system.bodies, system.pairs, x, r, um, wm, step.FAR, ahead, near)
+        listed, every = set(near[:close].tolist()), np.arange(len(system.pairs))
+        assert close < 0.7 * len(every)
+        many, _, _ = forces.pair_forces(
+            system.bodies, system.pairs, every, len(every), xm, rm, um, wm, f, touched, outs
+        )
+        assert set(touched[:many].tolist()) <= listed
+        seen += many
+    assert seen > 500
 
 
 def test_bushings_fold_where_two_stand_side_by_side() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from decimal import Decimal, localcontext
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from scipy.spatial.transform import Rotation
 from mdlgen.mechanics.bushing import bushing
 from mdlgen.mechanics.contact import OUT, box_cylinder, box_plane, cylinder_cylinder
 from mdlgen.mechanics.laws import damped, damping_share, friction_over_speed, sign_step
+from mdlgen.mechanics.vector import exp_rotation, log_rotation, sines
 
 ZERO, EYE = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 K, R, WIDTH, HALF = 300.0, 7.5, 5.0, (3.35, 3.175, 0.05)
@@ -276,3 +278,30 @@ def test_bushing_torque_is_the_gradient_of_its_energy(angle):
         way = rng.normal(size=3)
         slope = (at(1e-6 * way)[3] - at(-1e-6 * way)[3]) / 2e-6
         assert -np.dot(at(ZERO)[1], way) == pytest.approx(slope, rel=1e-6, abs=1e-9)
+
+
+def test_a_rotation_vector_gives_its_matrix_and_comes_back():
+    # on both sides of 0.1 rad, from where on sines are no more taken from their series
+    axis = np.array([0.3, -0.8, 0.52])
+    axis /= np.linalg.norm(axis)
+    for angle in (0.0, 1e-9, 1e-4, 0.0999, 0.1001, 1.0, 3.1):
+        matrix = exp_rotation(tuple(float(v) for v in angle * axis))
+        expected = Rotation.from_rotvec(angle * axis).as_matrix().ravel()
+        assert np.allclose(matrix, expected, rtol=0, atol=4e-16), angle  # the last bit of sums of three
+        back = np.array(log_rotation(matrix))
+        assert np.allclose(back, angle * axis, rtol=1e-13, atol=1e-15), angle  # acos at 3.1 rad: 1/sin = 24
+
+
+@pytest.mark.parametrize("angle2", [1e-12, 1e-4, 0.00999, 0.01001, 0.5])
+def test_sines_are_those_of_the_angle(angle2):
+    with localcontext() as exact:
+        exact.prec = 40
+        sine, versine, a, b, t = Decimal(1), Decimal(1) / 2, Decimal(1), Decimal(1) / 2, Decimal(angle2)
+        for k in range(1, 15):
+            a *= -t / (2 * k * (2 * k + 1))
+            b *= -t / ((2 * k + 1) * (2 * k + 2))
+            sine, versine = sine + a, versine + b
+        found = sines(angle2)
+        assert abs(Decimal(found[0]) - sine) < Decimal("2e-16")  # the last bit
+        # 1 - cos of an angle loses what is next to 1: eps / angle^2 where the series ends
+        assert abs(Decimal(found[1]) - versine) < Decimal("1e-16") * (1 if angle2 < 0.01 else Decimal(3) / t)

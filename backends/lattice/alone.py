@@ -28,10 +28,12 @@ class Alone(NamedTuple):
     active: np.ndarray  # places of those that touch now, by rank
     rank: np.ndarray  # by place, -1: does not touch
     kept: np.ndarray  # (3,) whether factors may be used again, how many are active, how many stand in W
+    stood: np.ndarray  # nodes that stand in W, by place
     rollers: np.ndarray  # bodies
     growth: np.ndarray  # of impulses with the velocities of active boxes and rollers
     w: np.ndarray  # compliance of the chosen
-    jac: np.ndarray  # 1 + W growth, or its factors
+    part: np.ndarray  # of those of them that touch now
+    jac: np.ndarray  # 1 + W growth, transposed, or its factors
     swaps: np.ndarray  # exchanged rows
     own: np.ndarray  # the rollers' inverse masses
     measure: np.ndarray  # what an unknown counts as velocity
@@ -72,9 +74,11 @@ def empty(system, wide: int) -> Alone:
         active=np.zeros(most, np.int64),
         rank=np.full(most, -1, np.int64),
         kept=np.zeros(3, np.int64),
+        stood=np.zeros(most, np.int64),
         rollers=np.flatnonzero(np.abs(system.bodies["axis"]).max(axis=1) > 0),
         growth=np.zeros((size, size)),
         w=np.zeros((size, size)),
+        part=np.zeros((size, size)),
         jac=np.zeros((size, size)),
         swaps=np.zeros(size, np.int64),
         own=np.zeros(size),
@@ -114,7 +118,7 @@ def release(alone, m):
     for i in range(m):
         alone.place_of[alone.chosen[i]] = -1
         alone.rank[i] = -1
-    alone.kept[:] = 0
+    alone.kept[0] = alone.kept[1] = 0
 
 
 @njit(cache=True, error_model="numpy")
@@ -139,10 +143,14 @@ def choose(bodies, pairs, touched, count, where, alone, m, most):
 
 @njit(cache=True, error_model="numpy")
 def columns(a, alone, m):
-    """Makes the columns of the inverse for the chosen boxes that have none, and W."""
+    """Makes the columns of the inverse for the chosen boxes that have none, and W where it is not of them."""
     slot_of, owner, cols, chosen, w = alone.slot_of, alone.owner, alone.cols, alone.chosen, alone.w
-    for i in range(m):
+    stood, known = alone.stood, 0
+    while known < min(m, alone.kept[2]) and stood[known] == chosen[known]:
+        known += 1
+    for i in range(known, m):
         n = chosen[i]
+        stood[i] = n
         if slot_of[n] >= 0:
             continue
         s = alone.following[0]
@@ -156,7 +164,6 @@ def columns(a, alone, m):
         for p in range(6):
             cols[s, p, 6 * n + p] = 1.0
         solve_six(a, cols[s], n)
-    known = alone.kept[2]
     for j in range(m):
         s = slot_of[chosen[j]]
         for i in range(0 if j >= known else known, m):

@@ -42,7 +42,7 @@ def _residual(system, level, place, lists, blank, rest):
     on_boxes, on_slides = rest
     f[:] = 0.0
     joint_forces(joints, points, x, r, still, still, f)
-    close = near_pairs(bodies, pairs, x, r, 0.0, near)
+    close = near_pairs(bodies, pairs, x, r, still, still, 0.0, 0.0, near)
     count, _, _ = pair_forces(bodies, pairs, near, close, x, r, still, still, f, touched, outs)
     other_forces(bodies, loads, gravity, level, r, still, still, f)
     worst, at = 0.0, -1

@@ -82,6 +82,27 @@ def _down(col, x, base, length):
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False, forceinline=True)
+def _down_two(col, x, y, base, length):
+    """The same for two right-hand sides."""
+    for c in range(6):
+        v, w = x[base + c] * col[c, c], y[base + c] * col[c, c]
+        x[base + c], y[base + c] = v, w
+        for r in range(c + 1, 6):
+            x[base + r] -= v * col[c, r]
+            y[base + r] -= w * col[c, r]
+    x0, x1, x2, x3, x4, x5 = x[base], x[base + 1], x[base + 2], x[base + 3], x[base + 4], x[base + 5]
+    y0, y1, y2, y3, y4, y5 = y[base], y[base + 1], y[base + 2], y[base + 3], y[base + 4], y[base + 5]
+    end = 6 + length
+    c0, c1, c2 = col[0, 6:end], col[1, 6:end], col[2, 6:end]
+    c3, c4, c5 = col[3, 6:end], col[4, 6:end], col[5, 6:end]
+    one, two = x[base + 6 : base + end], y[base + 6 : base + end]
+    for r in range(length):
+        v0, v1, v2, v3, v4, v5 = c0[r], c1[r], c2[r], c3[r], c4[r], c5[r]
+        one[r] -= x0 * v0 + x1 * v1 + x2 * v2 + x3 * v3 + x4 * v4 + x5 * v5
+        two[r] -= y0 * v0 + y1 * v1 + y2 * v2 + y3 * v3 + y4 * v4 + y5 * v5
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False, forceinline=True)
 def _up(col, x, base, length):
     """Backward step of one block column."""
     end = 6 + length
@@ -131,13 +152,14 @@ def solve(a, x, first=0):
 
 @njit(cache=True, error_model="numpy", boundscheck=False)
 def solve_six(a, x, first=0):
-    """Solves for six right-hand sides at once, x (6, 6 nodes): a column is read from memory once for all."""
+    """Solves for six right-hand sides at once, x (6, 6 nodes): a column is read from memory once for all, and
+    on the way down into registers once for two."""
     nodes = a.shape[0]
     length, short = _lengths(a)
     for j in range(first, nodes):
         many = length if j < short else min(length, 6 * (nodes - j) - 6)
-        for q in range(6):
-            _down(a[j], x[q], 6 * j, many)
+        for q in range(0, 6, 2):
+            _down_two(a[j], x[q], x[q + 1], 6 * j, many)
     for j in range(nodes - 1, -1, -1):
         many = length if j < short else min(length, 6 * (nodes - j) - 6)
         for q in range(6):

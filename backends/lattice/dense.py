@@ -29,35 +29,46 @@ def lu(jac, swaps, many):
                     jac[i, c] -= f * jac[k, c]
         if end == many:
             break
-        # the rows of these four, then all below them
+        # the rows of these four, then all below them, two at a time: what is read serves both
         r0, r1, r2, r3 = jac[j, end:many], jac[j + 1, end:many], jac[j + 2, end:many], jac[j + 3, end:many]
-        for k in range(1, 4):
-            row = jac[j + k, end:many]
-            for l in range(k):
-                f, other = jac[j + k, j + l], jac[j + l, end:many]
-                for c in range(row.size):
-                    row[c] -= f * other[c]
-        for i in range(end, many):
+        l10, l20, l21 = jac[j + 1, j], jac[j + 2, j], jac[j + 2, j + 1]
+        l30, l31, l32 = jac[j + 3, j], jac[j + 3, j + 1], jac[j + 3, j + 2]
+        for c in range(many - end):
+            v0 = r0[c]
+            v1 = r1[c] - l10 * v0
+            v2 = r2[c] - l20 * v0 - l21 * v1
+            r1[c], r2[c] = v1, v2
+            r3[c] -= l30 * v0 + l31 * v1 + l32 * v2
+        for i in range(end, many - 1, 2):
             f0, f1, f2, f3 = jac[i, j], jac[i, j + 1], jac[i, j + 2], jac[i, j + 3]
-            row = jac[i, end:many]
-            for c in range(row.size):
-                row[c] -= f0 * r0[c] + f1 * r1[c] + f2 * r2[c] + f3 * r3[c]
+            g0, g1, g2, g3 = jac[i + 1, j], jac[i + 1, j + 1], jac[i + 1, j + 2], jac[i + 1, j + 3]
+            one, two = jac[i, end:many], jac[i + 1, end:many]
+            for c in range(many - end):
+                v0, v1, v2, v3 = r0[c], r1[c], r2[c], r3[c]
+                one[c] -= f0 * v0 + f1 * v1 + f2 * v2 + f3 * v3
+                two[c] -= g0 * v0 + g1 * v1 + g2 * v2 + g3 * v3
+        if (many - end) % 2 == 1:
+            last = jac[many - 1]
+            f0, f1, f2, f3 = last[j], last[j + 1], last[j + 2], last[j + 3]
+            one = last[end:many]
+            for c in range(many - end):
+                one[c] -= f0 * r0[c] + f1 * r1[c] + f2 * r2[c] + f3 * r3[c]
     return True
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
-def lu_solve(jac, swaps, b, many):
-    """Solves in place with the factors."""
+@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False)
+def lu_solve_transposed(jac, swaps, b, many):
+    """Solves with the transpose of what was factored, in place."""
     for i in range(many):
+        v = b[i] / jac[i, i]
+        b[i] = v
+        row, behind = jac[i, i + 1 : many], b[i + 1 : many]
+        for c in range(row.size):
+            behind[c] -= v * row[c]
+    for i in range(many - 1, 0, -1):
+        v, row, before = b[i], jac[i, :i], b[:i]
+        for c in range(row.size):
+            before[c] -= v * row[c]
+    for i in range(many - 1, -1, -1):
         at = swaps[i]
         b[i], b[at] = b[at], b[i]
-    for i in range(many):
-        row, v = jac[i], b[i]
-        for c in range(i):
-            v -= row[c] * b[c]
-        b[i] = v
-    for i in range(many - 1, -1, -1):
-        row, v = jac[i], b[i]
-        for c in range(i + 1, many):
-            v -= row[c] * b[c]
-        b[i] = v / row[i]

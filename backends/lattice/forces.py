@@ -20,6 +20,7 @@ from mdlgen.mechanics.vector import (
     nine,
     rotate,
     scale,
+    sub,
     three,
     vec,
 )
@@ -127,40 +128,59 @@ def joint_forces(joints, points, x, r, u, w, f, lag=0.0):
 
 
 @njit(cache=True, error_model="numpy")
-def near_pairs(bodies, pairs, x, r, margin, near):
-    """Lists pairs that are closer than `margin` [mm] in `near`; returns how many."""
+def near_pairs(bodies, pairs, x, r, u, w, margin, ahead, near):
+    """Lists pairs in `near` that are closer than `margin` [mm] and what they move against each other in
+    `ahead` [ms]; returns how many."""
     count = 0
     for p in range(pairs.size):
         a, b = pairs[p].a, pairs[p].b
         half = bodies[a].half
-        gap = (x[b, 0] - x[a, 0], x[b, 1] - x[a, 1], x[b, 2] - x[a, 2])
+        size = math.sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2])
+        gap = sub(vec(x, b), vec(x, a))
+        rate, spin = sub(vec(u, b), vec(u, a)), vec(w, a)
         if pairs[p].kind == BOX_PLANE:
             way = bodies[b].way
+            # along the plate a sheet may be fast
+            closing = abs(dot(rate, three(way))) + math.sqrt(dot(spin, spin)) * size
             out = 0.0  # how far the box reaches along the plate's normal
             for i in range(3):
                 out += half[i] * abs(way[0] * r[a, i] + way[1] * r[a, 3 + i] + way[2] * r[a, 6 + i])
             height = -(gap[0] * way[0] + gap[1] * way[1] + gap[2] * way[2]) - bodies[b].half[2]
-            if height > out + margin:
+            if height > out + margin + ahead * closing:
                 continue
         else:
-            reach = math.sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]) + margin
+            reached = margin + ahead * (math.sqrt(dot(rate, rate)) + math.sqrt(dot(spin, spin)) * size)
+            reach = size + reached
             axis = bodies[b].axis
             along = gap[0] * axis[0] + gap[1] * axis[1] + gap[2] * axis[2]
             across = gap[0] * gap[0] + gap[1] * gap[1] + gap[2] * gap[2] - along * along
             radius, width = bodies[b].size[0], 0.5 * bodies[b].size[1]
             if pairs[p].kind == CYLINDER_CYLINDER:
-                reach = bodies[a].size[0] + margin
+                reach = bodies[a].size[0] + reached
                 width += 0.5 * bodies[a].size[1]
             if abs(along) > width + reach or across > (radius + reach) * (radius + reach):
                 continue
             if pairs[p].kind != CYLINDER_CYLINDER:  # the axis above or below the face
                 up = gap[0] * r[a, 2] + gap[1] * r[a, 5] + gap[2] * r[a, 8]
                 lean = abs(axis[0] * r[a, 2] + axis[1] * r[a, 5] + axis[2] * r[a, 8])
-                if abs(up) > half[2] + radius + width * lean + margin:
+                if abs(up) > half[2] + radius + width * lean + reached:
                     continue
         near[count] = p
         count += 1
     return count
+
+
+@njit(cache=True, error_model="numpy")
+def _touches(bodies, pair, x, r, u, w, f, out):
+    """What one pair does into `out`, and onto f. Returns whether it touches."""
+    for i in range(OUT + 1):
+        out[i] = 0.0
+    if not pair_force(bodies, pair, x, r, u, w, out):
+        return False
+    for i in range(6):
+        f[pair.a, i] += out[i]
+        f[pair.b, i] += out[6 + i]
+    return True
 
 
 @njit(cache=True, error_model="numpy")
@@ -170,20 +190,12 @@ def pair_forces(bodies, pairs, near, close, x, r, u, w, f, touched, outs):
     count = 0
     stored = lost = 0.0
     for at in range(close):
-        p = near[at]
         out = outs[count]
-        for i in range(OUT + 1):
-            out[i] = 0.0
-        if not pair_force(bodies, pairs[p], x, r, u, w, out):
-            continue
-        a, b = pairs[p].a, pairs[p].b
-        for i in range(6):
-            f[a, i] += out[i]
-            f[b, i] += out[6 + i]
-        stored += out[13]
-        lost += out[14]
-        touched[count] = p
-        count += 1
+        if _touches(bodies, pairs[near[at]], x, r, u, w, f, out):
+            stored += out[13]
+            lost += out[14]
+            touched[count] = near[at]
+            count += 1
     return count, stored, lost
 
 
@@ -207,20 +219,11 @@ def pair_forces_again(bodies, pairs, near, close, known, x, r, u, w, f, touched,
         touched[count] = had[k]
         count += 1
     for at in range(close):
-        p = near[at]
-        if seen[p]:
-            continue
         out = outs[count]
-        for i in range(OUT + 1):
-            out[i] = 0.0
-        if pair_force(bodies, pairs[p], x, r, u, w, out):
-            a, b = pairs[p].a, pairs[p].b
-            for i in range(6):
-                f[a, i] += out[i]
-                f[b, i] += out[6 + i]
+        if not seen[near[at]] and _touches(bodies, pairs[near[at]], x, r, u, w, f, out):
             stored += out[13]
             lost += out[14]
-            touched[count] = p
+            touched[count] = near[at]
             count += 1
     return count, stored, lost
 

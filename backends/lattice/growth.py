@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from numba import njit
 
-from backends.lattice.dense import lu_solve
+from backends.lattice.dense import lu_solve_transposed
 from backends.lattice.tangent import core, hat_left, hat_right
 from mdlgen.mechanics.contact import OUT, POINT
 from mdlgen.mechanics.vector import back, cross, mat, sub, three, vec
@@ -114,37 +114,40 @@ def gradient(bodies, pairs, h, x, r, count, alone, acting, many, chord):
                     growth[index[l], index[j]] += direction[l, i] * v
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False)
 def newton_matrix(alone, acting, many):
-    """1 + W growth of the boxes that touch and of the rollers."""
-    growth, w, jac, active, own = alone.growth, alone.w, alone.jac, alone.active, alone.own
+    """1 + W growth of the boxes that touch and of the rollers, transposed: what a column is made of are rows
+    of W, which is symmetric."""
+    growth, w, part, jac, active, own = alone.growth, alone.w, alone.part, alone.jac, alone.active, alone.own
     boxes = 6 * acting
-    for i in range(boxes):
-        for c in range(boxes, many):
-            jac[i, c] = 0.0
     for j in range(acting):
-        at, base = 6 * active[j], 6 * j
-        g0, g1, g2 = growth[base], growth[base + 1], growth[base + 2]
-        g3, g4, g5 = growth[base + 3], growth[base + 4], growth[base + 5]
-        for i in range(boxes):
-            source = w[6 * active[i // 6] + i % 6]
-            v0, v1, v2 = source[at], source[at + 1], source[at + 2]
-            v3, v4, v5 = source[at + 3], source[at + 4], source[at + 5]
-            row = jac[i]
-            for c in range(base, base + 6):
-                row[c] = v0 * g0[c] + v1 * g1[c] + v2 * g2[c] + v3 * g3[c] + v4 * g4[c] + v5 * g5[c]
-            for c in range(boxes, many):
-                row[c] += v0 * g0[c] + v1 * g1[c] + v2 * g2[c] + v3 * g3[c] + v4 * g4[c] + v5 * g5[c]
-    for i in range(boxes, many):
-        for j in range(many):
-            jac[i, j] = own[i - boxes] * growth[i, j]
-    for i in range(many):
-        jac[i, i] += 1.0
+        for k in range(acting):
+            for p in range(6):
+                for q in range(6):
+                    part[6 * j + p, 6 * k + q] = w[6 * active[j] + p, 6 * active[k] + q]
+    for c in range(many):
+        row = jac[c, :boxes]
+        row[:] = 0.0
+        first, last = (c // 6, c // 6 + 1) if c < boxes else (0, acting)
+        for j in range(first, last):
+            k = 6 * j
+            g0, g1, g2 = growth[k, c], growth[k + 1, c], growth[k + 2, c]
+            g3, g4, g5 = growth[k + 3, c], growth[k + 4, c], growth[k + 5, c]
+            if g0 == 0.0 and g1 == 0.0 and g2 == 0.0 and g3 == 0.0 and g4 == 0.0 and g5 == 0.0:
+                continue  # a roller that does not touch this box
+            w0, w1, w2 = part[k, :boxes], part[k + 1, :boxes], part[k + 2, :boxes]
+            w3, w4, w5 = part[k + 3, :boxes], part[k + 4, :boxes], part[k + 5, :boxes]
+            for i in range(boxes):
+                row[i] += g0 * w0[i] + g1 * w1[i] + g2 * w2[i] + g3 * w3[i] + g4 * w4[i] + g5 * w5[i]
+        for i in range(boxes, many):
+            jac[c, i] = own[i - boxes] * growth[i, c]
+        jac[c, c] += 1.0
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
 def newton(alone, m, acting, many):
-    """A step of Newton's method, of all chosen boxes and the rollers, with the factored matrix."""
+    """A step of Newton's method, of all chosen boxes and the rollers, with the factored matrix; `push` is
+    what it takes off the impulses on the boxes."""
     growth, w, active, gap = alone.growth, alone.w, alone.active, alone.gap
     short, push, step = alone.short, alone.push, alone.step
     boxes = 6 * acting
@@ -153,19 +156,17 @@ def newton(alone, m, acting, many):
             short[6 * j + c] = -gap[6 * active[j] + c]
     for i in range(boxes, many):
         short[i] = -gap[6 * m + i - boxes]
-    lu_solve(alone.jac, alone.swaps, short, many)
+    lu_solve_transposed(alone.jac, alone.swaps, short, many)
+    push[: 6 * m] = 0.0
     for i in range(boxes):
         row, v = growth[i], 0.0
         for j in range(many):
             v += row[j] * short[j]
-        push[i] = v
+        push[6 * active[i // 6] + i % 6] = v
     for i in range(6 * m):
-        v = -gap[i]
-        row = w[i]
-        for j in range(acting):
-            at = 6 * active[j]
-            for c in range(6):
-                v -= row[at + c] * push[6 * j + c]
+        row, v = w[i], -gap[i]
+        for j in range(6 * m):
+            v -= row[j] * push[j]
         step[i] = v
     for i in range(boxes, many):
         step[6 * m + i - boxes] = short[i]

@@ -7,7 +7,7 @@ import math
 from numba import njit
 
 from backends.lattice.forces import driven
-from backends.lattice.step import HALVED, ROUNDS, STEPS, STRAIN, TOUCHING, WORST, carry, midpoint
+from backends.lattice.step import ROUNDS, STEPS, STRAIN, TOUCHING, WORST, carry, midpoint
 from mdlgen.mechanics.curve import overstretched
 from mdlgen.mechanics.pair import BOX_PLANE
 
@@ -165,7 +165,6 @@ def run(
             deep = _deep(bodies, pairs, mid, int(counters[TOUCHING])) if solved else -1
             if not solved or ((missed > AGAIN * most or deep >= 0) and level < FINEST):
                 u[:], ub[:] = keep_u, keep_b
-                counters[HALVED] += 1
                 if level == DEEPEST:
                     return STOPPED, t
                 pace[0] = level + 1

@@ -68,7 +68,7 @@ def ledger(
         for i in range(3):
             w[b, i] += rate * bodies[b].axis[i]
     stored, _ = joint_forces(joints, points, x, r, u, w, f)
-    close = near_pairs(bodies, pairs, x, r, 0.0, near)
+    close = near_pairs(bodies, pairs, x, r, u, w, 0.0, 0.0, near)
     count, pressed, _ = pair_forces(bodies, pairs, near, close, x, r, u, w, f, touched, outs)
     for k in range(count):
         force[pairs[touched[k]].row] += outs[k, 12]

@@ -126,7 +126,7 @@ def _touch(model: Model, system: System, state: tuple, mid: tuple, rows: tuple) 
     x, r = state[:2]
     f, touched, outs, near = mid[4], mid[5], mid[6], mid[8]
     still = np.zeros_like(x)
-    close = forces.near_pairs(system.bodies, system.pairs, x, r, 0.0, near)
+    close = forces.near_pairs(system.bodies, system.pairs, x, r, still, still, 0.0, 0.0, near)
     count, _, _ = forces.pair_forces(
         system.bodies, system.pairs, near, close, x, r, still, still, f, touched, outs
     )

@@ -48,7 +48,7 @@ DAMPED, MOST_DAMPED = 1.0, 0.3
 # other side of what is flat; the latter is taken twice where a round moved more than the one before.
 LITTLE, MUCH = 0.05, 0.7
 # Counters of a run.
-STEPS, ROUNDS, FACTORS, HALVED, TOUCHING, WORST, SETTLED, STRAIN, COUNTERS = 0, 1, 2, 3, 4, 5, 6, 7, 8
+STEPS, ROUNDS, FACTORS, TOUCHING, WORST, STRAIN, COUNTERS = 0, 1, 2, 3, 4, 5, 6
 
 
 @njit(cache=True, error_model="numpy")
@@ -102,7 +102,7 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
     """Solves for the velocities at the middle of a step. Returns whether it converged.
 
     `fresh` (3,): the step that the factor was made for (0: none), whether it should be made anew, and where
-    contacts stand (see touching.APART).
+    contacts stand (see alone.APART).
     """
     bodies, joints, pairs, loads, gravity, nodes, points = system
     x, r, v, l, s, vb, u, ub = state
@@ -113,20 +113,21 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
     lag = min(DAMPED * dt, MOST_DAMPED) * h
     before = 1e300
     careful = 0
-    fast = 0.0
-    for n in range(nodes.size):
-        fast = max(fast, abs(u[n, 0]), abs(u[n, 1]), abs(u[n, 2]))
-    close = near_pairs(bodies, pairs, x, r, FAR + dt * fast, near)
-    where, m = int(fresh[2]), 0
-    unsee(alone)
+    close, where, m = 0, int(fresh[2]), 0
+    margin, moved = FAR, 0.0
     for rounds in range(MOST_ROUNDS):
         place(bodies, nodes, h, t + h, u, ub, x, r, xm, rm, um, wm)
+        if rounds == 0 or margin < dt * moved:
+            # what the guess did not know of may move further than it said
+            margin = FAR + 2.0 * dt * moved
+            close = near_pairs(bodies, pairs, x, r, um, wm, margin, dt, near)
+            unsee(alone)
         f[:] = 0.0
         _stored, lost = joint_forces(joints, points, xm, rm, um, wm, f, lag)
         if rounds > 0 and where == APART and alone.state[1] == 1:
-            known = (alone.touched, alone.outs, alone.state[0], alone.seen)
+            again = (alone.touched, alone.outs, alone.state[0], alone.seen)
             count, _pressed, rubbed = pair_forces_again(
-                bodies, pairs, near, close, known, xm, rm, um, wm, f, touched, outs
+                bodies, pairs, near, close, again, xm, rm, um, wm, f, touched, outs
             )
         else:
             count, _pressed, rubbed = pair_forces(
@@ -175,28 +176,12 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
         else:
             solve(a, res)
             columns(a, alone, m)
-            places, moving, now = (x, r, u, ub), (xm, rm, um, wm), (touched, outs, count)
-            took = settle(
-                bodies,
-                pairs,
-                nodes,
-                h,
-                t + h,
-                where,
-                places,
-                moving,
-                near,
-                close,
-                now,
-                alone,
-                m,
-                res,
-                resb,
-                ROUGH * limit,
-                0.3 * limit,
-            )
-            counters[SETTLED] += took
-            if took < 0:
+            places, moving = (x, r, u, ub), (xm, rm, um, wm)
+            known, rest = (touched, outs, count), (res, resb)
+            limits = (ROUGH * limit, 0.3 * limit)
+            if not settle(
+                system, alone, m, where, h, t + h, places, moving, near[:close], known, rest, limits
+            ):
                 fresh[0] = 0.0
                 release(alone, m)
                 return False
@@ -220,8 +205,9 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
             release(alone, m)
             return False
         rate = change / before
-        known = before < 1e299 and rate < 0.5
-        if change <= limit or (known and change * rate / (1.0 - rate) <= limit):
+        falls = before < 1e299 and rate < 0.5
+        moved += change
+        if dt * moved <= margin and (change <= limit or (falls and change * rate / (1.0 - rate) <= limit)):
             # forces change much with what the last round changed: friction, over its smoothing speed
             place(bodies, nodes, h, t + h, u, ub, x, r, xm, rm, um, wm)
             f[:] = 0.0

@@ -35,11 +35,11 @@ NEAR = 10.0
 
 
 @njit(cache=True, error_model="numpy")
-def _mine(bodies, pairs, near, close, where, alone):
+def _mine(bodies, pairs, near, where, alone):
     """Lists the near pairs of the chosen boxes and those between rollers."""
     unsee(alone)
     count = 0
-    for k in range(close):
+    for k in range(near.size):
         pair = pairs[near[k]]
         node = bodies[pair.a].node
         if node < 0 or (alone.place_of[node] >= 0 and not (where == PLANES and pair.kind == BOX_PLANE)):
@@ -47,12 +47,12 @@ def _mine(bodies, pairs, near, close, where, alone):
             alone.seen[near[k]] = True
             count += 1
     alone.state[2] = count
-    return count
 
 
 @njit(cache=True, error_model="numpy")
-def _take(bodies, pairs, nodes, where, alone, m, known):
-    """Takes over what pairs do from where they are `known`: (those that touch, what they do, how many)."""
+def _take(pairs, nodes, alone, m, known):
+    """Takes over what its pairs do from where they are `known`: (those that touch, what they do, how many);
+    returns how many of these touch."""
     touched, outs, many = known
     forces, count = alone.forces, 0
     for i in range(m):
@@ -61,8 +61,7 @@ def _take(bodies, pairs, nodes, where, alone, m, known):
         forces[b] = 0.0
     for k in range(many):
         pair, out = pairs[touched[k]], outs[k]
-        node = bodies[pair.a].node
-        if node < 0 or (alone.place_of[node] >= 0 and not (where == PLANES and pair.kind == BOX_PLANE)):
+        if alone.seen[touched[k]]:
             alone.touched[count] = touched[k]
             for i in range(OUT + 1 + POINT * int(out[OUT])):
                 alone.outs[count, i] = out[i]
@@ -118,7 +117,7 @@ def _begin(bodies, nodes, h, ub, alone, m, res, resb):
 
 
 @njit(cache=True, error_model="numpy")
-def _evaluate(bodies, pairs, nodes, h, t, state, mid, alone, m, few):
+def _evaluate(bodies, pairs, nodes, h, t, state, mid, alone, m):
     """Contact forces on the chosen boxes and the rollers, with their velocities changed by z; returns how
     many pairs touch."""
     x, r, u, ub = state
@@ -145,7 +144,7 @@ def _evaluate(bodies, pairs, nodes, h, t, state, mid, alone, m, few):
             turning = ub[bodies[b].spin] + z[6 * m + bodies[b].spin]
         place_roller(bodies[b], b, h, t, rate, turning, x, xm, um, wm)
     count, _stored, _lost = pair_forces(
-        bodies, pairs, alone.mine, few, xm, rm, um, wm, forces, alone.touched, alone.outs
+        bodies, pairs, alone.mine, alone.state[2], xm, rm, um, wm, forces, alone.touched, alone.outs
     )
     return count
 
@@ -171,50 +170,52 @@ def _gap(alone, m, many):
     return total
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False)
 def _apply(alone, m, res, resb):
     """Completes what is to be taken off by what the contacts add to it."""
+    used, p0 = alone.used, alone.p0
     for j in range(m):
-        s = alone.slot_of[alone.chosen[j]]
-        for q in range(6):
-            add = alone.used[6 * j + q] - alone.p0[6 * j + q]
-            if add != 0.0:
-                column = alone.cols[s, q]
-                for l in range(res.size):
-                    res[l] -= add * column[l]
+        cols, k = alone.cols[alone.slot_of[alone.chosen[j]]], 6 * j
+        a0, a1, a2 = used[k] - p0[k], used[k + 1] - p0[k + 1], used[k + 2] - p0[k + 2]
+        a3, a4, a5 = used[k + 3] - p0[k + 3], used[k + 4] - p0[k + 4], used[k + 5] - p0[k + 5]
+        c0, c1, c2, c3, c4, c5 = cols[0], cols[1], cols[2], cols[3], cols[4], cols[5]
+        for l in range(res.size):
+            res[l] -= a0 * c0[l] + a1 * c1[l] + a2 * c2[l] + a3 * c3[l] + a4 * c4[l] + a5 * c5[l]
     for i in range(resb.size):
         resb[i] = -alone.z[6 * m + i]
 
 
 @njit(cache=True, error_model="numpy")
-def settle(
-    bodies, pairs, nodes, h, t, where, state, mid, near, close, known, alone, m, res, resb, limit, strict
-):
-    """Solves for the velocities of the chosen boxes and of the rollers, so that what is left is below `limit`
-    (or a round moved them by less than `strict`).
+def settle(system, alone, m, where, h, t, state, mid, near, known, rest, limits):
+    """Solves for the velocities of the m chosen boxes and of the rollers. Returns whether it converged: what
+    is left is below limits[0], or a round moved them by less than limits[1].
 
-    `known` is what the pairs do at the start: (those that touch, outs, how many). `res` (6 nodes,) holds
-    what the lattice alone would lose of its velocities, in box axes, `resb` the rollers' residual; both
-    become what is to be taken off. Returns how many rounds that took, -1: it did not converge.
+    `state` (x, r, u, ub) is where a step begins, `mid` (x, r, velocities, angular velocities) the state after
+    h, at time t; `near` lists the pairs to look at, `known` is what they do there: (those that touch, outs,
+    how many). `rest` is what the lattice alone would lose of its velocities, in box axes (6 nodes,), and the
+    rollers' residual; both become what is to be taken off.
     """
+    bodies, _joints, pairs, _loads, _gravity, nodes, _points = system
     _x, r, _u, ub = state
-    z, step, p, used, active = alone.z, alone.step, alone.p, alone.used, alone.active
+    res, resb = rest
+    limit, strict = limits
+    z, step, p, used = alone.z, alone.step, alone.p, alone.used
     boxes = 6 * m
     many = boxes + ub.size
     if many == 0:
-        return 0
-    few = _mine(bodies, pairs, near, close, where, alone)
+        return True
+    _mine(bodies, pairs, near, where, alone)
     _begin(bodies, nodes, h, ub, alone, m, res, resb)
-    count = _take(bodies, pairs, nodes, where, alone, m, known)
+    count = _take(pairs, nodes, alone, m, known)
     _impulses(bodies, nodes, r, h, alone, m, alone.p0)
     for i in range(many):
         p[i] = used[i] = alone.p0[i]
     merit = _gap(alone, m, many)
     if merit <= 1e-2 * strict * strict:
         _apply(alone, m, res, resb)
-        return 0
+        return True
     chord = LITTLE
-    for rounds in range(MOST_ROUNDS):
+    for _ in range(MOST_ROUNDS):
         same = activate(bodies, pairs, count, alone)
         acting = alone.kept[1]
         short = 6 * acting + ub.size
@@ -222,27 +223,24 @@ def settle(
             gradient(bodies, pairs, h, mid[0], r, count, alone, acting, short, chord)
             newton_matrix(alone, acting, short)
             if not lu(alone.jac, alone.swaps, short):
-                return -1
+                return False
         alone.kept[0] = 1
         newton(alone, m, acting, short)
         # impulses as this step takes them, linear: with them the sheet moves as the chosen boxes do
         for i in range(boxes):
-            used[i] = p[i]
-        for j in range(acting):
-            for c in range(6):
-                used[6 * active[j] + c] -= alone.push[6 * j + c]
+            used[i] = p[i] - alone.push[i]
         change = 0.0
         for i in range(many):
             change = max(change, abs(alone.measure[i] * step[i]))
             z[i] += step[i]
         if not change < 1e30:
-            return -1
+            return False
         done = change <= NEAR * strict
         before, part = merit, 1.0
         for halved in range(MOST_HALVED + 1):
             if done:
                 break
-            count = _evaluate(bodies, pairs, nodes, h, t, state, mid, alone, m, few)
+            count = _evaluate(bodies, pairs, nodes, h, t, state, mid, alone, m)
             _impulses(bodies, nodes, r, h, alone, m, p)
             merit = _gap(alone, m, many)
             if merit <= before * (1.0 - 0.1 * part) or merit <= strict * strict or halved == MOST_HALVED:
@@ -256,5 +254,5 @@ def settle(
         if done or (part == 1.0 and merit <= limit * limit):
             _apply(alone, m, res, resb)
             alone.state[0], alone.state[1] = count, 0 if done else 1
-            return rounds + 1
-    return -1
+            return True
+    return False

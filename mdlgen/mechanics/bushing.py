@@ -21,8 +21,10 @@ from mdlgen.mechanics.vector import (
     matmul,
     rotate,
     scale,
+    sines,
     sub,
     transpose_matmul,
+    turned,
 )
 
 
@@ -76,21 +78,16 @@ def bushing_pair(xa, fa, va, wa, ra, xb, fb, vb, wb, rb, e, k, kt, c, ct):
     relative = transpose_matmul(fa, fb)
     theta = log_rotation(relative)
     angle2 = dot(theta, theta)
-    middle = matmul(fa, exp_rotation(scale(0.5, theta)))
+    # of half the angle: its sine and its versine over it
+    sine, versine = sines(0.25 * angle2)
+    middle = matmul(fa, turned(scale(0.5, theta), sine, versine))
     gap = sub(add(xb, rb), add(xa, ra))
     rate = sub(add(vb, cross(wb, rb)), add(va, cross(wa, ra)))
     rate = sub(rate, cross(scale(0.5, add(wa, wb)), gap))
     d, v = back(middle, gap), back(middle, rate)
     w = back(middle, sub(wb, wa))
-    # half the angle: its sine and cosine over it
-    if angle2 > 1e-8:
-        half = 0.5 * math.sqrt(angle2)
-        sine, cosine = math.sin(half) / half, math.cos(half)
-        curl = (1.0 - cosine) / angle2
-    else:
-        sine, cosine, curl = 1.0 - angle2 / 24, 1.0 - angle2 / 8, 0.125
     apart = scale(sine, cross(theta, e))
-    arm = add(scale(cosine, e), scale(curl * dot(theta, e), theta))
+    arm = add(scale(1.0 - 0.25 * angle2 * versine, e), scale(0.25 * versine * dot(theta, e), theta))
     parting = cross(w, arm)
     spring = (k[0] * d[0], k[1] * d[1], k[2] * d[2])
     damper = (c[0] * v[0], c[1] * v[1], c[2] * v[2])

@@ -73,7 +73,7 @@ def _push(out, point, normal, spring, depth, energy, xa, va, wa, xb, vb, wb, law
 def _face(out, p, r, q, sign, free, half, l0, al, xa, ra, va, wa, xb, vb, wb, radius, width, k, shared, law):
     """One face of a box (normal axis q, in-plane axes p, r) against a cylinder; l0, al: its centre and axis
     in box axes; free: edges p_min, p_max, r_min, r_max of the face without a neighbour, as a bit mask."""
-    na = math.hypot(al[p], al[r])
+    na = math.sqrt(al[p] * al[p] + al[r] * al[r])
     if na < 0.2:  # the roller stands on its end
         return
     up, ur = al[p] / na, al[r] / na  # along the axis in the face; across it: (-ur, up)
@@ -126,7 +126,7 @@ def _face(out, p, r, q, sign, free, half, l0, al, xa, ra, va, wa, xb, vb, wb, ra
             if last <= first:
                 continue
             nearest = min(max(0.0, first), last)
-            depth = radius - math.hypot(nearest, e)
+            depth = radius - math.sqrt(nearest * nearest + e * e)
             if depth <= 0.0:
                 continue
             edge = (first > 0.0 and open_first) or (last < 0.0 and open_last)
@@ -138,7 +138,7 @@ def _face(out, p, r, q, sign, free, half, l0, al, xa, ra, va, wa, xb, vb, wb, ra
                 t = nearest
                 if spread:
                     t = 0.5 * (left + right) + (point - 0.5) * _GAUSS * (right - left)
-                distance = math.hypot(t, e)
+                distance = math.sqrt(t * t + e * e)
                 zeta = radius - distance
                 if spread:
                     # the 2-point rule and the lean of the pressure cost 0.75 z/R of the force
@@ -186,7 +186,7 @@ def box_cylinder(out, xa, ra, va, wa, half, exposed, xb, axis, vb, wb, radius, w
     """Box a (centre xa, rotation ra, half lengths) against cylinder b; exposed: 4 side faces
     as a bit mask."""
     gap = sub(xb, xa)
-    near = math.sqrt(dot(half, half)) + math.hypot(radius, 0.5 * width)
+    near = math.sqrt(dot(half, half)) + math.sqrt(radius * radius + 0.25 * width * width)
     if dot(gap, gap) > near * near:
         return
     l0, al = back(ra, gap), back(ra, axis)

@@ -134,14 +134,27 @@ def log_rotation(m):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
+def sines(angle2):
+    """sin(a)/a and (1 - cos(a))/a^2 of the square of an angle."""
+    if angle2 < 0.01:
+        # the next terms of the series are below 3e-18; a call of sin takes as long as all of them
+        s = 1.0 + angle2 * (-1 / 6 + angle2 * (1 / 120 + angle2 * (-1 / 5040 + angle2 * (1 / 362880))))
+        c = 0.5 + angle2 * (-1 / 24 + angle2 * (1 / 720 + angle2 * (-1 / 40320 + angle2 * (1 / 3628800))))
+        return s, c
+    angle = math.sqrt(angle2)
+    return math.sin(angle) / angle, (1.0 - math.cos(angle)) / angle2
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
 def exp_rotation(theta):
     """Rotation matrix of a rotation vector."""
-    angle2 = dot(theta, theta)
-    if angle2 < 1e-8:
-        s, c = 1.0 - angle2 / 6, 0.5 - angle2 / 24
-    else:
-        angle = math.sqrt(angle2)
-        s, c = math.sin(angle) / angle, (1.0 - math.cos(angle)) / angle2
+    s, c = sines(dot(theta, theta))
+    return turned(theta, s, c)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def turned(theta, s, c):
+    """The same with what `sines` gives of the vector's square."""
     x, y, z = theta
     return (
         1 - c * (y * y + z * z),

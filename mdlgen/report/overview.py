@@ -49,6 +49,7 @@ def _sheet(model: Model, index: int) -> dict[str, Any]:
         "layout": sheet.layout,
         "grid": sheet.grid,
         "outline_mm": list(sheet.outline),
+        "unlike": unlike(model, sheet),
         "derived": {name: float(value) for name, value in sheet.derived.items()},
         "bending": bending(sheet),
         "curves": curves(model, sheet),
@@ -69,6 +70,26 @@ def curves(model: Model, sheet: SheetPart) -> dict[str, dict[str, Any]]:
                 "final_slope_mpa": float(table.slope[after - 1]),
                 "extrapolate": "linear" if table.linear[number] else "refuse",
             }
+    return found
+
+
+def unlike(model: Model, sheet: SheetPart) -> dict[str, Any]:
+    """What sets boxes apart from the mean one: their range of lengths and mass, zones, and how it is bent."""
+    boxes = slice(sheet.first, sheet.first + sheet.count)
+    found: dict[str, Any] = {}
+    for axis, graded, lengths in zip("xy", sheet.graded, 2 * model.bodies.half[boxes, :2].T, strict=True):
+        if graded:
+            found[f"d_{axis}_mm"] = [float(lengths.min()), float(lengths.max())]
+    mass = model.bodies.mass[boxes]
+    if not sheet.uniform:
+        found["m_g"] = [float(mass.min()), float(mass.max())]
+    if sheet.zones:
+        found["zones"] = {zone.name: int(np.count_nonzero(zone.share)) for zone in sheet.zones}
+    if sheet.bend is not None:
+        creases = [crease.name for crease in sheet.bend.creases]
+        found["bent"] = {"start": sheet.bend.start, "creases": creases}
+        if np.isfinite(sheet.bend.radius):
+            found["bent"] |= {"radius_mm": sheet.bend.radius, "along": "xy"[sheet.bend.axis]}
     return found
 
 

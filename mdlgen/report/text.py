@@ -19,6 +19,7 @@ def overview_text(told: dict[str, Any]) -> str:
             f"{sheet['bushings']} bushings, {sheet['layout']}, grid {sheet['grid']}",
             "",
             *_derived(sheet["derived"]),
+            *_unlike(sheet["unlike"]),
             "",
             *_bending(sheet["bending"]),
             *_curves(sheet["curves"]),
@@ -54,6 +55,23 @@ def _derived(values: dict[str, float]) -> list[str]:
     ):
         rows.append([symbol, *(f"{values[f'{symbol[0]}_{a}']:.5g}" for a in axes), UNITS[unit]])
     return [f"  box: {told}", *_table(rows), *(_plate(values) if "G" in values else [])]
+
+
+def _unlike(told: dict[str, Any]) -> list[str]:
+    """How boxes differ from the one above; nothing where all are alike and flat."""
+    parts = []
+    for key, name, unit in (("d_x_mm", "d_x", "mm"), ("d_y_mm", "d_y", "mm"), ("m_g", "m", "g")):
+        if key in told:
+            low, high = told[key]
+            parts.append(f"{name} {low:.4g} to {high:.4g} {unit}")
+    parts += [f"zone {name} on {count} boxes" for name, count in told.get("zones", {}).items()]
+    bent = told.get("bent")
+    if bent is not None:
+        if "radius_mm" in bent:
+            parts.append(f"curl {bent['radius_mm']:g} mm along {bent['along']}")
+        parts += [name.replace("_", " ") for name in bent["creases"]]
+        parts.append(f"begins {bent['start']}")
+    return [f"  boxes differ: {', '.join(parts)}"] if parts else []
 
 
 def _plate(values: dict[str, float]) -> list[str]:
