@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import subprocess
@@ -10,6 +11,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
+import yaml
 
 import mdlgen
 
@@ -52,10 +54,18 @@ def test_the_wheel_works_from_another_folder(installed, tmp_path):
 
 
 def test_the_readmes_first_scene_loads():
-    scene, parts = re.findall(r"```yaml\n(.*?)```", (ROOT / "README.md").read_text("utf-8"), re.DOTALL)
+    scene, sheets, parts = re.findall(
+        r"```yaml\n(.*?)```", (ROOT / "README.md").read_text("utf-8"), re.DOTALL
+    )
     model = mdlgen.lower(mdlgen.loads(scene))
     assert len(scene.splitlines()) == 10
     assert mdlgen.emit(model, "motionview")
+    # a sheet with lengths, a zone and a shape of its own, in place of the plain one
+    note = yaml.safe_load(scene) | {"name": "own"}
+    note["sheets"]["note"] |= yaml.safe_load(sheets)["sheets"]["note"]
+    own = mdlgen.lower(mdlgen.loads(json.dumps(note)))
+    assert own.sheets[0].zones and own.sheets[0].bend is not None and all(own.sheets[0].graded)
+    assert mdlgen.emit(own, "motionview")
     # the part of a machine of the user's own, in the same scene
     contact = "contacts: [{between: [note, feed], stiffness: 300 N/mm^1.5}, "
     imported = mdlgen.lower(mdlgen.loads(scene.replace("contacts: [", parts + contact)))
