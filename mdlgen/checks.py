@@ -312,6 +312,20 @@ def _corners(sheet: SheetPart) -> Floats:
     return sheet.center + signs * half @ sheet.rotation.T
 
 
+def _guessed_bending(model: Model) -> Iterator[Lint]:
+    for sheet in model.sheets:
+        given = {p.member for p in model.parameters if p.data_set == sheet.name}
+        ways = [way for way, names in (("x", {"k_ty", "D_md"}), ("y", {"k_tx", "D_cd"})) if not names & given]
+        if ways and sheet.count > 1:
+            yield Lint(
+                "W116",
+                f"sheets.{sheet.name}.material",
+                f"bending along {' and '.join(ways)} is guessed from modulus and thickness, E s^3/12; "
+                "paper is softer or stiffer by its layers",
+                "measure how far it hangs, and let mdlgen calibrate find D_md and D_cd",
+            )
+
+
 CHECKS: tuple[Callable[[Model], Iterator[Lint]], ...] = (
     _modulus,
     _aspect,
@@ -325,4 +339,5 @@ CHECKS: tuple[Callable[[Model], Iterator[Lint]], ...] = (
     _free_static,
     _interference,
     _density,
+    _guessed_bending,
 )

@@ -185,6 +185,7 @@ PARTS: dict[str, dict[str, tuple[str, ...]]] = {
             *("sheets.note.boxes=[2,2]", "sheets.note.grid=paper"),
         ),
         "curves": CURVED,
+        "bending guessed": ("materials.paper.k_tx=null", "materials.paper.k_ty=null"),
         "the paper's damping": ("materials.paper.damping.rotation=paper",),
         "the paper's damping, twist": (C2C, *PLATES, "materials.paper.damping.rotation=paper"),
         "a plate": (PLATE,),

@@ -151,6 +151,12 @@ def test_a_corner_twists_as_that_of_a_plate(solver: str, boxes: tuple[int, int])
         assert twisted(boxes, "plate", own) * free_edges(boxes) == pytest.approx(own, rel=0.01)
 
 
+@pytest.mark.parametrize("boxes", [(10, 20), (8, 4)], ids=str)
+def test_a_corner_twists_in_c2c_where_d_twist_is_given(boxes: tuple[int, int]) -> None:
+    given = twisted(boxes, "center_to_center", 20.0, ", D_twist: 20 N*mm")
+    assert given * free_edges(boxes) == pytest.approx(20.0, rel=0.01)
+
+
 def test_the_papers_layouts_do_not() -> None:
     """Two corners lock the twist; one bushing has in it what the shape of its box makes of the hinges."""
     assert twisted((10, 20), "edge_to_edge", 1e4) > 1e3

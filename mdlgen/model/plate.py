@@ -39,9 +39,10 @@ def twisting(sheet: Sheet, material: Material) -> float | None:
     if material.D_twist is not None or sheet.layout != "plate":
         return material.D_twist
     shape = sheet.pitch[0] / sheet.pitch[1]
-    cd = material.D_cd if material.k_tx is None else material.k_tx / shape
-    md = material.D_md if material.k_ty is None else material.k_ty * shape
-    assert cd is not None and md is not None, "the spec requires one of k_t* and D_*"
+    md, cd = material.plates(sheet.thickness)
+    cd = cd if material.k_tx is None else material.k_tx / shape
+    md = md if material.k_ty is None else material.k_ty * shape
+    assert cd is not None and md is not None, "what is no hinge is a plate"
     return SHEAR_RATIO * math.sqrt(md * cd)
 
 

@@ -80,8 +80,9 @@ def coefficients(sheet: Sheet, material: Material, of: Between, along_x: bool) -
     k_y = of.membrane * (e_cd * of.d_x * s / of.d_y / parts)  # Eq. 6
     k_z = 10.0 * np.maximum(k_x, k_y)
     shape, mean = of.d_x / of.d_y, sheet.pitch[0] / sheet.pitch[1]
-    k_tx = of.bending * _hinge(material.k_tx, material.D_cd, shape, mean, parts)
-    k_ty = of.bending * _hinge(material.k_ty, material.D_md, 1.0 / shape, 1.0 / mean, parts)
+    d_md, d_cd = material.plates(s)
+    k_tx = of.bending * _hinge(material.k_tx, d_cd, shape, mean, parts)
+    k_ty = of.bending * _hinge(material.k_ty, d_md, 1.0 / shape, 1.0 / mean, parts)
     even = np.ones_like(k_x)
     k_tz = material.k_tz * even if material.k_tz is not None else 20.0 * np.maximum(k_tx, k_ty)
     twist = plate.twisting(sheet, material)
@@ -101,7 +102,7 @@ def _hinge(given: float | None, plate: float | None, shape: Floats, mean: float,
     which a stiffness per bushing is given."""
     if given is not None:
         return given * (shape / mean)
-    assert plate is not None, "the spec requires one of k_t* and D_*"
+    assert plate is not None, "what is no hinge is a plate"
     return plate * shape / parts
 
 

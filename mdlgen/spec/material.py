@@ -48,10 +48,14 @@ class Material(Strict):
         "with layout plate it follows from E_md and E_cd",
     )
     D_md: Plate | None = Field(
-        default=None, description="bending stiffness per width along x, in place of k_ty"
+        default=None,
+        description="bending stiffness per width along x, in place of k_ty; E_md s^3/12, a first guess, "
+        "where both are left out",
     )
     D_cd: Plate | None = Field(
-        default=None, description="bending stiffness per width along y, in place of k_tx"
+        default=None,
+        description="bending stiffness per width along y, in place of k_tx; E_cd s^3/12, a first guess, "
+        "where both are left out",
     )
     D_twist: Plate | None = Field(
         default=None,
@@ -85,7 +89,15 @@ class Material(Strict):
     def _bending(self) -> Material:
         for hinge, plate, way in (("k_tx", "D_cd", "y"), ("k_ty", "D_md", "x")):
             given = [name for name in (hinge, plate) if getattr(self, name) is not None]
-            if len(given) != 1:
-                what = "both given" if given else "neither given"
-                raise fail(f"bending along {way}: {what} of {hinge} and {plate}; give exactly one of them")
+            if len(given) > 1:
+                raise fail(f"bending along {way}: both {hinge} and {plate} are given; give one of them")
         return self
+
+    def plates(self, thickness: float) -> tuple[float | None, float | None]:
+        """Bending stiffness per width (D_md, D_cd) [N mm]; None where a hinge stiffness is given, and where
+        nothing is that of a solid plate, E s^3/12, a first guess."""
+        md, cd = (modulus * thickness**3 / 12 for modulus in self.moduli)
+        return (
+            None if self.k_ty is not None else self.D_md if self.D_md is not None else md,
+            None if self.k_tx is not None else self.D_cd if self.D_cd is not None else cd,
+        )

@@ -117,10 +117,11 @@ def _as_written(
     name, about = ("tx", "x") if along_x else ("ty", "y")
     found[f"k_{name}_twist"], found[f"c_{name}_twist"] = found[f"k_{name}"], found[f"c_{name}"]
     shape = found["d_x"] / found["d_y"]
-    hinge, plate, mean = ("k_tx", "D_cd", sheet.d_x / sheet.d_y)
+    hinge, modulus, plate, mean = ("k_tx", "E_cd", "D_cd", sheet.d_x / sheet.d_y)
     if not along_x:
-        hinge, plate, shape, mean = "k_ty", "D_md", 1 / shape, 1 / mean
-    bent = found["b"] * (given[plate] * shape if plate in given else given[hinge] * shape / mean)
+        hinge, modulus, plate, shape, mean = "k_ty", "E_md", "D_md", 1 / shape, 1 / mean
+    stiff = given.get(plate, given[modulus] * sheet.thickness**3 / 12)
+    bent = found["b"] * (given[hinge] * shape / mean if hinge in given else stiff * shape)
     zeta = given["zeta"] if along_x else given["zeta_ty"]
     heavy = found["m"] if sheet.rotation_damping == "paper" else found[f"J_{about}"]
     found[f"k_{name}"], found[f"c_{name}"] = bent, 2 * zeta * math.sqrt(bent * heavy * SECOND)

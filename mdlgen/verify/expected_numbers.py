@@ -89,6 +89,7 @@ def _derived(model: Model, index: int) -> dict[str, float]:
     mine = rows.sheet == index
     if not np.any(mine):
         return found
+    found |= guessed(model, sheet)
     names = ("x", "y", "z", "tx", "ty", "tz")
     found |= {f"k_{n}": sheet.derived[f"k_{n}"] for n in names}
     found |= {f"c_{n}": sheet.derived[f"c_{n}"] * SECOND for n in names}
@@ -101,6 +102,17 @@ def _derived(model: Model, index: int) -> dict[str, float]:
         found |= {name: sheet.derived[name] for name in ("G", "D_twist", "k_x_shear", "k_y_shear", "k_tz_y")}
         found |= {n: sheet.derived[n] * SECOND for n in ("c_x_shear", "c_y_shear", "c_tz_y")}
     return found | (_twist(model, sheet, found) if sheet.twist else {})
+
+
+def guessed(model: Model, sheet: SheetPart) -> dict[str, float]:
+    """Bending stiffness per width that nobody gave [N mm]: that of a solid plate."""
+    given = {p.member: p.value for p in model.parameters if p.data_set == sheet.name}
+    pairs = (("D_md", "k_ty", "E_md"), ("D_cd", "k_tx", "E_cd"))
+    return {
+        plate: given[modulus] * sheet.thickness**3 / 12
+        for plate, hinge, modulus in pairs
+        if plate not in given and hinge not in given
+    }
 
 
 def _twist(model: Model, sheet: SheetPart, found: dict[str, float]) -> dict[str, float]:

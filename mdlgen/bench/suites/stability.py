@@ -27,5 +27,5 @@ QUICK = (
 
 def cases(solver: str, reference: str, quick: bool) -> list[Case]:
     """All rungs, or one of each kind."""
-    rungs = [*strips.rungs(), *blocks.rungs(), *machines.rungs(reference)]
+    rungs = [*strips.rungs(reference), *blocks.rungs(), *machines.rungs(reference)]
     return [rung for rung in rungs if rung.name in QUICK] if quick else rungs
