@@ -411,3 +411,21 @@ def test_an_interrupt_ends_with_130_and_writes_nothing(tmp_path: Path) -> None:
     assert (process.returncode, out) == (130, "")
     assert "Traceback" not in err
     assert files(tmp_path) == []
+
+
+def test_compiling_is_told_once_and_loading_is_not(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """On no terminal one line, from the first part that is compiled on."""
+    import logging
+
+    from mdlgen.cli import shell
+
+    lines: list[str] = []
+    monkeypatch.setattr(shell, "say", lines.append)
+    with shell.progress_bar(quiet=False, twice=False) as progress:
+        assert progress is None
+        assert lines == []
+        for done in range(1, 4):
+            logging.getLogger("mdlgen.compiling").info("%d", done)
+    assert lines == [shell.COMPILING]
+    logging.getLogger("mdlgen.compiling").info("%d", 9)
+    assert lines == [shell.COMPILING]

@@ -15,6 +15,7 @@ from backends.lattice.arrays import System, build
 from backends.lattice.record import Recorder
 from backends.lattice.scope import check
 from backends.lattice.static import rest
+from mdlgen.mechanics import compiling
 from mdlgen.model.curves import overstretched
 from mdlgen.model.tables import Floats, Model
 from mdlgen.results.compare import compare
@@ -66,12 +67,14 @@ def solve(
     from backends.lattice import compiled as _  # noqa: F401
 
     if model.run.analysis == "static":
-        result = rest(model, system, start(model, system))
+        with compiling.told():
+            result = rest(model, system, start(model, system))
         # what a run at rest calls is compiled, or loaded, as it goes: all but its wall time
         result.build_s = compiled - started
         result.compile_s = clock.perf_counter() - compiled - result.wall_s
         return result
-    _warm(model, system)
+    with compiling.told():
+        _warm(model, system)
     compile_s = clock.perf_counter() - compiled
     build_s = clock.perf_counter() - started - compile_s
     wanted = step or model.run.step

@@ -97,6 +97,10 @@ def _located(error: MdlgenError, spec: Path | None) -> MdlgenError:
         return error
 
 
+COMPILING = "compiling the solver, once on this machine (one to two minutes)"
+ABOUT = 180  # parts of it
+
+
 @contextlib.contextmanager
 def chatter(verbose: bool) -> Iterator[None]:
     import io
@@ -121,10 +125,38 @@ def count(quiet: bool, what: str) -> Iterator[Callable[[int, int], None] | None]
 
 
 @contextlib.contextmanager
+def compiling(told: Callable[[int], None]) -> Iterator[None]:
+    """Calls `told` with how many parts of a solver have been compiled, as they are."""
+    import logging
+
+    class Handler(logging.Handler):
+        def emit(self, record: logging.LogRecord) -> None:
+            told(int(record.getMessage()))
+
+    log, handler = logging.getLogger("mdlgen.compiling"), Handler()
+    before = log.level, log.propagate
+    log.setLevel(logging.INFO)
+    log.propagate = False
+    log.addHandler(handler)
+    try:
+        yield
+    finally:
+        log.removeHandler(handler)
+        log.level, log.propagate = before
+
+
+@contextlib.contextmanager
 def progress_bar(quiet: bool, twice: bool) -> Iterator[Callable[[float, float, int, int], None] | None]:
-    """A progress bar on a terminal: time, steps, pairs that touch, time left."""
-    if quiet or not sys.stderr.isatty():
+    """A progress bar on a terminal: time, steps, pairs that touch, time left; and what is compiled before.
+
+    Elsewhere a line says that something is compiled.
+    """
+    if quiet:
         yield None
+        return
+    if not sys.stderr.isatty():
+        with compiling(lambda done: say(COMPILING) if done == 1 else None):
+            yield None
         return
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
@@ -132,20 +164,27 @@ def progress_bar(quiet: bool, twice: bool) -> Iterator[Callable[[float, float, i
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
-        TextColumn("{task.completed:.2f} of {task.total:g} ms, step {task.fields[steps]}"),
-        TextColumn("{task.fields[touching]} pairs touch"),
+        TextColumn("{task.fields[told]}"),
         TimeRemainingColumn(),
     )
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         tasks: list[Any] = []
+        parts: list[Any] = []
         last = 0.0
 
         def progress(time: float, end: float, steps: int, touching: int) -> None:
             nonlocal last
             if not tasks or time < last:
                 name = "half the step" if tasks else "first run" if twice else "run"
-                tasks.append(bar.add_task(name, total=end, steps=0, touching=0))
+                tasks.append(bar.add_task(name, total=end, told=""))
             last = time
-            bar.update(tasks[-1], completed=time, steps=steps, touching=touching)
+            told = f"{time:.2f} of {end:g} ms, step {steps}, {touching} pairs touch"
+            bar.update(tasks[-1], completed=time, told=told)
 
-        yield progress
+        def compiled(done: int) -> None:
+            if not parts:
+                parts.append(bar.add_task(COMPILING, total=ABOUT, told=""))
+            bar.update(parts[0], completed=done, told=f"{done} parts")
+
+        with compiling(compiled):
+            yield progress
