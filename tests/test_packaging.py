@@ -11,7 +11,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
-import yaml
+from ruamel.yaml import YAML
 
 import mdlgen
 
@@ -61,8 +61,8 @@ def test_the_readmes_first_scene_loads():
     assert len(scene.splitlines()) == 10
     assert mdlgen.emit(model, "motionview")
     # a sheet with lengths, a zone and a shape of its own, in place of the plain one
-    note = yaml.safe_load(scene) | {"name": "own"}
-    note["sheets"]["note"] |= yaml.safe_load(sheets)["sheets"]["note"]
+    note = YAML(typ="safe").load(scene) | {"name": "own"}
+    note["sheets"]["note"] |= YAML(typ="safe").load(sheets)["sheets"]["note"]
     own = mdlgen.lower(mdlgen.loads(json.dumps(note)))
     assert own.sheets[0].zones and own.sheets[0].bend is not None and all(own.sheets[0].graded)
     assert mdlgen.emit(own, "motionview")

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import copy
+import json
 
 import numpy as np
 import pytest
-import yaml
+from ruamel.yaml import YAML
 
 import mdlgen
 from mdlgen.errors import SpecError
@@ -18,7 +19,7 @@ from mdlgen.verify.verification import verify
 CANTILEVER, TRANSPORT = "samples/cantilever.yaml", "samples/transport_4x4.yaml"
 NO_GRAVITY = "gravity=[0 m/s^2, 0 m/s^2, 0 m/s^2]"
 with open(CANTILEVER) as file:
-    HELD = yaml.safe_load(file)
+    HELD = YAML(typ="safe").load(file)
 FREE = copy.deepcopy(HELD)
 del FREE["sheets"]["note"]["clamp"]
 
@@ -33,7 +34,7 @@ SHAPES = {
 
 
 def scene(data: dict, *overrides: str):
-    return loads(yaml.safe_dump(data), overrides=overrides)
+    return loads(json.dumps(data), overrides=overrides)
 
 
 def shaped(data: dict, shape: str, *overrides: str):
