@@ -70,6 +70,7 @@ class System(NamedTuple):
     loads: np.ndarray  # LOAD
     gravity: Floats
     nodes: Ints  # body of each node
+    sheets: Ints  # and its sheet; the free boxes of a sheet all hang together
     reach: int  # how many nodes apart two that are coupled may be
     border: int  # unknowns of rollers
     folded: int  # bushings that share a joint with another one
@@ -92,6 +93,7 @@ def build(model: Model, fold: bool = True) -> System:
         loads=_loads(model),
         gravity=np.array(model.gravity),
         nodes=nodes,
+        sheets=np.searchsorted([s.first for s in model.sheets], nodes, side="right") - 1,
         reach=_reach(bodies, joints),
         border=border,
         folded=folded,

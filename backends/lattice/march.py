@@ -106,7 +106,7 @@ def _account(system, mid, ub, t, dt, work):
     work[2] += dt * abs(driving)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", nogil=True)
 def run(
     system,
     state,

@@ -15,18 +15,11 @@ from mdlgen.mechanics.vector import add, back, cross, dot, mat, rotate, scale, s
 
 
 def empty(system) -> tuple:
-    """What free sheets need: the part of each node, whether a part hangs on nothing, whether it touches
+    """What free sheets need: the sheet of each node, whether a sheet hangs on nothing, whether it touches
     something now, and a residual."""
     bodies, joints, nodes = system.bodies, system.joints, system.nodes
-    label = np.arange(len(nodes))
+    label = system.sheets
     ends = [np.where(joints[end] >= 0, bodies["node"][joints[end]], -1) for end in "ab"]
-    both = (ends[0] >= 0) & (ends[1] >= 0)
-    if len(nodes):
-        from scipy.sparse import coo_array
-        from scipy.sparse.csgraph import connected_components
-
-        links = (np.ones(int(both.sum())), (ends[0][both], ends[1][both]))
-        _, label = connected_components(coo_array(links, shape=(len(nodes), len(nodes))), directed=False)
     loose = np.ones(int(label.max(initial=-1)) + 1, np.bool_)
     for one, two in (ends, ends[::-1]):
         held = (one >= 0) & (two < 0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from threading import Thread
 from typing import Annotated
 
 import typer
@@ -227,7 +228,7 @@ def run(
 
     model = model_of(spec, sets)
     registry.check_solver(solver)
-    from mdlgen.report.figures import figure
+    from mdlgen.report.figures import figure, load_drawing
     from mdlgen.report.maps import strain_map
     from mdlgen.report.text import summary_text
     from mdlgen.results.store import check_folder, save
@@ -238,6 +239,8 @@ def run(
         name, why = registry.chosen(solver, model)
         if why:
             say(f"{name} runs this scene ({why})")
+    # what draws takes half a second to load; a solver leaves the second core to it
+    Thread(target=load_drawing, daemon=True).start()
     # a solver may talk on standard output, which is kept for results
     with progress_bar(quiet, check_step) as progress, chatter(verbose):
         result = registry.solve(model, solver, progress, check_step)

@@ -31,6 +31,12 @@ STYLE: dict[Any, Any] = {
 }
 
 
+def load_drawing() -> None:
+    """Loads what the figures are drawn with, ahead of the first one."""
+    import matplotlib.backends.backend_agg
+    import matplotlib.figure  # noqa: F401
+
+
 def figure(result: Result) -> bytes:
     """PNG of a result; the same result gives the same bytes."""
     import matplotlib
@@ -42,13 +48,16 @@ def figure(result: Result) -> bytes:
         matplotlib.rcdefaults()
         matplotlib.rcParams.update(STYLE)
         static = result.model.run.analysis == "static" or len(result.time) < 2
-        page = Figure(figsize=(8.5, 4.2 if static else 7.5), dpi=120, layout="constrained")
+        page = Figure(figsize=(8.5, 4.2 if static else 7.5), dpi=120)
         canvas = FigureCanvasAgg(page)
         page.suptitle(f"{result.model.name} ({result.solver})", x=0.01, ha="left", fontsize=11, weight="bold")
+        # margins by hand: to have them found takes as long as to draw
         if static:
             _shape(result, page)
+            page.subplots_adjust(left=0.09, right=0.97, top=0.84, bottom=0.14, wspace=0.25)
         else:
             _motion(result, page)
+            page.subplots_adjust(left=0.085, right=0.72, top=0.915, bottom=0.07, hspace=0.22)
         stream = io.BytesIO()
         canvas.print_png(stream, metadata={"Software": None})
     return stream.getvalue()
