@@ -61,12 +61,15 @@ def _modulus(model: Model) -> Iterator[Lint]:
 
 def _aspect(model: Model) -> Iterator[Lint]:
     for sheet in model.sheets:
-        aspect = max(sheet.d_x / sheet.d_y, sheet.d_y / sheet.d_x)
+        lengths = 2 * model.bodies.half[sheet.first : sheet.first + sheet.count, :2]
+        aspects = np.maximum(lengths[:, 0] / lengths[:, 1], lengths[:, 1] / lengths[:, 0])
+        worst = int(np.argmax(aspects))
+        (d_x, d_y), aspect = lengths[worst].tolist(), float(aspects[worst])
         if sheet.count > 1 and aspect > MAX_ASPECT:
             yield Lint(
                 "W102",
                 f"sheets.{sheet.name}.boxes",
-                f"boxes of {sheet.d_x:.3g} mm x {sheet.d_y:.3g} mm are {aspect:.3g} times as long as wide",
+                f"boxes of {d_x:.3g} mm x {d_y:.3g} mm are {aspect:.3g} times as long as wide",
                 f"choose counts nearer to the sheet's shape, up to {MAX_ASPECT:g} is usual",
             )
 
@@ -266,7 +269,7 @@ def _interference(model: Model) -> Iterator[Lint]:
         sheet = next(s for s in model.sheets if s.name == model.contacts.part_a[row])
         face = plane.center + plane.normal * plane.size[2] / 2
         frame = model.bodies.rotation[plane.body]
-        corners = _corners(sheet)
+        corners = _corners(sheet) if sheet.bend is None else _box_corners(model, sheet)
         over = np.all(np.abs((corners - face) @ frame[:, :2]) <= np.array(plane.size[:2]) / 2, axis=1)
         depth = float(np.max(-((corners - face) @ plane.normal)[over], initial=0.0))
         if sheet.thickness / 2 < depth < plane.size[2]:
@@ -324,6 +327,15 @@ def _guessed_bending(model: Model) -> Iterator[Lint]:
                 "paper is softer or stiffer by its layers",
                 "measure how far it hangs, and let mdlgen calibrate find D_md and D_cd",
             )
+
+
+def _box_corners(model: Model, sheet: SheetPart) -> Floats:
+    """All corners of all boxes as they begin [mm], (8 boxes, 3)."""
+    boxes = slice(sheet.first, sheet.first + sheet.count)
+    signs = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)], dtype=float)
+    arms = signs[None] * model.bodies.half[boxes][:, None]
+    turned = np.einsum("nij,nkj->nki", model.bodies.rotation[boxes], arms)
+    return (model.bodies.position[boxes][:, None] + turned).reshape(-1, 3)
 
 
 CHECKS: tuple[Callable[[Model], Iterator[Lint]], ...] = (

@@ -160,3 +160,89 @@ def test_the_text_of_a_sheet_that_begins_flat(axis, edge):
 def test_what_is_refused(shape, words):
     with pytest.raises(SpecError, match=words):
         scene(HELD, 'sheets.note.clamp.length="6.35 mm"', f"sheets.note.shape={shape}")
+
+
+@pytest.mark.parametrize(
+    "what", ["probes.mid={sheet: note, at: [%s]}", "supports=[{sheet: note, at: [%s], fix: [x, z]}]"]
+)
+@pytest.mark.parametrize(
+    ("shape", "at"),
+    [
+        ("{curl: {radius: 90 mm, along: y}}", "0 mm, 0 mm"),
+        ("{dog_ears: [{corner: [x_max, y_max], size: [30 mm, 40 mm], angle: 60 deg}]}", "16.75 mm, 50 mm"),
+    ],
+)
+def test_the_text_has_a_point_between_frames_on_each_of_its_boxes(what, shape, at):
+    few = ("sheets.note.boxes=[4,4]", f"sheets.note.shape={shape}", what % at)
+    told = scene(FREE, *few)
+    found = verify(told, lower(told))
+    assert found.ok, found.all_differences()[:3]
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [
+        "{curl: {radius: 18 mm, along: y}}",
+        "{folds: [{along: y, at: -31.75 mm, angle: 100 deg}, {along: y, at: 0 mm, angle: 100 deg}]}",
+    ],
+)
+def test_a_sheet_may_turn_by_more_than_half_a_turn_in_all(shape):
+    told = scene(FREE, "sheets.note.boxes=[2,20]", f"sheets.note.shape={shape}")
+    assert verify(told, lower(told), turn=False).ok
+
+
+@pytest.mark.parametrize(
+    ("override", "words"),
+    [
+        ("sheets.note.shape={curl: {radius: 1 mm, along: y}}", "joints at y = .* turn by .* take more boxes"),
+        ("sheets.note.shape={curl: {radius: 1e-308 mm, along: x}}", "turn by"),
+        ("sheets.note.zones={a: {x: [0 mm, 1 mm], y: [0 mm, 1 mm], density: 1e-17}}", "0.001"),
+        ("sheets.note.grading.x={near: [0 mm], width: 1e-320 mm, ratio: 3}", "at least"),
+    ],
+)
+def test_what_has_no_meaning_is_refused_in_its_place(override, words):
+    with pytest.raises(SpecError, match=words) as caught:
+        scene(FREE, override)
+    assert caught.value.path[:3] == tuple(override.partition("=")[0].split("."))[:3]
+
+
+def test_one_box_cannot_be_bent():
+    with pytest.raises(SpecError, match="one box along x"):
+        scene(FREE, "sheets.note.boxes=[1,4]", "sheets.note.shape={curl: {radius: 90 mm, along: x}}")
+
+
+@pytest.mark.parametrize(
+    ("name", "sets"),
+    [
+        ("note_cells", "zones={a: {x: [0 mm, 1 mm], y: [0 mm, 1 mm]}}"),
+        ("note_zone_a", "zones={a: {x: [0 mm, 1 mm], y: [0 mm, 1 mm]}}"),
+        ("note_shape", "shape={curl: {radius: 90 mm, along: y}}"),
+        ("note_f1", "shape={curl: {radius: 90 mm, along: y}}"),
+        ("note_grid_x", "grading.x=[1,1,1,1,1,1,1,1,1,2]"),
+    ],
+)
+def test_names_that_are_made_do_not_meet_others(name, sets):
+    with pytest.raises(SpecError, match="rename one"):
+        scene(FREE, f"probes.{name}={{sheet: note, edge: y_max}}", f"sheets.note.{sets}")
+
+
+def test_strain_is_of_material_and_from_the_shape_without_stress():
+    still = "gravity=[0 m/s^2, 0 m/s^2, -1e-3 m/s^2]"
+    found = []
+    for start in ("bent", "flat"):
+        m = lower(
+            scene(
+                HELD,
+                still,
+                "sheets.note.boxes=[2,10]",
+                f"sheets.note.shape={{start: {start}, curl: {{radius: 150 mm, along: y}}}}",
+            )
+        )
+        found.append(mdlgen.solve(m, "lattice"))
+    bent, flat = (summary(result)["sheets"]["note"]["curvature"] for result in found)
+    assert bent["max_cd_per_mm"] == pytest.approx(flat["max_cd_per_mm"], rel=0.05)
+    joints = found[0].strains.joints
+    assert joints.length[joints.axis == 1] == pytest.approx(
+        [6.35] * 2 + [12.7] * 18 if joints.a[joints.axis == 1][0] < 0 else [12.7] * 18 + [6.35] * 2, rel=1e-12
+    )
+    assert np.abs(joints.at).max() < 63.5 + 1e-9

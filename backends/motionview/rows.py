@@ -243,14 +243,14 @@ class Pair(NamedTuple):
 
 @dataclass(frozen=True)
 class ProbeView:
-    """A probe: an edge's middle, or a data set with x and y; `frame` is where its boxes lie in."""
+    """A probe: an edge's middle, or a data set with x and y."""
 
     name: str
     sheet: str
-    frame: str
+    points: list[tuple[str, str]]  # (point, frame that its box lies in)
     edge: str | None
     given: list[Value]
-    markers: list[tuple[str, str]]  # (marker, body)
+    markers: list[tuple[str, str, str]]  # (marker, body, point)
 
 
 @dataclass(frozen=True)
@@ -259,7 +259,7 @@ class SupportView:
 
     name: str
     sheet: str
-    frame: str
+    points: list[tuple[str, str]]  # (point, frame that its box lies in)
     edge: str | None
     given: list[Value]
     count: int

@@ -22,6 +22,7 @@ from backends.motionview.units import number
 from mdlgen.model import naming
 from mdlgen.model.curves import straight_points, written
 from mdlgen.model.plate import SHEAR_RATIO
+from mdlgen.model.shape import apart
 from mdlgen.model.stiffness import SUPPORT_FACTOR
 from mdlgen.model.tables import AXES, CLAMP, GROUND, JOINT_X, SUPPORT, Anchor, Model, SheetPart
 
@@ -154,19 +155,21 @@ def support_views(model: Model) -> list[SupportView]:
     for support in model.supports:
         parts = list(islice(rows, len(support.body)))
         bodies = [f"b_{model.bodies.name[b]}" for b in support.body.tolist()]
+        points = _points(model, support, support.name)
+        on = [points[k if len(points) > 1 else 0][0].removeprefix("p_") for k in range(len(parts))]
         x, y, z = (table.k[parts[0], :3] > 0).tolist()
         views.append(
             SupportView(
                 name=support.name,
                 sheet=model.sheets[support.sheet].name,
-                frame=_frame(model.sheets[support.sheet], int(support.body[0])),
+                points=points,
                 edge=support.edge,
                 given=[*([] if support.edge else _place(*support.at)), factor],
                 count=len(parts),
                 fixed=(x, y, z),
                 bushes=[
-                    Bush(table.name[row], table.label[row], "B_Ground", body, support.name)
-                    for row, body in zip(parts, bodies, strict=True)
+                    Bush(table.name[row], table.label[row], "B_Ground", body, point)
+                    for row, body, point in zip(parts, bodies, on, strict=True)
                 ],
             )
         )
@@ -177,14 +180,24 @@ def probe_view(model: Model, probe: Anchor) -> ProbeView:
     """A probe, with one marker on each box that it lies on."""
     bodies = [f"b_{model.bodies.name[b]}" for b in probe.body.tolist()]
     ends = [""] if len(bodies) == 1 else [f"_{k}" for k in range(len(bodies))]
+    points = _points(model, probe, f"probe_{probe.name}")
+    on = [points[k if len(points) > 1 else 0][0] for k in range(len(bodies))]
     return ProbeView(
         name=probe.name,
         sheet=model.sheets[probe.sheet].name,
-        frame=_frame(model.sheets[probe.sheet], int(probe.body[0])),
+        points=points,
         edge=probe.edge,
         given=[] if probe.edge else _place(*probe.at),
-        markers=[(f"m_probe_{probe.name}{end}", body) for end, body in zip(ends, bodies, strict=True)],
+        markers=[(f"m_probe_{probe.name}{e}", b, p) for e, b, p in zip(ends, bodies, on, strict=True)],
     )
+
+
+def _points(model: Model, anchor: Anchor, name: str) -> list[tuple[str, str]]:
+    """(point, frame) of an anchor; one for each of its boxes where they lie in several frames."""
+    sheet, bodies = model.sheets[anchor.sheet], anchor.body.tolist()
+    if not apart(model, anchor):
+        return [(f"p_{name}", _frame(sheet, bodies[0]))]
+    return [(f"p_{name}_{k}", _frame(sheet, body)) for k, body in enumerate(bodies)]
 
 
 def _frame(sheet: SheetPart, body: int) -> str:

@@ -92,11 +92,9 @@ class Runs:
 
         gravity = result.model.gravity
         down = gravity / np.linalg.norm(gravity)
-        anchor, bodies = result.model.probes[self.probe], result.model.bodies
-        first = sum(
-            share * (bodies.position[body] + bodies.rotation[body] @ local)
-            for body, local, share in zip(anchor.body, anchor.local, anchor.share, strict=True)
-        )
+        anchor = result.model.probes[self.probe]
+        sheet = result.model.sheets[anchor.sheet]
+        first = sheet.center + sheet.rotation @ np.array([*anchor.at, 0.0])  # in the flat sheet
         place, rate = result.anchor_motion(self.probe)
         drop = (place - first) @ down
         if self.times is None:

@@ -45,9 +45,10 @@ def lower_loads(scene: Scene, sheets: tuple[SheetPart, ...]) -> Loads:
         force, moment = np.array(load.force or (0.0, 0.0, 0.0)), np.array(load.moment or (0.0, 0.0, 0.0))
         if load.stress is not None:
             edge = load.edge or ""
-            across = sheet.outline[1 if edge[0] == "x" else 0]
+            # each box has the force of its own section
+            targets, section = _sections(sheet, targets)
             outward = np.eye(3)[0 if edge[0] == "x" else 1] * (-1.0 if edge.endswith("min") else 1.0)
-            force = load.stress * across * sheet.thickness * outward
+            force = load.stress * section * outward
         for body, local, share in targets:
             rows.append((body, local, sheet.rotation @ force * share, sheet.rotation @ moment * share))
     count = len(rows)
@@ -56,6 +57,23 @@ def lower_loads(scene: Scene, sheets: tuple[SheetPart, ...]) -> Loads:
         np.array(body, dtype=np.int64),
         *(np.array(v, dtype=float).reshape(count, 3) for v in (local, force, moment)),
     )
+
+
+def _sections(
+    sheet: SheetPart, targets: list[tuple[int, tuple[float, float, float], float]]
+) -> tuple[list[tuple[int, tuple[float, float, float], float]], float]:
+    """Boxes along an edge with their parts of its section, and that section [mm^2]."""
+    side = 1 if targets[0][1][0] else 0
+    width = np.array([part for _, _, part in targets]) * sheet.outline[side]
+    boxes = np.array([body - sheet.first for body, _, _ in targets])
+    thick = np.full(len(boxes), sheet.thickness)
+    for zone in sheet.zones:
+        if zone.thickness is not None:
+            thick = thick + zone.share[boxes] * (zone.thickness - sheet.thickness)
+    parts = width * thick
+    whole = float(parts.sum())
+    shares = (parts / whole).tolist()
+    return [(body, local, part) for (body, local, _), part in zip(targets, shares, strict=True)], whole
 
 
 def find_tension(scene: Scene, sheets: tuple[SheetPart, ...]) -> Tension | None:

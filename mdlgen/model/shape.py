@@ -15,7 +15,19 @@ import numpy as np
 
 from mdlgen.model.joints import Joints
 from mdlgen.model.rotations import matrices, vectors
-from mdlgen.model.tables import CLAMP, JOINT_X, SUPPORT, Bend, Crease, Floats, Frames, Ints, Model, SheetPart
+from mdlgen.model.tables import (
+    CLAMP,
+    JOINT_X,
+    SUPPORT,
+    Anchor,
+    Bend,
+    Crease,
+    Floats,
+    Frames,
+    Ints,
+    Model,
+    SheetPart,
+)
 from mdlgen.spec.shape import Shape
 from mdlgen.spec.sheet import Sheet
 
@@ -211,6 +223,15 @@ def joint_creases(sheet: SheetPart, joints: Joints) -> Ints:
         elif (0 if joints.kind == JOINT_X else 1) == sheet.bend.axis:
             found[joints.node[:, sheet.bend.axis] == 2 * crease.line[sheet.bend.axis]] = k
     return found
+
+
+def apart(model: Model, anchor: Anchor) -> bool:
+    """Whether a material point has a place of its own on each of its boxes: where they lie in several frames
+    of a sheet that begins bent, which meet in that point only as long as nobody moves it."""
+    sheet = model.sheets[anchor.sheet]
+    if sheet.bend is None or sheet.bend.start == "flat":
+        return False
+    return len(set(sheet.bend.frames.box[anchor.body - sheet.first].tolist())) > 1
 
 
 class GroundFrame(NamedTuple):

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from mdlgen.model.grid import box_nodes, local
 from mdlgen.model.tables import GROUND, Floats, Model, SheetPart
 from mdlgen.report.figures import STYLE
 from mdlgen.results.result import Result
@@ -39,7 +40,7 @@ class _Panel(NamedTuple):
 
     @property
     def outline(self) -> Floats:
-        return np.array([self.sheet.n_x * self.sheet.d_x, self.sheet.n_y * self.sheet.d_y])
+        return np.array(self.sheet.outline)
 
 
 def strain_map(result: Result) -> bytes:
@@ -108,14 +109,12 @@ def _panels(result: Result, strains: Strains) -> list[_Panel]:
 def _cells(model: Model, joints: SheetJoints) -> Floats:
     """Corners of the material that each joint stands for, in sheet axes from the centre [mm], (n, 4, 2)."""
     bodies = model.bodies
-    centers = np.array([s.center for s in model.sheets])[joints.sheet]
-    frames = np.array([s.rotation for s in model.sheets])[joints.sheet]
-
-    def seen(points: Floats) -> Floats:
-        return np.einsum("nij,ni->nj", frames, points - centers)[:, :2]
-
-    start = np.where((joints.a == GROUND)[:, None], joints.at, seen(bodies.position[joints.a]))
-    end = seen(bodies.position[joints.b])
+    places = np.zeros((len(bodies.name), 2))
+    for sheet in model.sheets:
+        boxes = slice(sheet.first, sheet.first + sheet.count)
+        places[boxes] = local(sheet, *box_nodes(sheet))[:, :2]
+    start = np.where((joints.a == GROUND)[:, None], joints.at, places[joints.a])
+    end = places[joints.b]
     row = np.arange(len(joints))
     along, across = np.zeros((len(joints), 2)), np.zeros((len(joints), 2))
     along[row, joints.axis] = (end - start)[row, joints.axis]

@@ -10,6 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mdlgen.model.grid import local
+from mdlgen.model.rotations import matrices
 from mdlgen.model.tables import CLAMP, GROUND, JOINT_X, SUPPORT, Floats, Frozen, Ints, Model
 from mdlgen.results.result import Result
 
@@ -34,6 +36,7 @@ class SheetJoints(Frozen):
     spread: Floats  # half the distance of its two bushings [mm], 0 where it has one; half a plate's side
     origin: Floats  # middle [mm], (n, 3)
     axes: Floats  # of its bushings, (n, 3, 3)
+    rest: Floats  # rotation of b against a without stress, bushing axes [rad], (n, 3)
     at: Floats  # middle in sheet axes from the sheet's centre [mm], (n, 2)
 
     def __len__(self) -> int:
@@ -98,8 +101,12 @@ def sheet_joints(model: Model) -> SheetJoints:
     position = model.bodies.position
     start = np.where((a == GROUND)[:, None], origin, position[a])
     along = np.einsum("ni,ni->n", position[b] - start, axes[np.arange(len(a)), :, axis])
-    centers = np.array([s.center for s in model.sheets])[sheet]
-    frames = np.array([s.rotation for s in model.sheets])[sheet]
+    # of material: half of each box, which a bent sheet has at an angle to each other
+    ends = (b, np.where(a == GROUND, b, a))
+    halves = [model.bodies.half[end, axis] for end in ends]
+    length = np.where(a == GROUND, halves[0], halves[0] + halves[1])
+    nodes = (bushings.node[first] + bushings.node[last]) / 2
+    at = np.array([local(model.sheets[k], x, y)[:2] for k, (x, y) in zip(sheet, nodes, strict=True)])
     return SheetJoints(
         name=tuple(_name(bushings.name[i], i != j) for i, j in zip(first, last, strict=True)),
         bushing=first,
@@ -108,11 +115,12 @@ def sheet_joints(model: Model) -> SheetJoints:
         a=a,
         b=b,
         way=np.sign(along),
-        length=np.abs(along),
+        length=length,
         spread=spread,
         origin=origin,
         axes=axes,
-        at=np.einsum("nij,ni->nj", frames, origin - centers)[:, :2],
+        rest=bushings.rest[first],
+        at=at.reshape(-1, 2),
     )
 
 
@@ -176,10 +184,12 @@ class _Fixed:
         self.a, self.b = joints.a[mine], joints.b[mine]
         self.way, self.length, self.spread = joints.way[mine], joints.length[mine], joints.spread[mine]
         axes, origin = joints.axes[mine], joints.origin[mine]
+        # without stress the frame on b has turned onto the one on a
+        sides = (axes, axes @ matrices(-joints.rest[mine]))
         # bushing axes as seen from each body, and the arm to the middle as seen along these axes
         self.frames, self.arms = [], []
-        for body in (self.a, self.b):
-            seen = np.einsum("nki,nkj->nij", turned[body], axes)
+        for body, own in zip((self.a, self.b), sides, strict=True):
+            seen = np.einsum("nki,nkj->nij", turned[body], own)
             self.frames.append(tuple(np.roll(Rotation.from_matrix(seen).as_quat(), 1, axis=1).T))
             self.arms.append(tuple(np.einsum("nki,nk->in", axes, origin - placed[body])))
 

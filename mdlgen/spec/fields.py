@@ -29,9 +29,12 @@ class Strict(BaseModel):
     )
 
 
-def fail(message: str, path: tuple[str | int, ...] | None = None) -> PydanticCustomError:
-    """An error for pydantic to raise; `path` (from the scene's root) where it is not the field itself."""
-    return PydanticCustomError("spec", "{text}", {"text": message, "path": path})
+def fail(
+    message: str, path: tuple[str | int, ...] | None = None, within: tuple[str | int, ...] = ()
+) -> PydanticCustomError:
+    """An error for pydantic to raise. Where it is not about the field itself, `path` is from the scene's
+    root, `within` from the field."""
+    return PydanticCustomError("spec", "{text}", {"text": message, "path": path, "within": within})
 
 
 class quantity:

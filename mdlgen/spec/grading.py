@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Annotated, Any
 
 import numpy as np
@@ -45,8 +44,8 @@ class Graded(Strict):
         sizes = value.get("sizes", ())
         for k, size in enumerate(sizes if isinstance(sizes, (list, tuple)) else ()):
             number = isinstance(size, (int, float)) and not isinstance(size, bool)
-            if not number or not math.isfinite(size) or size <= 0:
-                raise fail(f"relative length {k}: {size!r} is not a number above 0"[:200])
+            if not number or not 1e-6 <= size <= 1e6:
+                raise fail(f"relative length {k}: {size!r} is not a number from 1e-6 to 1e6"[:200])
         return {**value, "sizes": tuple(map(float, sizes))} if isinstance(sizes, (list, tuple)) else value
 
     @model_validator(mode="after")

@@ -252,8 +252,8 @@ def _describe(error: Any, document: Document) -> SpecError:
     prefer_key = error["loc"][-1:] == ("[key]",)
     if kind == "spec":
         message = context["text"]
-        if context.get("path") is not None:
-            path = tuple(context["path"])
+        if context.get("path") is not None or context.get("within"):
+            path = tuple(context["path"] or (*path, *context["within"]))
             prefer_key = path in document.keys and not isinstance(_at(document.data, path), str)
     elif kind == "extra_forbidden":
         message, prefer_key = f"unknown key {path[-1]!r}{_did_you_mean(path, document)}", True
@@ -261,7 +261,10 @@ def _describe(error: Any, document: Document) -> SpecError:
         message = f"the key {path[-1]!r} is missing"
         path = path[:-1]
     else:
-        message = f"{error['msg']}, got {error['input']!r}"[:300]
+        said = re.sub(
+            r"valid dictionary or instance of \w+|valid dictionary or object.*", "mapping", error["msg"]
+        )
+        message = f"{said.replace('valid tuple', 'list')}, got {error['input']!r}"[:300]
     return SpecError(message, path, document.place(path, prefer_key))
 
 

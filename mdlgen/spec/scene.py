@@ -67,6 +67,13 @@ class Scene(Strict):
                 other = seen.setdefault(name.lower(), f"{kind}.{name}")
                 if other != f"{kind}.{name}":
                     raise fail(f"the name {name!r} is used twice (also {other})", (kind, name))
+        for name, sheet in self.sheets.items():
+            for made, path in sheet.made_names(name):
+                other = seen.setdefault(made.lower(), ".".join(map(str, path)))
+                if other != ".".join(map(str, path)):
+                    raise fail(
+                        f"the name {made!r}, which is made from it, is taken by {other}; rename one", path
+                    )
 
     def _on_sheet(self, item: OnSheet, path: tuple[str | int, ...]) -> None:
         _known(item.sheet, self.sheets, "sheet", (*path, "sheet"))

@@ -27,7 +27,7 @@ class Fold(Strict):
     along: Direction = Field(description="the direction that is folded: x (MD) or y (CD)")
     at: Length = Field(description="where along it, from the sheet's centre; a line between boxes")
     angle: Angle = Field(description="by which the sheet turns there, towards its z axis; -170 to 170 deg")
-    stiffness: Annotated[float, Field(gt=0, le=10)] = Field(
+    stiffness: Annotated[float, Field(ge=1e-3, le=10)] = Field(
         default=1.0, description="bending stiffness of the crease in times that of the sheet"
     )
 
@@ -50,7 +50,7 @@ class DogEar(Strict):
     corner: Annotated[tuple[Literal["x_min", "x_max"], Literal["y_min", "y_max"]], BeforeValidator(_corner)]
     size: Size2 = Field(description="lengths along x and y from the corner to the ends of the crease")
     angle: Angle = Field(description="by which the corner turns towards the sheet's z axis; -170 to 170 deg")
-    stiffness: Annotated[float, Field(gt=0, le=10)] = Field(
+    stiffness: Annotated[float, Field(ge=1e-3, le=10)] = Field(
         default=1.0, description="bending stiffness of the crease in times that of the sheet"
     )
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
@@ -29,6 +30,8 @@ from mdlgen.spec.zone import Zone
 
 MAX_BOXES = 100_000
 MAX_ZONES = 100
+MOST_TURN = math.radians(170.0)
+FINEST = 1e-4  # of a side: how narrow a place may be that boxes are finer near
 Edge = Literal["x_min", "x_max", "y_min", "y_max"]
 
 
@@ -97,19 +100,28 @@ class Sheet(Strict):
         if self.grading is None:
             return
         if self.grid == "paper":
-            raise fail("grading goes with grid: tiled; the paper's grid has equal boxes")
+            raise fail("grading goes with grid: tiled; the paper's grid has equal boxes", within=("grading",))
         for axis, graded, count, length in zip(
             "xy", (self.grading.x, self.grading.y), self.boxes, self.size, strict=True
         ):
             if graded is None:
                 continue
             if graded.sizes and len(graded.sizes) != count:
-                raise fail(f"grading.{axis} has {len(graded.sizes)} lengths for {count} boxes; give one each")
+                raise fail(
+                    f"grading.{axis} has {len(graded.sizes)} lengths for {count} boxes; give one each",
+                    within=("grading", axis),
+                )
+            if graded.width is not None and graded.width < FINEST * length:
+                raise fail(
+                    f"grading.{axis}.width {graded.width:g} mm; allowed at least {FINEST * length:g} mm",
+                    within=("grading", axis, "width"),
+                )
             for place in graded.near:
                 if abs(place) > length / 2:
                     raise fail(
                         f"grading.{axis}.near: {place:g} mm is off the sheet; "
-                        f"allowed -{length / 2:g} to {length / 2:g} mm"
+                        f"allowed -{length / 2:g} to {length / 2:g} mm",
+                        within=("grading", axis, "near"),
                     )
 
     def _check_zones(self) -> None:
@@ -122,25 +134,32 @@ class Sheet(Strict):
                 if side[0] < lines[0] * (1 + 1e-9) or side[1] > lines[-1] * (1 + 1e-9):
                     raise fail(
                         f"zone {name}: {axis} from {side[0]:g} mm to {side[1]:g} mm leaves the sheet; "
-                        f"allowed {lines[0]:g} to {lines[-1]:g} mm"
+                        f"allowed {lines[0]:g} to {lines[-1]:g} mm",
+                        within=("zones", name, axis),
                     )
             for other in names[:k]:
                 if zone.meets(self.zones[other]):
-                    raise fail(f"the zones {other} and {name} overlap; divide them")
+                    raise fail(f"the zones {other} and {name} overlap; divide them", within=("zones", name))
 
     def _check_shape(self) -> None:
         if self.shape is None:
             return
+        self._check_turns()
         for k, fold in enumerate(self.shape.folds):
             lines = self.lines["xy".index(fold.along)][1:-1]
             away = sorted(lines, key=lambda line: abs(line - fold.at))
             if not away or abs(away[0] - fold.at) > 1e-6 * self.pitch["xy".index(fold.along)]:
-                near = " and ".join(f"{line:.6g} mm" for line in sorted(away[:2])) or "none"
-                raise fail(f"fold {k}: {fold.at:g} mm is not a line between boxes; the nearest are {near}")
+                near = " and ".join(f"{line:.6g} mm" for line in sorted(away[:2])) or "none: there is one box"
+                raise fail(
+                    f"fold {k}: {fold.at:g} mm is not a line between boxes; the nearest are {near}",
+                    within=("shape", "folds", k),
+                )
             if any(abs(other.at - fold.at) < 1e-6 * self.pitch[0] for other in self.shape.folds[:k]):
-                raise fail(f"fold {k}: there is a fold at {fold.at:g} mm already")
+                raise fail(
+                    f"fold {k}: there is a fold at {fold.at:g} mm already", within=("shape", "folds", k)
+                )
             if self.clamp is not None and self.clamp.edge[0] == fold.along and self._held(fold.at):
-                raise fail(f"fold {k}: at {fold.at:g} mm the sheet is clamped")
+                raise fail(f"fold {k}: at {fold.at:g} mm the sheet is clamped", within=("shape", "folds", k))
         half = (self.lines[0][-1], self.lines[1][-1])
         taken: set[tuple[str, str]] = set()
         for k, ear in enumerate(self.shape.dog_ears):
@@ -149,12 +168,56 @@ class Sheet(Strict):
                     f"dog_ears {k}: size is more than half of the sheet, {half[0]:g} mm x {half[1]:g} mm"
                 )
             if not ear.beyond(*self._corner_box(ear.corner), half):
-                raise fail(f"dog_ears {k}: no box has its centre beyond the crease; the boxes are larger")
+                raise fail(
+                    f"dog_ears {k}: no box has its centre beyond the crease; the boxes are larger",
+                    within=("shape", "dog_ears", k),
+                )
             if ear.corner in taken:
-                raise fail(f"dog_ears {k}: that corner is folded already")
+                raise fail(f"dog_ears {k}: that corner is folded already", within=("shape", "dog_ears", k))
             taken.add(ear.corner)
             if self.clamp is not None and self.clamp.edge in ear.corner:
-                raise fail(f"dog_ears {k}: the edge {self.clamp.edge} is clamped")
+                raise fail(
+                    f"dog_ears {k}: the edge {self.clamp.edge} is clamped", within=("shape", "dog_ears", k)
+                )
+
+    def made_names(self, name: str) -> list[tuple[str, tuple[str | int, ...]]]:
+        """Names that are made from the sheet's, each with where what it is made for stands in the scene."""
+        own = ("sheets", name)
+        made: list[tuple[str, tuple[str | int, ...]]] = []
+        graded = self.grading
+        if graded is not None:
+            sides = (("x", graded.x), ("y", graded.y))
+            made += [(f"{name}_grid_{axis}", (*own, "grading", axis)) for axis, side in sides if side]
+        made += [(f"{name}_zone_{zone}", (*own, "zones", zone)) for zone in self.zones]
+        if graded is not None or self.zones or self.shape is not None:
+            why = "grading" if graded is not None else "zones" if self.zones else "shape"
+            made += [(f"{name}_{what}", (*own, why)) for what in ("cells", "joints")]
+        if self.shape is not None:
+            made.append((f"{name}_shape", (*own, "shape")))
+            # frames of a bent sheet, at most one for each column, row or ear
+            made += [(f"{name}_f{k}", (*own, "shape")) for k in range(1, max(self.boxes) + 5)]
+        return made
+
+    def _check_turns(self) -> None:
+        """No joint may turn by more than a fold may: beyond half a turn it would be the other way round."""
+        shape = self.shape
+        if shape is None or shape.along is None:
+            return
+        axis = "xy".index(shape.along)
+        if self.boxes[axis] == 1 and (self.clamp is None or self.clamp.edge[0] != shape.along):
+            raise fail(f"one box along {shape.along} cannot be bent; take more boxes", within=("shape",))
+        radius = shape.curl.radius if shape.curl is not None else math.inf
+        lines = self.lines[axis]
+        for k, line in enumerate(lines):
+            near = [b - a for a, b in pairwise(lines[max(k - 1, 0) : k + 2])]
+            folds = sum(f.angle for f in shape.folds if abs(f.at - line) < 1e-6 * self.pitch[axis])
+            turn = sum(near) / 2 / radius + folds
+            if not abs(turn) <= MOST_TURN * (1 + 1e-12):
+                raise fail(
+                    f"joints at {shape.along} = {line:g} mm turn by {math.degrees(turn):.4g} deg (length of "
+                    "a box over the radius, and fold); allowed are 170 deg; take more boxes, or a wider curl",
+                    within=("shape",),
+                )
 
     def _corner_box(self, corner: tuple[str, str]) -> tuple[float, float]:
         """Centre of the box at a corner, from the sheet's centre."""

@@ -16,7 +16,7 @@ def _two(value: Any) -> Any:
 
 
 Range = Annotated[tuple[Length, Length], BeforeValidator(_two)]
-Factor = Annotated[float, Field(gt=0, le=1e3)]
+Factor = Annotated[float, Field(ge=1e-3, le=1e3)]
 
 
 class Zone(Strict):

@@ -21,7 +21,11 @@ def shape(sheet: SheetPart) -> dict[str, float]:
         crease = bend.creases[frames.crease[k]] if frames.crease[k] >= 0 else None
         across = np.eye(3)[bend.axis] if bend.axis >= 0 or crease is None else outward(crease)
         turned = turn @ across
-        found[f"a_{k}"] = math.atan2(turned[2], float(across @ turned))
+        # from the parent on, since a sheet may turn by more than half a turn in all
+        parent = int(frames.parent[k])
+        swing = frames.rotation[parent].T @ turned
+        before = found[f"a_{parent}"] if parent else 0.0
+        found[f"a_{k}"] = before + math.atan2(swing[2], float(across @ swing))
         if bend.axis < 0 and crease is not None:
             found[f"{crease.name}_a"], found[f"{crease.name}_b"] = crease.size
             found[f"e_x_{k}"], found[f"e_y_{k}"] = float(across[0]), float(across[1])

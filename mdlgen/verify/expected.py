@@ -12,7 +12,7 @@ import numpy as np
 
 from mdlgen.model import naming
 from mdlgen.model.curves import straight_points, written
-from mdlgen.model.shape import ground_frames
+from mdlgen.model.shape import apart, ground_frames
 from mdlgen.model.tables import (
     CLAMP,
     GROUND,
@@ -97,9 +97,13 @@ def _points(model: Model) -> Table:
         places.append(joints.origin[list(first.values())])
         names += [f"p_{sheet.name}_f{k}" for k in range(1, len(_frames(sheet)))]
         places += [(sheet.center + sheet.rotation @ origin)[None] for origin, _ in _frames(sheet)[1:]]
-    for support in model.supports:
-        names.append(f"p_{support.name}")
-        places.append(_anchor_points(model, support)[:1])
+    for name, anchor in [(s.name, s) for s in model.supports] + [
+        (f"probe_{p.name}", p) for p in model.probes
+    ]:
+        found = _anchor_points(model, anchor)
+        split = apart(model, anchor)
+        names += [f"p_{name}_{k}" for k in range(len(found))] if split else [f"p_{name}"]
+        places.append(found if split else found[:1])
     for roller in model.rollers:
         names.append(f"p_{roller.name}")
         places.append(model.bodies.position[roller.body][None])
@@ -109,9 +113,6 @@ def _points(model: Model) -> Table:
     for plane in model.planes:
         names.append(f"p_{plane.name}")
         places.append(plane.center[None])
-    for probe in model.probes:
-        names.append(f"p_probe_{probe.name}")
-        places.append(_anchor_points(model, probe)[:1])
     return table(names, {"at": (np.concatenate(places), reach(model))})
 
 
