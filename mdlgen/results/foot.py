@@ -12,7 +12,7 @@ from mdlgen.model.tables import Floats, Ints, RollerPart
 if TYPE_CHECKING:
     from mdlgen.results.result import Result
 
-MOST = 64  # states that are looked at together
+MOST = 20_000  # boxes, times states, that are looked at together
 # Across the axis a box counts this part of a radius beyond its face: at a joint that bends away from the
 # roller the axis passes over neither box.
 BESIDE = 0.1
@@ -34,7 +34,8 @@ def feet(result: Result, row: int, roller: RollerPart, at: Ints) -> Foot:
     """Of the boxes of a row of contacts, at the stored states `at`."""
     pairs = result.model.pairs
     boxes = pairs.a[pairs.contact == row]
-    parts = [_feet(result, boxes, roller, at[k : k + MOST]) for k in range(0, max(len(at), 1), MOST)]
+    few = max(1, MOST // max(1, len(boxes)))
+    parts = [_feet(result, boxes, roller, at[k : k + few]) for k in range(0, max(len(at), 1), few)]
     return Foot(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Foot)))
 
 
