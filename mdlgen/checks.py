@@ -171,7 +171,7 @@ def _idle_drive(model: Model) -> Iterator[Lint]:
         if roller.speed == 0.0:
             yield Lint(
                 "W108",
-                f"{where}.speed",
+                f"{where}.{'speed' if roller.profile is None else 'profile'}",
                 "the drive holds the roller still (speed 0)",
                 "leave drive out for a roller that turns freely, or give a speed",
             )
@@ -181,6 +181,25 @@ def _idle_drive(model: Model) -> Iterator[Lint]:
                 f"{where}.ramp",
                 f"the ramp of {roller.ramp:g} ms is longer than the run of {model.run.duration:g} ms",
                 "run longer, or ramp faster",
+            )
+        way = roller.one_way
+        senses = np.sign(roller.corners[:, 1])
+        if way is not None and roller.speed is not None and np.any(senses == -way.direction):
+            yield Lint(
+                "W116",
+                f"rollers.{roller.name}.one_way.direction",
+                f"the drive turns in sense {-way.direction}, in which the clutch only holds the roller back: "
+                "it never drives",
+                "give the direction the sign of the speed",
+            )
+        late = [] if roller.profile is None else roller.profile[:, 0] > model.run.duration
+        if np.any(late) and model.run.analysis != "static":
+            first = int(np.argmax(late))
+            yield Lint(
+                "W113",
+                f"{where}.profile.{first}",
+                f"the corner at {roller.corners[first, 0]:g} ms is after the end, {model.run.duration:g} ms",
+                "run longer, or leave out what comes after the run",
             )
 
 

@@ -73,6 +73,11 @@ CASES: dict[str, tuple[str, ...]] = {
     "weightless": (FOUR, SMALL, 'gravity=["0 m/s^2","0 m/s^2","0 m/s^2"]'),
     "no_friction": (FOUR, SMALL, *(f"contacts.{k}.friction=0" for k in range(3))),
     "static_with_contacts": ("verify/slide.yaml", "run.analysis=static"),
+    "profile": (
+        FOUR,
+        SMALL,
+        "rollers.motor_1_left.drive={profile: [[1 ms, -5 rad/s], [3 ms, 90 rad/s], [4 ms, 0 rad/s]]}",
+    ),
     "at_once": (FOUR, SMALL, 'rollers.motor_1_left.drive.ramp="0 ms"'),
     "skew_machine": (
         FOUR,

@@ -102,6 +102,7 @@ ROLLERS = _put(
         "driven": ROLLER | {"axis": "x", "drive": DRIVE},
         "ramped": ROLLER | {"axis": [0.6, 0.8, 0], "drive": DRIVE | {"ramp": "5 ms"}},
         "pressed": ROLLER | {"center": ["0 mm", "0 mm", "5 mm"], "press": PRESS},
+        "stopped": ROLLER | {"drive": {"profile": [["1 ms", "90 rad/s"], ["2 ms", "-9 rad/s"]]}},
     },
 )
 PLANES = _put("planes", {"level": PLANE, "tilted": PLANE | {"normal": [0.6, 0, 0.8]}})

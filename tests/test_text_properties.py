@@ -124,7 +124,15 @@ def rollers(draw: st.DrawFn) -> Spec:
         "mass": "0.5 g",
     }
     if draw(st.booleans()):
-        roller["drive"] = {"speed": "100 rad/s", "ramp": draw(st.sampled_from(["0 ms", "5 ms"]))}
+        roller["drive"] = draw(
+            st.sampled_from(
+                [
+                    {"speed": "100 rad/s", "ramp": "0 ms"},
+                    {"speed": "100 rad/s", "ramp": "5 ms"},
+                    {"profile": [["0 ms", "0 rad/s"], ["1 ms", "90 rad/s"], ["2 ms", "-9 rad/s"]]},
+                ]
+            )
+        )
     if draw(st.booleans()):
         # so long that no start takes up all of it
         roller["press"] = {
@@ -280,7 +288,10 @@ def expected_members(scene: Spec) -> int:
             total += 4 * (plate or "D_twist" in material) + 3 * (material["damping"]["rotation"] == "inertia")
             total += 6 * plate + sum(k not in material for k in ("D_twist", "G")) * plate
     for roller in scene["rollers"].values():
-        total += 6 + 2 * ("drive" in roller) + 7 * ("press" in roller)
+        drive = roller.get("drive", {})
+        total += (
+            6 + (2 * len(drive["profile"]) if "profile" in drive else len(drive)) + 7 * ("press" in roller)
+        )
     total += sum(2 * ("at" in probe) for probe in scene["probes"].values())
     return total + sum(1 + 2 * ("at" in support) for support in scene["supports"])
 

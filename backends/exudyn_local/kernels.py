@@ -9,6 +9,7 @@ from backends.exudyn_local.system import System
 from mdlgen.mechanics.bushing import bushing
 from mdlgen.mechanics.contact import OUT
 from mdlgen.mechanics.curve import curve_excess, middle_and_gap
+from mdlgen.mechanics.driven import clutch, prescribed
 from mdlgen.mechanics.pair import pair_force
 from mdlgen.mechanics.vector import add, back, cross, dot, mat, matmul, nine, rotate, scale, three, vec
 from mdlgen.model.tables import Floats
@@ -59,12 +60,8 @@ def place_body(bodies, body, q, v, t, x, r, u, w):
         for i in range(3):
             x[body, i] += q[k] * bodies[body].way[i]
             u[body, i] += v[k] * bodies[body].way[i]
-    rate = 0.0
-    if bodies[body].spin >= 0:
-        rate = v[bodies[body].spin]
-    elif bodies[body].drive[0] != 0.0:
-        ramp = bodies[body].drive[1]
-        rate = bodies[body].drive[0] * (min(t / ramp, 1.0) if ramp > 0.0 else 1.0)
+    spin = bodies[body].spin
+    rate = v[spin] if spin >= 0 else prescribed(bodies[body], t)
     for i in range(3):
         w[body, i] += rate * bodies[body].axis[i]
 
@@ -172,6 +169,8 @@ def forces(bodies, bushings, points, pairs, loads, gravity, q, v, t, level, x, r
                 f[n + i] += level * bodies[body].mass * gravity[i]
         if bodies[body].slide >= 0:
             _slide(bodies, gravity, body, q, v, f, level)
+        if bodies[body].clutch[0] != 0.0:
+            f[bodies[body].spin] += clutch(bodies[body], v[bodies[body].spin], t)[0]
     for i in range(bushings.size):
         _bush(bodies, bushings[i], points, q, x, r, u, w, f)
     touching = 0
@@ -185,7 +184,7 @@ def forces(bodies, bushings, points, pairs, loads, gravity, q, v, t, level, x, r
 
 @njit(cache=True, error_model="numpy")
 def _element(
-    bodies, bushings, points, pairs, loads, gravity, block_start, element, q, v, x, r, u, w, f, out, level
+    bodies, bushings, points, pairs, loads, gravity, block_start, element, q, v, t, x, r, u, w, f, out, level
 ):
     """Generalised forces of one element, added to f. Returns False where a pair does not touch."""
     blocks = block_start.size - 1
@@ -201,6 +200,12 @@ def _element(
         if bodies[body].slide >= 0:
             if element == 0:
                 _slide(bodies, gravity, body, q, v, f, level)
+                return True
+            element -= 1
+    for body in range(bodies.size - 1):
+        if bodies[body].clutch[0] != 0.0:
+            if element == 0:
+                f[bodies[body].spin] += clutch(bodies[body], v[bodies[body].spin], t)[0]
                 return True
             element -= 1
     _load(bodies, loads[element], q, r, f, level)
@@ -279,6 +284,7 @@ def jacobian(
             element,
             q,
             v,
+            t,
             x,
             r,
             u,
@@ -313,6 +319,7 @@ def jacobian(
                     element,
                     q,
                     v,
+                    t,
                     x,
                     r,
                     u,
@@ -340,6 +347,7 @@ def jacobian(
                 element,
                 q,
                 v,
+                t,
                 x,
                 r,
                 u,
@@ -377,7 +385,11 @@ def ledger(bodies, bushings, points, pairs, loads, gravity, q, v, t, x, r, u, w,
             elastic += 0.5 * p[0] * q[k] * q[k]
             lost += p[1] * v[k] * v[k]
         if bodies[body].spin >= 0:
-            kinetic += 0.5 * bodies[body].press[4] * v[bodies[body].spin] ** 2
+            spun = v[bodies[body].spin]
+            kinetic += 0.5 * bodies[body].press[4] * spun**2
+            torque, _, shaft = clutch(bodies[body], spun, t)
+            lost += torque * (shaft - spun)
+            driven += torque * shaft
     for i in range(bushings.size):
         energy, power = _bush(bodies, bushings[i], points, q, x, r, u, w, f)
         elastic += energy

@@ -142,6 +142,12 @@ def _assemble(exu, model: Model, system: System, pattern: Pattern, work: kernels
     nodes = []
     free = system.free
     q, v = np.zeros(max(1, free)), np.zeros(max(1, free))
+    # a roller with a clutch begins with its shaft
+    starts = {
+        int(system.bodies["spin"][r.body]): float(r.prescribed(0.0)) / MS
+        for r in model.rollers
+        if r.one_way is not None and r.speed is not None
+    }
     for body in range(len(bodies.name)):
         row = system.bodies[body]
         n = row["first"]
@@ -167,7 +173,9 @@ def _assemble(exu, model: Model, system: System, pattern: Pattern, work: kernels
             continue
         for coordinate, mass in ((row["slide"], row["press"][3]), (row["spin"], row["press"][4])):
             if coordinate >= 0:
-                node = mbs.AddNode(Node1D(referenceCoordinates=[0.0]))
+                rate = starts.get(coordinate, 0.0)
+                v[coordinate] = rate
+                node = mbs.AddNode(Node1D(referenceCoordinates=[0.0], initialVelocities=[rate]))
                 mbs.AddObject(Mass1D(mass=mass, nodeNumber=node))
                 nodes.append(node)
     f = work[-1]

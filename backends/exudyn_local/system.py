@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from mdlgen.errors import RefusedError
 from mdlgen.mechanics.curve import FOLLOWS, curve_points, follow
+from mdlgen.mechanics.driven import DRIVEN, drive
 from mdlgen.mechanics.laws import damping_share
 from mdlgen.model.rotations import matrices
 from mdlgen.model.tables import Floats, Ints, Model
@@ -33,7 +34,7 @@ BODY = np.dtype(
         ("axis", "f8", 3),  # of a roller
         ("way", "f8", 3),  # direction of a roller's slide
         ("press", "f8", 5),  # k [N/m], c [N s/m], force at the start [N], sliding mass [kg], axial inertia
-        ("drive", "f8", 2),  # speed [rad/s], ramp [s]
+        *DRIVEN,
         ("size", "f8", 2),  # radius, width of a roller [m]
         ("first", "i8"),  # first of a box's 7 coordinates, -1: not free
         ("slide", "i8"),  # coordinate of a roller's slide, -1: none
@@ -68,7 +69,7 @@ LOAD = np.dtype([("body", "i8"), ("local", "f8", 3), ("force", "f8", 3), ("momen
 
 
 class Elements(NamedTuple):
-    """What the jacobian is a sum of: blocks of bushings between two bodies, pairs, slides, loads."""
+    """What the jacobian is a sum of: blocks of bushings between bodies, pairs, slides, clutches, loads."""
 
     block_start: Ints  # bushings of block i: block_start[i] ... block_start[i + 1] - 1
     dofs: Ints  # coordinates of each element, concatenated
@@ -156,10 +157,10 @@ def _bodies(model: Model, moving: bool) -> tuple[np.ndarray, int]:
             mass = (roller.mass + spring.carrier_mass) * G
             row["press"][:4] = (spring.stiffness * PER_MM, spring.damping * MS * PER_MM, force, mass)
             row["slide"], free = free, free + 1
-        if roller.speed is not None and moving:  # in a static analysis no roller turns
-            row["drive"] = (roller.speed * PER_MS, roller.ramp * MS)
-        elif roller.speed is None and moving:
-            row["spin"], free = free, free + 1
+        if moving:  # in a static analysis no roller turns
+            drive(row, roller, MS, MM)
+            if roller.turns:
+                row["spin"], free = free, free + 1
     return bodies, free
 
 
@@ -232,6 +233,7 @@ def _couplings(
     elements = [of(bushings["a"][b]) + of(bushings["b"][b]) for b in blocks[:-1]]
     elements += [of(a) + of(b) for a, b in zip(pairs["a"], pairs["b"], strict=True)]
     elements += [[int(s)] for s in bodies["slide"] if s >= 0]
+    elements += [[int(s)] for s in bodies["spin"][bodies["clutch"][:, 0] != 0.0]]
     return elements + [of(body) for body in loads["body"]]
 
 

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mdlgen.mechanics.curve import FOLLOWS, curve_points, follow
+from mdlgen.mechanics.driven import DRIVEN, drive
 from mdlgen.mechanics.laws import damping_share
 from mdlgen.model.rotations import matrices
 from mdlgen.model.tables import GROUND, Floats, Ints, Model
@@ -28,7 +29,7 @@ BODY = np.dtype(
         ("axis", "f8", 3),
         ("way", "f8", 3),  # direction of a slide, or normal of a plane
         ("press", "f8", 5),  # k, c, force at the start, sliding mass, axial inertia
-        ("drive", "f8", 2),  # speed, ramp
+        *DRIVEN,
         ("size", "f8", 2),  # radius, width
     ]
 )
@@ -129,9 +130,8 @@ def _bodies(model: Model) -> tuple[np.ndarray, Ints, int]:
             force = spring.preload - spring.stiffness * (spring.start - spring.touch)
             row["press"][:4] = (spring.stiffness, spring.damping, force, roller.mass + spring.carrier_mass)
             row["slide"], border = border, border + 1
-        if roller.speed is not None:
-            row["drive"] = (roller.speed, roller.ramp)
-        else:
+        drive(row, roller)
+        if roller.turns:
             row["spin"], border = border, border + 1
     for plane in model.planes:
         bodies["way"][plane.body] = plane.normal

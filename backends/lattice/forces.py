@@ -9,6 +9,7 @@ from numba import njit
 from mdlgen.mechanics.bushing import bushing_pair
 from mdlgen.mechanics.contact import MOST_POINTS, OUT, POINT
 from mdlgen.mechanics.curve import curve_excess
+from mdlgen.mechanics.driven import clutch, prescribed
 from mdlgen.mechanics.pair import BOX_PLANE, CYLINDER_CYLINDER, pair_force
 from mdlgen.mechanics.vector import (
     add,
@@ -29,13 +30,6 @@ WIDE = OUT + 1 + POINT * MOST_POINTS
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def driven(body, t):
-    """Speed of a driven roller at a time."""
-    speed, ramp = body.drive[0], body.drive[1]
-    return speed * min(t / ramp, 1.0) if ramp > 0.0 else speed
-
-
-@njit(cache=True, error_model="numpy", forceinline=True)
 def place_box(b, h, rate, spin, x, r, xm, rm, um, wm):
     """One free box after h at a velocity and an angular velocity."""
     m = matmul(exp_rotation(scale(h, spin)), mat(r, b))
@@ -51,7 +45,7 @@ def place_box(b, h, rate, spin, x, r, xm, rm, um, wm):
 def place_roller(body, b, h, t, rate, turning, x, xm, um, wm):
     """One roller after h at the rates of its slide and its spin, where it has them; t: that time."""
     if body.spin < 0:
-        turning = driven(body, t) if body.drive[0] != 0.0 else 0.0
+        turning = prescribed(body, t)
     for i in range(3):
         if body.slide >= 0:
             xm[b, i] = x[b, i] + h * rate * body.way[i]
@@ -226,6 +220,16 @@ def pair_forces_again(bodies, pairs, near, close, known, x, r, u, w, f, touched,
             touched[count] = near[at]
             count += 1
     return count, stored, lost
+
+
+@njit(cache=True, error_model="numpy")
+def clutch_torques(bodies, t, ub, f):
+    """Adds the torques of clutches on the rollers that turn at the rates ub, at a time."""
+    for b in range(bodies.size - 1):
+        if bodies[b].clutch[0] != 0.0:
+            torque, _, _ = clutch(bodies[b], ub[bodies[b].spin], t)
+            for i in range(3):
+                f[b, 3 + i] += torque * bodies[b].axis[i]
 
 
 @njit(cache=True, error_model="numpy")

@@ -7,6 +7,7 @@ from numba import njit
 from backends.lattice.dense import lu_solve_transposed
 from backends.lattice.tangent import core, hat_left, hat_right
 from mdlgen.mechanics.contact import OUT, POINT
+from mdlgen.mechanics.driven import clutch
 from mdlgen.mechanics.vector import back, cross, mat, sub, three, vec
 
 
@@ -112,6 +113,16 @@ def gradient(bodies, pairs, h, x, r, count, alone, acting, many, chord):
                     growth[index[j], first + i] += across
                 for l in range(moving):
                     growth[index[l], index[j]] += direction[l, i] * v
+
+
+@njit(cache=True, error_model="numpy")
+def clutches(bodies, h, t, ub, alone, m, acting):
+    """Adds what the impulses of clutches lose as their rollers turn faster."""
+    for b in alone.rollers:
+        spin = bodies[b].spin
+        if spin >= 0:
+            at = 6 * acting + spin
+            alone.growth[at, at] += h * clutch(bodies[b], ub[spin] + alone.z[6 * m + spin], t)[1]
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False)

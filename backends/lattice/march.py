@@ -6,9 +6,9 @@ import math
 
 from numba import njit
 
-from backends.lattice.forces import driven
-from backends.lattice.step import ROUNDS, STEPS, STRAIN, TOUCHING, WORST, carry, midpoint
+from backends.lattice.step import ROUNDS, STEPS, STRAIN, TOUCHING, WORST, carry, midpoint, spun
 from mdlgen.mechanics.curve import overstretched
+from mdlgen.mechanics.driven import clutch, prescribed
 from mdlgen.mechanics.pair import BOX_PLANE
 
 DONE, STOPPED, LEFT, DEEP, STRETCHED = 0, 1, 2, 3, 4
@@ -89,14 +89,21 @@ def _missed(bodies, nodes, u, guess):
 
 
 @njit(cache=True, error_model="numpy")
-def _account(system, mid, ub, t, dt, work):
+def _account(system, mid, ub, vb, t, dt, work):
     """Adds what a step dissipated, what drives and loads put in, and how much that moved either way."""
     bodies = system[0]
     totals, f = mid[7], mid[4]
     lost, driving = totals[0], totals[1]
     for b in range(bodies.size - 1):
-        if bodies[b].spin < 0 and bodies[b].drive[0] != 0.0:
-            rate = driven(bodies[b], t + 0.5 * dt)
+        if bodies[b].clutch[0] != 0.0:
+            spin, before = ub[bodies[b].spin], vb[bodies[b].spin]
+            torque, _, shaft = clutch(bodies[b], spin, t + 0.5 * dt)
+            lost += torque * (shaft - spin)
+            driving += torque * shaft
+            ahead, after = 2.0 * spin - before, spun(bodies[b], spin, before, t, dt)
+            lost += 0.5 * bodies[b].press[4] * (ahead * ahead - after * after) / dt
+        elif bodies[b].corners > 0:
+            rate = prescribed(bodies[b], t + 0.5 * dt)
             axis = bodies[b].axis
             driving -= rate * (f[b, 3] * axis[0] + f[b, 4] * axis[1] + f[b, 5] * axis[2])
         if bodies[b].slide >= 0:
@@ -175,7 +182,7 @@ def run(
             # between the middles of the two steps
             spans[1] = 0.5 * (spans[0] + dt)
             spans[0] = dt
-            _account(system, mid, ub, t, dt, work)
+            _account(system, mid, ub, vb, t, dt, work)
             _watch(pairs, mid, int(counters[TOUCHING]), t, dt, kept)
             carry(system, state, mid, t, dt)
             counters[STEPS] += 1

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from numba import njit
 
-from backends.lattice.forces import driven, joint_forces, near_pairs, pair_forces
+from backends.lattice.forces import joint_forces, near_pairs, pair_forces
+from mdlgen.mechanics.driven import prescribed
 from mdlgen.mechanics.vector import back, mat, rotate
 
 
@@ -63,8 +64,8 @@ def ledger(
         if spin_at >= 0:
             rate = vb[spin_at]
             kinetic += 0.5 * p[4] * rate * rate
-        elif bodies[b].drive[0] != 0.0:
-            rate = driven(bodies[b], t)
+        else:
+            rate = prescribed(bodies[b], t)
         for i in range(3):
             w[b, i] += rate * bodies[b].axis[i]
     stored, _ = joint_forces(joints, points, x, r, u, w, f)

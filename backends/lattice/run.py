@@ -213,6 +213,10 @@ def start(model: Model, system: System) -> tuple:
     own = np.einsum("nji,nj->ni", turn, spin)
     l[:] = np.einsum("nij,nj->ni", turn, bodies.inertia[nodes] * own)
     u[:, :3], u[:, 3:] = v, spin
+    for roller in model.rollers:
+        if roller.one_way is not None and roller.speed is not None:  # it begins with its shaft
+            at = system.bodies["spin"][roller.body]
+            state[5][at] = state[7][at] = roller.prescribed(0.0)
     return state, mid, matrix
 
 

@@ -14,6 +14,7 @@ from numba import njit
 from backends.lattice.band import PAD
 from mdlgen.mechanics.contact import OUT, POINT
 from mdlgen.mechanics.curve import curve_spring
+from mdlgen.mechanics.driven import clutch
 from mdlgen.mechanics.pair import BOX_PLANE
 from mdlgen.mechanics.vector import (
     add,
@@ -268,8 +269,8 @@ def contacts_into(bodies, pairs, h, x, touched, outs, count, chord, planes, a, b
 
 
 @njit(cache=True, error_model="numpy")
-def rollers_into(bodies, h, b, d):
-    """Sets border and corner to the rollers' own: masses, springs and dampers of slides."""
+def rollers_into(bodies, h, t, ub, b, d):
+    """Sets border and corner to the rollers' own: masses, springs and dampers of slides, clutches at t."""
     b[:] = 0.0
     d[:] = 0.0
     for k in range(bodies.size - 1):
@@ -277,7 +278,7 @@ def rollers_into(bodies, h, b, d):
         if bodies[k].slide >= 0:
             d[bodies[k].slide, bodies[k].slide] = p[3] + h * p[1] + h * h * p[0]
         if bodies[k].spin >= 0:
-            d[bodies[k].spin, bodies[k].spin] = p[4]
+            d[bodies[k].spin, bodies[k].spin] = p[4] + h * clutch(bodies[k], ub[bodies[k].spin], t)[1]
 
 
 @njit(cache=True, error_model="numpy")

@@ -19,8 +19,9 @@ from numba import njit
 from backends.lattice.alone import PLANES, unsee
 from backends.lattice.dense import lu
 from backends.lattice.forces import pair_forces, place_box, place_roller
-from backends.lattice.growth import activate, gradient, newton, newton_matrix
+from backends.lattice.growth import activate, clutches, gradient, newton, newton_matrix
 from mdlgen.mechanics.contact import OUT, POINT
+from mdlgen.mechanics.driven import clutch
 from mdlgen.mechanics.pair import BOX_PLANE
 from mdlgen.mechanics.vector import back, mat, rotate
 
@@ -73,8 +74,9 @@ def _take(pairs, nodes, alone, m, known):
 
 
 @njit(cache=True, error_model="numpy")
-def _impulses(bodies, nodes, r, h, alone, m, p):
-    """Forces times h, in box axes and along the rollers' freedoms, into p."""
+def _impulses(bodies, nodes, r, h, t, ub, alone, m, p):
+    """Forces times h, in box axes and along the rollers' freedoms, into p; of clutches at t and the rates
+    ub + z."""
     f = alone.forces
     for i in range(m):
         b = nodes[alone.chosen[i]]
@@ -89,7 +91,8 @@ def _impulses(bodies, nodes, r, h, alone, m, p):
             p[6 * m + slide] = h * (f[b, 0] * way[0] + f[b, 1] * way[1] + f[b, 2] * way[2])
         if spin >= 0:
             axis = bodies[b].axis
-            p[6 * m + spin] = h * (f[b, 3] * axis[0] + f[b, 4] * axis[1] + f[b, 5] * axis[2])
+            about = f[b, 3] * axis[0] + f[b, 4] * axis[1] + f[b, 5] * axis[2]
+            p[6 * m + spin] = h * (about + clutch(bodies[b], ub[spin] + alone.z[6 * m + spin], t)[0])
 
 
 @njit(cache=True, error_model="numpy")
@@ -207,7 +210,7 @@ def settle(system, alone, m, where, h, t, state, mid, near, known, rest, limits)
     _mine(bodies, pairs, near, where, alone)
     _begin(bodies, nodes, h, ub, alone, m, res, resb)
     count = _take(pairs, nodes, alone, m, known)
-    _impulses(bodies, nodes, r, h, alone, m, alone.p0)
+    _impulses(bodies, nodes, r, h, t, ub, alone, m, alone.p0)
     for i in range(many):
         p[i] = used[i] = alone.p0[i]
     merit = _gap(alone, m, many)
@@ -221,6 +224,7 @@ def settle(system, alone, m, where, h, t, state, mid, near, known, rest, limits)
         short = 6 * acting + ub.size
         if not (same and alone.kept[0] == 1):
             gradient(bodies, pairs, h, mid[0], r, count, alone, acting, short, chord)
+            clutches(bodies, h, t, ub, alone, m, acting)
             newton_matrix(alone, acting, short)
             if not lu(alone.jac, alone.swaps, short):
                 return False
@@ -241,7 +245,7 @@ def settle(system, alone, m, where, h, t, state, mid, near, known, rest, limits)
             if done:
                 break
             count = _evaluate(bodies, pairs, nodes, h, t, state, mid, alone, m)
-            _impulses(bodies, nodes, r, h, alone, m, p)
+            _impulses(bodies, nodes, r, h, t, ub, alone, m, p)
             merit = _gap(alone, m, many)
             if merit <= before * (1.0 - 0.1 * part) or merit <= strict * strict or halved == MOST_HALVED:
                 break

@@ -85,6 +85,10 @@ def unverified(model: Model, deck: Deck) -> list[str]:
             bool(deck.loads),
             "Force_Vector_OneBody with forces and torques (seen with torques alone, documented)",
         ),
+        (
+            bool(deck.clutches),
+            "Force_Vector_OneBody with a torque of MAX and WZ, for one-way rollers (seen with other torques)",
+        ),
         (bool(deck.contacts), "Force_Contact (documented, not seen in a deck)"),
         (
             deck.run.static and deck.run.method == "MKEAM",

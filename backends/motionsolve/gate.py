@@ -42,6 +42,7 @@ def _entities(deck: Deck) -> Iterator[Row]:
     yield from deck.splines
     yield from deck.curved
     yield from deck.loads
+    yield from deck.clutches
     yield from deck.contacts
     yield from deck.surfaces
     yield from deck.requests

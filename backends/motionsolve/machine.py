@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from backends.motionsolve.axes import along, cosines
 from backends.motionsolve.bodies import GROUND_ID, add_body, body_id, graphic_id
 from backends.motionsolve.requests import add_request
-from backends.motionsolve.rows import Cylinder, Deck, Motion, Spring
+from backends.motionsolve.rows import Clutch, Cylinder, Deck, Joint, Motion, Spring
 from backends.motionsolve.units import number, per_thousand, thousandfold, triples
-from mdlgen.model.tables import Floats, Model, Press, RollerPart
+from mdlgen.model.tables import Floats, Model, OneWay, Press, RollerPart
+
+_CONVERT = ((0, per_thousand), (1, thousandfold))  # the columns of a profile
 
 
 def add_rollers(deck: Deck, model: Model) -> None:
@@ -23,11 +27,11 @@ def add_rollers(deck: Deck, model: Model) -> None:
         axle = _joint(
             deck, f"j_{roller.name}", f"Axle of {roller.name}", "REVOLUTE", roller, on, place, roller.axis
         )
-        if roller.speed is not None:
+        if roller.one_way is not None:
+            _add_clutch(deck, model, roller, roller.one_way, deck.joints[-1])
+        elif roller.speed is not None:
             name, label = f"mot_{roller.name}", f"Drive of {roller.name}"
-            deck.motions.append(
-                Motion(name, label, len(deck.motions) + 1, ramp(roller.speed, roller.ramp), axle)
-            )
+            deck.motions.append(Motion(name, label, len(deck.motions) + 1, law(roller), axle))
         _add_cylinder(deck, model, roller, place)
         markers = [deck.bodies[roller.body].cm]
         add_request(
@@ -35,10 +39,35 @@ def add_rollers(deck: Deck, model: Model) -> None:
         )
 
 
-def ramp(speed: float, time: float) -> str:
-    """Angular velocity [rad/s] that rises evenly during `time`; from rad/ms and ms."""
-    full = thousandfold(speed)
-    return f"{full}*(1-MAX(0,1-TIME/{per_thousand(time)}))" if time > 0.0 else full
+def law(roller: RollerPart) -> str:
+    """Angular velocity [rad/s] of a driven roller over time, in the form that the text has: a ramp, or the
+    sum of what each piece of a profile adds."""
+    if roller.profile is None:
+        assert roller.speed is not None, "asked only of a driven roller"
+        full = thousandfold(roller.speed)
+        return f"{full}*(1-MAX(0,1-TIME/{per_thousand(roller.ramp)}))" if roller.ramp > 0.0 else full
+    times, speeds = ([convert(v) for v in roller.profile[:, k].tolist()] for k, convert in _CONVERT)
+    parts = [speeds[0]]
+    for (t, w), (t_end, w_end) in pairwise(zip(times, speeds, strict=True)):
+        parts.append(f"({w_end}-({w}))*MAX(0,1-MAX(0,({t_end}-TIME)/({t_end}-{t})))")
+    return "+".join(parts)
+
+
+def _add_clutch(deck: Deck, model: Model, roller: RollerPart, way: OneWay, axle: Joint) -> None:
+    """The torque of a clutch, 2 torque s^2 / (1 + s) of the relative speed s against the free sense."""
+    shaft = f"({law(roller)})" if roller.speed is not None else "0"
+    sense = way.direction
+    s = f"MAX(0,{sense}*({shaft}-WZ({axle.i},{axle.j},{axle.j}))/{thousandfold(way.creep)})"
+    deck.clutches.append(
+        Clutch(
+            name=f"frc_{roller.name}_clutch",
+            label=f"Clutch of {roller.name}",
+            id=len(model.loads.body) + len(deck.clutches) + 1,
+            i=axle.i,
+            j=axle.j,
+            torque=f"{number(2 * sense * way.torque)}*{s}*{s}/(1+{s})",
+        )
+    )
 
 
 def _joint(

@@ -118,6 +118,17 @@ class Load(NamedTuple):
     moment: Triple
 
 
+class Clutch(NamedTuple):
+    """A torque on a roller about the z axis of a marker of what it turns on."""
+
+    name: str
+    label: str
+    id: int
+    i: int
+    j: int
+    torque: str
+
+
 class Box(NamedTuple):
     """A box round a marker."""
 
@@ -204,6 +215,7 @@ class Deck:
     splines: list[Spline] = field(default_factory=list)
     curved: list[CurvedSpring] = field(default_factory=list)
     loads: list[Load] = field(default_factory=list)
+    clutches: list[Clutch] = field(default_factory=list)
     contacts: list[Contact] = field(default_factory=list)
     surfaces: list[Surface] = field(default_factory=list)
     requests: list[Request] = field(default_factory=list)

@@ -25,6 +25,10 @@ def unverified(scene: SceneView) -> list[str]:
             "leave the axes behind, save and load the text again",
         ),
         (any(r.driven for r in scene.rollers), "SetMotion VEL, EXPR (documented; seen with DISP)"),
+        (
+            any(r.corners > 3 for r in scene.rollers),
+            "SetMotion on one line of more than 528 characters, the longest seen (a drive of many corners)",
+        ),
         (any(r.pressed for r in scene.rollers), "CoilSpring and SetCoilSpring (documented; seen as pairs)"),
         (bool(scene.supports), "Bush with zero stiffness in some directions (a form of the documented one)"),
         (

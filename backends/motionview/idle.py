@@ -37,7 +37,7 @@ def idle_values(model: Model, set_contact: bool, kept: Sequence[int]) -> dict[tu
             continue
         found |= {(f"{sheet.name}_zone_{zone.name}", "friction"): why for zone in sheet.zones}
     for roller in model.rollers:
-        if roller.speed is not None and roller.ramp <= 0.0:
+        if roller.speed is not None and roller.profile is None and roller.ramp <= 0.0:
             found[roller.name, "ramp"] = "the text has no ramp"
     if model.run.analysis == "static":
         found |= {("run", member): "the run is static" for member in ("end", "print")}

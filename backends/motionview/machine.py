@@ -23,6 +23,7 @@ def roller_view(model: Model, roller: RollerPart, given: list[Value]) -> RollerV
         guide=_guide(model.bodies.rotation[roller.body]),
         driven=roller.speed is not None,
         ramped=roller.ramp > 0.0,
+        corners=0 if roller.profile is None else len(roller.profile),
         pressed=press is not None,
         press=_components(press.direction if press is not None else np.zeros(3)),
     )

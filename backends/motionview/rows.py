@@ -203,6 +203,7 @@ class RollerView:
     guide: str  # global vector that fixes the x axis of the body
     driven: bool
     ramped: bool
+    corners: int  # of its speed over time; 0: a ramp
     pressed: bool
     press: tuple[str, str, str]
 

@@ -19,6 +19,14 @@ def check(model: Model) -> None:
     refuse_externals(model, "MotionView text of the whole scene")
     check_sheets(model)
     refuse_compressed(model, "MotionView text")
+    for roller in model.rollers:
+        if roller.one_way is not None:
+            raise RefusedError(
+                f"MotionView text: roller {roller.name} has a one_way clutch, a torque by formula, and "
+                "no force statement with a certain meaning is documented; run it locally, write a deck, "
+                "or leave one_way out",
+                ("rollers", roller.name, "one_way"),
+            )
 
 
 def check_sheets(model: Model) -> None:

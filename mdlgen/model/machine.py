@@ -10,12 +10,13 @@ from mdlgen.model.tables import (
     CYLINDER_CYLINDER,
     Contacts,
     Floats,
+    OneWay,
     PlanePart,
     Press,
     RollerPart,
     SheetPart,
 )
-from mdlgen.spec.machine import Roller
+from mdlgen.spec.machine import Drive, Roller
 from mdlgen.spec.scene import Scene
 
 
@@ -46,12 +47,22 @@ def lower_rollers(
                 mass=roller.mass,
                 inertia_axial=axial,
                 inertia_transverse=transverse,
-                speed=roller.drive.speed if roller.drive else None,
+                speed=_speed(roller.drive) if roller.drive else None,
                 ramp=roller.drive.ramp if roller.drive else 0.0,
+                profile=np.array(roller.drive.profile) if roller.drive and roller.drive.profile else None,
+                one_way=OneWay(**roller.one_way.model_dump()) if roller.one_way else None,
                 press=_press(scene, name, sheets, contacts) if roller.press else None,
             )
         )
     return tuple(parts)
+
+
+def _speed(drive: Drive) -> float:
+    """The speed of a drive, of a profile the greatest in size [rad/ms]."""
+    if drive.profile is not None:
+        return max((speed for _, speed in drive.profile), key=abs)
+    assert drive.speed is not None, "the spec has one of the two"
+    return drive.speed
 
 
 def _press(scene: Scene, name: str, sheets: tuple[SheetPart, ...], contacts: Contacts) -> Press:

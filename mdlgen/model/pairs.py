@@ -27,6 +27,7 @@ from mdlgen.model.tables import (
 # The centre may be beyond its bounds by one step before the solver sees it; kept pairs reach this far more.
 SLACK = 1.0  # mm
 _TURN_STEPS = 33
+_STATIONS = 65  # times in a run at which the ways of two drives are compared
 
 
 def find_pairs(
@@ -100,8 +101,11 @@ def _swept(
     time = run.duration
     fall = 0.5 * gravity * time**2
     shift = sheet.velocity * time
-    drives = [_drive(sheet, part, time) for part in touched if isinstance(part, RollerPart) and part.speed]
-    moves = np.array([fall, shift, *(path for path, _ in drives)])
+    driven = [part for part in touched if isinstance(part, RollerPart) and part.speed]
+    corners = [part.corners[:, 0] for part in driven]
+    times = np.unique(np.concatenate([np.linspace(0.0, time, _STATIONS), *corners]).clip(0.0, time))
+    drives = [_drive(sheet, part, times) for part in driven]
+    moves = np.array([fall, shift, *(end for path, _ in drives for end in (path.min(0), path.max(0)))])
     # velocity and fall act together with one drive at a time
     least = np.minimum(moves[:2], 0).sum(0) + np.minimum(moves[2:], 0).min(0, initial=0.0)
     most = np.maximum(moves[:2], 0).sum(0) + np.maximum(moves[2:], 0).max(0, initial=0.0)
@@ -117,16 +121,15 @@ def _swept(
     return sheet.center + around[0] + least, sheet.center + around[1] + most, extent
 
 
-def _drive(sheet: SheetPart, roller: RollerPart, time: float) -> tuple[Floats, Floats]:
-    """Path of a driven roller's surface where it faces the sheet [mm], and its foot on the sheet."""
-    assert roller.speed is not None
+def _drive(sheet: SheetPart, roller: RollerPart, times: Floats) -> tuple[Floats, Floats]:
+    """Path of a driven roller's surface where it faces the sheet, at some times [mm], (t, 3), and its foot on
+    the sheet."""
     normal = sheet.rotation[:, 2]
     height = float((roller.center - sheet.center) @ normal)
     toward = -float(np.copysign(roller.radius, height)) * normal
     toward = toward - roller.axis * (toward @ roller.axis)
-    speed = np.cross(roller.axis * roller.speed, toward)
-    ramp = min(roller.ramp, time)
-    return speed * (time - 0.5 * ramp), roller.center - height * normal
+    way = np.cross(roller.axis, toward)
+    return np.outer(roller.turned(times), way), roller.center - height * normal
 
 
 def _turn(sheet: SheetPart, drives: list[tuple[Floats, Floats]], time: float) -> float:
@@ -140,8 +143,8 @@ def _turn(sheet: SheetPart, drives: list[tuple[Floats, Floats]], time: float) ->
         for other, base in drives[:k]:
             gap = foot - base
             distance = float(np.linalg.norm(gap))
-            across = np.linalg.norm(np.cross(path - other, gap / distance)) if distance > 0 else 0.0
             if distance > 0:
+                across = np.linalg.norm(np.cross(path - other, gap / distance), axis=1).max()
                 most = max(most, float(across) / distance)
     return turn + most
 

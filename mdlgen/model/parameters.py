@@ -169,10 +169,15 @@ def _roller(scene: Scene, name: str, starts: dict[str, tuple[float, float]]) -> 
     ]
     if roller.drive is not None:
         drive = (*base, "drive")
-        rows.append(
-            Parameter(name, "omega", "Speed (rad/s)", roller.drive.speed, "rad/ms", (*drive, "speed"))
-        )
-        rows.append(Parameter(name, "ramp", "Ramp time", roller.drive.ramp, "ms", (*drive, "ramp")))
+        if roller.drive.speed is not None:
+            rows.append(
+                Parameter(name, "omega", "Speed (rad/s)", roller.drive.speed, "rad/ms", (*drive, "speed"))
+            )
+            rows.append(Parameter(name, "ramp", "Ramp time", roller.drive.ramp, "ms", (*drive, "ramp")))
+        for k, (time, speed) in enumerate(roller.drive.profile or ()):
+            at = (*drive, "profile", k)
+            rows.append(Parameter(name, f"t_{k}", f"Time of corner {k}", time, "ms", (*at, 0)))
+            rows.append(Parameter(name, f"w_{k}", f"Speed at corner {k} (rad/s)", speed, "rad/ms", (*at, 1)))
     if roller.press is not None:
         press, way = roller.press, (*base, "press")
         carrier = press.carrier_mass if press.carrier_mass is not None else roller.mass / 1000

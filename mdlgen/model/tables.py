@@ -228,6 +228,15 @@ class Press(Frozen):
 
 
 @dataclass(frozen=True)
+class OneWay:
+    """A clutch that lets a roller turn freely in one sense, against ground or the shaft that drives it."""
+
+    direction: int  # sense about the axis that is free, 1 or -1
+    torque: float  # which it takes at the creep [N mm]
+    creep: float  # [rad/ms]
+
+
+@dataclass(frozen=True)
 class RollerPart(Frozen):
     """A cylinder; `center` is as the user gave it, the body's position includes `press.start`."""
 
@@ -240,9 +249,37 @@ class RollerPart(Frozen):
     mass: float
     inertia_axial: float  # [g mm^2]
     inertia_transverse: float
-    speed: float | None  # prescribed [rad/ms], None: free to turn
+    speed: float | None  # prescribed [rad/ms], of a profile the greatest in size; None: free to turn
     ramp: float  # [ms]
+    profile: Floats | None  # corners as given: time [ms], speed [rad/ms], (n, 2); None: speed and ramp
+    one_way: OneWay | None  # with a drive: the speed is that of the shaft, which the roller may overrun
     press: Press | None
+
+    @property
+    def turns(self) -> bool:
+        """Whether its spin is unknown: a free one, or one with a clutch."""
+        return self.speed is None or self.one_way is not None
+
+    @property
+    def corners(self) -> Floats:
+        """Corners of the prescribed speed, linear between and constant beyond, (n, 2); (0, 2) without one."""
+        if self.profile is not None:
+            return self.profile
+        if self.speed is None:
+            return np.zeros((0, 2))
+        return np.array([[0.0, 0.0], [self.ramp, self.speed]][self.ramp <= 0.0 :])
+
+    def prescribed(self, time: Floats | float) -> Floats:
+        """Speed [rad/ms] at times [ms] of a driven roller."""
+        corners = self.corners
+        return np.asarray(np.interp(time, corners[:, 0], corners[:, 1]))
+
+    def turned(self, time: Floats) -> Floats:
+        """Angle [rad] by which a driven roller has turned at increasing times [ms] from 0 on."""
+        grid = np.unique(np.concatenate([[0.0], time, self.corners[:, 0]]))
+        speed = self.prescribed(grid)
+        angle = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(grid))])
+        return angle[np.searchsorted(grid, time)]
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ import numpy as np
 
 from mdlgen.model.tables import Floats, RollerPart
 from mdlgen.results.compare import travel
+from mdlgen.results.events import events
 from mdlgen.results.result import Result
 from mdlgen.version import version
 
@@ -44,7 +45,7 @@ def summary(result: Result) -> dict[str, Any]:
             "driven": energy.driven,
             "balance_error": energy.balance_error,
         },
-        "events": [],
+        "events": events(result),
         "sheets": {s.name: _sheet(result, k) for k, s in enumerate(model.sheets)},
         "rollers": {r.name: _roller(result, r) for r in model.rollers},
         "probes": {p.name: _probe(result, k) for k, p in enumerate(model.probes)},

@@ -39,6 +39,8 @@ _ALTERNATIVES = (
     {"E_cd", "curve_cd"},
     {"points", "file"},
     {"turn", "rotation"},
+    {"speed", "profile"},
+    {"ramp", "profile"},
     {"at", "edge"},
     {"force", "moment", "stress"},
 )

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field, model_validator
 
 from mdlgen.spec.fields import (
     Direction,
@@ -16,17 +16,67 @@ from mdlgen.spec.fields import (
     Strict,
     TimeOrZero,
     default,
+    fail,
     quantity,
 )
 
+# A solver keeps them beside each body, and a text writes them into one expression.
+MOST_CORNERS = 16
+
+
+def _corner(value: Any) -> Any:
+    if not isinstance(value, (list, tuple)) or len(value) != 2:
+        raise fail(f"expected [time, speed] like ['5 ms', '180 rad/s'], got {value!r}"[:200])
+    return tuple(value)
+
+
+AngularSpeed = Annotated[float, quantity("rad/s")]
+Corner = Annotated[tuple[TimeOrZero, AngularSpeed], BeforeValidator(_corner)]
+
 
 class Drive(Strict):
-    """Prescribed speed about the roller's axis, reached by a linear ramp."""
+    """Prescribed speed about the roller's axis: reached by a linear ramp, or a profile in time."""
 
-    speed: Annotated[float, quantity("rad/s")] = Field(
-        description="angular speed about the axis (right-hand rule)"
+    speed: AngularSpeed | None = Field(
+        default=None, description="angular speed about the axis (right-hand rule)"
     )
     ramp: TimeOrZero = Field(default=default("0 ms"), description="time from 0 to the full speed, linear")
+    profile: tuple[Corner, ...] | None = Field(
+        default=None,
+        strict=False,
+        description="in place of speed and ramp: [time, speed] of each corner, times increasing; linear "
+        f"between corners, constant before the first and after the last; 2 to {MOST_CORNERS}",
+    )
+
+    @model_validator(mode="after")
+    def _one_law(self) -> Drive:
+        if (self.speed is None) == (self.profile is None):
+            raise fail("give exactly one of speed and profile")
+        if self.profile is None:
+            return self
+        if "ramp" in self.model_fields_set:
+            raise fail("ramp goes with speed; a profile has its own times")
+        if not 2 <= len(self.profile) <= MOST_CORNERS:
+            raise fail(f"profile: {len(self.profile)} corners; allowed 2 to {MOST_CORNERS}")
+        for k, ((before, _), (time, _)) in enumerate(zip(self.profile, self.profile[1:], strict=False), 1):
+            if not time > before:
+                raise fail(f"profile.{k}: the time {time:g} ms is not above the one before, {before:g} ms")
+        return self
+
+
+class OneWay(Strict):
+    """A clutch that lets the roller turn freely in one sense; against ground, or against its drive."""
+
+    direction: Literal[1, -1] = Field(
+        description="sense about the axis (right-hand rule) that is free, 1 or -1; of a driven roller the "
+        "one in which it may turn faster than its drive"
+    )
+    torque: Annotated[float, quantity("N*mm", 0.0, open_low=True)] = Field(
+        description="that the clutch takes at the creep; more in proportion beyond"
+    )
+    creep: Annotated[float, quantity("rad/s", 0.0, open_low=True)] = Field(
+        default=default("0.1 rad/s"), description="speed against the free sense at which it takes the torque"
+    )
 
 
 class Press(Strict):
@@ -58,6 +108,9 @@ class Roller(Strict):
     mass: Mass = Field(description="mass; the inertia is that of a solid cylinder")
     drive: Drive | None = Field(
         default=None, description="prescribed rotation; without it the roller turns freely"
+    )
+    one_way: OneWay | None = Field(
+        default=None, description="a one-way clutch between the roller and its drive, or ground without one"
     )
     press: Press | None = Field(default=None, description="slide and spring; without it the axis is fixed")
 

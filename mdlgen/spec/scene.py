@@ -57,6 +57,12 @@ class Scene(Strict):
             items = getattr(self, kind)
             for key, item in items.items() if isinstance(items, dict) else enumerate(items):
                 self._on_sheet(item, (kind, key))
+        for name, roller in self.rollers.items():
+            if roller.one_way is not None and self.run.analysis == "static":
+                raise fail(
+                    f"roller {name}: one_way acts by speed, and a static analysis has none; leave it out",
+                    ("rollers", name, "one_way"),
+                )
         self.contact_pairs()
         return self
 

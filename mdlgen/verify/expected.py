@@ -272,23 +272,28 @@ def stations(model: Model) -> Times:
     found = {}
     for roller in model.rollers:
         if roller.speed is not None:
-            ramp = roller.ramp * SECOND
-            found[f"mot_{roller.name}"] = (
-                tuple(s * ramp for s in RAMP_STATIONS) if ramp > 0.0 else (*_STATIONS_WITHOUT, 0.0, 0.0, 0.0)
-            )
-    return found
+            ramp, name = roller.ramp * SECOND, f"mot_{roller.name}"
+            if roller.profile is not None:
+                found[name] = _profile_stations(roller.profile[:, 0] * SECOND)
+            else:
+                found[name] = tuple(s * ramp for s in RAMP_STATIONS) if ramp > 0.0 else _STATIONS_WITHOUT
+    most = max(map(len, found.values()), default=0)  # a table has as many columns for all
+    return {name: (*times, *[times[-1]] * (most - len(times))) for name, times in found.items()}
+
+
+def _profile_stations(corners: Floats) -> tuple[float, ...]:
+    """Every corner, the middle of every piece, and times before and after all."""
+    middles = 0.5 * (corners[1:] + corners[:-1])
+    return tuple(np.unique([0.0, 0.5 * corners[0], *corners, *middles, 2.0 * corners[-1] or 1.0]).tolist())
 
 
 def _motions(model: Model, times: Times) -> Table:
-    driven = [(r, r.speed / SECOND) for r in model.rollers if r.speed is not None]
-    laws = [
-        [speed * (min(1.0, t / (r.ramp * SECOND)) if r.ramp > 0.0 else 1.0) for t in times[f"mot_{r.name}"]]
-        for r, speed in driven
-    ]
-    speeds = np.array(laws).reshape(len(driven), -1) if driven else np.zeros((0, len(RAMP_STATIONS)))
-    scale = np.array([[abs(speed)] for _, speed in driven]).reshape(-1, 1)
-    words = [(f"j_{r.name}", "ROT", "VEL") for r, _ in driven]
-    return table([f"mot_{r.name}" for r, _ in driven], {"speed": (speeds, scale)}, words)
+    driven = [r for r in model.rollers if r.speed is not None]
+    laws = [r.prescribed(np.array(times[f"mot_{r.name}"]) / SECOND) / SECOND for r in driven]
+    speeds = np.array(laws).reshape(len(driven), -1) if driven else np.zeros((0, 0))
+    scale = np.array([[np.abs(r.corners[:, 1]).max() / SECOND] for r in driven]).reshape(-1, 1)
+    words = [(f"j_{r.name}", "ROT", "VEL") for r in driven]
+    return table([f"mot_{r.name}" for r in driven], {"speed": (speeds, scale)}, words)
 
 
 def _velocities(model: Model) -> Table:

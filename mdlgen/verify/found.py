@@ -55,7 +55,9 @@ class Found:
             "boxes": _table(boxes, _box, 15),
             "cylinders": _table(cylinders, _cylinder, 9),
             "joints": _table(values.get("joints", {}), _joint, 6),
-            "motions": _table(values.get("motions", {}), self._motion, 6),
+            "motions": _table(
+                values.get("motions", {}), self._motion, max(map(len, self.stations.values()), default=0)
+            ),
             "velocities": _table(values.get("velocities", {}), lambda n, r: (list(r), ()), 6),
             "markers": _table(
                 {n: r for n, r in values.get("markers", {}).items() if "." not in n}, _marker, 12
@@ -67,7 +69,9 @@ class Found:
 
     def _motion(self, name: str, record: Mapping[str, Any]) -> Row:
         words = (record["joint"] or "", record["freedom"] or "", record["quantity"] or "")
-        speeds = [self._law(record, t) for t in self.stations.get(name, (0.0,) * 6)]
+        # of one that nobody knows any time will do
+        times = self.stations.get(name, next(iter(self.stations.values()), ()))
+        speeds = [self._law(record, t) for t in times]
         return speeds, words
 
     @staticmethod

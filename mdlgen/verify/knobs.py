@@ -52,6 +52,8 @@ def knobs(scene: Scene, model: Model) -> Iterator[Knob]:
     sheets = {s.name for s in model.sheets}
     for p in model.parameters:
         value = p.value * FAR.get(p.unit, STEP) if p.value else FROM_ZERO.get(p.unit, 0.5)
+        if p.path is not None and p.path[-1:] == (0,) and "profile" in p.path:
+            value = _later(scene, p)
         where = f"ds_{p.data_set}.real_{p.member}"
         path = _path(p, sheets)
         if path is not None:
@@ -71,6 +73,16 @@ def knobs(scene: Scene, model: Model) -> Iterator[Knob]:
     for item in model.supports:
         stiffer = SUPPORT_FACTOR * STEP
         yield Knob(f"ds_{item.name}.real_factor", stiffer, _stiffer(model, item.name))
+
+
+def _later(scene: Scene, time: Parameter) -> float:
+    """A time of a corner of a drive, turned to one before the next corner [ms]."""
+    assert time.path is not None
+    _, name, _, _, k, _ = time.path
+    drive = scene.rollers[str(name)].drive
+    assert drive is not None and drive.profile is not None and isinstance(k, int)
+    after = [corner for corner, _ in drive.profile[k + 1 :]]
+    return time.value + 0.25 * (after[0] - time.value) if after else (time.value + FROM_ZERO["ms"]) * STEP
 
 
 def pinned(scene: Scene) -> Scene:

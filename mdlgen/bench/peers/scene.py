@@ -21,6 +21,9 @@ def check(model: Model, peer: str) -> None:
         "has a sheet that moves at the start": bool(model.bodies.velocity.any() or model.bodies.spin.any()),
         "has loads or supports": bool(len(model.loads.body) or model.supports or model.tension),
         "has external parts": bool(model.externals),
+        "has drives with a profile, or one-way rollers": any(
+            r.profile is not None or r.one_way is not None for r in model.rollers
+        ),
         "is static": model.run.analysis != "transient",
         "has rollers that are not along y": any(abs(r.axis[1]) != 1.0 for r in model.rollers),
         "has rollers that are not pressed along z": any(

@@ -1,0 +1,63 @@
+"""The speed of a driven roller over time, and a clutch that lets a roller turn freely in one sense.
+
+A body record has `corners`, how many its law has; `drive`, time and speed of each in turn; `clutch`, the
+sense that is free (1 or -1 about the axis, 0: there is none), a torque, and the speed at which it acts.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from mdlgen.model.tables import RollerPart
+from mdlgen.spec.machine import MOST_CORNERS
+
+DRIVEN = [("corners", "i8"), ("drive", "f8", 2 * MOST_CORNERS), ("clutch", "f8", 3)]
+
+
+def drive(row: np.void, roller: RollerPart, time: float = 1.0, torque: float = 1.0) -> None:
+    """Fills the fields of DRIVEN of a body record for a roller; `time` is a millisecond in the solver's
+    units, `torque` a newton millimetre."""
+    corners = roller.corners * (time, 1.0 / time)
+    row["corners"] = len(corners)
+    row["drive"][: corners.size] = corners.ravel()
+    if roller.one_way is not None:
+        way = roller.one_way
+        row["clutch"] = (way.direction, way.torque * torque, way.creep / time)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def prescribed(body, t):
+    """Speed of a driven roller, or of the shaft of a clutch: linear between corners, constant beyond them, 0
+    without any."""
+    last = 2 * body.corners - 1
+    if last < 0:
+        return 0.0
+    if t <= body.drive[0]:
+        return body.drive[1]
+    for i in range(2, last, 2):
+        if t < body.drive[i]:
+            before = body.drive[i - 1]
+            share = (t - body.drive[i - 2]) / (body.drive[i] - body.drive[i - 2])
+            return before + share * (body.drive[i + 1] - before)
+    return body.drive[last]
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def clutch(body, spin, t):
+    """What a clutch does at a spin about the axis: (torque on the roller, what it loses as the spin grows,
+    the shaft's speed).
+
+    With b the speed against the free sense, relative to the shaft, and s = b / creep, the torque towards
+    the free sense is 2 torque s^2 / (1 + s): nothing where b <= 0, `torque` at b = creep, and in proportion
+    beyond. It has a continuous slope, and its power relative to the shaft is never positive.
+    """
+    sense, torque, creep = body.clutch[0], body.clutch[1], body.clutch[2]
+    if sense == 0.0:
+        return 0.0, 0.0, 0.0
+    shaft = prescribed(body, t)
+    s = sense * (shaft - spin) / creep
+    if s <= 0.0:
+        return 0.0, 0.0, shaft
+    more = 1.0 + s
+    return sense * 2.0 * torque * s * s / more, 2.0 * torque / creep * s * (s + 2.0) / (more * more), shaft

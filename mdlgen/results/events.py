@@ -1,0 +1,240 @@
+"""What happens to sheets at rollers: entering and leaving, slip, gaps, jams, double feeds.
+
+All of it is read from the stored states, so times are those of stored states (`run.print_step`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mdlgen.model.tables import BOX_CYLINDER, Floats, Ints, Model, RollerPart
+from mdlgen.results.foot import Foot, feet
+
+if TYPE_CHECKING:
+    from mdlgen.results.result import Result
+
+# A force below this part of a contact's greatest is a graze, as in the solvers' account of nips.
+GRAZE = 0.05
+# A sheet that bounces off for a shorter time has not left [ms], and one that touches for a shorter time
+# only grazes.
+SHORT = 1.0
+# A sheet that is slower than this part of the surface of a driven nip, for longer than this, is jammed.
+JAM_PART, JAM_TIME = 0.1, 5.0
+PER_SECOND = 1000.0
+
+
+@dataclass(frozen=True)
+class Stay:
+    """A sheet at a roller, from one stored time to another."""
+
+    sheet: int
+    roller: RollerPart
+    first: int  # stored states
+    last: int
+    leaves: bool  # before the end of the run
+    at: Ints  # the stored states at which it touches
+    foot: Foot  # at these
+
+
+def events(result: Result) -> list[dict[str, Any]]:
+    """Every event as an object with `time_ms`, `kind`, `sheet`, `roller` and numbers, by time.
+
+    Kinds: `enter` and `leave`; `slip`, one for each stay of a sheet at a roller; `gap`, where a sheet enters
+    a roller that another one was at before; `jam`; `double_feed`. A sheet that touches at the start enters
+    at 0. README.md says what the numbers are.
+    """
+    if len(result.time) < 2:
+        return []
+    stays = _stays(result)
+    found = [event for stay in stays for event in _stay_events(result, stay)]
+    found += _gaps(result, stays)
+    found += _double_feeds(result, stays)
+    order = {"leave": 0, "enter": 1}
+    return sorted(found, key=lambda e: (e["time_ms"], order.get(e["kind"], 2), e["roller"], e["sheet"]))
+
+
+def _stays(result: Result) -> list[Stay]:
+    model, time = result.model, result.time
+    sheets = {sheet.name: k for k, sheet in enumerate(model.sheets)}
+    found = []
+    for row in np.flatnonzero(model.contacts.kind == BOX_CYLINDER).tolist():
+        force = result.contact_force[:, row]
+        touching = force > GRAZE * force.max()
+        sheet, roller = sheets[model.contacts.part_a[row]], model.roller(model.contacts.part_b[row])
+        for first, last in intervals(time, touching, SHORT):
+            at = np.flatnonzero(touching[first : last + 1]) + first
+            foot = feet(result, row, roller, at)
+            found.append(Stay(sheet, roller, first, last, last + 1 < len(time), at, foot))
+    return found
+
+
+def intervals(time: Floats, holds: np.ndarray, short: float) -> list[tuple[int, int]]:
+    """First and last state of each time in which something holds, but for breaks shorter than `short` and
+    what then lasts less than that, unless it is cut off by the start or the end."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], holds, [False]]).astype(int)))
+    runs = [(int(a), int(b) - 1) for a, b in edges.reshape(-1, 2)]
+    joined: list[tuple[int, int]] = []
+    for first, last in runs:
+        if joined and time[first] - time[joined[-1][1]] <= short:
+            joined[-1] = (joined[-1][0], last)
+        else:
+            joined.append((first, last))
+    end = len(time) - 1
+    step = float(time[-1] - time[0]) / end  # it holds from some time before the first to some after the last
+    return [(a, b) for a, b in joined if time[b] - time[a] + step >= short or a == 0 or b == end]
+
+
+def _event(result: Result, kind: str, at: int, stay: Stay, **numbers: Any) -> dict[str, Any]:
+    name = result.model.sheets[stay.sheet].name
+    told = {"time_ms": float(result.time[at]), "kind": kind, "sheet": name, "roller": stay.roller.name}
+    return told | numbers
+
+
+def _stay_events(result: Result, stay: Stay) -> list[dict[str, Any]]:
+    """Entering, leaving, slip, and jams."""
+
+    def speed(at: int) -> float:
+        boxes = _boxes(result.model, stay.sheet)
+        return float(np.linalg.norm(result.velocity[at, boxes].mean(axis=0))) * PER_SECOND
+
+    found = [_event(result, "enter", stay.first, stay, speed_mm_per_s=speed(stay.first))]
+    if stay.leaves:
+        found.append(_event(result, "leave", stay.last + 1, stay, speed_mm_per_s=speed(stay.last + 1)))
+    foot = stay.foot
+    known = foot.share > 0.0
+    if not known.any():
+        return found
+    slip, surface = np.linalg.norm(foot.sheet - foot.roller, axis=1)[known], foot.roller[known]
+    worst = int(np.argmax(slip))
+    numbers: dict[str, Any] = {
+        "mean_mm_per_s": float(slip.mean()) * PER_SECOND,
+        "max_mm_per_s": float(slip[worst]) * PER_SECOND,
+        "contact_ms": float(result.time[stay.last] - result.time[stay.first]),
+    }
+    if stay.roller.speed:
+        fast = float(np.linalg.norm(surface, axis=1).mean())
+        numbers["part_of_surface_speed"] = float(slip.mean()) / fast if fast > 0.0 else None
+    found.append(_event(result, "slip", int(stay.at[known][worst]), stay, **numbers))
+    return found + _jams(result, stay)
+
+
+def _jams(result: Result, stay: Stay) -> list[dict[str, Any]]:
+    """Where a driven roller presses a sheet on another one and the sheet does not follow."""
+    roller, foot = stay.roller, stay.foot
+    if not roller.speed:
+        return []
+    surface = np.linalg.norm(foot.roller, axis=1)
+    fastest = abs(roller.speed) * roller.radius
+    squared = np.maximum(surface, JAM_PART * fastest) ** 2
+    along = np.einsum("tk,tk->t", foot.sheet, foot.roller) / squared
+    slow = (surface > JAM_PART * fastest) & (along < JAM_PART) & (foot.share > 0.0)
+    slow &= _opposed(result, stay)
+    held = np.zeros(len(result.time), bool)
+    held[stay.at[slow]] = True
+    part = np.zeros(len(result.time))
+    part[stay.at] = along
+    found = []
+    for first, last in intervals(result.time, held, SHORT):
+        lasts = float(result.time[last] - result.time[first])
+        if lasts > JAM_TIME:
+            inside = held[first : last + 1]
+            numbers = {
+                "duration_ms": lasts,
+                "part_of_surface_speed": float(part[first : last + 1][inside].mean()),
+            }
+            found.append(_event(result, "jam", first, stay, **numbers))
+    return found
+
+
+def _opposed(result: Result, stay: Stay) -> np.ndarray:
+    """Whether the sheet also touches a roller that faces this one, at the states of a stay."""
+    held = np.zeros(len(stay.at), bool)
+    for other in result.model.rollers:
+        if other is not stay.roller and _faces(stay.roller, other):
+            held |= _force(result, stay.sheet, other.name)[stay.at] > 0.0
+    return held
+
+
+def _faces(roller: RollerPart, other: RollerPart) -> bool:
+    """Whether two rollers are parallel, over each other, and clear each other by less than a radius."""
+    away = other.center - roller.center
+    along = abs(float(away @ roller.axis))
+    across = float(np.linalg.norm(away - roller.axis * (away @ roller.axis)))
+    parallel = abs(float(roller.axis @ other.axis)) > 1.0 - 1e-9
+    near = across < roller.radius + other.radius + max(roller.radius, other.radius)
+    return parallel and near and along < 0.5 * (roller.width + other.width)
+
+
+def _force(result: Result, sheet: int, roller: str) -> Floats:
+    """Normal force of a sheet on a roller [N], (t,)."""
+    model, name = result.model, result.model.sheets[sheet].name
+    sides = zip(model.contacts.part_a, model.contacts.part_b, strict=True)
+    rows = [k for k, pair in enumerate(sides) if pair == (name, roller)]
+    return result.contact_force[:, rows].sum(axis=1)
+
+
+def _gaps(result: Result, stays: list[Stay]) -> list[dict[str, Any]]:
+    """The distance along the way from the end of the sheet that went before to the start of the next."""
+    found = []
+    for roller in result.model.rollers:
+        here = sorted((s for s in stays if s.roller is roller), key=lambda s: s.first)
+        for before, stay in pairwise(here):
+            if before.sheet == stay.sheet or stay.first == 0:
+                continue
+            boxes = _boxes(result.model, stay.sheet)
+            rate = result.velocity[stay.first, boxes].mean(axis=0)
+            fast = float(np.linalg.norm(rate))
+            if fast == 0.0:
+                continue
+            ahead = _reach(result, before.sheet, stay.first, rate / fast)
+            behind = _reach(result, stay.sheet, stay.first, rate / fast)
+            numbers: dict[str, Any] = {
+                "before": result.model.sheets[before.sheet].name,
+                "gap_mm": ahead[0] - behind[1],
+                "gap_ms": None,
+            }
+            if before.leaves and before.last < stay.first:
+                numbers["gap_ms"] = float(result.time[stay.first] - result.time[before.last + 1])
+            found.append(_event(result, "gap", stay.first, stay, **numbers))
+    return found
+
+
+def _reach(result: Result, sheet: int, at: int, way: Floats) -> tuple[float, float]:
+    """From where to where a sheet reaches along a direction [mm]."""
+    from scipy.spatial.transform import Rotation
+
+    boxes = _boxes(result.model, sheet)
+    turn = Rotation.from_quat(np.roll(result.rotation[at, boxes], -1, axis=1)).as_matrix()
+    half = (np.abs(np.einsum("nij,i->nj", turn, way)) * result.model.bodies.half[boxes]).sum(axis=1)
+    center = result.position[at, boxes] @ way
+    return float((center - half).min()), float((center + half).max())
+
+
+def _double_feeds(result: Result, stays: list[Stay]) -> list[dict[str, Any]]:
+    """Two sheets at one roller, or at two that face each other, at once and at one place along them."""
+    found: list[dict[str, Any]] = []
+    for k, one in enumerate(stays):
+        for other in stays[k + 1 :]:
+            if one.sheet == other.sheet:
+                continue
+            if one.roller is not other.roller and not _faces(one.roller, other.roller):
+                continue
+            at, mine, theirs = np.intersect1d(one.at, other.at, return_indices=True)
+            low = np.maximum(one.foot.low[mine], other.foot.low[theirs])
+            high = np.minimum(one.foot.high[mine], other.foot.high[theirs])
+            both = np.zeros(len(result.time), bool)
+            both[at[high > low]] = True
+            for first, last in intervals(result.time, both, SHORT):
+                name = result.model.sheets[other.sheet].name
+                lasts = float(result.time[last] - result.time[first])
+                found.append(_event(result, "double_feed", first, one, other=name, duration_ms=lasts))
+    return found
+
+
+def _boxes(model: Model, sheet: int) -> slice:
+    part = model.sheets[sheet]
+    return slice(part.first, part.first + part.count)
