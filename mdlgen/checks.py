@@ -10,6 +10,7 @@ import numpy as np
 from mdlgen.model import press
 from mdlgen.model.tables import (
     BOX_CYLINDER,
+    BOX_GUIDE,
     BOX_PLANE,
     EXTERNAL,
     SUPPORT,
@@ -183,19 +184,20 @@ def _idle_drive(model: Model) -> Iterator[Lint]:
 
 def _untouched(model: Model) -> Iterator[Lint]:
     parts = {*model.contacts.part_a, *model.contacts.part_b}
-    if not model.rollers and not model.planes and not model.externals:
+    if not (model.rollers or model.planes or model.guides or model.externals):
         return
     for sheet in model.sheets:
         if sheet.name not in parts:
             yield Lint(
                 "W109",
                 f"sheets.{sheet.name}",
-                "the sheet has no contact with any roller or plane of the scene",
+                "the sheet has no contact with any roller, plane or guide of the scene",
                 f"add to contacts like {{between: [{sheet.name}, ...], stiffness: 300 N/mm^1.5}}",
             )
     machine = (
         *(("rollers", r) for r in model.rollers),
         *(("planes", p) for p in model.planes),
+        *(("guides", g) for g in model.guides),
         *(("parts", e) for e in model.externals),
     )
     for kind, part in machine:
@@ -212,7 +214,7 @@ def _free_static(model: Model) -> Iterator[Lint]:
     if model.run.analysis != "static":
         return
     sides = zip(model.contacts.part_a, model.contacts.kind, strict=True)
-    unknown = {sheet for sheet, kind in sides if kind == EXTERNAL}  # what such a part holds is not known
+    unknown = {sheet for sheet, kind in sides if kind in (EXTERNAL, BOX_GUIDE)}  # what such a part holds is not known
     for index, sheet in enumerate(model.sheets):
         free = 6 - _held(model, index, sheet)
         if sheet.clamp is None and free > 0 and sheet.name not in unknown:
