@@ -153,9 +153,10 @@ def near_pairs(bodies, pairs, x, r, u, w, margin, ahead, near):
         elif pairs[p].kind == BOX_GUIDE:
             reached = size + margin + ahead * (math.sqrt(dot(rate, rate)) + math.sqrt(dot(spin, spin)) * size)
             at, plate = back(mat(r, b), scale(-1.0, gap)), bodies[b].half
-            if abs(at[2]) > plate[1] + reached or abs(inward(at, bodies[b].arc[0])) > 2.0 * plate[2] + reached:
+            radius = bodies[b].arc[0]
+            if abs(at[2]) > plate[1] + reached or abs(inward(at, radius)) > 2.0 * plate[2] + reached:
                 continue
-            if bodies[b].arc[0] == 0.0 and abs(at[0]) > plate[0] + reached:
+            if radius == 0.0 and abs(at[0]) > plate[0] + reached:
                 continue
         else:
             reached = margin + ahead * (math.sqrt(dot(rate, rate)) + math.sqrt(dot(spin, spin)) * size)

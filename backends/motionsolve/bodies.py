@@ -1,5 +1,5 @@
-"""Rows of the bodies: ground, boxes, rollers, planes and guides, each with its two markers, its graphic and, where
-it is held, its joint.
+"""Rows of the bodies: ground, boxes, rollers, planes and guides, each with its two markers, its graphics and,
+where it is held, its joint.
 
 Ids follow the Model's numbers: body k is Body_Rigid k + 2, behind ground, and has Post_Graphic k + 1.
 """

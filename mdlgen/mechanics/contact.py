@@ -34,7 +34,7 @@ _GAUSS = 1.0 / math.sqrt(3.0)
 
 @njit(cache=True, error_model="numpy")
 def push(out, point, normal, spring, depth, energy, xa, va, wa, xb, vb, wb, law):
-    """Adds the force of one contact point to `out`; `normal` points to the first body, `spring` is its elastic force.
+    """Adds the force of one contact point; `normal` points to the first body, `spring` is its elastic force.
 
     law: (beta, mu_static, mu_dynamic, stiction velocity, friction velocity, smoothing velocity).
     """
@@ -72,7 +72,29 @@ def push(out, point, normal, spring, depth, energy, xa, va, wa, xb, vb, wb, law)
 
 @njit(cache=True, error_model="numpy")
 def _face(
-    out, p, r, q, sign, free, half, l0, al, to, angle, xa, ra, va, wa, xb, vb, wb, radius, width, k, shared, law
+    out,
+    p,
+    r,
+    q,
+    sign,
+    free,
+    half,
+    l0,
+    al,
+    to,
+    angle,
+    xa,
+    ra,
+    va,
+    wa,
+    xb,
+    vb,
+    wb,
+    radius,
+    width,
+    k,
+    shared,
+    law,
 ):
     """One face of a box (normal axis q, in-plane axes p, r) against a cylinder; l0, al: its centre and axis
     in box axes; free: edges p_min, p_max, r_min, r_max of the face without a neighbour, as a bit mask; to,
@@ -93,9 +115,7 @@ def _face(
     steep_low, steep_high, basis = -1e30, 1e30, width
     if angle < WHOLE:
         # directions from the axis to points of the face, against that to its foot; 1.5 rad is far from it
-        middle = math.atan2(
-            to[r] * up - to[p] * ur, lean * (to[p] * up + to[r] * ur) - na * sign * to[q]
-        )
+        middle = math.atan2(to[r] * up - to[p] * ur, lean * (to[p] * up + to[r] * ur) - na * sign * to[q])
         low_angle, high_angle = max(middle - angle, -1.5), min(middle + angle, 1.5)
         if high_angle <= low_angle:
             return
@@ -213,8 +233,8 @@ def box_cylinder(out, xa, ra, va, wa, half, exposed, xb, axis, vb, wb, radius, w
 def box_sector(
     out, xa, ra, va, wa, half, exposed, xb, axis, middle, angle, vb, wb, radius, width, k, shared, law
 ):
-    """As box_cylinder for a part of the round: within `angle` [rad] either way of the direction `middle`, which
-    is square to the axis; at most a quarter turn, or WHOLE.
+    """As box_cylinder for a part of the round: within `angle` [rad] either way of the direction `middle`,
+    which is square to the axis; at most a quarter turn, or WHOLE.
 
     Of a part, boxes share k by what of each the part covers, so that a box over it has k z^1.5.
     """

@@ -1,14 +1,14 @@
 """Contact of a box with a guide: a fixed plate, straight or bent to an arc, touched on one side or on both.
 
-The axes of a guide: z lies across the paper, along its width. Of a straight guide x goes along it and y is its
-normal, and the origin is its middle; of an arc the origin lies on its axis, angles are counted from x to y. A
-box is on the side that its centre is on, where both may be touched.
+The axes of a guide: z lies across the paper, along its width. Of a straight guide x goes along it and y is
+its normal, and the origin is its middle; of an arc the origin lies on its axis, and angles are counted from x
+to y. Where both sides may be touched, a box is on the side that its centre is on.
 
 A flat or hollow face meets the corners of that part of the box's face that lies over the guide. They share k,
 so that a box over a straight guide gives k z^1.5, and one whose corners are all z deep in a hollow does, too:
-no point of a flat face is deeper in a hollow than the deepest corner. A round face is met as a roller that does
-not turn (`box_sector`). With `share: width` k goes with the part of the box's face, or of its width, that the guide
-covers: where a sheet passes from one guide to the next, both together count as one.
+no point of a flat face is deeper in a hollow than the deepest corner. A round face is met as a roller that
+does not turn (`box_sector`). With `share: width` k goes with the part of the box's face, or of its width,
+that the guide covers: where a sheet passes from one guide to the next, both together count as one.
 """
 
 from __future__ import annotations
@@ -60,9 +60,9 @@ def _area(points, count):
 def box_guide(out, xa, ra, va, wa, half, exposed, xb, rb, shape, half_b, side, k, shared, law):
     """Box a (centre xa, rotation ra, half lengths, exposed sides) on guide b (origin xb, axes rb).
 
-    shape: (radius, middle angle, half angle), the radius 0 for a straight guide; half_b: half of its length, width
-    and thickness; side: INSIDE, OUTSIDE or BOTH. `radius`, or the line, is that of the face, and of the plate's
-    middle where both are touched. What is deeper than the plate is thick does not touch.
+    shape: (radius, middle angle, half angle), the radius 0 for a straight guide; half_b: half of its length,
+    width and thickness; side: INSIDE, OUTSIDE or BOTH. Radius and line are those of the face, and of the
+    plate's middle where both sides are touched. What is deeper than the plate is thick does not touch.
     """
     zero = (0.0, 0.0, 0.0)
     radius, middle, angle = shape
@@ -81,9 +81,9 @@ def box_guide(out, xa, ra, va, wa, half, exposed, xb, rb, shape, half_b, side, k
             return
         axis = (rb[2], rb[5], rb[8])
         to = rotate(rb, (math.cos(middle), math.sin(middle), 0.0))
-        round_radius, width = radius + offset, 2.0 * half_b[1]
+        face, width = radius + offset, 2.0 * half_b[1]
         box_sector(
-            out, xa, ra, va, wa, half, exposed, xb, axis, to, angle, zero, zero, round_radius, width, k, shared, law
+            out, xa, ra, va, wa, half, exposed, xb, axis, to, angle, zero, zero, face, width, k, shared, law
         )
         return
     normal = (0.0, sign, 0.0)

@@ -17,7 +17,7 @@ SAG = 0.01  # how far a facet may be from its arc [mm]
 
 
 class Facet(NamedTuple):
-    """A box that a guide is shown by: z along the guide's axis, x along a line, or from an arc to its axis."""
+    """A box that a guide is shown by: z along its axis, x along a line, or from an arc to its axis."""
 
     center: Floats  # global [mm], (3,)
     rotation: Floats  # (3, 3)
@@ -102,3 +102,20 @@ def bounds(guide: GuidePart) -> tuple[Floats, Floats]:
     corners = np.array([[i, j, k] for i in (-0.5, 0.5) for j in (-0.5, 0.5) for k in (-0.5, 0.5)])
     points = np.concatenate([f.center + (corners * f.lengths) @ f.rotation.T for f in facets(guide)])
     return points.min(axis=0), points.max(axis=0)
+
+
+def depths(guide: GuidePart, points: Floats, center: Floats) -> Floats:
+    """How deep points of a body with that centre are in a guide; 0 where they do not touch it [mm], (n,)."""
+    own = (points - guide.center) @ guide.axes
+    middle = (center - guide.center) @ guide.axes
+    if guide.radius == 0.0:
+        inward, side = own[:, 1], middle[1]
+        over = np.abs(own[:, 0]) <= guide.length / 2
+    else:
+        inward, side = guide.radius - np.hypot(own[:, 0], own[:, 1]), guide.radius - np.hypot(*middle[:2])
+        angle = np.arctan2(own[:, 1], own[:, 0]) - guide.middle
+        over = np.cos(angle) >= math.cos(guide.half_angle)
+    sign = {1: 1.0, 2: -1.0, 3: math.copysign(1.0, side)}[guide.sides]
+    deep = (guide.thickness / 2 if guide.sides == 3 else 0.0) - sign * inward
+    over &= (np.abs(own[:, 2]) <= guide.width / 2) & (deep < guide.thickness)
+    return np.where(over, np.maximum(deep, 0.0), 0.0)

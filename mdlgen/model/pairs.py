@@ -4,8 +4,8 @@ A sheet's boxes are swept by what can move them: their initial velocity, gravity
 of every driven roller that the sheet has a contact with. A difference of those speeds across the sheet
 may turn it. A stated margin is added. A solver watches the bounds: a box whose centre leaves them ends
 the run, so that no contact is missed silently. A sheet that meets an external part may be moved by it in any
-way: all of its pairs are kept. A sheet that meets a guide may be led by it in any direction, as far as the sum of
-what moves it.
+way: all of its pairs are kept. A sheet that meets a guide may be led by it in any direction, as far as all
+that moves it goes.
 """
 
 from __future__ import annotations
@@ -63,8 +63,8 @@ def find_pairs(
             low[boxes], high[boxes] = least - margin, most + margin
             extents[sheet.name] = (low[boxes] - reach - SLACK, high[boxes] + reach + SLACK)
     if prune:
-        for roller in machine:
-            if isinstance(roller, RollerPart) and roller.press is not None:  # it may move by its radius along its slide
+        for roller in (part for part in machine if isinstance(part, RollerPart)):
+            if roller.press is not None:  # it may move by its radius along its slide
                 way = roller.radius * np.abs(roller.press.direction) + margin
                 low[roller.body] = bodies.position[roller.body] - way
                 high[roller.body] = bodies.position[roller.body] + way

@@ -259,8 +259,8 @@ class PlanePart(Frozen):
 
 @dataclass(frozen=True)
 class GuidePart(Frozen):
-    """A fixed plate, straight or bent to an arc. Of its axes z is along the width; x is along a line and y its
-    normal, and the angles of an arc turn from x to y."""
+    """A fixed plate, straight or bent to an arc. Of its axes z is along the width; x is along a line and y
+    its normal, and the angles of an arc turn from x to y."""
 
     name: str
     body: int

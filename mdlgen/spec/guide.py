@@ -74,7 +74,5 @@ class Guide(Strict):
         if (self.line is None) == (self.arc is None):
             raise fail("a guide is a line or an arc; give one of them")
         if self.arc is not None and self.thickness >= self.arc.radius:
-            raise fail(
-                f"thickness {self.thickness:g} mm is not less than the radius {self.arc.radius:g} mm of the arc"
-            )
+            raise fail(f"thickness {self.thickness:g} mm is not less than the radius {self.arc.radius:g} mm")
         return self

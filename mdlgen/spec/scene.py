@@ -88,7 +88,8 @@ class Scene(Strict):
 
         Raises the error for a part that does not exist, a pair given twice, or one that is not modelled.
         """
-        rank = {n: i for i, n in enumerate([*self.sheets, *self.rollers, *self.planes, *self.guides, *self.parts])}
+        machine = [*self.rollers, *self.planes, *self.guides, *self.parts]
+        rank = {n: i for i, n in enumerate([*self.sheets, *machine])}
         taken: dict[tuple[str, str], int] = {}
         pairs: list[tuple[int, str, str]] = []
         for index, contact in enumerate(self.contacts):
