@@ -314,7 +314,7 @@ def test_a_changed_facet_is_seen(tmp_path):
         changed.write_text(text.replace(old, new, 1))
         found = verify(scene, model, text=changed)
         assert found.all_differences()
-    assert reader("motionview").read(text, "own").notes.findings() == []
+    assert not reader("motionview").read(text, "own").notes.findings()
 
 
 # -- what is refused, and what is told
