@@ -230,7 +230,6 @@ def test_exit_speed_and_guide_force_of_a_channel_converge_and_the_solvers_agree(
     coarse, middle, fine = (channel(boxes, 0.04) for boxes in (10, 20, 40))
     shorter = channel(20, 0.02)
     other = channel(20, 0.04, "exudyn")
-    print(coarse, middle, fine, shorter, other)
     far, near = np.abs(coarse / fine - 1), np.abs(middle / fine - 1)
     assert (near < [0.01, 0.03, 0.03]).all() and (near[1:] < 0.5 * far[1:]).all()
     assert (np.abs(shorter / middle - 1) < 0.01).all()
