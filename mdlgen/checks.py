@@ -8,8 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from mdlgen.model import press
+from mdlgen.model.guides import depths
 from mdlgen.model.tables import (
     BOX_CYLINDER,
+    BOX_GUIDE,
     BOX_PLANE,
     EXTERNAL,
     SUPPORT,
@@ -205,19 +207,20 @@ def _idle_drive(model: Model) -> Iterator[Lint]:
 
 def _untouched(model: Model) -> Iterator[Lint]:
     parts = {*model.contacts.part_a, *model.contacts.part_b}
-    if not model.rollers and not model.planes and not model.externals:
+    if not (model.rollers or model.planes or model.guides or model.externals):
         return
     for sheet in model.sheets:
         if sheet.name not in parts:
             yield Lint(
                 "W109",
                 f"sheets.{sheet.name}",
-                "the sheet has no contact with any roller or plane of the scene",
+                "the sheet has no contact with any roller, plane or guide of the scene",
                 f"add to contacts like {{between: [{sheet.name}, ...], stiffness: 300 N/mm^1.5}}",
             )
     machine = (
         *(("rollers", r) for r in model.rollers),
         *(("planes", p) for p in model.planes),
+        *(("guides", g) for g in model.guides),
         *(("parts", e) for e in model.externals),
     )
     for kind, part in machine:
@@ -234,7 +237,8 @@ def _free_static(model: Model) -> Iterator[Lint]:
     if model.run.analysis != "static":
         return
     sides = zip(model.contacts.part_a, model.contacts.kind, strict=True)
-    unknown = {sheet for sheet, kind in sides if kind == EXTERNAL}  # what such a part holds is not known
+    # what such a part holds is not known
+    unknown = {sheet for sheet, kind in sides if kind in (EXTERNAL, BOX_GUIDE)}
     for index, sheet in enumerate(model.sheets):
         free = 6 - _held(model, index, sheet)
         if sheet.clamp is None and free > 0 and sheet.name not in unknown:
@@ -293,6 +297,13 @@ def _interference(model: Model) -> Iterator[Lint]:
         depth = float(np.max(-((corners - face) @ plane.normal)[over], initial=0.0))
         if sheet.thickness / 2 < depth < plane.size[2]:
             yield _deep_start(model, int(row), f"planes.{plane.name}.center", plane.name, depth, sheet)
+    guides = {g.name: g for g in model.guides}
+    for row in np.flatnonzero(model.contacts.kind == BOX_GUIDE):
+        guide = guides[model.contacts.part_b[row]]
+        sheet = next(s for s in model.sheets if s.name == model.contacts.part_a[row])
+        depth = max(float(depths(guide, points, at).max()) for at, points in _boxes(model, sheet))
+        if depth > sheet.thickness / 2:
+            yield _deep_start(model, int(row), f"guides.{guide.name}", guide.name, depth, sheet)
 
 
 def _deep_start(model: Model, row: int, where: str, part: str, depth: float, sheet: SheetPart) -> Lint:
@@ -325,6 +336,15 @@ def _nips(model: Model) -> Iterator[tuple[int, SheetPart, RollerPart]]:
     rollers = {r.name: r for r in model.rollers}
     for row in np.flatnonzero(model.contacts.kind == BOX_CYLINDER):
         yield int(row), sheets[model.contacts.part_a[row]], rollers[model.contacts.part_b[row]]
+
+
+def _boxes(model: Model, sheet: SheetPart) -> Iterator[tuple[Floats, Floats]]:
+    """Centre and corners of each box of a sheet at the start [mm], (3,) and (8, 3)."""
+    signs = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)], dtype=float)
+    bodies = model.bodies
+    for body in range(sheet.first, sheet.first + sheet.count):
+        at = bodies.position[body]
+        yield at, at + (signs * bodies.half[body]) @ bodies.rotation[body].T
 
 
 def _corners(sheet: SheetPart) -> Floats:

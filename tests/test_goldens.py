@@ -106,6 +106,17 @@ ROLLERS = _put(
     },
 )
 PLANES = _put("planes", {"level": PLANE, "tilted": PLANE | {"normal": [0.6, 0, 0.8]}})
+LINE = {"from": ["-9 mm", "0 mm", "1 mm"], "to": ["9 mm", "0 mm", "2 mm"], "axis": "y", "side": "left"}
+ARC = {"center": ["0 mm", "0 mm", "20 mm"], "radius": "20 mm", "from": "-90 deg", "to": "-84 deg"}
+GUIDES = _put(
+    "guides",
+    {
+        "bend": {"arc": ARC | {"axis": "-y", "side": "inside"}, "width": "30 mm"},
+        "lead": {"line": LINE, "width": "30 mm"},
+        "round": {"arc": ARC | {"axis": "y", "side": "outside"}, "width": "30 mm"},
+        "thin": {"line": LINE | {"side": "both"}, "width": "30 mm", "thickness": "0.2 mm"},
+    },
+)
 CONTACTS = (
     _put("rollers", {"under": ROLLER | {"drive": DRIVE}}),
     _put("planes", {"level": PLANE | {"center": ["0 mm", "0 mm", "-6 mm"]}}),
@@ -158,6 +169,7 @@ PLAIN: tuple[str, ...] = ()
 ONE_OF_EACH = (
     _put("rollers", {"under": ROLLER}),
     _put("planes", {"level": PLANE}),
+    _put("guides", {"way": {"line": LINE, "width": "30 mm"}}),
     _put("contacts", [{"between": ["note", "under"], "stiffness": "300 N/mm^1.5", "friction": 0.9}]),
     _put("probes", {"lead": {"sheet": "note", "edge": "x_max"}}),
     _put("supports", [{"sheet": "note", "at": ["-30 mm", "0 mm"], "fix": ["z"]}]),
@@ -165,7 +177,7 @@ ONE_OF_EACH = (
 PART = (
     _put("parts", {"feed": {"external": True, "body": "b_feed", "graphics": ["gra_feed", "gra_more"]}}),
     _put("contacts", [{"between": ["note", "feed"], "stiffness": "300 N/mm^1.5", "friction": 0.9}]),
-    *ONE_OF_EACH[3:],
+    *ONE_OF_EACH[4:],
 )
 TILTED_GRAVITY = 'gravity=["1 m/s^2","0 m/s^2","-9.5 m/s^2"]'
 WORDY = (*CONTACTS, "rollers.under.press={direction: z, stiffness: 0.3 N/mm, preload: 3 N}", TILTED_GRAVITY)
@@ -218,6 +230,7 @@ PARTS: dict[str, dict[str, tuple[str, ...]]] = {
     "support.mdl.j2": {"in a box, on an edge between two": SUPPORTS},
     "roller.mdl.j2": {"each kind": (ROLLERS,)},
     "plane.mdl.j2": {"level, with a normal of its own": (PLANES,)},
+    "guide.mdl.j2": {"straight and bent": (GUIDES,)},
     "contacts.mdl.j2": {
         "a zone with its own friction": (*CONTACTS, *UNLIKE, "sheets.note.zones.stripe.friction=2"),
         "with and without friction": CONTACTS,
@@ -238,6 +251,7 @@ LOOPED = {
     "support.mdl.j2": "supports",
     "roller.mdl.j2": "rollers",
     "plane.mdl.j2": "planes",
+    "guide.mdl.j2": "guides",
     "probe.mdl.j2": "probes",
 }
 # Their text stands in the goldens of those that take them in.

@@ -10,7 +10,7 @@ from backends.exudyn_local import kernels
 from backends.exudyn_local.system import MM, MS, PER_MM, System, quaternions
 from mdlgen.mechanics.curve import overstretched
 from mdlgen.model import curves
-from mdlgen.model.tables import BOX_PLANE, Model
+from mdlgen.model.tables import BOX_GUIDE, BOX_PLANE, Model
 from mdlgen.results.result import ContactStatistics, Energy, Result
 
 # Two rollers with a sheet between them clear each other by a few micrometres and may graze.
@@ -43,7 +43,7 @@ class Recorder:
         self._low, self._high = model.pairs.low * MM, model.pairs.high * MM
         self._last_stored = -1
         # depth beyond which a box is about to come out at the other side of a plate
-        plates = system.pairs["kind"] == BOX_PLANE
+        plates = np.isin(system.pairs["kind"], (BOX_GUIDE, BOX_PLANE))
         self._plate = np.where(plates, system.bodies["half"][system.pairs["b"], 2], np.inf)
 
     def plan(self, h: float) -> None:
@@ -144,9 +144,9 @@ class Recorder:
         deep = np.flatnonzero(self._pairs[:, 15] > self._plate)
         if deep.size:
             box = self.model.bodies.name[int(self.model.pairs.a[deep[0]])]
-            plate = self.model.bodies.name[int(self.model.pairs.b[deep[0]])]
+            plate = self.model.plate(int(self.model.pairs.b[deep[0]]))
             self.reason = (
-                f"box {box} is more than half of its thickness into plane {plate} at {t / MS:.6g} ms; "
+                f"box {box} is more than half of its thickness into {plate} at {t / MS:.6g} ms; "
                 "a stiffer contact or a smaller run.step would hold it"
             )
         out = np.flatnonzero(((x < self._low) | (x > self._high)).any(axis=1))

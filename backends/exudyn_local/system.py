@@ -30,7 +30,9 @@ BODY = np.dtype(
         ("reference", "f8", 7),  # position [m], Euler parameters
         ("mass", "f8"),  # [kg]
         ("inertia", "f8", 3),  # [kg m^2]
-        ("half", "f8", 3),  # half lengths of a box [m]
+        ("half", "f8", 3),  # half lengths of a box, or of a guide's length, width and thickness [m]
+        ("arc", "f8", 3),  # of a guide: radius [m] (0: straight), middle angle, half angle
+        ("side", "i8"),  # of a guide, that may be touched: as in mechanics.guide
         ("axis", "f8", 3),  # of a roller
         ("way", "f8", 3),  # direction of a roller's slide
         ("press", "f8", 5),  # k [N/m], c [N s/m], force at the start [N], sliding mass [kg], axial inertia
@@ -161,6 +163,10 @@ def _bodies(model: Model, moving: bool) -> tuple[np.ndarray, int]:
             drive(row, roller, MS, MM)
             if roller.turns:
                 row["spin"], free = free, free + 1
+    for guide in model.guides:
+        row = bodies[guide.body]
+        row["half"] = [0.5 * MM * size for size in (guide.length, guide.width, guide.thickness)]
+        row["arc"], row["side"] = (guide.radius * MM, guide.middle, guide.half_angle), guide.sides
     return bodies, free
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 
 from backends.lattice.band import solve_six
-from mdlgen.mechanics.pair import BOX_PLANE
+from mdlgen.mechanics.pair import on_plate
 
 # Where contacts stand: all apart; those with planes in the matrix of the sheet; all of them there.
 APART, PLANES, INSIDE = 0, 1, 2
@@ -128,7 +128,7 @@ def choose(bodies, pairs, touched, count, where, alone, m, most):
         return 0
     for k in range(count):
         pair = pairs[touched[k]]
-        if where == PLANES and pair.kind == BOX_PLANE:
+        if where == PLANES and on_plate(pair):
             continue
         node = bodies[pair.a].node
         if node >= 0 and alone.place_of[node] < 0:

@@ -24,7 +24,9 @@ BODY = np.dtype(
         ("spin", "i8"),
         ("mass", "f8"),
         ("inertia", "f8", 3),
-        ("half", "f8", 3),
+        ("half", "f8", 3),  # of a box; of a guide: half of its length, width and thickness
+        ("arc", "f8", 3),  # of a guide: radius (0: straight), middle angle, half angle
+        ("side", "i8"),  # of a guide, that may be touched: as in mechanics.guide
         ("exposed", "i8"),
         ("axis", "f8", 3),
         ("way", "f8", 3),  # direction of a slide, or normal of a plane
@@ -133,6 +135,10 @@ def _bodies(model: Model) -> tuple[np.ndarray, Ints, int]:
         drive(row, roller)
         if roller.turns:
             row["spin"], border = border, border + 1
+    for guide in model.guides:
+        row = bodies[guide.body]
+        row["half"] = [0.5 * size for size in (guide.length, guide.width, guide.thickness)]
+        row["arc"], row["side"] = (guide.radius, guide.middle, guide.half_angle), guide.sides
     for plane in model.planes:
         bodies["way"][plane.body] = plane.normal
     return bodies, np.array(nodes, dtype=np.int64), border

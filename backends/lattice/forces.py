@@ -10,9 +10,11 @@ from mdlgen.mechanics.bushing import bushing_pair
 from mdlgen.mechanics.contact import MOST_POINTS, OUT, POINT
 from mdlgen.mechanics.curve import curve_excess
 from mdlgen.mechanics.driven import clutch, prescribed
-from mdlgen.mechanics.pair import BOX_PLANE, CYLINDER_CYLINDER, pair_force
+from mdlgen.mechanics.guide import inward
+from mdlgen.mechanics.pair import BOX_GUIDE, BOX_PLANE, CYLINDER_CYLINDER, pair_force
 from mdlgen.mechanics.vector import (
     add,
+    back,
     cross,
     dot,
     exp_rotation,
@@ -141,6 +143,14 @@ def near_pairs(bodies, pairs, x, r, u, w, margin, ahead, near):
                 out += half[i] * abs(way[0] * r[a, i] + way[1] * r[a, 3 + i] + way[2] * r[a, 6 + i])
             height = -(gap[0] * way[0] + gap[1] * way[1] + gap[2] * way[2]) - bodies[b].half[2]
             if height > out + margin + ahead * closing:
+                continue
+        elif pairs[p].kind == BOX_GUIDE:
+            reached = size + margin + ahead * (math.sqrt(dot(rate, rate)) + math.sqrt(dot(spin, spin)) * size)
+            at, plate = back(mat(r, b), scale(-1.0, gap)), bodies[b].half
+            radius = bodies[b].arc[0]
+            if abs(at[2]) > plate[1] + reached or abs(inward(at, radius)) > 2.0 * plate[2] + reached:
+                continue
+            if radius == 0.0 and abs(at[0]) > plate[0] + reached:
                 continue
         else:
             reached = margin + ahead * (math.sqrt(dot(rate, rate)) + math.sqrt(dot(spin, spin)) * size)

@@ -9,7 +9,7 @@ from numba import njit
 from backends.lattice.step import ROUNDS, STEPS, STRAIN, TOUCHING, WORST, carry, midpoint, spun
 from mdlgen.mechanics.curve import overstretched
 from mdlgen.mechanics.driven import clutch, prescribed
-from mdlgen.mechanics.pair import BOX_PLANE
+from mdlgen.mechanics.pair import on_plate
 
 DONE, STOPPED, LEFT, DEEP, STRETCHED = 0, 1, 2, 3, 4
 # How often a step may be halved.
@@ -29,7 +29,7 @@ def _deep(bodies, pairs, mid, count):
     touched, outs = mid[5], mid[6]
     for k in range(count):
         pair = pairs[touched[k]]
-        if pair.kind == BOX_PLANE and outs[k, 15] > bodies[pair.b].half[2]:
+        if on_plate(pair) and outs[k, 15] > bodies[pair.b].half[2]:
             return touched[k]
     return -1
 

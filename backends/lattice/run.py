@@ -235,9 +235,9 @@ def _reason(
         )
     if status == march.DEEP:
         pair = int(counters[step.WORST])
-        box, plate = names[int(model.pairs.a[pair])], names[int(model.pairs.b[pair])]
+        box, plate = names[int(model.pairs.a[pair])], model.plate(int(model.pairs.b[pair]))
         return (
-            f"box {box} is more than half of its thickness into plane {plate} at {t:.6g} ms; "
+            f"box {box} is more than half of its thickness into {plate} at {t:.6g} ms; "
             "a stiffer contact or a smaller run.step would hold it"
         )
     if status == march.STRETCHED:

@@ -11,7 +11,7 @@ from backends.lattice.arrays import System
 from backends.lattice.band import PAD
 from backends.lattice.record import Recorder
 from mdlgen.model import curves
-from mdlgen.model.tables import BOX_PLANE, GROUND, Model
+from mdlgen.model.tables import BOX_GUIDE, BOX_PLANE, GROUND, Model
 from mdlgen.results.result import Result
 
 FIRST_PART = 1.0  # of the load
@@ -115,6 +115,7 @@ def _loose(model: Model) -> bool:
 def _reach(model: Model) -> float:
     """The longest step [mm]: half of what a box would have to cross to be behind a contact."""
     depths = [float(model.bodies.half[plane.body, 2]) for plane in model.planes]
+    depths += [0.5 * guide.thickness for guide in model.guides]
     radii = [0.5 * roller.radius for roller in model.rollers]
     return min([*depths, *radii], default=np.inf)
 
@@ -133,9 +134,10 @@ def _touch(model: Model, system: System, state: tuple, mid: tuple, rows: tuple) 
     table, marks = rows
     for k in range(count):
         pair, force, depth = system.pairs[touched[k]], outs[k, 12], outs[k, 15]
-        if pair["kind"] == BOX_PLANE and depth > system.bodies["half"][pair["b"], 2]:
+        if pair["kind"] in (BOX_GUIDE, BOX_PLANE) and depth > system.bodies["half"][pair["b"], 2]:
             names = model.bodies.name
-            return f"box {names[pair['a']]} rests more than half of its thickness in plane {names[pair['b']]}"
+            plate = model.plate(int(pair["b"]))
+            return f"box {names[pair['a']]} rests more than half of its thickness in {plate}"
         marks[touched[k]] = True
         row = table[pair["row"]]
         # greatest, sums over a time of 1, now; and it acts

@@ -15,7 +15,7 @@ from backends.lattice.band import PAD
 from mdlgen.mechanics.contact import OUT, POINT
 from mdlgen.mechanics.curve import curve_spring
 from mdlgen.mechanics.driven import clutch
-from mdlgen.mechanics.pair import BOX_PLANE
+from mdlgen.mechanics.pair import on_plate
 from mdlgen.mechanics.vector import (
     add,
     back,
@@ -236,7 +236,7 @@ def contacts_into(bodies, pairs, h, x, touched, outs, count, chord, planes, a, b
     zero = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     for k in range(count):
         pair, out = pairs[touched[k]], outs[k]
-        if planes and pair.kind != BOX_PLANE:
+        if planes and not on_plate(pair):
             continue
         node = bodies[pair.a].node
         for point in range(int(out[OUT])):

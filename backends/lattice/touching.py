@@ -22,7 +22,7 @@ from backends.lattice.forces import pair_forces, place_box, place_roller
 from backends.lattice.growth import activate, clutches, gradient, newton, newton_matrix
 from mdlgen.mechanics.contact import OUT, POINT
 from mdlgen.mechanics.driven import clutch
-from mdlgen.mechanics.pair import BOX_PLANE
+from mdlgen.mechanics.pair import on_plate
 from mdlgen.mechanics.vector import back, mat, rotate
 
 MOST_ROUNDS = 40
@@ -43,7 +43,7 @@ def _mine(bodies, pairs, near, where, alone):
     for k in range(near.size):
         pair = pairs[near[k]]
         node = bodies[pair.a].node
-        if node < 0 or (alone.place_of[node] >= 0 and not (where == PLANES and pair.kind == BOX_PLANE)):
+        if node < 0 or (alone.place_of[node] >= 0 and not (where == PLANES and on_plate(pair))):
             alone.mine[count] = near[k]
             alone.seen[near[k]] = True
             count += 1

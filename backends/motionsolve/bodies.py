@@ -1,5 +1,5 @@
-"""Rows of the bodies: ground, boxes, rollers and planes, each with its two markers, its graphic and, where
-it is held, its joint.
+"""Rows of the bodies: ground, boxes, rollers, planes and guides, each with its two markers, its graphics and,
+where it is held, its joint.
 
 Ids follow the Model's numbers: body k is Body_Rigid k + 2, behind ground, and has Post_Graphic k + 1.
 """
@@ -11,6 +11,7 @@ import numpy as np
 from backends.motionsolve.axes import cosines
 from backends.motionsolve.rows import Body, Box, Cosines, Deck
 from backends.motionsolve.units import Triple, numbers, per_thousand, thousandfold, triples
+from mdlgen.model.guides import facets
 from mdlgen.model.shape import ground_frames
 from mdlgen.model.tables import Model
 
@@ -28,8 +29,17 @@ def graphic_id(body: int) -> int:
     return body + 1
 
 
+def facet_ids(model: Model) -> list[tuple[int, ...]]:
+    """Ids of the boxes that show each guide, behind the graphics of bodies and of surfaces."""
+    after, found = len(model.bodies.name) + len(model.sheets) + 1, []
+    for guide in model.guides:
+        found.append(tuple(range(after, after + guide.facets)))
+        after += guide.facets
+    return found
+
+
 def add_frames(deck: Deck, model: Model) -> None:
-    """The global frame and the axes of the sheets, on ground."""
+    """The global frame and the axes of the sheets and of the guides, on ground."""
     deck.marker("Global_Frame", "Global Frame", GROUND_ID, None)
     for index, sheet in enumerate(model.sheets):
         at = triples(sheet.center[None])[0]
@@ -37,6 +47,9 @@ def add_frames(deck: Deck, model: Model) -> None:
         for frame in ground_frames(model, index):
             (place,) = triples(frame.origin[None])
             deck.marker(frame.name, frame.label, GROUND_ID, place, cosines(frame.axes))
+    for guide in model.guides:
+        (at,) = triples(guide.center[None])
+        deck.marker(f"m_{guide.name}", f"Axes of {guide.name}", GROUND_ID, at, cosines(guide.axes))
 
 
 def add_bodies(deck: Deck, model: Model) -> None:
@@ -56,6 +69,21 @@ def add_bodies(deck: Deck, model: Model) -> None:
         if held[k]:
             how = "held" if model.sheet_of(k) else "fixed"
             _fix(deck, f"j_{table.name[k]}", f"{label} {how}", body_id(k), positions[k])
+    _add_facets(deck, model)
+
+
+def _add_facets(deck: Deck, model: Model) -> None:
+    """The boxes that show guides, each round a marker of its own."""
+    for guide, ids in zip(model.guides, facet_ids(model), strict=True):
+        for k, (facet, id) in enumerate(zip(facets(guide), ids, strict=True)):
+            name, label = f"gbox_{guide.name}_{k}", f"{guide.name}, part {k}"
+            (at,) = triples(facet.center[None])
+            axes = cosines(facet.rotation)
+            marker = deck.marker(
+                f"{name}_center_marker", f"{label} - Center Marker", body_id(guide.body), at, axes
+            )
+            x, y, z = numbers(facet.lengths)
+            deck.boxes.append(Box(name, label, id, marker, (x, y, z)))
 
 
 def add_body(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cache, partial
 
-from backends.motionsolve.bodies import graphic_id
+from backends.motionsolve.bodies import facet_ids, graphic_id
 from backends.motionsolve.rows import Contact, Deck, Law
 from backends.motionsolve.units import number, thousandfold
 from mdlgen.model.tables import Model
@@ -15,13 +15,14 @@ def add_contacts(deck: Deck, model: Model) -> None:
     bodies, pairs = model.bodies, model.pairs
     law = cache(partial(_law, model))
     columns = (c.tolist() for c in (pairs.contact, pairs.a, pairs.b, model.pair_friction))
+    facets = {guide.body: ids for guide, ids in zip(model.guides, facet_ids(model), strict=True)}
     deck.contacts += [
         Contact(
             f"con_{bodies.name[a]}_{bodies.name[b]}",
             f"{bodies.label[a]} / {bodies.label[b]}",
             id,
             graphic_id(a),
-            graphic_id(b),
+            facets.get(b, (graphic_id(b),)),
             law(row, rough),
         )
         for id, (row, a, b, rough) in enumerate(zip(*columns, strict=True), 1)

@@ -166,7 +166,7 @@ class Contact(NamedTuple):
     label: str
     id: int
     i: int
-    j: int
+    j: tuple[int, ...]
     law: Law
 
 

@@ -13,6 +13,11 @@ def unverified(scene: SceneView) -> list[str]:
     joined = [s for s in scene.sheets if s.joints]
     aligned = ", ".join(s.name for s in scene.sheets if not s.turned)
     rows = (
+        (
+            any(not g.straight for g in scene.guides),
+            "several graphics of one body in a Contact (documented), and a BOX turned by VECTOR and POINT "
+            "(documented; seen by two vectors)",
+        ),
         (True, "SetOrientation of a marker by DXDYDZ with formulas (seen with numbers only)"),
         (any(s.turned for s in joined), _BUSH),
         (

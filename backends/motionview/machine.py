@@ -1,4 +1,4 @@
-"""Rows of the machine: rollers, planes, contacts and the pairs of bodies that may touch."""
+"""Rows of the machine: rollers, planes, guides, contacts and the pairs of bodies that may touch."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from itertools import groupby
 import numpy as np
 
 from backends.motionview.cells import rough_boxes
-from backends.motionview.rows import Axis, ContactView, Pair, PlaneView, RollerView, Value
+from backends.motionview.rows import Axis, ContactView, GuideView, Pair, PlaneView, RollerView, Value
 from backends.motionview.units import number
-from mdlgen.model.tables import Floats, Model, PlanePart, RollerPart
+from mdlgen.model.tables import Floats, GuidePart, Model, PlanePart, RollerPart
 
 
 def roller_view(model: Model, roller: RollerPart, given: list[Value]) -> RollerView:
@@ -33,6 +33,37 @@ def plane_view(model: Model, plane: PlanePart, given: list[Value]) -> PlaneView:
     """One plane; its body has z along the normal."""
     guide = _guide(model.bodies.rotation[plane.body])
     return PlaneView(plane.name, given, _axis(f"v_{plane.name}_normal", plane.normal), guide)
+
+
+def guide_view(guide: GuidePart, given: list[Value]) -> GuideView:
+    """One guide; the number of its boxes is fixed in a text."""
+    straight = guide.radius == 0.0
+    if straight:
+        way = "($x_1-$x_0)^2+($y_1-$y_0)^2+($z_1-$z_0)^2"
+        derived = [("L", "Length (mm)", f"sqrt({way})")]
+    else:
+        beyond = {1: "+$s", 2: "", 3: "+$s/2"}[guide.sides]
+        derived = [
+            ("n", "Boxes that show it; fixed in this text", str(guide.facets)),
+            ("turn", "Angle of one of them", "($to-$from)*PI/180/$n"),
+            ("R_o", "Greater radius of the plate (mm)", f"$R{beyond}"),
+            ("chord", "Length of a box (mm)", "2*$R_o*tan($turn/2)"),
+        ]
+    return GuideView(
+        name=guide.name,
+        given=given,
+        derived=derived,
+        straight=straight,
+        axis=_axis(f"v_{guide.name}_axis", guide.axes[:, 2]),
+        guide=_guide(guide.axes),
+        off={1: "-$s/2", 2: "$s/2", 3: "0"}[guide.sides],
+        facets=guide.facets,
+    )
+
+
+def guide_graphics(guide: GuidePart) -> list[str]:
+    """Names of the boxes that show a guide."""
+    return [f"gbox_{guide.name}_{k}" for k in range(guide.facets)]
 
 
 def _axis(name: str, direction: Floats) -> Axis:
@@ -71,9 +102,11 @@ def contact_views(model: Model, given: dict[str, list[Value]], written: Sequence
 def pair_rows(model: Model) -> list[Pair]:
     """One row for each pair of bodies that is kept."""
     bodies, table = model.bodies, model.contacts
-    graphic = [f"gbox_{name}" for name in bodies.name]
+    graphics = [[f"gbox_{name}"] for name in bodies.name]
     for roller in model.rollers:
-        graphic[roller.body] = f"gcyl_{roller.name}"
+        graphics[roller.body] = [f"gcyl_{roller.name}"]
+    for guide in model.guides:
+        graphics[guide.body] = guide_graphics(guide)
     rubs = [s > 0 or d > 0 for s, d in zip(table.mu_static, table.mu_dynamic, strict=True)]
     rough, rougher = rough_pairs(model), model.bodies.friction.tolist()
     data_set = [f"contact_{entry}" for entry in table.entry.tolist()]
@@ -83,9 +116,9 @@ def pair_rows(model: Model) -> list[Pair]:
             f"con_{bodies.name[a]}_{bodies.name[b]}",
             f"{bodies.label[a]} / {bodies.label[b]}",
             f"b_{bodies.name[a]}",
-            graphic[a],
+            graphics[a][0],
             f"b_{bodies.name[b]}",
-            [graphic[b]],
+            graphics[b],
             "ON" if rubs[row] and rougher[a] > 0 else "OFF",
             data_set[row],
             rough.get(a, ""),

@@ -218,6 +218,20 @@ class PlaneView:
     guide: str
 
 
+@dataclass(frozen=True)
+class GuideView:
+    """One guide."""
+
+    name: str
+    given: list[Value]
+    derived: list[tuple[str, str, str]]
+    straight: bool
+    axis: Axis
+    guide: str  # global vector that fixes where the angles of an arc are counted from
+    off: str  # middle of a straight plate, along its normal
+    facets: int
+
+
 class ContactView(NamedTuple):
     """One entry of the spec's list."""
 
@@ -279,6 +293,7 @@ class SceneView:
     supports: list[SupportView]
     rollers: list[RollerView]
     planes: list[PlaneView]
+    guides: list[GuideView]
     contacts: list[ContactView]
     pairs: list[Pair]
     probes: list[ProbeView]

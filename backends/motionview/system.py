@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from backends.motionview.machine import contact_views, pair_rows, rough_pairs
+from backends.motionview.machine import contact_views, guide_graphics, pair_rows, rough_pairs
 from backends.motionview.rows import Attachment, Pair, SystemView
 from backends.motionview.views import given_values, scene_view
 from mdlgen.model.tables import CYLINDER_CYLINDER, Ints, Model
@@ -28,6 +28,7 @@ def system_view(model: Model, set_contact: bool) -> SystemView:
         scene_view(model, set_contact),
         rollers=[],
         planes=[],
+        guides=[],
         contacts=contact_views(model, given, of_sheets),
         pairs=sheet_pairs(model),
     )
@@ -50,6 +51,7 @@ def attachments(model: Model) -> list[Attachment]:
     parts = [
         *((r.name, f"b_{r.name}", (f"gcyl_{r.name}",)) for r in model.rollers),
         *((p.name, f"b_{p.name}", (f"gbox_{p.name}",)) for p in model.planes),
+        *((g.name, f"b_{g.name}", tuple(guide_graphics(g))) for g in model.guides),
         *((e.name, e.body, e.graphics) for e in model.externals),
     ]
     made = []
@@ -71,7 +73,8 @@ def sheet_pairs(model: Model) -> list[Pair]:
     for row, pair in zip(model.pairs.contact.tolist(), pair_rows(model), strict=True):
         if table.kind[row] != CYLINDER_CYLINDER:
             name = table.part_b[row]
-            rows.append((row, pair._replace(body_2=_body(name), graphics_2=_graphics(name, 1))))
+            inside = _graphics(name, len(pair.graphics_2))
+            rows.append((row, pair._replace(body_2=_body(name), graphics_2=inside)))
     rubs = (table.mu_static > 0) | (table.mu_dynamic > 0)
     rough = rough_pairs(model)
     for row, box, part in zip(pairs.contact.tolist(), pairs.box.tolist(), pairs.part.tolist(), strict=True):

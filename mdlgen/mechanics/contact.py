@@ -1,4 +1,4 @@
-"""Contact between a box and a cylinder, a box and a plane, and two parallel cylinders.
+"""Contact between a box and a cylinder or a part of one, a box and a plane, and two parallel cylinders.
 
 The force of one box under a roller is k z^1.5 (Eq. 10), z the depth of the point of its face nearest to the
 roller's axis, times the part of the roller's width that the box covers. Where boxes lie side by side under
@@ -28,11 +28,12 @@ from mdlgen.mechanics.vector import add, back, cross, dot, rotate, scale, sub
 OUT = 16
 POINT = 13
 MOST_POINTS = 24  # of one pair: three parts of a face, two stations, two points; twice for a corner
+WHOLE = 4.0  # no sector but the whole round: more than half a turn
 _GAUSS = 1.0 / math.sqrt(3.0)
 
 
 @njit(cache=True, error_model="numpy")
-def _push(out, point, normal, spring, depth, energy, xa, va, wa, xb, vb, wb, law):
+def push(out, point, normal, spring, depth, energy, xa, va, wa, xb, vb, wb, law):
     """Adds the force of one contact point; `normal` points to the first body, `spring` is its elastic force.
 
     law: (beta, mu_static, mu_dynamic, stiction velocity, friction velocity, smoothing velocity).
@@ -70,9 +71,34 @@ def _push(out, point, normal, spring, depth, energy, xa, va, wa, xb, vb, wb, law
 
 
 @njit(cache=True, error_model="numpy")
-def _face(out, p, r, q, sign, free, half, l0, al, xa, ra, va, wa, xb, vb, wb, radius, width, k, shared, law):
+def _face(
+    out,
+    p,
+    r,
+    q,
+    sign,
+    free,
+    half,
+    l0,
+    al,
+    to,
+    angle,
+    xa,
+    ra,
+    va,
+    wa,
+    xb,
+    vb,
+    wb,
+    radius,
+    width,
+    k,
+    shared,
+    law,
+):
     """One face of a box (normal axis q, in-plane axes p, r) against a cylinder; l0, al: its centre and axis
-    in box axes; free: edges p_min, p_max, r_min, r_max of the face without a neighbour, as a bit mask."""
+    in box axes; free: edges p_min, p_max, r_min, r_max of the face without a neighbour, as a bit mask; to,
+    angle: a sector as in `box_sector`, in box axes."""
     na = math.sqrt(al[p] * al[p] + al[r] * al[r])
     if na < 0.2:  # the roller stands on its end
         return
@@ -86,6 +112,15 @@ def _face(out, p, r, q, sign, free, half, l0, al, xa, ra, va, wa, xb, vb, wb, ra
     high = min(base + c1 + c2, (0.5 * width + height * lean) / na)
     if high <= low:
         return
+    steep_low, steep_high, basis = -1e30, 1e30, width
+    if angle < WHOLE:
+        # directions from the axis to points of the face, against that to its foot; 1.5 rad is far from it
+        middle = math.atan2(to[r] * up - to[p] * ur, lean * (to[p] * up + to[r] * ur) - na * sign * to[q])
+        low_angle, high_angle = max(middle - angle, -1.5), min(middle + angle, 1.5)
+        if high_angle <= low_angle:
+            return
+        steep_low, steep_high = math.tan(low_angle), math.tan(high_angle)
+        basis = 2.0 * (c1 + c2) * na
     inner = abs(c1 - c2)
     foundation = 3.0 / (4.0 * math.sqrt(2.0 * radius))
     for part in range(3):
@@ -99,7 +134,7 @@ def _face(out, p, r, q, sign, free, half, l0, al, xa, ra, va, wa, xb, vb, wb, ra
         if end - begin <= 1e-12 * width:
             continue
         # the station's part of k
-        weight = 0.5 * k * ((end - begin) * na / width if shared else 1.0)
+        weight = 0.5 * k * ((end - begin) * na / basis if shared else 1.0)
         for station in range(2):
             u = 0.5 * (begin + end) + (station - 0.5) * _GAUSS * (end - begin)
             e = height * na + u * lean  # distance of the axis from the face
@@ -123,6 +158,10 @@ def _face(out, p, r, q, sign, free, half, l0, al, xa, ra, va, wa, xb, vb, wb, ra
                     first, open_first = t1, open_low
                 if t2 < last:
                     last, open_last = t2, open_high
+            if e * steep_low > first:
+                first, open_first = e * steep_low, False
+            if e * steep_high < last:
+                last, open_last = e * steep_high, False
             if last <= first:
                 continue
             nearest = min(max(0.0, first), last)
@@ -152,10 +191,10 @@ def _face(out, p, r, q, sign, free, half, l0, al, xa, ra, va, wa, xb, vb, wb, ra
                 cp = t * -ur - e * (-lean * up)
                 cr = t * up - e * (-lean * ur)
                 cq = -e * na * sign
-                normal = _local(p, r, q, cp / distance, cr / distance, cq / distance)
+                normal = local(p, r, q, cp / distance, cr / distance, cq / distance)
                 t = min(max(t, first), last)
-                at = _local(p, r, q, l0[p] + u * up - t * ur, l0[r] + u * ur + t * up, sign * half[q])
-                _push(
+                at = local(p, r, q, l0[p] + u * up - t * ur, l0[r] + u * ur + t * up, sign * half[q])
+                push(
                     out,
                     add(xa, rotate(ra, at)),
                     rotate(ra, normal),
@@ -173,7 +212,7 @@ def _face(out, p, r, q, sign, free, half, l0, al, xa, ra, va, wa, xb, vb, wb, ra
 
 
 @njit(cache=True, error_model="numpy")
-def _local(p, r, q, a, b, c):
+def local(p, r, q, a, b, c):
     """The vector with components a, b, c on the axes p, r, q."""
     x = a if p == 0 else b if r == 0 else c
     y = a if p == 1 else b if r == 1 else c
@@ -185,11 +224,25 @@ def _local(p, r, q, a, b, c):
 def box_cylinder(out, xa, ra, va, wa, half, exposed, xb, axis, vb, wb, radius, width, k, shared, law):
     """Box a (centre xa, rotation ra, half lengths) against cylinder b; exposed: 4 side faces
     as a bit mask."""
+    box_sector(
+        out, xa, ra, va, wa, half, exposed, xb, axis, axis, WHOLE, vb, wb, radius, width, k, shared, law
+    )
+
+
+@njit(cache=True, error_model="numpy")
+def box_sector(
+    out, xa, ra, va, wa, half, exposed, xb, axis, middle, angle, vb, wb, radius, width, k, shared, law
+):
+    """As box_cylinder for a part of the round: within `angle` [rad] either way of the direction `middle`,
+    which is square to the axis; at most a quarter turn, or WHOLE.
+
+    Of a part, boxes share k by what of each the part covers, so that a box over it has k z^1.5.
+    """
     gap = sub(xb, xa)
     near = math.sqrt(dot(half, half)) + math.sqrt(radius * radius + 0.25 * width * width)
     if dot(gap, gap) > near * near:
         return
-    l0, al = back(ra, gap), back(ra, axis)
+    l0, al, to = back(ra, gap), back(ra, axis), back(ra, middle)
     sign = 1.0 if l0[2] >= 0.0 else -1.0
     upright = abs(al[2]) > 0.98  # a roller that stands across the sheet meets its sides only
     if abs(l0[2]) > half[2] and not upright:
@@ -203,6 +256,8 @@ def box_cylinder(out, xa, ra, va, wa, half, exposed, xb, axis, vb, wb, radius, w
             half,
             l0,
             al,
+            to,
+            angle,
             xa,
             ra,
             va,
@@ -226,24 +281,68 @@ def box_cylinder(out, xa, ra, va, wa, half, exposed, xb, axis, vb, wb, radius, w
     if exposed & (2 if sign > 0 else 1) and abs(l0[0]) > half[0]:
         free = ((exposed >> 2) & 3) + 12  # y_min, y_max, and both faces
         _face(
-            out, 1, 2, 0, sign, free, half, l0, al, xa, ra, va, wa, xb, vb, wb, radius, width, k, shared, law
+            out,
+            1,
+            2,
+            0,
+            sign,
+            free,
+            half,
+            l0,
+            al,
+            to,
+            angle,
+            xa,
+            ra,
+            va,
+            wa,
+            xb,
+            vb,
+            wb,
+            radius,
+            width,
+            k,
+            shared,
+            law,
         )
     sign = 1.0 if l0[1] >= 0.0 else -1.0
     if exposed & (8 if sign > 0 else 4) and abs(l0[1]) > half[1]:
         free = 3 + ((exposed & 3) << 2)
         _face(
-            out, 2, 0, 1, sign, free, half, l0, al, xa, ra, va, wa, xb, vb, wb, radius, width, k, shared, law
+            out,
+            2,
+            0,
+            1,
+            sign,
+            free,
+            half,
+            l0,
+            al,
+            to,
+            angle,
+            xa,
+            ra,
+            va,
+            wa,
+            xb,
+            vb,
+            wb,
+            radius,
+            width,
+            k,
+            shared,
+            law,
         )
 
 
 @njit(cache=True, error_model="numpy")
-def _clip(points, count, axis, limit, sign):
-    """Cuts a polygon by sign * coordinate <= limit, in place; returns its number of points."""
+def clip(points, count, way, limit):
+    """Cuts a polygon by way . point <= limit, in place; returns its number of points."""
     kept = np.empty((12, 3))
     found = 0
     for i in range(count):
         one, two = points[i], points[(i + 1) % count]
-        d1, d2 = limit - sign * one[axis], limit - sign * two[axis]
+        d1, d2 = limit - dot(way, one), limit - dot(way, two)
         if d1 >= 0.0:
             kept[found] = one
             found += 1
@@ -252,6 +351,30 @@ def _clip(points, count, axis, limit, sign):
             found += 1
     points[:found] = kept[:found]
     return found
+
+
+@njit(cache=True, error_model="numpy")
+def face_corners(points, xa, ra, half, facing, xb, rb):
+    """Corners of the face of box a that looks along -`facing` (box axes) into `points`, in the axes of b.
+
+    Returns the area of the face.
+    """
+    q = (
+        2
+        if abs(facing[2]) >= max(abs(facing[0]), abs(facing[1]))
+        else 0
+        if abs(facing[0]) > abs(facing[1])
+        else 1
+    )
+    p, r = (q + 1) % 3, (q + 2) % 3
+    side = -half[q] if facing[q] > 0.0 else half[q]
+    for corner in range(4):
+        sp = half[p] if corner == 0 or corner == 3 else -half[p]
+        sr = half[r] if corner < 2 else -half[r]
+        at = back(rb, sub(add(xa, rotate(ra, local(p, r, q, sp, sr, side))), xb))
+        for i in range(3):
+            points[corner, i] = at[i]
+    return 4.0 * half[p] * half[r]
 
 
 @njit(cache=True, error_model="numpy")
@@ -271,37 +394,24 @@ def box_plane(out, xa, ra, va, wa, half, xb, rb, half_b, k, law):
         or abs(offset[1]) > half_b[1] + reach
     ):
         return
-    facing = back(ra, normal)
-    q = (
-        2
-        if abs(facing[2]) >= max(abs(facing[0]), abs(facing[1]))
-        else 0
-        if abs(facing[0]) > abs(facing[1])
-        else 1
-    )
-    p, r = (q + 1) % 3, (q + 2) % 3
-    side = -half[q] if facing[q] > 0.0 else half[q]
     points = np.empty((12, 3))
+    face_corners(points, xa, ra, half, back(ra, normal), xb, rb)
     inside = True
     for corner in range(4):
-        sp = half[p] if corner == 0 or corner == 3 else -half[p]
-        sr = half[r] if corner < 2 else -half[r]
-        at = back(rb, sub(add(xa, rotate(ra, _local(p, r, q, sp, sr, side))), xb))
-        inside = inside and abs(at[0]) <= half_b[0] and abs(at[1]) <= half_b[1]
-        for i in range(3):
-            points[corner, i] = at[i]
+        inside = inside and abs(points[corner, 0]) <= half_b[0] and abs(points[corner, 1]) <= half_b[1]
     count = 4
     if not inside:
-        for axis in range(2):
-            count = _clip(points, count, axis, half_b[axis], 1.0)
-            count = _clip(points, count, axis, half_b[axis], -1.0)
+        for sign in (1.0, -1.0):
+            count = clip(points, count, (sign, 0.0, 0.0), half_b[0])
+        for sign in (1.0, -1.0):
+            count = clip(points, count, (0.0, sign, 0.0), half_b[1])
     for i in range(count):
         depth = half_b[2] - points[i, 2]
         if depth <= 0.0 or depth > 2 * half_b[2]:
             continue
         point = add(xb, rotate(rb, (points[i, 0], points[i, 1], points[i, 2])))
         spring = k / count * depth * math.sqrt(depth)
-        _push(out, point, normal, spring, depth, 0.4 * spring * depth, xa, va, wa, xb, zero, zero, law)
+        push(out, point, normal, spring, depth, 0.4 * spring * depth, xa, va, wa, xb, zero, zero, law)
 
 
 @njit(cache=True, error_model="numpy")
@@ -320,4 +430,4 @@ def cylinder_cylinder(out, xa, va, wa, radius_a, width_a, xb, vb, wb, radius_b, 
     normal = scale(1.0 / distance, across)
     spring = share * k * depth * math.sqrt(depth)
     point = add(xb, add(scale(0.5 * (low + high), axis), scale(radius_b - 0.5 * depth, normal)))
-    _push(out, point, normal, spring, depth, 0.4 * spring * depth, xa, va, wa, xb, vb, wb, law)
+    push(out, point, normal, spring, depth, 0.4 * spring * depth, xa, va, wa, xb, vb, wb, law)

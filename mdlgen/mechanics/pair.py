@@ -5,18 +5,26 @@ from __future__ import annotations
 from numba import njit
 
 from mdlgen.mechanics.contact import box_cylinder, box_plane, cylinder_cylinder
+from mdlgen.mechanics.guide import box_guide
 from mdlgen.mechanics.vector import mat, three, vec
 
 # As in mdlgen.model.tables.
-BOX_PLANE, CYLINDER_CYLINDER = 1, 2
+BOX_PLANE, CYLINDER_CYLINDER, BOX_GUIDE = 1, 2, 4
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def on_plate(pair):
+    """Whether the other part is a plate that does not move: a plane or a guide."""
+    return pair.kind == BOX_PLANE or pair.kind == BOX_GUIDE
 
 
 @njit(cache=True, error_model="numpy")
 def pair_force(bodies, pair, x, r, u, w, out):
     """One contact pair into `out`, which must be zero (OUT numbers, and the count of points if it has one).
 
-    `bodies` are records with half, exposed, axis and size (radius, width), `pair` one with kind, a, b, k,
-    shared and law; x, r, u, w places, rotations and velocities of all bodies. Returns whether it touches.
+    `bodies` are records with half, exposed, axis, size (radius, width), arc and side, `pair` one with kind,
+    a, b, k, shared and law; x, r, u, w places, rotations and velocities of all bodies. Returns whether it
+    touches.
     """
     a, b = pair.a, pair.b
     row = pair.law
@@ -50,6 +58,24 @@ def pair_force(bodies, pair, x, r, u, w, out):
             mat(r, b),
             three(bodies[b].half),
             pair.k,
+            law,
+        )
+    elif pair.kind == BOX_GUIDE:
+        box_guide(
+            out,
+            vec(x, a),
+            mat(r, a),
+            vec(u, a),
+            vec(w, a),
+            three(bodies[a].half),
+            bodies[a].exposed,
+            vec(x, b),
+            mat(r, b),
+            three(bodies[b].arc),
+            three(bodies[b].half),
+            bodies[b].side,
+            pair.k,
+            pair.shared != 0,
             law,
         )
     else:

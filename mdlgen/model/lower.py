@@ -11,6 +11,8 @@ from mdlgen.model.anchors import anchor, find_tension, lower_loads
 from mdlgen.model.cells import Cells, cells, zone_parts
 from mdlgen.model.curves import lower_curves
 from mdlgen.model.external import external_pairs, lower_externals
+from mdlgen.model.guides import inertia as guide_inertia
+from mdlgen.model.guides import lower_guides
 from mdlgen.model.joints import Joints, find_joints
 from mdlgen.model.machine import frame, lower_planes, lower_rollers
 from mdlgen.model.pairs import find_pairs
@@ -21,6 +23,7 @@ from mdlgen.model.stiffness import between, coefficients, derived, extent
 from mdlgen.model.supports import joined, support_bushings
 from mdlgen.model.tables import (
     BOX_CYLINDER,
+    BOX_GUIDE,
     BOX_PLANE,
     CYLINDER_CYLINDER,
     EXTERNAL,
@@ -29,6 +32,7 @@ from mdlgen.model.tables import (
     Clamp,
     Contacts,
     Floats,
+    GuidePart,
     Model,
     PlanePart,
     RollerPart,
@@ -49,9 +53,10 @@ def lower(scene: Scene) -> Model:
     contacts = _contacts(scene)
     rollers = lower_rollers(scene, sheets, contacts, first)
     planes = lower_planes(scene, first + len(rollers))
+    guides = lower_guides(scene, first + len(rollers) + len(planes))
     externals = lower_externals(scene)
     gravity = np.array(scene.gravity)
-    bodies = _bodies(sheets, boxes, rollers, planes)
+    bodies = _bodies(sheets, boxes, rollers, planes, guides)
     supports = tuple(anchor(f"support_{k}", item, sheets) for k, item in enumerate(scene.supports))
     held = support_bushings(scene.supports, supports, sheets, bodies)
     joints, extents = _joints(scene, sheets, boxes)
@@ -67,13 +72,21 @@ def lower(scene: Scene) -> Model:
         sheets=sheets,
         rollers=rollers,
         planes=planes,
+        guides=guides,
         externals=externals,
         bodies=bodies,
         bushings=bushings,
         curves=lower_curves(scene, sheets, bushings, long, wide),
         contacts=contacts,
         pairs=find_pairs(
-            gravity, sheets, rollers, planes, bodies, contacts, run, scene.run.prune, scene.run.margin
+            gravity,
+            sheets,
+            (*rollers, *planes, *guides),
+            bodies,
+            contacts,
+            run,
+            scene.run.prune,
+            scene.run.margin,
         ),
         external_pairs=external_pairs(sheets, externals, contacts),
         loads=lower_loads(scene, sheets),
@@ -148,6 +161,7 @@ def _contacts(scene: Scene) -> Contacts:
 
     with_sheet = dict.fromkeys(scene.rollers, BOX_CYLINDER)
     with_sheet |= dict.fromkeys(scene.planes, BOX_PLANE) | dict.fromkeys(scene.parts, EXTERNAL)
+    with_sheet |= dict.fromkeys(scene.guides, BOX_GUIDE)
     kinds = [CYLINDER_CYLINDER if a in scene.rollers else with_sheet[b] for _, a, b in rows]
     return Contacts(
         entry=np.array([i for i, _, _ in rows], dtype=np.int64),
@@ -170,6 +184,7 @@ def _bodies(
     boxes: list[Cells],
     rollers: tuple[RollerPart, ...],
     planes: tuple[PlanePart, ...],
+    guides: tuple[GuidePart, ...],
 ) -> Bodies:
     names, labels, tables = [], [], []
     for sheet, box in zip(sheets, boxes, strict=True):
@@ -231,6 +246,23 @@ def _bodies(
                 zero,
                 np.array([True]),
                 half,
+                none,
+                one,
+            )
+        )
+    for guide in guides:
+        names.append(guide.name)
+        labels.append(f"Guide {guide.name}")
+        tables.append(
+            (
+                guide.center[None],
+                guide.axes[None],
+                np.array([guide.mass]),
+                guide_inertia(guide)[None],
+                zero,
+                zero,
+                np.array([True]),
+                zero,
                 none,
                 one,
             )

@@ -4,25 +4,30 @@ A sheet's boxes are swept by what can move them: their initial velocity, gravity
 of every driven roller that the sheet has a contact with. A difference of those speeds across the sheet
 may turn it. A stated margin is added. A solver watches the bounds: a box whose centre leaves them ends
 the run, so that no contact is missed silently. A sheet that meets an external part may be moved by it in any
-way: all of its pairs are kept.
+way: all of its pairs are kept. A sheet that meets a guide may be led by it in any direction, as far as all
+that moves it goes.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from mdlgen.model.guides import bounds
 from mdlgen.model.tables import (
     CYLINDER_CYLINDER,
     EXTERNAL,
     Bodies,
     Contacts,
     Floats,
+    GuidePart,
     Pairs,
     PlanePart,
     RollerPart,
     RunSettings,
     SheetPart,
 )
+
+Part = RollerPart | PlanePart | GuidePart
 
 # The centre may be beyond its bounds by one step before the solver sees it; kept pairs reach this far more.
 SLACK = 1.0  # mm
@@ -33,8 +38,7 @@ _STATIONS = 65  # times in a run at which the ways of two drives are compared
 def find_pairs(
     gravity: Floats,
     sheets: tuple[SheetPart, ...],
-    rollers: tuple[RollerPart, ...],
-    planes: tuple[PlanePart, ...],
+    machine: tuple[Part, ...],
     bodies: Bodies,
     contacts: Contacts,
     run: RunSettings,
@@ -42,7 +46,7 @@ def find_pairs(
     margin: float,
 ) -> Pairs:
     """Possible pairs, those kept, and the bounds of each box (see the module)."""
-    parts = {p.name: p for p in (*rollers, *planes)}
+    parts = {p.name: p for p in machine}
     by_name = {s.name: s for s in sheets}
     low = np.full((len(bodies.name), 3), -np.inf)
     high = np.full((len(bodies.name), 3), np.inf)
@@ -60,7 +64,7 @@ def find_pairs(
             low[boxes], high[boxes] = least - margin, most + margin
             extents[sheet.name] = (low[boxes] - reach - SLACK, high[boxes] + reach + SLACK)
     if prune:
-        for roller in rollers:
+        for roller in (part for part in machine if isinstance(part, RollerPart)):
             if roller.press is not None:  # it may move by its radius along its slide
                 way = roller.radius * np.abs(roller.press.direction) + margin
                 low[roller.body] = bodies.position[roller.body] - way
@@ -86,7 +90,7 @@ def find_pairs(
 def _swept(
     gravity: Floats,
     sheet: SheetPart,
-    touched: list[RollerPart | PlanePart],
+    touched: list[Part],
     bodies: Bodies,
     run: RunSettings,
 ) -> tuple[Floats, Floats, Floats]:
@@ -106,6 +110,14 @@ def _swept(
     times = np.unique(np.concatenate([np.linspace(0.0, time, _STATIONS), *corners]).clip(0.0, time))
     drives = [_drive(sheet, part, times) for part in driven]
     moves = np.array([fall, shift, *(end for path, _ in drives for end in (path.min(0), path.max(0)))])
+    if any(isinstance(part, GuidePart) for part in touched):
+        paths = np.linalg.norm(moves, axis=1)
+        way = float(paths[:2].sum() + paths[2:].max(initial=0.0))
+        if sheet.count > 1:
+            way += 0.5 * float(size.max())
+        turned = _turn(sheet, drives, time) * diagonal
+        reach = np.full(3, float(np.linalg.norm(bodies.half[boxes], axis=1).max()))
+        return centers - way - min(turned, diagonal), centers + way + min(turned, diagonal), reach
     # velocity and fall act together with one drive at a time
     least = np.minimum(moves[:2], 0).sum(0) + np.minimum(moves[2:], 0).min(0, initial=0.0)
     most = np.maximum(moves[:2], 0).sum(0) + np.maximum(moves[2:], 0).max(0, initial=0.0)
@@ -174,9 +186,11 @@ def _turned(
     return (np.min(lows, axis=0) - sag, np.max(highs, axis=0) + sag), extent
 
 
-def _part_bounds(part: RollerPart | PlanePart, bodies: Bodies) -> tuple[Floats, Floats]:
+def _part_bounds(part: Part, bodies: Bodies) -> tuple[Floats, Floats]:
     """Bounding box of a part; a pressed roller may move by its radius along its slide."""
     center = bodies.position[part.body]
+    if isinstance(part, GuidePart):
+        return bounds(part)
     if isinstance(part, PlanePart):
         extent = np.abs(bodies.rotation[part.body]) @ (np.array(part.size) / 2)
         return center - extent, center + extent

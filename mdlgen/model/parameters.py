@@ -29,6 +29,8 @@ def parameters(
                 Parameter(name, f"L_{axis}", f"Length along its {axis}", size, "mm", (*base, "size", k))
             )
         rows.append(Parameter(name, "M", "Mass", plane.mass, "g", (*base, "mass")))
+    for name in sorted(scene.guides):
+        rows += _guide(scene, name)
     for index, contact in enumerate(scene.contacts):
         base, group = ("contacts", index), f"contact_{index}"
         friction, smooth = contact.friction, contact.smoothing
@@ -52,6 +54,32 @@ def _center(name: str, center: tuple[float, ...], base: tuple[str, str]) -> list
     return [
         Parameter(name, axis, f"Centre {axis}", center[k], "mm", (*base, "center", k))
         for k, axis in enumerate(_NAMED_AXES)
+    ]
+
+
+def _guide(scene: Scene, name: str) -> list[Parameter]:
+    guide, base = scene.guides[name], ("guides", name)
+    rows = []
+    if guide.line is not None:
+        for end, key, place in (("0", "from", guide.line.from_), ("1", "to", guide.line.to)):
+            for k, axis in enumerate(_NAMED_AXES):
+                path = (*base, "line", key, k)
+                label = f"{axis} where it {'ends' if key == 'to' else 'begins'}"
+                rows.append(Parameter(name, f"{axis}_{end}", label, place[k], "mm", path))
+    if guide.arc is not None:
+        arc, path = guide.arc, (*base, "arc")
+        for k, axis in enumerate(_NAMED_AXES):
+            rows.append(Parameter(name, axis, f"Centre {axis}", arc.center[k], "mm", (*path, "center", k)))
+        rows += [
+            Parameter(name, "R", f"Radius, {arc.side}", arc.radius, "mm", (*path, "radius")),
+            Parameter(name, "from", "Angle where it begins (deg)", arc.from_, "rad", (*path, "from")),
+            Parameter(name, "to", "Angle where it ends (deg)", arc.to, "rad", (*path, "to")),
+        ]
+    return [
+        *rows,
+        Parameter(name, "w", "Width", guide.width, "mm", (*base, "width")),
+        Parameter(name, "s", "Thickness of the plate", guide.thickness, "mm", (*base, "thickness")),
+        Parameter(name, "M", "Mass", guide.mass, "g", (*base, "mass")),
     ]
 
 

@@ -1,6 +1,6 @@
 """The tables of a Model. Units: mm, N, g, ms, rad; rotations as 3x3 matrices, body axes in columns.
 
-Bodies are numbered: the boxes of each sheet (row by row: index = i + j n_x), then rollers, then planes.
+Bodies are numbered: the boxes of each sheet (row by row: index = i + j n_x), then rollers, planes and guides.
 GROUND (-1) stands for the fixed world.
 """
 
@@ -40,8 +40,8 @@ class Bodies(Frozen):
     inertia: Floats  # principal, body axes [g mm^2], (n, 3)
     velocity: Floats  # [mm/ms], (n, 3)
     spin: Floats  # angular velocity, global axes [rad/ms], (n, 3)
-    fixed: NDArray[np.bool_]  # held: clamped boxes and planes, (n,)
-    half: Floats  # half lengths of a box, body axes; zero for rollers [mm], (n, 3)
+    fixed: NDArray[np.bool_]  # held: clamped boxes, planes and guides, (n,)
+    half: Floats  # half lengths of a box, body axes; zero for rollers and guides [mm], (n, 3)
     exposed: NDArray[np.bool_]  # side faces that no neighbour covers: x_min, x_max, y_min, y_max, (n, 4)
     friction: Floats  # friction of its contacts in times that of the contact, (n,)
 
@@ -295,6 +295,27 @@ class PlanePart(Frozen):
 
 
 @dataclass(frozen=True)
+class GuidePart(Frozen):
+    """A fixed plate, straight or bent to an arc. Of its axes z is along the width; x is along a line and y
+    its normal, and the angles of an arc turn from x to y."""
+
+    name: str
+    body: int
+    center: Floats  # middle of a line, or on the axis of an arc [mm], (3,)
+    axes: Floats  # in columns; those of its body, too, (3, 3)
+    radius: float  # of the face, or of the middle where both sides are touched; 0: a line [mm]
+    middle: float  # angle of the middle of an arc [rad]
+    half_angle: float
+    length: float  # of a line [mm]
+    width: float
+    thickness: float
+    sides: int  # that are touched: 1 left of a line or inside of an arc, 2 the other, 3 both
+    side: str
+    mass: float
+    facets: int  # boxes by which a text shows it
+
+
+@dataclass(frozen=True)
 class ExternalPart:
     """A body of the user's own MotionView model. It has no row in Bodies, since its mass is not known."""
 
@@ -304,7 +325,7 @@ class ExternalPart:
 
 
 # kinds of contact
-BOX_CYLINDER, BOX_PLANE, CYLINDER_CYLINDER, EXTERNAL = 0, 1, 2, 3
+BOX_CYLINDER, BOX_PLANE, CYLINDER_CYLINDER, EXTERNAL, BOX_GUIDE = 0, 1, 2, 3, 4
 
 
 @dataclass(frozen=True)
@@ -313,8 +334,8 @@ class Contacts(Frozen):
 
     entry: Ints  # index in the spec's list, (n,)
     part_a: tuple[str, ...]  # sheet or roller
-    part_b: tuple[str, ...]  # roller, plane or external part
-    kind: Ints  # BOX_CYLINDER, BOX_PLANE, CYLINDER_CYLINDER or EXTERNAL
+    part_b: tuple[str, ...]  # roller, plane, guide or external part
+    kind: Ints  # BOX_CYLINDER, BOX_PLANE, CYLINDER_CYLINDER, EXTERNAL or BOX_GUIDE
     stiffness: Floats  # k [N/mm^1.5]
     restitution: Floats  # c_R
     mu_static: Floats
@@ -334,7 +355,7 @@ class Pairs(Frozen):
 
     contact: Ints  # row of Contacts, (n,)
     a: Ints  # box or roller, (n,)
-    b: Ints  # roller or plane, (n,)
+    b: Ints  # roller, plane or guide, (n,)
     possible: int
     margin: float  # [mm]
     low: Floats  # bounds of boxes' and pressed rollers' centres, -inf where not watched [mm], (bodies, 3)
@@ -421,6 +442,7 @@ class Model(Frozen):
     sheets: tuple[SheetPart, ...]
     rollers: tuple[RollerPart, ...]
     planes: tuple[PlanePart, ...]
+    guides: tuple[GuidePart, ...]
     externals: tuple[ExternalPart, ...]  # a Model that has one is not run here
     bodies: Bodies
     bushings: Bushings
@@ -442,6 +464,11 @@ class Model(Frozen):
     def pair_friction(self) -> Floats:
         """Friction of each kept pair in times that of its contact, (pairs,)."""
         return self.bodies.friction[self.pairs.a] * self.bodies.friction[self.pairs.b]
+
+    def plate(self, body: int) -> str:
+        """What a plane or a guide is called in a sentence."""
+        kind = "guide" if any(guide.body == body for guide in self.guides) else "plane"
+        return f"{kind} {self.bodies.name[body]}"
 
     def sheet_of(self, body: int) -> SheetPart | None:
         """The sheet that a body is a box of, or None."""

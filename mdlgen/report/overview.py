@@ -24,6 +24,7 @@ def overview(model: Model) -> dict[str, Any]:
         "sheets": {s.name: _sheet(model, k) for k, s in enumerate(model.sheets)},
         "rollers": len(model.rollers),
         "planes": len(model.planes),
+        "guides": len(model.guides),
         "external_parts": {e.name: {"body": e.body, "graphics": list(e.graphics)} for e in model.externals},
         "contacts": len(model.contacts),
         "probes": len(model.probes),

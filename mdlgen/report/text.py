@@ -28,7 +28,8 @@ def overview_text(told: dict[str, Any]) -> str:
     lines += [
         "",
         f"{told['boxes']} boxes, {told['bushings']} bushings, "
-        f"{told['rollers']} rollers, {told['planes']} planes",
+        f"{told['rollers']} rollers, {told['planes']} planes"
+        + (f", {told['guides']} guides" if told["guides"] else ""),
         f"contact: {told['contacts']} pairs of parts; {pairs['possible']} pairs of bodies possible, "
         f"{pairs['kept']} kept (margin {pairs['margin_mm']:g} mm)",
     ]

@@ -6,11 +6,11 @@ import numpy as np
 
 from mdlgen.model.tables import Floats
 from mdlgen.results.result import Result
-from mdlgen.results.summary import PER_SECOND, roller_rows
+from mdlgen.results.summary import PER_SECOND, part_rows
 
 
 def series(result: Result) -> dict[str, Floats]:
-    """Column name -> values at the stored times: sheets (centre of mass), probes, then rollers."""
+    """Column name -> values at the stored times: sheets (centre of mass), probes, rollers, then guides."""
     table: dict[str, Floats] = {"time_ms": result.time}
     for index, sheet in enumerate(result.model.sheets):
         place, rate, yaw = result.sheet_motion(index)
@@ -19,10 +19,12 @@ def series(result: Result) -> dict[str, Floats]:
     for index, probe in enumerate(result.model.probes):
         table |= _motion(probe.name, *result.anchor_motion(index))
     for roller in result.model.rollers:
-        rows = list(roller_rows(result, roller))
+        rows = list(part_rows(result, roller))
         table[f"{roller.name}.z_mm"] = result.position[:, roller.body, 2]
         table[f"{roller.name}.omega_rad_per_s"] = result.spin[:, roller.body] @ roller.axis * PER_SECOND
         table[f"{roller.name}.force_n"] = result.contact_force[:, rows].sum(axis=1)
+    for guide in result.model.guides:
+        table[f"{guide.name}.force_n"] = result.contact_force[:, list(part_rows(result, guide))].sum(axis=1)
     return table
 
 

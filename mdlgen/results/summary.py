@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from mdlgen.model.tables import Floats, RollerPart
+from mdlgen.model.tables import Floats, GuidePart, RollerPart
 from mdlgen.results.compare import travel
 from mdlgen.results.events import events
 from mdlgen.results.result import Result
@@ -48,6 +48,7 @@ def summary(result: Result) -> dict[str, Any]:
         "events": events(result),
         "sheets": {s.name: _sheet(result, k) for k, s in enumerate(model.sheets)},
         "rollers": {r.name: _roller(result, r) for r in model.rollers},
+        "guides": {g.name: {"contacts": _contacts(result, part_rows(result, g))} for g in model.guides},
         "probes": {p.name: _probe(result, k) for k, p in enumerate(model.probes)},
         "versions": {**result.versions, "mdlgen": version(), "numpy": np.__version__},
     }
@@ -141,15 +142,29 @@ def _bearing(result: Result, index: int) -> dict[str, Any]:
     }
 
 
-def roller_rows(result: Result, roller: RollerPart) -> dict[int, str]:
-    """Rows of contacts of a roller, with the name of the other part."""
+def part_rows(result: Result, roller: RollerPart | GuidePart) -> dict[int, str]:
+    """Rows of contacts of a roller or a guide, with the name of the other part."""
     contacts = result.model.contacts
     sides = zip(contacts.part_a, contacts.part_b, strict=True)
     return {k: b if a == roller.name else a for k, (a, b) in enumerate(sides) if roller.name in (a, b)}
 
 
+def _contacts(result: Result, rows: dict[int, str]) -> dict[str, dict[str, float]]:
+    """What each contact of a part came to."""
+    statistics = result.statistics
+    return {
+        other: {
+            "max_penetration_mm": statistics.max_depth[k],
+            "mean_penetration_mm": statistics.mean_depth[k],
+            "max_force_n": statistics.max_force[k],
+            "mean_force_n": statistics.mean_force[k],
+        }
+        for k, other in rows.items()
+    }
+
+
 def _roller(result: Result, roller: RollerPart) -> dict[str, Any]:
-    rows = roller_rows(result, roller)
+    rows = part_rows(result, roller)
     sheets = {s.name for s in result.model.sheets}
     statistics = result.statistics
     on_sheets = [k for k, other in rows.items() if other in sheets]
@@ -165,15 +180,7 @@ def _roller(result: Result, roller: RollerPart) -> dict[str, Any]:
         **told,
         "max_penetration_mm": max((statistics.max_depth[k] for k in on_sheets), default=0.0),
         "mean_penetration_mm": _mean(statistics.mean_depth, on_sheets, result),
-        "contacts": {
-            other: {
-                "max_penetration_mm": statistics.max_depth[k],
-                "mean_penetration_mm": statistics.mean_depth[k],
-                "max_force_n": statistics.max_force[k],
-                "mean_force_n": statistics.mean_force[k],
-            }
-            for k, other in rows.items()
-        },
+        "contacts": _contacts(result, rows),
         # nan, a contact that still acts, wins: the roller is not free then
         "free_of_counterpart_at_ms": np.max(statistics.last_force_at[on_rollers], initial=0.0),
     }

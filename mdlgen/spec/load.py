@@ -297,7 +297,7 @@ def _did_you_mean(path: SpecPath, document: Document) -> str:
 
 def _allowed_keys(path: SpecPath) -> list[str]:
     """Keys that the model at `path` knows, found by walking the annotations of Scene."""
-    from mdlgen.spec.schema import model_at
+    from mdlgen.spec.schema import keys, model_at
 
     model = model_at(path)
-    return list(model.model_fields) if model else []
+    return list(keys(model)) if model else []

@@ -11,6 +11,7 @@ from pydantic import Field, model_validator
 from mdlgen.spec.action import Load, OnSheet, Probe, Support
 from mdlgen.spec.contact import Contact
 from mdlgen.spec.fields import Acceleration, Name, Strict, default, fail
+from mdlgen.spec.guide import Guide
 from mdlgen.spec.machine import Plane, Roller
 from mdlgen.spec.material import Material
 from mdlgen.spec.part import Part
@@ -27,6 +28,7 @@ class Scene(Strict):
     sheets: dict[Name, Sheet] = Field(min_length=1)
     rollers: dict[Name, Roller] = Field(default_factory=dict)
     planes: dict[Name, Plane] = Field(default_factory=dict)
+    guides: dict[Name, Guide] = Field(default_factory=dict)
     parts: dict[Name, Part] = Field(default_factory=dict)
     contacts: tuple[Contact, ...] = Field(default=(), strict=False)
     loads: tuple[Load, ...] = Field(default=(), strict=False)
@@ -68,7 +70,7 @@ class Scene(Strict):
 
     def _names_unique(self) -> None:
         seen: dict[str, str] = {}
-        for kind in ("sheets", "rollers", "planes", "parts", "probes"):
+        for kind in ("sheets", "rollers", "planes", "guides", "parts", "probes"):
             for name in getattr(self, kind):
                 other = seen.setdefault(name.lower(), f"{kind}.{name}")
                 if other != f"{kind}.{name}":
@@ -99,7 +101,8 @@ class Scene(Strict):
 
         Raises the error for a part that does not exist, a pair given twice, or one that is not modelled.
         """
-        rank = {n: i for i, n in enumerate([*self.sheets, *self.rollers, *self.planes, *self.parts])}
+        machine = [*self.rollers, *self.planes, *self.guides, *self.parts]
+        rank = {n: i for i, n in enumerate([*self.sheets, *machine])}
         taken: dict[tuple[str, str], int] = {}
         pairs: list[tuple[int, str, str]] = []
         for index, contact in enumerate(self.contacts):
@@ -133,7 +136,8 @@ class Scene(Strict):
                 path,
             )
         if b not in self.rollers:
-            raise fail(f"contact between {a} and {b} is not modelled: a plane touches sheets only", path)
+            kind = "guide" if b in self.guides else "plane"
+            raise fail(f"contact between {a} and {b} is not modelled: a {kind} touches sheets only", path)
         one, two = self.rollers[a].axis, self.rollers[b].axis
         if abs(abs(sum(p * q for p, q in zip(one, two, strict=True))) - 1.0) > 1e-9:
             raise fail(f"the rollers {a} and {b} are in contact but their axes are not parallel", path)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, get_args
 
 from pydantic import BaseModel
+from pydantic.fields import FieldInfo
 from pydantic.json_schema import GenerateJsonSchema
 
 from mdlgen.spec.scene import Scene
@@ -30,12 +31,17 @@ def model_at(path: tuple[str | int, ...]) -> type[BaseModel] | None:
         if skip:  # a name in a dict, or an index of a list: the model was found one step before
             skip = False
             continue
-        if model is None or key not in model.model_fields:
+        if model is None or key not in keys(model):
             return None
-        annotation = model.model_fields[str(key)].annotation
+        annotation = keys(model)[str(key)].annotation
         model = _model_in(annotation)
         skip = getattr(annotation, "__origin__", None) in (dict, tuple)
     return None if skip else model
+
+
+def keys(model: type[BaseModel]) -> dict[str, FieldInfo]:
+    """The fields of a model, as a file calls them."""
+    return {field.alias or name: field for name, field in model.model_fields.items()}
 
 
 def _model_in(annotation: Any) -> type[BaseModel] | None:

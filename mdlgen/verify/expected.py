@@ -12,6 +12,7 @@ import numpy as np
 
 from mdlgen.model import naming
 from mdlgen.model.curves import straight_points, written
+from mdlgen.model.guides import facets
 from mdlgen.model.shape import apart, ground_frames
 from mdlgen.model.tables import (
     CLAMP,
@@ -62,7 +63,7 @@ def body_name(model: Model, body: int) -> str:
 
 def reach(model: Model) -> float:
     """Size of the scene [mm], by which coordinates are measured."""
-    size = [max(s.size) for s in model.sheets]
+    size = [max(s.size) for s in model.sheets] + [g.radius + g.length for g in model.guides]
     return float(max(np.abs(model.bodies.position).max(initial=0.0), *size))
 
 
@@ -113,6 +114,9 @@ def _points(model: Model) -> Table:
     for plane in model.planes:
         names.append(f"p_{plane.name}")
         places.append(plane.center[None])
+    for guide in model.guides:
+        names += [f"p_{guide.name}", *(f"p_{guide.name}_{k}" for k in range(guide.facets))]
+        places += [guide.center[None], *(facet.center[None] for facet in facets(guide))]
     return table(names, {"at": (np.concatenate(places), reach(model))})
 
 
@@ -217,12 +221,17 @@ def _boxes(model: Model) -> Table:
         [*(b for s in model.sheets for b in _boxes_of(model, s)), *(p.body for p in model.planes)], dtype=int
     )
     names = [f"gbox_{bodies.name[b]}" for b in rows]
+    words = [(f"b_{bodies.name[b]}",) for b in rows]
+    shown = [(f"{guide.name}_{k}", guide, f) for guide in model.guides for k, f in enumerate(facets(guide))]
+    names += [f"gbox_{name}" for name, _, _ in shown]
+    words += [(f"b_{guide.name}",) for _, guide, _ in shown]
+    turned = np.array([f.rotation for _, _, f in shown]).reshape(-1, 3, 3)
     parts: dict[str, Part] = {
-        "center": (bodies.position[rows], reach(model)),
-        "axes": (bodies.rotation[rows].transpose(0, 2, 1), 1.0),
-        "lengths": (2 * bodies.half[rows], None),
+        "center": (np.array([*bodies.position[rows], *(f.center for _, _, f in shown)]), reach(model)),
+        "axes": (np.concatenate([bodies.rotation[rows], turned]).transpose(0, 2, 1), 1.0),
+        "lengths": (np.array([*2 * bodies.half[rows], *(f.lengths for _, _, f in shown)]), None),
     }
-    return table(names, parts, [(f"b_{bodies.name[b]}",) for b in rows])
+    return table(names, parts, words)
 
 
 def _cylinders(model: Model) -> Table:
@@ -330,6 +339,8 @@ def _markers(model: Model) -> Table:
         for b in _boxes_of(model, sheet) if sheet.surface else ():
             name = model.bodies.name[b]
             add(f"m_{name}", f"b_{name}", model.bodies.position[b], np.eye(3))
+    for guide in model.guides:
+        add(f"m_{guide.name}", "B_Ground", guide.center, guide.axes.T)
     for probe in model.probes:
         points = _anchor_points(model, probe)
         for k, body in enumerate(probe.body.tolist()):
@@ -359,6 +370,8 @@ def _vectors(model: Model) -> Table:
             add(f"v_{roller.name}_press", roller.press.direction)
     for plane in model.planes:
         own(f"v_{plane.name}_normal", plane.normal)
+    for guide in model.guides:
+        own(f"v_{guide.name}_axis", guide.axes[:, 2])
     return table(names, {"direction": (np.array(directions).reshape(-1, 3), 1.0)})
 
 

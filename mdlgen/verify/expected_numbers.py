@@ -7,7 +7,8 @@ import math
 import numpy as np
 
 from mdlgen.model.curves import written
-from mdlgen.model.tables import Anchor, Model, SheetPart
+from mdlgen.model.guides import outer
+from mdlgen.model.tables import Anchor, GuidePart, Model, SheetPart
 from mdlgen.verify.bend import shape
 from mdlgen.verify.cells import cells
 from mdlgen.verify.expected import KG, SECOND, body_name
@@ -44,6 +45,8 @@ def data(model: Model) -> Table:
             found.setdefault(f"ds_{sheet.name}.real_{member}", value)
         found |= {k: v for k, v in cells(model, index).items() if k not in found}
         found |= shape(sheet)
+    for guide in model.guides:
+        found |= {f"ds_{guide.name}.real_{member}": value for member, value in _guide(guide).items()}
     for support in model.supports:
         found[f"ds_{support.name}.real_factor"] = _factor(model, support)
         found |= _place(support.name, support.at, support.edge)
@@ -59,6 +62,15 @@ def data(model: Model) -> Table:
     )
     scale = np.maximum.reduce([np.abs(numbers), np.array(angles), places]) if found else numbers
     return table(found, {"value": (numbers, scale[:, None])})
+
+
+def _guide(guide: GuidePart) -> dict[str, float]:
+    """What a text computes of a guide."""
+    if guide.radius == 0.0:
+        return {"L": guide.length}
+    turn = 2 * guide.half_angle / guide.facets
+    chord = 2 * outer(guide) * math.tan(turn / 2)
+    return {"n": float(guide.facets), "turn": turn, "R_o": outer(guide), "chord": chord}
 
 
 def _factor(model: Model, support: Anchor) -> float:
@@ -154,13 +166,15 @@ def contacts(model: Model) -> Table:
     )
     cylinders = {r.body for r in model.rollers}
 
+    guides = {g.body: [f"gbox_{g.name}_{k}" for k in range(g.facets)] for g in model.guides}
+
     def graphic(body: int) -> str:
         return f"{'gcyl' if body in cylinders else 'gbox'}_{bodies.name[body]}"
 
     names, words = [], []
     for a, b in zip(pairs.a.tolist(), pairs.b.tolist(), strict=True):
         names.append(f"con_{bodies.name[a]}_{bodies.name[b]}")
-        words.append((body_name(model, a), body_name(model, b), graphic(a), graphic(b)))
+        words.append((body_name(model, a), body_name(model, b), graphic(a), *guides.get(b, [graphic(b)])))
     for a, part in zip(outside.box.tolist(), outside.part.tolist(), strict=True):
         other = model.externals[part]
         names.append(f"con_{bodies.name[a]}_{other.name}")

@@ -162,7 +162,8 @@ def _with(owner: Any, path: Path, value: float) -> Any:
         return value
     first, rest = path[0], path[1:]
     if isinstance(owner, BaseModel):
-        return owner.model_copy(update={str(first): _with(getattr(owner, str(first)), rest, value)})
+        name = next((n for n, f in type(owner).model_fields.items() if f.alias == first), str(first))
+        return owner.model_copy(update={name: _with(getattr(owner, name), rest, value)})
     if isinstance(owner, dict):
         return {**owner, first: _with(owner[first], rest, value)}
     assert isinstance(first, int)
@@ -232,7 +233,9 @@ def as_written(scene: Scene, base: Model) -> Model:
     made = _placed(lower(scene), {r.name: r.press for r in base.rollers if r.press is not None})
     probes = tuple(_held(new, old, made) for new, old in zip(made.probes, base.probes, strict=True))
     supports = tuple(_held(new, old, made) for new, old in zip(made.supports, base.supports, strict=True))
-    made = replace(made, pairs=base.pairs, probes=probes, supports=supports)
+    shown = zip(made.guides, base.guides, strict=True)
+    guides = tuple(replace(new, facets=old.facets) for new, old in shown)
+    made = replace(made, pairs=base.pairs, probes=probes, supports=supports, guides=guides)
     if not supports:
         return made
     held = support_bushings(scene.supports, supports, made.sheets, made.bodies)

@@ -29,6 +29,7 @@ def check(model: Model, peer: str) -> None:
         "has rollers that are not pressed along z": any(
             r.press is not None and abs(r.press.direction[2]) != 1.0 for r in model.rollers
         ),
+        "has guides": bool(model.guides),
         "has planes that do not face up": any(p.normal[2] != 1.0 for p in model.planes),
     }
     for reason, found in reasons.items():

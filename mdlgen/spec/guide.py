@@ -1,0 +1,78 @@
+"""Guides: fixed plates, straight or bent to an arc, as paper paths are drawn."""
+
+from __future__ import annotations
+
+import math
+from typing import Literal
+
+from pydantic import Field, model_validator
+
+from mdlgen.spec.fields import Angle, Direction, Mass, Position, PositiveLength, Strict, default, fail
+
+SQUARE = 1e-9  # cosine of the angle by which a line may be off the normal of its axis
+
+
+class Line(Strict):
+    """A straight guide between two points in the middle of its width."""
+
+    from_: Position = Field(alias="from", description="where it begins")
+    to: Position = Field(description="where it ends")
+    axis: Direction = Field(description="across the paper; sides are as seen with the axis towards you")
+    side: Literal["left", "right", "both"] = Field(
+        description="which side is touched, on the way along it; of both the line is the middle of the plate"
+    )
+
+    @model_validator(mode="after")
+    def _direction(self) -> Line:
+        way = [b - a for a, b in zip(self.from_, self.to, strict=True)]
+        length = math.hypot(*way)
+        if length == 0.0:
+            raise fail("from and to are one point; a line needs two")
+        if abs(sum(w * a for w, a in zip(way, self.axis, strict=True))) > SQUARE * length:
+            raise fail("the line is not square to its axis; from and to must differ across the axis only")
+        return self
+
+
+class Arc(Strict):
+    """A guide bent to a part of a cylinder, of half a turn at most."""
+
+    center: Position = Field(description="on its axis, in the middle of its width")
+    axis: Direction = Field(description="across the paper; angles turn about it by the right-hand rule")
+    radius: PositiveLength = Field(
+        description="of the face that is touched; of the plate's middle where both are"
+    )
+    from_: Angle = Field(alias="from", description="where it begins, counted from global x")
+    to: Angle = Field(description="where it ends; from global y instead where the axis is near x")
+    side: Literal["inside", "outside", "both"] = Field(description="which side is touched")
+
+    @model_validator(mode="after")
+    def _turn(self) -> Arc:
+        turn = self.to - self.from_
+        if not 0.0 < turn <= math.pi * (1 + 1e-12):
+            raise fail(
+                f"the arc goes from {math.degrees(self.from_):g} to {math.degrees(self.to):g} deg; "
+                "allowed: more than 0, and 180 deg at most (give two guides for more)"
+            )
+        return self
+
+
+class Guide(Strict):
+    """A fixed plate that leads sheets."""
+
+    line: Line | None = Field(default=None, description="a straight guide")
+    arc: Arc | None = Field(default=None, description="a bent one")
+    width: PositiveLength = Field(description="length along its axis")
+    thickness: PositiveLength = Field(
+        default=default("1 mm"), description="of the plate, away from the side that is touched; 1 mm"
+    )
+    mass: Mass = Field(
+        default=default("1 g"), description="mass; of no effect on the motion, since the guide is fixed"
+    )
+
+    @model_validator(mode="after")
+    def _one(self) -> Guide:
+        if (self.line is None) == (self.arc is None):
+            raise fail("a guide is a line or an arc; give one of them")
+        if self.arc is not None and self.thickness >= self.arc.radius:
+            raise fail(f"thickness {self.thickness:g} mm is not less than the radius {self.arc.radius:g} mm")
+        return self
