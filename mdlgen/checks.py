@@ -188,7 +188,7 @@ def _idle_drive(model: Model) -> Iterator[Lint]:
         senses = np.sign(roller.corners[:, 1])
         if way is not None and roller.speed is not None and np.any(senses == -way.direction):
             yield Lint(
-                "W116",
+                "W117",
                 f"rollers.{roller.name}.one_way.direction",
                 f"the drive turns in sense {-way.direction}, in which the clutch only holds the roller back: "
                 "it never drives",

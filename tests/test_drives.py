@@ -173,7 +173,7 @@ def test_setting_one_law_removes_the_other(tmp_path: Path) -> None:
     [
         ("W108", "drive.profile", "rollers.motor.drive={profile: [[0 ms, 0 rad/s], [9 ms, 0 rad/s]]}"),
         ("W113", "drive.profile.1", "rollers.motor.drive={profile: [[0 ms, 9 rad/s], [21 ms, 0 rad/s]]}"),
-        ("W116", "one_way.direction", "rollers.motor.one_way={direction: -1, torque: 1 N*mm}"),
+        ("W117", "one_way.direction", "rollers.motor.one_way={direction: -1, torque: 1 N*mm}"),
     ],
 )
 def test_what_looks_wrong_in_a_drive_is_told(tmp_path: Path, code: str, where: str, override: str) -> None:
