@@ -54,9 +54,8 @@ def test_the_wheel_works_from_another_folder(installed, tmp_path):
 
 
 def test_the_readmes_first_scene_loads():
-    scene, sheets, parts = re.findall(
-        r"```yaml\n(.*?)```", (ROOT / "README.md").read_text("utf-8"), re.DOTALL
-    )
+    blocks = re.findall(r"```yaml\n(.*?)```", (ROOT / "README.md").read_text("utf-8"), re.DOTALL)
+    scene, sheets, guides, parts = blocks
     model = mdlgen.lower(mdlgen.loads(scene))
     assert len(scene.splitlines()) == 10
     assert mdlgen.emit(model, "motionview")
@@ -66,6 +65,11 @@ def test_the_readmes_first_scene_loads():
     own = mdlgen.lower(mdlgen.loads(json.dumps(note)))
     assert own.sheets[0].zones and own.sheets[0].bend is not None and all(own.sheets[0].graded)
     assert mdlgen.emit(own, "motionview")
+    # guides in the same scene
+    more = YAML(typ="safe").load(scene)
+    told = YAML(typ="safe").load(guides)
+    more |= {"guides": told["guides"], "contacts": more["contacts"] + told["contacts"]}
+    assert len(mdlgen.lower(mdlgen.loads(json.dumps(more))).guides) == 2
     # the part of a machine of the user's own, in the same scene
     contact = "contacts: [{between: [note, feed], stiffness: 300 N/mm^1.5}, "
     imported = mdlgen.lower(mdlgen.loads(scene.replace("contacts: [", parts + contact)))

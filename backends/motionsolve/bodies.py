@@ -76,7 +76,8 @@ def _add_facets(deck: Deck, model: Model) -> None:
     """The boxes that show guides, each round a marker of its own."""
     for guide, ids in zip(model.guides, facet_ids(model), strict=True):
         for k, (facet, id) in enumerate(zip(facets(guide), ids, strict=True)):
-            name, label = f"gbox_{guide.name}_{k}", f"{guide.name}, part {k}"
+            part = "" if guide.radius == 0.0 else f", part {k}"
+            name, label = f"gbox_{guide.name}_{k}", f"{guide.name}{part}"
             (at,) = triples(facet.center[None])
             axes = cosines(facet.rotation)
             marker = deck.marker(

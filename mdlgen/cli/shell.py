@@ -97,7 +97,7 @@ def _located(error: MdlgenError, spec: Path | None) -> MdlgenError:
         return error
 
 
-COMPILING = "compiling the solver, once on this machine (one to two minutes)"
+COMPILING = "compiling the solver, once on this machine (about two minutes)"
 ABOUT = 180  # parts of it
 
 
