@@ -112,7 +112,8 @@ def _facets(model: Model) -> Iterator[Lint]:
         if sheet.count == 1:
             continue
         across = [abs(float(roller.axis @ sheet.rotation[:, k])) for k in range(2)]
-        length = sheet.d_x if across[0] <= across[1] else sheet.d_y
+        axis = 0 if across[0] <= across[1] else 1
+        length = float(2 * model.bodies.half[sheet.first : sheet.first + sheet.count, axis].max())
         if roller.radius < length / 2:
             yield Lint(
                 "W104",

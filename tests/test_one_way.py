@@ -18,23 +18,9 @@ from mdlgen.registry import emitter
 from mdlgen.results.compare import compare
 from mdlgen.results.result import Result
 from mdlgen.spec.load import loads
+from tests.nip import FORTH_AND_BACK
 
-# the motor drives forth and back; friction on the idler is 0.8 of some 3 N
-SCENE = """
-name: one_way
-materials:
-  paper: {E_md: 3530 MPa, E_cd: 1113 MPa, k_tx: 0.15 N*mm/rad, k_ty: 0.185 N*mm/rad, k_tz: 5 N*mm/rad}
-sheets:
-  note: {material: paper, size: [67 mm, 30 mm], thickness: 0.1 mm, mass: 0.17 g, boxes: [6, 3]}
-rollers:
-  motor: {center: [0 mm, 0 mm, -7.5 mm], axis: y, radius: 7.5 mm, width: 20 mm, mass: 10 g,
-    drive: {profile: [[0 ms, 0 rad/s], [5 ms, 100 rad/s], [8 ms, 100 rad/s], [12 ms, -60 rad/s]]}}
-  idler: {center: [0 mm, 0 mm, 5 mm], axis: y, radius: 5 mm, width: 20 mm, mass: 5 g,
-    press: {direction: -z, stiffness: 0.3 N/mm, preload: 3 N}}
-contacts: [{between: [note, "*r"], stiffness: 300 N/mm^1.5, friction: 0.8, smoothing: 10 mm/s}]
-run: {duration: 20 ms, print_step: 0.1 ms}
-"""
-CREEP, TORQUE = 1e-4, 40.0  # rad/ms, N mm: more than friction and inertia can bring up
+CREEP, TORQUE = 1e-4, 40.0  # rad/ms, N mm: more than friction, 0.8 of some 3 N, and inertia can bring up
 WAY = "{direction: %d, torque: 40 N*mm, creep: 0.1 rad/s}"
 BACKSTOP = f"rollers.idler.one_way={WAY % -1}"
 # the idler is driven, first slower than the motor's shaft, then faster, then slower again
@@ -47,7 +33,7 @@ SOLVERS = ("lattice", "exudyn")
 
 
 def model(*overrides: str) -> Model:
-    return lower(loads(SCENE, "one_way", overrides))
+    return lower(loads(FORTH_AND_BACK, "one_way", overrides))
 
 
 def solved(made: Model, solver: str) -> Result:

@@ -170,13 +170,9 @@ class Written(NamedTuple):
     sheet: int
     number: int
     joints: str  # class of the joints where a sheet has classes, else empty
+    axis: str  # x or y
     length: float  # of a joint, half cells made whole [mm]
     area: float  # of one bushing [mm^2]
-
-    @property
-    def axis(self) -> str:
-        """x or y."""
-        return "xy"[WAYS.index(self.name.removesuffix(f"_{self.joints}").rpartition("_")[2])]
 
 
 def written(model: Model) -> tuple[list[Written], Ints]:
@@ -188,21 +184,20 @@ def written(model: Model) -> tuple[list[Written], Ints]:
         mine = np.flatnonzero(curves.of == number)
         index = int(rows.sheet[mine[0]])
         sheet = model.sheets[index]
-        if sheet.uniform:
-            groups = {"": mine}
-        else:
+        groups: dict[str, list[int]] = {"": mine.tolist()} if sheet.uniform else {}
+        if not sheet.uniform:
             own = np.flatnonzero((rows.sheet == index) & (rows.kind != SUPPORT))
             names = [classes[k].name for _, classes, which in joint_classes(sheet) for k in which.tolist()]
-            groups: dict[str, Ints] = {}
             for row, joints in zip(own.tolist(), names, strict=True):
                 if curves.of[row] == number:
-                    groups[joints] = np.append(groups.get(joints, np.zeros(0, np.int64)), row)
+                    groups.setdefault(joints, []).append(row)
         for joints, members in groups.items():
-            first = int(members[0])
+            first = members[0]
             halves = 2.0 if rows.kind[first] == CLAMP else 1.0
             of[members] = len(found)
             length, area = halves * float(curves.length[first]), float(curves.area[first])
-            found.append(Written(f"{name}_{joints}" if joints else name, index, number, joints, length, area))
+            axis, told = "xy"[int(curves.axis[first])], f"{name}_{joints}" if joints else name
+            found.append(Written(told, index, number, joints, axis, length, area))
     return found, of
 
 

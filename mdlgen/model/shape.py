@@ -239,6 +239,7 @@ class GroundFrame(NamedTuple):
 
     name: str
     label: str
+    point: str  # that it stands on, of its own; empty: the sheet's
     origin: Floats  # global [mm], (3,)
     axes: Floats  # (3, 3)
 
@@ -253,6 +254,7 @@ def ground_frames(model: Model, index: int) -> list[GroundFrame]:
         GroundFrame(
             f"m_{sheet.name}_f{k}",
             f"Frame {k} of {sheet.name}",
+            f"p_{sheet.name}_f{k}",
             sheet.center + sheet.rotation @ frames.origin[k],
             sheet.rotation @ frames.rotation[k],
         )
@@ -263,5 +265,6 @@ def ground_frames(model: Model, index: int) -> list[GroundFrame]:
     for (one, two), row in sorted(pairs.items()):
         if one != two:
             label = f"Between frames {one} and {two} of {sheet.name}"
-            found.append(GroundFrame(f"m_{sheet.name}_h{one}_{two}", label, sheet.center, table.axes[row]))
+            name = f"m_{sheet.name}_h{one}_{two}"
+            found.append(GroundFrame(name, label, "", sheet.center, table.axes[row]))
     return found

@@ -95,6 +95,13 @@ class Result:
 
         return strains(self, limits(self.model.curves))
 
+    @cached_property
+    def events(self) -> list[dict[str, Any]]:
+        """What happened to the sheets, by time; worked out when first asked for, and kept."""
+        from mdlgen.results.events import events
+
+        return events(self)
+
     def anchor_motion(self, index: int) -> tuple[Floats, Floats]:
         """Position [mm] and velocity [mm/ms] of probe `index` at the stored times, (t, 3) each."""
         from scipy.spatial.transform import Rotation

@@ -9,7 +9,6 @@ import numpy as np
 
 from mdlgen.model.tables import Floats, GuidePart, RollerPart
 from mdlgen.results.compare import travel
-from mdlgen.results.events import events
 from mdlgen.results.result import Result
 from mdlgen.version import version
 
@@ -45,7 +44,7 @@ def summary(result: Result) -> dict[str, Any]:
             "driven": energy.driven,
             "balance_error": energy.balance_error,
         },
-        "events": events(result),
+        "events": result.events,
         "sheets": {s.name: _sheet(result, k) for k, s in enumerate(model.sheets)},
         "rollers": {r.name: _roller(result, r) for r in model.rollers},
         "guides": {g.name: {"contacts": _contacts(result, part_rows(result, g))} for g in model.guides},

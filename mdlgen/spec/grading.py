@@ -75,3 +75,9 @@ class Grading(Strict):
 
     x: Graded | None = Field(default=None, description="along x (MD), from x_min")
     y: Graded | None = Field(default=None, description="along y (CD), from y_min")
+
+    @model_validator(mode="after")
+    def _some(self) -> Grading:
+        if self.x is None and self.y is None:
+            raise fail("give lengths along x, along y or both, or leave grading out")
+        return self

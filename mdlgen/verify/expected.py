@@ -96,8 +96,9 @@ def _points(model: Model) -> Table:
         first = {naming.node(sheet, x, y, (one, two)): row for (x, y), (one, two), row in ends}
         names += [f"p_{name}" for name in first]
         places.append(joints.origin[list(first.values())])
-        names += [f"p_{sheet.name}_f{k}" for k in range(1, len(_frames(sheet)))]
-        places += [(sheet.center + sheet.rotation @ origin)[None] for origin, _ in _frames(sheet)[1:]]
+        frames = [frame for frame in ground_frames(model, index) if frame.point]
+        names += [frame.point for frame in frames]
+        places += [frame.origin[None] for frame in frames]
     for name, anchor in [(s.name, s) for s in model.supports] + [
         (f"probe_{p.name}", p) for p in model.probes
     ]:
@@ -118,13 +119,6 @@ def _points(model: Model) -> Table:
         names += [f"p_{guide.name}", *(f"p_{guide.name}_{k}" for k in range(guide.facets))]
         places += [guide.center[None], *(facet.center[None] for facet in facets(guide))]
     return table(names, {"at": (np.concatenate(places), reach(model))})
-
-
-def _frames(sheet: SheetPart) -> list[tuple[Floats, Floats]]:
-    """Origin and rotation of each frame that a text has a marker for, sheet axes; the first is the sheet."""
-    if sheet.bend is None or sheet.bend.start == "flat":
-        return []
-    return list(zip(sheet.bend.frames.origin, sheet.bend.frames.rotation, strict=True))
 
 
 def _bodies(model: Model) -> Table:
