@@ -7,7 +7,7 @@ pressed ones also slide (one more): the border of the matrix. Everything else is
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -16,6 +16,9 @@ from mdlgen.mechanics.driven import DRIVEN, drive
 from mdlgen.mechanics.laws import damping_share
 from mdlgen.model.rotations import matrices
 from mdlgen.model.tables import GROUND, Floats, Ints, Model
+
+if TYPE_CHECKING:
+    from backends.lattice.mirror import Mirror
 
 BODY = np.dtype(
     [
@@ -47,6 +50,7 @@ JOINT = np.dtype(
         ("e", "f8", 3),  # from the middle to one of two equal bushings, in bushing axes; 0: one bushing
         ("k", "f8", 6),  # sums of both
         ("c", "f8", 6),
+        ("mirrored", "i8"),  # one end is the image of the other, see mirror
         *FOLLOWS,
     ]
 )
@@ -61,6 +65,8 @@ PAIR = np.dtype(
         ("law", "f8", 6),  # as in mechanics.contact
     ]
 )
+# A body is seen in the plane normal . x = at; its axes are those of the other one seen there, times `signs`.
+IMAGE = np.dtype([("body", "i8"), ("of", "i8"), ("normal", "f8", 3), ("at", "f8"), ("signs", "f8", 3)])
 LOAD = np.dtype([("body", "i8"), ("local", "f8", 3), ("force", "f8", 3), ("moment", "f8", 3)])
 
 
@@ -78,11 +84,14 @@ class System(NamedTuple):
     border: int  # unknowns of rollers
     folded: int  # bushings that share a joint with another one
     points: np.ndarray  # of the curves that joints follow, mechanics.curve.POINT
+    images: np.ndarray  # IMAGE: of boxes that joints of a halved scene need
+    mirror: Mirror | None  # the plane that halves it, None: this is the whole
 
     @property
     def tables(self) -> tuple[np.ndarray, ...]:
         """What compiled code takes first."""
-        return self.bodies, self.joints, self.pairs, self.loads, self.gravity, self.nodes, self.points
+        places = (self.nodes, self.points, self.images)
+        return self.bodies, self.joints, self.pairs, self.loads, self.gravity, *places
 
 
 def build(model: Model, fold: bool = True) -> System:
@@ -97,10 +106,12 @@ def build(model: Model, fold: bool = True) -> System:
         gravity=np.array(model.gravity),
         nodes=nodes,
         sheets=np.searchsorted([s.first for s in model.sheets], nodes, side="right") - 1,
-        reach=_reach(bodies, joints),
+        reach=reach(bodies, joints),
         border=border,
         folded=folded,
         points=curve_points(model.curves),
+        images=np.zeros(0, IMAGE),
+        mirror=None,
     )
 
 
@@ -218,7 +229,8 @@ def _loads(model: Model) -> np.ndarray:
     return loads
 
 
-def _reach(bodies: np.ndarray, joints: np.ndarray) -> int:
+def reach(bodies: np.ndarray, joints: np.ndarray) -> int:
+    """How many nodes apart two are that a joint couples, at most."""
     a, b = bodies["node"][joints["a"]], bodies["node"][joints["b"]]
     both = (a >= 0) & (b >= 0)
     return int(np.abs(a - b)[both].max(initial=0))

@@ -35,7 +35,7 @@ _LOST = 1e30  # N, and parts of a box: what a run does not come back from
 def _residual(system, level, place, lists, blank, rest):
     """Forces on the free boxes and on slides into `rest`. Returns the largest [N], with torques over half a
     box, its body, and how many contacts touch."""
-    bodies, joints, pairs, loads, gravity, nodes, points = system
+    bodies, joints, pairs, loads, gravity, nodes, points, _images = system
     x, r, s = place
     touched, outs, near = lists
     still, f = blank
@@ -131,7 +131,7 @@ def equilibrium(system, border, height, level, load, least, reach, x, r, s, list
     diagonal (for sheets that nothing but contacts holds), `reach` [mm] the longest step. Returns (whether
     balance was found, rounds, the body that is pushed most, and by how much of the load).
     """
-    bodies, joints, pairs, loads, _, nodes, points = system
+    bodies, joints, pairs, loads, _, nodes, points, _images = system
     many, size = nodes.size, 6 * nodes.size
     a, links, band = np.zeros((many, 6, height)), np.zeros((many, 6, height)), np.zeros((many, 6, height))
     b, d = np.zeros((border, size)), np.zeros((border, border))

@@ -7,13 +7,14 @@ import math
 from numba import njit
 
 from backends.lattice.band import solve
+from backends.lattice.dense import copy
 
 
 @njit(cache=True, error_model="numpy")
 def eliminate(a, b, d, y, corner):
     """Y = A^-1 B (rows of y) and the factored corner D - B Y. Returns False where that is not regular."""
     many = d.shape[0]
-    corner[:] = d
+    copy(corner, d)
     for j in range(many):
         first = 0
         while first < b.shape[1] and b[j, first] == 0.0:

@@ -5,6 +5,14 @@ from __future__ import annotations
 from numba import njit
 
 
+@njit(cache=True, error_model="numpy")
+def copy(into, of):
+    """Copies one whole array; a loop, since an assignment of slices brings the texts of its errors along."""
+    a, b = into.ravel(), of.ravel()
+    for i in range(a.size):
+        a[i] = b[i]
+
+
 @njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False)
 def lu(jac, swaps, many):
     """Factors in place, with row exchange, four columns at a time. Returns False where that fails."""

@@ -6,6 +6,7 @@ import math
 
 from numba import njit
 
+from backends.lattice.image import reflect, reflect_rates
 from mdlgen.mechanics.bushing import bushing_pair
 from mdlgen.mechanics.contact import MOST_POINTS, OUT, POINT
 from mdlgen.mechanics.curve import curve_excess
@@ -56,7 +57,7 @@ def place_roller(body, b, h, t, rate, turning, x, xm, um, wm):
 
 
 @njit(cache=True, error_model="numpy")
-def place(bodies, nodes, h, t, u, ub, x, r, xm, rm, um, wm):
+def place(bodies, nodes, images, h, t, u, ub, x, r, xm, rm, um, wm):
     """The state after h at the velocities u (nodes, 6) and ub (border,), from positions x and rotations
     r: xm, rm, and the velocities of all bodies um, wm."""
     for n in range(nodes.size):
@@ -68,6 +69,8 @@ def place(bodies, nodes, h, t, u, ub, x, r, xm, rm, um, wm):
         rate = ub[body.slide] if body.slide >= 0 else 0.0
         turning = ub[body.spin] if body.spin >= 0 else 0.0
         place_roller(body, b, h, t, rate, turning, x, xm, um, wm)
+    reflect(images, xm, rm)
+    reflect_rates(images, um, wm)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -80,7 +83,8 @@ def _add(f, b, force, torque):
 @njit(cache=True, error_model="numpy")
 def joint_forces(joints, points, x, r, u, w, f, lag=0.0):
     """Adds the forces of all joints to f (bodies, 6), with `lag` [ms] times the stiffness on top of the
-    damping. `points` are those of the curves that some follow. Returns (stored energy, dissipated power)."""
+    damping. `points` are those of the curves that some follow. Returns (stored energy, dissipated power), of
+    a joint that ends at an image only the half."""
     stored = lost = 0.0
     last = x.shape[0] - 1
     for j in range(joints.size):
@@ -113,13 +117,14 @@ def joint_forces(joints, points, x, r, u, w, f, lag=0.0):
         )
         _add(f, a, (-force[0], -force[1], -force[2]), torque_a)
         _add(f, b, force, torque_b)
-        stored += energy
-        lost += power
+        part = 1.0 if joint.mirrored == 0 else 0.5
+        stored += part * energy
+        lost += part * power
         if joint.first >= 0:
             force, torque_b, torque_a, energy = curve_excess(points, joint, middle, gap, ra, rb)
             _add(f, a, (-force[0], -force[1], -force[2]), torque_a)
             _add(f, b, force, torque_b)
-            stored += energy
+            stored += part * energy
     return stored, lost
 
 

@@ -6,6 +6,7 @@ import math
 
 from numba import njit
 
+from backends.lattice.dense import copy
 from backends.lattice.step import ROUNDS, STEPS, STRAIN, TOUCHING, WORST, carry, midpoint, spun
 from mdlgen.mechanics.curve import overstretched
 from mdlgen.mechanics.driven import clutch, prescribed
@@ -143,7 +144,7 @@ def run(
     what a guess is made from: the velocities of the step before the last, the size of the last step, and the
     time from the middle of the one to the middle of the other (0: there is none).
     """
-    bodies, joints, pairs, loads, gravity, nodes, points = system
+    bodies, joints, pairs, loads, gravity, nodes, points, images = system
     x, r, v, l, s, vb, u, ub = state
     keep_u, keep_b, guess = u.copy(), ub.copy(), u.copy()
     last_u, last_b, spans = before
@@ -153,7 +154,8 @@ def run(
             level = int(pace[0])
             size = 1 << (DEEPEST - level)
             dt = whole / (1 << level)
-            keep_u[:], keep_b[:] = u, ub
+            copy(keep_u, u)
+            copy(keep_b, ub)
             if spans[1] > 0.0:
                 ahead = 0.5 * (dt + spans[0]) / spans[1]
                 for n in range(u.shape[0]):
@@ -161,7 +163,7 @@ def run(
                         u[n, i] += ahead * (u[n, i] - last_u[n, i])
                 for i in range(ub.size):
                     ub[i] += ahead * (ub[i] - last_b[i])
-            guess[:] = u
+            copy(guess, u)
             if pace[2] != 0.0:
                 fresh[1] = 1.0
             rounds = counters[ROUNDS]
@@ -171,14 +173,16 @@ def run(
             most = pace[1] * max(fast, pace[3]) if pace[1] > 0.0 else 1e300
             deep = _deep(bodies, pairs, mid, int(counters[TOUCHING])) if solved else -1
             if not solved or ((missed > AGAIN * most or deep >= 0) and level < FINEST):
-                u[:], ub[:] = keep_u, keep_b
+                copy(u, keep_u)
+                copy(ub, keep_b)
                 if level == DEEPEST:
                     return STOPPED, t
                 pace[0] = level + 1
                 if not solved:
                     spans[1] = 0.0
                 continue
-            last_u[:], last_b[:] = keep_u, keep_b
+            copy(last_u, keep_u)
+            copy(last_b, keep_b)
             # between the middles of the two steps
             spans[1] = 0.5 * (spans[0] + dt)
             spans[0] = dt

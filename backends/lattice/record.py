@@ -25,7 +25,7 @@ class Recorder:
         """The state at the end of a step."""
         from backends.lattice.compiled import observe
 
-        bodies, joints, pairs, _, gravity, nodes, points = self.tables
+        bodies, joints, pairs, _, gravity, nodes, points, _ = self.tables
         x, r, v, l, s, vb, _, _ = self.state
         _, _, u, w, f, touched, outs, _, near = self.mid
         count = len(self.model.bodies.name)
@@ -35,6 +35,11 @@ class Recorder:
         work = (u, w, f, touched, outs, near)
         sheets = (bodies, joints, points)
         observe.ledger(*sheets, pairs, gravity, nodes, t, *places, *rates, *work, energies, force)
+        mirror, told = self.system.mirror, self.kept[0][:, 5].copy()
+        if mirror is not None:
+            mirror.fill(x, r, u, w)
+            energies *= 2.0
+            force, told = mirror.sums(force), mirror.sums(told)
         now = (float(energies[0]), float(energies[1]), float(energies[2]))
         if self._first is None:
             self._first = now
@@ -44,11 +49,18 @@ class Recorder:
         for name, array in (("x", x), ("r", r), ("u", u), ("w", w)):
             self._stored[name].append(array[:count].copy())
         # forces are those in the middle of the last step, where the rule has them; at the start as it begins
-        self._stored["f"].append(force if t == 0.0 else self.kept[0][:, 5].copy())
+        self._stored["f"].append(force if t == 0.0 else told)
 
     def result(self, solver: str, reason: str | None, work: np.ndarray) -> Result:
         """The Result in mm, N, g, ms."""
         rows, marks = self.kept
+        mirror, touched = self.system.mirror, marks
+        if mirror is not None:
+            touched = marks * mirror.sides(self.system)
+            summed = (1, 3, 5)  # forces; depths and times hold for both sides
+            columns = enumerate(rows.T)
+            rows = np.array([(mirror.sums if k in summed else mirror.largest)(c) for k, c in columns]).T
+            work = 2.0 * work
         inside = np.where(rows[:, 4] > 0, rows[:, 4], 1.0)
         held = {name: np.array(values) for name, values in self._stored.items()}
         return Result(
@@ -68,9 +80,10 @@ class Recorder:
                 mean_force=rows[:, 3] / inside,
                 last_force_at=np.where(rows[:, 7] != 0, np.nan, rows[:, 8]),
             ),
-            touched=int(marks.sum()),
+            touched=int(touched.sum()),
             energy=self._balance(work),
             versions=_versions(),
+            halved=mirror is not None,
         )
 
     def _balance(self, work: np.ndarray) -> Energy:

@@ -12,9 +12,11 @@ from typing import Any
 import numpy as np
 
 from backends.lattice.arrays import System, build
+from backends.lattice.mirror import halve
 from backends.lattice.record import Recorder
 from backends.lattice.scope import check
 from backends.lattice.static import rest
+from backends.lattice.symmetry import find
 from mdlgen.mechanics import compiling
 from mdlgen.model.curves import overstretched
 from mdlgen.model.tables import Floats, Model
@@ -41,7 +43,7 @@ Progress = Callable[[float, float, int, int], None]
 
 
 # Rules that leave out what a run does not need, each of which a run can do without.
-FOLDING, FACTORS = "folding", "factors"
+FOLDING, FACTORS, SYMMETRY = "folding", "factors", "symmetry"
 
 
 def solve(
@@ -58,7 +60,8 @@ def solve(
     times that of the finer one where halving quarters the error. A failed run returns a Result with its
     reason; RefusedError is raised for what the solver cannot represent.
 
-    `without` names rules that are not to be used: FOLDING of equal bushings, keeping of FACTORS over steps.
+    `without` names rules that are not to be used: FOLDING of equal bushings, keeping of FACTORS over steps,
+    SYMMETRY of both sides.
     """
     check(model)
     started = clock.perf_counter()
@@ -76,6 +79,9 @@ def solve(
     with compiling.told():
         _warm(model, system)
     compile_s = clock.perf_counter() - compiled
+    mirror = None if SYMMETRY in without else find(model, system)
+    if mirror is not None:
+        system = halve(system, mirror)
     build_s = clock.perf_counter() - started - compile_s
     wanted = step or model.run.step
     begun = clock.perf_counter()
@@ -216,6 +222,8 @@ def start(model: Model, system: System) -> tuple:
     for roller in model.rollers:
         if roller.one_way is not None and roller.speed is not None:  # it begins with its shaft
             at = system.bodies["spin"][roller.body]
+            if at < 0:
+                continue  # left out, see mirror
             state[5][at] = state[7][at] = roller.prescribed(0.0)
     return state, mid, matrix
 
@@ -235,7 +243,7 @@ def _reason(
         )
     if status == march.DEEP:
         pair = int(counters[step.WORST])
-        box, plate = names[int(model.pairs.a[pair])], model.plate(int(model.pairs.b[pair]))
+        box, plate = names[int(system.pairs["a"][pair])], model.plate(int(system.pairs["b"][pair]))
         return (
             f"box {box} is more than half of its thickness into {plate} at {t:.6g} ms; "
             "a stiffer contact or a smaller run.step would hold it"

@@ -20,6 +20,7 @@ from backends.lattice import band
 from backends.lattice.alone import APART, INSIDE, PLANES, choose, columns, forget, release, unsee
 from backends.lattice.band import factor, solve
 from backends.lattice.border import eliminate, solve_bordered
+from backends.lattice.dense import copy
 from backends.lattice.forces import (
     clutch_torques,
     joint_forces,
@@ -29,6 +30,7 @@ from backends.lattice.forces import (
     pair_forces_again,
     place,
 )
+from backends.lattice.image import reflect
 from backends.lattice.momentum import keep
 from backends.lattice.tangent import contacts_into, in_box_axes, joints_into, masses, rollers_into
 from backends.lattice.touching import settle
@@ -106,7 +108,7 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
     `fresh` (3,): the step that the factor was made for (0: none), whether it should be made anew, and where
     contacts stand (see alone.APART).
     """
-    bodies, joints, pairs, loads, gravity, nodes, points = system
+    bodies, joints, pairs, loads, gravity, nodes, points, images = system
     x, r, v, l, s, vb, u, ub = state
     xm, rm, um, wm, f, touched, outs, totals, near = mid
     a, b, d, y, corner, res, resb, direction, index = matrix
@@ -118,7 +120,7 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
     close, where, m = 0, int(fresh[2]), 0
     margin, moved = FAR, 0.0
     for rounds in range(MOST_ROUNDS):
-        place(bodies, nodes, h, t + h, u, ub, x, r, xm, rm, um, wm)
+        place(bodies, nodes, images, h, t + h, u, ub, x, r, xm, rm, um, wm)
         if rounds == 0 or margin < dt * moved:
             # what the guess did not know of may move further than it said
             margin = FAR + 2.0 * dt * moved
@@ -153,7 +155,7 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
         if fresh[0] != dt or fresh[1] != 0.0 or fresh[2] != where:
             counters[FACTORS] += 1
             masses(bodies, nodes, rm, a)
-            joints_into(bodies, joints, points, h, lag, xm, rm, a)
+            joints_into(bodies, joints, points, images, h, lag, xm, rm, a)
             rollers_into(bodies, h, t + h, ub, b, d)
             if where != APART:
                 chord = MUCH if careful > 0 else LITTLE
@@ -172,7 +174,7 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
         counters[ROUNDS] += 1
         # what is free converges fast, and keeps its angular momentum as well as the rounds end
         limit = tolerance if count > 0 else FREE * tolerance
-        free[3][:] = res
+        copy(free[3], res)
         _turn(nodes, r, res, True)
         if where == INSIDE:
             solve_bordered(a, b, y, corner, res, resb)
@@ -212,7 +214,7 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
         moved += change
         if dt * moved <= margin and (change <= limit or (falls and change * rate / (1.0 - rate) <= limit)):
             # forces change much with what the last round changed: friction, over its smoothing speed
-            place(bodies, nodes, h, t + h, u, ub, x, r, xm, rm, um, wm)
+            place(bodies, nodes, images, h, t + h, u, ub, x, r, xm, rm, um, wm)
             f[:] = 0.0
             count, _pressed, rubbed = pair_forces(
                 bodies, pairs, near, close, xm, rm, um, wm, f, touched, outs
@@ -250,7 +252,7 @@ def spun(body, u, v, t, dt):
 @njit(cache=True, error_model="numpy")
 def carry(system, state, mid, t, dt):
     """From the middle to the end of a step."""
-    bodies, joints, pairs, loads, gravity, nodes, points = system
+    bodies, joints, pairs, loads, gravity, nodes, points, images = system
     x, r, v, l, s, vb, u, ub = state
     for n in range(nodes.size):
         b = nodes[n]
@@ -265,6 +267,7 @@ def carry(system, state, mid, t, dt):
             x[b, i] += dt * u[n, i]
             v[n, i] = 2.0 * u[n, i] - v[n, i]
             l[n, i] = 2.0 * p[i] - l[n, i]
+    reflect(images, x, r)
     for k in range(bodies.size - 1):
         slide, spin_at = bodies[k].slide, bodies[k].spin
         if slide >= 0:

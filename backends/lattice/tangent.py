@@ -19,6 +19,7 @@ from mdlgen.mechanics.pair import on_plate
 from mdlgen.mechanics.vector import (
     add,
     back,
+    dot,
     exp_rotation,
     log_rotation,
     mat,
@@ -87,6 +88,30 @@ def hat_left(q, t):
 
 
 @njit(cache=True, error_model="numpy")
+def _along(t, n, times):
+    """What a symmetric matrix that has n as an axis does along it."""
+    v = times * dot(n, rotate(t, n))
+    x, y, z = n
+    return (v * x * x, v * x * y, v * x * z, v * y * x, v * y * y, v * y * z, v * z * x, v * z * y, v * z * z)
+
+
+@njit(cache=True, error_model="numpy")
+def _less(times, a, b):
+    """times a - b, matrices row by row."""
+    return (
+        times * a[0] - b[0],
+        times * a[1] - b[1],
+        times * a[2] - b[2],
+        times * a[3] - b[3],
+        times * a[4] - b[4],
+        times * a[5] - b[5],
+        times * a[6] - b[6],
+        times * a[7] - b[7],
+        times * a[8] - b[8],
+    )
+
+
+@njit(cache=True, error_model="numpy")
 def _blocks(a, column, offset, sign, t, q, p, g):
     """Adds sign (P_q^T t P_p + g) with P_q = [1, -[q]x] to the block of `column` whose rows begin at
     `offset`: rows are of the body with arm q, columns of that with arm p."""
@@ -115,7 +140,7 @@ def masses(bodies, nodes, r, a):
 
 
 @njit(cache=True, error_model="numpy")
-def joints_into(bodies, joints, points, h, lag, x, r, a):
+def joints_into(bodies, joints, points, images, h, lag, x, r, a):
     """Adds h (C + lag K) + h^2 K of all joints, where K of a joint that follows a curve is its slope now."""
     last = x.shape[0] - 1
     for i in range(joints.size):
@@ -151,6 +176,11 @@ def joints_into(bodies, joints, points, h, lag, x, r, a):
         t = _conjugate(m, s)
         full = (ee[0], ee[1], ee[2], ee[1], ee[3], ee[4], ee[2], ee[4], ee[5])
         g = matmul(matmul(m, full), (m[0], m[3], m[6], m[1], m[4], m[7], m[2], m[5], m[8]))
+        if joint.mirrored != 0:
+            # the far end moves as this one does, seen in the mirror: P_b [S, -S] = S P_a with S = 1 - 2 n n^T
+            n = three(images[0].normal)
+            t = _along(t, n, 2.0)
+            g = _less(2.0, g, _along(g, n, 2.0))
         if na >= 0:
             _blocks(a, na, 0, 1.0, t, qa, qa, g)
         if nb >= 0:

@@ -198,7 +198,7 @@ def settle(system, alone, m, where, h, t, state, mid, near, known, rest, limits)
     how many). `rest` is what the lattice alone would lose of its velocities, in box axes (6 nodes,), and the
     rollers' residual; both become what is to be taken off.
     """
-    bodies, _joints, pairs, _loads, _gravity, nodes, _points = system
+    bodies, _joints, pairs, _loads, _gravity, nodes, _points, _images = system
     _x, r, _u, ub = state
     res, resb = rest
     limit, strict = limits

@@ -101,7 +101,7 @@ def lower(scene: Scene) -> Model:
 def _run(scene: Scene) -> RunSettings:
     run = scene.run
     print_step = run.print_step if run.print_step is not None else run.duration / 200
-    return RunSettings(run.duration, run.analysis, run.step, run.tolerance, print_step)
+    return RunSettings(run.duration, run.analysis, run.step, run.tolerance, print_step, run.symmetry)
 
 
 def _sheets(scene: Scene) -> tuple[tuple[SheetPart, ...], list[Cells]]:

@@ -431,6 +431,7 @@ class RunSettings:
     step: float | None
     tolerance: float
     print_step: float
+    symmetry: bool  # a scene that is its own mirror image may be halved
 
 
 @dataclass(frozen=True)

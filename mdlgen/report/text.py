@@ -120,6 +120,8 @@ def summary_text(told: dict[str, Any]) -> str:
         f"after {told['build_s']:.2g} s to build and {told['compile_s']:.2g} s to compile",
         f"pairs: {pairs['possible']} possible, {pairs['kept']} kept, {pairs['touched']} touched",
     ]
+    if told["halved"]:
+        lines.append("one side was solved, the other is its mirror image (run.symmetry: false solves both)")
     for name, sheet in told["sheets"].items():
         lines.append(
             f"sheet {name}: travel {_vector(sheet['travel_mm'])} mm, "

@@ -65,6 +65,7 @@ class Result:
     build_s: float = 0.0
     compile_s: float = 0.0
     error_estimate: float | None = None  # relative to max(travel, sheet length / 10)
+    halved: bool = False  # one side was solved, the other is its mirror image
     versions: dict[str, str] = field(default_factory=dict)
 
     @property

@@ -35,6 +35,7 @@ def summary(result: Result) -> dict[str, Any]:
         "compile_s": result.compile_s,
         "build_s": result.build_s,
         "pairs": {"possible": model.pairs.possible, "kept": len(model.pairs), "touched": result.touched},
+        "halved": result.halved,
         "error_estimate": result.error_estimate,
         "tolerance": model.run.tolerance,
         "energy": {

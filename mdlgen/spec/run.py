@@ -22,6 +22,9 @@ class Run(Strict):
         default=None, description="time between outputs; duration / 200 where left out"
     )
     prune: bool = Field(default=True, description="leave out contacts of pairs that cannot touch")
+    symmetry: bool = Field(
+        default=True, description="solve one half of a scene that is its own mirror image (lattice)"
+    )
     margin: PositiveLength = Field(
         default=default("5 mm"), description="added to the swept bounds from which contacts are kept"
     )

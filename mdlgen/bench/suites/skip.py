@@ -41,7 +41,11 @@ def near(result: Result, reference: Result | None) -> list[Finding]:
 
 # What a solver does by itself and can do without: its name there, what it is, what a run without it gives.
 OWN: dict[str, tuple[tuple[str, str, Measure], ...]] = {
-    "lattice": (("folding", "folded bushings", unchanged), ("factors", "kept factors", near))
+    "lattice": (
+        ("folding", "folded bushings", unchanged),
+        ("factors", "kept factors", near),
+        ("symmetry", "a half of what is symmetric", near),
+    )
 }
 
 

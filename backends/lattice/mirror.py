@@ -1,0 +1,113 @@
+"""Scenes that are their own mirror image: one half is solved, the other one is what a mirror shows of it.
+
+A machine for paper is often the same left and right of a plane along the path, and so is what happens in it.
+Boxes, rollers and contacts on one side are left out; a box at the plane is joined to its own image. Nothing
+is approximated: the equations of the half are those of the whole for every motion that is symmetric, and a
+scene that begins so stays so. What cannot appear is an asymmetry that grows out of round-off, such as
+buckling to a side; with `run.symmetry: false` both halves are solved.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from backends.lattice.arrays import IMAGE, System, reach
+from mdlgen.model.tables import Floats, Ints
+
+
+@dataclass(frozen=True)
+class Mirror:
+    """The plane normal . x = at, and what is seen of what in it."""
+
+    normal: Floats  # (3,)
+    at: float  # [mm]
+    image: Ints  # of each body; of one that stands in the plane, itself
+    signs: Floats  # axes of an image are those of the body seen, times these, (bodies, 3)
+    gone: NDArray[np.bool_]  # bodies that are left out, (bodies,)
+    boxes: NDArray[np.bool_]  # bodies that are boxes of sheets
+    rows: Ints  # row of the contacts that tells of each row: itself, or its image
+    times: Floats  # 2 for a row that is its own image, else 1
+
+    def seen(self, vectors: Floats) -> Floats:
+        """Vectors (..., 3) as the mirror shows them."""
+        return vectors - 2.0 * (vectors @ self.normal)[..., None] * self.normal
+
+    def places(self, points: Floats) -> Floats:
+        """Points (..., 3) [mm] as the mirror shows them."""
+        return self.seen(points) + 2.0 * self.at * self.normal
+
+    def axes(self, rotations: Floats) -> Floats:
+        """Axes (n, 3, 3), in columns, as the mirror shows them: no rotations."""
+        return self.seen(rotations.transpose(0, 2, 1)).transpose(0, 2, 1)
+
+    def fill(self, x: Floats, r: Floats, u: Floats, w: Floats) -> None:
+        """Sets the bodies that are left out: places, rotations (bodies, 9) of boxes, velocities."""
+        to = np.flatnonzero(self.gone)
+        of = self.image[to]
+        x[to], u[to], w[to] = self.places(x[of]), self.seen(u[of]), -self.seen(w[of])
+        to = to[self.boxes[to]]
+        turned = self.axes(r[self.image[to]].reshape(-1, 3, 3)) * self.signs[to][:, None, :]
+        r[to] = turned.reshape(-1, 9)
+
+    def sums(self, rows: Floats) -> Floats:
+        """What adds up over the pairs of each row of the contacts, (rows,), of both sides."""
+        return self.largest(rows * self.times)
+
+    def largest(self, rows: Floats) -> Floats:
+        """What holds for a row of the contacts, (rows,), holds for its image."""
+        return rows[self.rows]
+
+    def sides(self, system: System) -> Ints:
+        """How many pairs of the whole each pair of the half stands for."""
+        own = self.image == np.arange(len(self.image))
+        return np.where(own[system.pairs["a"]] & own[system.pairs["b"]], 1, 2)
+
+
+def halve(system: System, mirror: Mirror) -> System:
+    """The side of a System that is not left out."""
+    gone = np.append(mirror.gone, False)
+    own = np.append(mirror.image == np.arange(len(mirror.image)), False)
+    bodies = system.bodies.copy()
+    for name in ("node", "slide", "spin"):
+        bodies[name][gone] = -1
+    for name in ("axis", "clutch"):
+        bodies[name][gone] = 0.0
+    # a roller in the plane: half of it, pushed by what is on one side
+    bodies["press"][own] *= 0.5
+    bodies["clutch"][own, 1] *= 0.5
+    border = 0
+    for row in bodies:
+        for name in ("slide", "spin"):
+            if row[name] >= 0:
+                row[name], border = border, border + 1
+    left = ~mirror.gone[system.nodes]
+    nodes = system.nodes[left]
+    bodies["node"][nodes] = np.arange(len(nodes))
+    ends = [np.where(system.joints[end] >= 0, system.joints[end], len(bodies) - 1) for end in "ab"]
+    free = [bodies["node"][end] >= 0 for end in ends]
+    kept = free[0] | free[1]
+    joints = system.joints[kept].copy()
+    joints["mirrored"] = (gone[ends[0]] | gone[ends[1]])[kept]
+    far = np.unique(np.concatenate([end[kept & gone[end]] for end in ends]))
+    images = np.zeros(len(far), IMAGE)
+    images["body"], images["of"], images["signs"] = far, mirror.image[far], mirror.signs[far]
+    images["normal"], images["at"] = mirror.normal, mirror.at
+    a, b = system.pairs["a"], system.pairs["b"]
+    near = ~gone[a] & ~gone[b]
+    pairs = system.pairs[near].copy()
+    pairs["k"][(own[a] & own[b])[near]] *= 0.5
+    return system._replace(
+        bodies=bodies,
+        joints=joints,
+        pairs=pairs,
+        loads=system.loads[~gone[system.loads["body"]]],
+        nodes=nodes,
+        sheets=system.sheets[left],
+        reach=reach(bodies, joints),
+        border=border,
+        images=images,
+        mirror=mirror,
+    )

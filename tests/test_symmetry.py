@@ -1,0 +1,159 @@
+"""Scenes that are their own mirror image: lattice solves one half, and the whole is the same."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import mdlgen
+from mdlgen.results.compare import compare
+from tests.nip import FORTH_AND_BACK
+
+MACHINE = """
+name: machine
+materials:
+  paper: {E_md: 3530 MPa, E_cd: 1113 MPa, k_tx: 0.15 N*mm/rad, k_ty: 0.185 N*mm/rad, k_tz: 5 N*mm/rad}
+sheets:
+  note: {material: paper, size: [40 mm, 48 mm], thickness: 0.1 mm, mass: 0.3 g, boxes: [6, 10],
+    center: [0 mm, 3 mm, 0 mm], velocity: [200 mm/s, 0 mm/s, 0 mm/s]}
+rollers:
+  motor_left: {center: [0 mm, -9 mm, -7.5 mm], axis: y, radius: 7.5 mm, width: 10 mm, mass: 1 g,
+    drive: {speed: 100 rad/s}}
+  motor_right: {center: [0 mm, 15 mm, -7.5 mm], axis: y, radius: 7.5 mm, width: 10 mm, mass: 1 g,
+    drive: {speed: 100 rad/s}}
+  idler_left: {center: [0 mm, -9 mm, 5 mm], axis: y, radius: 5 mm, width: 10 mm, mass: 1 g,
+    press: {direction: -z, stiffness: 0.3 N/mm, preload: 1 N}}
+  idler_right: {center: [0 mm, 15 mm, 5 mm], axis: y, radius: 5 mm, width: 10 mm, mass: 1 g,
+    press: {direction: -z, stiffness: 0.3 N/mm, preload: 1 N}}
+  middle: {center: [12 mm, 3 mm, 6 mm], axis: y, radius: 5 mm, width: 12 mm, mass: 1 g,
+    press: {direction: -z, stiffness: 0.3 N/mm, preload: 0.2 N}}
+planes: {table: {center: [0 mm, 3 mm, -30 mm], normal: z, size: [200 mm, 200 mm, 1 mm], mass: 1 g}}
+contacts:
+  - {between: [note, "*"], stiffness: 300 N/mm^1.5, restitution: 0.4, friction: 0.8, smoothing: 10 mm/s}
+  - {between: [motor_left, idler_left], stiffness: 300 N/mm^1.5, friction: 0.5}
+  - {between: [motor_right, idler_right], stiffness: 300 N/mm^1.5, friction: 0.5}
+run: {duration: 3 ms, step: 0.02 ms, tolerance: 1e-6, print_step: 0.5 ms}
+"""
+
+
+def solved(text: str, *sets: str) -> tuple[mdlgen.Result, mdlgen.Result]:
+    """A scene with and without the rule."""
+    results = [
+        mdlgen.solve(mdlgen.lower(mdlgen.loads(text, [*sets, f"run.symmetry={rule}"])), "lattice")
+        for rule in ("true", "false")
+    ]
+    for result in results:
+        assert result.ok, result.status
+    return results[0], results[1]
+
+
+def assert_same(half: mdlgen.Result, whole: mdlgen.Result, most: float = 1e-6) -> None:
+    assert half.halved and not whole.halved
+    assert compare(half, whole).relative < most
+    for name in ("position", "rotation", "velocity", "spin", "contact_force"):
+        one, two = getattr(half, name), getattr(whole, name)
+        assert np.abs(one - two).max() <= most * max(1.0, np.abs(two).max()), name
+    for name in ("max_depth", "mean_depth", "max_force", "mean_force", "last_force_at"):
+        np.testing.assert_allclose(
+            getattr(half.statistics, name),
+            getattr(whole.statistics, name),
+            rtol=1e-6,
+            atol=most,
+            err_msg=name,
+        )
+    assert half.touched == whole.touched
+    for name in ("kinetic", "elastic", "dissipated", "driven"):
+        assert getattr(half.energy, name) == pytest.approx(getattr(whole.energy, name), rel=1e-7, abs=1e-9), (
+            name
+        )
+    assert half.energy.balance_error == pytest.approx(whole.energy.balance_error, abs=1e-7)
+
+
+@pytest.mark.parametrize(
+    "sets",
+    [
+        (),
+        ("sheets.note.layout=center_to_center",),
+        (
+            "sheets.note.layout=plate",
+            "materials.paper={E_md: 3530 MPa, E_cd: 1113 MPa, D_md: 0.9 N*mm, D_cd: 0.4 N*mm}",
+        ),
+        ("sheets.note.grading.y=[3, 5, 4, 6, 6, 6, 6, 4, 5, 3]",),
+    ],
+    ids=["plain", "c2c", "plate", "graded"],
+)
+def test_a_half_is_the_whole(sets: tuple[str, ...]) -> None:
+    assert_same(*solved(MACHINE, *sets))
+
+
+@pytest.mark.parametrize(
+    "sets",
+    [
+        (),
+        ("sheets.note.shape={curl: {radius: 200 mm, along: y}}",),
+        ("rollers.middle.drive={speed: -50 rad/s}",),
+        (
+            "rollers.middle.drive={speed: -50 rad/s}",
+            "rollers.middle.one_way={direction: 1, torque: 50 N*mm, creep: 1 rad/s}",
+        ),
+    ],
+    ids=["free", "curl", "driven", "clutch"],
+)
+def test_a_roller_in_the_plane(sets: tuple[str, ...]) -> None:
+    """Half of it is pushed by what is on one side; what it does is told of the whole."""
+    start = MACHINE.index("contacts:")
+    law = "stiffness: 300 N/mm^1.5, restitution: 0.4, friction: 0.8, smoothing: 10 mm/s"
+    text = (
+        f"{MACHINE[:start]}contacts: [{{between: [note, middle], {law}}}]\n{MACHINE[MACHINE.index('run:') :]}"
+    )
+    half, whole = solved(text, "rollers.middle.center=[12 mm, 3 mm, 5 mm]", *sets)
+    assert half.statistics.max_force[0] > 0.05
+    assert_same(half, whole)
+
+
+def test_a_scene_along_another_axis() -> None:
+    """The nip of a note that runs along y: the plane is that between its columns."""
+    half, whole = solved(
+        FORTH_AND_BACK,
+        "run.duration=6 ms",
+        "sheets.note.turn=90 deg",
+        "sheets.note.boxes=[6, 4]",
+        "rollers.motor.axis=x",
+        "rollers.idler.axis=x",
+        "run.step=0.1 ms",
+    )
+    assert_same(half, whole)
+
+
+@pytest.mark.parametrize(
+    "sets",
+    [
+        ("sheets.note.boxes=[5, 5]",),
+        ("sheets.note.turn=1 deg",),
+        ("sheets.note.center=[0 mm, 3.01 mm, 0 mm]",),
+        ("sheets.note.velocity=[200 mm/s, 1 mm/s, 0 mm/s]",),
+        ("sheets.note.zones={stripe: {x: [0 mm, 10 mm], y: [5 mm, 15 mm], stiffness: 1.001}}",),
+        ("rollers.motor_left.drive.speed=100.001 rad/s",),
+        ("rollers.idler_left.mass=1.001 g",),
+        ("rollers.idler_left.press.preload=1.001 N",),
+        ("rollers.middle.center=[12 mm, 3.01 mm, 6 mm]",),
+        ("gravity=[0 m/s^2, 0.01 m/s^2, -9.81 m/s^2]",),
+        ("contacts.1.friction=0.501",),
+    ],
+)
+def test_what_is_not_symmetric_is_solved_whole(sets: tuple[str, ...]) -> None:
+    from backends.lattice.arrays import build
+    from backends.lattice.symmetry import find
+
+    model = mdlgen.lower(mdlgen.loads(MACHINE))
+    assert find(model, build(model)) is not None
+    other = mdlgen.lower(mdlgen.loads(MACHINE, sets))
+    assert find(other, build(other)) is None
+
+
+def test_a_measured_curve_across_the_plane() -> None:
+    """A joint that follows a curve has its energy halved, too."""
+    curve = "[[0, 0 MPa], [0.005, 15 MPa], [0.02, 30 MPa]]"
+    paper = "{E_md: 3530 MPa, k_tx: 0.15 N*mm/rad, k_ty: 0.185 N*mm/rad, k_tz: 5 N*mm/rad"
+    half, whole = solved(MACHINE, f"materials.paper={paper}, curve_cd: {{points: {curve}}}}}")
+    assert_same(half, whole)
