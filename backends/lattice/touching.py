@@ -21,7 +21,7 @@ from backends.lattice.dense import lu
 from backends.lattice.forces import pair_forces, place_box, place_roller
 from backends.lattice.growth import activate, gradient, newton, newton_matrix
 from mdlgen.mechanics.contact import OUT, POINT
-from mdlgen.mechanics.pair import BOX_PLANE
+from mdlgen.mechanics.pair import BOX_BOX, BOX_PLANE
 from mdlgen.mechanics.vector import back, mat, rotate
 
 MOST_ROUNDS = 40
@@ -41,6 +41,8 @@ def _mine(bodies, pairs, near, where, alone):
     count = 0
     for k in range(near.size):
         pair = pairs[near[k]]
+        if pair.kind == BOX_BOX:  # where these touch, all contacts stand in the matrix
+            continue
         node = bodies[pair.a].node
         if node < 0 or (alone.place_of[node] >= 0 and not (where == PLANES and pair.kind == BOX_PLANE)):
             alone.mine[count] = near[k]

@@ -1,4 +1,5 @@
-"""Contact between a box and a cylinder, a box and a plane, and two parallel cylinders.
+"""Contact between a box and a cylinder, a box and a plane, and two parallel cylinders; see facing.py for
+two boxes.
 
 The force of one box under a roller is k z^1.5 (Eq. 10), z the depth of the point of its face nearest to the
 roller's axis, times the part of the roller's width that the box covers. Where boxes lie side by side under
@@ -32,7 +33,7 @@ _GAUSS = 1.0 / math.sqrt(3.0)
 
 
 @njit(cache=True, error_model="numpy")
-def _push(out, point, normal, spring, depth, energy, xa, va, wa, xb, vb, wb, law):
+def push(out, point, normal, spring, depth, energy, xa, va, wa, xb, vb, wb, law):
     """Adds the force of one contact point; `normal` points to the first body, `spring` is its elastic force.
 
     law: (beta, mu_static, mu_dynamic, stiction velocity, friction velocity, smoothing velocity).
@@ -152,10 +153,10 @@ def _face(out, p, r, q, sign, free, half, l0, al, xa, ra, va, wa, xb, vb, wb, ra
                 cp = t * -ur - e * (-lean * up)
                 cr = t * up - e * (-lean * ur)
                 cq = -e * na * sign
-                normal = _local(p, r, q, cp / distance, cr / distance, cq / distance)
+                normal = local(p, r, q, cp / distance, cr / distance, cq / distance)
                 t = min(max(t, first), last)
-                at = _local(p, r, q, l0[p] + u * up - t * ur, l0[r] + u * ur + t * up, sign * half[q])
-                _push(
+                at = local(p, r, q, l0[p] + u * up - t * ur, l0[r] + u * ur + t * up, sign * half[q])
+                push(
                     out,
                     add(xa, rotate(ra, at)),
                     rotate(ra, normal),
@@ -173,7 +174,7 @@ def _face(out, p, r, q, sign, free, half, l0, al, xa, ra, va, wa, xb, vb, wb, ra
 
 
 @njit(cache=True, error_model="numpy")
-def _local(p, r, q, a, b, c):
+def local(p, r, q, a, b, c):
     """The vector with components a, b, c on the axes p, r, q."""
     x = a if p == 0 else b if r == 0 else c
     y = a if p == 1 else b if r == 1 else c
@@ -237,7 +238,7 @@ def box_cylinder(out, xa, ra, va, wa, half, exposed, xb, axis, vb, wb, radius, w
 
 
 @njit(cache=True, error_model="numpy")
-def _clip(points, count, axis, limit, sign):
+def clip(points, count, axis, limit, sign):
     """Cuts a polygon by sign * coordinate <= limit, in place; returns its number of points."""
     kept = np.empty((12, 3))
     found = 0
@@ -286,22 +287,22 @@ def box_plane(out, xa, ra, va, wa, half, xb, rb, half_b, k, law):
     for corner in range(4):
         sp = half[p] if corner == 0 or corner == 3 else -half[p]
         sr = half[r] if corner < 2 else -half[r]
-        at = back(rb, sub(add(xa, rotate(ra, _local(p, r, q, sp, sr, side))), xb))
+        at = back(rb, sub(add(xa, rotate(ra, local(p, r, q, sp, sr, side))), xb))
         inside = inside and abs(at[0]) <= half_b[0] and abs(at[1]) <= half_b[1]
         for i in range(3):
             points[corner, i] = at[i]
     count = 4
     if not inside:
         for axis in range(2):
-            count = _clip(points, count, axis, half_b[axis], 1.0)
-            count = _clip(points, count, axis, half_b[axis], -1.0)
+            count = clip(points, count, axis, half_b[axis], 1.0)
+            count = clip(points, count, axis, half_b[axis], -1.0)
     for i in range(count):
         depth = half_b[2] - points[i, 2]
         if depth <= 0.0 or depth > 2 * half_b[2]:
             continue
         point = add(xb, rotate(rb, (points[i, 0], points[i, 1], points[i, 2])))
         spring = k / count * depth * math.sqrt(depth)
-        _push(out, point, normal, spring, depth, 0.4 * spring * depth, xa, va, wa, xb, zero, zero, law)
+        push(out, point, normal, spring, depth, 0.4 * spring * depth, xa, va, wa, xb, zero, zero, law)
 
 
 @njit(cache=True, error_model="numpy")
@@ -320,4 +321,4 @@ def cylinder_cylinder(out, xa, va, wa, radius_a, width_a, xb, vb, wb, radius_b, 
     normal = scale(1.0 / distance, across)
     spring = share * k * depth * math.sqrt(depth)
     point = add(xb, add(scale(0.5 * (low + high), axis), scale(radius_b - 0.5 * depth, normal)))
-    _push(out, point, normal, spring, depth, 0.4 * spring * depth, xa, va, wa, xb, vb, wb, law)
+    push(out, point, normal, spring, depth, 0.4 * spring * depth, xa, va, wa, xb, vb, wb, law)

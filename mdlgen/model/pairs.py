@@ -1,9 +1,10 @@
 """Which contacts a scene can need: box-part pairs that may touch during the run.
 
 A sheet's boxes are swept by what can move them: their initial velocity, gravity, and the surface speed
-of every driven roller that the sheet has a contact with. A difference of those speeds across the sheet
-may turn it. A stated margin is added. A solver watches the bounds: a box whose centre leaves them ends
-the run, so that no contact is missed silently. A sheet that meets an external part may be moved by it in any
+of every driven roller that the sheet has a contact with, or a sheet that it has one with; such a sheet may
+also pass on its velocity. A difference of those speeds across the sheet may turn it. A stated margin is
+added. A solver watches the bounds: a box whose centre leaves them ends the run, so that no contact is missed
+silently. A sheet that meets an external part may be moved by it in any
 way: all of its pairs are kept.
 """
 
@@ -11,7 +12,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from mdlgen.model.sheet_pairs import linked, meeting
 from mdlgen.model.tables import (
+    BOX_BOX,
     CYLINDER_CYLINDER,
     EXTERNAL,
     Bodies,
@@ -48,14 +51,22 @@ def find_pairs(
     extents: dict[str, tuple[Floats, Floats]] = {}
     possible = 0
     kept: list[tuple[int, int, int]] = []
+    searched: list[int] = []
     if prune:
+        groups = linked([s.name for s in sheets], contacts)
         for sheet in sheets:
-            rows = [r for r, a in enumerate(contacts.part_a) if a == sheet.name]
+            group = groups[sheet.name]
+            rows = [r for r, a in enumerate(contacts.part_a) if a in group]
             if not rows or EXTERNAL in contacts.kind[rows]:
                 continue
-            touched = [parts[contacts.part_b[r]] for r in rows]
+            touched = [
+                (by_name[contacts.part_a[r]], parts[contacts.part_b[r]])
+                for r in rows
+                if contacts.kind[r] != BOX_BOX
+            ]
             boxes = slice(sheet.first, sheet.first + sheet.count)
-            least, most, reach = _swept(gravity, sheet, touched, bodies, run)
+            others = [by_name[name] for name in group if name != sheet.name]
+            least, most, reach = _swept(gravity, sheet, touched, others, bodies, run)
             low[boxes], high[boxes] = least - margin, most + margin
             extents[sheet.name] = (low[boxes] - reach - SLACK, high[boxes] + reach + SLACK)
     if prune:
@@ -65,6 +76,15 @@ def find_pairs(
                 low[roller.body] = bodies.position[roller.body] - way
                 high[roller.body] = bodies.position[roller.body] + way
     for row in np.flatnonzero(contacts.kind != EXTERNAL).tolist():
+        if contacts.kind[row] == BOX_BOX:
+            pair = by_name[contacts.part_a[row]], by_name[contacts.part_b[row]]
+            possible += pair[0].count * pair[1].count
+            found = meeting(*pair, extents)
+            if found is None:
+                searched.append(row)
+            else:
+                kept.extend((row, a, b) for a, b in found)
+            continue
         other = parts[contacts.part_b[row]]
         if contacts.kind[row] == CYLINDER_CYLINDER:
             possible += 1
@@ -79,17 +99,30 @@ def find_pairs(
             boxes = boxes[np.all((box_low <= part_high) & (box_high >= part_low), axis=1)]
         kept.extend((row, int(box), other.body) for box in boxes)
     table = np.array(kept, dtype=np.int64).reshape(-1, 3)
-    return Pairs(table[:, 0].copy(), table[:, 1].copy(), table[:, 2].copy(), possible, margin, low, high)
+    return Pairs(
+        table[:, 0].copy(),
+        table[:, 1].copy(),
+        table[:, 2].copy(),
+        possible,
+        margin,
+        low,
+        high,
+        np.array(searched, dtype=np.int64),
+    )
 
 
 def _swept(
     gravity: Floats,
     sheet: SheetPart,
-    touched: list[RollerPart | PlanePart],
+    touched: list[tuple[SheetPart, RollerPart | PlanePart]],
+    others: list[SheetPart],
     bodies: Bodies,
     run: RunSettings,
 ) -> tuple[Floats, Floats, Floats]:
-    """Bounds of each box centre (low, high), (count, 3), and the boxes' half extents, without margin."""
+    """Bounds of each box centre (low, high), (count, 3), and the boxes' half extents, without margin.
+
+    `touched` are the parts that the sheet, or one of the `others` that it is linked with, has a contact with.
+    """
     boxes = slice(sheet.first, sheet.first + sheet.count)
     centers = bodies.position[boxes]
     size = np.array(sheet.outline)
@@ -100,11 +133,14 @@ def _swept(
     time = run.duration
     fall = 0.5 * gravity * time**2
     shift = sheet.velocity * time
-    drives = [_drive(sheet, part, time) for part in touched if isinstance(part, RollerPart) and part.speed]
+    drives = [_drive(own, part, time) for own, part in touched if isinstance(part, RollerPart) and part.speed]
     moves = np.array([fall, shift, *(path for path, _ in drives)])
     # velocity and fall act together with one drive at a time
     least = np.minimum(moves[:2], 0).sum(0) + np.minimum(moves[2:], 0).min(0, initial=0.0)
     most = np.maximum(moves[:2], 0).sum(0) + np.maximum(moves[2:], 0).max(0, initial=0.0)
+    for other in others:  # a heavy one throws a light one forward with up to twice its own velocity
+        thrown = 2.0 * (other.velocity - sheet.velocity) * time
+        least, most = least + np.minimum(thrown, 0), most + np.maximum(thrown, 0)
     if sheet.count > 1:
         # a flexible sheet may flap out of its plane by what its length allows
         normal = np.abs(sheet.rotation[:, 2]) * 0.5 * float(size.max())

@@ -267,7 +267,7 @@ class ExternalPart:
 
 
 # kinds of contact
-BOX_CYLINDER, BOX_PLANE, CYLINDER_CYLINDER, EXTERNAL = 0, 1, 2, 3
+BOX_CYLINDER, BOX_PLANE, CYLINDER_CYLINDER, EXTERNAL, BOX_BOX = 0, 1, 2, 3, 4
 
 
 @dataclass(frozen=True)
@@ -276,8 +276,8 @@ class Contacts(Frozen):
 
     entry: Ints  # index in the spec's list, (n,)
     part_a: tuple[str, ...]  # sheet or roller
-    part_b: tuple[str, ...]  # roller, plane or external part
-    kind: Ints  # BOX_CYLINDER, BOX_PLANE, CYLINDER_CYLINDER or EXTERNAL
+    part_b: tuple[str, ...]  # sheet, roller, plane or external part
+    kind: Ints  # BOX_CYLINDER, BOX_PLANE, CYLINDER_CYLINDER, EXTERNAL or BOX_BOX
     stiffness: Floats  # k [N/mm^1.5]
     restitution: Floats  # c_R
     mu_static: Floats
@@ -297,11 +297,12 @@ class Pairs(Frozen):
 
     contact: Ints  # row of Contacts, (n,)
     a: Ints  # box or roller, (n,)
-    b: Ints  # roller or plane, (n,)
+    b: Ints  # roller, plane or box of another sheet, (n,)
     possible: int
     margin: float  # [mm]
     low: Floats  # bounds of boxes' and pressed rollers' centres, -inf where not watched [mm], (bodies, 3)
     high: Floats
+    searched: Ints  # rows of Contacts between two sheets that can meet in too many pairs to list, (rows,)
 
     def __len__(self) -> int:
         return len(self.a)
