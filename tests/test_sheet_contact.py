@@ -317,6 +317,29 @@ def test_a_static_scene_with_two_sheets_goes_to_the_reference_solver():
     assert solver == "exudyn" and "two sheets" in why
 
 
+def test_two_clamped_notes_rest_on_each_other():
+    sheet = "size: [20 mm, 40 mm], thickness: 0.1 mm, mass: 0.1 g, boxes: [1, 4], clamp: {edge: y_min}"
+    made = lower(
+        loads(f"""
+name: two
+materials:
+  soft: {{E_md: 3530 MPa, E_cd: 1113 MPa, k_tx: 0.15 N*mm/rad, k_ty: 0.185 N*mm/rad, k_tz: 5 N*mm/rad}}
+  hard: {{E_md: 3530 MPa, E_cd: 1113 MPa, k_tx: 1 N*mm/rad, k_ty: 1 N*mm/rad, k_tz: 5 N*mm/rad}}
+sheets:
+  low: {{material: hard, {sheet}}}
+  top: {{material: soft, {sheet}, center: [0 mm, 0 mm, 0.1 mm]}}
+contacts:
+  - {{between: [low, top], stiffness: 100 N/mm^1.5}}
+run: {{analysis: static}}
+""")
+    )
+    result = ran(made, "auto")
+    assert result.solver == "exudyn"
+    gap = result.position[-1, 4:8, 2] - result.position[-1, :4, 2]
+    assert result.contact_force[-1, 0] > 0.0
+    assert gap.min() > 0.09 and gap[-1] == pytest.approx(0.1, abs=1e-3)
+
+
 # -- the text
 
 
