@@ -302,6 +302,35 @@ def test_a_stack_of_notes_comes_to_rest_and_stays(solver):
     assert result.energy.balance_error < 5e-3
 
 
+def test_a_sheet_slides_over_a_free_one_as_a_block_does():
+    made = lower(
+        loads("""
+name: pulled
+materials:
+  paper: {E_md: 3530 MPa, E_cd: 1113 MPa, k_tx: 0.15 N*mm/rad, k_ty: 0.185 N*mm/rad, k_tz: 5 N*mm/rad}
+sheets:
+  low: {material: paper, size: [67 mm, 60 mm], thickness: 0.1 mm, mass: 0.36 g, boxes: [10, 9],
+        center: [0 mm, 0 mm, 0.05 mm]}
+  top: {material: paper, size: [33 mm, 40 mm], thickness: 0.1 mm, mass: 0.12 g, boxes: [5, 6],
+        center: [-14 mm, 0 mm, 0.15 mm], velocity: [0.3 m/s, 0 m/s, 0 m/s]}
+planes:
+  floor: {center: [0 mm, 0 mm, -5 mm], normal: z, size: [300 mm, 300 mm, 10 mm], mass: 600 g}
+contacts:
+  - {between: [low, top], stiffness: 100 N/mm^1.5, restitution: 0.2, friction: 0.3}
+  - {between: [low, floor], stiffness: 100 N/mm^1.5, restitution: 0.2, friction: 0}
+run: {duration: 100 ms, print_step: 2 ms, step: 0.05 ms}
+""")
+    )
+    # the boxes of both are of different sizes, and pass over each other by more than one
+    result = ran(made, "lattice")
+    low, top = slice(0, 90), slice(90, 120)
+    x = [result.position[:, part, 0].mean(axis=1) for part in (low, top)]
+    slid = (x[1] - x[0])[-1] - (x[1] - x[0])[0]
+    assert slid == pytest.approx(0.3**2 / (2 * 0.3 * 9.81e-3 * (1 + 0.12 / 0.36)), rel=2e-3)
+    assert result.velocity[-1, :120, 0] == pytest.approx(np.full(120, 0.3 * 0.12 / 0.48), rel=1e-3)
+    assert np.abs(result.position[:, :120, 2] - result.position[0, :120, 2]).max() < 1e-3, "it stays flat"
+
+
 def test_notes_that_exactly_touch_do_not_pass_through_each_other():
     # faces without depth have no stiffness: a round of Newton's method could go to the other side
     made = lower(loads(stack(5, "[4, 6]"), overrides=["run.step=0.2 ms", "run.duration=4 ms"]))
