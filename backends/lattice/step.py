@@ -16,10 +16,11 @@ import math
 import numpy as np
 from numba import njit
 
-from backends.lattice import band
+from backends.lattice import band, coupled
 from backends.lattice.alone import APART, INSIDE, PLANES, choose, columns, forget, release, unsee
 from backends.lattice.band import factor, solve
-from backends.lattice.border import eliminate, solve_bordered
+from backends.lattice.border import eliminate
+from backends.lattice.coupled import couplings_in_box_axes, solve_coupled
 from backends.lattice.forces import (
     clutch_torques,
     joint_forces,
@@ -30,6 +31,7 @@ from backends.lattice.forces import (
     place,
 )
 from backends.lattice.momentum import keep
+from backends.lattice.sides import crossed, part_of_change
 from backends.lattice.tangent import contacts_into, in_box_axes, joints_into, masses, rollers_into
 from backends.lattice.touching import settle
 from mdlgen.mechanics.driven import clutch, prescribed
@@ -109,7 +111,7 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
     bodies, joints, pairs, loads, gravity, nodes, points = system
     x, r, v, l, s, vb, u, ub = state
     xm, rm, um, wm, f, touched, outs, totals, near = mid
-    a, b, d, y, corner, res, resb, direction, index = matrix
+    a, b, d, y, corner, res, resb, direction, index, couplings = matrix
     most = alone.chosen.size
     h = 0.5 * dt
     lag = min(DAMPED * dt, MOST_DAMPED) * h
@@ -159,9 +161,9 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
                 chord = MUCH if careful > 0 else LITTLE
                 careful -= 1
                 planes = where == PLANES
-                contacts_into(
-                    bodies, pairs, h, xm, touched, outs, count, chord, planes, a, b, d, direction, index
-                )
+                room = (direction, index, couplings)
+                contacts_into(bodies, pairs, h, xm, touched, outs, count, chord, planes, a, b, d, *room)
+                couplings_in_box_axes(nodes, rm, couplings)
             in_box_axes(nodes, rm, a, b)
             forget(alone)
             if not factor(a) or (where == INSIDE and not eliminate(a, b, d, y, corner)):
@@ -175,7 +177,7 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
         free[3][:] = res
         _turn(nodes, r, res, True)
         if where == INSIDE:
-            solve_bordered(a, b, y, corner, res, resb)
+            solve_coupled(a, b, y, corner, couplings, res, resb)
         else:
             solve(a, res)
             columns(a, alone, m)
@@ -190,7 +192,10 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
                 return False
         _turn(nodes, r, res, False)
         keep(bodies, pairs, nodes, touched, count, free, xm, rm, res)
-        change = 0.0
+        change, part = 0.0, part_of_change(bodies, pairs, near, close, rm, h, res)
+        if part < 1.0:
+            res *= part
+            resb *= part
         for n in range(nodes.size):
             size = bodies[nodes[n]].half[0] + bodies[nodes[n]].half[1]
             for i in range(6):
@@ -220,7 +225,7 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
             totals[0], totals[1] = lost + rubbed, power
             counters[TOUCHING] = count
             release(alone, m)
-            return True
+            return not crossed(bodies, pairs, near, close, x, xm, rm)
         if before < 1e299 and (rate >= 1.0 or math.log(limit / change) < (WORTH + m) * math.log(rate)):
             fresh[1] = 1.0
         if before < 1e299 and rate > 0.9:
@@ -310,5 +315,6 @@ def empty(system, wide: int):
         np.zeros(border),
         np.zeros((4, 3)),
         np.zeros(4, np.int64),
+        coupled.empty(len(system.pairs) - system.search.first, nodes, border),
     )
     return state, mid, matrix
