@@ -227,6 +227,12 @@ def _reason(
     from backends.lattice.compiled import march, step
 
     names = model.bodies.name
+    if status == march.STOPPED and counters[step.THROUGH] >= 0:
+        one, two = (names[int(system.pairs[end][int(counters[step.THROUGH])])] for end in "ab")
+        return (
+            f"box {one} would pass through box {two} of another sheet at {t:.6g} ms, with steps down to "
+            f"{dt / 2**march.DEEPEST:.3g} ms; a stiffer contact between the two would hold it"
+        )
     if status == march.STOPPED:
         body = names[int(counters[step.WORST])]
         return (

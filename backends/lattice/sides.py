@@ -38,25 +38,38 @@ def part_of_change(bodies, pairs, near, close, r, h, change):
 
 
 @njit(cache=True, error_model="numpy")
-def crossed(bodies, pairs, near, close, x, xm, rm):
-    """Whether a step takes a box of the pairs near[:close] through one of another sheet: from x over the
-    middle xm, rm as far again."""
+def _height(bodies, pair, x, r):
+    """How high the middle of the second box's face stands over that of the first, in the axes of the first
+    and in the middle of where their outlines overlap, and whether they do.
+
+    Boxes that lean to each other, and overlap in a part alone, have centres that may pass each other's plane.
+    """
+    one, half, other = mat(r, pair.a), bodies[pair.a].half, bodies[pair.b].half
+    place = back(one, sub(vec(x, pair.b), vec(x, pair.a)))
+    turn = transpose_matmul(one, mat(r, pair.b))
+    over, leans = True, 0.0
+    for q in range(2):
+        out = 0.0
+        for i in range(3):
+            out += other[i] * abs(turn[3 * q + i])
+        low, high = max(-half[q], place[q] - out), min(half[q], place[q] + out)
+        over = over and high - low > 1e-9 * half[q]
+        leans += turn[3 * q + 2] * (0.5 * (low + high) - place[q])
+    if abs(turn[8]) < 0.5:  # it stands on its edge
+        return place[2], over
+    return place[2] - leans / turn[8], over
+
+
+@njit(cache=True, error_model="numpy")
+def crossed(bodies, pairs, near, close, x, r, xm, rm):
+    """The pair of near[:close] of which a step takes a box through one of another sheet, or -1: from x, r
+    over the middle xm, rm as far again."""
     for at in range(close):
         pair = pairs[near[at]]
         if pair.kind != BOX_BOX:
             continue
-        one, half, other = mat(rm, pair.a), bodies[pair.a].half, bodies[pair.b].half
-        begin = back(one, sub(vec(x, pair.b), vec(x, pair.a)))
-        middle = back(one, sub(vec(xm, pair.b), vec(xm, pair.a)))
-        if begin[2] * (2.0 * middle[2] - begin[2]) > 0.0:
-            continue
-        turn = transpose_matmul(one, mat(rm, pair.b))
-        over = True
-        for q in range(2):
-            out = half[q]
-            for i in range(3):
-                out += other[i] * abs(turn[3 * q + i])
-            over = over and abs(middle[q]) < (1.0 - 1e-9) * out
-        if over:
-            return True
-    return False
+        begin, _ = _height(bodies, pair, x, r)
+        middle, over = _height(bodies, pair, xm, rm)
+        if over and begin * (2.0 * middle - begin) <= 0.0:
+            return near[at]
+    return -1

@@ -52,7 +52,7 @@ DAMPED, MOST_DAMPED = 1.0, 0.3
 # other side of what is flat; the latter is taken twice where a round moved more than the one before.
 LITTLE, MUCH = 0.05, 0.7
 # Counters of a run.
-STEPS, ROUNDS, FACTORS, TOUCHING, WORST, STRAIN, COUNTERS = 0, 1, 2, 3, 4, 5, 6
+STEPS, ROUNDS, FACTORS, TOUCHING, WORST, STRAIN, THROUGH, COUNTERS = 0, 1, 2, 3, 4, 5, 6, 7
 
 
 @njit(cache=True, error_model="numpy")
@@ -106,7 +106,8 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
     """Solves for the velocities at the middle of a step. Returns whether it converged.
 
     `fresh` (3,): the step that the factor was made for (0: none), whether it should be made anew, and where
-    contacts stand (see alone.APART).
+    contacts stand (see alone.APART). counters[THROUGH] is the pair of two sheets that a step would take
+    through each other, or -1.
     """
     bodies, joints, pairs, loads, gravity, nodes, points = system
     x, r, v, l, s, vb, u, ub = state
@@ -117,6 +118,7 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
     lag = min(DAMPED * dt, MOST_DAMPED) * h
     before = 1e300
     careful = 0
+    counters[THROUGH] = -1.0
     close, where, m = 0, int(fresh[2]), 0
     margin, moved = FAR, 0.0
     for rounds in range(MOST_ROUNDS):
@@ -225,7 +227,8 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
             totals[0], totals[1] = lost + rubbed, power
             counters[TOUCHING] = count
             release(alone, m)
-            return not crossed(bodies, pairs, near, close, x, xm, rm)
+            counters[THROUGH] = crossed(bodies, pairs, near, close, x, r, xm, rm)
+            return counters[THROUGH] < 0.0
         if before < 1e299 and (rate >= 1.0 or math.log(limit / change) < (WORTH + m) * math.log(rate)):
             fresh[1] = 1.0
         if before < 1e299 and rate > 0.9:
