@@ -10,6 +10,7 @@ import numpy as np
 from mdlgen.model import press
 from mdlgen.model.guides import depths
 from mdlgen.model.tables import (
+    BOX_BOX,
     BOX_CYLINDER,
     BOX_GUIDE,
     BOX_PLANE,
@@ -305,6 +306,27 @@ def _interference(model: Model) -> Iterator[Lint]:
         depth = max(float(depths(guide, points, at).max()) for at, points in _boxes(model, sheet))
         if depth > sheet.thickness / 2:
             yield _deep_start(model, int(row), f"guides.{guide.name}", guide.name, depth, sheet)
+    sheets = {s.name: s for s in model.sheets}
+    for row in np.flatnonzero(model.contacts.kind == BOX_BOX):
+        one, two = sheets[model.contacts.part_a[row]], sheets[model.contacts.part_b[row]]
+        depth = _overlap(one, two)
+        if depth > min(one.thickness, two.thickness) / 2:
+            thin = min(one, two, key=lambda s: s.thickness)
+            thick = two if thin is one else one
+            yield _deep_start(model, int(row), f"sheets.{thick.name}.center", thick.name, depth, thin)
+
+
+def _overlap(one: SheetPart, two: SheetPart) -> float:
+    """How deep two flat sheets are in each other at the start [mm]; 0 where they are not parallel."""
+    normal = one.rotation[:, 2]
+    if abs(float(normal @ two.rotation[:, 2])) < 1 - FLAT**2:
+        return 0.0
+    first, second = _corners(one), _corners(two)
+    for axis in (*one.rotation.T[:2], *two.rotation.T[:2]):
+        a, b = first @ axis, second @ axis
+        if max(a.min(), b.min()) >= min(a.max(), b.max()):
+            return 0.0
+    return 0.5 * (one.thickness + two.thickness) - abs(float((two.center - one.center) @ normal))
 
 
 def _deep_start(model: Model, row: int, where: str, part: str, depth: float, sheet: SheetPart) -> Lint:

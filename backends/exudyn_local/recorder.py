@@ -10,7 +10,7 @@ from backends.exudyn_local import kernels
 from backends.exudyn_local.system import MM, MS, PER_MM, System, quaternions
 from mdlgen.mechanics.curve import overstretched
 from mdlgen.model import curves
-from mdlgen.model.tables import BOX_GUIDE, BOX_PLANE, Model
+from mdlgen.model.tables import BOX_BOX, BOX_GUIDE, BOX_PLANE, Model
 from mdlgen.results.result import ContactStatistics, Energy, Result
 
 # Two rollers with a sheet between them clear each other by a few micrometres and may graze.
@@ -42,9 +42,12 @@ class Recorder:
         self._through = self._most = 0.0
         self._low, self._high = model.pairs.low * MM, model.pairs.high * MM
         self._last_stored = -1
-        # depth beyond which a box is about to come out at the other side of a plate
-        plates = np.isin(system.pairs["kind"], (BOX_GUIDE, BOX_PLANE))
-        self._plate = np.where(plates, system.bodies["half"][system.pairs["b"], 2], np.inf)
+        # depth beyond which a box is about to come out at the other side of a plate, or of another box
+        kind, half = system.pairs["kind"], system.bodies["half"][:, 2]
+        two = np.minimum(half[system.pairs["a"]], half[system.pairs["b"]])
+        plates = np.isin(kind, (BOX_GUIDE, BOX_PLANE))
+        one = np.where(plates, half[system.pairs["b"]], np.inf)
+        self._plate = np.where(kind == BOX_BOX, two, one)
 
     def plan(self, h: float) -> None:
         """Which times are stored: the print times, at the first step that reaches them, and the end."""
@@ -144,7 +147,7 @@ class Recorder:
         deep = np.flatnonzero(self._pairs[:, 15] > self._plate)
         if deep.size:
             box = self.model.bodies.name[int(self.model.pairs.a[deep[0]])]
-            plate = self.model.plate(int(self.model.pairs.b[deep[0]]))
+            plate = self.model.called(int(self.model.pairs.b[deep[0]]))
             self.reason = (
                 f"box {box} is more than half of its thickness into {plate} at {t / MS:.6g} ms; "
                 "a stiffer contact or a smaller run.step would hold it"

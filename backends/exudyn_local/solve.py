@@ -19,6 +19,7 @@ from backends.exudyn_local.recorder import Recorder
 from backends.exudyn_local.step import choose_steps
 from backends.exudyn_local.system import MM, MS, Pattern, System, build
 from mdlgen.model.external import refuse_externals
+from mdlgen.model.sheet_pairs import refuse_searched
 from mdlgen.model.tables import Model
 from mdlgen.results.result import Result
 
@@ -56,6 +57,7 @@ def solve(model: Model, progress: Progress | None = None, step: float | None = N
     raised for what the backend cannot represent.
     """
     refuse_externals(model, "Exudyn")
+    refuse_searched(model, "Exudyn")
     started = clock.perf_counter()
     system, pattern = build(model)
     exu = _exudyn()

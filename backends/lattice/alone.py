@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 
 from backends.lattice.band import solve_six
-from mdlgen.mechanics.pair import on_plate
+from mdlgen.mechanics.pair import BOX_BOX, on_plate
 
 # Where contacts stand: all apart; those with planes in the matrix of the sheet; all of them there.
 APART, PLANES, INSIDE = 0, 1, 2
@@ -123,13 +123,17 @@ def release(alone, m):
 
 @njit(cache=True, error_model="numpy")
 def choose(bodies, pairs, touched, count, where, alone, m, most):
-    """Adds boxes that touch to the m chosen ones; returns how many they are, -1: more than `most`."""
+    """Adds boxes that touch to the m chosen ones; returns how many they are, -1: more than `most`,
+    or boxes of two sheets touch each other: they stand in the matrix."""
     if where == INSIDE:
         return 0
     for k in range(count):
         pair = pairs[touched[k]]
         if where == PLANES and on_plate(pair):
             continue
+        if pair.kind == BOX_BOX:
+            release(alone, m)
+            return -1
         node = bodies[pair.a].node
         if node >= 0 and alone.place_of[node] < 0:
             if m >= most:

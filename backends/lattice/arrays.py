@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from backends.lattice.search import Search, plan
 from mdlgen.mechanics.curve import FOLLOWS, curve_points, follow
 from mdlgen.mechanics.driven import DRIVEN, drive
 from mdlgen.mechanics.laws import damping_share
 from mdlgen.model.rotations import matrices
-from mdlgen.model.tables import GROUND, Floats, Ints, Model
+from mdlgen.model.tables import BOX_BOX, GROUND, Floats, Ints, Model
 
 if TYPE_CHECKING:
     from backends.lattice.mirror import Mirror
@@ -60,6 +61,7 @@ PAIR = np.dtype(
         ("a", "i8"),
         ("b", "i8"),
         ("row", "i8"),  # of the contacts
+        ("mark", "i8"),  # its place among the marks of pairs that have touched
         ("shared", "i8"),
         ("k", "f8"),
         ("law", "f8", 6),  # as in mechanics.contact
@@ -75,7 +77,7 @@ class System(NamedTuple):
 
     bodies: np.ndarray  # BODY, (n + 1,)
     joints: np.ndarray  # JOINT
-    pairs: np.ndarray  # PAIR
+    pairs: np.ndarray  # PAIR, and room for those that are searched
     loads: np.ndarray  # LOAD
     gravity: Floats
     nodes: Ints  # body of each node
@@ -86,6 +88,8 @@ class System(NamedTuple):
     points: np.ndarray  # of the curves that joints follow, mechanics.curve.POINT
     images: np.ndarray  # IMAGE: of boxes that joints of a halved scene need
     mirror: Mirror | None  # the plane that halves it, None: this is the whole
+    search: Search  # of boxes of two sheets that are near each other
+    marks: int  # how many pairs there can be
 
     @property
     def tables(self) -> tuple[np.ndarray, ...]:
@@ -98,10 +102,14 @@ def build(model: Model, fold: bool = True) -> System:
     """Arrays of a Model; `fold`: equal bushings side by side as one joint."""
     bodies, nodes, border = _bodies(model)
     joints, folded = _joints(model, fold)
+    listed, found = _pairs(model)
+    pairs, search, marks = plan(model, listed)
+    for name in ("shared", "k", "law"):
+        search.regions[name] = found[name]
     return System(
         bodies=bodies,
         joints=joints,
-        pairs=_pairs(model),
+        pairs=pairs,
         loads=_loads(model),
         gravity=np.array(model.gravity),
         nodes=nodes,
@@ -112,6 +120,8 @@ def build(model: Model, fold: bool = True) -> System:
         points=curve_points(model.curves),
         images=np.zeros(0, IMAGE),
         mirror=None,
+        search=search,
+        marks=marks,
     )
 
 
@@ -207,18 +217,28 @@ def _folded(one: np.void, two: np.void) -> np.void:
     return both
 
 
-def _pairs(model: Model) -> np.ndarray:
-    rows, chosen = model.contacts, model.pairs.contact
+def _pairs(model: Model) -> tuple[np.ndarray, np.ndarray]:
+    """The Model's pairs but those of two sheets, and the laws of these, one for each contact."""
+    rows = model.contacts
+    own = np.flatnonzero(rows.kind[model.pairs.contact] != BOX_BOX)
+    chosen = model.pairs.contact[own]
+    pairs = _laws(model, chosen)
+    pairs["a"], pairs["b"] = model.pairs.a[own], model.pairs.b[own]
+    pairs["law"][:, 1:3] *= model.pair_friction[own, None]
+    return pairs, _laws(model, np.flatnonzero(rows.kind == BOX_BOX))
+
+
+def _laws(model: Model, chosen: Ints) -> np.ndarray:
+    """A pair of no bodies for each of the contacts `chosen`."""
+    rows = model.contacts
     pairs = np.zeros(len(chosen), PAIR)
-    pairs["row"], pairs["kind"] = chosen, rows.kind[chosen]
-    pairs["a"], pairs["b"] = model.pairs.a, model.pairs.b
+    pairs["row"], pairs["kind"], pairs["mark"] = chosen, rows.kind[chosen], np.arange(len(chosen))
     pairs["shared"] = np.array([share == "width" for share in rows.share], dtype=int)[chosen]
     pairs["k"] = rows.stiffness[chosen]
     beta = damping_share.py_func(rows.restitution)  # compiled code is for the solver alone to load
     speeds = (rows.stiction_velocity, rows.friction_velocity, rows.smoothing)
     for column, values in enumerate((beta, rows.mu_static, rows.mu_dynamic, *speeds)):
         pairs["law"][:, column] = values[chosen]
-    pairs["law"][:, 1:3] *= model.pair_friction[:, None]
     return pairs
 
 

@@ -12,7 +12,7 @@ from mdlgen.mechanics.contact import MOST_POINTS, OUT, POINT
 from mdlgen.mechanics.curve import curve_excess
 from mdlgen.mechanics.driven import clutch, prescribed
 from mdlgen.mechanics.guide import inward
-from mdlgen.mechanics.pair import BOX_GUIDE, BOX_PLANE, CYLINDER_CYLINDER, pair_force
+from mdlgen.mechanics.pair import BOX_BOX, BOX_GUIDE, BOX_PLANE, CYLINDER_CYLINDER, pair_force
 from mdlgen.mechanics.vector import (
     add,
     back,
@@ -26,6 +26,7 @@ from mdlgen.mechanics.vector import (
     scale,
     sub,
     three,
+    transpose_matmul,
     vec,
 )
 
@@ -129,11 +130,31 @@ def joint_forces(joints, points, x, r, u, w, f, lag=0.0):
 
 
 @njit(cache=True, error_model="numpy")
+def _facing(bodies, pair, x, r, gap, reach, reached):
+    """Whether two boxes are closer than `reached`, as far as the axes of the first tell; `reach` is that
+    between their centres."""
+    if dot(gap, gap) > reach * reach:
+        return False
+    one, half, other = mat(r, pair.a), bodies[pair.a].half, bodies[pair.b].half
+    turn = transpose_matmul(one, mat(r, pair.b))
+    for q in range(3):
+        up = gap[0] * one[q] + gap[1] * one[3 + q] + gap[2] * one[6 + q]
+        out = half[q] + reached
+        for i in range(3):
+            out += other[i] * abs(turn[3 * q + i])
+        if abs(up) > out:
+            return False
+    return True
+
+
+@njit(cache=True, error_model="numpy")
 def near_pairs(bodies, pairs, x, r, u, w, margin, ahead, near):
     """Lists pairs in `near` that are closer than `margin` [mm] and what they move against each other in
     `ahead` [ms]; returns how many."""
     count = 0
     for p in range(pairs.size):
+        if pairs[p].kind < 0:  # from here on there is room only
+            break
         a, b = pairs[p].a, pairs[p].b
         half = bodies[a].half
         size = math.sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2])
@@ -156,6 +177,13 @@ def near_pairs(bodies, pairs, x, r, u, w, margin, ahead, near):
             if abs(at[2]) > plate[1] + reached or abs(inward(at, radius)) > 2.0 * plate[2] + reached:
                 continue
             if radius == 0.0 and abs(at[0]) > plate[0] + reached:
+                continue
+        elif pairs[p].kind == BOX_BOX:
+            half, spun = bodies[b].half, vec(w, b)
+            far = math.sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2])
+            turning = math.sqrt(dot(spin, spin)) * size + math.sqrt(dot(spun, spun)) * far
+            reached = margin + ahead * (math.sqrt(dot(rate, rate)) + turning)
+            if not _facing(bodies, pairs[p], x, r, gap, size + far + reached, reached):
                 continue
         else:
             reached = margin + ahead * (math.sqrt(dot(rate, rate)) + math.sqrt(dot(spin, spin)) * size)

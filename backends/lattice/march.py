@@ -7,12 +7,13 @@ import math
 from numba import njit
 
 from backends.lattice.dense import copy
+from backends.lattice.search import look, strayed
 from backends.lattice.step import ROUNDS, STEPS, STRAIN, TOUCHING, WORST, carry, midpoint, spun
 from mdlgen.mechanics.curve import overstretched
 from mdlgen.mechanics.driven import clutch, prescribed
-from mdlgen.mechanics.pair import on_plate
+from mdlgen.mechanics.pair import BOX_BOX, on_plate
 
-DONE, STOPPED, LEFT, DEEP, STRETCHED = 0, 1, 2, 3, 4
+DONE, STOPPED, LEFT, DEEP, STRETCHED, CROWDED = 0, 1, 2, 3, 4, 5
 # How often a step may be halved.
 DEEPEST = 14
 # How often at most for accuracy, and how much more than wanted a step may miss before it is taken again.
@@ -26,11 +27,13 @@ GRAZE = 0.05
 
 @njit(cache=True, error_model="numpy")
 def _deep(bodies, pairs, mid, count):
-    """The pair that is more than half of a plate's thickness deep, or -1."""
+    """The pair that is more than half of a plate's thickness deep, or of a box's on another, or -1."""
     touched, outs = mid[5], mid[6]
     for k in range(count):
         pair = pairs[touched[k]]
         if on_plate(pair) and outs[k, 15] > bodies[pair.b].half[2]:
+            return touched[k]
+        if pair.kind == BOX_BOX and outs[k, 15] > min(bodies[pair.a].half[2], bodies[pair.b].half[2]):
             return touched[k]
     return -1
 
@@ -48,7 +51,7 @@ def _watch(pairs, mid, count, t, dt, kept):
         rows[row, 5] = rows[row, 6] = 0.0
     for k in range(count):
         pair = pairs[touched[k]]
-        marks[touched[k]] = True
+        marks[pair.mark] = True
         rows[pair.row, 5] += outs[k, 12]
         rows[pair.row, 6] = max(rows[pair.row, 6], outs[k, 15])
     for row in range(rows.shape[0]):
@@ -124,6 +127,7 @@ def run(
     free,
     kept,
     bounds,
+    search,
     t,
     steps,
     tolerance,
@@ -166,11 +170,15 @@ def run(
             copy(guess, u)
             if pace[2] != 0.0:
                 fresh[1] = 1.0
+            if search.regions.size > 0 and strayed(bodies, search, x, u, dt) and not look(pairs, search, x):
+                return CROWDED, t
             rounds = counters[ROUNDS]
             limit = tolerance * pace[3]
             solved = midpoint(system, state, mid, matrix, alone, free, t, dt, limit, fresh, counters)
             missed, fast = _missed(bodies, nodes, u, guess) if solved else (0.0, 0.0)
             most = pace[1] * max(fast, pace[3]) if pace[1] > 0.0 else 1e300
+            if solved and search.regions.size > 0:
+                solved = not strayed(bodies, search, x, u, dt)
             deep = _deep(bodies, pairs, mid, int(counters[TOUCHING])) if solved else -1
             if not solved or ((missed > AGAIN * most or deep >= 0) and level < FINEST):
                 copy(u, keep_u)

@@ -109,5 +109,6 @@ def halve(system: System, mirror: Mirror) -> System:
         reach=reach(bodies, joints),
         border=border,
         images=images,
+        search=system.search._replace(first=len(pairs)),  # there is none, see symmetry
         mirror=mirror,
     )

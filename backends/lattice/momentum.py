@@ -3,7 +3,7 @@
 The forces inside a sheet have no sum and no moment, whatever its state; so the linear and the angular
 momentum of a change of velocities are those of the residual that it is to cure. A factor of an earlier state
 does not know how boxes have turned since, and misses that by as much: what it misses is taken off as a motion
-of the whole sheet.
+of the whole sheet. Sheets that touch each other and nothing else keep theirs together.
 """
 
 from __future__ import annotations
@@ -11,12 +11,13 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from mdlgen.mechanics.pair import BOX_BOX
 from mdlgen.mechanics.vector import add, back, cross, dot, mat, rotate, scale, sub, vec
 
 
 def empty(system) -> tuple:
     """What free sheets need: the sheet of each node, whether a sheet hangs on nothing, whether it touches
-    something now, and a residual."""
+    something now, a residual, and which sheet it is one with now."""
     bodies, joints, nodes = system.bodies, system.joints, system.nodes
     label = system.sheets
     ends = [np.where(joints[end] >= 0, bodies["node"][joints[end]], -1) for end in "ab"]
@@ -24,7 +25,14 @@ def empty(system) -> tuple:
     for one, two in (ends, ends[::-1]):
         held = (one >= 0) & (two < 0)
         loose[label[one[held]]] = False
-    return label.astype(np.int64), loose, np.zeros(len(loose), np.bool_), np.zeros(6 * len(nodes))
+    parts = len(loose)
+    return (
+        label.astype(np.int64),
+        loose,
+        np.zeros(parts, np.bool_),
+        np.zeros(6 * len(nodes)),
+        np.arange(parts),
+    )
 
 
 @njit(cache=True, error_model="numpy")
@@ -52,22 +60,46 @@ def _solved(a, b):
 
 
 @njit(cache=True, error_model="numpy")
+def _top(one_with, part):
+    while one_with[part] != part:
+        part = one_with[part]
+    return part
+
+
+@njit(cache=True, error_model="numpy")
+def _tie(bodies, pairs, touched, count, free):
+    """Makes one of the parts that touch each other, and marks those that are held or touch something else."""
+    label, loose, busy, _residual, one_with = free
+    for part in range(loose.size):
+        one_with[part] = part
+        busy[part] = not loose[part]
+    for k in range(count):
+        pair = pairs[touched[k]]
+        one = bodies[pair.a].node
+        two = bodies[pair.b].node if pair.kind == BOX_BOX else -1
+        if one >= 0 and two >= 0:
+            one_with[_top(one_with, label[one])] = _top(one_with, label[two])
+        elif one >= 0 or two >= 0:
+            busy[label[max(one, two)]] = True
+    for part in range(loose.size):
+        top = _top(one_with, part)
+        one_with[part] = top
+        busy[top] = busy[top] or busy[part]
+
+
+@njit(cache=True, error_model="numpy")
 def keep(bodies, pairs, nodes, touched, count, free, x, r, change):
     """Takes off `change` (6 nodes,), global axes, what it has of momentum beside the residual's; x and r are
     places and rotations of the residual."""
-    label, loose, busy, residual = free
-    busy[:] = False
-    for k in range(count):
-        node = bodies[pairs[touched[k]].a].node
-        if node >= 0:
-            busy[label[node]] = True
+    label, loose, busy, residual, one_with = free
+    _tie(bodies, pairs, touched, count, free)
     for part in range(loose.size):
-        if busy[part] or not loose[part]:
+        if busy[part] or one_with[part] != part:
             continue
         total = 0.0
         centre, linear = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
         for n in range(nodes.size):
-            if label[n] == part:
+            if one_with[label[n]] == part:
                 b, k = nodes[n], 6 * n
                 mass = bodies[b].mass
                 total += mass
@@ -80,7 +112,7 @@ def keep(bodies, pairs, nodes, touched, count, free, x, r, change):
         angular = (0.0, 0.0, 0.0)
         inertia = np.zeros((3, 3))
         for n in range(nodes.size):
-            if label[n] == part:
+            if one_with[label[n]] == part:
                 b, k = nodes[n], 6 * n
                 mass, j, m = bodies[b].mass, bodies[b].inertia, mat(r, b)
                 arm = sub(vec(x, b), centre)
@@ -97,7 +129,7 @@ def keep(bodies, pairs, nodes, touched, count, free, x, r, change):
                 angular = add(angular, sub(spun, (residual[k + 3], residual[k + 4], residual[k + 5])))
         turn = _solved(inertia, angular)
         for n in range(nodes.size):
-            if label[n] == part:
+            if one_with[label[n]] == part:
                 k = 6 * n
                 off = add(drift, cross(turn, sub(vec(x, nodes[n]), centre)))
                 for i in range(3):

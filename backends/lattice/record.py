@@ -56,7 +56,7 @@ class Recorder:
         rows, marks = self.kept
         mirror, touched = self.system.mirror, marks
         if mirror is not None:
-            touched = marks * mirror.sides(self.system)
+            touched = marks[self.system.pairs["mark"]] * mirror.sides(self.system)
             summed = (1, 3, 5)  # forces; depths and times hold for both sides
             columns = enumerate(rows.T)
             rows = np.array([(mirror.sums if k in summed else mirror.largest)(c) for k, c in columns]).T

@@ -169,7 +169,7 @@ def _once(
         dt = run.duration / outputs
     begun = clock.perf_counter()
     moving = _arrays(model, system)
-    tables, state, mid, _, _, _, kept, _ = moving
+    tables, state, mid, _, _, _, kept, _, _ = moving
     counters, work, fresh = np.zeros(step.COUNTERS), np.zeros(3), np.zeros(3)
     before = (state[6].copy(), state[7].copy(), np.zeros(2))
     recorder = Recorder(model, system, tables, state, mid, kept)
@@ -235,6 +235,12 @@ def _reason(
     from backends.lattice.compiled import march, step
 
     names = model.bodies.name
+    if status == march.STOPPED and counters[step.THROUGH] >= 0:
+        one, two = (names[int(system.pairs[end][int(counters[step.THROUGH])])] for end in "ab")
+        return (
+            f"box {one} would pass through box {two} of another sheet at {t:.6g} ms, with steps down to "
+            f"{dt / 2**march.DEEPEST:.3g} ms; a stiffer contact between the two would hold it"
+        )
     if status == march.STOPPED:
         body = names[int(counters[step.WORST])]
         return (
@@ -243,11 +249,14 @@ def _reason(
         )
     if status == march.DEEP:
         pair = int(counters[step.WORST])
-        box, plate = names[int(system.pairs["a"][pair])], model.plate(int(system.pairs["b"][pair]))
+        box, plate = (int(system.pairs[end][pair]) for end in "ab")
         return (
-            f"box {box} is more than half of its thickness into {plate} at {t:.6g} ms; "
+            f"box {names[box]} is more than half of its thickness into {model.called(plate)} at {t:.6g} ms; "
             "a stiffer contact or a smaller run.step would hold it"
         )
+    if status == march.CROWDED:
+        room = len(system.pairs) - system.search.first
+        return f"more than {room} pairs of boxes of two sheets are near each other at {t:.6g} ms"
     if status == march.STRETCHED:
         row = int(system.joints["row"][int(counters[step.WORST])])
         return overstretched(model, row, float(counters[step.STRAIN]), t)
@@ -260,21 +269,26 @@ def _reason(
     )
 
 
-def _arrays(model: Model, system: System) -> tuple[Any, Any, Any, Any, Any, Any, Any, Any]:
+def _arrays(model: Model, system: System) -> tuple[Any, Any, Any, Any, Any, Any, Any, Any, Any]:
     """What a run works on: tables, state, middle, matrix, boxes that touch, free sheets, what is kept,
-    bounds."""
-    from backends.lattice.compiled import alone, forces, momentum
+    bounds, and the search, made for the start."""
+    from backends.lattice.compiled import alone, forces, momentum, search
 
     tables = system.tables
-    kept = (np.zeros((len(model.contacts), 9)), np.zeros(len(system.pairs), bool))
+    kept = (np.zeros((len(model.contacts), 9)), np.zeros(system.marks, bool))
     bounds = (model.pairs.low, model.pairs.high)
+    state, mid, matrix = start(model, system)
+    search.look(system.pairs, system.search, state[0])
     return (
         tables,
-        *start(model, system),
+        state,
+        mid,
+        matrix,
         alone.empty(system, forces.WIDE),
         momentum.empty(system),
         kept,
         bounds,
+        system.search,
     )
 
 
@@ -283,7 +297,7 @@ def _warm(model: Model, system: System) -> None:
     from backends.lattice.compiled import march, step
 
     moving = _arrays(model, system)
-    tables, state, mid, _, _, _, kept, _ = moving
+    tables, state, mid, _, _, _, kept, _, _ = moving
     before = (state[6].copy(), state[7].copy(), np.zeros(2))
     counters = np.zeros(step.COUNTERS)
     march.run(*moving, 0.0, np.zeros(0), 1.0, np.zeros(3), counters, np.zeros(3), before, np.zeros(4))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from mdlgen.errors import RefusedError
 from mdlgen.model.external import refuse_externals
-from mdlgen.model.tables import Model
+from mdlgen.model.tables import BOX_BOX, Model
 
 
 def check(model: Model) -> None:
@@ -14,6 +14,11 @@ def check(model: Model) -> None:
         # a driven roller rubs on what it touches, and the friction of rest is none
         raise RefusedError(
             "lattice: a static analysis with driven rollers is not there yet", ("run", "analysis")
+        )
+    if model.run.analysis == "static" and bool((model.contacts.kind == BOX_BOX).any()):
+        raise RefusedError(
+            "lattice: a static analysis with a contact between two sheets is not there yet",
+            ("run", "analysis"),
         )
     for roller in model.rollers:
         if roller.press is not None and abs(float(roller.press.direction @ roller.axis)) > 1e-9:

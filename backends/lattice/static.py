@@ -136,7 +136,7 @@ def _touch(model: Model, system: System, state: tuple, mid: tuple, rows: tuple) 
         pair, force, depth = system.pairs[touched[k]], outs[k, 12], outs[k, 15]
         if pair["kind"] in (BOX_GUIDE, BOX_PLANE) and depth > system.bodies["half"][pair["b"], 2]:
             names = model.bodies.name
-            plate = model.plate(int(pair["b"]))
+            plate = model.called(int(pair["b"]))
             return f"box {names[pair['a']]} rests more than half of its thickness in {plate}"
         marks[touched[k]] = True
         row = table[pair["row"]]

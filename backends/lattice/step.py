@@ -16,10 +16,11 @@ import math
 import numpy as np
 from numba import njit
 
-from backends.lattice import band
+from backends.lattice import band, coupled
 from backends.lattice.alone import APART, INSIDE, PLANES, choose, columns, forget, release, unsee
 from backends.lattice.band import factor, solve
-from backends.lattice.border import eliminate, solve_bordered
+from backends.lattice.border import eliminate
+from backends.lattice.coupled import couplings_in_box_axes, solve_coupled
 from backends.lattice.dense import copy
 from backends.lattice.forces import (
     clutch_torques,
@@ -32,6 +33,7 @@ from backends.lattice.forces import (
 )
 from backends.lattice.image import reflect
 from backends.lattice.momentum import keep
+from backends.lattice.sides import crossed, part_of_change
 from backends.lattice.tangent import contacts_into, in_box_axes, joints_into, masses, rollers_into
 from backends.lattice.touching import settle
 from mdlgen.mechanics.driven import clutch, prescribed
@@ -52,7 +54,7 @@ DAMPED, MOST_DAMPED = 1.0, 0.3
 # other side of what is flat; the latter is taken twice where a round moved more than the one before.
 LITTLE, MUCH = 0.05, 0.7
 # Counters of a run.
-STEPS, ROUNDS, FACTORS, TOUCHING, WORST, STRAIN, COUNTERS = 0, 1, 2, 3, 4, 5, 6
+STEPS, ROUNDS, FACTORS, TOUCHING, WORST, STRAIN, THROUGH, COUNTERS = 0, 1, 2, 3, 4, 5, 6, 7
 
 
 @njit(cache=True, error_model="numpy")
@@ -106,17 +108,19 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
     """Solves for the velocities at the middle of a step. Returns whether it converged.
 
     `fresh` (3,): the step that the factor was made for (0: none), whether it should be made anew, and where
-    contacts stand (see alone.APART).
+    contacts stand (see alone.APART). counters[THROUGH] is the pair of two sheets that a step would take
+    through each other, or -1.
     """
     bodies, joints, pairs, loads, gravity, nodes, points, images = system
     x, r, v, l, s, vb, u, ub = state
     xm, rm, um, wm, f, touched, outs, totals, near = mid
-    a, b, d, y, corner, res, resb, direction, index = matrix
+    a, b, d, y, corner, res, resb, direction, index, couplings = matrix
     most = alone.chosen.size
     h = 0.5 * dt
     lag = min(DAMPED * dt, MOST_DAMPED) * h
     before = 1e300
     careful = 0
+    counters[THROUGH] = -1.0
     close, where, m = 0, int(fresh[2]), 0
     margin, moved = FAR, 0.0
     for rounds in range(MOST_ROUNDS):
@@ -161,9 +165,9 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
                 chord = MUCH if careful > 0 else LITTLE
                 careful -= 1
                 planes = where == PLANES
-                contacts_into(
-                    bodies, pairs, h, xm, touched, outs, count, chord, planes, a, b, d, direction, index
-                )
+                room = (direction, index, couplings)
+                contacts_into(bodies, pairs, h, xm, touched, outs, count, chord, planes, a, b, d, *room)
+                couplings_in_box_axes(nodes, rm, couplings)
             in_box_axes(nodes, rm, a, b)
             forget(alone)
             if not factor(a) or (where == INSIDE and not eliminate(a, b, d, y, corner)):
@@ -177,7 +181,7 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
         copy(free[3], res)
         _turn(nodes, r, res, True)
         if where == INSIDE:
-            solve_bordered(a, b, y, corner, res, resb)
+            solve_coupled(a, b, y, corner, couplings, res, resb)
         else:
             solve(a, res)
             columns(a, alone, m)
@@ -192,7 +196,10 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
                 return False
         _turn(nodes, r, res, False)
         keep(bodies, pairs, nodes, touched, count, free, xm, rm, res)
-        change = 0.0
+        change, part = 0.0, part_of_change(bodies, pairs, near, close, rm, h, res)
+        if part < 1.0:
+            res *= part
+            resb *= part
         for n in range(nodes.size):
             size = bodies[nodes[n]].half[0] + bodies[nodes[n]].half[1]
             for i in range(6):
@@ -222,7 +229,8 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
             totals[0], totals[1] = lost + rubbed, power
             counters[TOUCHING] = count
             release(alone, m)
-            return True
+            counters[THROUGH] = crossed(bodies, pairs, near, close, x, r, xm, rm)
+            return counters[THROUGH] < 0.0
         if before < 1e299 and (rate >= 1.0 or math.log(limit / change) < (WORTH + m) * math.log(rate)):
             fresh[1] = 1.0
         if before < 1e299 and rate > 0.9:
@@ -313,5 +321,6 @@ def empty(system, wide: int):
         np.zeros(border),
         np.zeros((4, 3)),
         np.zeros(4, np.int64),
+        coupled.empty(len(system.pairs) - system.search.first, nodes, border),
     )
     return state, mid, matrix

@@ -260,15 +260,23 @@ def _columns(body, arm, x, sign, direction, index, count):
 
 
 @njit(cache=True, error_model="numpy")
-def contacts_into(bodies, pairs, h, x, touched, outs, count, chord, planes, a, b, d, direction, index):
+def contacts_into(
+    bodies, pairs, h, x, touched, outs, count, chord, planes, a, b, d, direction, index, couplings
+):
     """Adds the contacts that touch, or only those with planes: to the band a, to the border b (border, 6
-    nodes) and its corner d."""
+    nodes) and its corner d; what couples boxes of two sheets goes to the couplings."""
     zero = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    couplings.many[0] = 0
     for k in range(count):
         pair, out = pairs[touched[k]], outs[k]
         if planes and not on_plate(pair):
             continue
-        node = bodies[pair.a].node
+        node, other = bodies[pair.a].node, bodies[pair.b].node
+        coupled = couplings.many[0]
+        if node >= 0 and other >= 0:
+            couplings.ends[coupled, 0], couplings.ends[coupled, 1] = node, other
+            couplings.blocks[coupled] = 0.0
+            couplings.many[0] += 1
         for point in range(int(out[OUT])):
             at = OUT + 1 + POINT * point
             where = (out[at], out[at + 1], out[at + 2])
@@ -282,6 +290,10 @@ def contacts_into(bodies, pairs, h, x, touched, outs, count, chord, planes, a, b
             if node < 0:
                 moving = _columns(bodies[pair.a], arm, x, 1.0, direction, index, moving)
             far = sub(where, vec(x, pair.b))
+            if other >= 0:
+                _blocks(a, other, 0, 1.0, t, far, far, zero)
+            if node >= 0 and other >= 0:
+                _blocks(couplings.blocks, coupled, 0, -1.0, t, arm, far, zero)
             moving = _columns(bodies[pair.b], far, x, -1.0, direction, index, moving)
             for i in range(moving):
                 v = rotate(t, (direction[i, 0], direction[i, 1], direction[i, 2]))

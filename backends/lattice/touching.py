@@ -22,7 +22,7 @@ from backends.lattice.forces import pair_forces, place_box, place_roller
 from backends.lattice.growth import activate, clutches, gradient, newton, newton_matrix
 from mdlgen.mechanics.contact import OUT, POINT
 from mdlgen.mechanics.driven import clutch
-from mdlgen.mechanics.pair import on_plate
+from mdlgen.mechanics.pair import BOX_BOX, on_plate
 from mdlgen.mechanics.vector import back, mat, rotate
 
 MOST_ROUNDS = 40
@@ -42,6 +42,8 @@ def _mine(bodies, pairs, near, where, alone):
     count = 0
     for k in range(near.size):
         pair = pairs[near[k]]
+        if pair.kind == BOX_BOX:  # where these touch, all contacts stand in the matrix
+            continue
         node = bodies[pair.a].node
         if node < 0 or (alone.place_of[node] >= 0 and not (where == PLANES and on_plate(pair))):
             alone.mine[count] = near[k]

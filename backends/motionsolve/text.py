@@ -8,6 +8,7 @@ from backends.motionsolve.environment import environment
 from backends.motionsolve.views import deck_view
 from mdlgen.errors import SpecError
 from mdlgen.model.external import refuse_externals
+from mdlgen.model.sheet_pairs import refuse_searched
 from mdlgen.model.springs import refuse_compressed
 from mdlgen.model.tables import Model
 
@@ -17,6 +18,7 @@ _BUFFERED = 4096  # pieces of text that are joined at once: a large deck has mil
 def check(model: Model) -> None:
     """Raises RefusedError by name for what the deck cannot represent."""
     refuse_externals(model, "MotionSolve deck")
+    refuse_searched(model, "MotionSolve deck")
     refuse_compressed(model, "MotionSolve deck")
 
 

@@ -108,7 +108,7 @@ def pair_rows(model: Model) -> list[Pair]:
     for guide in model.guides:
         graphics[guide.body] = guide_graphics(guide)
     rubs = [s > 0 or d > 0 for s, d in zip(table.mu_static, table.mu_dynamic, strict=True)]
-    rough, rougher = rough_pairs(model), model.bodies.friction.tolist()
+    rough, rougher = rough_pairs(model), model.pair_friction.tolist()
     data_set = [f"contact_{entry}" for entry in table.entry.tolist()]
     columns = (c.tolist() for c in (model.pairs.contact, model.pairs.a, model.pairs.b))
     return [
@@ -119,12 +119,12 @@ def pair_rows(model: Model) -> list[Pair]:
             graphics[a][0],
             f"b_{bodies.name[b]}",
             graphics[b],
-            "ON" if rubs[row] and rougher[a] > 0 else "OFF",
+            "ON" if rubs[row] and rougher[k] > 0 else "OFF",
             data_set[row],
-            rough.get(a, ""),
-            rougher[a],
+            "*".join(rough[body] for body in (a, b) if rough.get(body)),
+            rougher[k],
         )
-        for row, a, b in zip(*columns, strict=True)
+        for k, (row, a, b) in enumerate(zip(*columns, strict=True))
     ]
 
 

@@ -7,7 +7,7 @@ from backends.motionview.banner import SHARE, curve_lines, share_lines, sheet_li
 from backends.motionview.forms import unverified_system
 from backends.motionview.rows import SystemView
 from backends.motionview.units import number
-from mdlgen.model.tables import CYLINDER_CYLINDER, Model
+from mdlgen.model.tables import BOX_BOX, CYLINDER_CYLINDER, Model
 
 
 def notes(model: Model, system: SystemView) -> list[str]:
@@ -60,7 +60,8 @@ def _contacts(model: Model, system: SystemView) -> list[str]:
         return []
     external = len(model.external_pairs)
     possible = pairs.possible - int((table.kind == CYLINDER_CYLINDER).sum())
-    lines = ["", f"Contacts : {len(scene.pairs)} pairs of a box and a part of the machine"]
+    meets = ", or of boxes of two sheets" if bool((table.kind == BOX_BOX).any()) else ""
+    lines = ["", f"Contacts : {len(scene.pairs)} pairs of a box and a part of the machine{meets}"]
     if possible:
         lines += [
             f"  With parts of the scene {len(scene.pairs) - external} of {possible} are kept: those that can",

@@ -252,7 +252,7 @@ class Pair(NamedTuple):
     graphics_2: list[str]
     friction: str  # ON or OFF
     data_set: str
-    rough: str = ""  # friction of the box in times that of the contact, where that is not 1
+    rough: str = ""  # friction of its boxes in times that of the contact, where that is not 1
     rougher: float = 1.0  # and its number
 
 

@@ -9,11 +9,11 @@ import numpy as np
 from backends.motionview.machine import contact_views, guide_graphics, pair_rows, rough_pairs
 from backends.motionview.rows import Attachment, Pair, SystemView
 from backends.motionview.views import given_values, scene_view
-from mdlgen.model.tables import CYLINDER_CYLINDER, Ints, Model
+from mdlgen.model.tables import BOX_BOX, CYLINDER_CYLINDER, Ints, Model
 
 
 def kept_contacts(model: Model) -> Ints:
-    """Row of the contacts of each pair of a box and a part of the machine, those of `sheet_pairs`."""
+    """Row of the contacts of each pair of a box and another body, those of `sheet_pairs`."""
     table = model.contacts
     inside = model.pairs.contact[table.kind[model.pairs.contact] != CYLINDER_CYLINDER]
     return np.sort(np.concatenate([inside, model.external_pairs.contact]), kind="stable")
@@ -67,11 +67,13 @@ def attachments(model: Model) -> list[Attachment]:
 
 
 def sheet_pairs(model: Model) -> list[Pair]:
-    """One row for each pair of a box and a part of the machine, by contact."""
+    """One row for each pair of a box and a part of the machine, or a box of another sheet, by contact."""
     table, bodies, pairs = model.contacts, model.bodies, model.external_pairs
     rows = []
     for row, pair in zip(model.pairs.contact.tolist(), pair_rows(model), strict=True):
-        if table.kind[row] != CYLINDER_CYLINDER:
+        if table.kind[row] == BOX_BOX:
+            rows.append((row, pair))
+        elif table.kind[row] != CYLINDER_CYLINDER:
             name = table.part_b[row]
             inside = _graphics(name, len(pair.graphics_2))
             rows.append((row, pair._replace(body_2=_body(name), graphics_2=inside)))

@@ -10,6 +10,7 @@ from backends.motionview.system import system_view
 from backends.motionview.views import scene_view
 from mdlgen.errors import RefusedError, SpecError
 from mdlgen.model.external import refuse_externals
+from mdlgen.model.sheet_pairs import refuse_searched
 from mdlgen.model.springs import refuse_compressed
 from mdlgen.model.tables import Model
 
@@ -31,6 +32,7 @@ def check(model: Model) -> None:
 
 def check_sheets(model: Model) -> None:
     """Raises RefusedError by name for what the text of the sheets cannot represent."""
+    refuse_searched(model, "MotionView text")
     if len(model.loads.body):
         raise RefusedError(
             "MotionView text: loads are not written, because no force statement with a certain meaning is "

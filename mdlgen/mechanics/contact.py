@@ -1,4 +1,5 @@
-"""Contact between a box and a cylinder or a part of one, a box and a plane, and two parallel cylinders.
+"""Contact between a box and a cylinder or a part of one, a box and a plane, and two parallel cylinders; see
+facing.py for two boxes.
 
 The force of one box under a roller is k z^1.5 (Eq. 10), z the depth of the point of its face nearest to the
 roller's axis, times the part of the roller's width that the box covers. Where boxes lie side by side under

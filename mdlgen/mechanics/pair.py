@@ -5,11 +5,12 @@ from __future__ import annotations
 from numba import njit
 
 from mdlgen.mechanics.contact import box_cylinder, box_plane, cylinder_cylinder
+from mdlgen.mechanics.facing import box_box
 from mdlgen.mechanics.guide import box_guide
 from mdlgen.mechanics.vector import mat, three, vec
 
 # As in mdlgen.model.tables.
-BOX_PLANE, CYLINDER_CYLINDER, BOX_GUIDE = 1, 2, 4
+BOX_PLANE, CYLINDER_CYLINDER, BOX_GUIDE, BOX_BOX = 1, 2, 4, 5
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -74,6 +75,25 @@ def pair_force(bodies, pair, x, r, u, w, out):
             three(bodies[b].arc),
             three(bodies[b].half),
             bodies[b].side,
+            pair.k,
+            pair.shared != 0,
+            law,
+        )
+    elif pair.kind == BOX_BOX:
+        box_box(
+            out,
+            vec(x, a),
+            mat(r, a),
+            vec(u, a),
+            vec(w, a),
+            three(bodies[a].half),
+            bodies[a].exposed,
+            vec(x, b),
+            mat(r, b),
+            vec(u, b),
+            vec(w, b),
+            three(bodies[b].half),
+            bodies[b].exposed,
             pair.k,
             pair.shared != 0,
             law,

@@ -22,6 +22,7 @@ from mdlgen.model.shape import bend, box_rotations, joint_creases, joint_frames,
 from mdlgen.model.stiffness import between, coefficients, derived, extent
 from mdlgen.model.supports import joined, support_bushings
 from mdlgen.model.tables import (
+    BOX_BOX,
     BOX_CYLINDER,
     BOX_GUIDE,
     BOX_PLANE,
@@ -161,7 +162,7 @@ def _contacts(scene: Scene) -> Contacts:
 
     with_sheet = dict.fromkeys(scene.rollers, BOX_CYLINDER)
     with_sheet |= dict.fromkeys(scene.planes, BOX_PLANE) | dict.fromkeys(scene.parts, EXTERNAL)
-    with_sheet |= dict.fromkeys(scene.guides, BOX_GUIDE)
+    with_sheet |= dict.fromkeys(scene.guides, BOX_GUIDE) | dict.fromkeys(scene.sheets, BOX_BOX)
     kinds = [CYLINDER_CYLINDER if a in scene.rollers else with_sheet[b] for _, a, b in rows]
     return Contacts(
         entry=np.array([i for i, _, _ in rows], dtype=np.int64),

@@ -1,11 +1,12 @@
 """Which contacts a scene can need: box-part pairs that may touch during the run.
 
 A sheet's boxes are swept by what can move them: their initial velocity, gravity, and the surface speed
-of every driven roller that the sheet has a contact with. A difference of those speeds across the sheet
-may turn it. A stated margin is added. A solver watches the bounds: a box whose centre leaves them ends
-the run, so that no contact is missed silently. A sheet that meets an external part may be moved by it in any
-way: all of its pairs are kept. A sheet that meets a guide may be led by it in any direction, as far as all
-that moves it goes.
+of every driven roller that the sheet has a contact with, or a sheet that it has one with; such a sheet may
+also pass on its velocity. A difference of those speeds across the sheet may turn it. A stated margin is
+added. A solver watches the bounds: a box whose centre leaves them ends the run, so that no contact is missed
+silently. A sheet that meets an external part may be moved by it in any way: all of its pairs are kept. A
+sheet that meets a guide, itself or over such a sheet, may be led by it in any direction, as far as all that
+moves it goes.
 """
 
 from __future__ import annotations
@@ -13,7 +14,9 @@ from __future__ import annotations
 import numpy as np
 
 from mdlgen.model.guides import bounds
+from mdlgen.model.sheet_pairs import linked, meeting
 from mdlgen.model.tables import (
+    BOX_BOX,
     CYLINDER_CYLINDER,
     EXTERNAL,
     Bodies,
@@ -53,14 +56,22 @@ def find_pairs(
     extents: dict[str, tuple[Floats, Floats]] = {}
     possible = 0
     kept: list[tuple[int, int, int]] = []
+    searched: list[int] = []
     if prune:
+        groups = linked([s.name for s in sheets], contacts)
         for sheet in sheets:
-            rows = [r for r, a in enumerate(contacts.part_a) if a == sheet.name]
+            group = groups[sheet.name]
+            rows = [r for r, a in enumerate(contacts.part_a) if a in group]
             if not rows or EXTERNAL in contacts.kind[rows]:
                 continue
-            touched = [parts[contacts.part_b[r]] for r in rows]
+            touched = [
+                (by_name[contacts.part_a[r]], parts[contacts.part_b[r]])
+                for r in rows
+                if contacts.kind[r] != BOX_BOX
+            ]
             boxes = slice(sheet.first, sheet.first + sheet.count)
-            least, most, reach = _swept(gravity, sheet, touched, bodies, run)
+            others = [by_name[name] for name in group if name != sheet.name]
+            least, most, reach = _swept(gravity, sheet, touched, others, bodies, run)
             low[boxes], high[boxes] = least - margin, most + margin
             extents[sheet.name] = (low[boxes] - reach - SLACK, high[boxes] + reach + SLACK)
     if prune:
@@ -70,6 +81,15 @@ def find_pairs(
                 low[roller.body] = bodies.position[roller.body] - way
                 high[roller.body] = bodies.position[roller.body] + way
     for row in np.flatnonzero(contacts.kind != EXTERNAL).tolist():
+        if contacts.kind[row] == BOX_BOX:
+            pair = by_name[contacts.part_a[row]], by_name[contacts.part_b[row]]
+            possible += pair[0].count * pair[1].count
+            found = meeting(*pair, extents)
+            if found is None:
+                searched.append(row)
+            else:
+                kept.extend((row, a, b) for a, b in found)
+            continue
         other = parts[contacts.part_b[row]]
         if contacts.kind[row] == CYLINDER_CYLINDER:
             possible += 1
@@ -84,17 +104,30 @@ def find_pairs(
             boxes = boxes[np.all((box_low <= part_high) & (box_high >= part_low), axis=1)]
         kept.extend((row, int(box), other.body) for box in boxes)
     table = np.array(kept, dtype=np.int64).reshape(-1, 3)
-    return Pairs(table[:, 0].copy(), table[:, 1].copy(), table[:, 2].copy(), possible, margin, low, high)
+    return Pairs(
+        table[:, 0].copy(),
+        table[:, 1].copy(),
+        table[:, 2].copy(),
+        possible,
+        margin,
+        low,
+        high,
+        np.array(searched, dtype=np.int64),
+    )
 
 
 def _swept(
     gravity: Floats,
     sheet: SheetPart,
-    touched: list[Part],
+    touched: list[tuple[SheetPart, Part]],
+    others: list[SheetPart],
     bodies: Bodies,
     run: RunSettings,
 ) -> tuple[Floats, Floats, Floats]:
-    """Bounds of each box centre (low, high), (count, 3), and the boxes' half extents, without margin."""
+    """Bounds of each box centre (low, high), (count, 3), and the boxes' half extents, without margin.
+
+    `touched` are the parts that the sheet, or one of the `others` that it is linked with, has a contact with.
+    """
     boxes = slice(sheet.first, sheet.first + sheet.count)
     centers = bodies.position[boxes]
     size = np.array(sheet.outline)
@@ -105,14 +138,16 @@ def _swept(
     time = run.duration
     fall = 0.5 * gravity * time**2
     shift = sheet.velocity * time
-    driven = [part for part in touched if isinstance(part, RollerPart) and part.speed]
-    corners = [part.corners[:, 0] for part in driven]
+    # a heavy sheet throws a light one forward with up to twice its own velocity
+    thrown = [2.0 * (other.velocity - sheet.velocity) * time for other in others]
+    driven = [(own, part) for own, part in touched if isinstance(part, RollerPart) and part.speed]
+    corners = [part.corners[:, 0] for _, part in driven]
     times = np.unique(np.concatenate([np.linspace(0.0, time, _STATIONS), *corners]).clip(0.0, time))
-    drives = [_drive(sheet, part, times) for part in driven]
+    drives = [_drive(own, part, times) for own, part in driven]
     moves = np.array([fall, shift, *(end for path, _ in drives for end in (path.min(0), path.max(0)))])
-    if any(isinstance(part, GuidePart) for part in touched):
+    if any(isinstance(part, GuidePart) for _, part in touched):
         paths = np.linalg.norm(moves, axis=1)
-        way = float(paths[:2].sum() + paths[2:].max(initial=0.0))
+        way = float(paths[:2].sum() + paths[2:].max(initial=0.0) + sum(map(np.linalg.norm, thrown)))
         if sheet.count > 1:
             way += 0.5 * float(size.max())
         turned = _turn(sheet, drives, time) * diagonal
@@ -121,6 +156,8 @@ def _swept(
     # velocity and fall act together with one drive at a time
     least = np.minimum(moves[:2], 0).sum(0) + np.minimum(moves[2:], 0).min(0, initial=0.0)
     most = np.maximum(moves[:2], 0).sum(0) + np.maximum(moves[2:], 0).max(0, initial=0.0)
+    for way in thrown:
+        least, most = least + np.minimum(way, 0), most + np.maximum(way, 0)
     if sheet.count > 1:
         # a flexible sheet may flap out of its plane by what its length allows
         normal = np.abs(sheet.rotation[:, 2]) * 0.5 * float(size.max())

@@ -325,7 +325,7 @@ class ExternalPart:
 
 
 # kinds of contact
-BOX_CYLINDER, BOX_PLANE, CYLINDER_CYLINDER, EXTERNAL, BOX_GUIDE = 0, 1, 2, 3, 4
+BOX_CYLINDER, BOX_PLANE, CYLINDER_CYLINDER, EXTERNAL, BOX_GUIDE, BOX_BOX = 0, 1, 2, 3, 4, 5
 
 
 @dataclass(frozen=True)
@@ -334,8 +334,8 @@ class Contacts(Frozen):
 
     entry: Ints  # index in the spec's list, (n,)
     part_a: tuple[str, ...]  # sheet or roller
-    part_b: tuple[str, ...]  # roller, plane, guide or external part
-    kind: Ints  # BOX_CYLINDER, BOX_PLANE, CYLINDER_CYLINDER, EXTERNAL or BOX_GUIDE
+    part_b: tuple[str, ...]  # sheet, roller, plane, guide or external part
+    kind: Ints  # BOX_CYLINDER, BOX_PLANE, CYLINDER_CYLINDER, EXTERNAL, BOX_GUIDE or BOX_BOX
     stiffness: Floats  # k [N/mm^1.5]
     restitution: Floats  # c_R
     mu_static: Floats
@@ -355,11 +355,12 @@ class Pairs(Frozen):
 
     contact: Ints  # row of Contacts, (n,)
     a: Ints  # box or roller, (n,)
-    b: Ints  # roller, plane or guide, (n,)
+    b: Ints  # roller, plane, guide or box of another sheet, (n,)
     possible: int
     margin: float  # [mm]
     low: Floats  # bounds of boxes' and pressed rollers' centres, -inf where not watched [mm], (bodies, 3)
     high: Floats
+    searched: Ints  # rows of Contacts between two sheets that can meet in too many pairs to list, (rows,)
 
     def __len__(self) -> int:
         return len(self.a)
@@ -466,9 +467,10 @@ class Model(Frozen):
         """Friction of each kept pair in times that of its contact, (pairs,)."""
         return self.bodies.friction[self.pairs.a] * self.bodies.friction[self.pairs.b]
 
-    def plate(self, body: int) -> str:
-        """What a plane or a guide is called in a sentence."""
-        kind = "guide" if any(guide.body == body for guide in self.guides) else "plane"
+    def called(self, body: int) -> str:
+        """What a plane, a guide or a box is called in a sentence."""
+        guide = any(guide.body == body for guide in self.guides)
+        kind = "guide" if guide else "box" if self.sheet_of(body) else "plane"
         return f"{kind} {self.bodies.name[body]}"
 
     def sheet_of(self, body: int) -> SheetPart | None:

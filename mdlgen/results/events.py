@@ -13,6 +13,7 @@ import numpy as np
 
 from mdlgen.model.tables import BOX_CYLINDER, Floats, Ints, Model, RollerPart
 from mdlgen.results.foot import Foot, feet
+from mdlgen.results.piles import piled
 
 if TYPE_CHECKING:
     from mdlgen.results.result import Result
@@ -24,6 +25,9 @@ GRAZE = 0.05
 SHORT = 1.0
 # A sheet that is slower than this part of the surface of a driven nip, for longer than this, is jammed.
 JAM_PART, JAM_TIME = 0.1, 5.0
+# A sheet that is slower than this [mm/ms] stands: smoothed friction lets what waits under a force creep.
+# One that is slower than this part of another one is held back while that one is fed.
+STANDS, HELD_PART = 0.01, 0.1
 PER_SECOND = 1000.0
 
 
@@ -49,16 +53,16 @@ def events(result: Result) -> list[dict[str, Any]]:
     """
     if len(result.time) < 2:
         return []
-    stays = _stays(result)
-    found = [event for stay in stays for event in _stay_events(result, stay)]
+    stays, together = _stays(result), piled(result)
+    found = [event for stay in stays for event in _stay_events(result, stay, together)]
     found += _gaps(result, stays)
-    found += _double_feeds(result, stays)
+    found += _double_feeds(result, [*stays, *_beyond(result, stays, together)])
     order = {"leave": 0, "enter": 1}
     return sorted(found, key=lambda e: (e["time_ms"], order.get(e["kind"], 2), e["roller"], e["sheet"]))
 
 
 def _stays(result: Result) -> list[Stay]:
-    model, time = result.model, result.time
+    model, time, pairs = result.model, result.time, result.model.pairs
     sheets = {sheet.name: k for k, sheet in enumerate(model.sheets)}
     found = []
     for row in np.flatnonzero(model.contacts.kind == BOX_CYLINDER).tolist():
@@ -67,8 +71,30 @@ def _stays(result: Result) -> list[Stay]:
         sheet, roller = sheets[model.contacts.part_a[row]], model.roller(model.contacts.part_b[row])
         for first, last in intervals(time, touching, SHORT):
             at = np.flatnonzero(touching[first : last + 1]) + first
-            foot = feet(result, row, roller, at)
+            foot = feet(result, pairs.a[pairs.contact == row], roller, at)
             found.append(Stay(sheet, roller, first, last, last + 1 < len(time), at, foot))
+    return found
+
+
+def _beyond(result: Result, stays: list[Stay], together: np.ndarray | None) -> list[Stay]:
+    """Sheets that do not touch a roller and lie over or under one that does, one stay for all such states."""
+    found: list[Stay] = []
+    if together is None:
+        return found
+    for roller in result.model.rollers:
+        here = [s for s in stays if s.roller is roller]
+        for sheet in range(len(result.model.sheets)):
+            lies = np.zeros(len(result.time), bool)
+            for stay in here:
+                lies[stay.at] |= together[stay.at, stay.sheet, sheet]
+            for stay in here:
+                if stay.sheet == sheet:
+                    lies[stay.at] = False
+            at = np.flatnonzero(lies)
+            if at.size:
+                boxes = _boxes(result.model, sheet)
+                foot = feet(result, np.arange(boxes.start, boxes.stop), roller, at)
+                found.append(Stay(sheet, roller, int(at[0]), int(at[-1]), False, at, foot))
     return found
 
 
@@ -94,7 +120,7 @@ def _event(result: Result, kind: str, at: int, stay: Stay, **numbers: Any) -> di
     return told | numbers
 
 
-def _stay_events(result: Result, stay: Stay) -> list[dict[str, Any]]:
+def _stay_events(result: Result, stay: Stay, together: np.ndarray | None) -> list[dict[str, Any]]:
     """Entering, leaving, slip, and jams."""
 
     def speed(at: int) -> float:
@@ -119,10 +145,10 @@ def _stay_events(result: Result, stay: Stay) -> list[dict[str, Any]]:
         fast = float(np.linalg.norm(surface, axis=1).mean())
         numbers["part_of_surface_speed"] = float(slip.mean()) / fast if fast > 0.0 else None
     found.append(_event(result, "slip", int(stay.at[known][worst]), stay, **numbers))
-    return found + _jams(result, stay)
+    return found + _jams(result, stay, together)
 
 
-def _jams(result: Result, stay: Stay) -> list[dict[str, Any]]:
+def _jams(result: Result, stay: Stay, together: np.ndarray | None) -> list[dict[str, Any]]:
     """Where a driven roller presses a sheet on another one and the sheet does not follow."""
     roller, foot = stay.roller, stay.foot
     if not roller.speed:
@@ -132,7 +158,7 @@ def _jams(result: Result, stay: Stay) -> list[dict[str, Any]]:
     squared = np.maximum(surface, JAM_PART * fastest) ** 2
     along = np.einsum("tk,tk->t", foot.sheet, foot.roller) / squared
     slow = (surface > JAM_PART * fastest) & (along < JAM_PART) & (foot.share > 0.0)
-    slow &= _opposed(result, stay)
+    slow &= _opposed(result, stay, together)
     held = np.zeros(len(result.time), bool)
     held[stay.at[slow]] = True
     part = np.zeros(len(result.time))
@@ -150,12 +176,16 @@ def _jams(result: Result, stay: Stay) -> list[dict[str, Any]]:
     return found
 
 
-def _opposed(result: Result, stay: Stay) -> np.ndarray:
-    """Whether the sheet also touches a roller that faces this one, at the states of a stay."""
+def _opposed(result: Result, stay: Stay, together: np.ndarray | None) -> np.ndarray:
+    """Whether the sheet, or one that it lies on, touches a roller that faces this one, at the states of a
+    stay."""
     held = np.zeros(len(stay.at), bool)
     for other in result.model.rollers:
-        if other is not stay.roller and _faces(stay.roller, other):
-            held |= _force(result, stay.sheet, other.name)[stay.at] > 0.0
+        if other is stay.roller or not _faces(stay.roller, other):
+            continue
+        for sheet in [stay.sheet] if together is None else range(len(result.model.sheets)):
+            pressed = _force(result, sheet, other.name)[stay.at] > 0.0
+            held |= pressed if together is None else pressed & together[stay.at, stay.sheet, sheet]
     return held
 
 
@@ -188,7 +218,7 @@ def _gaps(result: Result, stays: list[Stay]) -> list[dict[str, Any]]:
             boxes = _boxes(result.model, stay.sheet)
             rate = result.velocity[stay.first, boxes].mean(axis=0)
             fast = float(np.linalg.norm(rate))
-            if fast == 0.0:
+            if fast <= STANDS:  # it lay under the one before
                 continue
             ahead = _reach(result, before.sheet, stay.first, rate / fast)
             behind = _reach(result, stay.sheet, stay.first, rate / fast)
@@ -215,8 +245,10 @@ def _reach(result: Result, sheet: int, at: int, way: Floats) -> tuple[float, flo
 
 
 def _double_feeds(result: Result, stays: list[Stay]) -> list[dict[str, Any]]:
-    """Two sheets at one roller, or at two that face each other, at once and at one place along them."""
-    found: list[dict[str, Any]] = []
+    """Two sheets at one roller, or at two that face each other, at once and at one place along them, that
+    both go on; one event for rollers that face each other."""
+    nips = _nips(result.model)
+    feeds: dict[tuple[int, int, int], tuple[Stay, Stay, np.ndarray]] = {}
     for k, one in enumerate(stays):
         for other in stays[k + 1 :]:
             if one.sheet == other.sheet:
@@ -226,13 +258,35 @@ def _double_feeds(result: Result, stays: list[Stay]) -> list[dict[str, Any]]:
             at, mine, theirs = np.intersect1d(one.at, other.at, return_indices=True)
             low = np.maximum(one.foot.low[mine], other.foot.low[theirs])
             high = np.minimum(one.foot.high[mine], other.foot.high[theirs])
-            both = np.zeros(len(result.time), bool)
-            both[at[high > low]] = True
-            for first, last in intervals(result.time, both, SHORT):
-                name = result.model.sheets[other.sheet].name
-                lasts = float(result.time[last] - result.time[first])
-                found.append(_event(result, "double_feed", first, one, other=name, duration_ms=lasts))
+            key = nips[one.roller.name], min(one.sheet, other.sheet), max(one.sheet, other.sheet)
+            both = feeds.setdefault(key, (one, other, np.zeros(len(result.time), bool)))[2]
+            both[at[(high > low) & _both_go(one.foot.sheet[mine], other.foot.sheet[theirs])]] = True
+    found: list[dict[str, Any]] = []
+    for one, other, both in feeds.values():
+        for first, last in intervals(result.time, both, SHORT):
+            name = result.model.sheets[other.sheet].name
+            lasts = float(result.time[last] - result.time[first])
+            found.append(_event(result, "double_feed", first, one, other=name, duration_ms=lasts))
     return found
+
+
+def _both_go(one: Floats, other: Floats) -> np.ndarray:
+    """Whether neither of two velocities (t, 3) stands, nor is the one held back while the other goes."""
+    along = np.einsum("tk,tk->t", one, other)
+    squares = np.maximum(np.einsum("tk,tk->t", one, one), np.einsum("tk,tk->t", other, other))
+    least = np.minimum(np.linalg.norm(one, axis=1), np.linalg.norm(other, axis=1))
+    return (least > STANDS) & (along > HELD_PART * squares)
+
+
+def _nips(model: Model) -> dict[str, int]:
+    """A number for each roller, the same for all that face each other."""
+    nip = {roller.name: k for k, roller in enumerate(model.rollers)}
+    for k, one in enumerate(model.rollers):
+        for other in model.rollers[k + 1 :]:
+            if _faces(one, other):
+                old, new = nip[other.name], nip[one.name]
+                nip = {name: new if number == old else number for name, number in nip.items()}
+    return nip
 
 
 def _boxes(model: Model, sheet: int) -> slice:

@@ -30,10 +30,8 @@ class Foot:
     high: Floats
 
 
-def feet(result: Result, row: int, roller: RollerPart, at: Ints) -> Foot:
-    """Of the boxes of a row of contacts, at the stored states `at`."""
-    pairs = result.model.pairs
-    boxes = pairs.a[pairs.contact == row]
+def feet(result: Result, boxes: Ints, roller: RollerPart, at: Ints) -> Foot:
+    """Of some boxes of a sheet, at the stored states `at`."""
     few = max(1, MOST // max(1, len(boxes)))
     parts = [_feet(result, boxes, roller, at[k : k + few]) for k in range(0, max(len(at), 1), few)]
     return Foot(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Foot)))

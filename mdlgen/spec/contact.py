@@ -60,8 +60,8 @@ class Contact(Strict):
     )
     share: Literal["width", "pair"] = Field(
         default="width",
-        description="width: boxes under one roller share k by the area they cover; "
-        "pair: k each, as MotionSolve",
+        description="width: boxes under one roller, or on boxes of another sheet, share k by the area they "
+        "cover; pair: k each, as MotionSolve",
     )
 
     @model_validator(mode="after")

@@ -1,0 +1,121 @@
+"""Contacts between boxes of two sheets in the matrix of a step.
+
+Such boxes stand far apart in the band, wherever the sheets slide. So the band holds what a contact does to
+each of its boxes alone, and the blocks that couple the two are a list. Both together are positive, and the
+band with its border is most of it: the method of conjugate gradients with that as preconditioner solves the
+whole in a few rounds, each of which costs a solve with the band.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from backends.lattice.border import solve_bordered
+from mdlgen.mechanics.vector import mat, matmul, nine, transpose_matmul
+
+MOST_ROUNDS = 200
+# What may be left of the square of the residual, measured with the preconditioner. Newton's method goes on
+# after it, and loses no momentum to it (see momentum.keep).
+LEFT = 1e-7
+
+
+class Couplings(NamedTuple):
+    """Pairs of nodes that a contact couples, and room for the method."""
+
+    many: np.ndarray  # (1,)
+    ends: np.ndarray  # nodes, (pairs, 2)
+    blocks: np.ndarray  # rows of the first, columns of the second, column by column, (pairs, 6, 6)
+    room: np.ndarray  # vectors of all unknowns, (5, 6 nodes + border)
+
+
+def empty(pairs: int, nodes: int, border: int) -> Couplings:
+    return Couplings(
+        np.zeros(1, np.int64),
+        np.zeros((pairs, 2), np.int64),
+        np.zeros((pairs, 6, 6)),
+        np.zeros((5, 6 * nodes + border)),
+    )
+
+
+@njit(cache=True, error_model="numpy")
+def couplings_in_box_axes(nodes, r, couplings):
+    """Turns the blocks from global axes to those of their boxes."""
+    part = np.empty(9)
+    for k in range(couplings.many[0]):
+        one, two = mat(r, nodes[couplings.ends[k, 0]]), mat(r, nodes[couplings.ends[k, 1]])
+        block = couplings.blocks[k]
+        for p in range(0, 6, 3):
+            for q in range(0, 6, 3):
+                for i in range(3):
+                    for j in range(3):
+                        part[3 * i + j] = block[q + j, p + i]
+                turned = transpose_matmul(one, matmul(nine(part), two))
+                for i in range(3):
+                    for j in range(3):
+                        block[q + j, p + i] = turned[3 * i + j]
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
+def _dot(a, b):
+    total = 0.0
+    for i in range(a.size):
+        total += a[i] * b[i]
+    return total
+
+
+@njit(cache=True, error_model="numpy")
+def _couple(couplings, p, q):
+    """Adds what the blocks make of p to q."""
+    for k in range(couplings.many[0]):
+        a, b = 6 * couplings.ends[k, 0], 6 * couplings.ends[k, 1]
+        block = couplings.blocks[k]
+        for c in range(6):
+            v, far = 0.0, p[b + c]
+            for i in range(6):
+                q[a + i] += block[c, i] * far
+                v += block[c, i] * p[a + i]
+            q[b + c] += v
+
+
+@njit(cache=True, error_model="numpy")
+def solve_coupled(a, b, y, corner, couplings, res, resb):
+    """Solves band, border and couplings in place, as border.solve_bordered does without the last."""
+    if couplings.many[0] == 0:
+        solve_bordered(a, b, y, corner, res, resb)
+        return
+    many = res.size
+    r, z, p, own, q = couplings.room
+    r[:many], r[many:] = res, resb
+    z[:] = r
+    solve_bordered(a, b, y, corner, z[:many], z[many:])
+    p[:] = z
+    own[:] = r  # what band and border make of p
+    res[:] = 0.0
+    resb[:] = 0.0
+    left = _dot(r, z)
+    first = left
+    for _ in range(MOST_ROUNDS):
+        if not left > LEFT * first:
+            break
+        q[:] = own
+        _couple(couplings, p, q)
+        along = _dot(p, q)
+        if not along > 0.0:
+            break
+        part = left / along
+        for i in range(r.size):
+            r[i] -= part * q[i]
+        for i in range(many):
+            res[i] += part * p[i]
+        for i in range(resb.size):
+            resb[i] += part * p[many + i]
+        z[:] = r
+        solve_bordered(a, b, y, corner, z[:many], z[many:])
+        after = _dot(r, z)
+        turn, left = after / left, after
+        for i in range(r.size):
+            p[i] = z[i] + turn * p[i]
+            own[i] = r[i] + turn * own[i]

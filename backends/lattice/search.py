@@ -1,0 +1,168 @@
+"""Which boxes of two sheets are near each other: a search on a grid, made again where boxes have moved.
+
+Sheets that slide over each other meet in ever other boxes, and all pairs of two sheets are many. So the
+tables of a run hold room for pairs behind those of the Model, and what stands there changes: pairs of boxes
+whose centres are closer than their radii and SKIN. While no box has moved by more than half of SKIN since it
+was searched, no other pair can touch.
+
+Boxes stand in the cells of a grid by their centres, cells in a table by a hash of their numbers; a box meets
+those of 27 cells. What sheets that are far apart cost is a look into cells where nobody is.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from mdlgen.model.tables import BOX_BOX, Floats, Ints, Model
+
+SKIN = 2.0  # mm
+# Pairs that there is room for, in times those of two flat sheets on each other.
+ROOM = 3.0
+EMPTY = -1  # kind of a pair that is none
+
+REGION = np.dtype(
+    [
+        ("row", "i8"),  # of the contacts
+        ("a", "i8"),  # first box of one sheet, and how many
+        ("many_a", "i8"),
+        ("b", "i8"),
+        ("many_b", "i8"),
+        ("shared", "i8"),
+        ("k", "f8"),
+        ("law", "f8", 6),  # as in mechanics.contact
+        ("mark", "i8"),  # of the first pair among those of all boxes
+    ]
+)
+
+
+class Search(NamedTuple):
+    """What a search needs; no regions: there is none."""
+
+    regions: np.ndarray  # REGION, one for each contact of two sheets
+    first: int  # pairs before are the Model's
+    boxes: Ints  # bodies that are searched
+    place: Floats  # where bodies were at the last search [mm], (bodies, 3)
+    radius: Floats  # of the ball around a box [mm], (bodies,)
+    rough: Floats  # friction of a box's contacts in times that of the contact, (bodies,)
+    size: float  # of a cell [mm]
+    head: Ints  # first box of the cells with a hash, -1: none; a power of two of them
+    following: Ints  # the next one, (bodies,)
+    cell: Ints  # (bodies, 3)
+
+
+def plan(model: Model, pairs: np.ndarray) -> tuple[np.ndarray, Search, int]:
+    """The pairs of a Model with room for those that are searched, the search, and how many different pairs
+    there can be."""
+    rows = np.flatnonzero(model.contacts.kind == BOX_BOX)
+    sheets = {s.name: s for s in model.sheets}
+    half = model.bodies.half
+    radius = np.linalg.norm(half, axis=1)
+    regions = np.zeros(len(rows), REGION)
+    boxes: set[int] = set()
+    room, marks, size = 0.0, len(pairs), 1.0
+    for region, row in zip(regions, rows.tolist(), strict=True):
+        ends = [sheets[part[row]] for part in (model.contacts.part_a, model.contacts.part_b)]
+        for name, sheet in zip("ab", ends, strict=True):
+            region[name], region["many_" + name] = sheet.first, sheet.count
+            boxes.update(range(sheet.first, sheet.first + sheet.count))
+        region["row"], region["mark"] = row, marks
+        one, two = (slice(s.first, s.first + s.count) for s in ends)
+        reach = float(radius[one].max() + radius[two].max()) + SKIN
+        area = 4.0 * float((half[two, 0] * half[two, 1]).min())
+        every = ends[0].count * ends[1].count
+        room += min(every, ends[0].count * (4.0 + ROOM * math.pi * reach**2 / area))
+        marks, size = marks + every, max(size, reach)
+    spare = np.zeros(math.ceil(room), pairs.dtype)
+    spare["kind"] = EMPTY
+    count = len(half)
+    search = Search(
+        regions=regions,
+        first=len(pairs),
+        boxes=np.array(sorted(boxes), dtype=np.int64),
+        place=np.zeros((count, 3)),
+        radius=radius,
+        rough=np.array(model.bodies.friction),
+        size=size,
+        head=np.full(1 << max(1, (2 * len(boxes)).bit_length()), -1, np.int64),
+        following=np.full(count, -1, np.int64),
+        cell=np.zeros((count, 3), np.int64),
+    )
+    return np.concatenate([pairs, spare]), search, marks
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _hash(i, j, k, many):
+    return (i * 73856093 ^ j * 19349663 ^ k * 83492791) & (many - 1)
+
+
+@njit(cache=True, error_model="numpy")
+def _sort(search, x):
+    """Puts the boxes into their cells, and keeps where they are."""
+    search.head[:] = -1
+    for b in search.boxes:
+        for i in range(3):
+            search.place[b, i] = x[b, i]
+            search.cell[b, i] = math.floor(x[b, i] / search.size)
+        at = _hash(search.cell[b, 0], search.cell[b, 1], search.cell[b, 2], search.head.size)
+        search.following[b] = search.head[at]
+        search.head[at] = b
+
+
+@njit(cache=True, error_model="numpy")
+def look(pairs, search, x):
+    """Lists the pairs of boxes that are near behind those of the Model. Returns whether there was room."""
+    if search.regions.size == 0:
+        return True
+    _sort(search, x)
+    count = search.first
+    for region in search.regions:
+        for a in range(region.a, region.a + region.many_a):
+            for cell in range(27):
+                i, j, k = cell % 3 - 1, cell // 3 % 3 - 1, cell // 9 - 1
+                i, j, k = search.cell[a, 0] + i, search.cell[a, 1] + j, search.cell[a, 2] + k
+                b = search.head[_hash(i, j, k, search.head.size)]
+                while b >= 0:
+                    own = search.cell[b, 0] == i and search.cell[b, 1] == j and search.cell[b, 2] == k
+                    if own and region.b <= b < region.b + region.many_b:
+                        reach = search.radius[a] + search.radius[b] + SKIN
+                        dx, dy, dz = x[a, 0] - x[b, 0], x[a, 1] - x[b, 1], x[a, 2] - x[b, 2]
+                        if dx * dx + dy * dy + dz * dz < reach * reach:
+                            if count == pairs.size:
+                                return False
+                            _fill(pairs[count], region, a, b, search.rough[a] * search.rough[b])
+                            count += 1
+                    b = search.following[b]
+    for p in range(count, pairs.size):
+        if pairs[p].kind == EMPTY:
+            break
+        pairs[p].kind = EMPTY
+    return True
+
+
+@njit(cache=True, error_model="numpy")
+def _fill(pair, region, a, b, rough):
+    pair.kind, pair.a, pair.b = BOX_BOX, a, b
+    pair.row, pair.shared, pair.k = region.row, region.shared, region.k
+    for i in range(6):
+        pair.law[i] = region.law[i] * (rough if i == 1 or i == 2 else 1.0)
+    pair.mark = region.mark + (a - region.a) * region.many_b + (b - region.b)
+
+
+@njit(cache=True, error_model="numpy")
+def strayed(bodies, search, x, u, dt):
+    """Whether a box would be further than half of SKIN from where it was searched, after dt at the
+    velocities u (nodes, 6)."""
+    for b in search.boxes:
+        n = bodies[b].node
+        if n < 0:
+            continue
+        square = 0.0
+        for i in range(3):
+            square += (x[b, i] + dt * u[n, i] - search.place[b, i]) ** 2
+        if not square <= 0.25 * SKIN * SKIN:
+            return True
+    return False

@@ -1,0 +1,75 @@
+"""Sheets stay on the sides of each other that they are on.
+
+The law of two boxes knows where they are, not where they came from: once the middle of a thin sheet is behind
+that of the other, it is pushed out at the far side. Newton's method could go there in one round, where faces
+that only just touch have no stiffness yet; and a step could end there.
+"""
+
+from __future__ import annotations
+
+from numba import njit
+
+from mdlgen.mechanics.pair import BOX_BOX
+from mdlgen.mechanics.vector import back, mat, sub, transpose_matmul, vec
+
+# What two boxes may come closer in one round, in half thicknesses of the thinner one.
+CLOSER = 0.5
+
+
+@njit(cache=True, error_model="numpy")
+def part_of_change(bodies, pairs, near, close, r, h, change):
+    """The part of a change of velocities (6 nodes,), taken off, that moves no box of the pairs near[:close]
+    further to another sheet in h than it may in one round; at most 1."""
+    worst = 0.0
+    for at in range(close):
+        pair = pairs[near[at]]
+        if pair.kind != BOX_BOX:
+            continue
+        opens = 0.0
+        for end in range(2):
+            node = bodies[pair.a if end == 0 else pair.b].node
+            if node >= 0:
+                for i in range(3):
+                    v = r[pair.a, 3 * i + 2] * change[6 * node + i]
+                    opens += v if end == 0 else -v
+        thin = min(bodies[pair.a].half[2], bodies[pair.b].half[2])
+        worst = max(worst, abs(h * opens) / thin)
+    return min(1.0, CLOSER / worst) if worst > 0.0 else 1.0
+
+
+@njit(cache=True, error_model="numpy")
+def _height(bodies, pair, x, r):
+    """How high the middle of the second box's face stands over that of the first, in the axes of the first
+    and in the middle of where their outlines overlap, and whether they do.
+
+    Boxes that lean to each other, and overlap in a part alone, have centres that may pass each other's plane.
+    """
+    one, half, other = mat(r, pair.a), bodies[pair.a].half, bodies[pair.b].half
+    place = back(one, sub(vec(x, pair.b), vec(x, pair.a)))
+    turn = transpose_matmul(one, mat(r, pair.b))
+    over, leans = True, 0.0
+    for q in range(2):
+        out = 0.0
+        for i in range(3):
+            out += other[i] * abs(turn[3 * q + i])
+        low, high = max(-half[q], place[q] - out), min(half[q], place[q] + out)
+        over = over and high - low > 1e-9 * half[q]
+        leans += turn[3 * q + 2] * (0.5 * (low + high) - place[q])
+    if abs(turn[8]) < 0.5:  # it stands on its edge
+        return place[2], over
+    return place[2] - leans / turn[8], over
+
+
+@njit(cache=True, error_model="numpy")
+def crossed(bodies, pairs, near, close, x, r, xm, rm):
+    """The pair of near[:close] of which a step takes a box through one of another sheet, or -1: from x, r
+    over the middle xm, rm as far again."""
+    for at in range(close):
+        pair = pairs[near[at]]
+        if pair.kind != BOX_BOX:
+            continue
+        begin, _ = _height(bodies, pair, x, r)
+        middle, over = _height(bodies, pair, xm, rm)
+        if over and begin * (2.0 * middle - begin) <= 0.0:
+            return near[at]
+    return -1
