@@ -9,7 +9,9 @@ import numpy as np
 from backends.exudyn_local import kernels
 from backends.exudyn_local.system import MM, MS, PER_MM, System, quaternions
 from mdlgen.mechanics.curve import overstretched
+from mdlgen.mechanics.mesh import LOST
 from mdlgen.model import curves
+from mdlgen.model.meshes import carried
 from mdlgen.model.tables import BOX_GUIDE, BOX_PLANE, Model
 from mdlgen.results.result import ContactStatistics, Energy, Result
 
@@ -44,7 +46,7 @@ class Recorder:
         self._last_stored = -1
         # depth beyond which a box is about to come out at the other side of a plate
         plates = np.isin(system.pairs["kind"], (BOX_GUIDE, BOX_PLANE))
-        self._plate = np.where(plates, system.bodies["half"][system.pairs["b"], 2], np.inf)
+        self._plate = np.where(plates, system.bodies["half"][system.pairs["b"], 2], LOST)
 
     def plan(self, h: float) -> None:
         """Which times are stored: the print times, at the first step that reaches them, and the end."""
@@ -124,6 +126,7 @@ class Recorder:
             return
         self._last_stored = self.steps
         x, r, u, w = self._work[:4]
+        carried(self.model, x, r, u, w)
         self._stored["t"].append(t)
         self._stored["x"].append(x[:-1].copy())
         self._stored["e"].append(quaternions(r[:-1].reshape(-1, 3, 3)))

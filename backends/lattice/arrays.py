@@ -7,13 +7,14 @@ pressed ones also slide (one more): the border of the matrix. Everything else is
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from mdlgen.mechanics.curve import FOLLOWS, curve_points, follow
 from mdlgen.mechanics.driven import DRIVEN, drive
 from mdlgen.mechanics.laws import damping_share
+from mdlgen.mechanics.mesh import Meshes, mesh_numbers, mesh_tables
 from mdlgen.model.rotations import matrices
 from mdlgen.model.tables import GROUND, Floats, Ints, Model
 
@@ -33,6 +34,7 @@ BODY = np.dtype(
         ("press", "f8", 5),  # k, c, force at the start, sliding mass, axial inertia
         *DRIVEN,
         ("size", "f8", 2),  # radius, width
+        ("carries", "i8"),  # 1: a roller with a mesh on it, whose turn is followed
     ]
 )
 JOINT = np.dtype(
@@ -57,6 +59,7 @@ PAIR = np.dtype(
         ("b", "i8"),
         ("row", "i8"),  # of the contacts
         ("shared", "i8"),
+        ("mesh", "i8"),  # number of it
         ("k", "f8"),
         ("law", "f8", 6),  # as in mechanics.contact
     ]
@@ -78,11 +81,13 @@ class System(NamedTuple):
     border: int  # unknowns of rollers
     folded: int  # bushings that share a joint with another one
     points: np.ndarray  # of the curves that joints follow, mechanics.curve.POINT
+    meshes: Meshes
 
     @property
-    def tables(self) -> tuple[np.ndarray, ...]:
+    def tables(self) -> tuple[Any, ...]:
         """What compiled code takes first."""
-        return self.bodies, self.joints, self.pairs, self.loads, self.gravity, self.nodes, self.points
+        own = self.bodies, self.joints, self.pairs, self.loads, self.gravity, self.nodes, self.points
+        return (*own, self.meshes)
 
 
 def build(model: Model, fold: bool = True) -> System:
@@ -101,6 +106,7 @@ def build(model: Model, fold: bool = True) -> System:
         border=border,
         folded=folded,
         points=curve_points(model.curves),
+        meshes=mesh_tables(model),
     )
 
 
@@ -125,12 +131,13 @@ def _bodies(model: Model) -> tuple[np.ndarray, Ints, int]:
     for roller in model.rollers:
         row = bodies[roller.body]
         row["axis"], row["size"] = roller.axis, (roller.radius, roller.width)
-        row["press"][4] = roller.inertia_axial
+        row["press"][4] = roller.inertia_axial + roller.carried[1]
         if roller.press is not None:
             spring = roller.press
             row["way"] = spring.direction
             force = spring.preload - spring.stiffness * (spring.start - spring.touch)
-            row["press"][:4] = (spring.stiffness, spring.damping, force, roller.mass + spring.carrier_mass)
+            mass = roller.mass + roller.carried[0] + spring.carrier_mass
+            row["press"][:4] = (spring.stiffness, spring.damping, force, mass)
             row["slide"], border = border, border + 1
         drive(row, roller)
         if roller.turns:
@@ -139,6 +146,9 @@ def _bodies(model: Model) -> tuple[np.ndarray, Ints, int]:
         row = bodies[guide.body]
         row["half"] = [0.5 * size for size in (guide.length, guide.width, guide.thickness)]
         row["arc"], row["side"] = (guide.radius, guide.middle, guide.half_angle), guide.sides
+    for mesh in model.meshes:
+        if mesh.on >= 0:
+            bodies["carries"][model.rollers[mesh.on].body] = 1
     for plane in model.planes:
         bodies["way"][plane.body] = plane.normal
     return bodies, np.array(nodes, dtype=np.int64), border
@@ -200,7 +210,8 @@ def _pairs(model: Model) -> np.ndarray:
     rows, chosen = model.contacts, model.pairs.contact
     pairs = np.zeros(len(chosen), PAIR)
     pairs["row"], pairs["kind"] = chosen, rows.kind[chosen]
-    pairs["a"], pairs["b"] = model.pairs.a, model.pairs.b
+    pairs["a"] = model.pairs.a
+    pairs["mesh"], pairs["b"] = mesh_numbers(model)
     pairs["shared"] = np.array([share == "width" for share in rows.share], dtype=int)[chosen]
     pairs["k"] = rows.stiffness[chosen]
     beta = damping_share.py_func(rows.restitution)  # compiled code is for the solver alone to load

@@ -33,7 +33,7 @@ from backends.lattice.momentum import keep
 from backends.lattice.tangent import contacts_into, in_box_axes, joints_into, masses, rollers_into
 from backends.lattice.touching import settle
 from mdlgen.mechanics.driven import clutch, prescribed
-from mdlgen.mechanics.vector import back, exp_rotation, mat, matmul, rotate
+from mdlgen.mechanics.vector import back, exp_rotation, mat, matmul, rotate, scale, three
 
 # Rounds of one step before it is given up.
 MOST_ROUNDS = 40
@@ -106,7 +106,7 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
     `fresh` (3,): the step that the factor was made for (0: none), whether it should be made anew, and where
     contacts stand (see alone.APART).
     """
-    bodies, joints, pairs, loads, gravity, nodes, points = system
+    bodies, joints, pairs, loads, gravity, nodes, points, meshes = system
     x, r, v, l, s, vb, u, ub = state
     xm, rm, um, wm, f, touched, outs, totals, near = mid
     a, b, d, y, corner, res, resb, direction, index = matrix
@@ -122,18 +122,18 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
         if rounds == 0 or margin < dt * moved:
             # what the guess did not know of may move further than it said
             margin = FAR + 2.0 * dt * moved
-            close = near_pairs(bodies, pairs, x, r, um, wm, margin, dt, near)
+            close = near_pairs(bodies, pairs, meshes, x, r, um, wm, margin, dt, near)
             unsee(alone)
         f[:] = 0.0
         _stored, lost = joint_forces(joints, points, xm, rm, um, wm, f, lag)
         if rounds > 0 and where == APART and alone.state[1] == 1:
             again = (alone.touched, alone.outs, alone.state[0], alone.seen)
             count, _pressed, rubbed = pair_forces_again(
-                bodies, pairs, near, close, again, xm, rm, um, wm, f, touched, outs
+                bodies, pairs, meshes, near, close, again, xm, rm, um, wm, f, touched, outs
             )
         else:
             count, _pressed, rubbed = pair_forces(
-                bodies, pairs, near, close, xm, rm, um, wm, f, touched, outs
+                bodies, pairs, meshes, near, close, xm, rm, um, wm, f, touched, outs
             )
         power = other_forces(bodies, loads, gravity, 1.0, rm, um, wm, f)
         _weights(bodies, gravity, f)
@@ -215,7 +215,7 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
             place(bodies, nodes, h, t + h, u, ub, x, r, xm, rm, um, wm)
             f[:] = 0.0
             count, _pressed, rubbed = pair_forces(
-                bodies, pairs, near, close, xm, rm, um, wm, f, touched, outs
+                bodies, pairs, meshes, near, close, xm, rm, um, wm, f, touched, outs
             )
             totals[0], totals[1] = lost + rubbed, power
             counters[TOUCHING] = count
@@ -250,7 +250,7 @@ def spun(body, u, v, t, dt):
 @njit(cache=True, error_model="numpy")
 def carry(system, state, mid, t, dt):
     """From the middle to the end of a step."""
-    bodies, joints, pairs, loads, gravity, nodes, points = system
+    bodies, joints, pairs, loads, gravity, nodes, points, meshes = system
     x, r, v, l, s, vb, u, ub = state
     for n in range(nodes.size):
         b = nodes[n]
@@ -272,6 +272,11 @@ def carry(system, state, mid, t, dt):
             for i in range(3):
                 x[k, i] += dt * ub[slide] * bodies[k].way[i]
             vb[slide] = 2.0 * ub[slide] - vb[slide]
+        if bodies[k].carries != 0:
+            turning = ub[spin_at] if spin_at >= 0 else prescribed(bodies[k], t + 0.5 * dt)
+            m = matmul(exp_rotation(scale(dt * turning, three(bodies[k].axis))), mat(r, k))
+            for i in range(9):
+                r[k, i] = m[i]
         if spin_at >= 0:
             vb[spin_at] = spun(bodies[k], ub[spin_at], vb[spin_at], t, dt)
 

@@ -6,10 +6,12 @@ from numba import njit
 
 from mdlgen.mechanics.contact import box_cylinder, box_plane, cylinder_cylinder
 from mdlgen.mechanics.guide import box_guide
+from mdlgen.mechanics.mesh import box_mesh
 from mdlgen.mechanics.vector import mat, three, vec
 
 # As in mdlgen.model.tables.
 BOX_PLANE, CYLINDER_CYLINDER, BOX_GUIDE = 1, 2, 4
+BOX_MESH = 6
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -19,11 +21,11 @@ def on_plate(pair):
 
 
 @njit(cache=True, error_model="numpy")
-def pair_force(bodies, pair, x, r, u, w, out):
+def pair_force(bodies, pair, meshes, x, r, u, w, out):
     """One contact pair into `out`, which must be zero (OUT numbers, and the count of points if it has one).
 
     `bodies` are records with half, exposed, axis, size (radius, width), arc and side, `pair` one with kind,
-    a, b, k, shared and law; x, r, u, w places, rotations and velocities of all bodies. Returns whether it
+    a, b, k, shared, law and mesh, `meshes` a mechanics.mesh.Meshes; x, r, u, w places, rotations and velocities of all bodies. Returns whether it
     touches.
     """
     a, b = pair.a, pair.b
@@ -76,6 +78,24 @@ def pair_force(bodies, pair, x, r, u, w, out):
             bodies[b].side,
             pair.k,
             pair.shared != 0,
+            law,
+        )
+    elif pair.kind == BOX_MESH:
+        box_mesh(
+            out,
+            vec(x, a),
+            mat(r, a),
+            vec(u, a),
+            vec(w, a),
+            three(bodies[a].half),
+            bodies[a].exposed,
+            vec(x, b),
+            mat(r, b),
+            vec(u, b),
+            vec(w, b),
+            meshes.heads[pair.mesh],
+            meshes,
+            pair.k,
             law,
         )
     else:

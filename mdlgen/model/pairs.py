@@ -4,14 +4,17 @@ A sheet's boxes are swept by what can move them: their initial velocity, gravity
 of every driven roller that the sheet has a contact with. A difference of those speeds across the sheet
 may turn it. A stated margin is added. A solver watches the bounds: a box whose centre leaves them ends
 the run, so that no contact is missed silently. A sheet that meets an external part may be moved by it in any
-way: all of its pairs are kept. A sheet that meets a guide may be led by it in any direction, as far as all
-that moves it goes.
+way: all of its pairs are kept. A sheet that meets a guide or a fixed mesh may be led by it in any direction,
+as far as all that moves it goes.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
+from mdlgen.model import meshes
 from mdlgen.model.guides import bounds
 from mdlgen.model.tables import (
     CYLINDER_CYLINDER,
@@ -20,6 +23,7 @@ from mdlgen.model.tables import (
     Contacts,
     Floats,
     GuidePart,
+    MeshPart,
     Pairs,
     PlanePart,
     RollerPart,
@@ -27,7 +31,7 @@ from mdlgen.model.tables import (
     SheetPart,
 )
 
-Part = RollerPart | PlanePart | GuidePart
+Part = RollerPart | PlanePart | GuidePart | MeshPart
 
 # The centre may be beyond its bounds by one step before the solver sees it; kept pairs reach this far more.
 SLACK = 1.0  # mm
@@ -48,6 +52,7 @@ def find_pairs(
     """Possible pairs, those kept, and the bounds of each box (see the module)."""
     parts = {p.name: p for p in machine}
     by_name = {s.name: s for s in sheets}
+    rollers = tuple(p for p in machine if isinstance(p, RollerPart))
     low = np.full((len(bodies.name), 3), -np.inf)
     high = np.full((len(bodies.name), 3), np.inf)
     extents: dict[str, tuple[Floats, Floats]] = {}
@@ -58,13 +63,13 @@ def find_pairs(
             rows = [r for r, a in enumerate(contacts.part_a) if a == sheet.name]
             if not rows or EXTERNAL in contacts.kind[rows]:
                 continue
-            touched = [parts[contacts.part_b[r]] for r in rows]
+            touched = _moving([parts[contacts.part_b[r]] for r in rows], rollers)
             boxes = slice(sheet.first, sheet.first + sheet.count)
             least, most, reach = _swept(gravity, sheet, touched, bodies, run)
             low[boxes], high[boxes] = least - margin, most + margin
             extents[sheet.name] = (low[boxes] - reach - SLACK, high[boxes] + reach + SLACK)
     if prune:
-        for roller in (part for part in machine if isinstance(part, RollerPart)):
+        for roller in rollers:
             if roller.press is not None:  # it may move by its radius along its slide
                 way = roller.radius * np.abs(roller.press.direction) + margin
                 low[roller.body] = bodies.position[roller.body] - way
@@ -79,7 +84,7 @@ def find_pairs(
         possible += sheet.count
         boxes = np.arange(sheet.first, sheet.first + sheet.count)
         if sheet.name in extents:
-            part_low, part_high = _part_bounds(other, bodies)
+            part_low, part_high = _part_bounds(other, bodies, rollers)
             box_low, box_high = extents[sheet.name]
             boxes = boxes[np.all((box_low <= part_high) & (box_high >= part_low), axis=1)]
         kept.extend((row, int(box), other.body) for box in boxes)
@@ -110,7 +115,7 @@ def _swept(
     times = np.unique(np.concatenate([np.linspace(0.0, time, _STATIONS), *corners]).clip(0.0, time))
     drives = [_drive(sheet, part, times) for part in driven]
     moves = np.array([fall, shift, *(end for path, _ in drives for end in (path.min(0), path.max(0)))])
-    if any(isinstance(part, GuidePart) for part in touched):
+    if any(isinstance(part, (GuidePart, MeshPart)) for part in touched):
         paths = np.linalg.norm(moves, axis=1)
         way = float(paths[:2].sum() + paths[2:].max(initial=0.0))
         if sheet.count > 1:
@@ -131,6 +136,16 @@ def _swept(
     if sheet.bend is not None:  # boxes stand at angles of their own
         extent = np.full(3, float(np.linalg.norm(bodies.half[boxes], axis=1).max()))
     return sheet.center + around[0] + least, sheet.center + around[1] + most, extent
+
+
+def _moving(touched: list[Part], rollers: tuple[RollerPart, ...]) -> list[Part]:
+    """The parts that a sheet touches; of meshes on rollers these rollers, as large as what is on them."""
+    return [
+        replace(rollers[p.on], radius=meshes.reach(p, rollers[p.on]))
+        if isinstance(p, MeshPart) and p.on >= 0
+        else p
+        for p in touched
+    ]
 
 
 def _drive(sheet: SheetPart, roller: RollerPart, times: Floats) -> tuple[Floats, Floats]:
@@ -186,11 +201,16 @@ def _turned(
     return (np.min(lows, axis=0) - sag, np.max(highs, axis=0) + sag), extent
 
 
-def _part_bounds(part: Part, bodies: Bodies) -> tuple[Floats, Floats]:
+def _part_bounds(part: Part, bodies: Bodies, rollers: tuple[RollerPart, ...]) -> tuple[Floats, Floats]:
     """Bounding box of a part; a pressed roller may move by its radius along its slide."""
     center = bodies.position[part.body]
     if isinstance(part, GuidePart):
         return bounds(part)
+    if isinstance(part, MeshPart):
+        low, high = meshes.bounds(part, rollers)
+        press = rollers[part.on].press if part.on >= 0 else None
+        more = np.zeros(3) if press is None else rollers[part.on].radius * np.abs(press.direction) + SLACK
+        return low - more, high + more
     if isinstance(part, PlanePart):
         extent = np.abs(bodies.rotation[part.body]) @ (np.array(part.size) / 2)
         return center - extent, center + extent

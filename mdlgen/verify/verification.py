@@ -32,7 +32,7 @@ from mdlgen.verify.turning import Progress, turn_all
 from mdlgen.verify.wording import wording
 
 # Kinds that a deck has no entities for: points, vectors and data sets are the text's way to say numbers.
-_NOT_IN_DECK = ("points", "vectors", "data")
+_NOT_IN_DECK = ("points", "vectors", "data", "mesh files")
 _MACHINE = frozenset(("bodies", "graphics"))
 
 
@@ -184,4 +184,5 @@ def _deck(
     for kind, table in said.items():
         if kind not in _NOT_IN_DECK:
             found.add("deck", compare(kind, table, tables[kind]))
+    found.add("deck", compare("mesh shapes", mesh_shapes(subject.model), tables["mesh shapes"]))
     found.add("deck", compare("all markers", marker_table(text, reach(subject.model)), marker_table(values)))
