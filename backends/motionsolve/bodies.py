@@ -1,5 +1,5 @@
-"""Rows of the bodies: ground, boxes, rollers, planes, guides and meshes, each with its two markers, its graphics
-and, where it is held, its joint.
+"""Rows of the bodies: ground, boxes, rollers, planes, guides and meshes, each with its two markers, its
+graphics and, where it is held, its joint.
 
 Ids follow the Model's numbers: body k is Body_Rigid k + 2, behind ground, and has Post_Graphic k + 1.
 """
@@ -40,8 +40,8 @@ def facet_ids(model: Model) -> list[tuple[int, ...]]:
 
 
 def add_frames(deck: Deck, model: Model) -> None:
-    """The global frame and the axes of the sheets and of the guides, on ground; those of meshes on what they move
-    with."""
+    """The global frame and the axes of the sheets and of the guides, on ground; those of meshes on what they
+    move with."""
     deck.marker("Global_Frame", "Global Frame", GROUND_ID, None)
     for index, sheet in enumerate(model.sheets):
         at = triples(sheet.center[None])[0]

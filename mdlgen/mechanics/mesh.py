@@ -5,13 +5,14 @@ depth of what is left is looked at in its corners (`at: nodes`) or in its middle
 has it for contact between meshes (section 3.1): with the area that this stands for it gives a force along the
 triangle's normal,
 
-    fixed:        dF = (k/A) z^1.5 dA, A the area of the box's face: a box flat on a plate has k z^1.5, and one
-                  that a plate covers in part has that part of it, as with a guide;
-    on a roller:  dF = K z dA, K = 3 k/(4 w sqrt(2 R)), R and w of the roller: the elastic foundation that
-                  gives k z^1.5 under a cylinder (mechanics.contact).
+    fixed:      dF = (k/A) z^1.5 dA, A the area of the box's face: a box flat on a plate has k z^1.5, and one
+                that a plate covers in part has that part of it, as with a guide;
+    on a roller: dF = K z dA, K = 3 k/(4 w sqrt(2 R)), R and w of the roller: the elastic foundation that
+                gives k z^1.5 under a cylinder (mechanics.contact).
 
-Both are pressures, so neither the number of triangles nor that of boxes changes what a sheet feels. A pressure
-over many triangles acts as four equal forces with its sum, its middle and its spread.
+Both are pressures, so neither the number of triangles nor that of boxes changes what a sheet feels. A
+pressure over many triangles acts as four equal forces with its sum, its middle and its spread. Where a sheet
+ends, nothing takes over from the box at its edge: it has what is over it.
 
 A triangle steeper than 60 deg to the broad faces meets a box by its outer sides: at the ends of each, in the
 middle of the thickness, half of k z^1.5, z the depth below the nearest triangle. A block of one box has six
@@ -197,31 +198,31 @@ def _press(sums, area, u, v, depth, thick, stiff, linear):
     return force
 
 
-@njit(cache=True, error_model="numpy")
-def _element(sums, room, c, way, along, across, where, hp, hr, middles, stiff, linear):
-    """Adds what one triangle c does; `where` is the box's middle along the face's normal, less its half
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _element(sums, room, triangles, t, way, along, across, where, hp, hr, middles, stiff, linear):
+    """Adds what one triangle does; `where` is the box's middle along the face's normal, less its half
     length, and along both sides of the face."""
-    cosine = -(way[0] * c[9] + way[1] * c[10] + way[2] * c[11])
+    cosine = -(way[0] * triangles[t, 9] + way[1] * triangles[t, 10] + way[2] * triangles[t, 11])
     if cosine <= STEEP:
         return
-    z0 = where[0] - (way[0] * c[0] + way[1] * c[1] + way[2] * c[2])
-    z1 = where[0] - (way[0] * c[3] + way[1] * c[4] + way[2] * c[5])
-    z2 = where[0] - (way[0] * c[6] + way[1] * c[7] + way[2] * c[8])
+    z0 = where[0] - (way[0] * triangles[t, 0] + way[1] * triangles[t, 1] + way[2] * triangles[t, 2])
+    z1 = where[0] - (way[0] * triangles[t, 3] + way[1] * triangles[t, 4] + way[2] * triangles[t, 5])
+    z2 = where[0] - (way[0] * triangles[t, 6] + way[1] * triangles[t, 7] + way[2] * triangles[t, 8])
     if z0 <= 0.0 and z1 <= 0.0 and z2 <= 0.0:
         return
-    u0 = along[0] * c[0] + along[1] * c[1] + along[2] * c[2] - where[1]
-    u1 = along[0] * c[3] + along[1] * c[4] + along[2] * c[5] - where[1]
-    u2 = along[0] * c[6] + along[1] * c[7] + along[2] * c[8] - where[1]
+    u0 = along[0] * triangles[t, 0] + along[1] * triangles[t, 1] + along[2] * triangles[t, 2] - where[1]
+    u1 = along[0] * triangles[t, 3] + along[1] * triangles[t, 4] + along[2] * triangles[t, 5] - where[1]
+    u2 = along[0] * triangles[t, 6] + along[1] * triangles[t, 7] + along[2] * triangles[t, 8] - where[1]
     if min(u0, u1, u2) > hp or max(u0, u1, u2) < -hp:
         return
-    v0 = across[0] * c[0] + across[1] * c[1] + across[2] * c[2] - where[2]
-    v1 = across[0] * c[3] + across[1] * c[4] + across[2] * c[5] - where[2]
-    v2 = across[0] * c[6] + across[1] * c[7] + across[2] * c[8] - where[2]
+    v0 = across[0] * triangles[t, 0] + across[1] * triangles[t, 1] + across[2] * triangles[t, 2] - where[2]
+    v1 = across[0] * triangles[t, 3] + across[1] * triangles[t, 4] + across[2] * triangles[t, 5] - where[2]
+    v2 = across[0] * triangles[t, 6] + across[1] * triangles[t, 7] + across[2] * triangles[t, 8] - where[2]
     if min(v0, v1, v2) > hr or max(v0, v1, v2) < -hr:
         return
-    part, thick, force = _part(cosine), c[THICK], 0.0
+    part, thick, force = _part(cosine), triangles[t, THICK], 0.0
     if max(abs(u0), abs(u1), abs(u2)) <= hp and max(abs(v0), abs(v1), abs(v2)) <= hr:
-        area = part * c[AREA]
+        area = part * triangles[t, AREA]
         if middles:
             u, v, z = (u0 + u1 + u2) / 3.0, (v0 + v1 + v2) / 3.0, (z0 + z1 + z2) / 3.0
             force = _press(sums, area, u, v, z * cosine, thick, stiff, linear)
@@ -243,9 +244,9 @@ def _element(sums, room, c, way, along, across, where, hp, hr, middles, stiff, l
             for k in range(count):
                 z = points[k, 2] * cosine
                 force += _press(sums, area / count, points[k, 0], points[k, 1], z, thick, stiff, linear)
-    sums[0] += force * c[9]
-    sums[1] += force * c[10]
-    sums[2] += force * c[11]
+    sums[0] += force * triangles[t, 9]
+    sums[1] += force * triangles[t, 10]
+    sums[2] += force * triangles[t, 11]
     sums[3] += force
 
 
@@ -262,24 +263,23 @@ def _gather(sums, room, head, meshes, middle, axes, half, q, sign, stiff):
     linear, far, middles = head.basis > 0.0, BEYOND * head.most / STEEP, head.middles != 0
     n = head.first
     while n < head.end:
-        box = bounds[n]
         facing = 0.0  # the least that a normal has along the face's
         for i in range(3):
-            facing += min(way[i] * box[LEAST + i], way[i] * box[MOST + i])
-        away, reach = span(box, way)
+            facing += min(way[i] * bounds[n, LEAST + i], way[i] * bounds[n, MOST + i])
+        away, reach = span(bounds, n, way)
         apart = facing > -STEEP or away - reach > where[0] or away + reach < where[0] - far
         if not apart:
-            away, reach = span(box, along)
+            away, reach = span(bounds, n, along)
             apart = abs(away - where[1]) > half[p] + reach
         if not apart:
-            away, reach = span(box, across)
+            away, reach = span(bounds, n, across)
             apart = abs(away - where[2]) > half[r] + reach
         if apart:
             n = links[n, AFTER]
             continue
         for t in range(links[n, FIRST], links[n, FIRST] + links[n, COUNT]):
             _element(
-                sums, room, triangles[t], way, along, across, where, half[p], half[r], middles, stiff, linear
+                sums, room, triangles, t, way, along, across, where, half[p], half[r], middles, stiff, linear
             )
         n += 1
 

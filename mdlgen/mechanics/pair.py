@@ -25,8 +25,8 @@ def pair_force(bodies, pair, meshes, x, r, u, w, out):
     """One contact pair into `out`, which must be zero (OUT numbers, and the count of points if it has one).
 
     `bodies` are records with half, exposed, axis, size (radius, width), arc and side, `pair` one with kind,
-    a, b, k, shared, law and mesh, `meshes` a mechanics.mesh.Meshes; x, r, u, w places, rotations and velocities of all bodies. Returns whether it
-    touches.
+    a, b, k, shared, law and mesh, `meshes` a mechanics.mesh.Meshes; x, r, u, w places, rotations and
+    velocities of all bodies. Returns whether it touches.
     """
     a, b = pair.a, pair.b
     row = pair.law

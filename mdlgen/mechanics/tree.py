@@ -1,8 +1,8 @@
 """A tree of bounding volumes over the triangles of a mesh, and what is asked of it.
 
-Each node has the least box round its triangles, in the file's axes, and one round their outward normals. Nodes
-stand in the order in which they are visited, each with where to go on where it is left out: no stack is
-needed, and nothing is allocated in a query.
+Each node has the least box round its triangles, in the file's axes, and one round their outward normals.
+Nodes stand in the order in which they are visited, each with where to go on where it is left out: no stack
+is needed, and nothing is allocated in a query.
 """
 
 from __future__ import annotations
@@ -18,10 +18,9 @@ from mdlgen.model.tables import Floats, Ints
 LEAF = 8  # triangles
 # Columns of the bounds of a node: least and greatest coordinates, least and greatest normals.
 LOW, HIGH, LEAST, MOST = 0, 3, 6, 9
-# Of its links: first triangle, how many (0: there are nodes below), node to go on with where it is left out.
+# Of its links: first triangle, how many (0: there are nodes below), where to go on where it is left out.
 FIRST, COUNT, AFTER = 0, 1, 2
-# Of a triangle: corners (9), outward normal (3), what is deeper behind it than this is nearer to another side,
-# area.
+# Of a triangle: corners (9), outward normal (3), the depth that is nearer to it than to another side, area.
 NORMAL, THICK, AREA, WIDTH = 9, 12, 13, 14
 
 
@@ -201,12 +200,12 @@ def depth_at(bounds, links, triangles, first, end, at, most):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def span(box, way):
+def span(bounds, n, way):
     """Middle of a node's box along a direction, and how far it reaches to either side."""
     middle = reach = 0.0
     for i in range(3):
-        middle += way[i] * 0.5 * (box[LOW + i] + box[HIGH + i])
-        reach += abs(way[i]) * 0.5 * (box[HIGH + i] - box[LOW + i])
+        middle += way[i] * 0.5 * (bounds[n, LOW + i] + bounds[n, HIGH + i])
+        reach += abs(way[i]) * 0.5 * (bounds[n, HIGH + i] - bounds[n, LOW + i])
     return middle, reach
 
 
@@ -218,7 +217,7 @@ def overlaps(bounds, links, first, end, middle, axes, half):
         apart = False
         for k in range(3):
             way = (axes[k], axes[3 + k], axes[6 + k])
-            away, reach = span(bounds[n], way)
+            away, reach = span(bounds, n, way)
             apart = apart or abs(away - dot(way, middle)) > half[k] + reach
         if apart:
             n = links[n, AFTER]

@@ -66,7 +66,7 @@ def moments(corners: Floats, triangles: Ints) -> tuple[float, Floats, Floats]:
     """Volume, its middle (3,), and the mean of r r^T over it about the middle (3, 3), of a closed surface.
 
     Sums over the tetrahedra of each triangle and the first corner: of one with corners 0, a, b, c and volume
-    V the integral of r is V (a + b + c)/4, that of r r^T is V/20 (s s^T + a a^T + b b^T + c c^T), s = a + b + c.
+    V the integral of r is V s/4, s = a + b + c, that of r r^T is V/20 (s s^T + a a^T + b b^T + c c^T).
     """
     base = corners[triangles[0, 0]]
     a, b, c = (corners[triangles[:, k]] - base for k in range(3))
@@ -74,7 +74,9 @@ def moments(corners: Floats, triangles: Ints) -> tuple[float, Floats, Floats]:
     volume, s = float(parts.sum()), a + b + c
     middle = np.asarray(parts @ s) / (4.0 * volume)
     squares = sum(np.einsum("n,ni,nj->ij", parts, v, v) for v in (s, a, b, c)) / (20.0 * volume)
-    return volume, base + middle, np.asarray(squares) - np.outer(middle, middle)
+    place = base + middle
+    place[np.abs(place) < 1e-12 * np.ptp(corners, axis=0).max()] = 0.0  # round-off of what is symmetric
+    return volume, place, np.asarray(squares) - np.outer(middle, middle)
 
 
 def _principal(second: Floats) -> tuple[Floats, Floats]:
@@ -104,8 +106,8 @@ def check_balance(model: Model) -> None:
         most = BALANCED * roller.radius
         if (roller.turns or roller.press is not None) and off > most:
             raise RefusedError(
-                f"mesh {mesh.name}: its middle of mass is {off:.3g} mm off the axis of {roller.name}, which is "
-                f"free to turn or to slide; a run allows {most:.3g} mm. Move it, or drive the roller"
+                f"mesh {mesh.name}: its middle of mass is {off:.3g} mm off the axis of {roller.name}, which "
+                f"is free to turn or to slide; a run allows {most:.3g} mm. Move it, or drive the roller"
             )
 
 

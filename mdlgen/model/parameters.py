@@ -95,8 +95,8 @@ def _mesh(scene: Scene, name: str) -> list[Parameter]:
     if mesh.density is not None:
         path = (*base, "density")
         return [*rows, Parameter(name, "rho", "Density (kg/mm3)", mesh.density, "g/mm^3", path)]
-    path = (*base, "mass") if mesh.mass is not None else None
-    return [*rows, Parameter(name, "M", "Mass", LIGHT if mesh.mass is None else mesh.mass, "g", path)]
+    mass = LIGHT if mesh.mass is None else mesh.mass
+    return [*rows, Parameter(name, "M", "Mass", mass, "g", (*base, "mass"))]
 
 
 def _sheet(scene: Scene, name: str) -> list[Parameter]:

@@ -319,8 +319,8 @@ class GuidePart(Frozen):
 
 @dataclass(frozen=True)
 class MeshPart(Frozen):
-    """A closed surface of triangles, fixed or on a roller. Its body has the axes of its inertia, and begins in
-    the middle of its mass."""
+    """A closed surface of triangles, fixed or on a roller. Its body has the axes of its inertia, and its
+    centre is the middle of its mass."""
 
     name: str
     body: int

@@ -32,8 +32,8 @@ class Mesh(Strict):
     density: Density | None = Field(default=None, description="in place of mass")
     at: Literal["nodes", "centres"] = Field(
         default="nodes",
-        description="where the depth of an element, of the part of it that a box covers, is looked at: at its "
-        "corners or in its middle",
+        description="where the depth of an element, or of what a box covers of it, is looked at: in its "
+        "corners, or in its middle",
     )
     _solid: Solid | None = PrivateAttr(default=None)
 

@@ -152,7 +152,7 @@ class Scene(Strict):
     def _meshed(self, name: str, path: tuple[str | int, ...]) -> None:
         if self.contacts[int(path[1])].share == "pair":
             raise fail(
-                f"share: pair is not modelled with the mesh {name}: boxes share it by the area that each covers",
+                f"share: pair is not modelled with the mesh {name}: boxes share it by the area they cover",
                 (*path[:-1], "share"),
             )
 

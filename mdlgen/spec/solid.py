@@ -44,7 +44,7 @@ _IGNORED = frozenset((b"vn", b"vt", b"vp", b"o", b"g", b"s", b"mtllib", b"usemtl
 
 @dataclass(frozen=True, eq=False)
 class Solid:
-    """A closed surface of triangles, corners counter-clockwise as seen from outside, in the unit of its file."""
+    """A closed surface of triangles, corners counter-clockwise as seen from outside; the file's unit."""
 
     corners: Floats  # (n, 3)
     triangles: Ints  # corners of each, (m, 3)

@@ -1,7 +1,7 @@
 """What a text must say of a Model, made from its tables and from nothing else, in the units of the text.
 
-Names follow the promise of the text: `b_` body, `p_` point, `bsh_` bushing, `gbox_`, `gcyl_`, `gcad_` graphic, `j_`
-joint, `mot_` motion, `cs_` spring, `con_` contact, `m_` marker, `o_` output, `ds_` data set.
+Names follow the promise of the text: `b_` body, `p_` point, `bsh_` bushing, `gbox_`, `gcyl_`, `gcad_`
+graphic, `j_` joint, `mot_` motion, `cs_` spring, `con_` contact, `m_` marker, `o_` output, `ds_` data set.
 """
 
 from __future__ import annotations
@@ -275,7 +275,7 @@ def _mesh_files(model: Model) -> Table:
 
 
 def mesh_shapes(model: Model) -> Table:
-    """What a deck says of meshes: counts, volume and its middle, least and greatest coordinates, file axes."""
+    """What a deck says of meshes: counts, volume, its middle, least and greatest coordinates."""
     rows = [shape_numbers(m.corners, m.triangles) for m in model.meshes]
     scale = np.array([[1.0, 1.0, m.volume] + [float(np.abs(m.corners).max())] * 9 for m in model.meshes])
     parts: dict[str, Part] = {"shape": (np.array(rows).reshape(-1, 12), scale.reshape(-1, 12))}
