@@ -187,7 +187,7 @@ ONE_OF_EACH = (
 PART = (
     _put("parts", {"feed": {"external": True, "body": "b_feed", "graphics": ["gra_feed", "gra_more"]}}),
     _put("contacts", [{"between": ["note", "feed"], "stiffness": "300 N/mm^1.5", "friction": 0.9}]),
-    *ONE_OF_EACH[4:],
+    *ONE_OF_EACH[5:],
 )
 TILTED_GRAVITY = 'gravity=["1 m/s^2","0 m/s^2","-9.5 m/s^2"]'
 WORDY = (*CONTACTS, "rollers.under.press={direction: z, stiffness: 0.3 N/mm, preload: 3 N}", TILTED_GRAVITY)

@@ -169,8 +169,8 @@ def broken(what):
     raise AssertionError(what)
 
 
-BROKEN = """a triangle too few, 2^32 triangles claimed, nan, a hole, one turned over, three at a side, nothing inside,
-empty, too short, flat ones, a word wrong, a number wrong, no end, two solids"""
+BROKEN = """a triangle too few, 2^32 triangles claimed, nan, a hole, one turned over, three at a side,
+nothing inside, empty, too short, flat ones, a word wrong, a number wrong, no end, two solids"""
 
 
 @pytest.mark.parametrize("what", BROKEN.replace("\n", " ").split(", "))
@@ -208,7 +208,7 @@ def test_a_wrong_unit_is_told(folder):
         with pytest.raises(SpecError, match=hint):
             scene_of(folder, change)
     (folder / "metres.stl").write_bytes(binary(cylinder(0.0075, 0.005, 16)[0], cylinder(1, 1, 16)[1]))
-    with pytest.raises(SpecError, match="did you mean units: cm"):
+    with pytest.raises(SpecError, match="did you mean units: m"):
         scene_of(folder, ("wedge.stl", "metres.stl"))
 
 
@@ -376,7 +376,7 @@ def test_a_flat_box_on_a_flat_mesh_has_the_law_of_a_plane(tmp_path, at, times):
         plane, (0.0, 0.0, 2.04), tuple(lean.ravel()), ZERO, ZERO, HALF, ZERO, EYE, (20.0, 15.0, 2.0), K, PLAIN
     )
     # a plane takes the corners of the box, a mesh those of what each triangle leaves of it
-    assert out[2] == pytest.approx(plane[2], rel=0.02)
+    assert out[2] == pytest.approx(plane[2], rel=0.01 if at == "nodes" else 0.04)
 
 
 @pytest.mark.parametrize("turned", [0.0, 0.3, 2.0])
@@ -392,9 +392,9 @@ def test_a_mesh_of_a_cylinder_on_a_roller_is_that_roller(tmp_path, place, turned
         out = press(parts(tmp_path, solid, ", on: r"), at, turned=turned)
         forces.append(out[2])
         assert out[2] == pytest.approx(exact[2], rel=0.01, abs=1e-3 * K * 0.04**1.5)
-        assert out[15] == pytest.approx(0.04, abs=2e-4)
-        np.testing.assert_allclose(out[3:6], exact[3:6], atol=0.02 * abs(exact[2]) * 3.35)
-    assert forces[1] == pytest.approx(forces[0], rel=2e-3)
+        assert out[15] == pytest.approx(exact[15], abs=2e-4)
+        np.testing.assert_allclose(out[3:6], exact[3:6], atol=0.03 * abs(exact[2]) * 3.35)
+    assert forces[1] == pytest.approx(forces[0], rel=5e-3)
 
 
 def test_boxes_share_a_mesh_on_a_roller(tmp_path):
@@ -426,19 +426,18 @@ def test_the_edge_of_a_sheet_meets_a_wall(tmp_path):
 def test_a_corner_on_a_slope_passes_from_one_law_to_the_other_without_a_step(tmp_path):
     part = parts(tmp_path, brick(40.0, 30.0, 40.0))
     forces = []
-    for angle in np.linspace(0.0, math.pi / 2, 400):
+    for angle in np.linspace(0.0, 1.5, 400):
         # its edge 0.02 mm deep in the face x = 20, the box leaning by the angle
         tilt = turn("y", angle)
         edge = tilt @ [-3.35, 0.0, 0.0]
         out = press(part, (20.0 - 0.02 - edge[0], 0.0, -edge[2]), tilt, exposed=1)
         forces.append(out[0])
-    # at 90 deg the box lies flat on the wall, with its middle plane 0.02 mm in
-    assert max(abs(np.diff(forces))) < 0.05 * max(forces)
+    assert max(abs(np.diff(forces))) < 0.05 * max(forces) and min(forces) > 0.5 * K * 0.02**1.5
     assert forces[0] == pytest.approx(K * 0.02**1.5, rel=1e-3)
 
 
 def test_the_work_of_a_contact_is_the_energy_that_it_stores(tmp_path):
-    part = parts(tmp_path, flats(7.5, 5.0, 60, 6.0), ", on: r")
+    part = parts(tmp_path, flats(7.5, 5.0, 400, 6.0), ", on: r")
     for place, tilt in (((0.4, 0.2, 7.50), EYE), ((1.0, -0.5, 7.47), turn("y", 0.05))):
         step = 1e-5
         below, above = [press(part, np.add(place, (0, 0, s * step)), tilt) for s in (-1, 1)]

@@ -14,9 +14,9 @@ Both are pressures, so neither the number of triangles nor that of boxes changes
 pressure over many triangles acts as four equal forces with its sum, its middle and its spread. Where a sheet
 ends, nothing takes over from the box at its edge: it has what is over it.
 
-A triangle steeper than 60 deg to the broad faces meets a box by its outer sides: at the ends of each, in the
-middle of the thickness, half of k z^1.5, z the depth below the nearest triangle. A block of one box has six
-broad faces. In between (53 to 66 deg) one law passes into the other.
+An outer side of a sheet meets a triangle that leans against it: at the ends of the side, in the middle of the
+thickness, half of k z^1.5, z the depth below the nearest triangle. That law begins at 3 to 9 deg, that of the
+broad faces ends at 53 to 66 deg, one passing into the other. A block of one box has six broad faces.
 """
 
 from __future__ import annotations
@@ -49,7 +49,8 @@ from mdlgen.model.tables import Floats, Ints, Model
 
 DEEPEST = 1.0  # mm: what is deeper in a part is about to come out at its other side, or is lost
 BEYOND = 1.5  # how far beyond that depth a contact is still seen, so that a run can end
-STEEP, GENTLE = 0.4, 0.6  # cosines of the angles between which one law passes into the other
+STEEP, GENTLE = 0.4, 0.6  # cosines of the angles between which the law of broad faces ends
+LEVEL, LEANING = 0.05, 0.15  # sines of those between which that of edges begins
 LOST = 1e30  # what a depth that ends a run is above
 BLOCK = 15  # all four sides of a box are outer ones
 HEAD = np.dtype(
@@ -118,10 +119,16 @@ def mesh_numbers(model: Model) -> tuple[np.ndarray, np.ndarray]:
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
+def _ramp(x, low, high):
+    """0 below a value, 1 above another, smooth between."""
+    s = min(max((x - low) / (high - low), 0.0), 1.0)
+    return s * s * (3.0 - 2.0 * s)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
 def _part(cosine):
     """How much of the broad faces' law acts on a triangle at an angle to them."""
-    s = min(max((cosine - STEEP) / (GENTLE - STEEP), 0.0), 1.0)
-    return s * s * (3.0 - 2.0 * s)
+    return _ramp(cosine, STEEP, GENTLE)
 
 
 @njit(cache=True, error_model="numpy")
@@ -145,40 +152,23 @@ def _cut(points, kept, count, axis, sign, limit):
 
 @njit(cache=True, error_model="numpy")
 def _over(room, u, v, z, hp, hr):
-    """What of a triangle with corners at u, v (depths z) lies over a face of half lengths hp, hr: its points
-    in room[which]. Returns (which, how many)."""
+    """What of a triangle with corners at u, v (depths z) lies over a face of half lengths hp, hr and below
+    it: its points in room[which]. Returns (which, how many)."""
     for k in range(3):
         room[0, k, 0], room[0, k, 1], room[0, k, 2] = u[k], v[k], z[k]
     which, count = 0, 3
-    for axis in range(2):
-        limit = hp if axis == 0 else hr
-        for side in (1.0, -1.0):
-            beyond = False
-            for k in range(count):
-                beyond = beyond or side * room[which, k, axis] > limit
-            if beyond:
-                count = _cut(room[which], room[1 - which], count, axis, side, limit)
-                which = 1 - which
-            if count < 3:
-                return which, 0
+    for plane in range(5):
+        axis, side = plane // 2, 1.0 if plane % 2 == 1 else -1.0
+        limit = hp if axis == 0 else hr if axis == 1 else 0.0
+        beyond = False
+        for k in range(count):
+            beyond = beyond or side * room[which, k, axis] > limit
+        if beyond:
+            count = _cut(room[which], room[1 - which], count, axis, side, limit)
+            which = 1 - which
+        if count < 3:
+            return which, 0
     return which, count
-
-
-@njit(cache=True, error_model="numpy")
-def _area(points, count):
-    """Area of a polygon, and its middle (x, y, depth), by a fan of triangles."""
-    twice = x = y = z = 0.0
-    for i in range(1, count - 1):
-        a0, a1 = points[i, 0] - points[0, 0], points[i, 1] - points[0, 1]
-        b0, b1 = points[i + 1, 0] - points[0, 0], points[i + 1, 1] - points[0, 1]
-        part = abs(a0 * b1 - a1 * b0)
-        twice += part
-        x += part * (points[0, 0] + points[i, 0] + points[i + 1, 0])
-        y += part * (points[0, 1] + points[i, 1] + points[i + 1, 1])
-        z += part * (points[0, 2] + points[i, 2] + points[i + 1, 2])
-    if twice <= 0.0:
-        return 0.0, 0.0, 0.0, 0.0
-    return 0.5 * twice, x / (3.0 * twice), y / (3.0 * twice), z / (3.0 * twice)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -186,15 +176,37 @@ def _press(sums, area, u, v, depth, thick, stiff, linear):
     """Adds what an area does at a depth; returns its force."""
     if depth <= 0.0 or depth > BEYOND * thick:
         return 0.0
-    if depth > thick:
-        sums[10] = 1.0
     force = area * stiff * depth * (1.0 if linear else math.sqrt(depth))
+    if depth > thick:
+        sums[10] += force
+        return 0.0
     sums[4] += force * u
     sums[5] += force * v
     sums[6] += force * u * u
     sums[7] += force * v * v
     sums[8] += force * depth * (0.5 if linear else 0.4)
     sums[9] = max(sums[9], depth)
+    return force
+
+
+@njit(cache=True, error_model="numpy")
+def _piece(sums, points, count, scale, thick, stiff, linear, middles):
+    """Adds what a polygon does, triangle by triangle of a fan; depths and areas are true after `scale`, the
+    cosine of its angle to the face. Returns its force."""
+    force = 0.0
+    for i in range(1, count - 1):
+        a0, a1 = points[i, 0] - points[0, 0], points[i, 1] - points[0, 1]
+        b0, b1 = points[i + 1, 0] - points[0, 0], points[i + 1, 1] - points[0, 1]
+        area = 0.5 * abs(a0 * b1 - a1 * b0) * _part(scale) / scale
+        if middles:
+            u = (points[0, 0] + points[i, 0] + points[i + 1, 0]) / 3.0
+            v = (points[0, 1] + points[i, 1] + points[i + 1, 1]) / 3.0
+            z = (points[0, 2] + points[i, 2] + points[i + 1, 2]) / 3.0
+            force += _press(sums, area, u, v, z * scale, thick, stiff, linear)
+        else:
+            for k in (0, i, i + 1):
+                z = points[k, 2] * scale
+                force += _press(sums, area / 3.0, points[k, 0], points[k, 1], z, thick, stiff, linear)
     return force
 
 
@@ -220,9 +232,10 @@ def _element(sums, room, triangles, t, way, along, across, where, hp, hr, middle
     v2 = across[0] * triangles[t, 6] + across[1] * triangles[t, 7] + across[2] * triangles[t, 8] - where[2]
     if min(v0, v1, v2) > hr or max(v0, v1, v2) < -hr:
         return
-    part, thick, force = _part(cosine), triangles[t, THICK], 0.0
-    if max(abs(u0), abs(u1), abs(u2)) <= hp and max(abs(v0), abs(v1), abs(v2)) <= hr:
-        area = part * triangles[t, AREA]
+    thick, force = triangles[t, THICK], 0.0
+    inside = max(abs(u0), abs(u1), abs(u2)) <= hp and max(abs(v0), abs(v1), abs(v2)) <= hr
+    if inside and min(z0, z1, z2) >= 0.0:
+        area = _part(cosine) * triangles[t, AREA]
         if middles:
             u, v, z = (u0 + u1 + u2) / 3.0, (v0 + v1 + v2) / 3.0, (z0 + z1 + z2) / 3.0
             force = _press(sums, area, u, v, z * cosine, thick, stiff, linear)
@@ -233,17 +246,7 @@ def _element(sums, room, triangles, t, way, along, across, where, hp, hr, middle
             force += _press(sums, third, u2, v2, z2 * cosine, thick, stiff, linear)
     else:
         which, count = _over(room, (u0, u1, u2), (v0, v1, v2), (z0, z1, z2), hp, hr)
-        if count < 3:
-            return
-        points = room[which]
-        area, u, v, z = _area(points, count)
-        area *= part / cosine
-        if middles:
-            force = _press(sums, area, u, v, z * cosine, thick, stiff, linear)
-        else:
-            for k in range(count):
-                z = points[k, 2] * cosine
-                force += _press(sums, area / count, points[k, 0], points[k, 1], z, thick, stiff, linear)
+        force = _piece(sums, room[which], count, cosine, thick, stiff, linear, middles)
     sums[0] += force * triangles[t, 9]
     sums[1] += force * triangles[t, 10]
     sums[2] += force * triangles[t, 11]
@@ -254,7 +257,7 @@ def _element(sums, room, triangles, t, way, along, across, where, hp, hr, middle
 def _gather(sums, room, head, meshes, middle, axes, half, q, sign, stiff):
     """Adds up what presses on the face q (on the side `sign`) of a box: force along the file's axes (0-2) and
     in all (3), moments in the face of first (4-5) and second order (6-7), energy (8), greatest depth (9), and
-    whether something is too deep (10)."""
+    what would be the force of what is too deep (10)."""
     bounds, links, triangles = meshes.bounds, meshes.links, meshes.triangles
     p, r = (q + 1) % 3, (q + 2) % 3
     way = scale(sign, (axes[q], axes[3 + q], axes[6 + q]))
@@ -294,6 +297,7 @@ def box_mesh(out, xa, ra, va, wa, half, exposed, xb, rb, vb, wb, head, meshes, k
     if not overlaps(bounds, links, head.first, head.end, middle, axes, half):
         return
     sums, room = np.zeros(11), np.empty((2, 12, 3))
+    lost, spot, out_of = 0.0, xa, (0.0, 0.0, 0.0)
     for face in range(6 if exposed == BLOCK else 2):
         q, sign = (2 + face // 2) % 3, 1.0 if face % 2 == 0 else -1.0
         p, r = (q + 1) % 3, (q + 2) % 3
@@ -301,6 +305,9 @@ def box_mesh(out, xa, ra, va, wa, half, exposed, xb, rb, vb, wb, head, meshes, k
         sums[:] = 0.0
         _gather(sums, room, head, meshes, middle, axes, half, q, sign, stiff)
         force = math.sqrt(sums[0] * sums[0] + sums[1] * sums[1] + sums[2] * sums[2])
+        if sums[10] > 0.0 and (lost == 0.0 or sums[10] < lost):
+            lost, spot = sums[10], add(xa, rotate(ra, local(p, r, q, 0.0, 0.0, sign * half[q])))
+            out_of = rotate(ra, local(p, r, q, 0.0, 0.0, -sign))
         if force <= 0.0:
             continue
         normal = rotate(frame, (sums[0] / force, sums[1] / force, sums[2] / force))
@@ -312,8 +319,8 @@ def box_mesh(out, xa, ra, va, wa, half, exposed, xb, rb, vb, wb, head, meshes, k
             at_v = v + (dv if corner < 2 else -dv)
             point = add(xa, rotate(ra, local(p, r, q, at_u, at_v, sign * half[q])))
             push(out, point, normal, 0.25 * force, sums[9], 0.25 * sums[8], xa, va, wa, xb, vb, wb, law)
-        if sums[10] != 0.0:  # too deep: no depth of a plate is greater
-            out[15] = math.inf
+    if lost > 0.0 and out[12] == 0.0:  # what is as near to the other side is in contact there
+        push(out, spot, out_of, lost, math.inf, 0.0, xa, va, wa, xb, vb, wb, law)
     if exposed == 0 or exposed == BLOCK:
         return
     for side in range(4):
@@ -329,9 +336,7 @@ def box_mesh(out, xa, ra, va, wa, half, exposed, xb, rb, vb, wb, head, meshes, k
             if depth <= 0.0:
                 continue
             normal = three(triangles[t, NORMAL:])
-            upright = axes[2] * normal[0] + axes[5] * normal[1] + axes[8] * normal[2]
-            share = (1.0 - _part(abs(upright))) * _part(-dot(away, normal))
-            spring = 0.5 * share * k * depth * math.sqrt(depth)
+            spring = 0.5 * _ramp(-dot(away, normal), LEVEL, LEANING) * k * depth * math.sqrt(depth)
             if spring > 0.0:
                 point = add(xa, rotate(ra, (x, y, 0.0)))
                 push(
