@@ -26,14 +26,15 @@ from mdlgen.spec.fields import fail
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-MOST_BYTES = 40_000_000
-MOST_TRIANGLES = 200_000
+MOST_BYTES = 25_000_000
+MOST_TRIANGLES = 100_000
 MOST_FLAT = 0.01  # part of the triangles that may have two corners in one place
 SIZES = (0.5, 3000.0)  # of the longest side that a part of a machine has [mm]
 SCALES = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}
 
 _HEAD, _EACH = 84, 50  # bytes of a binary STL file: header and count, each triangle
 _FACET = 21  # words of a triangle in ASCII
+_AT_ONCE = 2000  # triangles whose words are looked at together, to save memory
 _WORDS = {0: b"facet", 1: b"normal", 5: b"outer", 6: b"loop", 7: b"vertex", 11: b"vertex", 15: b"vertex"}
 _WORDS |= {19: b"endloop", 20: b"endfacet"}
 _CORNERS = [8, 9, 10, 12, 13, 14, 16, 17, 18]
@@ -154,15 +155,19 @@ def _ascii(raw: bytes, name: str) -> Floats:
     words = text[begin:end].split()
     if len(words) % _FACET or b"solid" in words:
         raise fail(f"{name}: not one solid of facets with three corners each (ASCII STL)")
-    table = np.array(words, dtype="S32").reshape(-1, _FACET)
-    for column, word in _WORDS.items():
-        wrong = np.flatnonzero(table[:, column] != word)
-        if len(wrong):
-            raise fail(f"{name}: facet {int(wrong[0])}: {word.decode()!r} is due (ASCII STL)")
-    try:
-        return table[:, _CORNERS].astype(float).reshape(-1, 3)
-    except ValueError:
-        raise fail(f"{name}: a coordinate of an ASCII STL file is not a number") from None
+    parts = [np.zeros((0, 9))]
+    for first in range(0, len(words), _FACET * _AT_ONCE):
+        table = np.array(words[first : first + _FACET * _AT_ONCE], dtype="S32").reshape(-1, _FACET)
+        for column, word in _WORDS.items():
+            wrong = np.flatnonzero(table[:, column] != word)
+            if len(wrong):
+                facet = first // _FACET + int(wrong[0])
+                raise fail(f"{name}: facet {facet}: {word.decode()!r} is due (ASCII STL)")
+        try:
+            parts.append(table[:, _CORNERS].astype(float))
+        except ValueError:
+            raise fail(f"{name}: a coordinate of an ASCII STL file is not a number") from None
+    return np.concatenate(parts).reshape(-1, 3)
 
 
 def _obj(raw: bytes, name: str) -> tuple[Floats, Ints]:
