@@ -375,8 +375,8 @@ def test_a_flat_box_on_a_flat_mesh_has_the_law_of_a_plane(tmp_path, at, times):
     box_plane(
         plane, (0.0, 0.0, 2.04), tuple(lean.ravel()), ZERO, ZERO, HALF, ZERO, EYE, (20.0, 15.0, 2.0), K, PLAIN
     )
-    # a plane takes the corners of the box, a mesh those of what each triangle leaves of it
-    assert out[2] == pytest.approx(plane[2], rel=0.01 if at == "nodes" else 0.04)
+    # a plane has the mean of z^1.5 in the corners of the box, which is 3 % above that over its face
+    assert out[2] == pytest.approx(plane[2], rel=0.04)
 
 
 @pytest.mark.parametrize("turned", [0.0, 0.3, 2.0])
