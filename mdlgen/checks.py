@@ -13,6 +13,7 @@ from mdlgen.model.tables import (
     BOX_BOX,
     BOX_CYLINDER,
     BOX_GUIDE,
+    BOX_MESH,
     BOX_PLANE,
     EXTERNAL,
     SUPPORT,
@@ -209,7 +210,7 @@ def _idle_drive(model: Model) -> Iterator[Lint]:
 
 def _untouched(model: Model) -> Iterator[Lint]:
     parts = {*model.contacts.part_a, *model.contacts.part_b}
-    if not (model.rollers or model.planes or model.guides or model.externals):
+    if not (model.rollers or model.planes or model.guides or model.meshes or model.externals):
         return
     for sheet in model.sheets:
         if sheet.name not in parts:
@@ -223,6 +224,7 @@ def _untouched(model: Model) -> Iterator[Lint]:
         *(("rollers", r) for r in model.rollers),
         *(("planes", p) for p in model.planes),
         *(("guides", g) for g in model.guides),
+        *(("meshes", m) for m in model.meshes),
         *(("parts", e) for e in model.externals),
     )
     for kind, part in machine:
@@ -240,7 +242,7 @@ def _free_static(model: Model) -> Iterator[Lint]:
         return
     sides = zip(model.contacts.part_a, model.contacts.kind, strict=True)
     # what such a part holds is not known
-    unknown = {sheet for sheet, kind in sides if kind in (EXTERNAL, BOX_GUIDE)}
+    unknown = {sheet for sheet, kind in sides if kind in (EXTERNAL, BOX_GUIDE, BOX_MESH)}
     for index, sheet in enumerate(model.sheets):
         free = 6 - _held(model, index, sheet)
         if sheet.clamp is None and free > 0 and sheet.name not in unknown:

@@ -117,6 +117,15 @@ GUIDES = _put(
         "thin": {"line": LINE | {"side": "both"}, "width": "30 mm", "thickness": "0.2 mm"},
     },
 )
+MESH = {"file": "meshes/ramp.stl", "center": ["9 mm", "0 mm", "-3 mm"]}
+MESHES = _put(
+    "meshes",
+    {
+        "heavy": MESH | {"on": "driven", "density": "1.2 g/cm^3", "units": "cm"},
+        "pushed": MESH | {"on": "pressed", "mass": "3 g"},
+        "wedge": MESH | {"rotation": ["10 deg", "20 deg", "30 deg"]},
+    },
+)
 CONTACTS = (
     _put("rollers", {"under": ROLLER | {"drive": DRIVE}}),
     _put("planes", {"level": PLANE | {"center": ["0 mm", "0 mm", "-6 mm"]}}),
@@ -170,6 +179,7 @@ ONE_OF_EACH = (
     _put("rollers", {"under": ROLLER}),
     _put("planes", {"level": PLANE}),
     _put("guides", {"way": {"line": LINE, "width": "30 mm"}}),
+    _put("meshes", {"wedge": MESH}),
     _put("contacts", [{"between": ["note", "under"], "stiffness": "300 N/mm^1.5", "friction": 0.9}]),
     _put("probes", {"lead": {"sheet": "note", "edge": "x_max"}}),
     _put("supports", [{"sheet": "note", "at": ["-30 mm", "0 mm"], "fix": ["z"]}]),
@@ -177,7 +187,7 @@ ONE_OF_EACH = (
 PART = (
     _put("parts", {"feed": {"external": True, "body": "b_feed", "graphics": ["gra_feed", "gra_more"]}}),
     _put("contacts", [{"between": ["note", "feed"], "stiffness": "300 N/mm^1.5", "friction": 0.9}]),
-    *ONE_OF_EACH[4:],
+    *ONE_OF_EACH[5:],
 )
 TILTED_GRAVITY = 'gravity=["1 m/s^2","0 m/s^2","-9.5 m/s^2"]'
 WORDY = (*CONTACTS, "rollers.under.press={direction: z, stiffness: 0.3 N/mm, preload: 3 N}", TILTED_GRAVITY)
@@ -231,6 +241,7 @@ PARTS: dict[str, dict[str, tuple[str, ...]]] = {
     "roller.mdl.j2": {"each kind": (ROLLERS,)},
     "plane.mdl.j2": {"level, with a normal of its own": (PLANES,)},
     "guide.mdl.j2": {"straight and bent": (GUIDES,)},
+    "mesh.mdl.j2": {"fixed, on a driven roller, on a pressed one": (ROLLERS, MESHES)},
     "contacts.mdl.j2": {
         "a zone with its own friction": (*CONTACTS, *UNLIKE, "sheets.note.zones.stripe.friction=2"),
         "with and without friction": CONTACTS,
@@ -252,6 +263,7 @@ LOOPED = {
     "roller.mdl.j2": "rollers",
     "plane.mdl.j2": "planes",
     "guide.mdl.j2": "guides",
+    "mesh.mdl.j2": "meshes",
     "probe.mdl.j2": "probes",
 }
 # Their text stands in the goldens of those that take them in.
@@ -260,7 +272,7 @@ WITH_SET_CONTACT = ("contacts.mdl.j2",)
 
 
 def small_model(*overrides: str) -> Model:
-    return lower(loads(json.dumps(BASE), overrides=overrides))
+    return lower(loads(json.dumps(BASE), overrides=overrides, folder=samples()))
 
 
 def rendered(template: str, model: Model) -> str:
@@ -277,7 +289,8 @@ def rendered(template: str, model: Model) -> str:
     if template not in LOOPED:
         return part.render(context)
     kind = LOOPED[template]
-    return "\n".join(part.render(context, **{kind.removesuffix("s"): item}) for item in getattr(scene, kind))
+    name = {"meshes": "mesh"}.get(kind, kind.removesuffix("s"))
+    return "\n".join(part.render(context, **{name: item}) for item in getattr(scene, kind))
 
 
 def part_text(template: str) -> str:

@@ -27,7 +27,8 @@ from mdlgen.spec.load import loads
 FILES = ["result.h5", "series.csv", "summary.json"]
 PROMISED = {
     "scene", "solver", "status", "t_end_ms", "steps", "step_ms", "wall_s", "compile_s", "build_s", "pairs",
-    "error_estimate", "tolerance", "energy", "events", "sheets", "rollers", "guides", "probes", "versions",
+    "error_estimate", "tolerance", "energy", "events", "sheets", "rollers", "guides", "meshes", "probes",
+    "versions",
 }  # fmt: skip
 WORK = {"rounds", "estimate_s"}  # what a run and the estimate of its error took
 STRIP = """

@@ -9,9 +9,22 @@ from backends.exudyn_local.system import System
 from mdlgen.mechanics.bushing import bushing
 from mdlgen.mechanics.contact import OUT
 from mdlgen.mechanics.curve import curve_excess, middle_and_gap
-from mdlgen.mechanics.driven import clutch, prescribed
+from mdlgen.mechanics.driven import clutch, prescribed, turned
 from mdlgen.mechanics.pair import pair_force
-from mdlgen.mechanics.vector import add, back, cross, dot, mat, matmul, nine, rotate, scale, three, vec
+from mdlgen.mechanics.vector import (
+    add,
+    back,
+    cross,
+    dot,
+    exp_rotation,
+    mat,
+    matmul,
+    nine,
+    rotate,
+    scale,
+    three,
+    vec,
+)
 from mdlgen.model.tables import Floats
 
 # Perturbations of the difference quotients: positions and Euler parameters, velocities [SI]. A static run
@@ -64,6 +77,11 @@ def place_body(bodies, body, q, v, t, x, r, u, w):
     rate = v[spin] if spin >= 0 else prescribed(bodies[body], t)
     for i in range(3):
         w[body, i] += rate * bodies[body].axis[i]
+    if bodies[body].carries != 0:  # a mesh shows how far the roller has turned
+        angle = q[spin] if spin >= 0 else turned(bodies[body], t)
+        m = matmul(exp_rotation(scale(angle, three(bodies[body].axis))), mat(r, body))
+        for i in range(9):
+            r[body, i] = m[i]
 
 
 @njit(cache=True, error_model="numpy")
@@ -129,11 +147,11 @@ def _bush(bodies, bush, points, q, x, r, u, w, f):
 
 
 @njit(cache=True, error_model="numpy")
-def _pair(bodies, pair, q, x, r, u, w, f, out):
+def _pair(bodies, pair, meshes, q, x, r, u, w, f, out):
     """One contact pair into `out`; returns whether it touches."""
     out[:] = 0.0
     a, b = pair.a, pair.b
-    if not pair_force(bodies, pair, x, r, u, w, out):
+    if not pair_force(bodies, pair, meshes, x, r, u, w, out):
         return False
     _spread(bodies, a, q, (out[0], out[1], out[2]), (out[3], out[4], out[5]), f)
     _spread(bodies, b, q, (out[6], out[7], out[8]), (out[9], out[10], out[11]), f)
@@ -158,7 +176,7 @@ def _load(bodies, load, q, r, f, level):
 
 
 @njit(cache=True, error_model="numpy")
-def forces(bodies, bushings, points, pairs, loads, gravity, q, v, t, level, x, r, u, w, out, f):
+def forces(bodies, bushings, points, pairs, meshes, loads, gravity, q, v, t, level, x, r, u, w, out, f):
     """Generalised forces f; `level` scales gravity and loads. Returns the number of touching pairs."""
     place_all(bodies, q, v, t, x, r, u, w)
     f[:] = 0.0
@@ -175,7 +193,7 @@ def forces(bodies, bushings, points, pairs, loads, gravity, q, v, t, level, x, r
         _bush(bodies, bushings[i], points, q, x, r, u, w, f)
     touching = 0
     for i in range(pairs.size):
-        if _pair(bodies, pairs[i], q, x, r, u, w, f, out):
+        if _pair(bodies, pairs[i], meshes, q, x, r, u, w, f, out):
             touching += 1
     for i in range(loads.size):
         _load(bodies, loads[i], q, r, f, level)
@@ -184,7 +202,25 @@ def forces(bodies, bushings, points, pairs, loads, gravity, q, v, t, level, x, r
 
 @njit(cache=True, error_model="numpy")
 def _element(
-    bodies, bushings, points, pairs, loads, gravity, block_start, element, q, v, t, x, r, u, w, f, out, level
+    bodies,
+    bushings,
+    points,
+    pairs,
+    meshes,
+    loads,
+    gravity,
+    block_start,
+    element,
+    q,
+    v,
+    t,
+    x,
+    r,
+    u,
+    w,
+    f,
+    out,
+    level,
 ):
     """Generalised forces of one element, added to f. Returns False where a pair does not touch."""
     blocks = block_start.size - 1
@@ -194,7 +230,7 @@ def _element(
         return True
     element -= blocks
     if element < pairs.size:
-        return _pair(bodies, pairs[element], q, x, r, u, w, f, out)
+        return _pair(bodies, pairs[element], meshes, q, x, r, u, w, f, out)
     element -= pairs.size
     for body in range(bodies.size - 1):
         if bodies[body].slide >= 0:
@@ -234,6 +270,7 @@ def jacobian(
     bushings,
     points,
     pairs,
+    meshes,
     loads,
     gravity,
     elements,
@@ -278,6 +315,7 @@ def jacobian(
             bushings,
             points,
             pairs,
+            meshes,
             loads,
             gravity,
             block_start,
@@ -313,6 +351,7 @@ def jacobian(
                     bushings,
                     points,
                     pairs,
+                    meshes,
                     loads,
                     gravity,
                     block_start,
@@ -341,6 +380,7 @@ def jacobian(
                 bushings,
                 points,
                 pairs,
+                meshes,
                 loads,
                 gravity,
                 block_start,
@@ -363,7 +403,7 @@ def jacobian(
 
 
 @njit(cache=True, error_model="numpy")
-def ledger(bodies, bushings, points, pairs, loads, gravity, q, v, t, x, r, u, w, f, pair_out, totals):
+def ledger(bodies, bushings, points, pairs, meshes, loads, gravity, q, v, t, x, r, u, w, f, pair_out, totals):
     """Energy and power at a state: totals = (kinetic, elastic, potential, dissipated power, driving power).
 
     Also leaves the result of each pair in `pair_out` (p, OUT) and the bodies' states in x, r, u, w.
@@ -395,7 +435,7 @@ def ledger(bodies, bushings, points, pairs, loads, gravity, q, v, t, x, r, u, w,
         elastic += energy
         lost += power
     for i in range(pairs.size):
-        if not _pair(bodies, pairs[i], q, x, r, u, w, f, pair_out[i]):
+        if not _pair(bodies, pairs[i], meshes, q, x, r, u, w, f, pair_out[i]):
             continue
         row = pair_out[i]
         elastic += row[13]

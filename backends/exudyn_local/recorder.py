@@ -9,7 +9,9 @@ import numpy as np
 from backends.exudyn_local import kernels
 from backends.exudyn_local.system import MM, MS, PER_MM, System, quaternions
 from mdlgen.mechanics.curve import overstretched
+from mdlgen.mechanics.mesh import LOST
 from mdlgen.model import curves
+from mdlgen.model.meshes import carried
 from mdlgen.model.tables import BOX_BOX, BOX_GUIDE, BOX_PLANE, Model
 from mdlgen.results.result import ContactStatistics, Energy, Result
 
@@ -46,7 +48,7 @@ class Recorder:
         kind, half = system.pairs["kind"], system.bodies["half"][:, 2]
         two = np.minimum(half[system.pairs["a"]], half[system.pairs["b"]])
         plates = np.isin(kind, (BOX_GUIDE, BOX_PLANE))
-        one = np.where(plates, half[system.pairs["b"]], np.inf)
+        one = np.where(plates, half[system.pairs["b"]], LOST)
         self._plate = np.where(kind == BOX_BOX, two, one)
 
     def plan(self, h: float) -> None:
@@ -127,6 +129,7 @@ class Recorder:
             return
         self._last_stored = self.steps
         x, r, u, w = self._work[:4]
+        carried(self.model, x, r, u, w)
         self._stored["t"].append(t)
         self._stored["x"].append(x[:-1].copy())
         self._stored["e"].append(quaternions(r[:-1].reshape(-1, 3, 3)))

@@ -15,6 +15,8 @@ from mdlgen.errors import RefusedError
 from mdlgen.mechanics.curve import FOLLOWS, curve_points, follow
 from mdlgen.mechanics.driven import DRIVEN, drive
 from mdlgen.mechanics.laws import damping_share
+from mdlgen.mechanics.mesh import Meshes, mesh_numbers, mesh_tables
+from mdlgen.model.meshes import check_balance
 from mdlgen.model.rotations import matrices
 from mdlgen.model.tables import Floats, Ints, Model
 
@@ -42,6 +44,7 @@ BODY = np.dtype(
         ("slide", "i8"),  # coordinate of a roller's slide, -1: none
         ("spin", "i8"),  # coordinate of a roller's spin, -1: prescribed
         ("exposed", "i8"),  # side faces of a box as a bit mask
+        ("carries", "i8"),  # 1: a roller with a mesh on it, whose turn is followed
     ]
 )
 BUSHING = np.dtype(
@@ -63,6 +66,7 @@ PAIR = np.dtype(
         ("a", "i8"),
         ("b", "i8"),
         ("shared", "i8"),
+        ("mesh", "i8"),  # number of it
         ("k", "f8"),  # [N/m^1.5]
         ("law", "f8", 6),  # as in mechanics.contact
     ]
@@ -91,10 +95,11 @@ class System(NamedTuple):
     elements: Elements
     free: int  # number of coordinates
     points: np.ndarray  # of the curves that bushings follow, mechanics.curve.POINT [Pa]
+    meshes: Meshes  # [m]
 
     @property
-    def tables(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, Floats]:
-        return self.bodies, self.bushings, self.points, self.pairs, self.loads, self.gravity
+    def tables(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, Meshes, np.ndarray, Floats]:
+        return self.bodies, self.bushings, self.points, self.pairs, self.meshes, self.loads, self.gravity
 
 
 class Pattern(NamedTuple):
@@ -106,6 +111,7 @@ class Pattern(NamedTuple):
 
 def check(model: Model) -> None:
     """Raises RefusedError for what this backend cannot represent."""
+    check_balance(model)
     for roller in model.rollers:
         if roller.press is not None and abs(float(roller.press.direction @ roller.axis)) > 1e-9:
             raise RefusedError(f"roller {roller.name}: a press along its own axis is not modelled by exudyn")
@@ -124,7 +130,8 @@ def build(model: Model) -> tuple[System, Pattern]:
     elements, pattern = _pattern(_couplings(bodies, bushings, blocks, pairs, loads), blocks, free)
     gravity = model.gravity * MM / MS**2
     points = curve_points(model.curves, PA)
-    return System(bodies, bushings, pairs, loads, gravity, elements, free, points), pattern
+    meshes = mesh_tables(model, MM)
+    return System(bodies, bushings, pairs, loads, gravity, elements, free, points, meshes), pattern
 
 
 def _bodies(model: Model, moving: bool) -> tuple[np.ndarray, int]:
@@ -151,18 +158,21 @@ def _bodies(model: Model, moving: bool) -> tuple[np.ndarray, int]:
     for roller in model.rollers:
         row = bodies[roller.body]
         row["axis"], row["size"] = roller.axis, (roller.radius * MM, roller.width * MM)
-        row["press"][4] = roller.inertia_axial * G * MM**2
+        row["press"][4] = (roller.inertia_axial + roller.carried[1]) * G * MM**2
         if roller.press is not None:
             spring = roller.press
             row["way"] = spring.direction
             force = spring.preload - spring.stiffness * (spring.start - spring.touch)
-            mass = (roller.mass + spring.carrier_mass) * G
+            mass = (roller.mass + roller.carried[0] + spring.carrier_mass) * G
             row["press"][:4] = (spring.stiffness * PER_MM, spring.damping * MS * PER_MM, force, mass)
             row["slide"], free = free, free + 1
         if moving:  # in a static analysis no roller turns
             drive(row, roller, MS, MM)
             if roller.turns:
                 row["spin"], free = free, free + 1
+    for mesh in model.meshes:
+        if mesh.on >= 0:
+            bodies["carries"][model.rollers[mesh.on].body] = 1
     for guide in model.guides:
         row = bodies[guide.body]
         row["half"] = [0.5 * MM * size for size in (guide.length, guide.width, guide.thickness)]
@@ -207,7 +217,8 @@ def _pairs(model: Model) -> np.ndarray:
     rows, chosen = model.contacts, model.pairs.contact
     pairs = np.zeros(len(chosen), PAIR)
     pairs["kind"] = rows.kind[chosen]
-    pairs["a"], pairs["b"] = model.pairs.a, model.pairs.b
+    pairs["a"] = model.pairs.a
+    pairs["mesh"], pairs["b"] = mesh_numbers(model)
     pairs["shared"] = np.array([share == "width" for share in rows.share], dtype=int)[chosen]
     pairs["k"] = rows.stiffness[chosen] * HERTZ
     speed = MM / MS

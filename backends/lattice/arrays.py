@@ -7,7 +7,7 @@ pressed ones also slide (one more): the border of the matrix. Everything else is
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -15,8 +15,9 @@ from backends.lattice.search import Search, plan
 from mdlgen.mechanics.curve import FOLLOWS, curve_points, follow
 from mdlgen.mechanics.driven import DRIVEN, drive
 from mdlgen.mechanics.laws import damping_share
+from mdlgen.mechanics.mesh import Meshes, mesh_numbers, mesh_tables
 from mdlgen.model.rotations import matrices
-from mdlgen.model.tables import BOX_BOX, GROUND, Floats, Ints, Model
+from mdlgen.model.tables import BOX_BOX, BOX_MESH, GROUND, Floats, Ints, Model
 
 if TYPE_CHECKING:
     from backends.lattice.mirror import Mirror
@@ -37,6 +38,7 @@ BODY = np.dtype(
         ("press", "f8", 5),  # k, c, force at the start, sliding mass, axial inertia
         *DRIVEN,
         ("size", "f8", 2),  # radius, width
+        ("carries", "i8"),  # 1: a roller with a mesh on it, whose turn is followed
     ]
 )
 JOINT = np.dtype(
@@ -63,6 +65,7 @@ PAIR = np.dtype(
         ("row", "i8"),  # of the contacts
         ("mark", "i8"),  # its place among the marks of pairs that have touched
         ("shared", "i8"),
+        ("mesh", "i8"),  # number of it
         ("k", "f8"),
         ("law", "f8", 6),  # as in mechanics.contact
     ]
@@ -90,11 +93,12 @@ class System(NamedTuple):
     mirror: Mirror | None  # the plane that halves it, None: this is the whole
     search: Search  # of boxes of two sheets that are near each other
     marks: int  # how many pairs there can be
+    meshes: Meshes
 
     @property
-    def tables(self) -> tuple[np.ndarray, ...]:
+    def tables(self) -> tuple[Any, ...]:
         """What compiled code takes first."""
-        places = (self.nodes, self.points, self.images)
+        places = (self.nodes, self.points, self.images, self.meshes)
         return self.bodies, self.joints, self.pairs, self.loads, self.gravity, *places
 
 
@@ -122,6 +126,7 @@ def build(model: Model, fold: bool = True) -> System:
         mirror=None,
         search=search,
         marks=marks,
+        meshes=mesh_tables(model),
     )
 
 
@@ -146,12 +151,13 @@ def _bodies(model: Model) -> tuple[np.ndarray, Ints, int]:
     for roller in model.rollers:
         row = bodies[roller.body]
         row["axis"], row["size"] = roller.axis, (roller.radius, roller.width)
-        row["press"][4] = roller.inertia_axial
+        row["press"][4] = roller.inertia_axial + roller.carried[1]
         if roller.press is not None:
             spring = roller.press
             row["way"] = spring.direction
             force = spring.preload - spring.stiffness * (spring.start - spring.touch)
-            row["press"][:4] = (spring.stiffness, spring.damping, force, roller.mass + spring.carrier_mass)
+            mass = roller.mass + roller.carried[0] + spring.carrier_mass
+            row["press"][:4] = (spring.stiffness, spring.damping, force, mass)
             row["slide"], border = border, border + 1
         drive(row, roller)
         if roller.turns:
@@ -160,6 +166,9 @@ def _bodies(model: Model) -> tuple[np.ndarray, Ints, int]:
         row = bodies[guide.body]
         row["half"] = [0.5 * size for size in (guide.length, guide.width, guide.thickness)]
         row["arc"], row["side"] = (guide.radius, guide.middle, guide.half_angle), guide.sides
+    for mesh in model.meshes:
+        if mesh.on >= 0:
+            bodies["carries"][model.rollers[mesh.on].body] = 1
     for plane in model.planes:
         bodies["way"][plane.body] = plane.normal
     return bodies, np.array(nodes, dtype=np.int64), border
@@ -223,7 +232,8 @@ def _pairs(model: Model) -> tuple[np.ndarray, np.ndarray]:
     own = np.flatnonzero(rows.kind[model.pairs.contact] != BOX_BOX)
     chosen = model.pairs.contact[own]
     pairs = _laws(model, chosen)
-    pairs["a"], pairs["b"] = model.pairs.a[own], model.pairs.b[own]
+    mesh, other = mesh_numbers(model)
+    pairs["a"], pairs["b"], pairs["mesh"] = model.pairs.a[own], other[own], mesh[own]
     pairs["law"][:, 1:3] *= model.pair_friction[own, None]
     return pairs, _laws(model, np.flatnonzero(rows.kind == BOX_BOX))
 
@@ -240,6 +250,11 @@ def _laws(model: Model, chosen: Ints) -> np.ndarray:
     for column, values in enumerate((beta, rows.mu_static, rows.mu_dynamic, *speeds)):
         pairs["law"][:, column] = values[chosen]
     return pairs
+
+
+def partner(model: Model, pair: np.void) -> int:
+    """The body that the second one of a pair is called by: a mesh, where that moves with another."""
+    return model.meshes[int(pair["mesh"])].body if pair["kind"] == BOX_MESH else int(pair["b"])
 
 
 def _loads(model: Model) -> np.ndarray:

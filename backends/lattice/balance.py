@@ -35,15 +35,15 @@ _LOST = 1e30  # N, and parts of a box: what a run does not come back from
 def _residual(system, level, place, lists, blank, rest):
     """Forces on the free boxes and on slides into `rest`. Returns the largest [N], with torques over half a
     box, its body, and how many contacts touch."""
-    bodies, joints, pairs, loads, gravity, nodes, points, _images = system
+    bodies, joints, pairs, loads, gravity, nodes, points, _images, meshes = system
     x, r, s = place
     touched, outs, near = lists
     still, f = blank
     on_boxes, on_slides = rest
     f[:] = 0.0
     joint_forces(joints, points, x, r, still, still, f)
-    close = near_pairs(bodies, pairs, x, r, still, still, 0.0, 0.0, near)
-    count, _, _ = pair_forces(bodies, pairs, near, close, x, r, still, still, f, touched, outs)
+    close = near_pairs(bodies, pairs, meshes, x, r, still, still, 0.0, 0.0, near)
+    count, _, _ = pair_forces(bodies, pairs, meshes, near, close, x, r, still, still, f, touched, outs)
     other_forces(bodies, loads, gravity, level, r, still, still, f)
     worst, at = 0.0, -1
     for n in range(nodes.size):
@@ -131,7 +131,7 @@ def equilibrium(system, border, height, level, load, least, reach, x, r, s, list
     diagonal (for sheets that nothing but contacts holds), `reach` [mm] the longest step. Returns (whether
     balance was found, rounds, the body that is pushed most, and by how much of the load).
     """
-    bodies, joints, pairs, loads, _, nodes, points, _images = system
+    bodies, joints, pairs, loads, _, nodes, points, _images, meshes = system
     many, size = nodes.size, 6 * nodes.size
     a, links, band = np.zeros((many, 6, height)), np.zeros((many, 6, height)), np.zeros((many, 6, height))
     b, d = np.zeros((border, size)), np.zeros((border, border))
@@ -157,7 +157,7 @@ def equilibrium(system, border, height, level, load, least, reach, x, r, s, list
             return False, rounds, at, worst / load
         sheets_into(bodies, joints, points, loads, level, gaps, x, r, a)
         rollers_into(bodies, b, d)
-        contacts_into(bodies, pairs, lists[0], count, x, r, still, a, b, d)
+        contacts_into(bodies, pairs, meshes, lists[0], count, x, r, still, a, b, d)
         shift = _newton(matrix, plain, shift, load, rest, step)
         if shift < 0.0:
             return False, rounds, at, worst / load

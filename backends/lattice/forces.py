@@ -12,7 +12,8 @@ from mdlgen.mechanics.contact import MOST_POINTS, OUT, POINT
 from mdlgen.mechanics.curve import curve_excess
 from mdlgen.mechanics.driven import clutch, prescribed
 from mdlgen.mechanics.guide import inward
-from mdlgen.mechanics.pair import BOX_BOX, BOX_GUIDE, BOX_PLANE, CYLINDER_CYLINDER, pair_force
+from mdlgen.mechanics.mesh import mesh_near
+from mdlgen.mechanics.pair import BOX_BOX, BOX_GUIDE, BOX_MESH, BOX_PLANE, CYLINDER_CYLINDER, pair_force
 from mdlgen.mechanics.vector import (
     add,
     back,
@@ -46,7 +47,7 @@ def place_box(b, h, rate, spin, x, r, xm, rm, um, wm):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def place_roller(body, b, h, t, rate, turning, x, xm, um, wm):
+def place_roller(body, b, h, t, rate, turning, x, r, xm, rm, um, wm):
     """One roller after h at the rates of its slide and its spin, where it has them; t: that time."""
     if body.spin < 0:
         turning = prescribed(body, t)
@@ -55,6 +56,10 @@ def place_roller(body, b, h, t, rate, turning, x, xm, um, wm):
             xm[b, i] = x[b, i] + h * rate * body.way[i]
         um[b, i] = rate * body.way[i]
         wm[b, i] = turning * body.axis[i]
+    if body.carries != 0:  # a mesh shows how far the roller has turned
+        m = matmul(exp_rotation(scale(h * turning, three(body.axis))), mat(r, b))
+        for i in range(9):
+            rm[b, i] = m[i]
 
 
 @njit(cache=True, error_model="numpy")
@@ -69,7 +74,7 @@ def place(bodies, nodes, images, h, t, u, ub, x, r, xm, rm, um, wm):
             continue  # no roller
         rate = ub[body.slide] if body.slide >= 0 else 0.0
         turning = ub[body.spin] if body.spin >= 0 else 0.0
-        place_roller(body, b, h, t, rate, turning, x, xm, um, wm)
+        place_roller(body, b, h, t, rate, turning, x, r, xm, rm, um, wm)
     reflect(images, xm, rm)
     reflect_rates(images, um, wm)
 
@@ -148,7 +153,7 @@ def _facing(bodies, pair, x, r, gap, reach, reached):
 
 
 @njit(cache=True, error_model="numpy")
-def near_pairs(bodies, pairs, x, r, u, w, margin, ahead, near):
+def near_pairs(bodies, pairs, meshes, x, r, u, w, margin, ahead, near):
     """Lists pairs in `near` that are closer than `margin` [mm] and what they move against each other in
     `ahead` [ms]; returns how many."""
     count = 0
@@ -185,6 +190,16 @@ def near_pairs(bodies, pairs, x, r, u, w, margin, ahead, near):
             reached = margin + ahead * (math.sqrt(dot(rate, rate)) + turning)
             if not _facing(bodies, pairs[p], x, r, gap, size + far + reached, reached):
                 continue
+        elif pairs[p].kind == BOX_MESH:
+            head, turned = meshes.heads[pairs[p].mesh], vec(w, b)
+            fast = math.sqrt(dot(rate, rate)) + math.sqrt(dot(spin, spin)) * size
+            reached = margin + ahead * (fast + math.sqrt(dot(turned, turned)) * head.reach)
+            wide = size + reached + head.reach
+            if dot(gap, gap) > wide * wide:
+                continue
+            own = three(bodies[a].half)
+            if not mesh_near(head, meshes, vec(x, a), mat(r, a), own, vec(x, b), mat(r, b), reached):
+                continue
         else:
             reached = margin + ahead * (math.sqrt(dot(rate, rate)) + math.sqrt(dot(spin, spin)) * size)
             reach = size + reached
@@ -208,11 +223,11 @@ def near_pairs(bodies, pairs, x, r, u, w, margin, ahead, near):
 
 
 @njit(cache=True, error_model="numpy")
-def _touches(bodies, pair, x, r, u, w, f, out):
+def _touches(bodies, pair, meshes, x, r, u, w, f, out):
     """What one pair does into `out`, and onto f. Returns whether it touches."""
     for i in range(OUT + 1):
         out[i] = 0.0
-    if not pair_force(bodies, pair, x, r, u, w, out):
+    if not pair_force(bodies, pair, meshes, x, r, u, w, out):
         return False
     for i in range(6):
         f[pair.a, i] += out[i]
@@ -221,14 +236,14 @@ def _touches(bodies, pair, x, r, u, w, f, out):
 
 
 @njit(cache=True, error_model="numpy")
-def pair_forces(bodies, pairs, near, close, x, r, u, w, f, touched, outs):
+def pair_forces(bodies, pairs, meshes, near, close, x, r, u, w, f, touched, outs):
     """Adds the forces of the pairs near[:close] to f. Those that touch are listed in `touched`, each with its
     row of outs (pairs, WIDE). Returns (how many, stored energy, dissipated power)."""
     count = 0
     stored = lost = 0.0
     for at in range(close):
         out = outs[count]
-        if _touches(bodies, pairs[near[at]], x, r, u, w, f, out):
+        if _touches(bodies, pairs[near[at]], meshes, x, r, u, w, f, out):
             stored += out[13]
             lost += out[14]
             touched[count] = near[at]
@@ -237,7 +252,7 @@ def pair_forces(bodies, pairs, near, close, x, r, u, w, f, touched, outs):
 
 
 @njit(cache=True, error_model="numpy")
-def pair_forces_again(bodies, pairs, near, close, known, x, r, u, w, f, touched, outs):
+def pair_forces_again(bodies, pairs, meshes, near, close, known, x, r, u, w, f, touched, outs):
     """As pair_forces where some pairs are `known`: (those that touch, what they do, how many, whether a pair
     is among those looked at)."""
     had, done, many, seen = known
@@ -257,7 +272,7 @@ def pair_forces_again(bodies, pairs, near, close, known, x, r, u, w, f, touched,
         count += 1
     for at in range(close):
         out = outs[count]
-        if not seen[near[at]] and _touches(bodies, pairs[near[at]], x, r, u, w, f, out):
+        if not seen[near[at]] and _touches(bodies, pairs[near[at]], meshes, x, r, u, w, f, out):
             stored += out[13]
             lost += out[14]
             touched[count] = near[at]

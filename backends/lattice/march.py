@@ -11,6 +11,7 @@ from backends.lattice.search import look, strayed
 from backends.lattice.step import ROUNDS, STEPS, STRAIN, TOUCHING, WORST, carry, midpoint, spun
 from mdlgen.mechanics.curve import overstretched
 from mdlgen.mechanics.driven import clutch, prescribed
+from mdlgen.mechanics.mesh import LOST
 from mdlgen.mechanics.pair import BOX_BOX, on_plate
 
 DONE, STOPPED, LEFT, DEEP, STRETCHED, CROWDED = 0, 1, 2, 3, 4, 5
@@ -27,11 +28,11 @@ GRAZE = 0.05
 
 @njit(cache=True, error_model="numpy")
 def _deep(bodies, pairs, mid, count):
-    """The pair that is more than half of a plate's thickness deep, or of a box's on another, or -1."""
+    """The pair that is more than half of a plate's, a mesh's, or another box's thickness deep, or -1."""
     touched, outs = mid[5], mid[6]
     for k in range(count):
         pair = pairs[touched[k]]
-        if on_plate(pair) and outs[k, 15] > bodies[pair.b].half[2]:
+        if outs[k, 15] > (bodies[pair.b].half[2] if on_plate(pair) else LOST):
             return touched[k]
         if pair.kind == BOX_BOX and outs[k, 15] > min(bodies[pair.a].half[2], bodies[pair.b].half[2]):
             return touched[k]
@@ -148,7 +149,7 @@ def run(
     what a guess is made from: the velocities of the step before the last, the size of the last step, and the
     time from the middle of the one to the middle of the other (0: there is none).
     """
-    bodies, joints, pairs, loads, gravity, nodes, points, images = system
+    bodies, joints, pairs, loads, gravity, nodes, points, images, meshes = system
     x, r, v, l, s, vb, u, ub = state
     keep_u, keep_b, guess = u.copy(), ub.copy(), u.copy()
     last_u, last_b, spans = before

@@ -15,6 +15,7 @@ def ledger(
     joints,
     points,
     pairs,
+    meshes,
     gravity,
     nodes,
     t,
@@ -69,8 +70,8 @@ def ledger(
         for i in range(3):
             w[b, i] += rate * bodies[b].axis[i]
     stored, _ = joint_forces(joints, points, x, r, u, w, f)
-    close = near_pairs(bodies, pairs, x, r, u, w, 0.0, 0.0, near)
-    count, pressed, _ = pair_forces(bodies, pairs, near, close, x, r, u, w, f, touched, outs)
+    close = near_pairs(bodies, pairs, meshes, x, r, u, w, 0.0, 0.0, near)
+    count, pressed, _ = pair_forces(bodies, pairs, meshes, near, close, x, r, u, w, f, touched, outs)
     for k in range(count):
         force[pairs[touched[k]].row] += outs[k, 12]
     energies[0], energies[1], energies[2] = kinetic, elastic + stored + pressed, potential

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from backends.lattice.arrays import System
+from mdlgen.model.meshes import carried
 from mdlgen.model.tables import Model
 from mdlgen.results.result import ContactStatistics, Energy, Result
 
@@ -25,7 +26,7 @@ class Recorder:
         """The state at the end of a step."""
         from backends.lattice.compiled import observe
 
-        bodies, joints, pairs, _, gravity, nodes, points, _ = self.tables
+        bodies, joints, pairs, _, gravity, nodes, points, _, meshes = self.tables
         x, r, v, l, s, vb, _, _ = self.state
         _, _, u, w, f, touched, outs, _, near = self.mid
         count = len(self.model.bodies.name)
@@ -34,7 +35,7 @@ class Recorder:
         places, rates = (x, r), (v, l, s, vb)
         work = (u, w, f, touched, outs, near)
         sheets = (bodies, joints, points)
-        observe.ledger(*sheets, pairs, gravity, nodes, t, *places, *rates, *work, energies, force)
+        observe.ledger(*sheets, pairs, meshes, gravity, nodes, t, *places, *rates, *work, energies, force)
         mirror, told = self.system.mirror, self.kept[0][:, 5].copy()
         if mirror is not None:
             mirror.fill(x, r, u, w)
@@ -46,6 +47,7 @@ class Recorder:
         self._last = now
         self._most = max(self._most, now[0] + now[1])
         self._times.append(t)
+        carried(self.model, x, r, u, w)
         for name, array in (("x", x), ("r", r), ("u", u), ("w", w)):
             self._stored[name].append(array[:count].copy())
         # forces are those in the middle of the last step, where the rule has them; at the start as it begins

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from backends.lattice.arrays import System, build
+from backends.lattice.arrays import System, build, partner
 from backends.lattice.mirror import halve
 from backends.lattice.record import Recorder
 from backends.lattice.scope import check
@@ -249,7 +249,7 @@ def _reason(
         )
     if status == march.DEEP:
         pair = int(counters[step.WORST])
-        box, plate = (int(system.pairs[end][pair]) for end in "ab")
+        box, plate = int(system.pairs["a"][pair]), partner(model, system.pairs[pair])
         return (
             f"box {names[box]} is more than half of its thickness into {model.called(plate)} at {t:.6g} ms; "
             "a stiffer contact or a smaller run.step would hold it"

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from mdlgen.errors import RefusedError
 from mdlgen.model.external import refuse_externals
+from mdlgen.model.meshes import check_balance
 from mdlgen.model.tables import BOX_BOX, Model
 
 
 def check(model: Model) -> None:
     """Raises RefusedError by name for what it cannot."""
     refuse_externals(model, "lattice")
+    check_balance(model)
     if model.run.analysis == "static" and any(roller.speed for roller in model.rollers):
         # a driven roller rubs on what it touches, and the friction of rest is none
         raise RefusedError(

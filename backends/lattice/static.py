@@ -7,9 +7,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from backends.lattice.arrays import System
+from backends.lattice.arrays import System, partner
 from backends.lattice.band import PAD
 from backends.lattice.record import Recorder
+from mdlgen.mechanics.mesh import LOST
 from mdlgen.model import curves
 from mdlgen.model.tables import BOX_GUIDE, BOX_PLANE, GROUND, Model
 from mdlgen.results.result import Result
@@ -115,7 +116,7 @@ def _loose(model: Model) -> bool:
 def _reach(model: Model) -> float:
     """The longest step [mm]: half of what a box would have to cross to be behind a contact."""
     depths = [float(model.bodies.half[plane.body, 2]) for plane in model.planes]
-    depths += [0.5 * guide.thickness for guide in model.guides]
+    depths += [0.5 * guide.thickness for guide in model.guides] + [0.5 for _ in model.meshes]
     radii = [0.5 * roller.radius for roller in model.rollers]
     return min([*depths, *radii], default=np.inf)
 
@@ -127,16 +128,17 @@ def _touch(model: Model, system: System, state: tuple, mid: tuple, rows: tuple) 
     x, r = state[:2]
     f, touched, outs, near = mid[4], mid[5], mid[6], mid[8]
     still = np.zeros_like(x)
-    close = forces.near_pairs(system.bodies, system.pairs, x, r, still, still, 0.0, 0.0, near)
+    close = forces.near_pairs(system.bodies, system.pairs, system.meshes, x, r, still, still, 0.0, 0.0, near)
     count, _, _ = forces.pair_forces(
-        system.bodies, system.pairs, near, close, x, r, still, still, f, touched, outs
+        system.bodies, system.pairs, system.meshes, near, close, x, r, still, still, f, touched, outs
     )
     table, marks = rows
     for k in range(count):
         pair, force, depth = system.pairs[touched[k]], outs[k, 12], outs[k, 15]
-        if pair["kind"] in (BOX_GUIDE, BOX_PLANE) and depth > system.bodies["half"][pair["b"], 2]:
+        plate = pair["kind"] in (BOX_GUIDE, BOX_PLANE)
+        if depth > (system.bodies["half"][pair["b"], 2] if plate else LOST):
             names = model.bodies.name
-            plate = model.called(int(pair["b"]))
+            plate = model.called(partner(model, pair))
             return f"box {names[pair['a']]} rests more than half of its thickness in {plate}"
         marks[touched[k]] = True
         row = table[pair["row"]]

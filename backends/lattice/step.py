@@ -37,7 +37,7 @@ from backends.lattice.sides import crossed, part_of_change
 from backends.lattice.tangent import contacts_into, in_box_axes, joints_into, masses, rollers_into
 from backends.lattice.touching import settle
 from mdlgen.mechanics.driven import clutch, prescribed
-from mdlgen.mechanics.vector import back, exp_rotation, mat, matmul, rotate
+from mdlgen.mechanics.vector import back, exp_rotation, mat, matmul, rotate, scale, three
 
 # Rounds of one step before it is given up.
 MOST_ROUNDS = 40
@@ -111,7 +111,7 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
     contacts stand (see alone.APART). counters[THROUGH] is the pair of two sheets that a step would take
     through each other, or -1.
     """
-    bodies, joints, pairs, loads, gravity, nodes, points, images = system
+    bodies, joints, pairs, loads, gravity, nodes, points, images, meshes = system
     x, r, v, l, s, vb, u, ub = state
     xm, rm, um, wm, f, touched, outs, totals, near = mid
     a, b, d, y, corner, res, resb, direction, index, couplings = matrix
@@ -128,18 +128,18 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
         if rounds == 0 or margin < dt * moved:
             # what the guess did not know of may move further than it said
             margin = FAR + 2.0 * dt * moved
-            close = near_pairs(bodies, pairs, x, r, um, wm, margin, dt, near)
+            close = near_pairs(bodies, pairs, meshes, x, r, um, wm, margin, dt, near)
             unsee(alone)
         f[:] = 0.0
         _stored, lost = joint_forces(joints, points, xm, rm, um, wm, f, lag)
         if rounds > 0 and where == APART and alone.state[1] == 1:
             again = (alone.touched, alone.outs, alone.state[0], alone.seen)
             count, _pressed, rubbed = pair_forces_again(
-                bodies, pairs, near, close, again, xm, rm, um, wm, f, touched, outs
+                bodies, pairs, meshes, near, close, again, xm, rm, um, wm, f, touched, outs
             )
         else:
             count, _pressed, rubbed = pair_forces(
-                bodies, pairs, near, close, xm, rm, um, wm, f, touched, outs
+                bodies, pairs, meshes, near, close, xm, rm, um, wm, f, touched, outs
             )
         power = other_forces(bodies, loads, gravity, 1.0, rm, um, wm, f)
         _weights(bodies, gravity, f)
@@ -224,7 +224,7 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
             place(bodies, nodes, images, h, t + h, u, ub, x, r, xm, rm, um, wm)
             f[:] = 0.0
             count, _pressed, rubbed = pair_forces(
-                bodies, pairs, near, close, xm, rm, um, wm, f, touched, outs
+                bodies, pairs, meshes, near, close, xm, rm, um, wm, f, touched, outs
             )
             totals[0], totals[1] = lost + rubbed, power
             counters[TOUCHING] = count
@@ -260,7 +260,7 @@ def spun(body, u, v, t, dt):
 @njit(cache=True, error_model="numpy")
 def carry(system, state, mid, t, dt):
     """From the middle to the end of a step."""
-    bodies, joints, pairs, loads, gravity, nodes, points, images = system
+    bodies, joints, pairs, loads, gravity, nodes, points, images, meshes = system
     x, r, v, l, s, vb, u, ub = state
     for n in range(nodes.size):
         b = nodes[n]
@@ -283,6 +283,11 @@ def carry(system, state, mid, t, dt):
             for i in range(3):
                 x[k, i] += dt * ub[slide] * bodies[k].way[i]
             vb[slide] = 2.0 * ub[slide] - vb[slide]
+        if bodies[k].carries != 0:
+            turning = ub[spin_at] if spin_at >= 0 else prescribed(bodies[k], t + 0.5 * dt)
+            m = matmul(exp_rotation(scale(dt * turning, three(bodies[k].axis))), mat(r, k))
+            for i in range(9):
+                r[k, i] = m[i]
         if spin_at >= 0:
             vb[spin_at] = spun(bodies[k], ub[spin_at], vb[spin_at], t, dt)
 

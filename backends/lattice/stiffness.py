@@ -212,7 +212,7 @@ def _move(x, r, b, way, c, amount):
 
 
 @njit(cache=True, error_model="numpy")
-def contacts_into(bodies, pairs, touched, count, x, r, still, a, b, d):
+def contacts_into(bodies, pairs, meshes, touched, count, x, r, still, a, b, d):
     """Adds the contacts that touch to the band a, the border b (border, 6 nodes) and its corner d: minus the
     differences of their forces, made symmetric."""
     out, g, keep = np.empty(OUT), np.empty((2, 14)), np.empty(12)
@@ -233,7 +233,7 @@ def contacts_into(bodies, pairs, touched, count, x, r, still, a, b, d):
             for side in range(2):
                 _move(x, r, body, bodies[body].way, c % 7, _SMALL if side == 0 else -_SMALL)
                 out[:] = 0.0
-                pair_force(bodies, pair, x, r, still, still, out)
+                pair_force(bodies, pair, meshes, x, r, still, still, out)
                 x[body], r[body] = keep[:3], keep[3:]
                 for end in range(2):
                     way = bodies[pair.a if end == 0 else pair.b].way

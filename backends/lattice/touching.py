@@ -122,7 +122,7 @@ def _begin(bodies, nodes, h, ub, alone, m, res, resb):
 
 
 @njit(cache=True, error_model="numpy")
-def _evaluate(bodies, pairs, nodes, h, t, state, mid, alone, m):
+def _evaluate(bodies, pairs, meshes, nodes, h, t, state, mid, alone, m):
     """Contact forces on the chosen boxes and the rollers, with their velocities changed by z; returns how
     many pairs touch."""
     x, r, u, ub = state
@@ -147,9 +147,9 @@ def _evaluate(bodies, pairs, nodes, h, t, state, mid, alone, m):
             rate = ub[bodies[b].slide] + z[6 * m + bodies[b].slide]
         if bodies[b].spin >= 0:
             turning = ub[bodies[b].spin] + z[6 * m + bodies[b].spin]
-        place_roller(bodies[b], b, h, t, rate, turning, x, xm, um, wm)
+        place_roller(bodies[b], b, h, t, rate, turning, x, r, xm, rm, um, wm)
     count, _stored, _lost = pair_forces(
-        bodies, pairs, alone.mine, alone.state[2], xm, rm, um, wm, forces, alone.touched, alone.outs
+        bodies, pairs, meshes, alone.mine, alone.state[2], xm, rm, um, wm, forces, alone.touched, alone.outs
     )
     return count
 
@@ -200,7 +200,7 @@ def settle(system, alone, m, where, h, t, state, mid, near, known, rest, limits)
     how many). `rest` is what the lattice alone would lose of its velocities, in box axes (6 nodes,), and the
     rollers' residual; both become what is to be taken off.
     """
-    bodies, _joints, pairs, _loads, _gravity, nodes, _points, _images = system
+    bodies, _joints, pairs, _loads, _gravity, nodes, _points, _images, meshes = system
     _x, r, _u, ub = state
     res, resb = rest
     limit, strict = limits
@@ -246,7 +246,7 @@ def settle(system, alone, m, where, h, t, state, mid, near, known, rest, limits)
         for halved in range(MOST_HALVED + 1):
             if done:
                 break
-            count = _evaluate(bodies, pairs, nodes, h, t, state, mid, alone, m)
+            count = _evaluate(bodies, pairs, meshes, nodes, h, t, state, mid, alone, m)
             _impulses(bodies, nodes, r, h, t, ub, alone, m, p)
             merit = _gap(alone, m, many)
             if merit <= before * (1.0 - 0.1 * part) or merit <= strict * strict or halved == MOST_HALVED:

@@ -91,6 +91,11 @@ def unverified(model: Model, deck: Deck) -> list[str]:
         ),
         (bool(deck.contacts), "Force_Contact (documented, not seen in a deck)"),
         (
+            bool(deck.shells),
+            "Post_Graphic of a TriaMesh (documented; names of attributes and order of its numbers guessed "
+            "from the Python twin)",
+        ),
+        (
             deck.run.static and deck.run.method == "MKEAM",
             "Param_Static by MKEAM, since no other static method takes contacts (documented)",
         ),

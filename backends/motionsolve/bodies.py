@@ -1,5 +1,5 @@
-"""Rows of the bodies: ground, boxes, rollers, planes and guides, each with its two markers, its graphics and,
-where it is held, its joint.
+"""Rows of the bodies: ground, boxes, rollers, planes, guides and meshes, each with its two markers, its
+graphics and, where it is held, its joint.
 
 Ids follow the Model's numbers: body k is Body_Rigid k + 2, behind ground, and has Post_Graphic k + 1.
 """
@@ -9,11 +9,12 @@ from __future__ import annotations
 import numpy as np
 
 from backends.motionsolve.axes import cosines
-from backends.motionsolve.rows import Body, Box, Cosines, Deck
+from backends.motionsolve.rows import Body, Box, Cosines, Deck, Shell
 from backends.motionsolve.units import Triple, numbers, per_thousand, thousandfold, triples
 from mdlgen.model.guides import facets
+from mdlgen.model.meshes import origin
 from mdlgen.model.shape import ground_frames
-from mdlgen.model.tables import Model
+from mdlgen.model.tables import MeshPart, Model
 
 GROUND_ID = 1
 GLOBAL_FRAME = 1  # the first marker
@@ -39,7 +40,8 @@ def facet_ids(model: Model) -> list[tuple[int, ...]]:
 
 
 def add_frames(deck: Deck, model: Model) -> None:
-    """The global frame and the axes of the sheets and of the guides, on ground."""
+    """The global frame and the axes of the sheets and of the guides, on ground; those of meshes on what they
+    move with."""
     deck.marker("Global_Frame", "Global Frame", GROUND_ID, None)
     for index, sheet in enumerate(model.sheets):
         at = triples(sheet.center[None])[0]
@@ -50,6 +52,9 @@ def add_frames(deck: Deck, model: Model) -> None:
     for guide in model.guides:
         (at,) = triples(guide.center[None])
         deck.marker(f"m_{guide.name}", f"Axes of {guide.name}", GROUND_ID, at, cosines(guide.axes))
+    for mesh in model.meshes:
+        (at,) = triples(origin(mesh, model.rollers)[None])
+        deck.marker(f"m_{mesh.name}", f"Axes of {mesh.name}", _under(model, mesh), at, cosines(mesh.axes))
 
 
 def add_bodies(deck: Deck, model: Model) -> None:
@@ -70,6 +75,7 @@ def add_bodies(deck: Deck, model: Model) -> None:
             how = "held" if model.sheet_of(k) else "fixed"
             _fix(deck, f"j_{table.name[k]}", f"{label} {how}", body_id(k), positions[k])
     _add_facets(deck, model)
+    _add_shells(deck, model)
 
 
 def _add_facets(deck: Deck, model: Model) -> None:
@@ -85,6 +91,28 @@ def _add_facets(deck: Deck, model: Model) -> None:
             )
             x, y, z = numbers(facet.lengths)
             deck.boxes.append(Box(name, label, id, marker, (x, y, z)))
+
+
+def _under(model: Model, mesh: MeshPart) -> int:
+    """Id of the body that a mesh is fixed to."""
+    return GROUND_ID if mesh.on < 0 else body_id(model.rollers[mesh.on].body)
+
+
+def _add_shells(deck: Deck, model: Model) -> None:
+    """The triangles of meshes, each round a marker of its own; and the joints of those on rollers."""
+    for mesh in model.meshes:
+        name, label = f"gcad_{mesh.name}", model.bodies.label[mesh.body]
+        (at,) = triples(origin(mesh, model.rollers)[None])
+        axes = cosines(mesh.axes)
+        marker = deck.marker(
+            f"{name}_center_marker", f"{label} - Center Marker", body_id(mesh.body), at, axes
+        )
+        corners, triangles = triples(mesh.corners), mesh.triangles.tolist()
+        deck.shells.append(Shell(name, label, graphic_id(mesh.body), marker, corners, triangles))
+        if mesh.on >= 0:
+            (middle,) = triples(model.bodies.position[mesh.body][None])
+            on = _under(model, mesh)
+            _fix(deck, f"j_{mesh.name}", f"{label} fixed", body_id(mesh.body), middle, on)
 
 
 def add_body(
@@ -117,8 +145,8 @@ def _velocities(model: Model) -> dict[int, tuple[str, ...]]:
     return found
 
 
-def _fix(deck: Deck, name: str, label: str, body: int, at: Triple) -> None:
-    """A fixed joint to ground, along the global axes."""
+def _fix(deck: Deck, name: str, label: str, body: int, at: Triple, on: int = GROUND_ID) -> None:
+    """A fixed joint to ground or another body, along the global axes."""
     i = deck.marker(f"{name}.joint_i", f"{label}-Marker I", body, at)
-    j = deck.marker(f"{name}.joint_j", f"{label}-Marker J", GROUND_ID, at)
+    j = deck.marker(f"{name}.joint_j", f"{label}-Marker J", on, at)
     deck.joint(name, label, "FIXED", i, j)

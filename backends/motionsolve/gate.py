@@ -48,3 +48,4 @@ def _entities(deck: Deck) -> Iterator[Row]:
     yield from deck.requests
     yield from deck.boxes
     yield from deck.cylinders
+    yield from deck.shells

@@ -150,6 +150,17 @@ class Cylinder(NamedTuple):
     length: str
 
 
+class Shell(NamedTuple):
+    """Triangles on a marker: corners, and their numbers from 0 on for each."""
+
+    name: str
+    label: str
+    id: int
+    marker: int
+    corners: list[Triple]
+    triangles: list[list[int]]
+
+
 class Law(NamedTuple):
     """The numbers of a contact; `friction` is None, or mu static, mu dynamic and their two slip speeds."""
 
@@ -221,6 +232,7 @@ class Deck:
     requests: list[Request] = field(default_factory=list)
     boxes: list[Box] = field(default_factory=list)
     cylinders: list[Cylinder] = field(default_factory=list)
+    shells: list[Shell] = field(default_factory=list)
 
     def marker(self, name: str, label: str, body: int, at: Triple | None, axes: Cosines | None = None) -> int:
         """Adds a marker and returns its id."""

@@ -18,6 +18,11 @@ def unverified(scene: SceneView) -> list[str]:
             "several graphics of one body in a Contact (documented), and a BOX turned by VECTOR and POINT "
             "(documented; seen by two vectors)",
         ),
+        (
+            bool(scene.meshes),
+            "CADGraphic (documented; that it takes STL and OBJ files is not, nor the empty list of "
+            "components : where it does not, turn the file to .g or .h3d with mvg and write FILE)",
+        ),
         (True, "SetOrientation of a marker by DXDYDZ with formulas (seen with numbers only)"),
         (any(s.turned for s in joined), _BUSH),
         (

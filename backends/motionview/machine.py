@@ -1,4 +1,4 @@
-"""Rows of the machine: rollers, planes, guides, contacts and the pairs of bodies that may touch."""
+"""Rows of the machine: rollers, planes, guides, meshes, contacts and the pairs of bodies that may touch."""
 
 from __future__ import annotations
 
@@ -8,9 +8,18 @@ from itertools import groupby
 import numpy as np
 
 from backends.motionview.cells import rough_boxes
-from backends.motionview.rows import Axis, ContactView, GuideView, Pair, PlaneView, RollerView, Value
+from backends.motionview.rows import (
+    Axis,
+    ContactView,
+    GuideView,
+    MeshView,
+    Pair,
+    PlaneView,
+    RollerView,
+    Value,
+)
 from backends.motionview.units import number
-from mdlgen.model.tables import Floats, GuidePart, Model, PlanePart, RollerPart
+from mdlgen.model.tables import Floats, GuidePart, MeshPart, Model, PlanePart, RollerPart
 
 
 def roller_view(model: Model, roller: RollerPart, given: list[Value]) -> RollerView:
@@ -61,6 +70,32 @@ def guide_view(guide: GuidePart, given: list[Value]) -> GuideView:
     )
 
 
+def mesh_view(model: Model, mesh: MeshPart, given: list[Value]) -> MeshView:
+    """One mesh; what its file says is written as numbers."""
+    roller = model.rollers[mesh.on] if mesh.on >= 0 else None
+    middle = zip("xyz", mesh.middle, strict=True)
+    round_ = zip("xyz", mesh.gyration, strict=True)
+    derived = [("scale", "Of the file's numbers to mm", number(mesh.scale))]
+    derived += [(f"c_{a}", f"Middle of mass, {a} of the file (mm)", number(v)) for a, v in middle]
+    derived += [(f"j_{a}", f"Inertia over mass about axis {a} (mm2)", number(v)) for a, v in round_]
+    mass = "$M"
+    if mesh.density is not None:
+        derived.append(("V", "Volume (mm3)", number(mesh.volume)))
+        mass = "$rho*$V"
+    return MeshView(
+        name=mesh.name,
+        given=given,
+        derived=derived,
+        mass=mass,
+        file=mesh.file,
+        ground="B_Ground" if roller is None else f"b_{roller.name}",
+        on="B_Ground" if roller is None else f"b_{roller.name}",
+        slides=roller.name if roller is not None and roller.press is not None else "",
+        z=_components(mesh.principal[:, 2]),
+        x=_components(mesh.principal[:, 0]),
+    )
+
+
 def guide_graphics(guide: GuidePart) -> list[str]:
     """Names of the boxes that show a guide."""
     return [f"gbox_{guide.name}_{k}" for k in range(guide.facets)]
@@ -107,6 +142,8 @@ def pair_rows(model: Model) -> list[Pair]:
         graphics[roller.body] = [f"gcyl_{roller.name}"]
     for guide in model.guides:
         graphics[guide.body] = guide_graphics(guide)
+    for mesh in model.meshes:
+        graphics[mesh.body] = [f"gcad_{mesh.name}"]
     rubs = [s > 0 or d > 0 for s, d in zip(table.mu_static, table.mu_dynamic, strict=True)]
     rough, rougher = rough_pairs(model), model.pair_friction.tolist()
     data_set = [f"contact_{entry}" for entry in table.entry.tolist()]

@@ -232,6 +232,22 @@ class GuideView:
     facets: int
 
 
+@dataclass(frozen=True)
+class MeshView:
+    """One mesh; its graphic is the file."""
+
+    name: str
+    given: list[Value]
+    derived: list[tuple[str, str, str]]
+    mass: str  # reference to it
+    file: str
+    ground: str  # body that its axes are fixed to
+    on: str  # body that it is fixed to
+    slides: str  # the pressed roller that it is on; empty: none
+    z: tuple[str, str, str]  # axes of its inertia, those of the file
+    x: tuple[str, str, str]
+
+
 class ContactView(NamedTuple):
     """One entry of the spec's list."""
 
@@ -294,6 +310,7 @@ class SceneView:
     rollers: list[RollerView]
     planes: list[PlaneView]
     guides: list[GuideView]
+    meshes: list[MeshView]
     contacts: list[ContactView]
     pairs: list[Pair]
     probes: list[ProbeView]

@@ -29,6 +29,7 @@ def system_view(model: Model, set_contact: bool) -> SystemView:
         rollers=[],
         planes=[],
         guides=[],
+        meshes=[],
         contacts=contact_views(model, given, of_sheets),
         pairs=sheet_pairs(model),
     )
@@ -52,6 +53,7 @@ def attachments(model: Model) -> list[Attachment]:
         *((r.name, f"b_{r.name}", (f"gcyl_{r.name}",)) for r in model.rollers),
         *((p.name, f"b_{p.name}", (f"gbox_{p.name}",)) for p in model.planes),
         *((g.name, f"b_{g.name}", tuple(guide_graphics(g))) for g in model.guides),
+        *((m.name, f"b_{m.name}", (f"gcad_{m.name}",)) for m in model.meshes),
         *((e.name, e.body, e.graphics) for e in model.externals),
     ]
     made = []

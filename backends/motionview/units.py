@@ -30,6 +30,7 @@ def mdl_value(value: float, unit: str) -> float:
         "N*mm/rad": lambda: value,
         "N/mm^1.5": lambda: value,
         "g": lambda: _fifteen(value / 1000),
+        "g/mm^3": lambda: _fifteen(value / 1000),
         "ms": lambda: _fifteen(value / 1000),
         "mm/ms": lambda: _fifteen(value * 1000),
         "rad/ms": lambda: _fifteen(value * 1000),

@@ -5,7 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from backends.motionview.idle import idle_values
-from backends.motionview.machine import contact_views, guide_view, pair_rows, plane_view, roller_view
+from backends.motionview.machine import (
+    contact_views,
+    guide_view,
+    mesh_view,
+    pair_rows,
+    plane_view,
+    roller_view,
+)
 from backends.motionview.rows import SceneView, Value
 from backends.motionview.sheets import probe_view, sheet_view, support_views
 from backends.motionview.units import mdl_value, number, with_unit
@@ -24,6 +31,7 @@ def scene_view(model: Model, set_contact: bool) -> SceneView:
         rollers=[roller_view(model, r, given[r.name]) for r in model.rollers],
         planes=[plane_view(model, p, given[p.name]) for p in model.planes],
         guides=[guide_view(g, given[g.name]) for g in model.guides],
+        meshes=[mesh_view(model, m, given[m.name]) for m in model.meshes],
         contacts=contact_views(model, given, range(len(model.contacts))),
         pairs=pair_rows(model),
         probes=[probe_view(model, probe) for probe in model.probes],

@@ -42,6 +42,7 @@ def new(
     Example: mdlgen new my_scene --from cantilever
     """
     from mdlgen import paths
+    from mdlgen.spec.load import load
 
     root = paths.samples()
     known = {p.relative_to(root).with_suffix("").as_posix(): p for p in sorted(root.rglob("*.yaml"))}
@@ -62,6 +63,12 @@ def new(
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise OutputError(f"{folder}: cannot make this folder: {error.strerror or error}") from None
+    for mesh in load(source).meshes.values():
+        beside = folder / mesh.file
+        if beside.exists() or beside.is_symlink():
+            raise OutputError(f"{beside}: exists already; choose another folder")
+        beside.parent.mkdir(parents=True, exist_ok=True)
+        paths.write_atomic(beside, (source.parent / mesh.file).read_bytes())
     paths.write_atomic(target, source.read_bytes())
     typer.echo(target)
     if not quiet:

@@ -43,6 +43,22 @@ def prescribed(body, t):
     return body.drive[last]
 
 
+@njit(cache=True, error_model="numpy")
+def turned(body, t):
+    """Angle by which a driven roller has turned from 0 to a time."""
+    last = 2 * body.corners - 1
+    if last < 0:
+        return 0.0
+    angle, now, rate = 0.0, 0.0, prescribed(body, 0.0)
+    for i in range(0, last, 2):
+        then = min(body.drive[i], t)
+        if then > now:
+            after = prescribed(body, then)
+            angle += 0.5 * (rate + after) * (then - now)
+            now, rate = then, after
+    return angle + max(t - now, 0.0) * prescribed(body, t)
+
+
 @njit(cache=True, error_model="numpy", forceinline=True)
 def clutch(body, spin, t):
     """What a clutch does at a spin about the axis: (torque on the roller, what it loses as the spin grows,

@@ -7,10 +7,11 @@ from numba import njit
 from mdlgen.mechanics.contact import box_cylinder, box_plane, cylinder_cylinder
 from mdlgen.mechanics.facing import box_box
 from mdlgen.mechanics.guide import box_guide
+from mdlgen.mechanics.mesh import box_mesh
 from mdlgen.mechanics.vector import mat, three, vec
 
 # As in mdlgen.model.tables.
-BOX_PLANE, CYLINDER_CYLINDER, BOX_GUIDE, BOX_BOX = 1, 2, 4, 5
+BOX_PLANE, CYLINDER_CYLINDER, BOX_GUIDE, BOX_BOX, BOX_MESH = 1, 2, 4, 5, 6
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -20,12 +21,12 @@ def on_plate(pair):
 
 
 @njit(cache=True, error_model="numpy")
-def pair_force(bodies, pair, x, r, u, w, out):
+def pair_force(bodies, pair, meshes, x, r, u, w, out):
     """One contact pair into `out`, which must be zero (OUT numbers, and the count of points if it has one).
 
     `bodies` are records with half, exposed, axis, size (radius, width), arc and side, `pair` one with kind,
-    a, b, k, shared and law; x, r, u, w places, rotations and velocities of all bodies. Returns whether it
-    touches.
+    a, b, k, shared, law and mesh, `meshes` a mechanics.mesh.Meshes; x, r, u, w places, rotations and
+    velocities of all bodies. Returns whether it touches.
     """
     a, b = pair.a, pair.b
     row = pair.law
@@ -96,6 +97,24 @@ def pair_force(bodies, pair, x, r, u, w, out):
             bodies[b].exposed,
             pair.k,
             pair.shared != 0,
+            law,
+        )
+    elif pair.kind == BOX_MESH:
+        box_mesh(
+            out,
+            vec(x, a),
+            mat(r, a),
+            vec(u, a),
+            vec(w, a),
+            three(bodies[a].half),
+            bodies[a].exposed,
+            vec(x, b),
+            mat(r, b),
+            vec(u, b),
+            vec(w, b),
+            meshes.heads[pair.mesh],
+            meshes,
+            pair.k,
             law,
         )
     else:

@@ -11,7 +11,7 @@ def impact_time(model: Model, row: int, mass: float) -> float:
     """Duration of an undamped impact [ms] at the greatest speed that the scene can give:
     T = 3.21806546 (m^2 / (k^2 v))^(1/5). Against a box of another sheet the reduced mass counts."""
     sheet = next(s for s in model.sheets if s.name == model.contacts.part_a[row])
-    parts = (*model.rollers, *model.planes, *model.guides, *model.sheets)
+    parts = (*model.rollers, *model.planes, *model.guides, *model.meshes, *model.sheets)
     part = next(p for p in parts if p.name == model.contacts.part_b[row])
     gravity, start = math.hypot(*model.gravity), math.hypot(*sheet.velocity)
     if isinstance(part, SheetPart):

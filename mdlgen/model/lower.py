@@ -15,6 +15,8 @@ from mdlgen.model.guides import inertia as guide_inertia
 from mdlgen.model.guides import lower_guides
 from mdlgen.model.joints import Joints, find_joints
 from mdlgen.model.machine import frame, lower_planes, lower_rollers
+from mdlgen.model.meshes import loaded, lower_meshes
+from mdlgen.model.meshes import placed as mesh_placed
 from mdlgen.model.pairs import find_pairs
 from mdlgen.model.parameters import parameters
 from mdlgen.model.rotations import matrices
@@ -25,6 +27,7 @@ from mdlgen.model.tables import (
     BOX_BOX,
     BOX_CYLINDER,
     BOX_GUIDE,
+    BOX_MESH,
     BOX_PLANE,
     CYLINDER_CYLINDER,
     EXTERNAL,
@@ -34,6 +37,7 @@ from mdlgen.model.tables import (
     Contacts,
     Floats,
     GuidePart,
+    MeshPart,
     Model,
     PlanePart,
     RollerPart,
@@ -55,9 +59,11 @@ def lower(scene: Scene) -> Model:
     rollers = lower_rollers(scene, sheets, contacts, first)
     planes = lower_planes(scene, first + len(rollers))
     guides = lower_guides(scene, first + len(rollers) + len(planes))
+    meshes = lower_meshes(scene, rollers, first + len(rollers) + len(planes) + len(guides))
+    rollers = loaded(rollers, meshes)
     externals = lower_externals(scene)
     gravity = np.array(scene.gravity)
-    bodies = _bodies(sheets, boxes, rollers, planes, guides)
+    bodies = _bodies(sheets, boxes, rollers, planes, guides, meshes)
     supports = tuple(anchor(f"support_{k}", item, sheets) for k, item in enumerate(scene.supports))
     held = support_bushings(scene.supports, supports, sheets, bodies)
     joints, extents = _joints(scene, sheets, boxes)
@@ -74,6 +80,7 @@ def lower(scene: Scene) -> Model:
         rollers=rollers,
         planes=planes,
         guides=guides,
+        meshes=meshes,
         externals=externals,
         bodies=bodies,
         bushings=bushings,
@@ -82,7 +89,7 @@ def lower(scene: Scene) -> Model:
         pairs=find_pairs(
             gravity,
             sheets,
-            (*rollers, *planes, *guides),
+            (*rollers, *planes, *guides, *meshes),
             bodies,
             contacts,
             run,
@@ -162,7 +169,8 @@ def _contacts(scene: Scene) -> Contacts:
 
     with_sheet = dict.fromkeys(scene.rollers, BOX_CYLINDER)
     with_sheet |= dict.fromkeys(scene.planes, BOX_PLANE) | dict.fromkeys(scene.parts, EXTERNAL)
-    with_sheet |= dict.fromkeys(scene.guides, BOX_GUIDE) | dict.fromkeys(scene.sheets, BOX_BOX)
+    with_sheet |= dict.fromkeys(scene.guides, BOX_GUIDE) | dict.fromkeys(scene.meshes, BOX_MESH)
+    with_sheet |= dict.fromkeys(scene.sheets, BOX_BOX)
     kinds = [CYLINDER_CYLINDER if a in scene.rollers else with_sheet[b] for _, a, b in rows]
     return Contacts(
         entry=np.array([i for i, _, _ in rows], dtype=np.int64),
@@ -186,6 +194,7 @@ def _bodies(
     rollers: tuple[RollerPart, ...],
     planes: tuple[PlanePart, ...],
     guides: tuple[GuidePart, ...],
+    meshes: tuple[MeshPart, ...],
 ) -> Bodies:
     names, labels, tables = [], [], []
     for sheet, box in zip(sheets, boxes, strict=True):
@@ -263,6 +272,24 @@ def _bodies(
                 zero,
                 zero,
                 np.array([True]),
+                zero,
+                none,
+                one,
+            )
+        )
+    for mesh in meshes:
+        names.append(mesh.name)
+        labels.append(f"Mesh {mesh.name}")
+        position, rotation = mesh_placed(mesh, rollers)
+        tables.append(
+            (
+                position[None],
+                rotation[None],
+                np.array([mesh.mass]),
+                mesh.mass * mesh.gyration[None],
+                zero,
+                zero,
+                np.array([mesh.on < 0]),
                 zero,
                 none,
                 one,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from mdlgen.errors import SpecError
-from mdlgen.model import press
+from mdlgen.model import meshes, press
 from mdlgen.model.tables import (
     CYLINDER_CYLINDER,
     Contacts,
@@ -72,12 +72,13 @@ def _press(scene: Scene, name: str, sheets: tuple[SheetPart, ...], contacts: Con
     center, axis, direction = np.array(roller.center), np.array(roller.axis), np.array(spec.direction)
     carrier = spec.carrier_mass if spec.carrier_mass is not None else roller.mass / 1000
     mass = roller.mass + carrier
+    mine = {name, *(key for key, mesh in scene.meshes.items() if mesh.on == name)}
     others, forces = [], []
     for row in range(len(contacts)):
         parts = (contacts.part_a[row], contacts.part_b[row])
-        if name not in parts:
+        if not mine & set(parts):
             continue
-        other = parts[0] if parts[1] == name else parts[1]
+        other = parts[0] if parts[1] in mine else parts[1]
         stiffness = float(contacts.stiffness[row])
         if contacts.kind[row] == CYLINDER_CYLINDER:
             partner: Roller = scene.rollers[other]
@@ -90,11 +91,13 @@ def _press(scene: Scene, name: str, sheets: tuple[SheetPart, ...], contacts: Con
             others.append(cylinder)
             forces.append(press.cylinder_contact(cylinder, axis, roller.radius, roller.width))
         else:
+            # a mesh on the roller counts as the roller's own round here: the run settles the rest
             sheet = next(s for s in sheets if s.name == other)
             shared = contacts.share[row] == "width"
             forces.append(press.sheet_contact(sheet, axis, roller.radius, roller.width, stiffness, shared))
     touch = press.touch_offset(center, axis, direction, roller.radius, roller.width, others)
-    weight = mass * float(np.array(scene.gravity) @ direction)
+    heavy = mass + sum(meshes.mass_of(mesh) for mesh in scene.meshes.values() if mesh.on == name)
+    weight = heavy * float(np.array(scene.gravity) @ direction)
 
     def spring(offset: float) -> float:
         return spec.preload - spec.stiffness * (offset - touch) + weight

@@ -5,14 +5,17 @@ of every driven roller that the sheet has a contact with, or a sheet that it has
 also pass on its velocity. A difference of those speeds across the sheet may turn it. A stated margin is
 added. A solver watches the bounds: a box whose centre leaves them ends the run, so that no contact is missed
 silently. A sheet that meets an external part may be moved by it in any way: all of its pairs are kept. A
-sheet that meets a guide, itself or over such a sheet, may be led by it in any direction, as far as all that
-moves it goes.
+sheet that meets a guide or a fixed mesh, itself or over such a sheet, may be led by it in any direction, as
+far as all that moves it goes.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
+from mdlgen.model import meshes
 from mdlgen.model.guides import bounds
 from mdlgen.model.sheet_pairs import linked, meeting
 from mdlgen.model.tables import (
@@ -23,6 +26,7 @@ from mdlgen.model.tables import (
     Contacts,
     Floats,
     GuidePart,
+    MeshPart,
     Pairs,
     PlanePart,
     RollerPart,
@@ -30,7 +34,7 @@ from mdlgen.model.tables import (
     SheetPart,
 )
 
-Part = RollerPart | PlanePart | GuidePart
+Part = RollerPart | PlanePart | GuidePart | MeshPart
 
 # The centre may be beyond its bounds by one step before the solver sees it; kept pairs reach this far more.
 SLACK = 1.0  # mm
@@ -51,6 +55,7 @@ def find_pairs(
     """Possible pairs, those kept, and the bounds of each box (see the module)."""
     parts = {p.name: p for p in machine}
     by_name = {s.name: s for s in sheets}
+    rollers = tuple(p for p in machine if isinstance(p, RollerPart))
     low = np.full((len(bodies.name), 3), -np.inf)
     high = np.full((len(bodies.name), 3), np.inf)
     extents: dict[str, tuple[Floats, Floats]] = {}
@@ -65,9 +70,10 @@ def find_pairs(
             if not rows or EXTERNAL in contacts.kind[rows]:
                 continue
             touched = [
-                (by_name[contacts.part_a[r]], parts[contacts.part_b[r]])
+                (by_name[contacts.part_a[r]], part)
                 for r in rows
                 if contacts.kind[r] != BOX_BOX
+                for part in _moving([parts[contacts.part_b[r]]], rollers)
             ]
             boxes = slice(sheet.first, sheet.first + sheet.count)
             others = [by_name[name] for name in group if name != sheet.name]
@@ -75,7 +81,7 @@ def find_pairs(
             low[boxes], high[boxes] = least - margin, most + margin
             extents[sheet.name] = (low[boxes] - reach - SLACK, high[boxes] + reach + SLACK)
     if prune:
-        for roller in (part for part in machine if isinstance(part, RollerPart)):
+        for roller in rollers:
             if roller.press is not None:  # it may move by its radius along its slide
                 way = roller.radius * np.abs(roller.press.direction) + margin
                 low[roller.body] = bodies.position[roller.body] - way
@@ -99,7 +105,7 @@ def find_pairs(
         possible += sheet.count
         boxes = np.arange(sheet.first, sheet.first + sheet.count)
         if sheet.name in extents:
-            part_low, part_high = _part_bounds(other, bodies)
+            part_low, part_high = _part_bounds(other, bodies, rollers)
             box_low, box_high = extents[sheet.name]
             boxes = boxes[np.all((box_low <= part_high) & (box_high >= part_low), axis=1)]
         kept.extend((row, int(box), other.body) for box in boxes)
@@ -145,7 +151,7 @@ def _swept(
     times = np.unique(np.concatenate([np.linspace(0.0, time, _STATIONS), *corners]).clip(0.0, time))
     drives = [_drive(own, part, times) for own, part in driven]
     moves = np.array([fall, shift, *(end for path, _ in drives for end in (path.min(0), path.max(0)))])
-    if any(isinstance(part, GuidePart) for _, part in touched):
+    if any(isinstance(part, (GuidePart, MeshPart)) for _, part in touched):
         paths = np.linalg.norm(moves, axis=1)
         way = float(paths[:2].sum() + paths[2:].max(initial=0.0) + sum(map(np.linalg.norm, thrown)))
         if sheet.count > 1:
@@ -168,6 +174,16 @@ def _swept(
     if sheet.bend is not None:  # boxes stand at angles of their own
         extent = np.full(3, float(np.linalg.norm(bodies.half[boxes], axis=1).max()))
     return sheet.center + around[0] + least, sheet.center + around[1] + most, extent
+
+
+def _moving(touched: list[Part], rollers: tuple[RollerPart, ...]) -> list[Part]:
+    """The parts that a sheet touches; of meshes on rollers these rollers, as large as what is on them."""
+    return [
+        replace(rollers[p.on], radius=meshes.reach(p, rollers[p.on]))
+        if isinstance(p, MeshPart) and p.on >= 0
+        else p
+        for p in touched
+    ]
 
 
 def _drive(sheet: SheetPart, roller: RollerPart, times: Floats) -> tuple[Floats, Floats]:
@@ -223,11 +239,16 @@ def _turned(
     return (np.min(lows, axis=0) - sag, np.max(highs, axis=0) + sag), extent
 
 
-def _part_bounds(part: Part, bodies: Bodies) -> tuple[Floats, Floats]:
+def _part_bounds(part: Part, bodies: Bodies, rollers: tuple[RollerPart, ...]) -> tuple[Floats, Floats]:
     """Bounding box of a part; a pressed roller may move by its radius along its slide."""
     center = bodies.position[part.body]
     if isinstance(part, GuidePart):
         return bounds(part)
+    if isinstance(part, MeshPart):
+        low, high = meshes.bounds(part, rollers)
+        press = rollers[part.on].press if part.on >= 0 else None
+        more = np.zeros(3) if press is None else rollers[part.on].radius * np.abs(press.direction) + SLACK
+        return low - more, high + more
     if isinstance(part, PlanePart):
         extent = np.abs(bodies.rotation[part.body]) @ (np.array(part.size) / 2)
         return center - extent, center + extent

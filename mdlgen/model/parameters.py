@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from mdlgen.model.meshes import LIGHT
 from mdlgen.model.tables import Parameter, RunSettings
 from mdlgen.spec.scene import Scene
 
@@ -31,6 +32,8 @@ def parameters(
         rows.append(Parameter(name, "M", "Mass", plane.mass, "g", (*base, "mass")))
     for name in sorted(scene.guides):
         rows += _guide(scene, name)
+    for name in sorted(scene.meshes):
+        rows += _mesh(scene, name)
     for index, contact in enumerate(scene.contacts):
         base, group = ("contacts", index), f"contact_{index}"
         friction, smooth = contact.friction, contact.smoothing
@@ -81,6 +84,19 @@ def _guide(scene: Scene, name: str) -> list[Parameter]:
         Parameter(name, "s", "Thickness of the plate", guide.thickness, "mm", (*base, "thickness")),
         Parameter(name, "M", "Mass", guide.mass, "g", (*base, "mass")),
     ]
+
+
+def _mesh(scene: Scene, name: str) -> list[Parameter]:
+    mesh, base = scene.meshes[name], ("meshes", name)
+    rows = _center(name, mesh.center, base)
+    for k, axis in enumerate(_NAMED_AXES):
+        label = f"Rotation about {axis} (deg)"
+        rows.append(Parameter(name, f"r_{axis}", label, mesh.rotation[k], "rad", (*base, "rotation", k)))
+    if mesh.density is not None:
+        path = (*base, "density")
+        return [*rows, Parameter(name, "rho", "Density (kg/mm3)", mesh.density, "g/mm^3", path)]
+    mass = LIGHT if mesh.mass is None else mesh.mass
+    return [*rows, Parameter(name, "M", "Mass", mass, "g", (*base, "mass"))]
 
 
 def _sheet(scene: Scene, name: str) -> list[Parameter]:

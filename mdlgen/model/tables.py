@@ -1,6 +1,7 @@
 """The tables of a Model. Units: mm, N, g, ms, rad; rotations as 3x3 matrices, body axes in columns.
 
-Bodies are numbered: the boxes of each sheet (row by row: index = i + j n_x), then rollers, planes and guides.
+Bodies are numbered: the boxes of each sheet (row by row: index = i + j n_x), then rollers, planes, guides and
+meshes.
 GROUND (-1) stands for the fixed world.
 """
 
@@ -40,8 +41,8 @@ class Bodies(Frozen):
     inertia: Floats  # principal, body axes [g mm^2], (n, 3)
     velocity: Floats  # [mm/ms], (n, 3)
     spin: Floats  # angular velocity, global axes [rad/ms], (n, 3)
-    fixed: NDArray[np.bool_]  # held: clamped boxes, planes and guides, (n,)
-    half: Floats  # half lengths of a box, body axes; zero for rollers and guides [mm], (n, 3)
+    fixed: NDArray[np.bool_]  # held: clamped boxes, planes, guides and meshes that move with nothing, (n,)
+    half: Floats  # half lengths of a box, body axes; zero for rollers, guides and meshes [mm], (n, 3)
     exposed: NDArray[np.bool_]  # side faces that no neighbour covers: x_min, x_max, y_min, y_max, (n, 4)
     friction: Floats  # friction of its contacts in times that of the contact, (n,)
 
@@ -254,6 +255,7 @@ class RollerPart(Frozen):
     profile: Floats | None  # corners as given: time [ms], speed [rad/ms], (n, 2); None: speed and ramp
     one_way: OneWay | None  # with a drive: the speed is that of the shaft, which the roller may overrun
     press: Press | None
+    carried: tuple[float, float] = (0.0, 0.0)  # mass [g] and inertia about the axis [g mm^2] of what is on it
 
     @property
     def turns(self) -> bool:
@@ -316,6 +318,31 @@ class GuidePart(Frozen):
 
 
 @dataclass(frozen=True)
+class MeshPart(Frozen):
+    """A closed surface of triangles, fixed or on a roller. Its body has the axes of its inertia, and its
+    centre is the middle of its mass."""
+
+    name: str
+    body: int
+    file: str
+    scale: float  # of the file's numbers to mm
+    at: str  # nodes or centres
+    on: int  # index of the roller that it moves with, -1: fixed
+    center: Floats  # of the file's axes; with a pressed roller as given, before that slides [mm], (3,)
+    angles: tuple[float, float, float]  # about the global x, then y, then z axis [rad]
+    axes: Floats  # of the file, in columns, (3, 3)
+    corners: Floats  # file axes, counter-clockwise as seen from outside [mm], (n, 3)
+    triangles: Ints  # corners of each, (m, 3)
+    flat: int  # triangles with two corners in one place, which are left out
+    volume: float  # [mm^3]
+    middle: Floats  # of the mass, file axes [mm], (3,)
+    principal: Floats  # axes of the inertia, file axes, in columns, (3, 3)
+    gyration: Floats  # inertia about them over mass [mm^2], (3,)
+    mass: float
+    density: float | None  # that the user gave in place of the mass [g/mm^3]
+
+
+@dataclass(frozen=True)
 class ExternalPart:
     """A body of the user's own MotionView model. It has no row in Bodies, since its mass is not known."""
 
@@ -325,7 +352,7 @@ class ExternalPart:
 
 
 # kinds of contact
-BOX_CYLINDER, BOX_PLANE, CYLINDER_CYLINDER, EXTERNAL, BOX_GUIDE, BOX_BOX = 0, 1, 2, 3, 4, 5
+BOX_CYLINDER, BOX_PLANE, CYLINDER_CYLINDER, EXTERNAL, BOX_GUIDE, BOX_BOX, BOX_MESH = 0, 1, 2, 3, 4, 5, 6
 
 
 @dataclass(frozen=True)
@@ -334,8 +361,8 @@ class Contacts(Frozen):
 
     entry: Ints  # index in the spec's list, (n,)
     part_a: tuple[str, ...]  # sheet or roller
-    part_b: tuple[str, ...]  # sheet, roller, plane, guide or external part
-    kind: Ints  # BOX_CYLINDER, BOX_PLANE, CYLINDER_CYLINDER, EXTERNAL, BOX_GUIDE or BOX_BOX
+    part_b: tuple[str, ...]  # sheet, roller, plane, guide, mesh or external part
+    kind: Ints  # BOX_CYLINDER, BOX_PLANE, CYLINDER_CYLINDER, EXTERNAL, BOX_GUIDE, BOX_BOX or BOX_MESH
     stiffness: Floats  # k [N/mm^1.5]
     restitution: Floats  # c_R
     mu_static: Floats
@@ -355,7 +382,7 @@ class Pairs(Frozen):
 
     contact: Ints  # row of Contacts, (n,)
     a: Ints  # box or roller, (n,)
-    b: Ints  # roller, plane, guide or box of another sheet, (n,)
+    b: Ints  # roller, plane, guide, mesh or box of another sheet, (n,)
     possible: int
     margin: float  # [mm]
     low: Floats  # bounds of boxes' and pressed rollers' centres, -inf where not watched [mm], (bodies, 3)
@@ -445,6 +472,7 @@ class Model(Frozen):
     rollers: tuple[RollerPart, ...]
     planes: tuple[PlanePart, ...]
     guides: tuple[GuidePart, ...]
+    meshes: tuple[MeshPart, ...]
     externals: tuple[ExternalPart, ...]  # a Model that has one is not run here
     bodies: Bodies
     bushings: Bushings
@@ -468,9 +496,9 @@ class Model(Frozen):
         return self.bodies.friction[self.pairs.a] * self.bodies.friction[self.pairs.b]
 
     def called(self, body: int) -> str:
-        """What a plane, a guide or a box is called in a sentence."""
-        guide = any(guide.body == body for guide in self.guides)
-        kind = "guide" if guide else "box" if self.sheet_of(body) else "plane"
+        """What a plane, a guide, a mesh or a box is called in a sentence."""
+        kinds = {g.body: "guide" for g in self.guides} | {m.body: "mesh" for m in self.meshes}
+        kind = "box" if self.sheet_of(body) else kinds.get(body, "plane")
         return f"{kind} {self.bodies.name[body]}"
 
     def sheet_of(self, body: int) -> SheetPart | None:

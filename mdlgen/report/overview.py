@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from mdlgen.checks import lints
-from mdlgen.model.tables import Model, SheetPart
+from mdlgen.model.tables import MeshPart, Model, SheetPart
 
 UNITS = {
     "d": "mm", "m": "g", "I": "g mm^2",
@@ -25,6 +25,7 @@ def overview(model: Model) -> dict[str, Any]:
         "rollers": len(model.rollers),
         "planes": len(model.planes),
         "guides": len(model.guides),
+        "meshes": {m.name: _mesh(m) for m in model.meshes},
         "external_parts": {e.name: {"body": e.body, "graphics": list(e.graphics)} for e in model.externals},
         "contacts": len(model.contacts),
         "probes": len(model.probes),
@@ -37,6 +38,18 @@ def overview(model: Model) -> dict[str, Any]:
             "external": len(model.external_pairs),
         },
         "lints": [asdict(lint) for lint in lints(model)],
+    }
+
+
+def _mesh(mesh: MeshPart) -> dict[str, Any]:
+    return {
+        "file": mesh.file,
+        "triangles": len(mesh.triangles),
+        "left_out": mesh.flat,
+        "size_mm": np.ptp(mesh.corners, axis=0).tolist(),
+        "volume_mm3": mesh.volume,
+        "mass_g": mesh.mass,
+        "inertia_g_mm2": (mesh.mass * mesh.gyration).tolist(),
     }
 
 

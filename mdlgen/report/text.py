@@ -29,10 +29,18 @@ def overview_text(told: dict[str, Any]) -> str:
         "",
         f"{told['boxes']} boxes, {told['bushings']} bushings, "
         f"{told['rollers']} rollers, {told['planes']} planes"
-        + (f", {told['guides']} guides" if told["guides"] else ""),
+        + (f", {told['guides']} guides" if told["guides"] else "")
+        + (f", {len(told['meshes'])} meshes" if told["meshes"] else ""),
         f"contact: {told['contacts']} pairs of parts; {pairs['possible']} pairs of bodies possible, "
         f"{pairs['kept']} kept (margin {pairs['margin_mm']:g} mm)",
     ]
+    for name, mesh in told["meshes"].items():
+        size = " x ".join(f"{v:.4g}" for v in mesh["size_mm"])
+        left = f" ({mesh['left_out']} without an area left out)" if mesh["left_out"] else ""
+        lines.append(
+            f"mesh {name}: {mesh['file']}, {mesh['triangles']} triangles{left}, {size} mm, "
+            f"{mesh['volume_mm3']:.4g} mm^3, {mesh['mass_g']:.4g} g"
+        )
     if told["external_parts"]:
         parts = ", ".join(f"{name} ({part['body']})" for name, part in told["external_parts"].items())
         lines.append(f"external parts: {parts}; {pairs['external']} pairs of bodies with them, all kept")

@@ -10,7 +10,8 @@ from mdlgen.results.summary import PER_SECOND, part_rows
 
 
 def series(result: Result) -> dict[str, Floats]:
-    """Column name -> values at the stored times: sheets (centre of mass), probes, rollers, then guides."""
+    """Column name -> values at the stored times: sheets (centre of mass), probes, rollers, then guides and
+    meshes."""
     table: dict[str, Floats] = {"time_ms": result.time}
     for index, sheet in enumerate(result.model.sheets):
         place, rate, yaw = result.sheet_motion(index)
@@ -23,8 +24,8 @@ def series(result: Result) -> dict[str, Floats]:
         table[f"{roller.name}.z_mm"] = result.position[:, roller.body, 2]
         table[f"{roller.name}.omega_rad_per_s"] = result.spin[:, roller.body] @ roller.axis * PER_SECOND
         table[f"{roller.name}.force_n"] = result.contact_force[:, rows].sum(axis=1)
-    for guide in result.model.guides:
-        table[f"{guide.name}.force_n"] = result.contact_force[:, list(part_rows(result, guide))].sum(axis=1)
+    for part in (*result.model.guides, *result.model.meshes):
+        table[f"{part.name}.force_n"] = result.contact_force[:, list(part_rows(result, part))].sum(axis=1)
     return table
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from mdlgen.model.tables import Floats, GuidePart, RollerPart
+from mdlgen.model.tables import Floats, GuidePart, MeshPart, RollerPart
 from mdlgen.results.compare import travel
 from mdlgen.results.result import Result
 from mdlgen.version import version
@@ -49,6 +49,7 @@ def summary(result: Result) -> dict[str, Any]:
         "sheets": {s.name: _sheet(result, k) for k, s in enumerate(model.sheets)},
         "rollers": {r.name: _roller(result, r) for r in model.rollers},
         "guides": {g.name: {"contacts": _contacts(result, part_rows(result, g))} for g in model.guides},
+        "meshes": {m.name: {"contacts": _contacts(result, part_rows(result, m))} for m in model.meshes},
         "probes": {p.name: _probe(result, k) for k, p in enumerate(model.probes)},
         "versions": {**result.versions, "mdlgen": version(), "numpy": np.__version__},
     }
@@ -142,8 +143,8 @@ def _bearing(result: Result, index: int) -> dict[str, Any]:
     }
 
 
-def part_rows(result: Result, roller: RollerPart | GuidePart) -> dict[int, str]:
-    """Rows of contacts of a roller or a guide, with the name of the other part."""
+def part_rows(result: Result, roller: RollerPart | GuidePart | MeshPart) -> dict[int, str]:
+    """Rows of contacts of a roller, a guide or a mesh, with the name of the other part."""
     contacts = result.model.contacts
     sides = zip(contacts.part_a, contacts.part_b, strict=True)
     return {k: b if a == roller.name else a for k, (a, b) in enumerate(sides) if roller.name in (a, b)}

@@ -43,6 +43,7 @@ _ALTERNATIVES = (
     {"ramp", "profile"},
     {"at", "edge"},
     {"force", "moment", "stress"},
+    {"mass", "density"},
 )
 
 _INT = re.compile(r"[-+]?[0-9]{1,18}")

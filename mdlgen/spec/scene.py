@@ -14,6 +14,7 @@ from mdlgen.spec.fields import Acceleration, Name, Strict, default, fail
 from mdlgen.spec.guide import Guide
 from mdlgen.spec.machine import Plane, Roller
 from mdlgen.spec.material import Material
+from mdlgen.spec.mesh import Mesh
 from mdlgen.spec.part import Part
 from mdlgen.spec.run import Run
 from mdlgen.spec.sheet import Sheet
@@ -29,6 +30,7 @@ class Scene(Strict):
     rollers: dict[Name, Roller] = Field(default_factory=dict)
     planes: dict[Name, Plane] = Field(default_factory=dict)
     guides: dict[Name, Guide] = Field(default_factory=dict)
+    meshes: dict[Name, Mesh] = Field(default_factory=dict)
     parts: dict[Name, Part] = Field(default_factory=dict)
     contacts: tuple[Contact, ...] = Field(default=(), strict=False)
     loads: tuple[Load, ...] = Field(default=(), strict=False)
@@ -65,12 +67,15 @@ class Scene(Strict):
                     f"roller {name}: one_way acts by speed, and a static analysis has none; leave it out",
                     ("rollers", name, "one_way"),
                 )
+        for name, mesh in self.meshes.items():
+            if mesh.on is not None:
+                _known(mesh.on, self.rollers, "roller", ("meshes", name, "on"))
         self.contact_pairs()
         return self
 
     def _names_unique(self) -> None:
         seen: dict[str, str] = {}
-        for kind in ("sheets", "rollers", "planes", "guides", "parts", "probes"):
+        for kind in ("sheets", "rollers", "planes", "guides", "meshes", "parts", "probes"):
             for name in getattr(self, kind):
                 other = seen.setdefault(name.lower(), f"{kind}.{name}")
                 if other != f"{kind}.{name}":
@@ -101,7 +106,7 @@ class Scene(Strict):
 
         Raises the error for a part that does not exist, a pair given twice, or one that is not modelled.
         """
-        machine = [*self.rollers, *self.planes, *self.guides, *self.parts]
+        machine = [*self.rollers, *self.planes, *self.guides, *self.meshes, *self.parts]
         rank = {n: i for i, n in enumerate([*self.sheets, *machine])}
         taken: dict[tuple[str, str], int] = {}
         pairs: list[tuple[int, str, str]] = []
@@ -127,6 +132,8 @@ class Scene(Strict):
 
     def _modelled(self, a: str, b: str, path: tuple[str | int, ...]) -> None:
         if a in self.sheets:
+            if b in self.meshes:
+                self._meshed(b, path)
             return
         if b in self.parts:
             raise fail(
@@ -134,11 +141,18 @@ class Scene(Strict):
                 path,
             )
         if b not in self.rollers:
-            kind = "guide" if b in self.guides else "plane"
+            kind = "guide" if b in self.guides else "mesh" if b in self.meshes else "plane"
             raise fail(f"contact between {a} and {b} is not modelled: a {kind} touches sheets only", path)
         one, two = self.rollers[a].axis, self.rollers[b].axis
         if abs(abs(sum(p * q for p, q in zip(one, two, strict=True))) - 1.0) > 1e-9:
             raise fail(f"the rollers {a} and {b} are in contact but their axes are not parallel", path)
+
+    def _meshed(self, name: str, path: tuple[str | int, ...]) -> None:
+        if self.contacts[int(path[1])].share == "pair":
+            raise fail(
+                f"share: pair is not modelled with the mesh {name}: boxes share it by the area they cover",
+                (*path[:-1], "share"),
+            )
 
 
 def _known(name: str, table: dict, kind: str, path: tuple[str | int, ...]) -> None:

@@ -32,13 +32,15 @@ def of_sheets(said: dict[str, Table], model: Model, own_machine: bool) -> dict[s
 def _machine(model: Model) -> set[str]:
     """Names of the text that belong to the machine."""
     names = {"ds_run"}
-    for part in (*model.rollers, *model.planes, *model.guides):
+    for part in (*model.rollers, *model.planes, *model.guides, *model.meshes):
         n = part.name
         names |= {f"{kind}_{n}" for kind in ("p", "b", "gbox", "gcyl", "j", "o", "ds")}
         names |= {f"p_{n}_anchor", f"b_{n}_carrier", f"j_{n}_slide"}
     for guide in model.guides:
         names.add(f"m_{guide.name}")
         names |= {f"{kind}_{guide.name}_{k}" for kind in ("p", "gbox") for k in range(guide.facets)}
+    for mesh in model.meshes:
+        names |= {f"m_{mesh.name}", f"gcad_{mesh.name}", f"p_{mesh.name}_cm"}
     table = model.contacts
     for row in range(len(table)):
         if table.kind[row] == CYLINDER_CYLINDER:
@@ -50,7 +52,8 @@ def _machine(model: Model) -> set[str]:
 
 def _any_machine(table: Table, model: Model) -> tuple[tuple[str, ...], ...]:
     """The words of contacts with the parts that this scene has a shape of left open."""
-    ours = {f"b_{part.name}" for part in (*model.rollers, *model.planes, *model.guides)}
+    machine = (*model.rollers, *model.planes, *model.guides, *model.meshes)
+    ours = {f"b_{part.name}" for part in machine}
     return tuple((*w[:3], ANY, w[4], *(ANY for _ in w[5:])) if w[3] in ours else w for w in table.words)
 
 

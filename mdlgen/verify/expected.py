@@ -1,7 +1,7 @@
 """What a text must say of a Model, made from its tables and from nothing else, in the units of the text.
 
-Names follow the promise of the text: `b_` body, `p_` point, `bsh_` bushing, `gbox_`, `gcyl_` graphic, `j_`
-joint, `mot_` motion, `cs_` spring, `con_` contact, `m_` marker, `o_` output, `ds_` data set.
+Names follow the promise of the text: `b_` body, `p_` point, `bsh_` bushing, `gbox_`, `gcyl_`, `gcad_`
+graphic, `j_` joint, `mot_` motion, `cs_` spring, `con_` contact, `m_` marker, `o_` output, `ds_` data set.
 """
 
 from __future__ import annotations
@@ -13,6 +13,8 @@ import numpy as np
 from mdlgen.model import naming
 from mdlgen.model.curves import straight_points, written
 from mdlgen.model.guides import facets
+from mdlgen.model.meshes import moments
+from mdlgen.model.meshes import origin as mesh_origin
 from mdlgen.model.shape import apart, ground_frames
 from mdlgen.model.tables import (
     CLAMP,
@@ -20,6 +22,8 @@ from mdlgen.model.tables import (
     SUPPORT,
     Anchor,
     Floats,
+    Ints,
+    MeshPart,
     Model,
     RollerPart,
     SheetPart,
@@ -46,6 +50,8 @@ def expected(model: Model, times: Times) -> dict[str, Table]:
         "springs": _springs(model),
         "boxes": _boxes(model),
         "cylinders": _cylinders(model),
+        "meshes": _meshes(model),
+        "mesh files": _mesh_files(model),
         "joints": _joints(model),
         "motions": _motions(model, times),
         "velocities": _velocities(model),
@@ -118,6 +124,9 @@ def _points(model: Model) -> Table:
     for guide in model.guides:
         names += [f"p_{guide.name}", *(f"p_{guide.name}_{k}" for k in range(guide.facets))]
         places += [guide.center[None], *(facet.center[None] for facet in facets(guide))]
+    for mesh in model.meshes:
+        names += [f"p_{mesh.name}", f"p_{mesh.name}_cm"]
+        places += [mesh_origin(mesh, model.rollers)[None], model.bodies.position[mesh.body][None]]
     return table(names, {"at": (np.concatenate(places), reach(model))})
 
 
@@ -244,6 +253,42 @@ def _cylinders(model: Model) -> Table:
     return table([f"gcyl_{r.name}" for r in model.rollers], parts, words)
 
 
+def _under(model: Model, mesh: MeshPart) -> str:
+    """The body that a mesh is fixed to."""
+    return "B_Ground" if mesh.on < 0 else f"b_{model.rollers[mesh.on].name}"
+
+
+def _meshes(model: Model) -> Table:
+    places = np.array([mesh_origin(m, model.rollers) for m in model.meshes]).reshape(-1, 3)
+    axes = np.array([m.axes.T for m in model.meshes]).reshape(-1, 9)
+    parts: dict[str, Part] = {"origin": (places, reach(model)), "axes": (axes, 1.0)}
+    return table([f"gcad_{m.name}" for m in model.meshes], parts, [(f"b_{m.name}",) for m in model.meshes])
+
+
+def _mesh_files(model: Model) -> Table:
+    """What a text says of files: moved and turned by nothing against their marker, and scaled to mm."""
+    parts: dict[str, Part] = {
+        "moved": (np.zeros((len(model.meshes), 6)), 1.0),
+        "scale": (np.array([[m.scale] * 3 for m in model.meshes]).reshape(-1, 3), None),
+    }
+    return table([f"gcad_{m.name}" for m in model.meshes], parts, [(m.file,) for m in model.meshes])
+
+
+def mesh_shapes(model: Model) -> Table:
+    """What a deck says of meshes: counts, volume, its middle, least and greatest coordinates."""
+    rows = [shape_numbers(m.corners, m.triangles) for m in model.meshes]
+    scale = np.array([[1.0, 1.0, m.volume] + [float(np.abs(m.corners).max())] * 9 for m in model.meshes])
+    parts: dict[str, Part] = {"shape": (np.array(rows).reshape(-1, 12), scale.reshape(-1, 12))}
+    return table([f"gcad_{m.name}" for m in model.meshes], parts)
+
+
+def shape_numbers(corners: Floats, triangles: Ints) -> list[float]:
+    """The twelve numbers of `mesh_shapes`."""
+    volume, middle, _ = moments(corners, triangles)
+    ends = (*middle, *corners.min(axis=0), *corners.max(axis=0))
+    return [float(v) for v in (len(corners), len(triangles), volume, *ends)]
+
+
 def _joints(model: Model) -> Table:
     names, words, origins, axes = [], [], [], []
 
@@ -263,6 +308,10 @@ def _joints(model: Model) -> Table:
             on = f"b_{name}_carrier"
             add(f"j_{name}_slide", "TRANSLATIONAL", on, "B_Ground", at, roller.press.direction)
         add(f"j_{name}", "REVOLUTE", f"b_{name}", on, at, roller.axis)
+    for mesh in model.meshes:
+        if mesh.on >= 0:
+            at, name = model.bodies.position[mesh.body], mesh.name
+            add(f"j_{name}", "FIXED", f"b_{name}", _under(model, mesh), at, none)
     parts: dict[str, Part] = {
         "origin": (np.array(origins).reshape(-1, 3), reach(model)),
         "axis": (np.array(axes).reshape(-1, 3), 1.0),
@@ -335,6 +384,8 @@ def _markers(model: Model) -> Table:
             add(f"m_{name}", f"b_{name}", model.bodies.position[b], np.eye(3))
     for guide in model.guides:
         add(f"m_{guide.name}", "B_Ground", guide.center, guide.axes.T)
+    for mesh in model.meshes:
+        add(f"m_{mesh.name}", _under(model, mesh), mesh_origin(mesh, model.rollers), mesh.axes.T)
     for probe in model.probes:
         points = _anchor_points(model, probe)
         for k, body in enumerate(probe.body.tolist()):

@@ -8,7 +8,7 @@ import numpy as np
 
 from mdlgen.model.curves import written
 from mdlgen.model.guides import outer
-from mdlgen.model.tables import Anchor, GuidePart, Model, SheetPart
+from mdlgen.model.tables import Anchor, GuidePart, MeshPart, Model, SheetPart
 from mdlgen.verify.bend import shape
 from mdlgen.verify.cells import cells
 from mdlgen.verify.expected import KG, SECOND, body_name
@@ -27,6 +27,7 @@ CONTACT_NUMBERS = (
 FACTORS = {
     **dict.fromkeys(("mm", "N", "1", "MPa", "N/mm", "N*mm", "N*mm/rad", "N/mm^1.5"), 1.0),
     "g": KG,
+    "g/mm^3": KG,
     "ms": SECOND,
     "mm/ms": 1 / SECOND,
     "rad/ms": 1 / SECOND,
@@ -47,6 +48,8 @@ def data(model: Model) -> Table:
         found |= shape(sheet)
     for guide in model.guides:
         found |= {f"ds_{guide.name}.real_{member}": value for member, value in _guide(guide).items()}
+    for mesh in model.meshes:
+        found |= {f"ds_{mesh.name}.real_{member}": value for member, value in _mesh(mesh).items()}
     for support in model.supports:
         found[f"ds_{support.name}.real_factor"] = _factor(model, support)
         found |= _place(support.name, support.at, support.edge)
@@ -71,6 +74,14 @@ def _guide(guide: GuidePart) -> dict[str, float]:
     turn = 2 * guide.half_angle / guide.facets
     chord = 2 * outer(guide) * math.tan(turn / 2)
     return {"n": float(guide.facets), "turn": turn, "R_o": outer(guide), "chord": chord}
+
+
+def _mesh(mesh: MeshPart) -> dict[str, float]:
+    """What a text has from a mesh's file."""
+    found = {"scale": mesh.scale}
+    found |= {f"c_{a}": float(v) for a, v in zip("xyz", mesh.middle, strict=True)}
+    found |= {f"j_{a}": float(v) for a, v in zip("xyz", mesh.gyration, strict=True)}
+    return found | ({} if mesh.density is None else {"V": mesh.volume})
 
 
 def _factor(model: Model, support: Anchor) -> float:
@@ -167,6 +178,7 @@ def contacts(model: Model) -> Table:
     cylinders = {r.body for r in model.rollers}
 
     guides = {g.body: [f"gbox_{g.name}_{k}" for k in range(g.facets)] for g in model.guides}
+    guides |= {m.body: [f"gcad_{m.name}"] for m in model.meshes}
 
     def graphic(body: int) -> str:
         return f"{'gcyl' if body in cylinders else 'gbox'}_{bodies.name[body]}"

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from mdlgen.verify.expected import shape_numbers
 from mdlgen.verify.expected_numbers import CONTACT_NUMBERS
 from mdlgen.verify.state import Places, Unreadable, law, request
 from mdlgen.verify.tables import Table
@@ -45,6 +46,7 @@ class Found:
         graphics = values.get("graphics", {})
         boxes = {n: r for n, r in graphics.items() if r["type"] == "BOX"}
         cylinders = {n: r for n, r in graphics.items() if r["type"] == "CYLINDER"}
+        meshes = {n: r for n, r in graphics.items() if r["type"] == "CADGRAPHIC"}
         return {
             "points": _table(values.get("points", {}), lambda n, r: (list(r), ()), 3),
             "bodies": _table(values.get("bodies", {}), _body, 19),
@@ -54,6 +56,9 @@ class Found:
             "springs": _table(values.get("springs", {}), _spring, 10),
             "boxes": _table(boxes, _box, 15),
             "cylinders": _table(cylinders, _cylinder, 9),
+            "meshes": _table(meshes, _mesh, 12),
+            "mesh files": _table({n: r for n, r in meshes.items() if "file" in r}, _mesh_file, 9),
+            "mesh shapes": _table({n: r for n, r in meshes.items() if "corners" in r}, _mesh_shape, 12),
             "joints": _table(values.get("joints", {}), _joint, 6),
             "motions": _table(
                 values.get("motions", {}), self._motion, max(map(len, self.stations.values()), default=0)
@@ -155,6 +160,20 @@ def _box(name: str, record: Mapping[str, Any]) -> Row:
 def _cylinder(name: str, record: Mapping[str, Any]) -> Row:
     numbers = [*record["start"], *record["axis"], *record["radii"], record["length"]]
     return numbers, (record["body"], record["caps"])
+
+
+def _mesh(name: str, record: Mapping[str, Any]) -> Row:
+    if record.get("origin") is None:
+        return [], (record["body"] or "",)
+    return [*record["origin"], *_flat(record["axes"])], (record["body"] or "",)
+
+
+def _mesh_file(name: str, record: Mapping[str, Any]) -> Row:
+    return [*record["moved"], *record["scale"]], (record["file"],)
+
+
+def _mesh_shape(name: str, record: Mapping[str, Any]) -> Row:
+    return shape_numbers(np.array(record["corners"]), np.array(record["triangles"])), ()
 
 
 def _joint(name: str, record: Mapping[str, Any]) -> Row:

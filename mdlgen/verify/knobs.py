@@ -257,9 +257,12 @@ def _placed(model: Model, starts: dict[str, Press]) -> Model:
     rollers = []
     for roller in model.rollers:
         if roller.press is not None:
-            start = starts[roller.name]
+            start, roller_start = starts[roller.name], roller.press.start
             press = replace(roller.press, touch=start.touch, start=start.start)
             position[roller.body] = roller.center + press.direction * press.start
+            for mesh in model.meshes:
+                if mesh.on >= 0 and model.rollers[mesh.on].name == roller.name:
+                    position[mesh.body] += press.direction * (press.start - roller_start)
             roller = replace(roller, press=press)
         rollers.append(roller)
     parameters = tuple(

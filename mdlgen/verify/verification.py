@@ -11,7 +11,7 @@ from mdlgen.registry import emitter, reader, validator
 from mdlgen.spec.scene import Scene
 from mdlgen.verify.companion import beside, chosen, of_systems, taken
 from mdlgen.verify.elements import element_differences
-from mdlgen.verify.expected import reach
+from mdlgen.verify.expected import mesh_shapes, reach
 from mdlgen.verify.found import (
     Found,
     Values,
@@ -32,7 +32,7 @@ from mdlgen.verify.turning import Progress, turn_all
 from mdlgen.verify.wording import wording
 
 # Kinds that a deck has no entities for: points, vectors and data sets are the text's way to say numbers.
-_NOT_IN_DECK = ("points", "vectors", "data")
+_NOT_IN_DECK = ("points", "vectors", "data", "mesh files")
 _MACHINE = frozenset(("bodies", "graphics"))
 
 
@@ -184,4 +184,5 @@ def _deck(
     for kind, table in said.items():
         if kind not in _NOT_IN_DECK:
             found.add("deck", compare(kind, table, tables[kind]))
+    found.add("deck", compare("mesh shapes", mesh_shapes(subject.model), tables["mesh shapes"]))
     found.add("deck", compare("all markers", marker_table(text, reach(subject.model)), marker_table(values)))

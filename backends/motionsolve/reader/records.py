@@ -146,9 +146,9 @@ def spring(deck: Deck, entity: Entity) -> dict[str, Any]:
 
 
 def graphic(deck: Deck, entity: Entity) -> dict[str, Any] | None:
-    """Boxes and cylinders (cut cones) with their numbers; None for other shapes."""
+    """Boxes, cylinders (cut cones) and meshes with their numbers; None for other shapes."""
     shape = entity.word("type")
-    if shape not in ("BoxDefinedFromCenter", "Frustum"):
+    if shape not in ("BoxDefinedFromCenter", "Frustum", "TriaMesh"):
         return None
     marker = deck.marker(entity, "center_marker_id")
     label = entity.word("label", "")
@@ -156,6 +156,11 @@ def graphic(deck: Deck, entity: Entity) -> dict[str, Any] | None:
         lengths = entity.vector("length_x", "length_y", "length_z")
         sizes: dict[str, Any] = {"center": marker.origin, "axes": marker.axes, "lengths": lengths}
         return {"label": label, "type": "BOX", "body": marker.body, **sizes}
+    if shape == "TriaMesh":
+        corners, triangles = _triangles(entity)
+        place: dict[str, Any] = {"origin": marker.origin, "axes": marker.axes}
+        triangular: dict[str, Any] = {"corners": corners, "triangles": triangles}
+        return {"label": label, "type": "CADGRAPHIC", "body": marker.body, **place, **triangular}
     return {
         "label": label,
         "type": "CYLINDER",
@@ -166,6 +171,18 @@ def graphic(deck: Deck, entity: Entity) -> dict[str, Any] | None:
         "length": entity.number("length"),
         "caps": _known(entity, "ends_type", _CAPS),
     }
+
+
+def _triangles(entity: Entity) -> tuple[list[list[float]], list[list[int]]]:
+    """Corners, and the numbers of those of each triangle from 0 on, as many as it says."""
+    numbers, nodes, faces = entity.numbers(), entity.id("num_nodes"), entity.id("num_faces")
+    if len(numbers) != 3 * (nodes + faces):
+        raise entity.wrong(f"{len(numbers)} numbers, not three times {nodes} + {faces}")
+    corners = [numbers[k : k + 3] for k in range(0, 3 * nodes, 3)]
+    named = [int(v) if v == int(v) and 0 <= v < nodes else -1 for v in numbers[3 * nodes :]]
+    if min(named) < 0:
+        raise entity.wrong("a face names a node that is not there")
+    return corners, [named[k : k + 3] for k in range(0, 3 * faces, 3)]
 
 
 def joint(deck: Deck, entity: Entity) -> dict[str, Any]:

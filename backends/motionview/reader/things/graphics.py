@@ -156,6 +156,15 @@ class Graphic(Thing):
                 "length": self.ask("length"),
                 "caps": self.statement.arg(11).upper(),
             }
+        elif self.shape == "CADGRAPHIC" and self.statement.arg(8).upper() == "MARKER":
+            marker = self.related(9, "Marker")
+            found |= {
+                "file": self.statement.arg(6).strip('"'),
+                "origin": marker.ask("origin") if marker is not None else None,
+                "axes": marker.ask("axes") if marker is not None else None,
+                "moved": tuple(self.number(k) for k in range(10, 16)),
+                "scale": tuple(self.number(k) for k in range(16, 19)),
+            }
         elif self.shape == "SPHERE":
             found |= {"center": self.ask("origin"), "radius": self.ask("r1")}
         return found

@@ -1,0 +1,355 @@
+"""Contact of a box with a mesh: a closed surface of triangles, fixed or on a roller.
+
+The two broad faces of a box meet what of the triangles lies over them. A triangle is cut to the box, and the
+depth of what is left is looked at in its corners (`at: nodes`) or in its middle (`at: centres`), as the paper
+has it for contact between meshes (section 3.1): with the area that this stands for it gives a force along the
+triangle's normal,
+
+    fixed:      dF = (k/A) z^1.5 dA, A the area of the box's face: a box flat on a plate has k z^1.5, and one
+                that a plate covers in part has that part of it, as with a guide;
+    on a roller: dF = K z dA, K = 3 k/(4 w sqrt(2 R)), R and w of the roller: the elastic foundation that
+                gives k z^1.5 under a cylinder (mechanics.contact).
+
+Both are pressures, so neither the number of triangles nor that of boxes changes what a sheet feels. A
+pressure over many triangles acts as four equal forces with its sum, its middle and its spread. Where a sheet
+ends, nothing takes over from the box at its edge: it has what is over it.
+
+An outer side of a sheet meets a triangle that leans against it: at the ends of the side, in the middle of the
+thickness, half of k z^1.5, z the depth below the nearest triangle. That law begins at 3 to 9 deg, that of the
+broad faces ends at 53 to 66 deg, one passing into the other. A block of one box has six broad faces.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from mdlgen.mechanics.contact import local, push
+from mdlgen.mechanics.tree import (
+    AFTER,
+    AREA,
+    COUNT,
+    FIRST,
+    LEAST,
+    MOST,
+    NORMAL,
+    THICK,
+    WIDTH,
+    depth_at,
+    overlaps,
+    plant,
+    span,
+)
+from mdlgen.mechanics.vector import add, back, dot, matmul, nine, rotate, scale, sub, three, transpose_matmul
+from mdlgen.model.meshes import origin
+from mdlgen.model.tables import Floats, Ints, Model
+
+DEEPEST = 1.0  # mm: what is deeper in a part is about to come out at its other side, or is lost
+BEYOND = 1.5  # how far beyond that depth a contact is still seen, so that a run can end
+STEEP, GENTLE = 0.4, 0.6  # cosines of the angles between which the law of broad faces ends
+LEVEL, LEANING = 0.05, 0.15  # sines of those between which that of edges begins
+LOST = 1e30  # what a depth that ends a run is above
+BLOCK = 15  # all four sides of a box are outer ones
+HEAD = np.dtype(
+    [
+        ("first", "i8"),  # node of the tree
+        ("end", "i8"),
+        ("place", "f8", 3),  # of the file's axes, in those of the body that the mesh moves with
+        ("axes", "f8", 9),
+        ("basis", "f8"),  # 4/3 w sqrt(2 R) of the roller that it is on, 0: fixed
+        ("middles", "i8"),  # depth is looked at in the middles of elements
+        ("most", "f8"),  # DEEPEST
+        ("reach", "f8"),  # greatest distance from the body's centre
+    ]
+)
+
+
+class Meshes(NamedTuple):
+    """All meshes of a Model: one HEAD each, and the trees behind each other."""
+
+    heads: np.ndarray
+    bounds: Floats  # as in mechanics.tree
+    links: Ints
+    triangles: Floats
+
+
+def mesh_tables(model: Model, mm: float = 1.0) -> Meshes:
+    """The meshes of a Model for compiled code; `mm` is a millimetre in the solver's unit."""
+    heads = np.zeros(len(model.meshes), HEAD)
+    bounds, links, triangles = [np.zeros((0, 12))], [np.zeros((0, 3), np.int64)], [np.zeros((0, WIDTH))]
+    planted: dict[tuple[str, float], tuple[int, int]] = {}
+    for head, mesh in zip(heads, model.meshes, strict=True):
+        if (mesh.file, mesh.scale) not in planted:
+            box, link, table = plant(mesh.corners * mm, mesh.triangles, DEEPEST * mm)
+            before, shift = sum(map(len, links)), sum(map(len, triangles))
+            link[:, FIRST] += shift
+            link[:, AFTER] += before
+            planted[mesh.file, mesh.scale] = before, before + len(link)
+            bounds.append(box)
+            links.append(link)
+            triangles.append(table)
+        head["first"], head["end"] = planted[mesh.file, mesh.scale]
+        body = mesh.body
+        if mesh.on >= 0:
+            roller = model.rollers[mesh.on]
+            body = roller.body
+            head["basis"] = 4 / 3 * roller.width * math.sqrt(2.0 * roller.radius) * mm**1.5
+        turn = model.bodies.rotation[body]
+        place = turn.T @ (origin(mesh, model.rollers) - model.bodies.position[body])
+        head["place"], head["axes"] = place * mm, (turn.T @ mesh.axes).ravel()
+        head["middles"], head["most"] = mesh.at == "centres", DEEPEST * mm
+        head["reach"] = (
+            float(np.linalg.norm(place + mesh.corners @ (turn.T @ mesh.axes).T, axis=1).max()) * mm
+        )
+    return Meshes(heads, np.concatenate(bounds), np.concatenate(links), np.concatenate(triangles))
+
+
+def mesh_numbers(model: Model) -> tuple[np.ndarray, np.ndarray]:
+    """Of each kept pair: the number of its mesh (0 where it has none), and the body that this moves with."""
+    number = {mesh.body: k for k, mesh in enumerate(model.meshes)}
+    moved = {m.body: model.rollers[m.on].body for m in model.meshes if m.on >= 0}
+    bodies = model.pairs.b.tolist()
+    return (
+        np.array([number.get(b, 0) for b in bodies], dtype=np.int64),
+        np.array([moved.get(b, b) for b in bodies], dtype=np.int64),
+    )
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _ramp(x, low, high):
+    """0 below a value, 1 above another, smooth between."""
+    s = min(max((x - low) / (high - low), 0.0), 1.0)
+    return s * s * (3.0 - 2.0 * s)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _part(cosine):
+    """How much of the broad faces' law acts on a triangle at an angle to them."""
+    return _ramp(cosine, STEEP, GENTLE)
+
+
+@njit(cache=True, error_model="numpy")
+def _cut(points, kept, count, axis, sign, limit):
+    """Cuts a polygon by sign times a coordinate <= limit into `kept`; returns its number of points."""
+    found = 0
+    for i in range(count):
+        j = i + 1 if i + 1 < count else 0
+        d1, d2 = limit - sign * points[i, axis], limit - sign * points[j, axis]
+        if d1 >= 0.0:
+            for k in range(3):
+                kept[found, k] = points[i, k]
+            found += 1
+        if (d1 > 0.0 and d2 < 0.0) or (d1 < 0.0 and d2 > 0.0):
+            part = d1 / (d1 - d2)
+            for k in range(3):
+                kept[found, k] = points[i, k] + part * (points[j, k] - points[i, k])
+            found += 1
+    return found
+
+
+@njit(cache=True, error_model="numpy")
+def _over(room, u, v, z, hp, hr):
+    """What of a triangle with corners at u, v (depths z) lies over a face of half lengths hp, hr and below
+    it: its points in room[which]. Returns (which, how many)."""
+    for k in range(3):
+        room[0, k, 0], room[0, k, 1], room[0, k, 2] = u[k], v[k], z[k]
+    which, count = 0, 3
+    for plane in range(5):
+        axis, side = plane // 2, 1.0 if plane % 2 == 1 else -1.0
+        limit = hp if axis == 0 else hr if axis == 1 else 0.0
+        beyond = False
+        for k in range(count):
+            beyond = beyond or side * room[which, k, axis] > limit
+        if beyond:
+            count = _cut(room[which], room[1 - which], count, axis, side, limit)
+            which = 1 - which
+        if count < 3:
+            return which, 0
+    return which, count
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _press(sums, area, u, v, depth, thick, stiff, linear):
+    """Adds what an area does at a depth; returns its force."""
+    if depth <= 0.0 or depth > BEYOND * thick:
+        return 0.0
+    force = area * stiff * depth * (1.0 if linear else math.sqrt(depth))
+    if depth > thick:
+        sums[10] += force
+        return 0.0
+    sums[4] += force * u
+    sums[5] += force * v
+    sums[6] += force * u * u
+    sums[7] += force * v * v
+    sums[8] += force * depth * (0.5 if linear else 0.4)
+    sums[9] = max(sums[9], depth)
+    return force
+
+
+@njit(cache=True, error_model="numpy")
+def _piece(sums, points, count, scale, thick, stiff, linear, middles):
+    """Adds what a polygon does, triangle by triangle of a fan; depths and areas are true after `scale`, the
+    cosine of its angle to the face. Returns its force."""
+    force = 0.0
+    for i in range(1, count - 1):
+        a0, a1 = points[i, 0] - points[0, 0], points[i, 1] - points[0, 1]
+        b0, b1 = points[i + 1, 0] - points[0, 0], points[i + 1, 1] - points[0, 1]
+        area = 0.5 * abs(a0 * b1 - a1 * b0) * _part(scale) / scale
+        if middles:
+            u = (points[0, 0] + points[i, 0] + points[i + 1, 0]) / 3.0
+            v = (points[0, 1] + points[i, 1] + points[i + 1, 1]) / 3.0
+            z = (points[0, 2] + points[i, 2] + points[i + 1, 2]) / 3.0
+            force += _press(sums, area, u, v, z * scale, thick, stiff, linear)
+        else:
+            for k in (0, i, i + 1):
+                z = points[k, 2] * scale
+                force += _press(sums, area / 3.0, points[k, 0], points[k, 1], z, thick, stiff, linear)
+    return force
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _element(sums, room, triangles, t, way, along, across, where, hp, hr, middles, stiff, linear):
+    """Adds what one triangle does; `where` is the box's middle along the face's normal, less its half
+    length, and along both sides of the face."""
+    cosine = -(way[0] * triangles[t, 9] + way[1] * triangles[t, 10] + way[2] * triangles[t, 11])
+    if cosine <= STEEP:
+        return
+    z0 = where[0] - (way[0] * triangles[t, 0] + way[1] * triangles[t, 1] + way[2] * triangles[t, 2])
+    z1 = where[0] - (way[0] * triangles[t, 3] + way[1] * triangles[t, 4] + way[2] * triangles[t, 5])
+    z2 = where[0] - (way[0] * triangles[t, 6] + way[1] * triangles[t, 7] + way[2] * triangles[t, 8])
+    if z0 <= 0.0 and z1 <= 0.0 and z2 <= 0.0:
+        return
+    u0 = along[0] * triangles[t, 0] + along[1] * triangles[t, 1] + along[2] * triangles[t, 2] - where[1]
+    u1 = along[0] * triangles[t, 3] + along[1] * triangles[t, 4] + along[2] * triangles[t, 5] - where[1]
+    u2 = along[0] * triangles[t, 6] + along[1] * triangles[t, 7] + along[2] * triangles[t, 8] - where[1]
+    if min(u0, u1, u2) > hp or max(u0, u1, u2) < -hp:
+        return
+    v0 = across[0] * triangles[t, 0] + across[1] * triangles[t, 1] + across[2] * triangles[t, 2] - where[2]
+    v1 = across[0] * triangles[t, 3] + across[1] * triangles[t, 4] + across[2] * triangles[t, 5] - where[2]
+    v2 = across[0] * triangles[t, 6] + across[1] * triangles[t, 7] + across[2] * triangles[t, 8] - where[2]
+    if min(v0, v1, v2) > hr or max(v0, v1, v2) < -hr:
+        return
+    thick, force = triangles[t, THICK], 0.0
+    inside = max(abs(u0), abs(u1), abs(u2)) <= hp and max(abs(v0), abs(v1), abs(v2)) <= hr
+    if inside and min(z0, z1, z2) >= 0.0:
+        area = _part(cosine) * triangles[t, AREA]
+        if middles:
+            u, v, z = (u0 + u1 + u2) / 3.0, (v0 + v1 + v2) / 3.0, (z0 + z1 + z2) / 3.0
+            force = _press(sums, area, u, v, z * cosine, thick, stiff, linear)
+        else:
+            third = area / 3.0
+            force = _press(sums, third, u0, v0, z0 * cosine, thick, stiff, linear)
+            force += _press(sums, third, u1, v1, z1 * cosine, thick, stiff, linear)
+            force += _press(sums, third, u2, v2, z2 * cosine, thick, stiff, linear)
+    else:
+        which, count = _over(room, (u0, u1, u2), (v0, v1, v2), (z0, z1, z2), hp, hr)
+        force = _piece(sums, room[which], count, cosine, thick, stiff, linear, middles)
+    sums[0] += force * triangles[t, 9]
+    sums[1] += force * triangles[t, 10]
+    sums[2] += force * triangles[t, 11]
+    sums[3] += force
+
+
+@njit(cache=True, error_model="numpy")
+def _gather(sums, room, head, meshes, middle, axes, half, q, sign, stiff):
+    """Adds up what presses on the face q (on the side `sign`) of a box: force along the file's axes (0-2) and
+    in all (3), moments in the face of first (4-5) and second order (6-7), energy (8), greatest depth (9), and
+    what would be the force of what is too deep (10)."""
+    bounds, links, triangles = meshes.bounds, meshes.links, meshes.triangles
+    p, r = (q + 1) % 3, (q + 2) % 3
+    way = scale(sign, (axes[q], axes[3 + q], axes[6 + q]))
+    along, across = (axes[p], axes[3 + p], axes[6 + p]), (axes[r], axes[3 + r], axes[6 + r])
+    where = (half[q] + dot(way, middle), dot(along, middle), dot(across, middle))
+    linear, far, middles = head.basis > 0.0, BEYOND * head.most / STEEP, head.middles != 0
+    n = head.first
+    while n < head.end:
+        facing = 0.0  # the least that a normal has along the face's
+        for i in range(3):
+            facing += min(way[i] * bounds[n, LEAST + i], way[i] * bounds[n, MOST + i])
+        away, reach = span(bounds, n, way)
+        apart = facing > -STEEP or away - reach > where[0] or away + reach < where[0] - far
+        if not apart:
+            away, reach = span(bounds, n, along)
+            apart = abs(away - where[1]) > half[p] + reach
+        if not apart:
+            away, reach = span(bounds, n, across)
+            apart = abs(away - where[2]) > half[r] + reach
+        if apart:
+            n = links[n, AFTER]
+            continue
+        for t in range(links[n, FIRST], links[n, FIRST] + links[n, COUNT]):
+            _element(
+                sums, room, triangles, t, way, along, across, where, half[p], half[r], middles, stiff, linear
+            )
+        n += 1
+
+
+@njit(cache=True, error_model="numpy")
+def box_mesh(out, xa, ra, va, wa, half, exposed, xb, rb, vb, wb, head, meshes, k, law):
+    """Box a (centre xa, rotation ra, half lengths, exposed sides) on a mesh that moves with body b."""
+    frame = matmul(rb, nine(head.axes))
+    place = add(xb, rotate(rb, three(head.place)))
+    middle, axes = back(frame, sub(xa, place)), transpose_matmul(frame, ra)
+    bounds, links, triangles = meshes.bounds, meshes.links, meshes.triangles
+    if not overlaps(bounds, links, head.first, head.end, middle, axes, half):
+        return
+    sums, room = np.zeros(11), np.empty((2, 12, 3))
+    lost, spot, out_of = 0.0, xa, (0.0, 0.0, 0.0)
+    for face in range(6 if exposed == BLOCK else 2):
+        q, sign = (2 + face // 2) % 3, 1.0 if face % 2 == 0 else -1.0
+        p, r = (q + 1) % 3, (q + 2) % 3
+        stiff = k / head.basis if head.basis > 0.0 else k / (4.0 * half[p] * half[r])
+        sums[:] = 0.0
+        _gather(sums, room, head, meshes, middle, axes, half, q, sign, stiff)
+        force = math.sqrt(sums[0] * sums[0] + sums[1] * sums[1] + sums[2] * sums[2])
+        if sums[10] > 0.0 and (lost == 0.0 or sums[10] < lost):
+            lost, spot = sums[10], add(xa, rotate(ra, local(p, r, q, 0.0, 0.0, sign * half[q])))
+            out_of = rotate(ra, local(p, r, q, 0.0, 0.0, -sign))
+        if force <= 0.0:
+            continue
+        normal = rotate(frame, (sums[0] / force, sums[1] / force, sums[2] / force))
+        u, v = sums[4] / sums[3], sums[5] / sums[3]
+        du = math.sqrt(max(sums[6] / sums[3] - u * u, 0.0))
+        dv = math.sqrt(max(sums[7] / sums[3] - v * v, 0.0))
+        for corner in range(4):
+            at_u = u + (du if corner % 2 == 0 else -du)
+            at_v = v + (dv if corner < 2 else -dv)
+            point = add(xa, rotate(ra, local(p, r, q, at_u, at_v, sign * half[q])))
+            push(out, point, normal, 0.25 * force, sums[9], 0.25 * sums[8], xa, va, wa, xb, vb, wb, law)
+    if lost > 0.0 and out[12] == 0.0:  # what is as near to the other side is in contact there
+        push(out, spot, out_of, lost, math.inf, 0.0, xa, va, wa, xb, vb, wb, law)
+    if exposed == 0 or exposed == BLOCK:
+        return
+    for side in range(4):
+        if exposed & (1 << side) == 0:
+            continue
+        p, sign = side // 2, 1.0 if side % 2 == 1 else -1.0
+        away = scale(sign, (axes[p], axes[3 + p], axes[6 + p]))
+        for end in (-1.0, 1.0):
+            x = sign * half[0] if p == 0 else end * half[0]
+            y = sign * half[1] if p == 1 else end * half[1]
+            at = add(middle, rotate(axes, (x, y, 0.0)))
+            depth, t = depth_at(bounds, links, triangles, head.first, head.end, at, head.most)
+            if depth <= 0.0:
+                continue
+            normal = three(triangles[t, NORMAL:])
+            spring = 0.5 * _ramp(-dot(away, normal), LEVEL, LEANING) * k * depth * math.sqrt(depth)
+            if spring > 0.0:
+                point = add(xa, rotate(ra, (x, y, 0.0)))
+                push(
+                    out, point, rotate(frame, normal), spring, depth, 0.4 * spring * depth,
+                    xa, va, wa, xb, vb, wb, law,
+                )  # fmt: skip
+
+
+@njit(cache=True, error_model="numpy")
+def mesh_near(head, meshes, xa, ra, half, xb, rb, more):
+    """Whether a box that is larger by `more` on all sides may meet a leaf of the mesh's tree."""
+    frame = matmul(rb, nine(head.axes))
+    middle = back(frame, sub(xa, add(xb, rotate(rb, three(head.place)))))
+    wide = (half[0] + more, half[1] + more, half[2] + more)
+    axes = transpose_matmul(frame, ra)
+    return overlaps(meshes.bounds, meshes.links, head.first, head.end, middle, axes, wide)

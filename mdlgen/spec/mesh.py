@@ -1,0 +1,53 @@
+"""Meshes: parts whose shape is a file of triangles, fixed or on a roller."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
+
+from mdlgen.spec.fields import Angles, Mass, Name, Position, Strict, fail, origin, quantity
+from mdlgen.spec.solid import Solid, read_solid
+
+Density = Annotated[float, quantity("g/mm^3", 0.0, open_low=True)]
+
+
+class Mesh(Strict):
+    """A part with the shape of a closed surface of triangles."""
+
+    file: str = Field(
+        description="STL (binary or ASCII) or OBJ, in the folder of the spec or below: a closed surface"
+    )
+    units: Literal["mm", "cm", "m", "in"] = Field(default="mm", description="that the file's numbers are in")
+    center: Position = Field(
+        default=origin("mm"), description="where the origin of the file's axes is at the start"
+    )
+    rotation: Angles = Field(
+        default=origin("deg"), description="of the file's axes, about the global x, then y, then z axis"
+    )
+    on: Name | None = Field(
+        default=None, description="the roller that it moves with (center and rotation are at the start)"
+    )
+    mass: Mass | None = Field(default=None, description="mass; the inertia is that of an even solid")
+    density: Density | None = Field(default=None, description="in place of mass")
+    at: Literal["nodes", "centres"] = Field(
+        default="nodes",
+        description="where the depth of an element, or of what a box covers of it, is looked at: in its "
+        "corners, or in its middle",
+    )
+    _solid: Solid | None = PrivateAttr(default=None)
+
+    @model_validator(mode="after")
+    def _read(self, info: ValidationInfo) -> Mesh:
+        if self.mass is not None and self.density is not None:
+            raise fail("mass and density are both given; give one of them")
+        if self.on is not None and self.mass is None and self.density is None:
+            raise fail("on a roller its mass counts; give mass or density")
+        self._solid = read_solid(self.file, (info.context or {}).get("folder"), self.units)
+        return self
+
+    @property
+    def solid(self) -> Solid:
+        """The surface, in the unit of the file."""
+        assert self._solid is not None, "read as the mesh is made"
+        return self._solid
