@@ -9,9 +9,22 @@ from backends.exudyn_local.system import System
 from mdlgen.mechanics.bushing import bushing
 from mdlgen.mechanics.contact import OUT
 from mdlgen.mechanics.curve import curve_excess, middle_and_gap
-from mdlgen.mechanics.driven import clutch, prescribed
+from mdlgen.mechanics.driven import clutch, prescribed, turned
 from mdlgen.mechanics.pair import pair_force
-from mdlgen.mechanics.vector import add, back, cross, dot, mat, matmul, nine, rotate, scale, three, vec
+from mdlgen.mechanics.vector import (
+    add,
+    back,
+    cross,
+    dot,
+    exp_rotation,
+    mat,
+    matmul,
+    nine,
+    rotate,
+    scale,
+    three,
+    vec,
+)
 from mdlgen.model.tables import Floats
 
 # Perturbations of the difference quotients: positions and Euler parameters, velocities [SI]. A static run
@@ -61,6 +74,11 @@ def place_body(bodies, body, q, v, t, x, r, u, w):
             x[body, i] += q[k] * bodies[body].way[i]
             u[body, i] += v[k] * bodies[body].way[i]
     spin = bodies[body].spin
+    if bodies[body].rims > 0:
+        angle = q[spin] if spin >= 0 else turned(bodies[body], t)
+        m = matmul(exp_rotation(scale(angle, three(bodies[body].axis))), mat(r, body))
+        for i in range(9):
+            r[body, i] = m[i]
     rate = v[spin] if spin >= 0 else prescribed(bodies[body], t)
     for i in range(3):
         w[body, i] += rate * bodies[body].axis[i]

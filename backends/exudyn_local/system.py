@@ -15,6 +15,7 @@ from mdlgen.errors import RefusedError
 from mdlgen.mechanics.curve import FOLLOWS, curve_points, follow
 from mdlgen.mechanics.driven import DRIVEN, drive
 from mdlgen.mechanics.laws import damping_share
+from mdlgen.mechanics.rim import RIM, rim
 from mdlgen.model.rotations import matrices
 from mdlgen.model.tables import Floats, Ints, Model
 
@@ -37,11 +38,12 @@ BODY = np.dtype(
         ("way", "f8", 3),  # direction of a roller's slide
         ("press", "f8", 5),  # k [N/m], c [N s/m], force at the start [N], sliding mass [kg], axial inertia
         *DRIVEN,
-        ("size", "f8", 2),  # radius, width of a roller [m]
+        ("size", "f8", 2),  # radius, of a rim the greatest, and width of a roller [m]
         ("first", "i8"),  # first of a box's 7 coordinates, -1: not free
         ("slide", "i8"),  # coordinate of a roller's slide, -1: none
         ("spin", "i8"),  # coordinate of a roller's spin, -1: prescribed
         ("exposed", "i8"),  # side faces of a box as a bit mask
+        *RIM,
     ]
 )
 BUSHING = np.dtype(
@@ -150,7 +152,8 @@ def _bodies(model: Model, moving: bool) -> tuple[np.ndarray, int]:
                 free += 7
     for roller in model.rollers:
         row = bodies[roller.body]
-        row["axis"], row["size"] = roller.axis, (roller.radius * MM, roller.width * MM)
+        row["axis"], row["size"] = roller.axis, (roller.reach * MM, roller.width * MM)
+        rim(row, roller, MM)
         row["press"][4] = roller.inertia_axial * G * MM**2
         if roller.press is not None:
             spring = roller.press

@@ -14,6 +14,7 @@ import numpy as np
 from mdlgen.mechanics.curve import FOLLOWS, curve_points, follow
 from mdlgen.mechanics.driven import DRIVEN, drive
 from mdlgen.mechanics.laws import damping_share
+from mdlgen.mechanics.rim import RIM, rim
 from mdlgen.model.rotations import matrices
 from mdlgen.model.tables import GROUND, Floats, Ints, Model
 
@@ -32,7 +33,8 @@ BODY = np.dtype(
         ("way", "f8", 3),  # direction of a slide, or normal of a plane
         ("press", "f8", 5),  # k, c, force at the start, sliding mass, axial inertia
         *DRIVEN,
-        ("size", "f8", 2),  # radius, width
+        ("size", "f8", 2),  # radius, of a rim the greatest, and width
+        *RIM,
     ]
 )
 JOINT = np.dtype(
@@ -124,7 +126,7 @@ def _bodies(model: Model) -> tuple[np.ndarray, Ints, int]:
     border = 0
     for roller in model.rollers:
         row = bodies[roller.body]
-        row["axis"], row["size"] = roller.axis, (roller.radius, roller.width)
+        row["axis"], row["size"] = roller.axis, (roller.reach, roller.width)
         row["press"][4] = roller.inertia_axial
         if roller.press is not None:
             spring = roller.press
@@ -133,6 +135,7 @@ def _bodies(model: Model) -> tuple[np.ndarray, Ints, int]:
             row["press"][:4] = (spring.stiffness, spring.damping, force, roller.mass + spring.carrier_mass)
             row["slide"], border = border, border + 1
         drive(row, roller)
+        rim(row, roller)
         if roller.turns:
             row["spin"], border = border, border + 1
     for guide in model.guides:

@@ -9,7 +9,7 @@ from numba import njit
 from mdlgen.mechanics.bushing import bushing_pair
 from mdlgen.mechanics.contact import MOST_POINTS, OUT, POINT
 from mdlgen.mechanics.curve import curve_excess
-from mdlgen.mechanics.driven import clutch, prescribed
+from mdlgen.mechanics.driven import clutch, prescribed, turned
 from mdlgen.mechanics.guide import inward
 from mdlgen.mechanics.pair import BOX_GUIDE, BOX_PLANE, CYLINDER_CYLINDER, pair_force
 from mdlgen.mechanics.vector import (
@@ -44,10 +44,22 @@ def place_box(b, h, rate, spin, x, r, xm, rm, um, wm):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def place_roller(body, b, h, t, rate, turning, x, xm, um, wm):
-    """One roller after h at the rates of its slide and its spin, where it has them; t: that time."""
+def turn_roller(body, b, h, t, turning, r, rm):
+    """Turns a roller by what it does in h at its own rate, or by its drive up to the time t."""
+    angle = h * turning if body.spin >= 0 else turned(body, t) - turned(body, t - h)
+    m = matmul(exp_rotation(scale(angle, three(body.axis))), mat(r, b))
+    for i in range(9):
+        rm[b, i] = m[i]
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def place_roller(body, b, h, t, rate, turning, x, r, xm, rm, um, wm):
+    """One roller after h at the rates of its slide and its spin, where it has them; t: that time. One that is
+    round need not turn."""
     if body.spin < 0:
         turning = prescribed(body, t)
+    if body.rims > 0:
+        turn_roller(body, b, h, t, turning, r, rm)
     for i in range(3):
         if body.slide >= 0:
             xm[b, i] = x[b, i] + h * rate * body.way[i]
@@ -67,7 +79,7 @@ def place(bodies, nodes, h, t, u, ub, x, r, xm, rm, um, wm):
             continue  # no roller
         rate = ub[body.slide] if body.slide >= 0 else 0.0
         turning = ub[body.spin] if body.spin >= 0 else 0.0
-        place_roller(body, b, h, t, rate, turning, x, xm, um, wm)
+        place_roller(body, b, h, t, rate, turning, x, r, xm, rm, um, wm)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)

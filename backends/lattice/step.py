@@ -28,6 +28,7 @@ from backends.lattice.forces import (
     pair_forces,
     pair_forces_again,
     place,
+    turn_roller,
 )
 from backends.lattice.momentum import keep
 from backends.lattice.tangent import contacts_into, in_box_axes, joints_into, masses, rollers_into
@@ -267,6 +268,8 @@ def carry(system, state, mid, t, dt):
             l[n, i] = 2.0 * p[i] - l[n, i]
     for k in range(bodies.size - 1):
         slide, spin_at = bodies[k].slide, bodies[k].spin
+        if bodies[k].rims > 0:
+            turn_roller(bodies[k], k, dt, t + dt, ub[spin_at] if spin_at >= 0 else 0.0, r, r)
         if slide >= 0:
             s[slide] += dt * ub[slide]
             for i in range(3):

@@ -169,6 +169,8 @@ def core(out, at, n, slip, h, law, chord, whole):
     `whole`: with the growth of friction with the normal force, which is not symmetric.
     """
     spring, growth, force, rate = out[at + 6], out[at + 7], out[at + 8], out[at + 9]
+    # a rim may have its own
+    beta, mu_static, mu_dynamic = out[at + 13], out[at + 14], out[at + 15]
     y = rate / law[5]
     if abs(y) < 1.0:
         sign = 0.5 * y * (3.0 - y * y)
@@ -176,19 +178,19 @@ def core(out, at, n, slip, h, law, chord, whole):
     else:
         sign = math.copysign(1.0, y)
         steep = chord / abs(rate)
-    normal = h * h * growth * (1.0 + law[0] * sign) + h * spring * law[0] * steep
+    normal = h * h * growth * (1.0 + beta * sign) + h * spring * beta * steep
     speed = math.sqrt(slip[0] * slip[0] + slip[1] * slip[1] + slip[2] * slip[2])
     secant = tangent = 0.0
-    if force > 0.0 and (law[1] > 0.0 or law[2] > 0.0):
+    if force > 0.0 and (mu_static > 0.0 or mu_dynamic > 0.0):
         if speed < law[3]:
             z = speed / law[3]
-            secant = 0.5 * law[1] * (3.0 - z * z) / law[3]
-            tangent = 1.5 * law[1] * (1.0 - z * z) / law[3]
+            secant = 0.5 * mu_static * (3.0 - z * z) / law[3]
+            tangent = 1.5 * mu_static * (1.0 - z * z) / law[3]
         else:
-            mu = law[2]
+            mu = mu_dynamic
             if speed < law[4]:
                 z = (speed - law[3]) / (law[4] - law[3])
-                mu = law[1] + (law[2] - law[1]) * z * z * (3.0 - 2.0 * z)
+                mu = mu_static + (mu_dynamic - mu_static) * z * z * (3.0 - 2.0 * z)
             secant = mu / speed
         secant, tangent = h * force * secant, h * force * max(tangent, chord * secant)
     i = 1.0 / speed if speed > 0.0 else 0.0

@@ -145,7 +145,7 @@ def _evaluate(bodies, pairs, nodes, h, t, state, mid, alone, m):
             rate = ub[bodies[b].slide] + z[6 * m + bodies[b].slide]
         if bodies[b].spin >= 0:
             turning = ub[bodies[b].spin] + z[6 * m + bodies[b].spin]
-        place_roller(bodies[b], b, h, t, rate, turning, x, xm, um, wm)
+        place_roller(bodies[b], b, h, t, rate, turning, x, r, xm, rm, um, wm)
     count, _stored, _lost = pair_forces(
         bodies, pairs, alone.mine, alone.state[2], xm, rm, um, wm, forces, alone.touched, alone.outs
     )

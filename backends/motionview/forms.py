@@ -14,7 +14,7 @@ def unverified(scene: SceneView) -> list[str]:
     aligned = ", ".join(s.name for s in scene.sheets if not s.turned)
     rows = (
         (
-            any(not g.straight for g in scene.guides),
+            any(not g.straight for g in scene.guides) or any(r.rim for r in scene.rollers),
             "several graphics of one body in a Contact (documented), and a BOX turned by VECTOR and POINT "
             "(documented; seen by two vectors)",
         ),

@@ -43,6 +43,21 @@ def prescribed(body, t):
     return body.drive[last]
 
 
+@njit(cache=True, error_model="numpy")
+def turned(body, t):
+    """Angle by which a driven roller has turned since time 0."""
+    last = 2 * body.corners - 2
+    if last < 0:
+        return 0.0
+    angle, before, fast = 0.0, 0.0, prescribed(body, 0.0)
+    for i in range(0, last + 2, 2):
+        until = min(max(body.drive[i], 0.0), t)
+        speed = prescribed(body, until)
+        angle += 0.5 * (fast + speed) * (until - before)
+        before, fast = until, speed
+    return angle + fast * (t - before)
+
+
 @njit(cache=True, error_model="numpy", forceinline=True)
 def clutch(body, spin, t):
     """What a clutch does at a spin about the axis: (torque on the roller, what it loses as the spin grows,

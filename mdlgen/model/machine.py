@@ -6,6 +6,7 @@ import numpy as np
 
 from mdlgen.errors import SpecError
 from mdlgen.model import press
+from mdlgen.model.rims import lower_rim, touched, towards
 from mdlgen.model.tables import (
     CYLINDER_CYLINDER,
     Contacts,
@@ -52,6 +53,7 @@ def lower_rollers(
                 profile=np.array(roller.drive.profile) if roller.drive and roller.drive.profile else None,
                 one_way=OneWay(**roller.one_way.model_dump()) if roller.one_way else None,
                 press=_press(scene, name, sheets, contacts) if roller.press else None,
+                rim=lower_rim(roller),
             )
         )
     return tuple(parts)
@@ -73,12 +75,13 @@ def _press(scene: Scene, name: str, sheets: tuple[SheetPart, ...], contacts: Con
     carrier = spec.carrier_mass if spec.carrier_mass is not None else roller.mass / 1000
     mass = roller.mass + carrier
     others, forces = [], []
+    own_radius, own_factor = _profile(roller, direction)
     for row in range(len(contacts)):
         parts = (contacts.part_a[row], contacts.part_b[row])
         if name not in parts:
             continue
         other = parts[0] if parts[1] == name else parts[1]
-        stiffness = float(contacts.stiffness[row])
+        stiffness = float(contacts.stiffness[row]) * own_factor
         if contacts.kind[row] == CYLINDER_CYLINDER:
             partner: Roller = scene.rollers[other]
             if partner.press is not None:
@@ -86,14 +89,15 @@ def _press(scene: Scene, name: str, sheets: tuple[SheetPart, ...], contacts: Con
                     f"{name} and {other} are pressed against each other; give one of them a fixed axis",
                     ("rollers", name, "press"),
                 )
-            cylinder = press.Cylinder(np.array(partner.center), partner.radius, partner.width, stiffness)
+            radius, factor = _profile(partner, center - np.array(partner.center))
+            cylinder = press.Cylinder(np.array(partner.center), radius, partner.width, stiffness * factor)
             others.append(cylinder)
-            forces.append(press.cylinder_contact(cylinder, axis, roller.radius, roller.width))
+            forces.append(press.cylinder_contact(cylinder, axis, own_radius, roller.width))
         else:
             sheet = next(s for s in sheets if s.name == other)
             shared = contacts.share[row] == "width"
-            forces.append(press.sheet_contact(sheet, axis, roller.radius, roller.width, stiffness, shared))
-    touch = press.touch_offset(center, axis, direction, roller.radius, roller.width, others)
+            forces.append(press.sheet_contact(sheet, axis, own_radius, roller.width, stiffness, shared))
+    touch = press.touch_offset(center, axis, direction, own_radius, roller.width, others)
     weight = mass * float(np.array(scene.gravity) @ direction)
 
     def spring(offset: float) -> float:
@@ -108,8 +112,17 @@ def _press(scene: Scene, name: str, sheets: tuple[SheetPart, ...], contacts: Con
         free_length=spec.free_length,
         carrier_mass=carrier,
         touch=touch,
-        start=press.equilibrium(center, direction, spring, forces, roller.radius, touch),
+        start=press.equilibrium(center, direction, spring, forces, own_radius, touch),
     )
+
+
+def _profile(roller: Roller, direction: Floats) -> tuple[float, float]:
+    """Radius of a roller along a direction as the run begins [mm], and stiffness in times the contact's."""
+    rim = lower_rim(roller)
+    if rim is None:
+        return roller.radius, 1.0
+    radius, sector, _ = touched(rim, towards(frame(np.array(roller.axis)), direction))
+    return radius, float(rim.stiffness[sector])
 
 
 def lower_planes(scene: Scene, first: int) -> tuple[PlanePart, ...]:

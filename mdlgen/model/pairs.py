@@ -66,7 +66,7 @@ def find_pairs(
     if prune:
         for roller in (part for part in machine if isinstance(part, RollerPart)):
             if roller.press is not None:  # it may move by its radius along its slide
-                way = roller.radius * np.abs(roller.press.direction) + margin
+                way = roller.reach * np.abs(roller.press.direction) + margin
                 low[roller.body] = bodies.position[roller.body] - way
                 high[roller.body] = bodies.position[roller.body] + way
     for row in np.flatnonzero(contacts.kind != EXTERNAL).tolist():
@@ -138,7 +138,7 @@ def _drive(sheet: SheetPart, roller: RollerPart, times: Floats) -> tuple[Floats,
     the sheet."""
     normal = sheet.rotation[:, 2]
     height = float((roller.center - sheet.center) @ normal)
-    toward = -float(np.copysign(roller.radius, height)) * normal
+    toward = -float(np.copysign(roller.reach, height)) * normal
     toward = toward - roller.axis * (toward @ roller.axis)
     way = np.cross(roller.axis, toward)
     return np.outer(roller.turned(times), way), roller.center - height * normal
@@ -194,7 +194,7 @@ def _part_bounds(part: Part, bodies: Bodies) -> tuple[Floats, Floats]:
     if isinstance(part, PlanePart):
         extent = np.abs(bodies.rotation[part.body]) @ (np.array(part.size) / 2)
         return center - extent, center + extent
-    extent = np.abs(part.axis) * part.width / 2 + part.radius * np.sqrt(np.maximum(0, 1 - part.axis**2))
+    extent = np.abs(part.axis) * part.width / 2 + part.reach * np.sqrt(np.maximum(0, 1 - part.axis**2))
     if part.press is not None:
-        extent = extent + part.radius * np.abs(part.press.direction) + SLACK
+        extent = extent + part.reach * np.abs(part.press.direction) + SLACK
     return center - extent, center + extent

@@ -206,6 +206,7 @@ def _roller(scene: Scene, name: str, starts: dict[str, tuple[float, float]]) -> 
             at = (*drive, "profile", k)
             rows.append(Parameter(name, f"t_{k}", f"Time of corner {k}", time, "ms", (*at, 0)))
             rows.append(Parameter(name, f"w_{k}", f"Speed at corner {k} (rad/s)", speed, "rad/ms", (*at, 1)))
+    rows += _rim(scene, name)
     if roller.press is not None:
         press, way = roller.press, (*base, "press")
         carrier = press.carrier_mass if press.carrier_mass is not None else roller.mass / 1000
@@ -221,4 +222,22 @@ def _roller(scene: Scene, name: str, starts: dict[str, tuple[float, float]]) -> 
                 name, "start", "Start along the slide in static equilibrium, as written", start, "mm", None
             ),
         ]
+    return rows
+
+
+def _rim(scene: Scene, name: str) -> list[Parameter]:
+    """Angles, radius, friction, stiffness and restitution of the sectors of a rim, as far as given."""
+    rim, rows = scene.rollers[name].rim, []
+    for k, sector in enumerate(rim.sectors if rim is not None else ()):
+        path = ("rollers", name, "rim", "sectors", k)
+        for member, label, value, unit in (
+            ("from", "Angle where sector %d begins (deg)", sector.from_, "rad"),
+            ("to", "Angle where sector %d ends (deg)", sector.to, "rad"),
+            ("radius", "Radius of sector %d", sector.radius, "mm"),
+            ("friction", "Friction of sector %d in times that of the contact", sector.friction, "1"),
+            ("stiffness", "Stiffness of sector %d in times that of the contact", sector.stiffness, "1"),
+            ("restitution", "Restitution c_R of sector %d", sector.restitution, "1"),
+        ):
+            if value is not None:
+                rows.append(Parameter(name, f"s{k}_{member}", label % k, value, unit, (*path, member)))
     return rows

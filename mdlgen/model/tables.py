@@ -237,6 +237,27 @@ class OneWay:
 
 
 @dataclass(frozen=True)
+class RimPart(Frozen):
+    """The round of a roller in sectors, the gaps between the given ones included; angles [rad] about the
+    axis from the x axis of its body, as the run begins. Each ends where the next begins, the last a whole
+    turn after the first one's beginning."""
+
+    name: tuple[str, ...]  # s0, ... those that are given; g0, ... what is behind the sector of that number
+    begin: Floats  # increasing, (n,)
+    end: Floats
+    radius: Floats  # [mm]
+    friction: Floats  # in times that of a contact
+    stiffness: Floats
+    restitution: Floats  # nan: that of a contact
+    own: tuple[bool, ...]  # whether the radius is given, and not the roller's
+    blend: float  # [rad]
+    facets: tuple[int, ...]  # boxes by which a text shows each
+
+    def __len__(self) -> int:
+        return len(self.name)
+
+
+@dataclass(frozen=True)
 class RollerPart(Frozen):
     """A cylinder; `center` is as the user gave it, the body's position includes `press.start`."""
 
@@ -254,6 +275,12 @@ class RollerPart(Frozen):
     profile: Floats | None  # corners as given: time [ms], speed [rad/ms], (n, 2); None: speed and ramp
     one_way: OneWay | None  # with a drive: the speed is that of the shaft, which the roller may overrun
     press: Press | None
+    rim: RimPart | None = None
+
+    @property
+    def reach(self) -> float:
+        """The greatest radius [mm]."""
+        return self.radius if self.rim is None else float(self.rim.radius.max())
 
     @property
     def turns(self) -> bool:

@@ -19,6 +19,7 @@ from mdlgen.spec.fields import (
     fail,
     quantity,
 )
+from mdlgen.spec.rim import Rim
 
 # A solver keeps them beside each body, and a text writes them into one expression.
 MOST_CORNERS = 16
@@ -113,6 +114,7 @@ class Roller(Strict):
         default=None, description="a one-way clutch between the roller and its drive, or ground without one"
     )
     press: Press | None = Field(default=None, description="slide and spring; without it the axis is fixed")
+    rim: Rim | None = Field(default=None, description="sectors of the rim that are unlike the rest")
 
 
 class Plane(Strict):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+from mdlgen.model.rim_facets import WHOLE, graphics, meetings
 from mdlgen.model.tables import CYLINDER_CYLINDER, Model
 from mdlgen.verify.tables import ANY, Table
 
@@ -39,10 +40,15 @@ def _machine(model: Model) -> set[str]:
     for guide in model.guides:
         names.add(f"m_{guide.name}")
         names |= {f"{kind}_{guide.name}_{k}" for kind in ("p", "gbox") for k in range(guide.facets)}
+    for roller in (r for r in model.rollers if r.rim is not None):
+        shown = [name.removeprefix("gbox_") for name in graphics(roller, WHOLE)]
+        names |= {f"m_{roller.name}", *(f"{kind}_{name}" for name in shown for kind in ("p", "gbox"))}
     table = model.contacts
-    for row in range(len(table)):
-        if table.kind[row] == CYLINDER_CYLINDER:
-            names.add(f"con_{table.part_a[row]}_{table.part_b[row]}")
+    of, bodies = model.pairs.contact, model.bodies.name
+    for met in meetings(model):
+        if table.kind[of[met.pair]] == CYLINDER_CYLINDER:
+            a, b = (bodies[int(side[met.pair])] for side in (model.pairs.a, model.pairs.b))
+            names.add(f"con_{a}_{b}{met.suffix}")
     of_sheets = {int(table.entry[r]) for r in range(len(table)) if table.kind[r] != CYLINDER_CYLINDER}
     names |= {f"ds_contact_{e}" for e in set(table.entry.tolist()) - of_sheets}
     return names

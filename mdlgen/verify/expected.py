@@ -12,7 +12,8 @@ import numpy as np
 
 from mdlgen.model import naming
 from mdlgen.model.curves import straight_points, written
-from mdlgen.model.guides import facets
+from mdlgen.model.guides import Facet, facets
+from mdlgen.model.rim_facets import rim_facets
 from mdlgen.model.shape import apart, ground_frames
 from mdlgen.model.tables import (
     CLAMP,
@@ -109,6 +110,9 @@ def _points(model: Model) -> Table:
     for roller in model.rollers:
         names.append(f"p_{roller.name}")
         places.append(model.bodies.position[roller.body][None])
+        for name, facet in _rim(model, roller):
+            names.append(f"p_{name}")
+            places.append(facet.center[None])
         if roller.press is not None:
             names.append(f"p_{roller.name}_anchor")
             places.append(_spring_anchor(roller)[None])
@@ -119,6 +123,11 @@ def _points(model: Model) -> Table:
         names += [f"p_{guide.name}", *(f"p_{guide.name}_{k}" for k in range(guide.facets))]
         places += [guide.center[None], *(facet.center[None] for facet in facets(guide))]
     return table(names, {"at": (np.concatenate(places), reach(model))})
+
+
+def _rim(model: Model, roller: RollerPart) -> list[tuple[str, Facet]]:
+    body = roller.body
+    return rim_facets(roller, model.bodies.position[body], model.bodies.rotation[body])
 
 
 def _bodies(model: Model) -> Table:
@@ -219,6 +228,10 @@ def _boxes(model: Model) -> Table:
     shown = [(f"{guide.name}_{k}", guide, f) for guide in model.guides for k, f in enumerate(facets(guide))]
     names += [f"gbox_{name}" for name, _, _ in shown]
     words += [(f"b_{guide.name}",) for _, guide, _ in shown]
+    rims = [(name, roller, f) for roller in model.rollers for name, f in _rim(model, roller)]
+    names += [f"gbox_{name}" for name, _, _ in rims]
+    words += [(f"b_{roller.name}",) for _, roller, _ in rims]
+    shown = [*shown, *rims]
     turned = np.array([f.rotation for _, _, f in shown]).reshape(-1, 3, 3)
     parts: dict[str, Part] = {
         "center": (np.array([*bodies.position[rows], *(f.center for _, _, f in shown)]), reach(model)),
@@ -335,6 +348,10 @@ def _markers(model: Model) -> Table:
             add(f"m_{name}", f"b_{name}", model.bodies.position[b], np.eye(3))
     for guide in model.guides:
         add(f"m_{guide.name}", "B_Ground", guide.center, guide.axes.T)
+    for roller in model.rollers:
+        if roller.rim is not None:
+            body = roller.body
+            add(f"m_{roller.name}", "B_Ground", model.bodies.position[body], model.bodies.rotation[body].T)
     for probe in model.probes:
         points = _anchor_points(model, probe)
         for k, body in enumerate(probe.body.tolist()):
