@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mdlgen.errors import RefusedError
+from mdlgen.mechanics.arm import ARM, arm
 from mdlgen.mechanics.curve import FOLLOWS, curve_points, follow
 from mdlgen.mechanics.driven import DRIVEN, drive
 from mdlgen.mechanics.laws import damping_share
@@ -44,6 +45,7 @@ BODY = np.dtype(
         ("spin", "i8"),  # coordinate of a roller's spin, -1: prescribed
         ("exposed", "i8"),  # side faces of a box as a bit mask
         *RIM,
+        *ARM,
     ]
 )
 BUSHING = np.dtype(
@@ -109,6 +111,11 @@ class Pattern(NamedTuple):
 def check(model: Model) -> None:
     """Raises RefusedError for what this backend cannot represent."""
     for roller in model.rollers:
+        if roller.arm is not None and model.run.analysis == "static":
+            raise RefusedError(
+                f"exudyn: a static analysis with an arm ({roller.name}) is not there yet",
+                ("rollers", roller.name, "arm"),
+            )
         if roller.press is not None and abs(float(roller.press.direction @ roller.axis)) > 1e-9:
             raise RefusedError(f"roller {roller.name}: a press along its own axis is not modelled by exudyn")
 
@@ -161,6 +168,9 @@ def _bodies(model: Model, moving: bool) -> tuple[np.ndarray, int]:
             force = spring.preload - spring.stiffness * (spring.start - spring.touch)
             mass = (roller.mass + spring.carrier_mass) * G
             row["press"][:4] = (spring.stiffness * PER_MM, spring.damping * MS * PER_MM, force, mass)
+            row["slide"], free = free, free + 1
+        if roller.arm is not None:
+            arm(row, roller, MM, G, MS)
             row["slide"], free = free, free + 1
         if moving:  # in a static analysis no roller turns
             drive(row, roller, MS, MM)

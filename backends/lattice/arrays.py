@@ -2,7 +2,8 @@
 
 Free boxes are the nodes of the lattice, six unknowns each; they are numbered so that neighbours stand close
 (along the shorter side of the sheet first), which makes the matrix a band. Free rollers turn (one unknown),
-pressed ones also slide (one more): the border of the matrix. Everything else is held or driven.
+pressed ones also slide, and those on an arm swing (one more): the border of the matrix. Everything else is
+held or driven.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mdlgen.mechanics.arm import ARM, arm
 from mdlgen.mechanics.curve import FOLLOWS, curve_points, follow
 from mdlgen.mechanics.driven import DRIVEN, drive
 from mdlgen.mechanics.laws import damping_share
@@ -31,10 +33,11 @@ BODY = np.dtype(
         ("exposed", "i8"),
         ("axis", "f8", 3),
         ("way", "f8", 3),  # direction of a slide, or normal of a plane
-        ("press", "f8", 5),  # k, c, force at the start, sliding mass, axial inertia
+        ("press", "f8", 5),  # k, c, force at the start, sliding mass, axial inertia; of an arm mechanics.arm
         *DRIVEN,
         ("size", "f8", 2),  # radius, of a rim the greatest, and width
         *RIM,
+        *ARM,
     ]
 )
 JOINT = np.dtype(
@@ -134,8 +137,11 @@ def _bodies(model: Model) -> tuple[np.ndarray, Ints, int]:
             force = spring.preload - spring.stiffness * (spring.start - spring.touch)
             row["press"][:4] = (spring.stiffness, spring.damping, force, roller.mass + spring.carrier_mass)
             row["slide"], border = border, border + 1
+        if roller.arm is not None:
+            row["slide"], border = border, border + 1
         drive(row, roller)
         rim(row, roller)
+        arm(row, roller)
         if roller.turns:
             row["spin"], border = border, border + 1
     for guide in model.guides:

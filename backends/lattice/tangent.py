@@ -12,6 +12,7 @@ import math
 from numba import njit
 
 from backends.lattice.band import PAD
+from mdlgen.mechanics.arm import turn_of, way_of
 from mdlgen.mechanics.contact import OUT, POINT
 from mdlgen.mechanics.curve import curve_spring
 from mdlgen.mechanics.driven import clutch
@@ -19,6 +20,7 @@ from mdlgen.mechanics.pair import on_plate
 from mdlgen.mechanics.vector import (
     add,
     back,
+    cross,
     exp_rotation,
     log_rotation,
     mat,
@@ -215,10 +217,11 @@ def core(out, at, n, slip, h, law, chord, whole):
 
 @njit(cache=True, error_model="numpy")
 def _columns(body, arm, x, sign, direction, index, count):
-    """The unknowns of a roller that move a contact point, each with the direction of its velocity."""
+    """The unknowns of a roller at x that move a contact point, each with the direction of its velocity."""
     if body.slide >= 0:
+        way = add(way_of(body, x), cross(turn_of(body), arm))
         for i in range(3):
-            direction[count, i] = sign * body.way[i]
+            direction[count, i] = sign * way[i]
         index[count] = body.slide
         count += 1
     if body.spin >= 0:
@@ -252,9 +255,9 @@ def contacts_into(bodies, pairs, h, x, touched, outs, count, chord, planes, a, b
                 _blocks(a, node, 0, 1.0, t, arm, arm, zero)
             moving = 0
             if node < 0:
-                moving = _columns(bodies[pair.a], arm, x, 1.0, direction, index, moving)
+                moving = _columns(bodies[pair.a], arm, vec(x, pair.a), 1.0, direction, index, moving)
             far = sub(where, vec(x, pair.b))
-            moving = _columns(bodies[pair.b], far, x, -1.0, direction, index, moving)
+            moving = _columns(bodies[pair.b], far, vec(x, pair.b), -1.0, direction, index, moving)
             for i in range(moving):
                 v = rotate(t, (direction[i, 0], direction[i, 1], direction[i, 2]))
                 for j in range(moving):

@@ -27,13 +27,13 @@ def add_contacts(deck: Deck, model: Model) -> None:
 
     for id, met in enumerate(meetings(model), 1):
         row, a, b, rough = rows[met.pair]
-        one, two = of(a, met.a), of(b, met.b)
-        if len(one) > 1:  # a statement has one graphic on its first side, as the text has it
-            one, two = two, one
+        sides = [list(of(a, met.a)), list(of(b, met.b))]
+        if len(sides[0]) > 1:  # a statement has one graphic on its first side, as the text has it
+            sides.reverse()
         name = f"con_{bodies.name[a]}_{bodies.name[b]}{met.suffix}"
         label = f"{bodies.label[a]} / {bodies.label[b]}{met.suffix.replace('_', ' ')}"
         own = (rough * met.friction, met.stiffness, met.restitution(float(model.contacts.restitution[row])))
-        deck.contacts.append(Contact(name, label, id, one[0], two, law(row, *own)))
+        deck.contacts.append(Contact(name, label, id, sides[0][0], tuple(sides[1]), law(row, *own)))
 
 
 def _law(model: Model, row: int, rough: float, stiff: float, restitution: float) -> Law:

@@ -9,6 +9,7 @@ import numpy as np
 
 from backends.motionview.cells import rough_boxes
 from backends.motionview.rows import (
+    ArmView,
     Axis,
     ContactView,
     GuideView,
@@ -27,19 +28,34 @@ def roller_view(model: Model, roller: RollerPart, given: list[Value]) -> RollerV
     """One roller; its body has z along the axis."""
     press = roller.press
     rim, derived = _rim(roller.rim) if roller.rim is not None else ([], [])
+    members, axis = {value.member for value in given}, _axis(f"v_{roller.name}_axis", roller.axis)
+    arm = None
+    if roller.arm is not None:
+        x, y, z = (f"$g_{a}" if "g_x" in members else f"($a_{a}+${a})/2" for a in "xyz")
+        arm = ArmView((x, y, z), roller.arm.sprung)
+        if "I_a" not in members:
+            derived = [("I_a", "Inertia of the arm, a rod (kg mm2)", _rod(axis.vector)), *derived]
     return RollerView(
         name=roller.name,
         given=given,
-        axis=_axis(f"v_{roller.name}_axis", roller.axis),
+        axis=axis,
         guide=_guide(model.bodies.rotation[roller.body]),
         driven=roller.speed is not None,
         ramped=roller.ramp > 0.0,
         corners=0 if roller.profile is None else len(roller.profile),
         pressed=press is not None,
         press=_components(press.direction if press is not None else np.zeros(3)),
+        arm=arm,
         rim=rim,
         derived=derived,
     )
+
+
+def _rod(axis: str) -> str:
+    """Inertia of a rod from the pivot of an arm to the roller, about the middle along the axis."""
+    along = "+".join(f"(${a}-$a_{a})*{axis}.{a}" for a in "xyz")
+    square = "+".join(f"(${a}-$a_{a})^2" for a in "xyz")
+    return f"$M_a*({square}-({along})^2)/12"
 
 
 def _rim(rim: RimPart) -> tuple[list[SectorView], list[tuple[str, str, str]]]:

@@ -193,6 +193,13 @@ class Axis(NamedTuple):
     own: tuple[str, str, str] | None
 
 
+class ArmView(NamedTuple):
+    """An arm: its centre of mass, and whether it has a spring."""
+
+    center: tuple[str, str, str]
+    sprung: bool
+
+
 class SectorView(NamedTuple):
     """A sector of a rim: its angles (deg) and radius as formulas, and how many boxes show it."""
 
@@ -215,6 +222,7 @@ class RollerView:
     corners: int  # of its speed over time; 0: a ramp
     pressed: bool
     press: tuple[str, str, str]
+    arm: ArmView | None
     rim: list[SectorView]
     derived: list[tuple[str, str, str]]
 

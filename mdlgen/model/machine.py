@@ -9,6 +9,7 @@ from mdlgen.model import press
 from mdlgen.model.rims import lower_rim, touched, towards
 from mdlgen.model.tables import (
     CYLINDER_CYLINDER,
+    ArmPart,
     Contacts,
     Floats,
     OneWay,
@@ -54,6 +55,7 @@ def lower_rollers(
                 one_way=OneWay(**roller.one_way.model_dump()) if roller.one_way else None,
                 press=_press(scene, name, sheets, contacts) if roller.press else None,
                 rim=lower_rim(roller),
+                arm=_arm(roller) if roller.arm else None,
             )
         )
     return tuple(parts)
@@ -113,6 +115,23 @@ def _press(scene: Scene, name: str, sheets: tuple[SheetPart, ...], contacts: Con
         carrier_mass=carrier,
         touch=touch,
         start=press.equilibrium(center, direction, spring, forces, own_radius, touch),
+    )
+
+
+def _arm(roller: Roller) -> ArmPart:
+    spec = roller.arm
+    assert spec is not None
+    pivot, end = np.array(spec.pivot), np.array(roller.center)
+    length = float(np.linalg.norm(np.cross(np.array(roller.axis), end - pivot)))
+    return ArmPart(
+        pivot=pivot,
+        center=0.5 * (pivot + end) if spec.center is None else np.array(spec.center),
+        mass=spec.mass,
+        inertia=spec.mass * length**2 / 12 if spec.inertia is None else spec.inertia,
+        torque=spec.torque,
+        stiffness=spec.stiffness,
+        damping=spec.damping,
+        sprung=spec.sprung,
     )
 
 

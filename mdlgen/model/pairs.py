@@ -69,6 +69,9 @@ def find_pairs(
                 way = roller.reach * np.abs(roller.press.direction) + margin
                 low[roller.body] = bodies.position[roller.body] - way
                 high[roller.body] = bodies.position[roller.body] + way
+            if roller.arm is not None:  # or swing by as much
+                low[roller.body] = bodies.position[roller.body] - _swing(roller) - margin
+                high[roller.body] = bodies.position[roller.body] + _swing(roller) + margin
     for row in np.flatnonzero(contacts.kind != EXTERNAL).tolist():
         other = parts[contacts.part_b[row]]
         if contacts.kind[row] == CYLINDER_CYLINDER:
@@ -197,4 +200,11 @@ def _part_bounds(part: Part, bodies: Bodies) -> tuple[Floats, Floats]:
     extent = np.abs(part.axis) * part.width / 2 + part.reach * np.sqrt(np.maximum(0, 1 - part.axis**2))
     if part.press is not None:
         extent = extent + part.reach * np.abs(part.press.direction) + SLACK
+    if part.arm is not None:
+        extent = extent + _swing(part) + SLACK
     return center - extent, center + extent
+
+
+def _swing(roller: RollerPart) -> Floats:
+    """How far a roller on an arm may go either way, by its radius in any direction across its axis [mm]."""
+    return roller.reach * np.sqrt(np.maximum(0, 1 - roller.axis**2))

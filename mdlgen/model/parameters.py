@@ -206,7 +206,7 @@ def _roller(scene: Scene, name: str, starts: dict[str, tuple[float, float]]) -> 
             at = (*drive, "profile", k)
             rows.append(Parameter(name, f"t_{k}", f"Time of corner {k}", time, "ms", (*at, 0)))
             rows.append(Parameter(name, f"w_{k}", f"Speed at corner {k} (rad/s)", speed, "rad/ms", (*at, 1)))
-    rows += _rim(scene, name)
+    rows += _rim(scene, name) + _arm(scene, name)
     if roller.press is not None:
         press, way = roller.press, (*base, "press")
         carrier = press.carrier_mass if press.carrier_mass is not None else roller.mass / 1000
@@ -240,4 +240,34 @@ def _rim(scene: Scene, name: str) -> list[Parameter]:
         ):
             if value is not None:
                 rows.append(Parameter(name, f"s{k}_{member}", label % k, value, unit, (*path, member)))
+    return rows
+
+
+def _arm(scene: Scene, name: str) -> list[Parameter]:
+    """Pivot, mass and spring of an arm; centre of mass and inertia where they are given."""
+    arm, path = scene.rollers[name].arm, ("rollers", name, "arm")
+    if arm is None:
+        return []
+    rows = []
+    for k, axis in enumerate(_NAMED_AXES):
+        label = f"Pivot of the arm {axis}"
+        rows.append(Parameter(name, f"a_{axis}", label, arm.pivot[k], "mm", (*path, "pivot", k)))
+    rows.append(Parameter(name, "M_a", "Mass of the arm", arm.mass, "g", (*path, "mass")))
+    if arm.center is not None:
+        for k, axis in enumerate(_NAMED_AXES):
+            label = f"Centre of mass of the arm {axis}"
+            rows.append(Parameter(name, f"g_{axis}", label, arm.center[k], "mm", (*path, "center", k)))
+    if arm.inertia is not None:
+        label = "Inertia of the arm about it (kg mm2)"
+        rows.append(Parameter(name, "I_a", label, arm.inertia, "g*mm^2", (*path, "inertia")))
+    if arm.sprung:
+        rows += [
+            Parameter(name, "T_a", "Torque of its spring (N mm)", arm.torque, "N*mm", (*path, "torque")),
+            Parameter(
+                name, "k_a", "Its stiffness (N mm/rad)", arm.stiffness, "N*mm/rad", (*path, "stiffness")
+            ),
+            Parameter(
+                name, "c_a", "Its damping (N mm s/rad)", arm.damping, "N*mm*ms/rad", (*path, "damping")
+            ),
+        ]
     return rows

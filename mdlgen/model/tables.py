@@ -237,6 +237,20 @@ class OneWay:
 
 
 @dataclass(frozen=True)
+class ArmPart(Frozen):
+    """An arm that carries a roller, turning about an axis parallel to the roller's through the pivot."""
+
+    pivot: Floats  # [mm], (3,)
+    center: Floats  # of its mass as the run begins [mm], (3,)
+    mass: float  # without the roller [g]
+    inertia: float  # about its centre of mass, along the axis [g mm^2]
+    torque: float  # of its spring as the run begins [N mm]
+    stiffness: float  # [N mm/rad]
+    damping: float  # [N mm ms/rad]
+    sprung: bool  # whether it has a spring or damping
+
+
+@dataclass(frozen=True)
 class RimPart(Frozen):
     """The round of a roller in sectors, the gaps between the given ones included; angles [rad] about the
     axis from the x axis of its body, as the run begins. Each ends where the next begins, the last a whole
@@ -276,6 +290,17 @@ class RollerPart(Frozen):
     one_way: OneWay | None  # with a drive: the speed is that of the shaft, which the roller may overrun
     press: Press | None
     rim: RimPart | None = None
+    arm: ArmPart | None = None
+
+    @property
+    def swung_inertia(self) -> float:
+        """Inertia of all that turns with its arm about the pivot [g mm^2]: a free roller does not turn."""
+        assert self.arm is not None, "asked only of a roller on an arm"
+        total = self.arm.inertia + (self.inertia_axial if self.speed is not None else 0.0)
+        for mass, at in ((self.arm.mass, self.arm.center), (self.mass, self.center)):
+            way = np.cross(self.axis, at - self.arm.pivot)
+            total += mass * float(way @ way)
+        return total
 
     @property
     def reach(self) -> float:

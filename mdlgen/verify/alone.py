@@ -37,6 +37,7 @@ def _machine(model: Model) -> set[str]:
         n = part.name
         names |= {f"{kind}_{n}" for kind in ("p", "b", "gbox", "gcyl", "j", "o", "ds")}
         names |= {f"p_{n}_anchor", f"b_{n}_carrier", f"j_{n}_slide"}
+        names |= {f"p_{n}_pivot", f"p_{n}_arm", f"b_{n}_arm", f"j_{n}_pivot", f"bsh_{n}_arm"}
     for guide in model.guides:
         names.add(f"m_{guide.name}")
         names |= {f"{kind}_{guide.name}_{k}" for kind in ("p", "gbox") for k in range(guide.facets)}

@@ -116,6 +116,9 @@ def _points(model: Model) -> Table:
         if roller.press is not None:
             names.append(f"p_{roller.name}_anchor")
             places.append(_spring_anchor(roller)[None])
+        if roller.arm is not None:
+            names += [f"p_{roller.name}_pivot", f"p_{roller.name}_arm"]
+            places += [roller.arm.pivot[None], roller.arm.center[None]]
     for plane in model.planes:
         names.append(f"p_{plane.name}")
         places.append(plane.center[None])
@@ -133,14 +136,19 @@ def _rim(model: Model, roller: RollerPart) -> list[tuple[str, Facet]]:
 def _bodies(model: Model) -> Table:
     bodies = model.bodies
     pressed = [r for r in model.rollers if r.press is not None]
+    swung = [(r.name, r.arm) for r in model.rollers if r.arm is not None]
     names = [f"b_{n}" for n in bodies.name] + [f"b_{r.name}_carrier" for r in pressed]
+    names += [f"b_{name}_arm" for name, _ in swung]
     carrier = np.array([r.press.carrier_mass for r in pressed if r.press is not None])
     radius = np.array([r.radius for r in pressed])
     ball = (0.4 * carrier * radius**2)[:, None] * np.ones(3)  # a solid ball of the roller's radius
-    mass = np.concatenate([bodies.mass, carrier]) * KG
-    inertia = np.concatenate([bodies.inertia, ball]) * KG
-    position = np.concatenate([bodies.position, *(bodies.position[r.body][None] for r in pressed)])
-    axes = np.concatenate([bodies.rotation.transpose(0, 2, 1), *(np.eye(3)[None] for _ in pressed)])
+    # of an arm the inertia about its own axis counts; the text gives it for all three
+    arms = np.array([arm.inertia for _, arm in swung])[:, None] * np.ones(3)
+    mass = np.concatenate([bodies.mass, carrier, [arm.mass for _, arm in swung]]) * KG
+    inertia = np.concatenate([bodies.inertia, ball, arms.reshape(-1, 3)]) * KG
+    places = [bodies.position[r.body][None] for r in pressed] + [arm.center[None] for _, arm in swung]
+    position = np.concatenate([bodies.position, *places])
+    axes = np.concatenate([bodies.rotation.transpose(0, 2, 1), *(np.eye(3)[None] for _ in places)])
     products = np.zeros_like(inertia)
     parts: dict[str, Part] = {
         "mass": (mass, None),
@@ -157,22 +165,31 @@ def _bushings(model: Model) -> Table:
     stiff = rows.k[:, :3].copy()
     bent = np.flatnonzero(model.curves.of >= 0)
     stiff[bent, model.curves.axis[bent]] = 0.0  # a curve stands there: see _curve_laws
+    arms = [(r, r.arm) for r in model.rollers if r.arm is not None and r.arm.sprung]
+    turned = [model.bodies.rotation[r.body] for r, _ in arms]
+    last, none = np.eye(3)[2], np.zeros((len(arms), 3))
+
+    def both(own: Floats, more: list[Floats]) -> Floats:
+        return np.concatenate([own, np.array(more).reshape(-1, *own.shape[1:])])
+
     parts: dict[str, Part] = {
-        "origin": (rows.origin, reach(model)),
-        "axes": (rows.axes.transpose(0, 2, 1), 1.0),
-        "k": (stiff, None),
-        "c": (rows.c[:, :3] * SECOND, None),
-        "kt": (rows.k[:, 3:], None),
-        "ct": (rows.c[:, 3:] * SECOND, None),
-        "force": (np.zeros((len(rows), 3)), 1.0),
+        "origin": (both(rows.origin, [arm.pivot for _, arm in arms]), reach(model)),
+        "axes": (both(rows.axes, turned).transpose(0, 2, 1), 1.0),
+        "k": (both(stiff, [*none]), None),
+        "c": (both(rows.c[:, :3], [*none]) * SECOND, None),
+        "kt": (both(rows.k[:, 3:], [arm.stiffness * last for _, arm in arms]), None),
+        "ct": (both(rows.c[:, 3:], [arm.damping * last for _, arm in arms]) * SECOND, None),
+        "force": (np.zeros((len(rows) + len(arms), 3)), 1.0),
         # on the first body, which the second one is to turn away from
-        "torque": (-rows.k[:, 3:] * rows.rest, 1.0),
+        "torque": (both(-rows.k[:, 3:] * rows.rest, [arm.torque * last for _, arm in arms]), 1.0),
     }
     words = [
         (body_name(model, a), body_name(model, b))
         for a, b in zip(rows.a.tolist(), rows.b.tolist(), strict=True)
     ]
-    return table([f"bsh_{n}" for n in rows.name], parts, words)
+    words += [(f"b_{r.name}_arm", "B_Ground") for r, _ in arms]
+    names = [f"bsh_{n}" for n in rows.name] + [f"bsh_{r.name}_arm" for r, _ in arms]
+    return table(names, parts, words)
 
 
 def _curves(model: Model) -> Table:
@@ -275,6 +292,9 @@ def _joints(model: Model) -> Table:
         if roller.press is not None:
             on = f"b_{name}_carrier"
             add(f"j_{name}_slide", "TRANSLATIONAL", on, "B_Ground", at, roller.press.direction)
+        if roller.arm is not None:
+            on = f"b_{name}_arm"
+            add(f"j_{name}_pivot", "REVOLUTE", on, "B_Ground", roller.arm.pivot, roller.axis)
         add(f"j_{name}", "REVOLUTE", f"b_{name}", on, at, roller.axis)
     parts: dict[str, Part] = {
         "origin": (np.array(origins).reshape(-1, 3), reach(model)),

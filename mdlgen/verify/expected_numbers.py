@@ -28,6 +28,8 @@ CONTACT_NUMBERS = (
 FACTORS = {
     **dict.fromkeys(("mm", "N", "1", "MPa", "N/mm", "N*mm", "N*mm/rad", "N/mm^1.5"), 1.0),
     "g": KG,
+    "g*mm^2": KG,
+    "N*mm*ms/rad": SECOND,
     "ms": SECOND,
     "mm/ms": 1 / SECOND,
     "rad/ms": 1 / SECOND,
@@ -50,6 +52,8 @@ def data(model: Model) -> Table:
         found |= {f"ds_{guide.name}.real_{member}": value for member, value in _guide(guide).items()}
     for roller in model.rollers:
         found |= {f"ds_{roller.name}.real_{member}": value for member, value in _rim(roller).items()}
+        if roller.arm is not None:
+            found.setdefault(f"ds_{roller.name}.real_I_a", roller.arm.inertia * KG)
     for support in model.supports:
         found[f"ds_{support.name}.real_factor"] = _factor(model, support)
         found |= _place(support.name, support.at, support.edge)
