@@ -174,8 +174,8 @@ def test_a_motor_on_the_arm_bears_what_the_roller_rubs(solver: str, speed: float
     result = solved(made, solver)
     late = result.time > 30.0
     sunk = 100.0 * angle(result, "skim")[late].mean()
-    # the rim goes along -x at its lower side where the speed is positive; friction on it along +x, which with the
-    # normal force lifts the arm
+    # with a positive speed the lower side of the rim goes along -x; friction on it is along +x, and lifts the
+    # arm as the normal force does
     lever = 40.0 + np.sign(speed) * 0.3 * 5.0
     due = (60.0 - sunk + weights(made)) / lever
     assert force(result, "skim")[late].mean() == pytest.approx(due, rel=5e-3)
