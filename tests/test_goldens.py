@@ -104,8 +104,7 @@ ROLLERS = _put(
         "pressed": ROLLER | {"center": ["0 mm", "0 mm", "5 mm"], "press": PRESS},
         "toothed": ROLLER
         | {"radius": "1 mm", "rim": {"sectors": [{"from": "0 deg", "to": "90 deg", "radius": "1.1 mm"}]}},
-        "swung": ROLLER
-        | {"arm": {"pivot": ["-30 mm", "0 mm", "-5 mm"], "mass": "8 g", "torque": "60 N*mm"}},
+        "swung": ROLLER | {"arm": {"pivot": ["-30 mm", "0 mm", "-5 mm"], "mass": "8 g", "torque": "60 N*mm"}},
         "held": ROLLER
         | {"axis": "x", "arm": {"pivot": ["0 mm", "9 mm", "0 mm"], "mass": "2 g", "inertia": "90 g*mm^2"}},
         "stopped": ROLLER | {"drive": {"profile": [["1 ms", "90 rad/s"], ["2 ms", "-9 rad/s"]]}},
