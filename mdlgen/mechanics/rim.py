@@ -18,16 +18,15 @@ import math
 import numpy as np
 from numba import njit
 
-from mdlgen.mechanics.contact import box_sector, cylinder_cylinder
+from mdlgen.mechanics.contact import WHOLE, box_sector, cylinder_cylinder
 from mdlgen.mechanics.laws import damping_share
 from mdlgen.mechanics.vector import back, cross, dot, rotate, scale, sub, three
 from mdlgen.model.rims import MOST_PIECES, pieces
 from mdlgen.model.tables import RollerPart
+from mdlgen.spec.rim import TURN
 
 PIECE = 6
 RIM = [("rims", "i8"), ("blend", "f8"), ("rim", "f8", PIECE * MOST_PIECES)]
-_TURN = 2.0 * math.pi
-_WHOLE = 4.0
 
 
 def rim(row: np.void, roller: RollerPart, length: float = 1.0) -> None:
@@ -74,16 +73,16 @@ def profile(body, angle, beta):
     """At an angle of the rim: (h, h', stiffness and friction in times the contact's, the growth of the former
     per rad, share of damping); `beta` is the contact's."""
     count = body.rims
-    angle = angle - _TURN * math.floor(angle / _TURN)
+    angle = angle - TURN * math.floor(angle / TURN)
     i = count - 1
     while i > 0 and body.rim[PIECE * i] > angle:
         i -= 1
     begin = body.rim[PIECE * i]
-    end = body.rim[PIECE * (i + 1)] if i + 1 < count else _TURN
+    end = body.rim[PIECE * (i + 1)] if i + 1 < count else TURN
     h, lever, stiff, rough, damping = _piece(body, i, angle, beta)
     behind = angle - begin < end - angle
     j = (i - 1 if behind else i + 1) % count
-    wide = (body.rim[PIECE * (j + 1)] if j + 1 < count else _TURN) - body.rim[PIECE * j]
+    wide = (body.rim[PIECE * (j + 1)] if j + 1 < count else TURN) - body.rim[PIECE * j]
     # a piece may be narrower than what its ends are blended over
     half = min(body.blend, 0.5 * (end - begin), 0.5 * wide)
     away = angle - begin if behind else end - angle
@@ -141,7 +140,7 @@ def box_rim(out, xa, ra, va, wa, half, exposed, body, xb, rb, axis, vb, wb, widt
         xb,
         axis,
         axis,
-        _WHOLE,
+        WHOLE,
         vb,
         wb,
         h,
