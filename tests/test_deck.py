@@ -273,22 +273,28 @@ def test_the_numbers_that_the_text_leaves_to_its_script(case: tuple[Model, str])
     model, deck = case
     found, table = motionsolve.read(deck).values, model.contacts
     assert_same(found["gravity"], (model.gravity * 1e6).tolist(), "gravity", 1e-3)
-    rows = {
-        f"con_{model.bodies.name[a]}_{model.bodies.name[b]}": row
-        for row, a, b in zip(
-            *(c.tolist() for c in (model.pairs.contact, model.pairs.a, model.pairs.b)), strict=True
-        )
-    }
+    rims = {r.body: r.rim for r in model.rollers if r.rim is not None}
+    rows = {}
+    for row, a, b in zip(
+        *(c.tolist() for c in (model.pairs.contact, model.pairs.a, model.pairs.b)), strict=True
+    ):
+        name, rim = f"con_{model.bodies.name[a]}_{model.bodies.name[b]}", rims.get(a) or rims.get(b)
+        if rim is None:
+            rows[name] = (row, 1.0, 1.0, table.restitution[row])
+        for k, sector in enumerate(rim.name if rim is not None else ()):
+            assert rim is not None
+            bounce = table.restitution[row] if np.isnan(rim.restitution[k]) else rim.restitution[k]
+            rows[f"{name}_{sector}"] = (row, rim.friction[k], rim.stiffness[k], bounce)
     assert set(found["contacts"]) == set(rows)
     for name, contact in found["contacts"].items():
-        row = rows[name]
-        due = [table.stiffness[row], table.restitution[row], table.smoothing[row] * 1000]
+        row, rough, stiff, bounce = rows[name]
+        due = [table.stiffness[row] * stiff, bounce, table.smoothing[row] * 1000]
         assert_same([contact[k] for k in ("penalty", "restitution", "normal_trans_vel")], due, name)
         friction = ("mu_static", "mu_dynamic", "stiction_velocity", "friction_velocity")
         assert (contact["friction"] == "ON") == all(k in contact for k in friction)
         assert (contact["friction"] == "ON") == bool(table.mu_static[row] > 0 or table.mu_dynamic[row] > 0)
         if contact["friction"] == "ON":
-            due = [table.mu_static[row], table.mu_dynamic[row]]
+            due = [table.mu_static[row] * rough, table.mu_dynamic[row] * rough]
             due += [table.stiction_velocity[row] * 1000, table.friction_velocity[row] * 1000]
             assert_same([contact[k] for k in friction], due, name)
 

@@ -102,6 +102,11 @@ ROLLERS = _put(
         "driven": ROLLER | {"axis": "x", "drive": DRIVE},
         "ramped": ROLLER | {"axis": [0.6, 0.8, 0], "drive": DRIVE | {"ramp": "5 ms"}},
         "pressed": ROLLER | {"center": ["0 mm", "0 mm", "5 mm"], "press": PRESS},
+        "toothed": ROLLER
+        | {"radius": "1 mm", "rim": {"sectors": [{"from": "0 deg", "to": "90 deg", "radius": "1.1 mm"}]}},
+        "swung": ROLLER | {"arm": {"pivot": ["-30 mm", "0 mm", "-5 mm"], "mass": "8 g", "torque": "60 N*mm"}},
+        "held": ROLLER
+        | {"axis": "x", "arm": {"pivot": ["0 mm", "9 mm", "0 mm"], "mass": "2 g", "inertia": "90 g*mm^2"}},
         "stopped": ROLLER | {"drive": {"profile": [["1 ms", "90 rad/s"], ["2 ms", "-9 rad/s"]]}},
     },
 )

@@ -6,6 +6,7 @@ import numpy as np
 from numba import njit
 
 from backends.exudyn_local.system import System
+from mdlgen.mechanics.arm import hung, moved, speeding, torque_of, turn_of, way_of
 from mdlgen.mechanics.bushing import bushing
 from mdlgen.mechanics.contact import OUT
 from mdlgen.mechanics.curve import curve_excess, middle_and_gap
@@ -32,6 +33,8 @@ from mdlgen.model.tables import Floats
 # stretching part would hide the bending; in a transient run the mass stands in between.
 _E_POSITION, _E_VELOCITY = 1e-9, 1e-6
 _E_CENTRAL = 1e-7
+# Either way of a time the speed of a drive is taken for its growth [s].
+_INSTANT = 1e-7
 
 # x, r, u, w, out, f: what the functions below write into
 Work = tuple[Floats, Floats, Floats, Floats, Floats, Floats]
@@ -70,11 +73,22 @@ def place_body(bodies, body, q, v, t, x, r, u, w):
     r[body, 8] = 1 - 2 * (e1 * e1 + e2 * e2)
     k = bodies[body].slide
     if k >= 0:
+        at = moved(bodies[body], vec(x, body), q[k])
+        way = way_of(bodies[body], at)
         for i in range(3):
-            x[body, i] += q[k] * bodies[body].way[i]
-            u[body, i] += v[k] * bodies[body].way[i]
+            x[body, i] = at[i]
+            u[body, i] += v[k] * way[i]
     spin = bodies[body].spin
+    if bodies[body].rims > 0:
+        angle = q[spin] if spin >= 0 else turned(bodies[body], t)
+        if bodies[body].swings == 2:
+            angle += q[k]
+        m = matmul(exp_rotation(scale(angle, three(bodies[body].axis))), mat(r, body))
+        for i in range(9):
+            r[body, i] = m[i]
     rate = v[spin] if spin >= 0 else prescribed(bodies[body], t)
+    if bodies[body].swings == 2:
+        rate += v[k]
     for i in range(3):
         w[body, i] += rate * bodies[body].axis[i]
     if bodies[body].carries != 0:  # a mesh shows how far the roller has turned
@@ -106,7 +120,9 @@ def _spread(bodies, body, q, force, torque, f):
         f[n + 6] += 2 * (e2 * a - e1 * b + e0 * c)
         return
     if bodies[body].slide >= 0:
-        f[bodies[body].slide] += dot(force, three(bodies[body].way))
+        ref = bodies[body].reference
+        at = moved(bodies[body], (ref[0], ref[1], ref[2]), q[bodies[body].slide])
+        f[bodies[body].slide] += dot(force, way_of(bodies[body], at)) + dot(torque, turn_of(bodies[body]))
     if bodies[body].spin >= 0:
         f[bodies[body].spin] += dot(torque, three(bodies[body].axis))
 
@@ -159,11 +175,18 @@ def _pair(bodies, pair, meshes, q, x, r, u, w, f, out):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def _slide(bodies, gravity, body, q, v, f, level):
-    """Spring, damper and weight on a slide; `level` scales the preload's rest in a static run."""
+def _slide(bodies, gravity, body, q, v, t, f, level):
+    """Spring, damper and weight on a slide or an arm; `level` scales the preload's rest in a static run."""
     k = bodies[body].slide
     p = bodies[body].press
-    f[k] += p[2] - p[0] * q[k] - p[1] * v[k] + level * p[3] * dot(three(bodies[body].way), three(gravity))
+    f[k] += p[2] - p[0] * q[k] - p[1] * v[k]
+    if bodies[body].swings == 0:
+        f[k] += level * p[3] * dot(three(bodies[body].way), three(gravity))
+        return
+    ref = bodies[body].reference
+    at = moved(bodies[body], (ref[0], ref[1], ref[2]), q[k])
+    f[k] += level * bodies[body].mass * dot(way_of(bodies[body], at), three(gravity))
+    f[k] += torque_of(bodies[body], q[k], scale(level, three(gravity)), t, _INSTANT)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -186,7 +209,7 @@ def forces(bodies, bushings, points, pairs, meshes, loads, gravity, q, v, t, lev
             for i in range(3):
                 f[n + i] += level * bodies[body].mass * gravity[i]
         if bodies[body].slide >= 0:
-            _slide(bodies, gravity, body, q, v, f, level)
+            _slide(bodies, gravity, body, q, v, t, f, level)
         if bodies[body].clutch[0] != 0.0:
             f[bodies[body].spin] += clutch(bodies[body], v[bodies[body].spin], t)[0]
     for i in range(bushings.size):
@@ -235,7 +258,7 @@ def _element(
     for body in range(bodies.size - 1):
         if bodies[body].slide >= 0:
             if element == 0:
-                _slide(bodies, gravity, body, q, v, f, level)
+                _slide(bodies, gravity, body, q, v, t, f, level)
                 return True
             element -= 1
     for body in range(bodies.size - 1):
@@ -421,7 +444,13 @@ def ledger(bodies, bushings, points, pairs, meshes, loads, gravity, q, v, t, x, 
         if k >= 0:
             p = bodies[body].press
             kinetic += 0.5 * p[3] * v[k] * v[k]
-            potential -= p[3] * dot(three(gravity), three(bodies[body].way)) * q[k] + p[2] * q[k]
+            potential -= p[2] * q[k]
+            if bodies[body].swings > 0:
+                potential += hung(bodies[body], q[k], three(gravity))
+                potential -= bodies[body].mass * dot(three(gravity), vec(x, body))
+                driven -= speeding(bodies[body], t, _INSTANT) * v[k]
+            else:
+                potential -= p[3] * dot(three(gravity), three(bodies[body].way)) * q[k]
             elastic += 0.5 * p[0] * q[k] * q[k]
             lost += p[1] * v[k] * v[k]
         if bodies[body].spin >= 0:
@@ -442,7 +471,8 @@ def ledger(bodies, bushings, points, pairs, meshes, loads, gravity, q, v, t, x, 
         lost += row[14]
         for body, at in ((pairs[i].a, 0), (pairs[i].b, 6)):
             if bodies[body].first < 0 and bodies[body].spin < 0:
-                driven -= row[at + 3] * w[body, 0] + row[at + 4] * w[body, 1] + row[at + 5] * w[body, 2]
+                about = dot((row[at + 3], row[at + 4], row[at + 5]), three(bodies[body].axis))
+                driven -= about * prescribed(bodies[body], t)
     for i in range(loads.size):
         load = loads[i]
         body = load.body

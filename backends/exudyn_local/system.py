@@ -12,10 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mdlgen.errors import RefusedError
+from mdlgen.mechanics.arm import ARM, arm
 from mdlgen.mechanics.curve import FOLLOWS, curve_points, follow
 from mdlgen.mechanics.driven import DRIVEN, drive
 from mdlgen.mechanics.laws import damping_share
 from mdlgen.mechanics.mesh import Meshes, mesh_numbers, mesh_tables
+from mdlgen.mechanics.rim import RIM, rim
 from mdlgen.model.meshes import check_balance
 from mdlgen.model.rotations import matrices
 from mdlgen.model.tables import Floats, Ints, Model
@@ -39,12 +41,14 @@ BODY = np.dtype(
         ("way", "f8", 3),  # direction of a roller's slide
         ("press", "f8", 5),  # k [N/m], c [N s/m], force at the start [N], sliding mass [kg], axial inertia
         *DRIVEN,
-        ("size", "f8", 2),  # radius, width of a roller [m]
+        ("size", "f8", 2),  # radius, of a rim the greatest, and width of a roller [m]
         ("first", "i8"),  # first of a box's 7 coordinates, -1: not free
         ("slide", "i8"),  # coordinate of a roller's slide, -1: none
         ("spin", "i8"),  # coordinate of a roller's spin, -1: prescribed
         ("exposed", "i8"),  # side faces of a box as a bit mask
         ("carries", "i8"),  # 1: a roller with a mesh on it, whose turn is followed
+        *RIM,
+        *ARM,
     ]
 )
 BUSHING = np.dtype(
@@ -113,6 +117,11 @@ def check(model: Model) -> None:
     """Raises RefusedError for what this backend cannot represent."""
     check_balance(model)
     for roller in model.rollers:
+        if roller.arm is not None and model.run.analysis == "static":
+            raise RefusedError(
+                f"exudyn: a static analysis with an arm ({roller.name}) is not there yet",
+                ("rollers", roller.name, "arm"),
+            )
         if roller.press is not None and abs(float(roller.press.direction @ roller.axis)) > 1e-9:
             raise RefusedError(f"roller {roller.name}: a press along its own axis is not modelled by exudyn")
 
@@ -157,7 +166,8 @@ def _bodies(model: Model, moving: bool) -> tuple[np.ndarray, int]:
                 free += 7
     for roller in model.rollers:
         row = bodies[roller.body]
-        row["axis"], row["size"] = roller.axis, (roller.radius * MM, roller.width * MM)
+        row["axis"], row["size"] = roller.axis, (roller.reach * MM, roller.width * MM)
+        rim(row, roller, MM)
         row["press"][4] = (roller.inertia_axial + roller.carried[1]) * G * MM**2
         if roller.press is not None:
             spring = roller.press
@@ -165,6 +175,9 @@ def _bodies(model: Model, moving: bool) -> tuple[np.ndarray, int]:
             force = spring.preload - spring.stiffness * (spring.start - spring.touch)
             mass = (roller.mass + roller.carried[0] + spring.carrier_mass) * G
             row["press"][:4] = (spring.stiffness * PER_MM, spring.damping * MS * PER_MM, force, mass)
+            row["slide"], free = free, free + 1
+        if roller.arm is not None:
+            arm(row, roller, MM, G, MS)
             row["slide"], free = free, free + 1
         if moving:  # in a static analysis no roller turns
             drive(row, roller, MS, MM)

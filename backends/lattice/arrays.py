@@ -2,7 +2,8 @@
 
 Free boxes are the nodes of the lattice, six unknowns each; they are numbered so that neighbours stand close
 (along the shorter side of the sheet first), which makes the matrix a band. Free rollers turn (one unknown),
-pressed ones also slide (one more): the border of the matrix. Everything else is held or driven.
+pressed ones also slide, and those on an arm swing (one more): the border of the matrix. Everything else is
+held or driven.
 """
 
 from __future__ import annotations
@@ -12,10 +13,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from backends.lattice.search import Search, plan
+from mdlgen.mechanics.arm import ARM, arm
 from mdlgen.mechanics.curve import FOLLOWS, curve_points, follow
 from mdlgen.mechanics.driven import DRIVEN, drive
 from mdlgen.mechanics.laws import damping_share
 from mdlgen.mechanics.mesh import Meshes, mesh_numbers, mesh_tables
+from mdlgen.mechanics.rim import RIM, rim
 from mdlgen.model.rotations import matrices
 from mdlgen.model.tables import BOX_BOX, BOX_MESH, GROUND, Floats, Ints, Model
 
@@ -35,10 +38,12 @@ BODY = np.dtype(
         ("exposed", "i8"),
         ("axis", "f8", 3),
         ("way", "f8", 3),  # direction of a slide, or normal of a plane
-        ("press", "f8", 5),  # k, c, force at the start, sliding mass, axial inertia
+        ("press", "f8", 5),  # k, c, force at the start, sliding mass, axial inertia; of an arm mechanics.arm
         *DRIVEN,
-        ("size", "f8", 2),  # radius, width
+        ("size", "f8", 2),  # radius, of a rim the greatest, and width
         ("carries", "i8"),  # 1: a roller with a mesh on it, whose turn is followed
+        *RIM,
+        *ARM,
     ]
 )
 JOINT = np.dtype(
@@ -150,7 +155,7 @@ def _bodies(model: Model) -> tuple[np.ndarray, Ints, int]:
     border = 0
     for roller in model.rollers:
         row = bodies[roller.body]
-        row["axis"], row["size"] = roller.axis, (roller.radius, roller.width)
+        row["axis"], row["size"] = roller.axis, (roller.reach, roller.width)
         row["press"][4] = roller.inertia_axial + roller.carried[1]
         if roller.press is not None:
             spring = roller.press
@@ -159,7 +164,11 @@ def _bodies(model: Model) -> tuple[np.ndarray, Ints, int]:
             mass = roller.mass + roller.carried[0] + spring.carrier_mass
             row["press"][:4] = (spring.stiffness, spring.damping, force, mass)
             row["slide"], border = border, border + 1
+        if roller.arm is not None:
+            row["slide"], border = border, border + 1
         drive(row, roller)
+        rim(row, roller)
+        arm(row, roller)
         if roller.turns:
             row["spin"], border = border, border + 1
     for guide in model.guides:
@@ -252,7 +261,7 @@ def _laws(model: Model, chosen: Ints) -> np.ndarray:
     return pairs
 
 
-def partner(model: Model, pair: np.void) -> int:
+def partner(model: Model, pair: Any) -> int:
     """The body that the second one of a pair is called by: a mesh, where that moves with another."""
     return model.meshes[int(pair["mesh"])].body if pair["kind"] == BOX_MESH else int(pair["b"])
 

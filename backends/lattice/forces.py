@@ -7,10 +7,11 @@ import math
 from numba import njit
 
 from backends.lattice.image import reflect, reflect_rates
+from mdlgen.mechanics.arm import moved, way_of
 from mdlgen.mechanics.bushing import bushing_pair
 from mdlgen.mechanics.contact import MOST_POINTS, OUT, POINT
 from mdlgen.mechanics.curve import curve_excess
-from mdlgen.mechanics.driven import clutch, prescribed
+from mdlgen.mechanics.driven import clutch, prescribed, turned
 from mdlgen.mechanics.guide import inward
 from mdlgen.mechanics.mesh import mesh_near
 from mdlgen.mechanics.pair import BOX_BOX, BOX_GUIDE, BOX_MESH, BOX_PLANE, CYLINDER_CYLINDER, pair_force
@@ -47,19 +48,36 @@ def place_box(b, h, rate, spin, x, r, xm, rm, um, wm):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def place_roller(body, b, h, t, rate, turning, x, r, xm, rm, um, wm):
-    """One roller after h at the rates of its slide and its spin, where it has them; t: that time."""
+def turn_roller(body, b, h, t, turning, r, rm):
+    """Turns a roller by what it does in h at the rate `turning`, its own or that of its arm, and by its drive
+    up to the time t."""
+    angle = h * turning
     if body.spin < 0:
-        turning = prescribed(body, t)
+        angle += turned(body, t) - turned(body, t - h)
+    m = matmul(exp_rotation(scale(angle, three(body.axis))), mat(r, b))
+    for i in range(9):
+        rm[b, i] = m[i]
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def place_roller(body, b, h, t, rate, turning, x, r, xm, rm, um, wm):
+    """One roller after h at the rates of its slide and its spin, where it has them; t: that time. One that is
+    round need not turn."""
+    if body.swings == 2:
+        turning = rate
+    if body.rims > 0 or body.carries != 0:
+        turn_roller(body, b, h, t, turning, r, rm)
+    if body.spin < 0:
+        turning += prescribed(body, t)
+    at = vec(x, b)
+    if body.slide >= 0:
+        at = moved(body, at, h * rate)
+    way = way_of(body, at)
     for i in range(3):
         if body.slide >= 0:
-            xm[b, i] = x[b, i] + h * rate * body.way[i]
-        um[b, i] = rate * body.way[i]
+            xm[b, i] = at[i]
+        um[b, i] = rate * way[i]
         wm[b, i] = turning * body.axis[i]
-    if body.carries != 0:  # a mesh shows how far the roller has turned
-        m = matmul(exp_rotation(scale(h * turning, three(body.axis))), mat(r, b))
-        for i in range(9):
-            rm[b, i] = m[i]
 
 
 @njit(cache=True, error_model="numpy")

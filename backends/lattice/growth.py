@@ -6,9 +6,10 @@ from numba import njit
 
 from backends.lattice.dense import lu_solve_transposed
 from backends.lattice.tangent import core, hat_left, hat_right
+from mdlgen.mechanics.arm import turn_of, way_of
 from mdlgen.mechanics.contact import OUT, POINT
 from mdlgen.mechanics.driven import clutch
-from mdlgen.mechanics.vector import back, cross, mat, sub, three, vec
+from mdlgen.mechanics.vector import add, back, cross, mat, sub, three, vec
 
 
 @njit(cache=True, error_model="numpy")
@@ -41,13 +42,14 @@ def _put(g, row, column, sign, t):
 
 
 @njit(cache=True, error_model="numpy")
-def _rollers(body, arm, axes, sign, first, direction, index, found):
+def _rollers(body, x, arm, axes, sign, first, direction, index, found):
     """A roller's unknowns that move it against a box, each as a velocity and an angular velocity at the box's
-    centre; `arm` goes from there to the roller's."""
+    centre; `arm` goes from there to the roller's, which is x."""
     if body.slide >= 0:
-        way = back(axes, three(body.way))
+        turn = back(axes, turn_of(body))
+        way = add(back(axes, way_of(body, x)), cross(arm, turn))
         for c in range(3):
-            direction[found, c], direction[found, 3 + c] = sign * way[c], 0.0
+            direction[found, c], direction[found, 3 + c] = sign * way[c], sign * turn[c]
         index[found] = first + body.slide
         found += 1
     if body.spin >= 0:
@@ -98,9 +100,13 @@ def gradient(bodies, pairs, h, x, r, count, alone, acting, many, chord):
                     growth[first + i, first + j] += one[i, j]
         else:
             still = (0.0, 0.0, 0.0)
-            moving = _rollers(bodies[pair.a], still, axes, 1.0, 6 * acting, direction, index, moving)
+            moving = _rollers(
+                bodies[pair.a], vec(x, pair.a), still, axes, 1.0, 6 * acting, direction, index, moving
+            )
         far = back(axes, sub(vec(x, pair.b), vec(x, pair.a)))
-        moving = _rollers(bodies[pair.b], far, axes, -1.0, 6 * acting, direction, index, moving)
+        moving = _rollers(
+            bodies[pair.b], vec(x, pair.b), far, axes, -1.0, 6 * acting, direction, index, moving
+        )
         for j in range(moving):
             d = direction[j]
             for i in range(6):

@@ -9,6 +9,7 @@ from numba import njit
 from backends.lattice.dense import copy
 from backends.lattice.search import look, strayed
 from backends.lattice.step import ROUNDS, STEPS, STRAIN, TOUCHING, WORST, carry, midpoint, spun
+from mdlgen.mechanics.arm import speeding
 from mdlgen.mechanics.curve import overstretched
 from mdlgen.mechanics.driven import clutch, prescribed
 from mdlgen.mechanics.mesh import LOST
@@ -111,6 +112,8 @@ def _account(system, mid, ub, vb, t, dt, work):
             rate = prescribed(bodies[b], t + 0.5 * dt)
             axis = bodies[b].axis
             driving -= rate * (f[b, 3] * axis[0] + f[b, 4] * axis[1] + f[b, 5] * axis[2])
+            if bodies[b].swings == 2:
+                driving -= speeding(bodies[b], t + 0.5 * dt, 0.5 * dt) * ub[bodies[b].slide]
         if bodies[b].slide >= 0:
             lost += bodies[b].press[1] * ub[bodies[b].slide] ** 2
     work[0] += dt * lost

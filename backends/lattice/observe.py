@@ -5,8 +5,9 @@ from __future__ import annotations
 from numba import njit
 
 from backends.lattice.forces import joint_forces, near_pairs, pair_forces
+from mdlgen.mechanics.arm import hung, way_of
 from mdlgen.mechanics.driven import prescribed
-from mdlgen.mechanics.vector import back, mat, rotate
+from mdlgen.mechanics.vector import back, dot, mat, rotate, three, vec
 
 
 @njit(cache=True, error_model="numpy")
@@ -55,11 +56,15 @@ def ledger(
         slide, spin_at, p = bodies[b].slide, bodies[b].spin, bodies[b].press
         rate = 0.0
         if slide >= 0:
-            way = bodies[b].way
+            way = way_of(bodies[b], vec(x, b))
             kinetic += 0.5 * p[3] * vb[slide] * vb[slide]
             elastic += 0.5 * p[0] * s[slide] * s[slide]
-            fall = gravity[0] * way[0] + gravity[1] * way[1] + gravity[2] * way[2]
-            potential -= (p[2] + p[3] * fall) * s[slide]
+            potential -= p[2] * s[slide]
+            if bodies[b].swings > 0:
+                potential += hung(bodies[b], s[slide], three(gravity))
+                potential -= bodies[b].mass * dot(vec(x, b), three(gravity))
+            else:
+                potential -= p[3] * dot(way, three(gravity)) * s[slide]
             for i in range(3):
                 u[b, i] = vb[slide] * way[i]
         if spin_at >= 0:
@@ -67,6 +72,8 @@ def ledger(
             kinetic += 0.5 * p[4] * rate * rate
         else:
             rate = prescribed(bodies[b], t)
+        if bodies[b].swings == 2:
+            rate += vb[slide]
         for i in range(3):
             w[b, i] += rate * bodies[b].axis[i]
     stored, _ = joint_forces(joints, points, x, r, u, w, f)

@@ -23,6 +23,11 @@ def check(model: Model) -> None:
             ("run", "analysis"),
         )
     for roller in model.rollers:
+        if roller.arm is not None and model.run.analysis == "static":
+            raise RefusedError(
+                f"lattice: a static analysis with an arm ({roller.name}) is not there yet",
+                ("rollers", roller.name, "arm"),
+            )
         if roller.press is not None and abs(float(roller.press.direction @ roller.axis)) > 1e-9:
             raise RefusedError(
                 f"lattice: roller {roller.name} is pressed along its own axis, which is not modelled",

@@ -30,14 +30,16 @@ from backends.lattice.forces import (
     pair_forces,
     pair_forces_again,
     place,
+    turn_roller,
 )
 from backends.lattice.image import reflect
 from backends.lattice.momentum import keep
 from backends.lattice.sides import crossed, part_of_change
 from backends.lattice.tangent import contacts_into, in_box_axes, joints_into, masses, rollers_into
 from backends.lattice.touching import settle
+from mdlgen.mechanics.arm import moved, torque_of, turn_of, way_of
 from mdlgen.mechanics.driven import clutch, prescribed
-from mdlgen.mechanics.vector import back, exp_rotation, mat, matmul, rotate, scale, three
+from mdlgen.mechanics.vector import back, dot, exp_rotation, mat, matmul, rotate, three, vec
 
 # Rounds of one step before it is given up.
 MOST_ROUNDS = 40
@@ -58,8 +60,8 @@ STEPS, ROUNDS, FACTORS, TOUCHING, WORST, STRAIN, THROUGH, COUNTERS = 0, 1, 2, 3,
 
 
 @njit(cache=True, error_model="numpy")
-def _residual(bodies, nodes, h, u, ub, v, l, vb, s, rm, f, res, resb):
-    """Residual of the step's equations into res (6 nodes,) and resb (border,)."""
+def _residual(bodies, nodes, gravity, t, h, u, ub, v, l, vb, s, xm, rm, f, res, resb):
+    """Residual of the step's equations into res (6 nodes,) and resb (border,); t is in the middle."""
     for n in range(nodes.size):
         b = nodes[n]
         m = mat(rm, b)
@@ -73,8 +75,10 @@ def _residual(bodies, nodes, h, u, ub, v, l, vb, s, rm, f, res, resb):
         p = bodies[k].press
         slide, spin_at = bodies[k].slide, bodies[k].spin
         if slide >= 0:
-            way = bodies[k].way
-            along = f[k, 0] * way[0] + f[k, 1] * way[1] + f[k, 2] * way[2]
+            along = dot(vec(f, k), way_of(bodies[k], vec(xm, k)))
+            if bodies[k].swings > 0:
+                along += dot((f[k, 3], f[k, 4], f[k, 5]), turn_of(bodies[k]))
+                along += torque_of(bodies[k], s[slide] + h * ub[slide], three(gravity), t, h)
             spring = p[2] - p[0] * (s[slide] + h * ub[slide]) - p[1] * ub[slide]
             resb[slide] = p[3] * (ub[slide] - vb[slide]) - h * (along + spring)
         if spin_at >= 0:
@@ -85,11 +89,12 @@ def _residual(bodies, nodes, h, u, ub, v, l, vb, s, rm, f, res, resb):
 
 @njit(cache=True, error_model="numpy")
 def _weights(bodies, gravity, f):
-    """Weight of what slides, on top of the forces on it."""
+    """Weight of what slides, and of rollers on arms, on top of the forces on them."""
     for k in range(bodies.size - 1):
         if bodies[k].slide >= 0:
+            mass = bodies[k].press[3] if bodies[k].swings == 0 else bodies[k].mass
             for i in range(3):
-                f[k, i] += bodies[k].press[3] * gravity[i]
+                f[k, i] += mass * gravity[i]
 
 
 @njit(cache=True, error_model="numpy")
@@ -144,7 +149,7 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
         power = other_forces(bodies, loads, gravity, 1.0, rm, um, wm, f)
         _weights(bodies, gravity, f)
         clutch_torques(bodies, t + h, ub, f)
-        _residual(bodies, nodes, h, u, ub, v, l, vb, s, rm, f, res, resb)
+        _residual(bodies, nodes, gravity, t + h, h, u, ub, v, l, vb, s, xm, rm, f, res, resb)
         if rounds == 0:
             for fewer in range(where):
                 m = choose(bodies, pairs, touched, count, fewer, alone, 0, most // 2)
@@ -212,6 +217,10 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
         for i in range(ub.size):
             ub[i] -= resb[i]
             change = max(change, abs(resb[i]))
+        for k in range(bodies.size - 1):
+            if bodies[k].swings > 0:
+                way = way_of(bodies[k], vec(xm, k))
+                change = max(change, math.sqrt(dot(way, way)) * abs(resb[bodies[k].slide]))
         if not change < 1e30:
             fresh[0] = 0.0
             release(alone, m)
@@ -278,16 +287,15 @@ def carry(system, state, mid, t, dt):
     reflect(images, x, r)
     for k in range(bodies.size - 1):
         slide, spin_at = bodies[k].slide, bodies[k].spin
+        if bodies[k].rims > 0 or bodies[k].carries != 0:
+            turning = ub[spin_at] if spin_at >= 0 else ub[slide] if bodies[k].swings == 2 else 0.0
+            turn_roller(bodies[k], k, dt, t + dt, turning, r, r)
         if slide >= 0:
             s[slide] += dt * ub[slide]
+            at = moved(bodies[k], vec(x, k), dt * ub[slide])
             for i in range(3):
-                x[k, i] += dt * ub[slide] * bodies[k].way[i]
+                x[k, i] = at[i]
             vb[slide] = 2.0 * ub[slide] - vb[slide]
-        if bodies[k].carries != 0:
-            turning = ub[spin_at] if spin_at >= 0 else prescribed(bodies[k], t + 0.5 * dt)
-            m = matmul(exp_rotation(scale(dt * turning, three(bodies[k].axis))), mat(r, k))
-            for i in range(9):
-                r[k, i] = m[i]
         if spin_at >= 0:
             vb[spin_at] = spun(bodies[k], ub[spin_at], vb[spin_at], t, dt)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import fields, replace
+from dataclasses import fields, is_dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -119,7 +119,8 @@ def _alike(mirror: Mirror, model: Model, one: Part, two: Part) -> bool:
         return False
     if isinstance(one, RollerPart) and isinstance(two, RollerPart):
         way = -float(mirror.seen(one.axis) @ two.axis)  # a turn is seen the other way round
-        if abs(abs(way) - 1.0) > SAME:
+        whole = one.arm is None and (one.rim is None or way > 0.0)  # arms and angles the other way are not compared
+        if abs(abs(way) - 1.0) > SAME or not whole:
             return False
         return _roller(one, float(np.sign(way)), mirror) == _roller(two, 1.0, None)
     if isinstance(one, PlanePart):
@@ -163,6 +164,8 @@ def _rounded(value: Any) -> Any:
     if isinstance(value, np.ndarray):
         most = float(np.abs(value).max(initial=0.0)) or 1.0
         return (_rounded(most), *(np.round(value / most, 9) + 0.0).ravel().tolist())
+    if is_dataclass(value):
+        return _told(value, {})
     if isinstance(value, (list, tuple)):
         return tuple(_rounded(v) for v in value)
     return float(f"{value:.9e}") + 0.0 if isinstance(value, float) else value

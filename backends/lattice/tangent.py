@@ -12,6 +12,7 @@ import math
 from numba import njit
 
 from backends.lattice.band import PAD
+from mdlgen.mechanics.arm import turn_of, way_of
 from mdlgen.mechanics.contact import OUT, POINT
 from mdlgen.mechanics.curve import curve_spring
 from mdlgen.mechanics.driven import clutch
@@ -19,6 +20,7 @@ from mdlgen.mechanics.pair import on_plate
 from mdlgen.mechanics.vector import (
     add,
     back,
+    cross,
     dot,
     exp_rotation,
     log_rotation,
@@ -199,6 +201,8 @@ def core(out, at, n, slip, h, law, chord, whole):
     `whole`: with the growth of friction with the normal force, which is not symmetric.
     """
     spring, growth, force, rate = out[at + 6], out[at + 7], out[at + 8], out[at + 9]
+    # a rim may have its own
+    beta, mu_static, mu_dynamic = out[at + 13], out[at + 14], out[at + 15]
     y = rate / law[5]
     if abs(y) < 1.0:
         sign = 0.5 * y * (3.0 - y * y)
@@ -206,19 +210,19 @@ def core(out, at, n, slip, h, law, chord, whole):
     else:
         sign = math.copysign(1.0, y)
         steep = chord / abs(rate)
-    normal = h * h * growth * (1.0 + law[0] * sign) + h * spring * law[0] * steep
+    normal = h * h * growth * (1.0 + beta * sign) + h * spring * beta * steep
     speed = math.sqrt(slip[0] * slip[0] + slip[1] * slip[1] + slip[2] * slip[2])
     secant = tangent = 0.0
-    if force > 0.0 and (law[1] > 0.0 or law[2] > 0.0):
+    if force > 0.0 and (mu_static > 0.0 or mu_dynamic > 0.0):
         if speed < law[3]:
             z = speed / law[3]
-            secant = 0.5 * law[1] * (3.0 - z * z) / law[3]
-            tangent = 1.5 * law[1] * (1.0 - z * z) / law[3]
+            secant = 0.5 * mu_static * (3.0 - z * z) / law[3]
+            tangent = 1.5 * mu_static * (1.0 - z * z) / law[3]
         else:
-            mu = law[2]
+            mu = mu_dynamic
             if speed < law[4]:
                 z = (speed - law[3]) / (law[4] - law[3])
-                mu = law[1] + (law[2] - law[1]) * z * z * (3.0 - 2.0 * z)
+                mu = mu_static + (mu_dynamic - mu_static) * z * z * (3.0 - 2.0 * z)
             secant = mu / speed
         secant, tangent = h * force * secant, h * force * max(tangent, chord * secant)
     i = 1.0 / speed if speed > 0.0 else 0.0
@@ -243,10 +247,11 @@ def core(out, at, n, slip, h, law, chord, whole):
 
 @njit(cache=True, error_model="numpy")
 def _columns(body, arm, x, sign, direction, index, count):
-    """The unknowns of a roller that move a contact point, each with the direction of its velocity."""
+    """The unknowns of a roller at x that move a contact point, each with the direction of its velocity."""
     if body.slide >= 0:
+        way = add(way_of(body, x), cross(turn_of(body), arm))
         for i in range(3):
-            direction[count, i] = sign * body.way[i]
+            direction[count, i] = sign * way[i]
         index[count] = body.slide
         count += 1
     if body.spin >= 0:
@@ -288,13 +293,13 @@ def contacts_into(
                 _blocks(a, node, 0, 1.0, t, arm, arm, zero)
             moving = 0
             if node < 0:
-                moving = _columns(bodies[pair.a], arm, x, 1.0, direction, index, moving)
+                moving = _columns(bodies[pair.a], arm, vec(x, pair.a), 1.0, direction, index, moving)
             far = sub(where, vec(x, pair.b))
             if other >= 0:
                 _blocks(a, other, 0, 1.0, t, far, far, zero)
             if node >= 0 and other >= 0:
                 _blocks(couplings.blocks, coupled, 0, -1.0, t, arm, far, zero)
-            moving = _columns(bodies[pair.b], far, x, -1.0, direction, index, moving)
+            moving = _columns(bodies[pair.b], far, vec(x, pair.b), -1.0, direction, index, moving)
             for i in range(moving):
                 v = rotate(t, (direction[i, 0], direction[i, 1], direction[i, 2]))
                 for j in range(moving):

@@ -14,16 +14,19 @@ force included.
 
 from __future__ import annotations
 
+import math
+
 from numba import njit
 
 from backends.lattice.alone import PLANES, unsee
 from backends.lattice.dense import lu
 from backends.lattice.forces import pair_forces, place_box, place_roller
 from backends.lattice.growth import activate, clutches, gradient, newton, newton_matrix
+from mdlgen.mechanics.arm import turn_of, way_of
 from mdlgen.mechanics.contact import OUT, POINT
 from mdlgen.mechanics.driven import clutch
 from mdlgen.mechanics.pair import BOX_BOX, on_plate
-from mdlgen.mechanics.vector import back, mat, rotate
+from mdlgen.mechanics.vector import back, dot, mat, rotate, vec
 
 MOST_ROUNDS = 40
 MOST_HALVED = 4
@@ -76,9 +79,9 @@ def _take(pairs, nodes, alone, m, known):
 
 
 @njit(cache=True, error_model="numpy")
-def _impulses(bodies, nodes, r, h, t, ub, alone, m, p):
-    """Forces times h, in box axes and along the rollers' freedoms, into p; of clutches at t and the rates
-    ub + z."""
+def _impulses(bodies, nodes, xm, r, h, t, ub, alone, m, p):
+    """Forces times h, in box axes and along the freedoms of rollers at xm, into p; of clutches at t and the
+    rates ub + z."""
     f = alone.forces
     for i in range(m):
         b = nodes[alone.chosen[i]]
@@ -89,8 +92,9 @@ def _impulses(bodies, nodes, r, h, t, ub, alone, m, p):
     for b in alone.rollers:
         slide, spin = bodies[b].slide, bodies[b].spin
         if slide >= 0:
-            way = bodies[b].way
-            p[6 * m + slide] = h * (f[b, 0] * way[0] + f[b, 1] * way[1] + f[b, 2] * way[2])
+            along = dot(vec(f, b), way_of(bodies[b], vec(xm, b)))
+            torque = (f[b, 3], f[b, 4], f[b, 5])
+            p[6 * m + slide] = h * (along + dot(torque, turn_of(bodies[b])))
         if spin >= 0:
             axis = bodies[b].axis
             about = f[b, 3] * axis[0] + f[b, 4] * axis[1] + f[b, 5] * axis[2]
@@ -98,8 +102,8 @@ def _impulses(bodies, nodes, r, h, t, ub, alone, m, p):
 
 
 @njit(cache=True, error_model="numpy")
-def _begin(bodies, nodes, h, ub, alone, m, res, resb):
-    """Sets z to zero, z0 to what the residual changes, and the measures of both."""
+def _begin(bodies, nodes, x, h, ub, alone, m, res, resb):
+    """Sets z to zero, z0 to what the residual changes, and the measures of both, with rollers at x."""
     z, z0, own, measure = alone.z, alone.z0, alone.own, alone.measure
     for i in range(m):
         n = alone.chosen[i]
@@ -112,7 +116,8 @@ def _begin(bodies, nodes, h, ub, alone, m, res, resb):
         slide, spin, p = bodies[b].slide, bodies[b].spin, bodies[b].press
         if slide >= 0:
             own[slide] = 1.0 / (p[3] + h * p[1] + h * h * p[0])
-            measure[6 * m + slide] = 1.0
+            way = way_of(bodies[b], vec(x, b))
+            measure[6 * m + slide] = math.sqrt(dot(way, way))
         if spin >= 0:
             own[spin] = 1.0 / p[4]
             measure[6 * m + spin] = bodies[b].size[0]
@@ -201,7 +206,7 @@ def settle(system, alone, m, where, h, t, state, mid, near, known, rest, limits)
     rollers' residual; both become what is to be taken off.
     """
     bodies, _joints, pairs, _loads, _gravity, nodes, _points, _images, meshes = system
-    _x, r, _u, ub = state
+    x, r, _u, ub = state
     res, resb = rest
     limit, strict = limits
     z, step, p, used = alone.z, alone.step, alone.p, alone.used
@@ -210,9 +215,9 @@ def settle(system, alone, m, where, h, t, state, mid, near, known, rest, limits)
     if many == 0:
         return True
     _mine(bodies, pairs, near, where, alone)
-    _begin(bodies, nodes, h, ub, alone, m, res, resb)
+    _begin(bodies, nodes, x, h, ub, alone, m, res, resb)
     count = _take(pairs, nodes, alone, m, known)
-    _impulses(bodies, nodes, r, h, t, ub, alone, m, alone.p0)
+    _impulses(bodies, nodes, mid[0], r, h, t, ub, alone, m, alone.p0)
     for i in range(many):
         p[i] = used[i] = alone.p0[i]
     merit = _gap(alone, m, many)
@@ -247,7 +252,7 @@ def settle(system, alone, m, where, h, t, state, mid, near, known, rest, limits)
             if done:
                 break
             count = _evaluate(bodies, pairs, meshes, nodes, h, t, state, mid, alone, m)
-            _impulses(bodies, nodes, r, h, t, ub, alone, m, p)
+            _impulses(bodies, nodes, mid[0], r, h, t, ub, alone, m, p)
             merit = _gap(alone, m, many)
             if merit <= before * (1.0 - 0.1 * part) or merit <= strict * strict or halved == MOST_HALVED:
                 break

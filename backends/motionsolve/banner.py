@@ -64,6 +64,7 @@ def _contacts(model: Model) -> list[str]:
 def unverified(model: Model, deck: Deck) -> list[str]:
     """One line for each form in this deck that is documented only, or concluded from a similar one."""
     supports = bool((model.bushings.kind == SUPPORT).any())
+    supports |= any(r.arm is not None and r.arm.sprung for r in model.rollers)
     rows = (
         (
             True,

@@ -13,6 +13,7 @@ from backends.motionsolve.rows import Body, Box, Cosines, Deck, Shell
 from backends.motionsolve.units import Triple, numbers, per_thousand, thousandfold, triples
 from mdlgen.model.guides import facets
 from mdlgen.model.meshes import origin
+from mdlgen.model.rim_facets import WHOLE, graphics, rim_facets
 from mdlgen.model.shape import ground_frames
 from mdlgen.model.tables import MeshPart, Model
 
@@ -39,9 +40,16 @@ def facet_ids(model: Model) -> list[tuple[int, ...]]:
     return found
 
 
+def rim_ids(model: Model) -> dict[str, int]:
+    """Ids of the boxes that show the rims of rollers, by name of the graphic, behind those of guides."""
+    after = len(model.bodies.name) + len(model.sheets) + 1 + sum(map(len, facet_ids(model)))
+    names = [name for roller in model.rollers if roller.rim is not None for name in graphics(roller, WHOLE)]
+    return {name: after + k for k, name in enumerate(names)}
+
+
 def add_frames(deck: Deck, model: Model) -> None:
-    """The global frame and the axes of the sheets and of the guides, on ground; those of meshes on what they
-    move with."""
+    """The global frame and the axes of the sheets, of the guides and of rollers with a rim, on ground; those
+    of meshes on what they move with."""
     deck.marker("Global_Frame", "Global Frame", GROUND_ID, None)
     for index, sheet in enumerate(model.sheets):
         at = triples(sheet.center[None])[0]
@@ -55,6 +63,10 @@ def add_frames(deck: Deck, model: Model) -> None:
     for mesh in model.meshes:
         (at,) = triples(origin(mesh, model.rollers)[None])
         deck.marker(f"m_{mesh.name}", f"Axes of {mesh.name}", _under(model, mesh), at, cosines(mesh.axes))
+    for roller in (part for part in model.rollers if part.rim is not None):
+        (at,) = triples(model.bodies.position[roller.body][None])
+        axes = cosines(model.bodies.rotation[roller.body])
+        deck.marker(f"m_{roller.name}", f"Axes of {roller.name}", GROUND_ID, at, axes)
 
 
 def add_bodies(deck: Deck, model: Model) -> None:
@@ -79,7 +91,7 @@ def add_bodies(deck: Deck, model: Model) -> None:
 
 
 def _add_facets(deck: Deck, model: Model) -> None:
-    """The boxes that show guides, each round a marker of its own."""
+    """The boxes that show guides and rims, each round a marker of its own."""
     for guide, ids in zip(model.guides, facet_ids(model), strict=True):
         for k, (facet, id) in enumerate(zip(facets(guide), ids, strict=True)):
             part = "" if guide.radius == 0.0 else f", part {k}"
@@ -91,6 +103,17 @@ def _add_facets(deck: Deck, model: Model) -> None:
             )
             x, y, z = numbers(facet.lengths)
             deck.boxes.append(Box(name, label, id, marker, (x, y, z)))
+    ids, table = rim_ids(model), model.bodies
+    for roller in model.rollers:
+        body = roller.body
+        for part, facet in rim_facets(roller, table.position[body], table.rotation[body]):
+            name, pieces = f"gbox_{part}", part.removeprefix(f"{roller.name}_").split("_")
+            label = f"{roller.name}, {pieces[0]}, part {pieces[1]}"
+            (at,) = triples(facet.center[None])
+            axes = cosines(facet.rotation)
+            marker = deck.marker(f"{name}_center_marker", f"{label} - Center Marker", body_id(body), at, axes)
+            x, y, z = numbers(facet.lengths)
+            deck.boxes.append(Box(name, label, ids[name], marker, (x, y, z)))
 
 
 def _under(model: Model, mesh: MeshPart) -> int:

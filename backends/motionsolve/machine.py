@@ -9,21 +9,24 @@ import numpy as np
 from backends.motionsolve.axes import along, cosines
 from backends.motionsolve.bodies import GROUND_ID, add_body, body_id, graphic_id
 from backends.motionsolve.requests import add_request
-from backends.motionsolve.rows import Clutch, Cylinder, Deck, Joint, Motion, Spring
+from backends.motionsolve.rows import Bushing, BushingGroup, Clutch, Cylinder, Deck, Joint, Motion, Spring
 from backends.motionsolve.units import number, per_thousand, thousandfold, triples
-from mdlgen.model.tables import Floats, Model, OneWay, Press, RollerPart
+from mdlgen.model.tables import ArmPart, Floats, Model, OneWay, Press, RollerPart
 
 _CONVERT = ((0, per_thousand), (1, thousandfold))  # the columns of a profile
 
 
 def add_rollers(deck: Deck, model: Model) -> None:
-    """All rollers; carriers of the pressed ones follow the bodies of the Model."""
+    """All rollers; carriers of the pressed ones, and arms, follow the bodies of the Model."""
     for roller in model.rollers:
         place = model.bodies.position[roller.body]
         on = GROUND_ID
         if roller.press is not None:
             on = body_id(len(deck.bodies))
             _add_press(deck, roller, roller.press, place, on)
+        if roller.arm is not None:
+            on = body_id(len(deck.bodies))
+            _add_arm(deck, model, roller, roller.arm, on)
         axle = _joint(
             deck, f"j_{roller.name}", f"Axle of {roller.name}", "REVOLUTE", roller, on, place, roller.axis
         )
@@ -113,6 +116,26 @@ def _add_press(deck: Deck, roller: RollerPart, press: Press, place: Floats, carr
             length=number(press.free_length),
         )
     )
+
+
+def _add_arm(deck: Deck, model: Model, roller: RollerPart, arm: ArmPart, id: int) -> None:
+    """The arm of a roller, its pivot, and its torsional spring as a bushing to ground."""
+    pivot, center = triples(np.stack([arm.pivot, arm.center]))
+    name = f"b_{roller.name}_arm"
+    add_body(deck, name, f"Arm of {roller.name}", id, center, None, arm.mass, [arm.inertia] * 3)
+    joint, label = f"j_{roller.name}_pivot", f"Pivot of {roller.name}"
+    _joint(deck, joint, label, "REVOLUTE", roller, GROUND_ID, arm.pivot, roller.axis, id)
+    if not arm.sprung:
+        return
+    bush, label = f"bsh_{roller.name}_arm", f"Spring of the arm of {roller.name}"
+    axes = cosines(model.bodies.rotation[roller.body])
+    i = deck.marker(f"{bush}.i", f"{label}-Marker I", id, pivot, axes)
+    j = deck.marker(f"{bush}.j", f"{label}-Marker J", GROUND_ID, pivot, axes)
+    zero = number(0.0)
+    values = [(axis, zero, zero, zero) for axis in ("x", "y", "z", "tx", "ty")]
+    values.append(("tz", number(arm.stiffness), per_thousand(arm.damping), number(arm.torque)))
+    number_of = len(model.bushings) + len(deck.bushing_groups) + 1  # those of the sheets come later
+    deck.bushing_groups.append(BushingGroup(tuple(values), [Bushing(bush, label, number_of, i, j)]))
 
 
 def press_ends(roller: RollerPart, press: Press, place: Floats) -> Floats:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from backends.motionview import script
 from backends.motionview.forms import unverified
 from backends.motionview.rows import SceneView
@@ -89,4 +91,11 @@ def _contacts(model: Model, scene: SceneView) -> list[str]:
         ]
     if any(roller.pressed for roller in scene.rollers):
         lines.append("  Pressed rollers start in equilibrium with the sheets as written, at real_start.")
+    for roller in (part for part in model.rollers if part.rim is not None):
+        assert roller.rim is not None
+        lines += [
+            f"  Rim of {roller.name} : each sector is shown by boxes, and has a contact of its own.",
+            f"  The local run goes from one to the next over {number(math.degrees(roller.rim.blend))} deg; "
+            "MotionSolve has both there.",
+        ]
     return lines + share_lines(scene)

@@ -14,7 +14,7 @@ def unverified(scene: SceneView) -> list[str]:
     aligned = ", ".join(s.name for s in scene.sheets if not s.turned)
     rows = (
         (
-            any(not g.straight for g in scene.guides),
+            any(not g.straight for g in scene.guides) or any(r.rim for r in scene.rollers),
             "several graphics of one body in a Contact (documented), and a BOX turned by VECTOR and POINT "
             "(documented; seen by two vectors)",
         ),
@@ -24,7 +24,7 @@ def unverified(scene: SceneView) -> list[str]:
             "components : where it does not, turn the file to .g or .h3d with mvg and write FILE)",
         ),
         (True, "SetOrientation of a marker by DXDYDZ with formulas (seen with numbers only)"),
-        (any(s.turned for s in joined), _BUSH),
+        (any(s.turned for s in joined) or any(r.arm and r.arm.sprung for r in scene.rollers), _BUSH),
         (
             any(not s.turned for s in joined),
             f"inside an if, so only where an angle of {aligned} is changed from 0 : {_BUSH}",
@@ -40,13 +40,17 @@ def unverified(scene: SceneView) -> list[str]:
             "SetMotion on one line of more than 528 characters, the longest seen (a drive of many corners)",
         ),
         (any(r.pressed for r in scene.rollers), "CoilSpring and SetCoilSpring (documented; seen as pairs)"),
-        (bool(scene.supports), "Bush with zero stiffness in some directions (a form of the documented one)"),
+        (
+            bool(scene.supports) or any(r.arm and r.arm.sprung for r in scene.rollers),
+            "Bush with zero stiffness in some directions (a form of the documented one)",
+        ),
         (
             any(s.moving for s in scene.sheets),
             "Global_Frame as the marker of initial velocities in Body (documented, not seen)",
         ),
         (
-            any(s.bend is not None and s.bend.flat for s in scene.sheets),
+            any(s.bend is not None and s.bend.flat for s in scene.sheets)
+            or any(r.arm and r.arm.sprung for r in scene.rollers),
             "preload torques of SetBush (documented; that they act on the first body is concluded)",
         ),
         (bool(scene.pairs), "Contact (documented, not seen in a file)"),

@@ -39,8 +39,29 @@ def idle_values(model: Model, set_contact: bool, kept: Sequence[int]) -> dict[tu
     for roller in model.rollers:
         if roller.speed is not None and roller.profile is None and roller.ramp <= 0.0:
             found[roller.name, "ramp"] = "the text has no ramp"
+    found |= _rims(model, set_contact, kept)
     if model.run.analysis == "static":
         found |= {("run", member): "the run is static" for member in ("end", "print")}
+    return found
+
+
+def _rims(model: Model, set_contact: bool, kept: Sequence[int]) -> dict[tuple[str, str], str]:
+    """What sectors of rims have that no statement uses."""
+    table, found = model.contacts, {}
+    for roller in model.rollers:
+        if roller.rim is None:
+            continue
+        mine = {row for row in kept if roller.name in (table.part_a[row], table.part_b[row])}
+        rubs = any(table.mu_static[row] > 0 or table.mu_dynamic[row] > 0 for row in mine)
+        for name in roller.rim.name:
+            for member in ("friction", "stiffness", "restitution"):
+                reason = "" if set_contact else "the companion script sets it"
+                if not mine:
+                    reason = "no pair can meet"
+                elif member == "friction" and not rubs:
+                    reason = "friction is off"
+                if reason:
+                    found[roller.name, f"{name}_{member}"] = reason
     return found
 
 

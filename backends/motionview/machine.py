@@ -9,6 +9,7 @@ import numpy as np
 
 from backends.motionview.cells import rough_boxes
 from backends.motionview.rows import (
+    ArmView,
     Axis,
     ContactView,
     GuideView,
@@ -16,26 +17,70 @@ from backends.motionview.rows import (
     Pair,
     PlaneView,
     RollerView,
+    SectorView,
     Value,
 )
 from backends.motionview.units import number
-from mdlgen.model.tables import Floats, GuidePart, MeshPart, Model, PlanePart, RollerPart
+from mdlgen.model.rim_facets import DEEP, Side, graphics, meetings
+from mdlgen.model.tables import Floats, GuidePart, MeshPart, Model, PlanePart, RimPart, RollerPart
 
 
 def roller_view(model: Model, roller: RollerPart, given: list[Value]) -> RollerView:
     """One roller; its body has z along the axis."""
     press = roller.press
+    rim, derived = _rim(roller.rim) if roller.rim is not None else ([], [])
+    members, axis = {value.member for value in given}, _axis(f"v_{roller.name}_axis", roller.axis)
+    arm = None
+    if roller.arm is not None:
+        x, y, z = (f"$g_{a}" if "g_x" in members else f"($a_{a}+${a})/2" for a in "xyz")
+        arm = ArmView((x, y, z), roller.arm.sprung)
+        if "I_a" not in members:
+            derived = [("I_a", "Inertia of the arm, a rod (kg mm2)", _rod(axis.vector)), *derived]
     return RollerView(
         name=roller.name,
         given=given,
-        axis=_axis(f"v_{roller.name}_axis", roller.axis),
+        axis=axis,
         guide=_guide(model.bodies.rotation[roller.body]),
         driven=roller.speed is not None,
         ramped=roller.ramp > 0.0,
         corners=0 if roller.profile is None else len(roller.profile),
         pressed=press is not None,
         press=_components(press.direction if press is not None else np.zeros(3)),
+        arm=arm,
+        rim=rim,
+        derived=derived,
     )
+
+
+def _rod(axis: str) -> str:
+    """Inertia of a rod from the pivot of an arm to the roller, about the middle along the axis."""
+    along = "+".join(f"(${a}-$a_{a})*{axis}.{a}" for a in "xyz")
+    square = "+".join(f"(${a}-$a_{a})^2" for a in "xyz")
+    return f"$M_a*({square}-({along})^2)/12"
+
+
+def _rim(rim: RimPart) -> tuple[list[SectorView], list[tuple[str, str, str]]]:
+    """The sectors of a rim, and what is computed of them; the number of their boxes is fixed in a text."""
+    views, derived = [], []
+    given = [name for name in rim.name if name[0] == "s"]
+    for k, (name, own, facets) in enumerate(zip(rim.name, rim.own, rim.facets, strict=True)):
+        number_of = int(name[1:])
+        begin, end = f"$s{number_of}_from", f"$s{number_of}_to"
+        if name[0] == "g":
+            begin = end
+            end = f"$s{number_of + 1}_from" if number_of + 1 < len(given) else "($s0_from+360)"
+        radius = f"${name}_radius" if own else "$R"
+        what = f"Sector {number_of}" if name[0] == "s" else f"Behind sector {number_of}"
+        derived += [
+            (f"{name}_n", f"{what} : boxes that show it; fixed in this text", str(facets)),
+            (f"{name}_turn", f"{what} : angle of one of them", f"({end}-{begin})*PI/180/${name}_n"),
+            (f"{name}_deep", f"{what} : thickness of a box (mm)", f"{number(DEEP)}*{radius}"),
+            (f"{name}_chord", f"{what} : length of a box (mm)", f"2*{radius}*tan(${name}_turn/2)"),
+        ]
+        # within a turn either way, as people write angles
+        turns = 360 * round(np.degrees(0.5 * (rim.begin[k] + rim.end[k])) / 360)
+        views.append(SectorView(name, f"({begin}-({turns}))" if turns else begin, radius, facets))
+    return views, derived
 
 
 def plane_view(model: Model, plane: PlanePart, given: list[Value]) -> PlaneView:
@@ -135,34 +180,63 @@ def contact_views(model: Model, given: dict[str, list[Value]], written: Sequence
 
 
 def pair_rows(model: Model) -> list[Pair]:
-    """One row for each pair of bodies that is kept."""
+    """One row for each pair of bodies that is kept, and for each sector of a rim in it."""
     bodies, table = model.bodies, model.contacts
-    graphics = [[f"gbox_{name}"] for name in bodies.name]
-    for roller in model.rollers:
-        graphics[roller.body] = [f"gcyl_{roller.name}"]
+    shown = [[f"gbox_{name}"] for name in bodies.name]
     for guide in model.guides:
-        graphics[guide.body] = guide_graphics(guide)
+        shown[guide.body] = guide_graphics(guide)
     for mesh in model.meshes:
-        graphics[mesh.body] = [f"gcad_{mesh.name}"]
+        shown[mesh.body] = [f"gcad_{mesh.name}"]
+    rollers = {roller.body: roller for roller in model.rollers}
     rubs = [s > 0 or d > 0 for s, d in zip(table.mu_static, table.mu_dynamic, strict=True)]
     rough, rougher = rough_pairs(model), model.pair_friction.tolist()
     data_set = [f"contact_{entry}" for entry in table.entry.tolist()]
-    columns = (c.tolist() for c in (model.pairs.contact, model.pairs.a, model.pairs.b))
-    return [
-        Pair(
-            f"con_{bodies.name[a]}_{bodies.name[b]}",
-            f"{bodies.label[a]} / {bodies.label[b]}",
-            f"b_{bodies.name[a]}",
-            graphics[a][0],
-            f"b_{bodies.name[b]}",
-            graphics[b],
-            "ON" if rubs[row] and rougher[k] > 0 else "OFF",
-            data_set[row],
-            "*".join(rough[body] for body in (a, b) if rough.get(body)),
-            rougher[k],
+    rows, one, two = (c.tolist() for c in (model.pairs.contact, model.pairs.a, model.pairs.b))
+
+    def of(body: int, side: Side) -> list[str]:
+        return graphics(rollers[body], side) if body in rollers else shown[body]
+
+    made = []
+    for met in meetings(model):
+        row, a, b = rows[met.pair], one[met.pair], two[met.pair]
+        own = [(body, side) for body, side in ((a, met.a), (b, met.b)) if side.sector >= 0]
+        label = f"{bodies.label[a]} / {bodies.label[b]}{met.suffix.replace('_', ' ')}"
+        name = f"con_{bodies.name[a]}_{bodies.name[b]}{met.suffix}"
+        one_graphic, two_graphics = of(a, met.a), of(b, met.b)
+        first, second = (a, b)
+        if len(one_graphic) > 1:  # a statement has one graphic on its first side
+            first, second, one_graphic, two_graphics = b, a, two_graphics, one_graphic
+        factors = [_sector_values(rollers[body], side) for body, side in own]
+        made.append(
+            Pair(
+                name,
+                label,
+                f"b_{bodies.name[first]}",
+                one_graphic[0],
+                f"b_{bodies.name[second]}",
+                two_graphics,
+                "ON" if rubs[row] and rougher[met.pair] * met.friction > 0 else "OFF",
+                data_set[row],
+                "*".join(v for v in (rough.get(a, ""), rough.get(b, ""), *(f[0] for f in factors)) if v),
+                rougher[met.pair] * met.friction,
+                "*".join(f[1] for f in factors if f[1]),
+                met.stiffness,
+                "".join(f[2] for f in factors),
+                None if not any(f[2] for f in factors) else met.restitution(0.0),
+            )
         )
-        for k, (row, a, b) in enumerate(zip(*columns, strict=True))
-    ]
+    return made
+
+
+def _sector_values(roller: RollerPart, side: Side) -> tuple[str, str, str]:
+    """References to friction, stiffness and restitution of a sector; empty where it has none of its own."""
+    assert roller.rim is not None
+    name = roller.rim.name[side.sector]
+    if name[0] == "g":
+        return "", "", ""
+    base = f"ds_{roller.name}.real_{name}_%s.value"
+    bouncy = "" if np.isnan(side.restitution) else base % "restitution"
+    return base % "friction", base % "stiffness", bouncy
 
 
 def rough_pairs(model: Model) -> dict[int, str]:

@@ -193,6 +193,22 @@ class Axis(NamedTuple):
     own: tuple[str, str, str] | None
 
 
+class ArmView(NamedTuple):
+    """An arm: its centre of mass, and whether it has a spring."""
+
+    center: tuple[str, str, str]
+    sprung: bool
+
+
+class SectorView(NamedTuple):
+    """A sector of a rim: its angles (deg) and radius as formulas, and how many boxes show it."""
+
+    name: str
+    begin: str
+    radius: str
+    facets: int
+
+
 @dataclass(frozen=True)
 class RollerView:
     """One roller."""
@@ -206,6 +222,9 @@ class RollerView:
     corners: int  # of its speed over time; 0: a ramp
     pressed: bool
     press: tuple[str, str, str]
+    arm: ArmView | None
+    rim: list[SectorView]
+    derived: list[tuple[str, str, str]]
 
 
 @dataclass(frozen=True)
@@ -270,6 +289,10 @@ class Pair(NamedTuple):
     data_set: str
     rough: str = ""  # friction of its boxes in times that of the contact, where that is not 1
     rougher: float = 1.0  # and its number
+    stiff: str = ""  # the same of the stiffness
+    stiffer: float = 1.0
+    bouncy: str = ""  # reference to a restitution in place of the contact's
+    restitution: float | None = None
 
 
 @dataclass(frozen=True)

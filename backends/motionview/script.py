@@ -75,18 +75,22 @@ def _numbers(model: Model, set_contact: bool, only: str | None) -> list[Numbers]
     if not len(rows) or (set_contact and not _smoothing_differs(model, rows)):
         return []
     scene = scene_view(model, set_contact) if only is None else system_view(model, set_contact).scene
-    names: dict[str, dict[tuple[bool, float], list[str]]] = {}
+    names: dict[str, dict[tuple[bool, float, float, float | None], list[str]]] = {}
     for pair in scene.pairs:
         alike = names.setdefault(pair.data_set, {})
-        alike.setdefault((pair.friction == "ON", pair.rougher), []).append(pair.name)
+        key = (pair.friction == "ON", pair.rougher, pair.stiffer, pair.restitution)
+        alike.setdefault(key, []).append(pair.name)
     found = []
     for contact in scene.contacts:
         given = {value.member: value.number for value in contact.given}
-        for (rubs, rougher), pairs in names.get(contact.data_set, {}).items():
+        for (rubs, rougher, stiffer, restitution), pairs in names.get(contact.data_set, {}).items():
             label = contact.label if rougher == 1.0 else f"{contact.label}, friction times {number(rougher)}"
+            label += "" if stiffer == 1.0 else f", stiffness times {number(stiffer)}"
             table = [("normal_trans_vel", given["v_n"])]
             if not set_contact:
-                table = [("penalty", given["k"]), ("rest_coeff", given["c_R"]), *table]
+                penalty = given["k"] if stiffer == 1.0 else number(float(given["k"]) * stiffer)
+                bounce = given["c_R"] if restitution is None else number(restitution)
+                table = [("penalty", penalty), ("rest_coeff", bounce), *table]
                 if rubs:
                     table += [
                         ("mu_static", number(float(given["mu_s"]) * rougher)),

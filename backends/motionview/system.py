@@ -8,7 +8,10 @@ import numpy as np
 
 from backends.motionview.machine import contact_views, guide_graphics, pair_rows, rough_pairs
 from backends.motionview.rows import Attachment, Pair, SystemView
+from backends.motionview.units import number
 from backends.motionview.views import given_values, scene_view
+from mdlgen.model.rim_facets import WHOLE, Meeting, meetings
+from mdlgen.model.rim_facets import graphics as roller_graphics
 from mdlgen.model.tables import BOX_BOX, CYLINDER_CYLINDER, Ints, Model
 
 
@@ -50,7 +53,7 @@ def attachments(model: Model) -> list[Attachment]:
     table = model.contacts
     met = {table.part_b[row] for row in np.flatnonzero(table.kind != CYLINDER_CYLINDER)}
     parts = [
-        *((r.name, f"b_{r.name}", (f"gcyl_{r.name}",)) for r in model.rollers),
+        *((r.name, f"b_{r.name}", tuple(roller_graphics(r, WHOLE))) for r in model.rollers),
         *((p.name, f"b_{p.name}", (f"gbox_{p.name}",)) for p in model.planes),
         *((g.name, f"b_{g.name}", tuple(guide_graphics(g))) for g in model.guides),
         *((m.name, f"b_{m.name}", (f"gcad_{m.name}",)) for m in model.meshes),
@@ -72,13 +75,17 @@ def sheet_pairs(model: Model) -> list[Pair]:
     """One row for each pair of a box and a part of the machine, or a box of another sheet, by contact."""
     table, bodies, pairs = model.contacts, model.bodies, model.external_pairs
     rows = []
-    for row, pair in zip(model.pairs.contact.tolist(), pair_rows(model), strict=True):
+    shown = {r.name: roller_graphics(r, WHOLE) for r in model.rollers}
+    for met, pair in zip(meetings(model), pair_rows(model), strict=True):
+        row = int(model.pairs.contact[met.pair])
         if table.kind[row] == BOX_BOX:
             rows.append((row, pair))
         elif table.kind[row] != CYLINDER_CYLINDER:
             name = table.part_b[row]
-            inside = _graphics(name, len(pair.graphics_2))
-            rows.append((row, pair._replace(body_2=_body(name), graphics_2=inside)))
+            every = shown.get(name, pair.graphics_2)
+            own = dict(zip(every, _graphics(name, len(every)), strict=True))
+            inside = [own[graphic] for graphic in pair.graphics_2]
+            rows.append((row, _by_number(pair, met)._replace(body_2=_body(name), graphics_2=inside)))
     rubs = (table.mu_static > 0) | (table.mu_dynamic > 0)
     rough = rough_pairs(model)
     for row, box, part in zip(pairs.contact.tolist(), pairs.box.tolist(), pairs.part.tolist(), strict=True):
@@ -98,6 +105,15 @@ def sheet_pairs(model: Model) -> list[Pair]:
         )
         rows.append((row, made))
     return [pair for _, pair in sorted(rows, key=lambda item: item[0])]
+
+
+def _by_number(pair: Pair, met: Meeting) -> Pair:
+    """A pair without the names of its rim's data set, which is in the model around."""
+    if met.b.sector < 0:
+        return pair
+    rough = [v for v in pair.rough.split("*") if "_cells." in v] + [number(met.friction)]
+    bouncy = "" if pair.restitution is None else number(pair.restitution)
+    return pair._replace(rough="*".join(rough), stiff=number(met.stiffness), bouncy=bouncy)
 
 
 def _body(part: str) -> str:

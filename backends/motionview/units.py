@@ -31,6 +31,8 @@ def mdl_value(value: float, unit: str) -> float:
         "N/mm^1.5": lambda: value,
         "g": lambda: _fifteen(value / 1000),
         "g/mm^3": lambda: _fifteen(value / 1000),
+        "g*mm^2": lambda: _fifteen(value / 1000),
+        "N*mm*ms/rad": lambda: _fifteen(value / 1000),
         "ms": lambda: _fifteen(value / 1000),
         "mm/ms": lambda: _fifteen(value * 1000),
         "rad/ms": lambda: _fifteen(value * 1000),

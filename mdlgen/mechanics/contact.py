@@ -12,8 +12,8 @@ over: there the box keeps the whole. `share: pair` gives every box the full k, a
 Each law adds to `out`: force and torque on the first body (0-5), on the second (6-11), normal force (12),
 stored energy (13), dissipated power (14), and keeps the greatest depth (15). An `out` that is longer also
 gets the number of contact points (16) and for each of them, in POINT numbers: the point, the normal, the
-elastic force and its growth with depth, the normal force, the rate of penetration, the slip velocity. A
-solver makes its tangent from them.
+elastic force and its growth with depth, the normal force, the rate of penetration, the slip velocity, the
+share of damping and both coefficients of friction. A solver makes its tangent from them.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from mdlgen.mechanics.laws import damped, friction_over_speed
 from mdlgen.mechanics.vector import add, back, cross, dot, rotate, scale, sub
 
 OUT = 16
-POINT = 13
+POINT = 16
 MOST_POINTS = 24  # of one pair: three parts of a face, two stations, two points; twice for a corner
 WHOLE = 4.0  # no sector but the whole round: more than half a turn
 _GAUSS = 1.0 / math.sqrt(3.0)
@@ -64,6 +64,7 @@ def push(out, point, normal, spring, depth, energy, xa, va, wa, xb, vb, wb, law)
             out[at + i] = point[i]
             out[at + 3 + i] = normal[i]
             out[at + 10 + i] = slip[i]
+            out[at + 13 + i] = law[i]
         out[at + 6] = spring
         # F z^1.5 has stored 2/5 F z, an elastic foundation 3/5 F z: this is 3/2 F/z, and F/z
         out[at + 7] = 0.6 * spring * spring / energy if energy > 0.0 else 0.0
@@ -95,11 +96,12 @@ def _face(
     width,
     k,
     shared,
+    aside,
     law,
 ):
     """One face of a box (normal axis q, in-plane axes p, r) against a cylinder; l0, al: its centre and axis
     in box axes; free: edges p_min, p_max, r_min, r_max of the face without a neighbour, as a bit mask; to,
-    angle: a sector as in `box_sector`, in box axes."""
+    angle: a sector as in `box_sector`, in box axes; aside: how far beside where it lies a force acts."""
     na = math.sqrt(al[p] * al[p] + al[r] * al[r])
     if na < 0.2:  # the roller stands on its end
         return
@@ -197,7 +199,7 @@ def _face(
                 at = local(p, r, q, l0[p] + u * up - t * ur, l0[r] + u * ur + t * up, sign * half[q])
                 push(
                     out,
-                    add(xa, rotate(ra, at)),
+                    add(add(xa, rotate(ra, at)), aside),
                     rotate(ra, normal),
                     spring,
                     depth,
@@ -225,17 +227,18 @@ def local(p, r, q, a, b, c):
 def box_cylinder(out, xa, ra, va, wa, half, exposed, xb, axis, vb, wb, radius, width, k, shared, law):
     """Box a (centre xa, rotation ra, half lengths) against cylinder b; exposed: 4 side faces
     as a bit mask."""
+    zero = (0.0, 0.0, 0.0)
     box_sector(
-        out, xa, ra, va, wa, half, exposed, xb, axis, axis, WHOLE, vb, wb, radius, width, k, shared, law
+        out, xa, ra, va, wa, half, exposed, xb, axis, axis, WHOLE, vb, wb, radius, width, k, shared, zero, law
     )
 
 
 @njit(cache=True, error_model="numpy")
 def box_sector(
-    out, xa, ra, va, wa, half, exposed, xb, axis, middle, angle, vb, wb, radius, width, k, shared, law
+    out, xa, ra, va, wa, half, exposed, xb, axis, middle, angle, vb, wb, radius, width, k, shared, aside, law
 ):
     """As box_cylinder for a part of the round: within `angle` [rad] either way of the direction `middle`,
-    which is square to the axis; at most a quarter turn, or WHOLE.
+    which is square to the axis; at most a quarter turn, or WHOLE. Forces act `aside` of where they lie.
 
     Of a part, boxes share k by what of each the part covers, so that a box over it has k z^1.5.
     """
@@ -270,6 +273,7 @@ def box_sector(
             width,
             k,
             shared,
+            aside,
             law,
         )
         return
@@ -304,6 +308,7 @@ def box_sector(
             width,
             k,
             shared,
+            aside,
             law,
         )
     sign = 1.0 if l0[1] >= 0.0 else -1.0
@@ -332,6 +337,7 @@ def box_sector(
             width,
             k,
             shared,
+            aside,
             law,
         )
 

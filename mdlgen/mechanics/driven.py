@@ -45,18 +45,17 @@ def prescribed(body, t):
 
 @njit(cache=True, error_model="numpy")
 def turned(body, t):
-    """Angle by which a driven roller has turned from 0 to a time."""
-    last = 2 * body.corners - 1
+    """Angle by which a driven roller has turned since time 0."""
+    last = 2 * body.corners - 2
     if last < 0:
         return 0.0
-    angle, now, rate = 0.0, 0.0, prescribed(body, 0.0)
-    for i in range(0, last, 2):
-        then = min(body.drive[i], t)
-        if then > now:
-            after = prescribed(body, then)
-            angle += 0.5 * (rate + after) * (then - now)
-            now, rate = then, after
-    return angle + max(t - now, 0.0) * prescribed(body, t)
+    angle, before, fast = 0.0, 0.0, prescribed(body, 0.0)
+    for i in range(0, last + 2, 2):
+        until = min(max(body.drive[i], 0.0), t)
+        speed = prescribed(body, until)
+        angle += 0.5 * (fast + speed) * (until - before)
+        before, fast = until, speed
+    return angle + fast * (t - before)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)

@@ -83,7 +83,25 @@ def box_guide(out, xa, ra, va, wa, half, exposed, xb, rb, shape, half_b, side, k
         to = rotate(rb, (math.cos(middle), math.sin(middle), 0.0))
         face, width = radius + offset, 2.0 * half_b[1]
         box_sector(
-            out, xa, ra, va, wa, half, exposed, xb, axis, to, angle, zero, zero, face, width, k, shared, law
+            out,
+            xa,
+            ra,
+            va,
+            wa,
+            half,
+            exposed,
+            xb,
+            axis,
+            to,
+            angle,
+            zero,
+            zero,
+            face,
+            width,
+            k,
+            shared,
+            zero,
+            law,
         )
         return
     normal = (0.0, sign, 0.0)

@@ -8,6 +8,7 @@ from mdlgen.mechanics.contact import box_cylinder, box_plane, cylinder_cylinder
 from mdlgen.mechanics.facing import box_box
 from mdlgen.mechanics.guide import box_guide
 from mdlgen.mechanics.mesh import box_mesh
+from mdlgen.mechanics.rim import box_rim, rim_rim
 from mdlgen.mechanics.vector import mat, three, vec
 
 # As in mdlgen.model.tables.
@@ -24,14 +25,30 @@ def on_plate(pair):
 def pair_force(bodies, pair, meshes, x, r, u, w, out):
     """One contact pair into `out`, which must be zero (OUT numbers, and the count of points if it has one).
 
-    `bodies` are records with half, exposed, axis, size (radius, width), arc and side, `pair` one with kind,
-    a, b, k, shared, law and mesh, `meshes` a mechanics.mesh.Meshes; x, r, u, w places, rotations and
+    `bodies` are records with half, exposed, axis, size (radius, width), arc, side and RIM, `pair` one with
+    kind, a, b, k, shared, law and mesh, `meshes` a mechanics.mesh.Meshes; x, r, u, w places, rotations and
     velocities of all bodies. Returns whether it touches.
     """
     a, b = pair.a, pair.b
     row = pair.law
     law = (row[0], row[1], row[2], row[3], row[4], row[5])
-    if pair.kind == CYLINDER_CYLINDER:
+    if pair.kind == CYLINDER_CYLINDER and bodies[a].rims + bodies[b].rims > 0:
+        rim_rim(
+            out,
+            bodies[a],
+            vec(x, a),
+            mat(r, a),
+            vec(u, a),
+            vec(w, a),
+            bodies[b],
+            vec(x, b),
+            mat(r, b),
+            vec(u, b),
+            vec(w, b),
+            pair.k,
+            law,
+        )
+    elif pair.kind == CYLINDER_CYLINDER:
         cylinder_cylinder(
             out,
             vec(x, a),
@@ -115,6 +132,26 @@ def pair_force(bodies, pair, meshes, x, r, u, w, out):
             meshes.heads[pair.mesh],
             meshes,
             pair.k,
+            law,
+        )
+    elif bodies[b].rims > 0:
+        box_rim(
+            out,
+            vec(x, a),
+            mat(r, a),
+            vec(u, a),
+            vec(w, a),
+            three(bodies[a].half),
+            bodies[a].exposed,
+            bodies[b],
+            vec(x, b),
+            mat(r, b),
+            three(bodies[b].axis),
+            vec(u, b),
+            vec(w, b),
+            bodies[b].size[1],
+            pair.k,
+            pair.shared != 0,
             law,
         )
     else:

@@ -8,12 +8,12 @@ from typing import NamedTuple
 import numpy as np
 
 from mdlgen.model.machine import frame
+from mdlgen.model.rims import SAG
 from mdlgen.model.tables import Floats, GuidePart
 from mdlgen.spec.guide import Guide
 from mdlgen.spec.scene import Scene
 
 SIDES = {"left": 1, "inside": 1, "right": 2, "outside": 2, "both": 3}  # as in mechanics.guide
-SAG = 0.01  # how far a facet may be from its arc [mm]
 
 
 class Facet(NamedTuple):

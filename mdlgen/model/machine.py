@@ -6,8 +6,10 @@ import numpy as np
 
 from mdlgen.errors import SpecError
 from mdlgen.model import meshes, press
+from mdlgen.model.rims import lower_rim, touched, towards
 from mdlgen.model.tables import (
     CYLINDER_CYLINDER,
+    ArmPart,
     Contacts,
     Floats,
     OneWay,
@@ -52,6 +54,8 @@ def lower_rollers(
                 profile=np.array(roller.drive.profile) if roller.drive and roller.drive.profile else None,
                 one_way=OneWay(**roller.one_way.model_dump()) if roller.one_way else None,
                 press=_press(scene, name, sheets, contacts) if roller.press else None,
+                rim=lower_rim(roller),
+                arm=_arm(roller) if roller.arm else None,
             )
         )
     return tuple(parts)
@@ -74,12 +78,13 @@ def _press(scene: Scene, name: str, sheets: tuple[SheetPart, ...], contacts: Con
     mass = roller.mass + carrier
     mine = {name, *(key for key, mesh in scene.meshes.items() if mesh.on == name)}
     others, forces = [], []
+    own_radius, own_factor = _profile(roller, direction)
     for row in range(len(contacts)):
         parts = (contacts.part_a[row], contacts.part_b[row])
         if not mine & set(parts):
             continue
         other = parts[0] if parts[1] in mine else parts[1]
-        stiffness = float(contacts.stiffness[row])
+        stiffness = float(contacts.stiffness[row]) * own_factor
         if contacts.kind[row] == CYLINDER_CYLINDER:
             partner: Roller = scene.rollers[other]
             if partner.press is not None:
@@ -87,15 +92,16 @@ def _press(scene: Scene, name: str, sheets: tuple[SheetPart, ...], contacts: Con
                     f"{name} and {other} are pressed against each other; give one of them a fixed axis",
                     ("rollers", name, "press"),
                 )
-            cylinder = press.Cylinder(np.array(partner.center), partner.radius, partner.width, stiffness)
+            radius, factor = _profile(partner, center - np.array(partner.center))
+            cylinder = press.Cylinder(np.array(partner.center), radius, partner.width, stiffness * factor)
             others.append(cylinder)
-            forces.append(press.cylinder_contact(cylinder, axis, roller.radius, roller.width))
+            forces.append(press.cylinder_contact(cylinder, axis, own_radius, roller.width))
         else:
             # a mesh on the roller counts as the roller's own round here: the run settles the rest
             sheet = next(s for s in sheets if s.name == other)
             shared = contacts.share[row] == "width"
-            forces.append(press.sheet_contact(sheet, axis, roller.radius, roller.width, stiffness, shared))
-    touch = press.touch_offset(center, axis, direction, roller.radius, roller.width, others)
+            forces.append(press.sheet_contact(sheet, axis, own_radius, roller.width, stiffness, shared))
+    touch = press.touch_offset(center, axis, direction, own_radius, roller.width, others)
     heavy = mass + sum(meshes.mass_of(mesh) for mesh in scene.meshes.values() if mesh.on == name)
     weight = heavy * float(np.array(scene.gravity) @ direction)
 
@@ -111,8 +117,34 @@ def _press(scene: Scene, name: str, sheets: tuple[SheetPart, ...], contacts: Con
         free_length=spec.free_length,
         carrier_mass=carrier,
         touch=touch,
-        start=press.equilibrium(center, direction, spring, forces, roller.radius, touch),
+        start=press.equilibrium(center, direction, spring, forces, own_radius, touch),
     )
+
+
+def _arm(roller: Roller) -> ArmPart:
+    spec = roller.arm
+    assert spec is not None
+    pivot, end = np.array(spec.pivot), np.array(roller.center)
+    length = float(np.linalg.norm(np.cross(np.array(roller.axis), end - pivot)))
+    return ArmPart(
+        pivot=pivot,
+        center=0.5 * (pivot + end) if spec.center is None else np.array(spec.center),
+        mass=spec.mass,
+        inertia=spec.mass * length**2 / 12 if spec.inertia is None else spec.inertia,
+        torque=spec.torque,
+        stiffness=spec.stiffness,
+        damping=spec.damping,
+        sprung=spec.sprung,
+    )
+
+
+def _profile(roller: Roller, direction: Floats) -> tuple[float, float]:
+    """Radius of a roller along a direction as the run begins [mm], and stiffness in times the contact's."""
+    rim = lower_rim(roller)
+    if rim is None:
+        return roller.radius, 1.0
+    radius, sector, _ = touched(rim, towards(frame(np.array(roller.axis)), direction))
+    return radius, float(rim.stiffness[sector])
 
 
 def lower_planes(scene: Scene, first: int) -> tuple[PlanePart, ...]:

@@ -83,9 +83,12 @@ def find_pairs(
     if prune:
         for roller in rollers:
             if roller.press is not None:  # it may move by its radius along its slide
-                way = roller.radius * np.abs(roller.press.direction) + margin
+                way = roller.reach * np.abs(roller.press.direction) + margin
                 low[roller.body] = bodies.position[roller.body] - way
                 high[roller.body] = bodies.position[roller.body] + way
+            if roller.arm is not None:  # or swing by as much
+                low[roller.body] = bodies.position[roller.body] - _swing(roller) - margin
+                high[roller.body] = bodies.position[roller.body] + _swing(roller) + margin
     for row in np.flatnonzero(contacts.kind != EXTERNAL).tolist():
         if contacts.kind[row] == BOX_BOX:
             pair = by_name[contacts.part_a[row]], by_name[contacts.part_b[row]]
@@ -191,7 +194,7 @@ def _drive(sheet: SheetPart, roller: RollerPart, times: Floats) -> tuple[Floats,
     the sheet."""
     normal = sheet.rotation[:, 2]
     height = float((roller.center - sheet.center) @ normal)
-    toward = -float(np.copysign(roller.radius, height)) * normal
+    toward = -float(np.copysign(roller.reach, height)) * normal
     toward = toward - roller.axis * (toward @ roller.axis)
     way = np.cross(roller.axis, toward)
     return np.outer(roller.turned(times), way), roller.center - height * normal
@@ -252,7 +255,14 @@ def _part_bounds(part: Part, bodies: Bodies, rollers: tuple[RollerPart, ...]) ->
     if isinstance(part, PlanePart):
         extent = np.abs(bodies.rotation[part.body]) @ (np.array(part.size) / 2)
         return center - extent, center + extent
-    extent = np.abs(part.axis) * part.width / 2 + part.radius * np.sqrt(np.maximum(0, 1 - part.axis**2))
+    extent = np.abs(part.axis) * part.width / 2 + part.reach * np.sqrt(np.maximum(0, 1 - part.axis**2))
     if part.press is not None:
-        extent = extent + part.radius * np.abs(part.press.direction) + SLACK
+        extent = extent + part.reach * np.abs(part.press.direction) + SLACK
+    if part.arm is not None:
+        extent = extent + _swing(part) + SLACK
     return center - extent, center + extent
+
+
+def _swing(roller: RollerPart) -> Floats:
+    """How far a roller on an arm may go either way, by its radius in any direction across its axis [mm]."""
+    return roller.reach * np.sqrt(np.maximum(0, 1 - roller.axis**2))

@@ -222,6 +222,7 @@ def _roller(scene: Scene, name: str, starts: dict[str, tuple[float, float]]) -> 
             at = (*drive, "profile", k)
             rows.append(Parameter(name, f"t_{k}", f"Time of corner {k}", time, "ms", (*at, 0)))
             rows.append(Parameter(name, f"w_{k}", f"Speed at corner {k} (rad/s)", speed, "rad/ms", (*at, 1)))
+    rows += _rim(scene, name) + _arm(scene, name)
     if roller.press is not None:
         press, way = roller.press, (*base, "press")
         carrier = press.carrier_mass if press.carrier_mass is not None else roller.mass / 1000
@@ -235,6 +236,54 @@ def _roller(scene: Scene, name: str, starts: dict[str, tuple[float, float]]) -> 
             Parameter(name, "touch", "Touching position along the slide, as written", touch, "mm", None),
             Parameter(
                 name, "start", "Start along the slide in static equilibrium, as written", start, "mm", None
+            ),
+        ]
+    return rows
+
+
+def _rim(scene: Scene, name: str) -> list[Parameter]:
+    """Angles, radius, friction, stiffness and restitution of the sectors of a rim, as far as given."""
+    rim, rows = scene.rollers[name].rim, []
+    for k, sector in enumerate(rim.sectors if rim is not None else ()):
+        path = ("rollers", name, "rim", "sectors", k)
+        for member, label, value, unit in (
+            ("from", "Angle where sector %d begins (deg)", sector.from_, "rad"),
+            ("to", "Angle where sector %d ends (deg)", sector.to, "rad"),
+            ("radius", "Radius of sector %d", sector.radius, "mm"),
+            ("friction", "Friction of sector %d in times that of the contact", sector.friction, "1"),
+            ("stiffness", "Stiffness of sector %d in times that of the contact", sector.stiffness, "1"),
+            ("restitution", "Restitution c_R of sector %d", sector.restitution, "1"),
+        ):
+            if value is not None:
+                rows.append(Parameter(name, f"s{k}_{member}", label % k, value, unit, (*path, member)))
+    return rows
+
+
+def _arm(scene: Scene, name: str) -> list[Parameter]:
+    """Pivot, mass and spring of an arm; centre of mass and inertia where they are given."""
+    arm, path = scene.rollers[name].arm, ("rollers", name, "arm")
+    if arm is None:
+        return []
+    rows = []
+    for k, axis in enumerate(_NAMED_AXES):
+        label = f"Pivot of the arm {axis}"
+        rows.append(Parameter(name, f"a_{axis}", label, arm.pivot[k], "mm", (*path, "pivot", k)))
+    rows.append(Parameter(name, "M_a", "Mass of the arm", arm.mass, "g", (*path, "mass")))
+    if arm.center is not None:
+        for k, axis in enumerate(_NAMED_AXES):
+            label = f"Centre of mass of the arm {axis}"
+            rows.append(Parameter(name, f"g_{axis}", label, arm.center[k], "mm", (*path, "center", k)))
+    if arm.inertia is not None:
+        label = "Inertia of the arm about it (kg mm2)"
+        rows.append(Parameter(name, "I_a", label, arm.inertia, "g*mm^2", (*path, "inertia")))
+    if arm.sprung:
+        rows += [
+            Parameter(name, "T_a", "Torque of its spring (N mm)", arm.torque, "N*mm", (*path, "torque")),
+            Parameter(
+                name, "k_a", "Its stiffness (N mm/rad)", arm.stiffness, "N*mm/rad", (*path, "stiffness")
+            ),
+            Parameter(
+                name, "c_a", "Its damping (N mm s/rad)", arm.damping, "N*mm*ms/rad", (*path, "damping")
             ),
         ]
     return rows

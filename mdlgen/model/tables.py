@@ -238,6 +238,41 @@ class OneWay:
 
 
 @dataclass(frozen=True)
+class ArmPart(Frozen):
+    """An arm that carries a roller, turning about an axis parallel to the roller's through the pivot."""
+
+    pivot: Floats  # [mm], (3,)
+    center: Floats  # of its mass as the run begins [mm], (3,)
+    mass: float  # without the roller [g]
+    inertia: float  # about its centre of mass, along the axis [g mm^2]
+    torque: float  # of its spring as the run begins [N mm]
+    stiffness: float  # [N mm/rad]
+    damping: float  # [N mm ms/rad]
+    sprung: bool  # whether it has a spring or damping
+
+
+@dataclass(frozen=True)
+class RimPart(Frozen):
+    """The round of a roller in sectors, the gaps between the given ones included; angles [rad] about the
+    axis from the x axis of its body, as the run begins. Each ends where the next begins, the last a whole
+    turn after the first one's beginning."""
+
+    name: tuple[str, ...]  # s0, ... those that are given; g0, ... what is behind the sector of that number
+    begin: Floats  # increasing, (n,)
+    end: Floats
+    radius: Floats  # [mm]
+    friction: Floats  # in times that of a contact
+    stiffness: Floats
+    restitution: Floats  # nan: that of a contact
+    own: tuple[bool, ...]  # whether the radius is given, and not the roller's
+    blend: float  # [rad]
+    facets: tuple[int, ...]  # boxes by which a text shows each
+
+    def __len__(self) -> int:
+        return len(self.name)
+
+
+@dataclass(frozen=True)
 class RollerPart(Frozen):
     """A cylinder; `center` is as the user gave it, the body's position includes `press.start`."""
 
@@ -256,6 +291,23 @@ class RollerPart(Frozen):
     one_way: OneWay | None  # with a drive: the speed is that of the shaft, which the roller may overrun
     press: Press | None
     carried: tuple[float, float] = (0.0, 0.0)  # mass [g] and inertia about the axis [g mm^2] of what is on it
+    rim: RimPart | None = None
+    arm: ArmPart | None = None
+
+    @property
+    def swung_inertia(self) -> float:
+        """Inertia of all that turns with its arm about the pivot [g mm^2]: a free roller does not turn."""
+        assert self.arm is not None, "asked only of a roller on an arm"
+        total = self.arm.inertia + (self.inertia_axial if self.speed is not None else 0.0)
+        for mass, at in ((self.arm.mass, self.arm.center), (self.mass, self.center)):
+            way = np.cross(self.axis, at - self.arm.pivot)
+            total += mass * float(way @ way)
+        return total
+
+    @property
+    def reach(self) -> float:
+        """The greatest radius [mm]."""
+        return self.radius if self.rim is None else float(self.rim.radius.max())
 
     @property
     def turns(self) -> bool:

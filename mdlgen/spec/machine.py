@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
@@ -15,10 +16,12 @@ from mdlgen.spec.fields import (
     Stiffness,
     Strict,
     TimeOrZero,
+    Torsion,
     default,
     fail,
     quantity,
 )
+from mdlgen.spec.rim import Rim
 
 # A solver keeps them beside each body, and a text writes them into one expression.
 MOST_CORNERS = 16
@@ -98,6 +101,36 @@ class Press(Strict):
     )
 
 
+class Arm(Strict):
+    """A rigid arm that pivots about an axis parallel to the roller's and carries it at its end.
+
+    Angles and torques are about the direction of the roller's axis (right-hand rule), from where the arm is
+    as the run begins. What drives the roller drives it against the arm, as a motor on it does.
+    """
+
+    pivot: Position = Field(description="a point of the axis that the arm turns about, which is fixed")
+    mass: Mass = Field(description="mass of the arm, without the roller")
+    center: Position | None = Field(
+        default=None, description="its centre of mass; halfway between the pivot and the roller's centre"
+    )
+    inertia: Annotated[float, quantity("g*mm^2", 0.0, open_low=True)] | None = Field(
+        default=None,
+        description="about its centre of mass, along the axis; that of a rod from the pivot to the roller",
+    )
+    torque: Annotated[float, quantity("N*mm")] = Field(
+        default=default("0 N*mm"), description="of its spring as the run begins"
+    )
+    stiffness: Torsion = Field(default=default("0 N*mm/rad"), description="of its spring")
+    damping: Annotated[float, quantity("N*mm*ms/rad", 0.0)] = Field(
+        default=default("0 N*mm*ms/rad"), description="of its pivot"
+    )
+
+    @property
+    def sprung(self) -> bool:
+        """Whether anything but weight and contact turns it."""
+        return any(value != 0.0 for value in (self.torque, self.stiffness, self.damping))
+
+
 class Roller(Strict):
     """A cylinder that turns about its axis: driven, free, or pressed and free."""
 
@@ -113,6 +146,21 @@ class Roller(Strict):
         default=None, description="a one-way clutch between the roller and its drive, or ground without one"
     )
     press: Press | None = Field(default=None, description="slide and spring; without it the axis is fixed")
+    arm: Arm | None = Field(default=None, description="an arm that carries it in place of a fixed axis")
+    rim: Rim | None = Field(default=None, description="sectors of the rim that are unlike the rest")
+
+    @model_validator(mode="after")
+    def _arm(self) -> Roller:
+        if self.arm is None:
+            return self
+        if self.press is not None or self.one_way is not None:
+            word = "press" if self.press is not None else "one_way"
+            raise fail(f"a roller on an arm has no {word}: the one or the other")
+        gap = [c - p for c, p in zip(self.center, self.arm.pivot, strict=True)]
+        along = sum(g * a for g, a in zip(gap, self.axis, strict=True))
+        if math.dist(gap, [along * a for a in self.axis]) < 1e-6 * self.radius:
+            raise fail("arm.pivot is on the roller's own axis; an arm needs a length", within=("arm",))
+        return self
 
 
 class Plane(Strict):

@@ -146,6 +146,8 @@ class Scene(Strict):
         one, two = self.rollers[a].axis, self.rollers[b].axis
         if abs(abs(sum(p * q for p, q in zip(one, two, strict=True))) - 1.0) > 1e-9:
             raise fail(f"the rollers {a} and {b} are in contact but their axes are not parallel", path)
+        if self.rollers[a].rim is not None and self.rollers[b].rim is not None:
+            raise fail(f"contact between {a} and {b} is not modelled: both have a rim of sectors", path)
 
     def _meshed(self, name: str, path: tuple[str | int, ...]) -> None:
         if self.contacts[int(path[1])].share == "pair":

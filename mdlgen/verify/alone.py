@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+from mdlgen.model.rim_facets import WHOLE, graphics, meetings
 from mdlgen.model.tables import CYLINDER_CYLINDER, Model
 from mdlgen.verify.tables import ANY, Table
 
@@ -36,15 +37,21 @@ def _machine(model: Model) -> set[str]:
         n = part.name
         names |= {f"{kind}_{n}" for kind in ("p", "b", "gbox", "gcyl", "j", "o", "ds")}
         names |= {f"p_{n}_anchor", f"b_{n}_carrier", f"j_{n}_slide"}
+        names |= {f"p_{n}_pivot", f"p_{n}_arm", f"b_{n}_arm", f"j_{n}_pivot", f"bsh_{n}_arm"}
     for guide in model.guides:
         names.add(f"m_{guide.name}")
         names |= {f"{kind}_{guide.name}_{k}" for kind in ("p", "gbox") for k in range(guide.facets)}
     for mesh in model.meshes:
         names |= {f"m_{mesh.name}", f"gcad_{mesh.name}", f"p_{mesh.name}_cm"}
+    for roller in (r for r in model.rollers if r.rim is not None):
+        shown = [name.removeprefix("gbox_") for name in graphics(roller, WHOLE)]
+        names |= {f"m_{roller.name}", *(f"{kind}_{name}" for name in shown for kind in ("p", "gbox"))}
     table = model.contacts
-    for row in range(len(table)):
-        if table.kind[row] == CYLINDER_CYLINDER:
-            names.add(f"con_{table.part_a[row]}_{table.part_b[row]}")
+    of, bodies = model.pairs.contact, model.bodies.name
+    for met in meetings(model):
+        if table.kind[of[met.pair]] == CYLINDER_CYLINDER:
+            a, b = (bodies[int(side[met.pair])] for side in (model.pairs.a, model.pairs.b))
+            names.add(f"con_{a}_{b}{met.suffix}")
     of_sheets = {int(table.entry[r]) for r in range(len(table)) if table.kind[r] != CYLINDER_CYLINDER}
     names |= {f"ds_contact_{e}" for e in set(table.entry.tolist()) - of_sheets}
     return names

@@ -12,9 +12,10 @@ import numpy as np
 
 from mdlgen.model import naming
 from mdlgen.model.curves import straight_points, written
-from mdlgen.model.guides import facets
+from mdlgen.model.guides import Facet, facets
 from mdlgen.model.meshes import moments
 from mdlgen.model.meshes import origin as mesh_origin
+from mdlgen.model.rim_facets import rim_facets
 from mdlgen.model.shape import apart, ground_frames
 from mdlgen.model.tables import (
     CLAMP,
@@ -115,9 +116,15 @@ def _points(model: Model) -> Table:
     for roller in model.rollers:
         names.append(f"p_{roller.name}")
         places.append(model.bodies.position[roller.body][None])
+        for name, facet in _rim(model, roller):
+            names.append(f"p_{name}")
+            places.append(facet.center[None])
         if roller.press is not None:
             names.append(f"p_{roller.name}_anchor")
             places.append(_spring_anchor(roller)[None])
+        if roller.arm is not None:
+            names += [f"p_{roller.name}_pivot", f"p_{roller.name}_arm"]
+            places += [roller.arm.pivot[None], roller.arm.center[None]]
     for plane in model.planes:
         names.append(f"p_{plane.name}")
         places.append(plane.center[None])
@@ -130,17 +137,27 @@ def _points(model: Model) -> Table:
     return table(names, {"at": (np.concatenate(places), reach(model))})
 
 
+def _rim(model: Model, roller: RollerPart) -> list[tuple[str, Facet]]:
+    body = roller.body
+    return rim_facets(roller, model.bodies.position[body], model.bodies.rotation[body])
+
+
 def _bodies(model: Model) -> Table:
     bodies = model.bodies
     pressed = [r for r in model.rollers if r.press is not None]
+    swung = [(r.name, r.arm) for r in model.rollers if r.arm is not None]
     names = [f"b_{n}" for n in bodies.name] + [f"b_{r.name}_carrier" for r in pressed]
+    names += [f"b_{name}_arm" for name, _ in swung]
     carrier = np.array([r.press.carrier_mass for r in pressed if r.press is not None])
     radius = np.array([r.radius for r in pressed])
     ball = (0.4 * carrier * radius**2)[:, None] * np.ones(3)  # a solid ball of the roller's radius
-    mass = np.concatenate([bodies.mass, carrier]) * KG
-    inertia = np.concatenate([bodies.inertia, ball]) * KG
-    position = np.concatenate([bodies.position, *(bodies.position[r.body][None] for r in pressed)])
-    axes = np.concatenate([bodies.rotation.transpose(0, 2, 1), *(np.eye(3)[None] for _ in pressed)])
+    # of an arm the inertia about its own axis counts; the text gives it for all three
+    arms = np.array([arm.inertia for _, arm in swung])[:, None] * np.ones(3)
+    mass = np.concatenate([bodies.mass, carrier, [arm.mass for _, arm in swung]]) * KG
+    inertia = np.concatenate([bodies.inertia, ball, arms.reshape(-1, 3)]) * KG
+    places = [bodies.position[r.body][None] for r in pressed] + [arm.center[None] for _, arm in swung]
+    position = np.concatenate([bodies.position, *places])
+    axes = np.concatenate([bodies.rotation.transpose(0, 2, 1), *(np.eye(3)[None] for _ in places)])
     products = np.zeros_like(inertia)
     parts: dict[str, Part] = {
         "mass": (mass, None),
@@ -157,22 +174,31 @@ def _bushings(model: Model) -> Table:
     stiff = rows.k[:, :3].copy()
     bent = np.flatnonzero(model.curves.of >= 0)
     stiff[bent, model.curves.axis[bent]] = 0.0  # a curve stands there: see _curve_laws
+    arms = [(r, r.arm) for r in model.rollers if r.arm is not None and r.arm.sprung]
+    turned = [model.bodies.rotation[r.body] for r, _ in arms]
+    last, none = np.eye(3)[2], np.zeros((len(arms), 3))
+
+    def both(own: Floats, more: list[Floats]) -> Floats:
+        return np.concatenate([own, np.array(more).reshape(-1, *own.shape[1:])])
+
     parts: dict[str, Part] = {
-        "origin": (rows.origin, reach(model)),
-        "axes": (rows.axes.transpose(0, 2, 1), 1.0),
-        "k": (stiff, None),
-        "c": (rows.c[:, :3] * SECOND, None),
-        "kt": (rows.k[:, 3:], None),
-        "ct": (rows.c[:, 3:] * SECOND, None),
-        "force": (np.zeros((len(rows), 3)), 1.0),
+        "origin": (both(rows.origin, [arm.pivot for _, arm in arms]), reach(model)),
+        "axes": (both(rows.axes, turned).transpose(0, 2, 1), 1.0),
+        "k": (both(stiff, [*none]), None),
+        "c": (both(rows.c[:, :3], [*none]) * SECOND, None),
+        "kt": (both(rows.k[:, 3:], [arm.stiffness * last for _, arm in arms]), None),
+        "ct": (both(rows.c[:, 3:], [arm.damping * last for _, arm in arms]) * SECOND, None),
+        "force": (np.zeros((len(rows) + len(arms), 3)), 1.0),
         # on the first body, which the second one is to turn away from
-        "torque": (-rows.k[:, 3:] * rows.rest, 1.0),
+        "torque": (both(-rows.k[:, 3:] * rows.rest, [arm.torque * last for _, arm in arms]), 1.0),
     }
     words = [
         (body_name(model, a), body_name(model, b))
         for a, b in zip(rows.a.tolist(), rows.b.tolist(), strict=True)
     ]
-    return table([f"bsh_{n}" for n in rows.name], parts, words)
+    words += [(f"b_{r.name}_arm", "B_Ground") for r, _ in arms]
+    names = [f"bsh_{n}" for n in rows.name] + [f"bsh_{r.name}_arm" for r, _ in arms]
+    return table(names, parts, words)
 
 
 def _curves(model: Model) -> Table:
@@ -228,6 +254,10 @@ def _boxes(model: Model) -> Table:
     shown = [(f"{guide.name}_{k}", guide, f) for guide in model.guides for k, f in enumerate(facets(guide))]
     names += [f"gbox_{name}" for name, _, _ in shown]
     words += [(f"b_{guide.name}",) for _, guide, _ in shown]
+    rims = [(name, roller, f) for roller in model.rollers for name, f in _rim(model, roller)]
+    names += [f"gbox_{name}" for name, _, _ in rims]
+    words += [(f"b_{roller.name}",) for _, roller, _ in rims]
+    shown = [*shown, *rims]
     turned = np.array([f.rotation for _, _, f in shown]).reshape(-1, 3, 3)
     parts: dict[str, Part] = {
         "center": (np.array([*bodies.position[rows], *(f.center for _, _, f in shown)]), reach(model)),
@@ -307,6 +337,9 @@ def _joints(model: Model) -> Table:
         if roller.press is not None:
             on = f"b_{name}_carrier"
             add(f"j_{name}_slide", "TRANSLATIONAL", on, "B_Ground", at, roller.press.direction)
+        if roller.arm is not None:
+            on = f"b_{name}_arm"
+            add(f"j_{name}_pivot", "REVOLUTE", on, "B_Ground", roller.arm.pivot, roller.axis)
         add(f"j_{name}", "REVOLUTE", f"b_{name}", on, at, roller.axis)
     for mesh in model.meshes:
         if mesh.on >= 0:
@@ -386,6 +419,10 @@ def _markers(model: Model) -> Table:
         add(f"m_{guide.name}", "B_Ground", guide.center, guide.axes.T)
     for mesh in model.meshes:
         add(f"m_{mesh.name}", _under(model, mesh), mesh_origin(mesh, model.rollers), mesh.axes.T)
+    for roller in model.rollers:
+        if roller.rim is not None:
+            body = roller.body
+            add(f"m_{roller.name}", "B_Ground", model.bodies.position[body], model.bodies.rotation[body].T)
     for probe in model.probes:
         points = _anchor_points(model, probe)
         for k, body in enumerate(probe.body.tolist()):

@@ -8,7 +8,8 @@ import numpy as np
 
 from mdlgen.model.curves import written
 from mdlgen.model.guides import outer
-from mdlgen.model.tables import Anchor, GuidePart, MeshPart, Model, SheetPart
+from mdlgen.model.rim_facets import DEEP, Side, graphics, meetings
+from mdlgen.model.tables import Anchor, GuidePart, MeshPart, Model, RollerPart, SheetPart
 from mdlgen.verify.bend import shape
 from mdlgen.verify.cells import cells
 from mdlgen.verify.expected import KG, SECOND, body_name
@@ -28,6 +29,8 @@ FACTORS = {
     **dict.fromkeys(("mm", "N", "1", "MPa", "N/mm", "N*mm", "N*mm/rad", "N/mm^1.5"), 1.0),
     "g": KG,
     "g/mm^3": KG,
+    "g*mm^2": KG,
+    "N*mm*ms/rad": SECOND,
     "ms": SECOND,
     "mm/ms": 1 / SECOND,
     "rad/ms": 1 / SECOND,
@@ -50,6 +53,10 @@ def data(model: Model) -> Table:
         found |= {f"ds_{guide.name}.real_{member}": value for member, value in _guide(guide).items()}
     for mesh in model.meshes:
         found |= {f"ds_{mesh.name}.real_{member}": value for member, value in _mesh(mesh).items()}
+    for roller in model.rollers:
+        found |= {f"ds_{roller.name}.real_{member}": value for member, value in _rim(roller).items()}
+        if roller.arm is not None:
+            found.setdefault(f"ds_{roller.name}.real_I_a", roller.arm.inertia * KG)
     for support in model.supports:
         found[f"ds_{support.name}.real_factor"] = _factor(model, support)
         found |= _place(support.name, support.at, support.edge)
@@ -82,6 +89,17 @@ def _mesh(mesh: MeshPart) -> dict[str, float]:
     found |= {f"c_{a}": float(v) for a, v in zip("xyz", mesh.middle, strict=True)}
     found |= {f"j_{a}": float(v) for a, v in zip("xyz", mesh.gyration, strict=True)}
     return found | ({} if mesh.density is None else {"V": mesh.volume})
+
+
+def _rim(roller: RollerPart) -> dict[str, float]:
+    """What a text computes of a rim."""
+    rim, found = roller.rim, {}
+    for k, name in enumerate(rim.name if rim is not None else ()):
+        assert rim is not None
+        radius, turn = float(rim.radius[k]), float(rim.end[k] - rim.begin[k]) / rim.facets[k]
+        found |= {f"{name}_n": float(rim.facets[k]), f"{name}_turn": turn}
+        found |= {f"{name}_deep": DEEP * radius, f"{name}_chord": 2 * radius * math.tan(turn / 2)}
+    return found
 
 
 def _factor(model: Model, support: Anchor) -> float:
@@ -157,15 +175,22 @@ def _twist(model: Model, sheet: SheetPart, found: dict[str, float]) -> dict[str,
 
 
 def contacts(model: Model) -> Table:
-    """One row for each pair of bodies that may touch; without friction its four numbers are 0."""
+    """One row for each pair of bodies that may touch, and each sector of a rim in it; without friction its
+    four numbers are 0."""
     rows, pairs, outside, bodies = model.contacts, model.pairs, model.external_pairs, model.bodies
-    of = np.concatenate([pairs.contact, outside.contact])
-    rough = np.concatenate([model.pair_friction, bodies.friction[outside.box]])
+    met = list(meetings(model))
+    inside = np.array([m.pair for m in met], dtype=int)
+    of = np.concatenate([pairs.contact[inside], outside.contact])
+    own = np.array([(m.friction, m.stiffness) for m in met]).reshape(-1, 2)
+    rough = np.concatenate([model.pair_friction[inside] * own[:, 0], bodies.friction[outside.box]])
+    stiff = np.concatenate([own[:, 1], np.ones(len(outside))])
+    restitution = rows.restitution[of]
+    restitution[: len(met)] = [m.restitution(c) for m, c in zip(met, restitution, strict=False)]
     rubs = ((rows.mu_static[of] > 0) | (rows.mu_dynamic[of] > 0)) & (rough > 0)
     numbers = np.stack(
         [
-            rows.stiffness[of],
-            rows.restitution[of],
+            rows.stiffness[of] * stiff,
+            restitution,
             *(np.where(rubs, v * rough, 0.0) for v in (rows.mu_static[of], rows.mu_dynamic[of])),
             *(
                 np.where(rubs, v / SECOND, 0.0)
@@ -175,23 +200,28 @@ def contacts(model: Model) -> Table:
         ],
         axis=1,
     )
-    cylinders = {r.body for r in model.rollers}
-
+    rollers = {r.body: r for r in model.rollers}
     guides = {g.body: [f"gbox_{g.name}_{k}" for k in range(g.facets)] for g in model.guides}
     guides |= {m.body: [f"gcad_{m.name}"] for m in model.meshes}
 
-    def graphic(body: int) -> str:
-        return f"{'gcyl' if body in cylinders else 'gbox'}_{bodies.name[body]}"
+    def shown(body: int, side: Side) -> list[str]:
+        if body in rollers:
+            return graphics(rollers[body], side)
+        return guides.get(body, [f"gbox_{bodies.name[body]}"])
 
     names, words = [], []
-    for a, b in zip(pairs.a.tolist(), pairs.b.tolist(), strict=True):
-        names.append(f"con_{bodies.name[a]}_{bodies.name[b]}")
-        words.append((body_name(model, a), body_name(model, b), graphic(a), *guides.get(b, [graphic(b)])))
+    for m in met:
+        a, b = int(pairs.a[m.pair]), int(pairs.b[m.pair])
+        names.append(f"con_{bodies.name[a]}_{bodies.name[b]}{m.suffix}")
+        ends = [(body_name(model, a), shown(a, m.a)), (body_name(model, b), shown(b, m.b))]
+        if len(ends[0][1]) > 1:  # the first side of a statement has one graphic
+            ends.reverse()
+        words.append((ends[0][0], ends[1][0], *ends[0][1], *ends[1][1]))
     for a, part in zip(outside.box.tolist(), outside.part.tolist(), strict=True):
         other = model.externals[part]
         names.append(f"con_{bodies.name[a]}_{other.name}")
         given = [v.removeprefix("MODEL.") for v in (other.body, *other.graphics)]
-        words.append((body_name(model, a), given[0], graphic(a), *given[1:]))
+        words.append((body_name(model, a), given[0], f"gbox_{bodies.name[a]}", *given[1:]))
     said = [("POISSON", "ON" if on else "OFF", *row) for on, row in zip(rubs.tolist(), words, strict=True)]
     parts: dict[str, Part] = {n: (numbers[:, k], None) for k, n in enumerate(CONTACT_NUMBERS)}
     return table(names, parts, said)

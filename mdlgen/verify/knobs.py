@@ -20,8 +20,9 @@ from mdlgen.model import grid
 from mdlgen.model.lower import lower
 from mdlgen.model.stiffness import SUPPORT_FACTOR
 from mdlgen.model.supports import joined, support_bushings
-from mdlgen.model.tables import SUPPORT, Anchor, Bushings, Model, Parameter, Press
+from mdlgen.model.tables import SUPPORT, Anchor, Bushings, Model, Parameter, Press, RollerPart
 from mdlgen.spec.grading import Graded, Grading
+from mdlgen.spec.rim import TURN
 from mdlgen.spec.scene import Scene
 from mdlgen.spec.sheet import Sheet
 from mdlgen.verify.expected_numbers import FACTORS
@@ -54,6 +55,8 @@ def knobs(scene: Scene, model: Model) -> Iterator[Knob]:
         value = p.value * FAR.get(p.unit, STEP) if p.value else FROM_ZERO.get(p.unit, 0.5)
         if p.path is not None and p.path[-1:] == (0,) and "profile" in p.path:
             value = _later(scene, p)
+        if p.path is not None and "sectors" in p.path and p.unit == "rad":
+            value = _wider(scene, p)
         where = f"ds_{p.data_set}.real_{p.member}"
         path = _path(p, sheets)
         if path is not None:
@@ -83,6 +86,21 @@ def _later(scene: Scene, time: Parameter) -> float:
     assert drive is not None and drive.profile is not None and isinstance(k, int)
     after = [corner for corner, _ in drive.profile[k + 1 :]]
     return time.value + 0.25 * (after[0] - time.value) if after else (time.value + FROM_ZERO["ms"]) * STEP
+
+
+def _wider(scene: Scene, angle: Parameter) -> float:
+    """An end of a sector of a rim, turned into a quarter of the gap beyond it, so that there still is one;
+    where there is none, into the sector beyond [rad]."""
+    assert angle.path is not None
+    _, name, _, _, k, end = angle.path
+    rim = scene.rollers[str(name)].rim
+    assert rim is not None and isinstance(k, int)
+    sectors, last = rim.sectors, len(rim.sectors) - 1
+    if end == "to":
+        after = sectors[k + 1].from_ if k < last else sectors[0].from_ + TURN
+        return angle.value + (0.25 * (after - angle.value) or FROM_ZERO["rad"])
+    before = sectors[k - 1].to if k > 0 else sectors[last].to - TURN
+    return angle.value - (0.25 * (angle.value - before) or FROM_ZERO["rad"])
 
 
 def pinned(scene: Scene) -> Scene:
@@ -235,11 +253,20 @@ def as_written(scene: Scene, base: Model) -> Model:
     supports = tuple(_held(new, old, made) for new, old in zip(made.supports, base.supports, strict=True))
     shown = zip(made.guides, base.guides, strict=True)
     guides = tuple(replace(new, facets=old.facets) for new, old in shown)
+    rims = zip(made.rollers, base.rollers, strict=True)
+    made = replace(made, rollers=tuple(_shown(new, old) for new, old in rims))
     made = replace(made, pairs=base.pairs, probes=probes, supports=supports, guides=guides)
     if not supports:
         return made
     held = support_bushings(scene.supports, supports, made.sheets, made.bodies)
     return replace(made, bushings=joined([_rows(made.bushings, made.bushings.kind != SUPPORT), *held]))
+
+
+def _shown(new: RollerPart, old: RollerPart) -> RollerPart:
+    """A roller whose rim is shown by as many boxes."""
+    if new.rim is None or old.rim is None:
+        return new
+    return replace(new, rim=replace(new.rim, facets=old.rim.facets))
 
 
 def _rows(table: Bushings, keep: NDArray[np.bool_]) -> Bushings:

@@ -1,0 +1,198 @@
+"""Contact with rollers whose rim is in sectors, each with its own radius, friction, stiffness, restitution.
+
+With phi the angle of the rim at the foot of a flat face, the elastic energy is that of a roller of radius
+h(phi) and stiffness k(phi), h being the support function (see model.rims). So the force acts where a real rim
+touches: h'(phi) beside the foot, at the edge of a sector where it is one that touches; and the roller
+bears the torque that a stiffness growing with phi makes. What the sectors store, they give back.
+
+A body record has `rims`, how many pieces its rim has (0: it is round); `blend`, half of the angle over which
+one goes over into the next; and `rim`, of each piece PIECE numbers: angle where it begins, radius, angle of
+the edge that is touched (nan: the arc), stiffness and friction in times those of the contact, and the share
+beta of damping (negative: that of the contact).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from mdlgen.mechanics.contact import WHOLE, box_sector, cylinder_cylinder
+from mdlgen.mechanics.laws import damping_share
+from mdlgen.mechanics.vector import back, cross, dot, rotate, scale, sub, three
+from mdlgen.model.rims import MOST_PIECES, pieces
+from mdlgen.model.tables import RollerPart
+from mdlgen.spec.rim import TURN
+
+PIECE = 6
+RIM = [("rims", "i8"), ("blend", "f8"), ("rim", "f8", PIECE * MOST_PIECES)]
+
+
+def rim(row: np.void, roller: RollerPart, length: float = 1.0) -> None:
+    """Fills the fields of RIM of a body record for a roller; `length` is 1 mm in the solver's units."""
+    part = roller.rim
+    if part is None:
+        return
+    beta = damping_share.py_func(part.restitution)  # compiled code is for the solver alone to load
+    made = [
+        (
+            piece.begin,
+            part.radius[piece.sector] * length,
+            piece.edge,
+            part.stiffness[piece.sector],
+            part.friction[piece.sector],
+            beta[piece.sector] if np.isfinite(beta[piece.sector]) else -1.0,
+        )
+        for piece in pieces(part)
+    ]
+    row["rims"], row["blend"] = len(made), 0.5 * part.blend
+    row["rim"][: PIECE * len(made)] = np.array(made).ravel()
+
+
+@njit(cache=True, error_model="numpy")
+def _piece(body, i, angle, beta):
+    """Of one piece, at an angle: (h, h', stiffness, friction, share of damping)."""
+    at = PIECE * i
+    radius, edge, own = body.rim[at + 1], body.rim[at + 2], body.rim[at + 5]
+    damping = own if own >= 0.0 else beta
+    if math.isnan(edge):
+        return radius, 0.0, body.rim[at + 3], body.rim[at + 4], damping
+    away = angle - edge
+    return (
+        radius * math.cos(away),
+        -radius * math.sin(away),
+        body.rim[at + 3],
+        body.rim[at + 4],
+        damping,
+    )
+
+
+@njit(cache=True, error_model="numpy")
+def profile(body, angle, beta):
+    """At an angle of the rim: (h, h', stiffness and friction in times the contact's, the growth of the former
+    per rad, share of damping); `beta` is the contact's."""
+    count = body.rims
+    angle = angle - TURN * math.floor(angle / TURN)
+    i = count - 1
+    while i > 0 and body.rim[PIECE * i] > angle:
+        i -= 1
+    begin = body.rim[PIECE * i]
+    end = body.rim[PIECE * (i + 1)] if i + 1 < count else TURN
+    h, lever, stiff, rough, damping = _piece(body, i, angle, beta)
+    behind = angle - begin < end - angle
+    j = (i - 1 if behind else i + 1) % count
+    wide = (body.rim[PIECE * (j + 1)] if j + 1 < count else TURN) - body.rim[PIECE * j]
+    # a piece may be narrower than what its ends are blended over
+    half = min(body.blend, 0.5 * (end - begin), 0.5 * wide)
+    away = angle - begin if behind else end - angle
+    if away >= half:
+        return h, lever, stiff, rough, 0.0, damping
+    s = 0.5 * (1.0 + away / half)
+    own, growth = s * s * (3.0 - 2.0 * s), 3.0 * s * (1.0 - s) / half
+    if not behind:
+        growth = -growth
+    h2, lever2, stiff2, rough2, damping2 = _piece(body, j, angle, beta)
+    return (
+        own * h + (1.0 - own) * h2,
+        own * lever + (1.0 - own) * lever2 + growth * (h - h2),
+        own * stiff + (1.0 - own) * stiff2,
+        own * rough + (1.0 - own) * rough2,
+        growth * (stiff - stiff2),
+        own * damping + (1.0 - own) * damping2,
+    )
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _angle(rb, way):
+    """Angle of the rim that looks along a direction; rb: the roller's rotation."""
+    own = back(rb, way)
+    return math.atan2(own[1], own[0])
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _facing(l0, al, half, exposed):
+    """Direction from the axis to the face that `box_sector` has it meet, in box axes; l0, al: the roller's
+    centre and axis."""
+    if abs(l0[2]) > half[2] and abs(al[2]) <= 0.98:
+        return (0.0, 0.0, -math.copysign(1.0, l0[2]))
+    if exposed & (2 if l0[0] >= 0.0 else 1) and abs(l0[0]) > half[0]:
+        return (-math.copysign(1.0, l0[0]), 0.0, 0.0)
+    return (0.0, -math.copysign(1.0, l0[1]), 0.0)
+
+
+@njit(cache=True, error_model="numpy")
+def box_rim(out, xa, ra, va, wa, half, exposed, body, xb, rb, axis, vb, wb, width, k, shared, law):
+    """As `contact.box_cylinder` for a roller b whose record `body` has a rim, and whose rotation is rb."""
+    l0, al = back(ra, sub(xb, xa)), back(ra, axis)
+    face = rotate(ra, _facing(l0, al, half, exposed))
+    h, lever, stiff, rough, growth, damping = profile(body, _angle(rb, face), law[0])
+    own = (damping, rough * law[1], rough * law[2], law[3], law[4], law[5])
+    aside = scale(lever, cross(axis, face))
+    box_sector(
+        out,
+        xa,
+        ra,
+        va,
+        wa,
+        half,
+        exposed,
+        xb,
+        axis,
+        axis,
+        WHOLE,
+        vb,
+        wb,
+        h,
+        width,
+        stiff * k,
+        shared,
+        aside,
+        own,
+    )
+    # a stiffness that grows with the angle turns the roller on, and the box back
+    torque = out[13] * growth / stiff
+    for i in range(3):
+        out[3 + i] -= torque * axis[i]
+        out[9 + i] += torque * axis[i]
+
+
+@njit(cache=True, error_model="numpy")
+def _towards(body, r, way, beta):
+    """What `profile` has of a roller along a direction; a round one has its radius, and factors of 1."""
+    if body.rims == 0:
+        return body.size[0], 0.0, 1.0, 1.0, 0.0, beta
+    return profile(body, _angle(r, way), beta)
+
+
+@njit(cache=True, error_model="numpy")
+def rim_rim(out, one, xa, ra, va, wa, two, xb, rb, vb, wb, k, law):
+    """As `contact.cylinder_cylinder` for two rollers with records `one` and `two`, of which one has a rim.
+
+    An edge counts as against a flat face, so it comes a little earlier than it would on the other's round.
+    """
+    axis, other = three(one.axis), three(two.axis)
+    gap = sub(xb, xa)
+    across = sub(gap, scale(dot(gap, axis), axis))
+    distance = math.sqrt(dot(across, across))
+    if distance <= 0.0:
+        return
+    way = scale(1.0 / distance, across)
+    h1, lever1, stiff1, rough1, growth1, beta1 = _towards(one, ra, way, law[0])
+    h2, lever2, stiff2, rough2, growth2, beta2 = _towards(two, rb, scale(-1.0, way), law[0])
+    rough, stiff = rough1 * rough2, stiff1 * stiff2
+    own = (beta1 if one.rims > 0 else beta2, rough * law[1], rough * law[2], law[3], law[4], law[5])
+    cylinder_cylinder(out, xa, va, wa, h1, one.size[1], xb, vb, wb, h2, two.size[1], other, stiff * k, own)
+    if out[15] <= 0.0:
+        return
+    # the energy is 2/5 F z; it changes with the angles of both, which change with the line between the axes
+    spring = 2.5 * out[13] / out[15]
+    torque1 = spring * lever1 + out[13] * growth1 / stiff1
+    torque2 = spring * lever2 + out[13] * growth2 / stiff2
+    swing = (torque1 + torque2 * dot(axis, other)) / distance
+    aside = scale(swing, cross(axis, way))
+    for i in range(3):
+        out[i] += aside[i]
+        out[6 + i] -= aside[i]
+        out[3 + i] += torque1 * axis[i]
+        out[9 + i] += torque2 * other[i]

@@ -1,0 +1,72 @@
+"""The rim of a roller that is not the same all round: toothed rubber here, smooth plastic there."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated
+
+from pydantic import Field, model_validator
+
+from mdlgen.spec.fields import Angle, PositiveLength, Strict, default, fail
+
+# A solver keeps them beside each body, with the gaps between them.
+MOST_SECTORS = 8
+TURN = 2.0 * math.pi
+_SAME = 1e-9  # rad: two sectors that meet may differ by the rounding of their angles
+
+
+class Sector(Strict):
+    """A part of the round; what is left out is as the roller and its contacts have it."""
+
+    from_: Angle = Field(
+        alias="from", description="where it begins: about the axis by the right-hand rule, from global x"
+    )
+    to: Angle = Field(description="where it ends; from global y instead where the axis is near x")
+    radius: PositiveLength | None = Field(default=None, description="radius; the roller's")
+    friction: Annotated[float, Field(ge=0, le=1e3)] = Field(
+        default=1.0, description="friction in times that of each of the roller's contacts"
+    )
+    stiffness: Annotated[float, Field(ge=1e-3, le=1e3)] = Field(
+        default=1.0, description="stiffness k in times that of each of the roller's contacts"
+    )
+    restitution: Annotated[float, Field(ge=0, le=1)] | None = Field(
+        default=None, description="coefficient of restitution c_R; that of the contact"
+    )
+
+    @model_validator(mode="after")
+    def _order(self) -> Sector:
+        if not 0.0 < self.to - self.from_ < TURN - _SAME:
+            raise fail(
+                f"the sector goes from {math.degrees(self.from_):g} to {math.degrees(self.to):g} deg; "
+                "allowed: more than 0 and less than 360 deg"
+            )
+        return self
+
+
+class Rim(Strict):
+    """Sectors of a roller, fixed to it; between them it is as the roller and its contacts say."""
+
+    sectors: Annotated[tuple[Sector, ...], Field(strict=False)] = Field(
+        description=f"1 to {MOST_SECTORS}, in the order of their angles as the run begins"
+    )
+    blend: Angle = Field(
+        default=default("2 deg"),
+        description="angle over which friction, stiffness and restitution go from one sector to the next",
+    )
+
+    @model_validator(mode="after")
+    def _apart(self) -> Rim:
+        if not 1 <= len(self.sectors) <= MOST_SECTORS:
+            raise fail(f"{len(self.sectors)} sectors; allowed 1 to {MOST_SECTORS}")
+        if not math.radians(0.1) <= self.blend <= math.radians(30.0):
+            raise fail(f"blend {math.degrees(self.blend):g} deg; allowed 0.1 to 30 deg")
+        for k, sector in enumerate(self.sectors):
+            last = k + 1 == len(self.sectors)
+            after = self.sectors[0].from_ + TURN if last else self.sectors[k + 1].from_
+            if sector.to > after + _SAME:
+                raise fail(
+                    f"sectors.{k} ends at {math.degrees(sector.to):g} deg, beyond "
+                    f"{math.degrees(after):g} deg where the next begins; give them in order, each to where "
+                    "the next begins at most"
+                )
+        return self
