@@ -210,6 +210,7 @@ def _idle_drive(model: Model) -> Iterator[Lint]:
 
 def _untouched(model: Model) -> Iterator[Lint]:
     parts = {*model.contacts.part_a, *model.contacts.part_b}
+    parts |= {model.rollers[m.on].name for m in model.meshes if m.on >= 0 and m.name in parts}
     if not (model.rollers or model.planes or model.guides or model.meshes or model.externals):
         return
     for sheet in model.sheets:

@@ -165,11 +165,13 @@ def test_what_touches_after_a_step_was_near_before_it() -> None:
         forces.place(
             system.bodies, system.nodes, ahead, 0.0, u, np.zeros(system.border), x, r, xm, rm, um, wm
         )
-        close = forces.near_pairs(system.bodies, system.pairs, x, r, um, wm, step.FAR, ahead, near)
+        close = forces.near_pairs(
+            system.bodies, system.pairs, system.meshes, x, r, um, wm, step.FAR, ahead, near
+        )
         listed, every = set(near[:close].tolist()), np.arange(len(system.pairs))
         assert close < 0.7 * len(every)
         many, _, _ = forces.pair_forces(
-            system.bodies, system.pairs, every, len(every), xm, rm, um, wm, f, touched, outs
+            system.bodies, system.pairs, system.meshes, every, len(every), xm, rm, um, wm, f, touched, outs
         )
         assert set(touched[:many].tolist()) <= listed
         seen += many

@@ -605,3 +605,12 @@ def test_a_changed_mesh_is_seen_in_text_and_deck(folder, tmp_path):
 def test_a_mesh_without_a_contact_is_told(folder):
     model = lower(scene_of(folder, ('"t*"', "two")))
     assert ("W111", "meshes.three") in {(lint.code, lint.where) for lint in lints(model)}
+    # a roller is there for what it turns
+    assert [lint.code for lint in lints(lower(load(PICK)))] == []
+
+
+def test_a_sample_is_copied_with_its_files(tmp_path):
+    command = [sys.executable, "-m", "mdlgen", "new", "scene", "--from", "pick"]
+    assert subprocess.run(command, cwd=tmp_path, capture_output=True, check=False).returncode == 0
+    copied = load(tmp_path / "scene" / "pick.yaml")
+    assert copied.meshes["lobe"].solid == load(PICK).meshes["lobe"].solid

@@ -92,7 +92,8 @@ def _principal(second: Floats) -> tuple[Floats, Floats]:
     axes *= np.where(axes[np.abs(axes).argmax(axis=0), range(3)] < 0.0, -1.0, 1.0)
     axes[:, 2] *= np.sign(np.linalg.det(axes))
     # to digits that every library of linear algebra gives: they stand in texts
-    return np.array([float(f"{v:.13g}") for v in values]), np.round(axes, 14) + 0.0
+    values = np.array([float(f"{v:.13g}") for v in values])
+    return values, np.asarray(np.round(axes, 14) + 0.0, dtype=np.float64)
 
 
 def check_balance(model: Model) -> None:
