@@ -119,7 +119,8 @@ def _alike(mirror: Mirror, model: Model, one: Part, two: Part) -> bool:
         return False
     if isinstance(one, RollerPart) and isinstance(two, RollerPart):
         way = -float(mirror.seen(one.axis) @ two.axis)  # a turn is seen the other way round
-        whole = one.arm is None and (one.rim is None or way > 0.0)  # arms and angles the other way are not compared
+        # arms, and angles that are counted the other way, are not compared
+        whole = one.arm is None and (one.rim is None or way > 0.0)
         if abs(abs(way) - 1.0) > SAME or not whole:
             return False
         return _roller(one, float(np.sign(way)), mirror) == _roller(two, 1.0, None)
