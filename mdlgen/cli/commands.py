@@ -21,6 +21,7 @@ from mdlgen.cli.shell import (
     model_of,
     progress_bar,
     say,
+    source_of,
     told,
 )
 from mdlgen.errors import AccuracyError, OutputError, SpecError
@@ -220,7 +221,7 @@ def run(
     quiet: Quiet = False,
     verbose: Verbose = False,
 ) -> None:
-    """Simulate a scene; write summary.json, series.csv, result.h5, report.png and strain.png into DIR.
+    """Simulate a scene; write summary.json, series.csv, result.h5, report.html and pictures into DIR.
 
     Example: mdlgen run samples/transport_4x4.yaml -o out --check-step
     """
@@ -230,6 +231,7 @@ def run(
     registry.check_solver(solver)
     from mdlgen.report.figures import figure, load_drawing
     from mdlgen.report.maps import strain_map
+    from mdlgen.report.page import load_page, page
     from mdlgen.report.text import summary_text
     from mdlgen.results.store import check_folder, save
 
@@ -240,14 +242,17 @@ def run(
         if why:
             say(f"{name} runs this scene ({why})")
     # what draws takes half a second to load; a solver leaves the second core to it
-    Thread(target=load_drawing, daemon=True).start()
+    for load in (load_drawing, load_page):
+        Thread(target=load, daemon=True).start()
     # a solver may talk on standard output, which is kept for results
     with progress_bar(quiet, check_step) as progress, chatter(verbose):
         result = registry.solve(model, solver, progress, check_step)
     if not result.ok:
         say(f"{spec}: the run failed: {result.status}; nothing was written into {folder}")
         raise typer.Exit(SOLVER_FAILED)
-    save(result, folder, {"report.png": figure(result), "strain.png": strain_map(result)})
+    result.source = source_of(spec, sets)
+    pictures = {"report.png": figure(result), "strain.png": strain_map(result)}
+    save(result, folder, {**pictures, "report.html": page([result]).encode("utf-8")})
     if not quiet:
         typer.echo(summary_text(result.summary()))
         typer.echo(f"wrote {folder}")

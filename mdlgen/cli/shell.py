@@ -74,6 +74,13 @@ def model_of(spec: Path, sets: list[str] | None) -> Model:
     return lower(load(spec, sets or ()))
 
 
+def source_of(spec: Path, sets: list[str] | None) -> str:
+    """The text of a scene as it was written, and what was set beside it."""
+    from mdlgen import paths
+
+    return paths.read_text(spec) + "".join(f"# --set {text}\n" for text in sets or ())
+
+
 def echo_json(value: Any) -> None:
     import json
 

@@ -66,6 +66,7 @@ class Result:
     compile_s: float = 0.0
     error_estimate: float | None = None  # relative to max(travel, sheet length / 10)
     versions: dict[str, str] = field(default_factory=dict)
+    source: str = ""  # the scene as it was written, with what was set on the command line
 
     @property
     def ok(self) -> bool:
@@ -80,6 +81,13 @@ class Result:
         from mdlgen.results.store import save
 
         save(self, Path(folder))
+
+    @classmethod
+    def load(cls, folder: str | Path) -> Result:
+        """The result that `save` or `mdlgen run` wrote into `folder`. Raises OutputError."""
+        from mdlgen.results.store import load
+
+        return load(folder)
 
     def summary(self) -> dict[str, Any]:
         """What summary.json holds."""
