@@ -29,6 +29,14 @@ def report(
             help="The page: DIR/report.html if left out; of several runs compare.html.",
         ),
     ] = None,
+    at: Annotated[
+        str | None,
+        typer.Option(
+            "--stills",
+            metavar="TIMES",
+            help="Pictures for print at these times, as 0,18,30,50ms, beside the page: still_18ms.png ...",
+        ),
+    ] = None,
     quiet: Quiet = False,
     verbose: Verbose = False,
 ) -> None:
@@ -37,17 +45,62 @@ def report(
     Example: mdlgen report out/transport_4x4
 
     Example: mdlgen report out/coarse out/fine -o compare.html
+
+    Example: mdlgen report out/transport_4x4 --stills 0,18,30,50ms
     """
     from mdlgen import paths
     from mdlgen.report.page import page
+    from mdlgen.report.stills import stills, times
     from mdlgen.results.store import load
 
+    wanted = None if at is None else times(at)
+    if wanted is not None and len(folders) > 1:
+        raise SpecError("--stills are of one run; name one folder")
     results = [load(folder) for folder in folders]
     names = _names(folders)
     target = output or (folders[0] / PAGE if len(folders) == 1 else Path("compare.html"))
-    paths.write_atomic(target, page(results, names if len(folders) > 1 else ()))
+    files: dict[Path, str | bytes] = {target: page(results, names if len(folders) > 1 else ())}
+    if wanted is not None:
+        files |= {target.with_name(name): picture for name, picture in stills(results[0], wanted).items()}
+    paths.write_together(files)
     if not quiet:
-        say(f"wrote {target}")
+        for file in files:
+            say(f"wrote {file}")
+
+
+@app.command()
+@told
+def export(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="What `mdlgen run` wrote.")],
+    output: Annotated[
+        Path,
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="FILE.glb|FILE.vtkhdf",
+            help="An animated GLB for viewers of 3D, or VTKHDF for ParaView, by its ending.",
+        ),
+    ],
+    quiet: Quiet = False,
+    verbose: Verbose = False,
+) -> None:
+    """Write a run for other programs that show motion.
+
+    Example: mdlgen export out/transport_4x4 -o note.glb
+
+    Example: mdlgen export out/transport_4x4 -o note.vtkhdf
+    """
+    from mdlgen import paths
+    from mdlgen.report.gltf import glb
+    from mdlgen.report.vtkhdf import vtkhdf
+    from mdlgen.results.store import load
+
+    writers = {".glb": glb, ".vtkhdf": vtkhdf}
+    if output.suffix.lower() not in writers:
+        raise SpecError(f"{output}: the ending tells the format; there are: {', '.join(writers)}")
+    paths.write_atomic(output, writers[output.suffix.lower()](load(folder)))
+    if not quiet:
+        say(f"wrote {output}")
 
 
 @app.command()

@@ -53,9 +53,9 @@ def machine(model: Model) -> list[Mesh]:
 def _roller(model: Model, roller: RollerPart) -> list[Mesh]:
     """A cylinder, and a bar across both ends from the axis to the rim."""
     axis = roller.axis @ model.bodies.rotation[roller.body]
-    side = np.cross(axis, np.eye(3)[int(np.argmin(np.abs(axis)))])
+    side: Floats = np.asarray(np.cross(axis, np.eye(3)[int(np.argmin(np.abs(axis)))]), dtype=float)
     side = side / float(np.linalg.norm(side))
-    frame: Floats = np.stack([side, np.cross(axis, side), axis], axis=1)
+    frame: Floats = np.asarray(np.stack([side, np.cross(axis, side), axis], axis=1), dtype=float)
     turn = 2.0 * np.pi * np.arange(SIDES) / SIDES
     rim = roller.radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
     half = roller.width / 2
