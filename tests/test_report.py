@@ -76,7 +76,7 @@ class TestSaved:
             assert store.hdf5(Result.load(tmp_path / sample)) == store.hdf5(result)
 
     def test_what_is_no_result_ends_in_one_line(self, result: Result, tmp_path: Path) -> None:
-        with pytest.raises(OutputError, match="cannot read"):
+        with pytest.raises(OutputError, match="no such file; mdlgen run SPEC -o"):
             Result.load(tmp_path)
         path = tmp_path / "result.h5"
         path.write_bytes(b"not HDF5")

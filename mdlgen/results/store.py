@@ -100,6 +100,8 @@ def load(folder: str | Path) -> Result:
     import h5py
 
     path = Path(folder) / "result.h5"
+    if not path.exists():
+        raise OutputError(f"{path}: there is no such file; mdlgen run SPEC -o {folder} writes it")
     try:
         with h5py.File(path, "r") as opened:
             file: Any = opened
