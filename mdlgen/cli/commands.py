@@ -24,7 +24,7 @@ from mdlgen.cli.shell import (
     source_of,
     told,
 )
-from mdlgen.errors import AccuracyError, OutputError, SpecError
+from mdlgen.errors import AccuracyError, OutputError, SpecError, did_you_mean
 
 
 @app.command()
@@ -54,7 +54,8 @@ def new(
     if folder is None:
         raise SpecError("name a folder: mdlgen new DIR (or --list for the samples)")
     if sample.removesuffix(".yaml") not in known:
-        raise SpecError(f"there is no sample {sample[:80]!r}; there are: {', '.join(known)}")
+        close = did_you_mean(sample[:80], known)
+        raise SpecError(f"there is no sample {sample[:80]!r}{close or ';'} there are: {', '.join(known)}")
     source = known[sample.removesuffix(".yaml")]
     target = folder / source.name
     if target.exists() or target.is_symlink():
@@ -93,6 +94,31 @@ def check(
     else:
         for lint in found["lints"]:
             typer.echo("{code} {where}: {message}; {remedy}".format(**lint))
+
+
+@app.command()
+@told
+def explain(
+    code: Annotated[
+        str | None, typer.Argument(metavar="CODE", help="As W104, or dangling: all are listed if left out.")
+    ] = None,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
+) -> None:
+    """Say what a code of `mdlgen check` or `mdlgen lint` means, and what to do.
+
+    Example: mdlgen explain W104
+    """
+    from mdlgen.explain import SCENE, TEXT
+    from mdlgen.explain import explain as meaning
+
+    if code is not None:
+        typer.echo(meaning(code))
+        return
+    for title, table in (("mdlgen check", SCENE), ("mdlgen lint", TEXT)):
+        typer.echo(title)
+        for name, text in table.items():
+            typer.echo(f"  {name:10} {text.partition('. ')[0].rstrip('.')}.")
 
 
 @app.command()
