@@ -10,69 +10,69 @@ SCENE = {
         "E_md of a banknote is some 3500 MPa = 3.5 GPa. If the sheet is no paper, nothing is wrong."
     ),
     "W102": (
-        "Boxes that are much longer than wide bend much more coarsely one way than the other, so that boxes "
-        "are wasted on the fine way. Choose boxes: [n_x, n_y] so that d_x and d_y are alike."
+        "Boxes that are much longer than wide bend much more coarsely one way than the other, so that "
+        "boxes are wasted on the fine way. Choose boxes: [n_x, n_y] so that d_x and d_y are alike."
     ),
     "W103": (
-        "A clamped sheet on which nothing acts stays as it is: there is no gravity, load, contact or speed at "
-        "the start. Give one, or leave the run out."
+        "A clamped sheet on which nothing acts stays as it is: there is no gravity, load, contact or "
+        "speed at the start. Give one, or leave the run out."
     ),
     "W104": (
-        "Boxes are flat. A roller whose radius is below half a box's length meets a face, or an edge, where a "
-        "sheet would wrap around it; forces and slip are then those of the grid. Use more boxes along the way "
-        "the sheet runs, or grading near the roller."
+        "Boxes are flat. A roller whose radius is below half a box's length meets a face, or an edge, "
+        "where a sheet would wrap around it; forces and slip are then those of the grid. Use more boxes "
+        "along the way the sheet runs, or grading near the roller."
     ),
     "W105": (
-        "The preload presses a pressed roller deeper into the sheet than half of its thickness, so rollers on "
-        "both sides meet inside it. A contact's depth is (force / stiffness)^(2/3): raise the contact's "
-        "stiffness or lower the preload."
+        "The preload presses a pressed roller deeper into the sheet than half of its thickness, so "
+        "rollers on both sides meet inside it. A contact's depth is (force / stiffness)^(2/3): raise the "
+        "contact's stiffness or lower the preload."
     ),
     "W106": (
-        "Friction changes its sign over the smoothing speed, so a sheet in a nip slips by a part of it. Here "
-        "that is a noticeable part of the surface speed: the sheet creeps against the roller. A smaller "
-        "smoothing takes longer to run."
+        "Friction changes its sign over the smoothing speed, so a sheet in a nip slips by a part of it. "
+        "Here that is a noticeable part of the surface speed: the sheet creeps against the roller. A "
+        "smaller smoothing takes longer to run."
     ),
     "W107": (
-        "The smoothing speed is so small beside the surface speed that the solver needs many rounds for each "
-        "change of sign of friction. Raise it, unless a slower creep than that matters."
+        "The smoothing speed is so small beside the surface speed that the solver needs many rounds for "
+        "each change of sign of friction. Raise it, unless a slower creep than that matters."
     ),
     "W108": (
-        "A drive of speed 0 holds its roller still; it does not let it turn freely. Leave `drive` out for an "
-        "idler."
+        "A drive of speed 0 holds its roller still; it does not let it turn freely. Leave `drive` out for "
+        "an idler."
     ),
     "W109": (
         "A sheet that has no contact flies through the machine. Contacts are named one by one, or by a "
         "pattern: {between: [note, 'motor_*'], stiffness: 300 N/mm^1.5}."
     ),
     "W110": (
-        "A static analysis looks for rest, and a sheet that may move as a rigid body has none, or any. Clamp "
-        "an edge, support points, or run a transient analysis."
+        "A static analysis looks for rest, and a sheet that may move as a rigid body has none, or any. "
+        "Clamp an edge, support points, or run a transient analysis."
     ),
     "W111": (
         "A roller, plane, guide or part that touches nothing changes nothing. It may be misspelt in a "
         "contact's `between`."
     ),
     "W112": (
-        "A part starts so deep inside a sheet that the contact throws it off at the first step. Positions are "
-        "those of centres: a roller's centre is its radius, plus half the sheet's thickness, away from the "
-        "sheet's."
+        "A part starts so deep inside a sheet that the contact throws it off at the first step. Positions "
+        "are those of centres: a roller's centre is its radius, plus half the sheet's thickness, away "
+        "from the sheet's."
     ),
     "W113": (
-        "What a drive does after the end of the run is not seen. Often the ramp or the duration has a wrong "
-        "unit."
+        "What a drive does after the end of the run is not seen. Often the ramp or the duration has a "
+        "wrong unit."
     ),
     "W114": (
         "The density that follows from mass, size and thickness is not that of a solid sheet. One of the "
         "three probably has a wrong unit; paper has some 0.8 g/cm^3."
     ),
     "W115": (
-        "In layout plate, bending in the plane follows from E_md and E_cd as in a beam, so k_tz has no place. "
-        "It acts in the layouts edge_to_edge and center_to_center."
+        "In layout plate, bending in the plane follows from E_md and E_cd as in a beam, so k_tz has no "
+        "place. It acts in the layouts edge_to_edge and center_to_center."
     ),
     "W116": (
-        "No bending stiffness was given, so it is E s^3/12, that of a solid strip. Paper is layered and may "
-        "be half or twice as stiff. Hang a strip, measure its drop, and let `mdlgen calibrate` find D_md and "
-        "D_cd."
+        "No bending stiffness was given, so it is E s^3/12, that of a solid strip. Paper is layered and "
+        "may be half or twice as stiff. Hang a strip, measure its drop, and let `mdlgen calibrate` find "
+        "D_md and D_cd."
     ),
     "W117": (
         "A one-way clutch passes torque in one sense only. This drive turns in the other one, so it never "
@@ -86,21 +86,21 @@ TEXT = {
         "orientation degrees."
     ),
     "arity": (
-        "A statement, or an instance of a definition, has too many or too few arguments; then all that follow "
-        "mean something else."
+        "A statement, or an instance of a definition, has too many or too few arguments; then all that "
+        "follow mean something else."
     ),
     "ascii": (
-        "MotionView writes plain ASCII with lines that end in LF. Another character, a byte order mark or CR "
-        "LF may not be read."
+        "MotionView writes plain ASCII with lines that end in LF. Another character, a byte order mark or "
+        "CR LF may not be read."
     ),
     "attachment": (
-        "A system is given fewer attachments than its definition has: the defaults count, or what hangs on the "
-        "missing one is not known."
+        "A system is given fewer attachments than its definition has: the defaults count, or what hangs "
+        "on the missing one is not known."
     ),
     "block": "A *Begin..., *Define... or *If has no end, or an end stands without a beginning.",
     "bushing": (
-        "A bushing has a negative stiffness or damping, none at all, or rotational damping without rotational "
-        "stiffness, which often is a slip in the order 3 k, 3 c, 3 kt, 3 ct."
+        "A bushing has a negative stiffness or damping, none at all, or rotational damping without "
+        "rotational stiffness, which often is a slip in the order 3 k, 3 c, 3 kt, 3 ct."
     ),
     "comment": (
         "A comment stands inside *BeginMDL, where no file of MotionView has one. Before *BeginMDL it is safe."
@@ -128,13 +128,13 @@ TEXT = {
     "keyword": "A word such as POINT, VECTOR or EXPR is due at this place.",
     "kind": "A thing of another kind is due: a marker where a body is, and so on.",
     "mass": (
-        "A body has no mass, a negative one, or numbers that do not count since it takes its mass from its "
-        "graphics."
+        "A body has no mass, a negative one, or numbers that do not count since it takes its mass from "
+        "its graphics."
     ),
     "no-model": "The text has no *BeginMDL, so there is no model to read.",
     "offset": (
-        "A roller's cylinder starts at the centre of its roller instead of being centred there: its offset "
-        "would be -length/2."
+        "A roller's cylinder starts at the centre of its roller instead of being centred there: its "
+        "offset would be -length/2."
     ),
     "option": "An option is set to a choice that it does not have.",
     "pair": "A pair stands where one of the two is due: add .l or .r.",

@@ -68,6 +68,16 @@ class Result:
     versions: dict[str, str] = field(default_factory=dict)
     source: str = ""  # the scene as it was written, with what was set on the command line
 
+    def __repr__(self) -> str:
+        end = self.time[-1] if len(self.time) else 0.0
+        told = f"{self.model.name}, {self.solver}, {self.status}, {end:g} ms in {len(self.time)} states"
+        return f"<Result {told}, {len(self.model.bodies.name)} bodies>"
+
+    def _repr_html_(self) -> str:
+        from mdlgen.results.notebook import tables
+
+        return tables(self)
+
     @property
     def ok(self) -> bool:
         return self.status == "ok"
@@ -94,6 +104,14 @@ class Result:
         from mdlgen.results.summary import summary
 
         return summary(self)
+
+    def to_xarray(self) -> Any:
+        """The states as an xarray.Dataset over `time` [ms], `body` and `contact`, by their names, in the
+        Model's units, which stand in `attrs`. Needs the extra `xarray`.
+        """
+        from mdlgen.results.labelled import dataset
+
+        return dataset(self)
 
     @cached_property
     def strains(self) -> Strains | None:

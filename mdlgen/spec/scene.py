@@ -37,6 +37,11 @@ class Scene(Strict):
     probes: dict[Name, Probe] = Field(default_factory=dict)
     supports: tuple[Support, ...] = Field(default=(), strict=False)
 
+    def __repr__(self) -> str:
+        kinds = ("sheets", "rollers", "planes", "guides", "parts", "contacts", "loads", "probes", "supports")
+        told = ", ".join(f"{len(getattr(self, kind))} {kind}" for kind in kinds if getattr(self, kind))
+        return f"<Scene {self.name}: {told}>"
+
     @model_validator(mode="after")
     def _references(self) -> Scene:
         self._names_unique()
