@@ -38,13 +38,18 @@ def differences(
 
 
 def shown(value: Any) -> str:
-    """A number as a reader wants it: five figures, fewer of round-off; a dash for what is not known."""
+    """A number as a reader wants it: five figures, fewer of round-off; a dash for what is not known.
+
+    In a vector a component that is round-off of the others is 0.
+    """
     if value is None:
         return "–"
     if isinstance(value, (bool, str)):
         return str(value)
     if isinstance(value, (list, tuple)):
-        return "(" + ", ".join(shown(v) for v in value) + ")"
+        numbers = [v for v in value if isinstance(v, (int, float))]
+        small = ROUND_OFF * max((abs(v) for v in numbers), default=0.0)
+        return "(" + ", ".join("0" if v in numbers and abs(v) < small else shown(v) for v in value) + ")"
     return f"{value:.5g}" if abs(value) > ROUND_OFF else f"{value:.1g}"
 
 

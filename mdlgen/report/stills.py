@@ -15,6 +15,7 @@ from mdlgen.report.meshes import CORNERS, FACES, machine
 from mdlgen.report.motion import poses
 from mdlgen.results.foot import turns
 from mdlgen.results.result import Result
+from mdlgen.results.strain import histories
 from mdlgen.units import parse_quantity
 
 # the camera looks along the last of these three, with the first to the right and the second upward
@@ -56,14 +57,25 @@ def stills(result: Result, at_ms: list[float]) -> dict[str, bytes]:
     at = np.array([int(np.argmin(np.abs(result.time - time))) for time in at_ms], dtype=np.int64)
     place, turn = poses(result, at)
     matrix = turns(turn)
-    speed = boxes.speed(result, at)
-    most = float(boxes.speed(result, np.arange(len(result.time))).max()) or 1.0
-    scenes = [_Scene(result, place[k], matrix[k], speed[k] / most) for k in range(len(at))]
+    name, unit, values, most = _colours(result, at)
+    scenes = [_Scene(result, place[k], matrix[k], values[k] / (most or 1.0)) for k in range(len(at))]
+    told = f"colour: {name}, 0 to {most:.4g} {unit}"
     frame = [_frame([scene.points @ view.T for scene in scenes]) for view in (_SIDE, _corner())]
     return {
-        f"still_{time:g}ms.png": _draw(result, scene, frame, float(result.time[k]), most)
+        f"still_{time:g}ms.png": _draw(result, scene, frame, float(result.time[k]), told)
         for time, scene, k in zip(at_ms, scenes, at, strict=True)
     }
+
+
+def _colours(result: Result, at: Ints) -> tuple[str, str, Floats, float]:
+    """What boxes are coloured by, its unit, values at states, (t, boxes), and the greatest of the run: speed,
+    and of a sheet at rest curvature."""
+    every = np.arange(len(result.time))
+    speeds = boxes.speed(result, every)
+    if speeds.max() > 0.0:
+        return "speed", "mm/s", speeds[at], float(speeds.max())
+    bent = boxes.greatest(histories(result, every), speeds.shape)[1]
+    return "curvature", "1/mm", bent[at], float(bent.max())
 
 
 def _corner() -> Floats:
@@ -109,9 +121,7 @@ def _frame(seen: list[Floats]) -> tuple[Floats, Floats]:
     return low - margin, high + margin
 
 
-def _draw(
-    result: Result, scene: _Scene, frame: list[tuple[Floats, Floats]], time: float, most: float
-) -> bytes:
+def _draw(result: Result, scene: _Scene, frame: list[tuple[Floats, Floats]], time: float, told: str) -> bytes:
     import matplotlib
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -123,7 +133,7 @@ def _draw(
         page = Figure(figsize=(8.0, 6.4), dpi=120)
         canvas = FigureCanvasAgg(page)
         page.suptitle(f"{result.model.name}, {time:g} ms", x=0.02, ha="left", fontsize=11, weight="bold")
-        page.text(0.98, 0.965, f"colour: speed, 0 to {most:.4g} mm/s", ha="right", fontsize=9)
+        page.text(0.98, 0.965, told, ha="right", fontsize=9)
         tall = [(high - low)[1] / (high - low)[0] for low, high in frame]
         share = np.clip(tall[0] / (tall[0] + tall[1]), 0.2, 0.6)
         side = page.add_axes((0.08, 0.09, 0.9, 0.84 * float(share) - 0.02))

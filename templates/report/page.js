@@ -136,6 +136,8 @@ try {
   get("no-drawing").hidden = false;
   get("no-drawing").textContent = `This browser does not draw in space (WebGL): ${error.message}. The figures and tables are all here.`;
 }
+// nothing moves at rest: what bends is shown then
+if (told().static) state.colour = told().colours.findIndex((c) => c.name === "curvature");
 choose(0);
 rate(rates.findIndex((r) => r >= (end() - start()) / 10));
 // what a link asks for, as #t=18&view=xz&colour=strain
