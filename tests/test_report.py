@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import io
 import json
 import os
 import re
@@ -19,19 +20,21 @@ from ran import ran, transport
 from synthetic import moving, small_model
 from typer.testing import CliRunner
 
+import mdlgen
 from mdlgen.cli import app
 from mdlgen.errors import OutputError
 from mdlgen.model.tables import BOX_CYLINDER
-from mdlgen.paths import templates
+from mdlgen.paths import samples, templates
 from mdlgen.report import boxes
 from mdlgen.report.animation import FRAMES, MOST, frames
 from mdlgen.report.meshes import machine
 from mdlgen.report.motion import poses
 from mdlgen.report.page import page
-from mdlgen.results import store
+from mdlgen.results import store, tree
 from mdlgen.results.result import Result
 from mdlgen.results.strain import histories
 
+RICH = Path(__file__).parent / "rich.yaml"
 THIRD = templates() / "report" / "third_party"
 
 
@@ -74,6 +77,19 @@ class TestSaved:
             result = ran(sample)
             result.save(tmp_path / sample)
             assert store.hdf5(Result.load(tmp_path / sample)) == store.hdf5(result)
+
+    @pytest.mark.parametrize("path", [*sorted(samples().rglob("*.yaml")), RICH], ids=lambda p: p.stem)
+    def test_the_model_of_every_sample_reads_back(self, path: Path) -> None:
+        model = mdlgen.lower(mdlgen.load(path))
+        streams = io.BytesIO(), io.BytesIO()
+        with h5py.File(streams[0], "w") as file:
+            tree.put(file, {"model": model})
+        with h5py.File(streams[0], "r") as file:
+            again = tree.take(file)["model"]
+        with h5py.File(streams[1], "w") as file:
+            tree.put(file, {"model": again})
+        assert type(again) is type(model) and repr(again) == repr(model)
+        assert streams[0].getvalue() == streams[1].getvalue()
 
     def test_what_is_no_result_ends_in_one_line(self, result: Result, tmp_path: Path) -> None:
         with pytest.raises(OutputError, match="no such file; mdlgen run SPEC -o"):

@@ -13,8 +13,8 @@ from mdlgen.report.meshes import machine
 from mdlgen.report.motion import poses, start
 from mdlgen.results.result import Result
 
-# Boxes times states of a page: 600 boxes at 500 states. More states than these are not seen one by one.
-MOST, FRAMES = 300_000, 1000
+# Boxes times states of a page, 600 boxes at 501 states; more states than FRAMES are not seen one by one.
+MOST, FRAMES = 600 * 501, 1000
 WHOLE = 32767  # of a 16-bit number
 
 

@@ -53,6 +53,11 @@ def shown(value: Any) -> str:
     return f"{value:.5g}" if abs(value) > ROUND_OFF else f"{value:.1g}"
 
 
+def percent(value: float | None) -> str:
+    """A ratio in percent."""
+    return shown(None if value is None else 100.0 * value) + " %"
+
+
 def _flat(value: Any, path: str = "") -> list[tuple[str, Any]]:
     """Every number of nested objects and lists, by dotted path."""
     if isinstance(value, dict):

@@ -15,7 +15,7 @@ from mdlgen.paths import cache, templates
 from mdlgen.report import boxes
 from mdlgen.report.animation import animation, frames, packed
 from mdlgen.report.curves import Panel, panels
-from mdlgen.report.differences import differences, shown
+from mdlgen.report.differences import differences, percent, shown
 from mdlgen.results.result import Result
 from mdlgen.results.strain import histories
 
@@ -73,7 +73,7 @@ def _environment() -> Environment:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    made.filters["shown"] = shown
+    made.filters |= {"shown": shown, "percent": percent}
     return made
 
 
