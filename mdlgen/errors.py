@@ -7,12 +7,22 @@ line turns it into exit code 4.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 
 def printable(text: str) -> str:
     """`text` in one line: what a key or a file name may hold must not look like another line."""
     return "".join(c if c.isprintable() else " " for c in text)
+
+
+def did_you_mean(name: str, known: Iterable[str]) -> str:
+    """`; did you mean 'motor'?` for what is nearly a known name, without regard to case; else nothing."""
+    import difflib
+
+    lower = {other.lower(): other for other in known}
+    close = difflib.get_close_matches(name.lower(), lower, n=1)
+    return f"; did you mean {lower[close[0]]!r}?" if close else ""
 
 
 class Place(NamedTuple):

@@ -8,7 +8,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, cast
 
-from mdlgen.errors import RefusedError, SpecError
+from mdlgen.errors import RefusedError, SpecError, did_you_mean
 from mdlgen.model.external import refuse_externals
 from mdlgen.model.tables import Model
 
@@ -112,7 +112,8 @@ def chosen(name: str, model: Model) -> tuple[str, str]:
 def _known(name: str, table: dict[str, str], kind: str) -> None:
     if name not in table:
         names = [*(["auto"] if table is SOLVERS else []), *sorted(table)]
-        raise SpecError(f"there is no {kind} {name[:40]!r}; there are: {', '.join(names)}")
+        close = did_you_mean(name[:40], names)
+        raise SpecError(f"there is no {kind} {name[:40]!r}{close or ';'} there are: {', '.join(names)}")
 
 
 def solve(

@@ -323,7 +323,7 @@ def test_run_writes_all_files(mdl: Run, tmp_path: Path, monkeypatch: pytest.Monk
     monkeypatch.setattr(registry, "solver", lambda name: Fake())
     ended = mdl("run", FOUR, *SMALL)
     assert (ended.code, ended.err) == (0, "")
-    names = ["report.png", "result.h5", "series.csv", "strain.png", "summary.json"]
+    names = ["report.html", "report.png", "result.h5", "series.csv", "strain.png", "summary.json"]
     assert files(tmp_path) == [f"out/transport_4x4/{n}" for n in names]
     assert "travel (70, 0, 0) mm" in ended.out and "talks" not in ended.out
     assert mdl("run", FOUR, *SMALL, "-q", "-o", "quiet").out == ""

@@ -53,6 +53,13 @@ def test_the_wheel_works_from_another_folder(installed, tmp_path):
     )
 
 
+def test_the_wheel_carries_what_the_page_is_made_of(installed):
+    report = installed / "mdlgen" / "_templates" / "report"
+    of = ("page.html.j2", "player.js", "third_party/three.module.min.js", "third_party/LICENSE")
+    assert all((report / name).is_file() for name in of)
+    assert (installed / "mdlgen" / "py.typed").is_file()
+
+
 def test_the_readmes_first_scene_loads():
     blocks = re.findall(r"```yaml\n(.*?)```", (ROOT / "README.md").read_text("utf-8"), re.DOTALL)
     scene, sheets, guides, parts = blocks

@@ -21,9 +21,10 @@ from mdlgen.cli.shell import (
     model_of,
     progress_bar,
     say,
+    source_of,
     told,
 )
-from mdlgen.errors import AccuracyError, OutputError, SpecError
+from mdlgen.errors import AccuracyError, OutputError, SpecError, did_you_mean
 
 
 @app.command()
@@ -54,7 +55,8 @@ def new(
     if folder is None:
         raise SpecError("name a folder: mdlgen new DIR (or --list for the samples)")
     if sample.removesuffix(".yaml") not in known:
-        raise SpecError(f"there is no sample {sample[:80]!r}; there are: {', '.join(known)}")
+        close = did_you_mean(sample[:80], known)
+        raise SpecError(f"there is no sample {sample[:80]!r}{close or ';'} there are: {', '.join(known)}")
     source = known[sample.removesuffix(".yaml")]
     target = folder / source.name
     if target.exists() or target.is_symlink():
@@ -99,6 +101,31 @@ def check(
     else:
         for lint in found["lints"]:
             typer.echo("{code} {where}: {message}; {remedy}".format(**lint))
+
+
+@app.command()
+@told
+def explain(
+    code: Annotated[
+        str | None, typer.Argument(metavar="CODE", help="As W104, or dangling: all are listed if left out.")
+    ] = None,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
+) -> None:
+    """Say what a code of `mdlgen check` or `mdlgen lint` means, and what to do.
+
+    Example: mdlgen explain W104
+    """
+    from mdlgen.explain import SCENE, TEXT
+    from mdlgen.explain import explain as meaning
+
+    if code is not None:
+        typer.echo(meaning(code))
+        return
+    for title, table in (("mdlgen check", SCENE), ("mdlgen lint", TEXT)):
+        typer.echo(title)
+        for name, text in table.items():
+            typer.echo(f"  {name:10} {text.partition('. ')[0].rstrip('.')}.")
 
 
 @app.command()
@@ -227,7 +254,7 @@ def run(
     quiet: Quiet = False,
     verbose: Verbose = False,
 ) -> None:
-    """Simulate a scene; write summary.json, series.csv, result.h5, report.png and strain.png into DIR.
+    """Simulate a scene; write summary.json, series.csv, result.h5, report.html and pictures into DIR.
 
     Example: mdlgen run samples/transport_4x4.yaml -o out --check-step
     """
@@ -237,6 +264,7 @@ def run(
     registry.check_solver(solver)
     from mdlgen.report.figures import figure, load_drawing
     from mdlgen.report.maps import strain_map
+    from mdlgen.report.page import load_page, page
     from mdlgen.report.text import summary_text
     from mdlgen.results.store import check_folder, save
 
@@ -247,14 +275,17 @@ def run(
         if why:
             say(f"{name} runs this scene ({why})")
     # what draws takes half a second to load; a solver leaves the second core to it
-    Thread(target=load_drawing, daemon=True).start()
+    for load in (load_drawing, load_page):
+        Thread(target=load, daemon=True).start()
     # a solver may talk on standard output, which is kept for results
     with progress_bar(quiet, check_step) as progress, chatter(verbose):
         result = registry.solve(model, solver, progress, check_step)
     if not result.ok:
         say(f"{spec}: the run failed: {result.status}; nothing was written into {folder}")
         raise typer.Exit(SOLVER_FAILED)
-    save(result, folder, {"report.png": figure(result), "strain.png": strain_map(result)})
+    result.source = source_of(spec, sets)
+    pictures = {"report.png": figure(result), "strain.png": strain_map(result)}
+    save(result, folder, {**pictures, "report.html": page([result]).encode("utf-8")})
     if not quiet:
         typer.echo(summary_text(result.summary()))
         typer.echo(f"wrote {folder}")

@@ -74,6 +74,13 @@ def model_of(spec: Path, sets: list[str] | None) -> Model:
     return lower(load(spec, sets or ()))
 
 
+def source_of(spec: Path, sets: list[str] | None) -> str:
+    """The text of a scene as it was written, and what was set beside it."""
+    from mdlgen import paths
+
+    return paths.read_text(spec) + "".join(f"# --set {text}\n" for text in sets or ())
+
+
 def echo_json(value: Any) -> None:
     import json
 
@@ -147,7 +154,8 @@ def compiling(told: Callable[[int], None]) -> Iterator[None]:
 
 @contextlib.contextmanager
 def progress_bar(quiet: bool, twice: bool) -> Iterator[Callable[[float, float, int, int], None] | None]:
-    """A progress bar on a terminal: time, steps, pairs that touch, time left; and what is compiled before.
+    """A progress bar on a terminal: time, steps, pairs that touch, rate, time left; and what is compiled
+    before.
 
     Elsewhere a line says that something is compiled.
     """
@@ -179,6 +187,9 @@ def progress_bar(quiet: bool, twice: bool) -> Iterator[Callable[[float, float, i
                 tasks.append(bar.add_task(name, total=end, told=""))
             last = time
             told = f"{time:.2f} of {end:g} ms, step {steps}, {touching} pairs touch"
+            speed = bar.tasks[-1].speed
+            if speed:
+                told += f", {speed:.3g} ms a second"
             bar.update(tasks[-1], completed=time, told=told)
 
         def compiled(done: int) -> None:

@@ -105,17 +105,21 @@ def bounds(guide: GuidePart) -> tuple[Floats, Floats]:
 
 
 def depths(guide: GuidePart, points: Floats, center: Floats) -> Floats:
-    """How deep points of a body with that centre are in a guide; 0 where they do not touch it [mm], (n,)."""
+    """How deep points of bodies with these centres are in a guide; 0 where they do not touch it [mm].
+
+    `points` (..., 3) and `center`, (3,) or one for each point; (...).
+    """
     own = (points - guide.center) @ guide.axes
     middle = (center - guide.center) @ guide.axes
     if guide.radius == 0.0:
-        inward, side = own[:, 1], middle[1]
-        over = np.abs(own[:, 0]) <= guide.length / 2
+        inward, side = own[..., 1], middle[..., 1]
+        over = np.abs(own[..., 0]) <= guide.length / 2
     else:
-        inward, side = guide.radius - np.hypot(own[:, 0], own[:, 1]), guide.radius - np.hypot(*middle[:2])
-        angle = np.arctan2(own[:, 1], own[:, 0]) - guide.middle
+        inward = guide.radius - np.hypot(own[..., 0], own[..., 1])
+        side = guide.radius - np.hypot(middle[..., 0], middle[..., 1])
+        angle = np.arctan2(own[..., 1], own[..., 0]) - guide.middle
         over = np.cos(angle) >= math.cos(guide.half_angle)
-    sign = {1: 1.0, 2: -1.0, 3: math.copysign(1.0, side)}[guide.sides]
+    sign = {1: 1.0, 2: -1.0, 3: np.copysign(1.0, side)}[guide.sides]
     deep = (guide.thickness / 2 if guide.sides == 3 else 0.0) - sign * inward
-    over &= (np.abs(own[:, 2]) <= guide.width / 2) & (deep < guide.thickness)
+    over &= (np.abs(own[..., 2]) <= guide.width / 2) & (deep < guide.thickness)
     return np.where(over, np.maximum(deep, 0.0), 0.0)

@@ -539,6 +539,11 @@ class Model(Frozen):
     parameters: tuple[Parameter, ...]
     run: RunSettings
 
+    def __repr__(self) -> str:
+        kinds = ("sheets", "rollers", "planes", "guides", "bushings", "contacts")
+        told = ", ".join(f"{len(getattr(self, kind))} {kind}" for kind in kinds if len(getattr(self, kind)))
+        return f"<Model {self.name}: {len(self.bodies.name)} bodies, {told}>"
+
     def roller(self, name: str) -> RollerPart:
         return next(r for r in self.rollers if r.name == name)
 

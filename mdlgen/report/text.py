@@ -46,8 +46,7 @@ def overview_text(told: dict[str, Any]) -> str:
         lines.append(f"external parts: {parts}; {pairs['external']} pairs of bodies with them, all kept")
     lines.append("")
     lines += [f"{x['code']} {x['where']}: {x['message']}; {x['remedy']}" for x in told["lints"]]
-    if not told["lints"]:
-        lines.append("no lints")
+    lines.append("mdlgen explain CODE says more" if told["lints"] else "no lints")
     return "\n".join(lines)
 
 

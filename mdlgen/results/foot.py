@@ -41,7 +41,7 @@ def _feet(result: Result, boxes: Ints, roller: RollerPart, at: Ints) -> Foot:
     half, radius, axis = result.model.bodies.half[boxes], roller.radius, roller.axis
     center = result.position[at, roller.body][:, None]  # (t, 1, 3)
     place = result.position[np.ix_(at, boxes)]  # (t, boxes, 3)
-    turn = _matrices(result.rotation[np.ix_(at, boxes)])
+    turn = turns(result.rotation[np.ix_(at, boxes)])
     # the axis, seen by each box, over its face: from where to where it passes
     offset = np.einsum("tnij,tni->tnj", turn, center - place)
     along = np.einsum("tnij,i->tnj", turn, axis)
@@ -82,7 +82,7 @@ def _feet(result: Result, boxes: Ints, roller: RollerPart, at: Ints) -> Foot:
     return Foot(share, mean(own), mean(rim), low, high)
 
 
-def _matrices(quaternions: Floats) -> Floats:
+def turns(quaternions: Floats) -> Floats:
     """Rotation matrices of Euler parameters, scalar first, (t, n, 4) -> (t, n, 3, 3)."""
     from scipy.spatial.transform import Rotation
 

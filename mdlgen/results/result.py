@@ -67,6 +67,17 @@ class Result:
     error_estimate: float | None = None  # relative to max(travel, sheet length / 10)
     halved: bool = False  # one side was solved, the other is its mirror image
     versions: dict[str, str] = field(default_factory=dict)
+    source: str = ""  # the scene as it was written, with what was set on the command line
+
+    def __repr__(self) -> str:
+        end = self.time[-1] if len(self.time) else 0.0
+        told = f"{self.model.name}, {self.solver}, {self.status}, {end:g} ms in {len(self.time)} states"
+        return f"<Result {told}, {len(self.model.bodies.name)} bodies>"
+
+    def _repr_html_(self) -> str:
+        from mdlgen.results.notebook import tables
+
+        return tables(self)
 
     @property
     def ok(self) -> bool:
@@ -82,11 +93,26 @@ class Result:
 
         save(self, Path(folder))
 
+    @classmethod
+    def load(cls, folder: str | Path) -> Result:
+        """The result that `save` or `mdlgen run` wrote into `folder`. Raises OutputError."""
+        from mdlgen.results.store import load
+
+        return load(folder)
+
     def summary(self) -> dict[str, Any]:
         """What summary.json holds."""
         from mdlgen.results.summary import summary
 
         return summary(self)
+
+    def to_xarray(self) -> Any:
+        """The states as an xarray.Dataset over `time` [ms], `body` and `contact`, by their names, in the
+        Model's units, which stand in `attrs`. Needs the extra `xarray`.
+        """
+        from mdlgen.results.labelled import dataset
+
+        return dataset(self)
 
     @cached_property
     def strains(self) -> Strains | None:

@@ -12,12 +12,18 @@ import numpy as np
 
 from mdlgen.errors import OutputError
 from mdlgen.paths import write_together
-from mdlgen.results.result import Result
+from mdlgen.results import tree
+from mdlgen.results.result import ContactStatistics, Result
 from mdlgen.results.series import csv
-from mdlgen.results.summary import summary
+from mdlgen.results.summary import summary, versions
 
 UNITS = "mm, N, g, ms, rad"
 STATES = ("time", "position", "rotation", "velocity", "spin", "contact_force")
+# of a Result, beside its states: what the tables of the file hold
+TOLD = (
+    "model", "solver", "status", "touched", "energy", "step", "steps", "rounds", "wall_s", "estimate_s",
+    "build_s", "compile_s", "error_estimate", "versions", "source",
+)  # fmt: skip
 STATISTICS = ("max_depth", "mean_depth", "max_force", "mean_force", "last_force_at")
 
 
@@ -56,8 +62,8 @@ def check_folder(folder: Path) -> None:
 
 
 def hdf5(result: Result) -> bytes:
-    """result.h5: states and statistics in the Model's units, with the names of bodies and contact rows, and
-    what the joints of the sheets bore at most (`joints/...`; see `results.strain`).
+    """result.h5: states and statistics in the Model's units, with the names of bodies and contact rows, what
+    the joints of the sheets bore at most (`joints/...`; see `results.strain`), and the Model (`model/...`).
 
     The same result gives the same bytes: no times of writing are kept.
     """
@@ -76,6 +82,7 @@ def hdf5(result: Result) -> bytes:
             put(f"statistics/{name}", np.asarray(getattr(result.statistics, name), dtype=float))
         for name, data in _joints(result).items():
             put(f"joints/{name}", data)
+        tree.put(file, {name: getattr(result, name) for name in TOLD} | {"versions": versions(result)})
         put("bodies", _names(model.bodies.name))
         put("contacts", _names(_rows(result)))
         for name, value in (
@@ -88,10 +95,32 @@ def hdf5(result: Result) -> bytes:
     return stream.getvalue()
 
 
+def load(folder: str | Path) -> Result:
+    """The Result that was saved into `folder`, from its result.h5 alone. Raises OutputError."""
+    import h5py
+
+    path = Path(folder) / "result.h5"
+    if not path.exists():
+        raise OutputError(f"{path}: there is no such file; mdlgen run SPEC -o {folder} writes it")
+    try:
+        with h5py.File(path, "r") as opened:
+            file: Any = opened
+            if "model" not in file:
+                raise OutputError(f"{path}: holds states and no model; it is of an older mdlgen, run again")
+            told = tree.take(file)
+            states = {name: file[name][()] for name in STATES}
+            statistics = ContactStatistics(**{name: file[f"statistics/{name}"][()] for name in STATISTICS})
+            return Result(**told, **states, statistics=statistics)
+    except (OSError, KeyError, TypeError, ValueError, AttributeError) as error:
+        reason = (str(error).splitlines() or [""])[0]
+        raise OutputError(f"{path}: cannot read: {reason}") from None
+
+
 def read(folder: str | Path) -> dict[str, Any]:
     """The arrays of a saved result.h5 by name (`statistics/max_depth` ...), and its attributes as text.
 
-    `bodies`, `contacts` ("a / b") and `joints/name` are lists of names. Raises OutputError.
+    `bodies`, `contacts` ("a / b") and `joints/name` are lists of names; the Model is left out (`load` has
+    it). Raises OutputError.
     """
     import h5py
 
@@ -101,7 +130,7 @@ def read(folder: str | Path) -> dict[str, Any]:
         with h5py.File(path, "r") as file:
 
             def take(name: str, item: Any) -> None:
-                if isinstance(item, h5py.Dataset):
+                if isinstance(item, h5py.Dataset) and not name.startswith("model/"):
                     found[name] = item[()]
 
             file.visititems(take)

@@ -172,6 +172,28 @@ def _peaks(result: Result, fixed: _Fixed, axis: int) -> tuple[Floats, Ints]:
     return found, when
 
 
+def histories(result: Result, at: Ints) -> tuple[SheetJoints, Floats, Floats] | None:
+    """Membrane strain of the more stretched bushing and curvature [1/mm] of all joints at the stored states
+    `at`, (t, joints) each; None where there is no joint."""
+    joints = sheet_joints(result.model)
+    if not len(joints) or not len(at):
+        return None
+    stretch, bend = np.zeros((2, len(at), len(joints)))
+    for axis in (0, 1):
+        along = np.flatnonzero(joints.axis == axis)
+        if not len(along):
+            continue
+        fixed = _Fixed(result.model, joints, along)
+        frames = max(1, _CHUNK // len(along))
+        for start in range(0, len(at), frames):
+            part = at[start : start + frames]
+            sides = _states(result, part, fixed.a), _states(result, part, fixed.b)
+            measured = _measure(*sides, fixed, axis)
+            stretch[start : start + frames, along] = measured[0]
+            bend[start : start + frames, along] = measured[2]
+    return joints, stretch, bend
+
+
 class _Fixed:
     """What does not change over a run, of some joints; quaternions and vectors component by component."""
 
@@ -194,7 +216,7 @@ class _Fixed:
             self.arms.append(tuple(np.einsum("nki,nk->in", axes, origin - placed[body])))
 
 
-def _states(result: Result, part: slice, bodies: Ints) -> tuple[Floats, Floats]:
+def _states(result: Result, part: slice | Ints, bodies: Ints) -> tuple[Floats, Floats]:
     """Positions (3, t, n) and Euler parameters (4, t, n) of bodies, or of the ground."""
     ground = bodies == GROUND
     at = np.where(ground, 0, bodies)

@@ -51,11 +51,16 @@ def summary(result: Result) -> dict[str, Any]:
         "guides": {g.name: {"contacts": _contacts(result, part_rows(result, g))} for g in model.guides},
         "meshes": {m.name: {"contacts": _contacts(result, part_rows(result, m))} for m in model.meshes},
         "probes": {p.name: _probe(result, k) for k, p in enumerate(model.probes)},
-        "versions": {**result.versions, "mdlgen": version(), "numpy": np.__version__},
+        "versions": versions(result),
     }
     if model.tension is not None:
         told["strain"] = strain(result) if len(result.time) else None
     return plain(told)
+
+
+def versions(result: Result) -> dict[str, str]:
+    """Of what made the result: those that a saved one tells, else those that are installed."""
+    return {"mdlgen": version(), "numpy": np.__version__, **result.versions}
 
 
 def plain(value: Any) -> Any:

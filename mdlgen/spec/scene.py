@@ -8,6 +8,7 @@ from itertools import product
 
 from pydantic import Field, model_validator
 
+from mdlgen.errors import did_you_mean
 from mdlgen.spec.action import Load, OnSheet, Probe, Support
 from mdlgen.spec.contact import Contact
 from mdlgen.spec.fields import Acceleration, Name, Strict, default, fail
@@ -37,6 +38,11 @@ class Scene(Strict):
     run: Run = Field(default_factory=Run)
     probes: dict[Name, Probe] = Field(default_factory=dict)
     supports: tuple[Support, ...] = Field(default=(), strict=False)
+
+    def __repr__(self) -> str:
+        kinds = ("sheets", "rollers", "planes", "guides", "parts", "contacts", "loads", "probes", "supports")
+        told = ", ".join(f"{len(getattr(self, kind))} {kind}" for kind in kinds if getattr(self, kind))
+        return f"<Scene {self.name}: {told}>"
 
     @model_validator(mode="after")
     def _references(self) -> Scene:
@@ -159,7 +165,8 @@ class Scene(Strict):
 
 def _known(name: str, table: dict, kind: str, path: tuple[str | int, ...]) -> None:
     if name not in table:
-        raise fail(f"there is no {kind} {name!r}; there are: {', '.join(table) or 'none'}", path)
+        close = did_you_mean(name, table)
+        raise fail(f"there is no {kind} {name!r}{close or ';'} there are: {', '.join(table) or 'none'}", path)
 
 
 def _matching(pattern: str, parts: dict[str, int], path: tuple[str | int, ...]) -> list[str]:
@@ -167,5 +174,6 @@ def _matching(pattern: str, parts: dict[str, int], path: tuple[str | int, ...]) 
         raise fail(f"{pattern[:80]!r} is not a name or a pattern of letters, digits, _, * and ?", path)
     found = [name for name in parts if fnmatchcase(name, pattern)]
     if not found:
-        raise fail(f"there is no part {pattern!r}; there are: {', '.join(parts)}", path)
+        close = did_you_mean(pattern, parts)
+        raise fail(f"there is no part {pattern!r}{close or ';'} there are: {', '.join(parts)}", path)
     return found

@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib import import_module
 
 from mdlgen.bench.case import Case
-from mdlgen.errors import SpecError
+from mdlgen.errors import SpecError, did_you_mean
 
 SUITES = ("transport", "elastica", "impact", "friction", "flight", "scaling", "skip", "stability")
 # The solver whose finest run the others are compared with, where it is there.
@@ -18,6 +18,7 @@ def cases(suite: str, solver: str, solvers: tuple[str, ...], quick: bool) -> lis
     Raises SpecError for a suite that there is not.
     """
     if suite not in SUITES:
-        raise SpecError(f"there is no suite {suite[:40]!r}; there are: {', '.join(SUITES)}")
+        close = did_you_mean(suite[:40], SUITES)
+        raise SpecError(f"there is no suite {suite[:40]!r}{close or ';'} there are: {', '.join(SUITES)}")
     known = [name for name in REFERENCE if name in solvers] or [solver]
     return import_module(f"mdlgen.bench.suites.{suite}").cases(solver, known[0], quick)

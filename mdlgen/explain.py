@@ -1,0 +1,164 @@
+"""What the codes of `mdlgen check` (W101 ...) and `mdlgen lint` (arity, dangling ...) mean, at length."""
+
+from __future__ import annotations
+
+from mdlgen.errors import SpecError, did_you_mean
+
+SCENE = {
+    "W101": (
+        "The modulus of a sheet is far from that of paper and board. MPa, Pa and GPa are easily mixed up: "
+        "E_md of a banknote is some 3500 MPa = 3.5 GPa. If the sheet is no paper, nothing is wrong."
+    ),
+    "W102": (
+        "Boxes that are much longer than wide bend much more coarsely one way than the other, so that "
+        "boxes are wasted on the fine way. Choose boxes: [n_x, n_y] so that d_x and d_y are alike."
+    ),
+    "W103": (
+        "A clamped sheet on which nothing acts stays as it is: there is no gravity, load, contact or "
+        "speed at the start. Give one, or leave the run out."
+    ),
+    "W104": (
+        "Boxes are flat. A roller whose radius is below half a box's length meets a face, or an edge, "
+        "where a sheet would wrap around it; forces and slip are then those of the grid. Use more boxes "
+        "along the way the sheet runs, or grading near the roller."
+    ),
+    "W105": (
+        "The preload presses a pressed roller deeper into the sheet than half of its thickness, so "
+        "rollers on both sides meet inside it. A contact's depth is (force / stiffness)^(2/3): raise the "
+        "contact's stiffness or lower the preload."
+    ),
+    "W106": (
+        "Friction changes its sign over the smoothing speed, so a sheet in a nip slips by a part of it. "
+        "Here that is a noticeable part of the surface speed: the sheet creeps against the roller. A "
+        "smaller smoothing takes longer to run."
+    ),
+    "W107": (
+        "The smoothing speed is so small beside the surface speed that the solver needs many rounds for "
+        "each change of sign of friction. Raise it, unless a slower creep than that matters."
+    ),
+    "W108": (
+        "A drive of speed 0 holds its roller still; it does not let it turn freely. Leave `drive` out for "
+        "an idler."
+    ),
+    "W109": (
+        "A sheet that has no contact flies through the machine. Contacts are named one by one, or by a "
+        "pattern: {between: [note, 'motor_*'], stiffness: 300 N/mm^1.5}."
+    ),
+    "W110": (
+        "A static analysis looks for rest, and a sheet that may move as a rigid body has none, or any. "
+        "Clamp an edge, support points, or run a transient analysis."
+    ),
+    "W111": (
+        "A roller, plane, guide or part that touches nothing changes nothing. It may be misspelt in a "
+        "contact's `between`."
+    ),
+    "W112": (
+        "A part starts so deep inside a sheet that the contact throws it off at the first step. Positions "
+        "are those of centres: a roller's centre is its radius, plus half the sheet's thickness, away "
+        "from the sheet's."
+    ),
+    "W113": (
+        "What a drive does after the end of the run is not seen. Often the ramp or the duration has a "
+        "wrong unit."
+    ),
+    "W114": (
+        "The density that follows from mass, size and thickness is not that of a solid sheet. One of the "
+        "three probably has a wrong unit; paper has some 0.8 g/cm^3."
+    ),
+    "W115": (
+        "In layout plate, bending in the plane follows from E_md and E_cd as in a beam, so k_tz has no "
+        "place. It acts in the layouts edge_to_edge and center_to_center."
+    ),
+    "W116": (
+        "No bending stiffness was given, so it is E s^3/12, that of a solid strip. Paper is layered and "
+        "may be half or twice as stiff. Hang a strip, measure its drop, and let `mdlgen calibrate` find "
+        "D_md and D_cd."
+    ),
+    "W117": (
+        "A one-way clutch passes torque in one sense only. This drive turns in the other one, so it never "
+        "drives. Give `direction` the sign of the speed."
+    ),
+}
+
+TEXT = {
+    "angle": (
+        "An angle is in the other unit than is due here: sine and cosine take radians, ANGLES of an "
+        "orientation degrees."
+    ),
+    "arity": (
+        "A statement, or an instance of a definition, has too many or too few arguments; then all that "
+        "follow mean something else."
+    ),
+    "ascii": (
+        "MotionView writes plain ASCII with lines that end in LF. Another character, a byte order mark or "
+        "CR LF may not be read."
+    ),
+    "attachment": (
+        "A system is given fewer attachments than its definition has: the defaults count, or what hangs "
+        "on the missing one is not known."
+    ),
+    "block": "A *Begin..., *Define... or *If has no end, or an end stands without a beginning.",
+    "bushing": (
+        "A bushing has a negative stiffness or damping, none at all, or rotational damping without "
+        "rotational stiffness, which often is a slip in the order 3 k, 3 c, 3 kt, 3 ct."
+    ),
+    "comment": (
+        "A comment stands inside *BeginMDL, where no file of MotionView has one. Before *BeginMDL it is safe."
+    ),
+    "condition": (
+        "The condition of an *If has no value, since something in it is not known; its branch is left out."
+    ),
+    "contact": "A contact names a graphic that is not on the body of its side.",
+    "control": "A control character stands in the text; it may end the reading of the file.",
+    "curve": "A curve lacks values, or has not as many of x as of y.",
+    "cycle": "A value depends on itself by way of others.",
+    "dangling": (
+        "A name is used that is defined nowhere in reach. It may be misspelt, or stand in another system."
+    ),
+    "direction": "An axis is given by two points that lie in one place, or by a vector without length.",
+    "duplicate": "One name is defined twice in one scope.",
+    "evaluate": "An expression has no value: division by zero, a text where a number is due, and the like.",
+    "external": (
+        "What a name stands for is made by something that is not read here, such as the user's model or a "
+        "private include, so its value is not known. That is no mistake of the text."
+    ),
+    "function": "A function in an expression is not known, or takes other values.",
+    "include": "An included file is not read, so what it makes is not known here.",
+    "inertia": "One principal moment of inertia is larger than the sum of the other two: no body has that.",
+    "keyword": "A word such as POINT, VECTOR or EXPR is due at this place.",
+    "kind": "A thing of another kind is due: a marker where a body is, and so on.",
+    "mass": (
+        "A body has no mass, a negative one, or numbers that do not count since it takes its mass from "
+        "its graphics."
+    ),
+    "no-model": "The text has no *BeginMDL, so there is no model to read.",
+    "offset": (
+        "A roller's cylinder starts at the centre of its roller instead of being centred there: its "
+        "offset would be -length/2."
+    ),
+    "option": "An option is set to a choice that it does not have.",
+    "pair": "A pair stands where one of the two is due: add .l or .r.",
+    "property": "A thing has no property of that name, or none that is known here.",
+    "size": "A graphic has no radius, or a side of no length; a contact with it finds nothing.",
+    "standard": "The model has no *StandardInclude(FILE), which makes units, gravity and ground.",
+    "syntax": (
+        "The text cannot be read here: a quote, a bracket or a brace is not closed, or a statement is due."
+    ),
+    "template": "A template is not run here, so the text that it writes is not known.",
+    "unknown": (
+        "A statement is not known here. It may be misspelt, or one that this reader does not act on."
+    ),
+    "unread": "A *Set of a property that this reader does not act on; its value was not used.",
+    "unset": "A thing is defined and never set, so it counts as zero, or has no stiffness or mass.",
+    "unused": "A point, value, vector or curve is defined and used nowhere.",
+}
+
+
+def explain(code: str) -> str:
+    """What a code means and what to do. Raises SpecError for one that there is not."""
+    known = {**SCENE, **TEXT}
+    wanted = code.upper() if code.upper() in known else code.lower()
+    if wanted not in known:
+        close = did_you_mean(wanted, known)
+        raise SpecError(f"there is no code {code[:40]!r}{close}; `mdlgen explain` lists them")
+    return known[wanted]

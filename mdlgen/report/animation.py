@@ -1,0 +1,92 @@
+"""The states of a run, small enough to be mailed: positions and rotations of bodies as 16-bit numbers."""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from typing import Any
+
+import numpy as np
+
+from mdlgen.model.tables import Floats, Ints, Model
+from mdlgen.report import boxes
+from mdlgen.report.meshes import machine
+from mdlgen.report.motion import poses, start
+from mdlgen.results.result import Result
+
+# Boxes times states of a page, 600 boxes at 501 states; more states than FRAMES are not seen one by one.
+MOST, FRAMES = 600 * 501, 1000
+WHOLE = 32767  # of a 16-bit number
+
+
+def frames(result: Result) -> Ints:
+    """The stored states that are shown: every one, or every n-th and the last."""
+    states = len(result.time)
+    most = max(2, min(FRAMES, MOST // max(1, boxes.count(result.model))))
+    every = max(1, -(-(states - 1) // (most - 1)))
+    return np.unique(np.append(np.arange(0, states, every), states - 1)).astype(np.int64)
+
+
+def packed(values: Any, kind: str) -> str:
+    """Base64 of numbers, little endian."""
+    return b64encode(np.ascontiguousarray(values, dtype=np.dtype(kind).newbyteorder("<")).tobytes()).decode()
+
+
+def animation(result: Result, at: Ints, colours: dict[str, tuple[str, Floats]]) -> dict[str, Any]:
+    """What the page draws in space.
+
+    `colours` are, by name, a unit and the values of boxes at the states `at`, (t, boxes). A run with one
+    state (a static one) is shown beside where it began.
+    """
+    model = result.model
+    moving = _moving(model)
+    place, turn = (whole[:, moving] for whole in poses(result, at))
+    time = result.time[at]
+    if len(at) == 1:
+        before = [whole[None, moving] for whole in start(model)]
+        place, turn = np.concatenate([before[0], place]), np.concatenate([before[1], turn])
+        time = np.array([0.0, 1.0])
+        colours = {k: (u, np.concatenate([np.zeros_like(v), v])) for k, (u, v) in colours.items()}
+    low, high = place.min(axis=(0, 1)), place.max(axis=(0, 1))
+    step = np.where(high > low, (high - low) / (2 * WHOLE + 1), 1.0)
+    return {
+        "time": [float(t) for t in time],
+        "static": len(at) == 1,
+        "boxes": boxes.count(model),
+        "bodies": len(moving),
+        "half": packed(model.bodies.half[: boxes.count(model)], "f4"),
+        "low": low.tolist(),
+        "step": step.tolist(),
+        "place": packed(np.round((place - low) / step), "u2"),
+        "turn": packed(np.round(turn * WHOLE), "i2"),
+        "colours": [_colour(name, unit, values) for name, (unit, values) in colours.items()],
+        "meshes": _meshes(model, moving),
+        "names": [model.bodies.name[body] for body in moving],
+    }
+
+
+def _moving(model: Model) -> Ints:
+    """Boxes, then rollers."""
+    return np.append(np.arange(boxes.count(model)), [r.body for r in model.rollers]).astype(np.int64)
+
+
+def _colour(name: str, unit: str, values: Floats) -> dict[str, Any]:
+    most = float(values.max(initial=0.0))
+    share = np.clip(values / most, 0.0, 1.0) if most > 0.0 else np.zeros_like(values)
+    return {"name": name, "unit": unit, "most": most, "values": packed(np.round(255 * share), "u1")}
+
+
+def _meshes(model: Model, moving: Ints) -> list[dict[str, Any]]:
+    place, turn = start(model)
+    rows = {int(body): k for k, body in enumerate(moving)}
+    return [
+        {
+            "name": mesh.name,
+            "kind": mesh.kind,
+            "row": rows.get(mesh.body, -1),  # of the moving bodies
+            "place": place[mesh.body].tolist(),
+            "turn": turn[mesh.body].tolist(),
+            "points": packed(mesh.points, "f4"),
+            "triangles": packed(mesh.triangles, "u2"),
+        }
+        for mesh in machine(model)
+    ]

@@ -1,0 +1,163 @@
+"""The figures of the page as numbers: lines over time, as in the paper, or over a sheet's length."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from mdlgen.model.tables import CYLINDER_CYLINDER, Floats, Ints
+from mdlgen.results.compare import travel
+from mdlgen.results.result import Result
+from mdlgen.results.strain import SheetJoints
+from mdlgen.results.summary import PER_SECOND, part_rows
+
+POINTS = 4000  # of a line; more are not seen
+
+
+@dataclass(frozen=True)
+class Line:
+    name: str
+    x: Floats
+    y: Floats
+
+
+@dataclass
+class Panel:
+    """Lines that share two axes."""
+
+    key: str  # the same in every run
+    title: str
+    unit: str
+    lines: list[Line] = field(default_factory=list)
+    x_title: str = "time [ms]"
+    note: str = ""
+    equal: bool = False  # one scale for both axes
+    least: float = 1e-6  # the smallest range that is drawn: round-off is not shown as if it were a pattern
+
+
+def panels(
+    result: Result, at: Ints, deep: Floats, joints: tuple[SheetJoints, Floats, Floats] | None
+) -> list[Panel]:
+    """The figures of a run.
+
+    `deep` is what `boxes.contact` gives at the states `at`, (t, rows), `joints` what `strain.histories`
+    gives there.
+    """
+    if result.model.run.analysis == "static" or len(result.time) < 2:
+        return _shapes(result)
+    found = [*_motion(result), *_tilt(result, at), *_rollers(result, at, deep), *_bearing(result, at, joints)]
+    return [panel for panel in found if panel.lines]
+
+
+def _thin(result: Result) -> Ints:
+    """Stored states that are drawn of what is known at all of them."""
+    every = max(1, -(-len(result.time) // POINTS))
+    return np.unique(np.append(np.arange(0, len(result.time), every), len(result.time) - 1))
+
+
+def _motion(result: Result) -> list[Panel]:
+    """Displacement, speed, drift and yaw of each sheet's centre, and the probes' displacement."""
+    thin = _thin(result)
+    time = result.time[thin]
+    moved = Panel("displacement", "Displacement of the sheet's centre", "mm")
+    speed = Panel("speed", "Speed of the sheet's centre", "mm/s")
+    drift = Panel("drift", "Drift across the way of travel", "mm")
+    yaw = Panel("yaw", "Yaw", "deg")
+    for k, sheet in enumerate(result.model.sheets):
+        place, rate, turned = result.sheet_motion(k)
+        place = place - place[0] + travel(result, k, at=0)
+        for axis, name in enumerate("xyz"):
+            moved.lines.append(Line(f"{sheet.name} {name}", time, place[thin, axis]))
+            speed.lines.append(Line(f"{sheet.name} {name}", time, rate[thin, axis] * PER_SECOND))
+        side = _across(result, k, place[-1])
+        if side is not None:
+            drift.lines.append(Line(sheet.name, time, (place @ side)[thin]))
+        yaw.lines.append(Line(sheet.name, time, np.degrees(turned[thin])))
+    drift.note = "positive to the left of the way, seen from the side the sheet's normal points to"
+    return [moved, speed, drift, yaw]
+
+
+def _across(result: Result, sheet: int, way: Floats) -> Floats | None:
+    """Unit vector in the first plane of a sheet, to the left of where it went; None where it stayed."""
+    normal = result.model.sheets[sheet].rotation[:, 2]
+    side = np.cross(normal, way)
+    size = float(np.linalg.norm(side))
+    return side / size if size > 1e-9 else None
+
+
+def _tilt(result: Result, at: Ints) -> list[Panel]:
+    """How far the mean normal of a sheet's boxes leans along its first x and y axes."""
+    from mdlgen.results.foot import turns
+
+    panel = Panel("tilt", "Tilt of the sheet", "deg")
+    panel.note = "of the mean normal of its boxes, about the sheet's y axis (pitch) and x axis (roll)"
+    for sheet in result.model.sheets:
+        boxes = np.arange(sheet.first, sheet.first + sheet.count)
+        normal = turns(result.rotation[np.ix_(at, boxes)])[..., 2].mean(axis=1) @ sheet.rotation
+        for name, angle in (
+            ("pitch", np.arctan2(normal[:, 0], normal[:, 2])),
+            ("roll", np.arctan2(-normal[:, 1], normal[:, 2])),
+        ):
+            panel.lines.append(Line(f"{sheet.name} {name}", result.time[at], np.degrees(angle)))
+    return [panel]
+
+
+def _rollers(result: Result, at: Ints, deep: Floats) -> list[Panel]:
+    """Nip forces, penetrations by sheets and speeds, each by roller."""
+    thin = _thin(result)
+    force = Panel("force", "Normal force on each roller", "N")
+    depth = Panel("penetration", "Penetration of sheets into each roller", "mm")
+    spin = Panel("omega", "Speed of each roller", "rad/s")
+    depth.note = "of the deepest box at stored states; the table has the greatest over every step"
+    for roller in result.model.rollers:
+        rows = list(part_rows(result, roller))
+        sheets = [k for k in rows if result.model.contacts.kind[k] != CYLINDER_CYLINDER]
+        if rows:
+            y = result.contact_force[:, rows].sum(axis=1)
+            force.lines.append(Line(roller.name, result.time[thin], y[thin]))
+        if sheets:
+            depth.lines.append(Line(roller.name, result.time[at], deep[:, sheets].max(axis=1)))
+        omega = result.spin[:, roller.body] @ roller.axis * PER_SECOND
+        spin.lines.append(Line(roller.name, result.time[thin], omega[thin]))
+    return [force, depth, spin]
+
+
+def _bearing(result: Result, at: Ints, joints: tuple[SheetJoints, Floats, Floats] | None) -> list[Panel]:
+    """The greatest strain and curvature of each sheet over time, along x (MD) and y (CD)."""
+    if joints is None:
+        return []
+    kinds = (
+        Panel("strain", "Greatest membrane strain of the joints", "-", least=1e-9),
+        Panel("curvature", "Greatest curvature of the joints", "1/mm", least=1e-9),
+    )
+    table = joints[0]
+    for index, sheet in enumerate(result.model.sheets):
+        for axis, way in enumerate(("MD", "CD")):
+            mine = (table.sheet == index) & (table.axis == axis)
+            if mine.any():
+                values = joints[1][:, mine].max(axis=1), np.abs(joints[2][:, mine]).max(axis=1)
+                for panel, y in zip(kinds, values, strict=True):
+                    panel.lines.append(Line(f"{sheet.name} {way}", result.time[at], y))
+    return list(kinds)
+
+
+def _shapes(result: Result) -> list[Panel]:
+    """Box centres of each sheet from the side, along its longer side, before and after."""
+    found = []
+    for sheet in result.model.sheets:
+        mine = slice(sheet.first, sheet.first + sheet.count)
+        axis = 0 if sheet.outline[0] > sheet.outline[1] else 1
+        name = ("x (MD)", "y (CD)")[axis]
+        panel = Panel(f"shape {sheet.name}", f"{sheet.name}: box centres from the side", "mm", equal=True)
+        panel.x_title = f"along the sheet's {name} [mm]"
+        panel.note = "normal to the sheet, over its length; every strip of boxes"
+        for label, places in (
+            ("before", result.model.bodies.position[mine]),
+            ("after", result.position[-1, mine]),
+        ):
+            grid = ((places - sheet.center) @ sheet.rotation).reshape(sheet.n_y, sheet.n_x, 3)
+            for strip in grid if axis == 0 else grid.swapaxes(0, 1):
+                panel.lines.append(Line(label, strip[:, axis], strip[:, 2]))
+        found.append(panel)
+    return found

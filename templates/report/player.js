@@ -1,0 +1,234 @@
+// The sheets and the machine in space.
+
+const VIRIDIS = ["#440154", "#482878", "#3e4989", "#31688e", "#26828e", "#1f9e89", "#35b779", "#6ece58", "#b5de2b", "#fde725"];
+const KINDS = {
+  roller: { color: 0xaab4bf }, mark: { color: 0xd55e00 },
+  plane: { color: 0xc8ccd2, transparent: true, opacity: 0.35 }, guide: { color: 0x7d93a8, transparent: true, opacity: 0.45 },
+};
+// where the camera is, seen from what it looks at, and what is up
+const VIEWS = { xz: [[0, -1, 0], [0, 0, 1]], yz: [[-1, 0, 0], [0, 0, 1]], xy: [[0, 0, 1], [0, 1, 0]], iso: [[-0.55, -0.75, 0.5], [0, 0, 1]] };
+const JOINT = 0.96; // boxes are drawn this much smaller along the sheet, so that joints are seen
+
+const RAMP = `linear-gradient(to right, ${VIRIDIS.join(", ")})`;
+
+async function library() {
+  const text = (name) => document.querySelector(`script[data-library="${name}"]`).textContent;
+  const url = (code) => URL.createObjectURL(new Blob([code], { type: "text/javascript" }));
+  const core = url(text("three.core.min.js"));
+  return import(url(text("three.module.min.js").replaceAll("./three.core.min.js", core)));
+}
+
+async function player(canvas, changed) {
+  const THREE = await library();
+  const renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+  renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+  const scene = new THREE.Scene();
+  scene.background = new THREE.Color(0xf3f5f8);
+  scene.add(new THREE.HemisphereLight(0xffffff, 0x9aa4b0, 2.2));
+  const lamp = new THREE.DirectionalLight(0xffffff, 1.6);
+  scene.add(lamp);
+  const camera = new THREE.OrthographicCamera(-1, 1, 1, -1, -1e5, 1e5);
+  const target = new THREE.Vector3();
+  let away = new THREE.Vector3(0, -1, 0), size = 100, follow = false, machine = true, seen = null, time = 0;
+
+  const ramp = new Float32Array(256 * 3);
+  {
+    const [low, high] = [new THREE.Color(), new THREE.Color()];
+    for (let k = 0; k < 256; k += 1) {
+      const at = (k / 255) * (VIRIDIS.length - 1), first = Math.min(Math.floor(at), VIRIDIS.length - 2);
+      low.set(VIRIDIS[first]).lerp(high.set(VIRIDIS[first + 1]), at - first).toArray(ramp, 3 * k);
+    }
+  }
+
+  // A run, ready to be drawn.
+  function take(told) {
+    const half = unpack(told.half, Float32Array);
+    const run = {
+      told, half, place: unpack(told.place, Uint16Array), turn: unpack(told.turn, Int16Array),
+      colours: told.colours.map((c) => ({ ...c, values: unpack(c.values, Uint8Array) })),
+      group: new THREE.Group(), parts: [],
+    };
+    const material = new THREE.MeshLambertMaterial();
+    run.boxes = new THREE.InstancedMesh(new THREE.BoxGeometry(2, 2, 2), material, told.boxes);
+    run.boxes.instanceMatrix.setUsage(THREE.DynamicDrawUsage);
+    run.boxes.setColorAt(0, new THREE.Color());
+    run.boxes.frustumCulled = false;
+    run.group.add(run.boxes);
+    for (const mesh of told.meshes) {
+      const shape = new THREE.BufferGeometry();
+      shape.setAttribute("position", new THREE.BufferAttribute(unpack(mesh.points, Float32Array), 3));
+      shape.setIndex(new THREE.BufferAttribute(unpack(mesh.triangles, Uint16Array), 1));
+      const flat = shape.toNonIndexed();
+      flat.computeVertexNormals();
+      const drawn = new THREE.Mesh(flat, new THREE.MeshLambertMaterial(KINDS[mesh.kind]));
+      drawn.position.fromArray(mesh.place);
+      drawn.quaternion.set(mesh.turn[1], mesh.turn[2], mesh.turn[3], mesh.turn[0]);
+      run.group.add(drawn);
+      run.parts.push({ drawn, row: mesh.row, kind: mesh.kind });
+    }
+    return run;
+  }
+
+  const position = new THREE.Vector3(), scaling = new THREE.Vector3(), one = new THREE.Quaternion(), two = new THREE.Quaternion();
+  const matrix = new THREE.Matrix4();
+
+  // Position and rotation of a body between the states k and k + 1.
+  function pose(run, row, k, part) {
+    const { told, place, turn } = run;
+    const next = Math.min(k + 1, told.time.length - 1);
+    const a = k * told.bodies + row, b = next * told.bodies + row;
+    for (let i = 0; i < 3; i += 1) {
+      position.setComponent(i, told.low[i] + told.step[i] * (place[3 * a + i] * (1 - part) + place[3 * b + i] * part));
+    }
+    one.set(turn[4 * a + 1], turn[4 * a + 2], turn[4 * a + 3], turn[4 * a]).normalize();
+    two.set(turn[4 * b + 1], turn[4 * b + 2], turn[4 * b + 3], turn[4 * b]).normalize();
+    one.slerp(two, part);
+  }
+
+  function pointer(told, at) {
+    let low = 0, high = told.time.length - 1;
+    while (high - low > 1) { const middle = (low + high) >> 1; if (told.time[middle] <= at) low = middle; else high = middle; }
+    const span = told.time[high] - told.time[low];
+    return span > 0 ? [low, Math.min(Math.max((at - told.time[low]) / span, 0), 1)] : [low, 0];
+  }
+
+  const middle = new THREE.Vector3(), moved = new THREE.Vector3();
+  function settle() {
+    if (!seen) return;
+    const { told, boxes, half } = seen;
+    const [k, part] = pointer(told, time);
+    const colour = seen.colours[seen.colour];
+    const near = part < 0.5 ? k : Math.min(k + 1, told.time.length - 1);
+    const tint = boxes.instanceColor.array;
+    middle.set(0, 0, 0);
+    for (let row = 0; row < told.boxes; row += 1) {
+      pose(seen, row, k, part);
+      middle.addScaledVector(position, 1 / told.boxes);
+      scaling.set(half[3 * row] * JOINT, half[3 * row + 1] * JOINT, half[3 * row + 2]);
+      matrix.compose(position, one, scaling).toArray(boxes.instanceMatrix.array, 16 * row);
+      const value = 3 * colour.values[near * told.boxes + row];
+      tint[3 * row] = ramp[value]; tint[3 * row + 1] = ramp[value + 1]; tint[3 * row + 2] = ramp[value + 2];
+    }
+    boxes.instanceMatrix.needsUpdate = true;
+    boxes.instanceColor.needsUpdate = true;
+    for (const { drawn, row } of seen.parts) {
+      drawn.visible = machine;
+      if (row < 0) continue;
+      pose(seen, row, k, part);
+      drawn.position.copy(position);
+      drawn.quaternion.copy(one);
+    }
+    if (follow && seen.last) target.add(moved.subVectors(middle, seen.last));
+    seen.last = middle.clone();
+  }
+
+  function draw() {
+    const { clientWidth: wide, clientHeight: high } = canvas;
+    if (!wide || !high) return;
+    renderer.setSize(wide, high, false);
+    const ratio = wide / high;
+    Object.assign(camera, { left: -size * ratio, right: size * ratio, top: size, bottom: -size });
+    camera.position.copy(target).addScaledVector(away, 1000);
+    camera.lookAt(target);
+    camera.updateProjectionMatrix();
+    lamp.position.copy(camera.position).sub(target).add(new THREE.Vector3(0, 0, 700));
+    renderer.render(scene, camera);
+  }
+
+  let waiting = false;
+  function refresh() {
+    if (waiting) return;
+    waiting = true;
+    requestAnimationFrame(() => { waiting = false; draw(); });
+  }
+
+  // How large a part of the scene is, seen as the camera sees it; all but the planes, whose size says nothing.
+  function fit(sheets) {
+    if (!seen) return;
+    const box = new THREE.Box3();
+    const { told } = seen;
+    for (let k = 0; k < told.time.length; k += sheets ? told.time.length : Math.max(1, Math.floor(told.time.length / 8))) {
+      const at = sheets ? pointer(told, time)[0] : k;
+      for (let row = 0; row < told.boxes; row += 1) { pose(seen, row, at, 0); box.expandByPoint(position); }
+    }
+    if (!sheets && machine) for (const { drawn, kind } of seen.parts) if (kind !== "plane") box.expandByObject(drawn);
+    box.expandByScalar(0.02 * box.getSize(moved).length());
+    box.getCenter(target);
+    camera.position.copy(target).addScaledVector(away, 1000);
+    camera.lookAt(target);
+    camera.updateMatrixWorld();
+    let wide = 0, high = 0;
+    for (let k = 0; k < 8; k += 1) {
+      moved.set(k & 1 ? box.max.x : box.min.x, k & 2 ? box.max.y : box.min.y, k & 4 ? box.max.z : box.min.z);
+      moved.applyMatrix4(camera.matrixWorldInverse);
+      wide = Math.max(wide, Math.abs(moved.x)); high = Math.max(high, Math.abs(moved.y));
+    }
+    size = 1.15 * Math.max(high, wide * canvas.clientHeight / canvas.clientWidth, 1e-3);
+  }
+
+  const shown = {
+    THREE,
+    runs: [],
+    add(told) { this.runs.push(take(told)); },
+    choose(index) {
+      if (seen) scene.remove(seen.group);
+      const colour = seen ? seen.colour : 0;
+      seen = this.runs[index];
+      seen.colour = Math.min(colour, seen.colours.length - 1);
+      seen.last = null;
+      scene.add(seen.group);
+      settle(); refresh();
+    },
+    colour(index) { seen.colour = index; settle(); refresh(); },
+    view(name) {
+      away = new THREE.Vector3(...VIEWS[name][0]).normalize();
+      camera.up.set(...VIEWS[name][1]);
+      fit(false); refresh();
+    },
+    near() { fit(true); refresh(); },
+    follow(value) { follow = value; },
+    machine(value) { machine = value; settle(); refresh(); },
+    seek(at) { time = at; settle(); refresh(); },
+    // draws at once and waits until it is done, for those who measure or take pictures
+    now() { settle(); draw(); renderer.getContext().finish(); },
+  };
+
+  // orbit, move, zoom
+  const held = new Map();
+  let spread = 0;
+  const right = new THREE.Vector3(), up = new THREE.Vector3();
+  canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+  canvas.addEventListener("pointerdown", (event) => { canvas.setPointerCapture(event.pointerId); held.set(event.pointerId, [event.clientX, event.clientY]); spread = 0; });
+  for (const kind of ["pointerup", "pointercancel"]) canvas.addEventListener(kind, (event) => { held.delete(event.pointerId); spread = 0; });
+  canvas.addEventListener("pointermove", (event) => {
+    const before = held.get(event.pointerId);
+    if (!before) return;
+    const dx = event.clientX - before[0], dy = event.clientY - before[1];
+    held.set(event.pointerId, [event.clientX, event.clientY]);
+    if (held.size === 2) {
+      const [a, b] = [...held.values()];
+      const apart = Math.hypot(a[0] - b[0], a[1] - b[1]);
+      if (spread > 0 && apart > 0) size *= spread / apart;
+      spread = apart;
+    }
+    camera.updateMatrixWorld();
+    right.setFromMatrixColumn(camera.matrixWorld, 0);
+    up.setFromMatrixColumn(camera.matrixWorld, 1);
+    if (event.shiftKey || event.buttons === 2 || held.size === 2) {
+      const mm = 2 * size / canvas.clientHeight / Math.max(held.size, 1);
+      target.addScaledVector(right, -dx * mm).addScaledVector(up, dy * mm);
+    } else {
+      // about z, and about the picture's own horizontal, short of straight down
+      camera.up.set(0, 0, 1);
+      const flat = Math.hypot(away.x, away.y) > 1e-6 ? Math.atan2(away.y, away.x) : -Math.PI / 2;
+      const rise = Math.min(Math.max(Math.asin(away.z) + 0.008 * dy, -1.55), 1.55);
+      const turn = flat - 0.008 * dx;
+      away.set(Math.cos(rise) * Math.cos(turn), Math.cos(rise) * Math.sin(turn), Math.sin(rise));
+      changed();
+    }
+    refresh();
+  });
+  canvas.addEventListener("wheel", (event) => { event.preventDefault(); size *= Math.exp(event.deltaY * 0.001); refresh(); }, { passive: false });
+  new ResizeObserver(refresh).observe(canvas);
+  return shown;
+}

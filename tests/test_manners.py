@@ -1,0 +1,184 @@
+"""How the tool speaks: codes explained, near misses named, help with examples, results shown."""
+
+from __future__ import annotations
+
+import ast
+import re
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import typer
+from lxml import html
+from ran import transport
+from typer.testing import CliRunner
+
+import mdlgen
+from mdlgen.cli import app
+from mdlgen.errors import did_you_mean
+from mdlgen.explain import SCENE, TEXT
+from mdlgen.paths import samples
+
+ROOT = Path(__file__).parent.parent
+FOUR = str(samples() / "transport_4x4.yaml")
+
+
+def run(*args: str) -> tuple[int, str]:
+    done = CliRunner().invoke(app, list(args))
+    return done.exit_code, done.output
+
+
+def reader_codes() -> set[str]:
+    """Codes that the reader of MDL gives its findings."""
+    found = set()
+    for path in (ROOT / "backends" / "motionview" / "reader").rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if not isinstance(node, ast.Call):
+                continue
+            name = node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
+            words = [a.value for a in node.args if isinstance(a, ast.Constant) and isinstance(a.value, str)]
+            if name in ("Trouble", "trouble") and words:
+                found.add(words[0])
+            elif name == "add" and len(words) > 1 and words[0] in ("error", "warning"):
+                found.add(words[1])
+    return found
+
+
+def test_every_code_is_explained_and_none_besides() -> None:
+    assert set(re.findall(r'"(W\d{3})"', (ROOT / "mdlgen" / "checks.py").read_text("utf-8"))) == set(SCENE)
+    assert reader_codes() == set(TEXT)
+
+
+def test_explain_is_a_command() -> None:
+    assert run("explain", "w104") == (0, SCENE["W104"] + "\n")
+    assert run("explain", "dangling") == (0, TEXT["dangling"] + "\n")
+    code, told = run("explain")
+    assert code == 0 and all(name in told for name in (*SCENE, *TEXT))
+    code, told = run("explain", "danglin")
+    assert code == 2 and "did you mean 'dangling'?" in told
+
+
+def test_near_misses_are_named() -> None:
+    assert did_you_mean("Motor_1", ["motor_1", "counter"]) == "; did you mean 'motor_1'?"
+    assert did_you_mean("xyz", ["motor_1"]) == ""
+    for args, meant in (
+        (["new", "--from", "cantilevr", "x"], "cantilever"),
+        (["run", FOUR, "--solver", "latice"], "lattice"),
+        (["bench", "elastic", "-o", "/nowhere"], "elastica"),
+        (["check", FOUR, "--set", 'contacts.0.between=["motor_1_lef", "counter_1_left"]'], "motor_1_left"),
+        (["check", FOUR, "--set", "sheets.note.material=eur1"], "eur10"),
+        (["check", FOUR, "--set", "sheets.note.thicknes=1 mm"], "thickness"),
+    ):
+        code, told = run(*args)
+        assert code == 2 and f"did you mean {meant!r}?" in told, told
+        assert len(told.splitlines()) == 1
+
+
+@pytest.mark.parametrize("command", [c.name or c.callback.__name__ for c in app.registered_commands])  # type: ignore[union-attr]
+def test_every_command_has_an_example_in_its_help(command: str) -> None:
+    code, told = run(command, "--help")
+    assert code == 0 and f"Example: mdlgen {command}" in told
+
+
+def test_a_shell_can_complete() -> None:
+    code, told = run("--help")
+    assert code == 0 and "--install-completion" in told
+
+
+class TestPython:
+    def test_results_show_themselves_in_a_line(self) -> None:
+        result = transport()
+        assert repr(result) == "<Result transport_4x4, lattice, ok, 50 ms in 201 states, 49 bodies>"
+        told = repr(result.model)
+        assert told.startswith("<Model transport_4x4: 49 bodies, 1 sheets, 8 rollers, 1 planes, 1")
+        assert repr(mdlgen.load(FOUR)).startswith(
+            "<Scene transport_4x4: 1 sheets, 8 rollers, 1 planes, 7 con"
+        )
+
+    def test_a_notebook_shows_tables_with_names_escaped(self) -> None:
+        result = transport()
+        tree = html.fromstring(f"<div>{result._repr_html_()}</div>")
+        rows = {row[0].text: [cell.text for cell in row[1:]] for row in tree.xpath(".//tr")}
+        note = result.summary()["sheets"]["note"]
+        assert rows["note"][0] == ", ".join(f"{v:.5g}" for v in note["travel_mm"])
+        bad = replace(result, solver="<script>alert(1)</script>")
+        assert "<script>" not in bad._repr_html_()
+
+    def test_xarray_has_the_same_numbers_by_name(self) -> None:
+        pytest.importorskip("xarray")
+        result = transport()
+        states = result.to_xarray()
+        body = result.model.bodies.name.index("note_2_3")
+        mine = states.position.sel(body="note_2_3", axis="x")
+        assert np.array_equal(mine.values, result.position[:, body, 0])
+        assert mine.sel(time=25.0).item() == result.position[100, body, 0]
+        force = states.contact_force.sel(contact="note / motor_1_left")
+        rows = list(zip(result.model.contacts.part_a, result.model.contacts.part_b, strict=True))
+        assert np.array_equal(force, result.contact_force[:, rows.index(("note", "motor_1_left"))])
+        assert states.position.attrs["units"] == "mm"
+
+    def test_the_package_is_typed(self) -> None:
+        assert (ROOT / "mdlgen" / "py.typed").exists()
+
+
+class TestReadme:
+    TEXT = (ROOT / "README.md").read_text("utf-8")
+
+    def test_its_python_runs(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        pytest.importorskip("xarray")
+        blocks = re.findall(r"```python\n(.*?)```", self.TEXT, re.DOTALL)
+        assert blocks
+        (tmp_path / "samples").symlink_to(samples())
+        monkeypatch.chdir(tmp_path)
+        for block in blocks:
+            names: dict[str, Any] = {}
+            exec(compile(block, "README.md", "exec"), names)
+            assert names["result"].ok
+            assert np.array_equal(names["lead"], names["result"].position[:, 0])
+
+    def test_every_command_and_option_that_it_names_is_there(self) -> None:
+        commands = typer.main.get_command(app).commands  # type: ignore[attr-defined]
+        found = re.findall(r"mdlgen ([a-z]+)((?:[^`|\n]|\n(?!\n))*)", self.TEXT)
+        seen = [(name, rest.partition("&&")[0]) for name, rest in found if name in commands]
+        assert {name for name, _ in seen} >= {"run", "mdl", "deck", "verify", "report", "view", "export"}
+        for inline in re.findall(r"`mdlgen ([a-z]+)([^`]*)`", self.TEXT):
+            assert inline[0] in commands, inline
+            known = {o for p in commands[inline[0]].params for o in (*p.opts, *p.secondary_opts)}
+            for option in re.findall(r"(?<!\S)--?[a-z][a-z-]*", inline[1]):
+                assert option in known, inline
+
+    def test_its_pictures_are_there(self) -> None:
+        for path in re.findall(r"!\[[^\]]*\]\(([^)]+)\)", self.TEXT):
+            assert (ROOT / path).is_file(), path
+
+
+def test_every_key_of_the_starter_scene_has_a_comment() -> None:
+    """On its line, or on the one above; once for each key of each kind of part."""
+    seen: set[tuple[str, str]] = set()
+    lines = Path(FOUR).read_text("utf-8").splitlines()
+    kind, bare = "", []
+    for above, line in zip(["", *lines], lines, strict=False):
+        if re.match(r"[a-z]+:", line):
+            kind = line.partition(":")[0]
+        key = re.match(r" *(?:- )?\{?([A-Za-z_]+):", line)
+        if key and (kind, key[1]) not in seen:
+            seen.add((kind, key[1]))
+            if "#" not in line and "#" not in above:
+                bare.append(f"{kind}: {key[1]}")
+    # their names say it all
+    named = {
+        "thickness",
+        "radius",
+        "width",
+        "mass",
+        "normal",
+        "size",
+        "center",
+        "grip",
+        "support",
+        "note",
+        "planes",
+    }
+    assert [b for b in bare if b.split()[-1] not in named and not b.split()[-1].startswith("motor")] == []

@@ -1,0 +1,193 @@
+"""report.html in a browser, from file://: it draws, plays and asks the network for nothing."""
+
+from __future__ import annotations
+
+import io
+import json
+from base64 import b64decode
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from browser import Tab, found, tab
+from PIL import Image
+from ran import ran, transport
+from synthetic import moving, small_model
+
+from mdlgen.report.page import page
+from mdlgen.results.result import Result
+
+pytestmark = pytest.mark.skipif(
+    found() is None, reason="no Chromium on the path (apt-get install chromium, or set MDLGEN_CHROMIUM)"
+)
+
+COLOURS = ["speed", "strain", "curvature", "contact"]
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Tab]:
+    with tab(tmp_path_factory.mktemp("profile")) as made:
+        yield made
+
+
+def show(browser: Tab, folder: Path, results: list[Result], fragment: str = "") -> Tab:
+    """Opens the page of results; it must not complain, nor ask for anything but itself."""
+    path = folder / "report.html"
+    path.write_text(page(results), "utf-8")
+    browser.complaints.clear()
+    browser.requests.clear()
+    browser.open(path, fragment)
+    return browser
+
+
+def silent(browser: Tab, folder: Path) -> None:
+    browser.ask("new Promise((done) => setTimeout(done, 200))")
+    assert browser.complaints == []
+    own = (folder / "report.html").resolve().as_uri()
+    asked = [url for url in browser.requests if not url.startswith(("blob:", "data:", own))]
+    assert asked == []
+    assert browser.ask("document.getElementById('no-drawing').hidden")
+
+
+def drawn(browser: Tab, time: float) -> np.ndarray:
+    """Pixels of the canvas at a time, (h, w, 3)."""
+    browser.ask(f"mdlgen.seek({time}); mdlgen.stage.now()")
+    url = browser.ask("document.getElementById('canvas').toDataURL('image/png')")
+    return np.asarray(Image.open(io.BytesIO(b64decode(url.split(",", 1)[1]))).convert("RGB")).astype(int)
+
+
+def test_a_run_is_shown_and_plays(browser: Tab, tmp_path: Path) -> None:
+    result = transport()
+    show(browser, tmp_path, [result])
+    first, later = drawn(browser, 0.0), drawn(browser, 30.0)
+    # not blank, and not the same picture
+    assert (np.abs(first - first[0, 0]).max(axis=2) > 30).mean() > 0.1
+    assert (np.abs(first - later).max(axis=2) > 30).mean() > 0.01
+    # play advances, and stops at the end
+    browser.ask("mdlgen.seek(0); document.getElementById('play').click()")
+    browser.until("mdlgen.state.time > 1")
+    assert browser.ask("document.getElementById('play').textContent") == "pause"
+    browser.ask("mdlgen.seek(49.9)")
+    browser.until("!mdlgen.state.playing")
+    assert browser.ask("mdlgen.state.time") == result.time[-1]
+    silent(browser, tmp_path)
+
+
+def test_colour_modes_switch(browser: Tab, tmp_path: Path) -> None:
+    show(browser, tmp_path, [transport()], "#t=30&view=xy")
+    assert browser.ask("mdlgen.state.time") == 30
+    seen = []
+    for k, name in enumerate(COLOURS):
+        browser.ask(
+            f"(() => {{const list = document.getElementById('colour'); list.value = {k};"
+            "list.dispatchEvent(new Event('change'))})()"
+        )
+        assert browser.ask("document.getElementById('colour').selectedOptions[0].text") == name
+        most = browser.ask("mdlgen.runs[0].animation.colours[mdlgen.state.colour].most")
+        shown = float(browser.ask("document.querySelector('#legend .ends').lastChild.textContent").split()[0])
+        assert shown == pytest.approx(most, rel=1e-4)
+        seen.append(drawn(browser, 30.0))
+    for k in range(len(seen)):
+        for other in seen[:k]:
+            assert (np.abs(seen[k] - other).max(axis=2) > 30).mean() > 0.002
+    silent(browser, tmp_path)
+
+
+def test_a_box_in_a_nip_has_the_colour_of_its_force(browser: Tab, tmp_path: Path) -> None:
+    show(browser, tmp_path, [transport()], "#t=50&view=xy&colour=contact")
+    browser.ask("mdlgen.check('machine', false)")
+    colours = {tuple(c) for c in drawn(browser, 50.0).reshape(-1, 3)}
+    # yellow-green of the ramp's upper end; a flat picture lit from above
+    assert any(r > 120 and g > 160 and b < 90 for r, g, b in colours)
+
+
+def test_the_figures_have_the_numbers_of_the_summary(browser: Tab, tmp_path: Path) -> None:
+    result = transport()
+    show(browser, tmp_path, [result])
+    told = json.loads(
+        browser.ask(
+            "JSON.stringify([...document.querySelectorAll('.key[data-last]')].map("
+            "(key) => [key.closest('figure').dataset.key, key.dataset.name, Number(key.dataset.last), "
+            "key.textContent]))"
+        )
+    )
+    last = {(key, name): (value, text) for key, name, value, text in told}
+    summary = result.summary()
+    travel = summary["sheets"]["note"]["travel_mm"][0]
+    assert last["displacement", "note x"][0] == pytest.approx(travel, rel=1e-6)
+    assert last["displacement", "note x"][1].split()[-1] == f"{travel:.5g}"
+    for name, roller in summary["rollers"].items():
+        assert last["omega", name][0] == pytest.approx(roller["omega_rad_per_s"], rel=1e-6)
+        assert last["force", name][0] == pytest.approx(roller["nip_force_n"], rel=1e-6)
+    paths = browser.ask("document.querySelectorAll('figure svg path').length")
+    assert paths == len(told)
+    # a line is hidden by its name
+    browser.ask("document.querySelector('.key').click()")
+    assert browser.ask("document.querySelectorAll('figure svg path').length") == paths - 1
+
+
+def test_the_keyboard_is_enough(browser: Tab, tmp_path: Path) -> None:
+    show(browser, tmp_path, [transport()])
+    browser.ask("document.getElementById('canvas').focus()")
+    browser.press("ArrowRight")
+    assert browser.ask("mdlgen.state.time") == pytest.approx(0.25)
+    browser.press("End")
+    assert browser.ask("mdlgen.state.time") == 50
+    browser.press("c")
+    assert browser.ask("mdlgen.state.colour") == 1
+    for key, view in zip("1234", ("xz", "yz", "xy", "iso"), strict=True):
+        browser.press(key)
+        assert browser.ask("mdlgen.state.view") == view
+    browser.press("Home")
+    browser.press(" ")
+    browser.until("mdlgen.state.time > 0.5")
+    browser.press(" ")
+    assert not browser.ask("mdlgen.state.playing")
+    # every control has a name for those who hear the page
+    assert browser.ask(
+        "[...document.querySelectorAll('button, select, input')].every((e) => "
+        "e.textContent.trim() || e.ariaLabel || e.labels?.length)"
+    )
+
+
+def test_dragging_turns_the_picture(browser: Tab, tmp_path: Path) -> None:
+    show(browser, tmp_path, [transport()], "#view=xz")
+    before = drawn(browser, 0.0)
+    for kind, x, y in (("mousePressed", 500, 400), ("mouseMoved", 620, 460), ("mouseReleased", 620, 460)):
+        browser.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=1, clickCount=1)
+    assert (np.abs(drawn(browser, 0.0) - before).max(axis=2) > 30).mean() > 0.01
+    assert browser.ask("mdlgen.state.view") is None
+
+
+@pytest.mark.parametrize("sample", ["channel", "cantilever"])
+def test_guides_and_static_runs_are_shown(browser: Tab, tmp_path: Path, sample: str) -> None:
+    result = ran(sample, *(["sheets.note.boxes=[2,8]"] if sample == "cantilever" else []))
+    show(browser, tmp_path, [result])
+    picture = drawn(browser, result.time[-1])
+    # not blank: what is not of the colour of the ground
+    assert (np.abs(picture - picture[0, 0]).max(axis=2) > 30).mean() > 0.01
+    silent(browser, tmp_path)
+
+
+def test_two_runs_in_one_page(browser: Tab, tmp_path: Path) -> None:
+    other = transport("rollers.motor_1_left.drive.speed=180 rad/s", "run.duration=40 ms")
+    show(browser, tmp_path, [transport(), other])
+    one = drawn(browser, 40.0)
+    browser.ask("mdlgen.choose(1)")
+    assert browser.ask("mdlgen.state.time") == 40
+    assert (np.abs(drawn(browser, 40.0) - one).max(axis=2) > 30).mean() > 0.001
+    assert browser.ask("document.querySelectorAll('figure[data-key=displacement] path').length") == 6
+    silent(browser, tmp_path)
+
+
+def test_600_boxes_and_500_states_stay_smooth(browser: Tab, tmp_path: Path) -> None:
+    model = small_model("sheets.note.boxes=[20,30]")
+    show(browser, tmp_path, [moving(model, 500)])
+    took = browser.ask(
+        "(() => {const took = []; for (let k = 0; k < 40; k += 1) {const start = performance.now();"
+        "mdlgen.seek(k); mdlgen.stage.now(); took.push(performance.now() - start)}"
+        "return took.sort((a, b) => a - b)[20]})()"
+    )
+    assert took <= 50.0  # ms; drawn without a graphics card
+    silent(browser, tmp_path)
