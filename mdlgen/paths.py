@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import contextlib
 import os
+import stat
 import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
 from mdlgen.errors import OutputError
+
+# Of a text that is read whole: some four sheets of 10,000 boxes.
+MOST_BYTES = 200_000_000
 
 
 def _data(folder: str) -> Path:
@@ -39,20 +43,41 @@ def cache(name: str) -> Path | None:
     return folder if os.access(folder, os.W_OK) else None
 
 
-def read_text(path: Path) -> str:
-    """The UTF-8 text of a file; bytes that are none are shown as replacements. Raises OutputError."""
+def read_at_most(path: Path, most: int, named: bool = False) -> bytes:
+    """The first `most` bytes of a file; `named`: by another file, so that it must be a plain one.
+
+    Raises OutputError.
+    """
     try:
-        return path.read_text("utf-8-sig", errors="replace")
+        # without O_NONBLOCK a named pipe that nobody writes to would be waited for
+        with open(path, "rb", opener=_at_once if named else None) as stream:
+            if named and not stat.S_ISREG(os.fstat(stream.fileno()).st_mode):
+                raise OutputError(f"{path}: is not a plain file")
+            return stream.read(most)
     except (OSError, ValueError) as error:
         raise OutputError(f"{path}: cannot read: {getattr(error, 'strerror', None) or error}") from None
+
+
+def _at_once(path: str, flags: int) -> int:
+    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
+
+
+def _read(path: Path) -> bytes:
+    raw = read_at_most(path, MOST_BYTES + 1)
+    if len(raw) > MOST_BYTES:
+        raise OutputError(f"{path}: is larger than {MOST_BYTES} bytes")
+    return raw
+
+
+def read_text(path: Path) -> str:
+    """The UTF-8 text of a file; bytes that are none are shown as replacements. Raises OutputError."""
+    text = _read(path).decode("utf-8-sig", errors="replace")
+    return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def read_exactly(path: Path) -> str:
     """As `read_text`, with a byte order mark and line ends as they stand in the file. Raises OutputError."""
-    try:
-        return path.read_bytes().decode("utf-8", errors="replace")
-    except (OSError, ValueError) as error:
-        raise OutputError(f"{path}: cannot read: {getattr(error, 'strerror', None) or error}") from None
+    return _read(path).decode("utf-8", errors="replace")
 
 
 def write_atomic(path: Path, content: str | bytes) -> None:

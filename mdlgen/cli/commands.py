@@ -11,6 +11,7 @@ import typer
 from mdlgen.cli.shell import (
     SOLVER_FAILED,
     Quiet,
+    Raised,
     Sets,
     Spec,
     Verbose,
@@ -21,6 +22,7 @@ from mdlgen.cli.shell import (
     model_of,
     progress_bar,
     say,
+    scene_of,
     told,
 )
 from mdlgen.errors import AccuracyError, OutputError, SpecError
@@ -73,6 +75,7 @@ def new(
 def check(
     spec: Spec,
     sets: Sets = None,
+    limits: Raised = None,
     as_json: Annotated[bool, typer.Option("--json", help="As JSON, in mm, N, g, ms, rad.")] = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
@@ -84,7 +87,7 @@ def check(
     from mdlgen.report.overview import overview
     from mdlgen.report.text import overview_text
 
-    found = overview(model_of(spec, sets))
+    found = overview(model_of(spec, sets, limits))
     if as_json:
         echo_json(found)
     elif not quiet:
@@ -117,6 +120,7 @@ def mdl(
         ),
     ] = None,
     sets: Sets = None,
+    limits: Raised = None,
     set_contact: Annotated[
         bool,
         typer.Option("--set-contact", help="Write contact numbers with SetContact, unverified in its order."),
@@ -138,7 +142,7 @@ def mdl(
     """
     from mdlgen import paths, registry
 
-    model = model_of(spec, sets)
+    model = model_of(spec, sets, limits)
     backend = registry.emitter("motionview")
     text = backend.emit(model, set_contact=set_contact, only=only)
     script = backend.companion(model, set_contact=set_contact, only=only)
@@ -181,6 +185,7 @@ def deck(
         ),
     ] = None,
     sets: Sets = None,
+    limits: Raised = None,
     quiet: Quiet = False,
     verbose: Verbose = False,
 ) -> None:
@@ -190,7 +195,7 @@ def deck(
     """
     from mdlgen import paths, registry
 
-    model = model_of(spec, sets)
+    model = model_of(spec, sets, limits)
     text = registry.emitter("motionsolve").emit(model)
     if output is not None and str(output) == "-":
         typer.echo(text, nl=False)
@@ -217,6 +222,7 @@ def run(
         typer.Option("--check-step", help="Run again at half the step; the difference estimates the error."),
     ] = False,
     sets: Sets = None,
+    limits: Raised = None,
     quiet: Quiet = False,
     verbose: Verbose = False,
 ) -> None:
@@ -226,7 +232,7 @@ def run(
     """
     from mdlgen import registry
 
-    model = model_of(spec, sets)
+    model = model_of(spec, sets, limits)
     registry.check_solver(solver)
     from mdlgen.report.figures import figure, load_drawing
     from mdlgen.report.maps import strain_map
@@ -331,6 +337,7 @@ def verify(
         typer.Option("--turn/--no-turn", help="Also turn each value of the data sets, in text and spec."),
     ] = True,
     sets: Sets = None,
+    limits: Raised = None,
     as_json: Annotated[bool, typer.Option("--json", help="The result as JSON.")] = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
@@ -342,11 +349,10 @@ def verify(
     Example: mdlgen verify samples/transport_4x4.yaml --text note.mdl
     """
     from mdlgen.model.lower import lower
-    from mdlgen.spec.load import load
     from mdlgen.verify.report import report, report_text
     from mdlgen.verify.verification import verify as compare
 
-    scene = load(spec, sets or ())
+    scene = scene_of(spec, sets, limits)
     files = {"text": text, "companion": script, "deck": deck}
     with count(quiet, "values turned") as progress:
         found = compare(scene, lower(scene), **files, only=only, turn=turn, progress=progress)

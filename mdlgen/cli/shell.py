@@ -15,6 +15,7 @@ from mdlgen.errors import MdlgenError, SpecError, printable
 
 if TYPE_CHECKING:
     from mdlgen.model.tables import Model
+    from mdlgen.spec.scene import Scene
 
 SOLVER_FAILED, INTERRUPTED = 4, 130
 
@@ -32,6 +33,14 @@ Sets = Annotated[
     list[str] | None,
     typer.Option(
         "--set", metavar="PATH=VALUE", help="Set a value of the scene; may be given more than once."
+    ),
+]
+Raised = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--limit",
+        metavar="NAME=COUNT",
+        help="Allow a greater count of boxes, pairs, contacts, states or values; may be given more than once.",
     ),
 ]
 Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="Errors and asked-for output only.")]
@@ -67,11 +76,17 @@ def told(command: Callable[..., None]) -> Callable[..., None]:
     return run
 
 
-def model_of(spec: Path, sets: list[str] | None) -> Model:
-    from mdlgen.model.lower import lower
+def scene_of(spec: Path, sets: list[str] | None, limits: list[str] | None) -> Scene:
+    from mdlgen.spec.limits import DEFAULT
     from mdlgen.spec.load import load
 
-    return lower(load(spec, sets or ()))
+    return load(spec, sets or (), DEFAULT.raised(limits or ()))
+
+
+def model_of(spec: Path, sets: list[str] | None, limits: list[str] | None = None) -> Model:
+    from mdlgen.model.lower import lower
+
+    return lower(scene_of(spec, sets, limits))
 
 
 def echo_json(value: Any) -> None:
@@ -89,10 +104,12 @@ def _located(error: MdlgenError, spec: Path | None) -> MdlgenError:
     """An error of a later stage, with the place of the value in the file."""
     if spec is None or not isinstance(error, SpecError) or error.place is not None or not error.path:
         return error
-    from mdlgen.spec.load import parse
+    from mdlgen.spec.load import parse, read
 
     try:
-        return error.located(parse(spec.read_text("utf-8-sig"), str(spec)).place(error.path))
+        if not spec.is_file():  # a pipe has been read
+            return error
+        return error.located(parse(read(spec), str(spec)).place(error.path))
     except (OSError, ValueError, MdlgenError):
         return error
 

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from mdlgen.errors import SpecError
 from mdlgen.model.guides import bounds
 from mdlgen.model.tables import (
     CYLINDER_CYLINDER,
@@ -26,6 +27,7 @@ from mdlgen.model.tables import (
     RunSettings,
     SheetPart,
 )
+from mdlgen.spec.limits import DEFAULT, Limits
 
 Part = RollerPart | PlanePart | GuidePart
 
@@ -44,8 +46,12 @@ def find_pairs(
     run: RunSettings,
     prune: bool,
     margin: float,
+    limits: Limits = DEFAULT,
 ) -> Pairs:
-    """Possible pairs, those kept, and the bounds of each box (see the module)."""
+    """Possible pairs, those kept, and the bounds of each box (see the module).
+
+    Raises SpecError where more would be kept than the limits allow.
+    """
     parts = {p.name: p for p in machine}
     by_name = {s.name: s for s in sheets}
     low = np.full((len(bodies.name), 3), -np.inf)
@@ -82,6 +88,8 @@ def find_pairs(
             part_low, part_high = _part_bounds(other, bodies)
             box_low, box_high = extents[sheet.name]
             boxes = boxes[np.all((box_low <= part_high) & (box_high >= part_low), axis=1)]
+        if told := limits.exceeded("pairs", len(kept) + len(boxes), "pairs of bodies kept"):
+            raise SpecError(told, ("contacts", int(contacts.entry[row])))
         kept.extend((row, int(box), other.body) for box in boxes)
     table = np.array(kept, dtype=np.int64).reshape(-1, 3)
     return Pairs(table[:, 0].copy(), table[:, 1].copy(), table[:, 2].copy(), possible, margin, low, high)
