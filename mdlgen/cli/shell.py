@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import os
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from threading import Event, Lock, Thread
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
@@ -40,7 +42,7 @@ Raised = Annotated[
     typer.Option(
         "--limit",
         metavar="NAME=COUNT",
-        help="Allow a greater count of boxes, pairs, contacts, states or values; may be given more than once.",
+        help="Allow more boxes, pairs, contacts, states or values; may be given more than once.",
     ),
 ]
 Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="Errors and asked-for output only.")]
@@ -60,6 +62,11 @@ def told(command: Callable[..., None]) -> Callable[..., None]:
             raise
         except KeyboardInterrupt:
             say("mdlgen: interrupted")
+            if _busy.locked():
+                # compiled code is at work beside, and an orderly end would wait for it, or fall over it
+                sys.stdout.flush()
+                sys.stderr.flush()
+                os._exit(INTERRUPTED)
             raise typer.Exit(INTERRUPTED) from None
         except MdlgenError as error:
             say(str(_located(error, options.get("spec"))))
@@ -74,6 +81,32 @@ def told(command: Callable[..., None]) -> Callable[..., None]:
             raise typer.Exit(1) from None
 
     return run
+
+
+_busy = Lock()
+T = TypeVar("T")
+
+
+def beside(work: Callable[[], T]) -> T:
+    """Does `work` in a thread of its own, so that an interrupt is heard at once while compiled code runs."""
+    ended = Event()
+    found: list[T] = []
+    failed: list[BaseException] = []
+
+    def target() -> None:
+        with _busy:
+            try:
+                found.append(work())
+            except BaseException as error:
+                failed.append(error)
+        ended.set()
+
+    Thread(target=target, daemon=True).start()
+    while not ended.wait(0.5):  # some systems hear an interrupt only between two waits
+        pass
+    if failed:
+        raise failed[0]
+    return found[0]
 
 
 def scene_of(spec: Path, sets: list[str] | None, limits: list[str] | None) -> Scene:
