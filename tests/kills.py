@@ -55,13 +55,13 @@ def kills(count: int, seed: int = 1) -> Killed:
         new = [str(SCENE), *SETS, "--set", f"run.duration={NEW}"]
         finish(start(folder, *old, "-o", "old"))
         before = time.monotonic()
-        finish(start(folder, *new, "-o", "new"))
+        finish(start(folder, *new, "-o", "new", "--checkpoint", "0"))
         length = time.monotonic() - before
         results = {kind: contents(folder / kind) for kind in ("old", "new")}
         for _ in range(count):
             shutil.copytree(folder / "old", folder / "out")
             process = start(folder, *new, "-o", "out", "--checkpoint", "0")
-            time.sleep(rng.uniform(0.2, 1.1) * length)
+            time.sleep(rng.uniform(0.3, 1.1) * length)
             process.kill()
             process.communicate()
             recover(folder / "out")

@@ -29,6 +29,7 @@ SCENES = {
     "transport_4x4": ["sheets.note.boxes=[3,5]", "run.duration=8 ms", "run.tolerance=0.01"],
     "transport_tilted": ["sheets.note.boxes=[3,5]", "run.duration=4 ms", "run.step=0.1 ms"],
     "channel": ["run.duration=4 ms", "run.step=0.05 ms"],
+    "verify/flip": ["run.duration=20 ms", "run.step=0.1 ms"],
     "verify/drop": ["run.duration=110 ms", "run.step=0.05 ms", "run.print_step=2 ms"],
 }
 

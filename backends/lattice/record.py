@@ -62,14 +62,14 @@ class Recorder:
 
     def arrays(self) -> dict[str, np.ndarray]:
         """All that it has stored, and what the compiled code added up."""
-        bodies, rows = len(self.model.bodies.name), len(self.model.contacts)
+        times, bodies = len(self._times), len(self.model.bodies.name)
         found = {
-            name: np.array(self._stored[name]).reshape(-1, bodies, width) for name, width in STORED.items()
+            name: np.array(self._stored[name]).reshape(times, bodies, width) for name, width in STORED.items()
         }
         first = self._first or (0.0, 0.0, 0.0)
         return {
             **found,
-            "f": np.array(self._stored["f"]).reshape(-1, rows),
+            "f": np.array(self._stored["f"]).reshape(times, len(self.model.contacts)),
             "times": np.array(self._times),
             "energies": np.array([*first, *self._last, self._most]),
             "rows": self.kept[0],
