@@ -64,7 +64,8 @@ def kills(count: int, seed: int = 1) -> Killed:
             time.sleep(rng.uniform(0.3, 1.1) * length)
             process.kill()
             process.communicate()
-            recover(folder / "out")
+            for place in ("out", "out/checkpoint"):
+                recover(folder / place)
             left = contents(folder / "out")
             kind = next((kind for kind, result in results.items() if result == left), None)
             assert kind is not None, sorted(left)

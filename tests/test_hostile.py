@@ -216,3 +216,37 @@ def test_byte_order_mark_and_other_line_ends(tmp_path: Path) -> None:
 
 def test_yaml_1_2_numbers() -> None:
     assert loads(changed("friction: 0.33", "friction: 1e-3")).contacts[5].friction.static == 1e-3
+
+
+def test_too_little_memory_is_one_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from mdlgen import registry
+    from mdlgen.cli import app
+
+    def full(name: str) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr(registry, "emitter", full)
+    with pytest.raises(SystemExit) as ended:
+        app(["mdl", str(SAMPLE), "-o", str(tmp_path / "t.mdl")], prog_name="mdlgen")
+    assert ended.value.code == 4
+    assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_an_interrupt_while_the_command_line_is_loaded(monkeypatch: pytest.MonkeyPatch) -> None:
+    import mdlgen.__main__ as entry
+
+    def interrupted() -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("mdlgen.cli.main", interrupted)
+    with pytest.raises(SystemExit) as ended:
+        entry.main()
+    assert ended.value.code == 130
+
+
+def test_a_run_of_too_many_steps_is_refused() -> None:
+    sets = ["run.duration=1e12 ms", "run.print_step=1e9 ms", "sheets.note.boxes=[2,2]"]
+    with pytest.raises(SpecError, match="would take"):
+        mdlgen.solve(mdlgen.lower(load(SAMPLE, sets)), "lattice")

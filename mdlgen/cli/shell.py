@@ -71,6 +71,9 @@ def told(command: Callable[..., None]) -> Callable[..., None]:
         except MdlgenError as error:
             say(str(_located(error, options.get("spec"))))
             raise typer.Exit(error.exit_code) from None
+        except MemoryError:
+            say("mdlgen: not enough memory for this; take fewer boxes, or a longer run.print_step")
+            raise typer.Exit(SOLVER_FAILED) from None
         except Exception as error:
             if options.get("verbose"):
                 import traceback

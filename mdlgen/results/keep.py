@@ -95,7 +95,7 @@ class Keep:
         if self.folder is None or not self.folder.is_dir() or self.folder.is_symlink():
             return
         try:
-            for path in (*self.folder.glob("pass_*.npz"), self.folder / "run.json"):
+            for path in (*self.folder.glob("pass_*.npz"), *self.folder.glob(".*"), self.folder / "run.json"):
                 path.unlink(missing_ok=True)
             if not any(self.folder.iterdir()):
                 self.folder.rmdir()
