@@ -3,12 +3,22 @@
 from __future__ import annotations
 
 import contextlib
+import json
 import os
+import re
+import stat
 import tempfile
-from collections.abc import Mapping
+import time
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from mdlgen.errors import OutputError
+
+# Of a text that is read whole: some four sheets of 10,000 boxes.
+MOST_BYTES = 200_000_000
+# What a file is called until it is complete, and after how long one is left over [s].
+TEMPORARY, STALE = ".mdlgen~", 3600.0
+NOTE = ".together.mdlgen"
 
 
 def _data(folder: str) -> Path:
@@ -39,20 +49,41 @@ def cache(name: str) -> Path | None:
     return folder if os.access(folder, os.W_OK) else None
 
 
-def read_text(path: Path) -> str:
-    """The UTF-8 text of a file; bytes that are none are shown as replacements. Raises OutputError."""
+def read_at_most(path: Path, most: int, named: bool = False) -> bytes:
+    """The first `most` bytes of a file; `named`: by another file, so that it must be a plain one.
+
+    Raises OutputError.
+    """
     try:
-        return path.read_text("utf-8-sig", errors="replace")
+        # without O_NONBLOCK a named pipe that nobody writes to would be waited for
+        with open(path, "rb", opener=_at_once if named else None) as stream:
+            if named and not stat.S_ISREG(os.fstat(stream.fileno()).st_mode):
+                raise OutputError(f"{path}: is not a plain file")
+            return stream.read(most)
     except (OSError, ValueError) as error:
         raise OutputError(f"{path}: cannot read: {getattr(error, 'strerror', None) or error}") from None
+
+
+def _at_once(path: str, flags: int) -> int:
+    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
+
+
+def _read(path: Path) -> bytes:
+    raw = read_at_most(path, MOST_BYTES + 1)
+    if len(raw) > MOST_BYTES:
+        raise OutputError(f"{path}: is larger than {MOST_BYTES} bytes")
+    return raw
+
+
+def read_text(path: Path) -> str:
+    """The UTF-8 text of a file; bytes that are none are shown as replacements. Raises OutputError."""
+    text = _read(path).decode("utf-8-sig", errors="replace")
+    return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def read_exactly(path: Path) -> str:
     """As `read_text`, with a byte order mark and line ends as they stand in the file. Raises OutputError."""
-    try:
-        return path.read_bytes().decode("utf-8", errors="replace")
-    except (OSError, ValueError) as error:
-        raise OutputError(f"{path}: cannot read: {getattr(error, 'strerror', None) or error}") from None
+    return _read(path).decode("utf-8", errors="replace")
 
 
 def write_atomic(path: Path, content: str | bytes) -> None:
@@ -64,31 +95,150 @@ def write_atomic(path: Path, content: str | bytes) -> None:
 
 
 def write_together(files: Mapping[Path, str | bytes]) -> None:
-    """Write several files: all are complete as temporary files before the first is renamed."""
-    staged: list[tuple[str, Path]] = []
+    """Write several files: all of them, or none. Raises OutputError.
+
+    All are complete as temporary files before the first is renamed. Those of one folder stand in a note there
+    while they are renamed, so that a process that is killed between two of them is finished by the next one
+    (see `recover`); where a renaming is refused the old files come back.
+    """
+    staged: list[tuple[Path, Path]] = []
+    folders = sorted({path.parent for path in files})
     path = Path()
     try:
+        for folder in folders:
+            recover(folder)
         for path, content in files.items():
-            if path.is_symlink():
-                raise OutputError(f"{path}: is a symbolic link; name the file itself")
-            if path.is_dir():
-                raise OutputError(f"{path}: is a folder; name a file")
-            data = content.encode("utf-8") if isinstance(content, str) else content
-            handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-            staged.append((temporary, path))
-            with os.fdopen(handle, "wb") as stream:
-                stream.write(data)
-                stream.flush()
-                os.fsync(stream.fileno())
-            os.chmod(temporary, 0o666 & ~_umask())
-        for temporary, path in staged:
-            os.replace(temporary, path)
+            staged.append((_stage(path, content), path))
+        for folder in folders:
+            names = {old.name: new.name for old, new in staged if new.parent == folder}
+            if len(names) > 1:
+                path = folder / NOTE
+                os.replace(_stage(path, json.dumps(names)), path)
+                _sync(folder)
+        _rename(staged)
+        for folder in folders:
+            _sync(folder)
+            with contextlib.suppress(OSError):  # one that stays is of files that are renamed already
+                os.unlink(folder / NOTE)
     except OSError as error:
         raise OutputError(f"{path}: cannot write: {error.strerror or error}") from None
+    except KeyboardInterrupt:
+        for folder in folders:
+            recover(folder)
+        raise
     finally:
         for temporary, _ in staged:
             with contextlib.suppress(OSError):
                 os.unlink(temporary)
+
+
+def recover(folder: Path) -> None:
+    """Ends the writing that a killed process had begun in `folder`, and removes old temporary files there.
+
+    Raises OutputError for a note that no such process wrote.
+    """
+    note = folder / NOTE
+    try:
+        if not note.is_symlink() and note.is_file():
+            _follow(note)
+        late = time.time() - STALE
+        for left in folder.glob(f".*.*{TEMPORARY}"):
+            if left.lstat().st_mtime < late:
+                left.unlink()
+    except OSError as error:
+        raise OutputError(f"{note}: cannot be followed: {error.strerror or error}") from None
+
+
+def _follow(note: Path) -> None:
+    try:
+        names = json.loads(read_at_most(note, 1_000_000, named=True))
+        moves = [(note.parent / old, note.parent / new) for old, new in names.items()]
+        right = all(
+            re.fullmatch(rf"\.{re.escape(new.name)}\.\w+{re.escape(TEMPORARY)}", old.name)
+            and new.parent == old.parent == note.parent
+            for old, new in moves
+        )
+    except (ValueError, AttributeError, TypeError, RecursionError):
+        moves, right = [], False
+    if not right:
+        raise OutputError(f"{note}: is not a note of files to be renamed; look at it, and remove it")
+    for old, new in moves:
+        with contextlib.suppress(FileNotFoundError):  # renamed before
+            os.replace(old, new)
+    _sync(note.parent)
+    with contextlib.suppress(FileNotFoundError):
+        note.unlink()
+
+
+def _stage(path: Path, content: str | bytes) -> Path:
+    """A complete temporary file beside `path`."""
+    if path.is_symlink():
+        raise OutputError(f"{path}: is a symbolic link; name the file itself")
+    if path.is_dir():
+        raise OutputError(f"{path}: is a folder; name a file")
+    data = content.encode("utf-8") if isinstance(content, str) else content
+    handle, temporary = tempfile.mkstemp(TEMPORARY, f".{path.name}.", path.parent)
+    try:
+        with os.fdopen(handle, "wb") as stream:
+            stream.write(data)
+            stream.flush()
+            os.fsync(stream.fileno())
+        os.chmod(temporary, 0o666 & ~_umask())
+    except BaseException:
+        with contextlib.suppress(OSError):
+            os.unlink(temporary)
+        raise
+    return Path(temporary)
+
+
+def _rename(staged: list[tuple[Path, Path]]) -> None:
+    """Renames all; where one is refused the files that were there before come back. Raises OutputError."""
+    kept: list[Path] = []
+    undo: list[Callable[[], None]] = []
+    path = Path()
+    try:
+        for temporary, path in staged:
+            if len(staged) > 1:
+                kept.append(temporary.with_name(f"{temporary.name.removesuffix(TEMPORARY)}_{TEMPORARY}"))
+                undo.append(_way_back(path, kept[-1]))
+            try:
+                os.replace(temporary, path)
+            except FileNotFoundError:
+                if len(staged) == 1 or temporary.exists():
+                    raise  # else another process has followed the note already
+    except OSError as error:
+        for folder in {path.parent for _, path in staged}:
+            with contextlib.suppress(OSError):
+                os.unlink(folder / NOTE)
+        for back in undo[:-1]:
+            with contextlib.suppress(OSError):
+                back()
+        raise OutputError(f"{path}: cannot write: {error.strerror or error}") from None
+    finally:
+        for old in kept:
+            with contextlib.suppress(OSError):
+                os.unlink(old)
+
+
+def _way_back(path: Path, kept: Path) -> Callable[[], None]:
+    """What brings back `path` as it is now, through another name for it."""
+    if not path.exists():
+        return lambda: os.unlink(path)
+    try:
+        os.link(path, kept)
+    except OSError:  # no links here: what has been written stays
+        return lambda: None
+    return lambda: os.replace(kept, path)
+
+
+def _sync(folder: Path) -> None:
+    """Makes renamings last, where the system can."""
+    with contextlib.suppress(OSError):
+        handle = os.open(folder, os.O_RDONLY | getattr(os, "O_DIRECTORY", 0))
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)
 
 
 def _umask() -> int:

@@ -13,6 +13,7 @@ from mdlgen.model.external import refuse_externals
 from mdlgen.model.tables import Model
 
 if TYPE_CHECKING:
+    from mdlgen.results.keep import Keep
     from mdlgen.results.result import Result
 
 Progress = Callable[[float, float, int, int], None]
@@ -58,7 +59,9 @@ class Reader(Protocol):
 class Solver(Protocol):
     """What a backend that runs a Model has."""
 
-    def solve(self, model: Model, progress: Progress | None = None, step: float | None = None) -> Result: ...
+    def solve(
+        self, model: Model, progress: Progress | None = None, step: float | None = None, **options: Any
+    ) -> Result: ...
 
 
 def emitter(name: str) -> Emitter:
@@ -117,17 +120,22 @@ def _known(name: str, table: dict[str, str], kind: str) -> None:
 
 
 def solve(
-    model: Model, name: str = "auto", progress: Progress | None = None, check_step: bool = False
+    model: Model,
+    name: str = "auto",
+    progress: Progress | None = None,
+    check_step: bool = False,
+    keep: Keep | None = None,
 ) -> Result:
-    """Run a Model; see `mdlgen.solve`."""
+    """Run a Model; see `mdlgen.solve`. `keep` is given what the run can go on from, by a solver that can."""
     backend = solver(chosen(name, model)[0])
-    result = backend.solve(model, progress)
+    options: dict[str, Any] = {"keep": keep} if keep is not None and getattr(backend, "KEEPS", False) else {}
+    result = backend.solve(model, progress, **options)
     # a static run has no step, and a failed one nothing to compare
     if not check_step or not result.ok or result.step <= 0.0:
         return result
     from mdlgen.results.compare import compare
 
-    finer = backend.solve(model, progress, step=result.step / 2)
+    finer = backend.solve(model, progress, step=result.step / 2, **options)
     if not finer.ok:
         return finer.failed(f"at half the step ({result.step / 2:.6g} ms): {finer.status}")
     # kernels are compiled once, for the first of the two

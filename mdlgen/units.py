@@ -43,6 +43,16 @@ _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(.*?)\s*")
 _FACTOR = re.compile(r"([A-Za-zµ°]+|1)(?:\^([-+]?[0-9]+(?:\.[0-9]+)?))?")
 
 
+_SLIPS = {"sec": "s", "gr": "g", "grams": "g", "degrees": "deg", "micron": "um", "mu": "um", "inch": "in"}
+
+
+def _meant(word: str) -> str:
+    """A known name that differs from an unknown one by case only, or is its usual form."""
+    name = word.strip().partition("^")[0].lower()
+    near = [known for known in _NAMES if known.lower() == name] or [_SLIPS.get(name, "")]
+    return f"; did you mean {' or '.join(near)}?" if near[0] else ""
+
+
 @lru_cache(maxsize=512)
 def parse_unit(text: str) -> Unit:
     """`N*mm/rad`, `N/mm^1.5`, `m/s^2` as a Unit. Raises ValueError with what is wrong."""
@@ -50,7 +60,7 @@ def parse_unit(text: str) -> Unit:
     for sign, word in re.findall(r"(^|[*/·])([^*/·]*)", text.replace("²", "^2").replace("³", "^3")):
         match = _FACTOR.fullmatch(word.strip())
         if not match or (match[1] != "1" and match[1] not in _NAMES):
-            raise ValueError(f"unknown unit {word.strip()!r} in {text!r}")
+            raise ValueError(f"unknown unit {word.strip()!r} in {text!r}{_meant(word)}")
         if match[1] == "1":
             continue
         unit = _NAMES[match[1]]

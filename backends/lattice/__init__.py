@@ -7,9 +7,13 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from mdlgen.model.tables import Model
+    from mdlgen.results.keep import Keep
     from mdlgen.results.result import Result
 
 __all__ = ["check", "solve"]
+
+# Its runs can be gone on with: see `mdlgen.results.keep`.
+KEEPS = True
 
 Progress = Callable[[float, float, int, int], None]
 
@@ -26,8 +30,9 @@ def solve(
     progress: Progress | None = None,
     step: float | None = None,
     without: tuple[str, ...] = (),
+    keep: Keep | None = None,
 ) -> Result:
     """Run a Model; see `backends.lattice.run.solve`."""
     from backends.lattice import run
 
-    return run.solve(model, progress, step, without)
+    return run.solve(model, progress, step, without, keep)

@@ -2,12 +2,26 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from backends.lattice.arrays import System
 from mdlgen.model.meshes import carried
 from mdlgen.model.tables import Model
 from mdlgen.results.result import ContactStatistics, Energy, Result
+
+STORED = {"x": 3, "r": 9, "u": 3, "w": 3}
+
+
+class Stand(NamedTuple):
+    """How far a recorder is: what a result up to there is made from, apart from the stored states."""
+
+    times: int  # how many are stored
+    rows: np.ndarray
+    marks: np.ndarray
+    work: np.ndarray
+    energies: tuple[tuple[float, float, float], tuple[float, float, float], float]  # first, last, most
 
 
 class Recorder:
@@ -16,7 +30,7 @@ class Recorder:
     def __init__(self, model: Model, system: System, tables: tuple, state: tuple, mid: tuple, kept: tuple):
         self.model, self.system, self.tables = model, system, tables
         self.state, self.mid, self.kept = state, mid, kept
-        self._stored: dict[str, list[np.ndarray]] = {name: [] for name in ("x", "r", "u", "w", "f")}
+        self._stored: dict[str, list[np.ndarray]] = {name: [] for name in (*STORED, "f")}
         self._times: list[float] = []
         self._first: tuple[float, float, float] | None = None
         self._last = (0.0, 0.0, 0.0)
@@ -53,23 +67,59 @@ class Recorder:
         # forces are those in the middle of the last step, where the rule has them; at the start as it begins
         self._stored["f"].append(force if t == 0.0 else told)
 
+    def arrays(self) -> dict[str, np.ndarray]:
+        """All that it has stored, and what the compiled code added up."""
+        times, bodies = len(self._times), len(self.model.bodies.name)
+        found = {
+            name: np.array(self._stored[name]).reshape(times, bodies, width) for name, width in STORED.items()
+        }
+        first = self._first or (0.0, 0.0, 0.0)
+        return {
+            **found,
+            "f": np.array(self._stored["f"]).reshape(times, len(self.model.contacts)),
+            "times": np.array(self._times),
+            "energies": np.array([*first, *self._last, self._most]),
+            "rows": self.kept[0],
+            "marks": self.kept[1],
+        }
+
+    def restore(self, arrays: dict[str, np.ndarray]) -> None:
+        """Goes back to what `arrays` gave."""
+        for name in (*STORED, "f"):
+            self._stored[name] = list(arrays[name])
+        self._times = arrays["times"].tolist()
+        first, last, (self._most,) = np.split(arrays["energies"], (3, 6))
+        self._first, self._last = tuple(first.tolist()), tuple(last.tolist())
+        self.kept[0][:], self.kept[1][:] = arrays["rows"], arrays["marks"]
+
+    def stand(self, work: np.ndarray) -> Stand:
+        """How far it is now; it stays as it is while the run goes on."""
+        assert self._first is not None
+        rows, marks = self.kept
+        energies = (self._first, self._last, self._most)
+        return Stand(len(self._times), rows.copy(), marks.copy(), work.copy(), energies)
+
     def result(self, solver: str, reason: str | None, work: np.ndarray) -> Result:
         """The Result in mm, N, g, ms."""
-        rows, marks = self.kept
+        return self.result_at(self.stand(work), solver, reason)
+
+    def result_at(self, stand: Stand, solver: str, reason: str | None) -> Result:
+        """The Result up to where the recorder stood."""
+        rows, marks = stand.rows, stand.marks
         mirror, touched = self.system.mirror, marks
         if mirror is not None:
             touched = marks[self.system.pairs["mark"]] * mirror.sides(self.system)
             summed = (1, 3, 5)  # forces; depths and times hold for both sides
             columns = enumerate(rows.T)
             rows = np.array([(mirror.sums if k in summed else mirror.largest)(c) for k, c in columns]).T
-            work = 2.0 * work
+            stand = stand._replace(work=2.0 * stand.work)
         inside = np.where(rows[:, 4] > 0, rows[:, 4], 1.0)
-        held = {name: np.array(values) for name, values in self._stored.items()}
+        held = {name: np.array(values[: stand.times]) for name, values in self._stored.items()}
         return Result(
             model=self.model,
             solver=solver,
             status=reason or "ok",
-            time=np.array(self._times),
+            time=np.array(self._times[: stand.times]),
             position=held["x"],
             rotation=_quaternions(held["r"]),
             velocity=held["u"],
@@ -83,19 +133,20 @@ class Recorder:
                 last_force_at=np.where(rows[:, 7] != 0, np.nan, rows[:, 8]),
             ),
             touched=int(touched.sum()),
-            energy=self._balance(work),
+            energy=_balance(stand),
             versions=_versions(),
             halved=mirror is not None,
         )
 
-    def _balance(self, work: np.ndarray) -> Energy:
-        assert self._first is not None
-        lost, driven, through = (float(v) for v in work)
-        kinetic, elastic, potential = self._last
-        change = sum(self._last) - sum(self._first)
-        moved = abs(potential - self._first[2])
-        scale = max(abs(lost), through, self._most, moved, 1e-12)
-        return Energy(kinetic, elastic, lost, driven, float((change + lost - driven) / scale))
+
+def _balance(stand: Stand) -> Energy:
+    lost, driven, through = (float(v) for v in stand.work)
+    first, last, most = stand.energies
+    kinetic, elastic, potential = last
+    change = sum(last) - sum(first)
+    moved = abs(potential - first[2])
+    scale = max(abs(lost), through, most, moved, 1e-12)
+    return Energy(kinetic, elastic, lost, driven, float((change + lost - driven) / scale))
 
 
 def _quaternions(matrices: np.ndarray) -> np.ndarray:

@@ -7,20 +7,24 @@ import math
 import time as clock
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from backends.lattice.arrays import System, build, partner
+from backends.lattice.mark import Mark, Stage
 from backends.lattice.mirror import halve
-from backends.lattice.record import Recorder
+from backends.lattice.record import Recorder, Stand
 from backends.lattice.scope import check
 from backends.lattice.static import rest
 from backends.lattice.symmetry import find
+from mdlgen.errors import SpecError
 from mdlgen.mechanics import compiling
 from mdlgen.model.curves import overstretched
 from mdlgen.model.tables import Floats, Model
 from mdlgen.results.compare import compare
+from mdlgen.results.keep import Keep
 from mdlgen.results.result import Result
 
 # Longest first step at a tolerance of 1e-3 [ms]; it goes with the root of the tolerance.
@@ -39,6 +43,9 @@ ENERGY_GAIN, ENERGY_LOSS, ENERGY_LOSS_RIGID = 0.02, 0.05, 0.01
 # What a scene without contacts may gain, as a part of the tolerance; its step is halved until it does not.
 FREE_GAIN = 1e-3
 
+# Steps of one run, and those that compiled code takes before it is asked again.
+MOST_STEPS, MOST_AT_ONCE = 1e9, 1000
+
 Progress = Callable[[float, float, int, int], None]
 
 
@@ -51,6 +58,7 @@ def solve(
     progress: Progress | None = None,
     step: float | None = None,
     without: tuple[str, ...] = (),
+    keep: Keep | None = None,
 ) -> Result:
     """Run a Model; `progress(time, end, steps, touching)` is told where it stands (times in ms).
 
@@ -61,7 +69,8 @@ def solve(
     reason; RefusedError is raised for what the solver cannot represent.
 
     `without` names rules that are not to be used: FOLDING of equal bushings, keeping of FACTORS over steps,
-    SYMMETRY of both sides.
+    SYMMETRY of both sides. `keep` is given states to go on from, and a run goes on from those that it has, to
+    the same bits.
     """
     check(model)
     started = clock.perf_counter()
@@ -86,26 +95,26 @@ def solve(
     wanted = step or model.run.step
     begun = clock.perf_counter()
     if wanted is not None:
-        result = _once(model, system, wanted, progress, anew=FACTORS in without)
+        result = _once(model, system, wanted, progress, anew=FACTORS in without, keep=keep)
         if result.ok and step is None and model.run.duration / wanted >= 4:
-            coarse = _once(model, system, 2 * result.step, progress)
+            coarse = _once(model, system, 2 * result.step, progress, keep=keep)
             if coarse.ok:
                 result = replace(result, error_estimate=compare(result, coarse).relative)
     else:
-        result = _refined(model, system, progress)
+        result = _refined(model, system, progress, keep)
     result.estimate_s = clock.perf_counter() - begun - result.wall_s
     result.build_s, result.compile_s = build_s, compile_s
     return result
 
 
-def _refined(model: Model, system: System, progress: Progress | None) -> Result:
+def _refined(model: Model, system: System, progress: Progress | None, keep: Keep | None) -> Result:
     """Halves the step until two runs differ by less than the tolerance; fails where they never do."""
     miss = 0.0 if _flexible(model) else MISS * model.run.tolerance / 1e-3
-    before = _once(model, system, first_step(model), progress, miss)
+    before = _once(model, system, first_step(model), progress, miss, keep=keep)
     result = coarse = before
     for _ in range(MOST_REFINED):
         miss *= 0.25
-        result = _once(model, system, 0.5 * before.step, progress, miss)
+        result = _once(model, system, 0.5 * before.step, progress, miss, keep=keep)
         if result.ok and before.ok:
             result = replace(result, error_estimate=compare(result, before).relative)
             near = result.error_estimate is not None and result.error_estimate <= model.run.tolerance
@@ -155,9 +164,11 @@ def _once(
     progress: Progress | None,
     miss: float = 0.0,
     anew: bool = False,
+    keep: Keep | None = None,
 ) -> Result:
     """One run at a step, or the next smaller one that outputs fall on; `miss`: see MISS, 0 for any; `anew`:
-    a new factor for each step."""
+    a new factor for each step; `keep` as of `solve`."""
+    from backends.lattice import compiled
     from backends.lattice.compiled import march, step
 
     run = model.run
@@ -167,6 +178,12 @@ def _once(
     if wanted > run.duration / outputs:  # steps longer than the time between outputs
         each, outputs = 1, max(1, math.ceil(run.duration / wanted - 1e-9))
         dt = run.duration / outputs
+    if run.duration / dt > MOST_STEPS:
+        raise SpecError(
+            f"this run would take {run.duration / dt:.3g} steps of {dt:.3g} ms; allowed are {MOST_STEPS:g}: "
+            "give a shorter run.duration, or a larger run.tolerance or run.step",
+            ("run",),
+        )
     begun = clock.perf_counter()
     moving = _arrays(model, system)
     tables, state, mid, _, _, _, kept, _, _ = moving
@@ -177,21 +194,40 @@ def _once(
     # the guess of a step is the better the finer it is: what is left of it must fall as fast
     part = (ROUND_OFF if _flexible(model) else ROUND_OFF_RIGID) * min(1.0, (dt / FIRST_STEP) ** 2)
     tolerance = part * run.tolerance
-    steps = np.full(each, dt)
     pace = np.array([0.0, miss, float(anew), _speed(model)])
-    status, t = march.DONE, 0.0
-    for output in range(outputs):
-        status, t = march.run(*moving, t, steps, tolerance, fresh, counters, work, before, pace)
+    status, t, past = march.DONE, 0.0, 0.0
+    search = system.search
+    mark = Mark(moving[1:6], (fresh, counters, work, before, pace, search.place), recorder)
+    number = keep.begin() if keep is not None else 0
+    stage = mark.back(keep, number) if keep is not None else None
+    if stage is not None:
+        status, t, past = stage.status, stage.t, stage.wall
+        compiled.search.look(system.pairs, search, search.place.copy())
+    todo = range(stage.outputs if stage else 0, 0 if stage and stage.ended else outputs)
+    for output in todo:
+        for taken in range(0, each, MOST_AT_ONCE):
+            steps = np.full(min(each - taken, MOST_AT_ONCE), dt)
+            status, t = march.run(*moving, t, steps, tolerance, fresh, counters, work, before, pace)
+            if status != march.DONE:
+                break
         if status != march.DONE:
             break
         t = (output + 1) * run.duration / outputs
         recorder.store(t)
+        if keep is not None:
+            keep.part = partial(_part, recorder, recorder.stand(work), dt, int(counters[step.STEPS]))
+            if keep.due() and output + 1 < outputs:
+                wall = past + clock.perf_counter() - begun
+                keep.save(number, mark.arrays(Stage(status, t, output + 1, wall, False)))
         if progress is not None:
             progress(t, run.duration, int(counters[step.STEPS]), int(counters[step.TOUCHING]))
+    wall = past + clock.perf_counter() - begun
+    if keep is not None and todo and (keep.written or keep.due()):
+        keep.save(number, mark.arrays(Stage(status, t, todo.stop, wall, True)))
     reason = None if status == march.DONE else _reason(model, system, status, t, dt, state, counters)
     result = recorder.result("lattice", reason, work)
     result.step, result.steps = dt, int(counters[step.STEPS])
-    result.rounds, result.wall_s = int(counters[step.ROUNDS]), clock.perf_counter() - begun
+    result.rounds, result.wall_s = int(counters[step.ROUNDS]), wall
     if result.ok and not all(np.isfinite(a).all() for a in (result.position, result.velocity, result.spin)):
         result = result.failed("the state went non-finite")
     off = result.energy.balance_error
@@ -199,6 +235,13 @@ def _once(
     if result.ok and not -loss <= off <= ENERGY_GAIN:
         whence = "came from nowhere" if off > 0 else "got lost"
         result = result.failed(f"{100 * abs(off):.3g} % of the energy {whence}; take a smaller run.step")
+    return result
+
+
+def _part(recorder: Recorder, stand: Stand, dt: float, steps: int) -> Result:
+    """The result up to where a run stood."""
+    result = recorder.result_at(stand, "lattice", None)
+    result.step, result.steps = dt, steps
     return result
 
 

@@ -10,6 +10,7 @@ import typer
 from mdlgen.cli.shell import (
     SOLVER_FAILED,
     Quiet,
+    Raised,
     Sets,
     Spec,
     Verbose,
@@ -18,6 +19,7 @@ from mdlgen.cli.shell import (
     count,
     echo_json,
     say,
+    scene_of,
     told,
 )
 from mdlgen.errors import SpecError
@@ -62,6 +64,7 @@ def calibrate(
         str, typer.Option("--solver", metavar="auto|lattice|exudyn", help="What runs the scene.")
     ] = "auto",
     sets: Sets = None,
+    limits: Raised = None,
     as_json: Annotated[bool, typer.Option("--json", help="The result as JSON.")] = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
@@ -78,7 +81,6 @@ def calibrate(
     from mdlgen.calibrate.calibration import calibrate as search
     from mdlgen.calibrate.measured import read_measured
     from mdlgen.calibrate.report import fragment, quantity, report, report_text
-    from mdlgen.spec.load import load
 
     to_stdout = output is not None and str(output) == "-"
     if to_stdout and as_json:
@@ -86,7 +88,7 @@ def calibrate(
     registry.check_solver(solver)
     value.find(fit)
     wanted = read_measured(measured)
-    scene = load(spec, sets or ())
+    scene = scene_of(spec, sets, limits)
     with count(quiet, "runs") as progress, chatter(verbose):
         found = search(scene, wanted, fit, probe, solver, progress)
     if not found.ok:

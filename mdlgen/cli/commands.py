@@ -4,27 +4,33 @@ from __future__ import annotations
 
 from pathlib import Path
 from threading import Thread
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from mdlgen.cli.shell import (
     SOLVER_FAILED,
     Quiet,
+    Raised,
     Sets,
     Spec,
     Verbose,
     app,
+    beside,
     chatter,
     count,
     echo_json,
     model_of,
     progress_bar,
     say,
+    scene_of,
     source_of,
     told,
 )
 from mdlgen.errors import AccuracyError, OutputError, SpecError, did_you_mean
+
+if TYPE_CHECKING:
+    from mdlgen.results.keep import Keep
 
 
 @app.command()
@@ -82,6 +88,7 @@ def new(
 def check(
     spec: Spec,
     sets: Sets = None,
+    limits: Raised = None,
     as_json: Annotated[bool, typer.Option("--json", help="As JSON, in mm, N, g, ms, rad.")] = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
@@ -93,7 +100,7 @@ def check(
     from mdlgen.report.overview import overview
     from mdlgen.report.text import overview_text
 
-    found = overview(model_of(spec, sets))
+    found = overview(model_of(spec, sets, limits))
     if as_json:
         echo_json(found)
     elif not quiet:
@@ -151,6 +158,7 @@ def mdl(
         ),
     ] = None,
     sets: Sets = None,
+    limits: Raised = None,
     set_contact: Annotated[
         bool,
         typer.Option("--set-contact", help="Write contact numbers with SetContact, unverified in its order."),
@@ -172,7 +180,7 @@ def mdl(
     """
     from mdlgen import paths, registry
 
-    model = model_of(spec, sets)
+    model = model_of(spec, sets, limits)
     backend = registry.emitter("motionview")
     text = backend.emit(model, set_contact=set_contact, only=only)
     script = backend.companion(model, set_contact=set_contact, only=only)
@@ -215,6 +223,7 @@ def deck(
         ),
     ] = None,
     sets: Sets = None,
+    limits: Raised = None,
     quiet: Quiet = False,
     verbose: Verbose = False,
 ) -> None:
@@ -224,7 +233,7 @@ def deck(
     """
     from mdlgen import paths, registry
 
-    model = model_of(spec, sets)
+    model = model_of(spec, sets, limits)
     text = registry.emitter("motionsolve").emit(model)
     if output is not None and str(output) == "-":
         typer.echo(text, nl=False)
@@ -238,7 +247,9 @@ def deck(
 @app.command()
 @told
 def run(
-    spec: Spec,
+    spec: Annotated[
+        Path | None, typer.Argument(metavar="SPEC", help="The scene: a YAML or JSON file.")
+    ] = None,
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", metavar="DIR", help="Where the results go: out/NAME if left out."),
@@ -250,52 +261,118 @@ def run(
         bool,
         typer.Option("--check-step", help="Run again at half the step; the difference estimates the error."),
     ] = False,
+    resume: Annotated[
+        Path | None,
+        typer.Option("--resume", metavar="DIR", help="Go on with the run in DIR that was cut off."),
+    ] = None,
+    checkpoint: Annotated[
+        float | None,
+        typer.Option(
+            "--checkpoint",
+            metavar="SECONDS",
+            min=0.0,
+            help="How often a state to go on from is kept in DIR/checkpoint: 60 if left out.",
+        ),
+    ] = None,
+    keep_partial: Annotated[
+        bool,
+        typer.Option("--keep-partial", help="After Ctrl-C write what there is into DIR/partial, marked so."),
+    ] = False,
     sets: Sets = None,
+    limits: Raised = None,
     quiet: Quiet = False,
     verbose: Verbose = False,
 ) -> None:
     """Simulate a scene; write summary.json, series.csv, result.h5, report.html and pictures into DIR.
 
     Example: mdlgen run samples/transport_4x4.yaml -o out --check-step
+
+    Example: mdlgen run --resume out
     """
     from mdlgen import registry
+    from mdlgen.cli import kept
 
-    model = model_of(spec, sets)
+    kept.single(spec, resume, bool(sets or limits or output or check_step or solver != "auto"))
     registry.check_solver(solver)
+    if resume is not None:
+        task, seal = kept.again(resume)
+        model = task.model()
+        kept.compare(resume, seal, model)
+    else:
+        assert spec is not None
+        task, seal = kept.task(spec, sets, limits, solver, check_step), None
+        model = task.model()
     from mdlgen.report.figures import figure, load_drawing
     from mdlgen.report.maps import strain_map
     from mdlgen.report.page import load_page, page
     from mdlgen.report.text import summary_text
+    from mdlgen.results.keep import Keep
     from mdlgen.results.store import check_folder, save
 
-    folder = output if output is not None else Path("out") / model.name
+    folder = resume or output or Path("out") / model.name
     check_folder(folder)
-    if solver == "auto" and not quiet:
-        name, why = registry.chosen(solver, model)
-        if why:
-            say(f"{name} runs this scene ({why})")
+    name, why = registry.chosen(task.solver, model)
+    if task.solver == "auto" and why and not quiet:
+        say(f"{name} runs this scene ({why})")
+    for asked, wish in ((keep_partial, "--keep-partial"), (checkpoint is not None, "--checkpoint")):
+        if asked:
+            kept.check(name, why, wish)
     # what draws takes half a second to load; a solver leaves the second core to it
     for load in (load_drawing, load_page):
         Thread(target=load, daemon=True).start()
+    every = 60.0 if checkpoint is None else checkpoint
+    if seal is not None:
+        keep = Keep(folder / kept.FOLDER, every)
+    elif name == "lattice":
+        keep = kept.kept(folder, task, model, every)
+    else:
+        keep = Keep()
+    if seal is None and kept.is_kept(folder) and not quiet:
+        say(f"{folder} holds a run that was cut off; this one takes its place (--resume {folder} goes on)")
     # a solver may talk on standard output, which is kept for results
-    with progress_bar(quiet, check_step) as progress, chatter(verbose):
-        result = registry.solve(model, solver, progress, check_step)
+    try:
+        with progress_bar(quiet, task.check_step) as progress, chatter(verbose):
+            result = beside(lambda: registry.solve(model, task.solver, progress, task.check_step, keep))
+    except KeyboardInterrupt:
+        keep.lock.acquire(timeout=0.5)  # a file that is being written is soon complete
+        if keep_partial:
+            _save_part(keep, folder)
+        if keep.written:
+            say(f"mdlgen run --resume {folder} goes on with this run")
+        raise
     if not result.ok:
-        say(f"{spec}: the run failed: {result.status}; nothing was written into {folder}")
+        if keep.written:
+            keep.drop()
+        say(f"{task.spec}: the run failed: {result.status}; nothing was written into {folder}")
         raise typer.Exit(SOLVER_FAILED)
-    result.source = source_of(spec, sets)
+    result.source = source_of(task.text, task.sets)
     pictures = {"report.png": figure(result), "strain.png": strain_map(result)}
     save(result, folder, {**pictures, "report.html": page([result]).encode("utf-8")})
+    keep.drop()
     if not quiet:
         typer.echo(summary_text(result.summary()))
         typer.echo(f"wrote {folder}")
-    if check_step and result.error_estimate is None and not quiet:
+    if task.check_step and result.error_estimate is None and not quiet:
         say("a static run has no step: --check-step compared nothing")
     if result.error_estimate is not None and not result.error_estimate <= model.run.tolerance:
         raise AccuracyError(
-            f"{spec}: the error estimate {result.error_estimate:.3g} is above run.tolerance "
+            f"{task.spec}: the error estimate {result.error_estimate:.3g} is above run.tolerance "
             f"{model.run.tolerance:g}; the files in {folder} hold this result; give a smaller run.step"
         )
+
+
+def _save_part(keep: Keep, folder: Path) -> None:
+    from mdlgen.results.store import save
+
+    if keep.part is None:
+        say("there is no part to keep yet")
+        return
+    part = keep.part()
+    part = part.part(
+        f"interrupted at {part.time[-1]:.6g} of {part.model.run.duration:g} ms, at {part.step:g} ms a step"
+    )
+    save(part, folder / "partial")
+    say(f"wrote {folder / 'partial'}: {part.status}")
 
 
 @app.command()
@@ -369,6 +446,7 @@ def verify(
         typer.Option("--turn/--no-turn", help="Also turn each value of the data sets, in text and spec."),
     ] = True,
     sets: Sets = None,
+    limits: Raised = None,
     as_json: Annotated[bool, typer.Option("--json", help="The result as JSON.")] = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
@@ -380,11 +458,10 @@ def verify(
     Example: mdlgen verify samples/transport_4x4.yaml --text note.mdl
     """
     from mdlgen.model.lower import lower
-    from mdlgen.spec.load import load
     from mdlgen.verify.report import report, report_text
     from mdlgen.verify.verification import verify as compare
 
-    scene = load(spec, sets or ())
+    scene = scene_of(spec, sets, limits)
     files = {"text": text, "companion": script, "deck": deck}
     with count(quiet, "values turned") as progress:
         found = compare(scene, lower(scene), **files, only=only, turn=turn, progress=progress)

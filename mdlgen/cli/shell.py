@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from threading import Event, Lock, Thread
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
@@ -15,6 +17,7 @@ from mdlgen.errors import MdlgenError, SpecError, printable
 
 if TYPE_CHECKING:
     from mdlgen.model.tables import Model
+    from mdlgen.spec.scene import Scene
 
 SOLVER_FAILED, INTERRUPTED = 4, 130
 
@@ -34,6 +37,14 @@ Sets = Annotated[
         "--set", metavar="PATH=VALUE", help="Set a value of the scene; may be given more than once."
     ),
 ]
+Raised = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--limit",
+        metavar="NAME=COUNT",
+        help="Allow more boxes, pairs, contacts, states or values; may be given more than once.",
+    ),
+]
 Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="Errors and asked-for output only.")]
 Verbose = Annotated[
     bool, typer.Option("-v", "--verbose", help="Say more; show the traceback of internal errors.")
@@ -51,10 +62,18 @@ def told(command: Callable[..., None]) -> Callable[..., None]:
             raise
         except KeyboardInterrupt:
             say("mdlgen: interrupted")
+            if _busy.locked():
+                # compiled code is at work beside, and an orderly end would wait for it, or fall over it
+                sys.stdout.flush()
+                sys.stderr.flush()
+                os._exit(INTERRUPTED)
             raise typer.Exit(INTERRUPTED) from None
         except MdlgenError as error:
             say(str(_located(error, options.get("spec"))))
             raise typer.Exit(error.exit_code) from None
+        except MemoryError:
+            say("mdlgen: not enough memory for this; take fewer boxes, or a longer run.print_step")
+            raise typer.Exit(SOLVER_FAILED) from None
         except Exception as error:
             if options.get("verbose"):
                 import traceback
@@ -67,18 +86,48 @@ def told(command: Callable[..., None]) -> Callable[..., None]:
     return run
 
 
-def model_of(spec: Path, sets: list[str] | None) -> Model:
-    from mdlgen.model.lower import lower
+_busy = Lock()
+T = TypeVar("T")
+
+
+def beside(work: Callable[[], T]) -> T:
+    """Does `work` in a thread of its own, so that an interrupt is heard at once while compiled code runs."""
+    ended = Event()
+    found: list[T] = []
+    failed: list[BaseException] = []
+
+    def target() -> None:
+        with _busy:
+            try:
+                found.append(work())
+            except BaseException as error:
+                failed.append(error)
+        ended.set()
+
+    Thread(target=target, daemon=True).start()
+    while not ended.wait(0.5):  # some systems hear an interrupt only between two waits
+        pass
+    if failed:
+        raise failed[0]
+    return found[0]
+
+
+def scene_of(spec: Path, sets: list[str] | None, limits: list[str] | None) -> Scene:
+    from mdlgen.spec.limits import DEFAULT
     from mdlgen.spec.load import load
 
-    return lower(load(spec, sets or ()))
+    return load(spec, sets or (), DEFAULT.raised(limits or ()))
 
 
-def source_of(spec: Path, sets: list[str] | None) -> str:
+def model_of(spec: Path, sets: list[str] | None, limits: list[str] | None = None) -> Model:
+    from mdlgen.model.lower import lower
+
+    return lower(scene_of(spec, sets, limits))
+
+
+def source_of(text: str, sets: Iterable[str]) -> str:
     """The text of a scene as it was written, and what was set beside it."""
-    from mdlgen import paths
-
-    return paths.read_text(spec) + "".join(f"# --set {text}\n" for text in sets or ())
+    return text + "".join(f"# --set {item}\n" for item in sets)
 
 
 def echo_json(value: Any) -> None:
@@ -96,10 +145,12 @@ def _located(error: MdlgenError, spec: Path | None) -> MdlgenError:
     """An error of a later stage, with the place of the value in the file."""
     if spec is None or not isinstance(error, SpecError) or error.place is not None or not error.path:
         return error
-    from mdlgen.spec.load import parse
+    from mdlgen.spec.load import parse, read
 
     try:
-        return error.located(parse(spec.read_text("utf-8-sig"), str(spec)).place(error.path))
+        if not spec.is_file():  # a pipe has been read
+            return error
+        return error.located(parse(read(spec), str(spec)).place(error.path))
     except (OSError, ValueError, MdlgenError):
         return error
 

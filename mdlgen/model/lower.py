@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from mdlgen.errors import SpecError
 from mdlgen.model import grid, naming
 from mdlgen.model.anchors import anchor, find_tension, lower_loads
 from mdlgen.model.cells import Cells, cells, zone_parts
@@ -50,8 +51,28 @@ from mdlgen.spec.scene import Scene
 def lower(scene: Scene) -> Model:
     """The tables that every backend reads.
 
-    Raises SpecError where names that are made from the user's meet.
+    Raises SpecError where names that are made from the user's meet, where there would be more pairs than the
+    scene's limits allow, and where values are so far apart that a number of the tables is not finite.
     """
+    try:
+        with np.errstate(over="raise", divide="raise", invalid="raise"):
+            model = _lower(scene)
+    except (ArithmeticError, np.linalg.LinAlgError) as error:
+        raise SpecError(f"values of this scene are too far apart to compute with ({error})") from None
+    for table, names in ((model.bodies, _OF_BODIES), (model.bushings, _OF_BUSHINGS)):
+        for column in names:
+            wrong = np.argwhere(~np.isfinite(getattr(table, column)))
+            if len(wrong):
+                where = f"{table.name[wrong[0][0]]}: its {column} is not finite"
+                raise SpecError(f"values of this scene are too far apart to compute with ({where})")
+    return model
+
+
+_OF_BODIES = ("position", "rotation", "mass", "inertia", "velocity", "spin", "half")
+_OF_BUSHINGS = ("origin", "axes", "k", "c")
+
+
+def _lower(scene: Scene) -> Model:
     run = _run(scene)
     sheets, boxes = _sheets(scene)
     first = sum(s.count for s in sheets)
@@ -95,6 +116,7 @@ def lower(scene: Scene) -> Model:
             run,
             scene.run.prune,
             scene.run.margin,
+            scene.limits,
         ),
         external_pairs=external_pairs(sheets, externals, contacts),
         loads=lower_loads(scene, sheets),

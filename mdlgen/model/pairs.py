@@ -15,6 +15,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from mdlgen.errors import SpecError
 from mdlgen.model import meshes
 from mdlgen.model.guides import bounds
 from mdlgen.model.sheet_pairs import linked, meeting
@@ -33,6 +34,7 @@ from mdlgen.model.tables import (
     RunSettings,
     SheetPart,
 )
+from mdlgen.spec.limits import DEFAULT, Limits
 
 Part = RollerPart | PlanePart | GuidePart | MeshPart
 
@@ -51,8 +53,12 @@ def find_pairs(
     run: RunSettings,
     prune: bool,
     margin: float,
+    limits: Limits = DEFAULT,
 ) -> Pairs:
-    """Possible pairs, those kept, and the bounds of each box (see the module)."""
+    """Possible pairs, those kept, and the bounds of each box (see the module).
+
+    Raises SpecError where more would be kept than the limits allow.
+    """
     parts = {p.name: p for p in machine}
     by_name = {s.name: s for s in sheets}
     rollers = tuple(p for p in machine if isinstance(p, RollerPart))
@@ -111,6 +117,8 @@ def find_pairs(
             part_low, part_high = _part_bounds(other, bodies, rollers)
             box_low, box_high = extents[sheet.name]
             boxes = boxes[np.all((box_low <= part_high) & (box_high >= part_low), axis=1)]
+        if told := limits.exceeded("pairs", len(kept) + len(boxes), "pairs of bodies kept"):
+            raise SpecError(told, ("contacts", int(contacts.entry[row])))
         kept.extend((row, int(box), other.body) for box in boxes)
     table = np.array(kept, dtype=np.int64).reshape(-1, 3)
     return Pairs(

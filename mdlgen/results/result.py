@@ -15,6 +15,9 @@ if TYPE_CHECKING:
     from mdlgen.results.strain import Strains
 
 
+PARTIAL = "partial:"
+
+
 @dataclass
 class ContactStatistics:
     """Per row of Model.contacts, over every step of the run (not only the stored ones)."""
@@ -82,6 +85,15 @@ class Result:
     @property
     def ok(self) -> bool:
         return self.status == "ok"
+
+    @property
+    def partial(self) -> bool:
+        """Whether it is a part of a run that was interrupted, kept because that was asked for."""
+        return self.status.startswith(PARTIAL)
+
+    def part(self, reason: str) -> Result:
+        """The same result, marked as a part."""
+        return replace(self, status=f"{PARTIAL} {reason}")
 
     def failed(self, reason: str) -> Result:
         """The same result with a reason for its failure."""

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from mdlgen.errors import OutputError
-from mdlgen.paths import write_together
+from mdlgen.paths import recover, write_together
 from mdlgen.results import tree
 from mdlgen.results.result import ContactStatistics, Result
 from mdlgen.results.series import csv
@@ -31,15 +31,18 @@ def save(result: Result, folder: Path, also: Mapping[str, bytes] | None = None) 
     """Write summary.json, series.csv and result.h5 into `folder`, and the files `also` (name -> bytes).
 
     Raises OutputError, and leaves what was there, where one of them cannot be written; and for a failed run,
-    which leaves nothing.
+    which leaves nothing. A part of a run says in its status that it is one.
     """
-    if not result.ok:
+    if not result.ok and not result.partial:
         raise OutputError(f"{folder}: nothing written, the run failed: {result.status}")
     files: dict[Path, str | bytes] = {
         folder / "summary.json": json.dumps(summary(result), indent=2, allow_nan=False) + "\n",
         folder / "series.csv": csv(result),
         folder / "result.h5": hdf5(result),
     }
+    for name in also or {}:
+        if Path(name).name != name:
+            raise OutputError(f"{name!r}: is not the name of a file in {folder}")
     files |= {folder / name: content for name, content in (also or {}).items()}
     check_folder(folder)
     try:
@@ -125,6 +128,7 @@ def read(folder: str | Path) -> dict[str, Any]:
     import h5py
 
     path = Path(folder) / "result.h5"
+    recover(Path(folder))
     found: dict[str, Any] = {}
     try:
         with h5py.File(path, "r") as file:

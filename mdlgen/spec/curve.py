@@ -16,6 +16,8 @@ from pydantic import (
 )
 from pydantic_core import CoreSchema
 
+from mdlgen.errors import OutputError
+from mdlgen.paths import read_at_most
 from mdlgen.spec.fields import Strict, fail, quantity
 
 MAX_POINTS = 1000
@@ -139,16 +141,17 @@ def _file_points(name: Any, folder: Any) -> list[tuple[float, str]]:
     if folder is None:
         raise fail(f"{name}: only a scene that is itself read from a file can name one")
     path = Path(name)
-    inside = Path(folder).resolve()
+    inside = found = Path(folder).resolve()
     if path.is_absolute() or ".." in path.parts or "\\" in name:
         raise fail(f"{name}: a curve's file stands in the folder of the spec or below; name it from there")
     try:
         found = (inside / path).resolve()
         if not found.is_relative_to(inside):
             raise fail(f"{name}: leads out of the folder of the spec")
-        with open(found, "rb") as stream:
-            raw = stream.read(MAX_FILE_BYTES + 1)
+        raw = read_at_most(found, MAX_FILE_BYTES + 1, named=True)
         text = raw.decode("utf-8-sig")
+    except OutputError as error:  # with the name as it stands in the spec
+        raise fail(f"{name}: {str(error).removeprefix(f'{found}: ')}"[:300]) from None
     except (OSError, ValueError) as error:
         raise fail(f"{name}: cannot read: {getattr(error, 'strerror', None) or error}"[:300]) from None
     if len(raw) > MAX_FILE_BYTES:

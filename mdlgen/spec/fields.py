@@ -9,8 +9,10 @@ from typing import Annotated, Any
 from pydantic import BaseModel, BeforeValidator, ConfigDict, GetCoreSchemaHandler, WithJsonSchema
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
-from mdlgen.units import parse_quantity
+from mdlgen.units import parse_quantity, parse_unit
 
+# What a quantity may be in the unit of its field, but for 0: products of some of them are still numbers.
+SMALLEST, LARGEST = 1e-20, 1e20
 IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,62}")
 RESERVED = frozenset(
     (
@@ -74,6 +76,11 @@ class quantity:
             value = parse_quantity(text, self.unit)
         except ValueError as error:
             raise fail(str(error)) from None
+        size = abs(value) / parse_unit(self.unit).factor
+        if value != 0.0 and not SMALLEST <= size <= LARGEST:
+            raise fail(
+                f"{text} cannot be computed with; allowed are 0 and {SMALLEST:g} to {LARGEST:g} {self.unit}"
+            )
         too_low = self.low is not None and (value < self.low or (self.open_low and value == self.low))
         if too_low or (self.high is not None and value > self.high):
             raise fail(f"{text} is outside what is allowed: {self.allowed()}{self._meant(value)}")

@@ -25,10 +25,12 @@ from ruamel.yaml.events import (
     SequenceStartEvent,
 )
 
-from mdlgen.errors import OutputError, Place, SpecError
+from mdlgen import paths
+from mdlgen.errors import Place, SpecError
+from mdlgen.spec.limits import DEFAULT, Limits
 from mdlgen.spec.scene import Scene
 
-MAX_BYTES, MAX_NODES, MAX_DEPTH = 2_000_000, 200_000, 40
+MAX_BYTES, MAX_DEPTH = 2_000_000, 40
 SpecPath = tuple[str | int, ...]
 
 # With --set, giving one of these takes the other away, so that an alternative can be tried.
@@ -67,42 +69,46 @@ class Document:
         return Place(self.file, 1, 1)
 
 
-def load(path: str | Path, overrides: Iterable[str] = ()) -> Scene:
+def load(path: str | Path, overrides: Iterable[str] = (), limits: Limits = DEFAULT) -> Scene:
     """Read a spec file; `overrides` are `PATH=VALUE` texts as of `--set`. Raises SpecError, OutputError."""
-    try:
-        with open(path, "rb") as stream:
-            raw = stream.read(MAX_BYTES + 1)
-    except OSError as error:
-        raise OutputError(f"{path}: cannot read: {error.strerror or error}") from None
-    except ValueError as error:
-        raise OutputError(f"{str(path)!r}: cannot read: {error}") from None
+    return loads(read(path), str(path), overrides, Path(path).parent, limits)
+
+
+def read(path: str | Path) -> str:
+    """The text of a spec file, not larger than MAX_BYTES. Raises SpecError, OutputError."""
+    raw = paths.read_at_most(Path(path), MAX_BYTES + 1)
     if len(raw) > MAX_BYTES:
         raise SpecError(f"larger than {MAX_BYTES} bytes", place=Place(str(path), 1, 1))
     try:
-        text = raw.decode("utf-8-sig")
+        return raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = raw[: error.start].count(b"\n") + 1
         raise SpecError("not UTF-8 text", place=Place(str(path), line, 1)) from None
-    return loads(text, str(path), overrides, Path(path).parent)
 
 
-def loads(text: str, file: str = "scene", overrides: Iterable[str] = (), folder: Path | None = None) -> Scene:
+def loads(
+    text: str,
+    file: str = "scene",
+    overrides: Iterable[str] = (),
+    folder: Path | None = None,
+    limits: Limits = DEFAULT,
+) -> Scene:
     """The Scene of a YAML or JSON text; files that it names are looked for in `folder`, None: not at all.
 
     Raises SpecError with its place.
     """
-    document = parse(text, file)
+    document = parse(text, file, limits)
     if not isinstance(document.data, dict):
         raise SpecError("a scene is a mapping of keys to values", place=document.place(()))
     for override in overrides:
         _override(document, override)
     try:
-        return Scene.model_validate(document.data, context={"folder": folder})
+        return Scene.model_validate(document.data, context={"folder": folder, "limits": limits})
     except ValidationError as error:
         raise _first_error(error, document) from None
 
 
-def parse(text: str, file: str) -> Document:
+def parse(text: str, file: str, limits: Limits = DEFAULT) -> Document:
     """Plain data with places; no anchors, tags, duplicate keys, or more than the stated limits."""
     places: dict[SpecPath, Place] = {}
     keys: dict[SpecPath, Place] = {}
@@ -125,8 +131,8 @@ def parse(text: str, file: str) -> Document:
                 raise SpecError("anchors and aliases are not allowed; write the value out", place=place)
             if getattr(event, "ctag", None) or getattr(event, "tag", None):
                 raise SpecError("tags are not allowed; write the plain value", place=place)
-            if count > MAX_NODES:
-                raise SpecError(f"more than {MAX_NODES} values", place=place)
+            if told := limits.exceeded("values", count, "values in the text"):
+                raise SpecError(told, place=place)
             if len(stack) >= MAX_DEPTH:
                 raise SpecError(f"nested deeper than {MAX_DEPTH} levels", place=place)
             if stack and stack[-1].takes_key:

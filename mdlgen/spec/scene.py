@@ -6,13 +6,14 @@ import re
 from fnmatch import fnmatchcase
 from itertools import product
 
-from pydantic import Field, model_validator
+from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
 from mdlgen.errors import did_you_mean
 from mdlgen.spec.action import Load, OnSheet, Probe, Support
 from mdlgen.spec.contact import Contact
 from mdlgen.spec.fields import Acceleration, Name, Strict, default, fail
 from mdlgen.spec.guide import Guide
+from mdlgen.spec.limits import DEFAULT, Limits
 from mdlgen.spec.machine import Plane, Roller
 from mdlgen.spec.material import Material
 from mdlgen.spec.mesh import Mesh
@@ -38,6 +39,12 @@ class Scene(Strict):
     run: Run = Field(default_factory=Run)
     probes: dict[Name, Probe] = Field(default_factory=dict)
     supports: tuple[Support, ...] = Field(default=(), strict=False)
+    _limits: Limits = PrivateAttr(default=DEFAULT)
+
+    @property
+    def limits(self) -> Limits:
+        """What the scene may grow to; not part of what is written."""
+        return self._limits
 
     def __repr__(self) -> str:
         kinds = ("sheets", "rollers", "planes", "guides", "parts", "contacts", "loads", "probes", "supports")
@@ -45,7 +52,9 @@ class Scene(Strict):
         return f"<Scene {self.name}: {told}>"
 
     @model_validator(mode="after")
-    def _references(self) -> Scene:
+    def _references(self, info: ValidationInfo) -> Scene:
+        self._limits = (info.context or {}).get("limits", DEFAULT)
+        self._count()
         self._names_unique()
         for name, sheet in self.sheets.items():
             _known(sheet.material, self.materials, "material", ("sheets", name, "material"))
@@ -78,6 +87,16 @@ class Scene(Strict):
                 _known(mesh.on, self.rollers, "roller", ("meshes", name, "on"))
         self.contact_pairs()
         return self
+
+    def _count(self) -> None:
+        boxes = sum(sheet.boxes[0] * sheet.boxes[1] for sheet in self.sheets.values())
+        if told := self._limits.exceeded("boxes", boxes, "boxes of all sheets"):
+            raise fail(told, ("sheets",))
+        if self.run.analysis == "transient" and self.run.print_step is not None:
+            bodies = boxes + len(self.rollers) + len(self.planes) + len(self.guides)
+            stored = bodies * self.run.duration / self.run.print_step
+            if told := self._limits.exceeded("states", stored, "states stored (bodies times outputs)"):
+                raise fail(told, ("run", "print_step"))
 
     def _names_unique(self) -> None:
         seen: dict[str, str] = {}
@@ -116,8 +135,14 @@ class Scene(Strict):
         rank = {n: i for i, n in enumerate([*self.sheets, *machine])}
         taken: dict[tuple[str, str], int] = {}
         pairs: list[tuple[int, str, str]] = []
+        looked = 0
         for index, contact in enumerate(self.contacts):
             path = ("contacts", index, "between")
+            looked += len(rank) * sum(not pattern.isidentifier() for pattern in contact.between)
+            if told := self._limits.exceeded(
+                "contacts", looked / 100, "hundreds of names that patterns meet"
+            ):
+                raise fail(told, path)
             sides = [_matching(p, rank, (*path, i)) for i, p in enumerate(contact.between)]
             found = False
             for one, two in product(*sides):
@@ -129,6 +154,8 @@ class Scene(Strict):
                         continue
                     raise fail(f"the pair {a} / {b} already has contacts.{taken[a, b]}; give it one", path)
                 self._modelled(a, b, path)
+                if told := self._limits.exceeded("contacts", len(pairs) + 1, "pairs of parts in contact"):
+                    raise fail(told, path)
                 taken[a, b] = index
                 found = True
                 pairs.append((index, a, b))
@@ -172,7 +199,10 @@ def _known(name: str, table: dict, kind: str, path: tuple[str | int, ...]) -> No
 def _matching(pattern: str, parts: dict[str, int], path: tuple[str | int, ...]) -> list[str]:
     if not re.fullmatch(r"[A-Za-z0-9_*?]{1,64}", pattern):
         raise fail(f"{pattern[:80]!r} is not a name or a pattern of letters, digits, _, * and ?", path)
-    found = [name for name in parts if fnmatchcase(name, pattern)]
+    if pattern.isidentifier():
+        found = [pattern] if pattern in parts else []
+    else:
+        found = [name for name in parts if fnmatchcase(name, pattern)]
     if not found:
         close = did_you_mean(pattern, parts)
         raise fail(f"there is no part {pattern!r}{close or ';'} there are: {', '.join(parts)}", path)

@@ -6,7 +6,7 @@ import math
 from itertools import pairwise
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, ValidationInfo, model_validator
 
 from mdlgen.spec.fields import (
     Angle,
@@ -25,10 +25,10 @@ from mdlgen.spec.fields import (
     quantity,
 )
 from mdlgen.spec.grading import Graded, Grading
+from mdlgen.spec.limits import DEFAULT
 from mdlgen.spec.shape import Shape
 from mdlgen.spec.zone import Zone
 
-MAX_BOXES = 100_000
 MAX_ZONES = 100
 MOST_TURN = math.radians(170.0)
 FINEST = 1e-4  # of a side: how narrow a place may be that boxes are finer near
@@ -79,13 +79,14 @@ class Sheet(Strict):
     )
 
     @model_validator(mode="after")
-    def _counts(self) -> Sheet:
+    def _counts(self, info: ValidationInfo) -> Sheet:
         least = 2 if self.grid == "paper" else 1
         n_x, n_y = self.boxes
         if min(n_x, n_y) < least:
             raise fail(f"boxes [{n_x}, {n_y}]: at least {least} each way with grid: {self.grid}")
-        if n_x * n_y > MAX_BOXES:
-            raise fail(f"boxes [{n_x}, {n_y}] are {n_x * n_y}; allowed are {MAX_BOXES} in a sheet")
+        limits = (info.context or {}).get("limits", DEFAULT)
+        if told := limits.exceeded("boxes", n_x * n_y, f"boxes [{n_x}, {n_y}]"):
+            raise fail(told, within=("boxes",))
         if self.turn is not None and self.rotation is not None:
             raise fail("turn and rotation are both given; give one of them")
         if self.surface and min(n_x, n_y) < 2:

@@ -10,10 +10,11 @@ from backends.motionview.reader.report import Notes
 from backends.motionview.reader.scanner import statements
 from backends.motionview.reader.source import Source
 from backends.motionview.reader.statement import Statement
+from mdlgen.errors import OutputError
+from mdlgen.paths import MOST_BYTES, read_at_most
 
 MOST_DEEP = 20  # files in files
 MOST_FILES = 1000
-MOST_BYTES = 200_000_000  # of all included files: some four sheets of 10,000 boxes
 _NAME = re.compile(r'"([^"\\\n]+)"')
 _TOO_MUCH = f"the files that are included in files are more than {MOST_FILES}, or {MOST_BYTES} bytes"
 
@@ -79,10 +80,11 @@ class Includes:
         try:
             if len(self.sources) > MOST_FILES or self._bytes + path.stat().st_size > MOST_BYTES:
                 raise Unread(_TOO_MUCH)
-            with path.open("rb") as stream:
-                raw = stream.read(MOST_BYTES - self._bytes)
+            raw = read_at_most(path, MOST_BYTES - self._bytes, named=True)
         except OSError as error:
             raise Unread(f"it cannot be read: {error.strerror or error}") from None
+        except OutputError as error:
+            raise Unread(f"it cannot be read: {str(error).rpartition(': ')[2]}") from None
         self._bytes += len(raw)
         beside = Path(self.sources[0].file).parent / told
         inner = Source(raw.decode("utf-8", errors="replace"), str(beside))

@@ -1,0 +1,123 @@
+"""What is kept of a run while it goes on: states from which it can go on, and a view of its part so far.
+
+A run consists of passes, at a step each. What a pass carries from one stored time to the next is written as
+it is, array by array, so that a run that goes on from there takes the same steps to the last bit. A pass
+that is not kept is run again.
+"""
+
+from __future__ import annotations
+
+import io
+import time
+import zipfile
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from threading import Lock
+
+import numpy as np
+
+from mdlgen.errors import OutputError
+from mdlgen.paths import write_together
+from mdlgen.results.result import Result
+
+State = dict[str, np.ndarray]
+
+
+class Keep:
+    """Counts the passes of a run, and writes and reads their states in `folder` (None: nothing is written).
+
+    `every` is the time between two states that are written [s]; with the first one stand the files `seal`
+    (name -> text; run.json), None where the folder has them. `part` is a way to the result so far, None as
+    long as there is none; `lock` is held while files are written.
+    """
+
+    def __init__(
+        self,
+        folder: Path | None = None,
+        every: float = float("inf"),
+        seal: Mapping[str, str] | None = None,
+    ):
+        self.folder, self.every, self._seal = folder, every, seal
+        self.part: Callable[[], Result] | None = None
+        self.lock = Lock()
+        self.written = folder is not None and seal is None
+        self._pass = -1
+        self._last = time.monotonic()
+
+    def begin(self) -> int:
+        """The number of the pass that begins."""
+        self._pass += 1
+        return self._pass
+
+    def due(self) -> bool:
+        """Whether it is time to write a state."""
+        return self.folder is not None and time.monotonic() - self._last >= self.every
+
+    def save(self, number: int, state: State) -> None:
+        """Writes the state of a pass, in place of the one before. Raises OutputError."""
+        if self.folder is None:
+            return
+        stream = io.BytesIO()
+        np.savez(stream, allow_pickle=False, **state)  # pyright: ignore[reportArgumentType]
+        files: dict[Path, str | bytes] = {self._path(number): stream.getvalue()}
+        if self.folder.is_symlink():
+            raise OutputError(f"{self.folder}: is a symbolic link; name the folder itself")
+        with self.lock:
+            if self._seal is not None:
+                self.drop()  # of another run
+                files |= {self.folder / name: text for name, text in self._seal.items()}
+                try:
+                    self.folder.mkdir(parents=True, exist_ok=True)
+                except OSError as error:
+                    what = error.strerror or error
+                    raise OutputError(f"{self.folder}: cannot make this folder: {what}") from None
+            write_together(files)
+            self._seal = None
+        self.written = True
+        self._last = time.monotonic()
+
+    def load(self, number: int, like: State) -> State | None:
+        """The state of a pass, None where none is kept.
+
+        It has some of the arrays of `like`, with their types and shapes; where the first axis there has no
+        length it has any. Raises OutputError for a file that does not fit.
+        """
+        if self.folder is None or self._seal is not None or not self._path(number).exists():
+            return None
+        path = self._path(number)
+        try:
+            return _read(path, like)
+        except (OSError, ValueError, KeyError, zipfile.BadZipFile, EOFError, NotImplementedError) as error:
+            raise OutputError(f"{path}: is not a state of this run ({str(error)[:100]})") from None
+
+    def drop(self) -> None:
+        """Removes what is kept, of this run or another. Raises OutputError."""
+        if self.folder is None or not self.folder.is_dir() or self.folder.is_symlink():
+            return
+        try:
+            for path in (*self.folder.glob("pass_*.npz"), *self.folder.glob(".*"), self.folder / "run.json"):
+                path.unlink(missing_ok=True)
+            if not any(self.folder.iterdir()):
+                self.folder.rmdir()
+        except OSError as error:
+            raise OutputError(f"{self.folder}: cannot be removed: {error.strerror or error}") from None
+
+    def _path(self, number: int) -> Path:
+        assert self.folder is not None
+        return self.folder / f"pass_{number}.npz"
+
+
+def _read(path: Path, like: State) -> State:
+    with zipfile.ZipFile(path) as file:
+        # what is not compressed is as large as the file: nothing unfolds
+        if any(member.compress_type != zipfile.ZIP_STORED for member in file.infolist()):
+            raise ValueError("it is compressed")
+    found: State = {}
+    with np.load(path, allow_pickle=False) as file:
+        for name in file.files:
+            array, wanted = file[name], like[name]
+            free = wanted.ndim > 0 and wanted.shape[0] == 0
+            if array.dtype != wanted.dtype or array.shape[free:] != wanted.shape[free:]:
+                raise ValueError(f"{name} has the type or shape of another run")
+            found[name] = array
+    return found

@@ -1,0 +1,271 @@
+"""Random and mutated scenes and texts: one line and a known exit code, whatever comes.
+
+300 examples of each, the same ones every time; MDLGEN_FUZZ=10000 python -m pytest tests/test_fuzz.py takes
+as many as it says.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import copy
+import io
+import json
+import os
+import re
+import resource
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import strategies as st
+
+import mdlgen
+from mdlgen.cli import app
+from mdlgen.paths import samples
+from mdlgen.spec.load import parse
+
+COUNT = int(os.environ.get("MDLGEN_FUZZ", "300"))
+# without Phase.explain, which traces, and so tells of times that are none
+PHASES = (Phase.generate, Phase.shrink)
+FUZZ = settings(max_examples=COUNT, suppress_health_check=list(HealthCheck), database=None, phases=PHASES)
+# Of each example, on a machine that does nothing else [s], [MB].
+MOST_TIME, MOST_MEMORY = 5.0, 500.0
+
+Path_ = tuple[str | int, ...]
+
+
+def small(path: Path) -> str:
+    """A sample of few boxes."""
+    return re.sub(r"boxes: \[(\d+), (\d+)\]", fewer, path.read_text("utf-8"))
+
+
+def fewer(boxes: re.Match[str]) -> str:
+    return f"boxes: [{min(int(boxes[1]), 3)}, {min(int(boxes[2]), 5)}]"
+
+
+TEXTS = [small(path) for path in sorted(samples().rglob("*.yaml"))]
+SCENES = [parse(text, "sample").data for text in TEXTS]
+MDL = [
+    mdlgen.emit(mdlgen.lower(mdlgen.loads(json.dumps(scene)))) for scene in SCENES if not scene.get("loads")
+]
+# the shortest tell as much as the longest
+MDL = sorted(MDL, key=len)[:5]
+PIECES = sorted({word for text in MDL for word in re.findall(r"\*\w+\(|\w+|[^\w\s]", text)})[::7]
+
+
+def paths(value: Any, head: Path_ = ()) -> Iterator[Path_]:
+    items = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    for key, item in items:
+        yield (*head, key)
+        yield from paths(item, (*head, key))
+
+
+NUMBERS = st.one_of(
+    st.floats(),
+    st.integers(),
+    st.sampled_from([0.0, -1.0, 1e-300, 5e-324, 1e-20, 1e-19, 1e-9, 1e9, 1e19, 1e20, 1e300, 10**40]),
+)
+WORDS = st.one_of(
+    st.text(max_size=20),
+    st.sampled_from(
+        [
+            "",
+            "x",
+            "-z",
+            "note",
+            "*",
+            "?",
+            "x_max",
+            "1e400",
+            ".nan",
+            '"\n*BeginMDL( a )',
+            "\u2028",
+            "{%",
+            "`",
+            "../x",
+        ]
+    ),
+)
+UNITS = st.sampled_from(
+    ["mm", "m", "g", "kg", "ms", "s", "N", "MPa", "rad/s", "N*mm/rad", "N/mm^1.5", "x", "^9", ""]
+)
+QUANTITIES = st.builds("{} {}".format, NUMBERS, UNITS)
+LEAVES = st.one_of(st.none(), st.booleans(), NUMBERS, WORDS, QUANTITIES)
+VALUES = st.recursive(
+    LEAVES, lambda v: st.one_of(st.lists(v, max_size=4), st.dictionaries(WORDS, v, max_size=3))
+)
+
+
+@st.composite
+def mutated(draw: st.DrawFn) -> str:
+    """A sample with some values changed, most of them to others that a scene might have."""
+    scene = copy.deepcopy(draw(st.sampled_from(SCENES)))
+    for _ in range(draw(st.integers(1, 3))):
+        path = draw(st.sampled_from(list(paths(scene))))
+        node = scene
+        for key in path[:-1]:
+            node = node[key]
+        old = node[path[-1]]
+        number = re.fullmatch(r"[-+0-9.eE]+( .+)", old) if isinstance(old, str) else None
+        how = draw(st.sampled_from(["like", "like", "like", "any", "gone"]))
+        if how == "gone":
+            del node[path[-1]]
+        elif how == "like" and number:
+            node[path[-1]] = f"{draw(NUMBERS)}{number[1]}"
+        elif how == "like" and isinstance(old, (int, float)):
+            node[path[-1]] = draw(NUMBERS)
+        else:
+            node[path[-1]] = draw(VALUES)
+    return json.dumps(scene, allow_nan=True)
+
+
+@st.composite
+def edited(draw: st.DrawFn, texts: list[str], pieces: list[str]) -> str:
+    """A text with pieces put in, doubled and left out."""
+    text = draw(st.sampled_from(texts))
+    for _ in range(draw(st.integers(1, 4))):
+        at = draw(st.integers(0, len(text)))
+        end = min(len(text), at + draw(st.integers(0, 30)))
+        kind = draw(st.sampled_from(["in", "out", "twice", "swap", "any"]))
+        if kind == "in":
+            text = text[:at] + draw(st.sampled_from(pieces)) + text[at:]
+        elif kind == "out":
+            text = text[:at] + text[end:]
+        elif kind == "twice":
+            text = text[:end] + text[at:]
+        elif kind == "swap":
+            text = text[:at] + draw(st.sampled_from(pieces)) + text[end:]
+        else:
+            text = text[:at] + draw(st.text(max_size=5)) + text[end:]
+    return text
+
+
+YAML_PIECES = [
+    "&a ",
+    "*a",
+    "!!int ",
+    "- ",
+    ": ",
+    "{",
+    "}",
+    "[",
+    "]",
+    "\n",
+    "\t",
+    "#",
+    "|",
+    ">",
+    "'",
+    '"',
+    "<<: ",
+    "---\n",
+]
+YAML_PIECES += ["%YAML 1.1\n", "1e-3", ".inf", "0x10", "1_000", "~", "? ", "\\x00", "9" * 400, "[" * 60]
+ANY = st.one_of(st.text(), st.binary().map(lambda raw: raw.decode("latin-1")))
+SPEC = st.one_of(mutated(), mutated(), edited(TEXTS, YAML_PIECES), VALUES.map(json.dumps), ANY)
+MDL_PIECES = [
+    *PIECES,
+    '*Include( "x" )\n',
+    "{",
+    "`",
+    "1/0",
+    "9^9^9",
+    "(" * 300,
+    "*if( 1 )\n",
+    "*EndDefine()\n",
+    "e+400",
+]
+TEXT = st.one_of(edited(MDL, MDL_PIECES), edited(MDL, MDL_PIECES), ANY)
+
+
+def command(*args: str) -> tuple[int, str]:
+    """Exit code and standard error of a command in this process, within its time and memory."""
+    out, err = io.StringIO(), io.StringIO()
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    started = time.process_time()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        try:
+            app(list(args), prog_name="mdlgen")
+        except SystemExit as ended:
+            assert isinstance(ended.code, int)
+            code = ended.code
+        else:
+            code = 0
+    assert time.process_time() - started < MOST_TIME
+    assert (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024 < MOST_MEMORY
+    assert "Traceback" not in err.getvalue()
+    return code, err.getvalue()
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("fuzz")
+
+
+def clear(folder: Path) -> None:
+    for path in sorted(folder.rglob("*"), reverse=True):
+        path.rmdir() if path.is_dir() else path.unlink()
+
+
+SHORT = ["--set", "run.duration=0.5 ms", "--set", "run.step=0.1 ms", "--solver", "lattice"]
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.filterwarnings("default::UserWarning")
+@FUZZ
+@given(text=SPEC, run=st.integers(0, 9))
+def test_scenes(folder: Path, text: str, run: int) -> None:
+    clear(folder)
+    spec = folder / "scene.yaml"
+    spec.write_bytes(text.encode("utf-8", "surrogatepass"))
+    code, err = command("check", str(spec), "-q")
+    assert code in (0, 2), err
+    assert code == 0 or len(err.splitlines()) == 1, err
+    for name in ("mdl", "deck"):
+        file = folder / f"out.{name}"
+        ended, err = command(
+            name,
+            str(spec),
+            "-q",
+            "-o",
+            str(file),
+            *(["--companion", str(folder / "out.py")] if name == "mdl" else []),
+        )
+        # what cannot be read cannot be written, and what can may still be refused by name
+        assert ended in ((0, 2) if code == 0 else (2,)), err
+        assert ended == 0 or len(err.splitlines()) == 1, err
+        assert file.exists() == (ended == 0)
+        if ended == 0:
+            assert "nan" not in file.read_text("ascii")
+            assert name == "deck" or command("lint", str(file), "-q")[0] == 0
+    if run == 0 and '"static"' not in text:
+        ended, err = command("run", str(spec), "-q", "-o", str(folder / "d"), *SHORT)
+        # 5: it ran, and its files stand, but missed its tolerance
+        assert ended in (0, 2, 4, 5) if code == 0 else ended == 2, err
+        assert ended == 0 or len(err.splitlines()) == 1, err
+        assert (folder / "d" / "summary.json").exists() == (ended in (0, 5))
+
+
+@pytest.mark.filterwarnings("error")
+@FUZZ
+@given(text=TEXT)
+def test_texts(folder: Path, text: str) -> None:
+    clear(folder)
+    file = folder / "text.mdl"
+    file.write_bytes(text.encode("utf-8", "surrogatepass"))
+    code, err = command("lint", str(file), "-q", "--values", str(folder / "values.json"))
+    assert code in (0, 2), err
+    if (folder / "values.json").exists():
+        json.loads((folder / "values.json").read_text(), parse_constant=pytest.fail)
+
+
+def test_the_samples_that_are_mutated_run(folder: Path) -> None:
+    """Else the above would only see refusals."""
+    for scene in SCENES:
+        assert mdlgen.lower(mdlgen.loads(json.dumps(scene))).name
+    spec = folder / "whole.yaml"
+    spec.write_text(json.dumps(SCENES[0]))
+    assert command("check", str(spec), "-q")[0] == 0

@@ -1,0 +1,254 @@
+"""Runs that are cut off: what they leave, and that they go on to the same bits."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+import zipfile
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import mdlgen
+import mdlgen.errors
+from backends.lattice import run as lattice
+from mdlgen.errors import OutputError
+from mdlgen.model.tables import Model
+from mdlgen.paths import samples
+from mdlgen.results.keep import Keep, State
+from mdlgen.results.seal import digest
+from mdlgen.results.store import hdf5, read
+
+SCENES = {
+    "transport_4x4": ["sheets.note.boxes=[3,5]", "run.duration=8 ms", "run.tolerance=0.01"],
+    "transport_tilted": ["sheets.note.boxes=[3,5]", "run.duration=4 ms", "run.step=0.1 ms"],
+    "channel": ["run.duration=4 ms", "run.step=0.05 ms"],
+    "verify/flip": ["run.duration=20 ms", "run.step=0.1 ms"],
+    "verify/drop": ["run.duration=110 ms", "run.step=0.05 ms", "run.print_step=2 ms"],
+}
+
+
+def scene(name: str) -> Model:
+    return mdlgen.lower(mdlgen.load(samples() / f"{name}.yaml", SCENES[name]))
+
+
+class Cut(Exception):
+    """A run is cut off."""
+
+
+class Cutting(Keep):
+    """Keeps a state at every stored time, and cuts off after some."""
+
+    def __init__(self, folder: Path, seal: dict[str, str] | None, after: int):
+        super().__init__(folder, 0.0, seal)
+        self.left = after
+
+    def save(self, number: int, state: State) -> None:
+        super().save(number, state)
+        self.left -= 1
+        if self.left == 0:
+            raise Cut
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_run_goes_on_to_the_same_bits(name: str, tmp_path: Path) -> None:
+    model = scene(name)
+    whole = lattice.solve(model)
+    assert whole.ok, whole.status
+    cuts = 0
+    seal: dict[str, str] | None = {"run.json": "{}"}
+    while True:
+        try:
+            result = lattice.solve(model, keep=Cutting(tmp_path / "c", seal, 8 + 5 * cuts))
+            break
+        except Cut:
+            cuts += 1
+            seal = None
+    assert cuts >= 3
+    assert hdf5(result) == hdf5(whole)
+    assert (result.steps, result.rounds, result.touched) == (whole.steps, whole.rounds, whole.touched)
+    assert (result.energy, result.error_estimate) == (whole.energy, whole.error_estimate)
+
+
+def test_what_a_run_reads_does_not_change_in_it() -> None:
+    """Else it would have to be kept too."""
+    model = scene("transport_4x4")
+    system = lattice.build(model, fold=True)
+    before = digest(list(system.tables))
+    assert lattice._once(model, system, 0.1, None).ok
+    assert digest(list(system.tables)) == before
+
+
+def kept(folder: Path) -> Model:
+    """A run that is cut off in `folder`."""
+    model = scene("verify/drop")
+    with pytest.raises(Cut):
+        lattice.solve(model, keep=Cutting(folder, {"run.json": "{}"}, 9))
+    return model
+
+
+@pytest.mark.parametrize(
+    "what", ["empty", "text", "cut", "compressed", "pickle", "other shape", "other type", "gone"]
+)
+def test_a_damaged_state_is_refused(tmp_path: Path, what: str) -> None:
+    folder = tmp_path / "c"
+    model = kept(folder)
+    path = folder / "pass_0.npz"
+    with np.load(path) as file:
+        state = dict(file)
+    if what == "empty":
+        path.write_bytes(b"")
+    elif what == "text":
+        path.write_text("PK\x03\x04 no zip")
+    elif what == "cut":
+        path.write_bytes(path.read_bytes()[:-200])
+    elif what == "compressed":
+        np.savez_compressed(path, **state)
+    elif what == "pickle":
+        state["state.0"] = np.array([{}], dtype=object)
+        np.savez(path, **state)
+    elif what == "other shape":
+        state["state.0"] = state["state.0"][:-1]
+        np.savez(path, **state)
+    elif what == "other type":
+        state["state.0"] = state["state.0"].astype(np.float32)
+        np.savez(path, **state)
+    else:
+        del state["stored.u"]
+        np.savez(path, **state)
+    with pytest.raises(OutputError) as told:
+        lattice.solve(model, keep=Keep(folder, 60.0))
+    assert "is not a state of this run" in str(told.value) and "\n" not in str(told.value)
+
+
+def test_a_linked_folder_is_not_written_through(tmp_path: Path) -> None:
+    (tmp_path / "real").mkdir()
+    (tmp_path / "c").symlink_to("real")
+    with pytest.raises(OutputError, match="symbolic link"):
+        lattice.solve(scene("verify/drop"), keep=Cutting(tmp_path / "c", {"run.json": "{}"}, 1))
+    assert list((tmp_path / "real").iterdir()) == []
+
+
+def test_the_digest_sees_one_bit() -> None:
+    model = scene("verify/drop")
+    before = digest(model)
+    assert digest(scene("verify/drop")) == before
+    position = model.bodies.position.copy()
+    position[0, 2] = np.nextafter(position[0, 2], 1.0)
+    assert digest(replace(model, bodies=replace(model.bodies, position=position))) != before
+
+
+# ---------------------------------------------------------------- the command
+
+LONG = [
+    str(samples() / "transport_4x4.yaml"),
+    *("--set", "sheets.note.boxes=[3,5]", "--set", "run.duration=60 ms", "--set", "run.step=5 us"),
+]
+
+
+def command(folder: Path, *args: str) -> subprocess.Popen[str]:
+    return subprocess.Popen(
+        [sys.executable, "-m", "mdlgen", "run", *args],
+        cwd=folder,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+@pytest.fixture(scope="module")
+def cut(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, int, str, float]:
+    """A folder with a run that Ctrl-C ended, its exit code, what it said, and how long its end took [s]."""
+    folder = tmp_path_factory.mktemp("cut")
+    process = command(folder, *LONG, "-o", "d", "--checkpoint", "0.2", "--keep-partial")
+    while not (folder / "d" / "checkpoint" / "run.json").exists():
+        assert process.poll() is None, process.communicate()
+        time.sleep(0.02)
+    time.sleep(0.3)
+    before = time.monotonic()
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=60)
+    assert out == ""
+    return folder, process.returncode, err, time.monotonic() - before
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
+def test_an_interrupt_leaves_a_part_that_says_so(cut: tuple[Path, int, str, float]) -> None:
+    folder, code, err, took = cut
+    assert code == 130
+    assert "Traceback" not in err and "--resume d goes on" in err
+    # a second is what is promised; the machine may be busy
+    assert took < 5.0
+    assert not (folder / "d" / "summary.json").exists()
+    told = json.loads((folder / "d" / "partial" / "summary.json").read_text())
+    assert told["status"].startswith("partial: interrupted at ")
+    assert 0.0 < told["t_end_ms"] < 60.0
+    part = read(folder / "d" / "partial")
+    assert part["status"].startswith("partial:")
+    assert part["time"][-1] == told["t_end_ms"] and len(part["position"]) == len(part["time"])
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
+def test_resume(cut: tuple[Path, int, str, float], tmp_path: Path) -> None:
+    folder, _, _, _ = cut
+    process = command(folder, "--resume", "d", "-q")
+    assert process.communicate() == ("", "") and process.returncode == 0
+    assert not (folder / "d" / "checkpoint").exists()
+    whole = command(tmp_path, *LONG, "-o", "w", "-q")
+    assert whole.communicate() == ("", "") and whole.returncode == 0
+    for name in ("result.h5", "series.csv"):
+        assert (folder / "d" / name).read_bytes() == (tmp_path / "w" / name).read_bytes()
+    # and a part of it is its beginning
+    part, all_of_it = read(folder / "d" / "partial"), read(tmp_path / "w")
+    assert np.array_equal(part["position"], all_of_it["position"][: len(part["time"])])
+
+
+def ended(folder: Path, *args: str) -> tuple[int, str]:
+    process = command(folder, *args)
+    out, err = process.communicate()
+    assert out == "" and len(err.splitlines()) == 1, (out, err)
+    return process.returncode, err
+
+
+def test_what_cannot_go_on_is_refused_by_name(tmp_path: Path) -> None:
+    assert ended(tmp_path, "--resume", "none")[0] == 3
+    assert ended(tmp_path)[0] == 2
+    assert ended(tmp_path, *LONG, "--resume", "d")[0] == 2
+    code, err = ended(tmp_path, *LONG, "--solver", "exudyn", "--checkpoint", "1")
+    assert code == 2 and "exudyn" in err and "same bits" in err
+    assert ended(tmp_path, *LONG, "--solver", "exudyn", "--keep-partial")[0] == 2
+
+
+def test_a_run_of_other_code_or_another_scene_is_refused(tmp_path: Path) -> None:
+    from mdlgen.cli import kept as room
+
+    spec = tmp_path / "scene.yaml"
+    text = (samples() / "verify" / "tension.yaml").read_text("utf-8")
+    spec.write_text(text)
+    of = room.task(spec, None, None, "lattice", False)
+    model = of.model()
+    keep = room.kept(tmp_path, of, model, 0.0)
+    keep.save(0, {"x": np.zeros(1)})
+    again, seal = room.again(tmp_path)
+    assert again == of and digest(again.model()) == digest(model)
+    room.compare(tmp_path, seal, model)
+    for name, words in (
+        ("code", "solver's code"),
+        ("numba", "numba"),
+        ("model", "scene names"),
+        ("processor", "proc"),
+    ):
+        with pytest.raises(mdlgen.errors.RefusedError, match=words):
+            room.compare(tmp_path, {**seal, name: "another"}, model)
+    for bad in ("", "[]", '{"task": 1}', '{"task": {"spec": 1}}', "{" * 100_000):
+        (tmp_path / "checkpoint" / "run.json").write_text(bad)
+        with pytest.raises(OutputError):
+            room.again(tmp_path)
+    with zipfile.ZipFile(tmp_path / "checkpoint" / "pass_0.npz") as file:
+        assert file.namelist() == ["x.npy"]
