@@ -69,7 +69,7 @@ function chart(parent, runs, key, seek) {
   }
   parent.append(figure);
   const overTime = told.x_title === "time [ms]";
-  let scaleX, unscaleX, cursor, at = 0;
+  let scaleX, unscaleX, cursor, at = 0, inSight = true;
 
   function draw() {
     svg.replaceChildren();
@@ -113,6 +113,7 @@ function chart(parent, runs, key, seek) {
 
   function move(time) {
     at = time;
+    if (!inSight) return; // a change costs a new picture even where it is not seen
     const x = scaleX(time);
     const outside = !overTime || !(x >= LEFT - 0.5 && x <= WIDTH - RIGHT + 0.5);
     cursor.setAttribute("visibility", outside ? "hidden" : "visible");
@@ -156,5 +157,6 @@ function chart(parent, runs, key, seek) {
     });
   }
   draw();
+  new IntersectionObserver(([entry]) => { inSight = entry.isIntersecting; move(at); }).observe(svg);
   return move;
 }

@@ -33,6 +33,7 @@ function tick(now) {
   if (!state.playing) return;
   state.frames += 1;
   const next = state.time + state.rate * (now - last) / 1000;
+  stage?.pace(now - last);
   last = now;
   if (next >= end()) { seek(end()); play(false); return; }
   seek(next);
@@ -44,7 +45,7 @@ function play(on) {
   state.playing = on;
   get("play").textContent = on ? "pause" : "play";
   get("play").setAttribute("aria-pressed", String(on));
-  if (!on) return;
+  if (!on) { stage?.pace(null); return; }
   if (state.time >= end() - 1e-9) seek(start());
   last = performance.now();
   requestAnimationFrame(tick);

@@ -7,9 +7,19 @@ const KINDS = {
 };
 // where the camera is, seen from what it looks at, and what is up
 const VIEWS = { xz: [[0, -1, 0], [0, 0, 1]], yz: [[-1, 0, 0], [0, 0, 1]], xy: [[0, 0, 1], [0, 1, 0]], iso: [[-0.55, -0.75, 0.5], [0, 0, 1]] };
+const SLOW = 40, COARSEST = 0.4; // ms a picture; part of the finest
 const JOINT = 0.96; // boxes are drawn this much smaller along the sheet, so that joints are seen
 
 const RAMP = `linear-gradient(to right, ${VIRIDIS.join(", ")})`;
+
+// Whether the picture is drawn without a graphics card, where every pixel costs.
+function soft() {
+  const probe = document.createElement("canvas").getContext("webgl2");
+  const name = probe?.getExtension("WEBGL_debug_renderer_info")?.UNMASKED_RENDERER_WEBGL;
+  const found = name ? /swiftshader|llvmpipe|software|basic render/i.test(probe.getParameter(name)) : false;
+  probe?.getExtension("WEBGL_lose_context")?.loseContext();
+  return found;
+}
 
 async function library() {
   const text = (name) => document.querySelector(`script[data-library="${name}"]`).textContent;
@@ -20,8 +30,9 @@ async function library() {
 
 async function player(canvas, changed) {
   const THREE = await library();
-  const renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
-  renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+  const renderer = new THREE.WebGLRenderer({ canvas, antialias: !soft(), preserveDrawingBuffer: true });
+  const finest = Math.min(window.devicePixelRatio, 2);
+  let fineness = finest;
   const scene = new THREE.Scene();
   scene.background = new THREE.Color(0xf3f5f8);
   scene.add(new THREE.HemisphereLight(0xffffff, 0x9aa4b0, 2.2));
@@ -40,6 +51,12 @@ async function player(canvas, changed) {
     }
   }
 
+  const position = new THREE.Vector3(), scaling = new THREE.Vector3(), one = new THREE.Quaternion(), two = new THREE.Quaternion();
+  const matrix = new THREE.Matrix4();
+
+  // How bright a face is, by its normal: from above, and a little from the left and the front.
+  const shade = (normal) => 0.72 + 0.28 * Math.abs(-0.3 * normal.x - 0.5 * normal.y + 0.81 * normal.z);
+
   // A run, ready to be drawn.
   function take(told) {
     const half = unpack(told.half, Float32Array);
@@ -48,7 +65,8 @@ async function player(canvas, changed) {
       colours: told.colours.map((c) => ({ ...c, values: unpack(c.values, Uint8Array) })),
       group: new THREE.Group(), parts: [],
     };
-    const material = new THREE.MeshLambertMaterial();
+    // lit by hand, once a box and not once a pixel
+    const material = new THREE.MeshBasicMaterial();
     run.boxes = new THREE.InstancedMesh(new THREE.BoxGeometry(2, 2, 2), material, told.boxes);
     run.boxes.instanceMatrix.setUsage(THREE.DynamicDrawUsage);
     run.boxes.setColorAt(0, new THREE.Color());
@@ -60,17 +78,23 @@ async function player(canvas, changed) {
       shape.setIndex(new THREE.BufferAttribute(unpack(mesh.triangles, Uint16Array), 1));
       const flat = shape.toNonIndexed();
       flat.computeVertexNormals();
-      const drawn = new THREE.Mesh(flat, new THREE.MeshLambertMaterial(KINDS[mesh.kind]));
+      const look = KINDS[mesh.kind];
+      const drawn = new THREE.Mesh(flat, mesh.row < 0 ? new THREE.MeshBasicMaterial({ ...look, vertexColors: true }) : new THREE.MeshLambertMaterial(look));
       drawn.position.fromArray(mesh.place);
       drawn.quaternion.set(mesh.turn[1], mesh.turn[2], mesh.turn[3], mesh.turn[0]);
+      if (mesh.row < 0) {
+        // what does not move is lit once
+        const normals = flat.getAttribute("normal"), shades = new Float32Array(3 * normals.count);
+        for (let k = 0; k < normals.count; k += 1) {
+          shades.fill(shade(position.fromBufferAttribute(normals, k).applyQuaternion(drawn.quaternion)), 3 * k, 3 * k + 3);
+        }
+        flat.setAttribute("color", new THREE.BufferAttribute(shades, 3));
+      }
       run.group.add(drawn);
       run.parts.push({ drawn, row: mesh.row, kind: mesh.kind });
     }
     return run;
   }
-
-  const position = new THREE.Vector3(), scaling = new THREE.Vector3(), one = new THREE.Quaternion(), two = new THREE.Quaternion();
-  const matrix = new THREE.Matrix4();
 
   // Position and rotation of a body between the states k and k + 1.
   function pose(run, row, k, part) {
@@ -107,7 +131,8 @@ async function player(canvas, changed) {
       scaling.set(half[3 * row] * JOINT, half[3 * row + 1] * JOINT, half[3 * row + 2]);
       matrix.compose(position, one, scaling).toArray(boxes.instanceMatrix.array, 16 * row);
       const value = 3 * colour.values[near * told.boxes + row];
-      tint[3 * row] = ramp[value]; tint[3 * row + 1] = ramp[value + 1]; tint[3 * row + 2] = ramp[value + 2];
+      const light = shade(scaling.set(0, 0, 1).applyQuaternion(one));
+      for (let i = 0; i < 3; i += 1) tint[3 * row + i] = light * ramp[value + i];
     }
     boxes.instanceMatrix.needsUpdate = true;
     boxes.instanceColor.needsUpdate = true;
@@ -125,6 +150,7 @@ async function player(canvas, changed) {
   function draw() {
     const { clientWidth: wide, clientHeight: high } = canvas;
     if (!wide || !high) return;
+    renderer.setPixelRatio(fineness);
     renderer.setSize(wide, high, false);
     const ratio = wide / high;
     Object.assign(camera, { left: -size * ratio, right: size * ratio, top: size, bottom: -size });
@@ -189,8 +215,18 @@ async function player(canvas, changed) {
     follow(value) { follow = value; },
     machine(value) { machine = value; settle(); refresh(); },
     seek(at) { time = at; settle(); refresh(); },
-    // draws at once and waits until it is done, for those who measure or take pictures
-    now() { settle(); draw(); renderer.getContext().finish(); },
+    // While it plays, a picture that takes too long [ms] is made coarser, since without a graphics card the
+    // time goes by the pixel; at rest (null) it is as fine as the screen.
+    pace(took) {
+      const before = fineness;
+      if (took === null) fineness = finest;
+      else if (took > SLOW) fineness = Math.max(fineness * 0.8, COARSEST * finest);
+      else if (took < SLOW / 3) fineness = Math.min(fineness * 1.1, finest);
+      if (fineness !== before) refresh();
+    },
+    // draws at once and waits until it is done, for those who measure or take pictures: a pixel that is read
+    // has been drawn, while finish() comes back at once
+    now() { settle(); draw(); const gl = renderer.getContext(); gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4)); },
   };
 
   // orbit, move, zoom
