@@ -225,6 +225,16 @@ def test_what_cannot_go_on_is_refused_by_name(tmp_path: Path) -> None:
     assert ended(tmp_path, *LONG, "--solver", "exudyn", "--keep-partial")[0] == 2
 
 
+def test_a_run_that_fails_leaves_nothing_to_go_on_with(tmp_path: Path) -> None:
+    # the block falls through a floor that is too soft
+    drop = str(samples() / "verify" / "drop.yaml")
+    sets = [word for value in SCENES["verify/drop"] for word in ("--set", value)]
+    sets += ["--set", "contacts.0.stiffness=1e-3 N/mm^1.5", "--set", "run.duration=140 ms"]
+    code, err = ended(tmp_path, drop, *sets, "-o", "d", "--checkpoint", "0")
+    assert code == 4 and "the run failed" in err
+    assert not (tmp_path / "d").exists()
+
+
 def test_a_run_of_other_code_or_another_scene_is_refused(tmp_path: Path) -> None:
     from mdlgen.cli import kept as room
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from pathlib import Path
 from threading import Thread
 from typing import TYPE_CHECKING, Annotated
@@ -343,6 +344,8 @@ def run(
     if not result.ok:
         if keep.written:
             keep.drop()
+            with contextlib.suppress(OSError):  # the folder is empty where it was made for what was kept
+                folder.rmdir()
         say(f"{task.spec}: the run failed: {result.status}; nothing was written into {folder}")
         raise typer.Exit(SOLVER_FAILED)
     result.source = source_of(task.text, task.sets)
