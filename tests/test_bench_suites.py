@@ -71,13 +71,16 @@ def test_the_quick_ladder_has_a_rung_of_each_name():
 def test_a_reference_is_kept_and_used_again(tmp_path):
     heard: list[str] = []
     found = bench(["skip"], tmp_path, ["lattice"], quick=True, repeats=1, say=heard.append)
-    assert sum("reference" in line for line in heard) == 1, "five cases, one reference"
+    assert sum("reference" in line for line in heard) == 1, "six cases, one reference"
     assert len(list(tmp_path.glob("reference_*.npz"))) == 1
-    assert [row.status for row in found.rows] == ["ok"] * 5, [row.reason for row in found.rows]
+    assert [row.status for row in found.rows] == ["ok"] * 6, [row.reason for row in found.rows]
     pruned, everything = (row.details["pairs"] for row in found.rows[:2])
     assert pruned < 0.3 * everything
     saves = fits(found.rows)["saves"]
-    names = ("pruned contacts", "idle parts left out", "folded bushings", "kept factors")
+    names = (
+        *("pruned contacts", "idle parts left out", "folded bushings", "kept factors"),
+        "a half of what is symmetric",
+    )
     assert set(saves) == {f"lattice: {name}" for name in names}
     # how much they save a run of a millisecond does not tell
     assert "kept factors: saves" in (tmp_path / "bench.md").read_text()
@@ -97,7 +100,7 @@ def test_a_rule_is_taken_away_only_from_a_solver_that_has_it():
     known = ("exudyn", "lattice")
     own = {name: [c.run.without for c in cases("skip", name, known, False)] for name in known}
     assert not any(own["exudyn"])
-    assert [rules for rules in own["lattice"] if rules] == [("folding",), ("factors",)]
+    assert [rules for rules in own["lattice"] if rules] == [("folding",), ("factors",), ("symmetry",)]
     last = cases("skip", "lattice", known, False)[-1]
     assert last.run.command("lattice") == "mdlgen bench skip --solver lattice"
 

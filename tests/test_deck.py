@@ -204,11 +204,21 @@ def test_the_text_does_not_depend_on_the_hash_seed() -> None:
 # ---------------------------------------------------------------- equal to the text
 
 # Only a MotionView text has these: the word of the statement, what a deck says elsewhere or has no word for.
-ONLY_TEXT = {"statement", "refinement", "flips", "velocity_frames", "velocity_flags"}
-# Numbers of contacts that MDL has no certain statement for.
+ONLY_TEXT = {
+    "statement",
+    "refinement",
+    "flips",
+    "velocity_frames",
+    "velocity_flags",
+    "file",
+    "scale",
+    "moved",
+}
+# Numbers of contacts that MDL has no certain statement for, and what a file holds that a text names.
 ONLY_DECK = {
     *("penalty", "restitution", "normal_trans_vel"),
     *("mu_static", "mu_dynamic", "stiction_velocity", "friction_velocity"),
+    *("corners", "triangles"),
 }
 PLACES = {"origin", "center", "cm", "start", "points", "distance"}
 KINDS = (

@@ -163,7 +163,19 @@ def test_what_touches_after_a_step_was_near_before_it() -> None:
         u[:, :3] = rng.normal(size=(len(u), 3)) * (1.4, 0.2, 1.4)
         u[:, 3:] = rng.normal(size=(len(u), 3)) * 0.1
         forces.place(
-            system.bodies, system.nodes, ahead, 0.0, u, np.zeros(system.border), x, r, xm, rm, um, wm
+            system.bodies,
+            system.nodes,
+            system.images,
+            ahead,
+            0.0,
+            u,
+            np.zeros(system.border),
+            x,
+            r,
+            xm,
+            rm,
+            um,
+            wm,
         )
         close = forces.near_pairs(
             system.bodies, system.pairs, system.meshes, x, r, um, wm, step.FAR, ahead, near

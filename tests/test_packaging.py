@@ -62,7 +62,7 @@ def test_the_wheel_carries_what_the_page_is_made_of(installed):
 
 def test_the_readmes_first_scene_loads():
     blocks = re.findall(r"```yaml\n(.*?)```", (ROOT / "README.md").read_text("utf-8"), re.DOTALL)
-    scene, sheets, guides, parts = blocks
+    scene, sheets, guides, rims, parts = blocks
     model = mdlgen.lower(mdlgen.loads(scene))
     assert len(scene.splitlines()) == 10
     assert mdlgen.emit(model, "motionview")
@@ -77,6 +77,13 @@ def test_the_readmes_first_scene_loads():
     told = YAML(typ="safe").load(guides)
     more |= {"guides": told["guides"], "contacts": more["contacts"] + told["contacts"]}
     assert len(mdlgen.lower(mdlgen.loads(json.dumps(more))).guides) == 2
+    # a rim and an arm in the same scene
+    turned, told = YAML(typ="safe").load(scene), YAML(typ="safe").load(rims)["rollers"]
+    plain = {"axis": "y", "radius": "5 mm", "width": "5 mm", "mass": "1 g"}
+    for name, part in told.items():
+        turned["rollers"][name] = {"center": ["0 mm", "0 mm", "50 mm"], **plain, **part}
+    made = mdlgen.lower(mdlgen.loads(json.dumps(turned)))
+    assert made.roller("feed").rim is not None and made.roller("skim").arm is not None
     # the part of a machine of the user's own, in the same scene
     contact = "contacts: [{between: [note, feed], stiffness: 300 N/mm^1.5}, "
     imported = mdlgen.lower(mdlgen.loads(scene.replace("contacts: [", parts + contact)))

@@ -30,7 +30,7 @@ PROMISED = {
     "error_estimate", "tolerance", "energy", "events", "sheets", "rollers", "guides", "meshes", "probes",
     "versions",
 }  # fmt: skip
-WORK = {"rounds", "estimate_s"}  # what a run and the estimate of its error took
+WORK = {"rounds", "estimate_s", "halved"}  # what a run and the estimate of its error took
 STRIP = """
 name: pull
 materials: {m: {E_md: 1 GPa, E_cd: 1 GPa, k_tx: 1 N*mm/rad, k_ty: 1 N*mm/rad}}

@@ -9,7 +9,7 @@ import numpy as np
 
 from mdlgen.model.tables import Floats, Ints, Model
 from mdlgen.report import boxes
-from mdlgen.report.meshes import machine
+from mdlgen.report.meshes import machine, moving
 from mdlgen.report.motion import poses, start
 from mdlgen.results.result import Result
 
@@ -38,11 +38,11 @@ def animation(result: Result, at: Ints, colours: dict[str, tuple[str, Floats]]) 
     state (a static one) is shown beside where it began.
     """
     model = result.model
-    moving = _moving(model)
-    place, turn = (whole[:, moving] for whole in poses(result, at))
+    moves = np.array(moving(model), dtype=np.int64)
+    place, turn = (whole[:, moves] for whole in poses(result, at))
     time = result.time[at]
     if len(at) == 1:
-        before = [whole[None, moving] for whole in start(model)]
+        before = [whole[None, moves] for whole in start(model)]
         place, turn = np.concatenate([before[0], place]), np.concatenate([before[1], turn])
         time = np.array([0.0, 1.0])
         colours = {k: (u, np.concatenate([np.zeros_like(v), v])) for k, (u, v) in colours.items()}
@@ -52,21 +52,16 @@ def animation(result: Result, at: Ints, colours: dict[str, tuple[str, Floats]]) 
         "time": [float(t) for t in time],
         "static": len(at) == 1,
         "boxes": boxes.count(model),
-        "bodies": len(moving),
+        "bodies": len(moves),
         "half": packed(model.bodies.half[: boxes.count(model)], "f4"),
         "low": low.tolist(),
         "step": step.tolist(),
         "place": packed(np.round((place - low) / step), "u2"),
         "turn": packed(np.round(turn * WHOLE), "i2"),
         "colours": [_colour(name, unit, values) for name, (unit, values) in colours.items()],
-        "meshes": _meshes(model, moving),
-        "names": [model.bodies.name[body] for body in moving],
+        "meshes": _meshes(model, moves),
+        "names": [model.bodies.name[body] for body in moves],
     }
-
-
-def _moving(model: Model) -> Ints:
-    """Boxes, then rollers."""
-    return np.append(np.arange(boxes.count(model)), [r.body for r in model.rollers]).astype(np.int64)
 
 
 def _colour(name: str, unit: str, values: Floats) -> dict[str, Any]:
@@ -75,9 +70,9 @@ def _colour(name: str, unit: str, values: Floats) -> dict[str, Any]:
     return {"name": name, "unit": unit, "most": most, "values": packed(np.round(255 * share), "u1")}
 
 
-def _meshes(model: Model, moving: Ints) -> list[dict[str, Any]]:
+def _meshes(model: Model, moves: Ints) -> list[dict[str, Any]]:
     place, turn = start(model)
-    rows = {int(body): k for k, body in enumerate(moving)}
+    rows = {int(body): k for k, body in enumerate(moves)}
     return [
         {
             "name": mesh.name,

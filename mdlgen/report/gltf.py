@@ -11,7 +11,7 @@ import numpy as np
 from mdlgen.model.tables import Floats
 from mdlgen.report import boxes
 from mdlgen.report.animation import frames
-from mdlgen.report.meshes import BOX, CORNERS, machine
+from mdlgen.report.meshes import BOX, CORNERS, machine, moving
 from mdlgen.report.motion import poses
 from mdlgen.results.result import Result
 from mdlgen.version import version
@@ -98,7 +98,7 @@ def glb(result: Result, first: int = 0) -> bytes:
         "rotation": [-(0.5**0.5), 0.0, 0.0, 0.5**0.5],
         "scale": [0.001] * 3,
     }
-    moving = [*range(boxes.count(model)), *(roller.body for roller in model.rollers)]
+    moves = moving(model)
     span = float(result.time[at[-1]] - result.time[at[0]])
     told: dict[str, Any] = {
         "asset": {
@@ -114,7 +114,7 @@ def glb(result: Result, first: int = 0) -> bytes:
     }
     if span > 0.0:
         time = (result.time[at] - result.time[at[0]]) * (LASTS / span)
-        told["animations"] = [_animation(buffer, time, place, turn, {b: rows[b] for b in moving})]
+        told["animations"] = [_animation(buffer, time, place, turn, {b: rows[b] for b in moves})]
     told |= {
         "accessors": buffer.accessors,
         "bufferViews": buffer.views,

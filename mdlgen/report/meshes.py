@@ -9,6 +9,7 @@ import numpy as np
 from mdlgen.model.guides import facets
 from mdlgen.model.tables import Floats, Ints, Model, RollerPart
 
+PIECE = 20000  # triangles of a part of a mesh
 SIDES = 48  # of a roller's outline
 MARK = 0.12  # breadth of the mark on a roller, in times its radius
 PROUD = 0.01  # how far the mark stands out, in times the radius
@@ -32,7 +33,7 @@ BOX = np.concatenate([FACES[:, [0, 1, 2]], FACES[:, [0, 2, 3]]])
 
 
 def machine(model: Model) -> list[Mesh]:
-    """Rollers, each with a mark that shows how it turns, planes and guides."""
+    """Rollers, each with a mark that shows how it turns, planes, guides and meshes."""
     found: list[Mesh] = []
     for roller in model.rollers:
         found += _roller(model, roller)
@@ -47,7 +48,18 @@ def machine(model: Model) -> list[Mesh]:
         ]
         triangles = [BOX + len(CORNERS) * k for k in range(len(points))]
         found.append(Mesh(guide.name, "guide", guide.body, np.concatenate(points), np.concatenate(triangles)))
+    for part in model.meshes:
+        points = (part.corners - part.middle) @ part.principal
+        for first in range(0, len(part.triangles), PIECE):  # a page counts corners in 16 bits
+            used, own = np.unique(part.triangles[first : first + PIECE], return_inverse=True)
+            found.append(Mesh(part.name, "guide", part.body, points[used], own.reshape(-1, 3)))
     return found
+
+
+def moving(model: Model) -> list[int]:
+    """Bodies that may move: boxes, then rollers, then meshes on them."""
+    boxes = range(sum(sheet.count for sheet in model.sheets))
+    return [*boxes, *(r.body for r in model.rollers), *(m.body for m in model.meshes if m.on >= 0)]
 
 
 def _roller(model: Model, roller: RollerPart) -> list[Mesh]:
