@@ -10,10 +10,11 @@ from mdlgen.paths import samples
 from mdlgen.results.compare import compare
 
 TRANSPORT = ("transport_4x4", "transport_4x2", "transport_tilted")
+FEEDER = ("feeder", "feeder_one")  # 600 ms: tests/test_feeder.py runs a coarse piece
 QUICK = sorted(
     path.relative_to(samples()).with_suffix("").as_posix()
     for path in samples().rglob("*.yaml")
-    if path.stem not in TRANSPORT
+    if path.stem not in TRANSPORT + FEEDER
 )
 
 
@@ -31,7 +32,7 @@ def test_sample_runs(name, solver):
     assert np.isfinite(result.position).all()
 
 
-@pytest.mark.parametrize("name", [*QUICK, *TRANSPORT])
+@pytest.mark.parametrize("name", [*QUICK, *TRANSPORT, *FEEDER])
 def test_sample_has_a_text_and_a_header(name):
     path = samples() / f"{name}.yaml"
     assert path.read_text().startswith("# ")

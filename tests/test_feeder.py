@@ -1,0 +1,71 @@
+"""The feeder sample on coarse grids: one note leaves at a time, and waits until the rubber comes round."""
+
+from __future__ import annotations
+
+import functools
+
+import numpy as np
+import pytest
+
+import mdlgen
+from mdlgen.model.lower import lower
+from mdlgen.paths import samples
+from mdlgen.results.events import events
+from mdlgen.results.result import Result
+from mdlgen.spec.load import load
+from mdlgen.verify.verification import verify
+
+COARSE = ("sheets.note_1.boxes=[10,8]",)
+# note on rejection roller below note on note
+SWAPPED = ("contacts.3.friction=0.15", "contacts.6.friction=0.5")
+# damping does not converge as both edges pass the line between the axes
+UNDAMPED = ("contacts.2.restitution=1", "contacts.3.restitution=1")
+STANDS, RUBBER = 40.0, 200.0  # ms: the notes have come to rest at the rejection roller; the rubber is near
+FED = 260.0  # ms: the rubber has gone by for 50 ms
+
+
+@functools.cache
+def run(name: str, *overrides: str) -> Result:
+    result = mdlgen.solve(lower(load(samples() / f"{name}.yaml", overrides)), "lattice")
+    assert result.ok, result.status
+    return result
+
+
+def place(result: Result, sheet: int, time: float) -> float:
+    """Of a sheet along x [mm]."""
+    at = int(np.argmin(np.abs(result.time - time)))
+    return float(result.sheet_motion(sheet)[0][at, 0])
+
+
+def together(result: Result) -> float:
+    """When two sheets were last on their way together [ms]; those that pre-feeding brings together count."""
+    found = [event for event in events(result) if event["kind"] == "double_feed"]
+    return max((event["time_ms"] + event["duration_ms"] for event in found), default=0.0)
+
+
+def test_the_note_waits_for_the_rubber() -> None:
+    result = run("feeder_one", *COARSE, f"run.duration={FED} ms")
+    assert abs(place(result, 0, RUBBER) - place(result, 0, STANDS)) < 0.2
+    # and then goes with the roller's surface, 150 mm/s, from about 211 ms
+    went = place(result, 0, FED) - place(result, 0, 220.0)
+    assert went == pytest.approx(0.15 * (FED - 220.0), rel=0.03)
+
+
+def test_one_note_leaves_where_the_frictions_have_their_order() -> None:
+    result = run("feeder", f"run.duration={FED} ms")
+    assert abs(place(result, 0, RUBBER) - place(result, 0, STANDS)) < 0.2
+    assert place(result, 0, FED) - place(result, 0, RUBBER) > 6.0
+    assert abs(place(result, 1, FED) - place(result, 1, STANDS)) < 0.2
+    assert together(result) < STANDS
+
+
+def test_both_leave_where_notes_rub_more_on_each_other_than_on_the_rejection_roller() -> None:
+    result = run("feeder", *SWAPPED, *UNDAMPED, "run.duration=60 ms")
+    assert together(result) > 58.0
+    assert place(result, 1, 60.0) - place(result, 1, STANDS) > 2.0
+
+
+@pytest.mark.parametrize("name, coarse", [("feeder_one", COARSE), ("feeder", ())])
+def test_its_text_says_the_same(name: str, coarse: tuple[str, ...]) -> None:
+    scene = load(samples() / f"{name}.yaml", coarse)
+    assert verify(scene, lower(scene)).ok
