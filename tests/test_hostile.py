@@ -24,6 +24,15 @@ TEXT = SAMPLE.read_text("utf-8")
 CURVE = "E_md: 3530 MPa"
 
 
+# A process begins with the greatest memory of the one that it was started from: that one is small.
+MEASURED = """
+import resource, subprocess, sys
+code = subprocess.run([sys.executable, "-m", "mdlgen", *sys.argv[1:]]).returncode
+used = resource.getrusage(resource.RUSAGE_CHILDREN)
+open("used", "w").write(f"{code} {used.ru_utime + used.ru_stime} {used.ru_maxrss}")
+"""
+
+
 class Ended(NamedTuple):
     code: int
     out: str
@@ -36,19 +45,20 @@ def process(folder: Path, *args: str) -> Ended:
     """A command in a process of its own."""
     files = [folder / "stdout", folder / "stderr"]
     with files[0].open("w") as out, files[1].open("w") as err:
-        started = subprocess.Popen(
-            [sys.executable, "-m", "mdlgen", *args],
+        subprocess.run(
+            [sys.executable, "-c", MEASURED, *args],
             cwd=folder,
             stdin=subprocess.DEVNULL,
             stdout=out,
             stderr=err,
+            check=True,
         )
-        _, status, used = os.wait4(started.pid, 0)
-        started.returncode = os.waitstatus_to_exitcode(status)
+    code, cpu, memory = (float(word) for word in (folder / "used").read_text().split())
+    (folder / "used").unlink()
     told = [f.read_text("utf-8") for f in files]
     for file in files:
         file.unlink()
-    return Ended(started.returncode, *told, used.ru_utime + used.ru_stime, used.ru_maxrss / 1024)
+    return Ended(int(code), *told, cpu, memory / 1024)
 
 
 def changed(old: str, new: str) -> str:

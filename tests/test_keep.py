@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from same import bits
 
 import mdlgen
 import mdlgen.errors
@@ -71,7 +72,7 @@ def test_a_run_goes_on_to_the_same_bits(name: str, tmp_path: Path) -> None:
             cuts += 1
             seal = None
     assert cuts >= 3
-    assert hdf5(result) == hdf5(whole)
+    assert bits(hdf5(result)) == bits(hdf5(whole))
     assert (result.steps, result.rounds, result.touched) == (whole.steps, whole.rounds, whole.touched)
     assert (result.energy, result.error_estimate) == (whole.energy, whole.error_estimate)
 
@@ -203,7 +204,8 @@ def test_resume(cut: tuple[Path, int, str, float], tmp_path: Path) -> None:
     whole = command(tmp_path, *LONG, "-o", "w", "-q")
     assert whole.communicate() == ("", "") and whole.returncode == 0
     for name in ("result.h5", "series.csv"):
-        assert (folder / "d" / name).read_bytes() == (tmp_path / "w" / name).read_bytes()
+        one, two = ((place / name).read_bytes() for place in (folder / "d", tmp_path / "w"))
+        assert (bits(one) == bits(two)) if name.endswith("h5") else (one == two)
     # and a part of it is its beginning
     part, all_of_it = read(folder / "d" / "partial"), read(tmp_path / "w")
     assert np.array_equal(part["position"], all_of_it["position"][: len(part["time"])])

@@ -195,9 +195,9 @@ def test_a_sheet_may_turn_by_more_than_half_a_turn_in_all(shape):
     ("override", "words"),
     [
         ("sheets.note.shape={curl: {radius: 1 mm, along: y}}", "joints at y = .* turn by .* take more boxes"),
-        ("sheets.note.shape={curl: {radius: 1e-308 mm, along: x}}", "turn by"),
+        ("sheets.note.shape={curl: {radius: 1e-15 mm, along: x}}", "turn by"),
         ("sheets.note.zones={a: {x: [0 mm, 1 mm], y: [0 mm, 1 mm], density: 1e-17}}", "0.001"),
-        ("sheets.note.grading.x={near: [0 mm], width: 1e-320 mm, ratio: 3}", "at least"),
+        ("sheets.note.grading.x={near: [0 mm], width: 1e-19 mm, ratio: 3}", "at least"),
     ],
 )
 def test_what_has_no_meaning_is_refused_in_its_place(override, words):

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from nip import FORTH_AND_BACK
 
 import mdlgen
 from mdlgen.results.compare import compare
-from tests.nip import FORTH_AND_BACK
 
 MACHINE = """
 name: machine

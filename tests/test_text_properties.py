@@ -37,7 +37,9 @@ def lengths(low: float, high: float) -> st.SearchStrategy[str]:
 
 
 def triple(unit: str, size: float) -> st.SearchStrategy[list[str]]:
-    one = st.one_of(st.just(0.0), st.floats(-size, size, allow_subnormal=False))
+    # what is not zero is at least 1e-20 of its unit
+    some = st.floats(-size, size, allow_subnormal=False).map(lambda v: v if abs(v) >= 1e-20 else 0.0)
+    one = st.one_of(st.just(0.0), some)
     return st.lists(one.map(lambda v: f"{v!r} {unit}"), min_size=3, max_size=3)
 
 

@@ -21,9 +21,10 @@ UNITS = "mm, N, g, ms, rad"
 STATES = ("time", "position", "rotation", "velocity", "spin", "contact_force")
 # of a Result, beside its states: what the tables of the file hold
 TOLD = (
-    "model", "solver", "status", "touched", "energy", "step", "steps", "rounds", "wall_s", "estimate_s",
-    "build_s", "compile_s", "error_estimate", "versions", "source",
+    "model", "solver", "status", "touched", "energy", "step", "steps", "rounds", "halved", "error_estimate",
+    "versions", "source",
 )  # fmt: skip
+TOOK = ("wall_s", "estimate_s", "build_s", "compile_s")  # which differ from run to run
 STATISTICS = ("max_depth", "mean_depth", "max_force", "mean_force", "last_force_at")
 
 
@@ -68,7 +69,7 @@ def hdf5(result: Result) -> bytes:
     """result.h5: states and statistics in the Model's units, with the names of bodies and contact rows, what
     the joints of the sheets bore at most (`joints/...`; see `results.strain`), and the Model (`model/...`).
 
-    The same result gives the same bytes: no times of writing are kept.
+    The same result gives the same bytes: no times of writing are kept, and `took` alone has those of the run.
     """
     import h5py
 
@@ -86,6 +87,7 @@ def hdf5(result: Result) -> bytes:
         for name, data in _joints(result).items():
             put(f"joints/{name}", data)
         tree.put(file, {name: getattr(result, name) for name in TOLD} | {"versions": versions(result)})
+        put("took", np.array([getattr(result, name) for name in TOOK]))
         put("bodies", _names(model.bodies.name))
         put("contacts", _names(_rows(result)))
         for name, value in (
@@ -110,7 +112,7 @@ def load(folder: str | Path) -> Result:
             file: Any = opened
             if "model" not in file:
                 raise OutputError(f"{path}: holds states and no model; it is of an older mdlgen, run again")
-            told = tree.take(file)
+            told = tree.take(file) | dict(zip(TOOK, file["took"][()].tolist(), strict=True))
             states = {name: file[name][()] for name in STATES}
             statistics = ContactStatistics(**{name: file[f"statistics/{name}"][()] for name in STATISTICS})
             return Result(**told, **states, statistics=statistics)
