@@ -194,6 +194,7 @@ def limited(size: int) -> Callable[[], None]:
 def test_a_disk_that_is_full(tmp_path: Path) -> None:
     (tmp_path / "note.mdl").write_text("old")
     sets = ["--set", "sheets.note.boxes=[3,5]", "--set", "run.duration=1 ms", "--set", "run.step=0.1 ms"]
+    mdlgen.solve(mdlgen.lower(mdlgen.load(SAMPLE, sets[1::2])))  # what it compiles has room to be kept
     for args, file in ((["mdl", "-o", "note.mdl"], "note.mdl"), (["run", "-o", "d", *sets], "d/result.h5")):
         done = subprocess.run(
             [sys.executable, "-B", "-m", "mdlgen", *args, str(SAMPLE)],
@@ -206,6 +207,29 @@ def test_a_disk_that_is_full(tmp_path: Path) -> None:
         assert (done.returncode, done.stderr) == (3, f"{file}: cannot write: File too large\n")
     assert [p.name for p in tmp_path.rglob("*") if p.is_file()] == ["note.mdl"]
     assert (tmp_path / "note.mdl").read_text() == "old"
+
+
+def test_compiled_code_that_finds_no_room_is_used_all_the_same(tmp_path: Path) -> None:
+    (tmp_path / "kernel.py").write_text(
+        "from numba import njit\n@njit(cache=True)\ndef twice(x):\n    return 2 * x\n"
+        "@njit(cache=True)\ndef four(x):\n    return twice(twice(x))\n"
+    )
+    code = "from kernel import four; print(four(1.5))"
+    kept = f"from mdlgen.mechanics.compiling import go_on_unkept; go_on_unkept(); {code}"
+    done = [
+        subprocess.run(
+            [sys.executable, "-B", "-c", text],
+            cwd=tmp_path,
+            env={**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "cache")},
+            preexec_fn=limited(100),
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        for text in (code, kept)
+    ]
+    assert "File too large" in done[0].stderr  # numba alone
+    assert (done[1].returncode, done[1].stdout, done[1].stderr) == (0, "6.0\n", "")
 
 
 def test_a_folder_that_cannot_be_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

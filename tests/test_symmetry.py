@@ -157,3 +157,29 @@ def test_a_measured_curve_across_the_plane() -> None:
     paper = "{E_md: 3530 MPa, k_tx: 0.15 N*mm/rad, k_ty: 0.185 N*mm/rad, k_tz: 5 N*mm/rad"
     half, whole = solved(MACHINE, f"materials.paper={paper}, curve_cd: {{points: {curve}}}}}")
     assert_same(half, whole)
+
+
+ROLLED = """
+name: rolled
+materials: {paper: {E_md: 3530 MPa, E_cd: 1113 MPa, D_md: 0.9 N*mm, D_cd: 0.4 N*mm}}
+sheets:
+  note: {material: paper, size: [20 mm, 48 mm], thickness: 0.1 mm, mass: 0.15 g, boxes: [1, 16]}
+rollers:
+  port: {center: [0 mm, -6 mm, -6 mm], axis: x, radius: 5 mm, width: 10 mm, mass: 1 g}
+  starboard: {center: [0 mm, 6 mm, -6 mm], axis: x, radius: 5 mm, width: 10 mm, mass: 1 g}
+loads:
+  - {sheet: note, edge: y_max, moment: [3 N*mm, 0 N*mm, 0 N*mm]}
+  - {sheet: note, edge: y_min, moment: [-3 N*mm, 0 N*mm, 0 N*mm]}
+contacts: [{between: [note, "*"], stiffness: 300 N/mm^1.5, friction: 0.3, smoothing: 10 mm/s}]
+run: {duration: 3 ms, step: 0.02 ms, print_step: 0.1 ms, prune: false}
+"""
+
+
+def test_a_sheet_that_rolls_over_the_plane_is_told() -> None:
+    """Its halves would not see the roller of the other side."""
+    model = mdlgen.lower(mdlgen.loads(ROLLED))
+    result = mdlgen.solve(model, "lattice")
+    assert not result.ok
+    assert result.status.startswith("box note_0_1 has passed the plane of the scene's symmetry at 1.7 ms")
+    whole = mdlgen.solve(mdlgen.lower(mdlgen.loads(ROLLED, ["run.symmetry=false"])), "lattice")
+    assert whole.ok and whole.position[:, 0, 1].max() > 0

@@ -5,7 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from mdlgen.mechanics import keep_compiled_code
+from mdlgen.mechanics.compiling import go_on_unkept
 
+go_on_unkept()
 keep_compiled_code(Path(__file__).resolve().parent)
 
 from backends.lattice import (  # noqa: E402

@@ -30,6 +30,7 @@ class Mirror:
     boxes: NDArray[np.bool_]  # bodies that are boxes of sheets
     rows: Ints  # row of the contacts that tells of each row: itself, or its image
     times: Floats  # 2 for a row that is its own image, else 1
+    apart: bool  # pairs of a box on one side and a part on the other are left out
 
     def seen(self, vectors: Floats) -> Floats:
         """Vectors (..., 3) as the mirror shows them."""
@@ -59,6 +60,11 @@ class Mirror:
     def largest(self, rows: Floats) -> Floats:
         """What holds for a row of the contacts, (rows,), holds for its image."""
         return rows[self.rows]
+
+    def passed(self, x: Floats, boxes: Ints) -> int:
+        """A box that has passed the plane, where it may meet parts that it has no pairs with; -1: none."""
+        beyond = np.flatnonzero(x[boxes] @ self.normal > self.at) if self.apart else []
+        return int(boxes[beyond[0]]) if len(beyond) else -1
 
     def sides(self, system: System) -> Ints:
         """How many pairs of the whole each pair of the half stands for."""

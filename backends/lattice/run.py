@@ -43,6 +43,8 @@ ENERGY_GAIN, ENERGY_LOSS, ENERGY_LOSS_RIGID = 0.02, 0.05, 0.01
 # What a scene without contacts may gain, as a part of the tolerance; its step is halved until it does not.
 FREE_GAIN = 1e-3
 
+# How a halved run ends, beside those of march.
+PASSED = -1
 # Steps of one run, and those that compiled code takes before it is asked again.
 MOST_STEPS, MOST_AT_ONCE = 1e9, 1000
 
@@ -214,6 +216,11 @@ def _once(
             break
         t = (output + 1) * run.duration / outputs
         recorder.store(t)
+        passed = system.mirror.passed(state[0], system.nodes) if system.mirror is not None else -1
+        if passed >= 0:
+            status = PASSED
+            counters[step.WORST] = passed
+            break
         if keep is not None:
             keep.part = partial(_part, recorder, recorder.stand(work), dt, int(counters[step.STEPS]))
             if keep.due() and output + 1 < outputs:
@@ -296,6 +303,11 @@ def _reason(
         return (
             f"box {names[box]} is more than half of its thickness into {model.called(plate)} at {t:.6g} ms; "
             "a stiffer contact or a smaller run.step would hold it"
+        )
+    if status == PASSED:
+        return (
+            f"box {names[int(counters[step.WORST])]} has passed the plane of the scene's symmetry at "
+            f"{t:.6g} ms, where it may meet what is on the other side; run.symmetry: false solves both sides"
         )
     if status == march.CROWDED:
         room = len(system.pairs) - system.search.first

@@ -56,7 +56,7 @@ def _plane(model: Model, normal: Floats, at: float) -> Mirror | None:
     itself = np.arange(count)
     boxes = itself < sum(s.count for s in model.sheets)
     signs, none = np.ones((count, 3)), np.zeros(count, bool)
-    blank = Mirror(normal, at, itself, signs, none, boxes, itself[:0], np.zeros(0))
+    blank = Mirror(normal, at, itself, signs, none, boxes, itself[:0], np.zeros(0), False)
     image = np.full(count, -1)
     for sheet in model.sheets:
         image[sheet.first : sheet.first + sheet.count] = _grid(blank, sheet)
@@ -194,14 +194,15 @@ def _contacts(model: Model, mirror: Mirror) -> Mirror | None:
     own = image == np.arange(len(image))
     a, b = model.pairs.a, model.pairs.b
     across = (mirror.gone[a] != mirror.gone[b]) & ~own[a] & ~own[b]
-    # a box does not pass its own image; a part that keeps off the plane is out of its reach
+    # a part that keeps off the plane is out of reach of the boxes on the other side, which a run watches
     clear = max(sheet.thickness for sheet in model.sheets)
     reached = {part.body for part in parts if not _off(mirror, part) > clear}
     if not reached.isdisjoint([*a[across].tolist(), *b[across].tolist()]):
         return None
     itself = np.arange(len(ends))
     far = np.array([any(mirror.gone[place[n]] for n in pair if n in place) for pair in ends])
-    return replace(mirror, rows=np.where(far, told, itself), times=np.where(told == itself, 2.0, 1.0))
+    times = np.where(told == itself, 2.0, 1.0)
+    return replace(mirror, rows=np.where(far, told, itself), times=times, apart=bool(across.any()))
 
 
 def _off(mirror: Mirror, part: Part) -> float:
