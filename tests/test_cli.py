@@ -323,10 +323,25 @@ def test_run_writes_all_files(mdl: Run, tmp_path: Path, monkeypatch: pytest.Monk
     monkeypatch.setattr(registry, "solver", lambda name: Fake())
     ended = mdl("run", FOUR, *SMALL)
     assert (ended.code, ended.err) == (0, "")
-    names = ["report.html", "report.png", "result.h5", "series.csv", "strain.png", "summary.json"]
+    names = ["report.html", "result.h5", "series.csv", "summary.json"]
     assert files(tmp_path) == [f"out/transport_4x4/{n}" for n in names]
     assert "travel (70, 0, 0) mm" in ended.out and "talks" not in ended.out
     assert mdl("run", FOUR, *SMALL, "-q", "-o", "quiet").out == ""
+
+
+def test_pictures_are_drawn_when_asked_for_and_anew_where_there_are_some(
+    mdl: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(registry, "solver", lambda name: Fake())
+    mdl("run", FOUR, *SMALL, "-o", "d", "--pictures")
+    old = (tmp_path / "d" / "report.png").read_bytes()
+    assert old.startswith(b"\x89PNG") and (tmp_path / "d" / "strain.png").exists()
+    mdl("run", FOUR, *SMALL, "--set", "name=other", "-o", "d")
+    new = (tmp_path / "d" / "report.png").read_bytes()
+    assert new.startswith(b"\x89PNG") and new != old
+    (tmp_path / "d" / "strain.png").unlink()
+    mdl("report", "d", "--pictures")
+    assert (tmp_path / "d" / "report.png").read_bytes() == new and (tmp_path / "d" / "strain.png").exists()
 
 
 def test_a_failed_run_writes_nothing(mdl: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 import zipfile
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -43,10 +44,14 @@ class Cut(Exception):
     """A run is cut off."""
 
 
+def sealed() -> dict[str, str]:
+    return {"run.json": "{}"}
+
+
 class Cutting(Keep):
     """Keeps a state at every stored time, and cuts off after some."""
 
-    def __init__(self, folder: Path, seal: dict[str, str] | None, after: int):
+    def __init__(self, folder: Path, seal: Callable[[], dict[str, str]] | None, after: int):
         super().__init__(folder, 0.0, seal)
         self.left = after
 
@@ -63,7 +68,7 @@ def test_a_run_goes_on_to_the_same_bits(name: str, tmp_path: Path) -> None:
     whole = lattice.solve(model)
     assert whole.ok, whole.status
     cuts = 0
-    seal: dict[str, str] | None = {"run.json": "{}"}
+    seal: Callable[[], dict[str, str]] | None = sealed
     while True:
         try:
             result = lattice.solve(model, keep=Cutting(tmp_path / "c", seal, 8 + 5 * cuts))
@@ -90,7 +95,7 @@ def kept(folder: Path) -> Model:
     """A run that is cut off in `folder`."""
     model = scene("verify/drop")
     with pytest.raises(Cut):
-        lattice.solve(model, keep=Cutting(folder, {"run.json": "{}"}, 9))
+        lattice.solve(model, keep=Cutting(folder, sealed, 9))
     return model
 
 
@@ -132,7 +137,7 @@ def test_a_linked_folder_is_not_written_through(tmp_path: Path) -> None:
     (tmp_path / "real").mkdir()
     (tmp_path / "c").symlink_to("real")
     with pytest.raises(OutputError, match="symbolic link"):
-        lattice.solve(scene("verify/drop"), keep=Cutting(tmp_path / "c", {"run.json": "{}"}, 1))
+        lattice.solve(scene("verify/drop"), keep=Cutting(tmp_path / "c", sealed, 1))
     assert list((tmp_path / "real").iterdir()) == []
 
 

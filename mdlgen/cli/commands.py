@@ -11,6 +11,7 @@ import typer
 
 from mdlgen.cli.shell import (
     SOLVER_FAILED,
+    Pictures,
     Quiet,
     Raised,
     Sets,
@@ -279,12 +280,13 @@ def run(
         bool,
         typer.Option("--keep-partial", help="After Ctrl-C write what there is into DIR/partial, marked so."),
     ] = False,
+    pictures: Pictures = False,
     sets: Sets = None,
     limits: Raised = None,
     quiet: Quiet = False,
     verbose: Verbose = False,
 ) -> None:
-    """Simulate a scene; write summary.json, series.csv, result.h5, report.html and pictures into DIR.
+    """Simulate a scene; write summary.json, series.csv, result.h5 and report.html into DIR.
 
     Example: mdlgen run samples/transport_4x4.yaml -o out --check-step
 
@@ -303,9 +305,8 @@ def run(
         assert spec is not None
         task, seal = kept.task(spec, sets, limits, solver, check_step), None
         model = task.model()
-    from mdlgen.report.figures import figure, load_drawing
-    from mdlgen.report.maps import strain_map
     from mdlgen.report.page import load_page, page
+    from mdlgen.report.pictures import are_drawn, load_drawing, pictures_of
     from mdlgen.report.text import summary_text
     from mdlgen.results.keep import Keep
     from mdlgen.results.store import check_folder, save
@@ -318,8 +319,9 @@ def run(
     for asked, wish in ((keep_partial, "--keep-partial"), (checkpoint is not None, "--checkpoint")):
         if asked:
             kept.check(name, why, wish)
+    drawn = pictures or are_drawn(folder)
     # what draws takes half a second to load; a solver leaves the second core to it
-    for load in (load_drawing, load_page):
+    for load in (load_drawing, load_page) if drawn else (load_page,):
         Thread(target=load, daemon=True).start()
     every = 60.0 if checkpoint is None else checkpoint
     if seal is not None:
@@ -349,8 +351,8 @@ def run(
         say(f"{task.spec}: the run failed: {result.status}; nothing was written into {folder}")
         raise typer.Exit(SOLVER_FAILED)
     result.source = source_of(task.text, task.sets)
-    pictures = {"report.png": figure(result), "strain.png": strain_map(result)}
-    save(result, folder, {**pictures, "report.html": page([result]).encode("utf-8")})
+    also = pictures_of(result) if drawn else {}
+    save(result, folder, {**also, "report.html": page([result]).encode("utf-8")})
     keep.drop()
     if not quiet:
         typer.echo(summary_text(result.summary()))

@@ -50,8 +50,12 @@ def kept(folder: Path, of: Task, model: Model, every: float) -> Keep:
     from mdlgen.results.keep import Keep
     from mdlgen.results.seal import digest, surroundings
 
-    seal = {"task": asdict(of), "model": digest(model), **surroundings(*ROOMS)}
-    return Keep(folder / FOLDER, every, {SEAL: json.dumps(seal, indent=1)})
+    code = surroundings(*ROOMS)
+
+    def seal() -> dict[str, str]:
+        return {SEAL: json.dumps({"task": asdict(of), "model": digest(model), **code}, indent=1)}
+
+    return Keep(folder / FOLDER, every, seal)
 
 
 def is_kept(folder: Path) -> bool:

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from mdlgen.cli.shell import Quiet, Verbose, app, say, told
+from mdlgen.cli.shell import Pictures, Quiet, Verbose, app, say, told
 from mdlgen.errors import OutputError, SpecError
 
 PAGE = "report.html"
@@ -37,6 +37,7 @@ def report(
             help="Pictures for print at these times, as 0,18,30,50ms, beside the page: still_18ms.png ...",
         ),
     ] = None,
+    pictures: Pictures = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
 ) -> None:
@@ -50,18 +51,23 @@ def report(
     """
     from mdlgen import paths
     from mdlgen.report.page import page
+    from mdlgen.report.pictures import pictures_of
     from mdlgen.report.stills import stills, times
     from mdlgen.results.store import load
 
     wanted = None if at is None else times(at)
     if wanted is not None and len(folders) > 1:
         raise SpecError("--stills are of one run; name one folder")
+    if pictures and len(folders) > 1:
+        raise SpecError("--pictures are of one run; name one folder")
     results = [load(folder) for folder in folders]
     names = _names(folders)
     target = output or (folders[0] / PAGE if len(folders) == 1 else Path("compare.html"))
     files: dict[Path, str | bytes] = {target: page(results, names if len(folders) > 1 else ())}
     if wanted is not None:
         files |= {target.with_name(name): picture for name, picture in stills(results[0], wanted).items()}
+    if pictures:
+        files |= {target.with_name(name): picture for name, picture in pictures_of(results[0]).items()}
     paths.write_together(files)
     if not quiet:
         for file in files:

@@ -45,6 +45,13 @@ Raised = Annotated[
         help="Allow more boxes, pairs, contacts, states or values; may be given more than once.",
     ),
 ]
+Pictures = Annotated[
+    bool,
+    typer.Option(
+        "--pictures",
+        help="Draw report.png and strain.png too; a folder that has them gets them anew in any case.",
+    ),
+]
 Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="Errors and asked-for output only.")]
 Verbose = Annotated[
     bool, typer.Option("-v", "--verbose", help="Say more; show the traceback of internal errors.")

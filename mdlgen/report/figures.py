@@ -31,12 +31,6 @@ STYLE: dict[Any, Any] = {
 }
 
 
-def load_drawing() -> None:
-    """Loads what the figures are drawn with, ahead of the first one."""
-    import matplotlib.backends.backend_agg
-    import matplotlib.figure  # noqa: F401
-
-
 def figure(result: Result) -> bytes:
     """PNG of a result; the same result gives the same bytes."""
     import matplotlib

@@ -26,16 +26,16 @@ State = dict[str, np.ndarray]
 class Keep:
     """Counts the passes of a run, and writes and reads their states in `folder` (None: nothing is written).
 
-    `every` is the time between two states that are written [s]; with the first one stand the files `seal`
-    (name -> text; run.json), None where the folder has them. `part` is a way to the result so far, None as
-    long as there is none; `lock` is held while files are written.
+    `every` is the time between two states that are written [s]; with the first one stand the files that
+    `seal` gives (name -> text; run.json), None where the folder has them. `part` is a way to the result so
+    far, None as long as there is none; `lock` is held while files are written.
     """
 
     def __init__(
         self,
         folder: Path | None = None,
         every: float = float("inf"),
-        seal: Mapping[str, str] | None = None,
+        seal: Callable[[], Mapping[str, str]] | None = None,
     ):
         self.folder, self.every, self._seal = folder, every, seal
         self.part: Callable[[], Result] | None = None
@@ -65,7 +65,7 @@ class Keep:
         with self.lock:
             if self._seal is not None:
                 self.drop()  # of another run
-                files |= {self.folder / name: text for name, text in self._seal.items()}
+                files |= {self.folder / name: text for name, text in self._seal().items()}
                 try:
                     self.folder.mkdir(parents=True, exist_ok=True)
                 except OSError as error:
