@@ -7,7 +7,9 @@ one roller (`share: width`), they also share k across it: each takes its part of
 has the same law. A pressure K zeta per area, zeta the depth of each point, under a roller of radius R and
 width w pressed z deep into a flat face, gives F = K w 4/3 sqrt(2R) z^1.5; with K = 3 k/(4 w sqrt(2 R)) that
 is k z^1.5 again. So a roller that passes from box to box feels one sheet. Beyond a free edge nothing takes
-over: there the box keeps the whole. `share: pair` gives every box the full k, as MotionSolve does.
+over: there the box keeps the whole, about the foot of the roller as if the sheet went on, and as an edge
+comes to the foot the pressure draws in to it, since force, moment and damping of both sides of that place
+must be the same. `share: pair` gives every box the full k, as MotionSolve does.
 
 Each law adds to `out`: force and torque on the first body (0-5), on the second (6-11), normal force (12),
 stored energy (13), dissipated power (14), and keeps the greatest depth (15). An `out` that is longer also
@@ -176,26 +178,33 @@ def _face(
             reach = math.sqrt(radius * radius - e * e)
             left = -reach if open_first else max(first, -reach)
             right = reach if open_last else min(last, reach)
+            # what lies beyond a free edge draws in to the foot as the edge comes to it
+            draw = 1.0
+            if spread and open_first:
+                draw = min(draw, -first / reach)
+            if spread and open_last:
+                draw = min(draw, last / reach)
             for point in range(2 if spread else 1):
                 t = nearest
                 if spread:
                     t = 0.5 * (left + right) + (point - 0.5) * _GAUSS * (right - left)
-                distance = math.sqrt(t * t + e * e)
-                zeta = radius - distance
+                zeta = radius - math.sqrt(t * t + e * e)
                 if spread:
-                    # the 2-point rule and the lean of the pressure cost 0.75 z/R of the force
-                    length = 0.5 * (right - left) * (1.0 + 0.75 * (radius - e) / radius)
+                    # the 2-point rule costs 5/12 z/R of the force, the lean of the pressure 1/3 z/R
+                    lost = 5.0 / 12.0 + draw * draw / 3.0
+                    length = 0.5 * (right - left) * (1.0 + lost * (radius - e) / radius)
                     spring = weight * foundation * length * zeta
                     energy = 0.6 * spring * zeta  # 2/5 F z: both points are 2/3 z deep
+                    t *= draw
                 else:
                     spring = weight * zeta * math.sqrt(zeta)
                     energy = 0.4 * spring * zeta
+                distance = math.sqrt(t * t + e * e)
                 # from the axis to the point: t across, e back along the face's normal turned with the lean
                 cp = t * -ur - e * (-lean * up)
                 cr = t * up - e * (-lean * ur)
                 cq = -e * na * sign
                 normal = local(p, r, q, cp / distance, cr / distance, cq / distance)
-                t = min(max(t, first), last)
                 at = local(p, r, q, l0[p] + u * up - t * ur, l0[r] + u * ur + t * up, sign * half[q])
                 push(
                     out,
