@@ -1,10 +1,11 @@
 """Contact between two boxes: the face of one on the face of the other.
 
-The face with the least overlap along its own normal owns the contact. The face of the other box that looks
-at it is cut to the owner's outline; each corner of what is left has a depth along the owner's normal, and
-stands for its part of the area: half of the two triangles beside it that the polygon has about its centroid.
-k is the stiffness of one pair whose smaller face lies wholly on the other, so a corner with the area A_i
-pushes with
+The face with the least overlap along its own normal owns the contact; a side only where it overlaps less
+than the sheets' faces do over the area that they share, since tilted faces seem deep beyond their outlines.
+The face of the other box that looks at it is cut to the owner's outline; each corner of what is left has a
+depth along the owner's normal, and stands for its part of the area: half of the two triangles beside it that
+the polygon has about its centroid. k is the stiffness of one pair whose smaller face lies wholly on the
+other, so a corner with the area A_i pushes with
 
     F_i = k A_i / A z^1.5    (Eq. 10), A the area of the smaller face.
 
@@ -33,10 +34,12 @@ _GRAZE = 1e-9
 
 @njit(cache=True, error_model="numpy")
 def _parting(ra, half_a, exposed, rb, half_b, gap):
-    """How far apart two boxes are along the normals of the first: (whether one of them parts them, greatest
-    distance along a face that may own the contact, its axis, its sign); overlap is negative."""
+    """How far apart two boxes are along the normals of the first: (whether one of them parts them, distance
+    along its faces' normal, its sign, greatest distance along a free side, its axis, its sign); overlap is
+    negative, and a box without a free side has -1e300."""
     place, turn = back(ra, gap), transpose_matmul(ra, rb)
-    best, at, side = -1e300, 2, 1.0
+    best, at, side = -1e300, 0, 1.0
+    face, face_sign = 0.0, 1.0
     for q in range(3):
         spread = half_a[q]
         for i in range(3):
@@ -44,12 +47,26 @@ def _parting(ra, half_a, exposed, rb, half_b, gap):
         distance = abs(place[q]) - spread
         sign = 1.0 if place[q] >= 0.0 else -1.0
         if distance >= (-_GRAZE * half_a[q] if q < 2 else 0.0):
-            return True, distance, q, sign
-        if q < 2 and exposed & (1 << (2 * q + (1 if sign > 0.0 else 0))) == 0:
-            continue
-        if distance >= best:  # the faces of a sheet come last, and win a tie
+            return True, face, face_sign, best, at, side
+        if q == 2:
+            face, face_sign = distance, sign
+        elif distance > best and exposed & (1 << (2 * q + (1 if sign > 0.0 else 0))) != 0:
             best, at, side = distance, q, sign
-    return False, best, at, side
+    return False, face, face_sign, best, at, side
+
+
+@njit(cache=True, error_model="numpy")
+def _overlay(points, x, m, half, q, sign, y, n, other):
+    """The part of the face of box y that looks at face q of box x, over that face's outline: its corners into
+    `points`, in the axes of x; (number of corners, area of the smaller face, the world's normal)."""
+    p, r = (q + 1) % 3, (q + 2) % 3
+    normal = rotate(m, local(p, r, q, 0.0, 0.0, sign))
+    smaller = min(4.0 * half[p] * half[r], face_corners(points, y, n, other, back(n, normal), x, m))
+    count = 4
+    for side in (1.0, -1.0):
+        count = clip(points, count, local(p, r, q, side, 0.0, 0.0), half[p])
+        count = clip(points, count, local(p, r, q, 0.0, side, 0.0), half[r])
+    return count, smaller, normal
 
 
 @njit(cache=True, error_model="numpy")
@@ -85,27 +102,30 @@ def box_box(out, xa, ra, va, wa, half_a, exposed_a, xb, rb, vb, wb, half_b, expo
     reach = math.sqrt(dot(half_a, half_a)) + math.sqrt(dot(half_b, half_b))
     if dot(gap, gap) > reach * reach:
         return
-    apart, one, q, sign = _parting(ra, half_a, exposed_a, rb, half_b, gap)
+    apart, one, sign, side_a, q_a, sign_a = _parting(ra, half_a, exposed_a, rb, half_b, gap)
     if apart:
         return
-    apart, two, q_b, sign_b = _parting(rb, half_b, exposed_b, ra, half_a, scale(-1.0, gap))
+    apart, two, sign_two, side_b, q_b, sign_b = _parting(rb, half_b, exposed_b, ra, half_a, scale(-1.0, gap))
     if apart:
         return
-    x, m, half, y, n, other, to_a = xa, ra, half_a, xb, rb, half_b, -1.0
-    if two > one + _TIE * reach:
-        q, sign = q_b, sign_b
-        x, m, half, y, n, other, to_a = xb, rb, half_b, xa, ra, half_a, 1.0
-    p, r = (q + 1) % 3, (q + 2) % 3
-    normal = rotate(m, local(p, r, q, 0.0, 0.0, sign))
-    # the face of the other box that looks at it
     points = np.empty((12, 3))
-    smaller = min(4.0 * half[p] * half[r], face_corners(points, y, n, other, back(n, normal), x, m))
-    count = 4
-    for side in (1.0, -1.0):
-        count = clip(points, count, local(p, r, q, side, 0.0, 0.0), half[p])
-        count = clip(points, count, local(p, r, q, 0.0, side, 0.0), half[r])
+    x, m, half, y, n, other, to_a, q = xa, ra, half_a, xb, rb, half_b, -1.0, 2
+    if two > one + _TIE * reach:
+        x, m, half, y, n, other, to_a, sign = xb, rb, half_b, xa, ra, half_a, 1.0, sign_two
+    count, smaller, normal = _overlay(points, x, m, half, q, sign, y, n, other)
+    side = max(side_a, side_b)
+    if side > max(one, two) + _TIE * reach:
+        deepest = -1.0
+        for corner in range(count):
+            deepest = max(deepest, half[q] - sign * points[corner, q])
+        if count < 3 or deepest > -side:
+            x, m, half, y, n, other, to_a, q, sign = xa, ra, half_a, xb, rb, half_b, -1.0, q_a, sign_a
+            if side_b > side_a + _TIE * reach:
+                x, m, half, y, n, other, to_a, q, sign = xb, rb, half_b, xa, ra, half_a, 1.0, q_b, sign_b
+            count, smaller, normal = _overlay(points, x, m, half, q, sign, y, n, other)
     if count < 3:
         return
+    p, r = (q + 1) % 3, (q + 2) % 3
     weights = np.empty(12)
     area = _shares(points, count, p, r, weights)
     if area <= 1e-12 * smaller:

@@ -1,4 +1,4 @@
-"""What happens to sheets at rollers: entering and leaving, slip, gaps, jams, double feeds.
+"""What happens to sheets at rollers: entering and leaving, slip, gaps, waits, jams, double feeds.
 
 All of it is read from the stored states, so times are those of stored states (`run.print_step`).
 """
@@ -23,7 +23,8 @@ GRAZE = 0.05
 # A sheet that bounces off for a shorter time has not left [ms], and one that touches for a shorter time
 # only grazes.
 SHORT = 1.0
-# A sheet that is slower than this part of the surface of a driven nip, for longer than this, is jammed.
+# A sheet that is slower than this part of the surface of a driven nip, for longer than this, waits; it is
+# jammed where the run ends so.
 JAM_PART, JAM_TIME = 0.1, 5.0
 # A sheet that is slower than this [mm/ms] stands: smoothed friction lets what waits under a force creep.
 # One that is slower than this part of another one is held back while that one is fed.
@@ -48,8 +49,8 @@ def events(result: Result) -> list[dict[str, Any]]:
     """Every event as an object with `time_ms`, `kind`, `sheet`, `roller` and numbers, by time.
 
     Kinds: `enter` and `leave`; `slip`, one for each stay of a sheet at a roller; `gap`, where a sheet enters
-    a roller that another one was at before; `jam`; `double_feed`. A sheet that touches at the start enters
-    at 0. README.md says what the numbers are.
+    a roller that another one was at before; `wait`; `jam`; `double_feed`. A sheet that touches at the start
+    enters at 0. README.md says what the numbers are.
     """
     if len(result.time) < 2:
         return []
@@ -121,7 +122,7 @@ def _event(result: Result, kind: str, at: int, stay: Stay, **numbers: Any) -> di
 
 
 def _stay_events(result: Result, stay: Stay, together: np.ndarray | None) -> list[dict[str, Any]]:
-    """Entering, leaving, slip, and jams."""
+    """Entering, leaving, slip, waits and jams."""
 
     def speed(at: int) -> float:
         boxes = _boxes(result.model, stay.sheet)
@@ -145,11 +146,12 @@ def _stay_events(result: Result, stay: Stay, together: np.ndarray | None) -> lis
         fast = float(np.linalg.norm(surface, axis=1).mean())
         numbers["part_of_surface_speed"] = float(slip.mean()) / fast if fast > 0.0 else None
     found.append(_event(result, "slip", int(stay.at[known][worst]), stay, **numbers))
-    return found + _jams(result, stay, together)
+    return found + _waits(result, stay, together)
 
 
-def _jams(result: Result, stay: Stay, together: np.ndarray | None) -> list[dict[str, Any]]:
-    """Where a driven roller presses a sheet on another one and the sheet does not follow."""
+def _waits(result: Result, stay: Stay, together: np.ndarray | None) -> list[dict[str, Any]]:
+    """Where a driven roller presses a sheet on another one and the sheet does not follow: a jam where that
+    lasts to the end of the run, or else a wait."""
     roller, foot = stay.roller, stay.foot
     if not roller.speed:
         return []
@@ -172,7 +174,8 @@ def _jams(result: Result, stay: Stay, together: np.ndarray | None) -> list[dict[
                 "duration_ms": lasts,
                 "part_of_surface_speed": float(part[first : last + 1][inside].mean()),
             }
-            found.append(_event(result, "jam", first, stay, **numbers))
+            kind = "wait" if last + 1 < len(result.time) else "jam"
+            found.append(_event(result, kind, first, stay, **numbers))
     return found
 
 
@@ -248,7 +251,7 @@ def _double_feeds(result: Result, stays: list[Stay]) -> list[dict[str, Any]]:
     """Two sheets at one roller, or at two that face each other, at once and at one place along them, that
     both go on; one event for rollers that face each other."""
     nips = _nips(result.model)
-    feeds: dict[tuple[int, int, int], tuple[Stay, Stay, np.ndarray]] = {}
+    feeds: dict[tuple[int, int, int], tuple[Stay, Stay, Floats]] = {}
     for k, one in enumerate(stays):
         for other in stays[k + 1 :]:
             if one.sheet == other.sheet:
@@ -259,23 +262,29 @@ def _double_feeds(result: Result, stays: list[Stay]) -> list[dict[str, Any]]:
             low = np.maximum(one.foot.low[mine], other.foot.low[theirs])
             high = np.minimum(one.foot.high[mine], other.foot.high[theirs])
             key = nips[one.roller.name], min(one.sheet, other.sheet), max(one.sheet, other.sheet)
-            both = feeds.setdefault(key, (one, other, np.zeros(len(result.time), bool)))[2]
-            both[at[(high > low) & _both_go(one.foot.sheet[mine], other.foot.sheet[theirs])]] = True
+            speed = feeds.setdefault(key, (one, other, np.zeros(len(result.time))))[2]
+            go = _both_go(one.foot.sheet[mine], other.foot.sheet[theirs])
+            speed[at] = np.maximum(speed[at], np.where(high > low, go, 0.0))
     found: list[dict[str, Any]] = []
-    for one, other, both in feeds.values():
-        for first, last in intervals(result.time, both, SHORT):
-            name = result.model.sheets[other.sheet].name
-            lasts = float(result.time[last] - result.time[first])
-            found.append(_event(result, "double_feed", first, one, other=name, duration_ms=lasts))
+    for one, other, speed in feeds.values():
+        for first, last in intervals(result.time, speed > 0.0, SHORT):
+            both = slice(first, last + 1)
+            numbers = {
+                "other": result.model.sheets[other.sheet].name,
+                "duration_ms": float(result.time[last] - result.time[first]),
+                "way_mm": float(np.trapezoid(speed[both], result.time[both])),
+            }
+            found.append(_event(result, "double_feed", first, one, **numbers))
     return found
 
 
-def _both_go(one: Floats, other: Floats) -> np.ndarray:
-    """Whether neither of two velocities (t, 3) stands, nor is the one held back while the other goes."""
+def _both_go(one: Floats, other: Floats) -> Floats:
+    """The speed [mm/ms] of the slower of two with velocities (t, 3), 0 where one stands or is held back while
+    the other goes."""
     along = np.einsum("tk,tk->t", one, other)
     squares = np.maximum(np.einsum("tk,tk->t", one, one), np.einsum("tk,tk->t", other, other))
     least = np.minimum(np.linalg.norm(one, axis=1), np.linalg.norm(other, axis=1))
-    return (least > STANDS) & (along > HELD_PART * squares)
+    return np.where((least > STANDS) & (along > HELD_PART * squares), least, 0.0)
 
 
 def _nips(model: Model) -> dict[str, int]:
