@@ -10,6 +10,7 @@ import pytest
 import mdlgen
 from mdlgen.model.lower import lower
 from mdlgen.paths import samples
+from mdlgen.results.compare import compare
 from mdlgen.results.events import events
 from mdlgen.results.result import Result
 from mdlgen.spec.load import load
@@ -23,8 +24,8 @@ FED = 260.0  # ms: the rubber has gone by for 50 ms
 
 
 @functools.cache
-def run(name: str, *overrides: str) -> Result:
-    result = mdlgen.solve(lower(load(samples() / f"{name}.yaml", overrides)), "lattice")
+def run(name: str, *overrides: str, solver: str = "lattice") -> Result:
+    result = mdlgen.solve(lower(load(samples() / f"{name}.yaml", overrides)), solver)
     assert result.ok, result.status
     return result
 
@@ -67,3 +68,14 @@ def test_both_leave_where_notes_rub_more_on_each_other_than_on_the_rejection_rol
 def test_its_text_says_the_same(name: str, coarse: tuple[str, ...]) -> None:
     scene = load(samples() / f"{name}.yaml", coarse)
     assert verify(scene, lower(scene)).ok
+
+
+def test_lattice_and_exudyn_agree_on_its_first_60_ms() -> None:
+    """The note is brought up to the rejection roller and waits there."""
+    sets = ("sheets.note_1.boxes=[10,4]", "run.duration=60 ms", "run.print_step=0.5 ms")
+    fast, exact = run("feeder_one", *sets), run("feeder_one", *sets, solver="exudyn")
+    found = compare(fast, exact)
+    assert found.relative < 1e-3
+    assert abs(place(fast, 0, 60.0) - place(exact, 0, 60.0)) < 1e-3 * (place(exact, 0, 60.0) + 37.5)
+    for name in ("feed", "reject", "prefeed", "skimmer_left"):
+        assert found.nip_force[f"note_1 / {name}"] < 0.01, name
