@@ -151,7 +151,7 @@ def _file_points(name: Any, folder: Any, tally: Tally) -> list[tuple[float, str]
     try:
         found = (inside / path).resolve()
         if not found.is_relative_to(inside):
-            raise fail(f"{name}: leads out of the folder of the spec")
+            raise OutputError(f"{found}: leads out of the folder of the spec")
         raw = read_at_most(found, BYTES * tally.limits.points + 1, named=True)
         text = raw.decode("utf-8-sig")
     except OutputError as error:  # with the name as it stands in the spec
