@@ -359,6 +359,7 @@ def through(spec: Path) -> int:
         if ended == 0:
             assert "nan" not in file.read_text("ascii")
             assert name == "deck" or command("lint", str(file), "-q")[0] == 0
+    assert not [*folder.rglob(".*")]  # nothing that is half written
     return code
 
 
