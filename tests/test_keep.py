@@ -130,6 +130,24 @@ def test_pairs_that_are_searched_change_in_a_run() -> None:
     assert (system.pairs[["a", "b"]] != at_the_end).any()
 
 
+def test_a_run_that_failed_says_so_again(tmp_path: Path) -> None:
+    """The pair of boxes that ended it is one that was searched: a note falls, as it flies by 23 mm."""
+    sets = [
+        "sheets.note_4.center=[0 mm, 0 mm, 3.45 mm]",
+        "sheets.note_4.velocity=[3000 mm/s, 500 mm/s, 0 mm/s]",
+        "gravity=[0 m/s^2, 0 m/s^2, -100 m/s^2]",
+        "contacts.3.stiffness=1e-5 N/mm^1.5",
+    ]
+    sets += ["run.duration=12 ms", "run.step=0.1 ms", "run.print_step=0.4 ms"]
+    model = mdlgen.lower(mdlgen.load(samples() / "stack.yaml", sets))
+    first = lattice.solve(model, keep=Keep(tmp_path / "c", 0.0, {"run.json": "{}"}))
+    again = lattice.solve(model, keep=Keep(tmp_path / "c", 0.0))
+    assert "more than half of its thickness into box note_4" in first.status
+    assert first.time[-1] > 6.0
+    assert again.status == first.status
+    assert bits(hdf5(again)) == bits(hdf5(first))
+
+
 def test_what_a_run_reads_does_not_change_in_it() -> None:
     """Else it would have to be kept too."""
     model = scene("transport_4x4")
