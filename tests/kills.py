@@ -1,6 +1,6 @@
 """Kills runs at random moments, and looks at what is left: the old result whole, or the new one complete.
 
-As a program: python tests/kills.py 50
+As a program: python tests/kills.py 50, with one of SCENES behind the number for another one than the first.
 """
 
 from __future__ import annotations
@@ -18,8 +18,15 @@ from same import bits
 
 from mdlgen.paths import NOTE, TEMPORARY, recover, samples
 
-SCENE = samples() / "transport_4x4.yaml"
-SETS = ["--set", "sheets.note.boxes=[3,5]", "--set", "run.step=20 us"]
+SCENES = {
+    "transport_4x4": ["sheets.note.boxes=[3,5]", "run.step=20 us"],
+    "stack": [
+        "sheets.note_4.velocity=[3000 mm/s, 500 mm/s, 0 mm/s]",
+        "run.step=40 us",
+        "run.print_step=0.2 ms",
+    ],
+    "pick": ["run.step=20 us"],
+}
 NAMES = ("report.html", "report.png", "result.h5", "series.csv", "strain.png", "summary.json")
 OLD, NEW = "1 ms", "8 ms"
 
@@ -48,14 +55,15 @@ def contents(folder: Path) -> dict[str, bytes]:
     return {n: bits(b) if n == "result.h5" else b for n, b in held.items()}
 
 
-def kills(count: int, seed: int = 1) -> Killed:
+def kills(count: int, seed: int = 1, scene: str = "transport_4x4") -> Killed:
     """Kills `count` runs over an old result, each at a random moment. Raises AssertionError."""
+    words = [str(samples() / f"{scene}.yaml"), *(word for one in SCENES[scene] for word in ("--set", one))]
     rng = random.Random(seed)
     found = {"old": 0, "new": 0, "kept": 0}
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        old = [str(SCENE), *SETS, "--set", f"run.duration={OLD}"]
-        new = [str(SCENE), *SETS, "--set", f"run.duration={NEW}"]
+        old = [*words, "--set", f"run.duration={OLD}"]
+        new = [*words, "--set", f"run.duration={NEW}"]
         finish(start(folder, *old, "-o", "old"))
         before = time.monotonic()
         finish(start(folder, *new, "-o", "new", "--checkpoint", "0"))
@@ -87,4 +95,4 @@ def kills(count: int, seed: int = 1) -> Killed:
 
 
 if __name__ == "__main__":
-    print(kills(int(sys.argv[1]) if len(sys.argv) > 1 else 50))
+    print(kills(int(sys.argv[1]) if len(sys.argv) > 1 else 50, 1, *sys.argv[2:3]))

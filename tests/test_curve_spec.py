@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from mdlgen.errors import SpecError
-from mdlgen.spec.curve import MAX_FILE_BYTES, MAX_POINTS, Curve
+from mdlgen.spec.curve import BYTES, Curve
+from mdlgen.spec.limits import DEFAULT
 from mdlgen.spec.load import load, loads
 from mdlgen.spec.schema import json_schema, model_at
 
@@ -85,9 +86,13 @@ def test_what_is_no_curve_is_refused_with_its_place(text: str, path: str, words:
     assert error.place is not None and error.place.line == 3 and error.place.column > 8
 
 
-def test_points_are_bounded() -> None:
-    points = ", ".join(f"[{k / 2000!r}, {k} MPa]" for k in range(MAX_POINTS + 1))
-    assert f"allowed are {MAX_POINTS}" in refused(f"[{points}]").message
+def test_points_of_all_curves_are_limited_and_the_limit_can_be_raised() -> None:
+    points = "[" + ", ".join(f"[{k / 100!r}, {k} MPa]" for k in range(20)) + "]"
+    both = SCENE.format(curve=points).replace("E_cd: 1 GPa", f"curve_cd: {points}")
+    for few, path in ((19, "curve_md"), (39, "curve_cd")):
+        with pytest.raises(SpecError, match=rf"{path}: .* --limit points={few // 20 * 20 + 20} raises"):
+            loads(both, limits=DEFAULT.raised([f"points={few}"]))
+    assert loads(both, limits=DEFAULT.raised(["points=40"])).materials["m"].curve_cd
 
 
 @pytest.mark.parametrize("given", ["", "E_md: 1 GPa, curve_md: [[0, 0 MPa], [1 %, 3 MPa]],"])
@@ -146,8 +151,8 @@ def test_a_file_is_read_in_all_its_forms(tmp_path: Path, text: str) -> None:
         ("0,0 MPa\n0.01,nan MPa\n", "md.csv:2: "),
         ("nan,0 MPa\n0.01,3 MPa\n", "md.csv:1: "),
         ("", "two points"),
-        ("0,0 MPa\n" * (MAX_POINTS + 1), "more than"),
-        ("#" * (MAX_FILE_BYTES + 1), "larger than"),
+        ("0,0 MPa\n" * (DEFAULT.points + 1), "--limit points=10001 raises"),
+        ("#" * (BYTES * DEFAULT.points + 1), "--limit points=10001 raises"),
     ],
 )
 def test_a_file_that_is_none_is_told_with_its_line(tmp_path: Path, text: str, words: str) -> None:

@@ -1,4 +1,4 @@
-"""Random and mutated scenes and texts: one line and a known exit code, whatever comes.
+"""Random and mutated scenes, texts and meshes: one line and a known exit code, whatever comes.
 
 300 examples of each, the same ones every time; MDLGEN_FUZZ=10000 python -m pytest tests/test_fuzz.py takes
 as many as it says.
@@ -13,19 +13,23 @@ import json
 import os
 import re
 import resource
+import struct
 import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
+from solids import ascii_stl, binary, brick, cylinder, obj
 
 import mdlgen
 from mdlgen.cli import app
 from mdlgen.paths import samples
 from mdlgen.spec.load import parse
+from mdlgen.spec.solid import Solid, signed_volume
 
 COUNT = int(os.environ.get("MDLGEN_FUZZ", "300"))
 # without Phase.explain, which traces, and so tells of times that are none
@@ -182,6 +186,77 @@ MDL_PIECES = [
 TEXT = st.one_of(edited(MDL, MDL_PIECES), edited(MDL, MDL_PIECES), ANY)
 
 
+SOLIDS = [brick(4.0, 6.0, 10.0), cylinder(7.5, 5.0, 8)]
+FORMS = {"part.stl": binary, "part.STL": lambda *solid: ascii_stl(*solid).encode()}
+FORMS["part.obj"] = lambda *solid: obj(*solid).encode()
+FLOATS = [float("nan"), float("inf"), -1e38, 1e-45, -0.0, 9.0]
+MESH_PIECES = [struct.pack("<f", v).decode("latin-1") for v in FLOATS]
+MESH_PIECES += [struct.pack("<I", n).decode("latin-1") for n in (0, 1, 11, 13, 2**31, 2**32 - 1)]
+MESH_PIECES += [
+    "solid x\n",
+    "endsolid",
+    "facet normal 0 0 1\n",
+    "outer loop",
+    "endloop",
+    "endfacet",
+    "vertex ",
+]
+MESH_PIECES += [
+    " 1e400 ",
+    " nan ",
+    "-inf",
+    "1_0",
+    "9" * 5000,
+    "\n",
+    "\r",
+    "\0",
+    "#",
+    " ",
+    "\\\n",
+    "f 1 2 3\n",
+]
+MESH_PIECES += [
+    "f -1 -2 -3\n",
+    "f 1/2/3 2//3 3/ 0\n",
+    f"f 1 2 {2**32}\n",
+    "v 1 2\n",
+    "v nan 0 0\n",
+    "l 1 2\n",
+]
+
+
+@st.composite
+def bent(draw: st.DrawFn) -> tuple[str, bytes]:
+    """A closed surface some of whose corners are moved: flat, through itself, inside out, or too large."""
+    corners, triangles = draw(st.sampled_from(SOLIDS))
+    corners = corners.copy()
+    number = st.one_of(st.integers(-12, 12), st.floats(-20.0, 20.0), NUMBERS.filter(lambda v: abs(v) < 1e38))
+    for _ in range(draw(st.integers(0, 4))):
+        corners[draw(st.integers(0, len(corners) - 1)), draw(st.integers(0, 2))] = draw(number)
+    name = draw(st.sampled_from(sorted(FORMS)))
+    return name, FORMS[name](corners, triangles)
+
+
+@st.composite
+def mesh_bytes(draw: st.DrawFn) -> tuple[str, bytes]:
+    """The file of a mesh with pieces put in, doubled and left out."""
+    name = draw(st.sampled_from(sorted(FORMS)))
+    texts = [FORMS[name](*solid).decode("latin-1") for solid in SOLIDS]
+    return name, draw(edited(texts, MESH_PIECES)).encode("latin-1", "replace")
+
+
+MESH = st.one_of(bent(), mesh_bytes(), st.tuples(st.sampled_from(sorted(FORMS)), st.binary()))
+MESHED = """
+name: meshed
+materials: {{m: {{E_md: 3530 MPa, E_cd: 1113 MPa, D_md: 0.4 N*mm, D_cd: 0.24 N*mm}}}}
+sheets: {{note: {{material: m, size: [40 mm, 40 mm], thickness: 0.1 mm, mass: 0.3 g, boxes: [2, 2]}}}}
+rollers:
+  r: {{center: [0 mm, 0 mm, -8 mm], axis: y, radius: 7 mm, width: 5 mm, mass: 1 g, drive: {{speed: 9 rad/s}}}}
+meshes: {{part: {{file: {file}, units: {units}, center: [0 mm, 0 mm, -5.04 mm]{on}}}}}
+contacts: [{{between: [note, part], stiffness: 30 N/mm^1.5, friction: 0.2}}]
+"""
+
+
 def command(*args: str) -> tuple[int, str]:
     """Exit code and standard error of a command in this process, within its time and memory."""
     out, err = io.StringIO(), io.StringIO()
@@ -203,6 +278,9 @@ def command(*args: str) -> tuple[int, str]:
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Where scenes are written; what is compiled for the first run is compiled before times are taken."""
+    short = ["run.duration=0.5 ms", "run.step=0.1 ms"]
+    mdlgen.solve(mdlgen.lower(mdlgen.load(samples() / "verify" / "drop.yaml", short)), "lattice")
     return tmp_path_factory.mktemp("fuzz")
 
 
@@ -222,9 +300,48 @@ def test_scenes(folder: Path, text: str, run: int) -> None:
     clear(folder)
     spec = folder / "scene.yaml"
     spec.write_bytes(text.encode("utf-8", "surrogatepass"))
+    code = through(spec)
+    if run == 0 and code == 0 and "static" not in text:  # SHORT heals what is wrong with a run
+        solved(spec)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.filterwarnings("default::UserWarning")
+@FUZZ
+@given(mesh=MESH, on=st.booleans(), units=st.sampled_from(["mm", "mm", "cm", "in"]), run=st.integers(0, 19))
+def test_meshes(folder: Path, mesh: tuple[str, bytes], on: bool, units: str, run: int) -> None:
+    clear(folder)
+    name, raw = mesh
+    (folder / name).write_bytes(raw)
+    spec = folder / "scene.yaml"
+    more = ", on: r, density: 1 g/cm^3" if on else ""
+    spec.write_text(MESHED.format(file=name, units=units, on=more))
+    if checked(spec) == 0:
+        closed(mdlgen.load(spec).meshes["part"].solid)
+        if run <= 1:  # a file is read once, and the text names it
+            through(spec)
+        if run == 0:
+            solved(spec)
+
+
+def closed(solid: Solid) -> None:
+    """Each side once there and once back, and something inside."""
+    assert np.isfinite(solid.corners).all() and signed_volume(solid.corners, solid.triangles) > 0.0
+    sides = [(t[k], t[k - 2]) for t in solid.triangles.tolist() for k in range(3)]
+    assert len(set(sides)) == len(sides) and {(b, a) for a, b in sides} == set(sides)
+
+
+def checked(spec: Path) -> int:
+    """Exit code of check."""
     code, err = command("check", str(spec), "-q")
     assert code in (0, 2), err
     assert code == 0 or len(err.splitlines()) == 1, err
+    return code
+
+
+def through(spec: Path) -> int:
+    """Exit code of check, after text and deck of the scene."""
+    folder, code = spec.parent, checked(spec)
     for name in ("mdl", "deck"):
         file = folder / f"out.{name}"
         ended, err = command(
@@ -242,12 +359,18 @@ def test_scenes(folder: Path, text: str, run: int) -> None:
         if ended == 0:
             assert "nan" not in file.read_text("ascii")
             assert name == "deck" or command("lint", str(file), "-q")[0] == 0
-    if run == 0 and code == 0 and '"static"' not in text:  # SHORT heals what is wrong with a run
-        ended, err = command("run", str(spec), "-q", "-o", str(folder / "d"), *SHORT)
-        # 5: it ran, and its files stand, but missed its tolerance
-        assert ended in (0, 2, 4, 5), err
-        assert ended == 0 or len(err.splitlines()) == 1, err
-        assert (folder / "d" / "summary.json").exists() == (ended in (0, 5))
+    assert not [*folder.rglob(".*")]  # nothing that is half written
+    return code
+
+
+def solved(spec: Path) -> None:
+    """Runs a scene for a short while."""
+    folder = spec.parent
+    ended, err = command("run", str(spec), "-q", "-o", str(folder / "d"), *SHORT)
+    # 5: it ran, and its files stand, but missed its tolerance
+    assert ended in (0, 2, 4, 5), err
+    assert ended == 0 or len(err.splitlines()) == 1, err
+    assert (folder / "d" / "summary.json").exists() == (ended in (0, 5))
 
 
 @pytest.mark.filterwarnings("error")

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import pytest
+from solids import ascii_stl, binary, brick, obj
 
 import mdlgen
 from mdlgen.errors import SpecError
@@ -22,6 +23,7 @@ from mdlgen.spec.load import load, loads
 SAMPLE = samples() / "transport_4x4.yaml"
 TEXT = SAMPLE.read_text("utf-8")
 CURVE = "E_md: 3530 MPa"
+ONE = binary(*brick(4.0, 6.0, 10.0))
 
 
 # A process begins with the greatest memory of the one that it was started from: that one is small.
@@ -85,11 +87,56 @@ ATTACKS: dict[str, str] = {
     "absolute path": changed(CURVE, "curve_md: {file: /etc/passwd}"),
     "device file": changed(CURVE, "curve_md: {file: zero.csv}"),
     "named pipe": changed(CURVE, "curve_md: {file: pipe.csv}"),
+    **{
+        f"mesh: {what}": changed("rollers:", f"meshes: {{m: {{file: {file}}}}}\nrollers:")
+        for what, file in {
+            "2^32 triangles": "claims.stl",
+            "no end": "endless.stl",
+            "index out of range": "range.obj",
+            "not a mesh at all": "text.obj",
+            "too large": "large.stl",
+            "symlink out": "out.stl",
+            "folder": "folder.stl",
+            "device file": "zero.stl",
+            "named pipe": "pipe.stl",
+            "path with ..": "../mesh.stl",
+        }.items()
+    },
     "1e10 boxes": changed("[10, 20]", "[100000, 100000]"),
     "1e9 outputs": changed("duration: 50 ms", "duration: 50 ms, print_step: 1e-5 ms"),
     "NUL": "\0" * 10_000,
     "a long line": changed("name:", f"{'k' * 1_000_000}: 1\nname:"),
 }
+
+
+def lay(folder: Path) -> None:
+    """What the attacks name."""
+    folder.mkdir()
+    beside = folder.parent
+    (beside / "passwd").write_text("0, 0 MPa\n")
+    (beside / "mesh.stl").write_bytes(ONE)
+    text, corners = ascii_stl(*brick(4.0, 6.0, 10.0)), obj(*brick(4.0, 6.0, 10.0))
+    files: dict[str, str | bytes] = {
+        "claims.stl": ONE[:80] + b"\xff\xff\xff\xff" + ONE[84:],
+        "endless.stl": text.replace("endsolid", "facet") + "facet normal 0 0 0\n" * 100_000,
+        "range.obj": corners + "f 1 2 11\n",
+        "text.obj": TEXT,
+        "large.stl": b"",
+    }
+    for name, content in files.items():
+        (folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
+    os.truncate(folder / "large.stl", 10**12)  # that takes no room
+    targets = {
+        "out.csv": "../passwd",
+        "zero.csv": "/dev/zero",
+        "out.stl": "../mesh.stl",
+        "zero.stl": "/dev/zero",
+    }
+    for name, target in targets.items():
+        (folder / name).symlink_to(target)
+    for name in ("pipe.csv", "pipe.stl"):
+        os.mkfifo(folder / name)
+    (folder / "folder.stl").mkdir()
 
 
 @pytest.fixture(scope="module")
@@ -101,17 +148,14 @@ def usual(tmp_path_factory: pytest.TempPathFactory) -> Ended:
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs named pipes")
 @pytest.mark.parametrize("attack", ATTACKS)
 def test_known_attacks(tmp_path: Path, attack: str, usual: Ended) -> None:
-    (tmp_path / "passwd").write_text("0, 0 MPa\n")
     folder = tmp_path / "scene"
-    folder.mkdir()
-    (folder / "out.csv").symlink_to(tmp_path / "passwd")
-    (folder / "zero.csv").symlink_to("/dev/zero")
-    os.mkfifo(folder / "pipe.csv")
+    lay(folder)
     (folder / "bad.yaml").write_text(ATTACKS[attack], "utf-8")
+    before = sorted(p.name for p in folder.iterdir())
     ended = process(folder, "mdl", "bad.yaml")
     assert (ended.code, ended.out) == (2, "")
     assert re.fullmatch(r"bad\.yaml:\d+:\d+: [^\n]+\n", ended.err), ended.err
-    assert sorted(p.name for p in folder.iterdir()) == ["bad.yaml", "out.csv", "pipe.csv", "zero.csv"]
+    assert sorted(p.name for p in folder.iterdir()) == before
     # of the second for each the most is the start of the process
     assert ended.cpu < 3.0 * usual.cpu + 0.1
     assert ended.memory < 300.0

@@ -5,8 +5,10 @@ from __future__ import annotations
 import json
 import math
 import os
+import re
 import subprocess
 import sys
+import tracemalloc
 from dataclasses import replace
 
 import numpy as np
@@ -22,11 +24,11 @@ from mdlgen.mechanics.contact import MOST_POINTS, OUT, POINT, box_cylinder, box_
 from mdlgen.mechanics.mesh import LOST, box_mesh, mesh_tables
 from mdlgen.mechanics.tree import closest, depth_at, plant
 from mdlgen.model.lower import lower
-from mdlgen.model.meshes import moments
 from mdlgen.paths import samples
 from mdlgen.registry import emitter, reader, validator
+from mdlgen.spec.limits import DEFAULT, Tally
 from mdlgen.spec.load import load, loads
-from mdlgen.spec.solid import MOST_BYTES, read_solid
+from mdlgen.spec.solid import BYTES, moments, read_solid
 from mdlgen.verify.verification import verify
 
 PICK = samples() / "pick.yaml"
@@ -92,7 +94,7 @@ def test_all_formats_give_the_same_solid(tmp_path, form):
         lines = [f"v {a} {b} {c}" for a, b, c in eight] + [f"f {face}" for face in faces]
         name, content = "a.obj", "\n".join(lines).encode()
     (tmp_path / name).write_bytes(content)
-    solid = read_solid(name, tmp_path, "mm")
+    solid = read_solid(name, tmp_path, "mm", Tally())
     volume, middle, second = moments(solid.corners, solid.triangles)
     assert volume == pytest.approx(240.0, rel=1e-12)
     np.testing.assert_allclose(middle, [1.0, -2.0, 3.0], atol=1e-12)
@@ -150,6 +152,10 @@ def broken(what):
     if what == "nothing inside":
         flat = [(0, 1, 2), (0, 2, 1)]
         return binary([(0, 0, 0), (9, 0, 0), (0, 9, 0)], flat), "no volume inside"
+    if what == "through itself":  # one corner pulled across: more inside out than inside, about the middle
+        solid, sides = brick(4.0, 6.0, 10.0)
+        solid[1, 1], solid[8, 1] = 9.0, 6.0
+        return binary(solid, sides), "goes through itself"
     if what == "empty":
         return good[:80] + bytes(4), "no triangles"
     if what == "too short":
@@ -162,6 +168,12 @@ def broken(what):
         return text.replace("endloop", "endlop", 1).encode(), "'endloop' is due"
     if what == "a number wrong":
         return text.replace("vertex 7.5", "vertex 7,5", 1).encode(), "is not a number"
+    if what == "a number of Python":
+        return text.replace("vertex 7.5", "vertex 7_5", 1).encode(), "is not a number"
+    if what == "a number of 65 digits":  # the exponent behind them counts
+        return text.replace("vertex 7.5 ", f"vertex 7.{'5' * 61}e1 ", 1).encode(), "more than 64 letters"
+    if what == "a word too many":
+        return text.replace("outer loop", "outer loop x", 1).encode(), "facet 0: not one solid"
     if what == "no end":
         return text.replace("endsolid", "end").encode(), "no endsolid"
     if what == "two solids":
@@ -170,7 +182,8 @@ def broken(what):
 
 
 BROKEN = """a triangle too few, 2^32 triangles claimed, nan, a hole, one turned over, three at a side,
-nothing inside, empty, too short, flat ones, a word wrong, a number wrong, no end, two solids"""
+nothing inside, through itself, empty, too short, flat ones, a word wrong, a number wrong,
+a number of Python, a number of 65 digits, a word too many, no end, two solids"""
 
 
 @pytest.mark.parametrize("what", BROKEN.replace("\n", " ").split(", "))
@@ -187,6 +200,12 @@ def test_a_broken_file_is_refused_in_one_line_at_its_place(folder, what):
     ("line", "message"),
     [
         ("f 1 2 99999", "a vertex that is not there"),
+        ("f 1 2 0", "a vertex that is not there"),
+        ("f 1 2 -99999", "a vertex that is not there"),
+        (f"f 1 2 {2**64}", "a vertex that is not there"),
+        (f"f 1 2 {'9' * 5000}", "a number is due"),
+        ("f 1 2 1_0", "a number is due"),
+        ("f" + " 1" * 60_000, "a line of more than"),
         ("f 1 2 x", "a number is due"),
         ("v 1 2", "is not read"),
         ("curv 1 2 3", "is not read"),
@@ -223,7 +242,7 @@ def test_a_wrong_unit_is_told(folder):
         ("pipe.stl", "is not a plain file"),
         ("device.stl", "leads out of the folder"),
         ("loop.stl", "cannot read"),
-        ("large.stl", "bytes; allowed are"),
+        ("large.stl", "25000001 bytes.* --limit triangles=1000.. raises"),
     ],
 )
 def test_what_is_no_file_of_a_part_is_refused(folder, file, message):
@@ -233,10 +252,60 @@ def test_what_is_no_file_of_a_part_is_refused(folder, file, message):
         (folder / "device.stl").symlink_to("/dev/zero")
         (folder / "loop.stl").symlink_to("loop.stl")
         with open(folder / "large.stl", "wb") as stream:
-            stream.truncate(MOST_BYTES + 1)
+            stream.truncate(BYTES * DEFAULT.triangles + 1)
     with pytest.raises(SpecError, match=message) as found:
         scene_of(folder, ("wedge.stl", file))
     assert "\n" not in str(found.value)
+
+
+def test_corners_of_no_triangle_are_none(tmp_path):
+    """They would count for size and reach."""
+    solid = obj(*brick(4.0, 6.0, 10.0))
+    (tmp_path / "a.obj").write_text(solid)
+    plain = read_solid("a.obj", tmp_path, "mm", Tally())
+    extra = "".join(f"v {k} 900 0\n" for k in range(9999))
+    (tmp_path / "b.obj").write_text(solid + extra)
+    more = read_solid("b.obj", tmp_path, "mm", Tally())
+    assert np.array_equal(more.corners, plain.corners) and np.array_equal(more.triangles, plain.triangles)
+
+
+def test_triangles_of_all_meshes_are_limited_and_the_limit_can_be_raised(folder):
+    """256, 96 and 16; what the message tells to write helps, in a go or two for each file."""
+    wishes = ["triangles=100"]
+    for path in ("one", "two", "two", "three"):  # lines, then triangles
+        with pytest.raises(SpecError, match=rf"meshes.{path}: .* --limit \S+ raises this limit") as told:
+            loads(SHAPES, folder=folder, limits=DEFAULT.raised(wishes))
+        wishes = re.findall(r"--limit (\S+)", str(told.value))
+    assert wishes == ["triangles=368"]
+    assert len(loads(SHAPES, folder=folder, limits=DEFAULT.raised(wishes)).meshes) == 3
+
+
+HUGE = {
+    "words of an STL": lambda n: b"solid x\nfacet " + b"a " * (n // 2) + b"\nendsolid x\n",
+    "facets of an STL": lambda n: b"solid x\nfacet " + b"endfacet " * (n // 9) + b"\nendsolid x\n",
+    "an STL without an end": lambda n: b"solid x\nfacet " + b"vertex 0 0 0\n" * (n // 13),
+    "one word": lambda n: b"solid x\nfacet normal " + b"9" * n + b"\nendsolid\n",
+    "corners": lambda n: b"v 1 2 3\n" * (n // 8),
+    "lines": lambda n: b"\n" * n,
+    "a face": lambda n: b"v 1 2 3\nf " + b"1 " * (n // 2),
+    "faces": lambda n: b"v 1 2 3\n" + b"f 1 1 1\n" * (n // 8),
+}
+
+
+@pytest.mark.parametrize("what", HUGE)
+def test_the_largest_files_take_little_memory_before_they_are_refused(tmp_path, what):
+    """At most eight times the file, so 200 MB at 25 MB, whatever stands in it; here a tenth."""
+    name, tenth = (
+        ("a.stl" if "STL" in what or "word" in what else "a.obj"),
+        Tally(DEFAULT.raised(["triangles=1e4"])),
+    )
+    (tmp_path / name).write_bytes(HUGE[what](BYTES * 10_000 - 40))
+    tracemalloc.start()
+    with pytest.raises(ValueError, match=rf"^{name}"):
+        read_solid(name, tmp_path, "mm", tenth)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert most < 8 * BYTES * 10_000
 
 
 def test_a_text_alone_names_no_file():

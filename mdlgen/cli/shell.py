@@ -42,7 +42,8 @@ Raised = Annotated[
     typer.Option(
         "--limit",
         metavar="NAME=COUNT",
-        help="Allow more boxes, pairs, contacts, states or values; may be given more than once.",
+        help="Allow more boxes, pairs, contacts, states, values, triangles or points; may be given more than "
+        "once.",
     ),
 ]
 Pictures = Annotated[

@@ -8,10 +8,10 @@ import numpy as np
 
 from mdlgen.errors import RefusedError
 from mdlgen.model.grid import rotation_matrix
-from mdlgen.model.tables import Floats, Ints, MeshPart, Model, RollerPart
+from mdlgen.model.tables import Floats, MeshPart, Model, RollerPart
 from mdlgen.spec.mesh import Mesh
 from mdlgen.spec.scene import Scene
-from mdlgen.spec.solid import SCALES, signed_volume
+from mdlgen.spec.solid import SCALES, moments, signed_volume
 
 LIGHT = 1.0  # g: of a fixed mesh without a mass, where it is of no effect
 BALANCED = (
@@ -60,23 +60,6 @@ def _mesh(name: str, mesh: Mesh, body: int, on: int) -> MeshPart:
         mass=mass_of(mesh),
         density=mesh.density,
     )
-
-
-def moments(corners: Floats, triangles: Ints) -> tuple[float, Floats, Floats]:
-    """Volume, its middle (3,), and the mean of r r^T over it about the middle (3, 3), of a closed surface.
-
-    Sums over the tetrahedra of each triangle and the first corner: of one with corners 0, a, b, c and volume
-    V the integral of r is V s/4, s = a + b + c, that of r r^T is V/20 (s s^T + a a^T + b b^T + c c^T).
-    """
-    base = corners[triangles[0, 0]]
-    a, b, c = (corners[triangles[:, k]] - base for k in range(3))
-    parts = np.einsum("ni,ni->n", a, np.cross(b, c)) / 6.0
-    volume, s = float(parts.sum()), a + b + c
-    middle = np.asarray(parts @ s) / (4.0 * volume)
-    squares = sum(np.einsum("n,ni,nj->ij", parts, v, v) for v in (s, a, b, c)) / (20.0 * volume)
-    place = base + middle
-    place[np.abs(place) < 1e-12 * np.ptp(corners, axis=0).max()] = 0.0  # round-off of what is symmetric
-    return volume, place, np.asarray(squares) - np.outer(middle, middle)
 
 
 def _principal(second: Floats) -> tuple[Floats, Floats]:

@@ -19,9 +19,9 @@ from pydantic_core import CoreSchema
 from mdlgen.errors import OutputError
 from mdlgen.paths import read_at_most
 from mdlgen.spec.fields import Strict, fail, quantity
+from mdlgen.spec.limits import Tally
 
-MAX_POINTS = 1000
-MAX_FILE_BYTES = 200_000
+BYTES = 200  # of a file for each point that is allowed
 MAX_STRAIN = 1.0
 
 _PERCENT = re.compile(r"\s*([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*(%?)\s*")
@@ -92,13 +92,17 @@ class Curve(Strict):
             raise fail(f"expected a list of [strain, stress], or points or file, got {data!r}"[:200])
         if ("points" in data) == ("file" in data):
             raise fail("give exactly one of points and file")
+        told = info.context or {}
+        tally = told.get("tally") or Tally()
         if "file" not in data:
             points = data["points"]
-            if isinstance(points, (list, tuple)) and len(points) > MAX_POINTS:
-                raise fail(f"{len(points)} points; allowed are {MAX_POINTS}")
-            return data
-        folder = (info.context or {}).get("folder")
-        return {**data, "points": _file_points(data["file"], folder)}
+        else:
+            points = _file_points(data["file"], told.get("folder"), tally)
+        if isinstance(points, (list, tuple)):
+            if much := tally.exceeded("points", len(points), "points of curves"):
+                raise fail(much)
+            tally.add("points", len(points))
+        return {**data, "points": points}
 
     @classmethod
     def __get_pydantic_json_schema__(
@@ -134,7 +138,7 @@ class Curve(Strict):
         return stress / strain
 
 
-def _file_points(name: Any, folder: Any) -> list[tuple[float, str]]:
+def _file_points(name: Any, folder: Any, tally: Tally) -> list[tuple[float, str]]:
     """Points of a CSV file; raises the error that names file and line."""
     if not isinstance(name, str) or not name.strip():
         raise fail(f"file is the name of a CSV file, got {name!r}"[:200])
@@ -147,19 +151,20 @@ def _file_points(name: Any, folder: Any) -> list[tuple[float, str]]:
     try:
         found = (inside / path).resolve()
         if not found.is_relative_to(inside):
-            raise fail(f"{name}: leads out of the folder of the spec")
-        raw = read_at_most(found, MAX_FILE_BYTES + 1, named=True)
+            raise OutputError(f"{found}: leads out of the folder of the spec")
+        raw = read_at_most(found, BYTES * tally.limits.points + 1, named=True)
         text = raw.decode("utf-8-sig")
     except OutputError as error:  # with the name as it stands in the spec
         raise fail(f"{name}: {str(error).removeprefix(f'{found}: ')}"[:300]) from None
     except (OSError, ValueError) as error:
         raise fail(f"{name}: cannot read: {getattr(error, 'strerror', None) or error}"[:300]) from None
-    if len(raw) > MAX_FILE_BYTES:
-        raise fail(f"{name}: larger than {MAX_FILE_BYTES} bytes")
-    return _rows(text, name)
+    if much := tally.exceeded("points", len(raw), f"{name}: {BYTES} bytes to a point", BYTES):
+        raise fail(much)
+    tally.add("points", len(raw), BYTES)
+    return _rows(text, name, tally)
 
 
-def _rows(text: str, name: str) -> list[tuple[float, str]]:
+def _rows(text: str, name: str, tally: Tally) -> list[tuple[float, str]]:
     """(strain, stress) of each line; a first line may name the columns and their units."""
     rows: list[tuple[float, str]] = []
     units = ("", "")
@@ -189,6 +194,6 @@ def _rows(text: str, name: str) -> list[tuple[float, str]]:
             what = told() if callable(told) else f"{percent!r} is not a strain"
             raise fail(f"{here}: {what}") from None
         rows.append((strain, stress))
-        if len(rows) > MAX_POINTS:
-            raise fail(f"{name}: more than {MAX_POINTS} points")
+        if much := tally.exceeded("points", len(rows), f"{name}: points"):
+            raise fail(much)
     return rows

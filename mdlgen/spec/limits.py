@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import re
+from collections import Counter
 from collections.abc import Iterable
 from typing import NamedTuple
 
@@ -14,13 +16,16 @@ _MOST = 1e12  # above this nothing is a count
 
 class Limits(NamedTuple):
     """Greatest counts: boxes of all sheets, pairs of bodies that are kept, pairs of parts that the contacts
-    name, states that a run stores (bodies times outputs, some 150 bytes each), and values in the text."""
+    name, states that a run stores (bodies times outputs, some 150 bytes each), values in the text, triangles
+    of all meshes, and points of all measured curves."""
 
     boxes: int = 100_000
     pairs: int = 1_000_000
     contacts: int = 10_000
     states: int = 25_000_000
     values: int = 50_000
+    triangles: int = 100_000
+    points: int = 10_000
 
     def raised(self, wishes: Iterable[str]) -> Limits:
         """With the limits of texts like `boxes=200000`. Raises SpecError."""
@@ -44,3 +49,20 @@ class Limits(NamedTuple):
 
 
 DEFAULT = Limits()
+
+
+class Tally:
+    """Sums over the files that a scene names, since many small ones are as much as a large one."""
+
+    def __init__(self, limits: Limits = DEFAULT):
+        self.limits = limits
+        self._sums: Counter[tuple[str, int]] = Counter()
+
+    def exceeded(self, name: str, count: int, what: str, each: int = 1) -> str:
+        """Words where the sum with so many more, `each` of which make one, is above a limit; else ""."""
+        most = math.ceil((self._sums[name, each] + count) / each)
+        return self.limits.exceeded(name, most, f"{what}, with those of the files before")
+
+    def add(self, name: str, count: int, each: int = 1) -> None:
+        """Counts what was read."""
+        self._sums[name, each] += count

@@ -27,7 +27,7 @@ from ruamel.yaml.events import (
 
 from mdlgen import paths
 from mdlgen.errors import Place, SpecError
-from mdlgen.spec.limits import DEFAULT, Limits
+from mdlgen.spec.limits import DEFAULT, Limits, Tally
 from mdlgen.spec.scene import Scene
 
 MAX_BYTES, MAX_DEPTH = 2_000_000, 40
@@ -103,7 +103,8 @@ def loads(
     for override in overrides:
         _override(document, override)
     try:
-        return Scene.model_validate(document.data, context={"folder": folder, "limits": limits})
+        context = {"folder": folder, "limits": limits, "tally": Tally(limits)}
+        return Scene.model_validate(document.data, context=context)
     except ValidationError as error:
         raise _first_error(error, document) from None
 

@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
 from mdlgen.spec.fields import Angles, Mass, Name, Position, Strict, fail, origin, quantity
+from mdlgen.spec.limits import Tally
 from mdlgen.spec.solid import Solid, read_solid
 
 Density = Annotated[float, quantity("g/mm^3", 0.0, open_low=True)]
@@ -43,7 +44,8 @@ class Mesh(Strict):
             raise fail("mass and density are both given; give one of them")
         if self.on is not None and self.mass is None and self.density is None:
             raise fail("on a roller its mass counts; give mass or density")
-        self._solid = read_solid(self.file, (info.context or {}).get("folder"), self.units)
+        told = info.context or {}
+        self._solid = read_solid(self.file, told.get("folder"), self.units, told.get("tally") or Tally())
         return self
 
     @property

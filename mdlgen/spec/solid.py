@@ -1,10 +1,10 @@
-"""Solids from files: STL (binary or ASCII) and Wavefront OBJ, checked as they are read.
+"""Solids from files, checked as they are read.
 
-A file is refused before it is read where it is too large, no plain file, or does not have the size that its
-header claims; then where a number is not finite, a triangle has no neighbour on a side (the surface is not
-watertight) or is turned against it, and where the size is not that of a part of a paper machine, which tells
-of a wrong unit. Corners that are exactly the same are one. Triangles with two corners in one place carry
-nothing and are left out.
+A file is refused before it is read where it is too large or no plain file, before it is taken apart where it
+does not have the size that its header claims or has more triangles than are allowed; then where a number is
+not finite, a triangle has no neighbour on a side (the surface is not watertight) or is turned against it, and
+where the size is not that of a part of a paper machine, which tells of a wrong unit. Corners that are exactly
+the same are one, those of no triangle are left out, and so are triangles with two corners in one place.
 """
 
 from __future__ import annotations
@@ -13,34 +13,22 @@ import hashlib
 import os
 import re
 import stat
-import struct
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mdlgen.spec.fields import fail
+from mdlgen.spec.limits import Tally
+from mdlgen.spec.triangles import Floats, Ints, obj, stl
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-
-MOST_BYTES = 25_000_000
-MOST_TRIANGLES = 100_000
+BYTES = 250  # of a file for each triangle that is allowed
 MOST_FLAT = 0.01  # part of the triangles that may have two corners in one place
 SIZES = (0.5, 3000.0)  # of the longest side that a part of a machine has [mm]
 SCALES = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}
 
-_HEAD, _EACH = 84, 50  # bytes of a binary STL file: header and count, each triangle
-_FACET = 21  # words of a triangle in ASCII
-_AT_ONCE = 2000  # triangles whose words are looked at together, to save memory
-_WORDS = {0: b"facet", 1: b"normal", 5: b"outer", 6: b"loop", 7: b"vertex", 11: b"vertex", 15: b"vertex"}
-_WORDS |= {19: b"endloop", 20: b"endfacet"}
-_CORNERS = [8, 9, 10, 12, 13, 14, 16, 17, 18]
 _FILE = re.compile(r"[A-Za-z0-9_.-]{1,100}(?:/[A-Za-z0-9_.-]{1,100}){0,9}")
-# of an OBJ file, what says nothing of the surface
-_IGNORED = frozenset((b"vn", b"vt", b"vp", b"o", b"g", b"s", b"mtllib", b"usemtl", b"l", b"p"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,27 +46,39 @@ class Solid:
     __hash__ = None  # type: ignore[assignment]
 
 
-def read_solid(name: Any, folder: Any, unit: str) -> Solid:
-    """The solid in a file beside the spec or below. Raises the error that says what is wrong with it."""
-    raw = _bytes(name, folder)
-    if name.lower().endswith(".obj"):
-        corners, triangles = _obj(raw, name)
-    else:
-        corners, triangles = _stl(raw, name)
+def read_solid(name: Any, folder: Any, unit: str, tally: Tally) -> Solid:
+    """The solid in a file beside the spec or below, counted in `tally`. Raises the error that says what is
+    wrong with it."""
+    raw = _bytes(name, folder, tally)
+    found = solid(raw, name, unit, tally)
+    tally.add("triangles", len(found.triangles) + found.flat)
+    return found
+
+
+def solid(raw: bytes, name: str, unit: str, tally: Tally) -> Solid:
+    """The solid in the bytes of a file. Raises the error that says what is wrong with it."""
+
+    def few(count: int, what: str) -> None:
+        if told := tally.exceeded("triangles", count, f"{name}: {what}"):
+            raise fail(told)
+
+    corners, triangles = (obj if name.lower().endswith(".obj") else stl)(raw, name, few)
     if not len(triangles):
         raise fail(f"{name}: no triangles in it")
     if not np.isfinite(corners).all():
         bad = int(np.flatnonzero(~np.isfinite(corners).all(axis=1))[0])
         raise fail(f"{name}: corner {bad} is not finite")
-    _sized(corners, unit, name)
     corners, triangles, flat = _merged(corners, triangles)
     if flat > MOST_FLAT * (len(triangles) + flat):
         raise fail(f"{name}: {flat} of {len(triangles) + flat} triangles have two corners in one place")
+    _sized(corners, unit, name)
     _closed(corners, triangles, name)
     if signed_volume(corners, triangles) < 0.0:  # all of it is inside out
         triangles = triangles[:, ::-1].copy()
     if signed_volume(corners, triangles) <= 1e-9 * np.ptp(corners, axis=0).max() ** 3:
         raise fail(f"{name}: the surface is closed, but has no volume inside")
+    if np.linalg.eigvalsh(moments(corners, triangles)[2]).min() <= 0.0:
+        raise fail(f"{name}: the surface goes through itself: what is inside has no inertia")
     corners.setflags(write=False)
     triangles.setflags(write=False)
     return Solid(corners, triangles, flat, hashlib.sha256(raw).hexdigest())
@@ -90,7 +90,24 @@ def signed_volume(corners: Floats, triangles: Ints) -> float:
     return float(np.einsum("ni,ni->", a, np.cross(b, c)) / 6.0)
 
 
-def _bytes(name: Any, folder: Any) -> bytes:
+def moments(corners: Floats, triangles: Ints) -> tuple[float, Floats, Floats]:
+    """Volume, its middle (3,), and the mean of r r^T over it about the middle (3, 3), of a closed surface.
+
+    Sums over the tetrahedra of each triangle and the first corner: of one with corners 0, a, b, c and volume
+    V the integral of r is V s/4, s = a + b + c, that of r r^T is V/20 (s s^T + a a^T + b b^T + c c^T).
+    """
+    base = corners[triangles[0, 0]]
+    a, b, c = (corners[triangles[:, k]] - base for k in range(3))
+    parts = np.einsum("ni,ni->n", a, np.cross(b, c)) / 6.0
+    volume, s = float(parts.sum()), a + b + c
+    middle = np.asarray(parts @ s) / (4.0 * volume)
+    squares = sum(np.einsum("n,ni,nj->ij", parts, v, v) for v in (s, a, b, c)) / (20.0 * volume)
+    place = base + middle
+    place[np.abs(place) < 1e-12 * np.ptp(corners, axis=0).max()] = 0.0  # round-off of what is symmetric
+    return volume, place, np.asarray(squares) - np.outer(middle, middle)
+
+
+def _bytes(name: Any, folder: Any, tally: Tally) -> bytes:
     """Contents of a plain file; a device, a pipe or a folder is refused without waiting for it."""
     if not isinstance(name, str) or not _FILE.fullmatch(name) or ".." in name.split("/"):
         raise fail(
@@ -111,92 +128,16 @@ def _bytes(name: Any, folder: Any) -> bytes:
             told = os.fstat(stream.fileno())
             if not stat.S_ISREG(told.st_mode):
                 raise fail(f"{name}: is not a plain file")
-            if told.st_size > MOST_BYTES:
-                raise fail(f"{name}: {told.st_size} bytes; allowed are {MOST_BYTES}")
-            raw = stream.read(MOST_BYTES + 1)
+            what = f"{name}: {told.st_size} bytes, {BYTES} to a triangle"
+            if much := tally.exceeded("triangles", told.st_size, what, BYTES):
+                raise fail(much)
+            tally.add("triangles", told.st_size, BYTES)
+            raw = stream.read(told.st_size + 1)
     except (OSError, RuntimeError) as error:  # RuntimeError: a link that leads to itself
         raise fail(f"{name}: cannot read: {getattr(error, 'strerror', None) or error}"[:300]) from None
-    if len(raw) > MOST_BYTES:
-        raise fail(f"{name}: more than {MOST_BYTES} bytes")
+    if len(raw) > told.st_size:
+        raise fail(f"{name}: grows while it is read")
     return raw
-
-
-def _few(count: int, name: str) -> None:
-    if count > MOST_TRIANGLES:
-        raise fail(f"{name}: {count} triangles; allowed are {MOST_TRIANGLES}")
-
-
-def _stl(raw: bytes, name: str) -> tuple[Floats, Ints]:
-    """Corners and triangles, each with corners of its own."""
-    claimed = struct.unpack_from("<I", raw, _HEAD - 4)[0] if len(raw) >= _HEAD else 0
-    if raw[:5].lower() == b"solid" and b"facet" in raw[:4096] and len(raw) != _HEAD + _EACH * claimed:
-        corners = _ascii(raw, name)
-    else:
-        if len(raw) < _HEAD:
-            raise fail(f"{name}: {len(raw)} bytes are too few for an STL file")
-        if len(raw) != _HEAD + _EACH * claimed:
-            raise fail(
-                f"{name}: claims {claimed} triangles, which are {_HEAD + _EACH * claimed} bytes; "
-                f"the file has {len(raw)}"
-            )
-        _few(claimed, name)
-        kind = np.dtype([("normal", "<f4", 3), ("corners", "<f4", 9), ("attribute", "<u2")])
-        corners = np.frombuffer(raw, kind, claimed, _HEAD)["corners"].astype(float).reshape(-1, 3)
-    return corners, np.arange(len(corners), dtype=np.int64).reshape(-1, 3)
-
-
-def _ascii(raw: bytes, name: str) -> Floats:
-    text = raw.lower()
-    begin, end = text.find(b"\n"), text.rfind(b"endsolid")
-    if text.count(b"facet normal") > MOST_TRIANGLES:
-        _few(text.count(b"facet normal"), name)
-    if begin < 0 or end < begin:
-        raise fail(f"{name}: begins with solid and has no endsolid")
-    words = text[begin:end].split()
-    if len(words) % _FACET or b"solid" in words:
-        raise fail(f"{name}: not one solid of facets with three corners each (ASCII STL)")
-    parts = [np.zeros((0, 9))]
-    for first in range(0, len(words), _FACET * _AT_ONCE):
-        table = np.array(words[first : first + _FACET * _AT_ONCE], dtype="S32").reshape(-1, _FACET)
-        for column, word in _WORDS.items():
-            wrong = np.flatnonzero(table[:, column] != word)
-            if len(wrong):
-                facet = first // _FACET + int(wrong[0])
-                raise fail(f"{name}: facet {facet}: {word.decode()!r} is due (ASCII STL)")
-        try:
-            parts.append(table[:, _CORNERS].astype(float))
-        except ValueError:
-            raise fail(f"{name}: a coordinate of an ASCII STL file is not a number") from None
-    return np.concatenate(parts).reshape(-1, 3)
-
-
-def _obj(raw: bytes, name: str) -> tuple[Floats, Ints]:
-    """Vertices and faces; faces of more than three corners as fans."""
-    corners: list[list[float]] = []
-    triangles: list[tuple[int, int, int]] = []
-    for number, line in enumerate(raw.splitlines(), 1):
-        words = line.split(b"#", 1)[0].split()
-        if not words or words[0] in _IGNORED:
-            continue
-        here = f"{name}:{number}"
-        try:
-            if words[0] == b"v" and len(words) >= 4:
-                corners.append([float(w) for w in words[1:4]])
-                continue
-            if words[0] == b"f" and len(words) >= 4:
-                face = [int(w.split(b"/", 1)[0]) for w in words[1:]]
-                face = [k - 1 if k > 0 else len(corners) + k for k in face]
-                if min(face) < 0 or max(face) >= len(corners):
-                    raise fail(f"{here}: a face names a vertex that is not there")
-                triangles += [(face[0], face[k], face[k + 1]) for k in range(1, len(face) - 1)]
-                _few(len(triangles), name)
-                continue
-        except (ValueError, OverflowError) as error:
-            if hasattr(error, "context"):
-                raise
-            raise fail(f"{here}: a number is due") from None
-        raise fail(f"{here}: {words[0][:20].decode('ascii', 'replace')!r} is not read; v and f are")
-    return np.array(corners, dtype=float).reshape(-1, 3), np.array(triangles, dtype=np.int64).reshape(-1, 3)
 
 
 def _sized(corners: Floats, unit: str, name: str) -> None:
@@ -211,17 +152,19 @@ def _sized(corners: Floats, unit: str, name: str) -> None:
 
 
 def _merged(corners: Floats, triangles: Ints) -> tuple[Floats, Ints, int]:
-    """Corners in one place as one, triangles that have two in one place left out, and how many those are."""
+    """Corners in one place as one, without those of no triangle, triangles that have two in one place left
+    out, and how many those are."""
     corners = corners + 0.0  # no negative zeros
     order = np.lexsort(corners.T)
     ranked = corners[order]
-    new = np.concatenate([[True], (np.diff(ranked, axis=0) != 0.0).any(axis=1)])
+    new = np.concatenate([[True], (ranked[1:] != ranked[:-1]).any(axis=1)])
     of = np.empty(len(corners), dtype=np.int64)
     of[order] = np.cumsum(new) - 1
     triangles = of[triangles]
     a, b, c = triangles.T
     whole = (a != b) & (b != c) & (c != a)
-    return ranked[new], triangles[whole], int((~whole).sum())
+    used, triangles = np.unique(triangles[whole], return_inverse=True)
+    return ranked[new][used], triangles.reshape(-1, 3), int((~whole).sum())
 
 
 def _closed(corners: Floats, triangles: Ints, name: str) -> None:
