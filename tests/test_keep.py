@@ -145,7 +145,7 @@ def test_a_run_that_failed_says_so_again(tmp_path: Path) -> None:
     ]
     sets += ["run.duration=12 ms", "run.step=0.1 ms", "run.print_step=0.4 ms"]
     model = mdlgen.lower(mdlgen.load(samples() / "stack.yaml", sets))
-    first = lattice.solve(model, keep=Keep(tmp_path / "c", 0.0, {"run.json": "{}"}))
+    first = lattice.solve(model, keep=Keep(tmp_path / "c", 0.0, sealed))
     again = lattice.solve(model, keep=Keep(tmp_path / "c", 0.0))
     assert "more than half of its thickness into box note_4" in first.status
     assert first.time[-1] > 6.0
