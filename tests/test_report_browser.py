@@ -52,8 +52,10 @@ def silent(browser: Tab, folder: Path) -> None:
 
 def drawn(browser: Tab, time: float) -> np.ndarray:
     """Pixels of the canvas at a time, (h, w, 3)."""
-    browser.ask(f"mdlgen.seek({time}); mdlgen.stage.now()")
-    url = browser.ask("document.getElementById('canvas').toDataURL('image/png')")
+    # at once: what is drawn is kept until it has been shown
+    url = browser.ask(
+        f"mdlgen.seek({time}); mdlgen.stage.now(); document.getElementById('canvas').toDataURL('image/png')"
+    )
     return np.asarray(Image.open(io.BytesIO(b64decode(url.split(",", 1)[1]))).convert("RGB")).astype(int)
 
 
