@@ -28,6 +28,7 @@ from mdlgen.model.tables import BOX_CYLINDER
 from mdlgen.paths import samples, templates
 from mdlgen.report import boxes
 from mdlgen.report.animation import FRAMES, MOST, frames
+from mdlgen.report.maps import strain_map
 from mdlgen.report.meshes import machine
 from mdlgen.report.motion import names, poses
 from mdlgen.report.page import page
@@ -325,6 +326,20 @@ class TestText:
         assert f"{result.energy.balance_error:.5g}" in told
         events = tree.get_element_by_id("events").xpath(".//tbody/tr")
         assert len(events) == len(result.events) > 8
+
+    def test_the_map_of_what_joints_bore_stands_in_it(self, result: Result, text: str) -> None:
+        (picture,) = html.fromstring(text).get_element_by_id("map").xpath(".//img")
+        assert b64decode(picture.get("src").partition(",")[2]) == strain_map(result)
+        block = moving(small_model("sheets.note.boxes=[1,1]"))
+        section = html.fromstring(page([block])).get_element_by_id("map")
+        assert not section.xpath(".//img") and "have no joints" in "".join(section.itertext())
+
+    def test_an_estimate_above_its_tolerance_is_told_at_the_head(self, result: Result, text: str) -> None:
+        assert not html.fromstring(text).xpath("//header//b[@class='bad']")
+        assert result.error_estimate is not None
+        strict = replace(result.model, run=replace(result.model.run, tolerance=result.error_estimate / 2))
+        (bad,) = html.fromstring(page([replace(result, model=strict)])).xpath("//header//b[@class='bad']")
+        assert "above the tolerance" in bad.text
 
     def test_lints_stand_in_it(self) -> None:
         result = moving(small_model("materials.eur10.E_md=40000 MPa"))

@@ -350,7 +350,8 @@ def run(
         raise typer.Exit(SOLVER_FAILED)
     result.source = source_of(task.text, task.sets)
     pictures = {"report.png": figure(result), "strain.png": strain_map(result)}
-    save(result, folder, {**pictures, "report.html": page([result]).encode("utf-8")})
+    html = page([result], maps=[pictures["strain.png"]])
+    save(result, folder, {**pictures, "report.html": html.encode("utf-8")})
     keep.drop()
     if not quiet:
         typer.echo(summary_text(result.summary()))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from base64 import b64encode
 from collections.abc import Sequence
 from dataclasses import asdict
 from functools import lru_cache
@@ -16,6 +17,7 @@ from mdlgen.report import boxes
 from mdlgen.report.animation import animation, frames, packed
 from mdlgen.report.curves import Panel, panels
 from mdlgen.report.differences import differences, percent, shown
+from mdlgen.report.maps import strain_map
 from mdlgen.results.result import Result
 from mdlgen.results.strain import histories
 
@@ -26,13 +28,19 @@ _LIBRARY = ("three.core.min.js", "three.module.min.js")
 _SCRIPTS = ("charts.js", "player.js", "page.js")
 
 
-def page(results: Sequence[Result], names: Sequence[str] = ()) -> str:
+def page(
+    results: Sequence[Result], names: Sequence[str] = (), maps: Sequence[bytes | None] | None = None
+) -> str:
     """The page of one run, or of several side by side; `names` are what they are called, else A, B, ...
 
+    `maps` are the pictures of `strain_map` where they are drawn already.
     The same results give the same text. Every name and text of a scene is escaped.
     """
     names = list(names) or [chr(ord("A") + k) for k in range(len(results))]
-    runs = [_run(result, name) for result, name in zip(results, names, strict=True)]
+    runs = [
+        _run(result, name, drawn)
+        for result, name, drawn in zip(results, names, maps or [None] * len(results), strict=True)
+    ]
     drawn = json.dumps([run.pop("drawn") for run in runs], allow_nan=False, separators=(",", ":"))
     folder = templates() / "report"
     return (
@@ -77,7 +85,7 @@ def _environment() -> Environment:
     return made
 
 
-def _run(result: Result, name: str) -> dict[str, Any]:
+def _run(result: Result, name: str, drawn: bytes | None) -> dict[str, Any]:
     """What the template and the scripts take of a run."""
     at = frames(result)
     joints = histories(result, at)
@@ -105,6 +113,7 @@ def _run(result: Result, name: str) -> dict[str, Any]:
         },
         "parameters": [asdict(parameter) for parameter in result.model.parameters],
         "source": result.source,
+        "map": None if result.strains is None else b64encode(drawn or strain_map(result)).decode(),
         "lints": [asdict(lint) for lint in lints(result.model)],
         "drawn": {
             "name": name,
