@@ -36,12 +36,13 @@ def arc(radius: float, begin: float, end: float) -> Floats:
 
 def prism(outline: Floats, low: float, high: float, caps: Ints | None = None) -> Solid:
     """Of an outline in x and y, counterclockwise, (n, 2), from z = low to z = high. `caps` are the triangles
-    of its ends, (m, 3), if left out those from its first point, from which all of it must be seen."""
-    n = len(outline)
-    k = np.arange(n)
+    of its ends, (m, 3), if left out those from the mean of its points, from which all of it must be seen."""
+    k = np.arange(len(outline))
     after = np.roll(k, -1)
     if caps is None:
-        caps = np.stack([np.zeros(n - 2, dtype=np.int64), k[1:-1], k[2:]], axis=1)
+        caps = np.stack([np.full(len(k), len(k)), k, after], axis=1)
+        outline = np.concatenate([outline, outline.mean(axis=0)[None]])
+    n = len(outline)
     walls = [np.stack([k, after, after + n], axis=1), np.stack([k, after + n, k + n], axis=1)]
     points = [np.column_stack([outline, np.full(n, z)]) for z in (low, high)]
     return Solid(np.concatenate(points), np.concatenate([*walls, caps[:, ::-1], caps + n]))
@@ -53,7 +54,9 @@ def cylinder(radius: float, low: float, high: float) -> Solid:
 
 def slice_(radius: float, begin: float, end: float, half: float) -> Solid:
     """The part of a cylinder between two angles [rad], from its axis."""
-    return prism(np.concatenate([[[0.0, 0.0]], arc(radius, begin, end)]), -half, half)
+    outline = np.concatenate([[[0.0, 0.0]], arc(radius, begin, end)])
+    k = np.arange(1, len(outline) - 1)
+    return prism(outline, -half, half, np.stack([np.zeros_like(k), k, k + 1], axis=1))
 
 
 def bent_plate(inner: float, outer: float, begin: float, end: float, half: float) -> Solid:

@@ -176,6 +176,8 @@ def _paint(panel: Any, scene: _Scene, view: Floats) -> None:
     order: Ints = np.lexsort((-(middle @ view[2]), group))
     shown = [int(k) for k in order if facing[k]]
     colours = [(*(lit[k] * np.array(scene.colours[k][:3])), scene.colours[k][3]) for k in shown]
-    faces = PolyCollection([seen[k][:, :2] for k in shown], facecolors=colours, edgecolors=colours)
-    faces.set(linewidths=0.3)
+    faces = PolyCollection([seen[k][:, :2] for k in shown], facecolors=colours)
+    # lines in the faces' colour close the seams between them; of what is translucent they would be seen twice
+    edges = [colour if colour[3] == 1.0 else (0.0, 0.0, 0.0, 0.0) for colour in colours]
+    faces.set(edgecolors=edges, linewidths=0.3)
     panel.add_collection(faces, autolim=False)
