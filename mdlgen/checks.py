@@ -394,6 +394,32 @@ def _guessed_bending(model: Model) -> Iterator[Lint]:
             )
 
 
+def _unfaced(model: Model) -> Iterator[Lint]:
+    """Pressed rollers that nothing keeps from going through the roller that they are pressed towards."""
+    known = {frozenset(pair) for pair in zip(model.contacts.part_a, model.contacts.part_b, strict=True)}
+    carrying = {model.rollers[m.on].name for m in model.meshes if m.on >= 0}
+    for roller in model.rollers:
+        for other in model.rollers:
+            named = frozenset((roller.name, other.name)) in known
+            if roller.press is None or other is roller or named or {roller.name, other.name} & carrying:
+                continue
+            way = other.center - roller.center
+            ahead, along = float(way @ roller.press.direction), float(way @ roller.axis)
+            aside = float(np.linalg.norm(way - ahead * roller.press.direction - along * roller.axis))
+            if (
+                abs(along) < 0.5 * (roller.width + other.width)
+                and aside < 0.5 * min(roller.radius, other.radius)
+                # near enough for a nip
+                and 0.0 < ahead < roller.reach + other.reach + 0.5 * min(roller.radius, other.radius)
+            ):
+                yield Lint(
+                    "W118",
+                    f"rollers.{roller.name}.press",
+                    f"it presses towards {other.name} and has no contact with it, so it goes through it",
+                    f"add to contacts {{between: [{roller.name}, {other.name}], stiffness: 30 N/mm^1.5}}",
+                )
+
+
 def _box_corners(model: Model, sheet: SheetPart) -> Floats:
     """All corners of all boxes as they begin [mm], (8 boxes, 3)."""
     boxes = slice(sheet.first, sheet.first + sheet.count)
@@ -413,6 +439,7 @@ CHECKS: tuple[Callable[[Model], Iterator[Lint]], ...] = (
     _smoothing,
     _idle_drive,
     _untouched,
+    _unfaced,
     _free_static,
     _interference,
     _density,

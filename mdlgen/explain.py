@@ -78,6 +78,11 @@ SCENE = {
         "A one-way clutch passes torque in one sense only. This drive turns in the other one, so it never "
         "drives. Give `direction` the sign of the speed."
     ),
+    "W118": (
+        "A pressed roller faces another one near by, and the list of contacts does not name the two. Where "
+        "no sheet is between them nothing holds the spring, and the roller moves into the other one. Add a "
+        "contact of the two rollers beside those with the sheet."
+    ),
 }
 
 TEXT = {

@@ -121,7 +121,7 @@ def write_together(files: Mapping[Path, str | bytes]) -> None:
             with contextlib.suppress(OSError):  # one that stays is of files that are renamed already
                 os.unlink(folder / NOTE)
     except OSError as error:
-        raise OutputError(f"{path}: cannot write: {error.strerror or error}") from None
+        raise _refused(path, error) from None
     except KeyboardInterrupt:
         for folder in folders:
             recover(folder)
@@ -130,6 +130,12 @@ def write_together(files: Mapping[Path, str | bytes]) -> None:
         for temporary, _ in staged:
             with contextlib.suppress(OSError):
                 os.unlink(temporary)
+
+
+def _refused(path: Path, error: OSError) -> OutputError:
+    missing = isinstance(error, FileNotFoundError) and not path.parent.exists()
+    why = f"there is no folder {path.parent}" if missing else error.strerror or str(error)
+    return OutputError(f"{path}: cannot write: {why}")
 
 
 def recover(folder: Path) -> None:
@@ -213,7 +219,7 @@ def _rename(staged: list[tuple[Path, Path]]) -> None:
         for back in undo[:-1]:
             with contextlib.suppress(OSError):
                 back()
-        raise OutputError(f"{path}: cannot write: {error.strerror or error}") from None
+        raise _refused(path, error) from None
     finally:
         for old in kept:
             with contextlib.suppress(OSError):

@@ -64,6 +64,15 @@ def test_fires(code: str, sample: str, overrides: list[str], where: str) -> None
         assert str(lint).isascii() and "\n" not in str(lint)
 
 
+def test_a_pressed_roller_whose_counterpart_is_forgotten() -> None:
+    sheet = ", ".join(f"{{between: [note, {name}], stiffness: 300 N/mm^1.5}}" for name in ("motor", "idler"))
+    (hit,) = (lint for lint in found("channel", f"contacts=[{sheet}]") if lint.code == "W118")
+    assert hit.where == "rollers.idler.press" and "motor" in hit.message and "[idler, motor]" in hit.remedy
+    # where the two are not opposite each other there is nothing to forget
+    aside = "rollers.motor.center=[-9 mm, 9 mm, -7.55 mm]"
+    assert "W118" not in {lint.code for lint in found("channel", f"contacts=[{sheet}]", aside)}
+
+
 def test_every_check_is_tested() -> None:
     assert {code for code, *_ in CASES} == {f"W{k}" for k in range(101, 116)}
     assert len(CHECKS) >= 11

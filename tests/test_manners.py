@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -74,6 +75,29 @@ def test_near_misses_are_named() -> None:
         code, told = run(*args)
         assert code == 2 and f"did you mean {meant!r}?" in told, told
         assert len(told.splitlines()) == 1
+
+
+def test_check_is_a_table_on_a_terminal_and_plain_elsewhere(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    args = ["check", FOUR, "--set", "materials.eur10.E_md=40000 MPa"]
+    plain = run(*args)[1]
+    assert "\x1b" not in plain and "W101 materials.eur10.E_md: 40000 MPa is an unusual" in plain
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+    for name, value in (("TERM", "xterm-256color"), ("COLUMNS", "90")):
+        monkeypatch.setenv(name, value)
+    with pytest.raises(SystemExit) as ended:
+        app(args, prog_name="mdlgen")
+    assert ended.value.code == 0
+    coloured = capsys.readouterr().out
+    told = re.sub(r"\x1b\[[0-9;]*m", "", coloured)
+    assert coloured != told and max(map(len, told.splitlines())) <= 90
+    cells = [line.split() for line in told.splitlines()]
+    assert ["code", "where", "what", "what", "to", "do"] in cells
+    # every number of the plain tables stands in these
+    for line in plain.splitlines():
+        if line.startswith(("  k", "  c", "  along")):
+            assert line.split() in cells
 
 
 @pytest.mark.parametrize("command", [c.name or c.callback.__name__ for c in app.registered_commands])  # type: ignore[union-attr]

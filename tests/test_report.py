@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 from lxml import html
 from ran import ran, transport
+from scipy.spatial.transform import Rotation
 from synthetic import moving, small_model
 from typer.testing import CliRunner
 
@@ -27,8 +28,9 @@ from mdlgen.model.tables import BOX_CYLINDER
 from mdlgen.paths import samples, templates
 from mdlgen.report import boxes
 from mdlgen.report.animation import FRAMES, MOST, frames
+from mdlgen.report.maps import maps
 from mdlgen.report.meshes import machine
-from mdlgen.report.motion import poses
+from mdlgen.report.motion import names, poses
 from mdlgen.report.page import page
 from mdlgen.results import store, tree
 from mdlgen.results.result import Result
@@ -140,19 +142,66 @@ class TestPicture:
         assert np.abs(found - away).max() < 1e-3
 
     def test_meshes_are_closed_and_look_outward(self) -> None:
-        for sample in ("transport_4x4", "channel"):
-            model = (transport() if sample == "transport_4x4" else ran(sample)).model
+        for sample in ("transport_4x4", "channel", "peel", "pick"):
+            model = mdlgen.lower(mdlgen.load(samples() / f"{sample}.yaml"))
             for mesh in machine(model):
                 edges = mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
                 assert sorted(map(tuple, edges)) == sorted(map(tuple, edges[:, ::-1])), mesh.name
                 a, b, c = np.moveaxis(mesh.points[mesh.triangles], 1, 0)
                 volume = np.einsum("ni,ni->n", a, np.cross(b, c)).sum() / 6
                 assert volume > 0, mesh.name
-                if mesh.kind == "roller":
+                sectors = {
+                    f"{r.name} {s}": (r, k) for r in model.rollers if r.rim for k, s in enumerate(r.rim.name)
+                }
+                if mesh.name in sectors:
+                    roller, k = sectors[mesh.name]
+                    assert roller.rim is not None
+                    assert mesh.kind == ("sector" if roller.rim.name[k].startswith("s") else "roller")
+                    angle, radius = roller.rim.end[k] - roller.rim.begin[k], roller.rim.radius[k]
+                    # sides of a prism, 48 in a round
+                    sides = np.ceil(48 * angle / (2 * np.pi) - 1e-9)
+                    part = sides / angle * np.sin(angle / sides)
+                    assert volume == pytest.approx(angle / 2 * radius**2 * roller.width * part, rel=1e-9)
+                elif mesh.kind == "roller":
                     roller = model.roller(mesh.name)
-                    # a prism of 48 sides
                     part = 48 / (2 * np.pi) * np.sin(2 * np.pi / 48)
                     assert volume == pytest.approx(np.pi * roller.radius**2 * roller.width * part, rel=1e-9)
+
+    def test_a_tooth_stands_out_of_its_rim_as_far_as_it_is_given(self) -> None:
+        tooth = "rollers.feed.rim={sectors: [{from: 30 deg, to: 60 deg, radius: 15.5 mm}]}"
+        model = mdlgen.lower(mdlgen.load(samples() / "peel.yaml", [tooth]))
+        reach = {
+            m.name: np.hypot(*m.points[:, :2].T).max() for m in machine(model) if m.name.startswith("feed ")
+        }
+        assert reach == pytest.approx({"feed s0": 15.5, "feed g0": 15.0}, rel=1e-12)
+        angle = next(np.arctan2(*m.points[1:3, 1::-1].T) for m in machine(model) if m.name == "feed s0")
+        assert angle[0] == pytest.approx(np.radians(30), abs=1e-12)
+
+    def test_a_roller_whose_mesh_is_touched_is_drawn_as_the_mesh(self) -> None:
+        model = mdlgen.lower(mdlgen.load(samples() / "pick.yaml"))
+        assert [(m.name, m.kind) for m in machine(model)] == [
+            ("plate", "plane"),
+            ("lobe", "mesh"),
+            ("ramp", "guide"),
+        ]
+        both = mdlgen.lower(mdlgen.load(samples() / "pick.yaml", ["contacts.0.between=[note, pick]"]))
+        assert ("pick", "roller") in [(m.name, m.kind) for m in machine(both)]
+
+    def test_an_arm_goes_from_its_pivot_to_the_axis_of_its_roller(self) -> None:
+        result = ran("peel")
+        at = np.arange(len(result.time))
+        place, turn = poses(result, at)
+        roller = result.model.roller("reject")
+        assert roller.arm is not None and names(result.model)[-1] == "reject_arm"
+        axes = Rotation.from_quat(np.roll(turn[:, -1], -1, axis=1)).as_matrix()
+        assert np.abs(place[:, -1] - roller.arm.pivot).max() < 1e-12
+        mesh = next(m for m in machine(result.model) if m.kind == "arm")
+        assert mesh.body == len(result.model.bodies.name)
+        # the solver keeps the length of the arm to 1e-9 of it; its round end goes 0.2 radii beyond the axis
+        tip = place[:, -1] + (mesh.points[:, 0].max() - 0.2 * roller.radius) * axes[:, :, 0]
+        assert np.abs(tip - result.position[:, roller.body]).max() < 1e-6
+        swung = np.ptp(result.position[:, roller.body, 2])
+        assert swung > 1e-3  # it does swing
 
     def test_a_pairs_force_is_shared_whole_among_its_boxes(self, result: Result) -> None:
         at = np.arange(len(result.time))
@@ -277,6 +326,29 @@ class TestText:
         assert f"{result.energy.balance_error:.5g}" in told
         events = tree.get_element_by_id("events").xpath(".//tbody/tr")
         assert len(events) == len(result.events) > 8
+
+    def test_the_map_of_what_joints_bore_stands_in_it(self, result: Result, text: str) -> None:
+        section = html.fromstring(text).get_element_by_id("map")
+        drawn, found = section.xpath(".//svg"), maps(result)
+        assert len(drawn) == len(found) == 4
+        for svg, one in zip(drawn, found, strict=True):
+            assert svg.get("aria-label") == one.title.replace("\n", ": ")
+            cells = svg.xpath("./polygon")
+            assert [int(c.get("class")[1:]) for c in cells] == [round(18 * p) for p in one.parts]
+            corners = [[tuple(map(float, p.split(","))) for p in c.get("points").split()] for c in cells]
+            assert np.abs(np.array(corners) * (1, -1) - one.cells).max() < 1e-3
+            (ring,) = svg.xpath("./circle")
+            assert (float(ring.get("cx")), -float(ring.get("cy"))) == pytest.approx(tuple(one.place))
+        block = moving(small_model("sheets.note.boxes=[1,1]"))
+        section = html.fromstring(page([block])).get_element_by_id("map")
+        assert not section.xpath(".//svg") and "have no joints" in "".join(section.itertext())
+
+    def test_an_estimate_above_its_tolerance_is_told_at_the_head(self, result: Result, text: str) -> None:
+        assert not html.fromstring(text).xpath("//header//b[@class='bad']")
+        assert result.error_estimate is not None
+        strict = replace(result.model, run=replace(result.model.run, tolerance=result.error_estimate / 2))
+        (bad,) = html.fromstring(page([replace(result, model=strict)])).xpath("//header//b[@class='bad']")
+        assert "above the tolerance" in bad.text
 
     def test_lints_stand_in_it(self) -> None:
         result = moving(small_model("materials.eur10.E_md=40000 MPa"))

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from browser import Tab, found, tab
+from frames import picture_ms
 from PIL import Image
 from ran import ran, transport
 from synthetic import moving, small_model
@@ -22,6 +23,13 @@ pytestmark = pytest.mark.skipif(
     found() is None, reason="no Chromium on the path (apt-get install chromium, or set MDLGEN_CHROMIUM)"
 )
 
+# coarse and short, with both notes, arms and the rim
+FEEDER = (
+    "sheets.note_1.boxes=[5,2]",
+    "sheets.note_2.boxes=[5,2]",
+    "run.duration=6 ms",
+    "run.print_step=0.25 ms",
+)
 COLOURS = ["speed", "strain", "curvature", "contact"]
 
 
@@ -29,6 +37,11 @@ COLOURS = ["speed", "strain", "curvature", "contact"]
 def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Tab]:
     with tab(tmp_path_factory.mktemp("profile")) as made:
         yield made
+
+
+@pytest.fixture(params=["transport", "feeder"])
+def result(request: pytest.FixtureRequest) -> Result:
+    return transport() if request.param == "transport" else ran("feeder", *FEEDER)
 
 
 def show(browser: Tab, folder: Path, results: list[Result], fragment: str = "") -> Tab:
@@ -52,31 +65,34 @@ def silent(browser: Tab, folder: Path) -> None:
 
 def drawn(browser: Tab, time: float) -> np.ndarray:
     """Pixels of the canvas at a time, (h, w, 3)."""
-    browser.ask(f"mdlgen.seek({time}); mdlgen.stage.now()")
-    url = browser.ask("document.getElementById('canvas').toDataURL('image/png')")
+    # at once: what is drawn is kept until it has been shown
+    url = browser.ask(
+        f"mdlgen.seek({time}); mdlgen.stage.now(); document.getElementById('canvas').toDataURL('image/png')"
+    )
     return np.asarray(Image.open(io.BytesIO(b64decode(url.split(",", 1)[1]))).convert("RGB")).astype(int)
 
 
-def test_a_run_is_shown_and_plays(browser: Tab, tmp_path: Path) -> None:
-    result = transport()
+def test_a_run_is_shown_and_plays(browser: Tab, tmp_path: Path, result: Result) -> None:
     show(browser, tmp_path, [result])
-    first, later = drawn(browser, 0.0), drawn(browser, 30.0)
+    end = float(result.time[-1])
+    first, later = drawn(browser, 0.0), drawn(browser, 0.6 * end)
     # not blank, and not the same picture
     assert (np.abs(first - first[0, 0]).max(axis=2) > 30).mean() > 0.1
     assert (np.abs(first - later).max(axis=2) > 30).mean() > 0.01
     # play advances, and stops at the end
     browser.ask("mdlgen.seek(0); document.getElementById('play').click()")
-    browser.until("mdlgen.state.time > 1")
+    browser.until(f"mdlgen.state.time > {0.02 * end}")
     assert browser.ask("document.getElementById('play').textContent") == "pause"
-    browser.ask("mdlgen.seek(49.9)")
+    browser.ask(f"mdlgen.seek({0.998 * end})")
     browser.until("!mdlgen.state.playing")
-    assert browser.ask("mdlgen.state.time") == result.time[-1]
+    assert browser.ask("mdlgen.state.time") == end
     silent(browser, tmp_path)
 
 
-def test_colour_modes_switch(browser: Tab, tmp_path: Path) -> None:
-    show(browser, tmp_path, [transport()], "#t=30&view=xy")
-    assert browser.ask("mdlgen.state.time") == 30
+def test_colour_modes_switch(browser: Tab, tmp_path: Path, result: Result) -> None:
+    at = 0.6 * float(result.time[-1])
+    show(browser, tmp_path, [result], f"#t={at}&view=xy")
+    assert browser.ask("mdlgen.state.time") == at
     seen = []
     for k, name in enumerate(COLOURS):
         browser.ask(
@@ -87,7 +103,7 @@ def test_colour_modes_switch(browser: Tab, tmp_path: Path) -> None:
         most = browser.ask("mdlgen.runs[0].animation.colours[mdlgen.state.colour].most")
         shown = float(browser.ask("document.querySelector('#legend .ends').lastChild.textContent").split()[0])
         assert shown == pytest.approx(most, rel=1e-4)
-        seen.append(drawn(browser, 30.0))
+        seen.append(drawn(browser, at))
     for k in range(len(seen)):
         for other in seen[:k]:
             assert (np.abs(seen[k] - other).max(axis=2) > 30).mean() > 0.002
@@ -102,8 +118,7 @@ def test_a_box_in_a_nip_has_the_colour_of_its_force(browser: Tab, tmp_path: Path
     assert any(r > 120 and g > 160 and b < 90 for r, g, b in colours)
 
 
-def test_the_figures_have_the_numbers_of_the_summary(browser: Tab, tmp_path: Path) -> None:
-    result = transport()
+def test_the_figures_have_the_numbers_of_the_summary(browser: Tab, tmp_path: Path, result: Result) -> None:
     show(browser, tmp_path, [result])
     told = json.loads(
         browser.ask(
@@ -113,10 +128,17 @@ def test_the_figures_have_the_numbers_of_the_summary(browser: Tab, tmp_path: Pat
         )
     )
     last = {(key, name): (value, text) for key, name, value, text in told}
-    summary = result.summary()
-    travel = summary["sheets"]["note"]["travel_mm"][0]
-    assert last["displacement", "note x"][0] == pytest.approx(travel, rel=1e-6)
-    assert last["displacement", "note x"][1].split()[-1] == f"{travel:.5g}"
+    result.save(tmp_path)
+    summary = json.loads((tmp_path / "summary.json").read_text("utf-8"))
+    for name, sheet in summary["sheets"].items():
+        for k, axis in enumerate("xyz"):
+            value, shown = last["displacement", f"{name} {axis}"]
+            # four-byte numbers
+            assert value == pytest.approx(sheet["travel_mm"][k], rel=1e-6, abs=1e-9)
+            assert float(shown.split()[-1]) == pytest.approx(sheet["travel_mm"][k], rel=1e-4, abs=1e-9)
+            value, _ = last["speed", f"{name} {axis}"]
+            assert value == pytest.approx(sheet["speed_mm_per_s"][k], rel=1e-6, abs=1e-6)
+        assert last["yaw", name][0] == pytest.approx(sheet["yaw_deg"], rel=1e-6, abs=1e-9)
     for name, roller in summary["rollers"].items():
         assert last["omega", name][0] == pytest.approx(roller["omega_rad_per_s"], rel=1e-6)
         assert last["force", name][0] == pytest.approx(roller["nip_force_n"], rel=1e-6)
@@ -184,11 +206,6 @@ def test_two_runs_in_one_page(browser: Tab, tmp_path: Path) -> None:
 def test_600_boxes_and_500_states_stay_smooth(browser: Tab, tmp_path: Path) -> None:
     model = small_model("sheets.note.boxes=[20,30]")
     show(browser, tmp_path, [moving(model, 500)])
-    # as in play, where a picture that takes too long is made coarser
-    took = browser.ask(
-        "(() => {const took = []; for (let k = 0; k < 60; k += 1) {const start = performance.now();"
-        "mdlgen.seek(k / 2); mdlgen.stage.now(); took.push(performance.now() - start);"
-        "mdlgen.stage.pace(took[k])} return took.slice(30).sort((a, b) => a - b)[15]})()"
-    )
-    assert took <= 50.0  # ms; drawn without a graphics card, and read back
+    # all its pixels, without a graphics card
+    assert picture_ms(browser) <= 50.0
     silent(browser, tmp_path)

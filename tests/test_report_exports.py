@@ -19,7 +19,7 @@ from mdlgen.errors import SpecError
 from mdlgen.model.tables import Model
 from mdlgen.report.gltf import LASTS, glb
 from mdlgen.report.meshes import machine
-from mdlgen.report.motion import poses
+from mdlgen.report.motion import names, poses
 from mdlgen.report.stills import stills, times
 from mdlgen.report.vtkhdf import vtkhdf
 from mdlgen.results.result import Result
@@ -95,13 +95,27 @@ class TestGlb:
             seen.add((name, path))
         assert len(seen) == 2 * (boxes(result.model) + len(result.model.rollers))
 
+    @pytest.mark.parametrize("sample", ["peel", "pick"])
+    def test_rims_arms_and_meshes_are_where_they_are(self, sample: str) -> None:
+        trimesh = pytest.importorskip("trimesh")
+        result = ran(sample)
+        scene = trimesh.load(io.BytesIO(glb(result, 40)), file_type="glb")
+        place, _ = poses(result, np.array([40]))
+        for body, name in enumerate(names(result.model)):
+            matrix, _ = scene.graph.get(name)
+            assert np.abs(matrix[:3, 3] - TURNED @ place[0, body]).max() < 1e-8
+        for mesh in machine(result.model):
+            shape = scene.geometry[f"{mesh.name} {mesh.kind}"]
+            assert shape.is_volume
+            assert np.abs(shape.bounds - [mesh.points.min(axis=0), mesh.points.max(axis=0)]).max() < 1e-5
+
     def test_a_static_run_has_no_animation(self) -> None:
         data = glb(ran("cantilever", "sheets.note.boxes=[2,8]"))
         assert b'"animations"' not in data
 
 
 class TestVtkhdf:
-    @pytest.mark.parametrize("sample", ["transport_4x4", "channel", "cantilever"])
+    @pytest.mark.parametrize("sample", ["transport_4x4", "peel", "channel", "cantilever"])
     def test_vtk_reads_the_same_positions_at_every_time(self, tmp_path: Path, sample: str) -> None:
         reading = pytest.importorskip("vtkmodules.vtkIOHDF", reason="vtk is not installed")
         from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -110,6 +124,7 @@ class TestVtkhdf:
         result = {
             "transport_4x4": transport,
             "channel": lambda: ran("channel"),
+            "peel": lambda: ran("peel"),
             "cantilever": lambda: ran("cantilever", "sheets.note.boxes=[2,8]"),
         }[sample]()
         path = tmp_path / "run.vtkhdf"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import sys
 from pathlib import Path
 from threading import Thread
 from typing import TYPE_CHECKING, Annotated
@@ -99,12 +100,15 @@ def check(
 
     Example: mdlgen check samples/transport_4x4.yaml --set sheets.note.boxes=[20,30]
     """
+    from mdlgen.cli import tables
     from mdlgen.report.overview import overview
     from mdlgen.report.text import overview_text
 
     found = overview(model_of(spec, sets, limits))
     if as_json:
         echo_json(found)
+    elif not quiet and sys.stdout.isatty():
+        tables.show(found)
     elif not quiet:
         typer.echo(overview_text(found))
     else:

@@ -10,7 +10,7 @@ import numpy as np
 from mdlgen.model.tables import Floats, Ints, Model
 from mdlgen.report import boxes
 from mdlgen.report.meshes import machine, moving
-from mdlgen.report.motion import poses, start
+from mdlgen.report.motion import names, poses, start
 from mdlgen.results.result import Result
 
 # Boxes times states of a page, 600 boxes at 501 states; more states than FRAMES are not seen one by one.
@@ -60,7 +60,7 @@ def animation(result: Result, at: Ints, colours: dict[str, tuple[str, Floats]]) 
         "turn": packed(np.round(turn * WHOLE), "i2"),
         "colours": [_colour(name, unit, values) for name, (unit, values) in colours.items()],
         "meshes": _meshes(model, moves),
-        "names": [model.bodies.name[body] for body in moves],
+        "names": [names(model)[body] for body in moves],
     }
 
 

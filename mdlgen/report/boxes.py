@@ -6,7 +6,7 @@ import numpy as np
 
 from mdlgen.model.guides import depths
 from mdlgen.model.tables import BOX_CYLINDER, BOX_GUIDE, BOX_PLANE, GROUND, Floats, Ints, Model
-from mdlgen.report.meshes import CORNERS
+from mdlgen.report.solids import CORNERS
 from mdlgen.results.foot import turns
 from mdlgen.results.result import Result
 from mdlgen.results.strain import SheetJoints

@@ -11,8 +11,9 @@ import numpy as np
 from mdlgen.model.tables import Floats
 from mdlgen.report import boxes
 from mdlgen.report.animation import frames
-from mdlgen.report.meshes import BOX, CORNERS, machine, moving
-from mdlgen.report.motion import poses
+from mdlgen.report.meshes import machine, moving
+from mdlgen.report.motion import names, poses
+from mdlgen.report.solids import BOX, CORNERS
 from mdlgen.results.result import Result
 from mdlgen.version import version
 
@@ -23,7 +24,10 @@ _VERTICES, _INDICES = 34962, 34963
 _LOOKS = {
     "box": (0.05, 0.45, 0.45, 1.0),
     "roller": (0.40, 0.45, 0.50, 1.0),
+    "sector": (0.07, 0.09, 0.11, 1.0),
     "mark": (0.67, 0.11, 0.0, 1.0),
+    "arm": (0.30, 0.22, 0.10, 1.0),
+    "mesh": (0.20, 0.29, 0.39, 1.0),
     "plane": (0.55, 0.60, 0.65, 0.35),
     "guide": (0.20, 0.29, 0.39, 0.45),
 }
@@ -59,7 +63,7 @@ class _Buffer:
 
 def glb(result: Result, first: int = 0) -> bytes:
     """The file of a run, in metres, y up, as glTF wants it; its nodes stand where the bodies are at the state
-    `first` of those that are shown, and are named as the bodies.
+    `first` of those that are shown, and are named as the bodies (an arm as its roller, with `_arm`).
 
     The animation takes LASTS seconds; `asset.extras.ms_per_s` tells how many ms a second shows. The same
     result gives the same bytes.
@@ -73,10 +77,11 @@ def glb(result: Result, first: int = 0) -> bytes:
     meshes = [_mesh(buffer, "box", CORNERS, BOX, looks.index("box"))]
     nodes: list[dict[str, Any]] = []
     rows: dict[int, int] = {}
+    called = names(model)
 
     def node(body: int, **more: Any) -> None:
         rows[body] = len(nodes)
-        told = {"name": model.bodies.name[body], "translation": place[first, body].tolist()}
+        told = {"name": called[body], "translation": place[first, body].tolist()}
         nodes.append(told | {"rotation": turn[first, body].tolist()} | more)
 
     for body in range(boxes.count(model)):
@@ -90,6 +95,10 @@ def glb(result: Result, first: int = 0) -> bytes:
             continue
         nodes[rows[mesh.body]].setdefault("children", []).append(len(nodes))
         nodes.append({"name": f"{mesh.name} {mesh.kind}", "mesh": len(meshes) - 1})
+    moves = moving(model)
+    for body in moves:
+        if body not in rows:  # nothing is drawn of a roller that is a mesh
+            node(body)
     inside = {child for told in nodes for child in told.get("children", ())}
     # mm to m, and z up to y up
     root = {
@@ -98,7 +107,6 @@ def glb(result: Result, first: int = 0) -> bytes:
         "rotation": [-(0.5**0.5), 0.0, 0.0, 0.5**0.5],
         "scale": [0.001] * 3,
     }
-    moves = moving(model)
     span = float(result.time[at[-1]] - result.time[at[0]])
     told: dict[str, Any] = {
         "asset": {

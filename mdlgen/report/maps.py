@@ -12,7 +12,7 @@ from mdlgen.model.grid import box_nodes, local
 from mdlgen.model.tables import GROUND, Floats, Model, SheetPart
 from mdlgen.report.figures import STYLE
 from mdlgen.results.result import Result
-from mdlgen.results.strain import SheetJoints, Strains
+from mdlgen.results.strain import SheetJoints
 
 _COLOURS = "viridis"  # rises evenly for all readers and in grey
 _WAYS = ("x (MD)", "y (CD)")
@@ -23,14 +23,20 @@ _LONG, _WIDEST, _PAGE, _GAP, _HEAD = 2.8, 8.0, 9.0, 0.3, 0.55
 _NARROWEST = 1.8  # what the writing takes
 
 
-class _Panel(NamedTuple):
-    """One map: a quantity of one sheet along one axis."""
+class Map(NamedTuple):
+    """A quantity of one sheet along one axis."""
 
     sheet: SheetPart
     title: str
     cells: Floats  # sheet axes from the centre [mm], (n, 4, 2)
     values: Floats
     place: Floats  # middle of the cell of the greatest, (2,)
+
+    @property
+    def parts(self) -> Floats:
+        """Of the greatest value, 0 where there is nothing but round-off, (n,)."""
+        most = float(self.values.max())
+        return self.values / most if most >= _NOTHING else np.zeros_like(self.values)
 
     @property
     def scale(self) -> float:
@@ -55,7 +61,7 @@ def strain_map(result: Result) -> bytes:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    panels = [] if result.strains is None else _panels(result, result.strains)
+    panels = maps(result)
     sizes = np.array([panel.outline * panel.scale for panel in panels] or [(0.0, 0.0)])
     width, height = np.maximum(sizes.max(axis=0), (_NARROWEST, 0.0)) + np.array([_GAP, _GAP + _HEAD])
     columns = max(1, min(len(panels), int(_PAGE // width)))
@@ -83,7 +89,11 @@ def strain_map(result: Result) -> bytes:
     return stream.getvalue()
 
 
-def _panels(result: Result, strains: Strains) -> list[_Panel]:
+def maps(result: Result) -> list[Map]:
+    """Of strain and of curvature, along each axis of each sheet that has joints: their peaks over the run."""
+    if result.strains is None:
+        return []
+    strains = result.strains
     model, joints = result.model, strains.joints
     cells = _cells(model, joints)
     found = []
@@ -102,7 +112,7 @@ def _panels(result: Result, strains: Strains) -> list[_Panel]:
                 if values[most] < _NOTHING:
                     told = f"below {_NOTHING:g}{unit}"
                 name = f"{sheet.name}, {what} along {way}\n{told}"
-                found.append(_Panel(sheet, name, cells[mine], values[mine], cells[most].mean(axis=0)))
+                found.append(Map(sheet, name, cells[mine], values[mine], cells[most].mean(axis=0)))
     return found
 
 
@@ -122,21 +132,20 @@ def _cells(model: Model, joints: SheetJoints) -> Floats:
     return np.stack([start - across, start + along - across, start + along + across, start + across], axis=1)
 
 
-def _draw(paper: Any, panel: _Panel, left: float, top: float) -> None:
+def _draw(paper: Any, panel: Map, left: float, top: float) -> None:
     from matplotlib.collections import PolyCollection
     from matplotlib.patches import Rectangle
 
     size = panel.outline * panel.scale
     corner = np.array([left, top - _HEAD - size[1]])
     middle = corner + size / 2
-    most = float(panel.values.max())
     cells = PolyCollection(
-        list(middle + panel.cells * panel.scale), array=panel.values, cmap=_COLOURS, edgecolors="face"
+        list(middle + panel.cells * panel.scale), array=panel.parts, cmap=_COLOURS, edgecolors="face"
     )
-    cells.set(clim=(0.0, most if most >= _NOTHING else 1.0), linewidths=0.1)
+    cells.set(clim=(0.0, 1.0), linewidths=0.1)
     paper.add_collection(cells, autolim=False)
     paper.add_patch(Rectangle(tuple(corner), *size, fill=False, edgecolor="#888888", linewidth=0.6))
-    if most >= _NOTHING:
+    if panel.parts.any():
         paper.plot(
             *(middle + panel.place * panel.scale), "o", markersize=9, mfc="none", mec="#D55E00", mew=1.6
         )

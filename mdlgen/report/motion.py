@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from mdlgen.model.tables import Floats, Ints, Model
+from mdlgen.report.meshes import on_arms
 from mdlgen.results.result import Result
 
 
 def poses(result: Result, at: Ints) -> tuple[Floats, Floats]:
     """Centres [mm], (t, bodies, 3), and Euler parameters, scalar first, (t, bodies, 4), of all bodies at the
-    stored states `at`.
+    stored states `at`; after the bodies come arms.
 
     A solver need not tell how far a roller has turned, since nothing depends on it: here it is the
     integral of its speed over the stored states.
@@ -25,11 +26,35 @@ def poses(result: Result, at: Ints) -> tuple[Floats, Floats]:
         start = Rotation.from_matrix(result.model.bodies.rotation[roller.body])
         turned = Rotation.from_rotvec(angle[:, None] * roller.axis) * start
         turn[:, roller.body] = np.roll(turned.as_quat(), 1, axis=1)
-    return place, turn
+    return _with_arms(result.model, place, turn)
 
 
 def start(model: Model) -> tuple[Floats, Floats]:
     """As `poses` where a run begins, (bodies, 3) and (bodies, 4)."""
     from scipy.spatial.transform import Rotation
 
-    return model.bodies.position, np.roll(Rotation.from_matrix(model.bodies.rotation).as_quat(), 1, axis=1)
+    turn = np.roll(Rotation.from_matrix(model.bodies.rotation).as_quat(), 1, axis=1)
+    place, turn = _with_arms(model, model.bodies.position[None], turn[None])
+    return place[0], turn[0]
+
+
+def names(model: Model) -> list[str]:
+    """What is called what `poses` tells the place of."""
+    return [*model.bodies.name, *(f"{roller.name}_arm" for roller in on_arms(model))]
+
+
+def _with_arms(model: Model, place: Floats, turn: Floats) -> tuple[Floats, Floats]:
+    """Poses with those of arms, which follow from their rollers': at the pivot, level with the roller's
+    middle, x to the roller's axis and z along it."""
+    from scipy.spatial.transform import Rotation
+
+    for roller in on_arms(model):
+        assert roller.arm is not None
+        way = place[:, roller.body] - roller.arm.pivot
+        level = (way @ roller.axis)[:, None] * roller.axis
+        x = (way - level) / np.linalg.norm(way - level, axis=1)[:, None]
+        z = np.broadcast_to(roller.axis, x.shape)
+        turned = Rotation.from_matrix(np.stack([x, np.cross(z, x), z], axis=2)).as_quat()
+        place = np.concatenate([place, (roller.arm.pivot + level)[:, None]], axis=1)
+        turn = np.concatenate([turn, np.roll(turned, 1, axis=1)[:, None]], axis=1)
+    return place, turn

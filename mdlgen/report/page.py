@@ -16,6 +16,7 @@ from mdlgen.report import boxes
 from mdlgen.report.animation import animation, frames, packed
 from mdlgen.report.curves import Panel, panels
 from mdlgen.report.differences import differences, percent, shown
+from mdlgen.report.maps import Map, maps
 from mdlgen.results.result import Result
 from mdlgen.results.strain import histories
 
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from jinja2 import Environment
 
 _LIBRARY = ("three.core.min.js", "three.module.min.js")
+_STEPS = 18  # of colour in a map: .c0 to .c18 in style.css
 _SCRIPTS = ("charts.js", "player.js", "page.js")
 
 
@@ -108,6 +110,7 @@ def _run(result: Result, name: str) -> dict[str, Any]:
         },
         "parameters": [asdict(parameter) for parameter in result.model.parameters],
         "source": result.source,
+        "maps": [_map(found) for found in maps(result)],
         "lints": [asdict(lint) for lint in lints(result.model)],
         "drawn": {
             "name": name,
@@ -115,6 +118,19 @@ def _run(result: Result, name: str) -> dict[str, Any]:
             "animation": animation(result, at, colours),
             "panels": [_panel(panel) for panel in panels(result, at, deep, joints)],
         },
+    }
+
+
+def _map(found: Map) -> dict[str, Any]:
+    """A map as the template draws it [mm], y downwards; the colours are steps of its style."""
+    return {
+        "title": found.title.split("\n"),
+        "size": found.sheet.outline,
+        "ring": (found.place * (1, -1)).tolist() if found.parts.any() else None,
+        "cells": [
+            (" ".join(f"{x:.3f},{-y:.3f}" for x, y in cell), round(_STEPS * part))
+            for cell, part in zip(found.cells.tolist(), found.parts.tolist(), strict=True)
+        ],
     }
 
 

@@ -11,8 +11,9 @@ from mdlgen.errors import SpecError
 from mdlgen.model.tables import Floats, Ints
 from mdlgen.report import boxes
 from mdlgen.report.figures import STYLE
-from mdlgen.report.meshes import CORNERS, FACES, machine
+from mdlgen.report.meshes import machine
 from mdlgen.report.motion import poses
+from mdlgen.report.solids import CORNERS, FACES
 from mdlgen.results.foot import turns
 from mdlgen.results.result import Result
 from mdlgen.results.strain import histories
@@ -23,7 +24,10 @@ _SIDE = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]])
 _AWAY = np.array([-0.55, -0.75, 0.5]) / np.linalg.norm([-0.55, -0.75, 0.5])
 _LOOKS = {
     "roller": ("#b4bdc7", 1.0),
+    "sector": ("#5b6670", 1.0),
     "mark": ("#d55e00", 1.0),
+    "arm": ("#a98f63", 1.0),
+    "mesh": ("#7d93a8", 1.0),
     "plane": ("#c8ccd2", 0.35),
     "guide": ("#7d93a8", 0.6),
 }
@@ -172,6 +176,8 @@ def _paint(panel: Any, scene: _Scene, view: Floats) -> None:
     order: Ints = np.lexsort((-(middle @ view[2]), group))
     shown = [int(k) for k in order if facing[k]]
     colours = [(*(lit[k] * np.array(scene.colours[k][:3])), scene.colours[k][3]) for k in shown]
-    faces = PolyCollection([seen[k][:, :2] for k in shown], facecolors=colours, edgecolors=colours)
-    faces.set(linewidths=0.3)
+    faces = PolyCollection([seen[k][:, :2] for k in shown], facecolors=colours)
+    # lines in the faces' colour close the seams between them; of what is translucent they would be seen twice
+    edges = [colour if colour[3] == 1.0 else (0.0, 0.0, 0.0, 0.0) for colour in colours]
+    faces.set(edgecolors=edges, linewidths=0.3)
     panel.add_collection(faces, autolim=False)

@@ -7,10 +7,27 @@ from typing import Any
 
 from mdlgen.report.overview import UNITS
 
+Rows = list[list[str]]  # of a table, the first with what its columns are
+
 
 def overview_text(told: dict[str, Any]) -> str:
-    """The tables of `mdlgen check`."""
-    lines = [f"scene {told['scene']}, {told['analysis']}"]
+    """The tables of `mdlgen check` where they are not for a terminal."""
+    lines: list[str] = []
+    for part in overview_parts(told):
+        lines += [part] if isinstance(part, str) else _table(part)
+    lines.append("")
+    lines += [f"{x['code']} {x['where']}: {x['message']}; {x['remedy']}" for x in told["lints"]]
+    lines.append(lints_end(told))
+    return "\n".join(lines)
+
+
+def lints_end(told: dict[str, Any]) -> str:
+    return "mdlgen explain CODE says more" if told["lints"] else "no lints"
+
+
+def overview_parts(told: dict[str, Any]) -> list[str | Rows]:
+    """What `mdlgen check` tells before the lints: lines, and tables by rows."""
+    lines: list[str | Rows] = [f"scene {told['scene']}, {told['analysis']}"]
     for name, sheet in told["sheets"].items():
         size = " x ".join(f"{v:.5g}" for v in sheet["outline_mm"])
         lines += [
@@ -44,13 +61,10 @@ def overview_text(told: dict[str, Any]) -> str:
     if told["external_parts"]:
         parts = ", ".join(f"{name} ({part['body']})" for name, part in told["external_parts"].items())
         lines.append(f"external parts: {parts}; {pairs['external']} pairs of bodies with them, all kept")
-    lines.append("")
-    lines += [f"{x['code']} {x['where']}: {x['message']}; {x['remedy']}" for x in told["lints"]]
-    lines.append("mdlgen explain CODE says more" if told["lints"] else "no lints")
-    return "\n".join(lines)
+    return lines
 
 
-def _derived(values: dict[str, float]) -> list[str]:
+def _derived(values: dict[str, float]) -> list[str | Rows]:
     """The paper's Table 1 (the box) in a line, and Table 2 (one bushing) by axis."""
     box = [("d_x", "d"), ("d_y", "d"), ("m", "m"), ("I_x", "I"), ("I_y", "I"), ("I_z", "I")]
     told = ", ".join(f"{n} {values[n]:.5g} {UNITS[unit]}" for n, unit in box)
@@ -62,7 +76,7 @@ def _derived(values: dict[str, float]) -> list[str]:
         ("c_t", ("tx", "ty", "tz"), "ct"),
     ):
         rows.append([symbol, *(f"{values[f'{symbol[0]}_{a}']:.5g}" for a in axes), UNITS[unit]])
-    return [f"  box: {told}", *_table(rows), *(_plate(values) if "G" in values else [])]
+    return [f"  box: {told}", rows, *(_plate(values) if "G" in values else [])]
 
 
 def _unlike(told: dict[str, Any]) -> list[str]:
@@ -82,21 +96,21 @@ def _unlike(told: dict[str, Any]) -> list[str]:
     return [f"  boxes differ: {', '.join(parts)}"] if parts else []
 
 
-def _plate(values: dict[str, float]) -> list[str]:
+def _plate(values: dict[str, float]) -> list[str | Rows]:
     """What joints of layout plate have across themselves: k_y and k_tx along x, the others along y."""
     rows = [["its others", "x shear", "y shear", "", "tx twist", "ty twist", "tz along y", ""]]
     for symbol in "kc":
         named = [f"{symbol}_{name}" for name in ("x_shear", "y_shear", "tx_twist", "ty_twist", "tz_y")]
         told = [f"{values[name]:.5g}" for name in named]
         rows.append([symbol, *told[:2], UNITS[symbol], *told[2:], UNITS[f"{symbol}t"]])
-    return [f"  plate: G {values['G']:.5g} MPa, D_twist {values['D_twist']:.5g} {UNITS['D']}", *_table(rows)]
+    return [f"  plate: G {values['G']:.5g} MPa, D_twist {values['D_twist']:.5g} {UNITS['D']}", rows]
 
 
-def _bending(values: dict[str, float]) -> list[str]:
+def _bending(values: dict[str, float]) -> list[str | Rows]:
     rows = [["bending", "per bushing", UNITS["kt"], "per width", UNITS["D"]]]
     for way, hinge, plate in (("along x (MD)", "k_ty", "D_md"), ("along y (CD)", "k_tx", "D_cd")):
         rows.append([way, hinge, f"{values[hinge]:.5g}", plate, f"{values[plate]:.5g}"])
-    return _table(rows)
+    return [rows]
 
 
 def _curves(curves: dict[str, dict[str, Any]]) -> list[str]:

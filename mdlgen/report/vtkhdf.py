@@ -10,8 +10,9 @@ import numpy as np
 from mdlgen.model.tables import Floats, Ints
 from mdlgen.report import boxes
 from mdlgen.report.animation import frames
-from mdlgen.report.meshes import CORNERS, machine
+from mdlgen.report.meshes import machine
 from mdlgen.report.motion import poses
+from mdlgen.report.solids import CORNERS
 from mdlgen.results.foot import turns
 from mdlgen.results.result import Result
 from mdlgen.results.strain import histories
@@ -24,8 +25,10 @@ _ORDER = np.array([0, 1, 3, 2, 4, 5, 7, 6])
 def vtkhdf(result: Result) -> bytes:
     """The file of a run: an UnstructuredGrid (VTKHDF 2.0) with one step a shown state, times in ms, mm.
 
-    Cells: the boxes as hexahedra, then rollers, their marks, planes and guides as triangles. CellData:
-    `body`, and of boxes `speed` [mm/s], `strain`, `curvature` [1/mm] and `contact` [N], zero for the rest.
+    Cells: the boxes as hexahedra, then rollers, their marks, arms, planes, guides and meshes as triangles.
+    CellData: `body` (arms are counted on from the last one), and of boxes `speed` [mm/s], `strain`,
+    `curvature` [1/mm] and `contact` [N], zero for the rest.
+
     The same result gives the same bytes.
     """
     import h5py

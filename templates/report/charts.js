@@ -1,8 +1,7 @@
 // The figures: lines as SVG, drawn from the numbers of the page.
 
 const SVG = "http://www.w3.org/2000/svg";
-// Okabe and Ito: told apart by all readers and in grey
-const COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"];
+const COLOURS = [0, 1, 2, 3, 4, 5, 6].map((k) => `var(--line-${k})`);
 const DASHES = ["", "6 3", "2 2", "8 3 2 3", "1 3"];
 const WIDTH = 560, HEIGHT = 250, LEFT = 62, RIGHT = 12, TOP = 8, BOTTOM = 40;
 
@@ -56,8 +55,12 @@ function chart(parent, runs, key, seek) {
       lines.push({ name: line.name, run: r, x: unpack(line.x, Float32Array), y: unpack(line.y, Float32Array), shown: true });
     }
   });
-  const svg = element("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": told.title });
-  figure.append(svg);
+  const plot = document.createElement("div"), cursor = document.createElement("div");
+  plot.className = "plot";
+  cursor.className = "cursor";
+  const svg = element("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": told.title }, plot);
+  plot.append(cursor);
+  figure.append(plot);
   const keys = document.createElement("div");
   keys.className = "keys-of";
   figure.append(keys);
@@ -69,7 +72,7 @@ function chart(parent, runs, key, seek) {
   }
   parent.append(figure);
   const overTime = told.x_title === "time [ms]";
-  let scaleX, unscaleX, cursor, at = 0, inSight = true;
+  let scaleX, unscaleX, at = 0, inSight = true;
 
   function draw() {
     svg.replaceChildren();
@@ -88,11 +91,11 @@ function chart(parent, runs, key, seek) {
     unscaleX = (p) => x0 + (x1 - x0) * (p - LEFT) / wide;
     const scaleY = (y) => TOP + high * (y1 - y) / (y1 - y0);
     for (const x of ticks(x0, x1, 7)) {
-      element("line", { x1: scaleX(x), x2: scaleX(x), y1: TOP, y2: TOP + high, stroke: "#e4e4e4" }, svg);
+      element("line", { x1: scaleX(x), x2: scaleX(x), y1: TOP, y2: TOP + high, class: "grid" }, svg);
       element("text", { x: scaleX(x), y: TOP + high + 15, "text-anchor": "middle" }, svg).textContent = number(x);
     }
     for (const y of ticks(y0, y1, 5)) {
-      element("line", { x1: LEFT, x2: LEFT + wide, y1: scaleY(y), y2: scaleY(y), stroke: "#e4e4e4" }, svg);
+      element("line", { x1: LEFT, x2: LEFT + wide, y1: scaleY(y), y2: scaleY(y), class: "grid" }, svg);
       element("text", { x: LEFT - 5, y: scaleY(y) + 4, "text-anchor": "end" }, svg).textContent = number(y);
     }
     element("text", { x: LEFT + wide / 2, y: HEIGHT - 6, "text-anchor": "middle" }, svg).textContent = told.x_title;
@@ -102,7 +105,6 @@ function chart(parent, runs, key, seek) {
       element("path", { d: path, fill: "none", "stroke-width": 1.6, "stroke-linejoin": "round",
         stroke: COLOURS[names.indexOf(line.name) % COLOURS.length], "stroke-dasharray": dash(line) }, svg);
     }
-    cursor = element("line", { y1: TOP, y2: TOP + high, stroke: "#1b1e22", "stroke-width": 1, "stroke-dasharray": "1 2" }, svg);
     move(at);
   }
 
@@ -113,11 +115,12 @@ function chart(parent, runs, key, seek) {
 
   function move(time) {
     at = time;
-    if (!inSight) return; // a change costs a new picture even where it is not seen
+    if (!inSight) return;
     const x = scaleX(time);
     const outside = !overTime || !(x >= LEFT - 0.5 && x <= WIDTH - RIGHT + 0.5);
-    cursor.setAttribute("visibility", outside ? "hidden" : "visible");
-    if (!outside) { cursor.setAttribute("x1", x); cursor.setAttribute("x2", x); }
+    cursor.hidden = outside;
+    // over the picture of the lines, which need not be drawn anew
+    if (!outside) cursor.style.transform = `translateX(${(100 * x / WIDTH).toFixed(3)}cqw)`;
   }
 
   const groups = new Map();

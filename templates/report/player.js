@@ -2,12 +2,30 @@
 
 const VIRIDIS = ["#440154", "#482878", "#3e4989", "#31688e", "#26828e", "#1f9e89", "#35b779", "#6ece58", "#b5de2b", "#fde725"];
 const KINDS = {
-  roller: { color: 0xaab4bf }, mark: { color: 0xd55e00 },
-  plane: { color: 0xc8ccd2, transparent: true, opacity: 0.35 }, guide: { color: 0x7d93a8, transparent: true, opacity: 0.45 },
+  roller: { color: 0xaab4bf }, sector: { color: 0x56616b }, mark: { color: 0xd55e00 }, arm: { color: 0xa98f63 }, mesh: { color: 0x7d93a8 },
+  plane: { color: 0xc8ccd2, opacity: 0.35 }, guide: { color: 0x7d93a8, opacity: 0.45 },
 };
+// Lit once a corner and not once a pixel, which is what costs without a graphics card.
+const LAMP = [-0.3, -0.5, 0.81]; // from above, and a little from the left and the front
+const VERTEX = `
+  uniform vec3 tone; varying vec3 shade;
+  void main() {
+    #ifdef BOXES
+      shade = color;
+    #else
+      shade = tone * (0.8 + 0.25 * dot(mat3(modelMatrix) * normal, vec3(${LAMP})));
+    #endif
+    gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));
+  }`;
+const FRAGMENT = `
+  uniform float opacity; varying vec3 shade;
+  void main() { gl_FragColor = vec4(shade, opacity); }`;
 // where the camera is, seen from what it looks at, and what is up
 const VIEWS = { xz: [[0, -1, 0], [0, 0, 1]], yz: [[-1, 0, 0], [0, 0, 1]], xy: [[0, 0, 1], [0, 1, 0]], iso: [[-0.55, -0.75, 0.5], [0, 0, 1]] };
 const SLOW = 40, COARSEST = 0.4; // ms a picture; part of the finest
+const THIN = 2.5; // pixels that a sheet is thick at least, so that it is seen from the side
+// corners of a box's faces, four each, counterclockwise: bits 0, 1 and 2 tell the sides along x, y and z
+const FACES = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
 const JOINT = 0.96; // boxes are drawn this much smaller along the sheet, so that joints are seen
 
 const RAMP = `linear-gradient(to right, ${VIRIDIS.join(", ")})`;
@@ -30,32 +48,50 @@ async function library() {
 
 async function player(canvas, changed) {
   const THREE = await library();
-  const renderer = new THREE.WebGLRenderer({ canvas, antialias: !soft(), preserveDrawingBuffer: true });
+  const renderer = new THREE.WebGLRenderer({ canvas, antialias: !soft() });
   const finest = Math.min(window.devicePixelRatio, 2);
   let fineness = finest;
   const scene = new THREE.Scene();
-  scene.background = new THREE.Color(0xf3f5f8);
-  scene.add(new THREE.HemisphereLight(0xffffff, 0x9aa4b0, 2.2));
-  const lamp = new THREE.DirectionalLight(0xffffff, 1.6);
-  scene.add(lamp);
+  const dark = window.matchMedia("(prefers-color-scheme: dark)");
+  const ground = () => { scene.background = new THREE.Color(getComputedStyle(canvas).backgroundColor); };
+  ground();
   const camera = new THREE.OrthographicCamera(-1, 1, 1, -1, -1e5, 1e5);
   const target = new THREE.Vector3();
   let away = new THREE.Vector3(0, -1, 0), size = 100, follow = false, machine = true, seen = null, time = 0;
 
+  const part = (colour, i) => parseInt(colour.slice(1 + 2 * i, 3 + 2 * i), 16) / 255;
   const ramp = new Float32Array(256 * 3);
-  {
-    const [low, high] = [new THREE.Color(), new THREE.Color()];
-    for (let k = 0; k < 256; k += 1) {
-      const at = (k / 255) * (VIRIDIS.length - 1), first = Math.min(Math.floor(at), VIRIDIS.length - 2);
-      low.set(VIRIDIS[first]).lerp(high.set(VIRIDIS[first + 1]), at - first).toArray(ramp, 3 * k);
+  for (let k = 0; k < 256; k += 1) {
+    const at = (k / 255) * (VIRIDIS.length - 1), first = Math.min(Math.floor(at), VIRIDIS.length - 2);
+    for (let i = 0; i < 3; i += 1) {
+      ramp[3 * k + i] = part(VIRIDIS[first], i) + (at - first) * (part(VIRIDIS[first + 1], i) - part(VIRIDIS[first], i));
     }
   }
 
-  const position = new THREE.Vector3(), scaling = new THREE.Vector3(), one = new THREE.Quaternion(), two = new THREE.Quaternion();
-  const matrix = new THREE.Matrix4();
+  const position = new THREE.Vector3(), axis = new THREE.Vector3(), one = new THREE.Quaternion(), two = new THREE.Quaternion();
+  const sides = new Float64Array(9), light = new Float64Array(3), corners = new Float64Array(24);
 
-  // How bright a face is, by its normal: from above, and a little from the left and the front.
-  const shade = (normal) => 0.72 + 0.28 * Math.abs(-0.3 * normal.x - 0.5 * normal.y + 0.81 * normal.z);
+  function paint({ color = 0, opacity = 1 }, more = {}) {
+    const tone = new THREE.Vector3((color >> 16) / 255, ((color >> 8) & 255) / 255, (color & 255) / 255);
+    const uniforms = { tone: { value: tone }, opacity: { value: opacity } };
+    // what lies behind or in a translucent part is still seen
+    return new THREE.ShaderMaterial({ vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms, transparent: opacity < 1, depthWrite: opacity === 1, ...more });
+  }
+
+  // All boxes as one shape: where there is no graphics card, each instance of one would cost as much as a shape.
+  function blocks(count) {
+    const index = new Uint32Array(36 * count);
+    for (let face = 0; face < 6 * count; face += 1) {
+      for (let k = 0; k < 6; k += 1) index[6 * face + k] = 4 * face + [0, 1, 2, 0, 2, 3][k];
+    }
+    const shape = new THREE.BufferGeometry();
+    shape.setAttribute("position", new THREE.BufferAttribute(new Float32Array(72 * count), 3).setUsage(THREE.DynamicDrawUsage));
+    shape.setAttribute("color", new THREE.BufferAttribute(new Uint8Array(72 * count), 3, true).setUsage(THREE.DynamicDrawUsage));
+    shape.setIndex(new THREE.BufferAttribute(index, 1));
+    const made = new THREE.Mesh(shape, paint({}, { vertexColors: true, defines: { BOXES: "" } }));
+    made.frustumCulled = false;
+    return made;
+  }
 
   // A run, ready to be drawn.
   function take(told) {
@@ -63,14 +99,9 @@ async function player(canvas, changed) {
     const run = {
       told, half, place: unpack(told.place, Uint16Array), turn: unpack(told.turn, Int16Array),
       colours: told.colours.map((c) => ({ ...c, values: unpack(c.values, Uint8Array) })),
-      group: new THREE.Group(), parts: [],
+      group: new THREE.Group(), parts: [], last: new THREE.Vector3(), known: false,
     };
-    // lit by hand, once a box and not once a pixel
-    const material = new THREE.MeshBasicMaterial();
-    run.boxes = new THREE.InstancedMesh(new THREE.BoxGeometry(2, 2, 2), material, told.boxes);
-    run.boxes.instanceMatrix.setUsage(THREE.DynamicDrawUsage);
-    run.boxes.setColorAt(0, new THREE.Color());
-    run.boxes.frustumCulled = false;
+    run.boxes = blocks(told.boxes);
     run.group.add(run.boxes);
     for (const mesh of told.meshes) {
       const shape = new THREE.BufferGeometry();
@@ -78,18 +109,9 @@ async function player(canvas, changed) {
       shape.setIndex(new THREE.BufferAttribute(unpack(mesh.triangles, Uint16Array), 1));
       const flat = shape.toNonIndexed();
       flat.computeVertexNormals();
-      const look = KINDS[mesh.kind];
-      const drawn = new THREE.Mesh(flat, mesh.row < 0 ? new THREE.MeshBasicMaterial({ ...look, vertexColors: true }) : new THREE.MeshLambertMaterial(look));
+      const drawn = new THREE.Mesh(flat, paint(KINDS[mesh.kind]));
       drawn.position.fromArray(mesh.place);
       drawn.quaternion.set(mesh.turn[1], mesh.turn[2], mesh.turn[3], mesh.turn[0]);
-      if (mesh.row < 0) {
-        // what does not move is lit once
-        const normals = flat.getAttribute("normal"), shades = new Float32Array(3 * normals.count);
-        for (let k = 0; k < normals.count; k += 1) {
-          shades.fill(shade(position.fromBufferAttribute(normals, k).applyQuaternion(drawn.quaternion)), 3 * k, 3 * k + 3);
-        }
-        flat.setAttribute("color", new THREE.BufferAttribute(shades, 3));
-      }
       run.group.add(drawn);
       run.parts.push({ drawn, row: mesh.row, kind: mesh.kind });
     }
@@ -123,19 +145,35 @@ async function player(canvas, changed) {
     const [k, part] = pointer(told, time);
     const colour = seen.colours[seen.colour];
     const near = part < 0.5 ? k : Math.min(k + 1, told.time.length - 1);
-    const tint = boxes.instanceColor.array;
+    const points = boxes.geometry.attributes.position, tints = boxes.geometry.attributes.color;
     middle.set(0, 0, 0);
     for (let row = 0; row < told.boxes; row += 1) {
       pose(seen, row, k, part);
       middle.addScaledVector(position, 1 / told.boxes);
-      scaling.set(half[3 * row] * JOINT, half[3 * row + 1] * JOINT, half[3 * row + 2]);
-      matrix.compose(position, one, scaling).toArray(boxes.instanceMatrix.array, 16 * row);
+      for (let k = 0; k < 3; k += 1) {
+        axis.set(Number(k === 0), Number(k === 1), Number(k === 2)).applyQuaternion(one);
+        // both faces are lit alike, so that colours mean the same on both
+        light[k] = 255 * (0.72 + 0.28 * Math.abs(axis.x * LAMP[0] + axis.y * LAMP[1] + axis.z * LAMP[2]));
+        axis.multiplyScalar(k < 2 ? half[3 * row + k] * JOINT : Math.max(half[3 * row + 2], thin));
+        sides[3 * k] = axis.x; sides[3 * k + 1] = axis.y; sides[3 * k + 2] = axis.z;
+      }
+      for (let c = 0; c < 8; c += 1) {
+        const x = c & 1 ? 1 : -1, y = c & 2 ? 1 : -1, z = c & 4 ? 1 : -1;
+        for (let i = 0; i < 3; i += 1) corners[3 * c + i] = position.getComponent(i) + x * sides[i] + y * sides[3 + i] + z * sides[6 + i];
+      }
       const value = 3 * colour.values[near * told.boxes + row];
-      const light = shade(scaling.set(0, 0, 1).applyQuaternion(one));
-      for (let i = 0; i < 3; i += 1) tint[3 * row + i] = light * ramp[value + i];
+      for (let face = 0, at = 72 * row; face < 6; face += 1) {
+        for (let k = 0; k < 4; k += 1, at += 3) {
+          const corner = 3 * FACES[face][k];
+          for (let i = 0; i < 3; i += 1) {
+            points.array[at + i] = corners[corner + i];
+            tints.array[at + i] = light[face >> 1] * ramp[value + i];
+          }
+        }
+      }
     }
-    boxes.instanceMatrix.needsUpdate = true;
-    boxes.instanceColor.needsUpdate = true;
+    points.needsUpdate = true;
+    tints.needsUpdate = true;
     for (const { drawn, row } of seen.parts) {
       drawn.visible = machine;
       if (row < 0) continue;
@@ -143,21 +181,26 @@ async function player(canvas, changed) {
       drawn.position.copy(position);
       drawn.quaternion.copy(one);
     }
-    if (follow && seen.last) target.add(moved.subVectors(middle, seen.last));
-    seen.last = middle.clone();
+    if (follow && seen.known) target.add(moved.subVectors(middle, seen.last));
+    seen.last.copy(middle);
+    seen.known = true;
   }
 
+  let wide = 0, high = 0, drawn = 0, thin = 0; // thin: half of what a sheet is thick at least [mm]
   function draw() {
-    const { clientWidth: wide, clientHeight: high } = canvas;
     if (!wide || !high) return;
-    renderer.setPixelRatio(fineness);
-    renderer.setSize(wide, high, false);
+    if (drawn !== fineness) { // the renderer makes its buffers anew each time that it is told
+      renderer.setPixelRatio(drawn = fineness);
+      renderer.setSize(wide, high, false);
+    }
     const ratio = wide / high;
-    Object.assign(camera, { left: -size * ratio, right: size * ratio, top: size, bottom: -size });
+    camera.left = -size * ratio; camera.right = size * ratio; camera.top = size; camera.bottom = -size;
+    const before = thin;
+    thin = THIN * size / (high * Math.max(fineness, 1));
+    if (thin !== before) settle();
     camera.position.copy(target).addScaledVector(away, 1000);
     camera.lookAt(target);
     camera.updateProjectionMatrix();
-    lamp.position.copy(camera.position).sub(target).add(new THREE.Vector3(0, 0, 700));
     renderer.render(scene, camera);
   }
 
@@ -201,7 +244,7 @@ async function player(canvas, changed) {
       const colour = seen ? seen.colour : 0;
       seen = this.runs[index];
       seen.colour = Math.min(colour, seen.colours.length - 1);
-      seen.last = null;
+      seen.known = false;
       scene.add(seen.group);
       settle(); refresh();
     },
@@ -265,6 +308,9 @@ async function player(canvas, changed) {
     refresh();
   });
   canvas.addEventListener("wheel", (event) => { event.preventDefault(); size *= Math.exp(event.deltaY * 0.001); refresh(); }, { passive: false });
-  new ResizeObserver(refresh).observe(canvas);
+  dark.addEventListener("change", () => { ground(); refresh(); });
+  function measure() { wide = canvas.clientWidth; high = canvas.clientHeight; drawn = 0; }
+  new ResizeObserver(() => { measure(); refresh(); }).observe(canvas);
+  measure();
   return shown;
 }
