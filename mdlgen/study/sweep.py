@@ -74,7 +74,7 @@ def over(texts: Sequence[str], draw: tuple[str, int] | None, seed: int) -> tuple
 
 
 def sweep(task: Task, cases: Sequence[Case], how: str, asked: Iterable[str] = ()) -> Sweep:
-    """A Sweep whose measures are the texts `asked` for; where there are none travel, speed and yaw of the sheets.
+    """A Sweep whose measures are the texts `asked` for; without any, travel, speed and yaw of the sheets.
 
     Raises SpecError for a measure that there is not, and where not one of the cases can be read.
     """
