@@ -6,6 +6,7 @@ import contextlib
 import io
 import json
 import time
+from collections.abc import Callable
 from threading import Lock
 from typing import TYPE_CHECKING, Any
 
@@ -21,13 +22,16 @@ if TYPE_CHECKING:
 _ONE = Lock()
 
 
-def perform(task: Task, case: Case) -> Row:
-    """The row of a case; whatever goes wrong is a row with its reason."""
+def perform(task: Task, case: Case, begun: Callable[[], None] | None = None) -> Row:
+    """The row of a case; whatever goes wrong is a row with its reason.
+
+    `begun` is called once, when the solver is at work and all code is compiled.
+    """
     with _ONE:
         started, cpu = time.perf_counter(), time.process_time()
         told: dict[str, Any]
         try:
-            told = _run(task, case)
+            told = _run(task, case, begun)
         except MdlgenError as error:
             told = {"kind": REFUSED, "status": _said(error)}
         except MemoryError:
@@ -46,12 +50,18 @@ def _said(error: MdlgenError) -> str:
     return str(error)
 
 
-def _run(task: Task, case: Case) -> dict[str, Any]:
+def _run(task: Task, case: Case, begun: Callable[[], None] | None) -> dict[str, Any]:
     from mdlgen import registry
+
+    def progress(*_: float) -> None:
+        nonlocal begun
+        if begun is not None:
+            begun()
+            begun = None
 
     model = task.model(case)
     with contextlib.redirect_stdout(io.StringIO()):  # a solver may talk there
-        result = registry.solve(model, task.solver, check_step=task.check_step)
+        result = registry.solve(model, task.solver, progress, task.check_step)
     times = {name: getattr(result, name) for name in ("wall_s", "estimate_s", "build_s", "compile_s")}
     told = {"solver": result.solver, "error_estimate": result.error_estimate, "times": times}
     if not result.ok:
