@@ -21,7 +21,7 @@ from mdlgen.cli.shell import (
     say,
     told,
 )
-from mdlgen.errors import SpecError
+from mdlgen.errors import OutputError, SpecError
 
 if TYPE_CHECKING:
     from mdlgen.study.workers import Runner
@@ -170,7 +170,7 @@ def sweep(
             try:
                 with count(quiet, "cases") as progress:
                     rows = study.run(wanted, journal, runner, progress)
-            except KeyboardInterrupt:
+            except (KeyboardInterrupt, OutputError):
                 done = f"{len(journal.rows)} of {len(wanted.cases)} cases are done"
                 say(f"{done}; mdlgen sweep --resume {folder} goes on")
                 raise
