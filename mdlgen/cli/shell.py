@@ -45,6 +45,15 @@ Raised = Annotated[
         help="Allow more boxes, pairs, contacts, states or values; may be given more than once.",
     ),
 ]
+Lets = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--let",
+        metavar="PATH=FORM",
+        help="A value that follows a variable, as 'rollers.left.drive.speed=186 rad/s - 0.5*delta'; may be "
+        "given more than once.",
+    ),
+]
 Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="Errors and asked-for output only.")]
 Verbose = Annotated[
     bool, typer.Option("-v", "--verbose", help="Say more; show the traceback of internal errors.")

@@ -11,6 +11,7 @@ import typer
 from mdlgen.cli.shell import (
     COMPILING,
     SOLVER_FAILED,
+    Lets,
     Quiet,
     Raised,
     Sets,
@@ -55,9 +56,24 @@ def sweep(
             "events.jam counts jams.",
         ),
     ] = None,
+    event: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--event",
+            metavar="NAME=EXPR",
+            help="A condition, as jam='events.jam > 0', whose probability is told with its interval of 95 %; "
+            "take it from --sample random, whose cases are independent. May be given more than once.",
+        ),
+    ] = None,
+    lets: Lets = None,
     sample: Annotated[
         tuple[str, int] | None,
-        typer.Option("--sample", metavar="KIND COUNT", help="Cases drawn by lhs, sobol or random."),
+        typer.Option(
+            "--sample",
+            metavar="KIND COUNT",
+            help="Cases drawn by lhs, sobol or random; saltelli COUNT makes COUNT times (variables + 2) of "
+            "them, for Sobol's indices.",
+        ),
     ] = None,
     seed: Annotated[int, typer.Option("--seed", help="Of --sample; the same seed gives the same cases.")] = 1,
     output: Annotated[
@@ -124,18 +140,31 @@ def sweep(
     if parquet:
         check_parquet()
     alone = resume and not over
-    if alone and (output or measure or sample or sets or limits or keep or check_step or solver != "auto"):
+    if alone and (
+        output
+        or measure
+        or event
+        or lets
+        or sample
+        or sets
+        or limits
+        or keep
+        or check_step
+        or solver != "auto"
+    ):
         raise SpecError("--resume DIR takes scene, values, measures and solver from the sweep that is there")
     if alone:
         folder, wanted = spec, None
     else:
         cases, how = study.over(over or (), sample, seed)
-        asked = task(spec, sets, limits, solver=solver, check_step=check_step, keep=keep)
-        wanted = study.sweep(asked, cases, how, measure or ())
+        asked = task(
+            spec, sets, limits, lets=tuple(lets or ()), solver=solver, check_step=check_step, keep=keep
+        )
+        wanted = study.sweep(asked, cases, how, measure or (), event or ())
         folder = output or Path("out") / f"{wanted.name}_{study.WHAT}"
 
     # a cluster that does not answer leaves no journal
-    with closing(_runner(scheduler, workers, quiet)) as runner:
+    with closing(runner_of(scheduler, workers, quiet)) as runner:
         wanted, journal = study.opened(folder, wanted, resume)
         with journal:
             try:
@@ -154,7 +183,7 @@ def sweep(
         raise typer.Exit(SOLVER_FAILED)
 
 
-def _runner(scheduler: str | None, workers: int | None, quiet: bool) -> Runner:
+def runner_of(scheduler: str | None, workers: int | None, quiet: bool) -> Runner:
     """A cluster where one is named, else processes of this machine."""
     if scheduler is not None:
         from mdlgen.study.cluster import Cluster

@@ -36,9 +36,10 @@ HOW = (
 class Distribution:
     """A continuous distribution of one value of the scene; all numbers are in `unit`, "" for plain ones.
 
-    `kind` is uniform, normal or lognormal. `center` is the mean of a normal one, the median of a lognormal one;
-    `spread` the standard deviation of the value, of a lognormal one that of its natural logarithm (no unit); a
-    uniform one has neither. Values lie in `low` to `high`: limits cut the density off, and the rest is scaled up.
+    `kind` is uniform, normal or lognormal. `center` is the mean of a normal one, the median of a lognormal
+    one; `spread` the standard deviation of the value, of a lognormal one that of its natural logarithm (no
+    unit); a uniform one has neither. Values lie in `low` to `high`: limits cut the density off, and the rest
+    is scaled up.
     """
 
     path: str
@@ -77,7 +78,7 @@ class Distribution:
 
 @dataclass(frozen=True)
 class Choice:
-    """One of several values of a scene, each as likely as the others; as a number it is its place in the list."""
+    """One of several values of a scene, all as likely; as a number it is its place in the list."""
 
     path: str
     texts: tuple[str, ...]
@@ -92,8 +93,8 @@ class Choice:
 
 
 def parse_distribution(text: str, option: str = "--over") -> Distribution | Choice:
-    """Of `PATH=LO:HI`, `PATH=uniform(LO, HI)`, `PATH=normal(MEAN, DEVIATION[, LO:HI])`, `PATH=lognormal(MEDIAN,
-    DEVIATION of ln[, LO:HI])` or `PATH=[a, b, c]`; quantities stand with their units.
+    """Of `PATH=LO:HI`, `PATH=uniform(LO, HI)`, `PATH=normal(MEAN, DEVIATION[, LO:HI])`,
+    `PATH=lognormal(MEDIAN, DEVIATION of ln[, LO:HI])` or `PATH=[a, b, c]`; quantities stand with their units.
 
     Raises SpecError in one line for anything else.
     """

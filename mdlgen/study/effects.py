@@ -83,7 +83,7 @@ class Index:
 
 @dataclass(frozen=True)
 class Indices:
-    """Parts of a measure's variance: `first` by a variable alone, `total` with all that it does with others."""
+    """Parts of a measure's variance: `first` of a variable alone, `total` with what it does with others."""
 
     first: Index
     total: Index

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from mdlgen.errors import SpecError, did_you_mean
-from mdlgen.study.variable import quantity, quantity_text, split
+from mdlgen.study.variable import check_paths, quantity, quantity_text, split
 from mdlgen.units import parse_unit
 
 _NUMBER = r"(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
@@ -49,7 +49,7 @@ class Link:
         return quantity_text(float(f"{self.offset + self.factor * number:.12g}"), self.unit)
 
 
-def link(text: str) -> Link:
+def parse_link(text: str) -> Link:
     """Of `PATH=NAME` or `PATH=QUANTITY + FACTOR*NAME`. Raises SpecError."""
     path, rest = split(text, "--let", HOW)
     match = _FORM.fullmatch(rest)
@@ -62,9 +62,15 @@ def link(text: str) -> Link:
     return Link(path, match["name"], factor, *offset)
 
 
-def check_links(links: Sequence[Link], paths: Sequence[str]) -> None:
-    """Raises SpecError for a link to what is no variable."""
-    for each in links:
-        if each.name not in paths:
-            close = did_you_mean(each.name, paths) or f"; there are: {', '.join(paths) or 'none'}"
-            raise SpecError(f"--let {each.path}: there is no variable {each.name[:40]!r}{close}; {HOW}")
+def check_links(texts: Sequence[str], paths: Sequence[str]) -> None:
+    """Raises SpecError for a link to what is no variable, and for a place that is given twice.
+
+    `texts` are as of `parse_link`, `paths` those of the variables.
+    """
+    links = [parse_link(text) for text in texts]
+    names = {link.name for link in links}
+    for link in links:
+        if link.name not in paths:
+            close = did_you_mean(link.name, paths) or f"; there are: {', '.join(paths) or 'none'}"
+            raise SpecError(f"--let {link.path}: there is no variable {link.name[:40]!r}{close}")
+    check_paths([*(path for path in paths if path not in names), *(link.path for link in links)])

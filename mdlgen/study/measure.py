@@ -120,6 +120,13 @@ def measures(asked: Iterable[str], names: Mapping[str, Value], option: str) -> t
     return tuple(found.items())
 
 
+def check_apart(names: Sequence[str]) -> None:
+    """Raises SpecError for a name that stands twice among those of several options."""
+    for name in names:
+        if names.count(name) > 1:
+            raise SpecError(f"the name {name[:80]!r} stands twice in the table; write OTHER={name[:80]}")
+
+
 def check(expression: Expression, names: Mapping[str, Value], option: str) -> None:
     """Raises SpecError for a name that there is not, and for a vector where a number is due."""
     for name in expression.names:

@@ -88,7 +88,7 @@ def _files(task: Task, case: Case, result: Result) -> dict[str, bytes]:
     from mdlgen.results.store import hdf5
     from mdlgen.results.summary import summary
 
-    result.source = task.text + "".join(f"# --set {item}\n" for item in (*task.sets, *case.overrides))
+    result.source = task.text + "".join(f"# --set {item}\n" for item in task.overrides(case))
     return {
         "summary.json": (json.dumps(summary(result), indent=2, allow_nan=False) + "\n").encode(),
         "series.csv": csv(result).encode(),

@@ -53,7 +53,7 @@ def caveat(kind: str) -> str:
         return ""
     if kind in ("lhs", "sobol"):
         return (
-            f"the cases of a sample {kind} are spread evenly, not drawn one by one: the part of them is mostly "
-            "nearer to the probability than the interval says, but nothing is proved; --sample random is for that"
+            f"the cases of --sample {kind} are spread evenly, not drawn one by one: mostly their part is "
+            "nearer to the probability than the interval says, but only --sample random is sure of it"
         )
-    return f"the cases of a {kind} are not drawn by chance: this is a part of them, no probability"
+    return f"the cases of a {kind} are not drawn by chance: this is the part of them, no probability"

@@ -1,4 +1,4 @@
-"""Which values are tried: points of a design in the unit cube, and the values that distributions have there."""
+"""Which values are tried: points of the unit cube, and the values that distributions have there."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ KINDS = ("random", "lhs", "sobol", "saltelli")
 def sample(kind: str, count: int, variables: Sequence[Distribution | Choice], seed: int) -> Floats:
     """Values of the variables in each case, (cases, variables), in the variables' units.
 
-    `random` draws `count` independent cases; `lhs` fills each of `count` layers of every variable once; `sobol`
-    takes the first `count` points of a scrambled Sobol sequence, most even for a power of two; `saltelli` has
-    count (variables + 2) cases, which `effects.sobol` needs. The same seed gives the same cases on every
-    machine. Raises SpecError for an unknown kind, and a count or a seed that cannot be.
+    `random` draws `count` independent cases; `lhs` fills each of `count` layers of every variable once;
+    `sobol` takes the first `count` points of a scrambled Sobol sequence, most even for a power of two;
+    `saltelli` has count (variables + 2) cases, which `effects.sobol` needs. The same seed gives the same
+    cases on every machine. Raises SpecError for an unknown kind, and a count or a seed that cannot be.
     """
     if kind not in KINDS:
         close = did_you_mean(kind, KINDS) or f"; there are: {', '.join(KINDS)}"

@@ -13,7 +13,7 @@ from mdlgen.paths import write_together
 from mdlgen.study import table
 from mdlgen.study.case import Case
 from mdlgen.study.journal import Asked, Journal
-from mdlgen.study.measure import defaults, known, measures
+from mdlgen.study.measure import check_apart, defaults, known, measures
 from mdlgen.study.row import INACCURATE, Row
 from mdlgen.study.task import Task
 from mdlgen.study.variable import check_count, check_paths, grid, variable
@@ -73,16 +73,25 @@ def over(texts: Sequence[str], draw: tuple[str, int] | None, seed: int) -> tuple
     return cases, f"{kind} {count}, seed {seed}"
 
 
-def sweep(task: Task, cases: Sequence[Case], how: str, asked: Iterable[str] = ()) -> Sweep:
-    """A Sweep whose measures are the texts `asked` for; without any, travel, speed and yaw of the sheets.
+def sweep(
+    task: Task, cases: Sequence[Case], how: str, asked: Iterable[str] = (), events: Iterable[str] = ()
+) -> Sweep:
+    """A Sweep whose measures are the texts `asked` for, travel, speed and yaw of the sheets where there are
+    none, and the `events`, conditions that hold where something happened.
 
     Raises SpecError for a measure that there is not, and where not one of the cases can be read.
     """
     from mdlgen.results.seal import digest
+    from mdlgen.study.link import check_links
 
+    check_links(task.lets, [path for path, _ in cases[0].values])
     model = first_model(task, cases)
-    wanted = measures(list(asked) or defaults(model), known(model), "--measure")
-    return Sweep(replace(task, measures=wanted), tuple(cases), how, model.name, digest(model))
+    names = known(model)
+    wanted = measures(list(asked) or defaults(model), names, "--measure")
+    happened = measures(events, names, "--event")
+    check_apart([name for name, _ in (*wanted, *happened)])
+    task = replace(task, measures=wanted + happened, events=tuple(name for name, _ in happened))
+    return Sweep(task, tuple(cases), how, model.name, digest(model))
 
 
 def first_model(task: Task, cases: Sequence[Case]) -> Model:
@@ -127,7 +136,7 @@ def _read(folder: Path, asked: Asked) -> Sweep:
         if asked["what"] != WHAT:
             raise ValueError(f"of {asked['what']!s:.40}")
         told = dict(asked["task"])
-        for name in ("sets", "limits"):
+        for name in ("sets", "limits", "events", "lets"):
             told[name] = tuple(str(item) for item in told[name])
         told["measures"] = tuple((str(name), str(text)) for name, text in told["measures"])
         values = [tuple((str(path), str(text)) for path, text in case) for case in asked["cases"]]
@@ -143,7 +152,8 @@ _WORDS = {
     "limits": "--limit",
     "solver": "--solver",
     "check_step": "--check-step",
-    "measures": "--measure",
+    "measures": "--measure or --event",
+    "lets": "--let",
     "keep": "--keep",
     "cases": "--over, --sample or --seed",
 }
