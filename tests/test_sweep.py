@@ -13,6 +13,7 @@ import time
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import given
@@ -54,7 +55,7 @@ class Here:
 
 
 def wanted(
-    *over: str, measures: Sequence[str] = (), sets: Sequence[str] = SHORT, **asked: object
+    *over: str, measures: Sequence[str] = (), sets: Sequence[str] = SHORT, **asked: Any
 ) -> sweep.Sweep:
     cases, how = sweep.over(over, None, 1)
     return sweep.sweep(task(INCLINE, list(sets), **asked), cases, how, measures)
