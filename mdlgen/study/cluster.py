@@ -130,7 +130,7 @@ class Cluster:
                 yield self._row(future, waiting.pop(future))
                 submit()
         finally:
-            if waiting:
+            if waiting and self._client.status == "running":
                 self._client.cancel(list(waiting), force=True)
 
     def _row(self, future: Any, case: Case) -> Row:
