@@ -18,7 +18,7 @@ from mdlgen.study.task import Task
 
 MISSING = "--scheduler needs dask.distributed, which is not installed: pip install 'mdlgen[cluster]'"
 # How long a scheduler and its first worker are waited for [s].
-PATIENCE = 10.0
+PATIENCE = 20.0
 # Cases under way at once, for each thread of the cluster: enough that none waits, few enough to hold.
 AHEAD = 4
 _ADDRESS = re.compile(r"(tcp|tls)://[^\s/]+:[0-9]{1,5}")
@@ -35,6 +35,11 @@ def versions() -> Versions:
     found = surroundings(*ROOMS)
     del found["processor"]
     return found
+
+
+def _here() -> Versions:
+    """Of the process that asks."""
+    return versions()
 
 
 def checked(task: Task, case: Case, here: Versions) -> Row:
@@ -93,7 +98,7 @@ class Cluster:
             self._client.wait_for_workers(1, timeout=PATIENCE)
         except TimeoutError:
             raise OutputError(f"{self.address}: the scheduler has no workers; start dask worker") from None
-        self._here = versions()
+        self._here = _here()
         for worker, there in self._client.run(versions, on_error="return").items():
             if isinstance(there, ImportError):
                 raise RefusedError(f"{worker}: this worker cannot import mdlgen ({there})"[:300])
@@ -125,7 +130,7 @@ class Cluster:
                 yield self._row(future, waiting.pop(future))
                 submit()
         finally:
-            if waiting:
+            if waiting and self._client.status == "running":
                 self._client.cancel(list(waiting), force=True)
 
     def _row(self, future: Any, case: Case) -> Row:

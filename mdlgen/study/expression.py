@@ -169,8 +169,8 @@ def _told(node: ast.AST, depth: int) -> str:
             if type(number) not in (int, float) or not abs(cast(float, number)) < 1e300:
                 return f"{str(number)[:40]!r} is not a finite number"
             return ""
-        case ast.Name(id=word):
-            return "" if re.fullmatch(r"_[0-9]+", word) else f"{word} is a function; write {word}(...)"
+        case ast.Name():
+            return ""
         case ast.UnaryOp(op=ast.Not() | ast.USub() | ast.UAdd(), operand=operand):
             inner = [operand]
         case ast.BinOp(left=left, op=op, right=right) if type(op) in _OPERATORS:

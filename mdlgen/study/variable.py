@@ -128,7 +128,7 @@ def value_text(value: Any) -> str:
                 return value
         except SpecError:
             pass
-    return json.dumps(value)
+    return json.dumps(value, ensure_ascii=False)
 
 
 def grid(variables: Sequence[Variable]) -> tuple[Case, ...]:
