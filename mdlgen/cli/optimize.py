@@ -122,6 +122,7 @@ def optimize(
     from mdlgen.study import optimisation as study
     from mdlgen.study.fragment import design, fragment, report_text
     from mdlgen.study.goal import goal
+    from mdlgen.study.page import write_page
     from mdlgen.study.sweep import write
     from mdlgen.study.task import task
 
@@ -150,7 +151,7 @@ def optimize(
             except KeyboardInterrupt:
                 say(f"the same with --resume goes on with this search ({len(journal.rows)} runs are done)")
                 raise
-    files = write(where, wanted.task, rows, parquet=False)
+    files = [*write(where, wanted.task, rows, parquet=False), write_page(where, wanted, rows, best)]
     if best is None:
         why = "met the conditions" if any(row.measured for row in rows) else "came to an end"
         say(f"{spec}: none of {len(rows)} runs {why}; {files[0]} has them")

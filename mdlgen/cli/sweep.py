@@ -175,8 +175,10 @@ def sweep(
                 say(f"{done}; mdlgen sweep --resume {folder} goes on")
                 raise
     files = study.write(folder, wanted.task, rows, installed() if parquet is None else parquet)
+    more, words = study.write_findings(folder, wanted, rows)
+    files += more
     if not quiet:
-        typer.echo(study.told(rows))
+        typer.echo("\n".join([study.told(rows), *words]))
         typer.echo(f"wrote {', '.join(str(file) for file in files)}")
     if not any(row.measured for row in rows):
         say(f"{spec}: all cases failed; {files[0]} has the reasons")

@@ -84,6 +84,7 @@ def _run(task: Task, case: Case, begun: Callable[[], None] | None) -> dict[str, 
 
 
 def _files(task: Task, case: Case, result: Result) -> dict[str, bytes]:
+    from mdlgen.report.page import page
     from mdlgen.results.series import csv
     from mdlgen.results.store import hdf5
     from mdlgen.results.summary import summary
@@ -93,4 +94,5 @@ def _files(task: Task, case: Case, result: Result) -> dict[str, bytes]:
         "summary.json": (json.dumps(summary(result), indent=2, allow_nan=False) + "\n").encode(),
         "series.csv": csv(result).encode(),
         "result.h5": hdf5(result),
+        "report.html": page([result]).encode(),
     }

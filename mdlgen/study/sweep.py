@@ -215,6 +215,21 @@ def write(folder: Path, task: Task, rows: Sequence[Row], parquet: bool) -> list[
     return list(files)
 
 
+def write_findings(folder: Path, wanted: Sweep, rows: Sequence[Row]) -> tuple[list[Path], list[str]]:
+    """Writes findings.json and study.html: their names, and the findings in words. Raises OutputError."""
+    from mdlgen.study.findings import findings, findings_text
+    from mdlgen.study.page import NAME, page
+
+    columns = table.columns(rows, [name for name, _ in wanted.task.measures])
+    found = findings(wanted.task, wanted.how, rows, columns)
+    files: dict[Path, str | bytes] = {
+        folder / "findings.json": json.dumps(found, indent=2, allow_nan=False) + "\n",
+        folder / NAME: page(folder, wanted.name, wanted.how, wanted.task, rows, columns, found),
+    }
+    write_together(files)
+    return list(files), findings_text(found)
+
+
 def told(rows: Sequence[Row]) -> str:
     """One line: how many cases failed, and of what, the most frequent reasons first."""
     failed = [row for row in rows if not row.measured]
