@@ -53,6 +53,15 @@ Pictures = Annotated[
         help="Draw report.png and strain.png too; a folder that has them gets them anew in any case.",
     ),
 ]
+Lets = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--let",
+        metavar="PATH=FORM",
+        help="A value that follows a variable, as 'rollers.left.drive.speed=186 rad/s - 0.5*delta'; may be "
+        "given more than once.",
+    ),
+]
 Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="Errors and asked-for output only.")]
 Verbose = Annotated[
     bool, typer.Option("-v", "--verbose", help="Say more; show the traceback of internal errors.")

@@ -38,7 +38,7 @@ def page(results: Sequence[Result], names: Sequence[str] = ()) -> str:
     drawn = json.dumps([run.pop("drawn") for run in runs], allow_nan=False, separators=(",", ":"))
     folder = templates() / "report"
     return (
-        _environment()
+        environment()
         .get_template("page.html.j2")
         .render(
             title=" / ".join(dict.fromkeys(run["summary"]["scene"] for run in runs)),
@@ -61,11 +61,11 @@ def load_page() -> None:
     import h5py  # noqa: F401
     import scipy.spatial.transform  # noqa: F401
 
-    _environment().get_template("page.html.j2")
+    environment().get_template("page.html.j2")
 
 
 @lru_cache(maxsize=1)
-def _environment() -> Environment:
+def environment() -> Environment:
     from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
 
     compiled = cache("templates_report")

@@ -18,6 +18,7 @@ from mdlgen.results.piles import piled
 if TYPE_CHECKING:
     from mdlgen.results.result import Result
 
+KINDS = ("enter", "leave", "slip", "gap", "wait", "jam", "double_feed")
 # A force below this part of a contact's greatest is a graze, as in the solvers' account of nips.
 GRAZE = 0.05
 # A sheet that bounces off for a shorter time has not left [ms], and one that touches for a shorter time

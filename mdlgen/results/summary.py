@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from typing import Any
 
 import numpy as np
@@ -15,10 +16,11 @@ from mdlgen.version import version
 PER_SECOND = 1000.0  # mm/ms -> mm/s, rad/ms -> rad/s
 
 
-def summary(result: Result) -> dict[str, Any]:
+def summary(result: Result, without: Collection[str] = ()) -> dict[str, Any]:
     """What summary.json holds; every vector is [x, y, z], every speed the mean over boxes at the end.
 
-    A number that is not finite, or that the run did not reach, is None.
+    A number that is not finite, or that the run did not reach, is None. `without` names what need not be
+    worked out: "events", "bearing" (what the joints of the sheets bore).
     """
     model = result.model
     energy = result.energy
@@ -45,8 +47,8 @@ def summary(result: Result) -> dict[str, Any]:
             "driven": energy.driven,
             "balance_error": energy.balance_error,
         },
-        "events": result.events,
-        "sheets": {s.name: _sheet(result, k) for k, s in enumerate(model.sheets)},
+        **({} if "events" in without else {"events": result.events}),
+        "sheets": {s.name: _sheet(result, k, "bearing" not in without) for k, s in enumerate(model.sheets)},
         "rollers": {r.name: _roller(result, r) for r in model.rollers},
         "guides": {g.name: {"contacts": _contacts(result, part_rows(result, g))} for g in model.guides},
         "meshes": {m.name: {"contacts": _contacts(result, part_rows(result, m))} for m in model.meshes},
@@ -97,7 +99,7 @@ def strain(result: Result) -> float:
     return float((moved @ sheet.rotation[:, axis]).mean() * outward / length)
 
 
-def _sheet(result: Result, index: int) -> dict[str, Any]:
+def _sheet(result: Result, index: int, bearing: bool) -> dict[str, Any]:
     sheet = result.model.sheets[index]
     told: dict[str, Any] = {"travel_mm": None, "speed_mm_per_s": None, "yaw_deg": None}
     if len(result.time):
@@ -111,7 +113,7 @@ def _sheet(result: Result, index: int) -> dict[str, Any]:
         **told,
         "boxes": sheet.count,
         "bushings": int(np.sum(result.model.bushings.sheet == index)),
-        **_bearing(result, index),
+        **(_bearing(result, index) if bearing else {}),
     }
 
 

@@ -10,6 +10,7 @@ import difflib
 import math
 import re
 from collections.abc import Iterable, Sequence
+from copy import deepcopy
 from pathlib import Path
 from typing import Any
 
@@ -68,6 +69,10 @@ class Document:
                     return table[path[:end]]
         return Place(self.file, 1, 1)
 
+    def copy(self) -> Document:
+        """One that can be changed beside this one."""
+        return Document(deepcopy(self.data), dict(self.places), dict(self.keys), self.file)
+
 
 def load(path: str | Path, overrides: Iterable[str] = (), limits: Limits = DEFAULT) -> Scene:
     """Read a spec file; `overrides` are `PATH=VALUE` texts as of `--set`. Raises SpecError, OutputError."""
@@ -97,7 +102,13 @@ def loads(
 
     Raises SpecError with its place.
     """
-    document = parse(text, file, limits)
+    return meant(parse(text, file, limits), overrides, folder, limits)
+
+
+def meant(
+    document: Document, overrides: Iterable[str], folder: Path | None, limits: Limits = DEFAULT
+) -> Scene:
+    """The Scene of a text that has been parsed, in which `overrides` are set; as `loads`."""
     if not isinstance(document.data, dict):
         raise SpecError("a scene is a mapping of keys to values", place=document.place(()))
     for override in overrides:

@@ -1,0 +1,65 @@
+"""What one case came to: a row of the table."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+# What became of a case. `inaccurate` has its measures, and an error estimate above run.tolerance; `refused`
+# is a scene that cannot be meant or run; `failed` a run that ended with its reason; `lost` one that nothing
+# is known of, because its process died: a resumed study runs it again.
+OK, INACCURATE, REFUSED, FAILED, LOST = "ok", "inaccurate", "refused", "failed", "lost"
+
+
+@dataclass(frozen=True)
+class Times:
+    """How long a case took [s]: solving, its error estimate, what is done before it, all of it."""
+
+    wall_s: float = 0.0
+    estimate_s: float = 0.0
+    build_s: float = 0.0
+    compile_s: float = 0.0
+    case_s: float = 0.0
+    cpu_s: float = 0.0  # of the process, in all of it
+
+
+@dataclass(frozen=True)
+class Row:
+    """A case with its measures, or with the reason that there are none."""
+
+    index: int
+    values: tuple[tuple[str, str], ...]
+    kind: str  # OK ...
+    status: str  # "ok", or the reason
+    measures: dict[str, float | None] = field(default_factory=dict)  # None: this run has no such number
+    error_estimate: float | None = None
+    solver: str = ""
+    times: Times = Times()
+    worker: str = ""
+    # files of the run where they are kept, by name; not in the journal
+    files: dict[str, bytes] = field(default_factory=dict, compare=False, repr=False)
+
+    @property
+    def ok(self) -> bool:
+        return self.kind == OK
+
+    @property
+    def measured(self) -> bool:
+        """Whether there are measures."""
+        return self.kind in (OK, INACCURATE)
+
+    def json(self) -> dict[str, Any]:
+        """As the journal has it."""
+        told = asdict(self)
+        del told["files"]
+        return told
+
+    @classmethod
+    def of(cls, told: dict[str, Any]) -> Row:
+        """The inverse of `json`. Raises KeyError, TypeError or ValueError for what is none."""
+        if told["kind"] not in (OK, INACCURATE, REFUSED, FAILED, LOST):
+            raise ValueError(f"{told['kind']!r} is no kind of row")
+        values = tuple((str(path), str(text)) for path, text in told["values"])
+        measures = {str(k): None if v is None else float(v) for k, v in told["measures"].items()}
+        typed = {"index": int(told["index"]), "values": values, "measures": measures}
+        return cls(**{**told, **typed, "times": Times(**told["times"])})
