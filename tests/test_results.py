@@ -235,6 +235,7 @@ class TestCompare:
     def test_a_shift_is_its_own_size(self, model: Model, result: Result) -> None:
         found = compare(result, moving(model, shift=0.5))
         assert found.position_rms_mm == pytest.approx(0.5, rel=1e-12)
+        assert found.position_axes_mm == pytest.approx((0.0, 0.0, 0.5), abs=1e-12)
         assert found.relative == pytest.approx(0.5 / (SPEED * model.run.duration), rel=1e-12)
 
     def test_short_travels_are_relative_to_the_sheet(self, model: Model) -> None:

@@ -96,6 +96,7 @@ def _distance(first: Result, other: Result) -> dict[str, Any]:
     return {
         "reason": None,
         "rms_mm": found.position_rms_mm,
+        "axes_mm": dict(zip("xyz", found.position_axes_mm, strict=True)),
         "max_mm": found.position_max_mm,
         "relative": found.relative,
         "travel_mm": found.travel_difference_mm,

@@ -19,6 +19,7 @@ class Comparison:
     """How far `other` is from `result`, over the boxes and the stored times that both cover."""
 
     position_rms_mm: float  # root mean square over boxes and times of the distance
+    position_axes_mm: tuple[float, float, float]  # the same along x, y and z
     position_max_mm: float
     relative: float  # position_rms_mm / max(travel, sheet length / 10)
     travel_difference_mm: float  # of the first sheet at the last common time
@@ -64,12 +65,14 @@ def compare(result: Result, other: Result) -> Comparison:
     here = result.position[common, :count]
     there = _positions(other, time, count, slack)
     distance = np.linalg.norm(here - there, axis=2)
+    x, y, z = np.sqrt(np.mean((here - there) ** 2, axis=(0, 1))).tolist()
     rms = float(np.sqrt(np.mean(distance**2)))
     first = result.model.sheets[0]
     own = slice(first.first, first.first + first.count)
     gap = (here[-1, own] - there[-1, own]).mean(axis=0)
     return Comparison(
         position_rms_mm=rms,
+        position_axes_mm=(x, y, z),
         position_max_mm=float(distance.max()),
         relative=rms / scale(result),
         travel_difference_mm=float(np.linalg.norm(gap)),
