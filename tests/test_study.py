@@ -288,8 +288,8 @@ def test_findings_of_a_sample() -> None:
 
 
 class TestSlip:
-    """A block on a slope of 20 deg slips where its friction is below tan 20 deg, as normal(0.4133, 0.03) is in
-    5 % of cases; with 40 runs here, with 1,000 by the command in README.md."""
+    """A block on a slope of 20 deg slips where its friction is below tan 20 deg, as 5 % of normal(0.4133,
+    0.03) are; with 40 runs here, with 1,000 by the command in README.md."""
 
     def test_the_probability_of_a_slip_is_found(self) -> None:
         from test_sweep import Here
