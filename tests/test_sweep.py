@@ -425,6 +425,10 @@ class TestSweep:
         code, _, err = cli("sweep", "--resume", tmp_path)
         assert code == 3 and told in err and len(err.splitlines()) == 1
 
+    def test_a_measure_may_not_have_the_name_of_a_value(self) -> None:
+        with pytest.raises(SpecError, match="'name' stands twice in the table"):
+            wanted("name=[a, b]", measures=["name=steps"])
+
     def test_runs_are_kept_where_asked_for(self, tmp_path: Path) -> None:
         rows, _ = swept(tmp_path / "kept", wanted(f"{FRICTION}=0.1:0.2:2", keep=True))
         result = mdlgen.Result.load(tmp_path / "kept" / "case_1")
@@ -529,6 +533,16 @@ class TestProcesses:
         assert code == 0
         assert out.startswith("10 of 20 cases failed: 10 x sheets.block.thickness: 5 m is outside")
         assert (folder / "table.csv").read_bytes() == (whole / "table.csv").read_bytes()
+
+
+def test_a_process_that_cannot_be_started_ends_the_sweep(monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise OSError(12, "Cannot allocate memory")
+
+    monkeypatch.setattr(subprocess, "Popen", full)
+    asked = task(INCLINE, SHORT)
+    with workers.Workers(2) as runner, pytest.raises(OutputError, match="Cannot allocate memory"):
+        list(runner.rows(asked, [Case(0, ()), Case(1, ())]))
 
 
 class TestCommand:

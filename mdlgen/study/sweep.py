@@ -10,6 +10,7 @@ from pathlib import Path
 from mdlgen.errors import MdlgenError, OutputError, RefusedError, SpecError
 from mdlgen.model.tables import Model
 from mdlgen.paths import write_together
+from mdlgen.results.store import check_folder
 from mdlgen.study import table
 from mdlgen.study.case import Case
 from mdlgen.study.journal import Asked, Journal
@@ -89,7 +90,7 @@ def sweep(
     names = known(model)
     wanted = measures(list(asked) or defaults(model), names, "--measure")
     happened = measures(events, names, "--event")
-    check_apart([name for name, _ in (*wanted, *happened)])
+    check_apart([name for name, _ in (*wanted, *happened, *cases[0].values)])
     task = replace(task, measures=wanted + happened, events=tuple(name for name, _ in happened))
     return Sweep(task, tuple(cases), how, model.name, digest(model))
 
@@ -138,9 +139,13 @@ def _read(folder: Path, asked: Asked) -> Sweep:
         told = dict(asked["task"])
         for name in ("sets", "limits", "events", "lets"):
             told[name] = tuple(str(item) for item in told[name])
+        told |= {name: str(told[name]) for name in ("spec", "text", "beside", "solver")}
+        told |= {name: bool(told[name]) for name in ("check_step", "keep")}
         told["measures"] = tuple((str(name), str(text)) for name, text in told["measures"])
         values = [tuple((str(path), str(text)) for path, text in case) for case in asked["cases"]]
         cases = tuple(Case(index, value) for index, value in enumerate(values))
+        if not cases:
+            raise ValueError("it has no cases")
         return Sweep(Task(**told), cases, str(asked["how"]), str(asked["name"]), str(asked["model"]))
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise OutputError(f"{folder}: the journal there is not of a sweep ({str(error)[:80]})") from None
@@ -189,6 +194,7 @@ def keep(folder: Path, row: Row) -> None:
     if not row.files:
         return
     place = folder / Case(row.index, row.values).name
+    check_folder(place)
     try:
         place.mkdir(exist_ok=True)
     except OSError as error:

@@ -17,6 +17,7 @@ from queue import Empty, SimpleQueue
 from threading import Event, Lock, Thread
 from typing import Protocol
 
+from mdlgen.errors import OutputError
 from mdlgen.study.case import Case
 from mdlgen.study.row import LOST, REFUSED, Row
 from mdlgen.study.task import Task
@@ -81,8 +82,8 @@ class _Process:
         code = self.process.returncode
         if code < 0:
             with contextlib.suppress(ValueError):
-                return f"killed by {signal.Signals(-code).name}"
-            return f"killed by signal {-code}"
+                return f"was killed by {signal.Signals(-code).name}"
+            return f"was killed by signal {-code}"
         self.log.seek(0, os.SEEK_END)
         self.log.seek(max(0, self.log.tell() - 2000))
         told = self.log.read().decode("utf-8", "replace").strip().splitlines()
@@ -112,9 +113,12 @@ class Workers:
         self._closed = False
 
     def rows(self, task: Task, cases: Sequence[Case]) -> Iterator[Row]:
-        """The rows of the cases, as they are done; of a case that kills its process twice, what killed it."""
+        """The rows of the cases, as they are done; of a case that kills its process twice, what killed it.
+
+        Raises OutputError where no process can be started.
+        """
         todo = deque(cases)
-        done: SimpleQueue[Row] = SimpleQueue()
+        done: SimpleQueue[Row | Exception] = SimpleQueue()
         compiled = Event()  # before that a second process would compile the same
         threads = [
             Thread(target=self._work, args=(slot, task, todo, done, compiled), daemon=True)
@@ -123,17 +127,16 @@ class Workers:
         for thread in threads:
             thread.start()
         for _ in cases:
-            while True:
-                try:
+            row: Row | Exception | None = None
+            while row is None:
+                with contextlib.suppress(Empty):
                     row = done.get(timeout=0.5)  # some systems hear an interrupt only between two waits
-                    break
-                except Empty:
-                    if not any(thread.is_alive() for thread in threads) and done.empty():
-                        raise RuntimeError("the threads that wait for the workers have ended") from None
+            if isinstance(row, Exception):
+                raise row
             yield row
 
     def _work(
-        self, slot: int, task: Task, todo: deque[Case], done: SimpleQueue[Row], compiled: Event
+        self, slot: int, task: Task, todo: deque[Case], done: SimpleQueue[Row | Exception], compiled: Event
     ) -> None:
         if slot:
             compiled.wait()
@@ -154,6 +157,10 @@ class Workers:
                 if row.kind != REFUSED:
                     compiled.set()
                 done.put(row)
+        except OSError as error:
+            done.put(OutputError(f"a process cannot be started: {error.strerror or error}"))
+        except Exception as error:  # it is raised where the rows are waited for
+            done.put(error)
         finally:
             compiled.set()
 
@@ -169,7 +176,7 @@ class Workers:
             why = process.ended()
             self._slots[slot] = None
         return Row(
-            case.index, case.values, LOST, f"its process was {why}, {TRIES} times", worker=f"process {slot}"
+            case.index, case.values, LOST, f"its process {why}, {TRIES} times", worker=f"process {slot}"
         )
 
     def _process(self, slot: int) -> _Process | None:
