@@ -141,7 +141,7 @@ def optimize(
         precision,
         workers,
     )
-    where = folder or Path("out") / f"{wanted.name}_{study.WHAT}"
+    where = folder or Path("out") / f"{wanted.name}_optimisation"
     with closing(runner_of(scheduler, workers, quiet)) as runner:
         journal = study.opened(where, wanted, resume)
         with journal:

@@ -25,7 +25,7 @@ from mdlgen.study.task import Task
 from mdlgen.study.variable import check_paths
 from mdlgen.study.workers import Runner
 
-WHAT = "optimisation"
+WHAT = "search"
 MOST_RUNS = 10_000
 
 Variables = tuple[Distribution | Choice, ...]
@@ -142,7 +142,7 @@ def opened(folder: Path, wanted: Optimisation, resume: bool) -> Journal:
 
 def _compare(folder: Path, there: Asked, now: Asked) -> None:
     if there.get("what") != WHAT:
-        raise OutputError(f"{folder}: the journal there is not of an {WHAT}")
+        raise OutputError(f"{folder}: the journal there is not of a {WHAT}")
     for name, value in now.items():
         # more runs may be allowed now
         if name != "most" and there.get(name) != value:

@@ -257,3 +257,4 @@ get("after").addEventListener("click", () => choose(state.chosen + 1));
 get("number").addEventListener("change", (event) => choose(order.cells.indexOf(Number(event.target.value))));
 draw();
 choose(state.chosen);
+document.documentElement.dataset.ready = "yes";

@@ -1,0 +1,94 @@
+"""study.html: what it holds, and what a browser makes of it from file://."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from browser import found, tab
+from lxml import html
+
+from mdlgen.study.findings import findings
+from mdlgen.study.page import page
+from mdlgen.study.row import OK, REFUSED, Row
+from mdlgen.study.table import columns
+from mdlgen.study.task import Task
+
+EVIL = "</script><script>alert(1)</script>"
+HERE = "a scene & <b>more</b>.yaml"
+
+
+def study(folder: Path) -> str:
+    """The page of a grid of 4 x 3 cases; one is refused, with a reason that looks like markup."""
+    task = Task(
+        HERE,
+        f"name: {EVIL}\n",
+        ".",
+        sets=("run.duration=2 ms",),
+        measures=(("travel", "x"), ("jam", "events.jam > 0")),
+        events=("jam",),
+    )
+    rows = []
+    for k in range(12):
+        a, b = k % 4, k // 4
+        values = (("contacts.0.friction", f"0.{a + 1}"), ("sheets.note.mass", f"{b + 1.0} g"))
+        rows.append(Row(k, values, OK, "ok", {"travel": float(a * b), "jam": float(a > 2)}))
+    rows[7] = Row(7, rows[7].values, REFUSED, EVIL)
+    table = columns(rows, ["travel", "jam"])
+    (folder / "case_3").mkdir(parents=True)
+    (folder / "case_3" / "report.html").write_text("kept")
+    return page(folder, EVIL, "grid", task, rows, table, findings(task, "grid", rows, table))
+
+
+def data(text: str) -> dict[str, Any]:
+    return json.loads(html.fromstring(text).get_element_by_id("data").text_content())
+
+
+def test_no_text_becomes_markup(tmp_path: Path) -> None:
+    text = study(tmp_path)
+    tree = html.fromstring(text)
+    assert len(tree.xpath("//script")) == 2 and not tree.xpath("//b[text()='more']")
+    assert EVIL in tree.xpath("//section[@id='failed']//td")[1].text_content()
+    assert "http" not in text.replace("http://www.w3.org/2000/svg", "").replace("http-equiv", "")
+
+
+def test_each_case_says_how_it_is_opened(tmp_path: Path) -> None:
+    told = data(study(tmp_path))
+    assert told["links"] == ["", "", "", "case_3/report.html", *[""] * 8]
+    assert told["commands"][5].startswith(
+        "mdlgen run 'a scene & <b>more</b>.yaml' --set 'run.duration=2 ms' --set contacts.0.friction=0.2"
+    )
+    assert told["kind"][7] == "refused" and told["reason"][7] == EVIL
+    roles = {column["name"]: column["role"] for column in told["columns"]}
+    assert roles["case"] == "case" and roles["sheets.note.mass"] == "variable" and roles["jam"] == "measure"
+
+
+@pytest.mark.skipif(found() is None, reason="no Chromium on the path")
+def test_a_browser_draws_it_and_opens_a_case(tmp_path: Path) -> None:
+    (tmp_path / "study.html").write_text(study(tmp_path), "utf-8")
+    with tab(tmp_path / "profile") as browser:
+        browser.open(tmp_path / "study.html")
+        assert browser.complaints == []
+        assert len(browser.requests) == 1 and browser.requests[0].startswith("file:")
+        # begins with the event
+        assert browser.ask("document.getElementById('measure').selectedOptions[0].textContent") == "jam"
+        drawn = {
+            name: browser.ask(f"document.querySelectorAll('{where}').length")
+            for name, where in {
+                "points": "#response circle",
+                "fields": "#map rect.point",
+                "lines": "#parallel path.line",
+                "crosses": "path.point.failed",
+            }.items()
+        }
+        assert drawn == {"points": 11, "fields": 12, "lines": 12, "crosses": 3}
+        browser.ask("document.querySelector('#map [data-row=\"3\"]').dispatchEvent(new Event('click'))")
+        assert browser.ask("document.querySelector('#case a').getAttribute('href')") == "case_3/report.html"
+        browser.ask("document.querySelector('#parallel [data-row=\"7\"]').dispatchEvent(new Event('click'))")
+        assert EVIL in browser.ask("document.getElementById('case').textContent")
+        browser.ask("document.getElementById('before').click()")
+        assert browser.ask("document.getElementById('number').value") == "6"
+        assert "mdlgen run" in browser.ask("document.querySelector('#case pre').textContent")
+        assert browser.complaints == []
