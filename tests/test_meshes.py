@@ -554,9 +554,9 @@ def test_a_roller_of_20000_triangles_transports_as_the_cylinder(tmp_path):
     assert len(meshed.pairs) == len(plain.pairs)
     # meshes are not halved, so the cylinders are not for the comparison
     whole = replace(plain, run=replace(plain.run, symmetry=False))
-    one, two = (
-        min((mdlgen.solve(m, "lattice") for _ in range(2)), key=lambda r: r.wall_s) for m in (whole, meshed)
-    )
+    # by turns, since other work on the machine comes and goes
+    runs = [[mdlgen.solve(model, "lattice") for model in (whole, meshed)] for _ in range(3)]
+    one, two = (min(both, key=lambda r: r.wall_s) for both in zip(*runs, strict=True))
     assert one.ok and two.ok, (one.status, two.status)
     first, second = (r.summary()["sheets"]["note"] for r in (one, two))
     assert second["travel_mm"][0] == pytest.approx(first["travel_mm"][0], rel=0.01)

@@ -203,9 +203,13 @@ def test_two_runs_in_one_page(browser: Tab, tmp_path: Path) -> None:
     silent(browser, tmp_path)
 
 
-def test_600_boxes_and_500_states_stay_smooth(browser: Tab, tmp_path: Path) -> None:
-    model = small_model("sheets.note.boxes=[20,30]")
-    show(browser, tmp_path, [moving(model, 500)])
-    # all its pixels, without a graphics card
-    assert picture_ms(browser) <= 50.0
-    silent(browser, tmp_path)
+def test_a_picture_of_600_boxes_takes_little_more_than_one_of_6(browser: Tab, tmp_path: Path) -> None:
+    """All its pixels, without a graphics card; tests/frames.py tells the times."""
+    took: dict[str, list[float]] = {"[2,3]": [], "[20,30]": []}
+    for _ in range(2):
+        for boxes, times in took.items():
+            show(browser, tmp_path, [moving(small_model(f"sheets.note.boxes={boxes}"), 500)])
+            times.append(picture_ms(browser))
+            silent(browser, tmp_path)
+    few, many = (min(times) for times in took.values())
+    assert many < 4.0 * few
