@@ -232,6 +232,25 @@ def test_compiled_code_that_finds_no_room_is_used_all_the_same(tmp_path: Path) -
     assert (done[1].returncode, done[1].stdout, done[1].stderr) == (0, "6.0\n", "")
 
 
+def test_compiled_templates_that_find_no_room_are_used_all_the_same(tmp_path: Path) -> None:
+    code = (
+        "import pathlib, sys\nfrom mdlgen import templating\n"
+        "templating.cache = lambda name: pathlib.Path(sys.argv[1])\n"
+        "made = templating.environment('report', autoescape=True)\n"
+        "print(made.get_template('page.html.j2').name)"
+    )
+    for size, kept in ((100, False), (1_000_000, True)):
+        done = subprocess.run(
+            [sys.executable, "-B", "-c", code, str(tmp_path)],
+            preexec_fn=limited(size),
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert (done.returncode, done.stdout, done.stderr) == (0, "page.html.j2\n", "")
+        assert bool(list(tmp_path.iterdir())) == kept
+
+
 def test_a_folder_that_cannot_be_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     write(tmp_path, OLD)
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
+from jinja2 import Environment
 
-from mdlgen.paths import cache, templates
+from mdlgen import templating
 
 
 def comment(text: str) -> str:
@@ -17,15 +17,6 @@ def comment(text: str) -> str:
 @lru_cache(maxsize=1)
 def environment() -> Environment:
     """One environment for all decks."""
-    compiled = cache("templates_motionsolve")  # compiling them takes longer than a text of 200 boxes
-    made = Environment(
-        bytecode_cache=FileSystemBytecodeCache(str(compiled)) if compiled else None,
-        loader=FileSystemLoader(templates() / "motionsolve"),
-        undefined=StrictUndefined,
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )
+    made = templating.environment("motionsolve", autoescape=True)
     made.filters["comment"] = comment
     return made

@@ -10,10 +10,10 @@ import re
 from functools import lru_cache
 from textwrap import dedent
 
-from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
+from jinja2 import Environment
 
 from backends.motionview.units import number
-from mdlgen.paths import cache, templates
+from mdlgen import templating
 
 _DEFINITION = re.compile(r"^ *\*DefineDataSet\(.*?^ *\*EndDefine\(\)\n", re.M | re.S)
 _NAMED = re.compile(r"(?<=[(,] )def_ds_")
@@ -43,11 +43,8 @@ def definitions(body: str) -> str:
 @lru_cache(maxsize=1)
 def environment() -> Environment:
     """One environment for all texts."""
-    compiled = cache("templates_motionview")  # compiling them takes longer than a text of 200 boxes
-    made = Environment(
-        bytecode_cache=FileSystemBytecodeCache(str(compiled)) if compiled else None,
-        loader=FileSystemLoader(templates() / "motionview"),
-        undefined=StrictUndefined,
+    made = templating.environment(
+        "motionview",
         autoescape=False,  # MDL is not HTML; names and labels pass the allow-list instead
         variable_start_string="<<",
         variable_end_string=">>",
@@ -55,9 +52,6 @@ def environment() -> Environment:
         block_end_string="%>",
         comment_start_string="<#",
         comment_end_string="#>",
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
     )
     made.filters["values"] = values
     made.filters["number"] = number

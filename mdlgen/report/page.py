@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mdlgen.checks import lints
-from mdlgen.paths import cache, templates
+from mdlgen.paths import templates
 from mdlgen.report import boxes
 from mdlgen.report.animation import animation, frames, packed
 from mdlgen.report.curves import Panel, panels
@@ -66,18 +66,9 @@ def load_page() -> None:
 
 @lru_cache(maxsize=1)
 def environment() -> Environment:
-    from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
+    from mdlgen import templating
 
-    compiled = cache("templates_report")
-    made = Environment(
-        bytecode_cache=FileSystemBytecodeCache(str(compiled)) if compiled else None,
-        loader=FileSystemLoader(templates() / "report"),
-        undefined=StrictUndefined,
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )
+    made = templating.environment("report", autoescape=True)
     made.filters |= {"shown": shown, "percent": percent}
     return made
 
