@@ -42,6 +42,19 @@ def test_what_does_not_run_imports_no_solver(command: str) -> None:
     assert ("jinja2" in found) == (command == "mdl")
 
 
+@pytest.mark.parametrize("first", ["mdlgen.mechanics.contact", "backends.lattice.kernels.band"])
+def test_compiled_code_is_kept_in_one_place_whoever_imports_it_first(first: str) -> None:
+    code = (
+        f"import {first}\n"
+        "from backends.lattice.kernels import band, march\n"
+        "from mdlgen.mechanics import contact\n"
+        "for one in (band.factor, march.run, contact.box_plane):\n"
+        "    print(one._cache.cache_path.replace('\\\\', '/').split('/')[-2].split('_')[0])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["lattice", "lattice", "laws"]
+
+
 def test_rooms_import_only_lower_rooms() -> None:
     tool = Path(sys.executable).with_name("lint-imports")
     if not tool.exists():

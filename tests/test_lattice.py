@@ -9,7 +9,7 @@ import pytest
 
 import mdlgen
 from backends.lattice.arrays import build
-from backends.lattice.compiled import band, dense, forces, step
+from backends.lattice.kernels import band, dense, forces, step
 from mdlgen.bench.suites import flight
 from mdlgen.bench.suites.impact import thrown
 from mdlgen.errors import RefusedError

@@ -18,7 +18,6 @@ from backends.exudyn_local import kernels
 from backends.exudyn_local.recorder import Recorder
 from backends.exudyn_local.step import choose_steps
 from backends.exudyn_local.system import MM, MS, Pattern, System, build
-from mdlgen.mechanics.compiling import go_on_unkept
 from mdlgen.model.external import refuse_externals
 from mdlgen.model.sheet_pairs import refuse_searched
 from mdlgen.model.tables import Model
@@ -57,7 +56,6 @@ def solve(model: Model, progress: Progress | None = None, step: float | None = N
     `step` [ms] overrides the Model's. A failed run returns a Result with its reason; RefusedError is
     raised for what the backend cannot represent.
     """
-    go_on_unkept()
     refuse_externals(model, "Exudyn")
     refuse_searched(model, "Exudyn")
     started = clock.perf_counter()

@@ -38,7 +38,7 @@ class Recorder:
 
     def store(self, t: float) -> None:
         """The state at the end of a step."""
-        from backends.lattice.compiled import observe
+        from backends.lattice.kernels import observe
 
         bodies, joints, pairs, _, gravity, nodes, points, _, meshes = self.tables
         x, r, v, l, s, vb, _, _ = self.state

@@ -78,7 +78,7 @@ def solve(
     started = clock.perf_counter()
     system = build(model, fold=FOLDING not in without)
     compiled = clock.perf_counter()
-    from backends.lattice import compiled as _  # noqa: F401
+    from backends.lattice import kernels as _  # noqa: F401
 
     if model.run.analysis == "static":
         with compiling.told():
@@ -170,8 +170,8 @@ def _once(
 ) -> Result:
     """One run at a step, or the next smaller one that outputs fall on; `miss`: see MISS, 0 for any; `anew`:
     a new factor for each step; `keep` as of `solve`."""
-    from backends.lattice import compiled
-    from backends.lattice.compiled import march, step
+    from backends.lattice import kernels
+    from backends.lattice.kernels import march, step
 
     run = model.run
     outputs = max(1, round(run.duration / run.print_step))
@@ -204,7 +204,7 @@ def _once(
     stage = mark.back(keep, number) if keep is not None else None
     if stage is not None:
         status, t, past = stage.status, stage.t, stage.wall
-        compiled.search.look(system.pairs, search, search.place.copy())
+        kernels.search.look(system.pairs, search, search.place.copy())
     todo = range(stage.outputs if stage else 0, 0 if stage and stage.ended else outputs)
     for output in todo:
         for taken in range(0, each, MOST_AT_ONCE):
@@ -254,7 +254,7 @@ def _part(recorder: Recorder, stand: Stand, dt: float, steps: int) -> Result:
 
 def start(model: Model, system: System) -> tuple:
     """State at the start, and the arrays of a step."""
-    from backends.lattice.compiled import forces, step
+    from backends.lattice.kernels import forces, step
 
     state, mid, matrix = step.empty(system, forces.WIDE)
     x, r, v, l, _, _, u, _ = state
@@ -282,7 +282,7 @@ def _reason(
     model: Model, system: System, status: int, t: float, dt: float, state: tuple, counters: Floats
 ) -> str:
     """Why a run ended before its end."""
-    from backends.lattice.compiled import march, step
+    from backends.lattice.kernels import march, step
 
     names = model.bodies.name
     if status == march.STOPPED and counters[step.THROUGH] >= 0:
@@ -327,7 +327,7 @@ def _reason(
 def _arrays(model: Model, system: System) -> tuple[Any, Any, Any, Any, Any, Any, Any, Any, Any]:
     """What a run works on: tables, state, middle, matrix, boxes that touch, free sheets, what is kept,
     bounds, and the search, made for the start."""
-    from backends.lattice.compiled import alone, forces, momentum, search
+    from backends.lattice.kernels import alone, forces, momentum, search
 
     tables = system.tables
     kept = (np.zeros((len(model.contacts), 9)), np.zeros(system.marks, bool))
@@ -349,7 +349,7 @@ def _arrays(model: Model, system: System) -> tuple[Any, Any, Any, Any, Any, Any,
 
 def _warm(model: Model, system: System) -> None:
     """Compiles, or loads from the cache, before the clock of the run starts."""
-    from backends.lattice.compiled import march, step
+    from backends.lattice.kernels import march, step
 
     moving = _arrays(model, system)
     tables, state, mid, _, _, _, kept, _, _ = moving

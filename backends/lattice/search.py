@@ -15,14 +15,11 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from mdlgen.model.tables import BOX_BOX, Floats, Ints, Model
 
-SKIN = 2.0  # mm
 # Pairs that there is room for, in times those of two flat sheets on each other.
 ROOM = 3.0
-EMPTY = -1  # kind of a pair that is none
 
 REGION = np.dtype(
     [
@@ -57,6 +54,8 @@ class Search(NamedTuple):
 def plan(model: Model, pairs: np.ndarray) -> tuple[np.ndarray, Search, int]:
     """The pairs of a Model with room for those that are searched, the search, and how many different pairs
     there can be."""
+    from backends.lattice.kernels.search import EMPTY, SKIN
+
     rows = np.flatnonzero(model.contacts.kind == BOX_BOX)
     sheets = {s.name: s for s in model.sheets}
     half = model.bodies.half
@@ -92,77 +91,3 @@ def plan(model: Model, pairs: np.ndarray) -> tuple[np.ndarray, Search, int]:
         cell=np.zeros((count, 3), np.int64),
     )
     return np.concatenate([pairs, spare]), search, marks
-
-
-@njit(cache=True, error_model="numpy", forceinline=True)
-def _hash(i, j, k, many):
-    return (i * 73856093 ^ j * 19349663 ^ k * 83492791) & (many - 1)
-
-
-@njit(cache=True, error_model="numpy")
-def _sort(search, x):
-    """Puts the boxes into their cells, and keeps where they are."""
-    search.head[:] = -1
-    for b in search.boxes:
-        for i in range(3):
-            search.place[b, i] = x[b, i]
-            search.cell[b, i] = math.floor(x[b, i] / search.size)
-        at = _hash(search.cell[b, 0], search.cell[b, 1], search.cell[b, 2], search.head.size)
-        search.following[b] = search.head[at]
-        search.head[at] = b
-
-
-@njit(cache=True, error_model="numpy")
-def look(pairs, search, x):
-    """Lists the pairs of boxes that are near behind those of the Model. Returns whether there was room."""
-    if search.regions.size == 0:
-        return True
-    _sort(search, x)
-    count = search.first
-    for region in search.regions:
-        for a in range(region.a, region.a + region.many_a):
-            for cell in range(27):
-                i, j, k = cell % 3 - 1, cell // 3 % 3 - 1, cell // 9 - 1
-                i, j, k = search.cell[a, 0] + i, search.cell[a, 1] + j, search.cell[a, 2] + k
-                b = search.head[_hash(i, j, k, search.head.size)]
-                while b >= 0:
-                    own = search.cell[b, 0] == i and search.cell[b, 1] == j and search.cell[b, 2] == k
-                    if own and region.b <= b < region.b + region.many_b:
-                        reach = search.radius[a] + search.radius[b] + SKIN
-                        dx, dy, dz = x[a, 0] - x[b, 0], x[a, 1] - x[b, 1], x[a, 2] - x[b, 2]
-                        if dx * dx + dy * dy + dz * dz < reach * reach:
-                            if count == pairs.size:
-                                return False
-                            _fill(pairs[count], region, a, b, search.rough[a] * search.rough[b])
-                            count += 1
-                    b = search.following[b]
-    for p in range(count, pairs.size):
-        if pairs[p].kind == EMPTY:
-            break
-        pairs[p].kind = EMPTY
-    return True
-
-
-@njit(cache=True, error_model="numpy")
-def _fill(pair, region, a, b, rough):
-    pair.kind, pair.a, pair.b = BOX_BOX, a, b
-    pair.row, pair.shared, pair.k = region.row, region.shared, region.k
-    for i in range(6):
-        pair.law[i] = region.law[i] * (rough if i == 1 or i == 2 else 1.0)
-    pair.mark = region.mark + (a - region.a) * region.many_b + (b - region.b)
-
-
-@njit(cache=True, error_model="numpy")
-def strayed(bodies, search, x, u, dt):
-    """Whether a box would be further than half of SKIN from where it was searched, after dt at the
-    velocities u (nodes, 6)."""
-    for b in search.boxes:
-        n = bodies[b].node
-        if n < 0:
-            continue
-        square = 0.0
-        for i in range(3):
-            square += (x[b, i] + dt * u[n, i] - search.place[b, i]) ** 2
-        if not square <= 0.25 * SKIN * SKIN:
-            return True
-    return False

@@ -8,7 +8,6 @@ from collections.abc import Callable
 import numpy as np
 
 from backends.lattice.arrays import System, partner
-from backends.lattice.band import PAD
 from backends.lattice.record import Recorder
 from mdlgen.mechanics.mesh import LOST
 from mdlgen.model import curves
@@ -27,7 +26,8 @@ TETHER = 1e-9
 
 def rest(model: Model, system: System, moving: tuple) -> Result:
     """The Result of a Model at rest; `moving` is (state, mid, matrix) at the start."""
-    from backends.lattice.compiled import balance
+    from backends.lattice.kernels import balance
+    from backends.lattice.kernels.band import PAD
 
     state, mid, _ = moving
     x, r, v, l, s = state[:5]
@@ -123,7 +123,7 @@ def _reach(model: Model) -> float:
 
 def _touch(model: Model, system: System, state: tuple, mid: tuple, rows: tuple) -> str | None:
     """Contacts at rest into the rows of the Recorder; a reason where a box is too deep in a plane."""
-    from backends.lattice.compiled import forces
+    from backends.lattice.kernels import forces
 
     x, r = state[:2]
     f, touched, outs, near = mid[4], mid[5], mid[6], mid[8]

@@ -233,7 +233,7 @@ def _loads(model: Model, mirror: Mirror) -> bool:
 def _joints(model: Model, system: System, mirror: Mirror) -> bool:
     """Whether joints are seen as joints: between the same bodies, as stiff, with the same forces in a random
     state and in its image; and whether one that goes across joins a box to its own image."""
-    from backends.lattice.compiled import forces
+    from backends.lattice.kernels import forces
 
     joints, image, count = system.joints, mirror.image, len(mirror.image)
     if not len(joints):

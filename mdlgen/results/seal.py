@@ -57,7 +57,7 @@ def surroundings(*rooms: str) -> dict[str, str]:
     code = hashlib.sha256()
     for room in rooms:
         folder = Path(str(import_module(room).__file__)).parent
-        for source in sorted(folder.glob("*.py")):
+        for source in sorted(folder.rglob("*.py")):
             code.update(source.read_bytes())
     return {
         "mdlgen": version(),

@@ -1,16 +1,15 @@
-"""All compiled code of this solver, imported in one place so that it is cached by its content."""
+"""All compiled code of this solver: whoever imports a part of it comes by here first, so that all of it is
+kept by its content."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 from mdlgen.mechanics import keep_compiled_code
-from mdlgen.mechanics.compiling import go_on_unkept
 
-go_on_unkept()
-keep_compiled_code(Path(__file__).resolve().parent)
+keep_compiled_code("lattice", Path(__file__).resolve().parent)
 
-from backends.lattice import (  # noqa: E402
+from backends.lattice.kernels import (  # noqa: E402
     alone,
     balance,
     band,

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from backends.lattice.band import solve_six
+from backends.lattice.kernels.band import solve_six
 from mdlgen.mechanics.pair import BOX_BOX, on_plate
 
 # Where contacts stand: all apart; those with planes in the matrix of the sheet; all of them there.

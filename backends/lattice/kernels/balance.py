@@ -13,11 +13,11 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from backends.lattice.band import factor
-from backends.lattice.border import eliminate, solve_bordered
-from backends.lattice.chain import follow, link
-from backends.lattice.forces import joint_forces, near_pairs, other_forces, pair_forces
-from backends.lattice.stiffness import contacts_into, rollers_into, sheets_into
+from backends.lattice.kernels.band import factor
+from backends.lattice.kernels.border import eliminate, solve_bordered
+from backends.lattice.kernels.chain import follow, link
+from backends.lattice.kernels.forces import joint_forces, near_pairs, other_forces, pair_forces
+from backends.lattice.kernels.stiffness import contacts_into, rollers_into, sheets_into
 
 MOST_ROUNDS = 100
 MOST_TRIES = 12  # of the length of one step

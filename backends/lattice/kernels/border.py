@@ -6,8 +6,8 @@ import math
 
 from numba import njit
 
-from backends.lattice.band import solve
-from backends.lattice.dense import copy
+from backends.lattice.kernels.band import solve
+from backends.lattice.kernels.dense import copy
 
 
 @njit(cache=True, error_model="numpy")

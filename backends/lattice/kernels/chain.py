@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from numba import njit
 
-from backends.lattice.band import factor, solve
+from backends.lattice.kernels.band import factor, solve
 from mdlgen.mechanics.vector import (
     add,
     cross,

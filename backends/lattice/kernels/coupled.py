@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from backends.lattice.border import solve_bordered
+from backends.lattice.kernels.border import solve_bordered
 from mdlgen.mechanics.vector import mat, matmul, nine, transpose_matmul
 
 MOST_ROUNDS = 200
@@ -31,7 +31,7 @@ class Couplings(NamedTuple):
     room: np.ndarray  # vectors of all unknowns, (5, 6 nodes + border)
 
 
-def empty(pairs: int, nodes: int, border: int) -> Couplings:
+def couplings(pairs: int, nodes: int, border: int) -> Couplings:
     return Couplings(
         np.zeros(1, np.int64),
         np.zeros((pairs, 2), np.int64),

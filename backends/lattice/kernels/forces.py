@@ -6,7 +6,7 @@ import math
 
 from numba import njit
 
-from backends.lattice.image import reflect, reflect_rates
+from backends.lattice.kernels.image import reflect, reflect_rates
 from mdlgen.mechanics.arm import moved, way_of
 from mdlgen.mechanics.bushing import bushing_pair
 from mdlgen.mechanics.contact import MOST_POINTS, OUT, POINT

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from numba import njit
 
-from backends.lattice.dense import lu_solve_transposed
-from backends.lattice.tangent import core, hat_left, hat_right
+from backends.lattice.kernels.dense import lu_solve_transposed
+from backends.lattice.kernels.tangent import core, hat_left, hat_right
 from mdlgen.mechanics.arm import turn_of, way_of
 from mdlgen.mechanics.contact import OUT, POINT
 from mdlgen.mechanics.driven import clutch

@@ -6,9 +6,9 @@ import math
 
 from numba import njit
 
-from backends.lattice.dense import copy
-from backends.lattice.search import look, strayed
-from backends.lattice.step import ROUNDS, STEPS, STRAIN, TOUCHING, WORST, carry, midpoint, spun
+from backends.lattice.kernels.dense import copy
+from backends.lattice.kernels.search import look, strayed
+from backends.lattice.kernels.step import ROUNDS, STEPS, STRAIN, TOUCHING, WORST, carry, midpoint, spun
 from mdlgen.mechanics.arm import speeding
 from mdlgen.mechanics.curve import overstretched
 from mdlgen.mechanics.driven import clutch, prescribed

@@ -16,13 +16,13 @@ import math
 import numpy as np
 from numba import njit
 
-from backends.lattice import band, coupled
-from backends.lattice.alone import APART, INSIDE, PLANES, choose, columns, forget, release, unsee
-from backends.lattice.band import factor, solve
-from backends.lattice.border import eliminate
-from backends.lattice.coupled import couplings_in_box_axes, solve_coupled
-from backends.lattice.dense import copy
-from backends.lattice.forces import (
+from backends.lattice.kernels.alone import APART, INSIDE, PLANES, choose, columns, forget, release, unsee
+from backends.lattice.kernels.band import empty as no_band
+from backends.lattice.kernels.band import factor, solve
+from backends.lattice.kernels.border import eliminate
+from backends.lattice.kernels.coupled import couplings, couplings_in_box_axes, solve_coupled
+from backends.lattice.kernels.dense import copy
+from backends.lattice.kernels.forces import (
     clutch_torques,
     joint_forces,
     near_pairs,
@@ -32,11 +32,11 @@ from backends.lattice.forces import (
     place,
     turn_roller,
 )
-from backends.lattice.image import reflect
-from backends.lattice.momentum import keep
-from backends.lattice.sides import crossed, part_of_change
-from backends.lattice.tangent import contacts_into, in_box_axes, joints_into, masses, rollers_into
-from backends.lattice.touching import settle
+from backends.lattice.kernels.image import reflect
+from backends.lattice.kernels.momentum import keep
+from backends.lattice.kernels.sides import crossed, part_of_change
+from backends.lattice.kernels.tangent import contacts_into, in_box_axes, joints_into, masses, rollers_into
+from backends.lattice.kernels.touching import settle
 from mdlgen.mechanics.arm import moved, torque_of, turn_of, way_of
 from mdlgen.mechanics.driven import clutch, prescribed
 from mdlgen.mechanics.vector import back, dot, exp_rotation, mat, matmul, rotate, three, vec
@@ -325,7 +325,7 @@ def empty(system, wide: int):
         np.zeros(len(system.pairs), np.int64),
     )
     matrix = (
-        band.empty(nodes, system.reach),
+        no_band(nodes, system.reach),
         np.zeros((border, 6 * nodes)),
         np.zeros((border, border)),
         np.zeros((border, 6 * nodes)),
@@ -334,6 +334,6 @@ def empty(system, wide: int):
         np.zeros(border),
         np.zeros((4, 3)),
         np.zeros(4, np.int64),
-        coupled.empty(len(system.pairs) - system.search.first, nodes, border),
+        couplings(len(system.pairs) - system.search.first, nodes, border),
     )
     return state, mid, matrix

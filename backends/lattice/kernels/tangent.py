@@ -11,7 +11,7 @@ import math
 
 from numba import njit
 
-from backends.lattice.band import PAD
+from backends.lattice.kernels.band import PAD
 from mdlgen.mechanics.arm import turn_of, way_of
 from mdlgen.mechanics.contact import OUT, POINT
 from mdlgen.mechanics.curve import curve_spring

@@ -18,10 +18,10 @@ import math
 
 from numba import njit
 
-from backends.lattice.alone import PLANES, unsee
-from backends.lattice.dense import lu
-from backends.lattice.forces import pair_forces, place_box, place_roller
-from backends.lattice.growth import activate, clutches, gradient, newton, newton_matrix
+from backends.lattice.kernels.alone import PLANES, unsee
+from backends.lattice.kernels.dense import lu
+from backends.lattice.kernels.forces import pair_forces, place_box, place_roller
+from backends.lattice.kernels.growth import activate, clutches, gradient, newton, newton_matrix
 from mdlgen.mechanics.arm import turn_of, way_of
 from mdlgen.mechanics.contact import OUT, POINT
 from mdlgen.mechanics.driven import clutch
