@@ -19,7 +19,7 @@ from mdlgen.mechanics.laws import damping_share
 from mdlgen.mechanics.mesh import Meshes, mesh_numbers, mesh_tables
 from mdlgen.mechanics.rim import RIM, rim
 from mdlgen.model.meshes import check_balance
-from mdlgen.model.rotations import matrices
+from mdlgen.model.rotations import matrices, parameters
 from mdlgen.model.tables import Floats, Ints, Model
 
 MM, G, MS = 1e-3, 1e-3, 1e-3
@@ -150,7 +150,7 @@ def _bodies(model: Model, moving: bool) -> tuple[np.ndarray, int]:
     bodies = np.zeros(count + 1, BODY)
     bodies["reference"][:, 3] = 1.0
     bodies["reference"][:count, :3] = table.position * MM
-    bodies["reference"][:count, 3:] = quaternions(table.rotation)
+    bodies["reference"][:count, 3:] = parameters(table.rotation)
     bodies["mass"][:count] = table.mass * G
     bodies["inertia"][:count] = table.inertia * G * MM**2
     bodies["half"][:count] = table.half * MM
@@ -191,15 +191,6 @@ def _bodies(model: Model, moving: bool) -> tuple[np.ndarray, int]:
         row["half"] = [0.5 * MM * size for size in (guide.length, guide.width, guide.thickness)]
         row["arc"], row["side"] = (guide.radius * MM, guide.middle, guide.half_angle), guide.sides
     return bodies, free
-
-
-def quaternions(rotations: Floats) -> Floats:
-    """Euler parameters (scalar first) of rotation matrices, (n, 3, 3) -> (n, 4)."""
-    from scipy.spatial.transform import Rotation
-
-    if len(rotations) == 0:
-        return np.zeros((0, 4))
-    return np.roll(Rotation.from_matrix(rotations).as_quat(canonical=True), 1, axis=1)
 
 
 def _bushings(model: Model) -> tuple[np.ndarray, list[int]]:

@@ -8,6 +8,7 @@ import numpy as np
 
 from backends.lattice.arrays import System
 from mdlgen.model.meshes import carried
+from mdlgen.model.rotations import parameters
 from mdlgen.model.tables import Model
 from mdlgen.results.result import ContactStatistics, Energy, Result
 
@@ -151,12 +152,9 @@ def _balance(stand: Stand) -> Energy:
 
 def _quaternions(matrices: np.ndarray) -> np.ndarray:
     """Euler parameters (scalar first) of rotation matrices, (t, bodies, 9) -> (t, bodies, 4); no jumps."""
-    from scipy.spatial.transform import Rotation
-
     if not np.isfinite(matrices).all():
         return np.full((*matrices.shape[:2], 4), np.nan)
-    found = Rotation.from_matrix(matrices.reshape(-1, 3, 3), assume_valid=True).as_quat(canonical=True)
-    found = np.roll(found, 1, axis=1).reshape(*matrices.shape[:2], 4)
+    found = parameters(matrices.reshape(*matrices.shape[:2], 3, 3))
     signs = np.sign(np.einsum("tbi,tbi->tb", found[1:], found[:-1]))
     signs[signs == 0] = 1.0
     return np.concatenate([found[:1], found[1:] * np.cumprod(signs, axis=0)[:, :, None]])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from mdlgen.model.rotations import turns
 from mdlgen.model.tables import GROUND, Floats
 from mdlgen.results.result import Result
 
@@ -14,10 +15,10 @@ def momentum(result: Result) -> tuple[Floats, Floats]:
     mass = result.model.bodies.mass[:count, None]
     linear = (mass * result.velocity[:, :count]).sum(axis=1)
     angular = np.cross(result.position[:, :count], mass * result.velocity[:, :count]).sum(axis=1)
-    turns = rotations(result.rotation[:, :count])
+    turned = turns(result.rotation[:, :count])
     inertia = result.model.bodies.inertia[:count]
-    own = np.einsum("tbji,tbj->tbi", turns, result.spin[:, :count]) * inertia
-    return linear, angular + np.einsum("tbij,tbj->ti", turns, own)
+    own = np.einsum("tbji,tbj->tbi", turned, result.spin[:, :count]) * inertia
+    return linear, angular + np.einsum("tbij,tbj->ti", turned, own)
 
 
 def energy(result: Result) -> Floats:
@@ -26,13 +27,13 @@ def energy(result: Result) -> Floats:
 
     count = sum(sheet.count for sheet in result.model.sheets)
     bodies, bushings = result.model.bodies, result.model.bushings
-    turns = rotations(result.rotation[:, :count])
-    body_spin = np.einsum("tbji,tbj->tbi", turns, result.spin[:, :count])
+    turned = turns(result.rotation[:, :count])
+    body_spin = np.einsum("tbji,tbj->tbi", turned, result.spin[:, :count])
     total = 0.5 * np.einsum("b,tbi,tbi->t", bodies.mass[:count], *[result.velocity[:, :count]] * 2)
     total += 0.5 * np.einsum("bi,tbi->t", bodies.inertia[:count], body_spin**2)
     zero = (0.0, 0.0, 0.0)
     for row in range(len(bushings)):
-        sides = [_side(result, turns, body, row) for body in (bushings.a[row], bushings.b[row])]
+        sides = [_side(result, turned, body, row) for body in (bushings.a[row], bushings.b[row])]
         k, kt = tuple(bushings.k[row, :3].tolist()), tuple(bushings.k[row, 3:].tolist())
         for t in range(len(result.time)):
             (xa, fa, ra), (xb, fb, rb) = (tuple(tuple(v[t].ravel().tolist()) for v in side) for side in sides)
@@ -40,18 +41,7 @@ def energy(result: Result) -> Floats:
     return total
 
 
-def rotations(parameters: Floats) -> Floats:
-    """Rotation matrices (..., 3, 3) of Euler parameters (..., 4), scalar first."""
-    w, x, y, z = np.moveaxis(parameters, -1, 0)
-    rows = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-    ]
-    return np.moveaxis(np.array(rows), (0, 1), (-2, -1))
-
-
-def _side(result: Result, turns: Floats, body: int, row: int) -> tuple[Floats, Floats, Floats]:
+def _side(result: Result, turned: Floats, body: int, row: int) -> tuple[Floats, Floats, Floats]:
     """Centre, bushing frame and arm of one side of a bushing over time."""
     bodies, bushings = result.model.bodies, result.model.bushings
     origin, axes = bushings.origin[row], bushings.axes[row]
@@ -61,4 +51,4 @@ def _side(result: Result, turns: Floats, body: int, row: int) -> tuple[Floats, F
         return *held, np.zeros((times, 3))
     start = bodies.rotation[body]
     arm = start.T @ (origin - bodies.position[body])
-    return result.position[:, body], turns[:, body] @ (start.T @ axes), turns[:, body] @ arm
+    return result.position[:, body], turned[:, body] @ (start.T @ axes), turned[:, body] @ arm

@@ -324,9 +324,6 @@ def run(
         if asked:
             kept.check(name, why, wish)
     drawn = pictures or are_drawn(folder)
-    # what draws takes half a second to load; a solver leaves the second core to it
-    for load in (load_drawing, load_page) if drawn else (load_page,):
-        Thread(target=load, daemon=True).start()
     every = 60.0 if checkpoint is None else checkpoint
     if seal is not None:
         keep = Keep(folder / kept.FOLDER, every)
@@ -334,6 +331,10 @@ def run(
         keep = kept.kept(folder, task, model, every)
     else:
         keep = Keep()
+        keep.begun.set()
+    # what draws takes half a second to load: compiled code leaves a second core to it, not what comes before
+    for load in (load_drawing, load_page) if drawn else (load_page,):
+        Thread(target=lambda load=load: keep.begun.wait() and load(), daemon=True).start()
     if seal is None and kept.is_kept(folder) and not quiet:
         say(f"{folder} holds a run that was cut off; this one takes its place (--resume {folder} goes on)")
     # a solver may talk on standard output, which is kept for results

@@ -1,4 +1,7 @@
-"""Rotation vectors and matrices, many at once."""
+"""Rotation vectors, matrices and Euler parameters, many at once.
+
+scipy has these too; they stand here because importing its rotations takes half a second of each run.
+"""
 
 from __future__ import annotations
 
@@ -28,3 +31,36 @@ def vectors(rotations: Floats) -> Floats:
     angle = np.arctan2(sine, 0.5 * (np.trace(r, axis1=-2, axis2=-1) - 1.0))
     scale = np.divide(angle, sine, out=np.ones_like(angle), where=sine > 1e-300)
     return 0.5 * scale[..., None] * twice
+
+
+def parameters(rotations: Floats) -> Floats:
+    """Euler parameters (..., 4), scalar first and not negative, of matrices (..., 3, 3).
+
+    Of the four ways to them the one that divides by the largest is taken (Shepperd 1978).
+    """
+    (a, b, c), (d, e, f), (g, h, i) = np.moveaxis(rotations, (-2, -1), (0, 1))
+    squares = np.stack([1 + a + e + i, 1 + a - e - i, 1 - a + e - i, 1 - a - e + i])  # 4 q_i^2
+    w, x, y, z = squares
+    ways = np.stack(
+        [
+            np.stack([w, h - f, c - g, d - b]),
+            np.stack([h - f, x, b + d, c + g]),
+            np.stack([c - g, b + d, y, f + h]),
+            np.stack([d - b, c + g, f + h, z]),
+        ]
+    )
+    best = np.take_along_axis(ways, squares.argmax(axis=0)[None, None], axis=0)[0]
+    best *= np.where(best[0] < 0.0, -1.0, 1.0) / np.sqrt((best * best).sum(axis=0))
+    return np.moveaxis(best, 0, -1)
+
+
+def turns(parameters: Floats) -> Floats:
+    """Rotation matrices (..., 3, 3) of Euler parameters (..., 4), scalar first and of any length."""
+    w, x, y, z = np.moveaxis(parameters, -1, 0)
+    two = 2.0 / (w * w + x * x + y * y + z * z)
+    rows = [
+        [1 - two * (y * y + z * z), two * (x * y - w * z), two * (x * z + w * y)],
+        [two * (x * y + w * z), 1 - two * (x * x + z * z), two * (y * z - w * x)],
+        [two * (x * z - w * y), two * (y * z + w * x), 1 - two * (x * x + y * y)],
+    ]
+    return np.moveaxis(np.array(rows), (0, 1), (-2, -1))

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from mdlgen.model.guides import depths
+from mdlgen.model.rotations import turns
 from mdlgen.model.tables import BOX_CYLINDER, BOX_GUIDE, BOX_PLANE, GROUND, Floats, Ints, Model
 from mdlgen.report.solids import CORNERS
-from mdlgen.results.foot import turns
 from mdlgen.results.result import Result
 from mdlgen.results.strain import SheetJoints
 

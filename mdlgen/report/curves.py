@@ -88,7 +88,7 @@ def _across(result: Result, sheet: int, way: Floats) -> Floats | None:
 
 def _tilt(result: Result, at: Ints) -> list[Panel]:
     """How far the mean normal of a sheet's boxes leans along its first x and y axes."""
-    from mdlgen.results.foot import turns
+    from mdlgen.model.rotations import turns
 
     panel = Panel("tilt", "Tilt of the sheet", "deg")
     panel.note = "of the mean normal of its boxes, about the sheet's y axis (pitch) and x axis (roll)"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from mdlgen.model.rotations import matrices, parameters
 from mdlgen.model.tables import Floats, Ints, Model
 from mdlgen.report.meshes import on_arms
 from mdlgen.results.result import Result
@@ -16,24 +17,19 @@ def poses(result: Result, at: Ints) -> tuple[Floats, Floats]:
     A solver need not tell how far a roller has turned, since nothing depends on it: here it is the
     integral of its speed over the stored states.
     """
-    from scipy.spatial.transform import Rotation
-
     place, turn = result.position[at], result.rotation[at].copy()
     for roller in result.model.rollers:
         speed = result.spin[:, roller.body] @ roller.axis
         steps = 0.5 * (speed[1:] + speed[:-1]) * np.diff(result.time)
         angle = np.concatenate([[0.0], np.cumsum(steps)])[at]
-        start = Rotation.from_matrix(result.model.bodies.rotation[roller.body])
-        turned = Rotation.from_rotvec(angle[:, None] * roller.axis) * start
-        turn[:, roller.body] = np.roll(turned.as_quat(), 1, axis=1)
+        start = result.model.bodies.rotation[roller.body]
+        turn[:, roller.body] = parameters(matrices(angle[:, None] * roller.axis) @ start)
     return _with_arms(result.model, place, turn)
 
 
 def start(model: Model) -> tuple[Floats, Floats]:
     """As `poses` where a run begins, (bodies, 3) and (bodies, 4)."""
-    from scipy.spatial.transform import Rotation
-
-    turn = np.roll(Rotation.from_matrix(model.bodies.rotation).as_quat(), 1, axis=1)
+    turn = parameters(model.bodies.rotation)
     place, turn = _with_arms(model, model.bodies.position[None], turn[None])
     return place[0], turn[0]
 
@@ -46,15 +42,14 @@ def names(model: Model) -> list[str]:
 def _with_arms(model: Model, place: Floats, turn: Floats) -> tuple[Floats, Floats]:
     """Poses with those of arms, which follow from their rollers': at the pivot, level with the roller's
     middle, x to the roller's axis and z along it."""
-    from scipy.spatial.transform import Rotation
-
     for roller in on_arms(model):
         assert roller.arm is not None
         way = place[:, roller.body] - roller.arm.pivot
         level = (way @ roller.axis)[:, None] * roller.axis
         x = (way - level) / np.linalg.norm(way - level, axis=1)[:, None]
         z = np.broadcast_to(roller.axis, x.shape)
-        turned = Rotation.from_matrix(np.stack([x, np.cross(z, x), z], axis=2)).as_quat()
+        axes = np.stack([x, np.cross(z, x), z], axis=2).astype(float)
+        turned = parameters(axes)
         place = np.concatenate([place, (roller.arm.pivot + level)[:, None]], axis=1)
-        turn = np.concatenate([turn, np.roll(turned, 1, axis=1)[:, None]], axis=1)
+        turn = np.concatenate([turn, turned[:, None]], axis=1)
     return place, turn

@@ -59,7 +59,6 @@ def page(results: Sequence[Result], names: Sequence[str] = ()) -> str:
 def load_page() -> None:
     """Loads what the page and the files beside it are made with, ahead of the first ones."""
     import h5py  # noqa: F401
-    import scipy.spatial.transform  # noqa: F401
 
     environment().get_template("page.html.j2")
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mdlgen.model.rotations import turns
 from mdlgen.model.tables import BOX_CYLINDER, Floats, Ints, Model, RollerPart
 from mdlgen.results.foot import Foot, feet
 from mdlgen.results.piles import piled
@@ -239,10 +240,8 @@ def _gaps(result: Result, stays: list[Stay]) -> list[dict[str, Any]]:
 
 def _reach(result: Result, sheet: int, at: int, way: Floats) -> tuple[float, float]:
     """From where to where a sheet reaches along a direction [mm]."""
-    from scipy.spatial.transform import Rotation
-
     boxes = _boxes(result.model, sheet)
-    turn = Rotation.from_quat(np.roll(result.rotation[at, boxes], -1, axis=1)).as_matrix()
+    turn = turns(result.rotation[at, boxes])
     half = (np.abs(np.einsum("nij,i->nj", turn, way)) * result.model.bodies.half[boxes]).sum(axis=1)
     center = result.position[at, boxes] @ way
     return float((center - half).min()), float((center + half).max())

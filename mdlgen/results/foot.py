@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mdlgen.model.rotations import turns
 from mdlgen.model.tables import Floats, Ints, RollerPart
 
 if TYPE_CHECKING:
@@ -80,11 +81,3 @@ def _feet(result: Result, boxes: Ints, roller: RollerPart, at: Ints) -> Foot:
     low = np.where(on, np.minimum(*ends), np.inf).min(axis=1, initial=np.inf)
     high = np.where(on, np.maximum(*ends), -np.inf).max(axis=1, initial=-np.inf)
     return Foot(share, mean(own), mean(rim), low, high)
-
-
-def turns(quaternions: Floats) -> Floats:
-    """Rotation matrices of Euler parameters, scalar first, (t, n, 4) -> (t, n, 3, 3)."""
-    from scipy.spatial.transform import Rotation
-
-    turn = Rotation.from_quat(np.roll(quaternions, -1, axis=2).reshape(-1, 4))
-    return turn.as_matrix().reshape(*quaternions.shape[:2], 3, 3)

@@ -12,7 +12,7 @@ import time
 import zipfile
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from threading import Lock
+from threading import Event, Lock
 
 import numpy as np
 
@@ -28,7 +28,8 @@ class Keep:
 
     `every` is the time between two states that are written [s]; with the first one stand the files that
     `seal` gives (name -> text; run.json), None where the folder has them. `part` is a way to the result so
-    far, None as long as there is none; `lock` is held while files are written.
+    far, None as long as there is none; `lock` is held while files are written. `begun` is set when the first
+    pass begins: all is loaded and compiled then, and compiled code leaves a second core free.
     """
 
     def __init__(
@@ -40,12 +41,16 @@ class Keep:
         self.folder, self.every, self._seal = folder, every, seal
         self.part: Callable[[], Result] | None = None
         self.lock = Lock()
+        self.begun = Event()
         self.written = folder is not None and seal is None
         self._pass = -1
         self._last = time.monotonic()
 
     def begin(self) -> int:
         """The number of the pass that begins."""
+        if not self.begun.is_set():
+            self._last = time.monotonic()
+            self.begun.set()
         self._pass += 1
         return self._pass
 

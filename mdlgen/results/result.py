@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mdlgen.model.rotations import turns
 from mdlgen.model.tables import Floats, Model
 
 if TYPE_CHECKING:
@@ -143,13 +144,10 @@ class Result:
 
     def anchor_motion(self, index: int) -> tuple[Floats, Floats]:
         """Position [mm] and velocity [mm/ms] of probe `index` at the stored times, (t, 3) each."""
-        from scipy.spatial.transform import Rotation
-
         anchor = self.model.probes[index]
         place, rate = np.zeros((len(self.time), 3)), np.zeros((len(self.time), 3))
         for body, local, share in zip(anchor.body, anchor.local, anchor.share, strict=True):
-            turn = Rotation.from_quat(np.roll(self.rotation[:, body], -1, axis=1))
-            arm = turn.apply(np.array(local))
+            arm = turns(self.rotation[:, body]) @ np.array(local)
             place += share * (self.position[:, body] + arm)
             rate += share * (self.velocity[:, body] + np.cross(self.spin[:, body], arm))
         return place, rate
@@ -160,15 +158,11 @@ class Result:
         The yaw is the mean over boxes of the turn about the sheet's first normal since the start, plus the
         turn of the sheet at the start about that normal.
         """
-        from scipy.spatial.transform import Rotation
-
         sheet = self.model.sheets[index]
         boxes = slice(sheet.first, sheet.first + sheet.count)
         place = self.position[:, boxes].mean(axis=1)
         rate = self.velocity[:, boxes].mean(axis=1)
-        quaternion = np.roll(self.rotation[:, boxes], -1, axis=2)
-        along = Rotation.from_quat(quaternion.reshape(-1, 4)).apply([1.0, 0.0, 0.0])
-        along = along.reshape(*quaternion.shape[:2], 3).mean(axis=1)
+        along = turns(self.rotation[:, boxes])[..., 0].mean(axis=1)
         normal = sheet.rotation[:, 2]
         flat = (
             along

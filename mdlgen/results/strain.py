@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mdlgen.model.grid import local
-from mdlgen.model.rotations import matrices
+from mdlgen.model.rotations import matrices, parameters
 from mdlgen.model.tables import CLAMP, GROUND, JOINT_X, SUPPORT, Floats, Frozen, Ints, Model
 from mdlgen.results.result import Result
 
@@ -198,8 +198,6 @@ class _Fixed:
     """What does not change over a run, of some joints; quaternions and vectors component by component."""
 
     def __init__(self, model: Model, joints: SheetJoints, mine: Ints):
-        from scipy.spatial.transform import Rotation
-
         # the last row stands for the ground
         turned = np.concatenate([model.bodies.rotation, np.eye(3)[None]])
         placed = np.concatenate([model.bodies.position, np.zeros((1, 3))])
@@ -212,7 +210,7 @@ class _Fixed:
         self.frames, self.arms = [], []
         for body, own in zip((self.a, self.b), sides, strict=True):
             seen = np.einsum("nki,nkj->nij", turned[body], own)
-            self.frames.append(tuple(np.roll(Rotation.from_matrix(seen).as_quat(), 1, axis=1).T))
+            self.frames.append(tuple(parameters(seen).T))
             self.arms.append(tuple(np.einsum("nki,nk->in", axes, origin - placed[body])))
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mdlgen.errors import SpecError, did_you_mean
+from mdlgen.model.rotations import parameters
 from mdlgen.results.events import KINDS
 from mdlgen.study.expression import Expression, Value, read
 
@@ -71,12 +72,10 @@ def known(model: Model) -> dict[str, Value]:
 
 def _begun(model: Model) -> Result:
     """A run that has its first state alone."""
-    from scipy.spatial.transform import Rotation
-
     from mdlgen.results.result import ContactStatistics, Result
 
     bodies, rows = model.bodies, len(model.contacts.part_a)
-    turn = np.roll(Rotation.from_matrix(bodies.rotation).as_quat(), 1, axis=1)
+    turn = parameters(bodies.rotation)
     return Result(
         model=model,
         solver="",
