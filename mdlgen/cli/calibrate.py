@@ -12,6 +12,7 @@ from mdlgen.cli.shell import (
     Quiet,
     Raised,
     Sets,
+    Solver,
     Spec,
     Verbose,
     app,
@@ -60,9 +61,7 @@ def calibrate(
             help="Write the value as a piece of a scene file, - for standard output.",
         ),
     ] = None,
-    solver: Annotated[
-        str, typer.Option("--solver", metavar="auto|lattice|exudyn", help="What runs the scene.")
-    ] = "auto",
+    solver: Solver = "auto",
     sets: Sets = None,
     limits: Raised = None,
     as_json: Annotated[bool, typer.Option("--json", help="The result as JSON.")] = False,

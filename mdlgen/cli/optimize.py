@@ -10,10 +10,12 @@ import typer
 
 from mdlgen.cli.shell import (
     SOLVER_FAILED,
+    CheckStep,
     Lets,
     Quiet,
     Raised,
     Sets,
+    Solver,
     Spec,
     Verbose,
     app,
@@ -98,12 +100,8 @@ def optimize(
         str | None,
         typer.Option("--scheduler", metavar="ADDRESS", help="Of a Dask cluster that runs the designs."),
     ] = None,
-    solver: Annotated[
-        str, typer.Option("--solver", metavar="auto|lattice|exudyn", help="What runs the designs.")
-    ] = "auto",
-    check_step: Annotated[
-        bool, typer.Option("--check-step", help="Run each design again at half the step, for its error.")
-    ] = False,
+    solver: Solver = "auto",
+    check_step: CheckStep = False,
     sets: Sets = None,
     limits: Raised = None,
     quiet: Quiet = False,
@@ -118,7 +116,7 @@ def optimize(
     --minimise "sheets.note.yaw_deg**2" -o best.mdl
     """
     from mdlgen import paths, registry
-    from mdlgen.cli.commands import mdl
+    from mdlgen.cli.texts import mdl
     from mdlgen.study import optimisation as study
     from mdlgen.study.fragment import design, fragment, report_text
     from mdlgen.study.goal import goal

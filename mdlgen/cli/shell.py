@@ -46,6 +46,11 @@ Raised = Annotated[
         "once.",
     ),
 ]
+Solver = Annotated[str, typer.Option("--solver", metavar="auto|lattice|exudyn", help="What runs it.")]
+CheckStep = Annotated[
+    bool,
+    typer.Option("--check-step", help="Run again at half the step; the difference estimates the error."),
+]
 Pictures = Annotated[
     bool,
     typer.Option(

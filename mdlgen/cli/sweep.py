@@ -11,10 +11,12 @@ import typer
 from mdlgen.cli.shell import (
     COMPILING,
     SOLVER_FAILED,
+    CheckStep,
     Lets,
     Quiet,
     Raised,
     Sets,
+    Solver,
     Verbose,
     app,
     count,
@@ -108,12 +110,8 @@ def sweep(
             help="Write table.parquet too: where pyarrow is installed if left out (extra `sweep`).",
         ),
     ] = None,
-    solver: Annotated[
-        str, typer.Option("--solver", metavar="auto|lattice|exudyn", help="What runs the cases.")
-    ] = "auto",
-    check_step: Annotated[
-        bool, typer.Option("--check-step", help="Run each case again at half the step, for its error.")
-    ] = False,
+    solver: Solver = "auto",
+    check_step: CheckStep = False,
     sets: Sets = None,
     limits: Raised = None,
     quiet: Quiet = False,

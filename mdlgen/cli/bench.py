@@ -1,0 +1,74 @@
+"""Run time against error."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from mdlgen.cli.shell import (
+    SOLVER_FAILED,
+    Quiet,
+    Verbose,
+    app,
+    say,
+    told,
+)
+from mdlgen.errors import AccuracyError
+
+
+@app.command()
+@told
+def bench(
+    suites: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="SUITE ...",
+            help="transport, elastica, impact, friction, flight, scaling, skip, feeder, stability: "
+            "all if left out.",
+        ),
+    ] = None,
+    output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="Where the files go.")] = Path(
+        "out/bench"
+    ),
+    solver: Annotated[
+        list[str] | None,
+        typer.Option("--solver", metavar="NAME", help="One of the solvers: all if left out."),
+    ] = None,
+    quick: Annotated[bool, typer.Option("--quick", help="A few short cases of each suite.")] = False,
+    repeat: Annotated[int, typer.Option("--repeat", min=1, help="Runs whose median is the wall time.")] = 3,
+    peers: Annotated[
+        bool | None,
+        typer.Option(
+            "--peers/--no-peers",
+            help="MuJoCo and an Exudyn script beside ours in transport: where the extra `peers` is "
+            "installed and no solver is chosen, if left out.",
+        ),
+    ] = None,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
+) -> None:
+    """Run time against error: write bench.json, bench.md and bench.png into DIR.
+
+    Example: mdlgen bench impact friction --solver exudyn
+
+    Example: mdlgen bench stability --quick
+    """
+    from mdlgen.bench.run import bench as run_bench
+    from mdlgen.bench.table import markdown
+    from mdlgen.results.store import check_folder
+
+    check_folder(output)
+    heard = (lambda _: None) if quiet else say
+    found = run_bench(suites or (), output, solver or (), quick, repeat, heard, peers)
+    if not quiet:
+        typer.echo(markdown(found), nl=False)
+        typer.echo(f"wrote {output}")
+    if found.wrong:
+        row = found.wrong[0]
+        raise AccuracyError(f"{len(found.wrong)} wrong: {row.case}, {row.solver}: {row.reason}")
+    if found.failed:
+        row = found.failed[0]
+        say(f"{len(found.failed)} failed: {row.case}, {row.solver}: {row.reason}")
+        raise typer.Exit(SOLVER_FAILED)

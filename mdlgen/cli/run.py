@@ -1,0 +1,162 @@
+"""A run, and what is left of one that was cut off."""
+
+from __future__ import annotations
+
+import contextlib
+from pathlib import Path
+from threading import Thread
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from mdlgen.cli.shell import (
+    SOLVER_FAILED,
+    CheckStep,
+    Pictures,
+    Quiet,
+    Raised,
+    Sets,
+    Solver,
+    Verbose,
+    app,
+    beside,
+    chatter,
+    progress_bar,
+    say,
+    source_of,
+    told,
+)
+from mdlgen.errors import AccuracyError
+
+if TYPE_CHECKING:
+    from mdlgen.results.keep import Keep
+
+
+@app.command()
+@told
+def run(
+    spec: Annotated[
+        Path | None, typer.Argument(metavar="SPEC", help="The scene: a YAML or JSON file.")
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Where the results go: out/NAME if left out."),
+    ] = None,
+    solver: Solver = "auto",
+    check_step: CheckStep = False,
+    resume: Annotated[
+        Path | None,
+        typer.Option("--resume", metavar="DIR", help="Go on with the run in DIR that was cut off."),
+    ] = None,
+    checkpoint: Annotated[
+        float | None,
+        typer.Option(
+            "--checkpoint",
+            metavar="SECONDS",
+            min=0.0,
+            help="How often a state to go on from is kept in DIR/checkpoint: 60 if left out.",
+        ),
+    ] = None,
+    keep_partial: Annotated[
+        bool,
+        typer.Option("--keep-partial", help="After Ctrl-C write what there is into DIR/partial, marked so."),
+    ] = False,
+    pictures: Pictures = False,
+    sets: Sets = None,
+    limits: Raised = None,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
+) -> None:
+    """Simulate a scene; write summary.json, series.csv, result.h5 and report.html into DIR.
+
+    Example: mdlgen run samples/transport_4x4.yaml -o out --check-step
+
+    Example: mdlgen run --resume out
+    """
+    from mdlgen import registry
+    from mdlgen.cli import kept
+
+    kept.single(spec, resume, bool(sets or limits or output or check_step or solver != "auto"))
+    registry.check_solver(solver)
+    if resume is not None:
+        task, seal = kept.again(resume)
+        model = task.model()
+        kept.compare(resume, seal, model)
+    else:
+        assert spec is not None
+        task, seal = kept.task(spec, sets, limits, solver, check_step), None
+        model = task.model()
+    from mdlgen.report.page import load_page, page
+    from mdlgen.report.pictures import are_drawn, load_drawing, pictures_of
+    from mdlgen.report.text import summary_text
+    from mdlgen.results.keep import Keep
+    from mdlgen.results.store import check_folder, save
+
+    folder = resume or output or Path("out") / model.name
+    check_folder(folder)
+    name, why = registry.chosen(task.solver, model)
+    if task.solver == "auto" and why and not quiet:
+        say(f"{name} runs this scene ({why})")
+    for asked, wish in ((keep_partial, "--keep-partial"), (checkpoint is not None, "--checkpoint")):
+        if asked:
+            kept.check(name, why, wish)
+    drawn = pictures or are_drawn(folder)
+    every = 60.0 if checkpoint is None else checkpoint
+    if seal is not None:
+        keep = Keep(folder / kept.FOLDER, every)
+    elif name == "lattice":
+        keep = kept.kept(folder, task, model, every)
+    else:
+        keep = Keep()
+        keep.begun.set()
+    # what draws takes half a second to load: compiled code leaves a second core to it, not what comes before
+    for load in (load_drawing, load_page) if drawn else (load_page,):
+        Thread(target=lambda load=load: keep.begun.wait() and load(), daemon=True).start()
+    if seal is None and kept.is_kept(folder) and not quiet:
+        say(f"{folder} holds a run that was cut off; this one takes its place (--resume {folder} goes on)")
+    # a solver may talk on standard output, which is kept for results
+    try:
+        with progress_bar(quiet, task.check_step) as progress, chatter(verbose):
+            result = beside(lambda: registry.solve(model, task.solver, progress, task.check_step, keep))
+    except KeyboardInterrupt:
+        keep.lock.acquire(timeout=0.5)  # a file that is being written is soon complete
+        if keep_partial:
+            _save_part(keep, folder)
+        if keep.written:
+            say(f"mdlgen run --resume {folder} goes on with this run")
+        raise
+    if not result.ok:
+        if keep.written:
+            keep.drop()
+            with contextlib.suppress(OSError):  # the folder is empty where it was made for what was kept
+                folder.rmdir()
+        say(f"{task.spec}: the run failed: {result.status}; nothing was written into {folder}")
+        raise typer.Exit(SOLVER_FAILED)
+    result.source = source_of(task.text, task.sets)
+    also = pictures_of(result) if drawn else {}
+    save(result, folder, {**also, "report.html": page([result]).encode("utf-8")})
+    keep.drop()
+    if not quiet:
+        typer.echo(summary_text(result.summary()))
+        typer.echo(f"wrote {folder}")
+    if task.check_step and result.error_estimate is None and not quiet:
+        say("a static run has no step: --check-step compared nothing")
+    if result.error_estimate is not None and not result.error_estimate <= model.run.tolerance:
+        raise AccuracyError(
+            f"{task.spec}: the error estimate {result.error_estimate:.3g} is above run.tolerance "
+            f"{model.run.tolerance:g}; the files in {folder} hold this result; give a smaller run.step"
+        )
+
+
+def _save_part(keep: Keep, folder: Path) -> None:
+    from mdlgen.results.store import save
+
+    if keep.part is None:
+        say("there is no part to keep yet")
+        return
+    part = keep.part()
+    part = part.part(
+        f"interrupted at {part.time[-1]:.6g} of {part.model.run.duration:g} ms, at {part.step:g} ms a step"
+    )
+    save(part, folder / "partial")
+    say(f"wrote {folder / 'partial'}: {part.status}")

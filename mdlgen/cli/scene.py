@@ -1,0 +1,140 @@
+"""The scene itself: a first one, what it comes to, what a code means, the schema."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from mdlgen.cli.shell import (
+    Quiet,
+    Raised,
+    Sets,
+    Spec,
+    Verbose,
+    app,
+    echo_json,
+    model_of,
+    say,
+    told,
+)
+from mdlgen.errors import OutputError, SpecError, did_you_mean
+
+
+@app.command()
+@told
+def new(
+    folder: Annotated[Path | None, typer.Argument(metavar="DIR", help="Where to put the scene.")] = None,
+    sample: Annotated[
+        str, typer.Option("--from", metavar="SAMPLE", help="The sample to copy.")
+    ] = "transport_4x4",
+    show: Annotated[bool, typer.Option("--list", help="List the samples instead.")] = False,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
+) -> None:
+    """Copy a commented starter scene into DIR.
+
+    Example: mdlgen new my_scene --from cantilever
+    """
+    from mdlgen import paths
+    from mdlgen.spec.load import load
+
+    root = paths.samples()
+    known = {p.relative_to(root).with_suffix("").as_posix(): p for p in sorted(root.rglob("*.yaml"))}
+    if show:
+        for name, path in known.items():
+            first = path.read_text("utf-8").partition("\n")[0].lstrip("# ")
+            typer.echo(f"{name:20} {first}")
+        return
+    if folder is None:
+        raise SpecError("name a folder: mdlgen new DIR (or --list for the samples)")
+    if sample.removesuffix(".yaml") not in known:
+        close = did_you_mean(sample[:80], known)
+        raise SpecError(f"there is no sample {sample[:80]!r}{close or ';'} there are: {', '.join(known)}")
+    source = known[sample.removesuffix(".yaml")]
+    target = folder / source.name
+    if target.exists() or target.is_symlink():
+        raise OutputError(f"{target}: exists already; choose another folder")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(f"{folder}: cannot make this folder: {error.strerror or error}") from None
+    for mesh in load(source).meshes.values():
+        beside = folder / mesh.file
+        if beside.exists() or beside.is_symlink():
+            raise OutputError(f"{beside}: exists already; choose another folder")
+        beside.parent.mkdir(parents=True, exist_ok=True)
+        paths.write_atomic(beside, (source.parent / mesh.file).read_bytes())
+    paths.write_atomic(target, source.read_bytes())
+    typer.echo(target)
+    if not quiet:
+        say(f"next: mdlgen check {target}")
+
+
+@app.command()
+@told
+def check(
+    spec: Spec,
+    sets: Sets = None,
+    limits: Raised = None,
+    as_json: Annotated[bool, typer.Option("--json", help="As JSON, in mm, N, g, ms, rad.")] = False,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
+) -> None:
+    """Validate a scene; show derived quantities, counts and lints.
+
+    Example: mdlgen check samples/transport_4x4.yaml --set sheets.note.boxes=[20,30]
+    """
+    from mdlgen.cli import tables
+    from mdlgen.report.overview import overview
+    from mdlgen.report.text import overview_text
+
+    found = overview(model_of(spec, sets, limits))
+    if as_json:
+        echo_json(found)
+    elif not quiet and sys.stdout.isatty():
+        tables.show(found)
+    elif not quiet:
+        typer.echo(overview_text(found))
+    else:
+        for lint in found["lints"]:
+            typer.echo("{code} {where}: {message}; {remedy}".format(**lint))
+
+
+@app.command()
+@told
+def explain(
+    code: Annotated[
+        str | None, typer.Argument(metavar="CODE", help="As W104, or dangling: all are listed if left out.")
+    ] = None,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
+) -> None:
+    """Say what a code of `mdlgen check` or `mdlgen lint` means, and what to do.
+
+    Example: mdlgen explain W104
+    """
+    from mdlgen.explain import SCENE, TEXT
+    from mdlgen.explain import explain as meaning
+
+    if code is not None:
+        typer.echo(meaning(code))
+        return
+    for title, table in (("mdlgen check", SCENE), ("mdlgen lint", TEXT)):
+        typer.echo(title)
+        for name, text in table.items():
+            typer.echo(f"  {name:10} {text.partition('. ')[0].rstrip('.')}.")
+
+
+@app.command()
+@told
+def schema(quiet: Quiet = False, verbose: Verbose = False) -> None:
+    """Print the JSON schema of a scene file, for editors.
+
+    Example: mdlgen schema > scene.schema.json
+    """
+    from mdlgen.spec.schema import json_schema
+
+    echo_json(json_schema())
