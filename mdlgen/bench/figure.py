@@ -52,10 +52,15 @@ def figure(found: Bench) -> bytes:
 
 
 def _transport(axes: Any, rows: list[Row]) -> None:
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
     for number, (label, errors, walls) in enumerate(lines(rows)):
         style = {"color": COLOURS[number % len(COLOURS)], "marker": MARKERS[number % len(MARKERS)]}
         axes.loglog(errors, walls, label=label, **style)
     axes.axvline(EQUAL_ERROR, color="#888888", linewidth=0.8, linestyle=":")
+    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda error, _: f"{100.0 * error:.3g} %"))
+    axes.xaxis.set_minor_formatter(NullFormatter())
     axes.set(title="transport", xlabel="RMS position error / travel", ylabel="wall time [s]")
     _legend(axes)
 
