@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 
 INTERRUPTED = 130
@@ -15,6 +16,23 @@ def main() -> None:
         run()
     except KeyboardInterrupt:
         sys.exit(INTERRUPTED)
+    except SystemExit as end:
+        if sys.argv[1:2] == ["run"]:
+            leave(end.code)
+        raise
+
+
+def leave(code: str | int | None) -> None:
+    """Ends this process at once. A run has written all that it has to, and taking the compiler's tables apart
+    one by one would take another third of a second."""
+    if isinstance(code, str):
+        return
+    try:
+        sys.stdout.flush()
+        sys.stderr.flush()
+    except OSError:  # nobody reads: that ends as it does elsewhere
+        return
+    os._exit(code or 0)
 
 
 if __name__ == "__main__":
