@@ -16,8 +16,16 @@ function seek(time) {
   state.time = Math.min(Math.max(time, start()), end());
   get("time").value = end() > start() ? 1000 * (state.time - start()) / (end() - start()) : 0;
   get("clock").textContent = told().static ? (state.time < 0.5 ? "before" : "after") : `${state.time.toFixed(2)} ms`;
-  for (const move of movers) move(state.time);
+  const now = performance.now();
+  if (!state.playing || now - marked > MARKS) { marked = now; mark(); }
   stage?.seek(state.time);
+}
+
+// The marks in the charts make the browser paint these again, which may take as long as the picture.
+const MARKS = 100; // [ms]
+let marked = 0;
+function mark() {
+  for (const move of movers) move(state.time);
 }
 
 function step(count) {
@@ -45,7 +53,7 @@ function play(on) {
   state.playing = on;
   get("play").textContent = on ? "pause" : "play";
   get("play").setAttribute("aria-pressed", String(on));
-  if (!on) { stage?.pace(null); return; }
+  if (!on) { mark(); stage?.pace(null); return; }
   if (state.time >= end() - 1e-9) seek(start());
   last = performance.now();
   requestAnimationFrame(tick);

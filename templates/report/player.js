@@ -48,7 +48,9 @@ async function library() {
 
 async function player(canvas, changed) {
   const THREE = await library();
-  const renderer = new THREE.WebGLRenderer({ canvas, antialias: !soft() });
+  // opaque, so that the browser need not blend each picture with the page
+  const context = canvas.getContext("webgl2", { alpha: false, antialias: !soft(), powerPreference: "default" });
+  const renderer = new THREE.WebGLRenderer({ canvas, context });
   const finest = Math.min(window.devicePixelRatio, 2);
   let fineness = finest;
   const scene = new THREE.Scene();
