@@ -177,7 +177,7 @@ def _located(error: MdlgenError, spec: Path | None) -> MdlgenError:
         return error
 
 
-COMPILING = "compiling the solver, once on this machine (about two minutes)"
+COMPILING = "compiling the solver, once on this machine (about three minutes)"
 ABOUT = 180  # parts of it
 
 
