@@ -97,6 +97,8 @@ def test_expressions(expression: str, expected: float) -> None:
         ("sqrt(-1)", "has no value"),
         ("10^400", "too large"),
         ("(-8)^(1/3)", "no finite number"),
+        ("500.e+4000", "500.e+4000 is more than the largest number"),
+        ("1 + 1e400", "1e400 is more than the largest number"),
         ("1+", "a value is due here"),
         ("(1", "no closing parenthesis"),
         ("1 2", "'2' is not expected"),

@@ -290,6 +290,7 @@ def load(deck: Deck, entity: Entity) -> dict[str, Any]:
 
 def _constant(text: str) -> float | str:
     try:
-        return float(text)
+        number = float(text)
     except ValueError:
         return text
+    return number if math.isfinite(number) else text

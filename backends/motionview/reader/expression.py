@@ -6,6 +6,7 @@ evaluator can stop before Python's own limit; chains such as a+b+c+... are loops
 
 from __future__ import annotations
 
+import math
 import operator
 import re
 from collections.abc import Callable
@@ -45,8 +46,9 @@ class Compiled(NamedTuple):
 
 
 def literal(text: str) -> float | None:
-    """The number that a text is, or None where it is more than a number."""
-    return float(text) if _BARE_NUMBER.match(text) else None
+    """The number that a text is, or None where it is more than a number, or more than a number can be."""
+    number = float(text) if _BARE_NUMBER.match(text) else math.inf
+    return number if math.isfinite(number) else None
 
 
 def compiled(text: str) -> Compiled:
@@ -234,6 +236,8 @@ class _Parser:
         self.at += 1
         if kind == "number":
             number = float(value.replace("d", "e").replace("D", "e"))
+            if not math.isfinite(number):
+                raise Trouble("evaluate", f"{value[:80]} is more than the largest number", shift)
             return lambda scope: number
         if kind == "string":
             string = re.sub(r"\\(.)", lambda m: _ESCAPES.get(m[1], m[1]), value[1:-1], flags=re.S)
