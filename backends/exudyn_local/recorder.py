@@ -12,7 +12,7 @@ from mdlgen.mechanics.curve import overstretched
 from mdlgen.mechanics.mesh import LOST
 from mdlgen.model import curves
 from mdlgen.model.meshes import carried
-from mdlgen.model.rotations import parameters
+from mdlgen.model.rotations import euler_parameters
 from mdlgen.model.tables import BOX_BOX, BOX_GUIDE, BOX_PLANE, Model
 from mdlgen.results.result import ContactStatistics, Energy, Result
 
@@ -133,7 +133,7 @@ class Recorder:
         carried(self.model, x, r, u, w)
         self._stored["t"].append(t)
         self._stored["x"].append(x[:-1].copy())
-        self._stored["e"].append(parameters(r[:-1].reshape(-1, 3, 3)))
+        self._stored["e"].append(euler_parameters(r[:-1].reshape(-1, 3, 3)))
         self._stored["u"].append(u[:-1].copy())
         self._stored["w"].append(w[:-1].copy())
         self._stored["f"].append(self._force.copy())

@@ -19,7 +19,7 @@ from mdlgen.mechanics.laws import damping_share
 from mdlgen.mechanics.mesh import Meshes, mesh_numbers, mesh_tables
 from mdlgen.mechanics.rim import RIM, rim
 from mdlgen.model.meshes import check_balance
-from mdlgen.model.rotations import matrices, parameters
+from mdlgen.model.rotations import euler_parameters, matrices
 from mdlgen.model.tables import Floats, Ints, Model
 
 MM, G, MS = 1e-3, 1e-3, 1e-3
@@ -150,7 +150,7 @@ def _bodies(model: Model, moving: bool) -> tuple[np.ndarray, int]:
     bodies = np.zeros(count + 1, BODY)
     bodies["reference"][:, 3] = 1.0
     bodies["reference"][:count, :3] = table.position * MM
-    bodies["reference"][:count, 3:] = parameters(table.rotation)
+    bodies["reference"][:count, 3:] = euler_parameters(table.rotation)
     bodies["mass"][:count] = table.mass * G
     bodies["inertia"][:count] = table.inertia * G * MM**2
     bodies["half"][:count] = table.half * MM

@@ -8,7 +8,7 @@ import numpy as np
 
 from backends.lattice.arrays import System
 from mdlgen.model.meshes import carried
-from mdlgen.model.rotations import parameters
+from mdlgen.model.rotations import euler_parameters
 from mdlgen.model.tables import Model
 from mdlgen.results.result import ContactStatistics, Energy, Result
 
@@ -154,7 +154,8 @@ def _quaternions(matrices: np.ndarray) -> np.ndarray:
     """Euler parameters (scalar first) of rotation matrices, (t, bodies, 9) -> (t, bodies, 4); no jumps."""
     if not np.isfinite(matrices).all():
         return np.full((*matrices.shape[:2], 4), np.nan)
-    found = parameters(matrices.reshape(*matrices.shape[:2], 3, 3))
+    # state by state: many at once take four times the room of the result
+    found = np.array([euler_parameters(state.reshape(-1, 3, 3)) for state in matrices])
     signs = np.sign(np.einsum("tbi,tbi->tb", found[1:], found[:-1]))
     signs[signs == 0] = 1.0
     return np.concatenate([found[:1], found[1:] * np.cumprod(signs, axis=0)[:, :, None]])

@@ -33,7 +33,7 @@ def vectors(rotations: Floats) -> Floats:
     return 0.5 * scale[..., None] * twice
 
 
-def parameters(rotations: Floats) -> Floats:
+def euler_parameters(rotations: Floats) -> Floats:
     """Euler parameters (..., 4), scalar first and not negative, of matrices (..., 3, 3).
 
     Of the four ways to them the one that divides by the largest is taken (Shepperd 1978).
@@ -54,13 +54,19 @@ def parameters(rotations: Floats) -> Floats:
     return np.moveaxis(best, 0, -1)
 
 
+def column(parameters: Floats, k: int) -> Floats:
+    """Column k of the rotation matrices of Euler parameters (..., 4), scalar first and of any length: where
+    the body's axis k points, (..., 3)."""
+    w, *q = np.moveaxis(parameters, -1, 0)
+    two = 2.0 / (w * w + q[0] * q[0] + q[1] * q[1] + q[2] * q[2])
+    i, j = (k + 1) % 3, (k + 2) % 3
+    found = np.empty((*w.shape, 3))
+    found[..., k] = 1.0 - two * (q[i] * q[i] + q[j] * q[j])
+    found[..., i] = two * (q[i] * q[k] + w * q[j])
+    found[..., j] = two * (q[j] * q[k] - w * q[i])
+    return found
+
+
 def turns(parameters: Floats) -> Floats:
     """Rotation matrices (..., 3, 3) of Euler parameters (..., 4), scalar first and of any length."""
-    w, x, y, z = np.moveaxis(parameters, -1, 0)
-    two = 2.0 / (w * w + x * x + y * y + z * z)
-    rows = [
-        [1 - two * (y * y + z * z), two * (x * y - w * z), two * (x * z + w * y)],
-        [two * (x * y + w * z), 1 - two * (x * x + z * z), two * (y * z - w * x)],
-        [two * (x * z - w * y), two * (y * z + w * x), 1 - two * (x * x + y * y)],
-    ]
-    return np.moveaxis(np.array(rows), (0, 1), (-2, -1))
+    return np.stack([column(parameters, k) for k in range(3)], axis=-1)

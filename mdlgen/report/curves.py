@@ -88,13 +88,13 @@ def _across(result: Result, sheet: int, way: Floats) -> Floats | None:
 
 def _tilt(result: Result, at: Ints) -> list[Panel]:
     """How far the mean normal of a sheet's boxes leans along its first x and y axes."""
-    from mdlgen.model.rotations import turns
+    from mdlgen.model.rotations import column
 
     panel = Panel("tilt", "Tilt of the sheet", "deg")
     panel.note = "of the mean normal of its boxes, about the sheet's y axis (pitch) and x axis (roll)"
     for sheet in result.model.sheets:
         boxes = np.arange(sheet.first, sheet.first + sheet.count)
-        normal = turns(result.rotation[np.ix_(at, boxes)])[..., 2].mean(axis=1) @ sheet.rotation
+        normal = column(result.rotation[np.ix_(at, boxes)], 2).mean(axis=1) @ sheet.rotation
         for name, angle in (
             ("pitch", np.arctan2(normal[:, 0], normal[:, 2])),
             ("roll", np.arctan2(-normal[:, 1], normal[:, 2])),

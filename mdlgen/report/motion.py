@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mdlgen.model.rotations import matrices, parameters
+from mdlgen.model.rotations import euler_parameters, matrices
 from mdlgen.model.tables import Floats, Ints, Model
 from mdlgen.report.meshes import on_arms
 from mdlgen.results.result import Result
@@ -23,13 +23,13 @@ def poses(result: Result, at: Ints) -> tuple[Floats, Floats]:
         steps = 0.5 * (speed[1:] + speed[:-1]) * np.diff(result.time)
         angle = np.concatenate([[0.0], np.cumsum(steps)])[at]
         start = result.model.bodies.rotation[roller.body]
-        turn[:, roller.body] = parameters(matrices(angle[:, None] * roller.axis) @ start)
+        turn[:, roller.body] = euler_parameters(matrices(angle[:, None] * roller.axis) @ start)
     return _with_arms(result.model, place, turn)
 
 
 def start(model: Model) -> tuple[Floats, Floats]:
     """As `poses` where a run begins, (bodies, 3) and (bodies, 4)."""
-    turn = parameters(model.bodies.rotation)
+    turn = euler_parameters(model.bodies.rotation)
     place, turn = _with_arms(model, model.bodies.position[None], turn[None])
     return place[0], turn[0]
 
@@ -49,7 +49,7 @@ def _with_arms(model: Model, place: Floats, turn: Floats) -> tuple[Floats, Float
         x = (way - level) / np.linalg.norm(way - level, axis=1)[:, None]
         z = np.broadcast_to(roller.axis, x.shape)
         axes = np.stack([x, np.cross(z, x), z], axis=2).astype(float)
-        turned = parameters(axes)
+        turned = euler_parameters(axes)
         place = np.concatenate([place, (roller.arm.pivot + level)[:, None]], axis=1)
         turn = np.concatenate([turn, turned[:, None]], axis=1)
     return place, turn

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mdlgen.model.rotations import turns
+from mdlgen.model.rotations import column, turns
 from mdlgen.model.tables import Floats, Model
 
 if TYPE_CHECKING:
@@ -162,7 +162,7 @@ class Result:
         boxes = slice(sheet.first, sheet.first + sheet.count)
         place = self.position[:, boxes].mean(axis=1)
         rate = self.velocity[:, boxes].mean(axis=1)
-        along = turns(self.rotation[:, boxes])[..., 0].mean(axis=1)
+        along = column(self.rotation[:, boxes], 0).mean(axis=1)
         normal = sheet.rotation[:, 2]
         flat = (
             along

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mdlgen.model.grid import local
-from mdlgen.model.rotations import matrices, parameters
+from mdlgen.model.rotations import euler_parameters, matrices
 from mdlgen.model.tables import CLAMP, GROUND, JOINT_X, SUPPORT, Floats, Frozen, Ints, Model
 from mdlgen.results.result import Result
 
@@ -210,7 +210,7 @@ class _Fixed:
         self.frames, self.arms = [], []
         for body, own in zip((self.a, self.b), sides, strict=True):
             seen = np.einsum("nki,nkj->nij", turned[body], own)
-            self.frames.append(tuple(parameters(seen).T))
+            self.frames.append(tuple(euler_parameters(seen).T))
             self.arms.append(tuple(np.einsum("nki,nk->in", axes, origin - placed[body])))
 
 

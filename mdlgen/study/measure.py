@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mdlgen.errors import SpecError, did_you_mean
-from mdlgen.model.rotations import parameters
+from mdlgen.model.rotations import euler_parameters
 from mdlgen.results.events import KINDS
 from mdlgen.study.expression import Expression, Value, read
 
@@ -75,7 +75,7 @@ def _begun(model: Model) -> Result:
     from mdlgen.results.result import ContactStatistics, Result
 
     bodies, rows = model.bodies, len(model.contacts.part_a)
-    turn = parameters(bodies.rotation)
+    turn = euler_parameters(bodies.rotation)
     return Result(
         model=model,
         solver="",
