@@ -198,17 +198,7 @@ def _joints(model: Model, fold: bool) -> tuple[np.ndarray, int]:
         single["f" + end] = np.einsum("nji,njk->nik", rotation[body], axes).reshape(-1, 9)
     single["k"], single["c"] = table.k, table.c
     follow(single, model.curves, np.arange(len(table)))
-    made: list[np.void] = []
-    waiting: dict[tuple[int, int], int] = {}
-    for row in single:
-        key = (int(row["a"]), int(row["b"]))
-        before = waiting.pop(key, None)
-        if fold and before is not None and _alike(made[before], row):
-            made[before] = _folded(made[before], row)
-            continue
-        waiting[key] = len(made)
-        made.append(row.copy())
-    joints = np.array(made, dtype=JOINT) if made else np.zeros(0, JOINT)
+    joints = _fold(single) if fold else single
     own = np.eye(3).ravel()
     for name in ("fa", "fb"):
         joints[name][np.abs(joints[name] - own).max(axis=1) < 1e-14] = own
@@ -216,23 +206,42 @@ def _joints(model: Model, fold: bool) -> tuple[np.ndarray, int]:
     return joints, len(single) - len(joints)
 
 
-def _alike(one: np.void, two: np.void) -> bool:
+def _fold(single: np.ndarray) -> np.ndarray:
+    """One joint for each two that are alike, in the place of the first."""
+    ends = np.stack([single["a"], single["b"]])
+    order = np.lexsort(ends)
+    one, two = order[:-1], order[1:]
+    alike = (ends[:, one] == ends[:, two]).all(axis=0) & _alike(single[one], single[two])
+    chosen: list[int] = []
+    for k in np.flatnonzero(alike).tolist():
+        if not chosen or chosen[-1] != k - 1:  # else its first one is folded already
+            chosen.append(k)
+    joints = single.copy()
+    joints[one[chosen]] = _folded(single[one[chosen]], single[two[chosen]])
+    return np.delete(joints, two[chosen])
+
+
+def _alike(one: np.ndarray, two: np.ndarray) -> np.ndarray:
     """Equal but for their place, which is the same seen from both bodies; and linear, since two curves at
     different gaps do not add up to one."""
-    if one["first"] >= 0 or two["first"] >= 0:
-        return False
-    same = all(np.array_equal(one[name], two[name]) for name in ("k", "c", "fa", "fb"))
-    apart = [one["f" + end].reshape(3, 3).T @ (two["r" + end] - one["r" + end]) for end in "ab"]
-    return same and bool(np.allclose(apart[0], apart[1], rtol=0, atol=1e-12 * np.abs(apart[0]).max()))
+    same = (one["first"] < 0) & (two["first"] < 0)
+    for name in ("k", "c", "fa", "fb"):
+        same &= (one[name] == two[name]).all(axis=1)
+    a, b = (np.einsum("nji,nj->ni", _axes(one, end), two["r" + end] - one["r" + end]) for end in "ab")
+    return same & (np.abs(a - b).max(axis=1) <= 1e-12 * np.abs(a).max(axis=1))
 
 
-def _folded(one: np.void, two: np.void) -> np.void:
+def _folded(one: np.ndarray, two: np.ndarray) -> np.ndarray:
     both = one.copy()
     for name in ("ra", "rb"):
         both[name] = 0.5 * (one[name] + two[name])
-    both["e"] = one["fa"].reshape(3, 3).T @ (two["ra"] - one["ra"]) / 2
+    both["e"] = np.einsum("nji,nj->ni", _axes(one, "a"), two["ra"] - one["ra"]) / 2
     both["k"], both["c"] = 2 * one["k"], 2 * one["c"]
     return both
+
+
+def _axes(joints: np.ndarray, end: str) -> np.ndarray:
+    return joints["f" + end].reshape(-1, 3, 3)
 
 
 def _pairs(model: Model) -> tuple[np.ndarray, np.ndarray]:

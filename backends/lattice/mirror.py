@@ -41,25 +41,28 @@ class Mirror:
         return self.seen(points) + 2.0 * self.at * self.normal
 
     def axes(self, rotations: Floats) -> Floats:
-        """Axes (n, 3, 3), in columns, as the mirror shows them: no rotations."""
-        return self.seen(rotations.transpose(0, 2, 1)).transpose(0, 2, 1)
+        """Axes (..., 3, 3), in columns, as the mirror shows them: no rotations."""
+        return self.seen(rotations.swapaxes(-1, -2)).swapaxes(-1, -2)
 
     def fill(self, x: Floats, r: Floats, u: Floats, w: Floats) -> None:
-        """Sets the bodies that are left out: places, rotations (bodies, 9) of boxes, velocities."""
+        """Sets the bodies that are left out: places (..., bodies, 3), rotations (..., bodies, 9) of boxes,
+        velocities."""
         to = np.flatnonzero(self.gone)
         of = self.image[to]
-        x[to], u[to], w[to] = self.places(x[of]), self.seen(u[of]), -self.seen(w[of])
+        x[..., to, :] = self.places(x[..., of, :])
+        u[..., to, :], w[..., to, :] = self.seen(u[..., of, :]), -self.seen(w[..., of, :])
         to = to[self.boxes[to]]
-        turned = self.axes(r[self.image[to]].reshape(-1, 3, 3)) * self.signs[to][:, None, :]
-        r[to] = turned.reshape(-1, 9)
+        whole = r[..., self.image[to], :]
+        turned = self.axes(whole.reshape(*whole.shape[:-1], 3, 3)) * self.signs[to][:, None, :]
+        r[..., to, :] = turned.reshape(whole.shape)
 
     def sums(self, rows: Floats) -> Floats:
-        """What adds up over the pairs of each row of the contacts, (rows,), of both sides."""
+        """What adds up over the pairs of each row of the contacts, (..., rows), of both sides."""
         return self.largest(rows * self.times)
 
     def largest(self, rows: Floats) -> Floats:
-        """What holds for a row of the contacts, (rows,), holds for its image."""
-        return rows[self.rows]
+        """What holds for a row of the contacts, (..., rows), holds for its image."""
+        return rows[..., self.rows]
 
     def passed(self, x: Floats, boxes: Ints) -> int:
         """A box that has passed the plane, where it may meet parts that it has no pairs with; -1: none."""

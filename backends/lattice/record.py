@@ -13,6 +13,7 @@ from mdlgen.model.tables import Model
 from mdlgen.results.result import ContactStatistics, Energy, Result
 
 STORED = {"x": 3, "r": 9, "u": 3, "w": 3}
+TOGETHER = 20_000  # bodies, times states, whose rotations are looked at together
 
 
 class Stand(NamedTuple):
@@ -51,22 +52,18 @@ class Recorder:
         work = (u, w, f, touched, outs, near)
         sheets = (bodies, joints, points)
         observe.ledger(*sheets, pairs, meshes, gravity, nodes, t, *places, *rates, *work, energies, force)
-        mirror, told = self.system.mirror, self.kept[0][:, 5].copy()
-        if mirror is not None:
-            mirror.fill(x, r, u, w)
+        if self.system.mirror is not None:
             energies *= 2.0
-            force, told = mirror.sums(force), mirror.sums(told)
         now = (float(energies[0]), float(energies[1]), float(energies[2]))
         if self._first is None:
             self._first = now
         self._last = now
         self._most = max(self._most, now[0] + now[1])
         self._times.append(t)
-        carried(self.model, x, r, u, w)
         for name, array in (("x", x), ("r", r), ("u", u), ("w", w)):
             self._stored[name].append(array[:count].copy())
         # forces are those in the middle of the last step, where the rule has them; at the start as it begins
-        self._stored["f"].append(force if t == 0.0 else told)
+        self._stored["f"].append(force if t == 0.0 else self.kept[0][:, 5].copy())
 
     def arrays(self) -> dict[str, np.ndarray]:
         """All that it has stored, and what the compiled code added up."""
@@ -115,14 +112,14 @@ class Recorder:
             rows = np.array([(mirror.sums if k in summed else mirror.largest)(c) for k, c in columns]).T
             stand = stand._replace(work=2.0 * stand.work)
         inside = np.where(rows[:, 4] > 0, rows[:, 4], 1.0)
-        held = {name: np.array(values[: stand.times]) for name, values in self._stored.items()}
+        held = self._whole(stand.times)
         return Result(
             model=self.model,
             solver=solver,
             status=reason or "ok",
             time=np.array(self._times[: stand.times]),
             position=held["x"],
-            rotation=_quaternions(held["r"]),
+            rotation=held["e"],
             velocity=held["u"],
             spin=held["w"],
             contact_force=held["f"],
@@ -139,6 +136,24 @@ class Recorder:
             halved=mirror is not None,
         )
 
+    def _whole(self, times: int) -> dict[str, np.ndarray]:
+        """The first states that it has stored, with the bodies that are not solved for; Euler parameters."""
+        held = {name: np.array(values[:times]) for name, values in self._stored.items()}
+        mirror = self.system.mirror
+        moving, finite = [held[name] for name in STORED], np.isfinite(held["r"]).all()
+        held["e"] = np.full((*held["x"].shape[:2], 4), np.nan)
+        few = max(1, TOGETHER // held["x"].shape[1])
+        for at in range(0, times, few):
+            some = [array[at : at + few] for array in moving]
+            if mirror is not None:
+                mirror.fill(*some)
+            carried(self.model, *some)
+            if finite:
+                held["e"][at : at + few] = euler_parameters(some[1].reshape(*some[1].shape[:2], 3, 3))
+        if mirror is not None:
+            held["f"] = mirror.sums(held["f"])
+        return held | {"e": _without_jumps(held["e"]) if finite else held["e"]}
+
 
 def _balance(stand: Stand) -> Energy:
     lost, driven, through = (float(v) for v in stand.work)
@@ -150,15 +165,12 @@ def _balance(stand: Stand) -> Energy:
     return Energy(kinetic, elastic, lost, driven, float((change + lost - driven) / scale))
 
 
-def _quaternions(matrices: np.ndarray) -> np.ndarray:
-    """Euler parameters (scalar first) of rotation matrices, (t, bodies, 9) -> (t, bodies, 4); no jumps."""
-    if not np.isfinite(matrices).all():
-        return np.full((*matrices.shape[:2], 4), np.nan)
-    # state by state: many at once take four times the room of the result
-    found = np.array([euler_parameters(state.reshape(-1, 3, 3)) for state in matrices])
-    signs = np.sign(np.einsum("tbi,tbi->tb", found[1:], found[:-1]))
+def _without_jumps(parameters: np.ndarray) -> np.ndarray:
+    """Euler parameters (t, bodies, 4) with the signs that let them go on from one state to the next."""
+    signs = np.sign(np.einsum("tbi,tbi->tb", parameters[1:], parameters[:-1]))
     signs[signs == 0] = 1.0
-    return np.concatenate([found[:1], found[1:] * np.cumprod(signs, axis=0)[:, :, None]])
+    parameters[1:] *= np.cumprod(signs, axis=0)[:, :, None]
+    return parameters
 
 
 def _versions() -> dict[str, str]:

@@ -145,11 +145,13 @@ def carriers(model: Model) -> dict[int, int]:
 
 
 def carried(model: Model, x: Floats, r: Floats, u: Floats, w: Floats) -> None:
-    """Fills the rows of meshes on rollers from those of the rollers: places (n, 3), rotations (n, 9),
-    velocities and angular velocities (n, 3)."""
+    """Fills the rows of meshes on rollers from those of the rollers: places (..., n, 3), rotations
+    (..., n, 9), velocities and angular velocities (..., n, 3)."""
     start, turn = model.bodies.position, model.bodies.rotation
     for own, roller in carriers(model).items():
-        now = r[roller].reshape(3, 3)
-        arm = now @ turn[roller].T @ (start[own] - start[roller])
-        x[own], r[own] = x[roller] + arm, (now @ turn[roller].T @ turn[own]).ravel()
-        u[own], w[own] = u[roller] + np.cross(w[roller], arm), w[roller]
+        turned = r[..., roller, :].reshape(*r.shape[:-2], 3, 3) @ turn[roller].T
+        arm = turned @ (start[own] - start[roller])
+        x[..., own, :] = x[..., roller, :] + arm
+        r[..., own, :] = (turned @ turn[own]).reshape(*r.shape[:-2], 9)
+        u[..., own, :] = u[..., roller, :] + np.cross(w[..., roller, :], arm)
+        w[..., own, :] = w[..., roller, :]
