@@ -47,6 +47,7 @@ class Alone(NamedTuple):
     p0: np.ndarray  # at the start
     used: np.ndarray  # as the last step took them, linear
     forces: np.ndarray  # (bodies, 6)
+    axes: np.ndarray  # (bodies, 9) of the boxes, in which the matrix stands
     mine: np.ndarray  # near pairs of the chosen
     seen: np.ndarray  # (pairs,) whether a pair is one of them
     state: np.ndarray  # (3,) how many pairs touch, whether that is where the boxes end, how many are mine
@@ -93,6 +94,7 @@ def empty(system, wide: int) -> Alone:
         p0=np.zeros(size),
         used=np.zeros(size),
         forces=np.zeros((len(system.bodies), 6)),
+        axes=np.zeros((len(system.bodies), 9)),
         mine=np.zeros(pairs, np.int64),
         seen=np.zeros(pairs, np.bool_),
         state=np.zeros(3, np.int64),

@@ -120,7 +120,11 @@ def _longest(bodies, joints, nodes, step, reach):
 @njit(cache=True, error_model="numpy")
 def _along(rest, step):
     """Work of the forces that are left, along a step [N mm]."""
-    return np.dot(rest[0], step[0]) + np.dot(rest[1], step[1])
+    total = 0.0
+    for k in range(2):
+        for i in range(rest[k].size):
+            total += rest[k][i] * step[k][i]
+    return total
 
 
 @njit(cache=True, error_model="numpy")

@@ -81,7 +81,7 @@ def _pair_growth(pair, out, axes, h, x, chord, growth):
 
 
 @njit(cache=True, error_model="numpy")
-def gradient(bodies, pairs, h, x, r, count, alone, acting, many, chord):
+def gradient(bodies, pairs, h, x, count, alone, acting, many, chord):
     """Growth of the contact impulses with the velocities of the boxes that touch and of the rollers."""
     growth, one, direction, index = alone.growth, alone.pair, alone.direction, alone.which
     for i in range(many):
@@ -90,7 +90,7 @@ def gradient(bodies, pairs, h, x, r, count, alone, acting, many, chord):
     for k in range(count):
         pair, out = pairs[alone.touched[k]], alone.outs[k]
         node = bodies[pair.a].node
-        axes = mat(r, pair.a)
+        axes = mat(alone.axes, pair.a)
         _pair_growth(pair, out, axes, h, x, chord, one)
         moving, first = 0, 0
         if node >= 0:

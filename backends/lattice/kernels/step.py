@@ -184,7 +184,9 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
         # what is free converges fast, and keeps its angular momentum as well as the rounds end
         limit = tolerance if count > 0 else FREE * tolerance
         copy(free[3], res)
-        _turn(nodes, r, res, True)
+        # the axes of the boxes as they stand now: half a step before, what is stiff in a box points elsewhere
+        copy(alone.axes, rm)
+        _turn(nodes, alone.axes, res, True)
         if where == INSIDE:
             solve_coupled(a, b, y, corner, couplings, res, resb)
         else:
@@ -199,7 +201,7 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
                 fresh[0] = 0.0
                 release(alone, m)
                 return False
-        _turn(nodes, r, res, False)
+        _turn(nodes, alone.axes, res, False)
         keep(bodies, pairs, nodes, touched, count, free, xm, rm, res)
         change, part = 0.0, part_of_change(bodies, pairs, near, close, rm, h, res)
         if part < 1.0:

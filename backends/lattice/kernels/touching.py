@@ -79,13 +79,13 @@ def _take(pairs, nodes, alone, m, known):
 
 
 @njit(cache=True, error_model="numpy")
-def _impulses(bodies, nodes, xm, r, h, t, ub, alone, m, p):
+def _impulses(bodies, nodes, xm, h, t, ub, alone, m, p):
     """Forces times h, in box axes and along the freedoms of rollers at xm, into p; of clutches at t and the
     rates ub + z."""
     f = alone.forces
     for i in range(m):
         b = nodes[alone.chosen[i]]
-        axes = mat(r, b)
+        axes = mat(alone.axes, b)
         force, torque = back(axes, (f[b, 0], f[b, 1], f[b, 2])), back(axes, (f[b, 3], f[b, 4], f[b, 5]))
         for c in range(3):
             p[6 * i + c], p[6 * i + 3 + c] = h * force[c], h * torque[c]
@@ -138,7 +138,7 @@ def _evaluate(bodies, pairs, meshes, nodes, h, t, state, mid, alone, m):
         b = nodes[n]
         for c in range(6):
             forces[b, c] = 0.0
-        axes = mat(r, b)
+        axes = mat(alone.axes, b)
         v = rotate(axes, (z[6 * i], z[6 * i + 1], z[6 * i + 2]))
         w = rotate(axes, (z[6 * i + 3], z[6 * i + 4], z[6 * i + 5]))
         rate = (u[n, 0] + v[0], u[n, 1] + v[1], u[n, 2] + v[2])
@@ -206,7 +206,7 @@ def settle(system, alone, m, where, h, t, state, mid, near, known, rest, limits)
     rollers' residual; both become what is to be taken off.
     """
     bodies, _joints, pairs, _loads, _gravity, nodes, _points, _images, meshes = system
-    x, r, _u, ub = state
+    x, _r, _u, ub = state
     res, resb = rest
     limit, strict = limits
     z, step, p, used = alone.z, alone.step, alone.p, alone.used
@@ -217,7 +217,7 @@ def settle(system, alone, m, where, h, t, state, mid, near, known, rest, limits)
     _mine(bodies, pairs, near, where, alone)
     _begin(bodies, nodes, x, h, ub, alone, m, res, resb)
     count = _take(pairs, nodes, alone, m, known)
-    _impulses(bodies, nodes, mid[0], r, h, t, ub, alone, m, alone.p0)
+    _impulses(bodies, nodes, mid[0], h, t, ub, alone, m, alone.p0)
     for i in range(many):
         p[i] = used[i] = alone.p0[i]
     merit = _gap(alone, m, many)
@@ -230,7 +230,7 @@ def settle(system, alone, m, where, h, t, state, mid, near, known, rest, limits)
         acting = alone.kept[1]
         short = 6 * acting + ub.size
         if not (same and alone.kept[0] == 1):
-            gradient(bodies, pairs, h, mid[0], r, count, alone, acting, short, chord)
+            gradient(bodies, pairs, h, mid[0], count, alone, acting, short, chord)
             clutches(bodies, h, t, ub, alone, m, acting)
             newton_matrix(alone, acting, short)
             if not lu(alone.jac, alone.swaps, short):
@@ -252,7 +252,7 @@ def settle(system, alone, m, where, h, t, state, mid, near, known, rest, limits)
             if done:
                 break
             count = _evaluate(bodies, pairs, meshes, nodes, h, t, state, mid, alone, m)
-            _impulses(bodies, nodes, mid[0], r, h, t, ub, alone, m, p)
+            _impulses(bodies, nodes, mid[0], h, t, ub, alone, m, p)
             merit = _gap(alone, m, many)
             if merit <= before * (1.0 - 0.1 * part) or merit <= strict * strict or halved == MOST_HALVED:
                 break
