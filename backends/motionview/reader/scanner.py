@@ -9,12 +9,13 @@ from backends.motionview.reader.report import Notes
 from backends.motionview.reader.source import Source
 from backends.motionview.reader.statement import NEXT, Split, Statement
 
-_HEAD = re.compile(r"\s*\*(\w+)[ \t]*\(")
+# A statement as nearly all are written, read in one step: a word first, perhaps a label, no brackets.
+_USUAL = r"""\s*([\w.]++)\s*+(?:,\s*("[^"\\\n]*+")\s*+)?(?:,([^()\[\]{}"`*]*+))?\)"""
+_HEAD = re.compile(rf"\s*\*(\w+)[ \t]*(\()(?:{_USUAL})?")
 _BEGIN = re.compile(r"^[ \t]*\*BeginMDL[ \t]*\(", re.I | re.M)
 _DEFINITION = re.compile(r"^[ \t]*\*DefineSystem[ \t]*\(", re.I | re.M)
 _SPACE = re.compile(r"\s*")
 _PLAIN = re.compile(r"""([^()\[\]{}"`*]*)\)""")
-_LABELLED = re.compile(r"""\s*([\w.]+)\s*,\s*("[^"\\\n]*")\s*(?:,([^()\[\]{}"`*]*))?\)""")
 _TEMPLATE_END = re.compile(r"^[ \t]*\*EndDefine[ \t]*\([ \t]*\)", re.I | re.M)
 
 
@@ -33,6 +34,7 @@ def statements(source: Source, notes: Notes, part: bool = False) -> Iterator[Sta
         notes.add("error", "no-model", source.place(0), message)
         return
     at = begin.start()
+    tails: dict[str, tuple[str, ...]] = {}
     while True:
         head = _HEAD.match(text, at)
         if head is None:
@@ -42,7 +44,7 @@ def statements(source: Source, notes: Notes, part: bool = False) -> Iterator[Sta
                     notes.add("error", "block", source.place(begin.start()), "*BeginMDL has no *EndMDL()")
                 return
             continue
-        statement, at = _statement(source, notes, head)
+        statement, at = _statement(source, notes, head, tails)
         if statement is None:
             continue
         yield statement
@@ -52,13 +54,23 @@ def statements(source: Source, notes: Notes, part: bool = False) -> Iterator[Sta
             at = _template(source, notes, statement, at)
 
 
-def _statement(source: Source, notes: Notes, head: re.Match[str]) -> tuple[Statement | None, int]:
-    text, name, opening = source.text, head[1], head.end()
-    start = head.start(1) - 1
-    if (labelled := _LABELLED.match(text, opening)) is not None:
-        rest = labelled[3]
-        args = (labelled[1], labelled[2], *(() if rest is None else (a.strip() for a in rest.split(","))))
-        return Statement(source, name, args, start, opening), labelled.end()
+def _statement(
+    source: Source, notes: Notes, head: re.Match[str], tails: dict[str, tuple[str, ...]]
+) -> tuple[Statement | None, int]:
+    """A statement and where it ends; `tails` keeps what follows the first argument, as sheets repeat it."""
+    name, _, first, label, rest = head.groups()
+    text, start, opening = source.text, head.start(1) - 1, head.end(2)
+    if first is not None:
+        if rest is None:
+            args = (first,) if label is None else (first, label)
+        elif label is not None:
+            args = (first, label, *[a.strip() for a in rest.split(",")])
+        else:
+            tail = tails.get(rest)
+            if tail is None:
+                tail = tails[rest] = tuple([a.strip() for a in rest.split(",")])
+            args = (first, *tail)
+        return Statement(source, name, args, start, opening), head.end()
     if (plain := _PLAIN.match(text, opening)) is not None:
         inner = plain[1]
         args = tuple([a.strip() for a in inner.split(",")]) if inner.strip() else ()

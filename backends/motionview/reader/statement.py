@@ -21,6 +21,7 @@ _SIMPLE = re.compile(
     rf"""(?:[^()\[\]{{}},"`]++|\((?:{_FLAT}|{_ROUND}|{_BRACE}|{_INDEX})*+\)|{_BRACE}|{_INDEX})*+"""
 )
 NEXT = re.compile(r"^[ \t]*\*\w+[ \t]*\(", re.M)
+_HIDDEN = re.compile(r"\n[ \t]*\*\w+[ \t]*\(")  # as NEXT, but of another line; far quicker to seek
 _CLOSING = {"(": ")", "[": "]", "{": "}"}
 
 
@@ -109,7 +110,7 @@ class Split:
             if c == ",":
                 begin = at + 1
                 continue
-            if c != ")" or NEXT.search(text, opening, at):
+            if c != ")" or _HIDDEN.search(text, opening, at):
                 return False
             self.end = self.stopped = at + 1
             return True
