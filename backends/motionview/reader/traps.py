@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from backends.motionview.reader.report import Notes, Trouble
+from backends.motionview.reader.report import Notes, Severity, Trouble
 from backends.motionview.reader.things.bodies import Body
 from backends.motionview.reader.things.drives import Contact
 from backends.motionview.reader.things.external import External
-from backends.motionview.reader.things.forces import Bush
+from backends.motionview.reader.things.forces import GROUPS, Bush
 from backends.motionview.reader.things.graphics import CAPS, Graphic
 from backends.motionview.reader.things.joints import Joint
 from backends.motionview.reader.things.thing import Thing
@@ -24,12 +24,12 @@ def traps(world: World, notes: Notes) -> None:
     for thing in world.things():
         if isinstance(thing, Joint) and _is_bush(thing):
             thing = thing.ask("bush")
-        for kind, rule in _RULES:
-            if isinstance(thing, kind):
-                try:
-                    world.force(partial(rule, thing, notes))
-                except Trouble:  # told where the values were found
-                    continue
+        rule = _RULES.get(type(thing))
+        if rule is not None:
+            try:
+                world.force(partial(rule, thing, notes))
+            except Trouble:  # told where the values were found
+                continue
 
 
 def _is_bush(joint: Joint) -> bool:
@@ -45,47 +45,48 @@ def _bushing(bush: Thing, notes: Notes) -> None:
     if numbers is None:
         notes.add("warning", "unset", bush.statement.place(), f"{bush} has no *SetBush; it has no stiffness")
         return
-    chosen = bush.chosen("setbush", bush.part)
-    place = chosen.statement.place() if chosen else bush.statement.place()
-    k, c, kt, ct = ([v for v in numbers[g] if isinstance(v, float)] for g in ("k", "c", "kt", "ct"))
-    if any(v < 0 for v in (*k, *c, *kt, *ct)):
-        notes.add("error", "bushing", place, f"{bush} has a negative stiffness or damping")
+    k, c, kt, ct = ([v for v in numbers[g] if isinstance(v, float)] for g in GROUPS)
+    found: list[tuple[Severity, str]] = []
+    if min((*k, *c, *kt, *ct), default=0.0) < 0:
+        found.append(("error", "a negative stiffness or damping"))
     if len(kt) == 3 and not any(kt) and any(ct):
-        message = (
-            f"{bush} has rotational damping and no rotational stiffness; the order is 3 k, 3 c, 3 kt, 3 ct"
-        )
-        notes.add("warning", "bushing", place, message)
-    if len(k) == len(kt) == 3 and not any((*k, *kt)):
-        notes.add("warning", "bushing", place, f"{bush} has no stiffness at all")
+        wrong = "rotational damping and no rotational stiffness; the order is 3 k, 3 c, 3 kt, 3 ct"
+        found.append(("warning", wrong))
+    if len(k) == len(kt) == 3 and not any(k) and not any(kt):
+        found.append(("warning", "no stiffness at all"))
+    for severity, what in found:
+        chosen = bush.chosen("setbush", bush.part)
+        place = (chosen or bush).statement.place()
+        notes.add(severity, "bushing", place, f"{bush} has {what}")
 
 
 def _body(body: Thing, notes: Notes) -> None:
     assert isinstance(body, Body)
-    place = body.statement.place()
+    place = body.statement.place
     given, from_graphics = body.ask("numbers"), body.ask("from_graphics")
     if from_graphics and given is not None:
         message = f"{body} takes its mass from its graphics; the numbers of *SetBodyInertia are not used"
-        notes.add("warning", "mass", place, message)
+        notes.add("warning", "mass", place(), message)
     found = body.ask("properties")
     if found is None:
-        notes.add("warning", "mass", place, f"{body} has no mass")
+        notes.add("warning", "mass", place(), f"{body} has no mass")
         return
     if found.mass < 0 or min(found.inertia[:3]) < 0:
-        notes.add("error", "mass", place, f"{body} has a negative mass or inertia")
+        notes.add("error", "mass", place(), f"{body} has a negative mass or inertia")
     x, y, z = sorted(found.inertia[:3])
     if z > (x + y) * (1 + _SLACK):
         message = f"{body} has an inertia that no body can have: one is more than the sum of the other two"
-        notes.add("warning", "inertia", place, message)
+        notes.add("warning", "inertia", place(), message)
 
 
 def _graphic(graphic: Thing, notes: Notes) -> None:
     assert isinstance(graphic, Graphic)
-    place = graphic.statement.place()
-    if graphic.shape == "BOX" and min(graphic.ask("lengths")) <= 0:
-        notes.add("warning", "size", place, f"{graphic} has a side of no length")
-    if graphic.shape == "SPHERE" and graphic.ask("radius") <= 0:
-        notes.add("warning", "size", place, f"{graphic} has no radius")
-    if graphic.shape == "CYLINDER":
+    shape = graphic.shape
+    if shape == "BOX" and min(graphic.ask("lengths")) <= 0:
+        notes.add("warning", "size", graphic.statement.place(), f"{graphic} has a side of no length")
+    if shape == "SPHERE" and graphic.ask("radius") <= 0:
+        notes.add("warning", "size", graphic.statement.place(), f"{graphic} has no radius")
+    if shape == "CYLINDER":
         _cylinder(graphic, notes)
 
 
@@ -128,9 +129,9 @@ def _contact(contact: Thing, notes: Notes) -> None:
                 notes.add("error", "contact", contact.statement.place(), message)
 
 
-_RULES: tuple[tuple[type[Thing], Callable[[Thing, Notes], None]], ...] = (
-    (Bush, _bushing),
-    (Body, _body),
-    (Graphic, _graphic),
-    (Contact, _contact),
-)
+_RULES: dict[type[Thing], Callable[[Thing, Notes], None]] = {
+    Bush: _bushing,
+    Body: _body,
+    Graphic: _graphic,
+    Contact: _contact,
+}
