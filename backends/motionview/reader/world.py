@@ -56,6 +56,9 @@ class World:
         self._compiled: dict[str, Compiled | Trouble] = {}
         self._at: tuple[Statement, int] | None = None
         self._on_bodies: dict[str, dict[int, list[Thing]]] = {}  # graphics and joints by their body
+        from backends.motionview.reader import things  # which needs this module
+
+        self._makers = things
 
     # -- values that are kept
 
@@ -242,9 +245,7 @@ class World:
         if declaration is None:
             return None
         if declaration.members is None:
-            from backends.motionview.reader.things import made
-
-            declaration.members = made(self, declaration)
+            declaration.members = self._makers.made(self, declaration)
         return declaration.members
 
     def declaration(self, slot: Slot) -> Declaration | None:
@@ -301,9 +302,7 @@ class World:
 
     def system(self, scope: Scope) -> Any:
         """The thing that a scope is."""
-        from backends.motionview.reader.things import system_of
-
-        return system_of(self, scope)
+        return self._makers.system_of(self, scope)
 
     def built_in(self, name: str) -> Any:
         """What the standard include makes."""
@@ -353,9 +352,11 @@ class World:
             if not hasattr(value, "attribute"):
                 raise Trouble("evaluate", f"{shown(value)} is no vector")
             value = value.attribute("data", "data", 0)
-        if len(value) != 3 or not all(isinstance(v, float) for v in value):
-            raise Trouble("evaluate", "a vector has three numbers")
-        return value
+        if len(value) == 3:
+            x, y, z = value
+            if isinstance(x, float) and isinstance(y, float) and isinstance(z, float):
+                return value
+        raise Trouble("evaluate", "a vector has three numbers")
 
     def frame(self, marker: Any, shift: int = 0) -> Frame:
         """Origin of a marker, and its axes as rows of the matrix whose columns they are."""
@@ -384,8 +385,6 @@ class World:
 
     def things(self, *kinds: str) -> Iterator[Thing]:
         """All things of some kinds (of every kind, without), in the order of the text."""
-        from backends.motionview.reader.things import members
-
         for scope in self.scopes:
             if not self.alive(scope):
                 continue
@@ -393,7 +392,7 @@ class World:
                 found = self.thing(slot)
                 if found is None:
                     continue
-                for thing in members(found):
+                for thing in self._makers.members(found):
                     if not kinds or thing.kind in kinds:
                         yield thing
 

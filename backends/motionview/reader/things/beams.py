@@ -79,10 +79,7 @@ class BeamBody(Body):
         super().__init__(beam.world, beam.declaration, beam.side)
         self.beam = beam
         self.index = index
-
-    @property
-    def base(self) -> str:
-        return f"{self.beam.base}.body{self.index}"
+        self.call(f"{beam.base}.body{index}")
 
     def p_label(self) -> str:
         return f"{self.beam.ask('label')}-Body {self.index}"

@@ -139,10 +139,8 @@ class Bush(_Link):
         super().__init__(world, declaration, side)
         self.part = part
         self.joint = joint
-
-    @property
-    def base(self) -> str:
-        return super().base + (".bush" if self.part else "")
+        if part:
+            self.call(f"{self.base}.bush")
 
     def twin(self) -> Thing:
         return super().twin().ask("bush") if self.part else super().twin()

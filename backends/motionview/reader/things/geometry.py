@@ -144,10 +144,7 @@ class PartMarker(Marker):
         self._body = body
         self._origin = origin
         self._natural = natural
-
-    @property
-    def base(self) -> str:
-        return f"{self.owner.base}.{self.word}"
+        self.call(f"{owner.base}.{word}")
 
     def twin(self) -> Thing:
         return self.owner.twin().ask(self.word)

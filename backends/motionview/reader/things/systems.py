@@ -27,16 +27,8 @@ class System(Thing):
             self.side = ""
             self.memo = {}
         self.inner = inner
-
-    @property
-    def name(self) -> str:
-        if self.inner is None:
-            return self.scope.path + self.declaration.slot.name
-        return self.inner.path[:-1] or "MODEL"
-
-    @property
-    def base(self) -> str:
-        return self.name
+        if inner is not None:
+            self.call(inner.path[:-1] or "MODEL")
 
     def __str__(self) -> str:
         return f"system {self.name}" if self.inner and self.inner.path else "the model"

@@ -35,28 +35,18 @@ class Thing:
     def __init__(self, world: World, declaration: Declaration, side: str):
         self.world = world
         self.declaration = declaration
+        self.statement: Statement = declaration.statement
+        self.scope: Scope = declaration.slot.scope
         self.side = side
         self.memo: dict[str, Any] = {}
+        self.call(self.scope.path + declaration.slot.name)
 
     # -- names
 
-    @property
-    def statement(self) -> Statement:
-        return self.declaration.statement
-
-    @property
-    def scope(self) -> Scope:
-        return self.declaration.slot.scope
-
-    @property
-    def base(self) -> str:
-        """Full name without the side."""
-        return self.scope.path + self.declaration.slot.name
-
-    @property
-    def name(self) -> str:
-        """Full name as in the solver deck, without MODEL: `sys_a.b_wheel.l`."""
-        return f"{self.base}.{self.side}" if self.side else self.base
+    def call(self, base: str) -> None:
+        """Full name as in the solver deck, without MODEL: `sys_a.b_wheel.l`; `base` is without the side."""
+        self.base = base
+        self.name = f"{base}.{self.side}" if self.side else base
 
     def __str__(self) -> str:
         return f"{self.kind} {self.name}"
