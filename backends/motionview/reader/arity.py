@@ -5,6 +5,8 @@ Empty arguments count. `4-6` is a range, `3+` is three or more, `5 8` is either.
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 from backends.motionview.reader.statement import Statement
 
 _TABLE = """
@@ -107,7 +109,10 @@ def complaint(statement: Statement) -> str:
     """Why the number of arguments is wrong, or an empty text."""
     count = len(statement.args)
     name, ranges = RANGES[statement.key]
-    if not any(low <= count <= high for low, high in ranges):
+    for low, high in ranges:
+        if low <= count <= high:
+            break
+    else:
         return f"*{name} takes {' or '.join(map(_shown, ranges))} arguments, not {count}"
     special = _SPECIAL.get(statement.key)
     return special(statement, count) if special else ""
@@ -158,7 +163,13 @@ def _output(statement: Statement, count: int) -> str:
 
 
 def _orientation(statement: Statement, count: int) -> str:
-    args = [a.upper() for a in statement.args]
+    return _orienting(statement.args[1:])
+
+
+@lru_cache(64)  # a sheet turns all its boxes alike
+def _orienting(given: tuple[str, ...]) -> str:
+    args = ["", *[a.upper() for a in given]]
+    count = len(args)
     at = 1
     sides = 1
     if args[1] in ("LEFT", "RIGHT"):
@@ -183,10 +194,13 @@ _LAWS = {"LIN": 2, "EXPR": 2, "CRV": 4, "SPL3D": 5}
 
 
 def _laws(name: str, laws: int, numbers: int):
-    def check(statement: Statement, count: int) -> str:
-        at = 2 if statement.arg(1).upper() in ("LEFT", "RIGHT") else 1
+    @lru_cache(64)  # and its bushings have the same laws
+    def of(given: tuple[str, ...]) -> str:
+        args = ["", *[a.upper() for a in given]]
+        count = len(args)
+        at = 2 if args[1] in ("LEFT", "RIGHT") else 1
         for k in range(laws):
-            word = statement.arg(at).upper()
+            word = args[at] if at < count else ""
             if word not in _LAWS:
                 due = f"LIN, CRV, SPL3D or EXPR is due as number {k + 1} of {laws}"
                 return f"*{name}: {due}, not {word or 'nothing'}"
@@ -194,7 +208,7 @@ def _laws(name: str, laws: int, numbers: int):
         at += numbers
         return "" if at == count else f"*{name} of this form takes {at} arguments, not {count}"
 
-    return check
+    return lambda statement, _: of(statement.args[1:])
 
 
 _SPECIAL = {

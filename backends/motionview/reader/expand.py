@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from functools import lru_cache
 from typing import NamedTuple
 
 from backends.motionview.reader.pair import Unmade
@@ -21,6 +22,7 @@ MOST_TIMES = 20
 STANDARD = ("sys_misc", "Solver_Filename", "DS_MotionSolve_Simopts", "SolverMode")
 _NAME = re.compile(r"[A-Za-z_]\w*\Z")
 _PATH = re.compile(r"[A-Za-z_]\w*(?:\s*\[\s*\d+\s*\])?(?:\s*\.\s*[A-Za-z_]\w*(?:\s*\[\s*\d+\s*\])?)*\s*\.?\Z")
+_RELATIVE = ("model", "this", "parent")  # words that a path may begin with
 _NO_ENTITY = {"attachment", "setrowscols", "mergecells", "columnlabel", "columnwidth", "setcell"}
 
 
@@ -92,8 +94,7 @@ class Expansion:
         name = statement.arg(0)
         if not _NAME.match(name) or len(statement.args) < 2:
             return
-        pair = key.endswith("pair")
-        kind = _kind(statement.name.removesuffix(statement.name[-4:]) if pair else statement.name)
+        kind, pair = _kind(statement.name)
         slot = scope.slot(name)
         declaration = Declaration(slot, statement, kind, pair, guard)
         slot.declarations.append(declaration)
@@ -209,10 +210,11 @@ class Expansion:
             return
         slot, rest = found
         side = ""
-        for word in ("l", "r"):
-            if word in rest:
-                side = word
-                rest.remove(word)
+        if rest:
+            for word in ("l", "r"):
+                if word in rest:
+                    side = word
+                    rest.remove(word)
         key = statement.key
         part = ".".join(rest)
         owner = slot.scope
@@ -227,9 +229,13 @@ class Expansion:
 
     def find(self, scope: Scope | None, path: str) -> tuple[Slot, list[str]] | None:
         """The slot that a path is about, with what is left of the path; conditions are not asked."""
+        if scope is not None and path.isidentifier() and path.lower() not in _RELATIVE:
+            own = scope.slots.get(path)
+            if own is not None:  # as nearly all
+                return own, []
         words = [w.strip().replace(" ", "") for w in path.split(".") if w.strip()]
         at: Scope | None = scope
-        while words and words[0].lower() in ("model", "this", "parent") and at is not None:
+        while words and words[0].lower() in _RELATIVE and at is not None:
             low = words.pop(0).lower()
             at = self.world.root if low == "model" else at.parent if low == "parent" else at
         if not words or at is None:
@@ -311,9 +317,12 @@ class Expansion:
 _KINDS = {name.lower(): name for name in (*CLASSES, "System", "Analysis", "DataSet")}
 
 
-def _kind(name: str) -> str:
-    """What a statement makes."""
-    return _KINDS.get(name.lower(), name)
+@lru_cache(256)
+def _kind(name: str) -> tuple[str, bool]:
+    """What a statement makes, and whether it makes two."""
+    pair = name.lower().endswith("pair")
+    name = name[:-4] if pair else name
+    return _KINDS.get(name.lower(), name), pair
 
 
 def expand(program: Program, notes: Notes) -> Expansion:

@@ -94,6 +94,9 @@ def program(statements: Iterable[Statement], notes: Notes) -> Program:
     for statement in statements:
         made.statements.append(statement)
         key = statement.key
+        if key not in _FRAME and not key.startswith("define"):  # as nearly all
+            definition.items.append(Item(statement, guard, contexts))
+            continue
         if key in _CLOSING:
             if open_ and _CLOSES[key] == _block(open_[-1].statement.key):
                 last = open_[-1]
@@ -125,8 +128,8 @@ def program(statements: Iterable[Statement], notes: Notes) -> Program:
             guard = Guard(guard, statement, True)
         elif block == "mdl":
             made.begin = statement
-        elif not _header(made, statement):
-            definition.items.append(Item(statement, guard, contexts))
+        else:
+            _header(made, statement)
     for left in open_:
         if left.statement.key != "beginmdl":
             notes.add("error", "block", left.statement.place(), f"*{left.statement.name} is not closed")
@@ -143,10 +146,14 @@ _CLOSES = {
 }
 
 
+_OPENING = {"if": "if", "begincontext": "context", "beginmdl": "mdl"}
+_INCLUDING = ("include", "definitioninclude", "standardinclude", "loadpreferencefile")
+# What nests others or is about the file as a whole; the definitions too.
+_FRAME = {*_CLOSING, *_OPENING, *_INCLUDING, "setcurrentsolvermode", "setactiveanalysis"}
+
+
 def _block(key: str) -> str:
-    if key.startswith("define"):
-        return "define"
-    return {"if": "if", "begincontext": "context", "setsystem": "", "beginmdl": "mdl"}.get(key, "")
+    return "define" if key.startswith("define") else _OPENING.get(key, "")
 
 
 def _define(made: Program, definition: Definition, notes: Notes) -> None:
@@ -163,15 +170,12 @@ def _define(made: Program, definition: Definition, notes: Notes) -> None:
     made.definitions[definition.name] = definition
 
 
-def _header(made: Program, statement: Statement) -> bool:
+def _header(made: Program, statement: Statement) -> None:
     """Statements about the file as a whole."""
     key = statement.key
-    if key in ("include", "definitioninclude", "standardinclude", "loadpreferencefile"):
+    if key in _INCLUDING:
         made.includes.append(statement)
     elif key == "setcurrentsolvermode":
         made.mode = statement.arg(0).upper()
-    elif key == "setactiveanalysis":
-        made.analysis = statement
     else:
-        return False
-    return True
+        made.analysis = statement
