@@ -164,11 +164,13 @@ class World:
     def _run(self, statement: Statement, index: int, text: str, scope: Scope) -> Any:
         calls, at = self.calls, self._at
         try:
-            if text[-3:] in _COORDINATES and (call := _PLACE_IN_AXES.fullmatch(text)):
-                items = scope.values.get(call[1], _MISSING)  # the three coordinates share it
-                if items is _MISSING:
-                    items = scope.values[call[1]] = self._place_in_axes(statement, index, call, scope)
-                return items[int(text[-2])]
+            if text[-3:] in _COORDINATES:
+                place = text[:-3]
+                items = scope.shared.get(place)  # the three coordinates have it in common
+                if items is None and (call := _PLACE_IN_AXES.fullmatch(text)):
+                    items = scope.shared[place] = self._place_in_axes(statement, index, call, scope)
+                if items is not None:
+                    return items[int(text[-2])]
             expression = self.compiled(text)
             self.calls = calls + expression.depth
             self._at = (statement, index)

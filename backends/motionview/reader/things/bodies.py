@@ -34,7 +34,7 @@ class Body(Thing):
         if chosen is None:
             return None
         arguments = chosen.statement.args[chosen.first :]
-        return self.shared(chosen.scope, ("body", chosen.mirrored, *arguments), lambda: self._read(chosen))
+        return self.shared(chosen.scope, ("body", chosen.mirrored, arguments), lambda: self._read(chosen))
 
     def _read(self, chosen: Chosen) -> tuple[float, ...]:
         source = self.twin() if chosen.mirrored else self

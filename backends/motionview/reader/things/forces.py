@@ -164,7 +164,7 @@ class Bush(_Link):
         if chosen is None:
             return None
         arguments = chosen.statement.args[chosen.first :]
-        return self.shared(chosen.scope, ("bush", *arguments), lambda: self._read(chosen))
+        return self.shared(chosen.scope, ("bush", arguments), lambda: self._read(chosen))
 
     def _read(self, chosen: Chosen) -> dict[str, Any]:
         laws = Laws(self.twin() if chosen.mirrored else self, chosen)

@@ -97,7 +97,7 @@ class Graphic(Thing):
             if "POINT" in arguments:
                 axes, lengths = self._by_center(code, origin)
             else:
-                key = ("box", *arguments)
+                key = ("box", arguments)
                 axes, lengths = self.shared(self.scope, key, lambda: self._by_center(code, origin))
             if word == "CORNER":
                 for axis, length in zip(axes, lengths, strict=True):

@@ -77,7 +77,7 @@ def axes(thing: Thing, twin_origin: Vector, origin: Vector, chosen: Chosen) -> A
         if "POINT" in chosen.statement.args:
             return _axes(reader, chosen.mirrored)
         arguments = chosen.statement.args[begin:]
-        key = ("axes", chosen.mirrored, *arguments)
+        key = ("axes", chosen.mirrored, arguments)
         return thing.shared(chosen.scope, key, lambda: _axes(reader, chosen.mirrored))
     except Trouble as trouble:
         if trouble.place is None:

@@ -108,7 +108,8 @@ class Thing:
         """The value of an argument, of this side."""
         statement = statement or self.statement
         try:
-            return self.own(self.world.value(statement, index, scope or self.scope))
+            value = self.world.value(statement, index, scope or self.scope)
+            return value if value.__class__ is not Pair else self.own(value)
         except Trouble as trouble:
             if trouble.place is None:
                 trouble.place = statement.place(index)
@@ -127,8 +128,10 @@ class Thing:
     def position(self, index: int, statement: Statement | None = None, scope: Scope | None = None) -> Vector:
         """Where a point is."""
         value = self.given(index, statement, scope)
-        if value.__class__ is tuple or getattr(value, "kind", "") == "Point":
+        if value.__class__ is tuple:
             return self.world.vector(value)
+        if getattr(value, "kind", "") == "Point":
+            return value.ask("data")
         raise self.wrong(statement or self.statement, index, "a point", value)
 
     def related(self, index: int, *kinds: str) -> Any:
@@ -159,7 +162,7 @@ class Thing:
 
     def chosen(self, kind: str, part: str = "", symmetric: bool = False) -> Chosen | None:
         """The Set statement that counts for this side; of a symmetric pair the left one leads."""
-        found = self.settings(kind, part)
+        found = self.world.settings(self.declaration.slot, kind, part)
         if not found:
             return None
         if not self.side:
@@ -177,7 +180,7 @@ class Thing:
 
     def shared(self, scope: Scope, key: tuple[Any, ...], find: Callable[[], Any]) -> Any:
         """What depends on nothing but some arguments: found once for all statements that have the same."""
-        whole = (self.side, *key)
+        whole = (self.side, key)
         found = scope.shared.get(whole, self)
         if found is self:
             found = scope.shared[whole] = find()
