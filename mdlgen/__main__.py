@@ -10,6 +10,8 @@ INTERRUPTED = 130
 # What a command loads and reads stays to its end. To look for what is none of it each few hundred objects, as
 # Python does of itself, takes up to a tenth of the time.
 MANY = 100_000
+# Commands that hold much at their end: the tables of the compiler, or all things of a large text.
+LARGE = ("run", "lint", "mdl", "deck", "verify")
 
 
 def main() -> None:
@@ -22,14 +24,14 @@ def main() -> None:
     except KeyboardInterrupt:
         sys.exit(INTERRUPTED)
     except SystemExit as end:
-        if sys.argv[1:2] == ["run"]:
+        if len(sys.argv) > 1 and sys.argv[1] in LARGE:
             leave(end.code)
         raise
 
 
 def leave(code: str | int | None) -> None:
-    """Ends this process at once. A run has written all that it has to, and taking the compiler's tables apart
-    one by one would take another third of a second."""
+    """Ends this process at once. It has written all that it has to, and taking what it holds apart one by one
+    would take up to another third of a second."""
     if isinstance(code, str):
         return
     try:
