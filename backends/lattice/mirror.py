@@ -30,7 +30,7 @@ class Mirror:
     boxes: NDArray[np.bool_]  # bodies that are boxes of sheets
     rows: Ints  # row of the contacts that tells of each row: itself, or its image
     times: Floats  # 2 for a row that is its own image, else 1
-    apart: bool  # pairs of a box on one side and a part on the other are left out
+    apart: bool  # pairs of a box on one side and a part, or a sheet's box, on the other are left out
 
     def seen(self, vectors: Floats) -> Floats:
         """Vectors (..., 3) as the mirror shows them."""
@@ -69,10 +69,12 @@ class Mirror:
         beyond = np.flatnonzero(x[boxes] @ self.normal > self.at) if self.apart else []
         return int(boxes[beyond[0]]) if len(beyond) else -1
 
-    def sides(self, system: System) -> Ints:
-        """How many pairs of the whole each pair of the half stands for."""
+    def touched(self, system: System, marks: NDArray[np.bool_]) -> int:
+        """How many pairs of the whole those of the half stand for that are marked."""
         own = self.image == np.arange(len(self.image))
-        return np.where(own[system.pairs["a"]] & own[system.pairs["b"]], 1, 2)
+        pairs = system.pairs[: system.search.first]
+        alone = pairs["mark"][own[pairs["a"]] & own[pairs["b"]]]
+        return int(2 * marks.sum() - marks[alone].sum())
 
 
 def halve(system: System, mirror: Mirror) -> System:
@@ -82,8 +84,8 @@ def halve(system: System, mirror: Mirror) -> System:
     bodies = system.bodies.copy()
     for name in ("node", "slide", "spin"):
         bodies[name][gone] = -1
-    for name in ("axis", "clutch"):
-        bodies[name][gone] = 0.0
+    for name in ("axis", "clutch", "swings"):
+        bodies[name][gone] = 0
     # a roller in the plane: half of it, pushed by what is on one side
     bodies["press"][own] *= 0.5
     bodies["clutch"][own, 1] *= 0.5
@@ -106,6 +108,7 @@ def halve(system: System, mirror: Mirror) -> System:
     images["normal"], images["at"] = mirror.normal, mirror.at
     a, b = system.pairs["a"], system.pairs["b"]
     near = ~gone[a] & ~gone[b]
+    near[system.search.first :] = True  # room, see search
     pairs = system.pairs[near].copy()
     pairs["k"][(own[a] & own[b])[near]] *= 0.5
     return system._replace(
@@ -118,6 +121,9 @@ def halve(system: System, mirror: Mirror) -> System:
         reach=reach(bodies, joints),
         border=border,
         images=images,
-        search=system.search._replace(first=len(pairs)),  # there is none, see symmetry
+        search=system.search._replace(
+            first=int(near[: system.search.first].sum()),
+            boxes=system.search.boxes[~gone[system.search.boxes]],
+        ),
         mirror=mirror,
     )

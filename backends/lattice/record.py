@@ -104,9 +104,9 @@ class Recorder:
     def result_at(self, stand: Stand, solver: str, reason: str | None) -> Result:
         """The Result up to where the recorder stood."""
         rows, marks = stand.rows, stand.marks
-        mirror, touched = self.system.mirror, marks
+        mirror, touched = self.system.mirror, int(marks.sum())
         if mirror is not None:
-            touched = marks[self.system.pairs["mark"]] * mirror.sides(self.system)
+            touched = mirror.touched(self.system, marks)
             summed = (1, 3, 5)  # forces; depths and times hold for both sides
             columns = enumerate(rows.T)
             rows = np.array([(mirror.sums if k in summed else mirror.largest)(c) for k, c in columns]).T
@@ -130,7 +130,7 @@ class Recorder:
                 mean_force=rows[:, 3] / inside,
                 last_force_at=np.where(rows[:, 7] != 0, np.nan, rows[:, 8]),
             ),
-            touched=int(touched.sum()),
+            touched=touched,
             energy=_balance(stand),
             versions=_versions(),
             halved=mirror is not None,

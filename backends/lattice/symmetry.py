@@ -11,7 +11,7 @@ import numpy as np
 from backends.lattice.arrays import System
 from backends.lattice.mirror import Mirror
 from mdlgen.model.rotations import matrices
-from mdlgen.model.tables import Floats, GuidePart, Ints, Model, PlanePart, RollerPart, SheetPart
+from mdlgen.model.tables import BOX_BOX, Floats, GuidePart, Ints, Model, PlanePart, RollerPart, SheetPart
 
 # How well both sides must agree, relative to the largest number that is compared, and forces that sum up.
 SAME, SAME_FORCE = 1e-9, 1e-7
@@ -119,8 +119,8 @@ def _alike(mirror: Mirror, model: Model, one: Part, two: Part) -> bool:
         return False
     if isinstance(one, RollerPart) and isinstance(two, RollerPart):
         way = -float(mirror.seen(one.axis) @ two.axis)  # a turn is seen the other way round
-        # arms, and angles that are counted the other way, are not compared
-        whole = one.arm is None and (one.rim is None or way > 0.0)
+        # an arm in the plane is not cut, and angles that are counted the other way are not compared
+        whole = (one.arm is None or one is not two) and (one.rim is None or way > 0.0)
         if abs(abs(way) - 1.0) > SAME or not whole:
             return False
         return _roller(one, float(np.sign(way)), mirror) == _roller(two, 1.0, None)
@@ -141,12 +141,16 @@ def _roller(part: RollerPart, way: float, mirror: Mirror | None) -> tuple[Any, .
     press = part.press
     if press is not None and mirror is not None:
         press = replace(press, direction=mirror.seen(press.direction))
+    arm = part.arm
+    if arm is not None and mirror is not None:
+        arm = replace(arm, pivot=mirror.places(arm.pivot), center=mirror.places(arm.center))
     own = {
         "axis": 0.0,
         "speed": part.speed if part.speed is None else way * part.speed,
         "profile": part.profile if part.profile is None else part.profile * (1.0, way),
         "one_way": clutch,
         "press": press and _told(press, {}),
+        "arm": arm and (_rounded(arm.center), *_told(replace(arm, torque=way * arm.torque), {})),
     }
     return _told(part, own)
 
@@ -161,27 +165,29 @@ def _told(part: Any, instead: dict[str, Any]) -> tuple[Any, ...]:
 
 
 def _rounded(value: Any) -> Any:
-    """A value that is equal to others but for round-off."""
+    """A value that is equal to others but for round-off; what is not a number, as a sector has that goes by
+    its roller, is equal too."""
     if isinstance(value, np.ndarray):
-        most = float(np.abs(value).max(initial=0.0)) or 1.0
-        return (_rounded(most), *(np.round(value / most, 9) + 0.0).ravel().tolist())
+        most = float(np.nanmax(np.abs(value), initial=0.0)) or 1.0
+        return (_rounded(most), *(_rounded(v) for v in (np.round(value / most, 9) + 0.0).ravel().tolist()))
     if is_dataclass(value):
         return _told(value, {})
     if isinstance(value, (list, tuple)):
         return tuple(_rounded(v) for v in value)
-    return float(f"{value:.9e}") + 0.0 if isinstance(value, float) else value
+    if isinstance(value, float):
+        return None if math.isnan(value) else float(f"{value:.9e}") + 0.0
+    return value
 
 
 def _contacts(model: Model, mirror: Mirror) -> Mirror | None:
     """The Mirror with the rows of contacts, where each row has an image with the same law, and no box reaches
-    a part on the other side."""
+    a part on the other side. Boxes of two sheets meet on one side or on the other, as both are cut between
+    boxes."""
     table, image = model.contacts, mirror.image
     parts = (*model.rollers, *model.planes, *model.guides)
     place = {part.name: part.body for part in parts}
     names = {part.body: part.name for part in parts}
     seen = {name: names[int(image[body])] for name, body in place.items()}
-    if not place.keys() >= {*table.part_b}:
-        return None  # sheets on sheets: what is near is looked for as it moves, on both sides
     ends = list(zip(table.part_a, table.part_b, strict=True))
     columns = [getattr(table, f.name) for f in fields(table) if f.name not in ("entry", "part_a", "part_b")]
     laws = list(zip(*(c.tolist() if isinstance(c, np.ndarray) else c for c in columns), strict=True))
@@ -192,7 +198,9 @@ def _contacts(model: Model, mirror: Mirror) -> Mirror | None:
     if (told < 0).any():
         return None
     own = image == np.arange(len(image))
-    a, b = model.pairs.a, model.pairs.b
+    sheets = bool((table.kind == BOX_BOX).any())
+    listed = table.kind[model.pairs.contact] != BOX_BOX
+    a, b = model.pairs.a[listed], model.pairs.b[listed]
     across = (mirror.gone[a] != mirror.gone[b]) & ~own[a] & ~own[b]
     # a part that keeps off the plane is out of reach of the boxes on the other side, which a run watches
     clear = max(sheet.thickness for sheet in model.sheets)
@@ -202,7 +210,8 @@ def _contacts(model: Model, mirror: Mirror) -> Mirror | None:
     itself = np.arange(len(ends))
     far = np.array([any(mirror.gone[place[n]] for n in pair if n in place) for pair in ends])
     times = np.where(told == itself, 2.0, 1.0)
-    return replace(mirror, rows=np.where(far, told, itself), times=times, apart=bool(across.any()))
+    apart = sheets or bool(across.any())
+    return replace(mirror, rows=np.where(far, told, itself), times=times, apart=apart)
 
 
 def _off(mirror: Mirror, part: Part) -> float:

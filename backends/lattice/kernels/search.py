@@ -38,7 +38,9 @@ def look(pairs, search, x):
     _sort(search, x)
     count = search.first
     for region in search.regions:
-        for a in range(region.a, region.a + region.many_a):
+        for a in search.boxes:  # of a half, those of one side
+            if not region.a <= a < region.a + region.many_a:
+                continue
             for cell in range(27):
                 i, j, k = cell % 3 - 1, cell // 3 % 3 - 1, cell // 9 - 1
                 i, j, k = search.cell[a, 0] + i, search.cell[a, 1] + j, search.cell[a, 2] + k
