@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import importlib
 import logging
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
@@ -28,6 +30,22 @@ def told() -> Iterator[None]:
 
     with event.install_listener("numba:compile", Counter()):
         yield
+
+
+def without_blas() -> None:
+    """Has numba know of no BLAS in this process, which is to be a command of ours.
+
+    It looks for scipy's, to lend it to compiled code; that takes a sixth of a second of each run, and our
+    laws and solvers call none.
+    """
+    lender, asks = "scipy.linalg", "numba.np.arraymath"
+    if lender in sys.modules or asks in sys.modules:
+        return
+    sys.modules.update({lender: None})  # pyright: ignore[reportCallIssue, reportArgumentType]
+    try:
+        importlib.import_module(asks)
+    finally:
+        del sys.modules[lender]
 
 
 @cache
