@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import copy
+import gc
 import io
 import json
 import os
@@ -26,6 +27,7 @@ from hypothesis import strategies as st
 from solids import ascii_stl, binary, brick, cylinder, obj
 
 import mdlgen
+from mdlgen.__main__ import MANY
 from mdlgen.cli import app
 from mdlgen.paths import samples
 from mdlgen.spec.load import parse
@@ -278,7 +280,9 @@ def command(*args: str) -> tuple[int, str]:
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Where scenes are written; what is compiled for the first run is compiled before times are taken."""
+    """Where scenes are written; what is compiled for the first run is compiled before times are taken, and
+    cycles are collected as rarely as a command has it."""
+    gc.set_threshold(MANY)
     short = ["run.duration=0.5 ms", "run.step=0.1 ms"]
     mdlgen.solve(mdlgen.lower(mdlgen.load(samples() / "verify" / "drop.yaml", short)), "lattice")
     return tmp_path_factory.mktemp("fuzz")
