@@ -136,6 +136,21 @@ def test_a_missing_file(mdl: Run) -> None:
     assert (ended.code, ended.err) == (3, "none.yaml: cannot read: No such file or directory\n")
 
 
+@pytest.mark.parametrize(
+    ("call", "told"),
+    [
+        (("chek", "x"), "mdlgen: No such command 'chek'. Did you mean 'check'"),
+        (("run", "x.yaml", "--nope"), "mdlgen run: No such option: --nope; mdlgen run --help"),
+        (("mdl",), "mdlgen mdl: Missing argument 'SPEC'; mdlgen mdl --help"),
+        (("run", "x.yaml", "--checkpoint", "soon"), "mdlgen run: Invalid value for '--checkpoint': "),
+    ],
+)
+def test_a_wrong_call_is_told_in_one_line(mdl: Run, call: tuple[str, ...], told: str) -> None:
+    ended = mdl(*call)
+    assert ended.code == 2 and ended.out == ""
+    assert ended.err.startswith(told) and len(ended.err.splitlines()) == 1
+
+
 def test_a_file_name_cannot_make_two_lines(mdl: Run) -> None:
     assert len(mdl("check", "none\nthere.yaml").err.splitlines()) == 1
 

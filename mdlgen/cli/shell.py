@@ -12,6 +12,7 @@ from threading import Event, Lock, Thread
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
+from typer.core import TyperGroup
 
 from mdlgen.errors import MdlgenError, SpecError, printable
 
@@ -21,8 +22,36 @@ if TYPE_CHECKING:
 
 SOLVER_FAILED, INTERRUPTED = 4, 130
 
+
+@contextlib.contextmanager
+def _in_one_line() -> Iterator[None]:
+    try:
+        yield
+    except Exception as error:
+        tell, context = getattr(error, "format_message", None), getattr(error, "ctx", None)
+        text = tell() if tell else ""
+        if context is None or not text or "\n" in text:  # no wrong call, or the whole help
+            raise
+        path = context.command_path
+        say(f"{path}: {text.rstrip('.')}; {path} --help tells what there is")
+        raise typer.Exit(getattr(error, "exit_code", 2)) from None
+
+
+class Commands(TyperGroup):
+    """A wrong call is told in one line, as every other mistake is."""
+
+    def make_context(self, *args: Any, **more: Any) -> Any:
+        with _in_one_line():
+            return super().make_context(*args, **more)
+
+    def invoke(self, ctx: Any) -> Any:
+        with _in_one_line():
+            return super().invoke(ctx)
+
+
 app = typer.Typer(
     name="mdlgen",
+    cls=Commands,
     help="Paper sheets in machines: one scene file, MotionView MDL text and a local run of the same model.",
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
