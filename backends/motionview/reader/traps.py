@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from backends.motionview.reader.report import Notes, Severity, Trouble
+from backends.motionview.reader.report import Notes, Trouble
 from backends.motionview.reader.things.bodies import Body
 from backends.motionview.reader.things.drives import Contact
 from backends.motionview.reader.things.external import External
@@ -46,18 +46,20 @@ def _bushing(bush: Thing, notes: Notes) -> None:
         notes.add("warning", "unset", bush.statement.place(), f"{bush} has no *SetBush; it has no stiffness")
         return
     k, c, kt, ct = ([v for v in numbers[g] if isinstance(v, float)] for g in GROUPS)
-    found: list[tuple[Severity, str]] = []
-    if min((*k, *c, *kt, *ct), default=0.0) < 0:
-        found.append(("error", "a negative stiffness or damping"))
-    if len(kt) == 3 and not any(kt) and any(ct):
-        wrong = "rotational damping and no rotational stiffness; the order is 3 k, 3 c, 3 kt, 3 ct"
-        found.append(("warning", wrong))
-    if len(k) == len(kt) == 3 and not any(k) and not any(kt):
-        found.append(("warning", "no stiffness at all"))
-    for severity, what in found:
-        chosen = bush.chosen("setbush", bush.part)
-        place = (chosen or bush).statement.place()
-        notes.add(severity, "bushing", place, f"{bush} has {what}")
+    negative = min((*k, *c, *kt, *ct), default=0.0) < 0
+    damped_only = len(kt) == 3 and not any(kt) and any(ct)
+    slack = len(k) == len(kt) == 3 and not any(k) and not any(kt)
+    if not (negative or damped_only or slack):
+        return
+    chosen = bush.chosen("setbush", bush.part)
+    place = (chosen or bush).statement.place()
+    if negative:
+        notes.add("error", "bushing", place, f"{bush} has a negative stiffness or damping")
+    if damped_only:
+        message = "has rotational damping and no rotational stiffness; the order is 3 k, 3 c, 3 kt, 3 ct"
+        notes.add("warning", "bushing", place, f"{bush} {message}")
+    if slack:
+        notes.add("warning", "bushing", place, f"{bush} has no stiffness at all")
 
 
 def _body(body: Thing, notes: Notes) -> None:
