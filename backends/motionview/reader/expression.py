@@ -34,6 +34,14 @@ _TOKEN = re.compile(
     )""",
     re.X,
 )
+# Operators between two values, from the loosest on.
+_OR, _AND, _EQUAL, _LESS, _SUM, _PRODUCT = 1, 2, 3, 4, 5, 6
+_RANKS = {
+    **{"||": _OR, "&&": _AND, "==": _EQUAL, "!=": _EQUAL},
+    **{"<": _LESS, ">": _LESS, "<=": _LESS, ">=": _LESS},
+    **{"+": _SUM, "-": _SUM, "*": _PRODUCT, "/": _PRODUCT, "%": _PRODUCT},
+}
+_BEHIND = (".", "[", "@")  # what may stand behind a value
 _BARE_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?\Z")
 _ESCAPES = {"n": "\n", "t": "\t"}
 
@@ -82,14 +90,15 @@ class _Parser:
         self.text = text
         self.tokens: list[tuple[str, str, int]] = []
         at, end = 0, len(text.rstrip())
-        while at < end:
-            m = _TOKEN.match(text, at)
-            if m is None:
-                shift = at + len(text[at:]) - len(text[at:].lstrip())
-                raise Trouble("syntax", f"{text[shift]!r} has no meaning in an expression", shift)
+        for m in _TOKEN.finditer(text, 0, end):
+            if m.start() != at:
+                break
             kind = str(m.lastgroup)
             self.tokens.append((kind, m[kind], m.start(kind)))
             at = m.end()
+        if at < end:
+            shift = at + len(text[at:]) - len(text[at:].lstrip())
+            raise Trouble("syntax", f"{text[shift]!r} has no meaning in an expression", shift)
         self.tokens.append(("end", "", end))
         self.at = 0
         self.nested = 0
@@ -130,7 +139,7 @@ class _Parser:
 
     def choice(self) -> Run:
         self.enter()
-        condition = self.any()
+        condition = self.operation(1)
         if self.sign("?"):
             yes = self.choice()
             self.due(":")
@@ -141,53 +150,25 @@ class _Parser:
         self.nested -= 1
         return condition
 
-    def any(self) -> Run:
-        parts = [self.all()]
-        while self.sign("||"):
-            parts.append(self.all())
-        if len(parts) == 1:
-            return parts[0]
-        return lambda scope: any(truth(part(scope)) for part in parts)
-
-    def all(self) -> Run:
-        parts = [self.equality()]
-        while self.sign("&&"):
-            parts.append(self.equality())
-        if len(parts) == 1:
-            return parts[0]
-        return lambda scope: all(truth(part(scope)) for part in parts)
-
-    def equality(self) -> Run:
-        return self._chain(self.relation, ("==", "!="), compare)
-
-    def relation(self) -> Run:
-        return self._chain(self.sum, ("<", ">", "<=", ">="), compare)
-
-    def sum(self) -> Run:
-        return self._chain(self.product, ("+", "-"), arithmetic)
-
-    def product(self) -> Run:
-        return self._chain(self.unary, ("*", "/", "%"), arithmetic)
-
-    def _chain(self, operand: Callable[[], Run], signs: tuple[str, ...], apply: Callable[..., Any]) -> Run:
-        first = operand()
-        rest: list[tuple[str, Run, int]] = []
+    def operation(self, least: int) -> Run:
+        """Values joined by operators that bind as tightly as `least` at least; those of one rank go from left
+        to right, in one loop."""
+        value = self.unary()
         while True:
-            shift = self.tokens[self.at][2]
-            sign = self.sign(*signs)
-            if not sign:
-                break
-            rest.append((sign, operand(), shift))
-        if not rest:
-            return first
+            rank = self.rank()
+            if rank < least:
+                return value
+            rest: list[tuple[str, Run, int]] = []
+            while self.rank() == rank:
+                _, sign, shift = self.tokens[self.at]
+                self.at += 1
+                rest.append((sign, self.operation(rank + 1), shift))
+            value = _joined(rank, value, rest)
 
-        def run(scope: Scope) -> Any:
-            value = first(scope)
-            for sign, part, shift in rest:
-                value = apply(sign, value, part(scope), shift)
-            return value
-
-        return run
+    def rank(self) -> int:
+        """How tightly the operator binds that stands here; 0: there is none."""
+        kind, sign, _ = self.tokens[self.at]
+        return _RANKS.get(sign, 0) if kind == "sign" else 0
 
     def unary(self) -> Run:
         signs = []
@@ -214,21 +195,22 @@ class _Parser:
     def postfix(self) -> Run:
         value = self.atom()
         while True:
-            shift = self.tokens[self.at][2]
-            if self.sign("."):
+            kind, sign, shift = self.tokens[self.at]
+            if kind != "sign" or sign not in _BEHIND:
+                return value
+            self.at += 1
+            if sign == ".":
                 kind, name, _ = self.tokens[self.at]
                 if kind != "name":  # MotionView itself writes a dot too many now and then
                     continue
                 self.at += 1
                 value = _attribute(value, name, shift)
-            elif self.sign("["):
+            elif sign == "[":
                 index = self.choice()
                 self.due("]")
                 value = _indexed(value, index, shift)
-            elif self.sign("@"):
-                value = _body_at(value, self.postfix(), shift)
             else:
-                return value
+                value = _body_at(value, self.postfix(), shift)
             self.depth += 1
 
     def atom(self) -> Run:
@@ -288,6 +270,23 @@ class _Parser:
                 raise
 
         return run
+
+
+def _joined(rank: int, first: Run, rest: list[tuple[str, Run, int]]) -> Run:
+    """Values and the operators of one rank between them."""
+    if rank in (_OR, _AND):
+        parts = [first, *(part for _, part, _ in rest)]
+        judge = any if rank == _OR else all
+        return lambda scope: judge(truth(part(scope)) for part in parts)
+    apply = compare if rank < _SUM else arithmetic
+
+    def run(scope: Scope) -> Any:
+        value = first(scope)
+        for sign, part, shift in rest:
+            value = apply(sign, value, part(scope), shift)
+        return value
+
+    return run
 
 
 def _signed(sign: str, value: Run, shift: int) -> Run:
