@@ -1,7 +1,8 @@
 """Random and mutated scenes, texts and meshes: one line and a known exit code, whatever comes.
 
 300 examples of each, the same ones every time; MDLGEN_FUZZ=10000 python -m pytest tests/test_fuzz.py takes
-as many as it says.
+as many as it says. With MDLGEN_FUZZ_PART=0/2 a process does every other one of the scenes, and leaves the
+rest to one with 1/2.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ import contextlib
 import copy
 import gc
 import io
+import itertools
 import json
 import os
 import re
@@ -34,6 +36,8 @@ from mdlgen.spec.load import parse
 from mdlgen.spec.solid import Solid, signed_volume
 
 COUNT = int(os.environ.get("MDLGEN_FUZZ", "300"))
+PART, PARTS = (int(k) for k in os.environ.get("MDLGEN_FUZZ_PART", "0/1").split("/"))
+NUMBER = itertools.count()
 # without Phase.explain, which traces, and so tells of times that are none
 PHASES = (Phase.generate, Phase.shrink)
 FUZZ = settings(max_examples=COUNT, suppress_health_check=list(HealthCheck), database=None, phases=PHASES)
@@ -344,7 +348,9 @@ def checked(spec: Path) -> int:
 
 
 def through(spec: Path) -> int:
-    """Exit code of check, after text and deck of the scene."""
+    """Exit code of check, after text and deck of the scene; of one that another process does, 2."""
+    if next(NUMBER) % PARTS != PART:
+        return 2
     folder, code = spec.parent, checked(spec)
     for name in ("mdl", "deck"):
         file = folder / f"out.{name}"
