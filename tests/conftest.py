@@ -14,7 +14,7 @@ COMPILING = ("test_lattice", "test_lattice_static", "test_exudyn")
 # These need nothing compiled.
 PLAIN = (
     *("test_check_json", "test_checks", "test_companion", "test_curve_spec", "test_curve_text", "test_deck"),
-    *("test_external", "test_goldens", "test_include", "test_lint", "test_manners", "test_model"),
+    *("test_external", "test_goldens", "test_include", "test_lint", "test_model"),
     *("test_motionview", "test_names", "test_packaging", "test_reader", "test_rotations", "test_spec"),
     *("test_supply", "test_text_properties", "test_units", "test_verify"),
 )
