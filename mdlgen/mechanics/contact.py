@@ -25,6 +25,7 @@ import math
 import numpy as np
 from numba import njit
 
+from mdlgen.mechanics.compiling import OWNS
 from mdlgen.mechanics.laws import damped, friction_over_speed
 from mdlgen.mechanics.vector import add, back, cross, dot, rotate, scale, sub
 
@@ -351,7 +352,7 @@ def box_sector(
         )
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **OWNS)
 def clip(points, count, way, limit):
     """Cuts a polygon by way . point <= limit, in place; returns its number of points."""
     kept = np.empty((12, 3))
@@ -393,7 +394,7 @@ def face_corners(points, xa, ra, half, facing, xb, rb):
     return 4.0 * half[p] * half[r]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **OWNS)
 def box_plane(out, xa, ra, va, wa, half, xb, rb, half_b, k, law):
     """The face of box a that looks at plate b, on the plate's upper face.
 

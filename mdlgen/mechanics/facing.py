@@ -22,6 +22,7 @@ import math
 import numpy as np
 from numba import njit
 
+from mdlgen.mechanics.compiling import OWNS
 from mdlgen.mechanics.contact import clip, face_corners, local, push
 from mdlgen.mechanics.vector import add, back, dot, rotate, scale, sub, transpose_matmul
 
@@ -95,7 +96,7 @@ def _shares(points, count, p, r, weights):
     return abs(area)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **OWNS)
 def box_box(out, xa, ra, va, wa, half_a, exposed_a, xb, rb, vb, wb, half_b, exposed_b, k, shared, law):
     """Box a (centre, rotation, velocities, half lengths, free side faces as a bit mask) against box b."""
     gap = sub(xb, xa)

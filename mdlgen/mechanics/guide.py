@@ -18,6 +18,7 @@ import math
 import numpy as np
 from numba import njit
 
+from mdlgen.mechanics.compiling import OWNS
 from mdlgen.mechanics.contact import box_sector, clip, face_corners, push
 from mdlgen.mechanics.vector import add, back, dot, rotate, sub
 
@@ -56,7 +57,7 @@ def _area(points, count):
     return 0.5 * math.sqrt(x * x + y * y + z * z)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **OWNS)
 def box_guide(out, xa, ra, va, wa, half, exposed, xb, rb, shape, half_b, side, k, shared, law):
     """Box a (centre xa, rotation ra, half lengths, exposed sides) on guide b (origin xb, axes rb).
 

@@ -27,6 +27,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from mdlgen.mechanics.compiling import OWNS
 from mdlgen.mechanics.contact import local, push
 from mdlgen.mechanics.tree import (
     AFTER,
@@ -287,7 +288,7 @@ def _gather(sums, room, head, meshes, middle, axes, half, q, sign, stiff):
         n += 1
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **OWNS)
 def box_mesh(out, xa, ra, va, wa, half, exposed, xb, rb, vb, wb, head, meshes, k, law):
     """Box a (centre xa, rotation ra, half lengths, exposed sides) on a mesh that moves with body b."""
     frame = matmul(rb, nine(head.axes))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from numba import njit
 
+from mdlgen.mechanics.compiling import BORROWS
 from mdlgen.mechanics.contact import box_cylinder, box_plane, cylinder_cylinder
 from mdlgen.mechanics.facing import box_box
 from mdlgen.mechanics.guide import box_guide
@@ -21,7 +22,7 @@ def on_plate(pair):
     return pair.kind == BOX_PLANE or pair.kind == BOX_GUIDE
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def pair_force(bodies, pair, meshes, x, r, u, w, out):
     """One contact pair into `out`, which must be zero (OUT numbers, and the count of points if it has one).
 

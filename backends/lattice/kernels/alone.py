@@ -8,6 +8,7 @@ import numpy as np
 from numba import njit
 
 from backends.lattice.kernels.band import solve_six
+from mdlgen.mechanics.compiling import BORROWS
 from mdlgen.mechanics.pair import BOX_BOX, on_plate
 
 # Where contacts stand: all apart; those with planes in the matrix of the sheet; all of them there.
@@ -147,7 +148,7 @@ def choose(bodies, pairs, touched, count, where, alone, m, most):
     return m
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def columns(a, alone, m):
     """Makes the columns of the inverse for the chosen boxes that have none, and W where it is not of them."""
     slot_of, owner, cols, chosen, w = alone.slot_of, alone.owner, alone.cols, alone.chosen, alone.w

@@ -19,8 +19,8 @@ from mdlgen.mechanics.vector import mat, matmul, nine, transpose_matmul
 MOST_ROUNDS = 200
 # What may be left of the square of the residual, measured with the preconditioner: a round of Newton's method
 # leaves more itself where contacts open and close, so less costs rounds here and saves none there. The method
-# goes on after it, and loses no momentum to it (see momentum.keep). Nor is less than ENOUGH of what may change
-# in the last round of Newton's method looked for: that round has little left to solve.
+# goes on after it, and loses no momentum to it (see momentum.keep). Nor is less looked for than this part of
+# what a last round of Newton's method may change: ENOUGH.
 LEFT, ENOUGH = 1e-3, 0.3
 
 

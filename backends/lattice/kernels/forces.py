@@ -9,6 +9,7 @@ from numba import njit
 from backends.lattice.kernels.image import reflect, reflect_rates
 from mdlgen.mechanics.arm import moved, way_of
 from mdlgen.mechanics.bushing import bushing_pair
+from mdlgen.mechanics.compiling import BORROWS
 from mdlgen.mechanics.contact import MOST_POINTS, OUT, POINT
 from mdlgen.mechanics.curve import curve_excess
 from mdlgen.mechanics.driven import clutch, prescribed, turned
@@ -80,7 +81,7 @@ def place_roller(body, b, h, t, rate, turning, x, r, xm, rm, um, wm):
         wm[b, i] = turning * body.axis[i]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def place(bodies, nodes, images, h, t, u, ub, x, r, xm, rm, um, wm):
     """The state after h at the velocities u (nodes, 6) and ub (border,), from positions x and rotations
     r: xm, rm, and the velocities of all bodies um, wm."""
@@ -170,7 +171,7 @@ def _facing(bodies, pair, x, r, gap, reach, reached):
     return True
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def near_pairs(bodies, pairs, meshes, x, r, u, w, margin, ahead, near):
     """Lists pairs in `near` that are closer than `margin` [mm] and what they move against each other in
     `ahead` [ms]; returns how many."""
@@ -240,7 +241,7 @@ def near_pairs(bodies, pairs, meshes, x, r, u, w, margin, ahead, near):
     return count
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def _touches(bodies, pair, meshes, x, r, u, w, f, out):
     """What one pair does into `out`, and onto f. Returns whether it touches."""
     for i in range(OUT + 1):

@@ -7,6 +7,7 @@ from numba import njit
 from backends.lattice.kernels.dense import lu_solve_transposed
 from backends.lattice.kernels.tangent import core, hat_left, hat_right
 from mdlgen.mechanics.arm import turn_of, way_of
+from mdlgen.mechanics.compiling import BORROWS
 from mdlgen.mechanics.contact import OUT, POINT
 from mdlgen.mechanics.driven import clutch
 from mdlgen.mechanics.vector import add, back, cross, mat, sub, three, vec
@@ -80,7 +81,7 @@ def _pair_growth(pair, out, axes, h, x, chord, growth):
         _put(growth, 3, 3, -1.0, hat_left(arm, right))
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def gradient(bodies, pairs, h, x, count, alone, acting, many, chord):
     """Growth of the contact impulses with the velocities of the boxes that touch and of the rollers."""
     growth, one, direction, index = alone.growth, alone.pair, alone.direction, alone.which

@@ -13,6 +13,7 @@ from numba import njit
 
 from backends.lattice.kernels.band import PAD
 from mdlgen.mechanics.arm import turn_of, way_of
+from mdlgen.mechanics.compiling import BORROWS
 from mdlgen.mechanics.contact import OUT, POINT
 from mdlgen.mechanics.curve import curve_spring
 from mdlgen.mechanics.driven import clutch
@@ -128,7 +129,7 @@ def _blocks(a, column, offset, sign, t, q, p, g):
             a[column, 3 + c, offset + 3 + r] += sign * (g[3 * r + c] - both[3 * r + c])
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def masses(bodies, nodes, r, a):
     """Sets the band to the mass matrix."""
     a[:] = 0.0

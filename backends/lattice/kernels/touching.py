@@ -23,6 +23,7 @@ from backends.lattice.kernels.dense import lu
 from backends.lattice.kernels.forces import pair_forces, place_box, place_roller
 from backends.lattice.kernels.growth import activate, clutches, gradient, newton, newton_matrix
 from mdlgen.mechanics.arm import turn_of, way_of
+from mdlgen.mechanics.compiling import BORROWS
 from mdlgen.mechanics.contact import OUT, POINT
 from mdlgen.mechanics.driven import clutch
 from mdlgen.mechanics.pair import BOX_BOX, on_plate
@@ -55,7 +56,7 @@ def _mine(bodies, pairs, near, where, alone):
     alone.state[2] = count
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def _take(pairs, nodes, alone, m, known):
     """Takes over what its pairs do from where they are `known`: (those that touch, what they do, how many);
     returns how many of these touch."""
