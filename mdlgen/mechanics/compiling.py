@@ -15,8 +15,8 @@ LOG = logging.getLogger("mdlgen.compiling")
 # Compiled code counts who holds an array, by an atomic operation at each begin and end of a function: in one
 # of many arrays that is called for each pair, this was a tenth of a run. What BORROWS leaves the counting to
 # its caller, and can make no array; what it calls inherits that, but for what OWNS arrays of its own.
-BORROWS = {"_nrt": False}
-OWNS = {"_nrt": True}
+BORROWS: dict[str, Any] = {"_nrt": False}
+OWNS: dict[str, Any] = {"_nrt": True}
 
 
 @contextmanager

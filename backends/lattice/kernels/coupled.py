@@ -19,9 +19,8 @@ from mdlgen.mechanics.vector import mat, matmul, nine, transpose_matmul
 MOST_ROUNDS = 200
 # What may be left of the square of the residual, measured with the preconditioner: a round of Newton's method
 # leaves more itself where contacts open and close, so less costs rounds here and saves none there. The method
-# goes on after it, and loses no momentum to it (see momentum.keep). Nor is less looked for than this part of
-# what a last round of Newton's method may change: ENOUGH.
-LEFT, ENOUGH = 1e-3, 0.3
+# goes on after it, and loses no momentum to it (see momentum.keep).
+LEFT = 1e-3
 
 
 class Couplings(NamedTuple):
@@ -83,17 +82,8 @@ def _couple(couplings, p, q):
 
 
 @njit(cache=True, error_model="numpy")
-def _largest(a):
-    most = 0.0
-    for i in range(a.size):
-        most = max(most, abs(a[i]))
-    return most
-
-
-@njit(cache=True, error_model="numpy")
-def solve_coupled(a, b, y, corner, couplings, res, resb, limit):
-    """Solves band, border and couplings in place, as border.solve_bordered does without the last. `limit` is
-    what a change of an unknown may be worth in the last round of a step."""
+def solve_coupled(a, b, y, corner, couplings, res, resb):
+    """Solves band, border and couplings in place, as border.solve_bordered does without the last."""
     if couplings.many[0] == 0:
         solve_bordered(a, b, y, corner, res, resb)
         return
@@ -109,7 +99,7 @@ def solve_coupled(a, b, y, corner, couplings, res, resb, limit):
     left = _dot(r, z)
     first = left
     for _ in range(MOST_ROUNDS):
-        if not left > LEFT * first or _largest(z) < ENOUGH * limit:
+        if not left > LEFT * first:
             break
         q[:] = own
         _couple(couplings, p, q)

@@ -188,7 +188,7 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
         copy(alone.axes, rm)
         _turn(nodes, alone.axes, res, True)
         if where == INSIDE:
-            solve_coupled(a, b, y, corner, couplings, res, resb, limit)
+            solve_coupled(a, b, y, corner, couplings, res, resb)
         else:
             solve(a, res)
             columns(a, alone, m)
