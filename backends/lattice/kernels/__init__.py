@@ -29,6 +29,7 @@ from backends.lattice.kernels import (  # noqa: E402
     stiffness,
     tangent,
     touching,
+    two_sets,
 )
 
 keep_compiled_code()
@@ -53,4 +54,5 @@ __all__ = [
     "stiffness",
     "tangent",
     "touching",
+    "two_sets",
 ]

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import math
-
 from numba import njit
 
 from backends.lattice.kernels.band import solve
-from backends.lattice.kernels.dense import copy
+from backends.lattice.kernels.dense import cholesky, cholesky_solve, copy
 
 
 @njit(cache=True, error_model="numpy")
@@ -27,17 +25,7 @@ def eliminate(a, b, d, y, corner):
                 for l in range(b.shape[1]):
                     v += b[i, l] * y[j, l]
                 corner[i, j] -= v
-    # Cholesky of a small dense matrix
-    for j in range(many):
-        for k in range(j):
-            for i in range(j, many):
-                corner[i, j] -= corner[i, k] * corner[j, k]
-        if not corner[j, j] > 0.0:
-            return False
-        pivot = math.sqrt(corner[j, j])
-        for i in range(j, many):
-            corner[i, j] /= pivot
-    return True
+    return cholesky(corner)
 
 
 @njit(cache=True, error_model="numpy")
@@ -50,14 +38,7 @@ def solve_bordered(a, b, y, corner, res, resb):
         for l in range(res.size):
             v -= b[j, l] * res[l]
         resb[j] = v
-    for j in range(m):
-        for k in range(j):
-            resb[j] -= corner[j, k] * resb[k]
-        resb[j] /= corner[j, j]
-    for j in range(m - 1, -1, -1):
-        for k in range(j + 1, m):
-            resb[j] -= corner[k, j] * resb[k]
-        resb[j] /= corner[j, j]
+    cholesky_solve(corner, resb)
     for j in range(m):
         v = resb[j]
         if v != 0.0:

@@ -1,6 +1,8 @@
-"""A small dense matrix: LU factors and solves."""
+"""A small dense matrix: its factors and solves."""
 
 from __future__ import annotations
+
+import math
 
 from numba import njit
 
@@ -80,3 +82,33 @@ def lu_solve_transposed(jac, swaps, b, many):
     for i in range(many - 1, -1, -1):
         at = swaps[i]
         b[i], b[at] = b[at], b[i]
+
+
+@njit(cache=True, error_model="numpy")
+def cholesky(a):
+    """Factors a symmetric matrix in its lower half. Returns False where a pivot is not positive."""
+    many = a.shape[0]
+    for j in range(many):
+        for k in range(j):
+            for i in range(j, many):
+                a[i, j] -= a[i, k] * a[j, k]
+        if not a[j, j] > 0.0:
+            return False
+        pivot = math.sqrt(a[j, j])
+        for i in range(j, many):
+            a[i, j] /= pivot
+    return True
+
+
+@njit(cache=True, error_model="numpy")
+def cholesky_solve(a, x):
+    """Solves in place with such a factor."""
+    many = a.shape[0]
+    for j in range(many):
+        for k in range(j):
+            x[j] -= a[j, k] * x[k]
+        x[j] /= a[j, j]
+    for j in range(many - 1, -1, -1):
+        for k in range(j + 1, many):
+            x[j] -= a[k, j] * x[k]
+        x[j] /= a[j, j]

@@ -37,6 +37,7 @@ from backends.lattice.kernels.momentum import keep
 from backends.lattice.kernels.sides import crossed, part_of_change
 from backends.lattice.kernels.tangent import contacts_into, in_box_axes, joints_into, masses, rollers_into
 from backends.lattice.kernels.touching import settle
+from backends.lattice.kernels.two_sets import deal
 from mdlgen.mechanics.arm import moved, torque_of, turn_of, way_of
 from mdlgen.mechanics.driven import clutch, prescribed
 from mdlgen.mechanics.vector import back, dot, exp_rotation, mat, matmul, rotate, three, vec
@@ -179,6 +180,8 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
                 fresh[0] = 0.0
                 release(alone, m)
                 return False
+            if where == INSIDE:
+                deal(couplings.sets, couplings.ends, couplings.many[0], b, d, y)
             fresh[0], fresh[1], fresh[2] = dt, 0.0, where
         counters[ROUNDS] += 1
         # what is free converges fast, and keeps its angular momentum as well as the rounds end
@@ -336,6 +339,6 @@ def empty(system, wide: int):
         np.zeros(border),
         np.zeros((4, 3)),
         np.zeros(4, np.int64),
-        couplings(len(system.pairs) - system.search.first, nodes, border),
+        couplings(len(system.pairs) - system.search.first, system.sheets, border),
     )
     return state, mid, matrix
