@@ -169,6 +169,8 @@ def equilibrium(
         at = center + offset * direction
         return spring(offset) + sum(float(c(at) @ direction) for c in contacts)
 
+    if push(touch) == 0.0:  # nothing pushes it: anywhere about is balance
+        return float(touch)
     back, ahead, step = reach
     low, high = touch - back, touch
     if push(low) <= 0.0:
