@@ -49,7 +49,8 @@ def _mine(bodies, pairs, near, where, alone):
         if pair.kind == BOX_BOX:  # where these touch, all contacts stand in the matrix
             continue
         node = bodies[pair.a].node
-        if node < 0 or (alone.place_of[node] >= 0 and not (where == PLANES and on_fixed_plate(pair, bodies[pair.b]))):
+        inside = where == PLANES and on_fixed_plate(pair, bodies[pair.b])
+        if node < 0 or (alone.place_of[node] >= 0 and not inside):
             alone.mine[count] = near[k]
             alone.seen[near[k]] = True
             count += 1
