@@ -295,7 +295,7 @@ def _interference(model: Model) -> Iterator[Lint]:
     for row in np.flatnonzero(model.contacts.kind == BOX_PLANE):
         plane = planes[model.contacts.part_b[row]]
         sheet = next(s for s in model.sheets if s.name == model.contacts.part_a[row])
-        face = plane.center + plane.normal * plane.size[2] / 2
+        face = model.bodies.position[plane.body] + plane.normal * plane.size[2] / 2
         frame = model.bodies.rotation[plane.body]
         corners = _corners(sheet) if sheet.bend is None else _box_corners(model, sheet)
         over = np.all(np.abs((corners - face) @ frame[:, :2]) <= np.array(plane.size[:2]) / 2, axis=1)

@@ -111,6 +111,14 @@ ROLLERS = _put(
     },
 )
 PLANES = _put("planes", {"level": PLANE, "tilted": PLANE | {"normal": [0.6, 0, 0.8]}})
+PLATES_ON_SPRINGS = _put(
+    "planes",
+    {
+        "level": PLANE | {"press": PRESS | {"direction": "z"}},
+        "tilted": PLANE
+        | {"normal": [0.6, 0, 0.8], "press": PRESS | {"direction": [0, 0.6, 0.8], "carrier_mass": "2 g"}},
+    },
+)
 LINE = {"from": ["-9 mm", "0 mm", "1 mm"], "to": ["9 mm", "0 mm", "2 mm"], "axis": "y", "side": "left"}
 ARC = {"center": ["0 mm", "0 mm", "20 mm"], "radius": "20 mm", "from": "-90 deg", "to": "-84 deg"}
 GUIDES = _put(
@@ -244,7 +252,7 @@ PARTS: dict[str, dict[str, tuple[str, ...]]] = {
     },
     "support.mdl.j2": {"in a box, on an edge between two": SUPPORTS},
     "roller.mdl.j2": {"each kind": (ROLLERS,)},
-    "plane.mdl.j2": {"level, with a normal of its own": (PLANES,)},
+    "plane.mdl.j2": {"level, with a normal of its own": (PLANES,), "pressed": (PLATES_ON_SPRINGS,)},
     "guide.mdl.j2": {"straight and bent": (GUIDES,)},
     "mesh.mdl.j2": {"fixed, on a driven roller, on a pressed one": (ROLLERS, MESHES)},
     "contacts.mdl.j2": {

@@ -50,6 +50,21 @@ def block() -> Spec:
     return spec
 
 
+def sprung() -> Spec:
+    """The same block on a plate that gives way obliquely."""
+    spec = block()
+    spec["planes"]["floor"] |= {
+        "mass": "100 g",
+        "press": {
+            "direction": [0.2, 0.1, 1.0],
+            "stiffness": "0.5 N/mm",
+            "preload": "0.96 N",
+            "free_length": "30 mm",
+        },
+    }
+    return spec
+
+
 def numbers(value: Any, unit: str) -> Floats:
     if isinstance(value, str):
         sign, axis = (-1.0, value[1:]) if value.startswith("-") else (1.0, value)
@@ -95,6 +110,7 @@ def moved(spec: Spec, turn: Floats, shift: Floats) -> Spec:
     for plane in spec.get("planes", {}).values():
         place(plane, "center")
         way(plane, "normal")
+        way(plane.get("press", {}), "direction")
     for guide in spec.get("guides", {}).values():
         if "line" in guide:
             place(guide["line"], "from", "to")
@@ -129,7 +145,7 @@ def difference(one: Result, other: Result, turn: Floats, shift: Floats, mirrored
     return float(apart / travel)
 
 
-SCENES = {"transport": transport, "channel": channel, "block": block}
+SCENES = {"transport": transport, "channel": channel, "block": block, "sprung": sprung}
 TURNS = {
     "about x": [90, 0, 0],
     "about y": [0, 37, 0],
@@ -138,7 +154,7 @@ TURNS = {
 FAR = np.array([6e3, -7.5e3, 2.8e3])  # 10 m
 
 
-@pytest.mark.parametrize("scene", ["transport", "block"])
+@pytest.mark.parametrize("scene", ["transport", "block", "sprung"])
 @pytest.mark.parametrize("turn", TURNS)
 def test_turned_and_far_away(scene: str, turn: str, plain: dict[str, Result]) -> None:
     matrix = Rotation.from_euler("xyz", TURNS[turn], degrees=True).as_matrix()

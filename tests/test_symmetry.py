@@ -233,3 +233,47 @@ def test_a_sheet_that_rolls_over_the_plane_is_told() -> None:
     assert result.status.startswith("box note_0_1 has passed the plane of the scene's symmetry at 1.7 ms")
     whole = mdlgen.solve(mdlgen.lower(mdlgen.loads(ROLLED, ["run.symmetry=false"])), "lattice")
     assert whole.ok and whole.position[:, 0, 1].max() > 0
+
+
+PLATES = """planes:
+  {name}: {{center: [0 mm, 3 mm, -2.1 mm], normal: z, size: [60 mm, 30 mm, 4 mm], mass: 8 g,
+    press: {{direction: {direction}, stiffness: 0.3 N/mm, preload: 0.5 N}}}}
+"""
+
+
+def plated(direction: str, *more: str) -> str:
+    """A note on a plate that presses it against a roller, which pulls it on."""
+    start, end = MACHINE.index("rollers:"), MACHINE.index("run:")
+    law = "stiffness: 300 N/mm^1.5, restitution: 0.4, friction: 0.8, smoothing: 10 mm/s"
+    return (
+        f"{MACHINE[:start]}rollers:\n  feed: {{center: [0 mm, 3 mm, 7.5 mm], axis: y, radius: 7.5 mm, "
+        f"width: 12 mm, mass: 1 g,\n    drive: {{speed: -30 rad/s}}}}\n"
+        f"{PLATES.format(name='plate', direction=direction)}{''.join(more)}"
+        f'contacts: [{{between: [note, "*"], {law}}}]\n{MACHINE[end:]}'
+    )
+
+
+@pytest.mark.parametrize("direction", ["z", "[0.3, 0, 1]"])
+def test_a_spring_plate_in_the_plane(direction: str) -> None:
+    """Half of it is pushed by what is on one side."""
+    half, whole = solved(plated(direction))
+    assert half.statistics.max_force.min() > 0.1
+    assert_same(half, whole)
+
+
+def test_a_plate_that_goes_across_the_plane_is_solved_whole() -> None:
+    whole, _ = solved(plated("[0, 0.3, 1]"))
+    assert not whole.halved
+
+
+def test_a_spring_plate_on_either_side() -> None:
+    """Two plates that are each other's image: one is solved for, and the other one is seen."""
+    other = (
+        "  {}: {{center: [0 mm, {} mm, -2.1 mm], normal: z, size: [60 mm, 12 mm, 4 mm], mass: 8 g,\n"
+        "    press: {{direction: [0, {}, 1], stiffness: 0.3 N/mm, preload: 0.3 N}}}}\n"
+    )
+    both = other.format("near", -13, 0.2) + other.format("far", 19, -0.2)
+    text = plated("z").replace(PLATES.format(name="plate", direction="z"), f"planes:\n{both}")
+    half, whole = solved(text, 'contacts.0.between=[note, "*ar"]', "run.margin=0.5 mm")
+    assert half.statistics.max_force.min() > 0.05
+    assert_same(half, whole)

@@ -146,14 +146,25 @@ def rollers(draw: st.DrawFn) -> Spec:
     return roller
 
 
-PLANES = st.fixed_dictionaries(
-    {
-        "center": CENTERS,
-        "normal": AXES,
-        "size": st.just(["90 mm", "80 mm", "10 mm"]),
-        "mass": st.just("9 g"),
+@st.composite
+def planes(draw: st.DrawFn) -> Spec:
+    plane: Spec = {
+        "center": draw(CENTERS),
+        "normal": draw(AXES),
+        "size": ["90 mm", "80 mm", "10 mm"],
+        "mass": "9 g",
     }
-)
+    if draw(st.booleans()):
+        plane["press"] = {
+            "direction": plane["normal"],
+            "stiffness": "0.3 N/mm",
+            "preload": "3 N",
+            "free_length": "99 mm",
+            **draw(st.sampled_from([{}, {"carrier_mass": "1 g"}])),
+        }
+    return plane
+
+
 FRICTION = st.sampled_from([0, 0.9, {"static": 0.9, "dynamic": 0}])
 
 
@@ -191,7 +202,7 @@ def specs(draw: st.DrawFn) -> Spec:
         sheet = scene["sheets"][f"sheet_{k}"] = draw(sheets(f"paper_{k}"))
         scene["materials"][f"paper_{k}"] = draw(materials(sheet["layout"]))
     scene["rollers"] = {f"roll_{k}": draw(rollers()) for k in range(draw(st.integers(0, 2)))}
-    scene["planes"] = {f"plane_{k}": draw(PLANES) for k in range(draw(st.integers(0, 2)))}
+    scene["planes"] = {f"plane_{k}": draw(planes()) for k in range(draw(st.integers(0, 2)))}
     scene["contacts"] = draw(contacts(scene))
     scene["probes"] = {f"probe_{k}": draw(places(scene["sheets"])) for k in range(draw(st.integers(0, 2)))}
     fixes = st.sampled_from([["z"], ["x", "y"], ["x", "y", "z"]])
@@ -277,6 +288,8 @@ def possible_pairs(scene: Spec) -> int:
 def expected_members(scene: Spec) -> int:
     """Numbers in all data sets: what the user gave, and what a sheet's formulas make of it."""
     total = 7 * len(scene["planes"]) + 7 * len(scene["contacts"]) + 2  # of the run
+    springs = [plane["press"] for plane in scene["planes"].values() if "press" in plane]
+    total += sum(5 + ("carrier_mass" in press) for press in springs)
     for name, sheet in scene["sheets"].items():
         material = scene["materials"][sheet["material"]]
         plate = sheet["layout"] == "plate"
@@ -308,6 +321,7 @@ def expected_counts(scene: Spec, pairs: int) -> Counter[str]:
     joints = sum(len(bushing_nodes(s)) for s in table)
     nodes = sum(len(set(bushing_nodes(s))) for s in table)
     pressed = sum("press" in r for r in machine)
+    sprung = sum("press" in p for p in plates.values())
     surfaces = [s["boxes"][0] * s["boxes"][1] for s in table if s["surface"]]
     own = sum(r["axis"] not in ("x", "y", "z") for r in machine)
     tilted = [p["normal"] for p in plates.values() if p["normal"] != "z"]
@@ -317,7 +331,7 @@ def expected_counts(scene: Spec, pairs: int) -> Counter[str]:
     sets = len(table) + len(machine) + len(plates) + len(scene["contacts"]) + len(supports) + 1
     sets += sum("at" in p for p in probes)
     bodies = boxes + len(machine) + pressed + len(plates)
-    points = boxes + nodes + pressed + sum(map(len, (table, machine, plates, probes, supports)))
+    points = boxes + nodes + pressed + sprung + sum(map(len, (table, machine, plates, probes, supports)))
     aligned = sum(not is_turned(s) for s in table)
     return +Counter(
         {
@@ -334,19 +348,19 @@ def expected_counts(scene: Spec, pairs: int) -> Counter[str]:
             "Point": points,
             "SetPoint": points,
             "Marker": len(table) + marked + sum(surfaces),
-            "Vector": pressed + own + own_normals,
-            "SetVector": pressed + own + own_normals,
+            "Vector": pressed + sprung + own + own_normals,
+            "SetVector": pressed + sprung + own + own_normals,
             "Body": bodies,
             "SetBodyInertia": bodies,
             "SetBodyIC": moving,
             "SetBodyICFlag": moving,
             "Bush": joints + held,
             "SetBush": joints + held,
-            "FixedJoint": boxes - free + len(plates),
+            "FixedJoint": boxes - free + len(plates) - sprung,
             "RevJoint": len(machine),
-            "TransJoint": pressed,
-            "CoilSpring": pressed,
-            "SetCoilSpring": pressed,
+            "TransJoint": pressed + sprung,
+            "CoilSpring": pressed + sprung,
+            "SetCoilSpring": pressed + sprung,
             "Motion": sum("drive" in r for r in machine),
             "SetMotion": sum("drive" in r for r in machine),
             "Graphic": bodies - pressed,
@@ -355,7 +369,7 @@ def expected_counts(scene: Spec, pairs: int) -> Counter[str]:
             "if": aligned,
             "endif": aligned,
             "Contact": pairs,
-            "Output": len(probes) + len(machine),
+            "Output": len(probes) + len(machine) + sprung,
         }
     )
 

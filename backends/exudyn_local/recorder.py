@@ -158,11 +158,10 @@ class Recorder:
             )
         out = np.flatnonzero(((x < self._low) | (x > self._high)).any(axis=1))
         if out.size:
-            name = self.model.bodies.name[int(out[0])]
             at = ", ".join(f"{value:.4g}" for value in x[out[0]] * PER_MM)
-            kind = "box" if self.model.sheet_of(int(out[0])) else "roller"
+            told = self.model.called(int(out[0]))
             self.reason = (
-                f"{kind} {name} left the bounds from which its contacts were chosen at {t / MS:.6g} ms "
+                f"{told} left the bounds from which its contacts were chosen at {t / MS:.6g} ms "
                 f"(it is at {at} mm); set run.prune: false, "
                 f"or a run.margin above {self.model.pairs.margin:g} mm"
             )

@@ -1,7 +1,7 @@
 """The Model as arrays in SI units, in the order in which the solver numbers its coordinates.
 
 A free box has seven coordinates (position, Euler parameters); a free roller one for its spin; a pressed
-roller one for its slide. Everything else is prescribed. Row -1 of the body arrays is the ground.
+roller or plate one for its slide. Everything else is prescribed. Row -1 of the body arrays is the ground.
 """
 
 from __future__ import annotations
@@ -38,12 +38,12 @@ BODY = np.dtype(
         ("arc", "f8", 3),  # of a guide: radius [m] (0: straight), middle angle, half angle
         ("side", "i8"),  # of a guide, that may be touched: as in mechanics.guide
         ("axis", "f8", 3),  # of a roller
-        ("way", "f8", 3),  # direction of a roller's slide
+        ("way", "f8", 3),  # direction of a slide
         ("press", "f8", 5),  # k [N/m], c [N s/m], force at the start [N], sliding mass [kg], axial inertia
         *DRIVEN,
         ("size", "f8", 2),  # radius, of a rim the greatest, and width of a roller [m]
         ("first", "i8"),  # first of a box's 7 coordinates, -1: not free
-        ("slide", "i8"),  # coordinate of a roller's slide, -1: none
+        ("slide", "i8"),  # coordinate of the slide of a roller or a plate, -1: none
         ("spin", "i8"),  # coordinate of a roller's spin, -1: prescribed
         ("exposed", "i8"),  # side faces of a box as a bit mask
         ("carries", "i8"),  # 1: a roller with a mesh on it, whose turn is followed
@@ -183,6 +183,13 @@ def _bodies(model: Model, moving: bool) -> tuple[np.ndarray, int]:
             drive(row, roller, MS, MM)
             if roller.turns:
                 row["spin"], free = free, free + 1
+    for plate, spring in model.plates:
+        row = bodies[plate.body]
+        row["way"] = spring.direction
+        force = spring.preload - spring.stiffness * (spring.start - spring.touch)
+        mass = plate.sliding_mass * G
+        row["press"][:4] = (spring.stiffness * PER_MM, spring.damping * MS * PER_MM, force, mass)
+        row["slide"], free = free, free + 1
     for mesh in model.meshes:
         if mesh.on >= 0:
             bodies["carries"][model.rollers[mesh.on].body] = 1

@@ -2,8 +2,8 @@
 
 Free boxes are the nodes of the lattice, six unknowns each; they are numbered so that neighbours stand close
 (along the shorter side of the sheet first), which makes the matrix a band. Free rollers turn (one unknown),
-pressed ones also slide, and those on an arm swing (one more): the border of the matrix. Everything else is
-held or driven.
+pressed ones also slide, and those on an arm swing (one more), and pressed plates slide: the border of the
+matrix. Everything else is held or driven.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ BODY = np.dtype(
         ("side", "i8"),  # of a guide, that may be touched: as in mechanics.guide
         ("exposed", "i8"),
         ("axis", "f8", 3),
-        ("way", "f8", 3),  # direction of a slide, or normal of a plane
+        ("way", "f8", 3),  # direction of a slide
         ("press", "f8", 5),  # k, c, force at the start, sliding mass, axial inertia; of an arm mechanics.arm
         *DRIVEN,
         ("size", "f8", 2),  # radius, of a rim the greatest, and width
@@ -91,7 +91,7 @@ class System(NamedTuple):
     nodes: Ints  # body of each node
     sheets: Ints  # and its sheet; the free boxes of a sheet all hang together
     reach: int  # how many nodes apart two that are coupled may be
-    border: int  # unknowns of rollers
+    border: int  # unknowns of rollers and pressed plates
     folded: int  # bushings that share a joint with another one
     points: np.ndarray  # of the curves that joints follow, mechanics.curve.POINT
     images: np.ndarray  # IMAGE: of boxes that joints of a halved scene need
@@ -178,8 +178,12 @@ def _bodies(model: Model) -> tuple[np.ndarray, Ints, int]:
     for mesh in model.meshes:
         if mesh.on >= 0:
             bodies["carries"][model.rollers[mesh.on].body] = 1
-    for plane in model.planes:
-        bodies["way"][plane.body] = plane.normal
+    for plate, spring in model.plates:
+        row = bodies[plate.body]
+        row["way"] = spring.direction
+        force = spring.preload - spring.stiffness * (spring.start - spring.touch)
+        row["press"][:4] = (spring.stiffness, spring.damping, force, plate.sliding_mass)
+        row["slide"], border = border, border + 1
     return bodies, np.array(nodes, dtype=np.int64), border
 
 

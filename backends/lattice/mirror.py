@@ -86,7 +86,7 @@ def halve(system: System, mirror: Mirror) -> System:
         bodies[name][gone] = -1
     for name in ("axis", "clutch", "swings"):
         bodies[name][gone] = 0
-    # a roller in the plane: half of it, pushed by what is on one side
+    # a roller, or a pressed plate, in the plane: half of it, pushed by what is on one side
     bodies["press"][own] *= 0.5
     bodies["clutch"][own, 1] *= 0.5
     border = 0

@@ -317,9 +317,8 @@ def _reason(
         return overstretched(model, row, float(counters[step.STRAIN]), t)
     body = int(counters[step.WORST])
     at = ", ".join(f"{value:.4g}" for value in state[0][body])
-    kind = "box" if model.sheet_of(body) else "roller"
     return (
-        f"{kind} {names[body]} left the bounds from which its contacts were chosen at {t:.6g} ms "
+        f"{model.called(body)} left the bounds from which its contacts were chosen at {t:.6g} ms "
         f"(it is at {at} mm); set run.prune: false, or a run.margin above {model.pairs.margin:g} mm"
     )
 

@@ -33,5 +33,7 @@ def check(model: Model) -> None:
                 f"lattice: roller {roller.name} is pressed along its own axis, which is not modelled",
                 ("rollers", roller.name, "press"),
             )
-    if bool(model.bodies.fixed[: sum(s.count for s in model.sheets)].all()) and not model.rollers:
+    if bool(model.bodies.fixed[: sum(s.count for s in model.sheets)].all()) and not (
+        model.rollers or model.plates
+    ):
         raise RefusedError("lattice: nothing in this scene can move")

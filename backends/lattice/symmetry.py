@@ -127,7 +127,9 @@ def _alike(mirror: Mirror, model: Model, one: Part, two: Part) -> bool:
     if isinstance(one, PlanePart):
         frames = [model.bodies.rotation[part.body] for part in (one, two)]
         square = np.abs(mirror.axes(frames[0][None])[0].T @ frames[1])
-        own = {"normal": mirror.seen(one.normal)}
+        own: dict[str, Any] = {"normal": mirror.seen(one.normal)}
+        if one.press is not None:
+            own["press"] = replace(one.press, direction=mirror.seen(one.press.direction))
         return bool(np.abs(square - np.eye(3)).max() < SAME) and _told(one, own) == _told(two, {})
     assert isinstance(one, GuidePart), "there are no other parts"
     # the outline of a guide lies in the mirror, its width goes across

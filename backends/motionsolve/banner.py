@@ -56,8 +56,9 @@ def _contacts(model: Model) -> list[str]:
         more = f" and {len(others)} more" if others else ""
         parts = f"{table.part_a[first]} / {table.part_b[first]}{more}"
         lines.append(f"  contact {entry} : share {table.share[first]}, {parts}")
-    if any(roller.press is not None for roller in model.rollers):
-        lines.append("  Pressed rollers start in equilibrium with the sheets.")
+    for kind, parts in (("rollers", model.rollers), ("plates", model.planes)):
+        if any(part.press is not None for part in parts):
+            lines.append(f"  Pressed {kind} start in equilibrium with the sheets.")
     return lines
 
 

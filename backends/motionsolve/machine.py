@@ -1,4 +1,4 @@
-"""Rows of the rollers: axles, slides, springs, drives, cylinders and what is recorded of them."""
+"""Rows of rollers and pressed plates: axles, slides, springs, drives, cylinders and what is recorded."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from backends.motionsolve.bodies import GROUND_ID, add_body, body_id, graphic_id
 from backends.motionsolve.requests import add_request
 from backends.motionsolve.rows import Bushing, BushingGroup, Clutch, Cylinder, Deck, Joint, Motion, Spring
 from backends.motionsolve.units import number, per_thousand, thousandfold, triples
-from mdlgen.model.tables import ArmPart, Floats, Model, OneWay, Press, RollerPart
+from mdlgen.model.tables import ArmPart, Floats, Model, OneWay, PlanePart, Press, RollerPart
 
 _CONVERT = ((0, per_thousand), (1, thousandfold))  # the columns of a profile
 
@@ -27,8 +27,9 @@ def add_rollers(deck: Deck, model: Model) -> None:
         if roller.arm is not None:
             on = body_id(len(deck.bodies))
             _add_arm(deck, model, roller, roller.arm, on)
+        body = body_id(roller.body)
         axle = _joint(
-            deck, f"j_{roller.name}", f"Axle of {roller.name}", "REVOLUTE", roller, on, place, roller.axis
+            deck, f"j_{roller.name}", f"Axle of {roller.name}", "REVOLUTE", body, on, place, roller.axis
         )
         if roller.one_way is not None:
             _add_clutch(deck, model, roller, roller.one_way, deck.joints[-1])
@@ -40,6 +41,14 @@ def add_rollers(deck: Deck, model: Model) -> None:
         add_request(
             deck, f"o_{roller.name}", f"Roller {roller.name}: position, spin", "DX DY DZ WX WY WZ", markers
         )
+
+
+def add_plates(deck: Deck, model: Model) -> None:
+    """Slides and springs of the pressed plates, which stand on their slides themselves."""
+    for plate, press in model.plates:
+        _add_slide(deck, plate, press, model.bodies.position[plate.body], body_id(plate.body))
+        markers, label = [deck.bodies[plate.body].cm], f"Plane {plate.name}: position, velocity"
+        add_request(deck, f"o_{plate.name}", label, "DX DY DZ VX VY VZ", markers)
 
 
 def law(roller: RollerPart) -> str:
@@ -78,30 +87,35 @@ def _joint(
     name: str,
     label: str,
     type: str,
-    roller: RollerPart,
+    body: int,
     on: int,
     place: Floats,
     direction: Floats,
-    body: int | None = None,
 ) -> int:
-    """A joint with Z of both markers along `direction`; of the roller unless a `body` is given."""
+    """A joint between two bodies (ids) with Z of both markers along `direction`."""
     (at,) = triples(place[None])
     axes = cosines(along(direction))
-    i = deck.marker(f"{name}.joint_i", f"{label}-Marker I", body or body_id(roller.body), at, axes)
+    i = deck.marker(f"{name}.joint_i", f"{label}-Marker I", body, at, axes)
     j = deck.marker(f"{name}.joint_j", f"{label}-Marker J", on, at, axes)
     return deck.joint(name, label, type, i, j)
 
 
 def _add_press(deck: Deck, roller: RollerPart, press: Press, place: Floats, carrier: int) -> None:
-    """The carrier of a pressed roller, its slide, and the spring to where it is anchored on ground."""
+    """The carrier of a pressed roller, on its slide."""
     name = f"b_{roller.name}_carrier"
     inertia = [0.4 * press.carrier_mass * roller.radius**2] * 3  # a ball, as the text has it
-    ends = triples(press_ends(roller, press, place))
-    add_body(deck, name, f"Carrier of {roller.name}", carrier, ends[0], None, press.carrier_mass, inertia)
-    slide, label = f"j_{roller.name}_slide", f"Slide of {roller.name}"
-    _joint(deck, slide, label, "TRANSLATIONAL", roller, GROUND_ID, place, press.direction, carrier)
-    spring, label = f"cs_{roller.name}", f"Spring of {roller.name}"
-    i = deck.marker(f"{spring}.i", f"{label}-Marker I", carrier, ends[0])
+    (at,) = triples(place[None])
+    add_body(deck, name, f"Carrier of {roller.name}", carrier, at, None, press.carrier_mass, inertia)
+    _add_slide(deck, roller, press, place, carrier)
+
+
+def _add_slide(deck: Deck, part: RollerPart | PlanePart, press: Press, place: Floats, body: int) -> None:
+    """The slide of a body, and its spring to where that is anchored on ground."""
+    slide, label = f"j_{part.name}_slide", f"Slide of {part.name}"
+    _joint(deck, slide, label, "TRANSLATIONAL", body, GROUND_ID, place, press.direction)
+    ends = triples(press_ends(part, press, place))
+    spring, label = f"cs_{part.name}", f"Spring of {part.name}"
+    i = deck.marker(f"{spring}.i", f"{label}-Marker I", body, ends[0])
     j = deck.marker(f"{spring}.j", f"{label}-Marker J", GROUND_ID, ends[1])
     deck.springs.append(
         Spring(
@@ -124,7 +138,7 @@ def _add_arm(deck: Deck, model: Model, roller: RollerPart, arm: ArmPart, id: int
     name = f"b_{roller.name}_arm"
     add_body(deck, name, f"Arm of {roller.name}", id, center, None, arm.mass, [arm.inertia] * 3)
     joint, label = f"j_{roller.name}_pivot", f"Pivot of {roller.name}"
-    _joint(deck, joint, label, "REVOLUTE", roller, GROUND_ID, arm.pivot, roller.axis, id)
+    _joint(deck, joint, label, "REVOLUTE", id, GROUND_ID, arm.pivot, roller.axis)
     if not arm.sprung:
         return
     bush, label = f"bsh_{roller.name}_arm", f"Spring of the arm of {roller.name}"
@@ -138,9 +152,9 @@ def _add_arm(deck: Deck, model: Model, roller: RollerPart, arm: ArmPart, id: int
     deck.bushing_groups.append(BushingGroup(tuple(values), [Bushing(bush, label, number_of, i, j)]))
 
 
-def press_ends(roller: RollerPart, press: Press, place: Floats) -> Floats:
-    """Both ends of a spring: the roller's centre, and the anchor that is its free length from touching."""
-    anchor = roller.center + (press.touch - press.free_length) * press.direction
+def press_ends(part: RollerPart | PlanePart, press: Press, place: Floats) -> Floats:
+    """Both ends of a spring: the part's centre, and the anchor that is its free length from touching."""
+    anchor = part.center + (press.touch - press.free_length) * press.direction
     return np.stack([place, anchor])
 
 

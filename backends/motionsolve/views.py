@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from backends.motionsolve.bodies import add_bodies, add_frames
 from backends.motionsolve.contacts import add_contacts
-from backends.motionsolve.machine import add_rollers
+from backends.motionsolve.machine import add_plates, add_rollers
 from backends.motionsolve.rows import Deck, Run
 from backends.motionsolve.sheets import add_bushings, add_loads, add_probes, add_surfaces
 from backends.motionsolve.units import acceleration, number, per_thousand
@@ -23,6 +23,7 @@ def deck_view(model: Model) -> Deck:
     add_frames(deck, model)
     add_bodies(deck, model)
     add_rollers(deck, model)
+    add_plates(deck, model)
     add_bushings(deck, model)
     add_surfaces(deck, model)
     add_probes(deck, model)

@@ -89,8 +89,9 @@ def _contacts(model: Model, scene: SceneView) -> list[str]:
             "  Pairs are kept for the sheets where they start : to move or turn one beyond the margin,",
             "  write the text anew, or write it with prune: false in the run, which keeps every pair.",
         ]
-    if any(roller.pressed for roller in scene.rollers):
-        lines.append("  Pressed rollers start in equilibrium with the sheets as written, at real_start.")
+    for kind, parts in (("rollers", scene.rollers), ("plates", scene.planes)):
+        if any(part.pressed for part in parts):
+            lines.append(f"  Pressed {kind} start in equilibrium with the sheets as written, at real_start.")
     for roller in (part for part in model.rollers if part.rim is not None):
         assert roller.rim is not None
         lines += [

@@ -39,7 +39,10 @@ def unverified(scene: SceneView) -> list[str]:
             any(r.corners > 3 for r in scene.rollers),
             "SetMotion on one line of more than 528 characters, the longest seen (a drive of many corners)",
         ),
-        (any(r.pressed for r in scene.rollers), "CoilSpring and SetCoilSpring (documented; seen as pairs)"),
+        (
+            any(p.pressed for p in (*scene.rollers, *scene.planes)),
+            "CoilSpring and SetCoilSpring (documented; seen as pairs)",
+        ),
         (
             bool(scene.supports) or any(r.arm and r.arm.sprung for r in scene.rollers),
             "Bush with zero stiffness in some directions (a form of the documented one)",

@@ -85,8 +85,16 @@ def _rim(rim: RimPart) -> tuple[list[SectorView], list[tuple[str, str, str]]]:
 
 def plane_view(model: Model, plane: PlanePart, given: list[Value]) -> PlaneView:
     """One plane; its body has z along the normal."""
-    guide = _guide(model.bodies.rotation[plane.body])
-    return PlaneView(plane.name, given, _axis(f"v_{plane.name}_normal", plane.normal), guide)
+    press = plane.press
+    return PlaneView(
+        name=plane.name,
+        given=given,
+        normal=_axis(f"v_{plane.name}_normal", plane.normal),
+        guide=_guide(model.bodies.rotation[plane.body]),
+        pressed=press is not None,
+        press=_components(press.direction if press is not None else np.zeros(3)),
+        mass="($M+$M_c)" if any(value.member == "M_c" for value in given) else "$M",
+    )
 
 
 def guide_view(guide: GuidePart, given: list[Value]) -> GuideView:

@@ -235,6 +235,9 @@ class PlaneView:
     given: list[Value]
     normal: Axis
     guide: str
+    pressed: bool
+    press: tuple[str, str, str]
+    mass: str  # formula of all that slides
 
 
 @dataclass(frozen=True)

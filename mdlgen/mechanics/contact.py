@@ -395,8 +395,9 @@ def face_corners(points, xa, ra, half, facing, xb, rb):
 
 
 @njit(cache=True, error_model="numpy", **OWNS)
-def box_plane(out, xa, ra, va, wa, half, xb, rb, half_b, k, law):
-    """The face of box a that looks at plate b, on the plate's upper face.
+def box_plane(out, xa, ra, va, wa, half, xb, rb, half_b, k, law, vb=(0.0, 0.0, 0.0)):
+    """The face of box a that looks at plate b, on the plate's upper face. The plate does not turn; it moves
+    at `vb`.
 
     The corners of the part of the box's face that lies over the plate share k, so a flat box gives
     k z^1.5 wherever it lies.
@@ -428,7 +429,7 @@ def box_plane(out, xa, ra, va, wa, half, xb, rb, half_b, k, law):
             continue
         point = add(xb, rotate(rb, (points[i, 0], points[i, 1], points[i, 2])))
         spring = k / count * depth * math.sqrt(depth)
-        push(out, point, normal, spring, depth, 0.4 * spring * depth, xa, va, wa, xb, zero, zero, law)
+        push(out, point, normal, spring, depth, 0.4 * spring * depth, xa, va, wa, xb, vb, zero, law)
 
 
 @njit(cache=True, error_model="numpy")

@@ -18,8 +18,14 @@ BOX_PLANE, CYLINDER_CYLINDER, BOX_GUIDE, BOX_BOX, BOX_MESH = 1, 2, 4, 5, 6
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def on_plate(pair):
-    """Whether the other part is a plate that does not move: a plane or a guide."""
+    """Whether the other part is a plate: a plane or a guide."""
     return pair.kind == BOX_PLANE or pair.kind == BOX_GUIDE
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def on_fixed_plate(pair, other):
+    """Whether the other part, of that record, is a plate that does not move."""
+    return on_plate(pair) and other.slide < 0
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -79,6 +85,7 @@ def pair_force(bodies, pair, meshes, x, r, u, w, out):
             three(bodies[b].half),
             pair.k,
             law,
+            vec(u, b),
         )
     elif pair.kind == BOX_GUIDE:
         box_guide(

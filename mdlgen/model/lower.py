@@ -78,7 +78,7 @@ def _lower(scene: Scene) -> Model:
     first = sum(s.count for s in sheets)
     contacts = _contacts(scene)
     rollers = lower_rollers(scene, sheets, contacts, first)
-    planes = lower_planes(scene, first + len(rollers))
+    planes = lower_planes(scene, sheets, contacts, first + len(rollers))
     guides = lower_guides(scene, first + len(rollers) + len(planes))
     meshes = lower_meshes(scene, rollers, first + len(rollers) + len(planes) + len(guides))
     rollers = loaded(rollers, meshes)
@@ -93,7 +93,8 @@ def _lower(scene: Scene) -> Model:
     long, wide = (np.concatenate([*(each[k] for each in extents), none]) for k in range(2))
     naming.check_unique("bodies", bodies.name)
     naming.check_unique("bushings", bushings.name)
-    starts = {r.name: (r.press.touch, r.press.start) for r in rollers if r.press is not None}
+    pressed = (*rollers, *planes)
+    starts = {part.name: (part.press.touch, part.press.start) for part in pressed if part.press is not None}
     return Model(
         name=scene.name,
         gravity=gravity,
@@ -268,15 +269,16 @@ def _bodies(
         a, b, c = plane.size
         inertia = plane.mass / 12 * np.array([[b * b + c * c, a * a + c * c, a * a + b * b]])
         half = np.array([plane.size]) / 2
+        start = plane.press.start * plane.press.direction if plane.press else np.zeros(3)
         tables.append(
             (
-                plane.center[None],
+                (plane.center + start)[None],
                 frame(plane.normal)[None],
-                np.array([plane.mass]),
+                np.array([plane.sliding_mass]),
                 inertia,
                 zero,
                 zero,
-                np.array([True]),
+                np.array([plane.press is None]),
                 half,
                 none,
                 one,

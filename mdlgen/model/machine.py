@@ -1,4 +1,4 @@
-"""Rollers and planes: Scene -> tables, with the press of a roller in static equilibrium."""
+"""Rollers and planes: Scene -> tables, with what is pressed in static equilibrium."""
 
 from __future__ import annotations
 
@@ -117,7 +117,42 @@ def _press(scene: Scene, name: str, sheets: tuple[SheetPart, ...], contacts: Con
         free_length=spec.free_length,
         carrier_mass=carrier,
         touch=touch,
-        start=press.equilibrium(center, direction, spring, forces, own_radius, touch),
+        start=press.equilibrium(
+            center, direction, spring, forces, (2 * own_radius, own_radius, own_radius / 16), touch
+        ),
+    )
+
+
+def _plate_press(scene: Scene, name: str, sheets: tuple[SheetPart, ...], contacts: Contacts) -> Press:
+    """The press of a plate. Only sheets touch it, so it has no counterpart: the preload is that where it is
+    given."""
+    plane = scene.planes[name]
+    spec = plane.press
+    assert spec is not None
+    center, direction = np.array(plane.center), np.array(spec.direction)
+    carrier = spec.carrier_mass if spec.carrier_mass is not None else 0.0
+    mass, axes = plane.mass + carrier, frame(np.array(plane.normal))
+    of = {sheet.name: sheet for sheet in sheets}
+    mine = [row for row in range(len(contacts)) if contacts.part_b[row] == name]
+    stiff = [(of[contacts.part_a[row]], float(contacts.stiffness[row])) for row in mine]
+    forces = [press.plate_contact(sheet, axes, plane.size, center, k) for sheet, k in stiff]
+    weight = mass * float(np.array(scene.gravity) @ direction)
+
+    def spring(offset: float) -> float:
+        return spec.preload - spec.stiffness * offset + weight
+
+    far = spec.free_length  # a spring does not become shorter than that
+    step = min(far / 16, plane.size[2] / 4)
+    return Press(
+        direction=direction,
+        stiffness=spec.stiffness,
+        damping=2.0 * spec.damping_ratio * float(np.sqrt(spec.stiffness * mass)),
+        damping_ratio=spec.damping_ratio,
+        preload=spec.preload,
+        free_length=spec.free_length,
+        carrier_mass=carrier,
+        touch=0.0,
+        start=press.equilibrium(center, direction, spring, forces, (far, far, step), 0.0),
     )
 
 
@@ -147,7 +182,9 @@ def _profile(roller: Roller, direction: Floats) -> tuple[float, float]:
     return radius, float(rim.stiffness[sector])
 
 
-def lower_planes(scene: Scene, first: int) -> tuple[PlanePart, ...]:
+def lower_planes(
+    scene: Scene, sheets: tuple[SheetPart, ...], contacts: Contacts, first: int
+) -> tuple[PlanePart, ...]:
     return tuple(
         PlanePart(
             name=name,
@@ -156,6 +193,7 @@ def lower_planes(scene: Scene, first: int) -> tuple[PlanePart, ...]:
             normal=np.array(plane.normal),
             size=plane.size,
             mass=plane.mass,
+            press=_plate_press(scene, name, sheets, contacts) if plane.press else None,
         )
         for index, (name, plane) in enumerate(sorted(scene.planes.items()))
     )

@@ -6,7 +6,7 @@ also pass on its velocity. A difference of those speeds across the sheet may tur
 added. A solver watches the bounds: a box whose centre leaves them ends the run, so that no contact is missed
 silently. A sheet that meets an external part may be moved by it in any way: all of its pairs are kept. A
 sheet that meets a guide or a fixed mesh, itself or over such a sheet, may be led by it in any direction, as
-far as all that moves it goes.
+far as all that moves it goes. One that meets a pressed plate may be carried by it as far as that goes.
 """
 
 from __future__ import annotations
@@ -95,6 +95,9 @@ def find_pairs(
             if roller.arm is not None:  # or swing by as much
                 low[roller.body] = bodies.position[roller.body] - _swing(roller) - margin
                 high[roller.body] = bodies.position[roller.body] + _swing(roller) + margin
+        for plane in (part for part in machine if isinstance(part, PlanePart) and part.press is not None):
+            low[plane.body] = bodies.position[plane.body] - plane.travel - margin
+            high[plane.body] = bodies.position[plane.body] + plane.travel + margin
     for row in np.flatnonzero(contacts.kind != EXTERNAL).tolist():
         if contacts.kind[row] == BOX_BOX:
             pair = by_name[contacts.part_a[row]], by_name[contacts.part_b[row]]
@@ -157,6 +160,8 @@ def _swept(
     shift = sheet.velocity * time
     # a heavy sheet throws a light one forward with up to twice its own velocity
     thrown = [2.0 * (other.velocity - sheet.velocity) * time for other in others]
+    plates = {part.name: part.travel for _, part in touched if isinstance(part, PlanePart)}
+    lift = sum(plates.values(), np.zeros(3))
     driven = [(own, part) for own, part in touched if isinstance(part, RollerPart) and part.speed]
     corners = [part.corners[:, 0] for _, part in driven]
     times = np.unique(np.concatenate([np.linspace(0.0, time, _STATIONS), *corners]).clip(0.0, time))
@@ -165,6 +170,7 @@ def _swept(
     if any(isinstance(part, (GuidePart, MeshPart)) for _, part in touched):
         paths = np.linalg.norm(moves, axis=1)
         way = float(paths[:2].sum() + paths[2:].max(initial=0.0) + sum(map(np.linalg.norm, thrown)))
+        way += float(np.linalg.norm(lift))
         if sheet.count > 1:
             way += 0.5 * float(size.max())
         turned = _turn(sheet, drives, time) * diagonal
@@ -175,6 +181,7 @@ def _swept(
     most = np.maximum(moves[:2], 0).sum(0) + np.maximum(moves[2:], 0).max(0, initial=0.0)
     for way in thrown:
         least, most = least + np.minimum(way, 0), most + np.maximum(way, 0)
+    least, most = least - lift, most + lift
     if sheet.count > 1:
         # a flexible sheet may flap out of its plane by what its length allows
         normal = np.abs(sheet.rotation[:, 2]) * 0.5 * float(size.max())
@@ -251,7 +258,8 @@ def _turned(
 
 
 def _part_bounds(part: Part, bodies: Bodies, rollers: tuple[RollerPart, ...]) -> tuple[Floats, Floats]:
-    """Bounding box of a part; a pressed roller may move by its radius along its slide."""
+    """Bounding box of a part; a pressed roller may move by its radius along its slide, a plate by the length
+    of its spring."""
     center = bodies.position[part.body]
     if isinstance(part, GuidePart):
         return bounds(part)
@@ -262,6 +270,8 @@ def _part_bounds(part: Part, bodies: Bodies, rollers: tuple[RollerPart, ...]) ->
         return low - more, high + more
     if isinstance(part, PlanePart):
         extent = np.abs(bodies.rotation[part.body]) @ (np.array(part.size) / 2)
+        if part.press is not None:
+            extent = extent + part.travel + SLACK
         return center - extent, center + extent
     extent = np.abs(part.axis) * part.width / 2 + part.reach * np.sqrt(np.maximum(0, 1 - part.axis**2))
     if part.press is not None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from mdlgen.model.meshes import LIGHT
 from mdlgen.model.tables import Parameter, RunSettings
+from mdlgen.spec.machine import Press
 from mdlgen.spec.scene import Scene
 
 _NAMED_AXES = ("x", "y", "z")
@@ -12,7 +13,7 @@ _NAMED_AXES = ("x", "y", "z")
 def parameters(
     scene: Scene, starts: dict[str, tuple[float, float]], run: RunSettings
 ) -> tuple[Parameter, ...]:
-    """All parameters of a scene; `starts` gives (touch, start) of each pressed roller [mm]."""
+    """All parameters of a scene; `starts` gives (touch, start) of each pressed roller and plate [mm]."""
     rows: list[Parameter] = []
     for name in sorted(scene.sheets):
         rows += _sheet(scene, name)
@@ -30,6 +31,8 @@ def parameters(
                 Parameter(name, f"L_{axis}", f"Length along its {axis}", size, "mm", (*base, "size", k))
             )
         rows.append(Parameter(name, "M", "Mass", plane.mass, "g", (*base, "mass")))
+        if plane.press is not None:
+            rows += _plate_press(name, plane.press, starts[name][1])
     for name in sorted(scene.guides):
         rows += _guide(scene, name)
     for name in sorted(scene.meshes):
@@ -224,21 +227,48 @@ def _roller(scene: Scene, name: str, starts: dict[str, tuple[float, float]]) -> 
             rows.append(Parameter(name, f"w_{k}", f"Speed at corner {k} (rad/s)", speed, "rad/ms", (*at, 1)))
     rows += _rim(scene, name) + _arm(scene, name)
     if roller.press is not None:
-        press, way = roller.press, (*base, "press")
-        carrier = press.carrier_mass if press.carrier_mass is not None else roller.mass / 1000
+        carrier = roller.press.carrier_mass
         touch, start = starts[name]
         rows += [
-            Parameter(name, "k", "Spring stiffness", press.stiffness, "N/mm", (*way, "stiffness")),
-            Parameter(name, "f", "Spring preload (N)", press.preload, "N", (*way, "preload")),
-            Parameter(name, "l", "Spring free length", press.free_length, "mm", (*way, "free_length")),
-            Parameter(name, "zeta", "Relative damping", press.damping_ratio, "1", (*way, "damping_ratio")),
-            Parameter(name, "M_c", "Carrier mass", carrier, "g", (*way, "carrier_mass")),
-            Parameter(name, "touch", "Touching position along the slide, as written", touch, "mm", None),
+            *_spring(name, roller.press, base),
             Parameter(
-                name, "start", "Start along the slide in static equilibrium, as written", start, "mm", None
+                name,
+                "M_c",
+                "Carrier mass",
+                roller.mass / 1000 if carrier is None else carrier,
+                "g",
+                (*base, "press", "carrier_mass"),
             ),
+            Parameter(name, "touch", "Touching position along the slide, as written", touch, "mm", None),
+            _start(name, start),
         ]
     return rows
+
+
+def _spring(name: str, press: Press, base: tuple[str, str]) -> list[Parameter]:
+    """The spring of a roller or a plate."""
+    way = (*base, "press")
+    return [
+        Parameter(name, "k", "Spring stiffness", press.stiffness, "N/mm", (*way, "stiffness")),
+        Parameter(name, "f", "Spring preload (N)", press.preload, "N", (*way, "preload")),
+        Parameter(name, "l", "Spring free length", press.free_length, "mm", (*way, "free_length")),
+        Parameter(name, "zeta", "Relative damping", press.damping_ratio, "1", (*way, "damping_ratio")),
+    ]
+
+
+def _start(name: str, start: float) -> Parameter:
+    label = "Start along the slide in static equilibrium, as written"
+    return Parameter(name, "start", label, start, "mm", None)
+
+
+def _plate_press(name: str, press: Press, start: float) -> list[Parameter]:
+    """Spring and slide of a plate, which touches no roller: its spring has the preload where it is given."""
+    base = ("planes", name)
+    rows = _spring(name, press, base)
+    if press.carrier_mass is not None:
+        path = (*base, "press", "carrier_mass")
+        rows.append(Parameter(name, "M_c", "Mass of its slide", press.carrier_mass, "g", path))
+    return [*rows, _start(name, start)]
 
 
 def _rim(scene: Scene, name: str) -> list[Parameter]:

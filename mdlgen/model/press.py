@@ -1,4 +1,4 @@
-"""Where a pressed roller touches its counterpart, and where it stands in static equilibrium."""
+"""Where a pressed roller touches its counterpart, and where it or a pressed plate stands in equilibrium."""
 
 from __future__ import annotations
 
@@ -103,30 +103,81 @@ def cylinder_contact(
     return force
 
 
+def plate_contact(
+    sheet: SheetPart, frame: Floats, size: Sequence[float], center: Floats, stiffness: float
+) -> Callable[[Floats], Floats]:
+    """Force on a plate near a given centre from the flat sheet held where it starts [N], (3,).
+
+    The corners of what of each box lies over the plate share k, as in a run; what lies over it is taken to
+    be the same wherever along its slide the plate is.
+    """
+    normal = frame[:, 2]
+    face = -0.5 * sheet.thickness * math.copysign(1.0, float(sheet.rotation[:, 2] @ normal))
+    over = [(sign * frame[:, axis], size[axis] / 2) for axis in range(2) for sign in (1.0, -1.0)]
+    heights, shares = [], []
+    for j in range(sheet.n_y):
+        for i in range(sheet.n_x):
+            x, y = sheet.lines_x[i : i + 2], sheet.lines_y[j : j + 2]
+            flat = np.array([(x[a], y[b], face) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))])
+            corners = sheet.center + flat @ sheet.rotation.T - center
+            for way, most in over:
+                corners = _cut(corners, way, most)
+            heights.append(corners @ normal)
+            shares.append(np.full(len(corners), stiffness / max(1, len(corners))))
+    height, share = np.concatenate(heights), np.concatenate(shares)
+
+    def force(at: Floats) -> Floats:
+        depth = float((at - center) @ normal) + 0.5 * size[2] - height
+        # what is behind the plate does not touch it
+        depth = np.where(depth <= size[2], np.maximum(depth, 0.0), 0.0)
+        return -float(share @ depth**1.5) * normal
+
+    return force
+
+
+def _cut(corners: Floats, way: Floats, most: float) -> Floats:
+    """What of a polygon (n, 3) is not further than `most` along `way`."""
+    beyond = corners @ way - most
+    if np.all(beyond <= 0.0):
+        return corners
+    kept = []
+    for k in range(len(corners)):
+        one, two = beyond[k - 1], beyond[k]
+        if one * two < 0.0:
+            kept.append(corners[k - 1] + one / (one - two) * (corners[k] - corners[k - 1]))
+        if two <= 0.0:
+            kept.append(corners[k])
+    return np.array(kept).reshape(-1, 3)
+
+
 def equilibrium(
     center: Floats,
     direction: Floats,
     spring: Callable[[float], float],
     contacts: Sequence[Callable[[Floats], Floats]],
-    radius: float,
+    reach: tuple[float, float, float],
     touch: float,
 ) -> float:
     """Offset along `direction` where spring and contacts balance [mm]; `spring(offset)` is its push.
 
     Bisection between well back and well ahead of the touching position; where the spring cannot be
-    balanced in that range the offset is its end.
+    balanced in that range the offset is its end. `reach` is how far back and ahead that is, and a step ahead
+    that passes over no contact [mm].
     """
 
     def push(offset: float) -> float:
         at = center + offset * direction
         return spring(offset) + sum(float(c(at) @ direction) for c in contacts)
 
-    low, high = touch - 2 * radius, touch
+    if push(touch) == 0.0:  # nothing pushes it: anywhere about is balance
+        return float(touch)
+    back, ahead, step = reach
+    low, high = touch - back, touch
     if push(low) <= 0.0:
         return float(low)
     # Ahead of the touching position the balance is lost once a counterpart's centre is passed.
-    while push(high) > 0.0 and high < touch + radius:
-        high += radius / 16
+    while push(high) > 0.0 and high < touch + ahead:
+        high += step
     if push(high) > 0.0:
         return float(touch)
     for _ in range(200):

@@ -41,7 +41,7 @@ class Bodies(Frozen):
     inertia: Floats  # principal, body axes [g mm^2], (n, 3)
     velocity: Floats  # [mm/ms], (n, 3)
     spin: Floats  # angular velocity, global axes [rad/ms], (n, 3)
-    fixed: NDArray[np.bool_]  # held: clamped boxes, planes, guides and meshes that move with nothing, (n,)
+    fixed: NDArray[np.bool_]  # held: clamped boxes; planes, guides and meshes that move with nothing, (n,)
     half: Floats  # half lengths of a box, body axes; zero for rollers, guides and meshes [mm], (n, 3)
     exposed: NDArray[np.bool_]  # side faces that no neighbour covers: x_min, x_max, y_min, y_max, (n, 4)
     friction: Floats  # friction of its contacts in times that of the contact, (n,)
@@ -215,7 +215,7 @@ class SheetPart(Frozen):
 
 @dataclass(frozen=True)
 class Press(Frozen):
-    """The slide and spring of a pressed roller; lengths along `direction` from the centre as given."""
+    """Slide and spring of a pressed roller or plate; lengths along `direction` from the centre as given."""
 
     direction: Floats  # unit vector, (3,)
     stiffness: float  # [N/mm]
@@ -338,7 +338,8 @@ class RollerPart(Frozen):
 
 @dataclass(frozen=True)
 class PlanePart(Frozen):
-    """A fixed plate; local axes in the columns of the body's rotation, z = normal."""
+    """A plate, fixed or pressed; local axes in the columns of the body's rotation, z = normal. `center` is as
+    the user gave it, the body's position includes `press.start`."""
 
     name: str
     body: int
@@ -346,6 +347,17 @@ class PlanePart(Frozen):
     normal: Floats
     size: tuple[float, float, float]
     mass: float
+    press: Press | None = None
+
+    @property
+    def sliding_mass(self) -> float:
+        """Mass of all that moves with it [g]."""
+        return self.mass + (0.0 if self.press is None else self.press.carrier_mass)
+
+    @property
+    def travel(self) -> Floats:
+        """How far it may go along each global axis, either way: by the length of its spring [mm], (3,)."""
+        return np.zeros(3) if self.press is None else self.press.free_length * np.abs(self.press.direction)
 
 
 @dataclass(frozen=True)
@@ -437,7 +449,7 @@ class Pairs(Frozen):
     b: Ints  # roller, plane, guide, mesh or box of another sheet, (n,)
     possible: int
     margin: float  # [mm]
-    low: Floats  # bounds of boxes' and pressed rollers' centres, -inf where not watched [mm], (bodies, 3)
+    low: Floats  # bounds of the centres of boxes and what is pressed, -inf: not watched [mm], (bodies, 3)
     high: Floats
     searched: Ints  # rows of Contacts between two sheets that can meet in too many pairs to list, (rows,)
 
@@ -548,13 +560,19 @@ class Model(Frozen):
         return next(r for r in self.rollers if r.name == name)
 
     @property
+    def plates(self) -> list[tuple[PlanePart, Press]]:
+        """The planes that springs press, and their presses."""
+        return [(plane, plane.press) for plane in self.planes if plane.press is not None]
+
+    @property
     def pair_friction(self) -> Floats:
         """Friction of each kept pair in times that of its contact, (pairs,)."""
         return self.bodies.friction[self.pairs.a] * self.bodies.friction[self.pairs.b]
 
     def called(self, body: int) -> str:
-        """What a plane, a guide, a mesh or a box is called in a sentence."""
+        """What a roller, a plane, a guide, a mesh or a box is called in a sentence."""
         kinds = {g.body: "guide" for g in self.guides} | {m.body: "mesh" for m in self.meshes}
+        kinds |= {r.body: "roller" for r in self.rollers}
         kind = "box" if self.sheet_of(body) else kinds.get(body, "plane")
         return f"{kind} {self.bodies.name[body]}"
 

@@ -88,7 +88,7 @@ def _depths(result: Result, kind: int, boxes: Ints, other: int, name: str, at: I
         return roller.radius - np.hypot(away, np.maximum(np.abs(near[..., 2]) - half[:, 2], 0.0))
     if kind == BOX_PLANE:
         plane = next(p for p in model.planes if p.name == name)
-        face = plane.center + plane.normal * plane.size[2] / 2
+        face = result.position[at, other][:, None] + plane.normal * plane.size[2] / 2
         lowest = np.abs(np.einsum("tnij,i->tnj", turn, plane.normal)) * half
         return lowest.sum(axis=2) - (place - face) @ plane.normal
     guide = next(g for g in model.guides if g.name == name)

@@ -104,23 +104,30 @@ def _tilt(result: Result, at: Ints) -> list[Panel]:
 
 
 def _rollers(result: Result, at: Ints, deep: Floats) -> list[Panel]:
-    """Nip forces, penetrations by sheets and speeds, each by roller."""
+    """Nip forces, penetrations by sheets and speeds, each by roller; of spring plates where they are, too."""
     thin = _thin(result)
-    force = Panel("force", "Normal force on each roller", "N")
-    depth = Panel("penetration", "Penetration of sheets into each roller", "mm")
+    plates = result.model.plates
+    each = "each roller and spring plate" if plates else "each roller"
+    force = Panel("force", f"Normal force on {each}", "N")
+    depth = Panel("penetration", f"Penetration of sheets into {each}", "mm")
+    place = Panel("plate", "Way of each spring plate along its slide, from where it is given", "mm")
     spin = Panel("omega", "Speed of each roller", "rad/s")
     depth.note = "of the deepest box at stored states; the table has the greatest over every step"
-    for roller in result.model.rollers:
-        rows = list(part_rows(result, roller))
+    for part in (*result.model.rollers, *(plate for plate, _ in plates)):
+        rows = list(part_rows(result, part))
         sheets = [k for k in rows if result.model.contacts.kind[k] != CYLINDER_CYLINDER]
         if rows:
             y = result.contact_force[:, rows].sum(axis=1)
-            force.lines.append(Line(roller.name, result.time[thin], y[thin]))
+            force.lines.append(Line(part.name, result.time[thin], y[thin]))
         if sheets:
-            depth.lines.append(Line(roller.name, result.time[at], deep[:, sheets].max(axis=1)))
+            depth.lines.append(Line(part.name, result.time[at], deep[:, sheets].max(axis=1)))
+    for plate, press in plates:
+        way = (result.position[thin, plate.body] - plate.center) @ press.direction
+        place.lines.append(Line(plate.name, result.time[thin], way))
+    for roller in result.model.rollers:
         omega = result.spin[:, roller.body] @ roller.axis * PER_SECOND
         spin.lines.append(Line(roller.name, result.time[thin], omega[thin]))
-    return [force, depth, spin]
+    return [force, depth, place, spin]
 
 
 def _bearing(result: Result, at: Ints, joints: tuple[SheetJoints, Floats, Floats] | None) -> list[Panel]:

@@ -58,11 +58,12 @@ def on_arms(model: Model) -> list[RollerPart]:
 
 
 def moving(model: Model) -> list[int]:
-    """What may move: boxes, then rollers, then meshes on them, then arms, which are counted on from the last
-    body."""
+    """What may move: boxes, then rollers, pressed plates, meshes on rollers, then arms, which are counted on
+    from the last body."""
     boxes = range(sum(sheet.count for sheet in model.sheets))
     arms = range(len(model.bodies.name), len(model.bodies.name) + len(on_arms(model)))
-    return [*boxes, *(r.body for r in model.rollers), *(m.body for m in model.meshes if m.on >= 0), *arms]
+    machine = (*model.rollers, *(plate for plate, _ in model.plates))
+    return [*boxes, *(part.body for part in machine), *(m.body for m in model.meshes if m.on >= 0), *arms]
 
 
 def _roller(roller: RollerPart) -> list[Mesh]:

@@ -156,6 +156,8 @@ def summary_text(told: dict[str, Any]) -> str:
         lines.append(f"strain {told['strain']:.6g}")
     if told["rollers"]:
         lines += _rollers(told["rollers"])
+    if told.get("planes"):
+        lines += _plates(told["planes"])
     if told["error_estimate"] is not None:
         lines.append(f"error estimate {told['error_estimate']:.2g}, tolerance {told['tolerance']:g}")
     return "\n".join(lines)
@@ -185,6 +187,15 @@ def _rollers(rollers: dict[str, Any]) -> list[str]:
         rows.append(
             [name, *(_number(roller[key]) for key in keys), "acts" if free is None else f"{free:.4g}"]
         )
+    return _table(rows)
+
+
+def _plates(plates: dict[str, Any]) -> list[str]:
+    """The pressed plates."""
+    rows = [["spring plate", "centre mm", "force N", "penetration by sheets: max mm", "mean mm"]]
+    for name, plate in plates.items():
+        keys = ("nip_force_n", "max_penetration_mm", "mean_penetration_mm")
+        rows.append([name, _vector(plate["center_mm"]), *(_number(plate[key]) for key in keys)])
     return _table(rows)
 
 

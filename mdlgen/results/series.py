@@ -10,8 +10,8 @@ from mdlgen.results.summary import PER_SECOND, part_rows
 
 
 def series(result: Result) -> dict[str, Floats]:
-    """Column name -> values at the stored times: sheets (centre of mass), probes, rollers, then guides and
-    meshes."""
+    """Column name -> values at the stored times: sheets (centre of mass), probes, rollers, pressed plates,
+    then guides and meshes."""
     table: dict[str, Floats] = {"time_ms": result.time}
     for index, sheet in enumerate(result.model.sheets):
         place, rate, yaw = result.sheet_motion(index)
@@ -24,6 +24,10 @@ def series(result: Result) -> dict[str, Floats]:
         table[f"{roller.name}.z_mm"] = result.position[:, roller.body, 2]
         table[f"{roller.name}.omega_rad_per_s"] = result.spin[:, roller.body] @ roller.axis * PER_SECOND
         table[f"{roller.name}.force_n"] = result.contact_force[:, rows].sum(axis=1)
+    for plate, _ in result.model.plates:
+        rows = list(part_rows(result, plate))
+        table[f"{plate.name}.z_mm"] = result.position[:, plate.body, 2]
+        table[f"{plate.name}.force_n"] = result.contact_force[:, rows].sum(axis=1)
     for part in (*result.model.guides, *result.model.meshes):
         table[f"{part.name}.force_n"] = result.contact_force[:, list(part_rows(result, part))].sum(axis=1)
     return table

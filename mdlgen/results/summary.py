@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from mdlgen.model.tables import Floats, GuidePart, MeshPart, RollerPart
+from mdlgen.model.tables import Floats, GuidePart, MeshPart, PlanePart, RollerPart
 from mdlgen.results.compare import travel
 from mdlgen.results.result import Result
 from mdlgen.version import version
@@ -55,6 +55,8 @@ def summary(result: Result, without: Collection[str] = ()) -> dict[str, Any]:
         "probes": {p.name: _probe(result, k) for k, p in enumerate(model.probes)},
         "versions": versions(result),
     }
+    if model.plates:
+        told["planes"] = {plate.name: _pressing(result, plate) for plate, _ in model.plates}
     if model.tension is not None:
         told["strain"] = strain(result) if len(result.time) else None
     return plain(told)
@@ -150,11 +152,11 @@ def _bearing(result: Result, index: int) -> dict[str, Any]:
     }
 
 
-def part_rows(result: Result, roller: RollerPart | GuidePart | MeshPart) -> dict[int, str]:
-    """Rows of contacts of a roller, a guide or a mesh, with the name of the other part."""
+def part_rows(result: Result, part: RollerPart | PlanePart | GuidePart | MeshPart) -> dict[int, str]:
+    """Rows of contacts of a part of the machine, with the name of the other part."""
     contacts = result.model.contacts
     sides = zip(contacts.part_a, contacts.part_b, strict=True)
-    return {k: b if a == roller.name else a for k, (a, b) in enumerate(sides) if roller.name in (a, b)}
+    return {k: b if a == part.name else a for k, (a, b) in enumerate(sides) if part.name in (a, b)}
 
 
 def _contacts(result: Result, rows: dict[int, str]) -> dict[str, dict[str, float]]:
@@ -171,26 +173,35 @@ def _contacts(result: Result, rows: dict[int, str]) -> dict[str, dict[str, float
     }
 
 
-def _roller(result: Result, roller: RollerPart) -> dict[str, Any]:
-    rows = part_rows(result, roller)
+def _pressing(result: Result, part: RollerPart | PlanePart) -> dict[str, Any]:
+    """Where a roller or a plate is at the end, and how it presses on what it touches."""
+    rows = part_rows(result, part)
     sheets = {s.name for s in result.model.sheets}
-    statistics = result.statistics
     on_sheets = [k for k, other in rows.items() if other in sheets]
-    on_rollers = np.array([k for k, other in rows.items() if other not in sheets], dtype=np.int64)
-    told: dict[str, Any] = {"omega_rad_per_s": None, "center_mm": None, "nip_force_n": None}
+    told: dict[str, Any] = {"center_mm": None, "nip_force_n": None}
     if len(result.time):
         told = {
-            "omega_rad_per_s": float(result.spin[-1, roller.body] @ roller.axis) * PER_SECOND,
-            "center_mm": result.position[-1, roller.body],
+            "center_mm": result.position[-1, part.body],
             "nip_force_n": float(result.contact_force[-1, list(rows)].sum()),
         }
     return {
         **told,
-        "max_penetration_mm": max((statistics.max_depth[k] for k in on_sheets), default=0.0),
-        "mean_penetration_mm": _mean(statistics.mean_depth, on_sheets, result),
+        "max_penetration_mm": max((result.statistics.max_depth[k] for k in on_sheets), default=0.0),
+        "mean_penetration_mm": _mean(result.statistics.mean_depth, on_sheets, result),
         "contacts": _contacts(result, rows),
+    }
+
+
+def _roller(result: Result, roller: RollerPart) -> dict[str, Any]:
+    rows = part_rows(result, roller)
+    sheets = {s.name for s in result.model.sheets}
+    on_rollers = np.array([k for k, other in rows.items() if other not in sheets], dtype=np.int64)
+    speed = float(result.spin[-1, roller.body] @ roller.axis) * PER_SECOND if len(result.time) else None
+    return {
+        "omega_rad_per_s": speed,
+        **_pressing(result, roller),
         # nan, a contact that still acts, wins: the roller is not free then
-        "free_of_counterpart_at_ms": np.max(statistics.last_force_at[on_rollers], initial=0.0),
+        "free_of_counterpart_at_ms": np.max(result.statistics.last_force_at[on_rollers], initial=0.0),
     }
 
 

@@ -83,7 +83,7 @@ class OneWay(Strict):
 
 
 class Press(Strict):
-    """A spring that pushes the roller along a direction in which it may slide."""
+    """A spring that pushes a roller, or a plate, along a direction in which it may slide."""
 
     direction: Direction = Field(description="where the spring pushes to")
     stiffness: Stiffness = Field(description="spring stiffness")
@@ -91,13 +91,15 @@ class Press(Strict):
     free_length: PositiveLength = Field(
         default=default("6 mm"),
         description="spring length at which the preload is stated: where the roller just touches its "
-        "counterpart (a roller it has a contact with), or its centre as given where it has none",
+        "counterpart (a roller it has a contact with), or its centre as given where it has none, as a plate",
     )
     damping_ratio: float = Field(
-        default=0.05, ge=0, le=10, description="relative damping of spring and roller"
+        default=0.05, ge=0, le=10, description="relative damping of spring and roller or plate"
     )
     carrier_mass: Mass | None = Field(
-        default=None, description="mass of the slide between spring and roller; a thousandth of the roller's"
+        default=None,
+        description="mass of the slide between spring and roller, a thousandth of the roller's where left "
+        "out; a plate is its own slide, to which this adds",
     )
 
 
@@ -164,9 +166,24 @@ class Roller(Strict):
 
 
 class Plane(Strict):
-    """A fixed plate; its contact face is the one on the side of the normal."""
+    """A plate, fixed or pressed by a spring; its contact face is the one on the side of the normal."""
 
     center: Position = Field(description="middle of the plate (its face lies half the third size above)")
     normal: Direction = Field(description="outward normal of the contact face")
     size: Size3 = Field(description="two lengths of the face, then the thickness along the normal")
-    mass: Mass = Field(description="mass; of no effect on the motion, since the plate is fixed")
+    mass: Mass = Field(description="mass; of effect on the motion of a plate with press only")
+    press: Press | None = Field(
+        default=None, description="slide and spring; without it the plate is fixed. It does not turn"
+    )
+
+    @model_validator(mode="after")
+    def _presses(self) -> Plane:
+        if self.press is None:
+            return self
+        if abs(sum(d * n for d, n in zip(self.press.direction, self.normal, strict=True))) < 1e-9:
+            raise fail(
+                "the direction lies in the plate's own face, along which it presses nothing; "
+                "give it a part along the normal",
+                within=("press", "direction"),
+            )
+        return self

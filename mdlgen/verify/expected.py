@@ -26,6 +26,7 @@ from mdlgen.model.tables import (
     Ints,
     MeshPart,
     Model,
+    PlanePart,
     RollerPart,
     SheetPart,
 )
@@ -84,10 +85,10 @@ def _anchor_points(model: Model, anchor: Anchor) -> Floats:
     return bodies.position[anchor.body] + np.einsum("nij,nj->ni", bodies.rotation[anchor.body], anchor.local)
 
 
-def _spring_anchor(roller: RollerPart) -> Floats:
-    press = roller.press
+def _spring_anchor(part: RollerPart | PlanePart) -> Floats:
+    press = part.press
     assert press is not None
-    return roller.center + press.direction * (press.touch - press.free_length)
+    return part.center + press.direction * (press.touch - press.free_length)
 
 
 def _points(model: Model) -> Table:
@@ -127,7 +128,10 @@ def _points(model: Model) -> Table:
             places += [roller.arm.pivot[None], roller.arm.center[None]]
     for plane in model.planes:
         names.append(f"p_{plane.name}")
-        places.append(plane.center[None])
+        places.append(model.bodies.position[plane.body][None])
+        if plane.press is not None:
+            names.append(f"p_{plane.name}_anchor")
+            places.append(_spring_anchor(plane)[None])
     for guide in model.guides:
         names += [f"p_{guide.name}", *(f"p_{guide.name}_{k}" for k in range(guide.facets))]
         places += [guide.center[None], *(facet.center[None] for facet in facets(guide))]
@@ -231,7 +235,7 @@ def _curve_laws(model: Model) -> Table:
 
 
 def _springs(model: Model) -> Table:
-    pressed = [(r, r.press) for r in model.rollers if r.press is not None]
+    pressed = [(r, r.press) for r in (*model.rollers, *model.planes) if r.press is not None]
     parts: dict[str, Part] = {
         "p1": (np.array([model.bodies.position[r.body] for r, _ in pressed]).reshape(-1, 3), reach(model)),
         "p2": (np.array([_spring_anchor(r) for r, _ in pressed]).reshape(-1, 3), reach(model)),
@@ -240,7 +244,8 @@ def _springs(model: Model) -> Table:
         "force": (np.array([p.preload for _, p in pressed]), None),
         "length": (np.array([p.free_length for _, p in pressed]), None),
     }
-    words = [(f"b_{r.name}_carrier", "B_Ground") for r, _ in pressed]
+    slides = {r.name: f"b_{r.name}_carrier" for r in model.rollers}
+    words = [(slides.get(r.name, f"b_{r.name}"), "B_Ground") for r, _ in pressed]
     return table([f"cs_{r.name}" for r, _ in pressed], parts, words)
 
 
@@ -341,6 +346,9 @@ def _joints(model: Model) -> Table:
             on = f"b_{name}_arm"
             add(f"j_{name}_pivot", "REVOLUTE", on, "B_Ground", roller.arm.pivot, roller.axis)
         add(f"j_{name}", "REVOLUTE", f"b_{name}", on, at, roller.axis)
+    for plate, press in model.plates:
+        name, at = plate.name, model.bodies.position[plate.body]
+        add(f"j_{name}_slide", "TRANSLATIONAL", f"b_{name}", "B_Ground", at, press.direction)
     for mesh in model.meshes:
         if mesh.on >= 0:
             at, name = model.bodies.position[mesh.body], mesh.name
@@ -452,6 +460,8 @@ def _vectors(model: Model) -> Table:
             add(f"v_{roller.name}_press", roller.press.direction)
     for plane in model.planes:
         own(f"v_{plane.name}_normal", plane.normal)
+        if plane.press is not None:
+            add(f"v_{plane.name}_press", plane.press.direction)
     for guide in model.guides:
         own(f"v_{guide.name}_axis", guide.axes[:, 2])
     return table(names, {"direction": (np.array(directions).reshape(-1, 3), 1.0)})
@@ -468,7 +478,7 @@ def _surfaces(model: Model) -> Table:
 
 
 def _outputs(model: Model) -> Table:
-    """Six numbers of each output in the made-up state: position and velocity, or position and spin."""
+    """Six numbers of each output in the made-up state: position and velocity, of rollers and spin."""
     names, rows = [], []
     for probe in model.probes:
         names.append(f"o_{probe.name}")
@@ -484,6 +494,10 @@ def _outputs(model: Model) -> Table:
         names.append(f"o_{roller.name}")
         state = motion(f"b_{roller.name}")
         rows.append([*state.place(model.bodies.position[roller.body]), *state.spin])
+    for plate, _ in model.plates:
+        names.append(f"o_{plate.name}")
+        state, at = motion(f"b_{plate.name}"), model.bodies.position[plate.body]
+        rows.append([*state.place(at), *state.speed(at)])
     numbers = np.array(rows).reshape(-1, 6)
     scale = np.repeat([reach(model), 1000.0], 3)
     return table(names, {"value": (numbers, scale)})

@@ -2,8 +2,8 @@
 
 The spec leaves values out that the text has to write (a second ratio of damping, the speeds of friction);
 and two sheets may share a material while the text gives each its own. So the scene is pinned first: what is
-left out is written as what it stands for. Which boxes may touch what, and where a pressed roller begins, is
-in the text as it was found for the scene as written; it stays so here, too.
+left out is written as what it stands for. Which boxes may touch what, and where a pressed roller or plate
+begins, is in the text as it was found for the scene as written; it stays so here, too.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ FAR: dict[str, float] = {"MPa": 17.0, "N*mm": 17.0, "N*mm/rad": 17.0}
 FROM_ZERO = {"mm": 0.5, "rad": 0.125, "rad/ms": 0.03125, "mm/ms": 0.25, "N": 0.5, "ms": 0.25, "1": 0.0625}
 _FRICTION = {"mu_s": "static", "mu_d": "dynamic", "v_s": "stiction_velocity", "v_d": "friction_velocity"}
 
-_BEGINS = ("touch", "start")  # of a pressed roller, computed for the scene as it is written
+_BEGINS = ("touch", "start")  # of what is pressed, computed for the scene as it is written
 
 Path = tuple[str | int, ...]
 
@@ -220,18 +220,19 @@ def _along(scene: Scene, base: Scene, name: str) -> Scene:
     return scene.model_copy(update={"sheets": {**scene.sheets, name: sheet}})
 
 
-def _begun(model: Model, roller: str, member: str, value: float) -> Callable[[], Model]:
-    """A pressed roller that begins, or touches, elsewhere."""
+def _begun(model: Model, part: str, member: str, value: float) -> Callable[[], Model]:
+    """A pressed roller or plate that begins, or touches, elsewhere."""
 
     def turned() -> Model:
-        starts = {
-            r.name: replace(r.press, **{member: value}) if r.name == roller else r.press
-            for r in model.rollers
-            if r.press is not None
-        }
-        return _placed(model, starts)
+        starts = _presses(model)
+        return _placed(model, {**starts, part: replace(starts[part], **{member: value})})
 
     return turned
+
+
+def _presses(model: Model) -> dict[str, Press]:
+    parts = (*model.rollers, *model.planes)
+    return {part.name: part.press for part in parts if part.press is not None}
 
 
 def _stiffer(model: Model, support: str) -> Callable[[], Model]:
@@ -248,7 +249,7 @@ def _stiffer(model: Model, support: str) -> Callable[[], Model]:
 
 def as_written(scene: Scene, base: Model) -> Model:
     """The Model of a scene with what a text keeps as it was written for `base`."""
-    made = _placed(lower(scene), {r.name: r.press for r in base.rollers if r.press is not None})
+    made = _placed(lower(scene), _presses(base))
     probes = tuple(_held(new, old, made) for new, old in zip(made.probes, base.probes, strict=True))
     supports = tuple(_held(new, old, made) for new, old in zip(made.supports, base.supports, strict=True))
     shown = zip(made.guides, base.guides, strict=True)
@@ -277,7 +278,7 @@ def _rows(table: Bushings, keep: NDArray[np.bool_]) -> Bushings:
 
 
 def _placed(model: Model, starts: dict[str, Press]) -> Model:
-    """Pressed rollers that touch and begin where `starts` has it."""
+    """Pressed rollers and plates that touch and begin where `starts` has it."""
     if not starts:
         return model
     position = model.bodies.position.copy()
@@ -292,6 +293,13 @@ def _placed(model: Model, starts: dict[str, Press]) -> Model:
                     position[mesh.body] += press.direction * (press.start - roller_start)
             roller = replace(roller, press=press)
         rollers.append(roller)
+    planes = []
+    for plane in model.planes:
+        if plane.press is not None:
+            press = replace(plane.press, touch=starts[plane.name].touch, start=starts[plane.name].start)
+            position[plane.body] = plane.center + press.direction * press.start
+            plane = replace(plane, press=press)
+        planes.append(plane)
     parameters = tuple(
         replace(p, value=getattr(starts[p.data_set], p.member))
         if p.data_set in starts and p.member in _BEGINS
@@ -299,7 +307,8 @@ def _placed(model: Model, starts: dict[str, Press]) -> Model:
         for p in model.parameters
     )
     bodies = replace(model.bodies, position=position)
-    return replace(model, rollers=tuple(rollers), bodies=bodies, parameters=parameters)
+    parts = {"rollers": tuple(rollers), "planes": tuple(planes)}
+    return replace(model, **parts, bodies=bodies, parameters=parameters)
 
 
 def _held(new: Anchor, old: Anchor, model: Model) -> Anchor:

@@ -9,9 +9,9 @@ from numba import njit
 
 from backends.lattice.kernels.band import solve_six
 from mdlgen.mechanics.compiling import BORROWS
-from mdlgen.mechanics.pair import BOX_BOX, on_plate
+from mdlgen.mechanics.pair import BOX_BOX, on_fixed_plate
 
-# Where contacts stand: all apart; those with planes in the matrix of the sheet; all of them there.
+# Where contacts stand: all apart; those with fixed plates in the matrix of the sheet; all of them there.
 APART, PLANES, INSIDE = 0, 1, 2
 # Memory for columns of the inverse [bytes].
 COLUMNS = 64e6
@@ -30,7 +30,7 @@ class Alone(NamedTuple):
     rank: np.ndarray  # by place, -1: does not touch
     kept: np.ndarray  # (3,) whether factors may be used again, how many are active, how many stand in W
     stood: np.ndarray  # nodes that stand in W, by place
-    rollers: np.ndarray  # bodies
+    rollers: np.ndarray  # bodies that turn or slide, pressed plates too
     growth: np.ndarray  # of impulses with the velocities of active boxes and rollers
     w: np.ndarray  # compliance of the chosen
     part: np.ndarray  # of those of them that touch now
@@ -77,7 +77,7 @@ def empty(system, wide: int) -> Alone:
         rank=np.full(most, -1, np.int64),
         kept=np.zeros(3, np.int64),
         stood=np.zeros(most, np.int64),
-        rollers=np.flatnonzero(np.abs(system.bodies["axis"]).max(axis=1) > 0),
+        rollers=np.flatnonzero((system.bodies["axis"] != 0.0).any(axis=1) | (system.bodies["slide"] >= 0)),
         growth=np.zeros((size, size)),
         w=np.zeros((size, size)),
         part=np.zeros((size, size)),
@@ -132,7 +132,7 @@ def choose(bodies, pairs, touched, count, where, alone, m, most):
         return 0
     for k in range(count):
         pair = pairs[touched[k]]
-        if where == PLANES and on_plate(pair):
+        if where == PLANES and on_fixed_plate(pair, bodies[pair.b]):
             continue
         if pair.kind == BOX_BOX:
             release(alone, m)

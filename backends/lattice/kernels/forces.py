@@ -63,7 +63,7 @@ def turn_roller(body, b, h, t, turning, r, rm):
 @njit(cache=True, error_model="numpy", forceinline=True)
 def place_roller(body, b, h, t, rate, turning, x, r, xm, rm, um, wm):
     """One roller after h at the rates of its slide and its spin, where it has them; t: that time. One that is
-    round need not turn."""
+    round need not turn. A pressed plate has a slide alone."""
     if body.swings == 2:
         turning = rate
     if body.rims > 0 or body.carries != 0:
@@ -89,8 +89,8 @@ def place(bodies, nodes, images, h, t, u, ub, x, r, xm, rm, um, wm):
         place_box(nodes[n], h, (u[n, 0], u[n, 1], u[n, 2]), (u[n, 3], u[n, 4], u[n, 5]), x, r, xm, rm, um, wm)
     for b in range(bodies.size - 1):
         body = bodies[b]
-        if body.axis[0] == 0.0 and body.axis[1] == 0.0 and body.axis[2] == 0.0:
-            continue  # no roller
+        if body.slide < 0 and body.axis[0] == 0.0 and body.axis[1] == 0.0 and body.axis[2] == 0.0:
+            continue  # neither a roller nor a pressed plate
         rate = ub[body.slide] if body.slide >= 0 else 0.0
         turning = ub[body.spin] if body.spin >= 0 else 0.0
         place_roller(body, b, h, t, rate, turning, x, r, xm, rm, um, wm)
@@ -185,13 +185,13 @@ def near_pairs(bodies, pairs, meshes, x, r, u, w, margin, ahead, near):
         gap = sub(vec(x, b), vec(x, a))
         rate, spin = sub(vec(u, b), vec(u, a)), vec(w, a)
         if pairs[p].kind == BOX_PLANE:
-            way = bodies[b].way
+            normal = (r[b, 2], r[b, 5], r[b, 8])
             # along the plate a sheet may be fast
-            closing = abs(dot(rate, three(way))) + math.sqrt(dot(spin, spin)) * size
+            closing = abs(dot(rate, normal)) + math.sqrt(dot(spin, spin)) * size
             out = 0.0  # how far the box reaches along the plate's normal
             for i in range(3):
-                out += half[i] * abs(way[0] * r[a, i] + way[1] * r[a, 3 + i] + way[2] * r[a, 6 + i])
-            height = -(gap[0] * way[0] + gap[1] * way[1] + gap[2] * way[2]) - bodies[b].half[2]
+                out += half[i] * abs(normal[0] * r[a, i] + normal[1] * r[a, 3 + i] + normal[2] * r[a, 6 + i])
+            height = -(gap[0] * normal[0] + gap[1] * normal[1] + gap[2] * normal[2]) - bodies[b].half[2]
             if height > out + margin + ahead * closing:
                 continue
         elif pairs[p].kind == BOX_GUIDE:

@@ -17,7 +17,7 @@ from mdlgen.mechanics.compiling import BORROWS
 from mdlgen.mechanics.contact import OUT, POINT
 from mdlgen.mechanics.curve import curve_spring
 from mdlgen.mechanics.driven import clutch
-from mdlgen.mechanics.pair import on_plate
+from mdlgen.mechanics.pair import on_fixed_plate
 from mdlgen.mechanics.vector import (
     add,
     back,
@@ -269,13 +269,13 @@ def _columns(body, arm, x, sign, direction, index, count):
 def contacts_into(
     bodies, pairs, h, x, touched, outs, count, chord, planes, a, b, d, direction, index, couplings
 ):
-    """Adds the contacts that touch, or only those with planes: to the band a, to the border b (border, 6
-    nodes) and its corner d; what couples boxes of two sheets goes to the couplings."""
+    """Adds the contacts that touch, or only those with fixed plates: to the band a, to the border b (border,
+    6 nodes) and its corner d; what couples boxes of two sheets goes to the couplings."""
     zero = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     couplings.many[0] = 0
     for k in range(count):
         pair, out = pairs[touched[k]], outs[k]
-        if planes and not on_plate(pair):
+        if planes and not on_fixed_plate(pair, bodies[pair.b]):
             continue
         node, other = bodies[pair.a].node, bodies[pair.b].node
         coupled = couplings.many[0]

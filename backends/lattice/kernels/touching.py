@@ -26,7 +26,7 @@ from mdlgen.mechanics.arm import turn_of, way_of
 from mdlgen.mechanics.compiling import BORROWS
 from mdlgen.mechanics.contact import OUT, POINT
 from mdlgen.mechanics.driven import clutch
-from mdlgen.mechanics.pair import BOX_BOX, on_plate
+from mdlgen.mechanics.pair import BOX_BOX, on_fixed_plate
 from mdlgen.mechanics.vector import back, dot, mat, rotate, vec
 
 MOST_ROUNDS = 40
@@ -49,7 +49,8 @@ def _mine(bodies, pairs, near, where, alone):
         if pair.kind == BOX_BOX:  # where these touch, all contacts stand in the matrix
             continue
         node = bodies[pair.a].node
-        if node < 0 or (alone.place_of[node] >= 0 and not (where == PLANES and on_plate(pair))):
+        inside = where == PLANES and on_fixed_plate(pair, bodies[pair.b])
+        if node < 0 or (alone.place_of[node] >= 0 and not inside):
             alone.mine[count] = near[k]
             alone.seen[near[k]] = True
             count += 1

@@ -32,6 +32,7 @@ def check(model: Model, peer: str) -> None:
         "has guides": bool(model.guides),
         "has meshes": bool(model.meshes),
         "has rims or arms": any(r.rim is not None or r.arm is not None for r in model.rollers),
+        "has spring plates": bool(model.plates),
         "has planes that do not face up": any(p.normal[2] != 1.0 for p in model.planes),
     }
     for reason, found in reasons.items():

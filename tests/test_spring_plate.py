@@ -1,0 +1,367 @@
+"""Plates on springs: swinging alone and with a block, at rest, in an impact, under a stack; their text."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import mdlgen
+from mdlgen.checks import lints
+from mdlgen.cli import app
+from mdlgen.errors import RefusedError, SpecError
+from mdlgen.model.lower import lower
+from mdlgen.model.tables import Model, PlanePart, Press
+from mdlgen.paths import samples
+from mdlgen.registry import emitter
+from mdlgen.report.curves import panels
+from mdlgen.report.meshes import moving
+from mdlgen.results.result import Result
+from mdlgen.results.series import series
+from mdlgen.spec.load import load, loads
+from mdlgen.verify.verification import verify
+
+SOLVERS = ["lattice", "exudyn"]
+G = 9.81e-3  # mm/ms^2
+BLOCK, PLATE = 30.0, 50.0  # g
+
+# a rigid block over a plate that is given where it just touches the block
+SCENE = """
+name: scale
+gravity: [0 m/s^2, 0 m/s^2, -9.81 m/s^2]
+materials: {hard: {E_md: 1 GPa, E_cd: 1 GPa, D_md: 1 N*mm, D_cd: 1 N*mm}}
+sheets:
+  block: {material: hard, size: [20 mm, 20 mm], thickness: 5 mm, mass: 30 g, boxes: [1, 1],
+    center: [0 mm, 0 mm, 2.5 mm]}
+planes:
+  plate: {center: [0 mm, 0 mm, -2 mm], normal: z, size: [40 mm, 40 mm, 4 mm], mass: 50 g,
+    press: {direction: z, stiffness: 0.5 N/mm, preload: 1 N, damping_ratio: 0}}
+contacts: [{between: [block, plate], stiffness: 30000 N/mm^1.5, restitution: 0.3}]
+run: {duration: 200 ms, print_step: 0.5 ms}
+"""
+# Spring and contact as two springs in a row: what a contact so stiff changes of the period is below 1e-4.
+STIFF = 1e-3
+
+
+def solved(text: str, solver: str, *sets: str) -> Result:
+    result = mdlgen.solve(lower(loads(text, overrides=sets)), solver)
+    assert result.ok, result.status
+    return result
+
+
+def plate_of(model: Model) -> tuple[PlanePart, Press]:
+    (found,) = model.plates
+    return found
+
+
+def way(result: Result) -> np.ndarray:
+    """How far the plate is along its slide from where it is given [mm]."""
+    plate, press = plate_of(result.model)
+    return (result.position[:, plate.body] - plate.center) @ press.direction
+
+
+def period(time: np.ndarray, place: np.ndarray, about: float) -> float:
+    """Twice the mean time between the places where a swing crosses its middle."""
+    side = place - about
+    at = np.flatnonzero(side[:-1] * side[1:] < 0.0)
+    crossings = time[at] + side[at] / (side[at] - side[at + 1]) * np.diff(time)[at]
+    assert len(crossings) > 2
+    return 2.0 * float(np.diff(crossings).mean())
+
+
+# -- alone and with a block
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_a_block_and_its_plate_swing_as_one(solver: str) -> None:
+    """The spring pushes more than both weigh: they begin below their balance, and swing about it."""
+    result = solved(SCENE, solver)
+    rest = (1.0 - (BLOCK + PLATE) * G) / 0.5
+    place = way(result)
+    assert period(result.time, place, rest) == pytest.approx(
+        2 * math.pi * math.sqrt((BLOCK + PLATE) / 0.5), rel=STIFF
+    )
+    assert place.max() == pytest.approx(2 * rest, rel=1e-2) and place[-1] == pytest.approx(
+        rest * (1 - math.cos(200 * math.sqrt(0.5 / (BLOCK + PLATE)))), rel=1e-2
+    )
+    block = result.position[:, 0, 2] - result.position[0, 0, 2]
+    assert np.abs(block - place).max() < 2e-3  # what the contact gives
+    assert abs(result.energy.balance_error) < 2e-3
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_it_settles_where_spring_and_preload_bear_the_weight(solver: str) -> None:
+    """Damped, and let go 0.4 mm above balance."""
+    sets = ("planes.plate.press.damping_ratio=0.7", "planes.plate.press.preload=0.6 N")
+    result = solved(SCENE, solver, *sets, "run.tolerance=1e-2")
+    rest = (0.6 - (BLOCK + PLATE) * G) / 0.5
+    assert rest < -0.35 and way(result)[-1] == pytest.approx(rest, abs=1e-4)
+    told = result.summary()["planes"]["plate"]
+    assert told["nip_force_n"] == pytest.approx(BLOCK * G, rel=1e-3)
+    assert told["center_mm"][2] == pytest.approx(-2 + rest, abs=1e-4)
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_a_plate_alone_swings_on_its_spring(solver: str) -> None:
+    """The block flies off, without gravity, and leaves the plate to its preload."""
+    sets = ("gravity=[0 m/s^2, 0 m/s^2, 0 m/s^2]", "planes.plate.press.preload=0.1 N")
+    up = "sheets.block.velocity=[0 m/s, 0 m/s, 0.1 m/s]"
+    result = solved(SCENE, solver, *sets, up)
+    free = result.contact_force[:, 0] == 0.0
+    assert free[10:].all()
+    place = way(result)
+    assert period(result.time[10:], place[10:], 0.2) == pytest.approx(
+        2 * math.pi * math.sqrt(PLATE / 0.5), rel=STIFF
+    )
+    assert place.max() == pytest.approx(0.4, rel=1e-2)  # twice the preload over the stiffness
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_the_mass_of_the_slide_counts(solver: str) -> None:
+    result = solved(
+        SCENE,
+        solver,
+        "planes.plate.press.carrier_mass=40 g",
+        "planes.plate.press.preload=1.4 N",
+    )
+    mass = BLOCK + PLATE + 40.0
+    found = period(result.time, way(result), (1.4 - mass * G) / 0.5)
+    assert found == pytest.approx(2 * math.pi * math.sqrt(mass / 0.5), rel=STIFF)
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_an_impact_on_a_free_plate_keeps_momentum_and_energy(solver: str) -> None:
+    """The closed form of two bodies that meet in line, and lose nothing, or all but a part of their speed."""
+    hit = (
+        "gravity=[0 m/s^2, 0 m/s^2, 0 m/s^2]",
+        "sheets.block.center=[0 mm, 0 mm, 2.6 mm]",
+        "sheets.block.velocity=[0 m/s, 0 m/s, -0.5 m/s]",
+        "planes.plate.press={direction: z, stiffness: 0 N/mm, preload: 0 N, free_length: 20 mm}",
+        "contacts.0.stiffness=300 N/mm^1.5",
+        "run.duration=8 ms",
+        "run.print_step=0.1 ms",
+    )
+    for restitution in (1.0, 0.5):
+        result = solved(SCENE, solver, *hit, f"contacts.0.restitution={restitution}")
+        plate, _ = plate_of(result.model)
+        block, other = result.velocity[-1, 0, 2], result.velocity[-1, plate.body, 2]
+        assert BLOCK * block + PLATE * other == pytest.approx(BLOCK * -0.5, rel=1e-6)
+        # with a sharp change of sign the damping is right to its smoothing speed, 0.2 % of the impact's
+        assert block - other == pytest.approx(0.5 * restitution, rel=1e-2)
+        assert abs(result.energy.balance_error) < 5e-3
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_a_plate_that_moves_along_its_face_takes_a_block_with_it(solver: str) -> None:
+    """Pressed obliquely in free fall: what rubs is the speed against the plate, not against ground."""
+    sets = (
+        "planes.plate.press.direction=[0.6, 0, 0.8]",
+        "planes.plate.press.damping_ratio=0.3",
+        "contacts.0.friction=1",
+        "contacts.0.smoothing=0.1 mm/s",
+        "run.duration=60 ms",
+        "run.tolerance=1e-2",
+        "sheets.block.velocity=[0 m/s, 0 m/s, -0.01 m/s]",
+    )
+    result = solved(SCENE, solver, *sets)
+    block = result.position[:, 0] - result.position[0, 0]
+    plate, _ = plate_of(result.model)
+    moved = result.position[:, plate.body] - result.position[0, plate.body]
+    far = np.abs(moved[:, 0]).max()
+    assert far > 0.05 and np.abs(block[:, 0] - moved[:, 0]).max() < 0.05 * far
+
+
+def test_a_plate_goes_no_further_than_its_spring_is_long() -> None:
+    """Nothing holds it: the run ends with its name, and what to do."""
+    sets = ("planes.plate.press.preload=8 N", "contacts=[]")
+    for solver in SOLVERS:
+        result = mdlgen.solve(lower(loads(SCENE, overrides=sets)), solver)
+        assert not result.ok and "plane plate left the bounds" in result.status
+
+
+# -- at rest
+
+CLAMPED = """
+name: bent
+gravity: [0 m/s^2, 0 m/s^2, -9.81 m/s^2]
+materials: {paper: {E_md: 3530 MPa, E_cd: 1113 MPa, D_md: 0.4 N*mm, D_cd: 0.24 N*mm}}
+sheets:
+  strip: {material: paper, size: [40 mm, 10 mm], thickness: 0.1 mm, mass: 50 mg, boxes: [8, 1],
+    clamp: {edge: x_min}}
+planes:
+  plate: {center: [17 mm, 0 mm, -3.05 mm], normal: z, size: [6 mm, 20 mm, 6 mm], mass: 2 g,
+    press: {direction: z, stiffness: 0.01 N/mm, preload: 25 mN}}
+contacts: [{between: [strip, plate], stiffness: 10 N/mm^1.5}]
+run: {analysis: static}
+"""
+
+
+def test_statics_of_both_solvers() -> None:
+    """A clamped strip that a plate bends up: spring, weight and strip in balance."""
+    fast, slow = solved(CLAMPED, "lattice"), solved(CLAMPED, "exudyn")
+    plate, press = plate_of(fast.model)
+    for result in (fast, slow):
+        assert way(result)[0] > 0.3
+        spring = press.preload - press.stiffness * way(result)[0] - plate.mass * G
+        assert result.contact_force[0, 0] == pytest.approx(spring, rel=1e-4)
+    assert way(fast)[0] == pytest.approx(way(slow)[0], rel=1e-5)
+
+
+# -- a stack
+
+
+@pytest.fixture(scope="module")
+def stack() -> dict[str, Result]:
+    scene = load(samples() / "spring_plate.yaml")
+    return {solver: mdlgen.solve(lower(scene), solver) for solver in SOLVERS}
+
+
+def test_both_solvers_agree_on_a_stack_under_a_roller(stack: dict[str, Result]) -> None:
+    fast, slow = (stack[name] for name in SOLVERS)
+    assert fast.ok and slow.ok and fast.model.run.duration == 40.0
+    ways = [
+        [r.sheet_motion(k)[0][-1, 0] - r.sheet_motion(k)[0][0, 0] for k in range(3)] for r in (fast, slow)
+    ]
+    travel = ways[0][0]
+    assert travel > 20.0 and np.abs(np.subtract(*ways)).max() < 0.01 * travel
+    assert ways[0] == pytest.approx(ways[1], rel=0.01)
+    # notes rattle: the plate's place is that of the stack to a hundredth of what it rises by
+    assert way(fast)[-40:].mean() == pytest.approx(way(slow)[-40:].mean(), abs=3e-3)
+    for result in (fast, slow):
+        assert abs(result.energy.balance_error) < 0.01
+
+
+def test_notes_leave_a_stack_one_by_one(stack: dict[str, Result]) -> None:
+    """The plate follows by the thickness of a note."""
+    result = stack["lattice"]
+    events = result.summary()["events"]
+    left = next(e["time_ms"] for e in events if (e["kind"], e["sheet"]) == ("leave", "note_1"))
+    entered = next(e["time_ms"] for e in events if (e["kind"], e["sheet"]) == ("enter", "note_2"))
+    assert left < entered < left + 3.0
+    place = way(result)
+    before, after = (place[(result.time > t) & (result.time < t + 5)].mean() for t in (left - 6, entered + 4))
+    assert after - before == pytest.approx(0.1, abs=0.02)
+    moved = {s.name: result.sheet_motion(k)[0][:, 0] for k, s in enumerate(result.model.sheets)}
+    # just before the end of note_1 comes to the roller, and is as quick as that
+    here = int(np.searchsorted(result.time, left - 2.0))
+    assert moved["note_1"][here] - moved["note_1"][0] > 12.0
+    # between two notes one is held by no more than it is pulled: it creeps by the smoothing of friction
+    assert abs(moved["note_2"][here] - moved["note_2"][0]) < 0.2
+    assert abs(moved["note_3"][-1] - moved["note_3"][0]) < 0.1
+
+
+def test_what_a_run_tells_of_it(stack: dict[str, Result]) -> None:
+    result = stack["lattice"]
+    plate, _ = plate_of(result.model)
+    told = result.summary()["planes"]["plate"]
+    assert told["center_mm"] == pytest.approx(result.position[-1, plate.body])
+    assert told["contacts"]["note_3"]["max_force_n"] > 0.3 and told["max_penetration_mm"] > 0.0
+    table = series(result)
+    assert table["plate.z_mm"] == pytest.approx(result.position[:, plate.body, 2])
+    row = result.model.contacts.part_b.index("plate")
+    assert table["plate.force_n"] == pytest.approx(result.contact_force[:, row])
+    at = np.arange(len(result.time))
+    shown = panels(result, at, np.zeros((len(at), len(result.model.contacts))), None)
+    lines = {p.key: [line.name for line in p.lines] for p in shown}
+    assert lines["force"] == lines["penetration"] == ["feed", "plate"] and lines["plate"] == ["plate"]
+    assert plate.body in moving(result.model)
+
+
+def test_it_begins_in_balance_with_the_flat_sheet() -> None:
+    """The force on a block is that of the spring less the plate's weight; of a part of it that is over the
+    plate too, since a box has its stiffness wherever it is touched."""
+    for over in ("[40 mm, 40 mm, 4 mm]", "[5 mm, 40 mm, 4 mm]"):
+        sets = (
+            f"planes.plate.size={over}",
+            "contacts.0.stiffness=10 N/mm^1.5",
+            "planes.plate.press.preload=1 N",
+        )
+        model = lower(loads(SCENE, overrides=sets))
+        _, press = plate_of(model)
+        assert press.touch == 0.0
+        assert 10 * press.start**1.5 == pytest.approx(1.0 - 0.5 * press.start - PLATE * G, rel=1e-9)
+    away = lower(loads(SCENE, overrides=["contacts=[]", "planes.plate.press.preload=1 N"]))
+    assert plate_of(away)[1].start == pytest.approx((1.0 - PLATE * G) / 0.5, rel=1e-9)
+
+
+def test_it_may_be_forgotten_as_any_part() -> None:
+    (found,) = [x for x in lints(lower(loads(SCENE, overrides=["contacts=[]"]))) if x.code == "W111"]
+    assert found.where == "planes.plate"
+
+
+# -- the texts
+
+TILTED = (
+    "planes.plate.normal=[0.6, 0, 0.8]",
+    "planes.plate.press.direction=[0.1, 0.2, 1]",
+    "planes.plate.press.carrier_mass=3 g",
+    "planes.plate.press.free_length=20 mm",
+)
+
+
+@pytest.mark.parametrize("sets", [(), TILTED], ids=["level", "tilted"])
+def test_text_deck_and_model_say_the_same(sets: tuple[str, ...]) -> None:
+    scene = loads(SCENE, overrides=sets)
+    model = lower(scene)
+    found = verify(scene, model)
+    assert [str(d) for d in found.all_differences()] == []
+    for kinds in found.kinds.values():
+        assert all(c.largest <= 1e-12 for c in kinds.values())
+        assert kinds["springs"].entities == kinds["joints"].entities == kinds["outputs"].entities == 1
+    assert found.turned is not None and found.turned.largest <= 1e-12
+    text = emitter("motionview").emit(model)
+    assert "*TransJoint( j_plate_slide, " in text and "*CoilSpring( cs_plate, " in text
+    assert "FixedJoint" not in text and "Pressed plates start in equilibrium" in text
+    deck = emitter("motionsolve").emit(model)
+    assert '"TRANSLATIONAL"' in deck and '"FIXED"' not in deck
+
+
+def test_a_fixed_plate_is_written_as_before() -> None:
+    model = lower(loads(SCENE, overrides=["planes.plate.press=null"]))
+    text = emitter("motionview").emit(model)
+    assert "*FixedJoint( j_plate, " in text and "TransJoint" not in text and "o_plate" not in text
+
+
+@pytest.mark.parametrize("format", ["motionview", "motionsolve"])
+def test_a_spring_shorter_than_its_compression_is_refused_by_name(format: str) -> None:
+    weak = "{direction: z, stiffness: 0.1 N/mm, preload: 0 N, free_length: 2 mm}"
+    model = lower(loads(SCENE, overrides=[f"planes.plate.press={weak}"]))
+    with pytest.raises(RefusedError, match="spring of plane plate would start compressed") as error:
+        emitter(format).emit(model)
+    assert error.value.path == ("planes", "plate", "press", "free_length")
+
+
+# -- the spec
+
+
+@pytest.mark.parametrize(
+    ("override", "told"),
+    [
+        ("planes.plate.press.direction=[0, 0, 0]", "is not a direction"),
+        ("planes.plate.press.direction=x", "lies in the plate's own face"),
+        ("planes.plate.press.stiffness=-0.5 N/mm", "at least 0 N/mm"),
+        ("planes.plate.press.preload=-1 N", "at least 0 N"),
+        ("planes.plate.press.free_length=0 mm", "more than 0 mm"),
+        ("planes.plate.press.damping_ratio=-1", "damping_ratio"),
+        ("planes.plate.press.carrier_mass=0 g", "more than 0 g"),
+        ("planes.plate.press.stiffness=0.5", "N/mm"),
+        ("planes.plate.press.spring=1", "spring"),
+        ("planes.plate.press={direction: z, stiffness: 1 N/mm}", "preload"),
+    ],
+)
+def test_what_cannot_be_meant_is_told_in_one_line(override: str, told: str) -> None:
+    with pytest.raises(SpecError) as error:
+        loads(SCENE, overrides=[override])
+    line = str(error.value)
+    assert told in line and "planes.plate.press" in line and "\n" not in line
+
+
+def test_the_command_line_ends_with_one_line(capsys: pytest.CaptureFixture[str], tmp_path) -> None:
+    (tmp_path / "scale.yaml").write_text(SCENE)
+    wrong = "planes.plate.press.direction=y"
+    with pytest.raises(SystemExit) as ended:
+        app(["check", str(tmp_path / "scale.yaml"), "--set", wrong], prog_name="mdlgen")
+    assert ended.value.code == 2
+    told = capsys.readouterr().err.strip()
+    assert "planes.plate.press.direction" in told and len(told.splitlines()) == 1
