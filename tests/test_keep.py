@@ -225,7 +225,7 @@ def test_the_digest_sees_one_bit() -> None:
 
 LONG = [
     str(samples() / "transport_4x4.yaml"),
-    *("--set", "sheets.note.boxes=[3,5]", "--set", "run.duration=60 ms", "--set", "run.step=5 us"),
+    *("--set", "sheets.note.boxes=[3,5]", "--set", "run.duration=60 ms", "--set", "run.step=2 us"),
 ]
 
 
