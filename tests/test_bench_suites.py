@@ -114,13 +114,24 @@ def test_order_and_equal_error():
     told = fits(made)
     assert told["order"] == {"transport, exudyn: position": pytest.approx(2.0)}
     equal = told["wall_at_equal_error"]["exudyn, 200 boxes"]
-    assert equal["wall_s"] == pytest.approx(1 / math.sqrt(EQUAL_ERROR)) and not equal["extrapolated"]
-    for step in (0.1, 0.05):
+    assert equal["wall_s"] == pytest.approx(1 / math.sqrt(EQUAL_ERROR))
+    for step in (0.1, 0.05, 0.0125):
         done = Outcome("ok", [Finding("position", step**2)], step, 10, 0.1 / step, boxes=200)
         made += rows(case, "lattice", done)
     equal = fits(made)["wall_at_equal_error"]["exudyn, 200 boxes"]
     assert equal["fastest"] == "lattice, 200 boxes" and equal["times_fastest"] == pytest.approx(10.0)
     assert wall_at(1e-3, [1e-3], [1.0]) is None
+
+
+def test_no_wall_time_is_told_at_an_error_that_was_not_reached():
+    case = Case("transport", "10 x 20 boxes, by hand", Run("transport_4x4"), drop)
+    made = []
+    for step, error in ((0.1, 2.38e-3), (0.05, 2.35e-3)):
+        done = Outcome("ok", [Finding("position", error)], step, 10, 1 / step, boxes=200)
+        made += rows(case, "script", done)
+    told = fits(made)
+    assert told["wall_at_equal_error"] == {}
+    assert told["least_error"] == {"script, 200 boxes": {"error": 2.35e-3, "wall_s": 20.0}}
 
 
 @pytest.mark.parametrize(("estimate", "honest"), [(4e-4, False), (6e-4, True), (9e-3, True), (2e-2, False)])

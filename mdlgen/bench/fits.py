@@ -33,14 +33,13 @@ def lines(rows: Iterable[Row]) -> list[Line]:
     return found
 
 
-def wall_at(error: float, errors: list[float], walls: list[float]) -> tuple[float, bool] | None:
-    """Wall time [s] at an error, on the straight line through log error and log wall time; and whether it
-    lies outside what was measured. None with fewer than two errors."""
-    if len(set(errors)) < 2:
+def wall_at(error: float, errors: list[float], walls: list[float]) -> float | None:
+    """Wall time [s] at an error, on the straight line through log error and log wall time. None with fewer
+    than two errors, and outside of them: where a finer step no longer helps, the line goes anywhere."""
+    if len(set(errors)) < 2 or not min(errors) <= error <= max(errors):
         return None
     power, start = np.polyfit(np.log(errors), np.log(walls), 1)
-    outside = not min(errors) <= error <= max(errors)
-    return math.exp(start + power * math.log(error)), outside
+    return math.exp(start + power * math.log(error))
 
 
 def slope(points: list[tuple[float, float]]) -> float:
@@ -50,11 +49,13 @@ def slope(points: list[tuple[float, float]]) -> float:
 
 
 def fits(rows: list[Row]) -> dict[str, Any]:
-    """Plain data: `order` per case and solver, `wall_at_equal_error` per line, `growth` per solver, what each
-    rule `saves` per solver, and the estimates of the error that are not honest."""
+    """Plain data: `order` per case and solver, `wall_at_equal_error` per line, the `least_error` of lines that
+    do not come to it, `growth` per solver, what each rule `saves` per solver, and the estimates of the error
+    that are not honest."""
     return {
         "order": _orders(rows),
         "wall_at_equal_error": _equal(rows),
+        "least_error": _short(rows),
         "growth": _growth(rows),
         "saves": _saves(rows),
         "estimates_off": _off(rows),
@@ -67,13 +68,23 @@ def _equal(rows: list[Row]) -> dict[str, dict[str, Any]]:
     for label, errors, walls in lines(rows):
         at = wall_at(EQUAL_ERROR, errors, walls)
         if at is not None:
-            found[label] = {"error": EQUAL_ERROR, "wall_s": at[0], "extrapolated": at[1]}
+            found[label] = {"error": EQUAL_ERROR, "wall_s": at}
     for label, at in found.items():
         boxes = label.partition(", ")[2]
         peers = [other for other in found if other.partition(", ")[2] == boxes]
         at["fastest"] = min(peers, key=lambda other: found[other]["wall_s"])
         at["times_fastest"] = at["wall_s"] / found[at["fastest"]]["wall_s"]
     return found
+
+
+def _short(rows: list[Row]) -> dict[str, dict[str, float]]:
+    """The least error of each line that does not come to EQUAL_ERROR, and its wall time."""
+    best = {label: min(zip(errors, walls, strict=True)) for label, errors, walls in lines(rows)}
+    return {
+        label: {"error": error, "wall_s": wall}
+        for label, (error, wall) in best.items()
+        if error > EQUAL_ERROR
+    }
 
 
 def _saves(rows: list[Row]) -> dict[str, float]:

@@ -68,9 +68,12 @@ def _together(found: Bench) -> list[str]:
         *(f"- {label}: order {order:.2f}" for label, order in told["order"].items()),
         *(
             f"- {label}: {_time(at['wall_s'])} at an error of {at['error']:g}"
-            + (" (beyond what was measured)" if at["extrapolated"] else "")
             + ("" if at["fastest"] == label else f", {at['times_fastest']:.3g} times {at['fastest']}")
             for label, at in told["wall_at_equal_error"].items()
+        ),
+        *(
+            f"- {label}: does not come to that error; its least is {at['error']:.3g}, in {_time(at['wall_s'])}"
+            for label, at in told["least_error"].items()
         ),
         *(
             f"- {solver}: wall time grows with the boxes at a fixed aspect to the power {power:.2f}"
