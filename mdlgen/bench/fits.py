@@ -49,8 +49,8 @@ def slope(points: list[tuple[float, float]]) -> float:
 
 
 def fits(rows: list[Row]) -> dict[str, Any]:
-    """Plain data: `order` per case and solver, `wall_at_equal_error` per line, the `least_error` of lines that
-    do not come to it, `growth` per solver, what each rule `saves` per solver, and the estimates of the error
+    """Plain data: `order` per case and solver, `wall_at_equal_error` per line, the `least_error` of each that
+    does not come to it, `growth` per solver, what each rule `saves` per solver, and the estimates of errors
     that are not honest."""
     return {
         "order": _orders(rows),

@@ -72,7 +72,7 @@ def _together(found: Bench) -> list[str]:
             for label, at in told["wall_at_equal_error"].items()
         ),
         *(
-            f"- {label}: does not come to that error; its least is {at['error']:.3g}, in {_time(at['wall_s'])}"
+            f"- {label}: does not come to that; the least is {at['error']:.3g}, in {_time(at['wall_s'])}"
             for label, at in told["least_error"].items()
         ),
         *(
