@@ -288,7 +288,7 @@ def _interference(model: Model) -> Iterator[Lint]:
         if abs(float(roller.axis @ normal)) > FLAT or sheet.count == 1:
             continue
         depth = roller.radius + sheet.thickness / 2 - abs(float((center - sheet.center) @ normal))
-        on_sheet = press.covered_share(sheet, center, roller.axis, roller.width, True) > 0.0
+        on_sheet = press.covered_shares(sheet, center, roller.axis, roller.width, True)
         if on_sheet and depth > sheet.thickness / 2:
             yield _deep_start(model, row, f"rollers.{roller.name}.center", roller.name, depth, sheet)
     planes = {p.name: p for p in model.planes}

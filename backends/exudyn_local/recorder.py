@@ -159,12 +159,8 @@ class Recorder:
         out = np.flatnonzero(((x < self._low) | (x > self._high)).any(axis=1))
         if out.size:
             at = ", ".join(f"{value:.4g}" for value in x[out[0]] * PER_MM)
-            told = self.model.called(int(out[0]))
-            self.reason = (
-                f"{told} left the bounds from which its contacts were chosen at {t / MS:.6g} ms "
-                f"(it is at {at} mm); set run.prune: false, "
-                f"or a run.margin above {self.model.pairs.margin:g} mm"
-            )
+            told, (bounds, advice) = self.model.called(int(out[0])), self.model.bounds_of(int(out[0]))
+            self.reason = f"{told} left {bounds} at {t / MS:.6g} ms (it is at {at} mm); {advice}"
 
     def result(self, solver: str, reason: str | None) -> Result:
         """The Result in mm, N, g, ms."""

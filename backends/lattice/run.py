@@ -317,10 +317,8 @@ def _reason(
         return overstretched(model, row, float(counters[step.STRAIN]), t)
     body = int(counters[step.WORST])
     at = ", ".join(f"{value:.4g}" for value in state[0][body])
-    return (
-        f"{model.called(body)} left the bounds from which its contacts were chosen at {t:.6g} ms "
-        f"(it is at {at} mm); set run.prune: false, or a run.margin above {model.pairs.margin:g} mm"
-    )
+    bounds, advice = model.bounds_of(body)
+    return f"{model.called(body)} left {bounds} at {t:.6g} ms (it is at {at} mm); {advice}"
 
 
 def _arrays(model: Model, system: System) -> tuple[Any, Any, Any, Any, Any, Any, Any, Any, Any]:

@@ -164,8 +164,6 @@ def _outside(model: Model, x: np.ndarray) -> str | None:
     out = ((there < pairs.low) | (there > pairs.high)).any(axis=1)
     if not out.any():
         return None
-    name = model.bodies.name[int(np.argmax(out))]
-    return (
-        f"{name} goes beyond the bounds from which its contacts were chosen before it rests; "
-        f"set run.prune: false, or a run.margin above {pairs.margin:g} mm"
-    )
+    body = int(np.argmax(out))
+    bounds, advice = model.bounds_of(body)
+    return f"{model.bodies.name[body]} goes beyond {bounds} before it rests; {advice}"

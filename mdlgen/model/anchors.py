@@ -66,11 +66,7 @@ def _sections(
     side = 1 if targets[0][1][0] else 0
     width = np.array([part for _, _, part in targets]) * sheet.outline[side]
     boxes = np.array([body - sheet.first for body, _, _ in targets])
-    thick = np.full(len(boxes), sheet.thickness)
-    for zone in sheet.zones:
-        if zone.thickness is not None:
-            thick = thick + zone.share[boxes] * (zone.thickness - sheet.thickness)
-    parts = width * thick
+    parts = width * sheet.thick[boxes]
     whole = float(parts.sum())
     shares = (parts / whole).tolist()
     return [(body, local, part) for (body, local, _), part in zip(targets, shares, strict=True)], whole

@@ -142,7 +142,15 @@ def _plate_press(scene: Scene, name: str, sheets: tuple[SheetPart, ...], contact
         return spec.preload - spec.stiffness * offset + weight
 
     far = spec.free_length  # a spring does not become shorter than that
-    step = min(far / 16, plane.size[2] / 4)
+    start, left = press.plate_balance(center, direction, spring, forces, far)
+    if left != 0.0:
+        way = "with" if left > 0.0 else "against"
+        raise SpecError(
+            f"the spring does not hold the plate within its free_length of {far:g} mm: {abs(left):.3g} N are "
+            f"left there, {way} its direction; give a stiffness, preload or free_length that balance its "
+            "weight and the sheets in its way",
+            ("planes", name, "press"),
+        )
     return Press(
         direction=direction,
         stiffness=spec.stiffness,
@@ -152,7 +160,7 @@ def _plate_press(scene: Scene, name: str, sheets: tuple[SheetPart, ...], contact
         free_length=spec.free_length,
         carrier_mass=carrier,
         touch=0.0,
-        start=press.equilibrium(center, direction, spring, forces, (far, far, step), 0.0),
+        start=start,
     )
 
 

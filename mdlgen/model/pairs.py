@@ -95,9 +95,12 @@ def find_pairs(
             if roller.arm is not None:  # or swing by as much
                 low[roller.body] = bodies.position[roller.body] - _swing(roller) - margin
                 high[roller.body] = bodies.position[roller.body] + _swing(roller) + margin
-        for plane in (part for part in machine if isinstance(part, PlanePart) and part.press is not None):
-            low[plane.body] = bodies.position[plane.body] - plane.travel - margin
-            high[plane.body] = bodies.position[plane.body] + plane.travel + margin
+    for plane in (part for part in machine if isinstance(part, PlanePart)):
+        if plane.press is None:
+            continue
+        # a spring ends, whatever is kept; its slide keeps a plate on its way to round-off
+        far = plane.travel + 1e-6 * plane.press.free_length
+        low[plane.body], high[plane.body] = plane.center - far, plane.center + far
     for row in np.flatnonzero(contacts.kind != EXTERNAL).tolist():
         if contacts.kind[row] == BOX_BOX:
             pair = by_name[contacts.part_a[row]], by_name[contacts.part_b[row]]
@@ -271,7 +274,7 @@ def _part_bounds(part: Part, bodies: Bodies, rollers: tuple[RollerPart, ...]) ->
     if isinstance(part, PlanePart):
         extent = np.abs(bodies.rotation[part.body]) @ (np.array(part.size) / 2)
         if part.press is not None:
-            extent = extent + part.travel + SLACK
+            center, extent = part.center, extent + part.travel + SLACK
         return center - extent, center + extent
     extent = np.abs(part.axis) * part.width / 2 + part.reach * np.sqrt(np.maximum(0, 1 - part.axis**2))
     if part.press is not None:

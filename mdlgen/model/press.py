@@ -48,40 +48,48 @@ def touch_offset(
     return float(min(offsets, default=0.0))
 
 
-def covered_share(sheet: SheetPart, center: Floats, axis: Floats, width: float, shared: bool) -> float:
-    """What the (flat) sheet under a roller counts of k: the part of the width that it covers, or, where
-    pairs do not share, the number of boxes that the roller stands on."""
+def covered_shares(
+    sheet: SheetPart, center: Floats, axis: Floats, width: float, shared: bool
+) -> list[tuple[float, float]]:
+    """What the (flat) sheet under a roller counts of k, for each thickness that it has there: (share,
+    thickness). A share is the part of the width that is covered, or, where pairs do not share, the number of
+    boxes that the roller stands on. `thick` are those of the boxes, (n_x n_y,) [mm]."""
     stations = (np.arange(200) + 0.5) / 200 - 0.5
     points = (center + np.outer(stations * width, axis) - sheet.center) @ sheet.rotation
     half = np.array(sheet.outline) / 2
     inside = np.all(np.abs(points[:, :2]) <= half, axis=1)
-    if shared:
-        return float(np.mean(inside))
-    cells = [
-        np.searchsorted(lines, points[inside, k]) for k, lines in enumerate((sheet.lines_x, sheet.lines_y))
+    i, j = [
+        np.clip(np.searchsorted(lines, points[inside, k]) - 1, 0, len(lines) - 2)
+        for k, lines in enumerate((sheet.lines_x, sheet.lines_y))
     ]
-    return float(len(np.unique(np.stack(cells), axis=1).T))
+    boxes, whole = j * sheet.n_x + i, len(stations)
+    if not shared:
+        boxes, whole = np.unique(boxes), 1
+    thick = sheet.thick[boxes]
+    return [(float(np.sum(thick == s)) / whole, float(s)) for s in np.unique(thick)]
 
 
 def sheet_contact(
     sheet: SheetPart, axis: Floats, radius: float, width: float, stiffness: float, shared: bool
 ) -> Callable[[Floats], Floats]:
     """Force on a roller at a given centre from the flat sheet held where it starts [N], (3,)."""
+    thickest = float(sheet.thick.max())
     normal = sheet.rotation[:, 2]
     # A move square to the sheet, along a global axis, leaves the share as it is, to the last bit.
     across = np.any(sheet.rotation[:, :2] != 0.0, axis=1)
-    shares: dict[tuple[float, ...], float] = {}
+    shares: dict[tuple[float, ...], list[tuple[float, float]]] = {}
 
     def force(center: Floats) -> Floats:
         height = float((center - sheet.center) @ normal)
-        depth = radius + sheet.thickness / 2 - abs(height)
-        if depth <= 0.0:
+        if radius + thickest / 2 <= abs(height):
             return np.zeros(3)
         place = tuple(center[across].tolist())
         if place not in shares:
-            shares[place] = covered_share(sheet, center, axis, width, shared)
-        share = shares[place]
-        return math.copysign(stiffness * share * depth**1.5, height) * normal
+            shares[place] = covered_shares(sheet, center, axis, width, shared)
+        total = 0.0
+        for share, s in shares[place]:
+            total += stiffness * share * max(0.0, radius + s / 2 - abs(height)) ** 1.5
+        return math.copysign(total, height) * normal
 
     return force
 
@@ -109,15 +117,16 @@ def plate_contact(
     """Force on a plate near a given centre from the flat sheet held where it starts [N], (3,).
 
     The corners of what of each box lies over the plate share k, as in a run; what lies over it is taken to
-    be the same wherever along its slide the plate is.
+    be the same wherever along its slide the plate is. The force only grows as the plate comes nearer.
     """
     normal = frame[:, 2]
-    face = -0.5 * sheet.thickness * math.copysign(1.0, float(sheet.rotation[:, 2] @ normal))
+    side = -math.copysign(1.0, float(sheet.rotation[:, 2] @ normal))
     over = [(sign * frame[:, axis], size[axis] / 2) for axis in range(2) for sign in (1.0, -1.0)]
     heights, shares = [], []
     for j in range(sheet.n_y):
         for i in range(sheet.n_x):
             x, y = sheet.lines_x[i : i + 2], sheet.lines_y[j : j + 2]
+            face = side * 0.5 * sheet.thick[j * sheet.n_x + i]
             flat = np.array([(x[a], y[b], face) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))])
             corners = sheet.center + flat @ sheet.rotation.T - center
             for way, most in over:
@@ -125,12 +134,13 @@ def plate_contact(
             heights.append(corners @ normal)
             shares.append(np.full(len(corners), stiffness / max(1, len(corners))))
     height, share = np.concatenate(heights), np.concatenate(shares)
+    # what is behind the plate does not touch it
+    before = 0.5 * size[2] - height <= size[2]
+    height, share = height[before], share[before]
 
     def force(at: Floats) -> Floats:
         depth = float((at - center) @ normal) + 0.5 * size[2] - height
-        # what is behind the plate does not touch it
-        depth = np.where(depth <= size[2], np.maximum(depth, 0.0), 0.0)
-        return -float(share @ depth**1.5) * normal
+        return -float(share @ np.clip(depth, 0.0, size[2]) ** 1.5) * normal
 
     return force
 
@@ -186,3 +196,33 @@ def equilibrium(
             break
         low, high = (middle, high) if push(middle) > 0.0 else (low, middle)
     return float(0.5 * (low + high))
+
+
+def plate_balance(
+    center: Floats,
+    direction: Floats,
+    spring: Callable[[float], float],
+    contacts: Sequence[Callable[[Floats], Floats]],
+    far: float,
+) -> tuple[float, float]:
+    """Offset along `direction` where a plate's spring and contacts balance [mm], and what is left of the push
+    [N]: not 0 where it would be further than `far` either way, with the offset at that end."""
+
+    def push(offset: float) -> float:
+        at = center + offset * direction
+        return spring(offset) + sum(float(c(at) @ direction) for c in contacts)
+
+    if push(0.0) == 0.0:  # nothing pushes it: anywhere about is balance
+        return 0.0, 0.0
+    # neither spring nor contacts push more the further it goes
+    low, high = -far, far
+    if push(low) < 0.0:
+        return low, push(low)
+    if push(high) > 0.0:
+        return high, push(high)
+    for _ in range(200):
+        middle = 0.5 * (low + high)
+        if middle in (low, high):
+            break
+        low, high = (middle, high) if push(middle) > 0.0 else (low, middle)
+    return 0.5 * (low + high), 0.0

@@ -199,6 +199,15 @@ class SheetPart(Frozen):
         return self.n_x * self.n_y
 
     @property
+    def thick(self) -> Floats:
+        """Thickness of each box [mm], (n_x n_y,)."""
+        s = np.full(self.count, self.thickness)
+        for zone in self.zones:
+            if zone.thickness is not None:
+                s = s + zone.share * (zone.thickness - self.thickness)
+        return s
+
+    @property
     def uniform(self) -> bool:
         """Whether all boxes, and all joints of one kind, are alike."""
         return not any(self.graded) and not self.zones and not (self.bend is not None and self.bend.creases)
@@ -575,6 +584,19 @@ class Model(Frozen):
         kinds |= {r.body: "roller" for r in self.rollers}
         kind = "box" if self.sheet_of(body) else kinds.get(body, "plane")
         return f"{kind} {self.bodies.name[body]}"
+
+    def bounds_of(self, body: int) -> tuple[str, str]:
+        """What the bounds of a body are, and what to do where it has left them."""
+        for plate, press in self.plates:
+            if plate.body == body:
+                return (
+                    f"the length of its spring, {press.free_length:g} mm either way",
+                    "give a stiffness, preload or free_length that hold it",
+                )
+        return (
+            "the bounds from which its contacts were chosen",
+            f"set run.prune: false, or a run.margin above {self.pairs.margin:g} mm",
+        )
 
     def sheet_of(self, body: int) -> SheetPart | None:
         """The sheet that a body is a box of, or None."""

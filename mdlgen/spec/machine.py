@@ -180,10 +180,10 @@ class Plane(Strict):
     def _presses(self) -> Plane:
         if self.press is None:
             return self
-        if abs(sum(d * n for d, n in zip(self.press.direction, self.normal, strict=True))) < 1e-9:
+        if abs(sum(d * n for d, n in zip(self.press.direction, self.normal, strict=True))) < 0.05:
             raise fail(
-                "the direction lies in the plate's own face, along which it presses nothing; "
-                "give it a part along the normal",
+                "the direction lies in the plate's own face, or less than 3 degrees off it, where it presses "
+                "nothing; give it a part along the normal",
                 within=("press", "direction"),
             )
         return self
