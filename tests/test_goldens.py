@@ -111,12 +111,13 @@ ROLLERS = _put(
     },
 )
 PLANES = _put("planes", {"level": PLANE, "tilted": PLANE | {"normal": [0.6, 0, 0.8]}})
+SOFT = PRESS | {"preload": "1 N"}  # what the spring itself holds, as nothing else does
 PLATES_ON_SPRINGS = _put(
     "planes",
     {
-        "level": PLANE | {"press": PRESS | {"direction": "z"}},
+        "level": PLANE | {"press": SOFT | {"direction": "z"}},
         "tilted": PLANE
-        | {"normal": [0.6, 0, 0.8], "press": PRESS | {"direction": [0, 0.6, 0.8], "carrier_mass": "2 g"}},
+        | {"normal": [0.6, 0, 0.8], "press": SOFT | {"direction": [0, 0.6, 0.8], "carrier_mass": "2 g"}},
     },
 )
 LINE = {"from": ["-9 mm", "0 mm", "1 mm"], "to": ["9 mm", "0 mm", "2 mm"], "axis": "y", "side": "left"}
