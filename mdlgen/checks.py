@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
+from mdlgen.check_damping import damping
+from mdlgen.lint import Lint
 from mdlgen.model import press
 from mdlgen.model.guides import depths
+from mdlgen.model.overlap import Overlaps
+from mdlgen.model.rolling import rolls
 from mdlgen.model.tables import (
     BOX_BOX,
     BOX_CYLINDER,
@@ -27,20 +30,10 @@ PAPER_MODULUS = (100.0, 20000.0)  # MPa: from tissue to oriented board
 DENSITY = (0.05, 20.0)  # g/cm^3: from foam to tungsten
 MAX_ASPECT = 5.0  # of a box; a longer one bends in one way much more coarsely than in the other
 COARSE_SMOOTHING, FINE_SMOOTHING = 0.05, 1e-4  # of the surface speed
+# Of a sheet's thickness: half of it, and 1 % more, so that neither round-off of places is a
+# finding nor a depth that reads as half of the thickness.
+DEEP = 0.505
 FLAT = 0.1  # a roller is parallel to a sheet while |axis . normal| is below this
-
-
-@dataclass(frozen=True)
-class Lint:
-    """One finding: `where` is the path in the spec."""
-
-    code: str
-    where: str
-    message: str
-    remedy: str
-
-    def __str__(self) -> str:
-        return f"{self.code} {self.where}: {self.message}; {self.remedy}"
 
 
 def lints(model: Model) -> list[Lint]:
@@ -131,12 +124,12 @@ def _deep_nip(model: Model) -> Iterator[Lint]:
         if roller.press is None:
             continue
         depth = (roller.press.preload / float(model.contacts.stiffness[row])) ** (2 / 3)
-        if depth > sheet.thickness / 2:
+        if _deep(depth, sheet):
             yield Lint(
                 "W105",
                 f"contacts.{model.contacts.entry[row]}.stiffness",
                 f"the preload {roller.press.preload:g} N of {roller.name} presses {depth:.3g} mm deep, "
-                f"more than half of the thickness {sheet.thickness:g} mm of {sheet.name}: "
+                f"more than {sheet.thickness / 2:g} mm, half of the thickness of {sheet.name}: "
                 "the rollers meet through it",
                 "raise the stiffness or lower the preload",
             )
@@ -167,6 +160,20 @@ def _smoothing(model: Model) -> Iterator[Lint]:
                 where,
                 f"{fine * 1e3:g} mm/s is {fine / speed:.2g} {told}: Newton converges slowly",
                 f"use {FINE_SMOOTHING * speed * 1e3:.2g} mm/s or more unless creep below that matters",
+            )
+
+
+def _idle_rolling(model: Model) -> Iterator[Lint]:
+    contacts = model.contacts
+    for entry in sorted(set(contacts.entry[contacts.rolling > 0.0].tolist())):
+        rows = np.flatnonzero(contacts.entry == entry).tolist()
+        if not any(rolls(model, row) for row in rows):
+            one, two = contacts.part_a[rows[0]], contacts.part_b[rows[0]]
+            yield Lint(
+                "W125",
+                f"contacts.{entry}.rolling_resistance",
+                f"{contacts.rolling[rows[0]]:g} between {one} and {two} does nothing: neither is a roller",
+                "leave it out, or name a contact with a roller",
             )
 
 
@@ -289,7 +296,7 @@ def _interference(model: Model) -> Iterator[Lint]:
             continue
         depth = roller.radius + sheet.thickness / 2 - abs(float((center - sheet.center) @ normal))
         on_sheet = press.covered_shares(sheet, center, roller.axis, roller.width, True)
-        if on_sheet and depth > sheet.thickness / 2:
+        if on_sheet and _deep(depth, sheet):
             yield _deep_start(model, row, f"rollers.{roller.name}.center", roller.name, depth, sheet)
     planes = {p.name: p for p in model.planes}
     for row in np.flatnonzero(model.contacts.kind == BOX_PLANE):
@@ -300,21 +307,21 @@ def _interference(model: Model) -> Iterator[Lint]:
         corners = _corners(sheet) if sheet.bend is None else _box_corners(model, sheet)
         over = np.all(np.abs((corners - face) @ frame[:, :2]) <= np.array(plane.size[:2]) / 2, axis=1)
         depth = float(np.max(-((corners - face) @ plane.normal)[over], initial=0.0))
-        if sheet.thickness / 2 < depth < plane.size[2]:
+        if _deep(depth, sheet) and depth < plane.size[2]:
             yield _deep_start(model, int(row), f"planes.{plane.name}.center", plane.name, depth, sheet)
     guides = {g.name: g for g in model.guides}
     for row in np.flatnonzero(model.contacts.kind == BOX_GUIDE):
         guide = guides[model.contacts.part_b[row]]
         sheet = next(s for s in model.sheets if s.name == model.contacts.part_a[row])
         depth = max(float(depths(guide, points, at).max()) for at, points in _boxes(model, sheet))
-        if depth > sheet.thickness / 2:
+        if _deep(depth, sheet):
             yield _deep_start(model, int(row), f"guides.{guide.name}", guide.name, depth, sheet)
     sheets = {s.name: s for s in model.sheets}
     for row in np.flatnonzero(model.contacts.kind == BOX_BOX):
         one, two = sheets[model.contacts.part_a[row]], sheets[model.contacts.part_b[row]]
         depth = _overlap(one, two)
-        if depth > min(one.thickness, two.thickness) / 2:
-            thin = min(one, two, key=lambda s: s.thickness)
+        thin = min(one, two, key=lambda s: s.thickness)
+        if _deep(depth, thin):
             thick = two if thin is one else one
             yield _deep_start(model, int(row), f"sheets.{thick.name}.center", thick.name, depth, thin)
 
@@ -332,13 +339,18 @@ def _overlap(one: SheetPart, two: SheetPart) -> float:
     return 0.5 * (one.thickness + two.thickness) - abs(float((two.center - one.center) @ normal))
 
 
+def _deep(depth: float, sheet: SheetPart) -> bool:
+    """Whether a part is deeper in a sheet than half of its thickness."""
+    return depth > DEEP * sheet.thickness
+
+
 def _deep_start(model: Model, row: int, where: str, part: str, depth: float, sheet: SheetPart) -> Lint:
     force = float(model.contacts.stiffness[row]) * depth**1.5
     return Lint(
         "W112",
         where,
-        f"{part} starts {depth:.3g} mm inside {sheet.name}, more than half of its thickness "
-        f"{sheet.thickness:g} mm: it is thrown off with {force:.3g} N",
+        f"{part} starts {depth:.3g} mm inside {sheet.name}, more than "
+        f"{sheet.thickness / 2:g} mm, half of its thickness: it is thrown off with {force:.3g} N",
         "move the part out of the sheet",
     )
 
@@ -420,6 +432,19 @@ def _unfaced(model: Model) -> Iterator[Lint]:
                 )
 
 
+def _unmet(model: Model) -> Iterator[Lint]:
+    """Rollers and plates, guides or meshes that come into each other and have no contact."""
+    for pair in Overlaps(model).ahead():
+        roller, part = pair.roller.name, pair.part.name
+        yield Lint(
+            "W119",
+            f"rollers.{roller}",
+            f"it comes into {model.called(pair.part.body)} and has no contact with it: a run ends where they "
+            "overlap",
+            f"add to contacts {{between: [{roller}, {part}], stiffness: 30 N/mm^1.5}}",
+        )
+
+
 def _box_corners(model: Model, sheet: SheetPart) -> Floats:
     """All corners of all boxes as they begin [mm], (8 boxes, 3)."""
     boxes = slice(sheet.first, sheet.first + sheet.count)
@@ -437,11 +462,14 @@ CHECKS: tuple[Callable[[Model], Iterator[Lint]], ...] = (
     _facets,
     _deep_nip,
     _smoothing,
+    _idle_rolling,
     _idle_drive,
     _untouched,
     _unfaced,
+    _unmet,
     _free_static,
     _interference,
     _density,
     _guessed_bending,
+    damping,
 )

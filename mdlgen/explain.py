@@ -83,6 +83,30 @@ SCENE = {
         "no sheet is between them nothing holds the spring, and the roller moves into the other one. Add a "
         "contact of the two rollers beside those with the sheet."
     ),
+    "W119": (
+        "A roller and a plane, a guide or a mesh are in each other's way, and no contact holds them apart. "
+        "A run in which they, apart at its start, come to overlap by more than 0.05 mm ends with both names. "
+        "Give the two a contact. What overlaps from the start, as a roller that looks out of a hole in a "
+        "plate, is not counted."
+    ),
+    "W125": (
+        "Rolling resistance is a couple against the turning of a roller relative to what it rolls on. A "
+        "contact of parts that are no rollers slides and does not roll; what resists there is friction."
+    ),
+    "W130": (
+        "The damping time tau of a material is that of its law stress = E (strain + tau strain rate), and "
+        "follows from a loss factor at a frequency: tau = eta/(2 pi f). Paper loses 1 to 10 % at 10 to 100 "
+        "Hz, which is 0.01 to 1 ms. ms, s and us are easily mixed up."
+    ),
+    "W131": (
+        "A sheet with a damping time tau comes to its shape under a load as 1 - exp(-t/tau). In a run that "
+        "is shorter it hardly bends or stretches, and looks much stiffer than it is."
+    ),
+    "W132": (
+        "The damping ratio of a mode with angular frequency omega is omega tau/2. Above 1 the lowest bending "
+        "mode does not swing, it creeps back. For soft or damped plastics that may be right; for paper the "
+        "unit of the time is probably wrong."
+    ),
 }
 
 TEXT = {

@@ -133,11 +133,12 @@ def solve(
     # a static run has no step, and a failed one nothing to compare
     if not check_step or not result.ok or result.step <= 0.0:
         return result
-    from mdlgen.results.compare import compare
+    from mdlgen.results.estimates import estimated
 
     finer = backend.solve(model, progress, step=result.step / 2, **options)
     if not finer.ok:
         return finer.failed(f"at half the step ({result.step / 2:.6g} ms): {finer.status}")
     # kernels are compiled once, for the first of the two
     compile_s = result.compile_s + finer.compile_s
-    return replace(finer, error_estimate=compare(finer, result).relative, compile_s=compile_s)
+    checked = replace(finer, checks=True, compile_s=compile_s)
+    return estimated(checked, (result, *result.coarser)[:2])

@@ -22,7 +22,7 @@ class Unit(NamedTuple):
 _LENGTH, _MASS = (1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0)
 _TIME, _ANGLE = (0.0, 0.0, 1.0, 0.0), (0.0, 0.0, 0.0, 1.0)
 _FORCE, _STRESS = (1.0, 1.0, -2.0, 0.0), (-1.0, 1.0, -2.0, 0.0)
-_RATE = (0.0, 0.0, -1.0, 1.0)
+_RATE, _FREQUENCY = (0.0, 0.0, -1.0, 1.0), (0.0, 0.0, -1.0, 0.0)
 
 _NAMES: dict[str, Unit] = {
     name: Unit(factor, dimension)
@@ -34,6 +34,7 @@ _NAMES: dict[str, Unit] = {
         (_FORCE, {"N": 1.0, "mN": 1e-3, "uN": 1e-6, "kN": 1e3}),
         (_STRESS, {"MPa": 1.0, "Pa": 1e-6, "kPa": 1e-3, "GPa": 1e3}),
         (_RATE, {"rpm": 2.0 * math.pi / 6e4}),
+        (_FREQUENCY, {"Hz": 1e-3, "kHz": 1.0}),
     )
     for name, factor in table.items()
 }

@@ -151,3 +151,35 @@ def test_a_reference_of_other_code_is_another_file(tmp_path):
     assert one != file_of(Reference(run, "exudyn"), "mdlgen.bench", tmp_path)
     assert one != file_of(Reference(replace(run, step=0.2), "exudyn"), "backends.exudyn_local", tmp_path)
     assert isinstance(one, Path)
+
+
+def test_the_page_of_the_ladder_has_both_solvers_beside_each_other():
+    """A rung with two numbers counts once, as its worst, and one that failed stands in each of its lines."""
+    from mdlgen.bench.page import page
+
+    case = Case("stability", "wrapped", STRIP, drop)
+    two = [Finding("shape", 1e-3, 2e-2), Finding("position", 5e-2, 1e-3)]
+    made = [
+        *rows(case, "lattice", Outcome("ok", two, 0.1, 10, 1.0)),
+        *rows(case, "exudyn", Outcome("a | bar", [], 0.1, 10, 2.0)),
+        *rows(replace(case, name="rest"), "exudyn", Outcome("ok", two[:1], 0.1, 10, 2.0)),
+    ]
+    text = page("stability", Bench({}, {}, {}, made))
+    assert "- lattice: 1 rung: 0 right, 0 failed with a reason, 1 wrong." in text
+    assert "- exudyn: 2 rungs: 1 right, 1 failed with a reason, 0 wrong." in text
+    assert (
+        "| rung | of what | allowed | lattice, error | lattice, wall | exudyn, error | exudyn, wall |" in text
+    )
+    assert "| wrapped | shape | 0.02 | 0.001 | 1 s | **failed** | 2 s |" in text
+    assert "| wrapped | position | 0.001 | **wrong** 0.05 | 1 s | **failed** | 2 s |" in text
+    assert "| rest | shape | 0.02 |  |  | 0.001 | 2 s |" in text
+    assert "- wrapped, exudyn: failed: a / bar" in text
+
+
+@pytest.mark.parametrize("suites", [[], ["stability", "impact"], ["impact"]])
+def test_a_page_is_of_a_suite_that_has_one(suites):
+    from mdlgen.bench.page import check_page
+    from mdlgen.errors import SpecError
+
+    with pytest.raises(SpecError, match="page"):
+        check_page(suites)

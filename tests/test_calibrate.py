@@ -168,6 +168,45 @@ def test_damping_is_found_from_a_decay(ratio: float) -> None:
     assert found.residual < 1e-3 * measured.drop.max()
 
 
+@pytest.mark.parametrize(
+    ("fit", "truth", "begin"),
+    [
+        ("damping.time", 0.2, "{ratio: 0.12}"),
+        ("damping.time", 0.031, "{time: [0.1 ms, 0.2 ms]}"),
+        ("damping.loss_factor", 0.06, "{loss_factor: 0.2, at: 37 Hz}"),
+    ],
+)
+def test_the_damping_of_the_paper_is_found(fit: str, truth: float, begin: str) -> None:
+    """To 1 %, from the decay of a chain of rigid links with c = tau k, integrated to 1e-9 (oracles.chain)."""
+    from mdlgen.bench.oracles.chain import chain_of, swing
+
+    tau = truth if fit == "damping.time" else truth / (2 * np.pi * 37e-3)
+    chain = chain_of(
+        mdlgen.lower(mdlgen.load(CANTILEVER, [*SMALL, f"materials.eur10.damping={{time: {tau} ms}}"]))
+    )
+    times = np.linspace(2.0, 80.0, 40)
+    slope = swing(chain, np.concatenate([[0.0], times]))[1:]
+    measured = Decay(times, chain.length * np.sin(slope).sum(axis=1))
+    found = calibrate(mdlgen.load(CANTILEVER, [*SMALL, f"materials.eur10.damping={begin}"]), measured, fit)
+    assert found.ok and found.runs <= MAX_RUNS, found.status
+    assert found.value == pytest.approx(truth, rel=0.01)
+    assert found.numerical is not None and found.numerical < 0.01
+    assert found.step_error is not None and abs(found.step_error) < 0.01
+
+
+def test_the_report_says_how_much_of_the_damping_is_numerical() -> None:
+    """A ratio is found too small by what the steps damp beside it."""
+    measured = decay("materials.eur10.damping.ratio=0.02")  # made at a tenth of the steps' damping
+    found = calibrate(mdlgen.load(CANTILEVER, SMALL), measured, "damping.ratio")
+    assert found.numerical is not None and 1e-3 < found.numerical < 0.05
+    assert found.value / 0.02 - 1 == pytest.approx(-found.numerical, rel=0.3, abs=2e-3)
+
+
+def test_a_loss_factor_needs_its_frequency() -> None:
+    with pytest.raises(SpecError, match="a loss factor belongs to a frequency"):
+        calibrate(mdlgen.load(CANTILEVER, SMALL), decay(), "damping.loss_factor")
+
+
 def test_damping_is_found_under_noise() -> None:
     clean = decay("materials.eur10.damping.ratio=0.05")
     noise = 0.02 * clean.drop.max() * np.random.default_rng(1).standard_normal(len(clean.drop))
@@ -210,6 +249,7 @@ def test_a_curve_is_read_from_a_file(cli: Run, tmp_path: Path) -> None:
     assert told["value"] == pytest.approx(0.05, rel=0.02) and told["points"] == 40
     text = (tmp_path / "found.yaml").read_text()
     assert f"    damping:\n      ratio: {told['value']:.6g}\n" in text
+    assert 0.0 < told["numerical_damping"] < 0.05
 
 
 @pytest.mark.parametrize(

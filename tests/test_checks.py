@@ -64,6 +64,33 @@ def test_fires(code: str, sample: str, overrides: list[str], where: str) -> None
         assert str(lint).isascii() and "\n" not in str(lint)
 
 
+@pytest.mark.parametrize("radius", [7.45, 3.3, 5.0, 10.2])
+@pytest.mark.parametrize("thickness", [0.08, 0.1, 0.12])
+@pytest.mark.parametrize("height", [0.0, 0.3, 1.1, 2.7])
+def test_a_roller_that_begins_half_of_the_thickness_deep_is_no_finding(
+    radius: float, thickness: float, height: float
+) -> None:
+    """Round-off of places puts it above or below; 2 % more is a finding, with the limit in its message."""
+
+    def deep(more: float) -> list[str]:
+        made = found(
+            "transport_4x4",
+            f"sheets.note.thickness={thickness} mm",
+            f"sheets.note.center.2={height} mm",
+            f"rollers.motor_1_left.radius={radius} mm",
+            f"rollers.motor_1_left.center.2={height - radius + more * thickness / 2!r} mm",
+        )
+        where = "rollers.motor_1_left.center"
+        return [lint.message for lint in made if (lint.code, lint.where) == ("W112", where)]
+
+    assert deep(0.0) == []
+    (message,) = deep(0.02)
+    stated = (
+        f"starts {0.51 * thickness:.3g} mm inside note, more than {thickness / 2:g} mm, half of its thickness"
+    )
+    assert stated in message
+
+
 def test_a_pressed_roller_whose_counterpart_is_forgotten() -> None:
     sheet = ", ".join(f"{{between: [note, {name}], stiffness: 300 N/mm^1.5}}" for name in ("motor", "idler"))
     (hit,) = (lint for lint in found("channel", f"contacts=[{sheet}]") if lint.code == "W118")

@@ -66,6 +66,8 @@ def test_what_is_left_to_the_end_of_the_curve() -> None:
 def test_on_and_between_points_and_in_compression(solver: str, stress: float) -> None:
     """The strain at which the interpolated table has the stress; 1e-8 of the load may be left."""
     made = mdlgen.lower(load(TENSION, ["sheets.strip.boxes=[1,1]", f"loads.0.stress={stress!r} MPa"]))
+    if solver == "exudyn" and stress < 0.0:
+        pytest.xfail("a strip that is pushed is unstable, which exudyn says")
     found = strain(solver, "sheets.strip.boxes=[1,1]", f"loads.0.stress={stress!r} MPa")
     assert curves.stress(made.curves, 0, np.array([found]))[0] == pytest.approx(stress, rel=1e-8)
     assert np.sign(found) == np.sign(stress)

@@ -284,6 +284,122 @@ def test_a_run_that_makes_energy_fails():
     assert "energy" in result.status
 
 
+SHOT = (
+    "gravity=[0 m/s^2, 0 m/s^2, 0 m/s^2]",
+    "contacts.0.restitution=1",
+    "contacts.0.stiffness=400 N/mm^1.5",
+    "run.prune=false",
+)
+
+
+@pytest.mark.parametrize("step", [0.02, 0.05, 0.1, 0.2, 0.5])
+@pytest.mark.parametrize("speed", [0.7, 2.3])
+def test_an_elastic_impact_keeps_its_energy_or_fails(step, speed):
+    """At any step: the energy audit sees what an impact made and what it lost."""
+    sets = (*SHOT, "sheets.block.center=[0 mm, 0 mm, 5.1 mm]", "run.duration=3 ms", f"run.step={step} ms")
+    result = solve(lower(load("samples/verify/drop.yaml", (*sets, _thrown(speed)))))
+    if result.ok:
+        after = float(np.sum(result.velocity[-1, 0] ** 2)) / speed**2
+        assert abs(after - 1) <= 0.02, "the audit's 1 % of a loss and 2 % of a gain"
+    else:
+        assert "energy" in result.status and "N mm" in result.status
+
+
+def _thrown(speed):
+    return f"sheets.block.velocity=[0 m/s, 0 m/s, {-speed} m/s]"
+
+
+def test_a_run_that_loses_energy_fails():
+    sets = (*SHOT, "sheets.block.center=[0 mm, 0 mm, 5.1 mm]", "run.duration=2 ms", "run.step=0.1 ms")
+    result = solve(lower(load("samples/verify/drop.yaml", (*sets, _thrown(1.0)))))
+    assert "of energy" in result.status and "got lost" in result.status
+
+
+@pytest.mark.parametrize("boxes", ["[1,1]", "[2,3]"])
+@pytest.mark.parametrize(("depth", "restitution"), [(0.02, 0.8), (0.13, 0.35)])
+def test_what_starts_in_a_plane_leaves_it_at_the_speed_of_its_energy(boxes, depth, restitution):
+    """Steps follow the impact of which the overlap is the second half; the speed by quadrature."""
+    from mdlgen.bench.oracles import impact
+
+    sets = (
+        *SHOT[:1],
+        f"sheets.block.boxes={boxes}",
+        "sheets.block.thickness=0.2 mm",
+        "sheets.block.mass=0.3 g",
+        f"sheets.block.center=[0 mm, 0 mm, {0.1 - depth} mm]",
+        "contacts.0.stiffness=60 N/mm^1.5",
+        f"contacts.0.restitution={restitution}",
+        "run.duration=2 ms",
+        "run.print_step=0.1 ms",
+        "run.prune=false",
+    )
+    result = run("samples/verify/drop.yaml", *sets)
+    model, count = result.model, result.model.sheets[0].count
+    into = 0.4 * 60.0 * depth**2.5 / float(model.bodies.mass[0])
+    exact = impact.rebound(into, impact.share(restitution), float(model.contacts.smoothing[0]))
+    # 20 steps in an impact give 1 % and its tolerance less
+    assert result.velocity[-1, :count, 2] == pytest.approx(exact, rel=2e-3)
+    assert result.error_estimate is None or result.error_estimate <= model.run.tolerance
+
+
+def test_an_estimate_covers_the_error_of_a_bounce():
+    """Elastic, without gravity: the block goes back as fast as it came."""
+    sets = (*SHOT, "sheets.block.center=[0 mm, 0 mm, 5.1 mm]", "run.duration=20 ms", "run.print_step=1 ms")
+    result = run("samples/verify/drop.yaml", *sets, _thrown(1.7))
+    lasts = 3.21806546 * (10.0**2 / (400.0**2 * 1.7)) ** 0.2
+    end = 5.0 + 1.7 * (20.0 - lasts - 0.1 / 1.7)
+    error = abs(float(result.position[-1, 0, 2]) - end) / end
+    assert result.error_estimate is not None
+    assert error <= 1.5 * result.error_estimate <= 1.5 * result.model.run.tolerance
+
+
+def upright(across):
+    """A clamped strip at 1.4 times Euler's load, with a small force across its end."""
+    unit = 0.242 * 67 / 127**2  # D W / L^2
+    load = f"force: [0 N, {-1.4 * math.pi**2 / 4 * unit!r} N, {across * unit!r} N]"
+    still = ("gravity=[0 m/s^2, 0 m/s^2, 0 m/s^2]", "sheets.note.boxes=[1,20]")
+    return (*still, f"loads=[{{sheet: note, edge: y_max, {load}}}]")
+
+
+def test_a_balance_that_does_not_stand_fails():
+    """Straight, beyond Euler's load: a balance, but an unstable one."""
+    result = solve(lower(load(CANTILEVER, upright(0.0))))
+    assert not result.ok
+    assert "unstable: it falls in one direction" in result.status
+
+
+@pytest.mark.parametrize("across", [1e-3, -1e-2])
+def test_a_buckled_column_is_the_elastica(across):
+    from mdlgen.bench.oracles import loaded
+
+    exact = loaded.end(1.4 * math.pi**2 / 4, abs(across))
+    tip = run(CANTILEVER, *upright(across)).anchor_motion(0)[0][-1] / 127 - [0.0, 0.5, 0.0]
+    # the lattice of 20 rows: 0.2 % of the critical load, which goes into the place by less than 1 %
+    assert tip[2] == pytest.approx(math.copysign(exact.z, across), abs=0.01)
+    assert 1.0 + tip[1] == pytest.approx(exact.x, abs=0.01)
+
+
+def test_a_state_that_goes_non_finite_ends_with_a_reason():
+    """A nip at steps of 20 ms: Exudyn's sparse factor would end the process on such a stiffness."""
+    sets = ("run.duration=50 ms", "run.print_step=0.5 ms", "run.step=20 ms")
+    result = solve(lower(load("samples/transport_4x4.yaml", sets)))
+    assert not result.ok and result.status
+
+
+def test_a_long_run_has_no_estimate():
+    """Two runs of 40 ms of the transport would take too long; one of 2 ms is estimated."""
+    from backends.exudyn_local import kernels
+    from backends.exudyn_local.solve import ESTIMATED
+    from backends.exudyn_local.step import choose_steps, cost
+    from backends.exudyn_local.system import build
+
+    model = lower(load("samples/transport_4x4.yaml", ["run.duration=40 ms"]))
+    system, _ = build(model)
+    assert cost(system, choose_steps(model, system, kernels.workspace(system))[0]) > ESTIMATED
+    short = run("samples/transport_4x4.yaml", "run.duration=2 ms", "sheets.note.boxes=[4,6]")
+    assert short.error_estimate is not None and short.error_estimate <= short.model.run.tolerance
+
+
 def test_a_pressed_roller_that_runs_away_fails_by_name():
     text = POST.replace("axis: z", "axis: y, press: {direction: -z, stiffness: 0 N/mm, preload: 0.5 N}")
     result = solve(lower(loads(text, overrides=["sheets.block.velocity=[0 m/s, 0 m/s, 0 m/s]"])))

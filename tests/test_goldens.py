@@ -224,6 +224,13 @@ PARTS: dict[str, dict[str, tuple[str, ...]]] = {
         "curves": CURVED,
         "bending guessed": ("materials.paper.k_tx=null", "materials.paper.k_ty=null"),
         "the paper's damping": ("materials.paper.damping.rotation=paper",),
+        "a damping time": ("materials.paper.damping={time: 0.1 ms}",),
+        "loss factors of MD and CD, twist": (
+            *(C2C, *PLATES, 'materials.paper.damping={loss_factor: [0.05, 0.02], at: "40 Hz"}'),
+        ),
+        "damping times of MD and CD, a plate with lengths of their own": (
+            *(PLATE, *UNLIKE, 'materials.paper.damping={time: ["0.1 ms", "0.3 ms"]}'),
+        ),
         "the paper's damping, twist": (C2C, *PLATES, "materials.paper.damping.rotation=paper"),
         "a plate": (PLATE,),
         "a plate in full, the paper's damping": (

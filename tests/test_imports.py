@@ -47,8 +47,8 @@ def test_compiled_code_is_kept_in_one_place_whoever_imports_it_first(first: str)
     code = (
         f"import {first}\n"
         "from backends.lattice.kernels import band, march\n"
-        "from mdlgen.mechanics import contact\n"
-        "for one in (band.factor, march.run, contact.box_plane):\n"
+        "from mdlgen.mechanics import plate\n"
+        "for one in (band.factor, march.run, plate.box_plane):\n"
         "    print(one._cache.cache_path.replace('\\\\', '/').split('/')[-2].split('_')[0])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

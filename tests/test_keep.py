@@ -158,7 +158,7 @@ def test_what_a_run_reads_does_not_change_in_it() -> None:
     model = scene("transport_4x4")
     system = lattice.build(model, fold=True)
     before = digest(list(system.tables))
-    assert lattice._once(model, system, 0.1, None).ok
+    assert lattice._once(model, system, 0.05, None).ok
     assert digest(list(system.tables)) == before
 
 

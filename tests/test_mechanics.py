@@ -12,8 +12,10 @@ from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
 
 from mdlgen.mechanics.bushing import bushing
-from mdlgen.mechanics.contact import OUT, box_cylinder, box_plane, cylinder_cylinder
+from mdlgen.mechanics.contact import box_cylinder, cylinder_cylinder
 from mdlgen.mechanics.laws import damped, damping_share, friction_over_speed, sign_step
+from mdlgen.mechanics.plate import box_plane
+from mdlgen.mechanics.point import OUT
 from mdlgen.mechanics.vector import exp_rotation, log_rotation, sines
 
 ZERO, EYE = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)

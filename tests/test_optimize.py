@@ -87,8 +87,10 @@ class TestMethods:
         assert float(best.values[0][1]) == pytest.approx(0.3217, abs=1e-3 * 0.5)
         assert len(rows) <= (8 if "**" in minimise else 20)
 
-    def test_several_values_under_a_condition_by_cobyqa(self, tmp_path: Path) -> None:
-        """The nearest point to (0.4, 12), in parts of 0.4 and 10, with mu <= 0.3 and 30 mu + m <= 18."""
+    @pytest.mark.parametrize("unit", [1.0, 0.1, 10.0, 7.0])
+    def test_several_values_under_a_condition_by_cobyqa(self, tmp_path: Path, unit: float) -> None:
+        """The nearest point to (0.4, 12), in parts of 0.4 and 10, with mu <= 0.3 and 30 mu + m <= 18, in any
+        unit; the first condition passes through the middle of the ranges."""
 
         def numbers(values: dict[str, str]) -> dict[str, float]:
             return {X: friction(values), Y: float(values[MASS].split()[0])}
@@ -97,7 +99,7 @@ class TestMethods:
             f"(({X} - 0.4)/0.4)**2 + (({Y} - 12)/10)**2",
             f"{FRICTION}=0.1:0.5",
             f"{MASS}=5 g:15 g",
-            under=[f"{X} <= 0.3", f"18 >= 30*{X} + {Y}"],
+            under=[f"{X} <= 0.3", f"{18 * unit:g} >= {30 * unit:g}*{X} + {unit:g}*{Y}"],
             most=60,
         )
         rows, best, _ = searched(tmp_path, wanted, numbers)

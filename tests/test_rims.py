@@ -11,8 +11,8 @@ import mdlgen
 from backends.lattice.arrays import build
 from backends.motionsolve import validate
 from mdlgen.errors import SpecError
-from mdlgen.mechanics.contact import OUT
 from mdlgen.mechanics.pair import pair_force
+from mdlgen.mechanics.point import OUT
 from mdlgen.mechanics.rim import profile
 from mdlgen.model.lower import lower
 from mdlgen.model.rims import pieces, touched
@@ -160,7 +160,7 @@ def test_a_sheet_moves_only_while_the_rubber_passes(solver: str) -> None:
     turned = np.degrees(result.model.roller("feed").turned(result.time))
     moved = way(result)
     assert np.abs(moved[turned < 115.0]).max() < 0.03  # creep of the plastic
-    assert np.ptp(moved[turned > 220.0]) < 0.03
+    assert np.ptp(moved[turned > 220.0]) < 0.002 * moved[-1]  # it rings where it is let go
     assert moved[-1] == pytest.approx(15.0 * np.pi / 2, rel=0.01)
     during = (turned > 140.0) & (turned < 200.0)
     speed = np.gradient(moved, result.time)[during]

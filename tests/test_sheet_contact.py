@@ -10,8 +10,8 @@ import mdlgen
 from mdlgen.bench.oracles import impact as oracle
 from mdlgen.checks import lints
 from mdlgen.errors import RefusedError
-from mdlgen.mechanics.contact import OUT
 from mdlgen.mechanics.facing import box_box
+from mdlgen.mechanics.point import OUT
 from mdlgen.model import sheet_pairs
 from mdlgen.model.lower import lower
 from mdlgen.model.tables import BOX_BOX, Model

@@ -224,7 +224,8 @@ def test_statics_of_both_solvers() -> None:
     for result in (fast, slow):
         assert way(result)[0] > 0.3
         spring = press.preload - press.stiffness * way(result)[0] - plate.mass * G
-        assert result.contact_force[0, 0] == pytest.approx(spring, rel=1e-4)
+        # the strip slopes by 1.4 deg over the plate's edge, and what pushes it is square to it
+        assert result.contact_force[0, 0] == pytest.approx(spring, rel=4e-4)
     assert way(fast)[0] == pytest.approx(way(slow)[0], rel=1e-5)
 
 

@@ -68,9 +68,25 @@ def materials(draw: st.DrawFn, layout: str) -> Spec:
         made["D_twist"] = "0.1 N*mm"
     if layout == "plate" and draw(st.booleans()):
         made["G"] = "700 MPa"
-    made["damping"] = {"ratio": draw(RATIOS), "rotation": draw(st.sampled_from(["inertia", "paper"]))}
+    made["damping"] = draw(st.sampled_from(TIMED)) if draw(st.booleans()) else draw(ratios())
+    return made
+
+
+# Each with how many of its values a text has as given, and how many follow where the sheet has joints.
+TIMED: list[Spec] = [
+    {"time": "0.1 ms"},
+    {"time": ["0 ms", "0.3 ms"]},
+    {"loss_factor": 0.05, "at": "40 Hz"},
+    {"loss_factor": [0.05, 0.02], "at": "0.04 kHz"},
+]
+OF_TIMED = ((1, 0), (2, 1), (2, 1), (3, 3))
+
+
+@st.composite
+def ratios(draw: st.DrawFn) -> Spec:
+    made: Spec = {"ratio": draw(RATIOS), "rotation": draw(st.sampled_from(["inertia", "paper"]))}
     if draw(st.booleans()):
-        made["damping"]["ratio_ty"] = draw(RATIOS)
+        made["ratio_ty"] = draw(RATIOS)
     return made
 
 
@@ -296,11 +312,16 @@ def expected_members(scene: Spec) -> int:
         bending = [k for k in ("k_tx", "k_ty", "k_tz", "D_cd", "D_md", "D_twist", "G") if k in material]
         if plate and "k_tz" in material:
             bending.remove("k_tz")  # it does not act there
-        total += 3 + (3 if "rotation" in sheet else 1) + 6 + len(bending) + 2 + 6 * is_moving(sheet)
+        total += 3 + (3 if "rotation" in sheet else 1) + 6 + len(bending) + 6 * is_moving(sheet)
+        damping = material["damping"]
+        given, follow = OF_TIMED[TIMED.index(damping)] if damping in TIMED else (2, 0)
+        total += given
         total += 8  # n, d, m, I
         if bushing_nodes(sheet) or any(s["sheet"] == name for s in scene["supports"]):
             total += 9 + sum(k in material for k in ("D_cd", "D_md")) + ("k_tz" not in bending)
-            total += 4 * (plate or "D_twist" in material) + 3 * (material["damping"]["rotation"] == "inertia")
+            total += (
+                4 * (plate or "D_twist" in material) + 3 * (damping.get("rotation") == "inertia") + follow
+            )
             total += 6 * plate + sum(k not in material for k in ("D_twist", "G")) * plate
     for roller in scene["rollers"].values():
         drive = roller.get("drive", {})

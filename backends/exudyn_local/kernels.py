@@ -8,10 +8,10 @@ from numba import njit
 from backends.exudyn_local.system import System
 from mdlgen.mechanics.arm import hung, moved, speeding, torque_of, turn_of, way_of
 from mdlgen.mechanics.bushing import bushing
-from mdlgen.mechanics.contact import OUT
 from mdlgen.mechanics.curve import curve_excess, middle_and_gap
 from mdlgen.mechanics.driven import clutch, prescribed, turned
-from mdlgen.mechanics.pair import pair_force
+from mdlgen.mechanics.pair import pair_force, remember
+from mdlgen.mechanics.point import OUT
 from mdlgen.mechanics.vector import (
     add,
     back,
@@ -480,6 +480,13 @@ def ledger(bodies, bushings, points, pairs, meshes, loads, gravity, q, v, t, x, 
         at = add(vec(u, body), cross(vec(w, body), arm))
         driven += dot(three(load.force), at) + dot(three(load.moment), vec(w, body))
     totals[0], totals[1], totals[2], totals[3], totals[4] = kinetic, elastic, potential, lost, driven
+
+
+def begin(system: System, q: Floats, v: Floats, t: float, work: Work) -> None:
+    """Notes which sides of boxes stand before which ends of plates, for what begins at a state."""
+    x, r, u, w, _, _ = work
+    place_all(system.bodies, q, v, t, x, r, u, w)
+    remember(system.bodies, system.pairs, x, r)
 
 
 def workspace(system: System) -> Work:

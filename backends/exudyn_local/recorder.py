@@ -7,13 +7,15 @@ from collections.abc import Callable
 import numpy as np
 
 from backends.exudyn_local import kernels
+from backends.exudyn_local.between import limits, passed
 from backends.exudyn_local.system import MM, MS, PER_MM, System
 from mdlgen.mechanics.curve import overstretched
-from mdlgen.mechanics.mesh import LOST
 from mdlgen.model import curves
 from mdlgen.model.meshes import carried
+from mdlgen.model.overlap import Overlaps
 from mdlgen.model.rotations import euler_parameters
-from mdlgen.model.tables import BOX_BOX, BOX_GUIDE, BOX_PLANE, Model
+from mdlgen.model.tables import Model
+from mdlgen.results import audit
 from mdlgen.results.result import ContactStatistics, Energy, Result
 
 # Two rollers with a sheet between them clear each other by a few micrometres and may graze.
@@ -32,6 +34,7 @@ class Recorder:
         self._work = kernels.workspace(system)
         self._pairs = np.zeros((len(system.pairs), kernels.OUT))
         self._totals = np.zeros(5)
+        system.pairs["beside"] = 0  # a run before this one may have left its own
         self._touched = np.zeros(len(system.pairs), bool)
         rows = len(model.contacts)
         self._max_depth, self._max_force = np.zeros(rows), np.zeros(rows)
@@ -43,14 +46,13 @@ class Recorder:
         self._first: np.ndarray | None = None
         self._lost = self._driven = 0.0
         self._through = self._most = 0.0
+        self.gained = self.vanished = 0.0  # how far the balance was off, most above and most below [J]
         self._low, self._high = model.pairs.low * MM, model.pairs.high * MM
         self._last_stored = -1
-        # depth beyond which a box is about to come out at the other side of a plate, or of another box
-        kind, half = system.pairs["kind"], system.bodies["half"][:, 2]
-        two = np.minimum(half[system.pairs["a"]], half[system.pairs["b"]])
-        plates = np.isin(kind, (BOX_GUIDE, BOX_PLANE))
-        one = np.where(plates, half[system.pairs["b"]], LOST)
-        self._plate = np.where(kind == BOX_BOX, two, one)
+        self._deepest = limits(system.bodies, system.pairs)
+        # coordinates and velocities of the last step
+        self._before: tuple[np.ndarray, np.ndarray] | None = None
+        self._overlaps = Overlaps(model)
 
     def plan(self, h: float) -> None:
         """Which times are stored: the print times, at the first step that reaches them, and the end."""
@@ -76,6 +78,8 @@ class Recorder:
             self._store(t)
         if self.reason is None:
             self._watch(t)
+        if self.reason is None:
+            self._between(q, v, t, step)
         if self.progress is not None and self.steps % 20 == 0:
             self.progress(t / MS, self.model.run.duration, self.steps, self.touching)
         return self.reason is None
@@ -90,6 +94,7 @@ class Recorder:
         self._observe(q, v, t)
         self._store(t)
         self._watch(t)
+        self._before = np.array(q), np.array(v)
 
     def _observe(self, q: np.ndarray, v: np.ndarray, t: float) -> None:
         x, r, u, w, _, f = self._work
@@ -103,7 +108,10 @@ class Recorder:
         self._most = max(self._most, self._totals[0] + self._totals[1])
         if self._first is None:
             self._first = self._totals[:3].copy()
+        off = self._off()
+        self.gained, self.vanished = max(self.gained, off), min(self.vanished, off)
         self._contacts(step, t)
+        kernels.begin(self.system, q, v, t, self._work)
 
     def _contacts(self, step: float, t: float) -> None:
         if not self._pairs.size:
@@ -137,6 +145,7 @@ class Recorder:
         self._stored["u"].append(u[:-1].copy())
         self._stored["w"].append(w[:-1].copy())
         self._stored["f"].append(self._force.copy())
+        self.reason = self.reason or self._overlaps.found(x[:-1] / MM, t / MS)
 
     def _watch(self, t: float) -> None:
         """Sets the reason of a failure where a joint is beyond its curve, a body left its bounds or went deep
@@ -148,19 +157,30 @@ class Recorder:
                 row = int(self.system.bushings["row"][joint])
                 time = None if self.model.run.analysis == "static" else t / MS
                 self.reason = curves.overstretched(self.model, row, float(strain), time)
-        deep = np.flatnonzero(self._pairs[:, 15] > self._plate)
+        deep = np.flatnonzero(self._pairs[:, 15] > self._deepest)
         if deep.size:
-            box = self.model.bodies.name[int(self.model.pairs.a[deep[0]])]
-            plate = self.model.called(int(self.model.pairs.b[deep[0]]))
-            self.reason = (
-                f"box {box} is more than half of its thickness into {plate} at {t / MS:.6g} ms; "
-                "a stiffer contact or a smaller run.step would hold it"
-            )
+            self._too_deep(int(deep[0]), t)
         out = np.flatnonzero(((x < self._low) | (x > self._high)).any(axis=1))
         if out.size:
             at = ", ".join(f"{value:.4g}" for value in x[out[0]] * PER_MM)
             told, (bounds, advice) = self.model.called(int(out[0])), self.model.bounds_of(int(out[0]))
             self.reason = f"{told} left {bounds} at {t / MS:.6g} ms (it is at {at} mm); {advice}"
+
+    def _between(self, q: np.ndarray, v: np.ndarray, t: float, step: float) -> None:
+        """Sets the reason where a pair has passed since the last step."""
+        if self._before is not None:
+            tables, was = self.system, self._before
+            pair = passed(tables.bodies, tables.pairs, tables.meshes, *was, q, v, t - step, step)
+            if pair >= 0:
+                self._too_deep(pair, t)
+        self._before = np.array(q), np.array(v)
+
+    def _too_deep(self, pair: int, t: float) -> None:
+        ends = (int(side[pair]) for side in (self.model.pairs.a, self.model.pairs.b))
+        self.reason = (
+            f"{self.model.too_deep(*ends)} at {t / MS:.6g} ms; "
+            "a stiffer contact or a smaller run.step would hold it"
+        )
 
     def result(self, solver: str, reason: str | None) -> Result:
         """The Result in mm, N, g, ms."""
@@ -194,20 +214,24 @@ class Recorder:
             energy=self._balance(),
         )
 
+    def _off(self) -> float:
+        """Energy that is there and came from nowhere since the start [J]."""
+        assert self._first is not None, "something was observed"
+        return float(self._totals[:3].sum() - self._first.sum() + self._lost - self._driven)
+
     def _balance(self) -> Energy:
         if self._first is None:
             return Energy()
-        kinetic, elastic, potential = self._totals[:3]
-        first = self._first
-        change = kinetic + elastic + potential - first.sum()
-        scale = max(abs(self._lost), self._through, self._most, abs(potential - first[2]), 1e-15)
         to_nmm = 1.0 / MM
+        passed = (self._lost, self._through, self._most, self._totals[2] - self._first[2])
+        scale = audit.scale(self.model, *(to_nmm * energy for energy in passed))
         return Energy(
-            kinetic=kinetic * to_nmm,
-            elastic=elastic * to_nmm,
+            kinetic=self._totals[0] * to_nmm,
+            elastic=self._totals[1] * to_nmm,
             dissipated=self._lost * to_nmm,
             driven=self._driven * to_nmm,
-            balance_error=float((change + self._lost - self._driven) / scale) if self.steps else 0.0,
+            balance_error=float(self._off() * to_nmm / scale) if self.steps else 0.0,
+            scale=scale,
         )
 
 

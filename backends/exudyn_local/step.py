@@ -1,40 +1,95 @@
-"""The time step that a tolerance asks for."""
+"""The time step that a tolerance asks for, and what a run at it costs."""
 
 from __future__ import annotations
 
 import math
 
-from backends.exudyn_local.system import MS
-from mdlgen.model.impact import impact_time
-from mdlgen.model.tables import CYLINDER_CYLINDER, Model
+import numpy as np
+
+from backends.exudyn_local import kernels
+from backends.exudyn_local.system import MS, System
+from mdlgen.model.impact import approach_time, impact_time, lasting
+from mdlgen.model.tables import OF_MACHINE, Model
 
 # A flexible sheet in nips: travel is right to 1e-4 at this step (see the bench), and second order below.
 FLEXIBLE_STEP = 0.05  # ms at tolerance 1e-3
 # A rigid block that bounces: steps in one contact; 50 give 0.1 % of the rebound.
 STEPS_IN_CONTACT = 50.0  # at tolerance 1e-3
+# The boxes of a flexible sheet that start in a part, or that fly at one: 20 steps give 1 %.
+STEPS_OF_BOXES = 20.0
+# Contacts at the start hold each other where what is left of their forces is below this part of their sum.
+UNBALANCED = 0.1
 # Below this restitution the force drops sharply at the greatest depth and wants finer steps.
 SOFT_RESTITUTION = 0.4
 
 
-def choose_steps(model: Model, step: float | None = None) -> tuple[int, float]:
-    """(number of steps, step [s]); from `step` or the Model's [ms], or from its tolerance."""
+# Wall time of a step: Python between the kernels, and for each unknown, as measured in 2026 [s].
+STEP_COST, UNKNOWN_COST = 5e-5, 6e-6
+
+
+def choose_steps(model: Model, system: System, work: kernels.Work) -> tuple[int, float]:
+    """(number of steps, step [s]) that the Model's tolerance asks for, so that outputs fall on steps."""
     run = model.run
-    wanted = step or run.step
-    if wanted is None:
-        wanted = _from_tolerance(model)
-        # so that outputs fall on steps
-        outputs = max(1, round(run.duration / run.print_step))
-        count = outputs * max(1, math.ceil(run.duration / outputs / wanted - 1e-9))
-    else:
-        count = max(1, math.ceil(run.duration / wanted - 1e-9))
+    wanted = min(_from_tolerance(model), overlap_step(model, system, work))
+    outputs = max(1, round(run.duration / run.print_step))
+    count = outputs * max(1, math.ceil(run.duration / outputs / wanted - 1e-9))
     return count, run.duration / count * MS
+
+
+def given_steps(model: Model, step: float) -> tuple[int, float]:
+    """(number of steps, step [s]) for a step of at most `step` [ms]."""
+    count = max(1, math.ceil(model.run.duration / step - 1e-9))
+    return count, model.run.duration / count * MS
+
+
+def cost(system: System, steps: float) -> float:
+    """What a run costs [s], by its counts: the same on every machine, so that what is run does not depend on
+    how fast it is."""
+    return steps * (STEP_COST + UNKNOWN_COST * system.free)
+
+
+def overlap_step(model: Model, system: System, work: kernels.Work) -> float:
+    """Step [ms] for boxes that contacts push away as the run begins; inf where there are none, or where
+    contacts hold each other.
+
+    What a contact has stored at the start is the energy of an impact of which the second half is to come.
+    What is under a pressed roller or on a pressed plate is let in its balance, and does not count.
+    """
+    pairs, bodies = system.pairs, system.bodies
+    if not len(pairs):
+        return math.inf
+    q = np.zeros(max(1, system.free))
+    out = np.zeros((len(pairs), kernels.OUT))
+    x, r, u, w, _, f = work
+    kernels.ledger(*system.tables, q, q.copy(), 0.0, x, r, u, w, f, out, np.zeros(5))
+    stored, force = np.zeros(len(bodies)), np.zeros(len(bodies))
+    left, stiffest = np.zeros((len(bodies), 3)), np.zeros(len(bodies))
+    pressed = np.zeros(len(bodies), bool)
+    for k in np.flatnonzero(out[:, 13] > 0.0):
+        for end, at in (("a", 0), ("b", 6)):
+            body = int(pairs[end][k])
+            stored[body] += out[k, 13]
+            force[body] += out[k, 12]
+            left[body] += out[k, at : at + 3]
+            stiffest[body] = max(stiffest[body], out[k, 13] / (0.4 * out[k, 15] ** 2.5))
+            pressed[body] |= bodies["slide"][pairs["b" if end == "a" else "a"][k]] >= 0
+    finer = math.sqrt(model.run.tolerance / 1e-3)
+    shortest = math.inf
+    for body in np.flatnonzero((stored > 0.0) & ~pressed & (bodies["first"] >= 0)):
+        mass = float(bodies["mass"][body])
+        if np.linalg.norm(left[body] + mass * system.gravity) > UNBALANCED * force[body]:
+            speed = math.sqrt(2.0 * stored[body] / mass)
+            shortest = min(shortest, lasting(mass, float(stiffest[body]), speed) / MS)
+    rigid = all(sheet.count == 1 for sheet in model.sheets)
+    return shortest / (STEPS_IN_CONTACT if rigid else STEPS_OF_BOXES) * finer
 
 
 def _from_tolerance(model: Model) -> float:
     finer = math.sqrt(model.run.tolerance / 1e-3)
     wanted = FLEXIBLE_STEP * finer
     for row in range(len(model.contacts)):
-        if model.contacts.kind[row] == CYLINDER_CYLINDER:
+        wanted = min(wanted, approach_time(model, row) / STEPS_OF_BOXES * finer)
+        if model.contacts.kind[row] in OF_MACHINE:
             continue
         sheet = next(s for s in model.sheets if s.name == model.contacts.part_a[row])
         if sheet.count == 1:

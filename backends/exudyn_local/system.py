@@ -15,6 +15,7 @@ from mdlgen.errors import RefusedError
 from mdlgen.mechanics.arm import ARM, arm
 from mdlgen.mechanics.curve import FOLLOWS, curve_points, follow
 from mdlgen.mechanics.driven import DRIVEN, drive
+from mdlgen.mechanics.edge import ENDS
 from mdlgen.mechanics.laws import damping_share
 from mdlgen.mechanics.mesh import Meshes, mesh_numbers, mesh_tables
 from mdlgen.mechanics.rim import RIM, rim
@@ -37,6 +38,7 @@ BODY = np.dtype(
         ("half", "f8", 3),  # half lengths of a box, or of a guide's length, width and thickness [m]
         ("arc", "f8", 3),  # of a guide: radius [m] (0: straight), middle angle, half angle
         ("side", "i8"),  # of a guide, that may be touched: as in mechanics.guide
+        *ENDS,
         ("axis", "f8", 3),  # of a roller
         ("way", "f8", 3),  # direction of a slide
         ("press", "f8", 5),  # k [N/m], c [N s/m], force at the start [N], sliding mass [kg], axial inertia
@@ -71,8 +73,9 @@ PAIR = np.dtype(
         ("b", "i8"),
         ("shared", "i8"),
         ("mesh", "i8"),  # number of it
+        ("beside", "i8"),  # sides of the box that stand before ends of a plate, see mechanics.edge
         ("k", "f8"),  # [N/m^1.5]
-        ("law", "f8", 6),  # as in mechanics.contact
+        ("law", "f8", 7),  # as in mechanics.point, and the coefficient of rolling resistance
     ]
 )
 LOAD = np.dtype([("body", "i8"), ("local", "f8", 3), ("force", "f8", 3), ("moment", "f8", 3)])
@@ -197,6 +200,12 @@ def _bodies(model: Model, moving: bool) -> tuple[np.ndarray, int]:
         row = bodies[guide.body]
         row["half"] = [0.5 * MM * size for size in (guide.length, guide.width, guide.thickness)]
         row["arc"], row["side"] = (guide.radius * MM, guide.middle, guide.half_angle), guide.sides
+    for part in (*model.planes, *model.guides):
+        grip = 0.0 if moving else 1.0
+        bodies["ends"][part.body], bodies["edge"][part.body] = (
+            part.ends,
+            (*(MM * r for r in part.edges), grip),
+        )
     return bodies, free
 
 
@@ -241,6 +250,7 @@ def _pairs(model: Model) -> np.ndarray:
             rows.stiction_velocity * speed,
             rows.friction_velocity * speed,
             rows.smoothing * speed,
+            rows.rolling,
         )
     ):
         pairs["law"][:, column] = values[chosen]

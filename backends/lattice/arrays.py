@@ -16,11 +16,12 @@ from backends.lattice.search import Search, plan
 from mdlgen.mechanics.arm import ARM, arm
 from mdlgen.mechanics.curve import FOLLOWS, curve_points, follow
 from mdlgen.mechanics.driven import DRIVEN, drive
+from mdlgen.mechanics.edge import ENDS
 from mdlgen.mechanics.laws import damping_share
 from mdlgen.mechanics.mesh import Meshes, mesh_numbers, mesh_tables
 from mdlgen.mechanics.rim import RIM, rim
 from mdlgen.model.rotations import matrices
-from mdlgen.model.tables import BOX_BOX, BOX_MESH, GROUND, Floats, Ints, Model
+from mdlgen.model.tables import BOX_BOX, BOX_MESH, CYLINDER_MESH, GROUND, SUPPORT, Floats, Ints, Model
 
 if TYPE_CHECKING:
     from backends.lattice.mirror import Mirror
@@ -35,6 +36,7 @@ BODY = np.dtype(
         ("half", "f8", 3),  # of a box; of a guide: half of its length, width and thickness
         ("arc", "f8", 3),  # of a guide: radius (0: straight), middle angle, half angle
         ("side", "i8"),  # of a guide, that may be touched: as in mechanics.guide
+        *ENDS,
         ("exposed", "i8"),
         ("axis", "f8", 3),
         ("way", "f8", 3),  # direction of a slide
@@ -58,6 +60,7 @@ JOINT = np.dtype(
         ("e", "f8", 3),  # from the middle to one of two equal bushings, in bushing axes; 0: one bushing
         ("k", "f8", 6),  # sums of both
         ("c", "f8", 6),
+        ("time", "f8"),  # damping time of its material, the least of MD and CD [ms]; 0: damped by a ratio
         ("mirrored", "i8"),  # one end is the image of the other, see mirror
         *FOLLOWS,
     ]
@@ -71,8 +74,9 @@ PAIR = np.dtype(
         ("mark", "i8"),  # its place among the marks of pairs that have touched
         ("shared", "i8"),
         ("mesh", "i8"),  # number of it
+        ("beside", "i8"),  # sides of the box that stand before ends of a plate, see mechanics.edge
         ("k", "f8"),
-        ("law", "f8", 6),  # as in mechanics.contact
+        ("law", "f8", 7),  # as in mechanics.point, and the coefficient of rolling resistance
     ]
 )
 # A body is seen in the plane normal . x = at; its axes are those of the other one seen there, times `signs`.
@@ -175,6 +179,9 @@ def _bodies(model: Model) -> tuple[np.ndarray, Ints, int]:
         row = bodies[guide.body]
         row["half"] = [0.5 * size for size in (guide.length, guide.width, guide.thickness)]
         row["arc"], row["side"] = (guide.radius, guide.middle, guide.half_angle), guide.sides
+    grip = 1.0 if model.run.analysis == "static" else 0.0
+    for part in (*model.planes, *model.guides):
+        bodies["ends"][part.body], bodies["edge"][part.body] = part.ends, (*part.edges, grip)
     for mesh in model.meshes:
         if mesh.on >= 0:
             bodies["carries"][model.rollers[mesh.on].body] = 1
@@ -201,6 +208,10 @@ def _joints(model: Model, fold: bool) -> tuple[np.ndarray, int]:
         axes = table.axes if end == "a" else table.axes @ matrices(-table.rest)
         single["f" + end] = np.einsum("nji,njk->nik", rotation[body], axes).reshape(-1, 9)
     single["k"], single["c"] = table.k, table.c
+    for number, sheet in enumerate(model.sheets):
+        if sheet.damping_times is not None:
+            own = (table.sheet == number) & (table.kind != SUPPORT)
+            single["time"][own] = min(sheet.damping_times)
     follow(single, model.curves, np.arange(len(table)))
     joints = _fold(single) if fold else single
     own = np.eye(3).ravel()
@@ -269,14 +280,16 @@ def _laws(model: Model, chosen: Ints) -> np.ndarray:
     pairs["k"] = rows.stiffness[chosen]
     beta = damping_share.py_func(rows.restitution)  # compiled code is for the solver alone to load
     speeds = (rows.stiction_velocity, rows.friction_velocity, rows.smoothing)
-    for column, values in enumerate((beta, rows.mu_static, rows.mu_dynamic, *speeds)):
+    for column, values in enumerate((beta, rows.mu_static, rows.mu_dynamic, *speeds, rows.rolling)):
         pairs["law"][:, column] = values[chosen]
     return pairs
 
 
 def partner(model: Model, pair: Any) -> int:
     """The body that the second one of a pair is called by: a mesh, where that moves with another."""
-    return model.meshes[int(pair["mesh"])].body if pair["kind"] == BOX_MESH else int(pair["b"])
+    return (
+        model.meshes[int(pair["mesh"])].body if pair["kind"] in (BOX_MESH, CYLINDER_MESH) else int(pair["b"])
+    )
 
 
 def _loads(model: Model) -> np.ndarray:

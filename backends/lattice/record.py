@@ -10,6 +10,7 @@ from backends.lattice.arrays import System
 from mdlgen.model.meshes import carried
 from mdlgen.model.rotations import euler_parameters
 from mdlgen.model.tables import Model
+from mdlgen.results import audit
 from mdlgen.results.result import ContactStatistics, Energy, Result
 
 STORED = {"x": 3, "r": 9, "u": 3, "w": 3}
@@ -131,7 +132,7 @@ class Recorder:
                 last_force_at=np.where(rows[:, 7] != 0, np.nan, rows[:, 8]),
             ),
             touched=touched,
-            energy=_balance(stand),
+            energy=_balance(self.model, stand),
             versions=_versions(),
             halved=mirror is not None,
         )
@@ -155,14 +156,14 @@ class Recorder:
         return held | {"e": _without_jumps(held["e"]) if finite else held["e"]}
 
 
-def _balance(stand: Stand) -> Energy:
-    lost, driven, through = (float(v) for v in stand.work)
+def _balance(model: Model, stand: Stand) -> Energy:
+    lost, driven, through, numerical = (float(v) for v in stand.work)
     first, last, most = stand.energies
     kinetic, elastic, potential = last
     change = sum(last) - sum(first)
-    moved = abs(potential - first[2])
-    scale = max(abs(lost), through, most, moved, 1e-12)
-    return Energy(kinetic, elastic, lost, driven, float((change + lost - driven) / scale))
+    scale = audit.scale(model, lost, through, most, potential - first[2])
+    balance = float((change + lost - driven) / scale)
+    return Energy(kinetic, elastic, lost - numerical, driven, balance, scale, numerical)
 
 
 def _without_jumps(parameters: np.ndarray) -> np.ndarray:

@@ -22,29 +22,34 @@ from backends.lattice.symmetry import find
 from mdlgen.errors import SpecError
 from mdlgen.mechanics import compiling
 from mdlgen.model.curves import overstretched
+from mdlgen.model.overlap import Overlaps
 from mdlgen.model.tables import Floats, Model
-from mdlgen.results.compare import compare
+from mdlgen.results import audit
+from mdlgen.results.estimates import estimated, open_yet
 from mdlgen.results.keep import Keep
 from mdlgen.results.result import Result
 
 # Longest first step at a tolerance of 1e-3 [ms]; it goes with the root of the tolerance.
 FIRST_STEP = 0.2
-# How often the step may be halved to meet the tolerance, from the first step on.
-MOST_REFINED = 5
+# How often the step may be halved to meet the tolerance, from the first step on; blocks take little time.
+MOST_REFINED, MOST_REFINED_RIGID = 5, 8
 # Rounds of a step of that size stop at changes of velocity of this part of tolerance times speed: in scenes
 # with flexible sheets, whose boxes flutter much faster, and of rigid blocks, whose impacts are sharp.
 ROUND_OFF, ROUND_OFF_RIGID = 2.0, 0.02
 # Where the step of rigid blocks is chosen, velocities may miss their guess by this part of the speed at a
 # tolerance of 1e-3; else the step is halved. Sheets flutter, and miss it always.
 MISS = 1e-3
-# Energy that the integration makes or loses, relative to what passed through, above which a run fails. Where
-# a contact goes from box to box of a sheet, its stored energy is right to a few per cent only at any step.
-ENERGY_GAIN, ENERGY_LOSS, ENERGY_LOSS_RIGID = 0.02, 0.05, 0.01
+# Energy that contacts may make or lose in one step by its length alone, as a part of what passes through the
+# run, at a tolerance of 1e-3; else the step is halved.
+MADE = 5e-5
 # What a scene without contacts may gain, as a part of the tolerance; its step is halved until it does not.
 FREE_GAIN = 1e-3
 
+# Two runs that end early end at the same time where it differs by less than this part of the duration.
+SAME_END = 0.01
+
 # How a halved run ends, beside those of march.
-PASSED = -1
+PASSED, OVERLAPPED = -1, -2
 # Steps of one run, and those that compiled code takes before it is asked again.
 MOST_STEPS, MOST_AT_ONCE = 1e9, 1000
 
@@ -64,10 +69,9 @@ def solve(
 ) -> Result:
     """Run a Model; `progress(time, end, steps, touching)` is told where it stands (times in ms).
 
-    `step` [ms], or the Model's own, is taken as it is, and an estimate comes of a run at twice the step.
-    Without either the step follows from the tolerance: the run is repeated at half the step until both
-    differ by less. `error_estimate` is that difference, which is the error of the coarser run, and three
-    times that of the finer one where halving quarters the error. A failed run returns a Result with its
+    `step` [ms], or the Model's own, is taken as it is, and estimates come of a run at twice the step.
+    Without either the step follows from the tolerance: the run is repeated at half the step until what it
+    judges is estimated to be within it (see `results.estimates`). A failed run returns a Result with its
     reason; RefusedError is raised for what the solver cannot represent.
 
     `without` names rules that are not to be used: FOLDING of equal bushings, keeping of FACTORS over steps,
@@ -97,11 +101,12 @@ def solve(
     wanted = step or model.run.step
     begun = clock.perf_counter()
     if wanted is not None:
-        result = _once(model, system, wanted, progress, anew=FACTORS in without, keep=keep)
+        made = MADE * model.run.tolerance / 1e-3
+        result = _once(model, system, wanted, progress, made=made, anew=FACTORS in without, keep=keep)
         if result.ok and step is None and model.run.duration / wanted >= 4:
-            coarse = _once(model, system, 2 * result.step, progress, keep=keep)
-            if coarse.ok:
-                result = replace(result, error_estimate=compare(result, coarse).relative)
+            h = result.step
+            again = partial(_once, model, system, progress=progress, keep=keep)
+            result = _compared(result, [], lambda n: again(n * h, made=n * n * made))
     else:
         result = _refined(model, system, progress, keep)
     result.estimate_s = clock.perf_counter() - begun - result.wall_s
@@ -109,30 +114,62 @@ def solve(
     return result
 
 
+def _compared(result: Result, before: list[Result], again: Callable[[int], Result]) -> Result:
+    """The result with its estimate, from the runs `before` at twice its step, four times its step, ...
+
+    `again(times)` runs at so many times its step: at twice where there is none, and once more coarsely where
+    two leave open whether the tolerance is met, since three show how errors fall.
+    """
+    found = [replace(run, coarser=()) for run in before if _ended(run)]
+    found = found if before else [again(2)]
+    if not found or not _ended(found[0]) or not (found[0].ok or before):
+        return estimated(result, [])
+    result = estimated(result, found[:2])
+    if open_yet(result) and result.model.run.duration / result.step >= 16:
+        third = again(4)
+        result = estimated(result, [found[0], third]) if _ended(third) else result
+    return result
+
+
+def _ended(run: Result) -> bool:
+    """Whether a run came to its end; one whose energies do not balance still tells how errors fall."""
+    finite = all(np.isfinite(a).all() for a in (run.position, run.velocity, run.spin))
+    return finite and bool(run.time[-1] >= run.model.run.duration * (1.0 - 1e-9))
+
+
 def _refined(model: Model, system: System, progress: Progress | None, keep: Keep | None) -> Result:
-    """Halves the step until two runs differ by less than the tolerance; fails where they never do."""
-    miss = 0.0 if _flexible(model) else MISS * model.run.tolerance / 1e-3
-    before = _once(model, system, first_step(model), progress, miss, keep=keep)
-    result = coarse = before
-    for _ in range(MOST_REFINED):
-        miss *= 0.25
-        result = _once(model, system, 0.5 * before.step, progress, miss, keep=keep)
-        if result.ok and before.ok:
-            result = replace(result, error_estimate=compare(result, before).relative)
+    """Halves the step until estimates are within the tolerance; fails where they never are.
+
+    A run that ends early has its reason from the physics of the scene or from its step: it is reported where
+    the next finer run ends at the same time, and its energies balance.
+    """
+    flexible, part = _flexible(model), model.run.tolerance / 1e-3
+
+    def once(h: float, halved: int) -> Result:
+        fine = part * 0.25**halved
+        return _once(model, system, h, progress, 0.0 if flexible else MISS * fine, MADE * fine, keep=keep)
+
+    runs = [once(first_step(model), 0)]
+    for k in range(1, 1 + (MOST_REFINED if flexible else MOST_REFINED_RIGID)):
+        result = once(0.5 * runs[0].step, k)
+        if result.ok and runs[0].ok:
+            result = _compared(result, runs[:2], lambda n, k=k, h=result.step: once(n * h, k - n // 2))
             near = result.error_estimate is not None and result.error_estimate <= model.run.tolerance
             free = not len(model.pairs)
             if near and not (free and result.energy.balance_error > FREE_GAIN * model.run.tolerance):
                 return result
-        if not result.ok and result.time[-1] < model.run.duration * (1.0 - 1e-9):
-            # what ends early at a finer step has a reason of its own; where both fail the finer one tells
+        ends = result.time[-1], runs[0].time[-1]
+        same = abs(ends[0] - ends[1]) <= SAME_END * model.run.duration
+        if not _ended(result) and same and _unbalanced(result) is None:
             return result
-        before, coarse = result, before
+        runs.insert(0, result)
+    result = runs[0]
     if result.ok:
-        told = (
-            "a run at twice the step failed"
-            if result.error_estimate is None
-            else (f"it differs from a run at {coarse.step:.3g} ms by {result.error_estimate:.3g}")
-        )
+        told = f"{result.error_estimate_of} does not come closer as steps are halved"
+        if not result.coarser:
+            told = "a run at twice the step failed"
+        elif result.error_estimate is not None:
+            told = f"the estimate of {result.error_estimate_of} is {result.error_estimate:.3g}"
         result = result.failed(
             f"the tolerance of {model.run.tolerance:.3g} was not reached at a step of {result.step:.3g} ms: "
             f"{told}; a larger run.tolerance or a run.step of your own ends the search"
@@ -165,11 +202,12 @@ def _once(
     wanted: float,
     progress: Progress | None,
     miss: float = 0.0,
+    made: float = 0.0,
     anew: bool = False,
     keep: Keep | None = None,
 ) -> Result:
-    """One run at a step, or the next smaller one that outputs fall on; `miss`: see MISS, 0 for any; `anew`:
-    a new factor for each step; `keep` as of `solve`."""
+    """One run at a step, or the next smaller one that outputs fall on; `miss`, `made`: see MISS and MADE, 0
+    for any; `anew`: a new factor for each step; `keep` as of `solve`."""
     from backends.lattice import kernels
     from backends.lattice.kernels import march, step
 
@@ -188,18 +226,19 @@ def _once(
         )
     begun = clock.perf_counter()
     moving = _arrays(model, system)
-    tables, state, mid, _, _, _, kept, _, _ = moving
-    counters, work, fresh = np.zeros(step.COUNTERS), np.zeros(3), np.zeros(3)
+    tables, state, mid, _, _, _, kept, _, _, damped = moving
+    counters, work, fresh = np.zeros(step.COUNTERS), np.zeros(4), np.zeros(3)
     before = (state[6].copy(), state[7].copy(), np.zeros(2))
-    recorder = Recorder(model, system, tables, state, mid, kept)
+    recorder, overlaps = Recorder(model, system, tables, state, mid, kept), Overlaps(model)
     recorder.store(0.0)
     # the guess of a step is the better the finer it is: what is left of it must fall as fast
     part = (ROUND_OFF if _flexible(model) else ROUND_OFF_RIGID) * min(1.0, (dt / FIRST_STEP) ** 2)
     tolerance = part * run.tolerance
-    pace = np.array([0.0, miss, float(anew), _speed(model)])
+    pace = np.array([0.0, miss, float(anew), _speed(model), made])
     status, t, past = march.DONE, 0.0, 0.0
     search = system.search
-    mark = Mark(moving[1:6], (fresh, counters, work, before, pace, search.place), recorder)
+    few = (fresh, counters, work, before, pace, search.place, system.pairs["beside"])
+    mark = Mark((*moving[1:6], damped[1:]), few, recorder)
     number = keep.begin() if keep is not None else 0
     stage = mark.back(keep, number) if keep is not None else None
     if stage is not None:
@@ -221,6 +260,9 @@ def _once(
             status = PASSED
             counters[step.WORST] = passed
             break
+        if overlaps.found(state[0], t) is not None:
+            status = OVERLAPPED
+            break
         if keep is not None:
             keep.part = partial(_part, recorder, recorder.stand(work), dt, int(counters[step.STEPS]))
             if keep.due() and output + 1 < outputs:
@@ -232,17 +274,23 @@ def _once(
     if keep is not None and todo and (keep.written or keep.due()):
         keep.save(number, mark.arrays(Stage(status, t, todo.stop, wall, True)))
     reason = None if status == march.DONE else _reason(model, system, status, t, dt, state, counters)
+    if status in (march.LEFT, march.DEEP, march.STRETCHED):
+        recorder.store(t)  # with which its energies balance, or do not
     result = recorder.result("lattice", reason, work)
     result.step, result.steps = dt, int(counters[step.STEPS])
     result.rounds, result.wall_s = int(counters[step.ROUNDS]), wall
     if result.ok and not all(np.isfinite(a).all() for a in (result.position, result.velocity, result.spin)):
         result = result.failed("the state went non-finite")
-    off = result.energy.balance_error
-    loss = ENERGY_LOSS if _flexible(model) else ENERGY_LOSS_RIGID
-    if result.ok and not -loss <= off <= ENERGY_GAIN:
-        whence = "came from nowhere" if off > 0 else "got lost"
-        result = result.failed(f"{100 * abs(off):.3g} % of the energy {whence}; take a smaller run.step")
-    return result
+    unbalanced = _unbalanced(result)
+    if unbalanced is None or status not in (march.DONE, march.LEFT, march.DEEP, march.STRETCHED):
+        return result
+    return result.failed(unbalanced if result.ok else f"{result.status}; and {unbalanced}")
+
+
+def _unbalanced(run: Result) -> str | None:
+    """Why a run's energies make it no result."""
+    loss = audit.LOSS if _flexible(run.model) else audit.LOSS_RIGID
+    return audit.reason(run.model, run.energy, run.step, loss)
 
 
 def _part(recorder: Recorder, stand: Stand, dt: float, steps: int) -> Result:
@@ -300,10 +348,10 @@ def _reason(
     if status == march.DEEP:
         pair = int(counters[step.WORST])
         box, plate = int(system.pairs["a"][pair]), partner(model, system.pairs[pair])
-        return (
-            f"box {names[box]} is more than half of its thickness into {model.called(plate)} at {t:.6g} ms; "
-            "a stiffer contact or a smaller run.step would hold it"
-        )
+        told = f"{model.too_deep(box, plate)} at {t:.6g} ms"
+        return f"{told}; a stiffer contact or a smaller run.step would hold it"
+    if status == OVERLAPPED:
+        return Overlaps(model).found(state[0], t) or "two parts overlap"
     if status == PASSED:
         return (
             f"box {names[int(counters[step.WORST])]} has passed the plane of the scene's symmetry at "
@@ -321,16 +369,19 @@ def _reason(
     return f"{model.called(body)} left {bounds} at {t:.6g} ms (it is at {at} mm); {advice}"
 
 
-def _arrays(model: Model, system: System) -> tuple[Any, Any, Any, Any, Any, Any, Any, Any, Any]:
+def _arrays(model: Model, system: System) -> tuple[Any, Any, Any, Any, Any, Any, Any, Any, Any, Any]:
     """What a run works on: tables, state, middle, matrix, boxes that touch, free sheets, what is kept,
-    bounds, and the search, made for the start."""
-    from backends.lattice.kernels import alone, forces, momentum, search
+    bounds, the search, made for the start, and joints with a damping time."""
+    from backends.lattice.kernels import alone, damped, forces, momentum, search
+    from mdlgen.mechanics.pair import remember
 
     tables = system.tables
     kept = (np.zeros((len(model.contacts), 9)), np.zeros(system.marks, bool))
     bounds = (model.pairs.low, model.pairs.high)
     state, mid, matrix = start(model, system)
     search.look(system.pairs, system.search, state[0])
+    system.pairs["beside"] = 0
+    remember(tables[0], system.pairs, state[0], state[1])
     return (
         tables,
         state,
@@ -341,6 +392,7 @@ def _arrays(model: Model, system: System) -> tuple[Any, Any, Any, Any, Any, Any,
         kept,
         bounds,
         system.search,
+        damped.empty(system),
     )
 
 
@@ -349,8 +401,8 @@ def _warm(model: Model, system: System) -> None:
     from backends.lattice.kernels import march, step
 
     moving = _arrays(model, system)
-    tables, state, mid, _, _, _, kept, _, _ = moving
+    tables, state, mid, _, _, _, kept, _, _, _ = moving
     before = (state[6].copy(), state[7].copy(), np.zeros(2))
     counters = np.zeros(step.COUNTERS)
-    march.run(*moving, 0.0, np.zeros(0), 1.0, np.zeros(3), counters, np.zeros(3), before, np.zeros(4))
+    march.run(*moving, 0.0, np.zeros(0), 1.0, np.zeros(3), counters, np.zeros(4), before, np.zeros(5))
     Recorder(model, system, tables, state, mid, kept).store(0.0)

@@ -30,7 +30,7 @@ REGION = np.dtype(
         ("many_b", "i8"),
         ("shared", "i8"),
         ("k", "f8"),
-        ("law", "f8", 6),  # as in mechanics.contact
+        ("law", "f8", 7),  # as of a pair
         ("mark", "i8"),  # of the first pair among those of all boxes
     ]
 )

@@ -10,8 +10,10 @@ import numpy as np
 from backends.lattice.arrays import System, partner
 from backends.lattice.record import Recorder
 from mdlgen.mechanics.mesh import LOST
+from mdlgen.mechanics.pair import DEEP_ROLLER
 from mdlgen.model import curves
-from mdlgen.model.tables import BOX_GUIDE, BOX_PLANE, GROUND, Model
+from mdlgen.model.overlap import Overlaps
+from mdlgen.model.tables import BOX_GUIDE, BOX_PLANE, GROUND, ON_PARTS, Model
 from mdlgen.results.result import Result
 
 FIRST_PART = 1.0  # of the load
@@ -28,6 +30,7 @@ def rest(model: Model, system: System, moving: tuple) -> Result:
     """The Result of a Model at rest; `moving` is (state, mid, matrix) at the start."""
     from backends.lattice.kernels import balance
     from backends.lattice.kernels.band import PAD
+    from mdlgen.mechanics.pair import remember
 
     state, mid, _ = moving
     x, r, v, l, s = state[:5]
@@ -36,6 +39,7 @@ def rest(model: Model, system: System, moving: tuple) -> Result:
     tables = system.tables
     lists = (mid[5], mid[6], mid[8])
     load = _load(model, system)
+    remember(tables[0], system.pairs, x, r)
     size = (system.border, 6 * (system.reach + 1) + PAD)
     held = (TETHER if _loose(model) else 0.0, _reach(model))
 
@@ -50,10 +54,10 @@ def rest(model: Model, system: System, moving: tuple) -> Result:
     rows = (np.zeros((len(model.contacts), 9)), np.zeros(len(system.pairs), bool))
     if reason is None:
         reason = _stretched(model, system, x, r) or _touch(model, system, state, mid, rows)
-        reason = reason or _outside(model, x)
+        reason = reason or _outside(model, x) or Overlaps(model).found(x, 0.0)
     recorder = Recorder(model, system, tables, state, mid, rows)
     recorder.store(0.0)
-    result = recorder.result("lattice", reason, np.zeros(3))
+    result = recorder.result("lattice", reason, np.zeros(4))
     result.wall_s, result.steps = wall, 0
     return result
 
@@ -136,10 +140,11 @@ def _touch(model: Model, system: System, state: tuple, mid: tuple, rows: tuple) 
     for k in range(count):
         pair, force, depth = system.pairs[touched[k]], outs[k, 12], outs[k, 15]
         plate = pair["kind"] in (BOX_GUIDE, BOX_PLANE)
-        if depth > (system.bodies["half"][pair["b"], 2] if plate else LOST):
-            names = model.bodies.name
-            plate = model.called(partner(model, pair))
-            return f"box {names[pair['a']]} rests more than half of its thickness in {plate}"
+        most = system.bodies["half"][pair["b"], 2] if plate else LOST
+        if pair["kind"] in ON_PARTS:
+            most = DEEP_ROLLER * system.bodies["size"][pair["a"], 0]
+        if depth > most:
+            return f"{model.too_deep(int(pair['a']), partner(model, pair))} at rest; give a stiffer contact"
         marks[touched[k]] = True
         row = table[pair["row"]]
         # greatest, sums over a time of 1, now; and it acts

@@ -7,7 +7,13 @@ from itertools import groupby
 from backends.motionsolve.rows import Deck
 from backends.motionsolve.units import number
 from mdlgen.model.curves import limit
+from mdlgen.model.ends import edge_note
 from mdlgen.model.tables import SUPPORT, Model
+
+FRAME = (
+    "Bushings : MotionSolve has displacement and force in the axes of marker J; the local run of mdlgen has",
+    "  the frame halfway between the two bodies. Both agree where the angle between these is small.",
+)
 
 
 def banner(model: Model, deck: Deck) -> list[str]:
@@ -24,6 +30,8 @@ def banner(model: Model, deck: Deck) -> list[str]:
             f"Sheet : {sheet.name}, {sheet.n_x} x {sheet.n_y} boxes, {sheet.layout}, {sheet.grid} grid, "
             f"{joints} bushings"
         )
+    if len(model.bushings):
+        lines += FRAME
     lines += _curves(model)
     lines += _contacts(model)
     lines += ["", "Not yet read by a real MotionSolve; look at these first if it complains :"]
@@ -50,6 +58,7 @@ def _contacts(model: Model) -> list[str]:
         f"with a margin of {number(pairs.margin)} mm",
         "  MotionSolve gives every pair the full stiffness. In the local run of mdlgen, share width lets",
         "  the boxes under one part share it by the width that each covers; share pair gives it to each too.",
+        *edge_note(model),
     ]
     for entry, group in groupby(range(len(table)), key=lambda row: int(table.entry[row])):
         first, *others = group

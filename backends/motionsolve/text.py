@@ -8,6 +8,7 @@ from backends.motionsolve.environment import environment
 from backends.motionsolve.views import deck_view
 from mdlgen.errors import SpecError
 from mdlgen.model.external import refuse_externals
+from mdlgen.model.rolling import refuse_rolling
 from mdlgen.model.sheet_pairs import refuse_searched
 from mdlgen.model.springs import refuse_compressed
 from mdlgen.model.tables import Model
@@ -20,6 +21,7 @@ def check(model: Model) -> None:
     refuse_externals(model, "MotionSolve deck")
     refuse_searched(model, "MotionSolve deck")
     refuse_compressed(model, "MotionSolve deck")
+    refuse_rolling(model, "MotionSolve deck")
 
 
 def emit(model: Model) -> str:

@@ -9,11 +9,18 @@ from backends.motionview.forms import unverified
 from backends.motionview.rows import SceneView
 from backends.motionview.units import number
 from mdlgen.model.curves import TEXT_BEYOND, limit
+from mdlgen.model.ends import edge_note
 from mdlgen.model.tables import Model
 
 SHARE = (
     "  MotionSolve gives every pair the full stiffness. In the local run of mdlgen, share width lets",
     "  the boxes under one part share it by the width that each covers; share pair gives it to each too.",
+)
+
+
+FRAME = (
+    "Bushings : MotionSolve has displacement and force in the axes of marker J; the local run of mdlgen has",
+    "  the frame halfway between the two bodies. Both agree where the angle between these is small.",
 )
 
 
@@ -38,7 +45,7 @@ def banner(model: Model, scene: SceneView) -> list[str]:
 
 
 def sheet_lines(model: Model, scene: SceneView) -> list[str]:
-    """One line for each sheet."""
+    """One line for each sheet, and in which frame its bushings act."""
     lines = []
     for sheet, part in zip(scene.sheets, model.sheets, strict=True):
         joints = sum(len(group.bushes) for group in sheet.joints)
@@ -46,7 +53,7 @@ def sheet_lines(model: Model, scene: SceneView) -> list[str]:
             f"Sheet : {sheet.name}, {part.n_x} x {part.n_y} boxes, {part.layout}, {part.grid} grid, "
             f"{joints} bushings; its values are in ds_{sheet.name}"
         )
-    return lines
+    return [*lines, *(FRAME if len(model.bushings) else ())]
 
 
 def curve_lines(model: Model) -> list[str]:
@@ -83,6 +90,7 @@ def _contacts(model: Model, scene: SceneView) -> list[str]:
         f"Contacts : {pairs.possible} pairs possible, {len(pairs)} kept: those that can meet in the run, "
         f"with a margin of {number(pairs.margin)} mm",
         *SHARE,
+        *edge_note(model),
     ]
     if len(pairs) < pairs.possible:
         lines += [

@@ -12,7 +12,8 @@ import numpy as np
 from mdlgen.model.tables import Model
 
 _FRICTION = ("mu_s", "mu_d", "v_s", "v_d")
-_STIFFNESS = ("E_md", "E_cd", "k_tx", "k_ty", "k_tz", "D_md", "D_cd", "D_twist", "G", "zeta", "zeta_ty")
+_DAMPING = ("zeta", "zeta_ty", "tau", "tau_md", "tau_cd", "eta", "eta_md", "eta_cd", "f")
+_STIFFNESS = ("E_md", "E_cd", "k_tx", "k_ty", "k_tz", "D_md", "D_cd", "D_twist", "G", *_DAMPING)
 
 
 def idle_values(model: Model, set_contact: bool, kept: Sequence[int]) -> dict[tuple[str, str], str]:

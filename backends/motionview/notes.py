@@ -7,7 +7,8 @@ from backends.motionview.banner import SHARE, curve_lines, share_lines, sheet_li
 from backends.motionview.forms import unverified_system
 from backends.motionview.rows import SystemView
 from backends.motionview.units import number
-from mdlgen.model.tables import BOX_BOX, CYLINDER_CYLINDER, Model
+from mdlgen.model.ends import edge_note
+from mdlgen.model.tables import BOX_BOX, Model
 
 
 def notes(model: Model, system: SystemView) -> list[str]:
@@ -45,7 +46,7 @@ def _way_in(system: SystemView) -> list[str]:
 
 
 def _left_out(model: Model) -> list[str]:
-    own = model.contacts.kind == CYLINDER_CYLINDER
+    own = model.contacts.of_machine
     between = [f"{model.contacts.part_a[k]} / {model.contacts.part_b[k]}" for k in own.nonzero()[0]]
     lines = ["", "Left out, as the business of your model : the machine, gravity, run settings"]
     if between:
@@ -59,7 +60,7 @@ def _contacts(model: Model, system: SystemView) -> list[str]:
     if not scene.contacts:
         return []
     external = len(model.external_pairs)
-    possible = pairs.possible - int((table.kind == CYLINDER_CYLINDER).sum())
+    possible = pairs.possible - int(table.of_machine.sum())
     meets = ", or of boxes of two sheets" if bool((table.kind == BOX_BOX).any()) else ""
     lines = ["", f"Contacts : {len(scene.pairs)} pairs of a box and a part of the machine{meets}"]
     if possible:
@@ -69,4 +70,4 @@ def _contacts(model: Model, system: SystemView) -> list[str]:
         ]
     if external:
         lines.append(f"  With bodies of your model all {external} stand here: where those are is not known.")
-    return [*lines, *SHARE, *share_lines(scene)]
+    return [*lines, *SHARE, *edge_note(model), *share_lines(scene)]

@@ -137,6 +137,7 @@ class JointGroup(NamedTuple):
     frames: tuple[int, int]  # of the two sides
     bushes: list[Bush]
     curves: tuple[str, str]  # that stand for k_x and k_y, empty: none
+    twist: tuple[str, str]  # more that stands before the members of rotation about x and about y
 
 
 class CurveView(NamedTuple):
@@ -168,7 +169,8 @@ class SheetView:
     twist: bool
     plate: bool
     ratio: str  # shear modulus over the mean of the moduli, and so for twist, where they are not given
-    damping: str
+    damping: str  # inertia, paper or time
+    own_times: bool  # MD and CD have damping times of their own
     stiff: bool  # anything uses the sheet's stiffness
     graded: tuple[bool, bool]
     grids: list[GridView]

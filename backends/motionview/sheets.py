@@ -61,6 +61,7 @@ def sheet_view(model: Model, index: int, tables: dict[str, list[Value]]) -> Shee
         plate=sheet.layout == "plate",
         ratio=number(SHEAR_RATIO),
         damping=sheet.rotation_damping,
+        own_times=any(v.member in ("tau_md", "eta_md") for v in given),
         stiff=bool(joints) or supported,
         graded=sheet.graded,
         grids=grid_views(sheet, tables),
@@ -105,26 +106,28 @@ def _joints(model: Model, index: int, differ: Differences) -> tuple[list[Point],
     sheet, table = model.sheets[index], model.bushings
     mine = np.flatnonzero((table.sheet == index) & (table.kind != SUPPORT))
     taken: dict[str, Point] = {}
-    groups: dict[tuple[int, str, tuple[int, int]], list[Bush]] = {}
+    groups: dict[tuple[int, str, tuple[int, int], str], list[Bush]] = {}
     body = (*(f"b_{name}" for name in model.bodies.name), "B_Ground")
     assert body[GROUND] == "B_Ground"
     columns = (c[mine].tolist() for c in (table.kind, table.a, table.b, table.node, table.frames))
     curves, follows = written(model)
     first = dict(zip((table.name[row] for row in mine.tolist()), mine.tolist(), strict=True))
     owners = differ.owners or ["$%s"] * len(mine)
+    clamped_x = sheet.clamp is not None and sheet.clamp.edge[0] == "x"
     for row, own, kind, a, b, (x, y), (one, two) in zip(mine.tolist(), owners, *columns, strict=True):
         point = naming.node(sheet, x, y, (one, two))
         if point not in taken:
             taken[point] = _node(point, sheet, x, y, (one, two))
         bush = Bush(table.name[row], table.label[row], body[a], body[b], point)
-        groups.setdefault((kind, own, (one, two)), []).append(bush)
+        along_x = kind == JOINT_X or (kind == CLAMP and clamped_x)
+        wide = _tributary(sheet, y // 2, along_x) if along_x else _tributary(sheet, x // 2, along_x)
+        groups.setdefault((kind, own, (one, two), wide), []).append(bush)
     nodes = sorted(taken.values(), key=lambda point: (point.y, point.x))
     twist = "_twist" if sheet.twist else ""
     shear = "_shear" if sheet.layout == "plate" else ""
     across = "_y" if shear and not differ.owners else ""  # where one data set holds joints of both ways
-    clamped_x = sheet.clamp is not None and sheet.clamp.edge[0] == "x"
     made = []
-    for (kind, own, frames), bushes in groups.items():
+    for (kind, own, frames, wide), bushes in groups.items():
         along_x = kind == JOINT_X or (kind == CLAMP and clamped_x)
         suffixes = ("x", f"y{shear}", f"tx{twist}", "ty", "tz")
         if not along_x:
@@ -133,8 +136,19 @@ def _joints(model: Model, index: int, differ: Differences) -> tuple[list[Point],
         curve = f"crv_{curves[row].name}" if row >= 0 else ""
         x, y = (curve, "") if along_x else ("", curve)
         # a clamp is a half-cell hinge of twice the joint
-        made.append(JointGroup("2*" if kind == CLAMP else "", own, *suffixes, frames, bushes, (x, y)))
+        factor, more = "2*" if kind == CLAMP else "", (wide, "") if along_x else ("", wide)
+        made.append(JointGroup(factor, own, *suffixes, frames, bushes, (x, y), more))
     return nodes, made
+
+
+def _tributary(sheet: SheetPart, strip: int, along_x: bool) -> str:
+    """Factor of the twist of a joint in a row, or a column, of boxes: half a box more at each free edge."""
+    if not sheet.twist:
+        return ""
+    side, strips = ("y", sheet.n_y) if along_x else ("x", sheet.n_x)
+    held = "" if sheet.clamp is None else sheet.clamp.edge
+    free = (strip == 0 and held != f"{side}_min") + (strip == strips - 1 and held != f"{side}_max")
+    return ("", "1.5*", "2*")[free]
 
 
 def _node(name: str, sheet: SheetPart, x: int, y: int, frames: tuple[int, int]) -> Point:

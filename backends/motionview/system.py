@@ -12,13 +12,13 @@ from backends.motionview.units import number
 from backends.motionview.views import given_values, scene_view
 from mdlgen.model.rim_facets import WHOLE, Meeting, meetings
 from mdlgen.model.rim_facets import graphics as roller_graphics
-from mdlgen.model.tables import BOX_BOX, CYLINDER_CYLINDER, Ints, Model
+from mdlgen.model.tables import BOX_BOX, Ints, Model
 
 
 def kept_contacts(model: Model) -> Ints:
     """Row of the contacts of each pair of a box and another body, those of `sheet_pairs`."""
     table = model.contacts
-    inside = model.pairs.contact[table.kind[model.pairs.contact] != CYLINDER_CYLINDER]
+    inside = model.pairs.contact[~table.of_machine[model.pairs.contact]]
     return np.sort(np.concatenate([inside, model.external_pairs.contact]), kind="stable")
 
 
@@ -26,7 +26,7 @@ def system_view(model: Model, set_contact: bool) -> SystemView:
     """The rows of a Model without its machine, and the attachments."""
     table = model.contacts
     given = given_values(model, set_contact, kept_contacts(model).tolist())
-    of_sheets = np.flatnonzero(table.kind != CYLINDER_CYLINDER).tolist()
+    of_sheets = np.flatnonzero(~table.of_machine).tolist()
     scene = replace(
         scene_view(model, set_contact),
         rollers=[],
@@ -51,7 +51,7 @@ def attachments(model: Model) -> list[Attachment]:
     A part stays one where no pair with it is kept, so that the arguments do not change with the run.
     """
     table = model.contacts
-    met = {table.part_b[row] for row in np.flatnonzero(table.kind != CYLINDER_CYLINDER)}
+    met = {table.part_b[row] for row in np.flatnonzero(~table.of_machine)}
     parts = [
         *((r.name, f"b_{r.name}", tuple(roller_graphics(r, WHOLE))) for r in model.rollers),
         *((p.name, f"b_{p.name}", (f"gbox_{p.name}",)) for p in model.planes),
@@ -80,7 +80,7 @@ def sheet_pairs(model: Model) -> list[Pair]:
         row = int(model.pairs.contact[met.pair])
         if table.kind[row] == BOX_BOX:
             rows.append((row, pair))
-        elif table.kind[row] != CYLINDER_CYLINDER:
+        elif not table.of_machine[row]:
             name = table.part_b[row]
             every = shown.get(name, pair.graphics_2)
             own = dict(zip(every, _graphics(name, len(every)), strict=True))

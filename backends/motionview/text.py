@@ -10,6 +10,7 @@ from backends.motionview.system import system_view
 from backends.motionview.views import scene_view
 from mdlgen.errors import RefusedError, SpecError
 from mdlgen.model.external import refuse_externals
+from mdlgen.model.rolling import refuse_rolling
 from mdlgen.model.sheet_pairs import refuse_searched
 from mdlgen.model.springs import refuse_compressed
 from mdlgen.model.tables import Model
@@ -20,6 +21,7 @@ def check(model: Model) -> None:
     refuse_externals(model, "MotionView text of the whole scene")
     check_sheets(model)
     refuse_compressed(model, "MotionView text")
+    refuse_rolling(model, "MotionView text")
     for roller in model.rollers:
         if roller.one_way is not None:
             raise RefusedError(

@@ -34,6 +34,7 @@ def mdl_value(value: float, unit: str) -> float:
         "g*mm^2": lambda: _fifteen(value / 1000),
         "N*mm*ms/rad": lambda: _fifteen(value / 1000),
         "ms": lambda: _fifteen(value / 1000),
+        "1/ms": lambda: _fifteen(value * 1000),
         "mm/ms": lambda: _fifteen(value * 1000),
         "rad/ms": lambda: _fifteen(value * 1000),
         "mm/ms^2": lambda: _fifteen(value * 1e6),

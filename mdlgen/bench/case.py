@@ -20,6 +20,11 @@ class Finding:
     error: float
     tolerance: float | None = None  # None: the step was forced, and nothing was promised
     details: dict[str, float] = field(default_factory=dict)
+    expected: float | None = None  # of a row of the validation: the closed form or the published number,
+    found: float | None = None  # what the solver got,
+    unit: str = ""  # of both,
+    source: str = ""  # where the expected number is from,
+    because: str = ""  # and why the tolerance is what it is
 
 
 # The result and, for a case that has one, its reference.
@@ -75,6 +80,7 @@ class Case:
     reference: Reference | None = None
     repeats: bool = True  # whether the wall time is what it is about
     limit: float = 300.0  # [s] for one run; a solver that takes longer is stopped, and that is its result
+    group: str = ""  # heading of the suite's page that it stands under
 
     def at(self, step: float | None) -> Case:
         """The same case at another step [ms]."""

@@ -54,6 +54,12 @@ class Row:
     repeats: int
     details: dict[str, float]
     command: str
+    group: str = ""
+    expected: float | None = None
+    found: float | None = None
+    unit: str = ""
+    source: str = ""
+    because: str = ""
 
     def json(self) -> dict[str, Any]:
         """Plain data; numbers that are not finite are left out."""
@@ -99,4 +105,10 @@ def _row(case: Case, solver: str, outcome: Outcome, finding: Finding, status: st
         repeats=outcome.repeats,
         details=finding.details,
         command=case.run.command(solver),
+        group=case.group,
+        expected=finding.expected,
+        found=finding.found,
+        unit=finding.unit,
+        source=finding.source,
+        because=finding.because,
     )

@@ -44,16 +44,16 @@ def _cells(row: Row) -> tuple[str, ...]:
     return (
         row.case,
         row.solver,
-        _time(row.step_s),
+        time(row.step_s),
         row.status if row.status == OK else f"**{row.status}**",
         row.quantity,
-        _number(row.error),
-        _number(row.tolerance),
-        _number(row.error_estimate),
-        _time(row.wall_s),
-        _time(row.estimate_s or None),
-        _time(per_step),
-        _number(solves),
+        number(row.error),
+        number(row.tolerance),
+        number(row.error_estimate),
+        time(row.wall_s),
+        time(row.estimate_s or None),
+        time(per_step),
+        number(solves),
     )
 
 
@@ -67,12 +67,12 @@ def _together(found: Bench) -> list[str]:
     lines = [
         *(f"- {label}: order {order:.2f}" for label, order in told["order"].items()),
         *(
-            f"- {label}: {_time(at['wall_s'])} at an error of {at['error']:g}"
+            f"- {label}: {time(at['wall_s'])} at an error of {at['error']:g}"
             + ("" if at["fastest"] == label else f", {at['times_fastest']:.3g} times {at['fastest']}")
             for label, at in told["wall_at_equal_error"].items()
         ),
         *(
-            f"- {label}: does not come to that; the least is {at['error']:.3g}, in {_time(at['wall_s'])}"
+            f"- {label}: does not come to that; the least is {at['error']:.3g}, in {time(at['wall_s'])}"
             for label, at in told["least_error"].items()
         ),
         *(
@@ -87,11 +87,11 @@ def _together(found: Bench) -> list[str]:
     return ["## Together", "\n".join(lines), f"{len(found.rows)} rows: {summed}."]
 
 
-def _number(value: float | None) -> str:
+def number(value: float | None) -> str:
     return "" if value is None else f"{value:.3g}"
 
 
-def _time(seconds: float | None) -> str:
+def time(seconds: float | None) -> str:
     """Three figures in the unit that reads best."""
     if seconds is None:
         return ""

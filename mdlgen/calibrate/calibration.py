@@ -31,6 +31,9 @@ class Calibration:
     sensitivity: Floats  # d drop / d ln value [mm], of the same shape
     runs: int
     step_error: float | None  # of the value by the time step of the runs, relative; None at rest
+    # part of what was lost in the last run that numerical damping of joints took; None at rest, and where the
+    # solver does not have it apart
+    numerical: float | None
     solver: str
     model: Model  # of the scene as it was given
     probe: Anchor
@@ -61,8 +64,9 @@ def calibrate(
     The logarithm of the value is sought, by Brent's method for one drop and by least squares for a curve, in
     at most 15 runs. All runs for a curve take the step that the first one was given or chose, so that they
     differ by the value alone; what a solver damps by its steps then counts as damping of the material, so a
-    last run at half the step tells how far the step moves the value (`step_error`). `progress(runs, most)` is
-    told of each run.
+    last run at half the step tells how far the step moves the value (`step_error`), and its energy how much
+    of the damping is numerical (`numerical`): a value of damping is too small by that part.
+    `progress(runs, most)` is told of each run.
 
     Raises SpecError for an unknown value or probe, an analysis that does not go with the measurement, and a
     measurement that no value reaches or that does not depend on the value.
@@ -75,6 +79,7 @@ def calibrate(
         _check_reach(model, index, measured)
     sheet = model.sheets[model.probes[index].sheet]
     material = scene.sheets[sheet.name].material
+    values.check(fit, scene.materials[material])
     begin = values.start(fit, scene.materials[material], sheet)
     times = measured.time if isinstance(measured, Decay) else None
     runs = Runs(scene, material, fit, index, solver, times, progress)
@@ -84,9 +89,10 @@ def calibrate(
         best = search.curve(measured) if isinstance(measured, Decay) else search.number(measured)
         status, drop, slope = "ok", runs.drop(best), search.slope(best)
         step_error = None if times is None else search.step_error(best)
+        numerical = None if times is None else runs.numerical_at(best)
     except Failed as failure:
         status, drop, slope = str(failure), np.full(1, np.nan), np.full(1, np.nan)
-        step_error = None
+        step_error = numerical = None
     return Calibration(
         status=status,
         fit=fit,
@@ -98,6 +104,7 @@ def calibrate(
         sensitivity=slope,
         runs=runs.count,
         step_error=step_error,
+        numerical=numerical,
         solver=registry.chosen(solver, model)[0],
         model=model,
         probe=model.probes[index],

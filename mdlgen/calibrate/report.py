@@ -29,6 +29,7 @@ def report(found: Calibration) -> dict[str, Any]:
         "sensitivity_mm": _size(found.sensitivity),
         "runs": found.runs,
         "step_error": found.step_error,
+        "numerical_damping": found.numerical,
         "solver": found.solver,
     }
     if isinstance(found.measured, Decay):
@@ -47,6 +48,7 @@ def report_text(found: Calibration) -> str:
         f"sensitivity: 1 % more {found.fit} changes the drop by {change:.3g} mm"
         + (" (root of the mean square)" if len(found.drop) > 1 else ""),
         *_step_error(found),
+        *_numerical(found),
         f"{found.runs} runs ({found.solver}); {_sheet(found)}",
         f'as an option: --set materials.{found.material}.{found.fit}="{quantity(found)}"',
     ]
@@ -66,8 +68,16 @@ def fragment(found: Calibration) -> str:
         f"  {found.material}:",
         *(f"    {word}:" for word in outer),
         f"{'  ' * (2 + len(outer))}{name}: {quantity(found)}",
+        *([f"      at: {_frequency(found):.{DIGITS}g} Hz"] if name == "loss_factor" else []),
     ]
     return "\n".join(lines) + "\n"
+
+
+def _frequency(found: Calibration) -> float:
+    """Frequency of the loss factor of the scene [Hz]."""
+    sheet = found.model.sheets[found.probe.sheet].name
+    (at,) = (p.value for p in found.model.parameters if p.data_set == sheet and p.member == "f")
+    return 1e3 * at
 
 
 def quantity(found: Calibration) -> str:
@@ -90,6 +100,16 @@ def _step_error(found: Calibration) -> list[str]:
     if found.step_error is None:
         return []
     return [f"error of the value by the step of the runs: {found.step_error:.2%} (see run.tolerance)"]
+
+
+def _numerical(found: Calibration) -> list[str]:
+    """How much of the damping is that of the solver, which a fitted damping lacks."""
+    if found.numerical is None:
+        return []
+    told = f"numerical damping of the solver took {found.numerical:.2%} of what was lost"
+    if found.fit.startswith("damping."):
+        told += "; the value is too small by that part"
+    return [told]
 
 
 def _sheet(found: Calibration) -> str:

@@ -56,6 +56,7 @@ class Runs:
         self.scene, self.material, self.fit, self.probe, self.solver = scene, material, fit, probe, solver
         self.times, self.progress = times, progress
         self.known: dict[float, Floats] = {}
+        self._numerical: dict[float, float | None] = {}
         self.step: float | None = None
         self.count = 0
 
@@ -63,15 +64,20 @@ class Runs:
         """Drop of the probe along gravity [mm]: at rest, (1,), or at the measured times."""
         log_value = float(log_value)
         if log_value not in self.known:
-            self.known[log_value] = self._run(math.exp(log_value), self.step)
+            self.known[log_value], self._numerical[log_value] = self._run(math.exp(log_value), self.step)
         return self.known[log_value]
+
+    def numerical_at(self, log_value: float) -> float | None:
+        """Part of what was lost in the run with a value that numerical damping took; None: not known."""
+        self.drop(log_value)
+        return self._numerical[float(log_value)]
 
     def at_half_step(self, log_value: float) -> Floats:
         """As `drop`, by one more run."""
         assert self.step is not None, "asked only after a run over time"
-        return self._run(math.exp(log_value), self.step / 2)
+        return self._run(math.exp(log_value), self.step / 2)[0]
 
-    def _run(self, value: float, step: float | None) -> Floats:
+    def _run(self, value: float, step: float | None) -> tuple[Floats, float | None]:
         if self.count == MAX_RUNS:
             raise Failed(f"no {self.fit} was found in {MAX_RUNS} runs; start nearer to it (--set)")
         self.count += 1
@@ -85,7 +91,10 @@ class Runs:
             raise Failed(f"with {self.fit} = {value:.6g} the run failed: {result.status}")
         if self.times is not None and self.step is None:
             self.step = result.step
-        return self._read(result)
+        energy = result.energy
+        lost = energy.dissipated + (energy.numerical or 0.0)
+        part = None if energy.numerical is None or lost <= 0.0 else energy.numerical / lost
+        return self._read(result), part
 
     def _read(self, result: Result) -> Floats:
         from scipy.interpolate import CubicHermiteSpline
@@ -196,5 +205,6 @@ class Search:
             raise SpecError(
                 f"--fit: the measured motion does not depend on {self.runs.fit}; "
                 "k_tx, D_cd and damping.ratio act on bending along y (CD), "
-                "k_ty, D_md and damping.ratio_ty on bending along x (MD)"
+                "k_ty, D_md and damping.ratio_ty on bending along x (MD), "
+                "damping.time and damping.loss_factor on both"
             )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 from mdlgen.errors import SpecError
@@ -10,15 +11,16 @@ from mdlgen.report.overview import bending
 from mdlgen.spec.material import Damping, Material
 from mdlgen.spec.scene import Scene
 
-# Where a search starts for a value that is zero in the scene, from which no factor leads away.
+# Where a search starts for a value that is zero in the scene, or not given, from which no factor leads away.
 _FROM_ZERO = 0.1
+_BY_RATIO = ("ratio", "ratio_ty", "rotation")
 
 
 class Fit(NamedTuple):
     """One value of a material."""
 
     unit: str  # as in the spec; empty for a plain number
-    instead: str | None = None  # the other form of the same bending, which is taken away
+    instead: str | None = None  # the other form of the same bending, or of the damping, which is taken away
     greatest: float | None = None  # what the spec allows
 
 
@@ -29,6 +31,8 @@ FITS = {
     "D_md": Fit("N*mm", "k_ty"),
     "damping.ratio": Fit("", greatest=10.0),
     "damping.ratio_ty": Fit("", greatest=10.0),
+    "damping.time": Fit("ms", "damping by ratio or loss_factor"),
+    "damping.loss_factor": Fit("", "damping by ratio or time", greatest=10.0),
 }
 
 
@@ -39,22 +43,45 @@ def find(name: str) -> Fit:
     return FITS[name]
 
 
+def check(name: str, material: Material) -> None:
+    """Raises SpecError where a scene lacks what a value needs beside it."""
+    if name == "damping.loss_factor" and material.damping.at is None:
+        raise SpecError(
+            "a loss factor belongs to a frequency, and the scene has none: give one, as "
+            '--set materials.NAME.damping.at="40 Hz" --set materials.NAME.damping.loss_factor=0.05'
+        )
+
+
 def start(name: str, material: Material, sheet: SheetPart) -> float:
-    """The scene's own value, in whichever form it is given there; above zero."""
-    if name.startswith("damping."):
-        ratio, ratio_ty = material.damping.ratio, material.damping.ratio_ty
-        value = ratio if name == "damping.ratio" or ratio_ty is None else ratio_ty
+    """The scene's own value, in whichever form it is given there; above zero. Of two, MD and CD, the mean."""
+    damping = material.damping
+    if name == "damping.ratio":
+        value = damping.zetas[0]
+    elif name == "damping.ratio_ty":
+        value = damping.zetas[1]
+    elif name.startswith("damping."):
+        value = 0.5 * sum(damping.times or (0.0, 0.0))
+        if name == "damping.loss_factor" and damping.at is not None:
+            value *= 2.0 * math.pi * damping.at
     else:
         value = bending(sheet)[name]
     return value if value > 0.0 else _FROM_ZERO
 
 
 def with_value(scene: Scene, material: str, name: str, value: float) -> Scene:
-    """The scene with that value of a material; the other form of the same bending is taken away."""
+    """The scene with that value of a material; the other form of the same bending, or of the damping, is
+    taken away."""
     old = scene.materials[material]
     if name.startswith("damping."):
-        damping: Damping = old.damping.model_copy(update={name.removeprefix("damping."): value})
-        new = old.model_copy(update={"damping": damping})
+        own = name.removeprefix("damping.")
+        new = old.model_copy(update={"damping": _damping(old.damping, own, value)})
     else:
         new = old.model_copy(update={name: value, str(FITS[name].instead): None})
     return scene.model_copy(update={"materials": {**scene.materials, material: new}})
+
+
+def _damping(old: Damping, own: str, value: float) -> Damping:
+    """Damping with one value of it; what does not go with it is left out."""
+    forms = (_BY_RATIO, ("time",), ("loss_factor", "at"))
+    others = [name for form in forms if own not in form for name in form]
+    return old.model_copy(update={**dict.fromkeys(others), own: value})

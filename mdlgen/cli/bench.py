@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from mdlgen import paths
 from mdlgen.cli.shell import (
     SOLVER_FAILED,
     Quiet,
@@ -25,8 +26,8 @@ def bench(
         list[str] | None,
         typer.Argument(
             metavar="SUITE ...",
-            help="transport, elastica, impact, friction, flight, scaling, skip, feeder, stability: "
-            "all if left out.",
+            help="transport, elastica, impact, friction, flight, scaling, skip, feeder, stability, "
+            "validation: all if left out.",
         ),
     ] = None,
     output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="Where the files go.")] = Path(
@@ -46,6 +47,14 @@ def bench(
             "installed and no solver is chosen, if left out.",
         ),
     ] = None,
+    page: Annotated[
+        Path | None,
+        typer.Option(
+            "--page",
+            metavar="FILE",
+            help="Also writes the suite's page, as it stands in samples/: stability or validation.",
+        ),
+    ] = None,
     quiet: Quiet = False,
     verbose: Verbose = False,
 ) -> None:
@@ -53,18 +62,24 @@ def bench(
 
     Example: mdlgen bench impact friction --solver exudyn
 
-    Example: mdlgen bench stability --quick
+    Example: mdlgen bench stability --repeat 1 --page samples/stability.md
     """
+    from mdlgen.bench import page as pages
     from mdlgen.bench.run import bench as run_bench
     from mdlgen.bench.table import markdown
     from mdlgen.results.store import check_folder
 
+    shown = "" if page is None else pages.check_page(suites or ())
     check_folder(output)
     heard = (lambda _: None) if quiet else say
     found = run_bench(suites or (), output, solver or (), quick, repeat, heard, peers)
     if not quiet:
         typer.echo(markdown(found), nl=False)
         typer.echo(f"wrote {output}")
+    if page is not None:
+        paths.write_atomic(page, pages.page(shown, found))
+        if not quiet:
+            typer.echo(f"wrote {page}")
     if found.wrong:
         row = found.wrong[0]
         raise AccuracyError(f"{len(found.wrong)} wrong: {row.case}, {row.solver}: {row.reason}")

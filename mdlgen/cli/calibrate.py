@@ -45,7 +45,8 @@ def calibrate(
             "--fit",
             metavar="NAME",
             help="The value to find, of the probed sheet's material: k_tx, k_ty, D_cd, D_md, damping.ratio, "
-            "damping.ratio_ty. k_tx takes the place of D_cd, k_ty that of D_md, and the reverse.",
+            "damping.ratio_ty, damping.time, damping.loss_factor. k_tx takes the place of D_cd, k_ty that of "
+            "D_md, and one form of damping that of the others.",
         ),
     ],
     probe: Annotated[
@@ -72,7 +73,7 @@ def calibrate(
 
     Example: mdlgen calibrate samples/cantilever.yaml --measured "60.76 mm" --fit D_cd
 
-    Example: mdlgen calibrate samples/cantilever.yaml --measured decay.csv --fit damping.ratio
+    Example: mdlgen calibrate samples/cantilever.yaml --measured decay.csv --fit damping.time
     --set run.analysis=transient --set run.duration="400 ms"
     """
     from mdlgen import paths, registry

@@ -145,8 +145,9 @@ def run(
         say("a static run has no step: --check-step compared nothing")
     if result.error_estimate is not None and not result.error_estimate <= model.run.tolerance:
         raise AccuracyError(
-            f"{task.spec}: the error estimate {result.error_estimate:.3g} is above run.tolerance "
-            f"{model.run.tolerance:g}; the files in {folder} hold this result; give a smaller run.step"
+            f"{task.spec}: the error estimate of {result.error_estimate_of} is {result.error_estimate:.3g}, "
+            f"above run.tolerance {model.run.tolerance:g}; the files in {folder} hold this result; "
+            "give a smaller run.step"
         )
 
 

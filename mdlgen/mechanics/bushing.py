@@ -73,7 +73,8 @@ def bushing_pair(xa, fa, va, wa, ra, xb, fb, vb, wb, rb, e, k, kt, c, ct):
 
     Args and result as of `bushing`, with k, kt, c, ct the sums of both; the same forces as the two have,
     since their rotation is the same and their gaps are d + D and d - D, D = (Q - Q^T) e, with Q half of the
-    relative rotation. With e = 0 it is one bushing. Also returns the middle frame and the gap.
+    relative rotation. With e = 0 it is one bushing. Also returns the middle frame, the gap, and the power of
+    dampers that have the stiffness for a damping, over 1 ms.
     """
     relative = transpose_matmul(fa, fb)
     theta = log_rotation(relative)
@@ -97,6 +98,9 @@ def bushing_pair(xa, fa, va, wa, ra, xb, fb, vb, wb, rb, e, k, kt, c, ct):
     brake = (ct[0] * w[0], ct[1] * w[1], ct[2] * w[2])
     energy = 0.5 * (dot(d, spring) + dot(apart, spread) + dot(theta, twist))
     power = dot(v, damper) + dot(parting, drag) + dot(w, brake)
+    per_time = 0.0
+    for i in range(3):
+        per_time += k[i] * (v[i] * v[i] + parting[i] * parting[i]) + kt[i] * w[i] * w[i]
     if angle2 > 1e-12:
         along = scale(dot(twist, theta) / angle2, theta)
         twist = add(along, scale(1.0 / sine, sub(twist, along)))
@@ -105,4 +109,4 @@ def bushing_pair(xa, fa, va, wa, ra, xb, fb, vb, wb, rb, e, k, kt, c, ct):
     torque = scale(-1.0, rotate(middle, couple))
     torque_b = add(torque, cross(sub(rb, scale(0.5, gap)), force))
     torque_a = scale(-1.0, add(torque, cross(add(ra, scale(0.5, gap)), force)))
-    return force, torque_b, torque_a, energy, power, middle, gap
+    return force, torque_b, torque_a, energy, power, middle, gap, per_time

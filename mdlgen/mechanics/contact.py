@@ -1,5 +1,5 @@
-"""Contact between a box and a cylinder or a part of one, a box and a plane, and two parallel cylinders; see
-facing.py for two boxes.
+"""Contact between a box and a cylinder or a part of one, and two parallel cylinders; see plate.py for a box
+and a plate, facing.py for two boxes.
 
 The force of one box under a roller is k z^1.5 (Eq. 10), z the depth of the point of its face nearest to the
 roller's axis, times the part of the roller's width that the box covers. Where boxes lie side by side under
@@ -10,12 +10,6 @@ is k z^1.5 again. So a roller that passes from box to box feels one sheet. Beyon
 over: there the box keeps the whole, about the foot of the roller as if the sheet went on, and as an edge
 comes to the foot the pressure draws in to it, since force, moment and damping of both sides of that place
 must be the same. `share: pair` gives every box the full k, as MotionSolve does.
-
-Each law adds to `out`: force and torque on the first body (0-5), on the second (6-11), normal force (12),
-stored energy (13), dissipated power (14), and keeps the greatest depth (15). An `out` that is longer also
-gets the number of contact points (16) and for each of them, in POINT numbers: the point, the normal, the
-elastic force and its growth with depth, the normal force, the rate of penetration, the slip velocity, the
-share of damping and both coefficients of friction. A solver makes its tangent from them.
 """
 
 from __future__ import annotations
@@ -26,53 +20,11 @@ import numpy as np
 from numba import njit
 
 from mdlgen.mechanics.compiling import OWNS
-from mdlgen.mechanics.laws import damped, friction_over_speed
-from mdlgen.mechanics.vector import add, back, cross, dot, rotate, scale, sub
+from mdlgen.mechanics.point import push, push_in_nip
+from mdlgen.mechanics.vector import add, back, dot, rotate, scale, sub
 
-OUT = 16
-POINT = 16
-MOST_POINTS = 24  # of one pair: three parts of a face, two stations, two points; twice for a corner
 WHOLE = 4.0  # no sector but the whole round: more than half a turn
 _GAUSS = 1.0 / math.sqrt(3.0)
-
-
-@njit(cache=True, error_model="numpy")
-def push(out, point, normal, spring, depth, energy, xa, va, wa, xb, vb, wb, law):
-    """Adds the force of one contact point; `normal` points to the first body, `spring` is its elastic force.
-
-    law: (beta, mu_static, mu_dynamic, stiction velocity, friction velocity, smoothing velocity).
-    """
-    ra, rb = sub(point, xa), sub(point, xb)
-    slip = sub(add(va, cross(wa, ra)), add(vb, cross(wb, rb)))
-    rate = -dot(slip, normal)
-    slip = add(slip, scale(rate, normal))
-    speed = math.sqrt(dot(slip, slip))
-    force = damped(spring, rate, law[0], law[5])
-    drag = force * friction_over_speed(speed, law[1], law[2], law[3], law[4])
-    f = sub(scale(force, normal), scale(drag, slip))
-    ta, tb = cross(ra, f), cross(rb, f)
-    for i in range(3):
-        out[i] += f[i]
-        out[3 + i] += ta[i]
-        out[6 + i] -= f[i]
-        out[9 + i] -= tb[i]
-    out[12] += force
-    out[13] += energy
-    out[14] += (force - spring) * rate + drag * speed * speed
-    out[15] = max(out[15], depth)
-    if out.size > OUT and out[OUT] < MOST_POINTS:
-        at = OUT + 1 + POINT * int(out[OUT])
-        out[OUT] += 1.0
-        for i in range(3):
-            out[at + i] = point[i]
-            out[at + 3 + i] = normal[i]
-            out[at + 10 + i] = slip[i]
-            out[at + 13 + i] = law[i]
-        out[at + 6] = spring
-        # F z^1.5 has stored 2/5 F z, an elastic foundation 3/5 F z: this is 3/2 F/z, and F/z
-        out[at + 7] = 0.6 * spring * spring / energy if energy > 0.0 else 0.0
-        out[at + 8] = force
-        out[at + 9] = rate
 
 
 @njit(cache=True, error_model="numpy")
@@ -185,6 +137,11 @@ def _face(
                 draw = min(draw, -first / reach)
             if spread and open_last:
                 draw = min(draw, last / reach)
+            # from the axis to its foot: back along the face's normal, turned with the lean
+            way = rotate(ra, local(p, r, q, lean * up, lean * ur, -na * sign))
+            under = local(p, r, q, l0[p] + u * up, l0[r] + u * ur, sign * half[q])
+            foot = add(add(xa, rotate(ra, under)), aside)
+            across = rotate(ra, local(p, r, q, -ur, up, 0.0))
             for point in range(2 if spread else 1):
                 t = nearest
                 if spread:
@@ -201,27 +158,14 @@ def _face(
                     spring = weight * zeta * math.sqrt(zeta)
                     energy = 0.4 * spring * zeta
                 distance = math.sqrt(t * t + e * e)
-                # from the axis to the point: t across, e back along the face's normal turned with the lean
-                cp = t * -ur - e * (-lean * up)
-                cr = t * up - e * (-lean * ur)
-                cq = -e * na * sign
-                normal = local(p, r, q, cp / distance, cr / distance, cq / distance)
-                at = local(p, r, q, l0[p] + u * up - t * ur, l0[r] + u * ur + t * up, sign * half[q])
-                push(
-                    out,
-                    add(add(xa, rotate(ra, at)), aside),
-                    rotate(ra, normal),
-                    spring,
-                    depth,
-                    energy,
-                    xa,
-                    va,
-                    wa,
-                    xb,
-                    vb,
-                    wb,
-                    law,
-                )
+                at = add(foot, scale(t, across))
+                normal = add(scale(t / distance, across), scale(e / distance, way))
+                if spread:
+                    push_in_nip(
+                        out, at, normal, foot, way, spring, depth, energy, xa, va, wa, xb, vb, wb, law
+                    )
+                else:
+                    push(out, at, normal, spring, depth, energy, xa, va, wa, xb, vb, wb, law)
 
 
 @njit(cache=True, error_model="numpy")
@@ -392,44 +336,6 @@ def face_corners(points, xa, ra, half, facing, xb, rb):
         for i in range(3):
             points[corner, i] = at[i]
     return 4.0 * half[p] * half[r]
-
-
-@njit(cache=True, error_model="numpy", **OWNS)
-def box_plane(out, xa, ra, va, wa, half, xb, rb, half_b, k, law, vb=(0.0, 0.0, 0.0)):
-    """The face of box a that looks at plate b, on the plate's upper face. The plate does not turn; it moves
-    at `vb`.
-
-    The corners of the part of the box's face that lies over the plate share k, so a flat box gives
-    k z^1.5 wherever it lies.
-    """
-    zero = (0.0, 0.0, 0.0)
-    normal = (rb[2], rb[5], rb[8])
-    offset = back(rb, sub(xa, xb))
-    reach = math.sqrt(dot(half, half))
-    if (
-        offset[2] - half_b[2] > reach
-        or abs(offset[0]) > half_b[0] + reach
-        or abs(offset[1]) > half_b[1] + reach
-    ):
-        return
-    points = np.empty((12, 3))
-    face_corners(points, xa, ra, half, back(ra, normal), xb, rb)
-    inside = True
-    for corner in range(4):
-        inside = inside and abs(points[corner, 0]) <= half_b[0] and abs(points[corner, 1]) <= half_b[1]
-    count = 4
-    if not inside:
-        for sign in (1.0, -1.0):
-            count = clip(points, count, (sign, 0.0, 0.0), half_b[0])
-        for sign in (1.0, -1.0):
-            count = clip(points, count, (0.0, sign, 0.0), half_b[1])
-    for i in range(count):
-        depth = half_b[2] - points[i, 2]
-        if depth <= 0.0 or depth > 2 * half_b[2]:
-            continue
-        point = add(xb, rotate(rb, (points[i, 0], points[i, 1], points[i, 2])))
-        spring = k / count * depth * math.sqrt(depth)
-        push(out, point, normal, spring, depth, 0.4 * spring * depth, xa, va, wa, xb, vb, zero, law)
 
 
 @njit(cache=True, error_model="numpy")

@@ -8,7 +8,8 @@ A flat or hollow face meets the corners of that part of the box's face that lies
 so that a box over a straight guide gives k z^1.5, and one whose corners are all z deep in a hollow does, too:
 no point of a flat face is deeper in a hollow than the deepest corner. A round face is met as a roller that
 does not turn (`box_sector`). With `share: width` k goes with the part of the box's face, or of its width,
-that the guide covers: where a sheet passes from one guide to the next, both together count as one.
+that the guide covers: where a sheet passes from one guide to the next, both together count as one. At free
+ends the law passes into that of the edge, see mechanics.edge; the long sides of an arc have no edge.
 """
 
 from __future__ import annotations
@@ -19,8 +20,11 @@ import numpy as np
 from numba import njit
 
 from mdlgen.mechanics.compiling import OWNS
-from mdlgen.mechanics.contact import box_sector, clip, face_corners, push
-from mdlgen.mechanics.vector import add, back, dot, rotate, sub
+from mdlgen.mechanics.contact import box_sector, clip, face_corners
+from mdlgen.mechanics.edge import held, leaning
+from mdlgen.mechanics.plate import area_of, box_ends, box_flat, facing
+from mdlgen.mechanics.point import push
+from mdlgen.mechanics.vector import add, back, dot, rotate, scale, sub
 
 INSIDE, OUTSIDE, BOTH = 1, 2, 3  # sides: left of a line or inside an arc; right or outside; both
 
@@ -31,59 +35,64 @@ def inward(at, radius):
     return at[1] if radius == 0.0 else radius - math.sqrt(at[0] * at[0] + at[1] * at[1])
 
 
+@njit(cache=True, error_model="numpy", forceinline=True)
+def upper(side, thick):
+    """Where the upper face of a guide, left of a line or inside of an arc, is on its normal."""
+    return 0.0 if side == INSIDE else thick if side == OUTSIDE else 0.5 * thick
+
+
 @njit(cache=True, error_model="numpy")
 def _covered(points, shape, half):
-    """Cuts the box's face to what lies over the guide, in place; returns its number of points."""
-    radius, middle, angle = shape
+    """Cuts the box's face to what lies over an arc, in place; returns its number of points."""
+    _radius, middle, angle = shape
     count = clip(points, 4, (0.0, 0.0, 1.0), half[1])
     count = clip(points, count, (0.0, 0.0, -1.0), half[1])
-    if radius == 0.0:
-        count = clip(points, count, (1.0, 0.0, 0.0), half[0])
-        return clip(points, count, (-1.0, 0.0, 0.0), half[0])
     last, first = middle + angle, middle - angle
     count = clip(points, count, (-math.sin(last), math.cos(last), 0.0), 0.0)
     return clip(points, count, (math.sin(first), -math.cos(first), 0.0), 0.0)
 
 
-@njit(cache=True, error_model="numpy")
-def _area(points, count):
-    """Of a flat polygon."""
-    x = y = z = 0.0
-    for i in range(1, count - 1):
-        a, b = points[i] - points[0], points[i + 1] - points[0]
-        x += a[1] * b[2] - a[2] * b[1]
-        y += a[2] * b[0] - a[0] * b[2]
-        z += a[0] * b[1] - a[1] * b[0]
-    return 0.5 * math.sqrt(x * x + y * y + z * z)
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _beyond(i, shape):
+    """Direction out of the end i of an arc, guide's axes."""
+    sign = 1.0 if i == 0 else -1.0
+    at = shape[1] + sign * shape[2]
+    return (-sign * math.sin(at), sign * math.cos(at), 0.0)
 
 
 @njit(cache=True, error_model="numpy", **OWNS)
-def box_guide(out, xa, ra, va, wa, half, exposed, xb, rb, shape, half_b, side, k, shared, law):
+def box_guide(
+    out,
+    xa,
+    ra,
+    va,
+    wa,
+    half,
+    exposed,
+    xb,
+    rb,
+    shape,
+    half_b,
+    side,
+    k,
+    shared,
+    law,
+    ends=0,
+    edge=(0.0, 0.0, 0.0),
+    beside=0,
+):
     """Box a (centre xa, rotation ra, half lengths, exposed sides) on guide b (origin xb, axes rb).
 
     shape: (radius, middle angle, half angle), the radius 0 for a straight guide; half_b: half of its length,
-    width and thickness; side: INSIDE, OUTSIDE or BOTH. Radius and line are those of the face, and of the
-    plate's middle where both sides are touched. What is deeper than the plate is thick does not touch.
+    width and thickness; side: INSIDE, OUTSIDE or BOTH, which tells where the plate is: radius and line are
+    those of that face, and of the plate's middle for both. A box meets the face of the side that it is on.
+    What is deeper than the plate is thick does not touch. ends, edge and beside: see mechanics.edge.
     """
     zero = (0.0, 0.0, 0.0)
-    radius, middle, angle = shape
-    at = back(rb, sub(xa, xb))
-    reach, thick = math.sqrt(dot(half, half)), 2.0 * half_b[2]
-    if abs(at[2]) > half_b[1] + reach or (radius == 0.0 and abs(at[0]) > half_b[0] + reach):
-        return
-    height = inward(at, radius)
-    if abs(height) > reach + thick:
-        return
-    sign, offset = 1.0 if side == INSIDE else -1.0, 0.0
-    if side == BOTH:
-        sign, offset = 1.0 if height >= 0.0 else -1.0, half_b[2]
-    if radius > 0.0 and sign < 0.0:
-        if -height < offset - thick:  # behind the plate
-            return
-        axis = (rb[2], rb[5], rb[8])
-        to = rotate(rb, (math.cos(middle), math.sin(middle), 0.0))
-        face, width = radius + offset, 2.0 * half_b[1]
-        box_sector(
+    radius, thick = shape[0], 2.0 * half_b[2]
+    top = upper(side, thick)
+    if radius == 0.0:
+        box_flat(
             out,
             xa,
             ra,
@@ -92,40 +101,148 @@ def box_guide(out, xa, ra, va, wa, half, exposed, xb, rb, shape, half_b, side, k
             half,
             exposed,
             xb,
-            axis,
-            to,
-            angle,
+            rb,
+            half_b,
+            top,
+            ends,
+            edge,
+            beside,
             zero,
-            zero,
-            face,
-            width,
             k,
             shared,
-            zero,
+            shared,
             law,
         )
         return
-    normal = (0.0, sign, 0.0)
-    if radius > 0.0:
-        away = math.sqrt(at[0] * at[0] + at[1] * at[1])
-        if away == 0.0:
-            return
-        normal = (-at[0] / away, -at[1] / away, 0.0)
+    at = back(rb, sub(xa, xb))
+    reach = math.sqrt(dot(half, half))
+    if abs(at[2]) > half_b[1] + reach:
+        return
+    height = inward(at, radius)
+    if height > top + reach or height < top - thick - reach:
+        return
+    if beside != 0:
+        box_ends(
+            out,
+            xa,
+            ra,
+            va,
+            wa,
+            half,
+            exposed,
+            xb,
+            rb,
+            shape,
+            half_b,
+            top,
+            ends,
+            edge,
+            beside,
+            zero,
+            k,
+            shared,
+            law,
+        )
+        return
+    away = math.sqrt(at[0] * at[0] + at[1] * at[1])
+    if away == 0.0:
+        return
+    sign = 1.0 if height >= top - half_b[2] else -1.0
+    normal = (-sign * at[0] / away, -sign * at[1] / away, 0.0)
+    look = back(ra, rotate(rb, normal))
+    tilted = back(rb, facing(look, ra))
+    if sign < 0.0:
+        part = 1.0
+        for i in range(2):
+            if ends & (1 << i) != 0:
+                part -= leaning(dot(tilted, _beyond(i, shape)))
+        to = rotate(rb, (math.cos(shape[1]), math.sin(shape[1]), 0.0))
+        face, width = radius - top + thick, 2.0 * half_b[1]
+        if part > 0.0:
+            box_sector(
+                out,
+                xa,
+                ra,
+                va,
+                wa,
+                half,
+                exposed,
+                xb,
+                (rb[2], rb[5], rb[8]),
+                to,
+                shape[2],
+                zero,
+                zero,
+                face,
+                width,
+                part * k,
+                shared,
+                zero,
+                law,
+            )
+    else:
+        _hollow(
+            out, xa, ra, va, wa, half, xb, rb, shape, half_b, top, ends, edge, look, tilted, k, shared, law
+        )
+    if ends != 0:
+        box_ends(
+            out,
+            xa,
+            ra,
+            va,
+            wa,
+            half,
+            exposed,
+            xb,
+            rb,
+            shape,
+            half_b,
+            top,
+            ends,
+            edge,
+            0,
+            zero,
+            k,
+            shared,
+            law,
+        )
+
+
+@njit(cache=True, error_model="numpy", **OWNS)
+def _hollow(out, xa, ra, va, wa, half, xb, rb, shape, half_b, top, ends, edge, look, tilted, k, shared, law):
+    """The face of box a that looks at the hollow face of an arc: `look` and its normal `tilted` (into the
+    box), in box and guide's axes."""
+    zero = (0.0, 0.0, 0.0)
     points = np.empty((12, 3))
-    area = face_corners(points, xa, ra, half, back(ra, rotate(rb, normal)), xb, rb)
+    area = face_corners(points, xa, ra, half, look, xb, rb)
     count = _covered(points, shape, half_b)
     if count < 3:
         return
-    share = k / count * (_area(points, count) / area if shared else 1.0)
+    share = k / count * (area_of(points, count) / area if shared else 1.0)
     for i in range(count):
         point = (points[i, 0], points[i, 1], points[i, 2])
-        depth = offset - sign * inward(point, radius)
-        if depth <= 0.0 or depth > thick:
+        depth = top - inward(point, shape[0])
+        if depth <= 0.0 or depth > 2.0 * half_b[2]:
             continue
-        if radius > 0.0:
-            away = math.sqrt(point[0] * point[0] + point[1] * point[1])
-            normal = (-point[0] / away, -point[1] / away, 0.0)
-        spring = share * depth * math.sqrt(depth)
+        away = math.sqrt(point[0] * point[0] + point[1] * point[1])
+        normal = (-point[0] / away, -point[1] / away, 0.0)
+        weight, way = share, normal
+        for j in range(2):
+            if ends & (1 << j) == 0:
+                continue
+            beyond = _beyond(j, shape)
+            lean = dot(tilted, beyond)
+            part = 2.0 - max(-dot(point, beyond), 0.0) / max(edge[0], 1e-300)
+            if lean > 0.0 and part > 0.0:
+                weight *= 1.0 - leaning(lean) * min(part, 1.0)
+                part = max(part - 1.0, 0.0)
+                way = add(scale(1.0 - part, way), scale(part, tilted))
+        way = scale(1.0 / math.sqrt(dot(way, way)), way)
+        depth *= min(1.0, dot(way, normal))
+        spring = weight * depth * math.sqrt(depth)
+        if spring <= 0.0:
+            continue
+        way = held(way, normal, edge[2] * law[1])
         where = add(xb, rotate(rb, point))
         energy = 0.4 * spring * depth
-        push(out, where, rotate(rb, normal), spring, depth, energy, xa, va, wa, xb, zero, zero, law)
+        push(out, where, rotate(rb, way), spring, depth, energy, xa, va, wa, xb, zero, zero, law)

@@ -12,11 +12,12 @@ triangle's normal,
 
 Both are pressures, so neither the number of triangles nor that of boxes changes what a sheet feels. A
 pressure over many triangles acts as four equal forces with its sum, its middle and its spread. Where a sheet
-ends, nothing takes over from the box at its edge: it has what is over it.
+ends, nothing takes over from the box at its edge: it has what is over it. On a roller these forces are one
+nip (mechanics.point). Its foot lies on a line along the axis through the middle of what presses on the box
+and, where that comes near another box, on the face as if the sheet went on flat.
 
-An outer side of a sheet meets a triangle that leans against it: at the ends of the side, in the middle of the
-thickness, half of k z^1.5, z the depth below the nearest triangle. That law begins at 3 to 9 deg, that of the
-broad faces ends at 53 to 66 deg, one passing into the other. A block of one box has six broad faces.
+The outer sides of a sheet meet what leans against them (mechanics.mesh_side). A block of one box has
+six broad faces.
 """
 
 from __future__ import annotations
@@ -28,7 +29,9 @@ import numpy as np
 from numba import njit
 
 from mdlgen.mechanics.compiling import OWNS
-from mdlgen.mechanics.contact import local, push
+from mdlgen.mechanics.contact import local
+from mdlgen.mechanics.mesh_side import meet_sides, ramp
+from mdlgen.mechanics.point import push, push_in_nip
 from mdlgen.mechanics.tree import (
     AFTER,
     AREA,
@@ -36,10 +39,8 @@ from mdlgen.mechanics.tree import (
     FIRST,
     LEAST,
     MOST,
-    NORMAL,
     THICK,
     WIDTH,
-    depth_at,
     overlaps,
     plant,
     span,
@@ -51,7 +52,7 @@ from mdlgen.model.tables import Floats, Ints, Model
 DEEPEST = 1.0  # mm: what is deeper in a part is about to come out at its other side, or is lost
 BEYOND = 1.5  # how far beyond that depth a contact is still seen, so that a run can end
 STEEP, GENTLE = 0.4, 0.6  # cosines of the angles between which the law of broad faces ends
-LEVEL, LEANING = 0.05, 0.15  # sines of those between which that of edges begins
+_SPAN = 2.5  # what presses under a round reaches no further than sqrt(5) times its spread
 LOST = 1e30  # what a depth that ends a run is above
 BLOCK = 15  # all four sides of a box are outer ones
 HEAD = np.dtype(
@@ -63,7 +64,9 @@ HEAD = np.dtype(
         ("basis", "f8"),  # 4/3 w sqrt(2 R) of the roller that it is on, 0: fixed
         ("middles", "i8"),  # depth is looked at in the middles of elements
         ("most", "f8"),  # DEEPEST
+        ("edge", "f8"),  # radius of its edges, 0: sharp
         ("reach", "f8"),  # greatest distance from the body's centre
+        ("unseen", "f8"),  # how far a box may move from one state that is looked at to the next
     ]
 )
 
@@ -81,18 +84,18 @@ def mesh_tables(model: Model, mm: float = 1.0) -> Meshes:
     """The meshes of a Model for compiled code; `mm` is a millimetre in the solver's unit."""
     heads = np.zeros(len(model.meshes), HEAD)
     bounds, links, triangles = [np.zeros((0, 12))], [np.zeros((0, 3), np.int64)], [np.zeros((0, WIDTH))]
-    planted: dict[tuple[str, float], tuple[int, int]] = {}
+    planted: dict[tuple[str, float], tuple[int, int, float]] = {}
     for head, mesh in zip(heads, model.meshes, strict=True):
         if (mesh.file, mesh.scale) not in planted:
             box, link, table = plant(mesh.corners * mm, mesh.triangles, DEEPEST * mm)
             before, shift = sum(map(len, links)), sum(map(len, triangles))
             link[:, FIRST] += shift
             link[:, AFTER] += before
-            planted[mesh.file, mesh.scale] = before, before + len(link)
+            planted[mesh.file, mesh.scale] = before, before + len(link), _unseen(table)
             bounds.append(box)
             links.append(link)
             triangles.append(table)
-        head["first"], head["end"] = planted[mesh.file, mesh.scale]
+        head["first"], head["end"], head["unseen"] = planted[mesh.file, mesh.scale]
         body = mesh.body
         if mesh.on >= 0:
             roller = model.rollers[mesh.on]
@@ -102,10 +105,20 @@ def mesh_tables(model: Model, mm: float = 1.0) -> Meshes:
         place = turn.T @ (origin(mesh, model.rollers) - model.bodies.position[body])
         head["place"], head["axes"] = place * mm, (turn.T @ mesh.axes).ravel()
         head["middles"], head["most"] = mesh.at == "centres", DEEPEST * mm
+        head["edge"] = mesh.edge_radius * mm
         head["reach"] = (
             float(np.linalg.norm(place + mesh.corners @ (turn.T @ mesh.axes).T, axis=1).max()) * mm
         )
     return Meshes(heads, np.concatenate(bounds), np.concatenate(links), np.concatenate(triangles))
+
+
+def _unseen(table: Floats) -> float:
+    """A little less than the band in which a box that is too deep is seen, where the part is thinnest, but
+    for the 2 % of its surface at its sharpest edges."""
+    order = np.argsort(table[:, THICK])
+    area = np.cumsum(table[order, AREA])
+    thin = table[order[np.searchsorted(area, 0.02 * area[-1])], THICK]
+    return 0.8 * (BEYOND - 1.0) * float(thin)
 
 
 def mesh_numbers(model: Model) -> tuple[np.ndarray, np.ndarray]:
@@ -120,16 +133,9 @@ def mesh_numbers(model: Model) -> tuple[np.ndarray, np.ndarray]:
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def _ramp(x, low, high):
-    """0 below a value, 1 above another, smooth between."""
-    s = min(max((x - low) / (high - low), 0.0), 1.0)
-    return s * s * (3.0 - 2.0 * s)
-
-
-@njit(cache=True, error_model="numpy", forceinline=True)
 def _part(cosine):
     """How much of the broad faces' law acts on a triangle at an angle to them."""
-    return _ramp(cosine, STEEP, GENTLE)
+    return ramp(cosine, STEEP, GENTLE)
 
 
 @njit(cache=True, error_model="numpy")
@@ -288,16 +294,45 @@ def _gather(sums, room, head, meshes, middle, axes, half, q, sign, stiff):
         n += 1
 
 
+@njit(cache=True, error_model="numpy")
+def _nip(sums, room, head, meshes, middle, axes, half, sign, exposed, stiff):
+    """What presses on a broad face that goes on over the sides that are not exposed: its force along the
+    file's axes and its middle in the face (fx, fy, fz, u, v). `sums` has what presses on the box itself."""
+    u, v = sums[0, 4] / sums[0, 3], sums[0, 5] / sums[0, 3]
+    du = math.sqrt(max(sums[0, 6] / sums[0, 3] - u * u, 0.0))
+    dv = math.sqrt(max(sums[0, 7] / sums[0, 3] - v * v, 0.0))
+    more = math.sqrt(2.0 * head.reach * head.most)  # half of what the deepest contact with a round one spans
+    grown = (
+        more if exposed & 1 == 0 and -u + _SPAN * du > half[0] else 0.0,
+        more if exposed & 2 == 0 and u + _SPAN * du > half[0] else 0.0,
+        more if exposed & 4 == 0 and -v + _SPAN * dv > half[1] else 0.0,
+        more if exposed & 8 == 0 and v + _SPAN * dv > half[1] else 0.0,
+    )
+    if grown[0] + grown[1] + grown[2] + grown[3] == 0.0:
+        return sums[0, 0], sums[0, 1], sums[0, 2], u, v
+    aside = (0.5 * (grown[1] - grown[0]), 0.5 * (grown[3] - grown[2]), 0.0)
+    wide = (half[0] + 0.5 * (grown[0] + grown[1]), half[1] + 0.5 * (grown[2] + grown[3]), half[2])
+    sums[1] = 0.0
+    _gather(sums[1], room, head, meshes, add(middle, rotate(axes, aside)), axes, wide, 2, sign, stiff)
+    u, v = sums[1, 4] / sums[1, 3] + aside[0], sums[1, 5] / sums[1, 3] + aside[1]
+    return sums[1, 0], sums[1, 1], sums[1, 2], u, v
+
+
 @njit(cache=True, error_model="numpy", **OWNS)
-def box_mesh(out, xa, ra, va, wa, half, exposed, xb, rb, vb, wb, head, meshes, k, law):
+def box_mesh(out, xa, ra, va, wa, half, exposed, xb, rb, axis, vb, wb, head, meshes, k, law):
     """Box a (centre xa, rotation ra, half lengths, exposed sides) on a mesh that moves with body b."""
     frame = matmul(rb, nine(head.axes))
     place = add(xb, rotate(rb, three(head.place)))
     middle, axes = back(frame, sub(xa, place)), transpose_matmul(frame, ra)
-    bounds, links, triangles = meshes.bounds, meshes.links, meshes.triangles
-    if not overlaps(bounds, links, head.first, head.end, middle, axes, half):
+    if not overlaps(meshes.bounds, meshes.links, head.first, head.end, middle, axes, half):
         return
-    sums, room = np.zeros(11), np.empty((2, 12, 3))
+    over = 1.0
+    if exposed != 0 and exposed != BLOCK:
+        over = meet_sides(
+            out, xa, ra, va, wa, half, exposed, middle, axes, frame, head, meshes, xb, vb, wb, k, law
+        )
+    both, room = np.zeros((2, 11)), np.empty((2, 12, 3))
+    sums = both[0]
     lost, spot, out_of = 0.0, xa, (0.0, 0.0, 0.0)
     for face in range(6 if exposed == BLOCK else 2):
         q, sign = (2 + face // 2) % 3, 1.0 if face % 2 == 0 else -1.0
@@ -309,41 +344,34 @@ def box_mesh(out, xa, ra, va, wa, half, exposed, xb, rb, vb, wb, head, meshes, k
         if sums[10] > 0.0 and (lost == 0.0 or sums[10] < lost):
             lost, spot = sums[10], add(xa, rotate(ra, local(p, r, q, 0.0, 0.0, sign * half[q])))
             out_of = rotate(ra, local(p, r, q, 0.0, 0.0, -sign))
-        if force <= 0.0:
+        if force <= 0.0 or over <= 0.0:
             continue
         normal = rotate(frame, (sums[0] / force, sums[1] / force, sums[2] / force))
         u, v = sums[4] / sums[3], sums[5] / sums[3]
         du = math.sqrt(max(sums[6] / sums[3] - u * u, 0.0))
         dv = math.sqrt(max(sums[7] / sums[3] - v * v, 0.0))
+        foot, way = xa, normal
+        if head.basis > 0.0:
+            sides = exposed if q == 2 else BLOCK
+            fx, fy, fz, foot_u, foot_v = _nip(
+                both, room, head, meshes, middle, axes, half, sign, sides, stiff
+            )
+            foot = add(xa, rotate(ra, local(p, r, q, foot_u, foot_v, sign * half[q])))
+            way = rotate(frame, scale(1.0 / math.sqrt(fx * fx + fy * fy + fz * fz), (fx, fy, fz)))
         for corner in range(4):
             at_u = u + (du if corner % 2 == 0 else -du)
             at_v = v + (dv if corner < 2 else -dv)
             point = add(xa, rotate(ra, local(p, r, q, at_u, at_v, sign * half[q])))
-            push(out, point, normal, 0.25 * force, sums[9], 0.25 * sums[8], xa, va, wa, xb, vb, wb, law)
+            spring, energy = 0.25 * over * force, 0.25 * over * sums[8]
+            if head.basis > 0.0:
+                under = add(foot, scale(dot(sub(point, foot), axis), axis))
+                push_in_nip(
+                    out, point, normal, under, way, spring, sums[9], energy, xa, va, wa, xb, vb, wb, law
+                )
+            else:
+                push(out, point, normal, spring, sums[9], energy, xa, va, wa, xb, vb, wb, law)
     if lost > 0.0 and out[12] == 0.0:  # what is as near to the other side is in contact there
         push(out, spot, out_of, lost, math.inf, 0.0, xa, va, wa, xb, vb, wb, law)
-    if exposed == 0 or exposed == BLOCK:
-        return
-    for side in range(4):
-        if exposed & (1 << side) == 0:
-            continue
-        p, sign = side // 2, 1.0 if side % 2 == 1 else -1.0
-        away = scale(sign, (axes[p], axes[3 + p], axes[6 + p]))
-        for end in (-1.0, 1.0):
-            x = sign * half[0] if p == 0 else end * half[0]
-            y = sign * half[1] if p == 1 else end * half[1]
-            at = add(middle, rotate(axes, (x, y, 0.0)))
-            depth, t = depth_at(bounds, links, triangles, head.first, head.end, at, head.most)
-            if depth <= 0.0:
-                continue
-            normal = three(triangles[t, NORMAL:])
-            spring = 0.5 * _ramp(-dot(away, normal), LEVEL, LEANING) * k * depth * math.sqrt(depth)
-            if spring > 0.0:
-                point = add(xa, rotate(ra, (x, y, 0.0)))
-                push(
-                    out, point, rotate(frame, normal), spring, depth, 0.4 * spring * depth,
-                    xa, va, wa, xb, vb, wb, law,
-                )  # fmt: skip
 
 
 @njit(cache=True, error_model="numpy")

@@ -199,6 +199,32 @@ def depth_at(bounds, links, triangles, first, end, at, most):
     return (math.sqrt(near2) if deep > 0.0 else -1.0), best
 
 
+@njit(cache=True, error_model="numpy")
+def next_at(bounds, links, triangles, first, end, at, most, normal):
+    """How far a point is from the nearest triangle across an outward edge from one of a `normal`, by 60 to
+    120 deg, and that one's number; -1: none is nearer than `most`."""
+    near2, best, n = most * most, -1, first
+    while n < end:
+        box, gap2 = bounds[n], 0.0
+        for i in range(3):
+            gap = max(box[LOW + i] - at[i], at[i] - box[HIGH + i], 0.0)
+            gap2 += gap * gap
+        if gap2 >= near2:
+            n = links[n, AFTER]
+            continue
+        for t in range(links[n, FIRST], links[n, FIRST] + links[n, COUNT]):
+            own = three(triangles[t, NORMAL:])
+            if abs(dot(own, normal)) > 0.5:
+                continue
+            away = sub(at, closest(triangles[t], at))
+            square = dot(away, away)
+            # across an inward edge the nearest point is that of the first triangle
+            if square < near2 and dot(away, own) <= 0.0 and -dot(away, normal) <= 0.6 * math.sqrt(square):
+                near2, best = square, t
+        n += 1
+    return math.sqrt(near2), best
+
+
 @njit(cache=True, error_model="numpy", forceinline=True)
 def span(bounds, n, way):
     """Middle of a node's box along a direction, and how far it reaches to either side."""

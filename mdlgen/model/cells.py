@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mdlgen.model.tables import Floats, ZonePart
+from mdlgen.model.tables import Floats, ZonePart, thick_of
 from mdlgen.spec.sheet import Sheet
 from mdlgen.spec.zone import Zone
 
@@ -66,10 +66,10 @@ def cells(sheet: Sheet, zones: tuple[ZonePart, ...]) -> Cells:
         # equal lengths are equal to the last bit
         sides.append(np.full(count, pitch) if even else np.diff(lines))
     d_x, d_y = np.tile(sides[0], n_y), np.repeat(sides[1], n_x)
-    s, stiff, friction, dense = (np.full(n_x * n_y, v) for v in (sheet.thickness, 1.0, 1.0, 1.0))
+    s = thick_of(sheet.thickness, zones, n_x * n_y)
+    stiff, friction, dense = (np.ones(n_x * n_y) for _ in range(3))
     for zone in zones:
         thick = zone.thickness if zone.thickness is not None else sheet.thickness
-        s = s + zone.share * (thick - sheet.thickness)
         stiff = stiff + zone.share * (zone.stiffness - 1.0)
         friction = friction + zone.share * (zone.friction - 1.0)
         dense = dense + zone.share * (zone.density * (thick / sheet.thickness) - 1.0)

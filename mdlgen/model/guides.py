@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mdlgen.model.machine import frame
+from mdlgen.model.frames import frame
 from mdlgen.model.rims import SAG
 from mdlgen.model.tables import Floats, GuidePart
-from mdlgen.spec.guide import Guide
+from mdlgen.spec.guide import Guide, edge_radii
 from mdlgen.spec.scene import Scene
 
 SIDES = {"left": 1, "inside": 1, "right": 2, "outside": 2, "both": 3}  # as in mechanics.guide
@@ -62,6 +62,7 @@ def _guide(name: str, guide: Guide, body: int) -> GuidePart:
         side=side,
         mass=guide.mass,
         facets=facets,
+        edges=edge_radii(guide.edge_radius, guide.thickness, SIDES[side]),
     )
 
 

@@ -1,19 +1,28 @@
-"""How long a rigid block is in contact: what a solver's step is measured by."""
+"""How long a body is in contact when it strikes: what a solver's step is measured by."""
 
 from __future__ import annotations
 
 import math
 
-from mdlgen.model.tables import Model, PlanePart, SheetPart
+import numpy as np
+
+from mdlgen.model.tables import Model, PlanePart, RollerPart, SheetPart
+
+# A gap below this is none: a roller that is given where it touches [mm].
+TOUCHING = 1e-6
+
+
+def lasting(mass: float, stiffness: float, speed: float) -> float:
+    """Duration of an undamped impact with F = k z^1.5, in one set of units:
+    T = 3.21806546 (m^2 / (k^2 v))^(1/5)."""
+    return 3.21806546 * (mass**2 / (stiffness**2 * speed)) ** 0.2
 
 
 def impact_time(model: Model, row: int, mass: float) -> float:
-    """Duration of an undamped impact [ms] at the greatest speed that the scene can give:
-    T = 3.21806546 (m^2 / (k^2 v))^(1/5). Against a box of another sheet, or a pressed plate, the reduced
-    mass counts."""
-    sheet = next(s for s in model.sheets if s.name == model.contacts.part_a[row])
-    parts = (*model.rollers, *model.planes, *model.guides, *model.meshes, *model.sheets)
-    part = next(p for p in parts if p.name == model.contacts.part_b[row])
+    """Duration of an undamped impact of a rigid block [ms] at the greatest speed that the scene can give.
+    Against a box of another sheet, or a pressed plate, the reduced mass counts."""
+    sheet, part = _parts(model, row)
+    assert isinstance(sheet, SheetPart), "the first part of all contacts but those of two rollers"
     gravity, start = math.hypot(*model.gravity), math.hypot(*sheet.velocity)
     if isinstance(part, SheetPart):
         mass = mass * part.derived["m"] / (mass + part.derived["m"])
@@ -24,4 +33,56 @@ def impact_time(model: Model, row: int, mass: float) -> float:
     speed = max(
         min(start + gravity * model.run.duration, math.hypot(start, math.sqrt(2 * gravity * fall))), 1e-6
     )
-    return 3.21806546 * (mass**2 / (float(model.contacts.stiffness[row]) ** 2 * speed)) ** 0.2
+    return lasting(mass, float(model.contacts.stiffness[row]), speed)
+
+
+def approach_time(model: Model, row: int) -> float:
+    """Duration of the impact [ms] of what flies, or swings, at its counterpart as the run begins: the boxes
+    of a flexible sheet along the sheet's normal, a roller on an arm. inf where nothing does.
+
+    A sheet that is driven in its own plane meets rollers with its edge, softly, and does not count.
+    """
+    first, second = _parts(model, row)
+    stiffness, shortest = float(model.contacts.stiffness[row]), math.inf
+    if isinstance(first, SheetPart) and first.count > 1:
+        rate = np.array(first.velocity) - _velocity(second)
+        speed = abs(float(rate @ first.rotation[:, 2]))
+        mass = first.derived["m"]
+        if isinstance(second, SheetPart):
+            mass = mass * second.derived["m"] / (mass + second.derived["m"])
+        if speed > 0.0:
+            shortest = lasting(mass, stiffness, speed)
+    for roller, other in ((first, second), (second, first)):
+        if not isinstance(roller, RollerPart) or roller.arm is None:
+            continue
+        gap = _gap(roller, other)
+        length = float(np.linalg.norm(roller.center - roller.arm.pivot))
+        mass = roller.swung_inertia / length**2
+        pull = abs(roller.arm.torque) / length + mass * float(np.linalg.norm(model.gravity))
+        if gap > TOUCHING and pull > 0.0:
+            shortest = min(shortest, lasting(mass, stiffness, math.sqrt(2.0 * pull / mass * gap)))
+    return shortest
+
+
+def _parts(model: Model, row: int):
+    """The two parts of a row of the contacts."""
+    parts = (*model.rollers, *model.planes, *model.guides, *model.meshes, *model.sheets)
+    sheets = (*model.sheets, *model.rollers)
+    names = model.contacts.part_a[row], model.contacts.part_b[row]
+    first = next(p for p in sheets if p.name == names[0])
+    return first, next(p for p in parts if p.name == names[1])
+
+
+def _velocity(part) -> np.ndarray:
+    return np.array(part.velocity) if isinstance(part, SheetPart) else np.zeros(3)
+
+
+def _gap(roller: RollerPart, other) -> float:
+    """Distance of a roller from a parallel one, or from the plane of a sheet; 0 from other parts."""
+    way = roller.center - other.center
+    if isinstance(other, SheetPart):
+        return abs(float(way @ other.rotation[:, 2])) - roller.reach - 0.5 * float(other.thick.max())
+    if isinstance(other, RollerPart):
+        way = way - roller.axis * float(way @ roller.axis)
+        return float(np.linalg.norm(way)) - roller.reach - other.reach
+    return 0.0

@@ -8,7 +8,8 @@ import numpy as np
 
 from mdlgen.model import naming
 from mdlgen.model.grid import clamped_boxes
-from mdlgen.model.tables import CLAMP, GROUND, JOINT_X, JOINT_Y, Clamp, Ints, SheetPart
+from mdlgen.model.plate import tributary
+from mdlgen.model.tables import CLAMP, GROUND, JOINT_X, JOINT_Y, Clamp, Floats, Ints, SheetPart
 
 _LETTER = {JOINT_X: "x", JOINT_Y: "y", CLAMP: "c"}
 
@@ -25,6 +26,7 @@ class Joints:
     along_x: bool
     one: Ints  # box in its sheet that the joint begins in, (n,)
     two: Ints  # and that it ends in; the same one at a clamp
+    tributary: Floats  # width that it stands for in twist, over its own: see model.plate, (n,)
 
     @property
     def scale(self) -> float:
@@ -80,6 +82,9 @@ def _bushings(
     corners = {"a": -1, "b": 1} if sheet.layout == "edge_to_edge" else {"": 0}
     shift = np.outer(list(corners.values()), (0, 1) if along_x else (1, 0))
     one, two = (np.repeat(box, len(corners)) for box in boxes)
+    edge = None if sheet.clamp is None else sheet.clamp.edge
+    side, cells = ("y", sheet.n_y) if along_x else ("x", sheet.n_x)
+    strip = one // sheet.n_x if along_x else one % sheet.n_x
     return Joints(
         name=[
             naming.bushing(sheet.name, _LETTER[kind], i, j, end)
@@ -93,4 +98,5 @@ def _bushings(
         along_x=along_x,
         one=one,
         two=two,
+        tributary=tributary(strip, cells, edge == f"{side}_min", edge == f"{side}_max"),
     )

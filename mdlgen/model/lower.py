@@ -11,11 +11,13 @@ from mdlgen.model import grid, naming
 from mdlgen.model.anchors import anchor, find_tension, lower_loads
 from mdlgen.model.cells import Cells, cells, zone_parts
 from mdlgen.model.curves import lower_curves
+from mdlgen.model.ends import with_ends
 from mdlgen.model.external import external_pairs, lower_externals
+from mdlgen.model.frames import frame
 from mdlgen.model.guides import inertia as guide_inertia
 from mdlgen.model.guides import lower_guides
 from mdlgen.model.joints import Joints, find_joints
-from mdlgen.model.machine import frame, lower_planes, lower_rollers
+from mdlgen.model.machine import lower_planes, lower_rollers
 from mdlgen.model.meshes import loaded, lower_meshes
 from mdlgen.model.meshes import placed as mesh_placed
 from mdlgen.model.pairs import find_pairs
@@ -31,6 +33,9 @@ from mdlgen.model.tables import (
     BOX_MESH,
     BOX_PLANE,
     CYLINDER_CYLINDER,
+    CYLINDER_GUIDE,
+    CYLINDER_MESH,
+    CYLINDER_PLANE,
     EXTERNAL,
     Bodies,
     Bushings,
@@ -80,6 +85,7 @@ def _lower(scene: Scene) -> Model:
     rollers = lower_rollers(scene, sheets, contacts, first)
     planes = lower_planes(scene, sheets, contacts, first + len(rollers))
     guides = lower_guides(scene, first + len(rollers) + len(planes))
+    planes, guides = with_ends(planes, guides, contacts)
     meshes = lower_meshes(scene, rollers, first + len(rollers) + len(planes) + len(guides))
     rollers = loaded(rollers, meshes)
     externals = lower_externals(scene)
@@ -175,7 +181,8 @@ def _sheets(scene: Scene) -> tuple[tuple[SheetPart, ...], list[Cells]]:
                 ),
                 twist=material.D_twist is not None or sheet.layout == "plate",
                 in_plane=material.k_tz is not None,
-                rotation_damping=material.damping.rotation,
+                rotation_damping=material.damping.kind,
+                damping_times=material.damping.times,
                 derived=derived(sheet, material),
             )
         )
@@ -194,7 +201,10 @@ def _contacts(scene: Scene) -> Contacts:
     with_sheet |= dict.fromkeys(scene.planes, BOX_PLANE) | dict.fromkeys(scene.parts, EXTERNAL)
     with_sheet |= dict.fromkeys(scene.guides, BOX_GUIDE) | dict.fromkeys(scene.meshes, BOX_MESH)
     with_sheet |= dict.fromkeys(scene.sheets, BOX_BOX)
-    kinds = [CYLINDER_CYLINDER if a in scene.rollers else with_sheet[b] for _, a, b in rows]
+    with_roller = dict.fromkeys(scene.rollers, CYLINDER_CYLINDER)
+    with_roller |= dict.fromkeys(scene.planes, CYLINDER_PLANE)
+    with_roller |= dict.fromkeys(scene.guides, CYLINDER_GUIDE) | dict.fromkeys(scene.meshes, CYLINDER_MESH)
+    kinds = [(with_roller if a in scene.rollers else with_sheet)[b] for _, a, b in rows]
     return Contacts(
         entry=np.array([i for i, _, _ in rows], dtype=np.int64),
         part_a=tuple(a for _, a, _ in rows),
@@ -207,6 +217,7 @@ def _contacts(scene: Scene) -> Contacts:
         stiction_velocity=column(lambda c: c.friction.speeds(c.smoothing)[0]),
         friction_velocity=column(lambda c: c.friction.speeds(c.smoothing)[1]),
         smoothing=column(lambda c: c.smoothing),
+        rolling=column(lambda c: c.rolling_resistance),
         share=tuple(scene.contacts[i].share for i, _, _ in rows),
     )
 
@@ -335,6 +346,9 @@ def _joints(
             of = between(box, joints.one, joints.two, joints.along_x, _soft(sheet, joints))
             origin, axes, rest = _where(sheet, joints)
             k, c = coefficients(spec, scene.materials[spec.material], of, joints.along_x)
+            if sheet.twist:
+                for values in (k, c):
+                    values[:, 3 if joints.along_x else 4] *= joints.tributary
             made = Bushings(
                 name=tuple(joints.name),
                 label=tuple(name.replace("_", " ") for name in joints.name),

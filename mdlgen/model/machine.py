@@ -6,9 +6,23 @@ import numpy as np
 
 from mdlgen.errors import SpecError
 from mdlgen.model import meshes, press
+from mdlgen.model.frames import frame
+from mdlgen.model.guides import lower_guides
+from mdlgen.model.press_parts import (
+    Bow,
+    Face,
+    Facets,
+    Wheel,
+    face_of_guide,
+    faces_of_plate,
+    facets_of_mesh,
+    onto,
+    onto_plate,
+)
 from mdlgen.model.rims import lower_rim, touched, towards
 from mdlgen.model.tables import (
     CYLINDER_CYLINDER,
+    ON_PARTS,
     ArmPart,
     Contacts,
     Floats,
@@ -18,16 +32,10 @@ from mdlgen.model.tables import (
     RollerPart,
     SheetPart,
 )
+from mdlgen.spec.guide import edge_radii
 from mdlgen.spec.machine import Drive, Roller
+from mdlgen.spec.machine import Press as PressSpec
 from mdlgen.spec.scene import Scene
-
-
-def frame(z: Floats, guide: Floats | None = None) -> Floats:
-    """A right-handed frame (columns x, y, z) with the given z; x near `guide`, or near global x or y."""
-    near: Floats = np.eye(3)[1 if abs(z[0]) > 0.9 else 0] if guide is None else guide
-    x = near - z * (near @ z)
-    x /= np.linalg.norm(x)
-    return np.stack([x, np.cross(z, x), z], axis=1)
 
 
 def lower_rollers(
@@ -77,7 +85,7 @@ def _press(scene: Scene, name: str, sheets: tuple[SheetPart, ...], contacts: Con
     carrier = spec.carrier_mass if spec.carrier_mass is not None else roller.mass / 1000
     mass = roller.mass + carrier
     mine = {name, *(key for key, mesh in scene.meshes.items() if mesh.on == name)}
-    others, forces = [], []
+    others, forces, faces = [], [], []
     own_radius, own_factor = _profile(roller, direction)
     for row in range(len(contacts)):
         parts = (contacts.part_a[row], contacts.part_b[row])
@@ -96,20 +104,60 @@ def _press(scene: Scene, name: str, sheets: tuple[SheetPart, ...], contacts: Con
             cylinder = press.Cylinder(np.array(partner.center), radius, partner.width, stiffness * factor)
             others.append(cylinder)
             forces.append(press.cylinder_contact(cylinder, axis, own_radius, roller.width))
+        elif contacts.kind[row] in ON_PARTS:
+            face = _face(scene, name, other)
+            if face is not None:
+                wheel = _wheel(
+                    roller, -face.ways[:, 2] if isinstance(face, Face) else direction, contacts, row
+                )
+                faces.append(face.touch(wheel, direction))
+                forces.append(onto(face, wheel))
         else:
             # a mesh on the roller counts as the roller's own round here: the run settles the rest
             sheet = next(s for s in sheets if s.name == other)
             shared = contacts.share[row] == "width"
             forces.append(press.sheet_contact(sheet, axis, own_radius, roller.width, stiffness, shared))
-    touch = press.touch_offset(center, axis, direction, own_radius, roller.width, others)
+    touch = press.touch_offset(center, axis, direction, own_radius, roller.width, others, faces)
     heavy = mass + sum(meshes.mass_of(mesh) for mesh in scene.meshes.values() if mesh.on == name)
     weight = heavy * float(np.array(scene.gravity) @ direction)
 
     def spring(offset: float) -> float:
         return spec.preload - spec.stiffness * (offset - touch) + weight
 
+    start = press.equilibrium(center, direction, spring, forces, own_radius, touch)
+    return _slide(spec, mass, carrier, touch, start)
+
+
+def _wheel(roller: Roller, towards: Floats, contacts: Contacts, row: int) -> Wheel:
+    """A roller as a part that lies in a direction meets it."""
+    radius, factor = _profile(roller, towards)
+    stiffness = float(contacts.stiffness[row]) * factor
+    return Wheel(np.array(roller.center), np.array(roller.axis), radius, roller.width, stiffness)
+
+
+def _face(scene: Scene, name: str, other: str) -> Face | Bow | Facets | None:
+    """The face of a plane, a guide or a mesh that a pressed roller meets; None: none.
+
+    Raises SpecError where both are pressed.
+    """
+    at = np.array(scene.rollers[name].center)
+    plane = scene.planes.get(other)
+    if other in scene.meshes:
+        return facets_of_mesh(scene.meshes[other])
+    if plane is None:
+        guide = next(g for g in lower_guides(scene, 0) if g.name == other)
+        return face_of_guide(guide, at)
+    if plane.press is not None:
+        raise SpecError(
+            f"{name} and {other} are pressed against each other; give one of them a fixed place",
+            ("rollers", name, "press"),
+        )
+    return faces_of_plate(np.array(plane.center), frame(np.array(plane.normal)), plane.size, at)
+
+
+def _slide(spec: PressSpec, mass: float, carrier: float, touch: float, start: float) -> Press:
     return Press(
-        direction=direction,
+        direction=np.array(spec.direction),
         stiffness=spec.stiffness,
         damping=2.0 * spec.damping_ratio * float(np.sqrt(spec.stiffness * mass)),
         damping_ratio=spec.damping_ratio,
@@ -117,15 +165,12 @@ def _press(scene: Scene, name: str, sheets: tuple[SheetPart, ...], contacts: Con
         free_length=spec.free_length,
         carrier_mass=carrier,
         touch=touch,
-        start=press.equilibrium(
-            center, direction, spring, forces, (2 * own_radius, own_radius, own_radius / 16), touch
-        ),
+        start=start,
     )
 
 
 def _plate_press(scene: Scene, name: str, sheets: tuple[SheetPart, ...], contacts: Contacts) -> Press:
-    """The press of a plate. Only sheets touch it, so it has no counterpart: the preload is that where it is
-    given."""
+    """The press of a plate; the preload is that where it is given."""
     plane = scene.planes[name]
     spec = plane.press
     assert spec is not None
@@ -134,8 +179,15 @@ def _plate_press(scene: Scene, name: str, sheets: tuple[SheetPart, ...], contact
     mass, axes = plane.mass + carrier, frame(np.array(plane.normal))
     of = {sheet.name: sheet for sheet in sheets}
     mine = [row for row in range(len(contacts)) if contacts.part_b[row] == name]
-    stiff = [(of[contacts.part_a[row]], float(contacts.stiffness[row])) for row in mine]
-    forces = [press.plate_contact(sheet, axes, plane.size, center, k) for sheet, k in stiff]
+    forces = []
+    for row in mine:
+        one, k = contacts.part_a[row], float(contacts.stiffness[row])
+        if one in of:
+            forces.append(press.plate_contact(of[one], axes, plane.size, center, k))
+            continue
+        roller = scene.rollers[one]
+        face = faces_of_plate(center, axes, plane.size, np.array(roller.center))
+        forces.append(onto_plate(face, _wheel(roller, -face.ways[:, 2], contacts, row), center))
     weight = mass * float(np.array(scene.gravity) @ direction)
 
     def spring(offset: float) -> float:
@@ -151,17 +203,7 @@ def _plate_press(scene: Scene, name: str, sheets: tuple[SheetPart, ...], contact
             "weight and the sheets in its way",
             ("planes", name, "press"),
         )
-    return Press(
-        direction=direction,
-        stiffness=spec.stiffness,
-        damping=2.0 * spec.damping_ratio * float(np.sqrt(spec.stiffness * mass)),
-        damping_ratio=spec.damping_ratio,
-        preload=spec.preload,
-        free_length=spec.free_length,
-        carrier_mass=carrier,
-        touch=0.0,
-        start=start,
-    )
+    return _slide(spec, mass, carrier, 0.0, start)
 
 
 def _arm(roller: Roller) -> ArmPart:
@@ -202,6 +244,7 @@ def lower_planes(
             size=plane.size,
             mass=plane.mass,
             press=_plate_press(scene, name, sheets, contacts) if plane.press else None,
+            edges=edge_radii(plane.edge_radius, plane.size[2], 1),
         )
         for index, (name, plane) in enumerate(sorted(scene.planes.items()))
     )

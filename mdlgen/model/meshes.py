@@ -59,6 +59,7 @@ def _mesh(name: str, mesh: Mesh, body: int, on: int) -> MeshPart:
         gyration=gyration,
         mass=mass_of(mesh),
         density=mesh.density,
+        edge_radius=mesh.edge_radius,
     )
 
 

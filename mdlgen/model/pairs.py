@@ -21,8 +21,8 @@ from mdlgen.model.guides import bounds
 from mdlgen.model.sheet_pairs import linked, meeting
 from mdlgen.model.tables import (
     BOX_BOX,
-    CYLINDER_CYLINDER,
     EXTERNAL,
+    OF_MACHINE,
     Bodies,
     Contacts,
     Floats,
@@ -112,7 +112,7 @@ def find_pairs(
                 kept.extend((row, a, b) for a, b in found)
             continue
         other = parts[contacts.part_b[row]]
-        if contacts.kind[row] == CYLINDER_CYLINDER:
+        if contacts.kind[row] in OF_MACHINE:
             possible += 1
             kept.append((row, parts[contacts.part_a[row]].body, other.body))
             continue

@@ -5,6 +5,7 @@ from __future__ import annotations
 from mdlgen.model.meshes import LIGHT
 from mdlgen.model.tables import Parameter, RunSettings
 from mdlgen.spec.machine import Press
+from mdlgen.spec.material import Damping
 from mdlgen.spec.scene import Scene
 
 _NAMED_AXES = ("x", "y", "z")
@@ -137,11 +138,7 @@ def _sheet(scene: Scene, name: str) -> list[Parameter]:
             continue
         if value is not None:
             rows.append(Parameter(name, member, label, value, unit, (*source, member)))
-    damping, ratio = material.damping, (*source, "damping", "ratio")
-    rows.append(Parameter(name, "zeta", "Relative damping zeta", damping.ratio, "1", ratio))
-    ratio_ty = damping.ratio if damping.ratio_ty is None else damping.ratio_ty
-    path = (*source, "damping", "ratio_ty")
-    rows.append(Parameter(name, "zeta_ty", "Relative damping zeta of rotation about y", ratio_ty, "1", path))
+    rows += _damping(name, material.damping, (*source, "damping"))
     if any(sheet.velocity) or any(sheet.spin):
         for k, axis in enumerate(_NAMED_AXES):
             label = f"Initial velocity {axis}"
@@ -152,6 +149,40 @@ def _sheet(scene: Scene, name: str) -> list[Parameter]:
             label = f"Initial spin {axis} (rad/s)"
             rows.append(Parameter(name, f"w_{axis}", label, sheet.spin[k], "rad/ms", (*base, "spin", k)))
     return rows
+
+
+def _damping(name: str, damping: Damping, path: tuple[str, ...]) -> list[Parameter]:
+    """Ratios, damping times or loss factors of a sheet's material, as they are given."""
+    if damping.times is None:
+        zeta, zeta_ty = damping.zetas
+        label = "Relative damping zeta"
+        return [
+            Parameter(name, "zeta", label, zeta, "1", (*path, "ratio")),
+            Parameter(name, "zeta_ty", f"{label} of rotation about y", zeta_ty, "1", (*path, "ratio_ty")),
+        ]
+    if damping.time is not None:
+        return _each_way(name, "tau", "Damping time tau", damping.time, "ms", (*path, "time"))
+    assert damping.loss_factor is not None and damping.at is not None
+    rows = _each_way(name, "eta", "Loss factor eta", damping.loss_factor, "1", (*path, "loss_factor"))
+    label = "Frequency of the loss factor (Hz)"
+    return [*rows, Parameter(name, "f", label, damping.at, "1/ms", (*path, "at"))]
+
+
+def _each_way(
+    name: str,
+    member: str,
+    label: str,
+    value: float | tuple[float, float],
+    unit: str,
+    path: tuple[str | int, ...],
+) -> list[Parameter]:
+    """A value for both MD and CD, or one for each."""
+    if not isinstance(value, tuple):
+        return [Parameter(name, member, label, value, unit, path)]
+    return [
+        Parameter(name, f"{member}_{way}", f"{label} of {way.upper()}", own, unit, (*path, k))
+        for k, (way, own) in enumerate(zip(("md", "cd"), value, strict=True))
+    ]
 
 
 def _grading(scene: Scene, name: str) -> list[Parameter]:

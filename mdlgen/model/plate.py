@@ -9,8 +9,17 @@ A joint of length l and width w (the side that its two boxes share) gets
     about z     E s w^3 / (12 l)      bending in the plane: that of the strip of width w itself
 
 so bending, in the plane or out of it, membrane, shear and twist are those of the plate on any grid; Poisson's
-effect is not represented. At free edges the outer half of a box neither shears nor twists: of the plate's
-compliance the lattice has the part 1 - (1/n_x + 1/n_y)/2. Across z a joint is stiff, as in Eq. 4.
+effect is not represented. Across z a joint is stiff, as in Eq. 4.
+
+Half of the twist's energy is in the joints along x, half in those along y. Over the outer half of the boxes
+at a free edge only the joints along that edge are left: there they have the whole of it. So in twist a joint
+in the row or column at a free edge stands for half a box more, 3/2 of its width; one of a strip of one box
+for both halves, twice its width. At a clamped edge half-cell hinges are over the first half of the boxes.
+What is left is of second order: a plate with loads at its true corners is too stiff by 1/(n_x n_y), since the
+boxes there do not twist themselves.
+
+In the plane nothing is added: shear falls to zero at a free edge. Where a load puts shear on the edges, the
+part (1/n_x + 1/n_y)/2 of the compliance is missing.
 
 Rigid boxes that twist by an angle from one to the next leave each other at the corners, by that angle times
 w/2 across the sheet. No bushing can have it otherwise: what stays closed there does not twist.
@@ -20,7 +29,7 @@ from __future__ import annotations
 
 import math
 
-from mdlgen.model.tables import Floats
+from mdlgen.model.tables import Floats, Ints
 from mdlgen.spec.material import Material
 from mdlgen.spec.sheet import Sheet
 
@@ -44,6 +53,16 @@ def twisting(sheet: Sheet, material: Material) -> float | None:
     md = md if material.k_ty is None else material.k_ty * shape
     assert cd is not None and md is not None, "what is no hinge is a plate"
     return SHEAR_RATIO * math.sqrt(md * cd)
+
+
+def tributary(strip: Ints, cells: int, held_min: bool, held_max: bool) -> Floats:
+    """Width that joints stand for in twist over the width of their boxes, (n,).
+
+    `strip` is the row of each joint along x among `cells` rows, or the column of each along y; held are the
+    edges along the first and the last of these that a clamp holds.
+    """
+    first, last = (strip == 0) & (not held_min), (strip == cells - 1) & (not held_max)
+    return 1.0 + 0.5 * first + 0.5 * last
 
 
 def in_plane(

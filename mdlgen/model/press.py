@@ -28,13 +28,19 @@ class Cylinder:
 
 
 def touch_offset(
-    center: Floats, axis: Floats, direction: Floats, radius: float, width: float, others: Sequence[Cylinder]
+    center: Floats,
+    axis: Floats,
+    direction: Floats,
+    radius: float,
+    width: float,
+    others: Sequence[Cylinder],
+    faces: Sequence[float | None] = (),
 ) -> float:
     """Offset along `direction` at which the roller just touches the first counterpart ahead [mm].
 
-    0 where there is none in its way.
+    `faces` are the offsets at which it touches plates and guides. 0 where there is none in its way.
     """
-    offsets = []
+    offsets: list[float] = [offset for offset in faces if offset is not None]
     for other in others:
         if other.share(center, axis, width) == 0.0:
             continue
@@ -44,7 +50,7 @@ def touch_offset(
         across2 = gap @ gap - along**2
         reach = radius + other.radius
         if across2 < reach**2:
-            offsets.append(along - math.sqrt(reach**2 - across2))
+            offsets.append(float(along - math.sqrt(reach**2 - across2)))
     return float(min(offsets, default=0.0))
 
 
@@ -53,7 +59,7 @@ def covered_shares(
 ) -> list[tuple[float, float]]:
     """What the (flat) sheet under a roller counts of k, for each thickness that it has there: (share,
     thickness). A share is the part of the width that is covered, or, where pairs do not share, the number of
-    boxes that the roller stands on. `thick` are those of the boxes, (n_x n_y,) [mm]."""
+    boxes that the roller stands on."""
     stations = (np.arange(200) + 0.5) / 200 - 0.5
     points = (center + np.outer(stations * width, axis) - sheet.center) @ sheet.rotation
     half = np.array(sheet.outline) / 2
@@ -165,37 +171,24 @@ def equilibrium(
     direction: Floats,
     spring: Callable[[float], float],
     contacts: Sequence[Callable[[Floats], Floats]],
-    reach: tuple[float, float, float],
+    radius: float,
     touch: float,
 ) -> float:
-    """Offset along `direction` where spring and contacts balance [mm]; `spring(offset)` is its push.
+    """Offset along `direction` where a roller's spring, a push `spring(offset)`, and contacts balance [mm].
 
     Bisection between well back and well ahead of the touching position; where the spring cannot be
-    balanced in that range the offset is its end. `reach` is how far back and ahead that is, and a step ahead
-    that passes over no contact [mm].
+    balanced in that range the offset is its end.
     """
-
-    def push(offset: float) -> float:
-        at = center + offset * direction
-        return spring(offset) + sum(float(c(at) @ direction) for c in contacts)
-
-    if push(touch) == 0.0:  # nothing pushes it: anywhere about is balance
-        return float(touch)
-    back, ahead, step = reach
-    low, high = touch - back, touch
+    push = _push(center, direction, spring, contacts)
+    low, high = touch - 2 * radius, touch
     if push(low) <= 0.0:
         return float(low)
     # Ahead of the touching position the balance is lost once a counterpart's centre is passed.
-    while push(high) > 0.0 and high < touch + ahead:
-        high += step
+    while push(high) > 0.0 and high < touch + radius:
+        high += radius / 16
     if push(high) > 0.0:
         return float(touch)
-    for _ in range(200):
-        middle = 0.5 * (low + high)
-        if middle in (low, high):
-            break
-        low, high = (middle, high) if push(middle) > 0.0 else (low, middle)
-    return float(0.5 * (low + high))
+    return _root(push, low, high)
 
 
 def plate_balance(
@@ -207,22 +200,36 @@ def plate_balance(
 ) -> tuple[float, float]:
     """Offset along `direction` where a plate's spring and contacts balance [mm], and what is left of the push
     [N]: not 0 where it would be further than `far` either way, with the offset at that end."""
+    push = _push(center, direction, spring, contacts)
+    if push(0.0) == 0.0:  # nothing pushes it: anywhere about is balance
+        return 0.0, 0.0
+    # neither spring nor contacts push more the further it goes
+    for end, sign in ((-far, -1.0), (far, 1.0)):
+        if sign * push(end) > 0.0:
+            return end, push(end)
+    return _root(push, -far, far), 0.0
+
+
+def _push(
+    center: Floats,
+    direction: Floats,
+    spring: Callable[[float], float],
+    contacts: Sequence[Callable[[Floats], Floats]],
+) -> Callable[[float], float]:
+    """Force along `direction` at an offset [N]."""
 
     def push(offset: float) -> float:
         at = center + offset * direction
         return spring(offset) + sum(float(c(at) @ direction) for c in contacts)
 
-    if push(0.0) == 0.0:  # nothing pushes it: anywhere about is balance
-        return 0.0, 0.0
-    # neither spring nor contacts push more the further it goes
-    low, high = -far, far
-    if push(low) < 0.0:
-        return low, push(low)
-    if push(high) > 0.0:
-        return high, push(high)
+    return push
+
+
+def _root(push: Callable[[float], float], low: float, high: float) -> float:
+    """Where a push that falls from `low` to `high` is none, to the last bit."""
     for _ in range(200):
         middle = 0.5 * (low + high)
         if middle in (low, high):
             break
         low, high = (middle, high) if push(middle) > 0.0 else (low, middle)
-    return 0.5 * (low + high), 0.0
+    return float(0.5 * (low + high))

@@ -72,7 +72,7 @@ def plain(sheet: Sheet) -> Between:
 
 def coefficients(sheet: Sheet, material: Material, of: Between, along_x: bool) -> tuple[Floats, Floats]:
     """(k, c) of one bushing of each joint along x, or along y, (n, 6) each: k_x, k_y, k_z [N/mm], k_tx, k_ty,
-    k_tz [N mm/rad], and the dampings [N ms/mm], [N mm ms/rad] (Eqs. 4-7)."""
+    k_tz [N mm/rad], and the dampings [N ms/mm], [N mm ms/rad] (Eqs. 4-7, or damping times of k)."""
     parts = 2 if sheet.layout == "edge_to_edge" else 1  # bushings per pair
     s = sheet.thickness
     e_md, e_cd = material.moduli
@@ -94,7 +94,30 @@ def coefficients(sheet: Sheet, material: Material, of: Between, along_x: bool) -
     if sheet.layout == "plate":
         k_x, k_y, k_tz = plate.in_plane(material, (k_x, k_y), (of.d_x, of.d_y), of.membrane * s, along_x)
     k = np.stack([k_x, k_y, k_z, k_tx, k_ty, k_tz], axis=1)
-    return k, _damping(k, of, parts, material)
+    times = material.damping.times
+    if times is None:
+        return k, _damping(k, of, parts, material)
+    return k, k * damping_times(times, sheet.layout == "plate", twist is not None, along_x)
+
+
+def damping_times(times: tuple[float, float], sheared: bool, twisted: bool, along_x: bool) -> Floats:
+    """Damping time of each of the six components of joints along x, or along y [ms], (6,).
+
+    Kelvin and Voigt's modulus at the frequency w is E (1 + i w tau), so each component has the time of the
+    modulus that its stiffness follows from. What goes with the root of both moduli, as shear and twist do
+    (`plate.SHEAR_RATIO`), then has sqrt((1 + i w tau_md) (1 + i w tau_cd)) = 1 + i w (tau_md + tau_cd)/2 to
+    first order, the mean of both; k_z and a k_tz of no direction take it, too. `sheared`: joints have a shear
+    stiffness of their own, and bend in the plane as the strip does; `twisted`: a twisting stiffness.
+    """
+    md, cd = times
+    mean = 0.5 * (md + cd)
+    tau = np.array([md, cd, mean, cd, md, mean])
+    if twisted:
+        tau[3 if along_x else 4] = mean
+    if sheared:
+        tau[1 if along_x else 0] = mean
+        tau[5] = md if along_x else cd
+    return tau
 
 
 def _hinge(given: float | None, plate: float | None, shape: Floats, mean: float, parts: int) -> Floats:
@@ -109,9 +132,9 @@ def _hinge(given: float | None, plate: float | None, shape: Floats, mean: float,
 def _damping(k: Floats, of: Between, parts: int, material: Material) -> Floats:
     """Eq. 7 for the six components of one bushing; the bushings of a pair add up to the central one."""
     damping = material.damping
-    zeta_ty = damping.ratio if damping.ratio_ty is None else damping.ratio_ty
-    c = [2.0 * damping.ratio * np.sqrt(parts * k[:, i] * of.m) / parts for i in range(3)]
-    if damping.rotation == "paper":
+    zeta, zeta_ty = damping.zetas
+    c = [2.0 * zeta * np.sqrt(parts * k[:, i] * of.m) / parts for i in range(3)]
+    if damping.kind == "paper":
         # The paper's Table 2: Eq. 7 with the mass of the box; in e2e c_tx and c_ty follow their own k,
         # c_tz is half of the central one (physics.md). A mass in a rotation is not dimensionally right.
         shares = (1, 1, parts)
@@ -124,9 +147,9 @@ def _damping(k: Floats, of: Between, parts: int, material: Material) -> Floats:
             of.m * (of.d_x**2 / 3 + of.s**2 / 12),
             of.m * (of.d_x**2 + of.d_y**2) / 3,
         )
-    zetas = (damping.ratio, zeta_ty, damping.ratio)
-    for i, (zeta, share, mass) in enumerate(zip(zetas, shares, masses, strict=True), start=3):
-        c.append(2.0 * zeta * np.sqrt(share * k[:, i] * mass) / share)
+    zetas = (zeta, zeta_ty, zeta)
+    for i, (own, share, mass) in enumerate(zip(zetas, shares, masses, strict=True), start=3):
+        c.append(2.0 * own * np.sqrt(share * k[:, i] * mass) / share)
     return np.stack(c, axis=1)
 
 
@@ -135,7 +158,8 @@ def derived(sheet: Sheet, material: Material) -> dict[str, float]:
 
     k_x, k_ty and k_tz are those of the joints along x, k_y and k_tx those of the joints along y; layout plate
     adds the others as k_y_shear, k_tx_twist and k_x_shear, k_ty_twist, k_tz_y, and the G [MPa] and D_twist
-    [N mm] that they follow from.
+    [N mm] that they follow from. Joints in the rows and columns at free edges have k_tx_twist_edge and
+    k_ty_twist_edge in place of k_tx_twist and k_ty_twist. Damping by time adds tau_md and tau_cd [ms].
     """
     of = plain(sheet)
     own, shared = {True: ("x", "ty", "tz"), False: ("y", "tx")}, ("z",)
@@ -155,8 +179,16 @@ def derived(sheet: Sheet, material: Material) -> dict[str, float]:
             if sheet.layout == "plate":
                 found |= {f"{symbol}_{name}": row[n] for n, name in other[along_x].items()}
     values |= {name: found.pop(name) for name in [f"{symbol}_{n}" for symbol in "kc" for n in COMPONENTS]}
+    if material.damping.times is not None:
+        values |= dict(zip(("tau_md", "tau_cd"), material.damping.times, strict=True))
     if sheet.layout != "plate":
         return values
     twist = plate.twisting(sheet, material)
     assert twist is not None, "a plate has one"
+    held = "" if sheet.clamp is None else sheet.clamp.edge
+    for name, side, strips in (("tx", "y", sheet.boxes[1]), ("ty", "x", sheet.boxes[0])):
+        ends = plate.tributary(
+            np.array([0, strips - 1]), strips, held == f"{side}_min", held == f"{side}_max"
+        )
+        found |= {f"{s}_{name}_twist_edge": found[f"{s}_{name}_twist"] * float(ends.max()) for s in "kc"}
     return values | found | {"G": plate.shear_modulus(material), "D_twist": twist}

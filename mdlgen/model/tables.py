@@ -162,6 +162,15 @@ class Bend(Frozen):
     frames: Frames
 
 
+def thick_of(plain: float, zones: tuple[ZonePart, ...], count: int) -> Floats:
+    """Thickness of each box of a sheet that is `plain` outside of its zones [mm], (count,)."""
+    s = np.full(count, plain)
+    for zone in zones:
+        if zone.thickness is not None:
+            s = s + zone.share * (zone.thickness - plain)
+    return s
+
+
 @dataclass(frozen=True)
 class SheetPart(Frozen):
     """A sheet's grid; its boxes are the bodies first ... first + n_x n_y - 1."""
@@ -191,8 +200,9 @@ class SheetPart(Frozen):
     bending: tuple[str, str]  # which of (k_tx, D_cd) and of (k_ty, D_md) the user gave
     twist: bool  # whether joints have a twist of their own: D_twist was given, or layout plate
     in_plane: bool  # whether k_tz was given
-    rotation_damping: str
+    rotation_damping: str  # inertia or paper, with a ratio (Eq. 7); time: Kelvin and Voigt's
     derived: dict[str, float]
+    damping_times: tuple[float, float] | None = None  # of MD and CD [ms]; None: by a ratio
 
     @property
     def count(self) -> int:
@@ -201,11 +211,7 @@ class SheetPart(Frozen):
     @property
     def thick(self) -> Floats:
         """Thickness of each box [mm], (n_x n_y,)."""
-        s = np.full(self.count, self.thickness)
-        for zone in self.zones:
-            if zone.thickness is not None:
-                s = s + zone.share * (zone.thickness - self.thickness)
-        return s
+        return thick_of(self.thickness, self.zones, self.count)
 
     @property
     def uniform(self) -> bool:
@@ -357,6 +363,8 @@ class PlanePart(Frozen):
     size: tuple[float, float, float]
     mass: float
     press: Press | None = None
+    edges: tuple[float, float] = (0.0, 0.0)  # radii of the edges of its upper and its lower face [mm]
+    ends: int = 0  # its free ends as a bit mask, see model.ends
 
     @property
     def sliding_mass(self) -> float:
@@ -388,6 +396,8 @@ class GuidePart(Frozen):
     side: str
     mass: float
     facets: int  # boxes by which a text shows it
+    edges: tuple[float, float] = (0.0, 0.0)  # radii of the edges of its upper and its lower face [mm]
+    ends: int = 0  # its free ends as a bit mask, see model.ends
 
 
 @dataclass(frozen=True)
@@ -413,6 +423,7 @@ class MeshPart(Frozen):
     gyration: Floats  # inertia about them over mass [mm^2], (3,)
     mass: float
     density: float | None  # that the user gave in place of the mass [g/mm^3]
+    edge_radius: float = 0.0  # that outer sides of sheets meet at its edges [mm]
 
 
 @dataclass(frozen=True)
@@ -426,6 +437,10 @@ class ExternalPart:
 
 # kinds of contact
 BOX_CYLINDER, BOX_PLANE, CYLINDER_CYLINDER, EXTERNAL, BOX_GUIDE, BOX_BOX, BOX_MESH = 0, 1, 2, 3, 4, 5, 6
+CYLINDER_PLANE, CYLINDER_GUIDE, CYLINDER_MESH = 7, 8, 9
+# those of a roller with a part that it does not turn with, and all between parts of the machine
+ON_PARTS = (CYLINDER_PLANE, CYLINDER_GUIDE, CYLINDER_MESH)
+OF_MACHINE = (CYLINDER_CYLINDER, *ON_PARTS)
 
 
 @dataclass(frozen=True)
@@ -435,7 +450,7 @@ class Contacts(Frozen):
     entry: Ints  # index in the spec's list, (n,)
     part_a: tuple[str, ...]  # sheet or roller
     part_b: tuple[str, ...]  # sheet, roller, plane, guide, mesh or external part
-    kind: Ints  # BOX_CYLINDER, BOX_PLANE, CYLINDER_CYLINDER, EXTERNAL, BOX_GUIDE, BOX_BOX or BOX_MESH
+    kind: Ints  # one of the kinds above, BOX_CYLINDER to CYLINDER_MESH
     stiffness: Floats  # k [N/mm^1.5]
     restitution: Floats  # c_R
     mu_static: Floats
@@ -443,10 +458,16 @@ class Contacts(Frozen):
     stiction_velocity: Floats  # [mm/ms]
     friction_velocity: Floats
     smoothing: Floats  # [mm/ms]
+    rolling: Floats  # coefficient of rolling resistance
     share: tuple[str, ...]  # width or pair
 
     def __len__(self) -> int:
         return len(self.part_a)
+
+    @property
+    def of_machine(self) -> NDArray[np.bool_]:
+        """Whether both parts are of the machine, (n,)."""
+        return np.isin(self.kind, OF_MACHINE)
 
 
 @dataclass(frozen=True)
@@ -578,12 +599,26 @@ class Model(Frozen):
         """Friction of each kept pair in times that of its contact, (pairs,)."""
         return self.bodies.friction[self.pairs.a] * self.bodies.friction[self.pairs.b]
 
+    def mass_share(self, sheet: int) -> Floats:
+        """Mass of each box of a sheet over that of the sheet, (boxes,): weights of its centre of mass."""
+        part = self.sheets[sheet]
+        mass = self.bodies.mass[part.first : part.first + part.count]
+        return mass / mass.sum()
+
     def called(self, body: int) -> str:
         """What a roller, a plane, a guide, a mesh or a box is called in a sentence."""
         kinds = {g.body: "guide" for g in self.guides} | {m.body: "mesh" for m in self.meshes}
         kinds |= {r.body: "roller" for r in self.rollers}
         kind = "box" if self.sheet_of(body) else kinds.get(body, "plane")
         return f"{kind} {self.bodies.name[body]}"
+
+    def too_deep(self, one: int, other: int) -> str:
+        """What is said of a box or a roller that is too deep in another part."""
+        rollers = {roller.body for roller in self.rollers}
+        if {one, other} <= rollers:
+            return f"{self.called(one)} and {self.called(other)} overlap by more than the smaller radius"
+        size = "radius" if rollers & {one, other} else "thickness"
+        return f"{self.called(one)} is more than half of its {size} into {self.called(other)}"
 
     def bounds_of(self, body: int) -> tuple[str, str]:
         """What the bounds of a body are, and what to do where it has left them."""

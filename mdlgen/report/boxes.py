@@ -6,13 +6,24 @@ import numpy as np
 
 from mdlgen.model.guides import depths
 from mdlgen.model.rotations import turns
-from mdlgen.model.tables import BOX_CYLINDER, BOX_GUIDE, BOX_PLANE, GROUND, Floats, Ints, Model
+from mdlgen.model.tables import (
+    BOX_BOX,
+    BOX_CYLINDER,
+    BOX_GUIDE,
+    BOX_MESH,
+    BOX_PLANE,
+    GROUND,
+    Floats,
+    Ints,
+    Model,
+)
+from mdlgen.report import shares
+from mdlgen.report.shares import EXPONENT
 from mdlgen.report.solids import CORNERS
 from mdlgen.results.result import Result
 from mdlgen.results.strain import SheetJoints
 
 PER_SECOND = 1000.0
-EXPONENT = 1.5  # of the contact law, by which a pair's force is shared among its boxes
 
 
 def count(model: Model) -> int:
@@ -44,17 +55,31 @@ def greatest(found: tuple[SheetJoints, Floats, Floats] | None, shape: tuple[int,
 
 def contact(result: Result, at: Ints) -> tuple[Floats, Floats]:
     """Normal force of each box [N], (t, boxes), and how deep the deepest box of each row of contacts is [mm],
-    (t, rows).
+    (t, rows); of meshes and other sheets 0.
 
     A solver keeps the force of each pair of parts; it is shared among the pair's boxes as their
-    penetrations to the power 1.5 are.
+    penetrations to the power 1.5 are, with meshes and other sheets over the area that each covers
+    (report.shares). A force between two sheets is on the boxes of both.
     """
     model = result.model
+    sheets = {sheet.name: sheet for sheet in model.sheets}
     found, deepest = np.zeros((len(at), count(model))), np.zeros((len(at), len(model.contacts)))
     for row, kind in enumerate(model.contacts.kind.tolist()):
+        pressed = np.flatnonzero(result.contact_force[at, row] > 0.0)
+        if kind in (BOX_MESH, BOX_BOX) and len(pressed):
+            one, force = sheets[model.contacts.part_a[row]], result.contact_force[at[pressed], row][:, None]
+            name = model.contacts.part_b[row]
+            if kind == BOX_MESH:
+                mesh = next(m for m in model.meshes if m.name == name)
+                parts = [(one, shares.on_mesh(result, one, mesh, at[pressed]))]
+            else:
+                both = shares.between(result, one, sheets[name], at[pressed])
+                parts = list(zip((one, sheets[name]), both, strict=True))
+            for sheet, part in parts:
+                found[pressed, sheet.first : sheet.first + sheet.count] += part * force
+            continue
         if kind not in (BOX_CYLINDER, BOX_PLANE, BOX_GUIDE):
             continue
-        pressed = np.flatnonzero(result.contact_force[at, row] > 0.0)
         mine = model.pairs.contact == row
         boxes = model.pairs.a[mine]
         if not len(pressed) or not len(boxes):

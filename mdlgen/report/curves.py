@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from mdlgen.model.tables import CYLINDER_CYLINDER, Floats, Ints
+from mdlgen.model.tables import Floats, Ints
 from mdlgen.results.compare import travel
 from mdlgen.results.result import Result
 from mdlgen.results.strain import SheetJoints
@@ -57,11 +57,11 @@ def _thin(result: Result) -> Ints:
 
 
 def _motion(result: Result) -> list[Panel]:
-    """Displacement, speed, drift and yaw of each sheet's centre, and the probes' displacement."""
+    """Displacement, speed, drift and yaw of each sheet's centre of mass, and the probes' displacement."""
     thin = _thin(result)
     time = result.time[thin]
-    moved = Panel("displacement", "Displacement of the sheet's centre", "mm")
-    speed = Panel("speed", "Speed of the sheet's centre", "mm/s")
+    moved = Panel("displacement", "Displacement of the sheet's centre of mass", "mm")
+    speed = Panel("speed", "Speed of the sheet's centre of mass", "mm/s")
     drift = Panel("drift", "Drift across the way of travel", "mm")
     yaw = Panel("yaw", "Yaw", "deg")
     for k, sheet in enumerate(result.model.sheets):
@@ -87,14 +87,15 @@ def _across(result: Result, sheet: int, way: Floats) -> Floats | None:
 
 
 def _tilt(result: Result, at: Ints) -> list[Panel]:
-    """How far the mean normal of a sheet's boxes leans along its first x and y axes."""
+    """How far the mean normal of a sheet's boxes, by their mass, leans along its first x and y axes."""
     from mdlgen.model.rotations import column
 
     panel = Panel("tilt", "Tilt of the sheet", "deg")
     panel.note = "of the mean normal of its boxes, about the sheet's y axis (pitch) and x axis (roll)"
-    for sheet in result.model.sheets:
+    for k, sheet in enumerate(result.model.sheets):
         boxes = np.arange(sheet.first, sheet.first + sheet.count)
-        normal = column(result.rotation[np.ix_(at, boxes)], 2).mean(axis=1) @ sheet.rotation
+        normals = column(result.rotation[np.ix_(at, boxes)], 2)
+        normal = result.model.mass_share(k) @ normals @ sheet.rotation
         for name, angle in (
             ("pitch", np.arctan2(normal[:, 0], normal[:, 2])),
             ("roll", np.arctan2(-normal[:, 1], normal[:, 2])),
@@ -115,7 +116,7 @@ def _rollers(result: Result, at: Ints, deep: Floats) -> list[Panel]:
     depth.note = "of the deepest box at stored states; the table has the greatest over every step"
     for part in (*result.model.rollers, *(plate for plate, _ in plates)):
         rows = list(part_rows(result, part))
-        sheets = [k for k in rows if result.model.contacts.kind[k] != CYLINDER_CYLINDER]
+        sheets = [k for k in rows if not result.model.contacts.of_machine[k]]
         if rows:
             y = result.contact_force[:, rows].sum(axis=1)
             force.lines.append(Line(part.name, result.time[thin], y[thin]))

@@ -11,7 +11,7 @@ from mdlgen.results.result import Result
 
 ROUND_OFF = 1e-9  # a number below it has no figures to speak of
 # of summary.json: a list of events or of names is no number to compare
-_LEFT_OUT = ("events", "versions")
+_LEFT_OUT = ("events", "versions", "estimates", "estimate_scales")
 
 
 def differences(

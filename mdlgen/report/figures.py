@@ -63,9 +63,9 @@ def _motion(result: Result, page: Any) -> None:
     moves = [result.sheet_motion(k) for k in range(len(result.model.sheets))]
     travels = [move[0] - move[0][0] + travel(result, k, at=0) for k, move in enumerate(moves)]
     _components(result, panels[0], travels)
-    panels[0].set(title="travel of the sheet's centre", ylabel="mm")
+    panels[0].set(title="travel of the sheet's centre of mass", ylabel="mm")
     _components(result, panels[1], [move[1] * 1e3 for move in moves])
-    panels[1].set(title="speed of the sheet's centre", ylabel="mm/s")
+    panels[1].set(title="speed of the sheet's centre of mass", ylabel="mm/s")
     if rows:
         for k, row in enumerate(rows):
             contacts = result.model.contacts

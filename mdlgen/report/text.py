@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
 from mdlgen.report.overview import UNITS
+
+FEW = 3  # names that are listed in a line
 
 Rows = list[list[str]]  # of a table, the first with what its columns are
 
@@ -39,6 +42,7 @@ def overview_parts(told: dict[str, Any]) -> list[str | Rows]:
             *_unlike(sheet["unlike"]),
             "",
             *_bending(sheet["bending"]),
+            *_damping(sheet["derived"]),
             *_curves(sheet["curves"]),
         ]
     pairs = told["pairs"]
@@ -98,9 +102,24 @@ def _unlike(told: dict[str, Any]) -> list[str]:
 
 def _plate(values: dict[str, float]) -> list[str | Rows]:
     """What joints of layout plate have across themselves: k_y and k_tx along x, the others along y."""
-    rows = [["its others", "x shear", "y shear", "", "tx twist", "ty twist", "tz along y", ""]]
+    twist = ("tx_twist", "ty_twist")
+    rows = [
+        [
+            "its others",
+            "x shear",
+            "y shear",
+            "",
+            "tx twist",
+            "ty twist",
+            "at free edges",
+            "",
+            "tz along y",
+            "",
+        ]
+    ]
     for symbol in "kc":
-        named = [f"{symbol}_{name}" for name in ("x_shear", "y_shear", "tx_twist", "ty_twist", "tz_y")]
+        names = ("x_shear", "y_shear", *twist, *(f"{name}_edge" for name in twist), "tz_y")
+        named = [f"{symbol}_{name}" for name in names]
         told = [f"{values[name]:.5g}" for name in named]
         rows.append([symbol, *told[:2], UNITS[symbol], *told[2:], UNITS[f"{symbol}t"]])
     return [f"  plate: G {values['G']:.5g} MPa, D_twist {values['D_twist']:.5g} {UNITS['D']}", rows]
@@ -111,6 +130,18 @@ def _bending(values: dict[str, float]) -> list[str | Rows]:
     for way, hinge, plate in (("along x (MD)", "k_ty", "D_md"), ("along y (CD)", "k_tx", "D_cd")):
         rows.append([way, hinge, f"{values[hinge]:.5g}", plate, f"{values[plate]:.5g}"])
     return [rows]
+
+
+def _damping(values: dict[str, float]) -> list[str]:
+    """The damping times of MD and CD, where it is by time, and what they are as a loss factor."""
+    if "tau_md" not in values:
+        return []
+    md, cd = values["tau_md"], values["tau_cd"]
+    at = 0.1 * math.pi  # 50 Hz [rad/ms]
+    return [
+        f"  damping time MD {md:.5g} ms, CD {cd:.5g} ms "
+        f"(loss factor at 50 Hz {at * md:.3g}, {at * cd:.3g}), on any grid"
+    ]
 
 
 def _curves(curves: dict[str, dict[str, Any]]) -> list[str]:
@@ -159,7 +190,14 @@ def summary_text(told: dict[str, Any]) -> str:
     if told.get("planes"):
         lines += _plates(told["planes"])
     if told["error_estimate"] is not None:
-        lines.append(f"error estimate {told['error_estimate']:.2g}, tolerance {told['tolerance']:g}")
+        worst = f" ({told['error_estimate_of']})" if told["error_estimate_of"] else ""
+        lines.append(f"error estimate {told['error_estimate']:.2g}{worst}, tolerance {told['tolerance']:g}")
+    elif told["error_estimate_of"]:
+        lines.append(f"no error estimate: none for {told['error_estimate_of']}")
+    unknown = [name for name, value in told["estimates"].items() if value is None]
+    if unknown and len(unknown) < len(told["estimates"]):
+        more = f" and {len(unknown) - FEW} more" if len(unknown) > FEW else ""
+        lines.append(f"no estimate for {', '.join(unknown[:FEW])}{more} (summary.json: estimates)")
     return "\n".join(lines)
 
 

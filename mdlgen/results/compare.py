@@ -18,7 +18,7 @@ SAME_TIME = 1e-9
 class Comparison:
     """How far `other` is from `result`, over the boxes and the stored times that both cover."""
 
-    position_rms_mm: float  # root mean square over boxes and times of the distance
+    position_rms_mm: float  # root mean square over boxes, by their mass, and times of the distance
     position_axes_mm: tuple[float, float, float]  # the same along x, y and z
     position_max_mm: float
     relative: float  # position_rms_mm / max(travel, sheet length / 10)
@@ -27,11 +27,10 @@ class Comparison:
 
 
 def travel(result: Result, sheet: int = 0, at: int = -1) -> Floats:
-    """From where the sheet's centre is at the start to where it is at a stored time [mm], (3,)."""
+    """From where the sheet's centre of mass is at the start to where it is at a stored time [mm], (3,)."""
     part = result.model.sheets[sheet]
     boxes = slice(part.first, part.first + part.count)
-    start = result.model.bodies.position[boxes].mean(axis=0)
-    return result.position[at, boxes].mean(axis=0) - start
+    return result.model.mass_share(sheet) @ (result.position[at, boxes] - result.model.bodies.position[boxes])
 
 
 def scale(result: Result) -> float:
@@ -65,11 +64,13 @@ def compare(result: Result, other: Result) -> Comparison:
     here = result.position[common, :count]
     there = _positions(other, time, count, slack)
     distance = np.linalg.norm(here - there, axis=2)
-    x, y, z = np.sqrt(np.mean((here - there) ** 2, axis=(0, 1))).tolist()
-    rms = float(np.sqrt(np.mean(distance**2)))
+    mass = result.model.bodies.mass[:count] / result.model.bodies.mass[:count].sum()
+    square = mass @ np.mean((here - there) ** 2, axis=0)
+    x, y, z = np.sqrt(square).tolist()
+    rms = float(np.sqrt(square.sum()))
     first = result.model.sheets[0]
     own = slice(first.first, first.first + first.count)
-    gap = (here[-1, own] - there[-1, own]).mean(axis=0)
+    gap = result.model.mass_share(0) @ (here[-1, own] - there[-1, own])
     return Comparison(
         position_rms_mm=rms,
         position_axes_mm=(x, y, z),

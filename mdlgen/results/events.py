@@ -1,4 +1,5 @@
-"""What happens to sheets at rollers: entering and leaving, slip, gaps, waits, jams, double feeds.
+"""What happens to sheets: at rollers entering and leaving, slip, gaps, waits, jams, double feeds; at the ends
+of plates stubs.
 
 All of it is read from the stored states, so times are those of stored states (`run.print_step`).
 """
@@ -15,11 +16,12 @@ from mdlgen.model.rotations import turns
 from mdlgen.model.tables import BOX_CYLINDER, Floats, Ints, Model, RollerPart
 from mdlgen.results.foot import Foot, feet
 from mdlgen.results.piles import piled
+from mdlgen.results.stubs import stops
 
 if TYPE_CHECKING:
     from mdlgen.results.result import Result
 
-KINDS = ("enter", "leave", "slip", "gap", "wait", "jam", "double_feed")
+KINDS = ("enter", "leave", "slip", "gap", "wait", "jam", "double_feed", "stub")
 # A force below this part of a contact's greatest is a graze, as in the solvers' account of nips.
 GRAZE = 0.05
 # A sheet that bounces off for a shorter time has not left [ms], and one that touches for a shorter time
@@ -48,10 +50,12 @@ class Stay:
 
 
 def events(result: Result) -> list[dict[str, Any]]:
-    """Every event as an object with `time_ms`, `kind`, `sheet`, `roller` and numbers, by time.
+    """Every event as an object with `time_ms`, `kind`, `sheet`, `roller` (of a stub `part`) and numbers, by
+    time.
 
     Kinds: `enter` and `leave`; `slip`, one for each stay of a sheet at a roller; `gap`, where a sheet enters
-    a roller that another one was at before; `wait`; `jam`; `double_feed`. A sheet that touches at the start
+    a roller that another one was at before; `wait`; `jam`; `double_feed`; `stub`, where the end of a
+    plate stops a sheet. A sheet that touches at the start
     enters at 0. README.md says what the numbers are.
     """
     if len(result.time) < 2:
@@ -60,8 +64,30 @@ def events(result: Result) -> list[dict[str, Any]]:
     found = [event for stay in stays for event in _stay_events(result, stay, together)]
     found += _gaps(result, stays)
     found += _double_feeds(result, [*stays, *_beyond(result, stays, together)])
+    found += _stubs(result)
     order = {"leave": 0, "enter": 1}
-    return sorted(found, key=lambda e: (e["time_ms"], order.get(e["kind"], 2), e["roller"], e["sheet"]))
+    return sorted(found, key=lambda e: (e["time_ms"], order.get(e["kind"], 2), _place(e), e["sheet"]))
+
+
+def _place(event: dict[str, Any]) -> str:
+    return event["roller"] if "roller" in event else event["part"]
+
+
+def _stubs(result: Result) -> list[dict[str, Any]]:
+    """Where the end of a plate stops a sheet that comes to it below, or above, its face."""
+    found = []
+    for stop in stops(result):
+        for first, last in intervals(result.time, stop.held, SHORT):
+            inside = slice(first, last + 1)
+            if not (stop.force[inside] > 0.0).any():
+                continue
+            numbers = {
+                "duration_ms": float(result.time[last] - result.time[first]),
+                "below_mm": float(stop.below[first]),
+            }
+            at = {"time_ms": float(result.time[first]), "kind": "stub"}
+            found.append(at | {"sheet": stop.sheet, "part": stop.part} | numbers)
+    return found
 
 
 def _stays(result: Result) -> list[Stay]:
@@ -127,8 +153,7 @@ def _stay_events(result: Result, stay: Stay, together: np.ndarray | None) -> lis
     """Entering, leaving, slip, waits and jams."""
 
     def speed(at: int) -> float:
-        boxes = _boxes(result.model, stay.sheet)
-        return float(np.linalg.norm(result.velocity[at, boxes].mean(axis=0))) * PER_SECOND
+        return float(np.linalg.norm(result.sheet_velocity(stay.sheet, at))) * PER_SECOND
 
     found = [_event(result, "enter", stay.first, stay, speed_mm_per_s=speed(stay.first))]
     if stay.leaves:
@@ -220,8 +245,7 @@ def _gaps(result: Result, stays: list[Stay]) -> list[dict[str, Any]]:
         for before, stay in pairwise(here):
             if before.sheet == stay.sheet or stay.first == 0:
                 continue
-            boxes = _boxes(result.model, stay.sheet)
-            rate = result.velocity[stay.first, boxes].mean(axis=0)
+            rate = result.sheet_velocity(stay.sheet, stay.first)
             fast = float(np.linalg.norm(rate))
             if fast <= STANDS:  # it lay under the one before
                 continue

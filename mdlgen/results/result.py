@@ -13,6 +13,7 @@ from mdlgen.model.rotations import column, turns
 from mdlgen.model.tables import Floats, Model
 
 if TYPE_CHECKING:
+    from mdlgen.results.estimates import Estimate
     from mdlgen.results.strain import Strains
 
 
@@ -33,13 +34,21 @@ class ContactStatistics:
 
 @dataclass
 class Energy:
-    """Energy at the end and over the run [N mm]; `balance_error` is relative to what passed through."""
+    """Energy at the end and over the run [N mm]; `balance_error` is relative to `scale`, see `results.audit`.
+
+    A positive one came from nowhere, a negative one got lost. It counts what was dissipated and what
+    numerical damping took.
+    """
 
     kinetic: float = 0.0
     elastic: float = 0.0
     dissipated: float = 0.0
     driven: float = 0.0
     balance_error: float = 0.0
+    scale: float = 0.0
+    # what the damping took that a solver adds to joints, beside `dissipated`; None: the solver does not have
+    # it apart, and it is a part of balance_error
+    numerical: float | None = None
 
 
 @dataclass
@@ -68,7 +77,12 @@ class Result:
     estimate_s: float = 0.0  # of runs at other steps, from which the error is estimated
     build_s: float = 0.0
     compile_s: float = 0.0
-    error_estimate: float | None = None  # relative to max(travel, sheet length / 10)
+    # the worst of the estimates that run.tolerance judges, None where there is none, and its name
+    error_estimate: float | None = None
+    error_estimate_of: str | None = None
+    checks: bool = False  # whether it was asked for to check a run at twice its step
+    estimates: dict[str, Estimate] = field(default_factory=dict)  # see `results.estimates.complete`
+    coarser: tuple[Result, ...] = field(default=(), repr=False)  # runs from which these follow, then none
     halved: bool = False  # one side was solved, the other is its mirror image
     versions: dict[str, str] = field(default_factory=dict)
     source: str = ""  # the scene as it was written, with what was set on the command line
@@ -152,17 +166,23 @@ class Result:
             rate += share * (self.velocity[:, body] + np.cross(self.spin[:, body], arm))
         return place, rate
 
+    def sheet_velocity(self, index: int, at: int | slice = slice(None)) -> Floats:
+        """Velocity of a sheet's centre of mass at stored times [mm/ms], (t, 3), or (3,) at one of them."""
+        sheet = self.model.sheets[index]
+        return self.model.mass_share(index) @ self.velocity[at, sheet.first : sheet.first + sheet.count]
+
     def sheet_motion(self, index: int) -> tuple[Floats, Floats, Floats]:
         """Centre of mass [mm], its velocity [mm/ms] and the yaw [rad] of a sheet, (t, 3), (t, 3), (t,).
 
-        The yaw is the mean over boxes of the turn about the sheet's first normal since the start, plus the
-        turn of the sheet at the start about that normal.
+        The yaw is the mean over boxes, by their mass, of the turn about the sheet's first normal since the
+        start, plus the turn of the sheet at the start about that normal.
         """
         sheet = self.model.sheets[index]
         boxes = slice(sheet.first, sheet.first + sheet.count)
-        place = self.position[:, boxes].mean(axis=1)
-        rate = self.velocity[:, boxes].mean(axis=1)
-        along = column(self.rotation[:, boxes], 0).mean(axis=1)
+        share = self.model.mass_share(index)
+        place = share @ self.position[:, boxes]
+        rate = self.sheet_velocity(index)
+        along = share @ column(self.rotation[:, boxes], 0)
         normal = sheet.rotation[:, 2]
         flat = (
             along

@@ -13,6 +13,7 @@ import numpy as np
 from mdlgen.errors import OutputError
 from mdlgen.paths import recover, write_together
 from mdlgen.results import tree
+from mdlgen.results.estimates import complete
 from mdlgen.results.result import ContactStatistics, Result
 from mdlgen.results.series import csv
 from mdlgen.results.summary import summary, versions
@@ -22,7 +23,7 @@ STATES = ("time", "position", "rotation", "velocity", "spin", "contact_force")
 # of a Result, beside its states: what the tables of the file hold
 TOLD = (
     "model", "solver", "status", "touched", "energy", "step", "steps", "rounds", "halved", "error_estimate",
-    "versions", "source",
+    "error_estimate_of", "estimates", "versions", "source",
 )  # fmt: skip
 TOOK = ("wall_s", "estimate_s", "build_s", "compile_s")  # which differ from run to run
 STATISTICS = ("max_depth", "mean_depth", "max_force", "mean_force", "last_force_at")
@@ -74,6 +75,7 @@ def hdf5(result: Result) -> bytes:
     import h5py
 
     model = result.model
+    complete(result)
     stream = io.BytesIO()
     with h5py.File(stream, "w") as file:
 

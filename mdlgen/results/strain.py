@@ -194,6 +194,31 @@ def histories(result: Result, at: Ints) -> tuple[SheetJoints, Floats, Floats] | 
     return joints, stretch, bend
 
 
+def apart(one: Result, other: Result, at: Ints, there: Ints) -> tuple[SheetJoints, Floats] | None:
+    """Greatest differences over the stored states `at` of one run and `there` of another of what each joint
+    bears: strain of the more and of the less stretched bushing, curvature, twist [1/mm], (4, joints)."""
+    joints = sheet_joints(one.model)
+    if not len(joints) or not len(at):
+        return None
+    found = np.zeros((len(_KINDS), len(joints)))
+    for axis in (0, 1):
+        along = np.flatnonzero(joints.axis == axis)
+        for start in range(0, len(along), _CHUNK):
+            mine = along[start : start + _CHUNK]
+            fixed, frames = _Fixed(one.model, joints, mine), max(1, _CHUNK // len(mine))
+            for part in range(0, len(at), frames):
+                states = zip(
+                    (one, other), (at[part : part + frames], there[part : part + frames]), strict=True
+                )
+                measured = [
+                    _measure(_states(run, now, fixed.a), _states(run, now, fixed.b), fixed, axis)
+                    for run, now in states
+                ]
+                for k, (a, b) in enumerate(zip(*measured, strict=True)):
+                    found[k, mine] = np.maximum(found[k, mine], np.abs(a - b).max(axis=0))
+    return joints, found
+
+
 class _Fixed:
     """What does not change over a run, of some joints; quaternions and vectors component by component."""
 

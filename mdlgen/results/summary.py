@@ -10,6 +10,7 @@ import numpy as np
 
 from mdlgen.model.tables import Floats, GuidePart, MeshPart, PlanePart, RollerPart
 from mdlgen.results.compare import travel
+from mdlgen.results.estimates import complete
 from mdlgen.results.result import Result
 from mdlgen.version import version
 
@@ -17,10 +18,11 @@ PER_SECOND = 1000.0  # mm/ms -> mm/s, rad/ms -> rad/s
 
 
 def summary(result: Result, without: Collection[str] = ()) -> dict[str, Any]:
-    """What summary.json holds; every vector is [x, y, z], every speed the mean over boxes at the end.
+    """What summary.json holds; every vector is [x, y, z], every speed that of the centre of mass at the
+    end.
 
     A number that is not finite, or that the run did not reach, is None. `without` names what need not be
-    worked out: "events", "bearing" (what the joints of the sheets bore).
+    worked out: "events", "bearing" (what the joints of the sheets bore), "estimates".
     """
     model = result.model
     energy = result.energy
@@ -39,13 +41,16 @@ def summary(result: Result, without: Collection[str] = ()) -> dict[str, Any]:
         "pairs": {"possible": model.pairs.possible, "kept": len(model.pairs), "touched": result.touched},
         "halved": result.halved,
         "error_estimate": result.error_estimate,
+        "error_estimate_of": result.error_estimate_of,
         "tolerance": model.run.tolerance,
         "energy": {
             "kinetic": energy.kinetic,
             "elastic": energy.elastic,
             "dissipated": energy.dissipated,
+            "numerical": energy.numerical,
             "driven": energy.driven,
             "balance_error": energy.balance_error,
+            "scale": energy.scale,
         },
         **({} if "events" in without else {"events": result.events}),
         "sheets": {s.name: _sheet(result, k, "bearing" not in without) for k, s in enumerate(model.sheets)},
@@ -55,6 +60,12 @@ def summary(result: Result, without: Collection[str] = ()) -> dict[str, Any]:
         "probes": {p.name: _probe(result, k) for k, p in enumerate(model.probes)},
         "versions": versions(result),
     }
+    if "estimates" not in without:
+        estimates = complete(result)
+        told["estimates"] = {name: found.value for name, found in estimates.items()}
+        told["estimate_scales"] = {
+            name: {"scale": found.scale, "unit": found.unit} for name, found in estimates.items()
+        }
     if model.plates:
         told["planes"] = {plate.name: _pressing(result, plate) for plate, _ in model.plates}
     if model.tension is not None:
@@ -194,8 +205,8 @@ def _pressing(result: Result, part: RollerPart | PlanePart) -> dict[str, Any]:
 
 def _roller(result: Result, roller: RollerPart) -> dict[str, Any]:
     rows = part_rows(result, roller)
-    sheets = {s.name for s in result.model.sheets}
-    on_rollers = np.array([k for k, other in rows.items() if other not in sheets], dtype=np.int64)
+    rollers = {r.name for r in result.model.rollers}
+    on_rollers = np.array([k for k, other in rows.items() if other in rollers], dtype=np.int64)
     speed = float(result.spin[-1, roller.body] @ roller.axis) * PER_SECOND if len(result.time) else None
     return {
         "omega_rad_per_s": speed,

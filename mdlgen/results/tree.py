@@ -9,12 +9,14 @@ from typing import Any
 import numpy as np
 
 from mdlgen.model import tables
+from mdlgen.results.estimates import Estimate
 from mdlgen.results.result import Energy
 
 # What may stand in a file; a name is looked up here and nowhere else.
 _CLASSES = {
     **{name: kind for name, kind in vars(tables).items() if isinstance(kind, type) and is_dataclass(kind)},
     "Energy": Energy,
+    "Estimate": Estimate,
 }
 _TEXT = "model/tables"
 

@@ -58,6 +58,16 @@ class Contact(Strict):
     smoothing: SpeedScale = Field(
         default=default("1 mm/s"), description="speed over which damping and friction change sign; 1 mm/s"
     )
+    rolling_resistance: float = Field(
+        default=0.0,
+        ge=0,
+        le=1,
+        description="f of a roller that rolls on the other part: a couple f N R against its angular velocity "
+        "about its axis relative to that part, N the normal force, R its radius (of two rollers 1/R = 1/R1 + "
+        "1/R2; on an arc of radius A 1/R1 + 1/A, in its hollow 1/R1 - 1/A; of a rim the greatest), so that a "
+        "roller that rolls at a steady speed is held back by f N; its sign changes over `smoothing`, of the "
+        "angular velocity times R",
+    )
     share: Literal["width", "pair"] = Field(
         default="width",
         description="width: boxes under one roller, or on boxes of another sheet, share k by the area they "

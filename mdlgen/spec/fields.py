@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable
 from typing import Annotated, Any
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, GetCoreSchemaHandler, WithJsonSchema
@@ -103,6 +104,51 @@ class quantity:
         return ""
 
 
+class one_or_two(quantity):
+    """A quantity, or a list of two of them: a value for both MD and CD, or one for each."""
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: Any) -> dict[str, Any]:
+        one = super().__get_pydantic_json_schema__(schema, handler)
+        return {"anyOf": [one, {"type": "array", "minItems": 2, "maxItems": 2, "items": one}]}
+
+    def read(self, text: Any) -> Any:
+        """One value, or two, in internal units; raises as `quantity.read` does."""
+        return _each(super().read, text, f"'1 {self.unit}'")
+
+
+def _each(read: Callable[[Any], float], value: Any, example: str) -> float | tuple[float, float]:
+    """What `read` makes of a value, or of each of two in a list."""
+    if not isinstance(value, (list, tuple)):
+        return read(value)
+    if len(value) != 2:
+        raise fail(
+            f"expected one value like {example} or a list of two, MD and CD; got a list of {len(value)}"
+        )
+    found: list[float] = []
+    for k, item in enumerate(value):
+        try:
+            found.append(read(item))
+        except PydanticCustomError as error:
+            raise fail(str((error.context or {})["text"]), within=(k,)) from None
+    return found[0], found[1]
+
+
+def numbers(low: float, high: float) -> tuple[BeforeValidator, WithJsonSchema]:
+    """One plain number, or a list of two, MD and CD, from `low` to `high`."""
+
+    def read(value: Any) -> float:
+        if not _is_number(value):
+            raise fail(f"{value!r} is not a number; allowed are {low:g} to {high:g}"[:200])
+        if not low <= value <= high:
+            raise fail(f"{value:g} is outside what is allowed: {low:g} to {high:g}")
+        return float(value)
+
+    one = {"type": "number", "minimum": low, "maximum": high}
+    return BeforeValidator(lambda value: _each(read, value, f"{(low + high) / 2:g}")), WithJsonSchema(
+        {"anyOf": [one, {"type": "array", "minItems": 2, "maxItems": 2, "items": one}]}
+    )
+
+
 class Default(float):
     """A default in internal units that remembers how a user would write it."""
 
@@ -166,10 +212,14 @@ def _triple(unit: str) -> BeforeValidator:
 
 
 Length = Annotated[float, quantity("mm")]
+LengthOrZero = Annotated[float, quantity("mm", 0.0)]
 PositiveLength = Annotated[float, quantity("mm", 0.0, open_low=True)]
 Mass = Annotated[float, quantity("g", 0.0, open_low=True)]
 Time = Annotated[float, quantity("ms", 0.0, open_low=True)]
 TimeOrZero = Annotated[float, quantity("ms", 0.0)]
+Frequency = Annotated[float, quantity("Hz", 0.0, open_low=True)]
+Times = Annotated[float | tuple[float, float], one_or_two("ms", 0.0)]
+LossFactors = Annotated[float | tuple[float, float], *numbers(0.0, 10.0)]
 Stiffness = Annotated[float, quantity("N/mm", 0.0)]
 Torsion = Annotated[float, quantity("N*mm/rad", 0.0)]
 Modulus = Annotated[float, quantity("MPa", 0.0, open_low=True)]

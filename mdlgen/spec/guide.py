@@ -7,9 +7,41 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
-from mdlgen.spec.fields import Angle, Direction, Mass, Position, PositiveLength, Strict, default, fail
+from mdlgen.spec.fields import (
+    Angle,
+    Direction,
+    LengthOrZero,
+    Mass,
+    Position,
+    PositiveLength,
+    Strict,
+    default,
+    fail,
+)
 
+# Edges of sheet metal guides are sharp, 0.02 mm as cut to 0.1 mm where the burr is taken off. The blunt end
+# of that is the default: by what a soft contact lets a sheet into one plate it must not stub on the next.
+EDGE_RADIUS = 0.1  # mm
 SQUARE = 1e-9  # cosine of the angle by which a line may be off the normal of its axis
+
+
+def check_edge(radius: float | None, thickness: float) -> None:
+    """Raises where the rounds of both faces would meet."""
+    if radius is not None and radius > 0.5 * thickness * (1 + 1e-12):
+        raise fail(
+            f"{radius:g} mm is more than half of the thickness, {thickness:g} mm; allowed: 0 to "
+            f"{0.5 * thickness:g} mm",
+            within=("edge_radius",),
+        )
+
+
+def edge_radii(given: float | None, thickness: float, faces: int) -> tuple[float, float]:
+    """Radii of the edges of a plate's upper and lower face [mm], of which `faces` (1, 2 or 3: both) are
+    touched; those of the other one are no blunter than the default."""
+    plain = min(EDGE_RADIUS, 0.5 * thickness)
+    own = plain if given is None else given
+    back = min(own, plain)
+    return own if faces & 1 else back, own if faces & 2 else back
 
 
 class Line(Strict):
@@ -68,6 +100,20 @@ class Guide(Strict):
     mass: Mass = Field(
         default=default("1 g"), description="mass; of no effect on the motion, since the guide is fixed"
     )
+    edge_radius: LengthOrZero | None = Field(
+        default=None,
+        description="of the edges of the face that is touched; 0.1 mm, or half of a thinner plate. A sheet "
+        "climbs an edge where its corner is less than edge_radius (1 - sin(atan mu)) below the face, or else "
+        "it stubs. The edges of the other face have 0.1 mm at most",
+    )
+
+    @property
+    def normal(self) -> tuple[float, float, float]:
+        """Unit normal of a straight guide, on the left of its way."""
+        assert self.line is not None, "asked of straight guides only"
+        way = [b - a for a, b in zip(self.line.from_, self.line.to, strict=True)]
+        length, (x, y, z), (u, v, w) = math.hypot(*way), self.line.axis, way
+        return (y * w - z * v) / length, (z * u - x * w) / length, (x * v - y * u) / length
 
     @model_validator(mode="after")
     def _one(self) -> Guide:
@@ -75,4 +121,5 @@ class Guide(Strict):
             raise fail("a guide is a line or an arc; give one of them")
         if self.arc is not None and self.thickness >= self.arc.radius:
             raise fail(f"thickness {self.thickness:g} mm is not less than the radius {self.arc.radius:g} mm")
+        check_edge(self.edge_radius, self.thickness)
         return self

@@ -47,6 +47,9 @@ _ALTERNATIVES = (
     {"at", "edge"},
     {"force", "moment", "stress"},
     {"mass", "density"},
+    {"time", "loss_factor"},
+    {"time", "at"},
+    *({old, new} for old in ("ratio", "ratio_ty", "rotation") for new in ("time", "loss_factor", "at")),
 )
 
 _INT = re.compile(r"[-+]?[0-9]{1,18}")

@@ -9,6 +9,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from mdlgen.spec.fields import (
     Direction,
+    LengthOrZero,
     Mass,
     Position,
     PositiveLength,
@@ -21,6 +22,7 @@ from mdlgen.spec.fields import (
     fail,
     quantity,
 )
+from mdlgen.spec.guide import check_edge
 from mdlgen.spec.rim import Rim
 
 # A solver keeps them beside each body, and a text writes them into one expression.
@@ -91,7 +93,8 @@ class Press(Strict):
     free_length: PositiveLength = Field(
         default=default("6 mm"),
         description="spring length at which the preload is stated: where the roller just touches its "
-        "counterpart (a roller it has a contact with), or its centre as given where it has none, as a plate",
+        "counterpart (a roller, plane or guide it has a contact with), or its centre as given where it has "
+        "none, as a plate",
     )
     damping_ratio: float = Field(
         default=0.05, ge=0, le=10, description="relative damping of spring and roller or plate"
@@ -175,9 +178,14 @@ class Plane(Strict):
     press: Press | None = Field(
         default=None, description="slide and spring; without it the plate is fixed. It does not turn"
     )
+    edge_radius: LengthOrZero | None = Field(
+        default=None,
+        description="of the edges of its face; 0.1 mm, or half of a thinner plate: see that of a guide",
+    )
 
     @model_validator(mode="after")
     def _presses(self) -> Plane:
+        check_edge(self.edge_radius, self.size[2])
         if self.press is None:
             return self
         if abs(sum(d * n for d, n in zip(self.press.direction, self.normal, strict=True))) < 0.05:

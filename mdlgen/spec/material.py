@@ -2,19 +2,31 @@
 
 from __future__ import annotations
 
+import math
 from typing import Literal
 
 from pydantic import Field, model_validator
 
 from mdlgen.spec.curve import Curve
-from mdlgen.spec.fields import Modulus, Plate, Strict, Torsion, fail
+from mdlgen.spec.fields import Frequency, LossFactors, Modulus, Plate, Strict, Times, Torsion, fail
+
+RATIO = 0.12  # the paper's zeta (Table 2)
 
 
 class Damping(Strict):
-    """Relative damping of the joints (Eq. 7)."""
+    """Damping of the joints: that of the paper (Eq. 7), or one that belongs to the material.
 
-    ratio: float = Field(
-        default=0.12, ge=0, le=10, description="relative damping zeta of every component but ty"
+    `ratio` is relative to one box and its joint, as in Eq. 7: that of a mode of the whole sheet falls with
+    the square of the number of boxes. `time` and `loss_factor` are Kelvin and Voigt's: stress = E (strain +
+    tau strain rate) for each component of a joint, c = tau k, on any grid the same.
+    """
+
+    ratio: float | None = Field(
+        default=None,
+        ge=0,
+        le=10,
+        description="relative damping zeta of every component but ty (Eq. 7), of one box and its joint; 0.12 "
+        "where nothing is given",
     )
     ratio_ty: float | None = Field(
         default=None,
@@ -22,11 +34,65 @@ class Damping(Strict):
         le=10,
         description="zeta of the rotation about y; the same as ratio where left out",
     )
-    rotation: Literal["inertia", "paper"] = Field(
-        default="inertia",
-        description="inertia: c_t = 2 zeta sqrt(k_t I), I the box inertia about its edge; "
-        "paper: the paper's formula with the box mass in g in place of I, which gives Table 2",
+    rotation: Literal["inertia", "paper"] | None = Field(
+        default=None,
+        description="with ratio. inertia, also where left out: c_t = 2 zeta sqrt(k_t I), I the box inertia "
+        "about its edge; paper: the paper's formula with the box mass in g in place of I (Table 2)",
     )
+    time: Times | None = Field(
+        default=None,
+        description="damping time tau, in place of ratio: stress = E (strain + tau strain rate), and so in "
+        "bending, on any grid; [tau_md, tau_cd] for MD and CD. What follows from E_md or D_md (k_ty) has "
+        "tau_md, from E_cd or D_cd (k_tx) tau_cd; shear, twist, k_z and a given k_tz have the mean of both; "
+        "of a measured curve it is a time of its first slope",
+    )
+    loss_factor: LossFactors | None = Field(
+        default=None,
+        description="loss factor eta, measured at the frequency `at`, in place of ratio: "
+        "tau = eta/(2 pi at); [eta_md, eta_cd] for MD and CD",
+    )
+    at: Frequency | None = Field(default=None, description="frequency at which loss_factor was measured")
+
+    @model_validator(mode="after")
+    def _one_of_them(self) -> Damping:
+        forms = {"ratio": ("ratio", "ratio_ty", "rotation"), "time": ("time",), "loss": ("loss_factor", "at")}
+        given = {form: [n for n in names if getattr(self, n) is not None] for form, names in forms.items()}
+        if sum(map(bool, given.values())) > 1:
+            told = ", ".join(name for names in given.values() for name in names)
+            raise fail(
+                f"damping by {told}: give time, or loss_factor with at, or ratio with what belongs to it"
+            )
+        if len(given["loss"]) == 1:
+            told, other = ("loss_factor", "at") if self.at is None else ("at", "loss_factor")
+            example = "at: 40 Hz" if self.at is None else "loss_factor: 0.05"
+            raise fail(f"damping by {told} needs {other}, as {example}")
+        return self
+
+    @property
+    def zetas(self) -> tuple[float, float]:
+        """Relative damping of every component but ty, and of ty (Eq. 7)."""
+        ratio = RATIO if self.ratio is None else self.ratio
+        return ratio, ratio if self.ratio_ty is None else self.ratio_ty
+
+    @property
+    def times(self) -> tuple[float, float] | None:
+        """Damping times of MD and CD [ms]; None with damping by ratio."""
+        if self.time is not None:
+            return _pair(self.time)
+        if self.loss_factor is None or self.at is None:
+            return None
+        md, cd = _pair(self.loss_factor)
+        turn = 2.0 * math.pi * self.at
+        return md / turn, cd / turn
+
+    @property
+    def kind(self) -> Literal["inertia", "paper", "time"]:
+        """Where the damping of a joint's rotations comes from."""
+        return "time" if self.times is not None else self.rotation or "inertia"
+
+
+def _pair(value: float | tuple[float, float]) -> tuple[float, float]:
+    return value if isinstance(value, tuple) else (value, value)
 
 
 class Material(Strict):

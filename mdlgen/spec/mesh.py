@@ -6,7 +6,18 @@ from typing import Annotated, Literal
 
 from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
-from mdlgen.spec.fields import Angles, Mass, Name, Position, Strict, fail, origin, quantity
+from mdlgen.spec.fields import (
+    Angles,
+    LengthOrZero,
+    Mass,
+    Name,
+    Position,
+    Strict,
+    default,
+    fail,
+    origin,
+    quantity,
+)
 from mdlgen.spec.limits import Tally
 from mdlgen.spec.solid import Solid, read_solid
 
@@ -36,12 +47,19 @@ class Mesh(Strict):
         description="where the depth of an element, or of what a box covers of it, is looked at: in its "
         "corners, or in its middle",
     )
+    edge_radius: LengthOrZero = Field(
+        default=default("0 mm"),
+        description="of its edges where the outer sides of a sheet meet them, below 1 mm; 0, as sharp as its "
+        "triangles make them",
+    )
     _solid: Solid | None = PrivateAttr(default=None)
 
     @model_validator(mode="after")
     def _read(self, info: ValidationInfo) -> Mesh:
         if self.mass is not None and self.density is not None:
             raise fail("mass and density are both given; give one of them")
+        if self.edge_radius >= 1.0:
+            raise fail(f"{self.edge_radius:g} mm; allowed: below 1 mm", within=("edge_radius",))
         if self.on is not None and self.mass is None and self.density is None:
             raise fail("on a roller its mass counts; give mass or density")
         told = info.context or {}

@@ -16,7 +16,12 @@ class Run(Strict):
     analysis: Literal["transient", "static"] = "transient"
     step: Time | None = Field(default=None, description="time step; chosen from the tolerance where left out")
     tolerance: float = Field(
-        default=1e-3, ge=1e-12, le=0.1, description="wanted error, relative to max(travel, sheet length / 10)"
+        default=1e-3,
+        ge=1e-12,
+        le=0.1,
+        description="wanted error of positions of sheets and orientation of single blocks, relative to "
+        "max(travel, sheet length / 10), and of slides and arm angles, relative to their range, at least "
+        "to the same lengths",
     )
     print_step: Time | None = Field(
         default=None, description="time between outputs; duration / 200 where left out"

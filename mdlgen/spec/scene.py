@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from fnmatch import fnmatchcase
 from itertools import product
@@ -174,13 +175,44 @@ class Scene(Strict):
                 path,
             )
         if b not in self.rollers:
-            kind = "guide" if b in self.guides else "mesh" if b in self.meshes else "plane"
-            raise fail(f"contact between {a} and {b} is not modelled: a {kind} touches sheets only", path)
+            self._on_part(a, b, path)
+            return
         one, two = self.rollers[a].axis, self.rollers[b].axis
         if abs(abs(sum(p * q for p, q in zip(one, two, strict=True))) - 1.0) > 1e-9:
             raise fail(f"the rollers {a} and {b} are in contact but their axes are not parallel", path)
         if self.rollers[a].rim is not None and self.rollers[b].rim is not None:
             raise fail(f"contact between {a} and {b} is not modelled: both have a rim of sectors", path)
+
+    def _on_part(self, a: str, b: str, path: tuple[str | int, ...]) -> None:
+        """Raises the error for a contact between two parts of the machine, the second no roller, that is not
+        modelled."""
+        kind = "guide" if b in self.guides else "mesh" if b in self.meshes else "plane"
+        told = f"contact between {a} and {b} is not modelled: "
+        if a not in self.rollers:
+            raise fail(f"{told}a {kind} touches sheets and rollers only", path)
+        roller, sectors = self.rollers[a], self.rollers[a].rim is not None
+        if b in self.meshes:
+            if self.meshes[b].on is not None:
+                raise fail(f"{told}{b} is on a roller, and such a mesh touches sheets only", path)
+            if sectors:
+                raise fail(f"{told}the rim of {a} is in sectors, and a mesh meets round rollers only", path)
+            return
+        guide = self.guides.get(b)
+        arc = guide.arc if guide is not None else None
+        if arc is not None:
+            if abs(abs(_cosine(roller.axis, arc.axis)) - 1.0) > 1e-9:
+                raise fail(f"{told}the roller's axis is not parallel to that of the arc", path)
+            if sectors:
+                raise fail(f"{told}the rim of {a} is in sectors, and an arc meets round rollers only", path)
+            return
+        normal = self.planes[b].normal if guide is None else guide.normal
+        steep = abs(_cosine(roller.axis, normal))
+        if steep > 0.5:
+            raise fail(
+                f"{told}the roller stands on its end, its axis {math.degrees(math.acos(steep)):.3g} deg off "
+                "the normal of the face; allowed: 60 deg or more",
+                path,
+            )
 
     def _meshed(self, name: str, path: tuple[str | int, ...]) -> None:
         if self.contacts[int(path[1])].share == "pair":
@@ -194,6 +226,10 @@ def _known(name: str, table: dict, kind: str, path: tuple[str | int, ...]) -> No
     if name not in table:
         close = did_you_mean(name, table)
         raise fail(f"there is no {kind} {name!r}{close or ';'} there are: {', '.join(table) or 'none'}", path)
+
+
+def _cosine(one: tuple[float, float, float], two: tuple[float, float, float]) -> float:
+    return max(-1.0, min(1.0, sum(p * q for p, q in zip(one, two, strict=True))))
 
 
 def _matching(pattern: str, parts: dict[str, int], path: tuple[str | int, ...]) -> list[str]:

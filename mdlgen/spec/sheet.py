@@ -71,8 +71,15 @@ class Sheet(Strict):
     rotation: Angles | None = Field(
         default=None, description="rotations about the global x, then y, then z axis, in place of turn"
     )
-    velocity: Velocity = Field(default=origin("m/s"), description="initial velocity of the centre")
-    spin: Spin = Field(default=origin("rad/s"), description="initial angular velocity, global axes")
+    velocity: Velocity = Field(
+        default=origin("m/s"),
+        description="initial velocity of the middle of the outline, where `center` is; the centre of mass of "
+        "a sheet with zones is elsewhere, and moves with the spin about that middle, too",
+    )
+    spin: Spin = Field(
+        default=origin("rad/s"),
+        description="initial angular velocity about the middle of the outline, global axes",
+    )
     clamp: Clamp | None = Field(default=None, description="an edge that is held")
     surface: bool = Field(
         default=False, description="deformable surface on the box centres, to look at in MotionView"

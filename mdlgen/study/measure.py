@@ -11,6 +11,7 @@ import numpy as np
 from mdlgen.errors import SpecError, did_you_mean
 from mdlgen.model.rotations import euler_parameters
 from mdlgen.results.events import KINDS
+from mdlgen.results.quantities import all_names
 from mdlgen.study.expression import Expression, Value, read
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ AXES = "xyz"
 # They differ from run to run of the same case; a study keeps them apart from its table.
 TIMES = ("wall_s", "estimate_s", "compile_s", "build_s")
 BEARING = ("strain", "curvature", "twist")
+LEFT_OUT = ("error_estimate_of", "estimate_scales")
 MOST = 200  # measures
 _NAMED = re.compile(r"\s*([A-Za-z]\w{0,62})\s*=(?!=)(.*)", re.ASCII | re.DOTALL)
 _PIECE = re.compile(r"[A-Za-z_]\w*(?:\.\w+)*", re.ASCII)
@@ -30,12 +32,14 @@ _TAKEN = ("case", "status", "error_estimate")  # columns of the table
 def flat(told: Mapping[str, Any], within: str = "") -> dict[str, Value]:
     """Numbers and vectors of a summary by dotted name; the parts of a vector as NAME.x, .y, .z too.
 
-    `events.jam` is how many there were, `events.jam.NAME` of them with a sheet or roller. Texts and times are
-    left out.
+    `events.jam` is how many there were, `events.jam.NAME` of them with a sheet, a roller or a plate. Texts
+    and times are left out.
     """
     found: dict[str, Value] = {}
     for key, value in told.items():
         name = f"{within}{key}"
+        if name in LEFT_OUT:
+            continue
         if isinstance(value, Mapping):
             found |= flat(value, f"{name}.")
         elif name == "events":
@@ -55,7 +59,7 @@ def flat(told: Mapping[str, Any], within: str = "") -> dict[str, Value]:
 def _counts(events: Sequence[Mapping[str, Any]]) -> dict[str, Value]:
     found: dict[str, Value] = {f"events.{kind}": 0.0 for kind in KINDS}
     for event in events:
-        who = {str(event[part]) for part in ("sheet", "roller", "other") if part in event}
+        who = {str(event[part]) for part in ("sheet", "roller", "other", "part") if part in event}
         for name in (f"events.{event['kind']}", *(f"events.{event['kind']}.{part}" for part in who)):
             found[name] = float(found.get(name) or 0.0) + 1.0  # pyright: ignore[reportArgumentType]
     return found
@@ -65,8 +69,9 @@ def known(model: Model) -> dict[str, Value]:
     """Every name that a run of this Model has; of the values only which are vectors means anything."""
     from mdlgen.results.summary import summary
 
-    parts = [*(s.name for s in model.sheets), *(r.name for r in model.rollers)]
-    found = flat(summary(_begun(model)))
+    parts = [p.name for p in (*model.sheets, *model.rollers, *model.planes, *model.guides)]
+    begun = _begun(model)
+    found = flat(summary(begun)) | {f"estimates.{name}": 0.0 for name in all_names(begun)}
     return found | {f"events.{kind}.{part}": 0.0 for kind in KINDS for part in parts}
 
 
@@ -170,6 +175,8 @@ def numbers(result: Result, expressions: Iterable[Expression]) -> dict[str, Valu
         without.append("events")
     if not any(word[0] == "sheets" and word[2:3] and word[2] in BEARING for word in words):
         without.append("bearing")
+    if not any(word[0] == "estimates" for word in words):
+        without.append("estimates")
     return flat(summary(result, without))
 
 
@@ -181,6 +188,8 @@ def measured(result: Result, expressions: Sequence[tuple[str, Expression]]) -> d
     there = numbers(result, (expression for _, expression in expressions))
 
     def lookup(name: str) -> Value:
+        if name not in there and name.startswith("estimates."):
+            return None  # of a contact that was not touched, or a run at rest
         if name not in there and not name.startswith("events."):
             raise ValueError(f"this case has no {name}")
         return there.get(name, 0.0)

@@ -77,7 +77,8 @@ def _run(task: Task, case: Case, begun: Callable[[], None] | None) -> dict[str, 
     estimate, tolerance = result.error_estimate, model.run.tolerance
     if estimate is not None and not estimate <= tolerance:
         status = (
-            f"the error estimate {estimate:.3g} is above run.tolerance {tolerance:g}; give a smaller run.step"
+            f"the error estimate of {result.error_estimate_of} is {estimate:.3g}, above run.tolerance "
+            f"{tolerance:g}; give a smaller run.step"
         )
         return {**told, "kind": INACCURATE, "status": status}
     return {**told, "kind": OK, "status": "ok"}

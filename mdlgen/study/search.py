@@ -20,6 +20,9 @@ METHODS = ("auto", "brent", "cobyqa", "optuna")
 PRECISION = 1e-3
 # First steps of COBYQA, as a part of each range.
 _FIRST_STEP = 0.25
+# So far from the middle does COBYQA begin: conditions in round numbers pass through the middle itself, where
+# rounding decides whether they hold, and the search ended beside the best point.
+_OFF_MIDDLE = 0.0137
 # Designs that Optuna draws before it learns from them.
 _AT_RANDOM = 8
 # So often may Optuna ask for a design that is known already, for each run.
@@ -73,7 +76,7 @@ def brent(evaluate: Evaluate, precision: float) -> None:
 
 def cobyqa(evaluate: Evaluate, size: int, conditions: int, precision: float) -> None:
     """COBYQA (Ragonneau and Zhang, 2022): quadratic models from values alone, in a region of trust that
-    shrinks from a quarter of the ranges to `precision`; begins in the middle."""
+    shrinks from a quarter of the ranges to `precision`; begins near the middle."""
     from scipy.optimize import NonlinearConstraint, minimize
 
     known: dict[tuple[float, ...], Outcome] = {}
@@ -91,7 +94,7 @@ def cobyqa(evaluate: Evaluate, size: int, conditions: int, precision: float) -> 
         ]
     minimize(
         lambda at: outcome(at).objective,
-        np.full(size, 0.5),
+        0.5 + _OFF_MIDDLE * (-1.0) ** np.arange(size),
         method="COBYQA",
         bounds=[(0.0, 1.0)] * size,
         constraints=limits,

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 from mdlgen.model.rim_facets import WHOLE, graphics, meetings
-from mdlgen.model.tables import CYLINDER_CYLINDER, Model
+from mdlgen.model.tables import Model
 from mdlgen.verify.tables import ANY, Table
 
 MACHINE_KINDS = ("springs", "cylinders", "motions", "vectors", "run", "gravity")
@@ -49,10 +49,10 @@ def _machine(model: Model) -> set[str]:
     table = model.contacts
     of, bodies = model.pairs.contact, model.bodies.name
     for met in meetings(model):
-        if table.kind[of[met.pair]] == CYLINDER_CYLINDER:
+        if table.of_machine[of[met.pair]]:
             a, b = (bodies[int(side[met.pair])] for side in (model.pairs.a, model.pairs.b))
             names.add(f"con_{a}_{b}{met.suffix}")
-    of_sheets = {int(table.entry[r]) for r in range(len(table)) if table.kind[r] != CYLINDER_CYLINDER}
+    of_sheets = {int(table.entry[r]) for r in range(len(table)) if not table.of_machine[r]}
     names |= {f"ds_contact_{e}" for e in set(table.entry.tolist()) - of_sheets}
     return names
 

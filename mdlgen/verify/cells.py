@@ -73,7 +73,8 @@ def _joints(model: Model, index: int) -> dict[str, float]:
     for joints, classes, _ in joint_classes(sheet):
         mine = np.flatnonzero((rows.sheet == index) & (rows.kind == joints.kind))
         for c in classes:
-            k, c_six = rows.k[mine[c.first]] / joints.scale, rows.c[mine[c.first]] / joints.scale * SECOND
+            times = joints.scale * _widened(sheet, c, one=int(joints.one[c.first]))
+            k, c_six = rows.k[mine[c.first]] / times, rows.c[mine[c.first]] / times * SECOND
             one, two = (int(boxes[c.first]) for boxes in (joints.one, joints.two))
             members = _between(model, sheet, c, one, two)
             members |= {f"k_{n}": v for n, v in zip(_SIX, k, strict=True)}
@@ -85,6 +86,20 @@ def _joints(model: Model, index: int) -> dict[str, float]:
                 members["A"] = sections[c.name]
             found |= {f"ds_{sheet.name}_joints.real_{n}_{c.name}": float(v) for n, v in members.items()}
     return found
+
+
+def _widened(sheet: SheetPart, c: JointClass, one: int) -> Floats:
+    """What a text has in times the values of a class, (6,): a joint that twists has half a box more for each
+    side of its boxes that is the sheet's own and not clamped."""
+    times = np.ones(6)
+    if sheet.twist:
+        strip, strips, side = (
+            (one // sheet.n_x, sheet.n_y, "y") if c.along_x else (one % sheet.n_x, sheet.n_x, "x")
+        )
+        ends = {f"{side}_min": 0, f"{side}_max": strips - 1}
+        held = sheet.clamp.edge if sheet.clamp is not None else ""
+        times[3 if c.along_x else 4] += 0.5 * sum(strip == at for edge, at in ends.items() if edge != held)
+    return times
 
 
 def _between(model: Model, sheet: SheetPart, c: JointClass, one: int, two: int) -> dict[str, float]:
@@ -108,6 +123,16 @@ def _between(model: Model, sheet: SheetPart, c: JointClass, one: int, two: int) 
     return found
 
 
+def damping_times(given: dict[str, float]) -> tuple[float, float, float]:
+    """Damping times [s] of MD, of CD, and of what goes with both, from the given values of a sheet."""
+    if "f" in given:
+        per = 2 * math.pi * given["f"] / SECOND
+        md, cd = (given.get(f"eta_{way}", given.get("eta", math.nan)) / per for way in ("md", "cd"))
+    else:
+        md, cd = (given.get(f"tau_{way}", given.get("tau", math.nan)) * SECOND for way in ("md", "cd"))
+    return md, cd, (md + cd) / 2
+
+
 def _as_written(
     sheet: SheetPart, given: dict[str, float], found: dict[str, float], along_x: bool
 ) -> dict[str, float]:
@@ -122,6 +147,10 @@ def _as_written(
         hinge, modulus, plate, shape, mean = "k_ty", "E_md", "D_md", 1 / shape, 1 / mean
     stiff = given.get(plate, given[modulus] * sheet.thickness**3 / 12)
     bent = found["b"] * (given[hinge] * shape / mean if hinge in given else stiff * shape)
+    if sheet.rotation_damping == "time":
+        md, cd, _ = damping_times(given)
+        found[f"k_{name}"], found[f"c_{name}"] = bent, (cd if along_x else md) * bent
+        return found
     zeta = given["zeta"] if along_x else given["zeta_ty"]
     heavy = found["m"] if sheet.rotation_damping == "paper" else found[f"J_{about}"]
     found[f"k_{name}"], found[f"c_{name}"] = bent, 2 * zeta * math.sqrt(bent * heavy * SECOND)
@@ -136,6 +165,10 @@ def _sheared(
     if not along_x:
         name, modulus, shape = "x", "E_md", 1 / shape
     k = found["p"] * given[modulus] * sheet.thickness * shape
-    c = 2 * given["zeta"] * math.sqrt(k * found["m"] * SECOND)
+    if sheet.rotation_damping == "time":
+        md, cd, _ = damping_times(given)
+        c = (cd if along_x else md) * k
+    else:
+        c = 2 * given["zeta"] * math.sqrt(k * found["m"] * SECOND)
     shear = {f"{symbol}_{name}_shear": found[f"{symbol}_{name}"] for symbol in "kc"}
     return shear | {f"k_{name}": k, f"c_{name}": c}

@@ -11,7 +11,7 @@ from mdlgen.model.guides import outer
 from mdlgen.model.rim_facets import DEEP, Side, graphics, meetings
 from mdlgen.model.tables import Anchor, GuidePart, MeshPart, Model, RollerPart, SheetPart
 from mdlgen.verify.bend import shape
-from mdlgen.verify.cells import cells
+from mdlgen.verify.cells import cells, damping_times
 from mdlgen.verify.expected import KG, SECOND, body_name
 from mdlgen.verify.tables import Part, Table, table
 
@@ -32,6 +32,7 @@ FACTORS = {
     "g*mm^2": KG,
     "N*mm*ms/rad": SECOND,
     "ms": SECOND,
+    "1/ms": 1 / SECOND,
     "mm/ms": 1 / SECOND,
     "rad/ms": 1 / SECOND,
     "rad": 180 / math.pi,
@@ -139,6 +140,11 @@ def _derived(model: Model, index: int) -> dict[str, float]:
     if sheet.rotation_damping == "inertia":  # of a box about the edges and the corner that its hinges are on
         found["J_x"], found["J_y"] = m * (d_y**2 / 3 + s**2 / 12), m * (d_x**2 / 3 + s**2 / 12)
         found["J_z"] = m * (d_x**2 + d_y**2) / 3
+    if sheet.rotation_damping == "time":
+        given = {p.member: p.value for p in model.parameters if p.data_set == sheet.name}
+        times = dict(zip(("tau_md", "tau_cd", "tau"), damping_times(given), strict=True))
+        own = "tau_md" in given or "eta_md" in given
+        found |= times if own else {"tau": times["tau"]}
     if sheet.layout == "plate":
         found |= {name: sheet.derived[name] for name in ("G", "D_twist", "k_x_shear", "k_y_shear", "k_tz_y")}
         found |= {n: sheet.derived[n] * SECOND for n in ("c_x_shear", "c_y_shear", "c_tz_y")}
@@ -168,8 +174,11 @@ def _twist(model: Model, sheet: SheetPart, found: dict[str, float]) -> dict[str,
         ("ty", sheet.d_x / sheet.d_y, "zeta_ty"),
     ):
         k = 2 * (given["D_twist"] if "D_twist" in given else found["D_twist"]) * slender
-        heavy = found["m"] if sheet.rotation_damping == "paper" else found[f"J_{name[1]}"]
         twist[f"k_{name}_twist"] = k
+        if sheet.rotation_damping == "time":
+            twist[f"c_{name}_twist"] = damping_times(given)[2] * k
+            continue
+        heavy = found["m"] if sheet.rotation_damping == "paper" else found[f"J_{name[1]}"]
         twist[f"c_{name}_twist"] = 2 * given[zeta] * math.sqrt(k * heavy * SECOND)
     return twist
 

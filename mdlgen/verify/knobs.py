@@ -109,8 +109,10 @@ def pinned(scene: Scene) -> Scene:
     for name, sheet in scene.sheets.items():
         material = scene.materials[sheet.material]
         damping = material.damping
-        ty = damping.ratio if damping.ratio_ty is None else damping.ratio_ty
-        materials[name] = material.model_copy(update={"damping": damping.model_copy(update={"ratio_ty": ty})})
+        if damping.times is None:
+            ratio, ty = damping.zetas
+            damping = damping.model_copy(update={"ratio": ratio, "ratio_ty": ty})
+        materials[name] = material.model_copy(update={"damping": damping})
     sheets = {
         name: sheet.model_copy(update={"material": name, "grading": _given_lengths(sheet)})
         for name, sheet in scene.sheets.items()

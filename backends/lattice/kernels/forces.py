@@ -10,12 +10,21 @@ from backends.lattice.kernels.image import reflect, reflect_rates
 from mdlgen.mechanics.arm import moved, way_of
 from mdlgen.mechanics.bushing import bushing_pair
 from mdlgen.mechanics.compiling import BORROWS
-from mdlgen.mechanics.contact import MOST_POINTS, OUT, POINT
 from mdlgen.mechanics.curve import curve_excess
 from mdlgen.mechanics.driven import clutch, prescribed, turned
 from mdlgen.mechanics.guide import inward
 from mdlgen.mechanics.mesh import mesh_near
-from mdlgen.mechanics.pair import BOX_BOX, BOX_GUIDE, BOX_MESH, BOX_PLANE, CYLINDER_CYLINDER, pair_force
+from mdlgen.mechanics.pair import (
+    BOX_BOX,
+    BOX_GUIDE,
+    BOX_MESH,
+    BOX_PLANE,
+    CYLINDER_CYLINDER,
+    on_part,
+    pair_force,
+    roller_near,
+)
+from mdlgen.mechanics.point import MOST_POINTS, OUT, POINT
 from mdlgen.mechanics.vector import (
     add,
     back,
@@ -108,9 +117,10 @@ def _add(f, b, force, torque):
 @njit(cache=True, error_model="numpy")
 def joint_forces(joints, points, x, r, u, w, f, lag=0.0):
     """Adds the forces of all joints to f (bodies, 6), with `lag` [ms] times the stiffness on top of the
-    damping. `points` are those of the curves that some follow. Returns (stored energy, dissipated power), of
-    a joint that ends at an image only the half."""
-    stored = lost = 0.0
+    damping, less the damping time that a joint has itself. `points` are those of the curves that some follow.
+    Returns (stored energy, dissipated power, the part of it that is due to `lag`), of a joint that ends at an
+    image only the half."""
+    stored = lost = numerical = 0.0
     last = x.shape[0] - 1
     for j in range(joints.size):
         joint = joints[j]
@@ -122,8 +132,9 @@ def joint_forces(joints, points, x, r, u, w, f, lag=0.0):
         if joint.plain == 0:
             fa, fb = matmul(ma, nine(joint.fa)), matmul(mb, nine(joint.fb))
         k, c = joint.k, joint.c
+        more = max(lag - joint.time, 0.0)
         ra, rb = rotate(ma, three(joint.ra)), rotate(mb, three(joint.rb))
-        force, torque_b, torque_a, energy, power, middle, gap = bushing_pair(
+        force, torque_b, torque_a, energy, power, middle, gap, per_time = bushing_pair(
             vec(x, a),
             fa,
             vec(u, a),
@@ -137,20 +148,21 @@ def joint_forces(joints, points, x, r, u, w, f, lag=0.0):
             three(joint.e),
             (k[0], k[1], k[2]),
             (k[3], k[4], k[5]),
-            (c[0] + lag * k[0], c[1] + lag * k[1], c[2] + lag * k[2]),
-            (c[3] + lag * k[3], c[4] + lag * k[4], c[5] + lag * k[5]),
+            (c[0] + more * k[0], c[1] + more * k[1], c[2] + more * k[2]),
+            (c[3] + more * k[3], c[4] + more * k[4], c[5] + more * k[5]),
         )
         _add(f, a, (-force[0], -force[1], -force[2]), torque_a)
         _add(f, b, force, torque_b)
         part = 1.0 if joint.mirrored == 0 else 0.5
         stored += part * energy
         lost += part * power
+        numerical += part * more * per_time
         if joint.first >= 0:
             force, torque_b, torque_a, energy = curve_excess(points, joint, middle, gap, ra, rb)
             _add(f, a, (-force[0], -force[1], -force[2]), torque_a)
             _add(f, b, force, torque_b)
             stored += part * energy
-    return stored, lost
+    return stored, lost, numerical
 
 
 @njit(cache=True, error_model="numpy")
@@ -218,6 +230,9 @@ def near_pairs(bodies, pairs, meshes, x, r, u, w, margin, ahead, near):
                 continue
             own = three(bodies[a].half)
             if not mesh_near(head, meshes, vec(x, a), mat(r, a), own, vec(x, b), mat(r, b), reached):
+                continue
+        elif on_part(pairs[p]):
+            if not roller_near(bodies, pairs[p], meshes, x, r, margin + ahead * math.sqrt(dot(rate, rate))):
                 continue
         else:
             reached = margin + ahead * (math.sqrt(dot(rate, rate)) + math.sqrt(dot(spin, spin)) * size)

@@ -5,12 +5,12 @@ from __future__ import annotations
 from numba import njit
 
 from backends.lattice.kernels.dense import lu_solve_transposed
-from backends.lattice.kernels.tangent import core, hat_left, hat_right
+from backends.lattice.kernels.slopes import core, couple_growth, hat_left, hat_right, outer
 from mdlgen.mechanics.arm import turn_of, way_of
 from mdlgen.mechanics.compiling import BORROWS
-from mdlgen.mechanics.contact import OUT, POINT
 from mdlgen.mechanics.driven import clutch
-from mdlgen.mechanics.vector import add, back, cross, mat, sub, three, vec
+from mdlgen.mechanics.point import COUPLE, OUT, POINT
+from mdlgen.mechanics.vector import add, back, cross, mat, scale, sub, three, vec
 
 
 @njit(cache=True, error_model="numpy")
@@ -64,21 +64,36 @@ def _rollers(body, x, arm, axes, sign, first, direction, index, found):
 
 
 @njit(cache=True, error_model="numpy")
+def _point_growth(growth, t, arm, foot):
+    """Adds what a force at an arm loses as the velocity at a foot grows: t, in the axes of the box."""
+    right = hat_right(t, foot)
+    _put(growth, 0, 0, 1.0, t)
+    _put(growth, 0, 3, -1.0, right)
+    _put(growth, 3, 0, 1.0, hat_left(arm, t))
+    _put(growth, 3, 3, -1.0, hat_left(arm, right))
+
+
+@njit(cache=True, error_model="numpy")
 def _pair_growth(pair, out, axes, h, x, chord, growth):
     """What the points of one pair do together: a 6 x 6 matrix of the motion of one body against the other,
     seen from the centre of the first, in the axes of the box."""
     growth[:] = 0.0
     for point in range(int(out[OUT])):
         at = OUT + 1 + POINT * point
+        if out[at + 16] == COUPLE:
+            axis = back(axes, (out[at + 17], out[at + 18], out[at + 19]))
+            _put(growth, 3, 3, couple_growth(out, at, h, pair.law, chord), outer(axis, axis))
+            continue
         normal = back(axes, (out[at + 3], out[at + 4], out[at + 5]))
         slip = back(axes, (out[at + 10], out[at + 11], out[at + 12]))
-        t = core(out, at, normal, slip, h, pair.law, chord, True)
+        t, damping, phi = core(out, at, normal, slip, h, pair.law, chord, True)
         arm = back(axes, sub((out[at], out[at + 1], out[at + 2]), vec(x, pair.a)))
-        right = hat_right(t, arm)
-        _put(growth, 0, 0, 1.0, t)
-        _put(growth, 0, 3, -1.0, right)
-        _put(growth, 3, 0, 1.0, hat_left(arm, t))
-        _put(growth, 3, 3, -1.0, hat_left(arm, right))
+        _point_growth(growth, t, arm, arm)
+        if damping != 0.0:
+            foot = back(axes, sub((out[at + 17], out[at + 18], out[at + 19]), vec(x, pair.a)))
+            way = back(axes, (out[at + 20], out[at + 21], out[at + 22]))
+            force = sub(normal, scale(phi, slip))
+            _point_growth(growth, outer(scale(damping, force), way), arm, foot)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 from numba import njit
 
+from backends.lattice.kernels.damped import overshoot, take_off
 from backends.lattice.kernels.dense import copy
 from backends.lattice.kernels.search import look, strayed
-from backends.lattice.kernels.step import ROUNDS, STEPS, STRAIN, TOUCHING, WORST, carry, midpoint, spun
+from backends.lattice.kernels.step import CLOSE, ROUNDS, STEPS, STRAIN, TOUCHING, WORST, carry, midpoint, spun
+from backends.lattice.kernels.swept import swept
 from mdlgen.mechanics.arm import speeding
+from mdlgen.mechanics.crossing import deepest
 from mdlgen.mechanics.curve import overstretched
 from mdlgen.mechanics.driven import clutch, prescribed
-from mdlgen.mechanics.mesh import LOST
-from mdlgen.mechanics.pair import BOX_BOX, on_plate
+from mdlgen.mechanics.pair import remember
 
 DONE, STOPPED, LEFT, DEEP, STRETCHED, CROWDED = 0, 1, 2, 3, 4, 5
 # How often a step may be halved.
@@ -29,13 +32,10 @@ GRAZE = 0.05
 
 @njit(cache=True, error_model="numpy")
 def _deep(bodies, pairs, mid, count):
-    """The pair that is more than half of a plate's, a mesh's, or another box's thickness deep, or -1."""
+    """The pair that is deeper than it may be in the middle of a step, or -1."""
     touched, outs = mid[5], mid[6]
     for k in range(count):
-        pair = pairs[touched[k]]
-        if outs[k, 15] > (bodies[pair.b].half[2] if on_plate(pair) else LOST):
-            return touched[k]
-        if pair.kind == BOX_BOX and outs[k, 15] > min(bodies[pair.a].half[2], bodies[pair.b].half[2]):
+        if outs[k, 15] > deepest(bodies, pairs[touched[k]]):
             return touched[k]
     return -1
 
@@ -96,7 +96,8 @@ def _missed(bodies, nodes, u, guess):
 
 @njit(cache=True, error_model="numpy")
 def _account(system, mid, ub, vb, t, dt, work):
-    """Adds what a step dissipated, what drives and loads put in, and how much that moved either way."""
+    """Adds what a step dissipated, what drives and loads put in, how much that moved either way, and what
+    the numerical damping of joints had of what was dissipated."""
     bodies = system[0]
     totals, f = mid[7], mid[4]
     lost, driving = totals[0], totals[1]
@@ -119,6 +120,7 @@ def _account(system, mid, ub, vb, t, dt, work):
     work[0] += dt * lost
     work[1] += dt * driving
     work[2] += dt * abs(driving)
+    work[3] += dt * totals[2]
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
@@ -132,6 +134,7 @@ def run(
     kept,
     bounds,
     search,
+    damped,
     t,
     steps,
     tolerance,
@@ -146,8 +149,10 @@ def run(
     A step is halved, up to DEEPEST times, where it does not converge, or where the velocities miss their
     guess by more than pace[1] (0: any will do); pace[0] is how often it is halved now. With pace[2] each step
     has a factor of its own. `tolerance` and pace[1] are parts of pace[3], the greatest speed so far [mm/ms].
+    Nor may contacts make or lose more in one step than pace[4] (0: any) of the energy that passes through the
+    run: the kinetic energy at that speed, what drives moved either way, what was dissipated.
 
-    `work` (3,) adds up energies [N mm]. counters[WORST] names the body, pair or joint of a failure, and
+    `work` (4,) adds up energies [N mm]. counters[WORST] names the body, pair or joint of a failure, and
     counters[STRAIN] the strain of a joint beyond its curve. `before` holds
     what a guess is made from: the velocities of the step before the last, the size of the last step, and the
     time from the middle of the one to the middle of the other (0: there is none).
@@ -156,6 +161,9 @@ def run(
     x, r, v, l, s, vb, u, ub = state
     keep_u, keep_b, guess = u.copy(), ub.copy(), u.copy()
     last_u, last_b, spans = before
+    mass, rows = 0.0, np.zeros(kept[0].shape[0])
+    for n in range(nodes.size):
+        mass += bodies[nodes[n]].mass
     for whole in steps:
         done = 0
         while done < 1 << DEEPEST:
@@ -184,15 +192,26 @@ def run(
             if solved and search.regions.size > 0:
                 solved = not strayed(bodies, search, x, u, dt)
             deep = _deep(bodies, pairs, mid, int(counters[TOUCHING])) if solved else -1
-            if not solved or ((missed > AGAIN * most or deep >= 0) and level < FINEST):
+            through = max(work[2], abs(work[0]), 0.5 * mass * max(fast, pace[3]) ** 2)
+            made, allowed = 0.0, pace[4] * through
+            if solved and deep < 0:
+                counts = int(counters[TOUCHING]), int(counters[CLOSE])
+                deep, made = swept(system, state, mid, counts, t, dt, allowed, rows)
+            coarse = missed > AGAIN * most or made > AGAIN * allowed
+            if not solved or ((coarse or deep >= 0) and level < FINEST):
                 copy(u, keep_u)
                 copy(ub, keep_b)
                 if level == DEEPEST:
                     return STOPPED, t
-                pace[0] = level + 1
+                # what is made of energy goes with the step to the power of 5/2, or 3
+                halvings = math.ceil(math.log2(made / allowed) / 2.5) if made > AGAIN * allowed else 1
+                pace[0] = min(level + max(1, halvings), DEEPEST if level >= FINEST else FINEST)
                 if not solved:
                     spans[1] = 0.0
                 continue
+            if damped[0].size > 0:
+                course = dt / (dt + spans[0]) if spans[0] > 0.0 else 0.0
+                overshoot(system, damped, state, mid, free, keep_u, course, dt)
             copy(last_u, keep_u)
             copy(last_b, keep_b)
             # between the middles of the two steps
@@ -201,14 +220,18 @@ def run(
             _account(system, mid, ub, vb, t, dt, work)
             _watch(pairs, mid, int(counters[TOUCHING]), t, dt, kept)
             carry(system, state, mid, t, dt)
+            if damped[0].size > 0:
+                work[0] += take_off(bodies, nodes, damped[3], mid[1], r, v, l)
+            remember(bodies, pairs, x, r)
             counters[STEPS] += 1
             done += size
             pace[3] = max(pace[3], fast)
             t += dt
             rounds = counters[ROUNDS] - rounds
-            if (missed > most or rounds > HARD) and level < FINEST:
+            quiet = missed <= most / 6.0 and made <= allowed / 10.0
+            if (missed > most or made > allowed or rounds > HARD) and level < FINEST:
                 pace[0] = level + 1
-            elif level > 0 and missed <= most / 6.0 and rounds < EASY and done % (2 * size) == 0:
+            elif level > 0 and quiet and rounds < EASY and done % (2 * size) == 0:
                 pace[0] = level - 1
             outside = _outside(x, bounds[0], bounds[1])
             if deep >= 0 or outside >= 0:

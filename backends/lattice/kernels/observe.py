@@ -76,7 +76,7 @@ def ledger(
             rate += vb[slide]
         for i in range(3):
             w[b, i] += rate * bodies[b].axis[i]
-    stored, _ = joint_forces(joints, points, x, r, u, w, f)
+    stored, _, _ = joint_forces(joints, points, x, r, u, w, f)
     close = near_pairs(bodies, pairs, meshes, x, r, u, w, 0.0, 0.0, near)
     count, pressed, _ = pair_forces(bodies, pairs, meshes, near, close, x, r, u, w, f, touched, outs)
     for k in range(count):

@@ -67,7 +67,7 @@ def look(pairs, search, x):
 def _fill(pair, region, a, b, rough):
     pair.kind, pair.a, pair.b = BOX_BOX, a, b
     pair.row, pair.shared, pair.k = region.row, region.shared, region.k
-    for i in range(6):
+    for i in range(7):
         pair.law[i] = region.law[i] * (rough if i == 1 or i == 2 else 1.0)
     pair.mark = region.mark + (a - region.a) * region.many_b + (b - region.b)
 

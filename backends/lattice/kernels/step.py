@@ -6,7 +6,8 @@ and velocities and angular momenta are carried to 2 u - v0 and 2 J w - l0. So li
 are conserved to the accuracy of the iteration, whatever the step.
 
 The rule itself damps nothing: what is too fast for a step rings on. So joints are damped by their stiffness
-times a part of h that goes with the step, which leaves the rule of second order.
+times a part of h that goes with the step, which leaves the rule of second order. That is numerical damping,
+and what it takes is counted apart. A joint that has a damping time of its own needs that much less of it.
 """
 
 from __future__ import annotations
@@ -53,11 +54,11 @@ FREE = 1e-5
 ROUGH = 100.0
 # Damping of joints, as a part of h for 1 ms of a step, and at most.
 DAMPED, MOST_DAMPED = 1.0, 0.3
-# How much of the chord a factor takes (see tangent.core): little converges fast, much does not cross to the
+# How much of the chord a factor takes (see slopes.core): little converges fast, much does not cross to the
 # other side of what is flat; the latter is taken twice where a round moved more than the one before.
 LITTLE, MUCH = 0.05, 0.7
 # Counters of a run.
-STEPS, ROUNDS, FACTORS, TOUCHING, WORST, STRAIN, THROUGH, COUNTERS = 0, 1, 2, 3, 4, 5, 6, 7
+STEPS, ROUNDS, FACTORS, TOUCHING, WORST, STRAIN, THROUGH, CLOSE, COUNTERS = 0, 1, 2, 3, 4, 5, 6, 7, 8
 
 
 @njit(cache=True, error_model="numpy")
@@ -115,7 +116,7 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
 
     `fresh` (3,): the step that the factor was made for (0: none), whether it should be made anew, and where
     contacts stand (see alone.APART). counters[THROUGH] is the pair of two sheets that a step would take
-    through each other, or -1.
+    through each other, or -1; counters[CLOSE] is how many pairs are near.
     """
     bodies, joints, pairs, loads, gravity, nodes, points, images, meshes = system
     x, r, v, l, s, vb, u, ub = state
@@ -137,7 +138,7 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
             close = near_pairs(bodies, pairs, meshes, x, r, um, wm, margin, dt, near)
             unsee(alone)
         f[:] = 0.0
-        _stored, lost = joint_forces(joints, points, xm, rm, um, wm, f, lag)
+        _stored, lost, numerical = joint_forces(joints, points, xm, rm, um, wm, f, lag)
         if rounds > 0 and where == APART and alone.state[1] == 1:
             again = (alone.touched, alone.outs, alone.state[0], alone.seen)
             count, _pressed, rubbed = pair_forces_again(
@@ -240,8 +241,8 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
             count, _pressed, rubbed = pair_forces(
                 bodies, pairs, meshes, near, close, xm, rm, um, wm, f, touched, outs
             )
-            totals[0], totals[1] = lost + rubbed, power
-            counters[TOUCHING] = count
+            totals[0], totals[1], totals[2] = lost + rubbed, power, numerical
+            counters[TOUCHING], counters[CLOSE] = count, close
             release(alone, m)
             counters[THROUGH] = crossed(bodies, pairs, near, close, x, r, xm, rm)
             return counters[THROUGH] < 0.0
@@ -326,7 +327,7 @@ def empty(system, wide: int):
         np.zeros((bodies, 6)),
         np.zeros(len(system.pairs), np.int64),
         np.zeros((max(1, len(system.pairs)), wide)),
-        np.zeros(2),
+        np.zeros(3),
         np.zeros(len(system.pairs), np.int64),
     )
     matrix = (

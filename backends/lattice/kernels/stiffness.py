@@ -10,9 +10,9 @@ import math
 import numpy as np
 from numba import njit
 
-from mdlgen.mechanics.contact import OUT
 from mdlgen.mechanics.curve import curve_spring
 from mdlgen.mechanics.pair import pair_force
+from mdlgen.mechanics.point import OUT
 from mdlgen.mechanics.vector import (
     add,
     back,

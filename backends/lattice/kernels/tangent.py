@@ -7,17 +7,16 @@ rounds for them, and the matrix stays positive.
 
 from __future__ import annotations
 
-import math
-
 from numba import njit
 
 from backends.lattice.kernels.band import PAD
+from backends.lattice.kernels.slopes import core, couple_growth, hat_left, hat_right, outer
 from mdlgen.mechanics.arm import turn_of, way_of
 from mdlgen.mechanics.compiling import BORROWS
-from mdlgen.mechanics.contact import OUT, POINT
 from mdlgen.mechanics.curve import curve_spring
 from mdlgen.mechanics.driven import clutch
 from mdlgen.mechanics.pair import on_fixed_plate
+from mdlgen.mechanics.point import COUPLE, OUT, POINT
 from mdlgen.mechanics.vector import (
     add,
     back,
@@ -36,11 +35,6 @@ from mdlgen.mechanics.vector import (
     vec,
 )
 
-# Damping and friction grow steeply at small speeds and hardly at all at large ones. A step along the tangent
-# of the flat part would cross to the other side, and back; a step along the chord to zero stops there. This
-# much of the chord converges from both sides.
-CHORD = 0.7
-
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _conjugate(m, d):
@@ -54,40 +48,6 @@ def _conjugate(m, d):
         m[6] * d[0] * m[6] + m[7] * d[1] * m[7] + m[8] * d[2] * m[8],
     )
     return (out[0], out[1], out[2], out[1], out[3], out[4], out[2], out[4], out[5])
-
-
-@njit(cache=True, error_model="numpy", forceinline=True)
-def hat_right(t, q):
-    """t [q]x, t a matrix row by row."""
-    x, y, z = q
-    return (
-        t[1] * z - t[2] * y,
-        t[2] * x - t[0] * z,
-        t[0] * y - t[1] * x,
-        t[4] * z - t[5] * y,
-        t[5] * x - t[3] * z,
-        t[3] * y - t[4] * x,
-        t[7] * z - t[8] * y,
-        t[8] * x - t[6] * z,
-        t[6] * y - t[7] * x,
-    )
-
-
-@njit(cache=True, error_model="numpy", forceinline=True)
-def hat_left(q, t):
-    """[q]x t."""
-    x, y, z = q
-    return (
-        y * t[6] - z * t[3],
-        y * t[7] - z * t[4],
-        y * t[8] - z * t[5],
-        z * t[0] - x * t[6],
-        z * t[1] - x * t[7],
-        z * t[2] - x * t[8],
-        x * t[3] - y * t[0],
-        x * t[4] - y * t[1],
-        x * t[5] - y * t[2],
-    )
 
 
 @njit(cache=True, error_model="numpy")
@@ -144,7 +104,8 @@ def masses(bodies, nodes, r, a):
 
 @njit(cache=True, error_model="numpy")
 def joints_into(bodies, joints, points, images, h, lag, x, r, a):
-    """Adds h (C + lag K) + h^2 K of all joints, where K of a joint that follows a curve is its slope now."""
+    """Adds h (C + lag K) + h^2 K of all joints, where K of a joint that follows a curve is its slope now, and
+    `lag` is less the damping time that a joint has itself."""
     last = x.shape[0] - 1
     for i in range(joints.size):
         joint = joints[i]
@@ -160,7 +121,7 @@ def joints_into(bodies, joints, points, images, h, lag, x, r, a):
         half = scale(0.5, sub(add(vec(x, two), rb), add(vec(x, one), ra)))
         qa, qb = add(ra, half), sub(rb, half)
         k, c, e = joint.k, joint.c, joint.e
-        hk = h * (lag + h)
+        hk = h * (max(lag - joint.time, 0.0) + h)
         s = (h * c[0] + hk * k[0], h * c[1] + hk * k[1], h * c[2] + hk * k[2])
         if joint.first >= 0:
             own = back(m, scale(2.0, half))
@@ -196,57 +157,6 @@ def joints_into(bodies, joints, points, images, h, lag, x, r, a):
 
 
 @njit(cache=True, error_model="numpy")
-def core(out, at, n, slip, h, law, chord, whole):
-    """3 x 3 matrix of one contact point: what its force loses as the relative velocity grows, times h.
-
-    `whole`: with the growth of friction with the normal force, which is not symmetric.
-    """
-    spring, growth, force, rate = out[at + 6], out[at + 7], out[at + 8], out[at + 9]
-    # a rim may have its own
-    beta, mu_static, mu_dynamic = out[at + 13], out[at + 14], out[at + 15]
-    y = rate / law[5]
-    if abs(y) < 1.0:
-        sign = 0.5 * y * (3.0 - y * y)
-        steep = max(1.5 * (1.0 - y * y), chord * 0.5 * (3.0 - y * y)) / law[5]
-    else:
-        sign = math.copysign(1.0, y)
-        steep = chord / abs(rate)
-    normal = h * h * growth * (1.0 + beta * sign) + h * spring * beta * steep
-    speed = math.sqrt(slip[0] * slip[0] + slip[1] * slip[1] + slip[2] * slip[2])
-    secant = tangent = 0.0
-    if force > 0.0 and (mu_static > 0.0 or mu_dynamic > 0.0):
-        if speed < law[3]:
-            z = speed / law[3]
-            secant = 0.5 * mu_static * (3.0 - z * z) / law[3]
-            tangent = 1.5 * mu_static * (1.0 - z * z) / law[3]
-        else:
-            mu = mu_dynamic
-            if speed < law[4]:
-                z = (speed - law[3]) / (law[4] - law[3])
-                mu = mu_static + (mu_dynamic - mu_static) * z * z * (3.0 - 2.0 * z)
-            secant = mu / speed
-        secant, tangent = h * force * secant, h * force * max(tangent, chord * secant)
-    i = 1.0 / speed if speed > 0.0 else 0.0
-    d = (slip[0] * i, slip[1] * i, slip[2] * i)
-    less = tangent - secant
-    n1 = normal - secant
-    # the force is F (n - phi slip), phi = mu/speed: as F grows with the depth, so does the drag
-    drag = normal * secant / (h * force) if whole and force > 0.0 else 0.0
-    p = (n1 * n[0] - drag * slip[0], n1 * n[1] - drag * slip[1], n1 * n[2] - drag * slip[2])
-    return (
-        secant + p[0] * n[0] + less * d[0] * d[0],
-        p[0] * n[1] + less * d[0] * d[1],
-        p[0] * n[2] + less * d[0] * d[2],
-        p[1] * n[0] + less * d[1] * d[0],
-        secant + p[1] * n[1] + less * d[1] * d[1],
-        p[1] * n[2] + less * d[1] * d[2],
-        p[2] * n[0] + less * d[2] * d[0],
-        p[2] * n[1] + less * d[2] * d[1],
-        secant + p[2] * n[2] + less * d[2] * d[2],
-    )
-
-
-@njit(cache=True, error_model="numpy")
 def _columns(body, arm, x, sign, direction, index, count):
     """The unknowns of a roller at x that move a contact point, each with the direction of its velocity."""
     if body.slide >= 0:
@@ -266,12 +176,76 @@ def _columns(body, arm, x, sign, direction, index, count):
 
 
 @njit(cache=True, error_model="numpy")
+def _point_into(bodies, pair, x, where, t, coupled, a, b, d, direction, index, couplings):
+    """Adds a matrix of the velocity at one contact point to band, border and corner, and to the couplings."""
+    zero = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    node, other = bodies[pair.a].node, bodies[pair.b].node
+    arm = sub(where, vec(x, pair.a))
+    if node >= 0:
+        _blocks(a, node, 0, 1.0, t, arm, arm, zero)
+    moving = 0
+    if node < 0:
+        moving = _columns(bodies[pair.a], arm, vec(x, pair.a), 1.0, direction, index, moving)
+    far = sub(where, vec(x, pair.b))
+    if other >= 0:
+        _blocks(a, other, 0, 1.0, t, far, far, zero)
+    if node >= 0 and other >= 0:
+        _blocks(couplings.blocks, coupled, 0, -1.0, t, arm, far, zero)
+    moving = _columns(bodies[pair.b], far, vec(x, pair.b), -1.0, direction, index, moving)
+    for i in range(moving):
+        v = rotate(t, (direction[i, 0], direction[i, 1], direction[i, 2]))
+        for j in range(moving):
+            d[index[i], index[j]] += v[0] * direction[j, 0] + v[1] * direction[j, 1] + v[2] * direction[j, 2]
+        if node >= 0:
+            base = 6 * node
+            for l in range(3):
+                b[index[i], base + l] += v[l]
+            b[index[i], base + 3] += arm[1] * v[2] - arm[2] * v[1]
+            b[index[i], base + 4] += arm[2] * v[0] - arm[0] * v[2]
+            b[index[i], base + 5] += arm[0] * v[1] - arm[1] * v[0]
+
+
+@njit(cache=True, error_model="numpy")
+def _couple_into(bodies, pair, out, at, slope, a, b, d):
+    """Adds the couple of rolling resistance of a box, or a roller, against a roller or a part that does not
+    turn."""
+    axis = (out[at + 17], out[at + 18], out[at + 19])
+    node = bodies[pair.a].node
+    if node >= 0:
+        for c in range(3):
+            for k in range(3):
+                a[node, 3 + c, 3 + k] += slope * axis[c] * axis[k]
+    for one in range(4):
+        i, turning = _turning(bodies, pair, one, axis)
+        if i < 0:
+            continue
+        for two in range(4):
+            j, other = _turning(bodies, pair, two, axis)
+            if j >= 0:
+                d[i, j] += slope * turning * other
+        if node >= 0:
+            for c in range(3):
+                b[i, 6 * node + 3 + c] += slope * turning * axis[c]
+
+
+@njit(cache=True, error_model="numpy")
+def _turning(bodies, pair, which, axis):
+    """The unknown of a pair's rollers with a number from 0 to 3, -1: none, and how fast it turns the first
+    body against the second about an axis."""
+    body, sign = bodies[pair.a if which < 2 else pair.b], 1.0 if which < 2 else -1.0
+    if which % 2 == 0:
+        return body.spin, sign * dot(three(body.axis), axis)
+    if body.swings != 2:
+        return -1, 0.0
+    return body.slide, sign * dot(turn_of(body), axis)
+
+
+@njit(cache=True, error_model="numpy")
 def contacts_into(
     bodies, pairs, h, x, touched, outs, count, chord, planes, a, b, d, direction, index, couplings
 ):
     """Adds the contacts that touch, or only those with fixed plates: to the band a, to the border b (border,
     6 nodes) and its corner d; what couples boxes of two sheets goes to the couplings."""
-    zero = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     couplings.many[0] = 0
     for k in range(count):
         pair, out = pairs[touched[k]], outs[k]
@@ -285,35 +259,20 @@ def contacts_into(
             couplings.many[0] += 1
         for point in range(int(out[OUT])):
             at = OUT + 1 + POINT * point
+            if out[at + 16] == COUPLE:
+                _couple_into(bodies, pair, out, at, couple_growth(out, at, h, pair.law, chord), a, b, d)
+                continue
             where = (out[at], out[at + 1], out[at + 2])
             normal = (out[at + 3], out[at + 4], out[at + 5])
             slip = (out[at + 10], out[at + 11], out[at + 12])
-            t = core(out, at, normal, slip, h, pair.law, chord, False)
-            arm = sub(where, vec(x, pair.a))
-            if node >= 0:
-                _blocks(a, node, 0, 1.0, t, arm, arm, zero)
-            moving = 0
-            if node < 0:
-                moving = _columns(bodies[pair.a], arm, vec(x, pair.a), 1.0, direction, index, moving)
-            far = sub(where, vec(x, pair.b))
-            if other >= 0:
-                _blocks(a, other, 0, 1.0, t, far, far, zero)
-            if node >= 0 and other >= 0:
-                _blocks(couplings.blocks, coupled, 0, -1.0, t, arm, far, zero)
-            moving = _columns(bodies[pair.b], far, vec(x, pair.b), -1.0, direction, index, moving)
-            for i in range(moving):
-                v = rotate(t, (direction[i, 0], direction[i, 1], direction[i, 2]))
-                for j in range(moving):
-                    d[index[i], index[j]] += (
-                        v[0] * direction[j, 0] + v[1] * direction[j, 1] + v[2] * direction[j, 2]
-                    )
-                if node >= 0:
-                    base = 6 * node
-                    for l in range(3):
-                        b[index[i], base + l] += v[l]
-                    b[index[i], base + 3] += arm[1] * v[2] - arm[2] * v[1]
-                    b[index[i], base + 4] += arm[2] * v[0] - arm[0] * v[2]
-                    b[index[i], base + 5] += arm[0] * v[1] - arm[1] * v[0]
+            t, damping, _ = core(out, at, normal, slip, h, pair.law, chord, False)
+            _point_into(bodies, pair, x, where, t, coupled, a, b, d, direction, index, couplings)
+            if damping == 0.0:
+                continue
+            # the points of a nip together damp as one at its foot would
+            foot, way = (out[at + 17], out[at + 18], out[at + 19]), (out[at + 20], out[at + 21], out[at + 22])
+            t = outer(scale(damping, way), way)
+            _point_into(bodies, pair, x, foot, t, coupled, a, b, d, direction, index, couplings)
 
 
 @njit(cache=True, error_model="numpy")

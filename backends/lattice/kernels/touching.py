@@ -24,14 +24,14 @@ from backends.lattice.kernels.forces import pair_forces, place_box, place_roller
 from backends.lattice.kernels.growth import activate, clutches, gradient, newton, newton_matrix
 from mdlgen.mechanics.arm import turn_of, way_of
 from mdlgen.mechanics.compiling import BORROWS
-from mdlgen.mechanics.contact import OUT, POINT
 from mdlgen.mechanics.driven import clutch
 from mdlgen.mechanics.pair import BOX_BOX, on_fixed_plate
+from mdlgen.mechanics.point import OUT, POINT
 from mdlgen.mechanics.vector import back, dot, mat, rotate, vec
 
 MOST_ROUNDS = 40
 MOST_HALVED = 4
-# How much of the chord a derivative takes (see tangent.core): little first, much where that went astray.
+# How much of the chord a derivative takes (see slopes.core): little first, much where that went astray.
 LITTLE, MUCH = 0.0, 0.7
 # Factors are used again where a round left less than this of the squares.
 GOOD = 0.04

@@ -7,7 +7,10 @@ from importlib import import_module
 from mdlgen.bench.case import Case
 from mdlgen.errors import SpecError, did_you_mean
 
-SUITES = ("transport", "elastica", "impact", "friction", "flight", "scaling", "skip", "feeder", "stability")
+SUITES = (
+    *("transport", "elastica", "impact", "friction", "flight", "scaling", "skip", "feeder", "stability"),
+    "validation",
+)
 # The solver whose finest run the others are compared with, where it is there.
 REFERENCE = ("lattice", "exudyn")
 

@@ -1,0 +1,121 @@
+"""Looks between two steps of the solver, where a fast or thin body may have passed through another one."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from backends.exudyn_local.kernels import place_all, place_body
+from mdlgen.mechanics.crossing import above, buried, closing, deepest, size, unseen
+from mdlgen.mechanics.guide import inward
+from mdlgen.mechanics.pair import (
+    BOX_BOX,
+    BOX_GUIDE,
+    BOX_MESH,
+    BOX_PLANE,
+    CYLINDER_CYLINDER,
+    on_part,
+    pair_force,
+    roller_near,
+)
+from mdlgen.mechanics.point import OUT
+from mdlgen.mechanics.vector import back, dot, mat, sub, vec
+
+# Pairs that would have to be looked at more often in a step want a smaller one.
+MOST_LOOKS = 256
+
+
+@njit(cache=True, error_model="numpy")
+def limits(bodies, pairs):
+    """Of each pair, the depth that ends a run."""
+    depths = np.empty(pairs.size)
+    for p in range(pairs.size):
+        depths[p] = deepest(bodies, pairs[p])
+    return depths
+
+
+@njit(cache=True, error_model="numpy")
+def _between(body, before, now, part, into):
+    """Coordinates of one body between two states, Euler parameters normalised."""
+    n = body.first
+    if n >= 0:
+        square = 0.0
+        for i in range(7):
+            into[n + i] = before[n + i] + part * (now[n + i] - before[n + i])
+        for i in range(3, 7):
+            into[n + i] += body.reference[i]
+            square += into[n + i] ** 2
+        for i in range(3, 7):
+            into[n + i] = into[n + i] / math.sqrt(square) - body.reference[i]
+    for k in (body.slide, body.spin):
+        if k >= 0:
+            into[k] = before[k] + part * (now[k] - before[k])
+
+
+@njit(cache=True, error_model="numpy")
+def _apart(bodies, pair, meshes, x, r, way):
+    """Whether a pair is too far apart to meet where it comes closer by `way`."""
+    a, b = pair.a, pair.b
+    gap = sub(vec(x, a), vec(x, b))
+    if pair.kind == BOX_PLANE:
+        height = abs(dot(gap, (r[b, 2], r[b, 5], r[b, 8])))
+        return height > bodies[b].half[2] + size(bodies[a]) + way
+    if pair.kind == BOX_GUIDE:
+        height = abs(inward(back(mat(r, b), gap), bodies[b].arc[0]))
+        return height > 2.0 * bodies[b].half[2] + size(bodies[a]) + way
+    far = size(bodies[b])
+    if pair.kind == BOX_MESH:
+        far = meshes.heads[pair.mesh].reach
+    elif pair.kind != BOX_BOX:
+        far = math.hypot(bodies[b].size[0], 0.5 * bodies[b].size[1])
+    if on_part(pair):
+        return not roller_near(bodies, pair, meshes, x, r, way)
+    own = size(bodies[a])
+    if pair.kind == CYLINDER_CYLINDER:
+        own = math.hypot(bodies[a].size[0], 0.5 * bodies[a].size[1])
+    return math.sqrt(dot(gap, gap)) > own + far + way
+
+
+@njit(cache=True, error_model="numpy")
+def passed(bodies, pairs, meshes, before, rates, now, rates_now, t, dt):
+    """The first pair that was deeper than it may be, or came to another side, in a step of dt from t, or -1;
+    from the coordinates `before` at the velocities `rates` to `now`."""
+    count = bodies.size
+    x, r, u, w = np.zeros((count, 3)), np.zeros((count, 9)), np.zeros((count, 3)), np.zeros((count, 3))
+    xs, rs, us, ws = np.zeros((count, 3)), np.zeros((count, 9)), np.zeros((count, 3)), np.zeros((count, 3))
+    out, q = np.zeros(OUT), now.copy()
+    place_all(bodies, before, rates, t, x, r, u, w)
+    place_all(bodies, now, rates_now, t + dt, xs, rs, us, ws)
+    for p in range(pairs.size):
+        pair = pairs[p]
+        fast = closing(bodies, pair, meshes, x, r, u, w, dt)
+        fast = max(fast, closing(bodies, pair, meshes, xs, rs, us, ws, dt))
+        way, band = dt * fast, unseen(bodies, pair, meshes)
+        side = above(bodies, pair, x, r)
+        solid = pair.kind == BOX_MESH and bodies[pair.a].exposed != 0
+        if way <= band and side == 0 and not solid:
+            continue
+        if _apart(bodies, pair, meshes, x, r, way):
+            continue
+        if way > MOST_LOOKS * band:
+            return p
+        many = max(1, math.ceil(way / band))
+        for k in range(1, many + 1):
+            part = k / many
+            for body in (pair.a, pair.b):
+                _between(bodies[body], before, now, part, q)
+                place_body(bodies, body, q, rates_now, t + part * dt, xs, rs, us, ws)
+            beyond = above(bodies, pair, xs, rs)
+            if side * beyond < 0:
+                return p
+            side = beyond
+            if solid and buried(bodies, pair, meshes, xs, rs):
+                return p
+            if way > band:
+                out[:] = 0.0
+                pair_force(bodies, pair, meshes, xs, rs, us, ws, out)
+                if out[15] > deepest(bodies, pair):
+                    return p
+    return -1

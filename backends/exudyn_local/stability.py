@@ -1,0 +1,80 @@
+"""Whether a static balance stands: its stiffness, on what may move, must have no direction that falls."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from backends.exudyn_local import kernels
+from backends.exudyn_local.system import Pattern, System
+from mdlgen.model.tables import Floats
+
+# A balance that is left so slowly that it grows e-fold in a second stands still [rad/s].
+SLOW = 1.0
+
+
+def falling(system: System, pattern: Pattern, q: Floats, work: kernels.Work) -> int:
+    """Number of directions in which a balance at q falls, by the signs of the pivots of K + SLOW^2 M.
+
+    K is minus the derivative of the generalised forces; Euler parameters are reduced to turns, along which
+    alone they move. -1 where the factor needed other pivots than the diagonal, so that nothing is known.
+    """
+    from scipy.sparse import csc_matrix, csr_matrix
+    from scipy.sparse.linalg import splu
+
+    free = system.free
+    data = np.zeros(len(pattern.indices))
+    owner = kernels.owners(system.bodies, free)
+    rest = np.zeros(max(1, free))
+    kernels.jacobian(
+        *system.tables, system.elements, q.copy(), rest, 1.0, 1.0, 1.0, 0.0, True, owner, *work, data
+    )
+    stiffness = csr_matrix((data, pattern.indices, pattern.indptr), shape=(free, free))
+    columns, mass = _moves(system, q)
+    reduced = columns.T @ stiffness @ columns
+    reduced = 0.5 * (reduced + reduced.T)
+    reduced.setdiag(reduced.diagonal() + SLOW**2 * mass)
+    try:
+        factor = splu(
+            csc_matrix(reduced),
+            permc_spec="MMD_AT_PLUS_A",
+            diag_pivot_thresh=0.0,
+            options={"SymmetricMode": True},
+        )
+    except RuntimeError:  # exactly singular
+        return -1
+    if not np.array_equal(factor.perm_r, factor.perm_c):
+        return -1
+    return int((factor.U.diagonal() < 0.0).sum())
+
+
+def _moves(system: System, q: Floats):
+    """What may move, as columns (free, m): three ways and three turns of a box, one of all else; and the
+    inertia of each."""
+    from scipy.sparse import csc_matrix
+
+    rows: list[int] = []
+    columns: list[int] = []
+    values: list[float] = []
+    mass: list[float] = []
+
+    def column(entries: list[tuple[int, float]], inertia: float) -> None:
+        for at, value in entries:
+            rows.append(at)
+            columns.append(len(mass))
+            values.append(value)
+        mass.append(inertia)
+
+    for body in system.bodies:
+        n = int(body["first"])
+        if n >= 0:
+            for i in range(3):
+                column([(n + i, 1.0)], float(body["mass"]))
+            e0, e1, e2, e3 = body["reference"][3:] + q[n + 3 : n + 7]
+            turn = 0.5 * np.array([[-e1, e0, e3, -e2], [-e2, -e3, e0, e1], [-e3, e2, -e1, e0]])
+            for axis in range(3):  # about the box's own axes
+                column([(n + 3 + i, float(turn[axis, i])) for i in range(4)], float(body["inertia"][axis]))
+        for name, inertia in (("slide", body["press"][3]), ("spin", body["press"][4])):
+            if body[name] >= 0:
+                column([(int(body[name]), 1.0)], float(inertia))
+    shape = (system.free, len(mass))
+    return csc_matrix((values, (rows, columns)), shape=shape), np.array(mass)

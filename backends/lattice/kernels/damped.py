@@ -1,0 +1,127 @@
+"""Velocities at the end of a step where joints have a damping time of their own.
+
+The midpoint rule carries 2 u - v0 on. Where damping stops a motion within a part of a step, u is next to what
+the forces leave of it, so that v changes sign about it from step to step and hardly dies. Positions and
+contacts see u alone and are right; the velocities at the end of the step, which are reported, would not be.
+
+So of what v0 lacks of a straight course, w = u - v0 - (u - u') dt/(dt + dt'), with u' and dt' of the step
+before, the part Y w is taken off with Y = X/(1 + X), X = h M^-1 C of these joints. Where a motion is resolved
+w is of second order in the step and Y of first, so the rule stays of second order; where it is not, v comes
+to the straight course. That is stable at any step: oscillators of any frequency and damping time have a
+spectral radius below 1. What it takes would have been dissipated by the same joints within the step. C does
+not see rigid motion, so linear and angular momentum of a sheet are kept.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from backends.lattice.kernels.band import empty as no_band
+from backends.lattice.kernels.band import factor, solve
+from backends.lattice.kernels.momentum import keep
+from backends.lattice.kernels.tangent import in_box_axes, joints_into, masses
+from mdlgen.mechanics.compiling import BORROWS
+from mdlgen.mechanics.vector import back, mat, rotate
+
+# Steps for which a factor is good: a sheet bends little in so many.
+LASTS = 50
+
+
+def empty(system) -> tuple:
+    """Joints with a damping time (their dampers alone), a factor, the step and the age of it, and velocities
+    to take off (nodes, 6)."""
+    joints = system.joints[system.joints["time"] > 0.0].copy()
+    joints["k"] = 0.0
+    joints["first"] = -1
+    nodes = len(system.nodes) if len(joints) else 0
+    return joints, no_band(nodes, system.reach if nodes else 0), np.zeros(2), np.zeros((nodes, 6))
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _momentum(m, j, w):
+    """Angular momentum of a box with axes m and inertia j at an angular velocity."""
+    own = back(m, w)
+    return rotate(m, (j[0] * own[0], j[1] * own[1], j[2] * own[2]))
+
+
+@njit(cache=True, error_model="numpy")
+def _turned(nodes, r, x, inward):
+    """Turns a vector of the nodes into box axes, or back."""
+    for n in range(nodes.size):
+        m = mat(r, nodes[n])
+        for k in range(6 * n, 6 * n + 6, 3):
+            part = (x[k], x[k + 1], x[k + 2])
+            part = back(m, part) if inward else rotate(m, part)
+            x[k], x[k + 1], x[k + 2] = part
+
+
+@njit(cache=True, error_model="numpy")
+def overshoot(system, damped, state, mid, free, before, ahead, dt):
+    """Sets the velocities to take off, damped[3], of a step that is solved and not carried on yet. `before`
+    (nodes, 6) are the velocities in the middle of the step before, `ahead` is dt/(dt + dt')."""
+    bodies, _, pairs, _, _, nodes, points, images, _ = system
+    joints, band, made, off = damped
+    x, r, v, l, s, vb, u, ub = state
+    xm, rm, touched = mid[0], mid[1], mid[5]
+    if made[0] != dt or made[1] >= LASTS:
+        masses(bodies, nodes, rm, band)
+        joints_into(bodies, joints, points, images, 0.5 * dt, 0.0, xm, rm, band)
+        in_box_axes(nodes, rm, band, np.zeros((0, 6 * nodes.size)))
+        made[0], made[1] = dt, 0.0
+        if not factor(band):  # never: masses are positive, dampers not negative
+            made[0] = 0.0
+            off[:] = 0.0
+            return
+    made[1] += 1.0
+    push = np.empty(6 * nodes.size)
+    for n in range(nodes.size):
+        b = nodes[n]
+        m, j, mass = mat(rm, b), bodies[b].inertia, bodies[b].mass
+        spin = _momentum(m, j, (u[n, 3], u[n, 4], u[n, 5]))
+        course = _momentum(m, j, (u[n, 3] - before[n, 3], u[n, 4] - before[n, 4], u[n, 5] - before[n, 5]))
+        for i in range(3):
+            push[6 * n + i] = mass * (u[n, i] - v[n, i] - ahead * (u[n, i] - before[n, i]))
+            push[6 * n + 3 + i] = spin[i] - l[n, i] - ahead * course[i]
+    _turned(nodes, rm, push, True)
+    left = push.copy()
+    solve(band, left)
+    for n in range(nodes.size):
+        j, mass = bodies[nodes[n]].inertia, bodies[nodes[n]].mass
+        for i in range(3):
+            push[6 * n + i] = push[6 * n + i] / mass - left[6 * n + i]
+            push[6 * n + 3 + i] = push[6 * n + 3 + i] / j[i] - left[6 * n + 3 + i]
+    _turned(nodes, rm, push, False)
+    # the factor is of an earlier shape, which has other rigid motions; and it is at the end of the step that
+    # these velocities are taken off
+    free[3][:] = 0.0
+    end = xm.copy()
+    for n in range(nodes.size):
+        for i in range(3):
+            end[nodes[n], i] = x[nodes[n], i] + dt * u[n, i]
+    keep(bodies, pairs, nodes, touched, 0, free, end, rm, push)
+    for n in range(nodes.size):
+        for i in range(6):
+            off[n, i] = push[6 * n + i]
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def take_off(bodies, nodes, off, rm, r, v, l):
+    """Takes the velocities `off` from those that were carried on. Returns the energy that goes with them
+    [N mm]; rm are the rotations in the middle of the step, r at its end."""
+    gone = 0.0
+    for n in range(nodes.size):
+        b = nodes[n]
+        mass, j = bodies[b].mass, bodies[b].inertia
+        less = _momentum(mat(rm, b), j, (off[n, 3], off[n, 4], off[n, 5]))
+        m = mat(r, b)
+        for sign in (0.5, -0.5):
+            own = back(m, (l[n, 0], l[n, 1], l[n, 2]))
+            turning = own[0] * own[0] / j[0] + own[1] * own[1] / j[1] + own[2] * own[2] / j[2]
+            moving = v[n, 0] * v[n, 0] + v[n, 1] * v[n, 1] + v[n, 2] * v[n, 2]
+            gone += sign * (mass * moving + turning)
+            if sign > 0.0:
+                for i in range(3):
+                    v[n, i] -= off[n, i]
+                    l[n, i] -= less[i]
+    return gone

@@ -1,0 +1,123 @@
+"""What the force of one contact point loses as the bodies move: the 3 x 3 matrices of a tangent."""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from mdlgen.mechanics.point import ALONE
+
+# Damping and friction grow steeply at small speeds and hardly at all at large ones. A step along the tangent
+# of the flat part would cross to the other side, and back; a step along the chord to zero stops there. This
+# much of the chord converges from both sides.
+CHORD = 0.7
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def outer(p, q):
+    """p q^T, row by row."""
+    x, y, z = q
+    return (p[0] * x, p[0] * y, p[0] * z, p[1] * x, p[1] * y, p[1] * z, p[2] * x, p[2] * y, p[2] * z)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def hat_right(t, q):
+    """t [q]x, t a matrix row by row."""
+    x, y, z = q
+    return (
+        t[1] * z - t[2] * y,
+        t[2] * x - t[0] * z,
+        t[0] * y - t[1] * x,
+        t[4] * z - t[5] * y,
+        t[5] * x - t[3] * z,
+        t[3] * y - t[4] * x,
+        t[7] * z - t[8] * y,
+        t[8] * x - t[6] * z,
+        t[6] * y - t[7] * x,
+    )
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def hat_left(q, t):
+    """[q]x t."""
+    x, y, z = q
+    return (
+        y * t[6] - z * t[3],
+        y * t[7] - z * t[4],
+        y * t[8] - z * t[5],
+        z * t[0] - x * t[6],
+        z * t[1] - x * t[7],
+        z * t[2] - x * t[8],
+        x * t[3] - y * t[0],
+        x * t[4] - y * t[1],
+        x * t[5] - y * t[2],
+    )
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def steepness(y, v_s, chord):
+    """Growth with v of what changes sign over v_s, at v = y v_s, with a part of its chord."""
+    if abs(y) < 1.0:
+        return max(1.5 * (1.0 - y * y), chord * 0.5 * (3.0 - y * y)) / v_s
+    return chord / abs(y * v_s)
+
+
+@njit(cache=True, error_model="numpy")
+def couple_growth(out, at, h, law, chord):
+    """What the couple of rolling resistance loses as the relative angular velocity grows, times h."""
+    return h * out[at + 6] * out[at + 7] * steepness(out[at + 9] / law[5], law[5], chord)
+
+
+@njit(cache=True, error_model="numpy")
+def core(out, at, n, slip, h, law, chord, whole):
+    """What the force of one contact point loses as the relative velocity grows, times h: a 3 x 3 matrix for
+    the velocity at the point, and, where a nip damps it (0 else), what its normal force loses as the foot
+    closes, with its friction per slip velocity for 1 of that force.
+
+    `whole`: with the growth of friction with the normal force, which is not symmetric.
+    """
+    spring, growth, force, rate = out[at + 6], out[at + 7], out[at + 8], out[at + 9]
+    # a rim may have its own
+    beta, mu_static, mu_dynamic = out[at + 13], out[at + 14], out[at + 15]
+    y = rate / law[5]
+    sign = 0.5 * y * (3.0 - y * y) if abs(y) < 1.0 else math.copysign(1.0, y)
+    damping = h * spring * beta * steepness(y, law[5], chord)
+    normal = h * h * growth * (1.0 + beta * sign)
+    if out[at + 16] == ALONE:
+        normal += damping
+        damping = 0.0
+    speed = math.sqrt(slip[0] * slip[0] + slip[1] * slip[1] + slip[2] * slip[2])
+    secant = tangent = 0.0
+    if force > 0.0 and (mu_static > 0.0 or mu_dynamic > 0.0):
+        if speed < law[3]:
+            z = speed / law[3]
+            secant = 0.5 * mu_static * (3.0 - z * z) / law[3]
+            tangent = 1.5 * mu_static * (1.0 - z * z) / law[3]
+        else:
+            mu = mu_dynamic
+            if speed < law[4]:
+                z = (speed - law[3]) / (law[4] - law[3])
+                mu = mu_static + (mu_dynamic - mu_static) * z * z * (3.0 - 2.0 * z)
+            secant = mu / speed
+        secant, tangent = h * force * secant, h * force * max(tangent, chord * secant)
+    i = 1.0 / speed if speed > 0.0 else 0.0
+    d = (slip[0] * i, slip[1] * i, slip[2] * i)
+    less = tangent - secant
+    n1 = normal - secant
+    # the force is F (n - phi slip), phi = mu/speed: as F grows with the depth, so does the drag
+    phi = secant / (h * force) if whole and force > 0.0 else 0.0
+    drag = normal * phi
+    p = (n1 * n[0] - drag * slip[0], n1 * n[1] - drag * slip[1], n1 * n[2] - drag * slip[2])
+    t = (
+        secant + p[0] * n[0] + less * d[0] * d[0],
+        p[0] * n[1] + less * d[0] * d[1],
+        p[0] * n[2] + less * d[0] * d[2],
+        p[1] * n[0] + less * d[1] * d[0],
+        secant + p[1] * n[1] + less * d[1] * d[1],
+        p[1] * n[2] + less * d[1] * d[2],
+        p[2] * n[0] + less * d[2] * d[0],
+        p[2] * n[1] + less * d[2] * d[1],
+        secant + p[2] * n[2] + less * d[2] * d[2],
+    )
+    return t, damping, phi

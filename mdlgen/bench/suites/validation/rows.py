@@ -1,0 +1,44 @@
+"""What a row of the validation is made of."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from mdlgen.bench.case import Case, Finding, Measure, Run
+
+LIMIT = 120.0  # [s]
+
+
+def row(group: str, name: str, run: Run, measure: Measure, limit: float = LIMIT) -> Case:
+    """One row: run once, in a process of its own."""
+    return Case("validation", name, run, measure, repeats=False, limit=limit, group=group)
+
+
+class Basis(NamedTuple):
+    """Where an expected number is from, and why it is allowed to be missed by as much as it is."""
+
+    source: str
+    because: str
+
+
+def against(
+    quantity: str,
+    expected: float,
+    found: float,
+    allowed: float,
+    unit: str,
+    basis: Basis,
+    over: float | None = None,
+) -> Finding:
+    """What was found against what is expected; the error is relative to it, or to `over`."""
+    error = abs(found - expected) / abs(expected if over is None else over)
+    return Finding(
+        quantity,
+        error,
+        allowed,
+        expected=float(expected),
+        found=float(found),
+        unit=unit,
+        source=basis.source,
+        because=basis.because,
+    )

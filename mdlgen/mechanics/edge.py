@@ -1,0 +1,344 @@
+"""Ends of plates: the edge of a plate is a line with a radius, its end a face between two such lines.
+
+A plate is a slab of a thickness between its two faces. Each of its free ends has a frame: `point`, the middle
+of the end on the upper face; `out`, away from the plate; `up`, the normal of the upper face; `along`, the
+direction of the edge, and half of its length. A point of a sheet is u inside of the end and h below the face.
+
+Two contacts belong to an end. In the one the edge presses into the broad face of a box, which slides over it
+(`line`): its normal is that of the box's face, as over a small roller, and its depth that of a cylinder of
+the edge's radius r about an axis r inside of both faces. In the other an outer side of a sheet stands against
+the end (`stub`): of the rounded section, with the angle a of the round's normal to that of the face at the
+depth h, cos a = 1 - h/r,
+
+    w = u - r (1 - sin a)        how far the side is in, along the plate; r is 0 between the rounds
+    E = 2/5 k w^2.5              so the force has the direction of the round's normal at that height,
+
+whatever the penetration. Pushed along the plate, a corner so climbs where tan a < 1/mu, which is a depth of
+r (1 - cos(90 deg - atan mu)), and stands below it. Where w is more than h/(1 - h/r), a corner on the round is
+over its top and is pushed up. Of the two corners of a side at one place along it the deeper one counts
+(Holder's mean of power NORM).
+
+A corner 0.05 mm in and 0.05 mm below a face may have come from above or from the end; that depends on the way
+it took. So a pair remembers which outer sides of its box stand before which end (`beside`), from when they
+were clear of the plate: three bits for each side, 0 or 1 + the number of the end.
+"""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from mdlgen.mechanics.contact import local
+from mdlgen.mechanics.point import push
+from mdlgen.mechanics.vector import add, back, dot, rotate, scale, sub
+
+NORM = 12.0
+# Sine of the slope of a box to the face between which the face's law passes into that of the edge: the
+# former spreads k over what of the box is over the plate, the latter has all of it on a line.
+LEVEL, LEANING = 0.03, 0.1
+# Where a box of a sheet passes the edge on to the next, in parts of a box, either way of their joint.
+SHARED = 0.02
+FACES = 0.35  # cosine of the angle to an end at which a side may come to stand before it
+# Fields of a body record: its free ends as a bit mask; the radii of the edges of its upper and its lower
+# face, and 1 where friction holds what is on them (a static analysis).
+ENDS = [("ends", "i8"), ("edge", "f8", 3)]
+_GAUSS = 1.0 / math.sqrt(3.0)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def leaning(sine):
+    """How much of the law of the edge acts at a slope of the box, 0 to 1."""
+    s = min(max((sine - LEVEL) / (LEANING - LEVEL), 0.0), 1.0)
+    return s * s * (3.0 - 2.0 * s)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def held(normal, up, grip):
+    """A normal turned to that of the plate by atan(grip) at most: what friction holds in a static analysis,
+    where nothing slides."""
+    cosine = dot(normal, up)
+    if grip <= 0.0 or cosine >= 1.0 - 1e-12:
+        return normal
+    angle = math.acos(max(cosine, -1.0))
+    turn = min(angle, math.atan(grip))
+    sine = math.sin(angle)
+    if sine < 1e-9:
+        return normal
+    return add(scale(math.sin(turn) / sine, up), scale(math.sin(angle - turn) / sine, normal))
+
+
+@njit(cache=True, error_model="numpy")
+def end_of(i, xb, rb, shape, half_b, top):
+    """Frame of the end i of a plate: (point, out, up, along, half of its length), global.
+
+    Ends of a straight plate: 0 and 1 along x, 2 and 3 along z, its width; of an arc 0 where it ends and 1
+    where it begins. See mechanics.guide for the axes; `top` is the upper face's place on the normal.
+    """
+    radius, middle, angle = shape
+    sign = 1.0 if i % 2 == 0 else -1.0
+    if radius > 0.0:
+        at = middle + sign * angle
+        c, s = math.cos(at), math.sin(at)
+        point, out, up = (
+            ((radius - top) * c, (radius - top) * s, 0.0),
+            (-sign * s, sign * c, 0.0),
+            (-c, -s, 0.0),
+        )
+        along, length = (0.0, 0.0, 1.0), half_b[1]
+    elif i < 2:
+        point, out, up = (sign * half_b[0], top, 0.0), (sign, 0.0, 0.0), (0.0, 1.0, 0.0)
+        along, length = (0.0, 0.0, 1.0), half_b[1]
+    else:
+        point, out, up = (0.0, top, sign * half_b[1]), (0.0, 0.0, sign), (0.0, 1.0, 0.0)
+        along, length = (1.0, 0.0, 0.0), half_b[0]
+    return add(xb, rotate(rb, point)), rotate(rb, out), rotate(rb, up), rotate(rb, along), length
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def rounded(u, h, thick, edge):
+    """Depth of a point that stands against an end, and its growth with u and h; 0 where it is clear."""
+    if u <= 0.0 or h <= 0.0 or h >= thick:
+        return 0.0, 0.0, 0.0
+    low, sign, radius = (h, 1.0, edge[0]) if h <= 0.5 * thick else (thick - h, -1.0, edge[1])
+    if low >= radius:
+        return u, 1.0, 0.0
+    c = 1.0 - low / radius
+    s = math.sqrt(1.0 - c * c)
+    w = u - radius * (1.0 - s)
+    if w <= 0.0:
+        return 0.0, 0.0, 0.0
+    if w * c <= low:
+        return w, 1.0, sign * c / s
+    return low / c, 0.0, sign / (c * c)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _station(xa, ra, half, p, sign, end):
+    """The side `sign` of axis p of a box before an end: from where to where along it (-1 to 1) it is within
+    the end's length, and its axis along."""
+    point, _out, _up, along, length = end
+    r = 1 - p
+    middle = add(xa, rotate(ra, local(p, r, 2, sign * half[p], 0.0, 0.0)))
+    way = (ra[r], ra[3 + r], ra[6 + r])
+    v, step = dot(sub(middle, point), along), half[r] * dot(way, along)
+    if abs(step) < 1e-9 * half[r]:
+        return (-1.0, 1.0) if abs(v) <= length else (0.0, 0.0)
+    one, two = (-length - v) / step, (length - v) / step
+    return max(-1.0, min(one, two)), min(1.0, max(one, two))
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _corner(xa, ra, half, p, sign, t, up, end):
+    """A point of an outer side: the place t along it, on the upper or lower face; (point, u, h)."""
+    point, out, normal, _along, _length = end
+    r = 1 - p
+    at = add(xa, rotate(ra, local(p, r, 2, sign * half[p], t * half[r], up * half[2])))
+    gap = sub(at, point)
+    return at, -dot(gap, out), -dot(gap, normal)
+
+
+@njit(cache=True, error_model="numpy")
+def stub(out, xa, ra, va, wa, half, p, sign, end, thick, edge, xb, vb, k, shared, law):
+    """The outer side `sign` of axis p of box a against an end of plate b, which does not turn."""
+    zero = (0.0, 0.0, 0.0)
+    first, last = _station(xa, ra, half, p, sign, end)
+    if last - first <= 1e-9:
+        return
+    share = 0.5 * k * (0.5 * (last - first) if shared else 1.0)
+    for place in range(2):
+        t = first if place == 0 else last
+        one, u1, h1 = _corner(xa, ra, half, p, sign, t, 1.0, end)
+        two, u2, h2 = _corner(xa, ra, half, p, sign, t, -1.0, end)
+        if (h1 <= 0.0 and h2 >= thick) or (h2 <= 0.0 and h1 >= thick):
+            # the side is taller than the end: it meets it in the middle of the plate
+            part = (0.5 * thick - h1) / (h2 - h1)
+            one = add(one, scale(part, sub(two, one)))
+            u1, h1 = u1 + part * (u2 - u1), 0.5 * thick
+        d1, along1, down1 = rounded(u1, h1, thick, edge)
+        d2, along2, down2 = rounded(u2, h2, thick, edge)
+        most = max(d1, d2)
+        if most <= 0.0:
+            continue
+        whole = most * ((d1 / most) ** NORM + (d2 / most) ** NORM) ** (1.0 / NORM)
+        for corner in range(2):
+            depth, u, h, at = (d1, along1, down1, one) if corner == 0 else (d2, along2, down2, two)
+            if depth <= 1e-3 * most:
+                continue
+            part = depth / whole
+            steep = math.sqrt(u * u + h * h)
+            normal = scale(1.0 / steep, add(scale(u, end[1]), scale(h, end[2])))
+            spring = share * whole * math.sqrt(whole) * part ** (NORM - 1.0) * steep
+            energy = 0.4 * share * whole * whole * math.sqrt(whole) * part**NORM
+            push(out, at, normal, spring, depth, energy, xa, va, wa, xb, vb, zero, law)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _passes(c, half, inner_low, inner_high, radius):
+    """How much of the edge a box has that it meets at c: all but near its ends, where the next box takes over
+    or where a free side comes to the round."""
+    weight = 1.0
+    for side in range(2):
+        left, inner = (half - c, inner_high) if side == 0 else (half + c, inner_low)
+        if inner:
+            weight *= min(max(0.5 + left / (4.0 * SHARED * half), 0.0), 1.0)
+        else:
+            weight *= min(max(left / max(radius, 1e-3 * half), 0.0), 1.0)
+    return weight
+
+
+@njit(cache=True, error_model="numpy")
+def _pressed(out, xa, ra, va, wa, half, exposed, q, sign, axis, end, radius, xb, vb, k, shared, law, grip):
+    """An edge, the round about `axis` (a point of it), on the face of box a whose normal into the box is
+    `sign` times its axis q."""
+    zero = (0.0, 0.0, 0.0)
+    p, r = (q + 1) % 3, (q + 2) % 3
+    normal = scale(sign, (ra[q], ra[3 + q], ra[6 + q]))
+    lean = dot(normal, end[1])
+    part = leaning(lean)
+    if part <= 0.0:
+        return
+    place, way = back(ra, sub(axis, xa)), back(ra, end[3])
+    if abs(way[p]) < abs(way[r]):  # p is the axis that goes with the edge, r the one across it
+        p, r = r, p
+    if abs(way[p]) < 0.1:
+        return
+    first, last = -end[4], end[4]
+    for side in range(2):
+        i = p if side == 0 else r
+        # of a block all sides are free, of a box of a sheet those that have no neighbour
+        low = i == 2 or exposed & (1 << (2 * i)) != 0
+        high = i == 2 or exposed & (2 << (2 * i)) != 0
+        more = 0.0 if side == 0 else 2.0 * SHARED * half[i]
+        least, most = -half[i] - (0.0 if low else more), half[i] + (0.0 if high else more)
+        if abs(way[i]) < 1e-12:
+            if place[i] < least or place[i] > most:
+                return
+            continue
+        one, two = (least - place[i]) / way[i], (most - place[i]) / way[i]
+        first, last = max(first, min(one, two)), min(last, max(one, two))
+    if last <= first:
+        return
+    whole = 2.0 * half[p] / abs(way[p])
+    share = 0.5 * part * k * (min(1.0, (last - first) / whole) if shared else 1.0)
+    inner_low = r != 2 and exposed & (1 << (2 * r)) == 0
+    inner_high = r != 2 and exposed & (2 << (2 * r)) == 0
+    for station in range(2):
+        s = 0.5 * (first + last) + (station - 0.5) * _GAUSS * (last - first)
+        at = add(place, scale(s, way))
+        depth = sign * at[q] + half[q] + radius
+        if depth <= 0.0:
+            continue
+        spring = share * _passes(at[r], half[r], inner_low, inner_high, radius) * depth * math.sqrt(depth)
+        if spring <= 0.0:
+            continue
+        # where the round would touch
+        foot = add(xa, add(rotate(ra, at), scale(-radius, normal)))
+        push(
+            out,
+            foot,
+            held(normal, end[2], grip),
+            spring,
+            depth,
+            0.4 * spring * depth,
+            xa,
+            va,
+            wa,
+            xb,
+            vb,
+            zero,
+            law,
+        )
+
+
+@njit(cache=True, error_model="numpy")
+def line(out, xa, ra, va, wa, half, exposed, end, thick, edge, xb, vb, k, shared, law):
+    """Both edges of an end in the broad faces of box a, or in any face of a block."""
+    point, away, up, along, length = end
+    gap = sub(xa, point)
+    reach = math.sqrt(dot(half, half)) + max(edge[0], edge[1])
+    if abs(dot(gap, away)) > reach or abs(dot(gap, along)) > length + reach:
+        return
+    height = dot(gap, up)
+    if height > reach or height < -thick - reach:
+        return
+    inner = add(point, scale(-0.5 * thick, add(up, away)))
+    for lower in range(2):
+        normal, radius = (up, edge[0]) if lower == 0 else (scale(-1.0, up), edge[1])
+        corner = point if lower == 0 else sub(point, scale(thick, up))
+        axis = sub(corner, scale(radius, add(normal, away)))
+        frame = (point, away, normal, along, length)
+        # the plate lies on one side of the sheet's middle
+        q, sign = 2, 1.0 if back(ra, sub(inner, xa))[2] < 0.0 else -1.0
+        if exposed == 15:
+            # a block: the face through which the edge is the shortest way in, of those that look at it
+            place, best = back(ra, sub(axis, xa)), 1e300
+            n, e = back(ra, normal), back(ra, away)
+            q = -1
+            for i in range(3):
+                way = 1.0 if n[i] + e[i] > 0.0 else -1.0
+                if way * n[i] < -1e-9 or way * e[i] < -1e-9:
+                    continue
+                depth = way * place[i] + half[i]
+                if depth < best:
+                    best, q, sign = depth, i, way
+            if q < 0:
+                continue
+        _pressed(
+            out,
+            xa,
+            ra,
+            va,
+            wa,
+            half,
+            exposed,
+            q,
+            sign,
+            axis,
+            frame,
+            radius,
+            xb,
+            vb,
+            k,
+            shared,
+            law,
+            edge[2] * law[1],
+        )
+
+
+@njit(cache=True, error_model="numpy")
+def stands(xa, ra, half, exposed, xb, rb, shape, half_b, top, ends, edge, beside):
+    """Which outer sides of box a stand before which end of plate b, with what was known (see the module)."""
+    thick = 2.0 * half_b[2]
+    found = 0
+    for side in range(4):
+        if exposed & (1 << side) == 0:
+            continue
+        p, sign = side // 2, 1.0 if side % 2 == 1 else -1.0
+        known = (beside >> (3 * side)) & 7
+        faces = scale(sign, (ra[p], ra[3 + p], ra[6 + p]))
+        which, most = known - 1, FACES
+        if known == 0:
+            for i in range(4 if shape[0] == 0.0 else 2):
+                if ends & (1 << i) != 0:
+                    end = end_of(i, xb, rb, shape, half_b, top)
+                    if -dot(faces, end[1]) > most:
+                        which, most = i, -dot(faces, end[1])
+        if which < 0:
+            continue
+        end = end_of(which, xb, rb, shape, half_b, top)
+        first, last = _station(xa, ra, half, p, sign, end)
+        if last - first <= 1e-9:
+            continue
+        inside, above, below, deep, over = -1e300, 1e300, -1e300, 0.0, False
+        for corner in range(4):
+            t, face = first if corner % 2 == 0 else last, 1.0 if corner < 2 else -1.0
+            _at, u, h = _corner(xa, ra, half, p, sign, t, face, end)
+            inside, above, below = max(inside, u), min(above, h), max(below, h)
+            depth, along, _down = rounded(u, h, thick, edge)
+            if depth > deep:
+                deep, over = depth, along == 0.0
+        clear = below <= 0.0 or above >= thick
+        if not clear and (inside <= 0.0 or (known > 0 and not over)):
+            found |= (which + 1) << (3 * side)
+    return found

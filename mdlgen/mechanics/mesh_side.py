@@ -1,0 +1,70 @@
+"""The outer sides of a sheet against a mesh.
+
+An outer side of a sheet meets a triangle that leans against it: at the ends of the side, in the middle of the
+thickness, half of k z^1.5, z the depth below the nearest triangle. That law begins at 3 to 9 deg, that of the
+broad faces ends at 53 to 66 deg, one passing into the other. Where a side stands against what is steeper than
+45 to 64 deg, the end of a plate, the broad faces of its box press on nothing. An edge between triangles is as
+sharp as they make it; a mesh with an `edge` has it rounded: of a point that is less than the radius r below
+two faces the depth is
+
+    r - sqrt((r - z1)^2 + (r - z2)^2)        and the normal looks away from the round's axis.
+"""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from mdlgen.mechanics.point import push
+from mdlgen.mechanics.tree import NORMAL, depth_at, next_at
+from mdlgen.mechanics.vector import add, dot, rotate, scale, three
+
+LEVEL, LEANING = 0.05, 0.15  # sines of the angles between which the law begins
+UPRIGHT, STANDING = 0.7, 0.9  # sines of those between which a box is beside a plate, not over it
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def ramp(x, low, high):
+    """0 below a value, 1 above another, smooth between."""
+    s = min(max((x - low) / (high - low), 0.0), 1.0)
+    return s * s * (3.0 - 2.0 * s)
+
+
+@njit(cache=True, error_model="numpy")
+def meet_sides(out, xa, ra, va, wa, half, exposed, middle, axes, frame, head, meshes, xb, vb, wb, k, law):
+    """The outer sides of box a, whose middle and axes are given in the file's, against the mesh; returns the
+    part of the law of broad faces that is left."""
+    bounds, links, triangles = meshes.bounds, meshes.links, meshes.triangles
+    over = 1.0
+    for side in range(4):
+        if exposed & (1 << side) == 0:
+            continue
+        p, sign = side // 2, 1.0 if side % 2 == 1 else -1.0
+        away = scale(sign, (axes[p], axes[3 + p], axes[6 + p]))
+        for end in (-1.0, 1.0):
+            x = sign * half[0] if p == 0 else end * half[0]
+            y = sign * half[1] if p == 1 else end * half[1]
+            at = add(middle, rotate(axes, (x, y, 0.0)))
+            depth, t = depth_at(bounds, links, triangles, head.first, head.end, at, head.most)
+            if depth <= 0.0:
+                continue
+            normal = three(triangles[t, NORMAL:])
+            if depth < head.edge:
+                second, other = next_at(bounds, links, triangles, head.first, head.end, at, head.edge, normal)
+                if other >= 0:
+                    one, two = head.edge - depth, head.edge - second
+                    from_axis = math.sqrt(one * one + two * two)
+                    depth = head.edge - from_axis
+                    if depth <= 0.0:
+                        continue
+                    normal = add(scale(one, normal), scale(two, three(triangles[other, NORMAL:])))
+                    normal = scale(1.0 / math.sqrt(dot(normal, normal)), normal)
+            lean = -dot(away, normal)
+            over = min(over, 1.0 - ramp(lean, UPRIGHT, STANDING))
+            spring = 0.5 * ramp(lean, LEVEL, LEANING) * k * depth * math.sqrt(depth)
+            if spring > 0.0:
+                point, energy = add(xa, rotate(ra, (x, y, 0.0))), 0.4 * spring * depth
+                way = rotate(frame, normal)
+                push(out, point, way, spring, depth, energy, xa, va, wa, xb, vb, wb, law)
+    return over

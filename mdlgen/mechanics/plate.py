@@ -1,0 +1,285 @@
+"""Contact of a box with a flat plate: a plane, or a straight guide.
+
+The corners of the part of the box's face that lies over the plate share k, so a flat box gives k z^1.5. With
+`share: width` a guide has the part of k that it covers of the box's face; a plane has all of it wherever the
+box lies. A plate is a slab: the face that a box meets is the one on the side of the plate that it is on. At a
+free end a box that slopes down beyond it passes from the face's law to that of the edge, see mechanics.edge.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from mdlgen.mechanics.compiling import OWNS
+from mdlgen.mechanics.contact import clip, face_corners
+from mdlgen.mechanics.edge import end_of, held, leaning, line, stub
+from mdlgen.mechanics.point import push
+from mdlgen.mechanics.vector import add, back, dot, rotate, scale, sub
+
+STRAIGHT = (0.0, 0.0, 0.0)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def as_guide(rb):
+    """The axes of a plane as those of a straight guide: x, normal, width."""
+    return (rb[0], rb[2], -rb[1], rb[3], rb[5], -rb[4], rb[6], rb[8], -rb[7])
+
+
+@njit(cache=True, error_model="numpy")
+def area_of(points, count):
+    """Of a flat polygon."""
+    x = y = z = 0.0
+    for i in range(1, count - 1):
+        a, b = points[i] - points[0], points[i + 1] - points[0]
+        x += a[1] * b[2] - a[2] * b[1]
+        y += a[2] * b[0] - a[0] * b[2]
+        z += a[0] * b[1] - a[1] * b[0]
+    return 0.5 * math.sqrt(x * x + y * y + z * z)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def facing(facing, ra):
+    """Normal, into the box, of its face that looks along -`facing` (box axes), global."""
+    q = (
+        2
+        if abs(facing[2]) >= max(abs(facing[0]), abs(facing[1]))
+        else 0
+        if abs(facing[0]) > abs(facing[1])
+        else 1
+    )
+    return scale(1.0 if facing[q] > 0.0 else -1.0, (ra[q], ra[3 + q], ra[6 + q]))
+
+
+@njit(cache=True, error_model="numpy")
+def box_ends(
+    out, xa, ra, va, wa, half, exposed, xb, rb, shape, half_b, top, ends, edge, beside, vb, k, shared, law
+):
+    """The edges of a plate's free ends in the faces of a box, or its sides that stand before them."""
+    thick = 2.0 * half_b[2]
+    if beside != 0:
+        for side in range(4):
+            known = (beside >> (3 * side)) & 7
+            if known > 0:
+                end = end_of(known - 1, xb, rb, shape, half_b, top)
+                sign = 1.0 if side % 2 == 1 else -1.0
+                stub(out, xa, ra, va, wa, half, side // 2, sign, end, thick, edge, xb, vb, k, shared, law)
+        return
+    for i in range(4 if shape[0] == 0.0 else 2):
+        if ends & (1 << i) != 0:
+            end = end_of(i, xb, rb, shape, half_b, top)
+            line(out, xa, ra, va, wa, half, exposed, end, thick, edge, xb, vb, k, shared, law)
+
+
+@njit(cache=True, error_model="numpy", **OWNS)
+def box_flat(
+    out, xa, ra, va, wa, half, exposed, xb, rb, half_b, top, ends, edge, beside, vb, k, covered, shared, law
+):
+    """Box a (centre xa, rotation ra, half lengths, exposed sides) on a flat plate b (origin xb, axes rb as of
+    a guide), which does not turn and moves at vb.
+
+    half_b: half of its length, width and thickness; top: where its upper face is on its normal; ends: those
+    that are free, as a bit mask; edge: radius of the edges, and 1 where friction holds what is on them (a
+    static analysis); covered: whether k goes with the part of the face that the plate covers; shared: whether
+    that holds for its edges.
+    """
+    zero = (0.0, 0.0, 0.0)
+    at = back(rb, sub(xa, xb))
+    reach, thick = math.sqrt(dot(half, half)), 2.0 * half_b[2]
+    bottom = top - thick
+    if abs(at[0]) > half_b[0] + reach or abs(at[2]) > half_b[1] + reach:
+        return
+    if at[1] > top + reach or at[1] < bottom - reach:
+        return
+    blunt = 2.0 * max(edge[0], edge[1])
+    inside = abs(at[0]) + reach <= half_b[0] - blunt and abs(at[2]) + reach <= half_b[1] - blunt
+    if beside != 0 and not inside:
+        box_ends(
+            out,
+            xa,
+            ra,
+            va,
+            wa,
+            half,
+            exposed,
+            xb,
+            rb,
+            STRAIGHT,
+            half_b,
+            top,
+            ends,
+            edge,
+            beside,
+            vb,
+            k,
+            shared,
+            law,
+        )
+        return
+    # on which side of the sheet's middle the plate is
+    upright = back(rb, (ra[2], ra[5], ra[8]))
+    near = (
+        min(max(at[0], -half_b[0]), half_b[0]),
+        0.5 * (top + bottom),
+        min(max(at[2], -half_b[1]), half_b[1]),
+    )
+    sign = 1.0 if at[1] >= near[1] else -1.0
+    if abs(upright[1]) > 0.3:
+        sign = 1.0 if dot(upright, sub(near, at)) * upright[1] < 0.0 else -1.0
+    normal, radius = (0.0, sign, 0.0), edge[0] if sign > 0.0 else edge[1]
+    points = np.empty((12, 3))
+    look = back(ra, rotate(rb, normal))
+    area = face_corners(points, xa, ra, half, look, xb, rb)
+    count = 4
+    if not inside:
+        for axis in range(2):
+            way = (1.0, 0.0, 0.0) if axis == 0 else (0.0, 0.0, 1.0)
+            count = clip(points, count, way, half_b[axis])
+            count = clip(points, count, scale(-1.0, way), half_b[axis])
+    if count >= 3:
+        share = k / count
+        if covered and not inside:
+            share *= area_of(points, count) / area
+        free = 0 if inside else ends
+        inward = back(rb, facing(look, ra))
+        if not covered and free != 0:
+            share *= _drawn(points, count, half_b, free, radius)
+        for i in range(count):
+            depth = sign * (top - points[i, 1]) if sign > 0.0 else points[i, 1] - bottom
+            if depth <= 0.0 or depth > thick:
+                continue
+            weight, way = share, normal
+            if free != 0:
+                weight, way = _near_end(points[i], half_b, free, radius, inward, normal, share)
+                depth *= sign * way[1]
+                way = held(way, normal, edge[2] * law[1])
+            spring = weight * depth * math.sqrt(depth)
+            if spring <= 0.0:
+                continue
+            point = add(xb, rotate(rb, (points[i, 0], points[i, 1], points[i, 2])))
+            push(
+                out,
+                point,
+                rotate(rb, way),
+                spring,
+                depth,
+                0.4 * spring * depth,
+                xa,
+                va,
+                wa,
+                xb,
+                vb,
+                zero,
+                law,
+            )
+    if ends != 0 and not inside:
+        box_ends(
+            out,
+            xa,
+            ra,
+            va,
+            wa,
+            half,
+            exposed,
+            xb,
+            rb,
+            STRAIGHT,
+            half_b,
+            top,
+            ends,
+            edge,
+            0,
+            vb,
+            k,
+            shared,
+            law,
+        )
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _inset(point, i, half_b):
+    """How far inside of the end i of a straight plate a point is."""
+    sign = 1.0 if i % 2 == 0 else -1.0
+    return half_b[0] - sign * point[0] if i < 2 else half_b[1] - sign * point[2]
+
+
+@njit(cache=True, error_model="numpy")
+def _drawn(points, count, half_b, ends, radius):
+    """What of k a plate that does not count what it covers has left of a sliver at a free end."""
+    left = 1.0
+    for i in range(4):
+        if ends & (1 << i) != 0:
+            most = 0.0
+            for j in range(count):
+                most = max(most, _inset(points[j], i, half_b))
+            left *= min(1.0, most / max(radius, 1e-300))
+    return left
+
+
+@njit(cache=True, error_model="numpy")
+def _near_end(point, half_b, ends, radius, inward, normal, share):
+    """(part of k, normal) of a corner of what lies over the plate: at a free end beyond which the box slopes
+    down the edge takes over, with the normal of the box's face. A corner on the round counts there alone."""
+    weight, way = share, normal
+    for i in range(4):
+        if ends & (1 << i) == 0:
+            continue
+        sign = 1.0 if i % 2 == 0 else -1.0
+        lean = sign * (inward[0] if i < 2 else inward[2])
+        if lean <= 0.0:
+            continue
+        part = 2.0 - max(_inset(point, i, half_b), 0.0) / max(radius, 1e-300)
+        if part <= 0.0:
+            continue
+        weight *= 1.0 - leaning(lean) * min(part, 1.0)
+        part = max(part - 1.0, 0.0)
+        way = add(scale(1.0 - part, way), scale(part, inward))
+    size = math.sqrt(dot(way, way))
+    return weight, scale(1.0 / size, way)
+
+
+@njit(cache=True, error_model="numpy")
+def box_plane(
+    out,
+    xa,
+    ra,
+    va,
+    wa,
+    half,
+    xb,
+    rb,
+    half_b,
+    k,
+    law,
+    vb=(0.0, 0.0, 0.0),
+    exposed=0,
+    ends=0,
+    edge=(0.0, 0.0, 0.0),
+    beside=0,
+    shared=True,
+):
+    """Box a on plane b: half_b are half lengths along its axes, of which z is its normal; see `box_flat`."""
+    size = (half_b[0], half_b[1], half_b[2])
+    box_flat(
+        out,
+        xa,
+        ra,
+        va,
+        wa,
+        half,
+        exposed,
+        xb,
+        as_guide(rb),
+        size,
+        half_b[2],
+        ends,
+        edge,
+        beside,
+        vb,
+        k,
+        False,
+        shared,
+        law,
+    )

@@ -1,0 +1,253 @@
+"""Rollers and the plates, guides and meshes that they have no contact with: whether they come to overlap.
+
+What overlaps where it is given stands in a hole that is not modelled, and is left alone. What is apart there
+and overlaps later, or once springs are in balance, would need a contact, and a run ends. Looked at are pairs
+of which a part moves: a roller on a slide or an arm, a plate on a slide.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from mdlgen.model.guides import facets
+from mdlgen.model.rotations import matrices
+from mdlgen.model.tables import (
+    Floats,
+    GuidePart,
+    MeshPart,
+    Model,
+    PlanePart,
+    RollerPart,
+)
+
+HAIR = 0.05  # mm: less is the depth of the contacts through a sheet between the two
+_STATIONS = np.linspace(-0.5, 0.5, 9)
+_STEPS = 33  # places along a slide that are looked at
+
+Part = PlanePart | GuidePart | MeshPart
+
+
+class Box(NamedTuple):
+    """A block: middle, axes in columns, half lengths [mm]."""
+
+    center: Floats
+    axes: Floats
+    half: Floats
+
+
+class Rod(NamedTuple):
+    """A roller: centre, axis, the least radius of its rim, half of its width [mm]."""
+
+    center: Floats
+    axis: Floats
+    radius: float
+    half: float
+
+    def reach(self, way: Floats) -> float:
+        """How far it goes either way of its centre along a unit vector."""
+        lean = float(self.axis @ way)
+        return self.half * abs(lean) + self.radius * math.sqrt(max(0.0, 1.0 - lean * lean))
+
+
+class Pair(NamedTuple):
+    """A roller and a part without a contact, and how much they overlap where they are given."""
+
+    roller: RollerPart
+    part: Part
+    start: float
+
+
+def rod(roller: RollerPart, center: Floats) -> Rod:
+    """A roller at a place; of a rim the least radius, wherever that stands."""
+    radius = roller.radius if roller.rim is None else float(roller.rim.radius.min())
+    return Rod(center, roller.axis, radius, 0.5 * roller.width)
+
+
+def in_box(roller: Rod, box: Box) -> float:
+    """How far a roller and a block overlap, by the way that is shortest out; 0 where they are apart [mm]."""
+    gap = box.center - roller.center
+    ways = [*box.axes.T, roller.axis]
+    ways += [np.cross(roller.axis, side) for side in box.axes.T]
+    # from the axis to the nearest corner of the block
+    places = roller.center + np.outer(2.0 * roller.half * _STATIONS, roller.axis)
+    own = (places - box.center) @ box.axes
+    near = own - np.clip(own, -box.half, box.half)
+    away = box.axes @ near[int(np.argmin((near**2).sum(axis=1)))]
+    ways.append(away - roller.axis * float(away @ roller.axis))
+    least = math.inf
+    for way in ways:
+        length = float(np.linalg.norm(way))
+        if length < 1e-9:
+            continue
+        unit = way / length
+        reach = roller.reach(unit) + float(np.abs(unit @ box.axes) @ box.half)
+        least = min(least, reach - abs(float(gap @ unit)))
+        if least <= 0.0:
+            return 0.0
+    return least
+
+
+def in_triangles(roller: Rod, triangles: Floats) -> float:
+    """How far triangles (n, 3, 3) come into a roller from its round; 0 where they are apart [mm]."""
+    extent = np.array([roller.reach(way) for way in np.eye(3)])
+    low, high = triangles.min(axis=1), triangles.max(axis=1)
+    close = np.all((low <= roller.center + extent) & (high >= roller.center - extent), axis=1)
+    if not close.any():
+        return 0.0
+    first = np.cross(roller.axis, np.eye(3)[int(np.argmin(np.abs(roller.axis)))])
+    first = first / np.linalg.norm(first)
+    frame = np.stack([first, np.cross(roller.axis, first), roller.axis], axis=1)
+    deepest = 0.0
+    for corners in (triangles[close] - roller.center) @ frame:
+        flat = _slab(corners, roller.half)
+        if len(flat):
+            deepest = max(deepest, roller.radius - _distance(flat[:, :2]))
+    return deepest
+
+
+def _slab(corners: Floats, half: float) -> Floats:
+    """What of a polygon has a third coordinate within +-half, (n, 3)."""
+    for sign in (1.0, -1.0):
+        kept: list[Floats] = []
+        for k in range(len(corners)):
+            one, two = corners[k - 1], corners[k]
+            a, b = half - sign * one[2], half - sign * two[2]
+            if a * b < 0.0:
+                kept.append(one + (two - one) * (a / (a - b)))
+            if b >= 0.0:
+                kept.append(two)
+        corners = np.array(kept).reshape(-1, 3)
+    return corners
+
+
+def _distance(polygon: Floats) -> float:
+    """Distance of the origin from a convex polygon (n, 2); 0 inside."""
+    best, sides = math.inf, set()
+    for k in range(len(polygon)):
+        one, two = polygon[k - 1], polygon[k]
+        edge = two - one
+        square = float(edge @ edge)
+        t = 0.0 if square == 0.0 else min(1.0, max(0.0, -float(one @ edge) / square))
+        best = min(best, float(np.linalg.norm(one + t * edge)))
+        turn = float(edge[0] * one[1] - edge[1] * one[0])
+        if turn != 0.0:
+            sides.add(turn > 0.0)
+    return 0.0 if len(sides) == 1 and len(polygon) > 2 else best
+
+
+class Overlaps:
+    """The pairs of a Model that are looked at, and what they do at its states."""
+
+    def __init__(self, model: Model) -> None:
+        self._model = model
+        self._boxes: dict[int, list[Box]] = {}
+        self._triangles: dict[int, Floats] = {}
+        self._met = set(zip(model.contacts.part_a, model.contacts.part_b, strict=True))
+        self.pairs = [Pair(roller, part, self._given(roller, part)) for roller, part in self._candidates()]
+        self._watched = [pair for pair in self.pairs if pair.start <= HAIR]
+
+    def _candidates(self) -> Iterator[tuple[RollerPart, Part]]:
+        model = self._model
+        parts: tuple[Part, ...] = (*model.planes, *model.guides, *(m for m in model.meshes if m.on < 0))
+        for roller in model.rollers:
+            moves = roller.press is not None or roller.arm is not None
+            for part in parts:
+                slides = isinstance(part, PlanePart) and part.press is not None
+                if (moves or slides) and (roller.name, part.name) not in self._met:
+                    yield roller, part
+
+    def _given(self, roller: RollerPart, part: Part) -> float:
+        """Overlap where both are given: a spring may have moved one into the other before the run."""
+        by = np.zeros(3)
+        if isinstance(part, PlanePart):
+            by = part.center - self._model.bodies.position[part.body]
+        return self.depth(roller, part, roller.center, by)
+
+    def depth(
+        self, roller: RollerPart, part: Part, at: Floats | None = None, by: Floats | None = None
+    ) -> float:
+        """How far a roller with its centre `at` overlaps a part that has moved `by`; as they begin [mm]."""
+        position = self._model.bodies.position
+        center = position[roller.body] if at is None else at
+        shape = rod(roller, center if by is None else center - by)
+        if isinstance(part, MeshPart):
+            if part.body not in self._triangles:
+                places = part.center + part.corners @ part.axes.T
+                self._triangles[part.body] = places[part.triangles]
+            return in_triangles(shape, self._triangles[part.body])
+        if part.body not in self._boxes:
+            self._boxes[part.body] = _boxes(part, position[part.body], self._model.bodies.rotation[part.body])
+        return max(in_box(shape, box) for box in self._boxes[part.body])
+
+    def found(self, position: Floats, time: float) -> str | None:
+        """Why a run cannot go on from places of bodies (n, 3) at a time [ms]; None: it can."""
+        start = self._model.bodies.position
+        for roller, part, before in self._watched:
+            by = position[part.body] - start[part.body]
+            deep = self.depth(roller, part, position[roller.body], by)
+            if deep > HAIR + before:
+                two = [self._model.called(body) for body in (roller.body, part.body)]
+                return (
+                    f"{two[0]} and {two[1]} overlap by {deep:.3g} mm at {time:.6g} ms, and no contact holds "
+                    f"them apart; give a contact between [{roller.name}, {part.name}]"
+                )
+        return None
+
+    def ahead(self) -> list[Pair]:
+        """The pairs that are apart and on each other's way: of a pressed roller up to what it is pressed on
+        or by its radius, of a plate up to the end of its spring's push, of an arm that meets no other part by
+        a radius either way."""
+        return [pair for pair in self._watched if any(self._deep(pair, *move) for move in self._moves(pair))]
+
+    def _deep(self, pair: Pair, at: Floats, by: Floats) -> bool:
+        return self.depth(pair.roller, pair.part, at, by) > HAIR + pair.start
+
+    def _rows(self, roller: RollerPart) -> list[int]:
+        """Contacts of a roller with other parts of the machine."""
+        table = self._model.contacts
+        sides = list(zip(table.part_a, table.part_b, strict=True))
+        return [k for k in np.flatnonzero(table.of_machine).tolist() if roller.name in sides[k]]
+
+    def _moves(self, pair: Pair) -> Iterator[tuple[Floats, Floats]]:
+        roller, part, _ = pair
+        model, still = self._model, np.zeros(3)
+        start = model.bodies.position[roller.body]
+        weight = model.gravity
+        if roller.press is not None:
+            spring = roller.press
+            mass = roller.mass + roller.carried[0] + spring.carrier_mass
+            force = spring.preload + mass * float(weight @ spring.direction)
+            rows = self._rows(roller)
+            if rows:
+                softest = float(model.contacts.stiffness[rows].min())
+                far = spring.touch - spring.start + (max(force, 0.0) / softest) ** (2 / 3)
+            else:
+                far = roller.radius
+                if spring.stiffness > 0.0:
+                    far = min(far, spring.touch + force / spring.stiffness - spring.start)
+            for part_of in np.linspace(0.0, max(far, 0.0), _STEPS):
+                yield start + part_of * spring.direction, still
+        if roller.arm is not None and not self._rows(roller):
+            arm = start - roller.arm.pivot
+            length = float(np.linalg.norm(arm - roller.axis * (arm @ roller.axis)))
+            most = min(np.pi, roller.radius / length)
+            for turn in matrices(np.outer(np.linspace(-most, most, _STEPS), roller.axis)):
+                yield roller.arm.pivot + turn @ arm, still
+        if isinstance(part, PlanePart) and part.press is not None:
+            spring = part.press
+            force = spring.preload + part.sliding_mass * float(weight @ spring.direction)
+            far = spring.free_length
+            if spring.stiffness > 0.0:
+                far = min(far, force / spring.stiffness)
+            for part_of in np.linspace(0.0, far - spring.start, _STEPS):
+                yield start, part_of * spring.direction
+
+
+def _boxes(part: PlanePart | GuidePart, center: Floats, axes: Floats) -> list[Box]:
+    if isinstance(part, PlanePart):
+        return [Box(center, axes, np.array(part.size) / 2)]
+    return [Box(f.center, f.rotation, np.array(f.lengths) / 2) for f in facets(part)]

@@ -1,0 +1,59 @@
+"""The energy audit of a run: what no force put in must not come out.
+
+Shared by all solvers. What is missing or too much is compared with an energy that means something in the run:
+what passed through it, and not less than what a lift that `run.tolerance` lets pass takes in weight.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from mdlgen.model.tables import Model
+    from mdlgen.results.result import Energy
+
+# Energy that the integration makes or loses, relative to the scale, above which a run fails. Where a contact
+# goes from box to box of a sheet, its stored energy is right to a few per cent only at any step.
+GAIN, LOSS, LOSS_RIGID = 0.02, 0.05, 0.01
+# How much finer a step is advised where none was given.
+FINER = 4.0
+LEAST = 1e-12  # [N mm]
+
+
+def scale(model: Model, dissipated: float, driven: float, most: float, moved: float) -> float:
+    """What an imbalance is relative to [N mm].
+
+    The greatest of what was dissipated, what drives and loads moved either way, kinetic and elastic energy
+    together at any time, the work of gravity, and the work that is `unseen` over the part that may be gained.
+    """
+    return max(abs(dissipated), driven, most, abs(moved), unseen(model) / GAIN, LEAST)
+
+
+def unseen(model: Model) -> float:
+    """Work [N mm] that lifts all sheets by `run.tolerance` times a tenth of their length: positions that are
+    so far off are within the tolerance, and boxes that come to rest make or lose less than that."""
+    free = ~model.bodies.fixed
+    weight = 0.0
+    for sheet in model.sheets:
+        boxes = slice(sheet.first, sheet.first + sheet.count)
+        weight += float(model.bodies.mass[boxes] @ free[boxes]) * max(sheet.size) / 10.0
+    return model.run.tolerance * weight * float(np.linalg.norm(model.gravity))
+
+
+def reason(model: Model, energy: Energy, step: float, loss: float | None = None) -> str | None:
+    """Why a run at a step [ms] is no result, None where its energies balance.
+
+    What is gained may be GAIN of the scale, what is lost `loss` of it (None: any, for an integrator that
+    damps).
+    """
+    off = energy.balance_error
+    if off <= GAIN and (loss is None or off >= -loss):
+        return None
+    whence, most = ("came from nowhere", GAIN) if off > 0.0 else ("got lost", loss or 0.0)
+    told = f"{abs(off) * energy.scale:.3g} N mm of energy {whence}, {100 * abs(off):.3g} % of "
+    told += f"{energy.scale:.3g} N mm; allowed are {100 * most:g} %; "
+    if model.run.step is not None:
+        return told + "leave out run.step, so that a step is found that keeps the energy"
+    return told + f"give a run.step of {step / FINER:.2g} ms"

@@ -1,0 +1,156 @@
+"""The error of a run in each of its quantities, estimated from runs of the same scene at coarser steps.
+
+The difference of two runs is the error of the coarser one where errors fall with the step; in contact they
+often do with its first power only. So the estimate is the difference times a safety factor. A third run shows
+how errors fall: where differences do not, they say little, and where they grow, or are a large part of the
+scale, there is no estimate. The factors come from a study of random scenes (`tests/test_estimates_study.py`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from mdlgen.results.quantities import Difference, differences
+
+if TYPE_CHECKING:
+    from mdlgen.results.result import Result
+
+# Of the last difference: for two runs, and for what the greatest value of a run is, which may lie between.
+SAFETY, SAFETY_PEAKS = 2.0, 4.0
+# What the difference before the last leaves of itself at an order of two.
+SECOND_ORDER = 0.25
+# Ratios of the difference before to the last one: of an order of one; of a third, below which they do not
+# fall; below which they grow.
+FIRST, FALLS, GROWS = 2.0, 1.25, 0.5
+# Times the greater of two differences that do not fall.
+STILL = 4.0
+# An error of more than this part of the scale is not estimated: such differences do not say how large it is.
+MOST = 0.25
+# Parts of the tolerance below which nothing is estimated. Without contacts: of trajectories; of forces and
+# peaks. With contacts, whose first touch may fall into another step: of trajectories; of forces and peaks.
+# What run.tolerance judges is a trajectory, slides and arms too: a floor above 1 would fail a run by itself.
+FREE, FREE_PEAKS, TOUCHING, TOUCHING_PEAKS = 1e-6, 1e-3, 1e-2, 3.0
+# Of the root mean square over all alike of a scene: one of them may agree by accident.
+ALIKE = 0.5
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Of one quantity: the error relative to `scale` [`unit`], None where there is no estimate."""
+
+    value: float | None
+    scale: float
+    unit: str
+    judged: float | None = None  # scale by which run.tolerance judges it; None: it does not
+
+
+def between(runs: Sequence[Result], judged: bool = False) -> dict[str, Estimate]:
+    """Estimates by name for the first of up to three runs, each at half the step of the next one.
+
+    All quantities, or those alone that `run.tolerance` judges. What cannot be said is None, under its name.
+    Of a run that was asked for to check another (`Result.checks`) the difference is what is reported of the
+    quantities that are judged.
+    """
+    result, found = runs[0], {}
+    after = differences(result, runs[1], judged) if len(runs) > 1 else {}
+    if not after:  # there is no other run, or it ended elsewhere
+        known = differences(result, result, judged)
+        return {name: Estimate(None, q.scale, q.unit, q.judged) for name, q in known.items()}
+    before = differences(runs[1], runs[2], judged) if len(runs) > 2 else {}
+    touching = any(run.touched for run in runs)
+    for name, last in after.items():
+        there = before.get(name)
+        earlier = None if there is None else there.value * there.scale / last.scale
+        judged = last.judged is not None
+        safety = 1.0 if judged and result.checks else _safety(last)
+        most = MOST * (last.judged or last.scale) / last.scale
+        value = rule(last.value, earlier, safety, judged, most)
+        least = result.model.run.tolerance * _floor(last, touching)
+        found[name] = Estimate(
+            None if value is None else max(value, least), last.scale, last.unit, last.judged
+        )
+    return _pooled(found)
+
+
+def _safety(of: Difference) -> float:
+    return SAFETY_PEAKS if of.kind in ("strain", "curvature", "twist", "contacts.max_force") else SAFETY
+
+
+def _floor(of: Difference, touching: bool) -> float:
+    if of.judged is not None or of.kind in ("probes.displacement", "rollers.omega"):
+        return TOUCHING if touching else FREE
+    return TOUCHING_PEAKS if touching else FREE_PEAKS
+
+
+def rule(last: float, before: float | None, safety: float, judged: bool, most: float = MOST) -> float | None:
+    """The estimate from the difference to the coarser run, and that of it to the next (None: two runs)."""
+    if before is None or last == 0.0:
+        found = safety * last
+    elif before < GROWS * last:
+        return None
+    elif before < FALLS * last:
+        found = STILL * max(last, before)
+    else:
+        # what a trajectory's difference is, is known by a third run; a peak's may still agree by accident
+        found = max(last * (1.0 if judged else safety), SECOND_ORDER * before)
+        if before < FIRST * last:
+            found = max(found, last / (before / last - 1.0))
+    return found if found <= most else None
+
+
+def _pooled(estimates: dict[str, Estimate]) -> dict[str, Estimate]:
+    """None is below a part of the root mean square of all of its kind."""
+    groups: dict[str, list[float]] = {}
+    for name, found in estimates.items():
+        if found.value is not None:
+            groups.setdefault(_alike(name), []).append(found.value**2)
+    least = {kind: ALIKE * (sum(squares) / len(squares)) ** 0.5 for kind, squares in groups.items()}
+    return {
+        name: found if found.value is None else replace(found, value=max(found.value, least[_alike(name)]))
+        for name, found in estimates.items()
+    }
+
+
+def _alike(name: str) -> str:
+    head, _, rest = name.partition(".")
+    return f"{head}.{rest.rpartition('.')[2]}"
+
+
+def headline(estimates: Mapping[str, Estimate]) -> tuple[float | None, str | None]:
+    """The worst of the estimates that `run.tolerance` judges, by their scales for it, and its name.
+
+    One that is not known is worse than any. (None, None) where there are none.
+    """
+    worst, of = None, None
+    for name, found in estimates.items():
+        if found.judged is None:
+            continue
+        if found.value is None:
+            return None, name
+        value = found.value * found.scale / found.judged
+        if worst is None or value > worst:
+            worst, of = value, name
+    return worst, of
+
+
+def open_yet(result: Result) -> bool:
+    """Whether two runs leave open that `run.tolerance` is met, which a third one may show."""
+    worst, tolerance = result.error_estimate, result.model.run.tolerance
+    return len(result.coarser) == 1 and worst is not None and worst > tolerance >= worst / SAFETY
+
+
+def estimated(result: Result, coarser: Sequence[Result]) -> Result:
+    """The same result with its headline, and with the coarser runs from which `complete` finds the rest."""
+    value, name = headline(between([result, *coarser], judged=True))
+    return replace(result, error_estimate=value, error_estimate_of=name, coarser=tuple(coarser), estimates={})
+
+
+def complete(result: Result) -> dict[str, Estimate]:
+    """All estimates of a result by name: those that it was loaded with, or from the coarser runs that it came
+    with, which are then let go. Without any, each is None."""
+    if not result.estimates and len(result.time) > 1:
+        result.estimates = between([result, *result.coarser])
+        result.coarser = ()
+    return result.estimates

@@ -1,0 +1,138 @@
+"""Rollers that come into plates, guides and meshes without a contact: depths, lint, how a run ends."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from solids import binary, brick
+from test_roller_plate import ARC, LINE, PICK, PLANE, SOLVERS, scene
+
+import mdlgen
+from mdlgen.checks import lints
+from mdlgen.model.lower import lower
+from mdlgen.model.overlap import HAIR, Box, Overlaps, Rod, in_box, in_triangles
+from mdlgen.spec.load import load, loads
+
+ROD = Rod(np.zeros(3), np.array([0.0, 1.0, 0.0]), 10.0, 8.0)
+OTHER = "  - {between: [strip, r], stiffness: 1 N/mm^1.5}"
+
+
+def without(text: str) -> str:
+    """A scene whose roller has a contact with the sheet alone."""
+    return text.replace("between: [r, part]", "between: [strip, r]")
+
+
+def box(center: tuple[float, float, float], half: tuple[float, float, float], turn: float = 0.0) -> Box:
+    c, s = math.cos(turn), math.sin(turn)
+    return Box(np.array(center), np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]), np.array(half))
+
+
+# -- depths
+
+
+@pytest.mark.parametrize(
+    ("block", "deep"),
+    [
+        (box((0, 0, -14.7), (50, 50, 5)), 0.3),  # over a face
+        (box((0, 0, -15.1), (50, 50, 5)), 0.0),
+        (box((56.0, 0, -11.0), (50, 50, 5)), 10 - math.hypot(6, 6)),  # over an edge
+        (box((59.0, 0, 0), (50, 50, 5)), 1.0),  # beside a side
+        (box((0, 57.5, 0), (50, 50, 5)), 0.5),  # its end beside a plate
+        (box((0, 58.5, 0), (50, 50, 5)), 0.0),
+        (box((0, 0, 3.0), (50, 50, 0.1)), 7.1),  # right through a thin plate
+        (box((0, 0, -14.6), (50, 50, 5), math.pi / 2), 50 + 10 - 14.6),  # a plate on its side: out sideways
+    ],
+)
+def test_how_deep_a_roller_is_in_a_block(block: Box, deep: float) -> None:
+    found = in_box(ROD, block)
+    if abs(block.axes[0, 0]) < 0.5:
+        deep = min(deep, 15.0)  # by the shortest way out
+    assert found == pytest.approx(deep, abs=1e-9)
+
+
+def test_how_deep_triangles_are_in_a_roller() -> None:
+    corners, triangles = brick(100, 100, 10)
+    for shift, deep in ((-14.7, 0.3), (-15.1, 0.0), (15.5, 0.0), (13.0, 2.0)):
+        assert in_triangles(ROD, (corners + np.array([0, 0, shift]))[triangles]) == pytest.approx(
+            deep, abs=1e-9
+        )
+    beside = corners + np.array([56.0, 0, -11.0])
+    assert in_triangles(ROD, beside[triangles]) == pytest.approx(10 - math.hypot(6, 6), abs=1e-9)
+    along = corners + np.array([0, 58.5, 0])  # beyond the end of the roller
+    assert in_triangles(ROD, along[triangles]) == 0.0
+
+
+# -- the lint
+
+
+def test_a_lint_names_both_and_says_what_to_add() -> None:
+    bare = PICK.replace("  - {between: [pick, table]", "  # {between: [pick, table]")
+    (found,) = [x for x in lints(lower(loads(bare))) if x.code == "W119"]
+    assert found.where == "rollers.pick" and "plane table" in found.message
+    assert "{between: [pick, table]" in found.remedy
+    assert [x.code for x in lints(lower(loads(PICK)))] == []
+
+
+DOWNWARDS = "press: {direction: -z, stiffness: 0.5 N/mm, preload: 1 N}"
+UPWARDS = "press: {direction: z, stiffness: 0.5 N/mm, preload: 3 N}"
+
+
+@pytest.mark.parametrize(
+    ("part", "more", "says"),
+    [
+        (PLANE, DOWNWARDS, True),
+        (PLANE, UPWARDS, False),  # away from it
+        (PLANE, "arm: {pivot: [-30 mm, 0 mm, 10 mm], mass: 1 g}", True),
+        (PLANE, "", False),  # a fixed axis
+        (PLANE.replace("mass: 1 g", f"mass: 1 g, {UPWARDS}"), "", True),
+        (LINE.format(side="right"), DOWNWARDS, True),
+        (ARC.format(z=30, begin=45, end=135, side="inside"), DOWNWARDS, True),
+        (PLANE.replace("-5 mm]", "5 mm]"), DOWNWARDS, False),  # in a hole from the start
+    ],
+)
+def test_pairs_that_can_meet_are_found(part: str, more: str, says: bool) -> None:
+    text = without(scene(part, more, center="[0 mm, 0 mm, 10.2 mm]"))
+    assert (len(Overlaps(lower(loads(text))).ahead()) == 1) is says
+
+
+# -- runs
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_a_pick_roller_without_a_contact_ends_its_run_with_both_names(solver: str) -> None:
+    """The roller falls on the table as the note leaves, and would brake the note."""
+    bare = PICK.replace("  - {between: [pick, table]", "  # {between: [pick, table]")
+    result = mdlgen.solve(lower(loads(bare)), solver)
+    assert not result.ok
+    assert "roller pick and plane table overlap by" in result.status
+    assert "give a contact between [pick, table]" in result.status
+    assert 30.0 < result.time[-1] < 40.0
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_arms_guides_and_meshes_are_looked_at_too(solver: str, tmp_path: Path) -> None:
+    arm = "arm: {pivot: [-60 mm, 0 mm, 10 mm], mass: 0.1 g, torque: 20 N*mm}"
+    (tmp_path / "part.stl").write_bytes(binary(*_lowered()))
+    for part, kind in ((LINE.format(side="right"), "guide"), ("meshes: {part: {file: part.stl}}", "mesh")):
+        file = tmp_path / f"{kind}.yaml"
+        file.write_text(without(scene(part, arm, center="[0 mm, 0 mm, 10.5 mm]")))
+        result = mdlgen.solve(lower(load(file)), solver)
+        assert f"roller r and {kind} part overlap by" in result.status
+        depth = 10.0 - result.position[-1, result.model.roller("r").body, 2]
+        assert HAIR < depth < 0.5
+
+
+def _lowered() -> tuple[np.ndarray, np.ndarray]:
+    corners, triangles = brick(120, 60, 10)
+    return corners - [0, 0, 5], triangles
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_what_overlaps_from_the_start_is_a_hole(solver: str) -> None:
+    """A roller that looks out of a plate and moves in its hole."""
+    text = without(scene(PLANE, "press: {direction: -z, stiffness: 0.5 N/mm, preload: 1 N}"))
+    text = text.replace("center: [0 mm, 0 mm, 10 mm]", "center: [0 mm, 0 mm, -4 mm]")
+    assert mdlgen.solve(lower(loads(text)), solver).ok
