@@ -3,7 +3,8 @@
 The two broad faces of a box meet what of the triangles lies over them. A triangle is cut to the box, and the
 depth of what is left is looked at in its corners (`at: nodes`) or in its middle (`at: centres`), as the paper
 has it for contact between meshes (section 3.1): with the area that this stands for it gives a force along the
-triangle's normal,
+triangle's normal (with corners, the middle counts, too; a pressure that is linear in depth is integrated
+exactly),
 
     fixed:      dF = (k/A) z^1.5 dA, A the area of the box's face: a box flat on a plate has k z^1.5, and one
                 that a plate covers in part has that part of it, as with a guide;
@@ -197,23 +198,69 @@ def _press(sums, area, u, v, depth, thick, stiff, linear):
 
 
 @njit(cache=True, error_model="numpy")
+def _press_linear(sums, area, u0, v0, z0, u1, v1, z1, u2, v2, z2, thick, stiff):
+    """Adds what a triangle does whose pressure is linear in depth: integrals of products of linear functions
+    are exact, so a face that is cut in another way has the same. Returns its force."""
+    deepest = max(z0, z1, z2)
+    if deepest > thick:
+        third, force = area / 3.0, 0.0
+        for u, v, z in ((u0, v0, z0), (u1, v1, z1), (u2, v2, z2)):
+            force += _press(sums, third, u, v, z, thick, stiff, True)
+        return force
+    z, u, v = z0 + z1 + z2, u0 + u1 + u2, v0 + v1 + v2
+    zu, zv = z0 * u0 + z1 * u1 + z2 * u2, z0 * v0 + z1 * v1 + z2 * v2
+    uu, vv = u0 * u0 + u1 * u1 + u2 * u2, v0 * v0 + v1 * v1 + v2 * v2
+    zuu, zvv = z0 * u0 * u0 + z1 * u1 * u1 + z2 * u2 * u2, z0 * v0 * v0 + z1 * v1 * v1 + z2 * v2 * v2
+    part = area * stiff
+    sums[4] += part / 12.0 * (z * u + zu)
+    sums[5] += part / 12.0 * (z * v + zv)
+    sums[6] += part / 60.0 * (z * (u * u + uu) + 2.0 * (u * zu + zuu))
+    sums[7] += part / 60.0 * (z * (v * v + vv) + 2.0 * (v * zv + zvv))
+    sums[8] += part / 24.0 * (z * z + z0 * z0 + z1 * z1 + z2 * z2)
+    sums[9] = max(sums[9], deepest)
+    return part / 3.0 * z
+
+
+@njit(cache=True, error_model="numpy")
 def _piece(sums, points, count, scale, thick, stiff, linear, middles):
-    """Adds what a polygon does, triangle by triangle of a fan; depths and areas are true after `scale`, the
-    cosine of its angle to the face. Returns its force."""
-    force = 0.0
+    """Adds what a polygon does; depths and areas are true after `scale`, the cosine of its angle to the face.
+    Returns its force.
+
+    Where depth is looked at in points these are its centroid, alone or with its corners: what a corner more
+    that is hardly apart from the next one changes is as small as their distance.
+    """
+    force, whole, cu, cv, cz = 0.0, 0.0, 0.0, 0.0, 0.0
+    part = _part(scale) / scale
     for i in range(1, count - 1):
         a0, a1 = points[i, 0] - points[0, 0], points[i, 1] - points[0, 1]
         b0, b1 = points[i + 1, 0] - points[0, 0], points[i + 1, 1] - points[0, 1]
-        area = 0.5 * abs(a0 * b1 - a1 * b0) * _part(scale) / scale
-        if middles:
-            u = (points[0, 0] + points[i, 0] + points[i + 1, 0]) / 3.0
-            v = (points[0, 1] + points[i, 1] + points[i + 1, 1]) / 3.0
-            z = (points[0, 2] + points[i, 2] + points[i + 1, 2]) / 3.0
-            force += _press(sums, area, u, v, z * scale, thick, stiff, linear)
+        area = 0.5 * part * abs(a0 * b1 - a1 * b0)
+        if linear and not middles:
+            force += _press_linear(
+                sums, area,
+                points[0, 0], points[0, 1], points[0, 2] * scale,
+                points[i, 0], points[i, 1], points[i, 2] * scale,
+                points[i + 1, 0], points[i + 1, 1], points[i + 1, 2] * scale,
+                thick, stiff,
+            )  # fmt: skip
         else:
-            for k in (0, i, i + 1):
-                z = points[k, 2] * scale
-                force += _press(sums, area / 3.0, points[k, 0], points[k, 1], z, thick, stiff, linear)
+            whole += area
+            cu += area / 3.0 * (points[0, 0] + points[i, 0] + points[i + 1, 0])
+            cv += area / 3.0 * (points[0, 1] + points[i, 1] + points[i + 1, 1])
+            cz += area / 3.0 * (points[0, 2] + points[i, 2] + points[i + 1, 2])
+    if whole <= 0.0:
+        return force
+    cu, cv, cz = cu / whole, cv / whole, cz / whole
+    if middles:
+        return _press(sums, whole, cu, cv, cz * scale, thick, stiff, linear)
+    force = _press(sums, whole / 3.0, cu, cv, cz * scale, thick, stiff, linear)
+    for i in range(count):
+        j = i + 1 if i + 1 < count else 0
+        a0, a1 = points[i, 0] - cu, points[i, 1] - cv
+        b0, b1 = points[j, 0] - cu, points[j, 1] - cv
+        third = 0.5 / 3.0 * part * abs(a0 * b1 - a1 * b0)
+        force += _press(sums, third, points[i, 0], points[i, 1], points[i, 2] * scale, thick, stiff, linear)
+        force += _press(sums, third, points[j, 0], points[j, 1], points[j, 2] * scale, thick, stiff, linear)
     return force
 
 
@@ -243,14 +290,18 @@ def _element(sums, room, triangles, t, way, along, across, where, hp, hr, middle
     inside = max(abs(u0), abs(u1), abs(u2)) <= hp and max(abs(v0), abs(v1), abs(v2)) <= hr
     if inside and min(z0, z1, z2) >= 0.0:
         area = _part(cosine) * triangles[t, AREA]
+        u, v, z = (u0 + u1 + u2) / 3.0, (v0 + v1 + v2) / 3.0, (z0 + z1 + z2) / 3.0
         if middles:
-            u, v, z = (u0 + u1 + u2) / 3.0, (v0 + v1 + v2) / 3.0, (z0 + z1 + z2) / 3.0
             force = _press(sums, area, u, v, z * cosine, thick, stiff, linear)
+        elif linear:
+            z0, z1, z2 = z0 * cosine, z1 * cosine, z2 * cosine
+            force = _press_linear(sums, area, u0, v0, z0, u1, v1, z1, u2, v2, z2, thick, stiff)
         else:
-            third = area / 3.0
-            force = _press(sums, third, u0, v0, z0 * cosine, thick, stiff, linear)
-            force += _press(sums, third, u1, v1, z1 * cosine, thick, stiff, linear)
-            force += _press(sums, third, u2, v2, z2 * cosine, thick, stiff, linear)
+            force = _press(sums, area / 3.0, u, v, z * cosine, thick, stiff, linear)
+            corner = 2.0 / 9.0 * area
+            force += _press(sums, corner, u0, v0, z0 * cosine, thick, stiff, linear)
+            force += _press(sums, corner, u1, v1, z1 * cosine, thick, stiff, linear)
+            force += _press(sums, corner, u2, v2, z2 * cosine, thick, stiff, linear)
     else:
         which, count = _over(room, (u0, u1, u2), (v0, v1, v2), (z0, z1, z2), hp, hr)
         force = _piece(sums, room[which], count, cosine, thick, stiff, linear, middles)
