@@ -541,7 +541,7 @@ def test_the_work_of_a_contact_is_the_energy_that_it_stores(tmp_path):
 
 @pytest.mark.parametrize("on", [", on: r", ""])
 def test_how_a_triangle_is_cut_does_not_change_its_force(tmp_path, on):
-    """A side of the box passes over corners of triangles: what is left of them gets one corner more or less."""
+    """A side of the box passes over corners of triangles: what is left has a corner more or less."""
     corners, triangles = halved(*flats(7.5, 5.0, 60, 6.0))
     part = parts(tmp_path, (corners, triangles), on)
     lean, jumps = turn("y", 0.03) @ turn("x", 0.01), []
