@@ -210,34 +210,35 @@ def test_a_straight_guide_is_a_plane():
 
 
 def channel(boxes, step, solver="lattice"):
-    """Speed of the note as its leading edge is out [mm/ms], greatest force on both arcs over 2 ms [N].
+    """Speed of the leading edge over the 3 ms before it is out [mm/ms], and forces of both arcs [N]: of the
+    outer one over the last 12 ms, of the inner one, which it meets now and then, over the last 24.
 
-    A corner that meets a guide rattles on its own contact's spring, of some 0.1 ms; the mean over 2 ms is
-    what bends the note.
+    A paper that damps nothing rattles on in its channel: its speed at one moment says little. This one has a
+    loss factor of 3 % at 100 Hz.
     """
-    model = lower(load(CHANNEL, [f"sheets.note.boxes=[{boxes},1]", f"run.step={step} ms"]))
+    damped = "materials.paper.damping={time: 0.05 ms}"
+    model = lower(load(CHANNEL, [f"sheets.note.boxes=[{boxes},1]", f"run.step={step} ms", damped]))
     result = mdlgen.solve(model, solver)
     assert result.ok, result.status
-    assert result.anchor_motion(0)[0][-1, 2] == pytest.approx(19.3, abs=0.2)  # it is there
-    window = np.ones(11) / 11
-    told = series(result)
-    peaks = [np.convolve(told[f"guide_{n}.force_n"], window, "valid").max() for n in ("outer", "inner")]
-    speed = float(np.linalg.norm(result.sheet_motion(0)[1][-1]))
-    return np.array([speed, *peaks])
+    lead, told = result.anchor_motion(0)[0], series(result)
+    assert lead[-1, 2] == pytest.approx(19.4, abs=0.1)  # it is there
+    last = [result.time >= result.time[-1] - span for span in (3.0 + 1e-9, 12.0, 24.0)]
+    speed = float(np.linalg.norm(lead[-1] - lead[last[0]][0])) / 3.0
+    outer, inner = (
+        told[f"guide_{n}.force_n"][at].mean() for n, at in zip(("outer", "inner"), last[1:], strict=True)
+    )
+    return np.array([speed, outer, inner])
 
 
-@pytest.mark.xfail(
-    reason="open: ends of guides are touched now; figures of the channel are to be measured anew",
-    strict=False,
-)
 def test_exit_speed_and_guide_force_of_a_channel_converge_and_the_solvers_agree():
     coarse, middle, fine = (channel(boxes, 0.04) for boxes in (10, 20, 40))
     shorter = channel(20, 0.02)
     other = channel(20, 0.04, "exudyn")
     far, near = np.abs(coarse / fine - 1), np.abs(middle / fine - 1)
-    assert (near < [0.01, 0.03, 0.03]).all() and (near[1:] < 0.5 * far[1:]).all()
-    assert (np.abs(shorter / middle - 1) < 0.01).all()
-    assert (np.abs(other / middle - 1) < 0.01).all()
+    assert (near < [0.01, 0.01, 0.03]).all() and (near[:2] < 0.5 * far[:2]).all()
+    # within what the steps change, the inner arc by single touches
+    assert (np.abs(shorter / middle - 1) < [0.002, 0.002, 0.02]).all()
+    assert (np.abs(other / middle - 1) < [0.01, 0.002, 0.02]).all()
 
 
 @pytest.mark.parametrize("solver", ["lattice", "exudyn"])
