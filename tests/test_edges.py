@@ -17,6 +17,7 @@ from mdlgen.mechanics.plate import STRAIGHT, as_guide, box_plane
 from mdlgen.mechanics.point import MOST_POINTS, OUT, POINT
 from mdlgen.model.lower import lower
 from mdlgen.paths import samples
+from mdlgen.report.page import page
 from mdlgen.results.events import events
 from mdlgen.results.result import Result
 from mdlgen.spec.load import load, loads
@@ -251,6 +252,11 @@ def test_a_leading_edge_stubs_or_climbs_as_the_round_has_it(h, mu, radius):
     assert (stub["sheet"], stub["part"]) == ("n", "t")
     assert stub["below_mm"] == pytest.approx(h, abs=0.06) and stub["duration_ms"] >= 1.0
     assert stub["time_ms"] == pytest.approx(2.0 / 1.4, abs=1.0)
+
+
+def test_a_stub_is_a_row_of_the_page():
+    result, _ = meets(0.7, 0.3, 0.02)
+    assert "<td>stub</td><td>n</td><td>t</td>" in page([result])
 
 
 @pytest.mark.parametrize(
