@@ -1,4 +1,4 @@
-"""What is installed: each dependency has a range, a pin for CI that lies in it, a reason in the README."""
+"""What is installed: each dependency has a range, a pin for CI that lies in it, a reason in the manual."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from packaging.requirements import Requirement
 ROOT = Path(__file__).resolve().parent.parent
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
 EXTRAS = PROJECT["optional-dependencies"]
-NEEDED = [Requirement(text) for text in (*PROJECT["dependencies"], *EXTRAS["test"])]
+NEEDED = [Requirement(text) for text in (*PROJECT["dependencies"], *EXTRAS["test"], *EXTRAS["docs"])]
 ALL = [*NEEDED, *(Requirement(text) for text in EXTRAS["peers"])]
 
 
@@ -36,8 +36,9 @@ def test_each_dependency_has_a_range(needed: Requirement) -> None:
     assert signs == ["<", ">="]
 
 
-def test_the_readme_says_what_each_is_for() -> None:
-    table = (ROOT / "README.md").read_text("utf-8").partition("| dependency |")[2].partition("\n\n")[0]
+def test_the_manual_says_what_each_is_for() -> None:
+    page = ROOT / "docs" / "developers" / "dependencies.md"
+    table = page.read_text("utf-8").partition("| dependency |")[2].partition("\n\n")[0]
     first = re.findall(r"^\| ([^|]+) \|", table, re.M)
     told = {name(word) for cell in first for word in re.findall(r"[\w.-]+", cell)}
     assert not {name(needed.name) for needed in ALL} - told

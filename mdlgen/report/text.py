@@ -9,6 +9,7 @@ from typing import Any
 from mdlgen.report.overview import UNITS
 
 FEW = 3  # names that are listed in a line
+NOTHING = 1e-9  # mm, mm/s, deg, N: what is less is round-off
 
 Rows = list[list[str]]  # of a table, the first with what its columns are
 
@@ -238,7 +239,9 @@ def _plates(plates: dict[str, Any]) -> list[str]:
 
 
 def _number(value: float | None) -> str:
-    return "-" if value is None else f"{value:.4g}"
+    if value is None:
+        return "-"
+    return f"{value:.4g}" if abs(value) >= NOTHING else "0"
 
 
 def _vector(values: Sequence[float | None] | None) -> str:

@@ -17,8 +17,14 @@ class Friction(Strict):
 
     static: float = Field(ge=0, le=1e3, description="coefficient at the stiction velocity")
     dynamic: float = Field(ge=0, le=1e3, description="coefficient from the friction velocity on")
-    stiction_velocity: SpeedScale | None = None
-    friction_velocity: SpeedScale | None = None
+    stiction_velocity: SpeedScale | None = Field(
+        default=None, description="slip speed at which friction is static; the smoothing where left out"
+    )
+    friction_velocity: SpeedScale | None = Field(
+        default=None,
+        description="slip speed from which on friction is dynamic; the stiction velocity where left out, or "
+        "1.5 times it where the two coefficients differ",
+    )
 
     @model_validator(mode="before")
     @classmethod
@@ -54,7 +60,10 @@ class Contact(Strict):
         description="k of one pair (Eq. 10)"
     )
     restitution: float = Field(default=0.5, ge=0, le=1, description="coefficient of restitution c_R (Eq. 11)")
-    friction: Friction = Field(default_factory=lambda: Friction(static=0.0, dynamic=0.0))
+    friction: Friction = Field(
+        default_factory=lambda: Friction(static=0.0, dynamic=0.0),
+        description="coefficient of friction mu (Eq. 12): a number, or a mapping; 0 where left out",
+    )
     smoothing: SpeedScale = Field(
         default=default("1 mm/s"), description="speed over which damping and friction change sign; 1 mm/s"
     )

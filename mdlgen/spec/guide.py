@@ -49,7 +49,9 @@ class Line(Strict):
 
     from_: Position = Field(alias="from", description="where it begins")
     to: Position = Field(description="where it ends")
-    axis: Direction = Field(description="across the paper; sides are as seen with the axis towards you")
+    axis: Direction = Field(
+        description="direction across the sheet; sides are as seen with the axis towards you"
+    )
     side: Literal["left", "right", "both"] = Field(
         description="which side is touched, on the way along it; of both the line is the middle of the plate"
     )
@@ -68,13 +70,18 @@ class Line(Strict):
 class Arc(Strict):
     """A guide bent to a part of a cylinder, of half a turn at most."""
 
-    center: Position = Field(description="on its axis, in the middle of its width")
-    axis: Direction = Field(description="across the paper; angles turn about it by the right-hand rule")
-    radius: PositiveLength = Field(
-        description="of the face that is touched; of the plate's middle where both are"
+    center: Position = Field(description="centre of the arc, in the middle of its width")
+    axis: Direction = Field(
+        description="direction across the sheet; angles turn about it by the right-hand rule"
     )
-    from_: Angle = Field(alias="from", description="where it begins, counted from global x")
-    to: Angle = Field(description="where it ends; from global y instead where the axis is near x")
+    radius: PositiveLength = Field(
+        description="radius of the face that is touched; with side: both that of the plate's middle"
+    )
+    from_: Angle = Field(
+        alias="from",
+        description="angle where it begins, counted from global x, or from global y where the axis is near x",
+    )
+    to: Angle = Field(description="angle where it ends")
     side: Literal["inside", "outside", "both"] = Field(description="which side is touched")
 
     @model_validator(mode="after")
@@ -92,17 +99,18 @@ class Guide(Strict):
     """A fixed plate that leads sheets."""
 
     line: Line | None = Field(default=None, description="a straight guide")
-    arc: Arc | None = Field(default=None, description="a bent one")
+    arc: Arc | None = Field(default=None, description="a guide bent to an arc")
     width: PositiveLength = Field(description="length along its axis")
     thickness: PositiveLength = Field(
-        default=default("1 mm"), description="of the plate, away from the side that is touched; 1 mm"
+        default=default("1 mm"), description="thickness of the plate, behind the face that is touched"
     )
     mass: Mass = Field(
-        default=default("1 g"), description="mass; of no effect on the motion, since the guide is fixed"
+        default=default("1 g"), description="mass of the plate, for the text alone: the guide is fixed"
     )
     edge_radius: LengthOrZero | None = Field(
         default=None,
-        description="of the edges of the face that is touched; 0.1 mm, or half of a thinner plate. A sheet "
+        description="radius of the edges of the face that is touched; 0.1 mm where left out, or half of a "
+        "thinner plate. A sheet "
         "climbs an edge where its corner is less than edge_radius (1 - sin(atan mu)) below the face, or else "
         "it stubs. The edges of the other face have 0.1 mm at most",
     )

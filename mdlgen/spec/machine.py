@@ -77,7 +77,7 @@ class OneWay(Strict):
         "one in which it may turn faster than its drive"
     )
     torque: Annotated[float, quantity("N*mm", 0.0, open_low=True)] = Field(
-        description="that the clutch takes at the creep; more in proportion beyond"
+        description="torque that the clutch takes at the creep; more in proportion beyond"
     )
     creep: Annotated[float, quantity("rad/s", 0.0, open_low=True)] = Field(
         default=default("0.1 rad/s"), description="speed against the free sense at which it takes the torque"
@@ -116,18 +116,20 @@ class Arm(Strict):
     pivot: Position = Field(description="a point of the axis that the arm turns about, which is fixed")
     mass: Mass = Field(description="mass of the arm, without the roller")
     center: Position | None = Field(
-        default=None, description="its centre of mass; halfway between the pivot and the roller's centre"
+        default=None,
+        description="its centre of mass; where left out halfway between the pivot and the roller's centre",
     )
     inertia: Annotated[float, quantity("g*mm^2", 0.0, open_low=True)] | None = Field(
         default=None,
-        description="about its centre of mass, along the axis; that of a rod from the pivot to the roller",
+        description="moment of inertia about its centre of mass and the axis; where left out that of a rod "
+        "from the pivot to the roller",
     )
     torque: Annotated[float, quantity("N*mm")] = Field(
-        default=default("0 N*mm"), description="of its spring as the run begins"
+        default=default("0 N*mm"), description="torque of its spring as the run begins"
     )
-    stiffness: Torsion = Field(default=default("0 N*mm/rad"), description="of its spring")
+    stiffness: Torsion = Field(default=default("0 N*mm/rad"), description="stiffness of its spring")
     damping: Annotated[float, quantity("N*mm*ms/rad", 0.0)] = Field(
-        default=default("0 N*mm*ms/rad"), description="of its pivot"
+        default=default("0 N*mm*ms/rad"), description="damping of its pivot"
     )
 
     @property
@@ -143,7 +145,7 @@ class Roller(Strict):
     axis: Direction = Field(description="axis of rotation")
     radius: PositiveLength = Field(description="radius R")
     width: PositiveLength = Field(description="length along the axis")
-    mass: Mass = Field(description="mass; the inertia is that of a solid cylinder")
+    mass: Mass = Field(description="mass m; the inertia is that of a solid cylinder")
     drive: Drive | None = Field(
         default=None, description="prescribed rotation; without it the roller turns freely"
     )
@@ -171,16 +173,22 @@ class Roller(Strict):
 class Plane(Strict):
     """A plate, fixed or pressed by a spring; its contact face is the one on the side of the normal."""
 
-    center: Position = Field(description="middle of the plate (its face lies half the third size above)")
+    center: Position = Field(
+        description="middle of the plate; its face lies half of the thickness above, along the normal"
+    )
     normal: Direction = Field(description="outward normal of the contact face")
-    size: Size3 = Field(description="two lengths of the face, then the thickness along the normal")
-    mass: Mass = Field(description="mass; of effect on the motion of a plate with press only")
+    size: Size3 = Field(
+        description="two lengths of the face, then the thickness along the normal. The first length is along "
+        "global x as far as that lies in the face, or along global y where the normal is near x"
+    )
+    mass: Mass = Field(description="mass of the plate; only a plate with press moves")
     press: Press | None = Field(
         default=None, description="slide and spring; without it the plate is fixed. It does not turn"
     )
     edge_radius: LengthOrZero | None = Field(
         default=None,
-        description="of the edges of its face; 0.1 mm, or half of a thinner plate: see that of a guide",
+        description="radius of the edges of its face; 0.1 mm where left out, or half of a thinner plate. See "
+        "edge_radius of a guide",
     )
 
     @model_validator(mode="after")

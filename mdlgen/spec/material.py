@@ -132,7 +132,7 @@ class Material(Strict):
         default=None,
         description="shear modulus in the plane, with layout plate; 0.387 sqrt(E_md E_cd) where left out",
     )
-    damping: Damping = Field(default_factory=Damping)
+    damping: Damping = Field(default_factory=Damping, description="damping of the joints")
 
     @model_validator(mode="after")
     def _stretching(self) -> Material:

@@ -30,18 +30,21 @@ class Mesh(Strict):
     file: str = Field(
         description="STL (binary or ASCII) or OBJ, in the folder of the spec or below: a closed surface"
     )
-    units: Literal["mm", "cm", "m", "in"] = Field(default="mm", description="that the file's numbers are in")
+    units: Literal["mm", "cm", "m", "in"] = Field(default="mm", description="unit of the file's numbers")
     center: Position = Field(
         default=origin("mm"), description="where the origin of the file's axes is at the start"
     )
     rotation: Angles = Field(
-        default=origin("deg"), description="of the file's axes, about the global x, then y, then z axis"
+        default=origin("deg"),
+        description="rotation of the file's axes, about the global x, then y, then z axis",
     )
     on: Name | None = Field(
-        default=None, description="the roller that it moves with (center and rotation are at the start)"
+        default=None, description="the roller that it turns with; center and rotation are those at the start"
     )
-    mass: Mass | None = Field(default=None, description="mass; the inertia is that of an even solid")
-    density: Density | None = Field(default=None, description="in place of mass")
+    mass: Mass | None = Field(
+        default=None, description="mass m; the inertia is that of a solid of even density"
+    )
+    density: Density | None = Field(default=None, description="density, in place of mass")
     at: Literal["nodes", "centres"] = Field(
         default="nodes",
         description="where the depth of an element, or of what a box covers of it, is looked at: in its "
@@ -49,8 +52,8 @@ class Mesh(Strict):
     )
     edge_radius: LengthOrZero = Field(
         default=default("0 mm"),
-        description="of its edges where the outer sides of a sheet meet them, below 1 mm; 0, as sharp as its "
-        "triangles make them",
+        description="radius of its edges where the outer sides of a sheet meet them, below 1 mm; 0: as sharp "
+        "as its triangles make them",
     )
     _solid: Solid | None = PrivateAttr(default=None)
 

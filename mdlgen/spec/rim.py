@@ -19,10 +19,14 @@ class Sector(Strict):
     """A part of the round; what is left out is as the roller and its contacts have it."""
 
     from_: Angle = Field(
-        alias="from", description="where it begins: about the axis by the right-hand rule, from global x"
+        alias="from",
+        description="angle where it begins as the run begins: about the axis by the right-hand "
+        "rule, from global x, or from global y where the axis is near x",
     )
-    to: Angle = Field(description="where it ends; from global y instead where the axis is near x")
-    radius: PositiveLength | None = Field(default=None, description="radius; the roller's")
+    to: Angle = Field(description="angle where it ends")
+    radius: PositiveLength | None = Field(
+        default=None, description="radius of the sector; the roller's where left out"
+    )
     friction: Annotated[float, Field(ge=0, le=1e3)] = Field(
         default=1.0, description="friction in times that of each of the roller's contacts"
     )
@@ -30,7 +34,7 @@ class Sector(Strict):
         default=1.0, description="stiffness k in times that of each of the roller's contacts"
     )
     restitution: Annotated[float, Field(ge=0, le=1)] | None = Field(
-        default=None, description="coefficient of restitution c_R; that of the contact"
+        default=None, description="coefficient of restitution c_R; that of the contact where left out"
     )
 
     @model_validator(mode="after")

@@ -13,7 +13,9 @@ class Run(Strict):
     """Duration, analysis and accuracy of a run."""
 
     duration: Time = Field(default=default("1 ms"), description="end time of a transient run")
-    analysis: Literal["transient", "static"] = "transient"
+    analysis: Literal["transient", "static"] = Field(
+        default="transient", description="transient: motion over time; static: the state of rest"
+    )
     step: Time | None = Field(default=None, description="time step; chosen from the tolerance where left out")
     tolerance: float = Field(
         default=1e-3,

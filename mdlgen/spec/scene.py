@@ -27,19 +27,36 @@ class Scene(Strict):
     """Everything that a user describes; see `mdlgen schema` for each field."""
 
     name: Name = Field(description="name of the scene and of the files made from it")
-    gravity: Acceleration = (default("0 m/s^2"), default("0 m/s^2"), default("-9.81 m/s^2"))
-    materials: dict[Name, Material] = Field(default_factory=dict)
-    sheets: dict[Name, Sheet] = Field(min_length=1)
-    rollers: dict[Name, Roller] = Field(default_factory=dict)
-    planes: dict[Name, Plane] = Field(default_factory=dict)
-    guides: dict[Name, Guide] = Field(default_factory=dict)
-    meshes: dict[Name, Mesh] = Field(default_factory=dict)
-    parts: dict[Name, Part] = Field(default_factory=dict)
-    contacts: tuple[Contact, ...] = Field(default=(), strict=False)
-    loads: tuple[Load, ...] = Field(default=(), strict=False)
-    run: Run = Field(default_factory=Run)
-    probes: dict[Name, Probe] = Field(default_factory=dict)
-    supports: tuple[Support, ...] = Field(default=(), strict=False)
+    gravity: Acceleration = Field(
+        default=(default("0 m/s^2"), default("0 m/s^2"), default("-9.81 m/s^2")),
+        description="acceleration of gravity, global axes",
+    )
+    materials: dict[Name, Material] = Field(
+        default_factory=dict, description="sheet materials by name; a sheet names one of them"
+    )
+    sheets: dict[Name, Sheet] = Field(min_length=1, description="sheets by name, one at least")
+    rollers: dict[Name, Roller] = Field(default_factory=dict, description="rollers by name")
+    planes: dict[Name, Plane] = Field(default_factory=dict, description="flat plates by name")
+    guides: dict[Name, Guide] = Field(
+        default_factory=dict, description="fixed plates that lead sheets, straight or bent to an arc, by name"
+    )
+    meshes: dict[Name, Mesh] = Field(
+        default_factory=dict, description="parts whose shape is an STL or OBJ file, by name"
+    )
+    parts: dict[Name, Part] = Field(
+        default_factory=dict, description="bodies of your own MotionView model, by name"
+    )
+    contacts: tuple[Contact, ...] = Field(
+        default=(), strict=False, description="which parts touch, and how; parts of no contact pass through"
+    )
+    loads: tuple[Load, ...] = Field(default=(), strict=False, description="forces and moments on sheets")
+    run: Run = Field(default_factory=Run, description="duration, analysis and accuracy")
+    probes: dict[Name, Probe] = Field(
+        default_factory=dict, description="points of sheets whose motion is recorded, by name"
+    )
+    supports: tuple[Support, ...] = Field(
+        default=(), strict=False, description="points of sheets that are held"
+    )
     _limits: Limits = PrivateAttr(default=DEFAULT)
 
     @property

@@ -16,7 +16,7 @@ class Curl(Strict):
     """Bent to a circle along one direction."""
 
     radius: Length = Field(
-        description="of the sheet; its edges rise along its z axis, with a negative one sink"
+        description="radius of the bent sheet; its edges rise along its z axis; negative: they sink"
     )
     along: Direction = Field(description="the direction that is bent: x (MD) or y (CD)")
 
@@ -26,7 +26,9 @@ class Fold(Strict):
 
     along: Direction = Field(description="the direction that is folded: x (MD) or y (CD)")
     at: Length = Field(description="where along it, from the sheet's centre; a line between boxes")
-    angle: Angle = Field(description="by which the sheet turns there, towards its z axis; -170 to 170 deg")
+    angle: Angle = Field(
+        description="angle by which the sheet turns there, towards its z axis; -170 to 170 deg"
+    )
     stiffness: Annotated[float, Field(ge=1e-3, le=10)] = Field(
         default=1.0, description="bending stiffness of the crease in times that of the sheet"
     )
@@ -47,9 +49,13 @@ def _corner(value: Any) -> Any:
 class DogEar(Strict):
     """A corner folded over the diagonal of a rectangle: boxes whose centres lie beyond it."""
 
-    corner: Annotated[tuple[Literal["x_min", "x_max"], Literal["y_min", "y_max"]], BeforeValidator(_corner)]
+    corner: Annotated[
+        tuple[Literal["x_min", "x_max"], Literal["y_min", "y_max"]], BeforeValidator(_corner)
+    ] = Field(description="the two edges that meet there, as [x_max, y_min]")
     size: Size2 = Field(description="lengths along x and y from the corner to the ends of the crease")
-    angle: Angle = Field(description="by which the corner turns towards the sheet's z axis; -170 to 170 deg")
+    angle: Angle = Field(
+        description="angle by which the corner turns towards the sheet's z axis; -170 to 170 deg"
+    )
     stiffness: Annotated[float, Field(ge=1e-3, le=10)] = Field(
         default=1.0, description="bending stiffness of the crease in times that of the sheet"
     )

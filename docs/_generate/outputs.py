@@ -1,0 +1,177 @@
+"""What a run leaves: every key of summary.json, every column and dataset, each described here by hand.
+
+A test runs scenes and looks that nothing that they leave is missing here.
+"""
+
+from __future__ import annotations
+
+import re
+
+from markdown import NOTE, table
+
+CONTACT = "contacts.OTHER"
+# key, with capitals for names of the scene's -> (unit, meaning)
+SUMMARY: dict[str, tuple[str, str]] = {
+    "scene": ("", "name of the scene"),
+    "solver": ("", "`lattice` or `exudyn`"),
+    "status": ("", "`ok`, or the reason of a run that was cut off"),
+    "t_end_ms": ("ms", "time at the end of the run"),
+    "steps": ("", "time steps taken"),
+    "step_ms": ("ms", "nominal time step"),
+    "rounds": ("", "linear solves, where the solver counts them"),
+    "wall_s": ("s", "wall time of the solver alone"),
+    "estimate_s": ("s", "wall time of the runs that the error estimate took"),
+    "compile_s": ("s", "time for compiling the solver, 0 once it is compiled"),
+    "build_s": ("s", "time from the Model to the solver's own tables"),
+    "pairs.possible": ("", "pairs of bodies that the contacts name"),
+    "pairs.kept": ("", "of these, pairs that can meet within the swept bounds"),
+    "pairs.touched": ("", "of these, pairs that touched in the run"),
+    "halved": ("", "true where one half of a symmetric scene was solved and mirrored"),
+    "error_estimate": ("", "the greatest estimate of those that `run.tolerance` judges; null if not known"),
+    "error_estimate_of": ("", "name of that estimate"),
+    "tolerance": ("", "`run.tolerance`"),
+    "energy.kinetic": ("N mm", "kinetic energy at the end"),
+    "energy.elastic": ("N mm", "elastic energy at the end, of joints, contacts and springs"),
+    "energy.dissipated": ("N mm", "energy taken by damping, friction and restitution"),
+    "energy.numerical": ("N mm", "energy taken by the numerical damping of the integrator; null with exudyn"),
+    "energy.driven": ("N mm", "work of drives, loads and weight"),
+    "energy.balance_error": (
+        "",
+        "error of the energy balance over `energy.scale`; positive: a gain",
+    ),
+    "energy.scale": ("N mm", "energy that passes through the run"),
+    "events": ("", "list of [events](events.md)"),
+    "estimates.QUANTITY": ("", "error estimate of each quantity, relative to its scale; null if not known"),
+    "estimate_scales.QUANTITY.scale": ("", "scale of that estimate"),
+    "estimate_scales.QUANTITY.unit": ("", "unit of the scale"),
+    "strain": ("", "elongation over flexible length, of a clamped strip under edge stress"),
+    "versions.PACKAGE": ("", "versions of mdlgen, Python, numpy and the solver"),
+    "sheets.NAME.travel_mm": ("mm", "displacement of the centre of mass, [x, y, z]"),
+    "sheets.NAME.speed_mm_per_s": ("mm/s", "velocity of the centre of mass at the end, [x, y, z]"),
+    "sheets.NAME.yaw_deg": ("deg", "rotation about z at the end"),
+    "sheets.NAME.boxes": ("", "number of boxes"),
+    "sheets.NAME.bushings": ("", "number of bushings"),
+    "sheets.NAME.strain": ("", "null for a sheet without joints"),
+    "sheets.NAME.strain.max_md": ("", "greatest membrane strain of a joint along MD; `max_cd`: along CD"),
+    "sheets.NAME.strain.max_cd": ("", "the same along CD"),
+    "sheets.NAME.strain.min_md": ("", "least membrane strain of a joint along MD; `min_cd`: along CD"),
+    "sheets.NAME.strain.min_cd": ("", "the same along CD"),
+    "sheets.NAME.strain.margin": ("", "least distance to the end of a measured curve, as a part of it"),
+    "sheets.NAME.strain.margin_joint": ("", "joint with that distance"),
+    "sheets.NAME.curvature": ("", "null for a sheet without joints"),
+    "sheets.NAME.curvature.max_md_per_mm": ("1/mm", "greatest curvature along MD, without sign"),
+    "sheets.NAME.curvature.max_cd_per_mm": ("1/mm", "greatest curvature along CD, without sign"),
+    "sheets.NAME.twist": ("", "null for a sheet without joints"),
+    "sheets.NAME.twist.max_per_mm": ("1/mm", "greatest twist, without sign"),
+    **{
+        f"sheets.NAME.{what}.{key}": words
+        for what in ("strain", "curvature", "twist")
+        for key, words in {
+            "at_mm": ("mm", "place of the greatest value on the sheet, [x, y] from its centre"),
+            "at_ms": ("ms", "its time"),
+            "joint": ("", "its joint"),
+        }.items()
+    },
+    "rollers.NAME.omega_rad_per_s": ("rad/s", "speed about the roller's axis at the end"),
+    "rollers.NAME.free_of_counterpart_at_ms": (
+        "ms",
+        "end of the last interval of force against another roller; 0 if never, null if it still acts",
+    ),
+    **{
+        f"{part}.NAME.{key}": words
+        for part in ("rollers", "planes")
+        for key, words in {
+            "center_mm": ("mm", "centre at the end, [x, y, z]; `planes` lists pressed plates only"),
+            "nip_force_n": ("N", "sum of normal forces at the end"),
+            "max_penetration_mm": ("mm", "greatest depth in sheets"),
+            "mean_penetration_mm": ("mm", "mean depth in sheets over the time in contact"),
+        }.items()
+    },
+    **{
+        f"{part}.NAME.{CONTACT}.{key}": words
+        for part in ("rollers", "planes", "guides", "meshes")
+        for key, words in {
+            "max_penetration_mm": ("mm", "greatest depth of the pair"),
+            "mean_penetration_mm": ("mm", "mean depth over the time in contact"),
+            "max_force_n": ("N", "greatest normal force of the pair"),
+            "mean_force_n": ("N", "mean normal force over the time in contact"),
+        }.items()
+    },
+    "probes.NAME.displacement_mm": ("mm", "displacement at the end, [x, y, z]"),
+    "probes.NAME.speed_mm_per_s": ("mm/s", "velocity at the end, [x, y, z]"),
+}
+SERIES: dict[str, tuple[str, str]] = {
+    "time_ms": ("ms", "stored times, `run.print_step` apart"),
+    "NAME.x_mm": ("mm", "position of a sheet's centre of mass or a probe; so too `y_mm`, `z_mm`"),
+    "NAME.y_mm": ("mm", "the same along y"),
+    "NAME.z_mm": ("mm", "the same along z; of a roller or pressed plate, z of its centre"),
+    "NAME.vx_mm_per_s": ("mm/s", "velocity of it; so too `vy_mm_per_s`, `vz_mm_per_s`"),
+    "NAME.vy_mm_per_s": ("mm/s", "the same along y"),
+    "NAME.vz_mm_per_s": ("mm/s", "the same along z"),
+    "NAME.yaw_deg": ("deg", "rotation of a sheet about z"),
+    "NAME.omega_rad_per_s": ("rad/s", "speed of a roller about its axis"),
+    "NAME.force_n": ("N", "sum of normal forces on a roller, pressed plate, guide or mesh"),
+}
+STATES: dict[str, tuple[str, str, str]] = {
+    "time": ("(t,)", "ms", "stored times"),
+    "position": ("(t, body, 3)", "mm", "centres of mass of all bodies"),
+    "rotation": ("(t, body, 4)", "", "unit quaternions, scalar first"),
+    "velocity": ("(t, body, 3)", "mm/ms", "velocities of the centres of mass"),
+    "spin": ("(t, body, 3)", "rad/ms", "angular velocities, global axes"),
+    "contact_force": ("(t, contact)", "N", "normal force of each pair of parts"),
+    "bodies": ("(body,)", "", "names of bodies: boxes `note_4_7` (column 4, row 7), then the machine"),
+    "contacts": ("(contact,)", "", "pairs of parts, `a / b`"),
+    "statistics/max_depth": ("(contact,)", "mm", "greatest depth"),
+    "statistics/mean_depth": ("(contact,)", "mm", "mean depth over the time in contact"),
+    "statistics/max_force": ("(contact,)", "N", "greatest normal force"),
+    "statistics/mean_force": ("(contact,)", "N", "mean normal force over the time in contact"),
+    "statistics/last_force_at": ("(contact,)", "ms", "end of the last interval of force; nan if it acts yet"),
+    "joints/...": ("(joint,)", "", "peaks of strain, curvature and twist of each joint, with their times"),
+    "model/...": ("", "", "the Model of the run, from which `mdlgen.Result.load` rebuilds all"),
+    "took": ("(4,)", "s", "wall, estimate, build and compile time"),
+}
+
+
+def summary_page() -> str:
+    """reference/summary.md."""
+    rows = [(f"`{key}`", unit, words) for key, (unit, words) in SUMMARY.items()]
+    columns = [(f"`{key}`", unit, words) for key, (unit, words) in SERIES.items()]
+    data = [(f"`{key}`", shape, unit, words) for key, (shape, unit, words) in STATES.items()]
+    return f"""{NOTE}# The files of a run
+
+`mdlgen run SPEC -o DIR` writes these files together. The files of an earlier run stay as they were until the
+new ones are complete.
+
+| file | holds |
+|---|---|
+| `summary.json` | the numbers that one reads first |
+| `series.csv` | motion and forces over time |
+| `result.h5` | every body at every stored time, and the Model |
+| `report.html` | the [report](../how-to/read-the-report.md), which needs no network |
+| `report.png`, `strain.png` | with `--pictures` |
+| `checkpoint/` | the state from which `--resume` goes on, while a run is under way |
+
+## summary.json
+
+Words in capitals stand for names of your scene. Vectors are [x, y, z]. A number that the run did not reach is
+null. A penetration of a roller counts sheets only; `contacts` has each pair of parts.
+
+{table(("key", "unit", "meaning"), rows)}
+Names of `estimates` say what they are of, such as `note.position` or `motor_1.center`. See
+[the error estimate](../theory/estimates.md).
+
+## series.csv
+
+{table(("column", "unit", "meaning"), columns)}
+## result.h5
+
+HDF5. All values are in mm, N, g, ms and rad, the units inside mdlgen. `mdlgen.Result.load(DIR)` reads it; so
+does any HDF5 reader.
+
+{table(("dataset", "shape", "unit", "meaning"), data)}"""
+
+
+def pattern(key: str) -> re.Pattern[str]:
+    """Matches a dotted key of a file against one of the tables here."""
+    names = re.sub(r"[A-Z]{4,}", "\0", key)
+    return re.compile(re.escape(names).replace("\0", "[^/]+"))

@@ -1,0 +1,89 @@
+"""Makes the pictures of the manual: `python docs/_generate/pictures.py [NAME ...]`.
+
+One PNG for each sample, and `note`, the animation of README.md. All of them are drawn by mdlgen itself from
+a run; the drawings of geometry, *.svg, are made by hand.
+"""
+
+from __future__ import annotations
+
+import io
+import sys
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+import mdlgen
+from mdlgen.report.stills import stills
+from mdlgen.results.result import Result
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+TARGET = ROOT / "docs" / "pictures"
+# when a sample shows what it is for [ms]; half of the run where none is given
+AT = {
+    "transport_4x4": 30.0,
+    "transport_4x2": 110.0,
+    "transport_tilted": 60.0,
+    "tilt_correction": 60.0,
+    "channel": 32.0,
+    "guide_joint": 20.0,
+    "feeder": 400.0,
+    "feeder_one": 400.0,
+    "spring_plate": 20.0,
+}
+COLOURS, WIDTH = 48, 640
+# of the animation: the time between two pictures in the run and on the screen [ms], and its width
+EVERY, SHOWN, WIDE = 1.25, 80, 560
+
+
+def run(name: str) -> Result:
+    found = mdlgen.solve(mdlgen.lower(mdlgen.load(ROOT / "samples" / f"{name}.yaml")))
+    if not found.ok:
+        raise SystemExit(f"{name}: {found.status}")
+    return found
+
+
+def picture(result: Result, time: float, width: int) -> Image.Image:
+    (content,) = stills(result, [time]).values()
+    image = Image.open(io.BytesIO(content)).convert("RGB")
+    return image.resize((width, round(width * image.height / image.width)), Image.Resampling.LANCZOS)
+
+
+def sample(name: str) -> None:
+    result = run(name)
+    end = float(result.time[-1])
+    time = min(AT.get(name, end / 2), end)
+    image = picture(result, time, WIDTH).quantize(COLOURS, dither=Image.Dither.NONE)
+    path = TARGET / "samples" / f"{name.replace('/', '_')}.png"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    image.save(path, optimize=True)
+    print(f"{path.relative_to(ROOT)}: {path.stat().st_size // 1000} kB, {time:g} ms")
+
+
+def note() -> None:
+    """An animated GIF of transport_4x4, all pictures with the colours of one of them."""
+    result = run("transport_4x4")
+    times = np.arange(0.0, float(result.time[-1]) + 1e-9, EVERY)
+    images = [picture(result, float(time), WIDE) for time in times]
+    palette = images[len(images) // 2].quantize(COLOURS, dither=Image.Dither.NONE)
+    frames = [image.quantize(palette=palette, dither=Image.Dither.NONE) for image in images]
+    path = TARGET / "note.gif"
+    frames[0].save(
+        path, save_all=True, append_images=frames[1:], duration=SHOWN, loop=0, optimize=True, disposal=1
+    )
+    print(f"{path.relative_to(ROOT)}: {path.stat().st_size // 1000} kB, {len(frames)} pictures")
+
+
+def main() -> None:
+    names = sys.argv[1:]
+    if not names:
+        sys.path.insert(0, str(Path(__file__).resolve().parent))
+        from gallery import names as every
+
+        names = ["note", *every()]
+    for name in names:
+        note() if name == "note" else sample(name)
+
+
+if __name__ == "__main__":
+    main()
