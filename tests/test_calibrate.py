@@ -143,7 +143,7 @@ def test_each_way_of_bending_has_its_values() -> None:
     )
     assert stiffness.value == pytest.approx(0.40, rel=1e-4)
     hinge = calibrate(mdlgen.load(CANTILEVER, [*across, "materials.eur10.D_md=1 N*mm"]), start, "k_ty")
-    # e2e has two bushings in a pair: k_ty = D_md d_y / d_x / 2 (README)
+    # e2e has two bushings in a pair: k_ty = D_md d_y / d_x / 2 (docs/theory/sheet.md)
     assert hinge.value == pytest.approx(0.40 * 127 / (67 / 20) / 2, rel=1e-4)
 
 

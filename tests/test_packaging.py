@@ -1,4 +1,4 @@
-"""The wheel carries templates and samples, and works from another folder; the README's examples run."""
+"""The wheel carries templates and samples, and works from another folder; examples of README and manual load."""
 
 from __future__ import annotations
 
@@ -14,6 +14,8 @@ import pytest
 from ruamel.yaml import YAML
 
 import mdlgen
+from mdlgen.checks import lints
+from mdlgen.spec.load import loads
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -60,34 +62,54 @@ def test_the_wheel_carries_what_the_page_is_made_of(installed):
     assert (installed / "mdlgen" / "py.typed").is_file()
 
 
-def test_the_readmes_first_scene_loads():
-    blocks = re.findall(r"```yaml\n(.*?)```", (ROOT / "README.md").read_text("utf-8"), re.DOTALL)
-    scene, sheets, guides, rims, parts = blocks
+def yaml_blocks(page: str) -> list[str]:
+    return re.findall(r"```yaml\n(.*?)```", (ROOT / page).read_text("utf-8"), re.DOTALL)
+
+
+def test_the_readmes_first_scene_has_no_lint():
+    (scene,) = yaml_blocks("README.md")
     model = mdlgen.lower(mdlgen.loads(scene))
-    assert len(scene.splitlines()) == 10
+    assert lints(model) == []
     assert mdlgen.emit(model, "motionview")
+
+
+def test_the_manuals_pieces_of_scenes_load():
+    scene, *pieces = (YAML(typ="safe").load(block) for block in yaml_blocks("docs/reference/scene.md"))
+    graded, zones, shape, rims, guides, meshes, parts = pieces
+
+    def lowered(**more):
+        return mdlgen.lower(mdlgen.loads(json.dumps({**scene, **more})))
+
     # a sheet with lengths, a zone and a shape of its own, in place of the plain one
-    note = YAML(typ="safe").load(scene) | {"name": "own"}
-    note["sheets"]["note"] |= YAML(typ="safe").load(sheets)["sheets"]["note"]
-    own = mdlgen.lower(mdlgen.loads(json.dumps(note)))
+    note = {**scene["sheets"]["note"], "size": ["67 mm", "127 mm"], "boxes": [10, 20]}
+    for piece in (graded, zones, shape):
+        note |= piece["sheets"]["note"]
+    own = lowered(sheets={"note": note})
     assert own.sheets[0].zones and own.sheets[0].bend is not None and all(own.sheets[0].graded)
     assert mdlgen.emit(own, "motionview")
-    # guides in the same scene
-    more = YAML(typ="safe").load(scene)
-    told = YAML(typ="safe").load(guides)
-    more |= {"guides": told["guides"], "contacts": more["contacts"] + told["contacts"]}
-    assert len(mdlgen.lower(mdlgen.loads(json.dumps(more))).guides) == 2
-    # a rim and an arm in the same scene
-    turned, told = YAML(typ="safe").load(scene), YAML(typ="safe").load(rims)["rollers"]
-    plain = {"axis": "y", "radius": "5 mm", "width": "5 mm", "mass": "1 g"}
-    for name, part in told.items():
-        turned["rollers"][name] = {"center": ["0 mm", "0 mm", "50 mm"], **plain, **part}
-    made = mdlgen.lower(mdlgen.loads(json.dumps(turned)))
+    assert len(lowered(guides=guides["guides"], contacts=scene["contacts"] + guides["contacts"]).guides) == 2
+    plain = {
+        "center": ["0 mm", "0 mm", "50 mm"],
+        "axis": "y",
+        "radius": "5 mm",
+        "width": "5 mm",
+        "mass": "1 g",
+    }
+    turned = {name: {**plain, **part} for name, part in rims["rollers"].items()}
+    made = lowered(rollers=scene["rollers"] | turned)
     assert made.roller("feed").rim is not None and made.roller("skim").arm is not None
-    # the part of a machine of the user's own, in the same scene
-    contact = "contacts: [{between: [note, feed], stiffness: 300 N/mm^1.5}, "
-    imported = mdlgen.lower(mdlgen.loads(scene.replace("contacts: [", parts + contact)))
+    # meshes lie beside the samples; the mesh turns with a roller of the scene
+    files = {**scene, "meshes": meshes["meshes"], "contacts": scene["contacts"] + meshes["contacts"]}
+    assert len(mdlgen.lower(loads(json.dumps(files), "scene", (), ROOT / "samples")).meshes) == 2
+    feed = {"between": ["note", "feed"], "stiffness": "300 N/mm^1.5"}
+    imported = lowered(parts=parts["parts"], contacts=[*scene["contacts"], feed])
     assert [part.body for part in imported.externals] == ["MODEL.sys_feed.b_feed"]
+
+
+def test_the_readme_is_one_screen():
+    lines = (ROOT / "README.md").read_text("utf-8").splitlines()
+    assert len(lines) <= 150
+    assert [line for line in lines if len(line) > 120 and not line.startswith("|")] == []
 
 
 def test_the_readmes_two_commands_are_one_line_each():

@@ -33,7 +33,7 @@ AT = {
 }
 COLOURS, WIDTH = 48, 640
 # of the animation: the time between two pictures in the run and on the screen [ms], and its width
-EVERY, SHOWN, WIDE = 1.25, 80, 560
+EVERY, SHOWN, WIDE = 1.75, 100, 480
 
 
 def run(name: str) -> Result:
@@ -43,17 +43,21 @@ def run(name: str) -> Result:
     return found
 
 
-def picture(result: Result, time: float, width: int) -> Image.Image:
-    (content,) = stills(result, [time]).values()
-    image = Image.open(io.BytesIO(content)).convert("RGB")
-    return image.resize((width, round(width * image.height / image.width)), Image.Resampling.LANCZOS)
+def drawn(result: Result, times: list[float], width: int) -> list[Image.Image]:
+    """Pictures at times [ms], all of one frame."""
+    found = []
+    for content in stills(result, times).values():
+        image = Image.open(io.BytesIO(content)).convert("RGB")
+        height = round(width * image.height / image.width)
+        found.append(image.resize((width, height), Image.Resampling.LANCZOS))
+    return found
 
 
 def sample(name: str) -> None:
     result = run(name)
     end = float(result.time[-1])
     time = min(AT.get(name, end / 2), end)
-    image = picture(result, time, WIDTH).quantize(COLOURS, dither=Image.Dither.NONE)
+    image = drawn(result, [time], WIDTH)[0].quantize(COLOURS, dither=Image.Dither.NONE)
     path = TARGET / "samples" / f"{name.replace('/', '_')}.png"
     path.parent.mkdir(parents=True, exist_ok=True)
     image.save(path, optimize=True)
@@ -64,7 +68,7 @@ def note() -> None:
     """An animated GIF of transport_4x4, all pictures with the colours of one of them."""
     result = run("transport_4x4")
     times = np.arange(0.0, float(result.time[-1]) + 1e-9, EVERY)
-    images = [picture(result, float(time), WIDE) for time in times]
+    images = drawn(result, times.tolist(), WIDE)
     palette = images[len(images) // 2].quantize(COLOURS, dither=Image.Dither.NONE)
     frames = [image.quantize(palette=palette, dither=Image.Dither.NONE) for image in images]
     path = TARGET / "note.gif"

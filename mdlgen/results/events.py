@@ -56,7 +56,7 @@ def events(result: Result) -> list[dict[str, Any]]:
     Kinds: `enter` and `leave`; `slip`, one for each stay of a sheet at a roller; `gap`, where a sheet enters
     a roller that another one was at before; `wait`; `jam`; `double_feed`; `stub`, where the end of a
     plate stops a sheet. A sheet that touches at the start
-    enters at 0. README.md says what the numbers are.
+    enters at 0. docs/reference/events.md says what the numbers are.
     """
     if len(result.time) < 2:
         return []
