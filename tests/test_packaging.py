@@ -1,4 +1,4 @@
-"""The wheel carries templates and samples, and works from another folder; examples of README and manual load."""
+"""The wheel carries templates and samples, and works from another folder; examples of the manual load."""
 
 from __future__ import annotations
 
