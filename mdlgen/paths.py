@@ -6,11 +6,14 @@ import contextlib
 import json
 import os
 import re
+import shutil
 import stat
 import tempfile
 import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
+
+from platformdirs import user_cache_dir
 
 from mdlgen.errors import OutputError
 
@@ -19,6 +22,8 @@ MOST_BYTES = 200_000_000
 # What a file is called until it is complete, and after how long one is left over [s].
 TEMPORARY, STALE = ".mdlgen~", 3600.0
 NOTE = ".together.mdlgen"
+# Folders of the user's cache: machine code of shipped programs, numba's code, templates.
+CACHED = ("programs", "compiled", "templates")
 
 
 def _data(folder: str) -> Path:
@@ -39,14 +44,46 @@ def samples() -> Path:
     return _data("samples")
 
 
+def user_cache() -> Path:
+    """The user's folder for what can be made anew; MDLGEN_CACHE names another one."""
+    named = os.environ.get("MDLGEN_CACHE")
+    return Path(named) if named else Path(user_cache_dir("mdlgen", appauthor=False))
+
+
 def cache(name: str) -> Path | None:
-    """A folder for what can be made anew, beside the compiled code of the package; None where none can be."""
-    folder = Path(__file__).resolve().parent / "__pycache__" / name
+    """A folder in the user's cache; None where none can be written."""
+    folder = user_cache() / name
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError:
         return None
     return folder if os.access(folder, os.W_OK) else None
+
+
+def _cached() -> list[Path]:
+    """Files that were kept."""
+    root = user_cache()
+    return [path for folder in CACHED for path in (root / folder).rglob("*") if path.is_file()]
+
+
+def cache_size() -> int:
+    """Bytes that are kept."""
+    return sum(path.stat().st_size for path in _cached())
+
+
+def clear_cache() -> int:
+    """Removes what is kept, and nothing else that stands in that folder; how many bytes that was.
+
+    Raises OutputError.
+    """
+    size = cache_size()
+    for folder in CACHED:
+        try:
+            if (user_cache() / folder).is_dir():
+                shutil.rmtree(user_cache() / folder)
+        except OSError as error:
+            raise OutputError(f"{user_cache() / folder}: cannot be removed: {error.strerror}") from None
+    return size
 
 
 def read_at_most(path: Path, most: int, named: bool = False) -> bytes:

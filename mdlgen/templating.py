@@ -23,7 +23,7 @@ class Compiled(FileSystemBytecodeCache):
 
 def environment(room: str, *, autoescape: bool, **settings: Any) -> Environment:
     """An environment for the templates in the folder of that name; what is undefined is an error in all."""
-    compiled = cache(f"templates_{room}")  # compiling them takes longer than a text of 200 boxes
+    compiled = cache(f"templates/{room}")  # compiling them takes longer than a text of 200 boxes
     return Environment(
         bytecode_cache=Compiled(str(compiled)) if compiled else None,
         loader=FileSystemLoader(templates() / room),

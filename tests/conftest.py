@@ -6,6 +6,10 @@ from __future__ import annotations
 import pytest
 from hypothesis import settings
 
+from mdlgen.program import build
+from mdlgen.program.file import Unfit
+from mdlgen.program.kernel import alone
+
 settings.register_profile("mdlgen", deadline=None, derandomize=True)
 settings.load_profile("mdlgen")
 
@@ -27,3 +31,14 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     plain = [i for i in items if i.path.stem in PLAIN]
     early = {id(i) for i in (*begin, *plain)}
     items[:] = [*begin, *plain, *(i for i in items if id(i) not in early)]
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Says what the solvers ran by: what is shipped, or what numba compiled."""
+    for program in build.programs():
+        try:
+            program.head()
+            told = "numba, since MDLGEN_NUMBA is set" if alone() else "as shipped"
+        except Unfit as error:
+            told = f"numba, since {error}"
+        terminalreporter.write_line(f"solver code, {program.name}: {told}")

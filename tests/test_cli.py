@@ -455,7 +455,7 @@ def test_compiling_is_told_once_and_loading_is_not(tmp_path: Path, monkeypatch: 
         assert progress is None
         assert lines == []
         for done in range(1, 4):
-            logging.getLogger("mdlgen.compiling").info("%d", done)
+            logging.getLogger("mdlgen.compiling").info("%d", done, extra={"parts": done})
     assert lines == [shell.COMPILING]
-    logging.getLogger("mdlgen.compiling").info("%d", 9)
+    logging.getLogger("mdlgen.compiling").info("%d", 9, extra={"parts": 9})
     assert lines == [shell.COMPILING]

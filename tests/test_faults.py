@@ -210,23 +210,25 @@ def test_a_disk_that_is_full(tmp_path: Path) -> None:
 
 
 def test_compiled_code_that_finds_no_room_is_used_all_the_same(tmp_path: Path) -> None:
-    (tmp_path / "kernel.py").write_text(
-        "from numba import njit\n@njit(cache=True)\ndef twice(x):\n    return 2 * x\n"
+    (tmp_path / "room").mkdir()
+    (tmp_path / "room" / "__init__.py").write_text("")
+    body = (
+        "@njit(cache=True)\ndef twice(x):\n    return 2 * x\n"
         "@njit(cache=True)\ndef four(x):\n    return twice(twice(x))\n"
     )
-    code = "from kernel import four; print(four(1.5))"
-    kept = f"from mdlgen.mechanics.compiling import go_on_unkept; go_on_unkept(); {code}"
+    (tmp_path / "room" / "plain.py").write_text(f"from numba import njit\n{body}")
+    (tmp_path / "room" / "kernel.py").write_text(f"from mdlgen.program.kernel import njit\n{body}")
     done = [
         subprocess.run(
-            [sys.executable, "-B", "-c", text],
+            [sys.executable, "-B", "-c", f"from room.{name} import four; print(four(1.5))"],
             cwd=tmp_path,
-            env={**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "cache")},
+            env={**os.environ, **dict.fromkeys(("NUMBA_CACHE_DIR", "MDLGEN_CACHE"), str(tmp_path / "cache"))},
             preexec_fn=limited(100),
             capture_output=True,
             text=True,
             check=False,
         )
-        for text in (code, kept)
+        for name in ("plain", "kernel")
     ]
     assert "File too large" in done[0].stderr  # numba alone
     assert (done[1].returncode, done[1].stdout, done[1].stderr) == (0, "6.0\n", "")

@@ -22,8 +22,8 @@ from test_symmetry import MACHINE
 
 import mdlgen
 import mdlgen.errors
-from backends.lattice import kernels
 from backends.lattice import run as lattice
+from backends.lattice.kernels import entries
 from mdlgen.errors import OutputError
 from mdlgen.model.tables import Model
 from mdlgen.paths import samples
@@ -131,7 +131,7 @@ def test_pairs_that_are_searched_change_in_a_run() -> None:
     system = lattice.build(model, fold=True)
     assert lattice._once(model, system, 0.1, None).ok
     at_the_end = system.pairs[["a", "b"]].copy()
-    kernels.search.look(system.pairs, system.search, model.bodies.position)
+    entries.look(system.pairs, system.search, model.bodies.position)
     assert (system.pairs[["a", "b"]] != at_the_end).any()
 
 

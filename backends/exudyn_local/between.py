@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from backends.exudyn_local.kernels import place_all, place_body
 from mdlgen.mechanics.crossing import above, buried, closing, deepest, size, unseen
@@ -22,18 +21,17 @@ from mdlgen.mechanics.pair import (
 )
 from mdlgen.mechanics.point import OUT
 from mdlgen.mechanics.vector import back, dot, mat, sub, vec
+from mdlgen.program.kernel import njit
 
 # Pairs that would have to be looked at more often in a step want a smaller one.
 MOST_LOOKS = 256
 
 
 @njit(cache=True, error_model="numpy")
-def limits(bodies, pairs):
+def set_limits(bodies, pairs, depths):
     """Of each pair, the depth that ends a run."""
-    depths = np.empty(pairs.size)
     for p in range(pairs.size):
         depths[p] = deepest(bodies, pairs[p])
-    return depths
 
 
 @njit(cache=True, error_model="numpy")

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from backends.exudyn_local.system import System
 from mdlgen.mechanics.arm import hung, moved, speeding, torque_of, turn_of, way_of
 from mdlgen.mechanics.bushing import bushing
 from mdlgen.mechanics.curve import curve_excess, middle_and_gap
 from mdlgen.mechanics.driven import clutch, prescribed, turned
-from mdlgen.mechanics.pair import pair_force, remember
+from mdlgen.mechanics.pair import pair_force
 from mdlgen.mechanics.point import OUT
 from mdlgen.mechanics.vector import (
     add,
@@ -26,7 +25,8 @@ from mdlgen.mechanics.vector import (
     three,
     vec,
 )
-from mdlgen.model.tables import Floats
+from mdlgen.model.tables import Floats, Ints
+from mdlgen.program.kernel import njit
 
 # Perturbations of the difference quotients: positions and Euler parameters, velocities [SI]. A static run
 # takes central quotients: a joint bends 1e5 times easier than it stretches, and a one-sided quotient of the
@@ -272,9 +272,8 @@ def _element(
 
 
 @njit(cache=True, error_model="numpy")
-def owners(bodies, free):
+def set_owners(bodies, owner):
     """Body of each coordinate."""
-    owner = np.empty(free, np.int64)
     for body in range(bodies.size):
         n = bodies[body].first
         if n >= 0:
@@ -284,7 +283,6 @@ def owners(bodies, free):
             owner[bodies[body].slide] = body
         if bodies[body].spin >= 0:
             owner[bodies[body].spin] = body
-    return owner
 
 
 @njit(cache=True, error_model="numpy")
@@ -482,11 +480,11 @@ def ledger(bodies, bushings, points, pairs, meshes, loads, gravity, q, v, t, x, 
     totals[0], totals[1], totals[2], totals[3], totals[4] = kinetic, elastic, potential, lost, driven
 
 
-def begin(system: System, q: Floats, v: Floats, t: float, work: Work) -> None:
-    """Notes which sides of boxes stand before which ends of plates, for what begins at a state."""
-    x, r, u, w, _, _ = work
-    place_all(system.bodies, q, v, t, x, r, u, w)
-    remember(system.bodies, system.pairs, x, r)
+def owners(system: System) -> Ints:
+    """Body of each coordinate."""
+    owner = np.empty(system.free, np.int64)
+    set_owners(system.bodies, owner)
+    return owner
 
 
 def workspace(system: System) -> Work:

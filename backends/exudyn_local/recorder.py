@@ -7,9 +7,8 @@ from collections.abc import Callable
 import numpy as np
 
 from backends.exudyn_local import kernels
-from backends.exudyn_local.between import limits, passed
+from backends.exudyn_local.shipped import begin, ledger, overstretched, passed, set_limits
 from backends.exudyn_local.system import MM, MS, PER_MM, System
-from mdlgen.mechanics.curve import overstretched
 from mdlgen.model import curves
 from mdlgen.model.meshes import carried
 from mdlgen.model.overlap import Overlaps
@@ -49,7 +48,8 @@ class Recorder:
         self.gained = self.vanished = 0.0  # how far the balance was off, most above and most below [J]
         self._low, self._high = model.pairs.low * MM, model.pairs.high * MM
         self._last_stored = -1
-        self._deepest = limits(system.bodies, system.pairs)
+        self._deepest = np.empty(len(system.pairs))
+        set_limits(system.bodies, system.pairs, self._deepest)
         # coordinates and velocities of the last step
         self._before: tuple[np.ndarray, np.ndarray] | None = None
         self._overlaps = Overlaps(model)
@@ -100,7 +100,7 @@ class Recorder:
         x, r, u, w, _, f = self._work
         before = self._totals.copy()
         self._pairs[:] = 0.0
-        kernels.ledger(*self.system.tables, q, v, t, x, r, u, w, f, self._pairs, self._totals)
+        ledger(*self.system.tables, q, v, t, x, r, u, w, f, self._pairs, self._totals)
         step, self.time = t - self.time, t
         self._lost += 0.5 * step * (before[3] + self._totals[3])
         self._driven += 0.5 * step * (before[4] + self._totals[4])
@@ -111,7 +111,7 @@ class Recorder:
         off = self._off()
         self.gained, self.vanished = max(self.gained, off), min(self.vanished, off)
         self._contacts(step, t)
-        kernels.begin(self.system, q, v, t, self._work)
+        begin(self.system.bodies, self.system.pairs, q, v, t, x, r, u, w)
 
     def _contacts(self, step: float, t: float) -> None:
         if not self._pairs.size:

@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 
 from backends.exudyn_local import kernels
-from backends.exudyn_local.between import passed
 from backends.exudyn_local.recorder import Recorder
+from backends.exudyn_local.shipped import PROGRAM, forces, jacobian, ledger, passed
 from backends.exudyn_local.stability import falling
 from backends.exudyn_local.step import choose_steps, cost, given_steps
 from backends.exudyn_local.system import MM, MS, Pattern, System, build
@@ -61,6 +61,7 @@ class Assembly:
     v: np.ndarray
 
 
+@PROGRAM.releases
 def solve(model: Model, progress: Progress | None = None, step: float | None = None) -> Result:
     """Run a Model; `progress(time, end, steps, touching)` is told where it stands (times in ms).
 
@@ -204,12 +205,10 @@ def _compile(system: System, pattern: Pattern, work: kernels.Work) -> None:
     free = system.free
     q, v = np.zeros(max(1, free)), np.zeros(max(1, free))
     data = np.zeros(len(pattern.indices))
-    owner = kernels.owners(system.bodies, free)
-    kernels.forces(*system.tables, q, v, 0.0, 1.0, *work)
-    kernels.jacobian(*system.tables, system.elements, q, v, 0.0, 1.0, 1.0, 1.0, False, owner, *work, data)
-    kernels.ledger(
-        *system.tables, q, v, 0.0, x, r, u, w, f, np.zeros((len(system.pairs), kernels.OUT)), np.zeros(5)
-    )
+    owner = kernels.owners(system)
+    forces(*system.tables, q, v, 0.0, 1.0, *work)
+    jacobian(*system.tables, system.elements, q, v, 0.0, 1.0, 1.0, 1.0, False, owner, *work, data)
+    ledger(*system.tables, q, v, 0.0, x, r, u, w, f, np.zeros((len(system.pairs), kernels.OUT)), np.zeros(5))
     passed(system.bodies, system.pairs, system.meshes, q, v, q, v, 0.0, 0.0)
 
 
@@ -268,14 +267,14 @@ def _assemble(exu, model: Model, system: System, pattern: Pattern, work: kernels
                 nodes.append(node)
     f = work[-1]
     tables = system.tables
-    owner = kernels.owners(system.bodies, free)
+    owner = kernels.owners(system)
     data = np.zeros(len(pattern.indices))
     state = mbs.systemData
     static = model.run.analysis == "static"
     rest = np.zeros_like(q)
 
     def force(mbs, t, itemNumber, q, q_t):
-        kernels.forces(
+        forces(
             *tables,
             state.GetODE2Coordinates(copy=False),
             rest if static else state.GetODE2Coordinates_t(copy=False),
@@ -286,7 +285,7 @@ def _assemble(exu, model: Model, system: System, pattern: Pattern, work: kernels
         return f
 
     def tangent(mbs, t, itemNumber, q, q_t, fODE2, fODE2_t):
-        kernels.jacobian(
+        jacobian(
             *tables,
             system.elements,
             np.array(q),
@@ -388,7 +387,7 @@ def _unbalanced_energy(model: Model, result: Result, recorder: Recorder, h: floa
 
 def _unbalanced(system: System, q: np.ndarray, work: kernels.Work) -> str | None:
     """Static equilibrium by our own account: the residual against the largest force in the sheet."""
-    kernels.forces(*system.tables, q, np.zeros_like(q), 1.0, 1.0, *work)
+    forces(*system.tables, q, np.zeros_like(q), 1.0, 1.0, *work)
     residual = work[-1].copy()
     for row in system.bodies:
         n = row["first"]

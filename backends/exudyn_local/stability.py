@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from backends.exudyn_local import kernels
+from backends.exudyn_local.shipped import jacobian
 from backends.exudyn_local.system import Pattern, System
 from mdlgen.model.tables import Floats
 
@@ -23,11 +24,9 @@ def falling(system: System, pattern: Pattern, q: Floats, work: kernels.Work) -> 
 
     free = system.free
     data = np.zeros(len(pattern.indices))
-    owner = kernels.owners(system.bodies, free)
+    owner = kernels.owners(system)
     rest = np.zeros(max(1, free))
-    kernels.jacobian(
-        *system.tables, system.elements, q.copy(), rest, 1.0, 1.0, 1.0, 0.0, True, owner, *work, data
-    )
+    jacobian(*system.tables, system.elements, q.copy(), rest, 1.0, 1.0, 1.0, 0.0, True, owner, *work, data)
     stiffness = csr_matrix((data, pattern.indices, pattern.indptr), shape=(free, free))
     columns, mass = _moves(system, q)
     reduced = columns.T @ stiffness @ columns

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from backends.exudyn_local import kernels
+from backends.exudyn_local.shipped import ledger
 from backends.exudyn_local.system import MS, System
 from mdlgen.model.impact import approach_time, impact_time, lasting
 from mdlgen.model.tables import OF_MACHINE, Model
@@ -61,7 +62,7 @@ def overlap_step(model: Model, system: System, work: kernels.Work) -> float:
     q = np.zeros(max(1, system.free))
     out = np.zeros((len(pairs), kernels.OUT))
     x, r, u, w, _, f = work
-    kernels.ledger(*system.tables, q, q.copy(), 0.0, x, r, u, w, f, out, np.zeros(5))
+    ledger(*system.tables, q, q.copy(), 0.0, x, r, u, w, f, out, np.zeros(5))
     stored, force = np.zeros(len(bodies)), np.zeros(len(bodies))
     left, stiffest = np.zeros((len(bodies), 3)), np.zeros(len(bodies))
     pressed = np.zeros(len(bodies), bool)

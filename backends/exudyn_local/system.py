@@ -244,7 +244,7 @@ def _pairs(model: Model) -> np.ndarray:
     speed = MM / MS
     for column, values in enumerate(
         (
-            np.array([damping_share(c) for c in rows.restitution]),
+            damping_share.py_func(rows.restitution),  # compiled code would take longer to load
             rows.mu_static,
             rows.mu_dynamic,
             rows.stiction_velocity * speed,

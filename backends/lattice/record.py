@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib import metadata
 from typing import NamedTuple
 
 import numpy as np
@@ -175,6 +176,4 @@ def _without_jumps(parameters: np.ndarray) -> np.ndarray:
 
 
 def _versions() -> dict[str, str]:
-    import numba
-
-    return {"numba": numba.__version__}
+    return {name: metadata.version(name) for name in ("numba", "llvmlite")}

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from backends.lattice.arrays import System, build, partner
+from backends.lattice.kernels.entries import PROGRAM
 from backends.lattice.mark import Mark, Stage
 from backends.lattice.mirror import halve
 from backends.lattice.record import Recorder, Stand
@@ -20,7 +21,6 @@ from backends.lattice.scope import check
 from backends.lattice.static import rest
 from backends.lattice.symmetry import find
 from mdlgen.errors import SpecError
-from mdlgen.mechanics import compiling
 from mdlgen.model.curves import overstretched
 from mdlgen.model.overlap import Overlaps
 from mdlgen.model.tables import Floats, Model
@@ -60,6 +60,7 @@ Progress = Callable[[float, float, int, int], None]
 FOLDING, FACTORS, SYMMETRY = "folding", "factors", "symmetry"
 
 
+@PROGRAM.releases
 def solve(
     model: Model,
     progress: Progress | None = None,
@@ -82,17 +83,13 @@ def solve(
     started = clock.perf_counter()
     system = build(model, fold=FOLDING not in without)
     compiled = clock.perf_counter()
-    from backends.lattice import kernels as _  # noqa: F401
-
     if model.run.analysis == "static":
-        with compiling.told():
-            result = rest(model, system, start(model, system))
+        result = rest(model, system, start(model, system))
         # what a run at rest calls is compiled, or loaded, as it goes: all but its wall time
         result.build_s = compiled - started
         result.compile_s = clock.perf_counter() - compiled - result.wall_s
         return result
-    with compiling.told():
-        _warm(model, system)
+    _warm(model, system)
     compile_s = clock.perf_counter() - compiled
     mirror = None if SYMMETRY in without else find(model, system)
     if mirror is not None:
@@ -208,8 +205,7 @@ def _once(
 ) -> Result:
     """One run at a step, or the next smaller one that outputs fall on; `miss`, `made`: see MISS and MADE, 0
     for any; `anew`: a new factor for each step; `keep` as of `solve`."""
-    from backends.lattice import kernels
-    from backends.lattice.kernels import march, step
+    from backends.lattice.kernels import entries, march, step
 
     run = model.run
     outputs = max(1, round(run.duration / run.print_step))
@@ -243,7 +239,7 @@ def _once(
     stage = mark.back(keep, number) if keep is not None else None
     if stage is not None:
         status, t, past = stage.status, stage.t, stage.wall
-        kernels.search.look(system.pairs, search, search.place.copy())
+        entries.look(system.pairs, search, search.place.copy())
     todo = range(stage.outputs if stage else 0, 0 if stage and stage.ended else outputs)
     for output in todo:
         for taken in range(0, each, MOST_AT_ONCE):
@@ -372,16 +368,15 @@ def _reason(
 def _arrays(model: Model, system: System) -> tuple[Any, Any, Any, Any, Any, Any, Any, Any, Any, Any]:
     """What a run works on: tables, state, middle, matrix, boxes that touch, free sheets, what is kept,
     bounds, the search, made for the start, and joints with a damping time."""
-    from backends.lattice.kernels import alone, damped, forces, momentum, search
-    from mdlgen.mechanics.pair import remember
+    from backends.lattice.kernels import alone, damped, entries, forces, momentum
 
     tables = system.tables
     kept = (np.zeros((len(model.contacts), 9)), np.zeros(system.marks, bool))
     bounds = (model.pairs.low, model.pairs.high)
     state, mid, matrix = start(model, system)
-    search.look(system.pairs, system.search, state[0])
+    entries.look(system.pairs, system.search, state[0])
     system.pairs["beside"] = 0
-    remember(tables[0], system.pairs, state[0], state[1])
+    entries.remember(tables[0], system.pairs, state[0], state[1])
     return (
         tables,
         state,

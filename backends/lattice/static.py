@@ -28,9 +28,8 @@ TETHER = 1e-9
 
 def rest(model: Model, system: System, moving: tuple) -> Result:
     """The Result of a Model at rest; `moving` is (state, mid, matrix) at the start."""
-    from backends.lattice.kernels import balance
+    from backends.lattice.kernels import entries
     from backends.lattice.kernels.band import PAD
-    from mdlgen.mechanics.pair import remember
 
     state, mid, _ = moving
     x, r, v, l, s = state[:5]
@@ -39,12 +38,12 @@ def rest(model: Model, system: System, moving: tuple) -> Result:
     tables = system.tables
     lists = (mid[5], mid[6], mid[8])
     load = _load(model, system)
-    remember(tables[0], system.pairs, x, r)
+    entries.remember(tables[0], system.pairs, x, r)
     size = (system.border, 6 * (system.reach + 1) + PAD)
     held = (TETHER if _loose(model) else 0.0, _reach(model))
 
     def balanced(level: float, load: float) -> tuple[bool, int, int, float]:
-        return balance.equilibrium(tables, *size, level, load, *held, x, r, s, lists)
+        return entries.equilibrium(tables, *size, level, load, *held, x, r, s, lists)
 
     # compiles, or loads from the cache, before the clock starts: against such a load all is in balance
     balanced(0.0, np.inf)
@@ -127,15 +126,12 @@ def _reach(model: Model) -> float:
 
 def _touch(model: Model, system: System, state: tuple, mid: tuple, rows: tuple) -> str | None:
     """Contacts at rest into the rows of the Recorder; a reason where a box is too deep in a plane."""
-    from backends.lattice.kernels import forces
+    from backends.lattice.kernels import entries
 
     x, r = state[:2]
     f, touched, outs, near = mid[4], mid[5], mid[6], mid[8]
     still = np.zeros_like(x)
-    close = forces.near_pairs(system.bodies, system.pairs, system.meshes, x, r, still, still, 0.0, 0.0, near)
-    count, _, _ = forces.pair_forces(
-        system.bodies, system.pairs, system.meshes, near, close, x, r, still, still, f, touched, outs
-    )
+    count = entries.contacts(system.bodies, system.pairs, system.meshes, x, r, still, f, touched, outs, near)
     table, marks = rows
     for k in range(count):
         pair, force, depth = system.pairs[touched[k]], outs[k, 12], outs[k, 15]
@@ -156,7 +152,7 @@ def _touch(model: Model, system: System, state: tuple, mid: tuple, rows: tuple) 
 
 def _stretched(model: Model, system: System, x: np.ndarray, r: np.ndarray) -> str | None:
     """A reason where a joint is beyond its curve."""
-    from mdlgen.mechanics.curve import overstretched
+    from backends.lattice.kernels.entries import overstretched
 
     joint, strain = overstretched(system.points, system.joints, x, r)
     return None if joint < 0 else curves.overstretched(model, int(system.joints["row"][joint]), float(strain))

@@ -244,7 +244,7 @@ def _loads(model: Model, mirror: Mirror) -> bool:
 def _joints(model: Model, system: System, mirror: Mirror) -> bool:
     """Whether joints are seen as joints: between the same bodies, as stiff, with the same forces in a random
     state and in its image; and whether one that goes across joins a box to its own image."""
-    from backends.lattice.kernels import forces
+    from backends.lattice.kernels.entries import joint_forces
 
     joints, image, count = system.joints, mirror.image, len(mirror.image)
     if not len(joints):
@@ -267,7 +267,7 @@ def _joints(model: Model, system: System, mirror: Mirror) -> bool:
     x, r, u, w = _shaken(model)
     mirror.fill(x[:count], r[:count], u[:count], w[:count])
     f = np.zeros((count + 1, 6))
-    forces.joint_forces(joints, system.points, x, r, u, w, f, 0.0)
+    joint_forces(joints, system.points, x, r, u, w, f)
     force, torque = f[:count, :3], f[:count, 3:]
     most = [float(np.abs(v).max(initial=0.0)) for v in (force, torque)]
     return bool(

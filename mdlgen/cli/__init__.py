@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mdlgen.cli import bench as bench
+from mdlgen.cli import cache as cache
 from mdlgen.cli import calibrate as calibrate
 from mdlgen.cli import optimize as optimize
 from mdlgen.cli import report as report
@@ -17,7 +18,7 @@ __all__ = ["app", "main"]
 # as one comes by them
 ORDER = (
     *("new", "check", "mdl", "deck", "verify", "lint", "run", "report", "view", "export"),
-    *("sweep", "optimize", "calibrate", "bench", "explain", "schema"),
+    *("sweep", "optimize", "calibrate", "bench", "explain", "schema", "cache"),
 )
 app.registered_commands.sort(key=lambda command: ORDER.index(getattr(command.callback, "__name__", "")))
 

@@ -86,7 +86,6 @@ def run(
         assert spec is not None
         task, seal = kept.task(spec, sets, limits, solver, check_step), None
         model = task.model()
-    from mdlgen.mechanics import compiling
     from mdlgen.report.page import load_page, page
     from mdlgen.report.pictures import are_drawn, load_drawing, pictures_of
     from mdlgen.report.text import summary_text
@@ -101,7 +100,6 @@ def run(
     for asked, wish in ((keep_partial, "--keep-partial"), (checkpoint is not None, "--checkpoint")):
         if asked:
             kept.check(name, why, wish)
-    compiling.without_blas()
     drawn = pictures or are_drawn(folder)
     every = 60.0 if checkpoint is None else checkpoint
     if seal is not None:

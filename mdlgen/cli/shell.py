@@ -206,8 +206,10 @@ def _located(error: MdlgenError, spec: Path | None) -> MdlgenError:
         return error
 
 
-COMPILING = "compiling the solver, once on this machine (about three minutes)"
-ABOUT = 180  # parts of it
+# Where the solver's program fits, seconds; where numba compiles instead, minutes, in about so many parts.
+PREPARING = "preparing the solver, once on this machine"
+COMPILING = "compiling the solver, once on this machine (some minutes)"
+ABOUT = 290
 
 
 @contextlib.contextmanager
@@ -235,12 +237,13 @@ def count(quiet: bool, what: str) -> Iterator[Callable[[int, int], None] | None]
 
 @contextlib.contextmanager
 def compiling(told: Callable[[int], None]) -> Iterator[None]:
-    """Calls `told` with how many parts of a solver have been compiled, as they are."""
+    """Calls `told` with how many parts of a solver have been compiled, as they are; with 0 where its program
+    is being prepared."""
     import logging
 
     class Handler(logging.Handler):
         def emit(self, record: logging.LogRecord) -> None:
-            told(int(record.getMessage()))
+            told(getattr(record, "parts", 0))
 
     log, handler = logging.getLogger("mdlgen.compiling"), Handler()
     before = log.level, log.propagate
@@ -265,7 +268,15 @@ def progress_bar(quiet: bool, twice: bool) -> Iterator[Callable[[float, float, i
         yield None
         return
     if not sys.stderr.isatty():
-        with compiling(lambda done: say(COMPILING) if done == 1 else None):
+        said: set[str] = set()
+
+        def line(done: int) -> None:
+            text = COMPILING if done else PREPARING
+            if text not in said:
+                said.add(text)
+                say(text)
+
+        with compiling(line):
             yield None
         return
     from rich.console import Console
@@ -280,10 +291,13 @@ def progress_bar(quiet: bool, twice: bool) -> Iterator[Callable[[float, float, i
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         tasks: list[Any] = []
         parts: list[Any] = []
+        waiting: list[Any] = []
         last = 0.0
 
         def progress(time: float, end: float, steps: int, touching: int) -> None:
             nonlocal last
+            while waiting:
+                bar.remove_task(waiting.pop())
             if not tasks or time < last:
                 name = "half the step" if tasks else "first run" if twice else "run"
                 tasks.append(bar.add_task(name, total=end, told=""))
@@ -295,6 +309,9 @@ def progress_bar(quiet: bool, twice: bool) -> Iterator[Callable[[float, float, i
             bar.update(tasks[-1], completed=time, told=told)
 
         def compiled(done: int) -> None:
+            if done == 0:
+                waiting.append(bar.add_task(PREPARING, total=None, told=""))
+                return
             if not parts:
                 parts.append(bar.add_task(COMPILING, total=ABOUT, told=""))
             bar.update(parts[0], completed=done, told=f"{done} parts")

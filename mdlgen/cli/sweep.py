@@ -10,6 +10,7 @@ import typer
 
 from mdlgen.cli.shell import (
     COMPILING,
+    PREPARING,
     SOLVER_FAILED,
     CheckStep,
     Lets,
@@ -192,4 +193,4 @@ def runner_of(scheduler: str | None, workers: int | None, quiet: bool) -> Runner
     from mdlgen.study.workers import COMPILING as COMPILES
     from mdlgen.study.workers import Workers
 
-    return Workers(workers, lambda word: say(COMPILING) if word == COMPILES and not quiet else None)
+    return Workers(workers, lambda word: None if quiet else say(COMPILING if word == COMPILES else PREPARING))

@@ -11,11 +11,11 @@ that turns about the pivot.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from mdlgen.mechanics.driven import prescribed
 from mdlgen.mechanics.vector import add, cross, dot, exp_rotation, rotate, scale, sub, three
 from mdlgen.model.tables import RollerPart
+from mdlgen.program.kernel import njit
 
 ARM = [("swings", "i8"), ("pivot", "f8", 3), ("turn", "f8", 3), ("hang", "f8", 3)]
 

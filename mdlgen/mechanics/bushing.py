@@ -9,8 +9,6 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
 from mdlgen.mechanics.vector import (
     add,
     back,
@@ -26,6 +24,7 @@ from mdlgen.mechanics.vector import (
     transpose_matmul,
     turned,
 )
+from mdlgen.program.kernel import njit
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)

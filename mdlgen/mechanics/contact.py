@@ -17,11 +17,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
-from mdlgen.mechanics.compiling import OWNS
 from mdlgen.mechanics.point import push, push_in_nip
 from mdlgen.mechanics.vector import add, back, dot, rotate, scale, sub
+from mdlgen.program.kernel import OWNS, njit
 
 WHOLE = 4.0  # no sector but the whole round: more than half a turn
 _GAUSS = 1.0 / math.sqrt(3.0)
@@ -305,12 +304,16 @@ def clip(points, count, way, limit):
         one, two = points[i], points[(i + 1) % count]
         d1, d2 = limit - dot(way, one), limit - dot(way, two)
         if d1 >= 0.0:
-            kept[found] = one
+            for c in range(3):
+                kept[found, c] = one[c]
             found += 1
         if (d1 > 0.0 and d2 < 0.0) or (d1 < 0.0 and d2 > 0.0):
-            kept[found] = one + (two - one) * (d1 / (d1 - d2))
+            for c in range(3):
+                kept[found, c] = one[c] + (two[c] - one[c]) * (d1 / (d1 - d2))
             found += 1
-    points[:found] = kept[:found]
+    for k in range(found):
+        for c in range(3):
+            points[k, c] = kept[k, c]
     return found
 
 

@@ -10,9 +10,6 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
-from mdlgen.mechanics.compiling import BORROWS
 from mdlgen.mechanics.guide import BOTH, inward
 from mdlgen.mechanics.mesh import LOST
 from mdlgen.mechanics.pair import (
@@ -28,6 +25,7 @@ from mdlgen.mechanics.pair import (
 )
 from mdlgen.mechanics.tree import THICK, depth_at
 from mdlgen.mechanics.vector import add, back, dot, mat, matmul, nine, rotate, scale, sub, three, vec
+from mdlgen.program.kernel import BORROWS, njit
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from mdlgen.mechanics.vector import (
     add,
@@ -28,6 +27,7 @@ from mdlgen.mechanics.vector import (
     vec,
 )
 from mdlgen.model.tables import Curves, Ints
+from mdlgen.program.kernel import njit
 
 POINT = np.dtype([("strain", "f8"), ("stress", "f8"), ("slope", "f8"), ("energy", "f8")])
 FOLLOWS = [

@@ -7,9 +7,9 @@ sense that is free (1 or -1 about the axis, 0: there is none), a torque, and the
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from mdlgen.model.tables import RollerPart
+from mdlgen.program.kernel import njit
 from mdlgen.spec.machine import MOST_CORNERS
 
 DRIVEN = [("corners", "i8"), ("drive", "f8", 2 * MOST_CORNERS), ("clutch", "f8", 3)]

@@ -27,11 +27,10 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
 from mdlgen.mechanics.contact import local
 from mdlgen.mechanics.point import push
 from mdlgen.mechanics.vector import add, back, dot, rotate, scale, sub
+from mdlgen.program.kernel import njit
 
 NORM = 12.0
 # Sine of the slope of a box to the face between which the face's law passes into that of the edge: the

@@ -20,12 +20,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
-from mdlgen.mechanics.compiling import OWNS
 from mdlgen.mechanics.contact import clip, face_corners, local
 from mdlgen.mechanics.point import push
 from mdlgen.mechanics.vector import add, back, dot, rotate, scale, sub, transpose_matmul
+from mdlgen.program.kernel import OWNS, njit
 
 # Parts of the boxes' size by which another face must overlap less to own the contact: round-off does not
 # make two parallel faces take turns.

@@ -17,14 +17,13 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
-from mdlgen.mechanics.compiling import OWNS
 from mdlgen.mechanics.contact import box_sector, clip, face_corners
 from mdlgen.mechanics.edge import held, leaning
 from mdlgen.mechanics.plate import area_of, box_ends, box_flat, facing
 from mdlgen.mechanics.point import push
 from mdlgen.mechanics.vector import add, back, dot, rotate, scale, sub
+from mdlgen.program.kernel import OWNS, njit
 
 INSIDE, OUTSIDE, BOTH = 1, 2, 3  # sides: left of a line or inside an arc; right or outside; both
 

@@ -27,9 +27,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
-from mdlgen.mechanics.compiling import OWNS
 from mdlgen.mechanics.contact import local
 from mdlgen.mechanics.mesh_side import meet_sides, ramp
 from mdlgen.mechanics.point import push, push_in_nip
@@ -49,6 +47,7 @@ from mdlgen.mechanics.tree import (
 from mdlgen.mechanics.vector import add, back, dot, matmul, nine, rotate, scale, sub, three, transpose_matmul
 from mdlgen.model.meshes import origin
 from mdlgen.model.tables import Floats, Ints, Model
+from mdlgen.program.kernel import OWNS, njit
 
 DEEPEST = 1.0  # mm: what is deeper in a part is about to come out at its other side, or is lost
 BEYOND = 1.5  # how far beyond that depth a contact is still seen, so that a run can end

@@ -14,11 +14,10 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
 from mdlgen.mechanics.point import push
 from mdlgen.mechanics.tree import NORMAL, depth_at, next_at
 from mdlgen.mechanics.vector import add, dot, rotate, scale, three
+from mdlgen.program.kernel import njit
 
 LEVEL, LEANING = 0.05, 0.15  # sines of the angles between which the law begins
 UPRIGHT, STANDING = 0.7, 0.9  # sines of those between which a box is beside a plate, not over it

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from numba import njit
-
-from mdlgen.mechanics.compiling import BORROWS
 from mdlgen.mechanics.contact import box_cylinder, cylinder_cylinder
 from mdlgen.mechanics.edge import stands
 from mdlgen.mechanics.facing import box_box
@@ -16,6 +13,7 @@ from mdlgen.mechanics.rim import box_rim, rim_rim
 from mdlgen.mechanics.roller_mesh import roller_mesh, roller_mesh_near
 from mdlgen.mechanics.roller_plate import guide_near, plate_near, roller_guide, roller_plane
 from mdlgen.mechanics.vector import back, mat, sub, three, vec
+from mdlgen.program.kernel import BORROWS, njit
 
 # As in mdlgen.model.tables.
 BOX_CYLINDER, BOX_PLANE, CYLINDER_CYLINDER, BOX_GUIDE, BOX_BOX, BOX_MESH = 0, 1, 2, 4, 5, 6

@@ -11,13 +11,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
-from mdlgen.mechanics.compiling import OWNS
 from mdlgen.mechanics.contact import clip, face_corners
 from mdlgen.mechanics.edge import end_of, held, leaning, line, stub
 from mdlgen.mechanics.point import push
 from mdlgen.mechanics.vector import add, back, dot, rotate, scale, sub
+from mdlgen.program.kernel import OWNS, njit
 
 STRAIGHT = (0.0, 0.0, 0.0)
 

@@ -19,10 +19,9 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
 from mdlgen.mechanics.laws import damped, friction_over_speed, sign_step
 from mdlgen.mechanics.vector import add, cross, dot, scale, sub
+from mdlgen.program.kernel import njit
 
 OUT = 16
 POINT = 23

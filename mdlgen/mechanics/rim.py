@@ -16,13 +16,13 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from mdlgen.mechanics.contact import WHOLE, box_sector, cylinder_cylinder
 from mdlgen.mechanics.laws import damping_share
 from mdlgen.mechanics.vector import back, cross, dot, rotate, scale, sub, three
 from mdlgen.model.rims import MOST_PIECES, pieces
 from mdlgen.model.tables import RollerPart
+from mdlgen.program.kernel import njit
 from mdlgen.spec.rim import TURN
 
 PIECE = 6

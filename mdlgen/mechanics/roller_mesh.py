@@ -19,12 +19,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
-from mdlgen.mechanics.compiling import OWNS
 from mdlgen.mechanics.point import push
 from mdlgen.mechanics.tree import AFTER, COUNT, FIRST, HIGH, LOW, NORMAL, overlaps, span
 from mdlgen.mechanics.vector import add, back, cross, dot, matmul, nine, rotate, scale, sub, three
+from mdlgen.program.kernel import OWNS, njit
 
 SLICES = 8
 MOST_PIECES = 512  # of one slice; what is more counts to the patch of the last

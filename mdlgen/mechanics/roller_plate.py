@@ -22,13 +22,11 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
-from mdlgen.mechanics.compiling import BORROWS, OWNS
 from mdlgen.mechanics.guide import BOTH, INSIDE, inward
 from mdlgen.mechanics.point import push
 from mdlgen.mechanics.rim import profile
 from mdlgen.mechanics.vector import add, back, cross, dot, rotate, scale, sub, three
+from mdlgen.program.kernel import BORROWS, OWNS, njit
 
 # Cosine of the angle between a roller's axis and a face's normal, above which the roller stands on its end.
 STEEPEST = 0.5

@@ -10,10 +10,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from mdlgen.mechanics.vector import add, cross, dot, scale, sub, three
 from mdlgen.model.tables import Floats, Ints
+from mdlgen.program.kernel import njit
 
 LEAF = 8  # triangles
 # Columns of the bounds of a node: least and greatest coordinates, least and greatest normals.
@@ -41,7 +41,7 @@ def plant(corners: Floats, triangles: Ints, most: float) -> tuple[Floats, Ints, 
     order, links = _split(places[kept].mean(axis=1))
     table = table[order]
     bounds = _bounds(table, links)
-    _thickness(bounds, links, table, most)
+    set_thickness(bounds, links, table, most)
     return bounds, links, table
 
 
@@ -91,7 +91,7 @@ def _bounds(table: Floats, links: Ints) -> Floats:
 
 
 @njit(cache=True, error_model="numpy")
-def _thickness(bounds, links, triangles, most):
+def set_thickness(bounds, links, triangles, most):
     """Sets how deep each triangle counts: half of what lies behind its middle and behind three points near
     its corners."""
     for t in range(triangles.shape[0]):

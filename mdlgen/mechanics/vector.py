@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
+from mdlgen.program.kernel import njit
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)

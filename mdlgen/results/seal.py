@@ -6,12 +6,13 @@ import hashlib
 import platform
 from collections.abc import Callable
 from dataclasses import fields, is_dataclass
-from importlib import import_module
+from importlib import import_module, metadata
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from mdlgen.program.kernel import alone
 from mdlgen.version import version
 
 
@@ -52,18 +53,19 @@ def _add(value: Any, update: Callable[[bytes], None]) -> None:
 def surroundings(*rooms: str) -> dict[str, str]:
     """What else bits follow from: the code of some rooms, versions of the compiler, the processor."""
     import llvmlite.binding as llvm
-    import numba
 
     code = hashlib.sha256()
     for room in rooms:
         folder = Path(str(import_module(room).__file__)).parent
-        for source in sorted(folder.rglob("*.py")):
+        for source in sorted((*folder.rglob("*.py"), *folder.rglob("*.program"))):
             code.update(source.read_bytes())
     return {
         "mdlgen": version(),
         "code": code.hexdigest(),
         "python": platform.python_version(),
         "numpy": np.__version__,
-        "numba": numba.__version__,
+        "numba": metadata.version("numba"),
+        "llvmlite": metadata.version("llvmlite"),
+        "compiled": "by numba" if alone() else "where the program does not fit",
         "processor": f"{platform.machine()} {llvm.get_host_cpu_name()}",
     }

@@ -17,21 +17,23 @@ from mdlgen.study.case import Case
 from mdlgen.study.perform import perform
 from mdlgen.study.task import Task
 
-# Words that stand before a row: something is compiled; the solver is at work, so all of it is compiled.
-COMPILING, BEGUN = "compiling", "begun"
+# Words that stand before a row: the solver's program is prepared; something is compiled; the solver is at
+# work, so all of it is there.
+PREPARING, COMPILING, BEGUN = "preparing", "compiling", "begun"
 
 
 class _Tell(logging.Handler):
-    """Says once that something is compiled."""
+    """Says once that a program is prepared, and once that something is compiled."""
 
     def __init__(self, stream: IO[bytes]):
         super().__init__(logging.INFO)
-        self.stream, self.said = stream, False
+        self.stream, self.said = stream, set[str]()
 
     def emit(self, record: logging.LogRecord) -> None:
-        if not self.said:
-            self.said = True
-            pickle.dump(COMPILING, self.stream)
+        word = COMPILING if getattr(record, "parts", 0) else PREPARING
+        if word not in self.said:
+            self.said.add(word)
+            pickle.dump(word, self.stream)
             self.stream.flush()
 
 

@@ -21,7 +21,7 @@ from mdlgen.errors import OutputError
 from mdlgen.study.case import Case
 from mdlgen.study.row import LOST, REFUSED, Row
 from mdlgen.study.task import Task
-from mdlgen.study.worker import BEGUN, COMPILING
+from mdlgen.study.worker import BEGUN, COMPILING, PREPARING
 
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 TRIES = 2  # of a case whose process dies
@@ -102,7 +102,7 @@ class _Process:
 class Workers:
     """`count` processes (None: one for each processor), started when they are needed.
 
-    `heard` is told COMPILING once where the solver is compiled, which one process does for all.
+    `heard` is told PREPARING or COMPILING once where the solver is, which one process does for all.
     """
 
     def __init__(self, count: int | None = None, heard: Heard = lambda word: None):
@@ -144,7 +144,7 @@ class Workers:
         def heard(word: str) -> None:
             if word == BEGUN:
                 compiled.set()
-            elif word == COMPILING:
+            elif word in (COMPILING, PREPARING):
                 self._heard(word)
 
         try:

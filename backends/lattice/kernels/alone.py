@@ -5,11 +5,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from backends.lattice.kernels.band import solve_six
-from mdlgen.mechanics.compiling import BORROWS
 from mdlgen.mechanics.pair import BOX_BOX, on_fixed_plate
+from mdlgen.program.kernel import BORROWS, njit
 
 # Where contacts stand: all apart; those with fixed plates in the matrix of the sheet; all of them there.
 APART, PLANES, INSIDE = 0, 1, 2

@@ -11,13 +11,14 @@ changes its sign.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from backends.lattice.kernels.band import factor
 from backends.lattice.kernels.border import eliminate, solve_bordered
 from backends.lattice.kernels.chain import follow, link
+from backends.lattice.kernels.dense import copy
 from backends.lattice.kernels.forces import joint_forces, near_pairs, other_forces, pair_forces
 from backends.lattice.kernels.stiffness import contacts_into, rollers_into, sheets_into
+from mdlgen.program.kernel import njit
 
 MOST_ROUNDS = 100
 MOST_TRIES = 12  # of the length of one step
@@ -73,7 +74,8 @@ def _newton(matrix, plain, shift, load, rest, step):
     be positive, `shift` or more; -1 where nothing helps. `plain` is room for what is factored in place."""
     a, b, d, y, corner = matrix
     band, square = plain
-    band[:], square[:] = a, d
+    copy(band, a)
+    copy(square, d)
     ease = twist = load
     for n in range(a.shape[0]):
         for i in range(3):
@@ -86,10 +88,12 @@ def _newton(matrix, plain, shift, load, rest, step):
         for k in range(d.shape[0]):
             d[k, k] += shift * ease
         if factor(a) and eliminate(a, b, d, y, corner):
-            step[0][:], step[1][:] = rest
+            copy(step[0], rest[0])
+            copy(step[1], rest[1])
             solve_bordered(a, b, y, corner, step[0], step[1])
             return shift
-        a[:], d[:] = band, square
+        copy(a, band)
+        copy(d, square)
         shift = max(10.0 * shift, FIRST_SHIFT)
     return -1.0
 
@@ -151,7 +155,11 @@ def equilibrium(system, border, height, level, load, least, reach, x, r, s, list
     for j in range(joints.size):
         hard = max(hard, joints[j].k[0], joints[j].k[1], joints[j].k[2])
     # forces that round-off of the positions alone makes
-    noise = 16.0 * _EPS * hard * np.abs(x).max()
+    far = 0.0
+    for k in range(x.shape[0]):
+        for i in range(3):
+            far = max(far, abs(x[k, i]))
+    noise = 16.0 * _EPS * hard * far
     worst, at, count = _residual(system, level, place, lists, blank, rest)
     best, since, shift = worst, 0, least
     for rounds in range(MOST_ROUNDS):
@@ -168,7 +176,9 @@ def equilibrium(system, border, height, level, load, least, reach, x, r, s, list
         part, moved = _longest(bodies, joints, nodes, step, reach)
         if not moved < _LOST:
             return False, rounds, at, worst / load
-        before[0][:], before[1][:], before[2][:] = place
+        copy(before[0], x)
+        copy(before[1], r)
+        copy(before[2], s)
         falls = _along(rest, step)
         for _ in range(MOST_TRIES):
             follow(bodies, joints, nodes, links, part, step, before, place, room, gaps)

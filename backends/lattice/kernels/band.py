@@ -11,7 +11,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
+
+from mdlgen.program.kernel import njit
 
 PAD = 16
 _VECTOR = 8

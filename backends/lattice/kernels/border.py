@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from numba import njit
-
 from backends.lattice.kernels.band import solve
 from backends.lattice.kernels.dense import cholesky, cholesky_solve, copy
+from mdlgen.program.kernel import njit
 
 
 @njit(cache=True, error_model="numpy")

@@ -7,8 +7,6 @@ says, and stand where their joints have the gaps that it says: a chain stays a c
 
 from __future__ import annotations
 
-from numba import njit
-
 from backends.lattice.kernels.band import factor, solve
 from mdlgen.mechanics.vector import (
     add,
@@ -22,6 +20,7 @@ from mdlgen.mechanics.vector import (
     three,
     vec,
 )
+from mdlgen.program.kernel import njit
 
 _LOOSE = 1e-12  # holds what hangs on nothing, where `follow` shares what the joints ask for
 

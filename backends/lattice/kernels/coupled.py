@@ -12,11 +12,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from backends.lattice.kernels.border import solve_bordered
+from backends.lattice.kernels.dense import copy
 from backends.lattice.kernels.two_sets import Sets, sets, solve_sets
 from mdlgen.mechanics.vector import mat, matmul, nine, transpose_matmul
+from mdlgen.program.kernel import njit
 
 MOST_ROUNDS = 200
 # What may be left of the square of the residual, measured with the preconditioner: a round of Newton's method
@@ -99,11 +100,12 @@ def solve_coupled(a, b, y, corner, couplings, res, resb):
         return
     many = res.size
     r, z, p, own, q = couplings.room
-    r[:many], r[many:] = res, resb
-    z[:] = r
+    copy(r[:many], res)
+    copy(r[many:], resb)
+    copy(z, r)
     solve_bordered(a, b, y, corner, z[:many], z[many:])
-    p[:] = z
-    own[:] = r  # what band and border make of p
+    copy(p, z)
+    copy(own, r)  # what band and border make of p
     res[:] = 0.0
     resb[:] = 0.0
     left = _dot(r, z)
@@ -111,7 +113,7 @@ def solve_coupled(a, b, y, corner, couplings, res, resb):
     for _ in range(MOST_ROUNDS):
         if not left > LEFT * first:
             break
-        q[:] = own
+        copy(q, own)
         _couple(couplings, p, q)
         along = _dot(p, q)
         if not along > 0.0:
@@ -123,7 +125,7 @@ def solve_coupled(a, b, y, corner, couplings, res, resb):
             res[i] += part * p[i]
         for i in range(resb.size):
             resb[i] += part * p[many + i]
-        z[:] = r
+        copy(z, r)
         solve_bordered(a, b, y, corner, z[:many], z[many:])
         after = _dot(r, z)
         turn, left = after / left, after

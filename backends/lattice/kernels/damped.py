@@ -15,14 +15,13 @@ not see rigid motion, so linear and angular momentum of a sheet are kept.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from backends.lattice.kernels.band import empty as no_band
 from backends.lattice.kernels.band import factor, solve
 from backends.lattice.kernels.momentum import keep
 from backends.lattice.kernels.tangent import in_box_axes, joints_into, masses
-from mdlgen.mechanics.compiling import BORROWS
 from mdlgen.mechanics.vector import back, mat, rotate
+from mdlgen.program.kernel import BORROWS, njit
 
 # Steps for which a factor is good: a sheet bends little in so many.
 LASTS = 50

@@ -4,15 +4,25 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
+from mdlgen.program.kernel import njit
 
 
 @njit(cache=True, error_model="numpy")
 def copy(into, of):
-    """Copies one whole array; a loop, since an assignment of slices brings the texts of its errors along."""
-    a, b = into.ravel(), of.ravel()
-    for i in range(a.size):
-        a[i] = b[i]
+    """Copies a whole array of up to three dimensions; loops, since an assignment of slices brings the texts
+    of its errors along, which no shipped program may hold."""
+    if into.ndim == 1:
+        for i in range(into.shape[0]):
+            into[i] = of[i]
+    elif into.ndim == 2:
+        for i in range(into.shape[0]):
+            for j in range(into.shape[1]):
+                into[i, j] = of[i, j]
+    else:
+        for i in range(into.shape[0]):
+            for j in range(into.shape[1]):
+                for k in range(into.shape[2]):
+                    into[i, j, k] = of[i, j, k]
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False)

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
 from backends.lattice.kernels.image import reflect, reflect_rates
 from mdlgen.mechanics.arm import moved, way_of
 from mdlgen.mechanics.bushing import bushing_pair
-from mdlgen.mechanics.compiling import BORROWS
 from mdlgen.mechanics.curve import curve_excess
 from mdlgen.mechanics.driven import clutch, prescribed, turned
 from mdlgen.mechanics.guide import inward
@@ -41,6 +38,7 @@ from mdlgen.mechanics.vector import (
     transpose_matmul,
     vec,
 )
+from mdlgen.program.kernel import BORROWS, njit
 
 WIDE = OUT + 1 + POINT * MOST_POINTS
 

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from numba import njit
-
 from backends.lattice.kernels.dense import lu_solve_transposed
 from backends.lattice.kernels.slopes import core, couple_growth, hat_left, hat_right, outer
 from mdlgen.mechanics.arm import turn_of, way_of
-from mdlgen.mechanics.compiling import BORROWS
 from mdlgen.mechanics.driven import clutch
 from mdlgen.mechanics.point import COUPLE, OUT, POINT
 from mdlgen.mechanics.vector import add, back, cross, mat, scale, sub, three, vec
+from mdlgen.program.kernel import BORROWS, njit
 
 
 @njit(cache=True, error_model="numpy")

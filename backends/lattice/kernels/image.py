@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from numba import njit
-
 from mdlgen.mechanics.vector import add, dot, mat, scale, sub, three, vec
+from mdlgen.program.kernel import njit
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)

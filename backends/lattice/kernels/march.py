@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from backends.lattice.kernels.damped import overshoot, take_off
 from backends.lattice.kernels.dense import copy
@@ -17,6 +16,7 @@ from mdlgen.mechanics.crossing import deepest
 from mdlgen.mechanics.curve import overstretched
 from mdlgen.mechanics.driven import clutch, prescribed
 from mdlgen.mechanics.pair import remember
+from mdlgen.program.kernel import njit
 
 DONE, STOPPED, LEFT, DEEP, STRETCHED, CROWDED = 0, 1, 2, 3, 4, 5
 # How often a step may be halved.

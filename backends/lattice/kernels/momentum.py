@@ -9,10 +9,10 @@ of the whole sheet. Sheets that touch each other and nothing else keep theirs to
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from mdlgen.mechanics.pair import BOX_BOX
 from mdlgen.mechanics.vector import add, back, cross, dot, mat, rotate, scale, sub, vec
+from mdlgen.program.kernel import njit
 
 
 def empty(system) -> tuple:

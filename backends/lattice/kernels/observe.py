@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from numba import njit
-
 from backends.lattice.kernels.forces import joint_forces, near_pairs, pair_forces
 from mdlgen.mechanics.arm import hung, way_of
 from mdlgen.mechanics.driven import prescribed
 from mdlgen.mechanics.vector import back, dot, mat, rotate, three, vec
+from mdlgen.program.kernel import njit
 
 
 @njit(cache=True, error_model="numpy")

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
 from mdlgen.model.tables import BOX_BOX
+from mdlgen.program.kernel import njit
 
 SKIN = 2.0  # mm
 EMPTY = -1  # kind of a pair that is none

@@ -7,10 +7,9 @@ that only just touch have no stiffness yet; and a step could end there.
 
 from __future__ import annotations
 
-from numba import njit
-
 from mdlgen.mechanics.pair import BOX_BOX
 from mdlgen.mechanics.vector import back, mat, sub, transpose_matmul, vec
+from mdlgen.program.kernel import njit
 
 # What two boxes may come closer in one round, in half thicknesses of the thinner one.
 CLOSER = 0.5

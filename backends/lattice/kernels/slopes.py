@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
 from mdlgen.mechanics.point import ALONE
+from mdlgen.program.kernel import njit
 
 # Damping and friction grow steeply at small speeds and hardly at all at large ones. A step along the tangent
 # of the flat part would cross to the other side, and back; a step along the chord to zero stops there. This

@@ -15,7 +15,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from backends.lattice.kernels.alone import APART, INSIDE, PLANES, choose, columns, forget, release, unsee
 from backends.lattice.kernels.band import empty as no_band
@@ -42,6 +41,7 @@ from backends.lattice.kernels.two_sets import deal
 from mdlgen.mechanics.arm import moved, torque_of, turn_of, way_of
 from mdlgen.mechanics.driven import clutch, prescribed
 from mdlgen.mechanics.vector import back, dot, exp_rotation, mat, matmul, rotate, three, vec
+from mdlgen.program.kernel import njit
 
 # Rounds of one step before it is given up.
 MOST_ROUNDS = 40

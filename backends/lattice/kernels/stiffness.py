@@ -8,8 +8,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from backends.lattice.kernels.dense import copy
 from mdlgen.mechanics.curve import curve_spring
 from mdlgen.mechanics.pair import pair_force
 from mdlgen.mechanics.point import OUT
@@ -30,6 +30,7 @@ from mdlgen.mechanics.vector import (
     transpose_matmul,
     vec,
 )
+from mdlgen.program.kernel import njit
 
 _SMALL = 1e-6  # mm, rad: differences of contact forces
 
@@ -58,7 +59,7 @@ def _hinge(theta, e, k):
     arm = add(scale(c, e), scale(curl * te, theta))
     spread = (k[0] * s * across[0], k[1] * s * across[1], k[2] * s * across[2])
     couple = add(add(scale(alpha, twist), scale(beta * along, theta)), cross(arm, spread))
-    growth = np.empty((3, 3))
+    growth = np.empty(9)
     for i in range(3):
         b = beta * theta[i]
         turn = (
@@ -76,8 +77,8 @@ def _hinge(theta, e, k):
         bow = add(scale(c1 * t, e), scale(curl1 * t * te + curl * dot(turn, e), theta))
         g = add(g, add(cross(add(bow, scale(curl * te, turn)), spread), cross(arm, lift)))
         for j in range(3):
-            growth[j, i] = g[j]
-    return couple, nine(growth.ravel())
+            growth[3 * j + i] = g[j]
+    return couple, nine(growth)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -229,15 +230,17 @@ def contacts_into(bodies, pairs, meshes, touched, count, x, r, still, a, b, d):
                 index[c] = 6 * bodies[body].node + c
             if index[c] < 0:
                 continue
-            keep[:3], keep[3:] = x[body], r[body]
+            copy(keep[:3], x[body])
+            copy(keep[3:], r[body])
             for side in range(2):
                 _move(x, r, body, bodies[body].way, c % 7, _SMALL if side == 0 else -_SMALL)
                 out[:] = 0.0
                 pair_force(bodies, pair, meshes, x, r, still, still, out)
-                x[body], r[body] = keep[:3], keep[3:]
+                copy(x[body], keep[:3])
+                copy(r[body], keep[3:])
                 for end in range(2):
                     way = bodies[pair.a if end == 0 else pair.b].way
-                    g[side, 7 * end : 7 * end + 6] = out[6 * end : 6 * end + 6]
+                    copy(g[side, 7 * end : 7 * end + 6], out[6 * end : 6 * end + 6])
                     g[side, 7 * end + 6] = dot(three(out[6 * end :]), three(way))
             for i in range(14):
                 own[c, i] = (g[1, i] - g[0, i]) / (2.0 * _SMALL)

@@ -6,13 +6,13 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from backends.lattice.kernels.forces import place_box, place_roller
 from mdlgen.mechanics.crossing import above, buried, closing, deepest, unseen
 from mdlgen.mechanics.mesh import BLOCK
 from mdlgen.mechanics.pair import BOX_CYLINDER, BOX_MESH, pair_force
 from mdlgen.mechanics.point import COUPLE, OUT, POINT
+from mdlgen.program.kernel import njit
 
 # Pairs that would have to be looked at more often in a step want a smaller one.
 MOST_LOOKS = 64

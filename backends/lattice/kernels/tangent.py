@@ -7,12 +7,9 @@ rounds for them, and the matrix stays positive.
 
 from __future__ import annotations
 
-from numba import njit
-
 from backends.lattice.kernels.band import PAD
 from backends.lattice.kernels.slopes import core, couple_growth, hat_left, hat_right, outer
 from mdlgen.mechanics.arm import turn_of, way_of
-from mdlgen.mechanics.compiling import BORROWS
 from mdlgen.mechanics.curve import curve_spring
 from mdlgen.mechanics.driven import clutch
 from mdlgen.mechanics.pair import on_fixed_plate
@@ -34,6 +31,7 @@ from mdlgen.mechanics.vector import (
     transpose_matmul,
     vec,
 )
+from mdlgen.program.kernel import BORROWS, njit
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)

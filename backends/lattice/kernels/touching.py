@@ -16,18 +16,16 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
 from backends.lattice.kernels.alone import PLANES, unsee
 from backends.lattice.kernels.dense import lu
 from backends.lattice.kernels.forces import pair_forces, place_box, place_roller
 from backends.lattice.kernels.growth import activate, clutches, gradient, newton, newton_matrix
 from mdlgen.mechanics.arm import turn_of, way_of
-from mdlgen.mechanics.compiling import BORROWS
 from mdlgen.mechanics.driven import clutch
 from mdlgen.mechanics.pair import BOX_BOX, on_fixed_plate
 from mdlgen.mechanics.point import OUT, POINT
 from mdlgen.mechanics.vector import back, dot, mat, rotate, vec
+from mdlgen.program.kernel import BORROWS, njit
 
 MOST_ROUNDS = 40
 MOST_HALVED = 4

@@ -10,10 +10,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from backends.lattice.kernels.band import solve
 from backends.lattice.kernels.dense import cholesky, cholesky_solve
+from mdlgen.program.kernel import njit
 
 
 class Sets(NamedTuple):

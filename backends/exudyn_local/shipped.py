@@ -1,0 +1,37 @@
+"""What Python calls of this solver's compiled code, and the program that it is shipped as.
+
+No kernel calls an entry: what others call, too, has a wrapper here.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from backends.exudyn_local.between import passed, set_limits
+from backends.exudyn_local.kernels import forces, jacobian, ledger, place_all, set_owners
+from mdlgen.mechanics import curve, pair
+from mdlgen.mechanics.tree import set_thickness
+from mdlgen.program.kernel import LAWS, njit
+from mdlgen.program.ship import Program
+
+_overstretched, _remember = curve.overstretched, pair.remember
+
+
+@njit(cache=True, error_model="numpy")
+def begin(bodies, pairs, q, v, t, x, r, u, w):
+    """Notes which sides of boxes stand before which ends of plates, for what begins at a state."""
+    place_all(bodies, q, v, t, x, r, u, w)
+    _remember(bodies, pairs, x, r)
+
+
+@njit(cache=True, error_model="numpy")
+def overstretched(points, bushings, x, r):
+    """See mechanics.curve.overstretched."""
+    return _overstretched(points, bushings, x, r)
+
+
+PROGRAM = Program(
+    Path(__file__).with_name("exudyn.program"),
+    (LAWS, "backends.exudyn_local"),
+    (forces, jacobian, ledger, begin, overstretched, passed, set_limits, set_owners, set_thickness),
+)

@@ -1,0 +1,58 @@
+"""What Python calls of this solver's compiled code, and the program that it is shipped as.
+
+No kernel calls an entry: what others call, too, has a wrapper here.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from backends.lattice.kernels import forces, search
+from backends.lattice.kernels.balance import equilibrium
+from backends.lattice.kernels.march import run
+from backends.lattice.kernels.observe import ledger
+from mdlgen.mechanics import curve, pair
+from mdlgen.mechanics.tree import set_thickness
+from mdlgen.program.kernel import LAWS, njit
+from mdlgen.program.ship import Program
+
+_near_pairs, _pair_forces, _joint_forces = forces.near_pairs, forces.pair_forces, forces.joint_forces
+_look, _remember, _overstretched = search.look, pair.remember, curve.overstretched
+
+
+@njit(cache=True, error_model="numpy")
+def look(pairs, search, x):
+    """See search.look."""
+    return _look(pairs, search, x)
+
+
+@njit(cache=True, error_model="numpy")
+def remember(bodies, pairs, x, r):
+    """See mechanics.pair.remember."""
+    _remember(bodies, pairs, x, r)
+
+
+@njit(cache=True, error_model="numpy")
+def overstretched(points, joints, x, r):
+    """See mechanics.curve.overstretched."""
+    return _overstretched(points, joints, x, r)
+
+
+@njit(cache=True, error_model="numpy")
+def joint_forces(joints, points, x, r, u, w, f):
+    """See forces.joint_forces, without numerical damping; returns the stored energy."""
+    return _joint_forces(joints, points, x, r, u, w, f, 0.0)[0]
+
+
+@njit(cache=True, error_model="numpy")
+def contacts(bodies, pairs, meshes, x, r, still, f, touched, outs, near):
+    """Contacts of bodies at rest: `touched` and `outs` as forces.pair_forces has them; returns how many."""
+    close = _near_pairs(bodies, pairs, meshes, x, r, still, still, 0.0, 0.0, near)
+    return _pair_forces(bodies, pairs, meshes, near, close, x, r, still, still, f, touched, outs)[0]
+
+
+PROGRAM = Program(
+    Path(__file__).resolve().parents[1] / "lattice.program",
+    (LAWS, "backends.lattice.kernels"),
+    (run, ledger, equilibrium, look, remember, overstretched, joint_forces, contacts, set_thickness),
+)

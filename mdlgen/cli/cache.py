@@ -1,0 +1,56 @@
+"""`mdlgen cache`: what is kept for the next command, and whether the shipped programs fit."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from mdlgen.cli.shell import Quiet, Verbose, app, told
+
+UNFIT = 3
+
+
+@app.command()
+@told
+def cache(
+    clear: Annotated[bool, typer.Option("--clear", help="Remove what is kept.")] = False,
+    check: Annotated[
+        bool,
+        typer.Option("--check", help="Tell which solver's program fits its kernels; exit code 3: not all."),
+    ] = False,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
+) -> None:
+    """Show where compiled code and templates are kept, and how large they are.
+
+    Example: mdlgen cache --clear
+    """
+    from mdlgen import paths
+
+    if check:
+        _check(quiet)
+    elif clear:
+        gone = paths.clear_cache()
+        if not quiet:
+            typer.echo(f"removed {gone / 1e6:.1f} MB")
+    else:
+        typer.echo(f"{paths.user_cache()}: {paths.cache_size() / 1e6:.1f} MB")
+
+
+def _check(quiet: bool) -> None:
+    from mdlgen.program.build import programs
+    from mdlgen.program.file import Unfit
+
+    wrong = False
+    for program in programs():
+        try:
+            program.head()
+        except Unfit as error:
+            wrong = True
+            typer.echo(f"{error}: numba compiles, some minutes once on a machine")
+        else:
+            if not quiet:
+                typer.echo(f"{program.path.name} fits")
+    if wrong:
+        raise typer.Exit(UNFIT)

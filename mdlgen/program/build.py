@@ -1,0 +1,322 @@
+"""Makes the shipped programs: `python -m mdlgen.program.build`; with `--check` it tells whether they fit.
+
+Each entry is compiled by numba in a process of its own, for the types that it has in some small scenes, and
+not optimised. What numba gives of it (`inspect_llvm`) is linked into one module for all entries, of which
+only what they call is kept, with a wrapper for each that takes its arguments as words. LLVM optimises that
+without vector instructions, which is for the machine that it will run on.
+
+It stands above what it makes, so it knows that by name only.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import warnings
+from typing import Any
+
+from mdlgen.program import file
+from mdlgen.program.file import Head, Unfit, Variant
+from mdlgen.program.kernel import Kernel, sources_digest
+from mdlgen.program.layout import described, words
+from mdlgen.program.ship import Program
+
+# Where the programs are, and the scenes in which all of their entries are called with all types that there
+# are: solver, sample, values.
+PROGRAMS = ("backends.lattice.kernels.entries", "backends.exudyn_local.shipped")
+_SHORT = ("run.duration=0.4 ms", "run.print_step=0.2 ms", "run.step=0.1 ms")
+_FEW = ("sheets.note.boxes=[2, 3]",)
+SCENES: tuple[tuple[str, str, tuple[str, ...]], ...] = (
+    ("lattice", "transport_4x4.yaml", _SHORT),
+    ("lattice", "pick.yaml", _SHORT),
+    ("lattice", "cantilever.yaml", _FEW),
+    ("exudyn", "transport_4x4.yaml", _SHORT),
+    ("exudyn", "pick.yaml", _SHORT),
+    ("exudyn", "cantilever.yaml", _FEW),
+    ("exudyn", "verify/tension.yaml", ()),
+)
+# What a program may call of the system it runs on.
+SYSTEM = (
+    *("malloc", "free", "memcpy", "memmove", "memset"),
+    *("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh"),
+    *("exp", "exp2", "expm1", "log", "log2", "log10", "log1p", "pow", "sqrt", "hypot", "cbrt"),
+    *("floor", "ceil", "trunc", "rint", "round", "fmod", "ldexp", "frexp", "fma"),
+)
+# numba's memory: an array is counted by those who hold it, each of which is of the same thread.
+MEMORY = """
+%info = type { i64, ptr, ptr, ptr, i64 }
+declare ptr @malloc(i64)
+declare void @free(ptr)
+
+define ptr @NRT_MemInfo_alloc_aligned(i64 %size, i32 %align) {
+  %wide = zext i32 %align to i64
+  %head = add i64 %wide, 40
+  %all = add i64 %size, %head
+  %made = call ptr @malloc(i64 %all)
+  %none = icmp eq ptr %made, null
+  br i1 %none, label %out, label %fill
+fill:
+  %begin = ptrtoint ptr %made to i64
+  %high = add i64 %begin, %head
+  %over = urem i64 %high, %wide
+  %at = sub i64 %high, %over
+  %data = inttoptr i64 %at to ptr
+  store i64 1, ptr %made
+  %data_at = getelementptr %info, ptr %made, i32 0, i32 3
+  store ptr %data, ptr %data_at
+  %size_at = getelementptr %info, ptr %made, i32 0, i32 4
+  store i64 %size, ptr %size_at
+  br label %out
+out:
+  ret ptr %made
+}
+
+define ptr @NRT_MemInfo_data_fast(ptr %info) {
+  %data_at = getelementptr %info, ptr %info, i32 0, i32 3
+  %data = load ptr, ptr %data_at
+  ret ptr %data
+}
+
+define void @NRT_incref(ptr %info) {
+  %none = icmp eq ptr %info, null
+  br i1 %none, label %out, label %count
+count:
+  %held = load i64, ptr %info
+  %more = add i64 %held, 1
+  store i64 %more, ptr %info
+  br label %out
+out:
+  ret void
+}
+
+define void @NRT_decref(ptr %info) {
+  %none = icmp eq ptr %info, null
+  br i1 %none, label %out, label %count
+count:
+  %held = load i64, ptr %info
+  %less = sub i64 %held, 1
+  store i64 %less, ptr %info
+  %last = icmp eq i64 %less, 0
+  br i1 %last, label %drop, label %out
+drop:
+  call void @free(ptr %info)
+  br label %out
+out:
+  ret void
+}
+"""
+
+
+def main() -> None:
+    """Entry point."""
+    parser = argparse.ArgumentParser(prog="python -m mdlgen.program.build", description=__doc__)
+    parser.add_argument("--check", action="store_true", help="tell whether the programs fit; make none")
+    wanted = parser.parse_args()
+    if wanted.check:
+        sys.exit(_check())
+    for name in PROGRAMS:
+        with tempfile.TemporaryDirectory() as folder:
+            surroundings = {
+                **os.environ,
+                "MDLGEN_NUMBA": "1",
+                "MDLGEN_CACHE": folder,
+                "NUMBA_OPT": "0",
+                "NUMBA_CPU_NAME": "generic",
+                "NUMBA_CPU_FEATURES": "",
+            }
+            code = f"from mdlgen.program import build; build.make({name!r})"
+            subprocess.run([sys.executable, "-c", code], env=surroundings, check=True)
+
+
+def programs() -> list[Program]:
+    """All programs of this installation."""
+    return [importlib.import_module(name).PROGRAM for name in PROGRAMS]
+
+
+def _check() -> int:
+    wrong = 0
+    for program in programs():
+        try:
+            program.head()
+            print(f"{program.path.name} fits the kernels")
+        except Unfit as error:
+            print(f"{error}; python -m mdlgen.program.build makes it anew")
+            wrong = 1
+    return wrong
+
+
+def make(name: str) -> None:
+    """Makes one program, in a process in which numba optimises nothing."""
+    warnings.simplefilter("ignore")  # what is not optimised numba would not keep
+    program: Program = importlib.import_module(name).PROGRAM
+    types = watched(program)
+    _play("lattice" if "lattice" in name else "exudyn")
+    if missing := [entry for entry, found in types.items() if not found]:
+        sys.exit(f"{program.path.name}: no scene calls {', '.join(missing)}")
+    size = write(program, types)
+    print(f"{program.path.name}: {size / 1e6:.2f} MB, {len(types)} entries")
+
+
+# Of an entry: the types of its arguments as JSON, numba's signature, and the kernel.
+Types = dict[str, dict[str, tuple[Any, Kernel]]]
+
+
+def watched(program: Program) -> Types:
+    """The types with which the entries of a program are called from now on."""
+    typeof = importlib.import_module("numba").typeof
+    found: Types = {kernel.__name__: {} for kernel in program.entries}
+    for kernel in program.entries:
+        kernel.watch(_watcher(found[kernel.__name__], kernel, typeof))
+    return found
+
+
+def _play(solver: str) -> None:
+    """Runs the SCENES of a solver."""
+    load, lower = (importlib.import_module(f"mdlgen.{name}") for name in ("spec.load", "model.lower"))
+    samples = importlib.import_module("mdlgen.paths").samples()
+    solve = importlib.import_module("mdlgen.registry").solve
+    for name, sample, sets in SCENES:
+        if name == solver:
+            solve(lower.lower(load.load(samples / sample, sets)), name)
+
+
+def write(program: Program, types: Types) -> int:
+    """Writes a program for some types; its size. Ends the process where kernels call what it may not."""
+    import llvmlite
+    import llvmlite.binding as llvm
+
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    target = llvm.Target.from_triple(llvm.get_process_triple()).create_target_machine(opt=3, reloc="pic")
+    whole, entries = link(types)
+    external = shrink(whole, target)
+    if strange := sorted(set(external) - set(SYSTEM)):
+        sys.exit(f"{program.path.name}: kernels call what no program may: {', '.join(strange)}")
+    packed, digest = file.pack(whole.as_bitcode())
+    versions = {
+        "python": sys.version.split()[0],
+        "llvmlite": llvmlite.__version__,
+        "llvm": ".".join(map(str, llvm.llvm_version_info)),
+        "numba": importlib.import_module("numba").__version__,
+    }
+    head = Head(sources_digest(program.rooms), digest, versions, entries, tuple(external))
+    file.write(program.path, head, packed)
+    return len(packed)
+
+
+def _watcher(found: dict[str, tuple[Any, Kernel]], kernel: Kernel, typeof: Any) -> Any:
+    def watch(args: tuple[Any, ...]) -> None:
+        told = json.dumps([described(arg) for arg in args])
+        if told not in found:
+            found[told] = tuple(typeof(arg) for arg in args), kernel
+
+    return watch
+
+
+def link(types: Types) -> tuple[Any, dict[str, tuple[Variant, ...]]]:
+    """One module of LLVM with all entries, and what they are."""
+    import llvmlite.binding as llvm
+
+    whole = llvm.parse_assembly(MEMORY)
+    entries: dict[str, tuple[Variant, ...]] = {}
+    for name, variants in types.items():
+        made: list[Variant] = []
+        for told, (signature, kernel) in variants.items():
+            symbol = f"{name}_{len(made)}"
+            overload = kernel.dispatcher.overloads[signature]
+            inner = overload.fndesc.llvm_func_name
+            arguments = json.loads(told)
+            text = _stripped(kernel.dispatcher.inspect_llvm(signature), inner)
+            module = llvm.parse_assembly(text + _wrapper(text, inner, symbol, sum(map(words, arguments))))
+            for function in module.functions:
+                if not function.is_declaration:
+                    function.linkage = "external" if function.name == symbol else "internal"
+            for variable in module.global_variables:
+                if not variable.is_declaration:
+                    variable.linkage = "internal"
+            module.triple, module.data_layout = whole.triple, whole.data_layout
+            whole.link_in(module)
+            made.append(Variant(symbol, tuple(arguments), _result(overload.signature.return_type)))
+        entries[name] = tuple(made)
+    return whole, entries
+
+
+def _result(kind: Any) -> Any:
+    """numba's type of a result as layout tells it."""
+    types = importlib.import_module("numba").types
+    plain = {types.none: "none", types.float64: "f8", types.int64: "i8", types.boolean: "b1"}
+    if isinstance(kind, types.BaseTuple):
+        return ["tuple", [_result(item) for item in kind]]
+    return plain[kind]
+
+
+def _stripped(text: str, inner: str) -> str:
+    """A module without numba's memory and without what Python calls."""
+    kept: list[str] = []
+    inside = False
+    for line in text.splitlines():
+        if line.startswith("define ") and (found := re.search(r'@("?)([^"(]+)\1\(', line)):
+            name = found.group(2)
+            if name.startswith(("NRT_", "nrt_")):
+                inside = True
+                continue
+            inside = "7cpython" in name[:14] or name.startswith(("cfunc.", "_ZN7cfunc"))
+        if not inside:
+            kept.append(line)
+        elif line == "}":
+            inside = False
+    text = "\n".join(kept)
+    for name, shape in (
+        ("NRT_MemInfo_alloc_aligned", "ptr @{}(i64, i32)"),
+        ("NRT_MemInfo_data_fast", "ptr @{}(ptr)"),
+        ("NRT_incref", "void @{}(ptr)"),
+        ("NRT_decref", "void @{}(ptr)"),
+    ):
+        if f"@{name}(" in text and not re.search(rf"^declare [^\n]*@{name}\(", text, re.MULTILINE):
+            text += f"\ndeclare {shape.format(name)}"
+    return text + "\n"
+
+
+def _wrapper(text: str, inner: str, symbol: str, size: int) -> str:
+    """A function that takes the address of words: that of the result, of the error, and the arguments."""
+    quoted = f'@"{inner}"' if f'@"{inner}"(' in text else f"@{inner}"
+    line = next(line for line in text.splitlines() if line.startswith("define ") and f"{quoted}(" in line)
+    inside = line[line.index(f"{quoted}(") + len(quoted) + 1 : line.rindex(")")]
+    kinds = [argument.split()[0] for argument in inside.split(",")]
+    if len(kinds) != size + 2:
+        sys.exit(f"{symbol}: numba passes {len(kinds) - 2} words for {size}")
+    body = [f"define i32 @{symbol}(ptr %words) {{"]
+    for k, kind in enumerate(kinds):
+        body.append(f"  %p{k} = getelementptr i64, ptr %words, i64 {k}")
+        body.append(f"  %a{k} = load {kind}, ptr %p{k}")
+    passed = ", ".join(f"{kind} %a{k}" for k, kind in enumerate(kinds))
+    body += [f"  %r = call i32 {quoted}({passed})", "  ret i32 %r", "}"]
+    return "\n".join(body) + "\n"
+
+
+def shrink(whole: Any, target: Any) -> list[str]:
+    """Optimises a module for all machines alike; returns what it calls of the system."""
+    import llvmlite.binding as llvm
+
+    for function in whole.functions:
+        if function.name.startswith("NRT_") and not function.is_declaration:
+            function.linkage = "internal"
+    tuning = llvm.create_pipeline_tuning_options(speed_level=3)
+    tuning.loop_vectorization = tuning.slp_vectorization = False
+    tuning.loop_unrolling = False
+    builder = llvm.create_pass_builder(target, tuning)
+    builder.getModulePassManager().run(whole, builder)
+    named = {f.name for f in whole.functions if f.is_declaration}
+    inner = {name.split(".")[1] for name in named if name.startswith("llvm.")}
+    # what LLVM knows itself it writes as a call of the system's on most machines
+    return sorted({name for name in named if not name.startswith("llvm.")} | (inner & set(SYSTEM)))
+
+
+if __name__ == "__main__":
+    main()

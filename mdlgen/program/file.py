@@ -1,0 +1,105 @@
+"""A file NAME.program: one line of JSON that tells what it is, and LLVM bitcode, compressed."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import lzma
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from mdlgen.program.layout import Type
+
+FORMAT = 1
+MOST_BYTES = 50_000_000
+
+
+class Unfit(Exception):
+    """Why a program cannot be used here."""
+
+
+@dataclass(frozen=True)
+class Variant:
+    """What an entry compiles to for arguments of some types."""
+
+    symbol: str
+    arguments: tuple[Type, ...]
+    result: Type
+
+
+@dataclass(frozen=True)
+class Head:
+    """What a program is."""
+
+    digest: str  # of the kernels that it was made from
+    code: str  # SHA-256 of what follows the head
+    versions: dict[str, str]  # of what made it
+    entries: dict[str, tuple[Variant, ...]]
+    external: tuple[str, ...]  # functions of the system that it calls
+
+    def line(self) -> bytes:
+        """The first line of the file."""
+        told: dict[str, Any] = {
+            "format": FORMAT,
+            "digest": self.digest,
+            "code": self.code,
+            "versions": self.versions,
+            "external": list(self.external),
+            "entries": {
+                name: [[v.symbol, list(v.arguments), v.result] for v in variants]
+                for name, variants in self.entries.items()
+            },
+        }
+        return json.dumps(told, separators=(",", ":"), sort_keys=True).encode("ascii") + b"\n"
+
+
+def write(path: Path, head: Head, packed: bytes) -> None:
+    """Writes a program, of which `packed` is the compressed bitcode."""
+    path.write_bytes(head.line() + packed)
+
+
+def pack(bitcode: bytes) -> tuple[bytes, str]:
+    """Compressed bitcode, and the digest of that."""
+    packed = lzma.compress(bitcode, preset=9 | lzma.PRESET_EXTREME)
+    return packed, hashlib.sha256(packed).hexdigest()
+
+
+def read_head(path: Path) -> Head:
+    """What a program is. Raises Unfit."""
+    return _open(path)[0]
+
+
+def read(path: Path) -> tuple[Head, bytes]:
+    """What a program is, and its bitcode. Raises Unfit for a file that is damaged, or is none."""
+    head, packed = _open(path)
+    if hashlib.sha256(packed).hexdigest() != head.code:
+        raise Unfit(f"{path.name} is damaged")
+    try:
+        return head, lzma.decompress(packed)
+    except lzma.LZMAError:
+        raise Unfit(f"{path.name} is damaged") from None
+
+
+def _open(path: Path) -> tuple[Head, bytes]:
+    try:
+        with open(path, "rb") as stream:
+            raw = stream.read(MOST_BYTES)
+    except FileNotFoundError:
+        raise Unfit(f"there is no {path.name}") from None
+    except OSError as error:
+        raise Unfit(f"{path.name} cannot be read: {error.strerror}") from None
+    line, _, packed = raw.partition(b"\n")
+    try:
+        told = json.loads(line)
+        if told["format"] != FORMAT:
+            raise Unfit(f"{path.name} is of another form")
+        entries = {
+            name: tuple(Variant(symbol, tuple(arguments), result) for symbol, arguments, result in variants)
+            for name, variants in told["entries"].items()
+        }
+        return Head(
+            str(told["digest"]), str(told["code"]), told["versions"], entries, tuple(told["external"])
+        ), packed
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        raise Unfit(f"{path.name} is damaged") from None

@@ -1,0 +1,227 @@
+"""Kernels: functions that numba can compile, and that a shipped program may hold.
+
+numba is imported where a kernel that no program has is called from Python, and not before.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import importlib
+import logging
+import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from itertools import count
+from pathlib import Path
+from threading import RLock
+from typing import TYPE_CHECKING, Any
+
+from mdlgen import paths
+
+if TYPE_CHECKING:
+    from mdlgen.program.ship import Program
+
+LOG = logging.getLogger("mdlgen.compiling")
+
+# Compiled code counts who holds an array, by an atomic operation at each begin and end of a function: in one
+# of many arrays that is called for each pair, this was a tenth of a run. What BORROWS leaves the counting to
+# its caller, and can make no array; what it calls inherits that, but for what OWNS arrays of its own.
+BORROWS: dict[str, Any] = {"_nrt": False}
+OWNS: dict[str, Any] = {"_nrt": True}
+
+# Room of the laws that kernels of all solvers call.
+LAWS = "mdlgen.mechanics"
+
+_lock = RLock()
+_parts = count(1)
+
+
+def alone() -> bool:
+    """Whether numba is to compile all kernels, whatever is shipped: MDLGEN_NUMBA is set."""
+    return os.environ.get("MDLGEN_NUMBA", "0") not in ("", "0")
+
+
+def njit(**options: Any) -> Callable[[Callable[..., Any]], Kernel]:
+    """Makes a Kernel of a function; `options` are those of `numba.njit`."""
+    return lambda function: Kernel(function, options)
+
+
+class Kernel:
+    """A function that is called as compiled code: that of a program which has it, or else numba's."""
+
+    __name__: str
+
+    def __init__(self, function: Callable[..., Any], options: dict[str, Any]):
+        functools.update_wrapper(self, function)
+        self.py_func = function
+        self.options = options
+        self.programs: list[Program] = []  # that have it as an entry
+        self._call: Callable[..., Any] = self._first
+        self._made: Any = None
+
+    def __call__(self, *args: Any) -> Any:
+        """Calls the compiled code; all arguments by their places."""
+        return self._call(*args)
+
+    def __repr__(self) -> str:
+        return f"<kernel {self.__module__}.{self.__name__}>"
+
+    def _first(self, *args: Any) -> Any:
+        # of two the one that is loaded already
+        for program in sorted(self.programs, key=lambda program: not program.loaded):
+            entry = program.entry(self)
+            if entry is not None:
+                self._call = entry
+                return entry(*args)
+        self._call = self.compiled
+        return self.compiled(*args)
+
+    def compiled(self, *args: Any) -> Any:
+        """Calls what numba compiles; what is compiled in the first call is told."""
+        dispatcher = self.dispatcher
+        with _told():
+            found = dispatcher(*args)
+        if self._call == self.compiled:
+            self._call = dispatcher  # else some arguments are the program's
+        return found
+
+    def watch(self, watch: Callable[[tuple[Any, ...]], None]) -> None:
+        """Calls `watch` with the arguments before each call from Python, which numba's code does."""
+
+        def watched(*args: Any) -> Any:
+            watch(args)
+            return self.dispatcher(*args)
+
+        self._call = watched
+
+    @property
+    def dispatcher(self) -> Any:
+        """numba's own object for this function."""
+        if self._made is None:
+            with _lock:
+                if self._made is None:
+                    self._made = _dispatcher(self.py_func, self.options)
+        return self._made
+
+    @property
+    def _numba_type_(self) -> Any:
+        # by this numba knows a kernel among the globals of a function that it compiles
+        return self.dispatcher._numba_type_
+
+
+def _dispatcher(function: Callable[..., Any], options: dict[str, Any]) -> Any:
+    """A dispatcher whose code is kept in our folder; the settings of numba are afterwards as they were."""
+    numba = importlib.import_module("numba")
+    settings = importlib.import_module("numba.core.config").__dict__  # made at run time
+    folder = _folder(function) if options.get("cache") else None
+    if folder is None:
+        return numba.njit(**{**options, "cache": False})(function)
+    before = settings["CACHE_DIR"]
+    settings["CACHE_DIR"] = str(folder)
+    try:
+        made = numba.njit(**options)(function)
+    except RuntimeError:  # numba finds no place there
+        return numba.njit(**{**options, "cache": False})(function)
+    finally:
+        settings["CACHE_DIR"] = before
+    made._cache = _Unfailing(made._cache)
+    return made
+
+
+class _Unfailing:
+    """A dispatcher's cache: code that cannot be kept, as on a full disk, is used all the same.
+
+    numba raises OSError in the middle of a compilation, where it would end a run that needs no room at all.
+    """
+
+    def __init__(self, cache: Any):
+        self._cache = cache
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._cache, name)
+
+    def load_overload(self, *args: Any) -> Any:
+        """What was kept, None where it cannot be read."""
+        try:
+            return self._cache.load_overload(*args)
+        except OSError as error:
+            LOG.debug("compiled code is not read: %s", error.strerror)
+            return None
+
+    def save_overload(self, *args: Any) -> None:
+        """Keeps it, if that can be done."""
+        try:
+            self._cache.save_overload(*args)
+        except OSError as error:
+            LOG.debug("compiled code is not kept: %s", error.strerror)
+
+
+@functools.cache
+def _room_folder(room: str) -> Path | None:
+    rooms = (LAWS,) if room == LAWS else (LAWS, room)
+    return paths.cache(f"compiled/{room}_{sources_digest(rooms)[:16]}")
+
+
+def _folder(function: Callable[..., Any]) -> Path | None:
+    """Where numba keeps a kernel: a folder for exactly these laws and the sources beside the kernel.
+
+    numba notices that a function's own file has changed, but not a file whose functions it calls: a solver
+    would go on with an older law without a word.
+    """
+    room = function.__module__.rpartition(".")[0]
+    return _room_folder(room) if room else None
+
+
+def kernel_sources(room: str) -> list[Path]:
+    """Files with kernels in a package, sorted by name."""
+    folder = Path(str(importlib.import_module(room).__file__)).parent
+    return [path for path in sorted(folder.glob("*.py")) if b"@njit" in path.read_bytes()]
+
+
+@functools.cache
+def sources_digest(rooms: tuple[str, ...]) -> str:
+    """SHA-256 of all kernels of some packages: their sources, however lines end, and the numbers of other
+    modules that they name."""
+    found = hashlib.sha256()
+    for room in rooms:
+        for path in kernel_sources(room):
+            module = importlib.import_module(f"{room}.{path.stem}")
+            found.update(f"{room}.{path.stem}\n".encode())
+            found.update(path.read_bytes().replace(b"\r\n", b"\n"))
+            for line in _numbers(module):
+                found.update(line.encode())
+    return found.hexdigest()
+
+
+def _numbers(module: Any) -> Iterator[str]:
+    """Plain values that the kernels of a module name, most of which other modules state."""
+    for name, kernel in sorted(vars(module).items()):
+        if isinstance(kernel, Kernel) and kernel.__module__ == module.__name__:
+            options = {key: _plain(value) for key, value in sorted(kernel.options.items())}
+            yield f"{name} {options}\n"
+            for used in sorted(set(kernel.py_func.__code__.co_names)):
+                value = kernel.py_func.__globals__.get(used)
+                if isinstance(value, (bool, int, float, tuple)):
+                    yield f"{used}={value!r}\n"
+
+
+def _plain(value: Any) -> Any:
+    return sorted(value) if isinstance(value, set) else value
+
+
+@contextmanager
+def _told() -> Iterator[None]:
+    """Logs (INFO, how many so far) each function that numba compiles inside; what is loaded is not told."""
+    event = importlib.import_module("numba.core.event")
+
+    class Counter(event.Listener):
+        def on_start(self, event: Any) -> None:
+            """Nothing is done yet."""
+
+        def on_end(self, event: Any) -> None:
+            done = next(_parts)
+            LOG.info("%d", done, extra={"parts": done})
+
+    with event.install_listener("numba:compile", Counter()):
+        yield

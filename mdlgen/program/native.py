@@ -1,0 +1,169 @@
+"""A program as machine code: made by LLVM once for a processor, kept, loaded, called."""
+
+from __future__ import annotations
+
+import ctypes
+import hashlib
+import logging
+import platform
+import sys
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from mdlgen import paths
+from mdlgen.errors import OutputError
+from mdlgen.program.file import Head, Unfit, Variant
+from mdlgen.program.layout import Misfit, reader, words, writer
+
+LOG = logging.getLogger("mdlgen.compiling")
+
+_NOTHING: Any = object()
+
+
+def load(name: str, head: Head, bitcode: Callable[[], bytes]) -> Machine:
+    """The machine code of a program for this processor; `bitcode` is asked for where it is not kept.
+
+    Raises Unfit.
+    """
+    import llvmlite
+    import llvmlite.binding as llvm
+
+    if ctypes.sizeof(ctypes.c_void_p) != 8 or sys.byteorder != "little":
+        raise Unfit("addresses are not of 64 bits here, the low ones first")
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    processor, features = llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
+    told = (head.code, llvm.get_process_triple(), processor, features, llvmlite.__version__)
+    key = hashlib.sha256("\n".join((*told, platform.python_version())).encode()).hexdigest()[:24]
+    for symbol in head.external:
+        if llvm.address_of_symbol(symbol) is None:
+            llvm.add_symbol(symbol, _address(symbol))
+    target = llvm.Target.from_triple(llvm.get_process_triple())
+    machine = target.create_target_machine(
+        cpu=processor, features=features, opt=3, reloc="pic", codemodel="jitdefault", jit=True
+    )
+    folder = paths.cache("programs")
+    kept = folder / f"{name}_{key}.o" if folder is not None else None
+    code = _kept(kept)
+    if code is None:
+        LOG.info("%s is prepared", name)
+        code = emit(machine, bitcode())
+        _keep(kept, code)
+    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), machine)
+    engine.add_object_file(llvm.ObjectFileRef.from_data(code))
+    engine.finalize_object()
+    return Machine(engine)
+
+
+def emit(machine: Any, bitcode: bytes) -> bytes:
+    """Optimises bitcode for a target machine of llvmlite; an object file. Raises Unfit."""
+    import llvmlite.binding as llvm
+
+    try:
+        module = llvm.parse_bitcode(bitcode)
+        module.triple, module.data_layout = machine.triple, str(machine.target_data)
+        tuning = llvm.create_pipeline_tuning_options(speed_level=3)
+        tuning.loop_vectorization, tuning.slp_vectorization = True, False
+        builder = llvm.create_pass_builder(machine, tuning)
+        builder.getModulePassManager().run(module, builder)
+        return machine.emit_object(module)
+    except RuntimeError as error:  # bitcode of a later LLVM, for one
+        told = str(error).strip().splitlines() or ["it cannot be read"]
+        raise Unfit(f"LLVM does not take it: {told[0]}") from None
+
+
+def _address(symbol: str) -> int:
+    """Where a function of the system stands. Raises Unfit."""
+    names = ("ucrtbase", "msvcrt", "vcruntime140") if sys.platform == "win32" else (None, "libm.so.6")
+    for name in names:
+        try:
+            found = getattr(ctypes.CDLL(name), symbol)
+        except (OSError, AttributeError):
+            continue
+        address = ctypes.cast(found, ctypes.c_void_p).value
+        if address:
+            return address
+    raise Unfit(f"this system has no {symbol}")
+
+
+def _kept(path: Path | None) -> bytes | None:
+    """Machine code that was kept; None where there is none, or where it is not whole."""
+    if path is None:
+        return None
+    try:
+        raw = path.read_bytes()
+    except OSError:
+        return None
+    return raw[32:] if hashlib.sha256(raw[32:]).digest() == raw[:32] else None
+
+
+def _keep(path: Path | None, code: bytes) -> None:
+    if path is None:
+        return
+    try:
+        paths.write_atomic(path, hashlib.sha256(code).digest() + code)
+    except OutputError as error:
+        LOG.debug("machine code is not kept: %s", error)
+
+
+class Machine:
+    """Machine code in this process."""
+
+    def __init__(self, engine: Any):
+        self._engine = engine
+
+    def entry(self, name: str, variant: Variant) -> Call:
+        """What calls an entry with arguments of some types."""
+        return Call(name, variant, self._engine.get_function_address(variant.symbol))
+
+
+class Row(threading.local):
+    """The words of one thread's calls, and the arguments that they were made of."""
+
+    def __init__(self, size: int, arguments: int, result: int):
+        self.words = ctypes.create_string_buffer(8 * size)
+        self.result = ctypes.create_string_buffer(max(8, result))
+        self.error = ctypes.create_string_buffer(8)
+        self.last: list[Any] = [_NOTHING] * arguments
+        self.address = ctypes.addressof(self.words)
+        head = (ctypes.c_int64 * 2).from_buffer(self.words)
+        head[0], head[1] = ctypes.addressof(self.result), ctypes.addressof(self.error)
+
+
+class Call:
+    """Calls one variant of an entry.
+
+    Arguments that are the same objects as the last time are not looked at again: their words stand there.
+    """
+
+    def __init__(self, name: str, variant: Variant, address: int):
+        self.name = name
+        at, self._writers = 2, []
+        for kind in variant.arguments:
+            self._writers.append(writer(kind, at))
+            at += words(kind)
+        size, self._read = reader(variant.result)
+        self._count = len(self._writers)
+        self._row = Row(at, self._count, size)
+        self._function = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p)(address)
+
+    def __call__(self, *args: Any) -> Any:
+        """The result. Raises Misfit for arguments of other types, MemoryError where room is wanting."""
+        row = self._row
+        last = row.last
+        if len(args) != self._count:
+            raise Misfit(f"{len(args)} arguments for {self._count}")
+        for k, arg in enumerate(args):
+            if arg is not last[k]:
+                last[k] = _NOTHING
+                self._writers[k](row.words, arg)
+                last[k] = arg
+        if self._function(row.address) != 0:
+            raise MemoryError(f"{self.name}: no room for its arrays")
+        return self._read(row.result)
+
+    def release(self) -> None:
+        """Forgets the arguments of this thread's last call."""
+        self._row.last[:] = [_NOTHING] * self._count
