@@ -16,7 +16,7 @@ def eliminate(a, b, d, y, corner):
         first = 0
         while first < b.shape[1] and b[j, first] == 0.0:
             first += 1
-        y[j] = b[j]
+        copy(y[j], b[j])
         if first < b.shape[1]:
             solve(a, y[j], first // 6)
             for i in range(j, many):
