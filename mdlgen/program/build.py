@@ -234,16 +234,15 @@ def link(types: Types) -> tuple[Any, dict[str, tuple[Variant, ...]]]:
             arguments = json.loads(told)
             text = _stripped(kernel.dispatcher.inspect_llvm(signature), inner)
             module = llvm.parse_assembly(text + _wrapper(text, inner, symbol, sum(map(words, arguments))))
-            for function in module.functions:
-                if not function.is_declaration:
-                    function.linkage = "external" if function.name == symbol else "internal"
-            for variable in module.global_variables:
-                if not variable.is_declaration:
-                    variable.linkage = "internal"
             module.triple, module.data_layout = whole.triple, whole.data_layout
             whole.link_in(module)
             made.append(Variant(symbol, tuple(arguments), _result(overload.signature.return_type)))
         entries[name] = tuple(made)
+    # what several entries call has one name, and stands there once
+    open_to_all = {variant.symbol for variants in entries.values() for variant in variants}
+    for thing in (*whole.functions, *whole.global_variables):
+        if not thing.is_declaration and thing.name not in open_to_all:
+            thing.linkage = "internal"
     return whole, entries
 
 
@@ -304,9 +303,6 @@ def shrink(whole: Any, target: Any) -> list[str]:
     """Optimises a module for all machines alike; returns what it calls of the system."""
     import llvmlite.binding as llvm
 
-    for function in whole.functions:
-        if function.name.startswith("NRT_") and not function.is_declaration:
-            function.linkage = "internal"
     tuning = llvm.create_pipeline_tuning_options(speed_level=3)
     tuning.loop_vectorization = tuning.slp_vectorization = False
     tuning.loop_unrolling = False
