@@ -305,9 +305,14 @@ def shrink(whole: Any, target: Any) -> list[str]:
 
     tuning = llvm.create_pipeline_tuning_options(speed_level=3)
     tuning.loop_vectorization = tuning.slp_vectorization = False
-    tuning.loop_unrolling = False
+    # what is opened where it is called, but for what is small, and what is unrolled is for the machine as well
+    tuning.loop_unrolling, tuning.inlining_threshold = False, 25
     builder = llvm.create_pass_builder(target, tuning)
     builder.getModulePassManager().run(whole, builder)
+    # names inside tell nobody anything, and are half of the file
+    manager = llvm.create_new_module_pass_manager()
+    manager.add_strip_symbols_pass()
+    manager.run(whole, builder)
     named = {f.name for f in whole.functions if f.is_declaration}
     inner = {name.split(".")[1] for name in named if name.startswith("llvm.")}
     # what LLVM knows itself it writes as a call of the system's on most machines
