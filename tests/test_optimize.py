@@ -64,7 +64,7 @@ def searched(
     folder: Path, wanted: Optimisation, numbers: Numbers, resume: bool = False, stop: int | None = None
 ) -> tuple[list[Row], Row | None, Made]:
     made = Made(numbers, stop)
-    with optimisation.opened(folder, wanted, resume) as journal:
+    with optimisation.opened(folder, wanted, resume)[1] as journal:
         rows, best = optimisation.run(wanted, journal, made)
     return rows, best, made
 

@@ -48,7 +48,7 @@ def _section(name: str, command: Any, parent: Any) -> str:
     context = command.context_class(command, info_name=name, parent=parent)
     params = command.get_params(context)
     arguments = [p for p in params if p.param_type_name == "argument"]
-    options = [p for p in params if p.param_type_name == "option"]
+    options = [p for p in params if p.param_type_name == "option" and not p.hidden]
     words = _paragraphs(command)
     plain = [p for p in words if not p.startswith("Example: ")]
     examples = "\n".join("    " + p.removeprefix("Example: ") for p in words if p.startswith("Example: "))
@@ -69,7 +69,9 @@ def _placed(argument: Any) -> str:
 
 
 def _option(param: Any) -> tuple[str, str]:
-    names = ", ".join(f"`{name}`" for name in (*param.opts, *param.secondary_opts))
+    # click keeps the names of help in a set
+    opts = sorted(param.opts, key=lambda name: name.startswith("--"))
+    names = ", ".join(f"`{name}`" for name in (*opts, *param.secondary_opts))
     if not param.is_flag and not param.count:
         names += f" `{_metavar(param)}`"
     default = param.default

@@ -8,11 +8,14 @@ from typing import Annotated
 import typer
 
 from mdlgen import paths
+from mdlgen.cli import completion
 from mdlgen.cli.shell import (
     SOLVER_FAILED,
+    Json,
     Quiet,
     Verbose,
     app,
+    echo_json,
     say,
     told,
 )
@@ -28,6 +31,7 @@ def bench(
             metavar="SUITE ...",
             help="transport, elastica, impact, friction, flight, scaling, skip, feeder, stability, "
             "validation: all if left out.",
+            autocompletion=completion.suites,
         ),
     ] = None,
     output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="Where the files go.")] = Path(
@@ -35,7 +39,12 @@ def bench(
     ),
     solver: Annotated[
         list[str] | None,
-        typer.Option("--solver", metavar="NAME", help="One of the solvers: all if left out."),
+        typer.Option(
+            "--solver",
+            metavar="NAME",
+            help="One of the solvers: all if left out.",
+            autocompletion=completion.every_solver,
+        ),
     ] = None,
     quick: Annotated[bool, typer.Option("--quick", help="A few short cases of each suite.")] = False,
     repeat: Annotated[int, typer.Option("--repeat", min=1, help="Runs whose median is the wall time.")] = 3,
@@ -55,10 +64,13 @@ def bench(
             help="Also writes the suite's page, as it stands in samples/: stability or validation.",
         ),
     ] = None,
+    as_json: Json = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
 ) -> None:
-    """Run time against error: write bench.json, bench.md and bench.png into DIR.
+    """Measure run time against error.
+
+    Writes bench.json, bench.md and bench.png into DIR.
 
     Example: mdlgen bench impact friction --solver exudyn
 
@@ -73,13 +85,15 @@ def bench(
     check_folder(output)
     heard = (lambda _: None) if quiet else say
     found = run_bench(suites or (), output, solver or (), quick, repeat, heard, peers)
-    if not quiet:
+    if as_json:
+        echo_json(found.json())
+    elif not quiet:
         typer.echo(markdown(found), nl=False)
         typer.echo(f"wrote {output}")
     if page is not None:
         paths.write_atomic(page, pages.page(shown, found))
         if not quiet:
-            typer.echo(f"wrote {page}")
+            say(f"wrote {page}")
     if found.wrong:
         row = found.wrong[0]
         raise AccuracyError(f"{len(found.wrong)} wrong: {row.case}, {row.solver}: {row.reason}")

@@ -7,8 +7,10 @@ from typing import Annotated
 
 import typer
 
+from mdlgen.cli import completion
 from mdlgen.cli.shell import (
     SOLVER_FAILED,
+    Json,
     Quiet,
     Raised,
     Sets,
@@ -47,6 +49,7 @@ def calibrate(
             help="The value to find, of the probed sheet's material: k_tx, k_ty, D_cd, D_md, damping.ratio, "
             "damping.ratio_ty, damping.time, damping.loss_factor. k_tx takes the place of D_cd, k_ty that of "
             "D_md, and one form of damping that of the others.",
+            autocompletion=completion.fits,
         ),
     ],
     probe: Annotated[
@@ -65,11 +68,13 @@ def calibrate(
     solver: Solver = "auto",
     sets: Sets = None,
     limits: Raised = None,
-    as_json: Annotated[bool, typer.Option("--json", help="The result as JSON.")] = False,
+    as_json: Json = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
 ) -> None:
-    """Find bending stiffness or damping from a measured tip drop or decay curve.
+    """Find bending stiffness or damping from a measurement.
+
+    That is the drop of a tip at rest, or a curve of it over time.
 
     Example: mdlgen calibrate samples/cantilever.yaml --measured "60.76 mm" --fit D_cd
 

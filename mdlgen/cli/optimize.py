@@ -8,18 +8,20 @@ from typing import Annotated
 
 import typer
 
+from mdlgen.cli import completion
 from mdlgen.cli.shell import (
     SOLVER_FAILED,
     CheckStep,
+    Json,
     Lets,
     Quiet,
     Raised,
     Sets,
     Solver,
-    Spec,
     Verbose,
     app,
     count,
+    echo_json,
     say,
     told,
 )
@@ -32,9 +34,15 @@ FRAGMENT = "best.yaml"
 @app.command()
 @told
 def optimize(
-    spec: Spec,
+    spec: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="SPEC",
+            help="The scene: a YAML or JSON file; with --resume alone, the folder of a search.",
+        ),
+    ] = None,
     minimise: Annotated[
-        str,
+        str | None,
         typer.Option(
             "--minimise",
             "--minimize",
@@ -42,13 +50,14 @@ def optimize(
             help="What is to be small: arithmetic over numbers of summary.json, as 'sheets.note.yaw_deg**2'. "
             "A square is found in fewer runs than an abs().",
         ),
-    ],
+    ] = None,
     vary: Annotated[
         list[str] | None,
         typer.Option(
             "--vary",
             metavar="PATH=LO:HI",
             help="A value that may differ; PATH=[a, b, c] for one of a list. May be given more than once.",
+            autocompletion=completion.scene_paths,
         ),
     ] = None,
     subject_to: Annotated[
@@ -76,22 +85,28 @@ def optimize(
             metavar="auto|brent|cobyqa|optuna",
             help="brent for one value, cobyqa for several or with conditions, optuna (extra `optuna`) for "
             "lists and for noise.",
+            autocompletion=completion.methods,
         ),
     ] = "auto",
     seed: Annotated[int, typer.Option("--seed", help="Of --method optuna.")] = 1,
     output: Annotated[
         Path | None,
         typer.Option(
-            "-o", "--output", metavar="FILE.mdl", help="Write the best design as MotionView text too."
+            "-o",
+            "--output",
+            metavar="DIR",
+            help="Where table and page go: out/NAME_optimisation if left out.",
         ),
     ] = None,
-    folder: Annotated[
+    text: Annotated[
         Path | None,
-        typer.Option(
-            "--folder", metavar="DIR", help="Where table and page go: out/NAME_optimisation if left out."
-        ),
+        typer.Option("--mdl", metavar="FILE.mdl", help="Write the best design as MotionView text too."),
     ] = None,
-    resume: Annotated[bool, typer.Option("--resume", help="Go on with what is in DIR.")] = False,
+    folder: Annotated[Path | None, typer.Option("--folder", hidden=True)] = None,
+    resume: Annotated[
+        bool,
+        typer.Option("--resume", help="Go on with the search in DIR: mdlgen optimize --resume DIR."),
+    ] = False,
     workers: Annotated[
         int,
         typer.Option("--workers", min=1, max=256, help="Designs that optuna tries at a time."),
@@ -104,16 +119,20 @@ def optimize(
     check_step: CheckStep = False,
     sets: Sets = None,
     limits: Raised = None,
+    as_json: Json = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
 ) -> None:
-    """Find the values with which a number of the run is least; write each run into a table in DIR, and the
-    best values as a piece of a scene file.
+    """Find the values for which a number of a run is least.
+
+    Writes each run into a table in DIR, and the best values as a piece of a scene file.
 
     Example: mdlgen optimize samples/tilt_correction.yaml --vary "delta=0 rad/s:50 rad/s"
     --let "rollers.motor_2_left.drive.speed=186 rad/s - delta"
     --let "rollers.motor_2_right.drive.speed=186 rad/s + delta"
-    --minimise "sheets.note.yaw_deg**2" -o best.mdl
+    --minimise "sheets.note.yaw_deg**2" --mdl best.mdl
+
+    Example: mdlgen optimize --resume out/tilt_correction_optimisation
     """
     from mdlgen import paths, registry
     from mdlgen.cli.texts import mdl
@@ -124,30 +143,54 @@ def optimize(
     from mdlgen.study.sweep import write
     from mdlgen.study.task import task
 
+    output, text, notices = _places(output, text, folder)
+    if spec is None:
+        raise SpecError(
+            "name a scene, mdlgen optimize SPEC, or a search to go on with, mdlgen optimize --resume DIR"
+        )
     registry.check_solver(solver)
-    if output is not None and str(output) == "-":
-        raise SpecError("-o: give a file; standard output has the best values")
-    asked = task(spec, sets, limits, lets=tuple(lets or ()), solver=solver, check_step=check_step)
-    wanted = study.optimisation(
-        asked,
-        vary or (),
-        goal(minimise, subject_to or ()),
-        measure or (),
-        method,
-        most,
-        seed,
-        precision,
-        workers,
-    )
-    where = folder or Path("out") / f"{wanted.name}_optimisation"
+    if text is not None and str(text) == "-":
+        raise SpecError("--mdl: give a file; standard output has the best values")
+    if resume and minimise is None:
+        if (
+            output
+            or vary
+            or subject_to
+            or lets
+            or measure
+            or sets
+            or limits
+            or check_step
+            or solver != "auto"
+        ):
+            raise SpecError("--resume DIR takes scene, values, goal and solver from the search that is there")
+        where, wanted = spec, None
+    elif minimise is None:
+        raise SpecError("name what is to be small: --minimise EXPR")
+    else:
+        asked = task(spec, sets, limits, lets=tuple(lets or ()), solver=solver, check_step=check_step)
+        wanted = study.optimisation(
+            asked,
+            vary or (),
+            goal(minimise, subject_to or ()),
+            measure or (),
+            method,
+            most,
+            seed,
+            precision,
+            workers,
+        )
+        where = output or Path("out") / f"{wanted.name}_optimisation"
+    for notice in () if quiet else notices:
+        say(notice)
     with closing(runner_of(scheduler, workers, quiet)) as runner:
-        journal = study.opened(where, wanted, resume)
+        wanted, journal = study.opened(where, wanted, resume)
         with journal:
             try:
                 with count(quiet, "runs") as progress:
                     rows, best = study.run(wanted, journal, runner, progress)
             except KeyboardInterrupt:
-                say(f"the same with --resume goes on with this search ({len(journal.rows)} runs are done)")
+                say(f"{len(journal.rows)} runs are done; mdlgen optimize --resume {where} goes on")
                 raise
     files = [*write(where, wanted.task, rows, parquet=False), write_page(where, wanted, rows, best)]
     if best is None:
@@ -156,9 +199,36 @@ def optimize(
         raise typer.Exit(SOLVER_FAILED)
     piece = fragment(wanted, rows, best)
     paths.write_atomic(where / FRAGMENT, piece)
-    if not quiet:
+    written = [str(file) for file in (*files, where / FRAGMENT)]
+    if not quiet and not as_json:
         typer.echo(report_text(wanted, rows, best))
-        say(f"wrote {', '.join(str(file) for file in (*files, where / FRAGMENT))}")
-    typer.echo(piece, nl=False)
-    if output is not None:
-        mdl(spec, output, sets=[*(sets or ()), *design(wanted, best)], limits=limits, quiet=quiet)
+    if not quiet:
+        say(f"wrote {', '.join(written)}")
+    if as_json:
+        sets = list(design(wanted, best))
+        echo_json({"runs": len(rows), "best": best.json(), "set": sets, "files": written})
+    else:
+        typer.echo(piece, nl=False)
+    if text is not None:
+        there = wanted.task
+        own = [*there.sets, *design(wanted, best)]
+        mdl(Path(there.spec), text, sets=own, limits=list(there.limits), quiet=quiet)
+
+
+def _places(
+    output: Path | None, text: Path | None, folder: Path | None
+) -> tuple[Path | None, Path | None, list[str]]:
+    """Folder and text file that are meant, and notices: -o named the text before it named the folder, and
+    --folder the folder; both still do."""
+    notices = []
+    if output is not None and output.suffix.lower() == ".mdl":
+        if text is not None:
+            raise SpecError("-o names the folder, --mdl the text; two texts are named")
+        output, text = None, output
+        notices.append(f"-o {text}: write --mdl {text}; -o names the folder")
+    if folder is not None:
+        if output is not None:
+            raise SpecError("-o and --folder name the same folder; give -o")
+        output = folder
+        notices.append(f"--folder {folder}: write -o {folder}")
+    return output, text, notices

@@ -41,7 +41,7 @@ def report(
     quiet: Quiet = False,
     verbose: Verbose = False,
 ) -> None:
-    """Rebuild report.html from result.h5, or put several runs in one page with their differences.
+    """Rebuild the report of a run, or put several on one page.
 
     Example: mdlgen report out/transport_4x4
 
@@ -116,7 +116,9 @@ def view(
     quiet: Quiet = False,
     verbose: Verbose = False,
 ) -> None:
-    """Open the page of a run in the browser; it is made first where it is missing or older than the run.
+    """Open the report of a run in the browser.
+
+    It is made first where it is missing or older than the run.
 
     Example: mdlgen view out/transport_4x4
     """

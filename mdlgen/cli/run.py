@@ -21,6 +21,7 @@ from mdlgen.cli.shell import (
     app,
     beside,
     chatter,
+    echo_json,
     progress_bar,
     say,
     source_of,
@@ -64,10 +65,13 @@ def run(
     pictures: Pictures = False,
     sets: Sets = None,
     limits: Raised = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print summary.json.")] = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
 ) -> None:
-    """Simulate a scene; write summary.json, series.csv, result.h5 and report.html into DIR.
+    """Simulate a scene; write its results and report into DIR.
+
+    The files are summary.json, series.csv, result.h5 and report.html.
 
     Example: mdlgen run samples/transport_4x4.yaml -o out --check-step
 
@@ -136,7 +140,9 @@ def run(
     also = pictures_of(result) if drawn else {}
     save(result, folder, {**also, "report.html": page([result]).encode("utf-8")})
     keep.drop()
-    if not quiet:
+    if as_json:
+        echo_json(result.summary())
+    elif not quiet:
         typer.echo(summary_text(result.summary()))
         typer.echo(f"wrote {folder}")
     if task.check_step and result.error_estimate is None and not quiet:

@@ -8,7 +8,9 @@ from typing import Annotated
 
 import typer
 
+from mdlgen.cli import completion
 from mdlgen.cli.shell import (
+    Json,
     Quiet,
     Raised,
     Sets,
@@ -28,9 +30,13 @@ from mdlgen.errors import OutputError, SpecError, did_you_mean
 def new(
     folder: Annotated[Path | None, typer.Argument(metavar="DIR", help="Where to put the scene.")] = None,
     sample: Annotated[
-        str, typer.Option("--from", metavar="SAMPLE", help="The sample to copy.")
+        str,
+        typer.Option(
+            "--from", metavar="SAMPLE", help="The sample to copy.", autocompletion=completion.sample_names
+        ),
     ] = "transport_4x4",
     show: Annotated[bool, typer.Option("--list", help="List the samples instead.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the list as JSON.")] = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
 ) -> None:
@@ -44,9 +50,11 @@ def new(
     root = paths.samples()
     known = {p.relative_to(root).with_suffix("").as_posix(): p for p in sorted(root.rglob("*.yaml"))}
     if show:
-        for name, path in known.items():
-            first = path.read_text("utf-8").partition("\n")[0].lstrip("# ")
-            typer.echo(f"{name:20} {first}")
+        first = {n: p.read_text("utf-8").partition("\n")[0].lstrip("# ") for n, p in known.items()}
+        if as_json:
+            echo_json(first)
+        else:
+            typer.echo("\n".join(f"{name:20} {line}" for name, line in first.items()))
         return
     if folder is None:
         raise SpecError("name a folder: mdlgen new DIR (or --list for the samples)")
@@ -107,12 +115,18 @@ def check(
 @told
 def explain(
     code: Annotated[
-        str | None, typer.Argument(metavar="CODE", help="As W104, or dangling: all are listed if left out.")
+        str | None,
+        typer.Argument(
+            metavar="CODE",
+            help="As W104, or dangling: all are listed if left out.",
+            autocompletion=completion.codes,
+        ),
     ] = None,
+    as_json: Json = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
 ) -> None:
-    """Say what a code of `mdlgen check` or `mdlgen lint` means, and what to do.
+    """Say what a code of check or lint means, and what to do.
 
     Example: mdlgen explain W104
     """
@@ -120,7 +134,11 @@ def explain(
     from mdlgen.explain import explain as meaning
 
     if code is not None:
-        typer.echo(meaning(code))
+        text = meaning(code)
+        echo_json({code: text}) if as_json else typer.echo(text)
+        return
+    if as_json:
+        echo_json({**SCENE, **TEXT})
         return
     for title, table in (("mdlgen check", SCENE), ("mdlgen lint", TEXT)):
         typer.echo(title)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 import typer
 from typer.core import TyperGroup
 
+from mdlgen.cli import completion
 from mdlgen.errors import MdlgenError, SpecError, printable
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ def _in_one_line() -> Iterator[None]:
         if context is None or not text or "\n" in text:  # no wrong call, or the whole help
             raise
         path = context.command_path
-        say(f"{path}: {text.rstrip('.')}; {path} --help tells what there is")
+        say(f"{path}: {text.rstrip('.')}; {path} --help shows what there is")
         raise typer.Exit(getattr(error, "exit_code", 2)) from None
 
 
@@ -52,18 +53,40 @@ class Commands(TyperGroup):
 app = typer.Typer(
     name="mdlgen",
     cls=Commands,
-    help="Paper sheets in machines: one scene file, MotionView MDL text and a local run of the same model.",
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
     add_completion=True,
     no_args_is_help=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
 )
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        from mdlgen.version import version
+
+        typer.echo(f"mdlgen {version()}")
+        raise typer.Exit
+
+
+@app.callback()
+def _general(
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_version, is_eager=True, help="Print the version and exit."),
+    ] = False,
+) -> None:
+    """Paper sheets in machines: one scene file, MotionView text and a local run of the same model."""
+
 
 Spec = Annotated[Path, typer.Argument(metavar="SPEC", help="The scene: a YAML or JSON file.")]
 Sets = Annotated[
     list[str] | None,
     typer.Option(
-        "--set", metavar="PATH=VALUE", help="Set a value of the scene; may be given more than once."
+        "--set",
+        metavar="PATH=VALUE",
+        help="Set a value of the scene; may be given more than once.",
+        autocompletion=completion.scene_paths,
     ),
 ]
 Raised = Annotated[
@@ -73,9 +96,18 @@ Raised = Annotated[
         metavar="NAME=COUNT",
         help="Allow more boxes, pairs, contacts, states, values, triangles or points; may be given more than "
         "once.",
+        autocompletion=completion.limits,
     ),
 ]
-Solver = Annotated[str, typer.Option("--solver", metavar="auto|lattice|exudyn", help="What runs it.")]
+Solver = Annotated[
+    str,
+    typer.Option(
+        "--solver",
+        metavar="auto|lattice|exudyn",
+        help="What runs it.",
+        autocompletion=completion.solvers,
+    ),
+]
 CheckStep = Annotated[
     bool,
     typer.Option("--check-step", help="Run again at half the step; the difference estimates the error."),
@@ -96,6 +128,7 @@ Lets = Annotated[
         "given more than once.",
     ),
 ]
+Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
 Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="Errors and asked-for output only.")]
 Verbose = Annotated[
     bool, typer.Option("-v", "--verbose", help="Say more; show the traceback of internal errors.")

@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from mdlgen.cli import completion
 from mdlgen.cli.shell import (
     COMPILING,
     PREPARING,
     SOLVER_FAILED,
     CheckStep,
+    Json,
     Lets,
     Quiet,
     Raised,
@@ -21,6 +23,7 @@ from mdlgen.cli.shell import (
     Verbose,
     app,
     count,
+    echo_json,
     say,
     told,
 )
@@ -47,6 +50,7 @@ def sweep(
             help="A value that differs: START:STOP:N or [a, b, c], every combination of them; with --sample "
             "LO:HI, normal(MEAN, DEVIATION), normal(MEAN, DEVIATION, LO:HI), lognormal(MEDIAN, SPREAD). "
             "Quantities have their units: 180 rad/s:200 rad/s:5. May be given more than once.",
+            autocompletion=completion.scene_paths,
         ),
     ] = None,
     measure: Annotated[
@@ -115,10 +119,13 @@ def sweep(
     check_step: CheckStep = False,
     sets: Sets = None,
     limits: Raised = None,
+    as_json: Json = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
 ) -> None:
-    """Run a scene many times with other values; write a table with a row for each case into DIR.
+    """Run a scene many times with other values.
+
+    Writes a table with a row for each case into DIR, and a page, study.html.
 
     Example: mdlgen sweep samples/transport_4x4.yaml --over contacts.4.friction=0.1:0.5:9 -o out/friction
 
@@ -176,7 +183,11 @@ def sweep(
     files = study.write(folder, wanted.task, rows, installed() if parquet is None else parquet)
     more, words = study.write_findings(folder, wanted, rows)
     files += more
-    if not quiet:
+    if as_json:
+        names = [str(file) for file in files]
+        failed = sum(not row.measured for row in rows)
+        echo_json({"cases": len(rows), "failed": failed, "files": names, "rows": [r.json() for r in rows]})
+    elif not quiet:
         typer.echo("\n".join([study.told(rows), *words]))
         typer.echo(f"wrote {', '.join(str(file) for file in files)}")
     if not any(row.measured for row in rows):

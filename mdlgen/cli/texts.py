@@ -7,7 +7,9 @@ from typing import Annotated
 
 import typer
 
+from mdlgen.cli import completion
 from mdlgen.cli.shell import (
+    Json,
     Quiet,
     Raised,
     Sets,
@@ -44,6 +46,7 @@ def mdl(
             "--only",
             metavar="sheets",
             help="The sheets and their contacts alone, as a system definition to bring into your own model.",
+            autocompletion=completion.sheets_only,
         ),
     ] = None,
     sets: Sets = None,
@@ -61,7 +64,9 @@ def mdl(
     quiet: Quiet = False,
     verbose: Verbose = False,
 ) -> None:
-    """Write the scene as MotionView text, and beside it a script for what the text cannot say.
+    """Write the scene as MotionView text, with its script.
+
+    The script, FILE_mview.py, sets what the text cannot say. It is written where it is needed.
 
     Example: mdlgen mdl samples/transport_4x4.yaml -o note.mdl
 
@@ -116,7 +121,9 @@ def deck(
     quiet: Quiet = False,
     verbose: Verbose = False,
 ) -> None:
-    """Write the scene as a MotionSolve deck, which the solver reads without MotionView.
+    """Write the scene as a MotionSolve deck.
+
+    MotionSolve reads it without MotionView.
 
     Example: mdlgen deck samples/transport_4x4.yaml -o note.xml
     """
@@ -146,10 +153,11 @@ def lint(
             "mm, N, kg, s, rad; inertia is xx, yy, zz, xy, yz, xz about the centre of mass.",
         ),
     ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the findings as JSON.")] = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
 ) -> None:
-    """Read a MotionView text: syntax, names, numbers of arguments, expressions.
+    """Check a MotionView text: syntax, names, arguments, values.
 
     Example: mdlgen lint note.mdl --values note.json
     """
@@ -158,15 +166,24 @@ def lint(
     from mdlgen import paths
     from mdlgen.registry import reader
 
-    reading = reader("motionview").read(paths.read_exactly(text), str(text), text.parent)
     to_stdout = values is not None and str(values) == "-"
+    if to_stdout and as_json:
+        raise SpecError("--json and --values - both take standard output; give --values a file")
+    reading = reader("motionview").read(paths.read_exactly(text), str(text), text.parent)
     if values is not None:
         found = json.dumps(reading.values, allow_nan=False, indent=1) + "\n"
         typer.echo(found, nl=False) if to_stdout else paths.write_atomic(values, found)
     report = reading.report
-    for finding in report.errors if quiet else report.findings:
+    if as_json:
+        findings = [
+            {"severity": f.severity, "code": f.code, "place": str(f.place), "message": f.message}
+            for f in report.findings
+        ]
+        counts = {"errors": len(report.errors), "warnings": len(report.warnings)}
+        echo_json({"file": str(text), "statements": report.statements, **counts, "findings": findings})
+    for finding in () if as_json else report.errors if quiet else report.findings:
         typer.echo(str(finding), err=to_stdout)
-    if not quiet:
+    if not quiet and not as_json:
         counts = f"{len(report.errors)} errors, {len(report.warnings)} warnings"
         typer.echo(f"{text}: {report.statements} statements, {counts}", err=to_stdout)
     if report.errors:
@@ -196,20 +213,25 @@ def verify(
     only: Annotated[
         str | None,
         typer.Option(
-            "--only", metavar="sheets", help="The sheets alone; --text may be a model that has them."
+            "--only",
+            metavar="sheets",
+            help="The sheets alone; --text may be a model that has them.",
+            autocompletion=completion.sheets_only,
         ),
     ] = None,
     turn: Annotated[
         bool,
-        typer.Option("--turn/--no-turn", help="Also turn each value of the data sets, in text and spec."),
+        typer.Option("--turn/--no-turn", help="Also change each value of the data sets, in text and scene."),
     ] = True,
     sets: Sets = None,
     limits: Raised = None,
-    as_json: Annotated[bool, typer.Option("--json", help="The result as JSON.")] = False,
+    as_json: Json = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
 ) -> None:
-    """Read text, script and deck back, and compare all they say with the model that is run.
+    """Compare text, script and deck with the model that is run.
+
+    They are read back; every number in them is compared with the tables of the local run.
 
     Example: mdlgen verify samples/transport_4x4.yaml
 

@@ -14,7 +14,7 @@ from mdlgen.errors import OutputError, RefusedError, SpecError
 from mdlgen.study import search
 from mdlgen.study.case import Case
 from mdlgen.study.distribution import Choice, Distribution, parse_distribution
-from mdlgen.study.goal import OBJECTIVE, Goal
+from mdlgen.study.goal import OBJECTIVE, Goal, goal
 from mdlgen.study.journal import Asked, Journal
 from mdlgen.study.link import check_links
 from mdlgen.study.measure import known
@@ -124,20 +124,46 @@ def values(variables: Variables, point: Sequence[float]) -> tuple[tuple[str, str
     return tuple((v.path, v.text(float(v.quantile(cube[k : k + 1])[0]))) for k, v in enumerate(variables))
 
 
-def opened(folder: Path, wanted: Optimisation, resume: bool) -> Journal:
-    """The journal in `folder`: a new one, or with `resume` the one that is there.
+def opened(folder: Path, wanted: Optimisation | None, resume: bool) -> tuple[Optimisation, Journal]:
+    """A search and its journal in `folder`: a new one, or with `resume` the one that is there (`wanted` is
+    what is asked for now, None: the same).
 
     Raises OutputError, and RefusedError by name where something else is there.
     """
     if not resume:
-        return Journal.create(folder, wanted.asked())
+        assert wanted is not None, "a new search has been asked for"
+        return wanted, Journal.create(folder, wanted.asked())
     journal = Journal.resume(folder)
     try:
+        wanted = wanted or _read(folder, journal.asked)
         _compare(folder, journal.asked, wanted.asked())
+        return wanted, journal
     except BaseException:
         journal.close()
         raise
-    return journal
+
+
+def _read(folder: Path, asked: Asked) -> Optimisation:
+    """What the journal there was asked for. Raises OutputError."""
+    try:
+        if asked["what"] != WHAT:
+            raise ValueError(f"of {asked['what']!s:.40}")
+        texts = tuple(str(text) for text in asked["goal"]["conditions"])
+        told = Task.of(asked["task"])
+        found = optimisation(
+            replace(told, measures=()),
+            [str(text) for text in asked["vary"]],
+            goal(str(asked["goal"]["minimise"]), texts),
+            (),
+            str(asked["method"]),
+            int(asked["most"]),
+            int(asked["seed"]),
+            float(asked["precision"]),
+            int(asked["together"]),
+        )
+        return replace(found, task=replace(found.task, measures=told.measures))
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise OutputError(f"{folder}: the journal there is not of a {WHAT} ({str(error)[:80]})") from None
 
 
 def _compare(folder: Path, there: Asked, now: Asked) -> None:

@@ -136,17 +136,13 @@ def _read(folder: Path, asked: Asked) -> Sweep:
     try:
         if asked["what"] != WHAT:
             raise ValueError(f"of {asked['what']!s:.40}")
-        told = dict(asked["task"])
-        for name in ("sets", "limits", "events", "lets"):
-            told[name] = tuple(str(item) for item in told[name])
-        told |= {name: str(told[name]) for name in ("spec", "text", "beside", "solver")}
-        told |= {name: bool(told[name]) for name in ("check_step", "keep")}
-        told["measures"] = tuple((str(name), str(text)) for name, text in told["measures"])
         values = [tuple((str(path), str(text)) for path, text in case) for case in asked["cases"]]
         cases = tuple(Case(index, value) for index, value in enumerate(values))
         if not cases:
             raise ValueError("it has no cases")
-        return Sweep(Task(**told), cases, str(asked["how"]), str(asked["name"]), str(asked["model"]))
+        return Sweep(
+            Task.of(asked["task"]), cases, str(asked["how"]), str(asked["name"]), str(asked["model"])
+        )
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise OutputError(f"{folder}: the journal there is not of a sweep ({str(error)[:80]})") from None
 

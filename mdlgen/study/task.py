@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from mdlgen.spec.limits import DEFAULT
 
@@ -33,6 +34,17 @@ class Task:
     events: tuple[str, ...] = ()  # names of those that say whether something happened
     lets: tuple[str, ...] = ()  # values that follow a variable, as of --let
     keep: bool = False  # the files of each run come back with its row
+
+    @classmethod
+    def of(cls, asked: Mapping[str, Any]) -> Task:
+        """From a journal. Raises KeyError, TypeError or ValueError for what is none."""
+        told = dict(asked)
+        for name in ("sets", "limits", "events", "lets"):
+            told[name] = tuple(str(item) for item in told[name])
+        told |= {name: str(told[name]) for name in ("spec", "text", "beside", "solver")}
+        told |= {name: bool(told[name]) for name in ("check_step", "keep")}
+        told["measures"] = tuple((str(name), str(text)) for name, text in told["measures"])
+        return cls(**told)
 
     def scene(self, case: Case | None = None) -> Scene:
         """The Scene of a case; None: as it was written. Raises SpecError, OutputError."""
