@@ -33,7 +33,7 @@ AT = {
 }
 COLOURS, WIDTH = 48, 640
 # of the animation: the time between two pictures in the run and on the screen [ms], and its width
-EVERY, SHOWN, WIDE = 1.75, 100, 480
+EVERY, SHOWN, WIDE = 1.0, 70, 480
 
 
 def run(name: str) -> Result:
@@ -65,11 +65,16 @@ def sample(name: str) -> None:
 
 
 def note() -> None:
-    """An animated GIF of transport_4x4, all pictures with the colours of one of them."""
+    """An animated GIF of transport_4x4."""
     result = run("transport_4x4")
     times = np.arange(0.0, float(result.time[-1]) + 1e-9, EVERY)
     images = drawn(result, times.tolist(), WIDE)
-    palette = images[len(images) // 2].quantize(COLOURS, dither=Image.Dither.NONE)
+    # the note begins slow and ends fast: colours of all times
+    wide, high = images[0].size
+    every = Image.new("RGB", (wide, high * len(images)))
+    for k, image in enumerate(images):
+        every.paste(image, (0, k * high))
+    palette = every.quantize(2 * COLOURS, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
     frames = [image.quantize(palette=palette, dither=Image.Dither.NONE) for image in images]
     path = TARGET / "note.gif"
     frames[0].save(

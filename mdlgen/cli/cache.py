@@ -22,7 +22,9 @@ def cache(
     quiet: Quiet = False,
     verbose: Verbose = False,
 ) -> None:
-    """Show where compiled code and templates are kept, and how large they are.
+    """Show where compiled code and templates are kept.
+
+    Each folder is printed with its size.
 
     Example: mdlgen cache --clear
     """
