@@ -25,6 +25,7 @@ from mdlgen.program import file
 from mdlgen.program.file import Head, Unfit, Variant
 from mdlgen.program.kernel import Kernel, sources_digest
 from mdlgen.program.layout import described, words
+from mdlgen.program.native import SMALL
 from mdlgen.program.ship import Program
 
 # Where the programs are, and the scenes in which all of their entries are called with all types that there
@@ -305,8 +306,8 @@ def shrink(whole: Any, target: Any) -> list[str]:
 
     tuning = llvm.create_pipeline_tuning_options(speed_level=3)
     tuning.loop_vectorization = tuning.slp_vectorization = False
-    # what is opened where it is called, but for what is small, and what is unrolled is for the machine as well
-    tuning.loop_unrolling, tuning.inlining_threshold = False, 25
+    # loops are opened for the machine, too
+    tuning.loop_unrolling, tuning.inlining_threshold = False, SMALL
     builder = llvm.create_pass_builder(target, tuning)
     builder.getModulePassManager().run(whole, builder)
     # names inside tell nobody anything, and are half of the file

@@ -20,6 +20,9 @@ from mdlgen.program.layout import Misfit, reader, words, writer
 LOG = logging.getLogger("mdlgen.compiling")
 
 _NOTHING: Any = object()
+# Functions up to this size (in LLVM's own measure, whose default is 225) are opened where they are called;
+# kernels say themselves which others are to be. More is twice the time to prepare, and no faster.
+SMALL = 25
 
 
 def load(name: str, head: Head, bitcode: Callable[[], bytes]) -> Machine:
@@ -66,6 +69,7 @@ def emit(machine: Any, bitcode: bytes) -> bytes:
         module.triple, module.data_layout = machine.triple, str(machine.target_data)
         tuning = llvm.create_pipeline_tuning_options(speed_level=3)
         tuning.loop_vectorization, tuning.slp_vectorization = True, False
+        tuning.inlining_threshold = SMALL
         builder = llvm.create_pass_builder(machine, tuning)
         builder.getModulePassManager().run(module, builder)
         return machine.emit_object(module)
