@@ -138,12 +138,12 @@ def run(
         raise typer.Exit(SOLVER_FAILED)
     result.source = source_of(task.text, task.sets)
     also = pictures_of(result) if drawn else {}
-    save(result, folder, {**also, "report.html": page([result]).encode("utf-8")})
+    summary = save(result, folder, {**also, "report.html": page([result]).encode("utf-8")})
     keep.drop()
     if as_json:
-        echo_json(result.summary())
+        echo_json(summary)
     elif not quiet:
-        typer.echo(summary_text(result.summary()))
+        typer.echo(summary_text(summary))
         typer.echo(f"wrote {folder}")
     if task.check_step and result.error_estimate is None and not quiet:
         say("a static run has no step: --check-step compared nothing")

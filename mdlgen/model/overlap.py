@@ -70,16 +70,8 @@ def rod(roller: RollerPart, center: Floats) -> Rod:
 def in_box(roller: Rod, box: Box) -> float:
     """How far a roller and a block overlap, by the way that is shortest out; 0 where they are apart [mm]."""
     gap = box.center - roller.center
-    ways = [*box.axes.T, roller.axis]
-    ways += [np.cross(roller.axis, side) for side in box.axes.T]
-    # from the axis to the nearest corner of the block
-    places = roller.center + np.outer(2.0 * roller.half * _STATIONS, roller.axis)
-    own = (places - box.center) @ box.axes
-    near = own - np.clip(own, -box.half, box.half)
-    away = box.axes @ near[int(np.argmin((near**2).sum(axis=1)))]
-    ways.append(away - roller.axis * float(away @ roller.axis))
     least = math.inf
-    for way in ways:
+    for way in _ways(roller, box):
         length = float(np.linalg.norm(way))
         if length < 1e-9:
             continue
@@ -89,6 +81,20 @@ def in_box(roller: Rod, box: Box) -> float:
         if least <= 0.0:
             return 0.0
     return least
+
+
+def _ways(roller: Rod, box: Box) -> Iterator[Floats]:
+    """Directions in which the two may be apart; most that are, are so in one of the first."""
+    yield from box.axes.T
+    yield roller.axis
+    for side in box.axes.T:
+        yield np.cross(roller.axis, side)
+    # from the axis to the nearest corner of the block
+    places = roller.center + np.outer(2.0 * roller.half * _STATIONS, roller.axis)
+    own = (places - box.center) @ box.axes
+    near = own - np.clip(own, -box.half, box.half)
+    away = box.axes @ near[int(np.argmin((near**2).sum(axis=1)))]
+    yield away - roller.axis * float(away @ roller.axis)
 
 
 def in_triangles(roller: Rod, triangles: Floats) -> float:

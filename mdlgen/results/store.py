@@ -29,16 +29,18 @@ TOOK = ("wall_s", "estimate_s", "build_s", "compile_s")  # which differ from run
 STATISTICS = ("max_depth", "mean_depth", "max_force", "mean_force", "last_force_at")
 
 
-def save(result: Result, folder: Path, also: Mapping[str, bytes] | None = None) -> None:
+def save(result: Result, folder: Path, also: Mapping[str, bytes] | None = None) -> dict[str, Any]:
     """Write summary.json, series.csv and result.h5 into `folder`, and the files `also` (name -> bytes).
+    Returns what summary.json holds.
 
     Raises OutputError, and leaves what was there, where one of them cannot be written; and for a failed run,
     which leaves nothing. A part of a run says in its status that it is one.
     """
     if not result.ok and not result.partial:
         raise OutputError(f"{folder}: nothing written, the run failed: {result.status}")
+    told = summary(result)
     files: dict[Path, str | bytes] = {
-        folder / "summary.json": json.dumps(summary(result), indent=2, allow_nan=False) + "\n",
+        folder / "summary.json": json.dumps(told, indent=2, allow_nan=False) + "\n",
         folder / "series.csv": csv(result),
         folder / "result.h5": hdf5(result),
     }
@@ -52,6 +54,7 @@ def save(result: Result, folder: Path, also: Mapping[str, bytes] | None = None) 
     except OSError as error:
         raise OutputError(f"{folder}: cannot make this folder: {error.strerror or error}") from None
     write_together(files)
+    return told
 
 
 def check_folder(folder: Path) -> None:
