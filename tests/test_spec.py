@@ -145,3 +145,8 @@ def test_every_sample_loads() -> None:
     assert len(found) >= 7
     for path in found:
         assert load(path).name == path.stem
+
+
+def test_a_mapping_where_a_list_is_due_says_how_items_begin() -> None:
+    told = refused(f"{CANTILEVER}\ncontacts:\n  grip: {{between: [note, note], stiffness: 300 N/mm^1.5}}\n")
+    assert "contacts: expected a list, each item begun with '- ', got {'grip'" in str(told)

@@ -24,7 +24,7 @@ def cache(
 ) -> None:
     """Show where compiled code and templates are kept.
 
-    Each folder is printed with its size.
+    The folder is printed with its size.
 
     Example: mdlgen cache --clear
     """

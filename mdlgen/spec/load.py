@@ -288,6 +288,8 @@ def _describe(error: Any, document: Document) -> SpecError:
         said = re.sub(
             r"valid dictionary or instance of \w+|valid dictionary or object.*", "mapping", error["msg"]
         )
+        if kind in ("tuple_type", "list_type") and isinstance(error["input"], dict):
+            said = "expected a list, each item begun with '- '"
         message = f"{said.replace('valid tuple', 'list')}, got {error['input']!r}"[:300]
     return SpecError(message, path, document.place(path, prefer_key))
 
