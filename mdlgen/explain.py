@@ -33,8 +33,8 @@ SCENE = {
         "smaller smoothing takes longer to run."
     ),
     "W107": (
-        "The smoothing speed is so small beside the surface speed that the solver needs many rounds for "
-        "each change of sign of friction. Raise it, unless a slower creep than that matters."
+        "The smoothing speed is so small beside the surface speed that the solver needs many Newton "
+        "iterations for each change of sign of friction. Raise it, unless a slower creep than that matters."
     ),
     "W108": (
         "A drive of speed 0 holds its roller still; it does not let it turn freely. Leave `drive` out for "

@@ -61,7 +61,7 @@ def bench(
         typer.Option(
             "--page",
             metavar="FILE",
-            help="Also writes the suite's page, as it stands in samples/: stability or validation.",
+            help="Write the page of one suite too: stability or validation.",
         ),
     ] = None,
     as_json: Json = False,

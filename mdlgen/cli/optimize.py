@@ -47,8 +47,8 @@ def optimize(
             "--minimise",
             "--minimize",
             metavar="EXPR",
-            help="What is to be small: arithmetic over numbers of summary.json, as 'sheets.note.yaw_deg**2'. "
-            "A square is found in fewer runs than an abs().",
+            help="The number to make small: arithmetic over summary.json, as 'sheets.note.yaw_deg**2'. A "
+            "square is found in fewer runs than an abs().",
         ),
     ] = None,
     vary: Annotated[
@@ -65,7 +65,7 @@ def optimize(
         typer.Option(
             "--subject-to",
             metavar="CONDITION",
-            help="What has to hold: A <= B or A >= B. May be given more than once.",
+            help="A condition that has to hold, A <= B or A >= B. May be given more than once.",
         ),
     ] = None,
     lets: Lets = None,
@@ -73,10 +73,12 @@ def optimize(
         list[str] | None,
         typer.Option("--measure", metavar="NAME|NAME=EXPR", help="Another number for the table."),
     ] = None,
-    most: Annotated[int, typer.Option("--most", metavar="N", help="Runs that it may take.")] = 25,
+    most: Annotated[int, typer.Option("--most", metavar="N", help="The greatest number of runs.")] = 25,
     precision: Annotated[
         float,
-        typer.Option("--precision", metavar="PART", help="Where the best value is known, of its range."),
+        typer.Option(
+            "--precision", metavar="PART", help="Stop when the best value is known to this part of its range."
+        ),
     ] = 1e-3,
     method: Annotated[
         str,
@@ -88,7 +90,7 @@ def optimize(
             autocompletion=completion.methods,
         ),
     ] = "auto",
-    seed: Annotated[int, typer.Option("--seed", help="Of --method optuna.")] = 1,
+    seed: Annotated[int, typer.Option("--seed", help="Seed of --method optuna.")] = 1,
     output: Annotated[
         Path | None,
         typer.Option(
@@ -109,11 +111,15 @@ def optimize(
     ] = False,
     workers: Annotated[
         int,
-        typer.Option("--workers", min=1, max=256, help="Designs that optuna tries at a time."),
+        typer.Option("--workers", min=1, max=256, help="Number of designs that optuna tries at a time."),
     ] = 1,
     scheduler: Annotated[
         str | None,
-        typer.Option("--scheduler", metavar="ADDRESS", help="Of a Dask cluster that runs the designs."),
+        typer.Option(
+            "--scheduler",
+            metavar="ADDRESS",
+            help="Address of a Dask scheduler whose workers run the designs.",
+        ),
     ] = None,
     solver: Solver = "auto",
     check_step: CheckStep = False,

@@ -104,13 +104,15 @@ Solver = Annotated[
     typer.Option(
         "--solver",
         metavar="auto|lattice|exudyn",
-        help="What runs it.",
+        help="The solver that runs the scene.",
         autocompletion=completion.solvers,
     ),
 ]
 CheckStep = Annotated[
     bool,
-    typer.Option("--check-step", help="Run again at half the step; the difference estimates the error."),
+    typer.Option(
+        "--check-step", help="Run again at half the step, and estimate the error from the difference."
+    ),
 ]
 Pictures = Annotated[
     bool,
@@ -129,7 +131,7 @@ Lets = Annotated[
     ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
-Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="Errors and asked-for output only.")]
+Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="Print errors and asked-for output only.")]
 Verbose = Annotated[
     bool, typer.Option("-v", "--verbose", help="Say more; show the traceback of internal errors.")
 ]

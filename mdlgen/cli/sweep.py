@@ -68,8 +68,8 @@ def sweep(
         typer.Option(
             "--event",
             metavar="NAME=EXPR",
-            help="A condition, as jam='events.jam > 0', whose probability is told with its interval of 95 %; "
-            "take it from --sample random, whose cases are independent. May be given more than once.",
+            help="A condition, as jam='events.jam > 0', whose probability is printed with its interval of "
+            "95 %; take it from --sample random, whose cases are independent. May be given more than once.",
         ),
     ] = None,
     lets: Lets = None,
@@ -82,7 +82,9 @@ def sweep(
             "them, for Sobol's indices.",
         ),
     ] = None,
-    seed: Annotated[int, typer.Option("--seed", help="Of --sample; the same seed gives the same cases.")] = 1,
+    seed: Annotated[
+        int, typer.Option("--seed", help="Seed of --sample; the same seed gives the same cases.")
+    ] = 1,
     output: Annotated[
         Path | None,
         typer.Option(
@@ -95,14 +97,16 @@ def sweep(
     ] = False,
     workers: Annotated[
         int | None,
-        typer.Option("--workers", min=1, max=256, help="Processes: one for each processor if left out."),
+        typer.Option(
+            "--workers", min=1, max=256, help="Number of processes: one for each processor if left out."
+        ),
     ] = None,
     scheduler: Annotated[
         str | None,
         typer.Option(
             "--scheduler",
             metavar="ADDRESS",
-            help="Of a Dask cluster that runs the cases, as tcp://host:8786.",
+            help="Address of a Dask scheduler whose workers run the cases, as tcp://host:8786.",
         ),
     ] = None,
     keep: Annotated[
