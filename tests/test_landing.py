@@ -1,7 +1,8 @@
 """A note that is dropped flat onto a table comes to rest, with settings that nobody chose.
 
 While it is flat each of its boxes is a ball of its own mass: it leaves with c times the speed at which it
-comes (Eq. 11 with a sharp sign; bench.oracles.impact has what the smoothing speed adds), so it bounces for
+comes (Eq. 11 with a sharp sign; bench.oracles.impact has what the smoothing speed adds), less what its weight
+takes over the greatest depth z on the way out, v1^2 = c^2 (v0^2 + 2 g z) - 2 g z. So it bounces for at most
 t = t0 (1 + c)/(1 - c), t0 = sqrt(2 h/g), and rests (m g/k)^(2/3) deep.
 """
 
@@ -42,21 +43,26 @@ run: {{duration: {time!r} ms, print_step: 0.5 ms}}
 
 
 def bounced(height, c, time, mass):
-    """Height of a ball of Eq. 11 at times [ms], without its weight in contacts; nan within them."""
+    """Height of a ball of Eq. 11 at times [ms]; nan within its contacts. And the ratio of the speeds at which
+    it leaves for the first time and at which it came."""
     speed, at = math.sqrt(2 * G * height), math.sqrt(2 * height / G)
     found = np.where(time < at, height - 0.5 * G * time**2, np.nan)
+    first = None
     while speed > 2e-2 and at < time[-1]:
         hit = oracle.impact(mass, K, speed, c, SMOOTH)
-        speed, at = hit.restitution * speed, at + hit.time
+        lifted = 2.0 * G * hit.depth / speed**2
+        left = math.sqrt(max(hit.restitution**2 * (1.0 + lifted) - lifted, 0.0))
+        first = left if first is None else first
+        speed, at = left * speed, at + hit.time
         since = time - at
         found = np.where((since > 0.0) & (since < 2 * speed / G), speed * since - 0.5 * G * since**2, found)
         at += 2 * speed / G
-    return found
+    assert first is not None
+    return found, first
 
 
-@pytest.mark.parametrize(
-    "height, c", [(1.0, 0.2), *((height, c) for height in (1.0, 3.0, 10.0) for c in (0.5, 0.8))]
-)
+@pytest.mark.parametrize("c", [0.0, 0.2, 0.5, 0.8])
+@pytest.mark.parametrize("height", [1.0, 3.0, 10.0])
 def test_a_note_that_falls_flat_comes_to_rest(height, c):
     fall = math.sqrt(2 * height / G)
     last = fall * (1 + c) / (1 - c)
@@ -69,10 +75,15 @@ def test_a_note_that_falls_flat_comes_to_rest(height, c):
     free = z.min(axis=1) > 0.0
     energy = (G * z + 0.5 * v**2).mean(axis=1) / (G * height)
     assert energy[free].max() < 1.0 + 2e-3
-    # the first bounces
-    exact = bounced(height, c, result.time, 0.72 / count)
+    # the first rebound, by the energy in flight: what one impact may make goes with tolerance and c
+    exact, left = bounced(height, c, result.time, 0.72 / count)
+    hop = free & (result.time > fall) & (result.time < fall + max(left, 0.1) * fall)
+    if hop.any():
+        assert math.sqrt(energy[hop].mean()) == pytest.approx(left, abs=1.5e-3 if c >= 0.2 else 2e-2)
+    else:
+        assert left == 0.0
     first = ~np.isnan(exact) & (result.time < fall * (1 + 2 * c + 2 * c**2)) & free
-    assert np.abs(z.mean(axis=1) - exact)[first].max() < 0.03 * height * max(c, 0.3)
+    assert np.abs(z.mean(axis=1) - exact)[first].max() < 5e-3 * height
     if last > 200.0:
         return
     # at rest, where it has bounced for as long as the sum has it

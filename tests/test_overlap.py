@@ -98,6 +98,26 @@ def test_pairs_that_can_meet_are_found(part: str, more: str, says: bool) -> None
     assert (len(Overlaps(lower(loads(text))).ahead()) == 1) is says
 
 
+@pytest.mark.parametrize(
+    "part", [PLANE, LINE.format(side="right"), ARC.format(z=30, begin=45, end=135, side="inside")]
+)
+def test_what_was_looked_at_before_changes_nothing(part: str) -> None:
+    """A roller that wanders about a part, looked at by one that knows how far apart they were and by one that
+    does not."""
+    made = lower(loads(without(scene(part, DOWNWARDS, center="[0 mm, 0 mm, 10.2 mm]"))))
+    body, overlaps = made.roller("r").body, Overlaps(made)
+    rng, told = np.random.default_rng(3), 0
+    for _ in range(300):
+        places = made.bodies.position.copy()
+        size = 10.0 ** rng.uniform(-3, 2)
+        for _ in range(5):
+            places[body] += size * rng.normal(size=3)
+            found = overlaps.found(places, 0.0)
+            assert found == Overlaps(made).found(places, 0.0)
+            told += found is not None
+    assert 50 < told < 1400
+
+
 # -- runs
 
 

@@ -20,13 +20,13 @@ import numpy as np
 
 from mdlgen.mechanics.point import push, push_in_nip
 from mdlgen.mechanics.vector import add, back, dot, rotate, scale, sub
-from mdlgen.program.kernel import OWNS, njit
+from mdlgen.program.kernel import BORROWS, OWNS, njit
 
 WHOLE = 4.0  # no sector but the whole round: more than half a turn
 _GAUSS = 1.0 / math.sqrt(3.0)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def _face(
     out,
     p,
@@ -176,7 +176,7 @@ def local(p, r, q, a, b, c):
     return (x, y, z)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def box_cylinder(out, xa, ra, va, wa, half, exposed, xb, axis, vb, wb, radius, width, k, shared, law):
     """Box a (centre xa, rotation ra, half lengths) against cylinder b; exposed: 4 side faces
     as a bit mask."""
@@ -186,7 +186,7 @@ def box_cylinder(out, xa, ra, va, wa, half, exposed, xb, axis, vb, wb, radius, w
     )
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def box_sector(
     out, xa, ra, va, wa, half, exposed, xb, axis, middle, angle, vb, wb, radius, width, k, shared, aside, law
 ):
@@ -317,31 +317,40 @@ def clip(points, count, way, limit):
     return found
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def face_corners(points, xa, ra, half, facing, xb, rb):
     """Corners of the face of box a that looks along -`facing` (box axes) into `points`, in the axes of b.
 
     Returns the area of the face.
     """
-    q = (
-        2
-        if abs(facing[2]) >= max(abs(facing[0]), abs(facing[1]))
-        else 0
-        if abs(facing[0]) > abs(facing[1])
-        else 1
-    )
-    p, r = (q + 1) % 3, (q + 2) % 3
-    side = -half[q] if facing[q] > 0.0 else half[q]
+    q = looking(facing)
     for corner in range(4):
-        sp = half[p] if corner == 0 or corner == 3 else -half[p]
-        sr = half[r] if corner < 2 else -half[r]
-        at = back(rb, sub(add(xa, rotate(ra, local(p, r, q, sp, sr, side))), xb))
+        at = face_corner(corner, xa, ra, half, facing, xb, rb)
         for i in range(3):
             points[corner, i] = at[i]
-    return 4.0 * half[p] * half[r]
+    return 4.0 * half[(q + 1) % 3] * half[(q + 2) % 3]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", forceinline=True)
+def looking(facing):
+    """The axis of a box that is closest to a direction in box axes."""
+    if abs(facing[2]) >= max(abs(facing[0]), abs(facing[1])):
+        return 2
+    return 0 if abs(facing[0]) > abs(facing[1]) else 1
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def face_corner(corner, xa, ra, half, facing, xb, rb):
+    """One of the four `face_corners`, in the axes of b."""
+    q = looking(facing)
+    p, r = (q + 1) % 3, (q + 2) % 3
+    side = -half[q] if facing[q] > 0.0 else half[q]
+    sp = half[p] if corner == 0 or corner == 3 else -half[p]
+    sr = half[r] if corner < 2 else -half[r]
+    return back(rb, sub(add(xa, rotate(ra, local(p, r, q, sp, sr, side))), xb))
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
 def cylinder_cylinder(out, xa, va, wa, radius_a, width_a, xb, vb, wb, radius_b, width_b, axis, k, law):
     """Two parallel cylinders; k is shared by the part of the narrower one's width that they meet on."""
     gap = sub(xa, xb)

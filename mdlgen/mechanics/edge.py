@@ -30,7 +30,7 @@ import math
 from mdlgen.mechanics.contact import local
 from mdlgen.mechanics.point import push
 from mdlgen.mechanics.vector import add, back, dot, rotate, scale, sub
-from mdlgen.program.kernel import njit
+from mdlgen.program.kernel import BORROWS, njit
 
 NORM = 12.0
 # Sine of the slope of a box to the face between which the face's law passes into that of the edge: the
@@ -137,7 +137,7 @@ def _corner(xa, ra, half, p, sign, t, up, end):
     return at, -dot(gap, out), -dot(gap, normal)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def stub(out, xa, ra, va, wa, half, p, sign, end, thick, edge, xb, vb, k, shared, law):
     """The outer side `sign` of axis p of box a against an end of plate b, which does not turn."""
     zero = (0.0, 0.0, 0.0)
@@ -186,7 +186,7 @@ def _passes(c, half, inner_low, inner_high, radius):
     return weight
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def _pressed(out, xa, ra, va, wa, half, exposed, q, sign, axis, end, radius, xb, vb, k, shared, law, grip):
     """An edge, the round about `axis` (a point of it), on the face of box a whose normal into the box is
     `sign` times its axis q."""
@@ -250,7 +250,7 @@ def _pressed(out, xa, ra, va, wa, half, exposed, q, sign, axis, end, radius, xb,
         )
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def line(out, xa, ra, va, wa, half, exposed, end, thick, edge, xb, vb, k, shared, law):
     """Both edges of an end in the broad faces of box a, or in any face of a block."""
     point, away, up, along, length = end

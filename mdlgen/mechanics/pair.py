@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from mdlgen.mechanics.contact import box_cylinder, cylinder_cylinder
 from mdlgen.mechanics.edge import stands
 from mdlgen.mechanics.facing import box_box
@@ -12,7 +14,7 @@ from mdlgen.mechanics.point import resist_rolling
 from mdlgen.mechanics.rim import box_rim, rim_rim
 from mdlgen.mechanics.roller_mesh import roller_mesh, roller_mesh_near
 from mdlgen.mechanics.roller_plate import guide_near, plate_near, roller_guide, roller_plane
-from mdlgen.mechanics.vector import back, mat, sub, three, vec
+from mdlgen.mechanics.vector import back, dot, mat, sub, three, vec
 from mdlgen.program.kernel import BORROWS, njit
 
 # As in mdlgen.model.tables.
@@ -309,6 +311,14 @@ def remember(bodies, pairs, x, r):
             frame = as_guide(frame)
         else:
             shape, top = three(bodies[b].arc), upper(bodies[b].side, 2.0 * top)
+        if shape[0] == 0.0:
+            at, half = back(frame, sub(vec(x, a), vec(x, b))), three(bodies[a].half)
+            reach = math.sqrt(dot(half, half))
+            if at[1] > top + reach or at[1] < top - 2.0 * size[2] - reach:
+                pairs[p].beside = 0  # clear of the plate
+                continue
+            if pairs[p].beside == 0 and abs(at[0]) + reach < size[0] and abs(at[2]) + reach < size[1]:
+                continue  # inside of all ends
         pairs[p].beside = stands(
             vec(x, a),
             mat(r, a),

@@ -12,11 +12,11 @@ import math
 
 import numpy as np
 
-from mdlgen.mechanics.contact import clip, face_corners
+from mdlgen.mechanics.contact import clip, face_corner, face_corners, looking
 from mdlgen.mechanics.edge import end_of, held, leaning, line, stub
 from mdlgen.mechanics.point import push
-from mdlgen.mechanics.vector import add, back, dot, rotate, scale, sub
-from mdlgen.program.kernel import OWNS, njit
+from mdlgen.mechanics.vector import add, back, cross, dot, rotate, scale, sub, vec
+from mdlgen.program.kernel import BORROWS, OWNS, njit
 
 STRAIGHT = (0.0, 0.0, 0.0)
 
@@ -27,32 +27,25 @@ def as_guide(rb):
     return (rb[0], rb[2], -rb[1], rb[3], rb[5], -rb[4], rb[6], rb[8], -rb[7])
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def area_of(points, count):
     """Of a flat polygon."""
     x = y = z = 0.0
+    first = vec(points, 0)
     for i in range(1, count - 1):
-        a, b = points[i] - points[0], points[i + 1] - points[0]
-        x += a[1] * b[2] - a[2] * b[1]
-        y += a[2] * b[0] - a[0] * b[2]
-        z += a[0] * b[1] - a[1] * b[0]
+        turn = cross(sub(vec(points, i), first), sub(vec(points, i + 1), first))
+        x, y, z = x + turn[0], y + turn[1], z + turn[2]
     return 0.5 * math.sqrt(x * x + y * y + z * z)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def facing(facing, ra):
     """Normal, into the box, of its face that looks along -`facing` (box axes), global."""
-    q = (
-        2
-        if abs(facing[2]) >= max(abs(facing[0]), abs(facing[1]))
-        else 0
-        if abs(facing[0]) > abs(facing[1])
-        else 1
-    )
+    q = looking(facing)
     return scale(1.0 if facing[q] > 0.0 else -1.0, (ra[q], ra[3 + q], ra[6 + q]))
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def box_ends(
     out, xa, ra, va, wa, half, exposed, xb, rb, shape, half_b, top, ends, edge, beside, vb, k, shared, law
 ):
@@ -128,30 +121,38 @@ def box_flat(
     if abs(upright[1]) > 0.3:
         sign = 1.0 if dot(upright, sub(near, at)) * upright[1] < 0.0 else -1.0
     normal, radius = (0.0, sign, 0.0), edge[0] if sign > 0.0 else edge[1]
-    points = np.empty((12, 3))
     look = back(ra, rotate(rb, normal))
+    if inside:
+        for corner in range(4):
+            at = face_corner(corner, xa, ra, half, look, xb, rb)
+            depth = sign * (top - at[1]) if sign > 0.0 else at[1] - bottom
+            if depth <= 0.0 or depth > thick:
+                continue
+            spring = 0.25 * k * depth * math.sqrt(depth)
+            energy, way = 0.4 * spring * depth, rotate(rb, normal)
+            push(out, add(xb, rotate(rb, at)), way, spring, depth, energy, xa, va, wa, xb, vb, zero, law)
+        return
+    points = np.empty((12, 3))
     area = face_corners(points, xa, ra, half, look, xb, rb)
     count = 4
-    if not inside:
-        for axis in range(2):
-            way = (1.0, 0.0, 0.0) if axis == 0 else (0.0, 0.0, 1.0)
-            count = clip(points, count, way, half_b[axis])
-            count = clip(points, count, scale(-1.0, way), half_b[axis])
+    for axis in range(2):
+        way = (1.0, 0.0, 0.0) if axis == 0 else (0.0, 0.0, 1.0)
+        count = clip(points, count, way, half_b[axis])
+        count = clip(points, count, scale(-1.0, way), half_b[axis])
     if count >= 3:
         share = k / count
-        if covered and not inside:
+        if covered:
             share *= area_of(points, count) / area
-        free = 0 if inside else ends
         inward = back(rb, facing(look, ra))
-        if not covered and free != 0:
-            share *= _drawn(points, count, half_b, free, radius)
+        if not covered and ends != 0:
+            share *= _drawn(points, count, half_b, ends, radius)
         for i in range(count):
             depth = sign * (top - points[i, 1]) if sign > 0.0 else points[i, 1] - bottom
             if depth <= 0.0 or depth > thick:
                 continue
             weight, way = share, normal
-            if free != 0:
-                weight, way = _near_end(points[i], half_b, free, radius, inward, normal, share)
+            if ends != 0:
+                weight, way = _near_end(points[i], half_b, ends, radius, inward, normal, share)
                 depth *= sign * way[1]
                 way = held(way, normal, edge[2] * law[1])
             spring = weight * depth * math.sqrt(depth)
@@ -173,7 +174,7 @@ def box_flat(
                 zero,
                 law,
             )
-    if ends != 0 and not inside:
+    if ends != 0:
         box_ends(
             out,
             xa,

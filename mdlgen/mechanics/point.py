@@ -21,7 +21,7 @@ import math
 
 from mdlgen.mechanics.laws import damped, friction_over_speed, sign_step
 from mdlgen.mechanics.vector import add, cross, dot, scale, sub
-from mdlgen.program.kernel import njit
+from mdlgen.program.kernel import BORROWS, njit
 
 OUT = 16
 POINT = 23
@@ -36,7 +36,7 @@ def closing(point, normal, xa, va, wa, xb, vb, wb):
     return -dot(slip, normal)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def push(out, point, normal, spring, depth, energy, xa, va, wa, xb, vb, wb, law):
     """Adds the force of one contact point; `normal` points to the first body, `spring` is its elastic force.
 
@@ -48,7 +48,7 @@ def push(out, point, normal, spring, depth, energy, xa, va, wa, xb, vb, wb, law)
         out[at + 16] = ALONE
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def push_in_nip(out, point, normal, foot, way, spring, depth, energy, xa, va, wa, xb, vb, wb, law):
     """As `push` for one of several points of a nip, whose depth grows as its `foot` closes along `way`."""
     rate = closing(foot, way, xa, va, wa, xb, vb, wb)
@@ -60,7 +60,7 @@ def push_in_nip(out, point, normal, foot, way, spring, depth, energy, xa, va, wa
             out[at + 20 + i] = way[i]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def _push(out, point, normal, rate, spring, depth, energy, xa, va, wa, xb, vb, wb, law):
     """Adds the force of a point that is damped by a rate; returns where it stands in `out`, 0: nowhere."""
     ra, rb = sub(point, xa), sub(point, xb)
@@ -99,7 +99,7 @@ def _push(out, point, normal, rate, spring, depth, energy, xa, va, wa, xb, vb, w
     return at
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def resist_rolling(out, wa, wb, axis, radius, f, v_s):
     """Adds the couple that resists the turning of two bodies against each other about an axis: f N R, N their
     normal force, over its sign's speed v_s of the rolling speed omega R."""

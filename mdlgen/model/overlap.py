@@ -69,6 +69,11 @@ def rod(roller: RollerPart, center: Floats) -> Rod:
 
 def in_box(roller: Rod, box: Box) -> float:
     """How far a roller and a block overlap, by the way that is shortest out; 0 where they are apart [mm]."""
+    return max(0.0, _into_box(roller, box))
+
+
+def _into_box(roller: Rod, box: Box) -> float:
+    """As `in_box`; below zero by how far they are apart at least."""
     gap = box.center - roller.center
     least = math.inf
     for way in _ways(roller, box):
@@ -78,8 +83,6 @@ def in_box(roller: Rod, box: Box) -> float:
         unit = way / length
         reach = roller.reach(unit) + float(np.abs(unit @ box.axes) @ box.half)
         least = min(least, reach - abs(float(gap @ unit)))
-        if least <= 0.0:
-            return 0.0
     return least
 
 
@@ -99,11 +102,18 @@ def _ways(roller: Rod, box: Box) -> Iterator[Floats]:
 
 def in_triangles(roller: Rod, triangles: Floats) -> float:
     """How far triangles (n, 3, 3) come into a roller from its round; 0 where they are apart [mm]."""
+    return max(0.0, _into_triangles(roller, triangles))
+
+
+def _into_triangles(roller: Rod, triangles: Floats) -> float:
+    """As `in_triangles`; below zero by how far they are apart at least."""
     extent = np.array([roller.reach(way) for way in np.eye(3)])
     low, high = triangles.min(axis=1), triangles.max(axis=1)
-    close = np.all((low <= roller.center + extent) & (high >= roller.center - extent), axis=1)
+    gaps = np.maximum(low - roller.center, roller.center - high) - extent
+    apart = gaps.max(axis=1)
+    close = apart <= 0.0
     if not close.any():
-        return 0.0
+        return -float(apart.min())
     first = np.cross(roller.axis, np.eye(3)[int(np.argmin(np.abs(roller.axis)))])
     first = first / np.linalg.norm(first)
     frame = np.stack([first, np.cross(roller.axis, first), roller.axis], axis=1)
@@ -155,6 +165,10 @@ class Overlaps:
         self._met = set(zip(model.contacts.part_a, model.contacts.part_b, strict=True))
         self.pairs = [Pair(roller, part, self._given(roller, part)) for roller, part in self._candidates()]
         self._watched = [pair for pair in self.pairs if pair.start <= HAIR]
+        self._bodies = np.array([[p.roller.body, p.part.body] for p in self._watched], int).reshape(-1, 2)
+        # where a pair stood to each other when it was looked at, and how far apart it was
+        self._places = np.zeros((len(self._watched), 3))
+        self._apart = np.zeros(len(self._watched))
 
     def _candidates(self) -> Iterator[tuple[RollerPart, Part]]:
         model = self._model
@@ -177,6 +191,12 @@ class Overlaps:
         self, roller: RollerPart, part: Part, at: Floats | None = None, by: Floats | None = None
     ) -> float:
         """How far a roller with its centre `at` overlaps a part that has moved `by`; as they begin [mm]."""
+        return max(0.0, self._into(roller, part, at, by))
+
+    def _into(
+        self, roller: RollerPart, part: Part, at: Floats | None = None, by: Floats | None = None
+    ) -> float:
+        """As `depth`; below zero by how far they are apart at least."""
         position = self._model.bodies.position
         center = position[roller.body] if at is None else at
         shape = rod(roller, center if by is None else center - by)
@@ -184,17 +204,27 @@ class Overlaps:
             if part.body not in self._triangles:
                 places = part.center + part.corners @ part.axes.T
                 self._triangles[part.body] = places[part.triangles]
-            return in_triangles(shape, self._triangles[part.body])
+            return _into_triangles(shape, self._triangles[part.body])
         if part.body not in self._boxes:
             self._boxes[part.body] = _boxes(part, position[part.body], self._model.bodies.rotation[part.body])
-        return max(in_box(shape, box) for box in self._boxes[part.body])
+        return max(_into_box(shape, box) for box in self._boxes[part.body])
 
     def found(self, position: Floats, time: float) -> str | None:
-        """Why a run cannot go on from places of bodies (n, 3) at a time [ms]; None: it can."""
+        """Why a run cannot go on from places of bodies (n, 3) at a time [ms]; None: it can.
+
+        A pair is looked at again once it may have come together since it was.
+        """
+        if not self._watched:
+            return None
         start = self._model.bodies.position
-        for roller, part, before in self._watched:
-            by = position[part.body] - start[part.body]
-            deep = self.depth(roller, part, position[roller.body], by)
+        rollers, parts = self._bodies.T
+        moved = position[parts] - start[parts]
+        places = position[rollers] - moved
+        way = np.sqrt(np.square(places - self._places).sum(axis=1))
+        for k in np.flatnonzero(~(way < self._apart)):
+            roller, part, before = self._watched[k]
+            deep = self._into(roller, part, position[roller.body], moved[k])
+            self._places[k], self._apart[k] = places[k], max(0.0, -deep)
             if deep > HAIR + before:
                 two = [self._model.called(body) for body in (roller.body, part.body)]
                 return (

@@ -112,7 +112,7 @@ def _add(f, b, force, torque):
         f[b, 3 + i] += torque[i]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def joint_forces(joints, points, x, r, u, w, f, lag=0.0):
     """Adds the forces of all joints to f (bodies, 6), with `lag` [ms] times the stiffness on top of the
     damping, less the damping time that a joint has itself. `points` are those of the curves that some follow.
@@ -267,7 +267,7 @@ def _touches(bodies, pair, meshes, x, r, u, w, f, out):
     return True
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def pair_forces(bodies, pairs, meshes, near, close, x, r, u, w, f, touched, outs):
     """Adds the forces of the pairs near[:close] to f. Those that touch are listed in `touched`, each with its
     row of outs (pairs, WIDE). Returns (how many, stored energy, dissipated power)."""
@@ -283,7 +283,7 @@ def pair_forces(bodies, pairs, meshes, near, close, x, r, u, w, f, touched, outs
     return count, stored, lost
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def pair_forces_again(bodies, pairs, meshes, near, close, known, x, r, u, w, f, touched, outs):
     """As pair_forces where some pairs are `known`: (those that touch, what they do, how many, whether a pair
     is among those looked at)."""
@@ -312,7 +312,7 @@ def pair_forces_again(bodies, pairs, meshes, near, close, known, x, r, u, w, f, 
     return count, stored, lost
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def clutch_torques(bodies, t, ub, f):
     """Adds the torques of clutches on the rollers that turn at the rates ub, at a time."""
     for b in range(bodies.size - 1):
@@ -322,7 +322,7 @@ def clutch_torques(bodies, t, ub, f):
                 f[b, 3 + i] += torque * bodies[b].axis[i]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def other_forces(bodies, loads, gravity, level, r, u, w, f):
     """Adds weights and loads, both times `level`. Returns the power of the loads."""
     power = 0.0

@@ -40,7 +40,7 @@ def _put(g, row, column, sign, t):
             g[row + i, column + j] += sign * t[3 * i + j]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def _rollers(body, x, arm, axes, sign, first, direction, index, found):
     """A roller's unknowns that move it against a box, each as a velocity and an angular velocity at the box's
     centre; `arm` goes from there to the roller's, which is x."""
@@ -61,7 +61,7 @@ def _rollers(body, x, arm, axes, sign, first, direction, index, found):
     return found
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def _point_growth(growth, t, arm, foot):
     """Adds what a force at an arm loses as the velocity at a foot grows: t, in the axes of the box."""
     right = hat_right(t, foot)
@@ -71,11 +71,24 @@ def _point_growth(growth, t, arm, foot):
     _put(growth, 3, 3, -1.0, hat_left(arm, right))
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _add_outer(growth, force, torque, way, turn):
+    """Adds a force and a torque for 1 of the velocity along `way` and of the turning along `turn`."""
+    for i in range(3):
+        for j in range(3):
+            growth[i, j] += force[i] * way[j]
+            growth[i, 3 + j] += force[i] * turn[j]
+            growth[3 + i, j] += torque[i] * way[j]
+            growth[3 + i, 3 + j] += torque[i] * turn[j]
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
 def _pair_growth(pair, out, axes, h, x, chord, growth):
     """What the points of one pair do together: a 6 x 6 matrix of the motion of one body against the other,
     seen from the centre of the first, in the axes of the box."""
-    growth[:] = 0.0
+    for i in range(6):
+        for j in range(6):
+            growth[i, j] = 0.0
     for point in range(int(out[OUT])):
         at = OUT + 1 + POINT * point
         if out[at + 16] == COUPLE:
@@ -90,8 +103,8 @@ def _pair_growth(pair, out, axes, h, x, chord, growth):
         if damping != 0.0:
             foot = back(axes, sub((out[at + 17], out[at + 18], out[at + 19]), vec(x, pair.a)))
             way = back(axes, (out[at + 20], out[at + 21], out[at + 22]))
-            force = sub(normal, scale(phi, slip))
-            _point_growth(growth, outer(scale(damping, force), way), arm, foot)
+            force = scale(damping, sub(normal, scale(phi, slip)))
+            _add_outer(growth, force, cross(arm, force), way, cross(foot, way))
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)

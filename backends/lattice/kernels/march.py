@@ -16,7 +16,7 @@ from mdlgen.mechanics.crossing import deepest
 from mdlgen.mechanics.curve import overstretched
 from mdlgen.mechanics.driven import clutch, prescribed
 from mdlgen.mechanics.pair import remember
-from mdlgen.program.kernel import njit
+from mdlgen.program.kernel import BORROWS, njit
 
 DONE, STOPPED, LEFT, DEEP, STRETCHED, CROWDED = 0, 1, 2, 3, 4, 5
 # How often a step may be halved.
@@ -25,12 +25,14 @@ DEEPEST = 14
 FINEST, AGAIN = 12, 4.0
 # Steps that take more rounds than the one are halved, and doubled again where they take less than the other.
 HARD, EASY = 8, 5
+# What a round changes is not asked to be less than this part of the speed: it is near round-off.
+LEAST = 1e-9
 # Two rollers with a sheet between them clear each other by a few micrometres and may graze: a force below
 # this part of the greatest is not counted as the nip still acting.
 GRAZE = 0.05
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def _deep(bodies, pairs, mid, count):
     """The pair that is deeper than it may be in the middle of a step, or -1."""
     touched, outs = mid[5], mid[6]
@@ -40,7 +42,7 @@ def _deep(bodies, pairs, mid, count):
     return -1
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def _watch(pairs, mid, count, t, dt, kept):
     """Adds what contacts did in a step to `kept`.
 
@@ -70,7 +72,7 @@ def _watch(pairs, mid, count, t, dt, kept):
             rows[row, 4] += dt
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def _outside(x, low, high):
     """A body that has left its bounds, or -1."""
     for b in range(low.shape[0]):
@@ -94,7 +96,7 @@ def _missed(bodies, nodes, u, guess):
     return (math.sqrt(missed / mass), math.sqrt(fast / mass)) if mass > 0.0 else (0.0, 0.0)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def _account(system, mid, ub, vb, t, dt, work):
     """Adds what a step dissipated, what drives and loads put in, how much that moved either way, and what
     the numerical damping of joints had of what was dissipated."""
@@ -185,7 +187,8 @@ def run(
             if search.regions.size > 0 and strayed(bodies, search, x, u, dt) and not look(pairs, search, x):
                 return CROWDED, t
             rounds = counters[ROUNDS]
-            limit = tolerance * pace[3]
+            # a halved step's guess is the better, and what it may leave must fall as fast
+            limit = pace[3] * max(tolerance * 0.25**level, LEAST)
             solved = midpoint(system, state, mid, matrix, alone, free, t, dt, limit, fresh, counters)
             missed, fast = _missed(bodies, nodes, u, guess) if solved else (0.0, 0.0)
             most = pace[1] * max(fast, pace[3]) if pace[1] > 0.0 else 1e300
@@ -196,7 +199,10 @@ def run(
             made, allowed = 0.0, pace[4] * through
             if solved and deep < 0:
                 counts = int(counters[TOUCHING]), int(counters[CLOSE])
-                deep, made = swept(system, state, mid, counts, t, dt, allowed, rows)
+                # of the way from the middle of the step before, what is in this step
+                inside = dt / (dt + spans[0]) if spans[0] > 0.0 else 0.0
+                slower = keep_u, keep_b, inside
+                deep, made = swept(system, state, mid, counts, t, dt, allowed, slower, rows)
             coarse = missed > AGAIN * most or made > AGAIN * allowed
             if not solved or ((coarse or deep >= 0) and level < FINEST):
                 copy(u, keep_u)

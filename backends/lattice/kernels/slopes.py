@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from mdlgen.mechanics.point import ALONE
-from mdlgen.program.kernel import njit
+from mdlgen.program.kernel import BORROWS, njit
 
 # Damping and friction grow steeply at small speeds and hardly at all at large ones. A step along the tangent
 # of the flat part would cross to the other side, and back; a step along the chord to zero stops there. This
@@ -62,13 +62,13 @@ def steepness(y, v_s, chord):
     return chord / abs(y * v_s)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def couple_growth(out, at, h, law, chord):
     """What the couple of rolling resistance loses as the relative angular velocity grows, times h."""
     return h * out[at + 6] * out[at + 7] * steepness(out[at + 9] / law[5], law[5], chord)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def core(out, at, n, slip, h, law, chord, whole):
     """What the force of one contact point loses as the relative velocity grows, times h: a 3 x 3 matrix for
     the velocity at the point, and, where a nip damps it (0 else), what its normal force loses as the foot

@@ -8,11 +8,15 @@ import math
 import numpy as np
 
 from backends.lattice.kernels.forces import place_box, place_roller
+from mdlgen.mechanics.arm import turn_of, way_of
 from mdlgen.mechanics.crossing import above, buried, closing, deepest, unseen
+from mdlgen.mechanics.laws import sign_step
 from mdlgen.mechanics.mesh import BLOCK
-from mdlgen.mechanics.pair import BOX_CYLINDER, BOX_MESH, pair_force
-from mdlgen.mechanics.point import COUPLE, OUT, POINT
-from mdlgen.program.kernel import njit
+from mdlgen.mechanics.pair import BOX_CYLINDER, BOX_MESH, BOX_PLANE, pair_force
+from mdlgen.mechanics.point import COUPLE, OF_NIP, OUT, POINT
+from mdlgen.mechanics.point import closing as closing_at
+from mdlgen.mechanics.vector import add, dot, scale, sub, three, vec
+from mdlgen.program.kernel import BORROWS, njit
 
 # Pairs that would have to be looked at more often in a step want a smaller one.
 MOST_LOOKS = 64
@@ -48,19 +52,66 @@ def _hits(bodies, pair):
     return pair.kind != BOX_CYLINDER or bodies[pair.a].exposed == BLOCK
 
 
-@njit(cache=True, error_model="numpy")
-def _made(bodies, pairs, mid, count, dt, rows):
-    """Adds to `rows` (contacts,) the energy that contacts store in a step beyond the work done on them.
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _clear(bodies, pair, x, r, way):
+    """Whether a box is further above a plane than both may come closer in a step."""
+    if pair.kind != BOX_PLANE:
+        return False
+    a, b = pair.a, pair.b
+    normal, half = (r[b, 2], r[b, 5], r[b, 8]), bodies[a].half
+    tall = bodies[b].half[2] + way
+    for i in range(3):
+        tall += half[i] * abs(normal[0] * r[a, i] + normal[1] * r[a, 3 + i] + normal[2] * r[a, 6 + i])
+    return dot(sub(vec(x, a), vec(x, b)), normal) > tall
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _changed(body, b, state, mid, before):
+    """By how much the velocity and the angular velocity of one body have changed from the middle of the step
+    before to the middle of this one; `before`: velocities there, of nodes and of the border."""
+    n = body.node
+    if n >= 0:
+        u, kept = state[6], before[0]
+        rate = (u[n, 0] - kept[n, 0], u[n, 1] - kept[n, 1], u[n, 2] - kept[n, 2])
+        return rate, (u[n, 3] - kept[n, 3], u[n, 4] - kept[n, 4], u[n, 5] - kept[n, 5])
+    rate = spin = (0.0, 0.0, 0.0)
+    if body.slide >= 0:
+        faster = state[7][body.slide] - before[1][body.slide]
+        rate, spin = scale(faster, way_of(body, vec(mid[0], b))), scale(faster, turn_of(body))
+    if body.spin >= 0:
+        spin = add(spin, scale(state[7][body.spin] - before[1][body.spin], three(body.axis)))
+    return rate, spin
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _turning_back(rate, faster, beta, smoothing):
+    """What damping misses in a step in which a contact turns from closing to opening, for 1 of its elastic
+    force and of time: the rule has the rate in the middle, and may hold it at zero there until the step ends
+    as fast outwards as it began inwards. `faster`: what the rate changes in half of the step."""
+    begin, end = rate - faster, rate + faster
+    if begin <= 0.0 or end >= 0.0 or max(begin, -end) < smoothing:
+        return 0.0
+    mean = 0.5 * (begin * begin + end * end) / (begin - end)
+    return beta * max(mean - sign_step(rate, smoothing) * rate, 0.0)
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _made(bodies, pairs, state, mid, count, dt, before, rows):
+    """Adds to `rows` (contacts,) the energy that contacts store in a step beyond the work done on them;
+    returns what their damping should have taken and did not.
 
     The rule takes the force in the middle of a step over all of it. The depth of each point at both ends
     follows from its rate; it has stored 2/5 F z (of z^1.5; other laws are near enough).
     """
     touched, outs = mid[5], mid[6]
+    kept = 0.0
     for k in range(count):
         pair = pairs[touched[k]]
         if not _hits(bodies, pair):
             continue
-        row = pair.row
+        row, law = pair.row, pair.law
+        one, spin_one = _changed(bodies[pair.a], pair.a, state, mid, before)
+        two, spin_two = _changed(bodies[pair.b], pair.b, state, mid, before)
         for i in range(int(outs[k, OUT])):
             at = OUT + 1 + POINT * i
             force, growth, moved = outs[k, at + 6], outs[k, at + 7], 0.5 * dt * outs[k, at + 9]
@@ -71,10 +122,20 @@ def _made(bodies, pairs, mid, count, dt, rows):
             if abs(part) > 0.02:
                 ends = max(1.0 + part, 0.0) ** 2.5 - max(1.0 - part, 0.0) ** 2.5
                 rows[row] += energy * ends - 2.0 * force * moved
+            foot = at + 17 if outs[k, at + 16] == OF_NIP else at
+            place = (outs[k, foot], outs[k, foot + 1], outs[k, foot + 2])
+            way = at + 20 if outs[k, at + 16] == OF_NIP else at + 3
+            normal = (outs[k, way], outs[k, way + 1], outs[k, way + 2])
+            faster = closing_at(
+                place, normal, vec(mid[0], pair.a), one, spin_one, vec(mid[0], pair.b), two, spin_two
+            )
+            missed = _turning_back(outs[k, at + 9], before[2] * faster, outs[k, at + 13], law[5])
+            kept += force * dt * missed
+    return kept
 
 
 @njit(cache=True, error_model="numpy")
-def swept(system, state, mid, counts, t, dt, allowed, rows):
+def swept(system, state, mid, counts, t, dt, allowed, before, rows):
     """What the near pairs do in a step from t, beyond what is known of its middle: (the first that comes
     deeper than it may, or to another side, or -1; the energy that contacts make or lose in it, where
     `allowed` is above zero). `counts`: how many pairs touch in the middle, how many are near.
@@ -89,8 +150,9 @@ def swept(system, state, mid, counts, t, dt, allowed, rows):
     made = False
     xs, rs, us, ws, out = x, r, um, wm, um[0]
     rows[:] = 0.0
+    total = 0.0
     if allowed > 0.0:
-        _made(bodies, pairs, mid, count, dt, rows)
+        total = _made(bodies, pairs, state, mid, count, dt, before, rows)
     known = 0
     for at in range(close):
         pair = pairs[near[at]]
@@ -105,6 +167,7 @@ def swept(system, state, mid, counts, t, dt, allowed, rows):
         if allowed > 0.0 and not touches:
             half = 0.5 * way
             enters = 0.4 * pair.k * half * half * math.sqrt(half) > LITTLE * allowed and _hits(bodies, pair)
+            enters = enters and not _clear(bodies, pair, x, r, way)
         if way <= band and side == 0 and not solid and not enters:
             continue
         if way > MOST_LOOKS * band:
@@ -131,7 +194,6 @@ def swept(system, state, mid, counts, t, dt, allowed, rows):
                     return near[at], 0.0
                 if enters and k == many:
                     rows[pair.row] += out[13]
-    total = 0.0
     for row in range(rows.size):
         total += abs(rows[row])
     return -1, total
