@@ -10,6 +10,7 @@ from backends.exudyn_local import kernels
 from backends.exudyn_local.shipped import begin, ledger, overstretched, passed, set_limits
 from backends.exudyn_local.system import MM, MS, PER_MM, System
 from mdlgen.model import curves
+from mdlgen.model.fold import Folds
 from mdlgen.model.meshes import carried
 from mdlgen.model.overlap import Overlaps
 from mdlgen.model.rotations import euler_parameters
@@ -52,7 +53,7 @@ class Recorder:
         set_limits(system.bodies, system.pairs, self._deepest)
         # coordinates and velocities of the last step
         self._before: tuple[np.ndarray, np.ndarray] | None = None
-        self._overlaps = Overlaps(model)
+        self._overlaps, self._folds = Overlaps(model), Folds(model)
 
     def plan(self, h: float) -> None:
         """Which times are stored: the print times, at the first step that reaches them, and the end."""
@@ -146,6 +147,7 @@ class Recorder:
         self._stored["w"].append(w[:-1].copy())
         self._stored["f"].append(self._force.copy())
         self.reason = self.reason or self._overlaps.found(x[:-1] / MM, t / MS)
+        self.reason = self.reason or self._folds.found(x[:-1] / MM, r[:-1], t / MS)
 
     def _watch(self, t: float) -> None:
         """Sets the reason of a failure where a joint is beyond its curve, a body left its bounds or went deep

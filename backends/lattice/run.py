@@ -22,6 +22,7 @@ from backends.lattice.static import rest
 from backends.lattice.symmetry import find
 from mdlgen.errors import SpecError
 from mdlgen.model.curves import overstretched
+from mdlgen.model.fold import Folds
 from mdlgen.model.overlap import Overlaps
 from mdlgen.model.tables import Floats, Model
 from mdlgen.results import audit
@@ -49,7 +50,7 @@ FREE_GAIN = 1e-3
 SAME_END = 0.01
 
 # How a halved run ends, beside those of march.
-PASSED, OVERLAPPED = -1, -2
+PASSED, OVERLAPPED, FOLDED = -1, -2, -3
 # Steps of one run, and those that compiled code takes before it is asked again.
 MOST_STEPS, MOST_AT_ONCE = 1e9, 1000
 
@@ -226,6 +227,7 @@ def _once(
     counters, work, fresh = np.zeros(step.COUNTERS), np.zeros(4), np.zeros(3)
     before = (state[6].copy(), state[7].copy(), np.zeros(2))
     recorder, overlaps = Recorder(model, system, tables, state, mid, kept), Overlaps(model)
+    folds = _folds(model, system)
     recorder.store(0.0)
     # the guess of a step is the better the finer it is: what is left of it must fall as fast
     part = (ROUND_OFF if _flexible(model) else ROUND_OFF_RIGID) * min(1.0, (dt / FIRST_STEP) ** 2)
@@ -259,6 +261,9 @@ def _once(
         if overlaps.found(state[0], t) is not None:
             status = OVERLAPPED
             break
+        if folds.found(state[0], state[1], t) is not None:
+            status = FOLDED
+            break
         if keep is not None:
             keep.part = partial(_part, recorder, recorder.stand(work), dt, int(counters[step.STEPS]))
             if keep.due() and output + 1 < outputs:
@@ -281,6 +286,11 @@ def _once(
     if unbalanced is None or status not in (march.DONE, march.LEFT, march.DEEP, march.STRETCHED):
         return result
     return result.failed(unbalanced if result.ok else f"{result.status}; and {unbalanced}")
+
+
+def _folds(model: Model, system: System) -> Folds:
+    """What looks for sheets in themselves, where one side is solved on that side."""
+    return Folds(model, None if system.mirror is None else ~system.mirror.gone)
 
 
 def _unbalanced(run: Result) -> str | None:
@@ -348,6 +358,8 @@ def _reason(
         return f"{told}; a stiffer contact or a smaller run.step would hold it"
     if status == OVERLAPPED:
         return Overlaps(model).found(state[0], t) or "two parts overlap"
+    if status == FOLDED:
+        return _folds(model, system).found(state[0], state[1], t) or "a sheet lies in itself"
     if status == PASSED:
         return (
             f"box {names[int(counters[step.WORST])]} has passed the plane of the scene's symmetry at "
