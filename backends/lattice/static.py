@@ -7,13 +7,15 @@ from collections.abc import Callable
 
 import numpy as np
 
+from backends.lattice import lying, standing
 from backends.lattice.arrays import System, partner
 from backends.lattice.record import Recorder
 from mdlgen.mechanics.mesh import LOST
 from mdlgen.mechanics.pair import DEEP_ROLLER
 from mdlgen.model import curves
+from mdlgen.model.fold import Folds
 from mdlgen.model.overlap import Overlaps
-from mdlgen.model.tables import BOX_GUIDE, BOX_PLANE, GROUND, ON_PARTS, Model
+from mdlgen.model.tables import BOX_GUIDE, BOX_PLANE, GROUND, ON_PARTS, Model, SheetPart
 from mdlgen.results.result import Result
 
 FIRST_PART = 1.0  # of the load
@@ -35,26 +37,61 @@ def rest(model: Model, system: System, moving: tuple) -> Result:
     x, r, v, l, s = state[:5]
     v[:] = 0.0
     l[:] = 0.0
-    tables = system.tables
     lists = (mid[5], mid[6], mid[8])
     load = _load(model, system)
+    loose = _loose(model)
+    found = lying.holds(model, loose, load)
+    grip = lying.Grip(lying.held(model, system, found))
+    tables = grip.system.tables
     entries.remember(tables[0], system.pairs, x, r)
     size = (system.border, 6 * (system.reach + 1) + PAD)
-    held = (TETHER if _loose(model) else 0.0, _reach(model))
+    held = (TETHER if len(found) < len(loose) else 0.0, _reach(model))
 
     def balanced(level: float, load: float) -> tuple[bool, int, int, float]:
-        return entries.equilibrium(tables, *size, level, load, *held, x, r, s, lists)
+        rounds, worst, left = 0, -1, 0.0
+        for _ in range(lying.MOST_GRIPS):
+            done, more, worst, left = entries.equilibrium(tables, *size, level, load, *held, x, r, s, lists)
+            rounds += more
+            if not done or not grip.acts or level == 0.0:
+                return done, rounds, worst, left
+            left = grip.changed(level, x, r, (mid[4], *lists)) / load
+            if left <= lying.STEADY:
+                return True, rounds, worst, left
+        return False, rounds, worst, left
+
+    def falls(level: float) -> int:
+        nodes, (border, height) = len(system.nodes), size
+        matrix = np.zeros((nodes, 6, height)), np.zeros((border, 6 * nodes)), np.zeros((border, border))
+        if entries.stands(tables, level, held[0], standing.SLOW, x, r, s, lists, matrix):
+            return 0
+        return standing.falling(*matrix)
+
+    given = [array.copy() for array in (x, r, s)]
+
+    def stable(level: float) -> bool:
+        kept = [array.copy() for array in (x, r, s)]
+        for array, old in zip((x, r, s), given, strict=True):
+            array[:] = old
+        found = balanced(level, load)[0] and falls(level) == 0
+        for array, old in zip((x, r, s), kept, strict=True):
+            array[:] = old
+        return found
 
     # compiles, or loads from the cache, before the clock starts: against such a load all is in balance
     balanced(0.0, np.inf)
+    falls(0.0)
     begun = clock.perf_counter()
     reason = _parts(model, balanced, load, (x, r, s))
-    wall = clock.perf_counter() - begun
     rows = (np.zeros((len(model.contacts), 9)), np.zeros(len(system.pairs), bool))
     if reason is None:
         reason = _stretched(model, system, x, r) or _touch(model, system, state, mid, rows)
+        reason = reason or lying.slides(model, found, rows[0][:, 5], load, x, r)
         reason = reason or _outside(model, x) or Overlaps(model).found(x, 0.0)
-    recorder = Recorder(model, system, tables, state, mid, rows)
+        reason = reason or Folds(model).found(x, r, 0.0)
+    if reason is None and (ways := falls(1.0)) > 0:
+        reason = standing.reason(ways, standing.begins(stable))
+    wall = clock.perf_counter() - begun
+    recorder = Recorder(model, system, system.tables, state, mid, rows)
     recorder.store(0.0)
     result = recorder.result("lattice", reason, np.zeros(4))
     result.wall_s, result.steps = wall, 0
@@ -105,15 +142,15 @@ def _load(model: Model, system: System) -> float:
     return max(weight, *forces, *moments, 0.0) or max(springs, 1e-12)
 
 
-def _loose(model: Model) -> bool:
-    """Whether no bushing holds some sheet to the ground or to a fixed box."""
-    held = (model.bushings.a == GROUND) | model.bodies.fixed[model.bushings.a]
+def _loose(model: Model) -> list[SheetPart]:
+    """The sheets that no bushing holds to the ground or to a fixed box."""
+    held, loose = (model.bushings.a == GROUND) | model.bodies.fixed[model.bushings.a], []
     for sheet in model.sheets:
         ends = model.bushings.b[held]
         fixed = model.bodies.fixed[sheet.first : sheet.first + sheet.count]
         if not (fixed.any() or ((ends >= sheet.first) & (ends < sheet.first + sheet.count)).any()):
-            return True
-    return False
+            loose.append(sheet)
+    return loose
 
 
 def _reach(model: Model) -> float:

@@ -14,7 +14,7 @@ import numpy as np
 
 from backends.lattice.kernels.band import factor
 from backends.lattice.kernels.border import eliminate, solve_bordered
-from backends.lattice.kernels.chain import follow, link
+from backends.lattice.kernels.chain import follow, link, opening
 from backends.lattice.kernels.dense import copy
 from backends.lattice.kernels.forces import joint_forces, near_pairs, other_forces, pair_forces
 from backends.lattice.kernels.stiffness import contacts_into, rollers_into, sheets_into
@@ -28,6 +28,8 @@ GOOD = 1e-6  # residual that is good enough where it falls no more
 STILL = 1e-8  # rad, and parts of a box: a step that ends the rounds where round-off hides the residual
 # Parts of the stiffest that are added to the diagonal where the matrix is not positive.
 LEAST_SHIFT, FIRST_SHIFT, MOST_SHIFT = 1e-12, 1e-10, 1e6
+# Of the entries of a stiffness: what round-off makes of its sums, times their number.
+NOISE = 1e-13
 _EPS = 2.2e-16
 _LOST = 1e30  # N, and parts of a box: what a run does not come back from
 
@@ -198,3 +200,42 @@ def equilibrium(system, border, height, level, load, least, reach, x, r, s, list
             if since >= 3 and worst <= GOOD * load:
                 return True, rounds + 1, at, worst / load
     return worst <= GOOD * load, MOST_ROUNDS, at, worst / load
+
+
+@njit(cache=True, error_model="numpy")
+def stands(system, level, least, slow, x, r, s, lists, matrix):
+    """Whether a balance stands: whether the stiffness of what may move is positive, with `slow`^2 [1/ms^2]
+    times its inertia and with what round-off makes of it; `least` as of `equilibrium`.
+
+    That stiffness is left in `matrix`, which is zero before: its band, its border and its corner.
+    """
+    bodies, joints, pairs, loads, _, nodes, points, _images, meshes = system
+    a, b, d = matrix
+    many, size = nodes.size, 6 * nodes.size
+    still, f = np.zeros(x.shape), np.zeros((x.shape[0], 6))
+    gaps = np.zeros((joints.size, 3))
+    for j in range(joints.size):
+        one = joints[j].a if joints[j].a >= 0 else x.shape[0] - 1
+        gap = opening(joints[j], one, x, r)
+        gaps[j, 0], gaps[j, 1], gaps[j, 2] = gap
+    rest = (np.zeros(size), np.zeros(d.shape[0]))
+    _, _, count = _residual(system, level, (x, r, s), lists, (still, f), rest)
+    sheets_into(bodies, joints, points, loads, level, gaps, x, r, a)
+    rollers_into(bodies, b, d)
+    contacts_into(bodies, pairs, meshes, lists[0], count, x, r, still, a, b, d)
+    ease = twist = 0.0
+    for n in range(many):
+        for i in range(3):
+            ease, twist = max(ease, abs(a[n, i, i])), max(twist, abs(a[n, 3 + i, 3 + i]))
+    for n in range(many):
+        body = bodies[nodes[n]]
+        # of a box the least about any axis: what stands with it stands with all
+        turning = min(body.inertia[0], body.inertia[1], body.inertia[2])
+        for i in range(3):
+            a[n, i, i] += slow * slow * body.mass + least * ease + NOISE * abs(a[n, i, i])
+            a[n, 3 + i, 3 + i] += slow * slow * turning + least * twist + NOISE * abs(a[n, 3 + i, 3 + i])
+    for k in range(d.shape[0]):
+        d[k, k] += least * ease + NOISE * abs(d[k, k])
+    band, y, corner = np.zeros(a.shape), np.zeros(b.shape), np.zeros(d.shape)
+    copy(band, a)
+    return factor(band) and eliminate(band, b, d, y, corner)

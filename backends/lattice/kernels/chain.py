@@ -73,6 +73,12 @@ def _gap(joint, one, x, r):
 
 
 @njit(cache=True, error_model="numpy")
+def opening(joint, one, x, r):
+    """What is between the ends of a joint on body `one` and on its second one [mm]."""
+    return _gap(joint, one, x, r)[2]
+
+
+@njit(cache=True, error_model="numpy")
 def follow(bodies, joints, nodes, links, part, step, before, place, y, gaps):
     """The place (x, r, s) after a part of a step (of boxes, of slides) from the one before.
 

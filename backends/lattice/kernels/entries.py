@@ -8,7 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from backends.lattice.kernels import forces, search
-from backends.lattice.kernels.balance import equilibrium
+from backends.lattice.kernels.balance import equilibrium, stands
 from backends.lattice.kernels.march import run
 from backends.lattice.kernels.observe import ledger
 from mdlgen.mechanics import curve, pair
@@ -54,5 +54,5 @@ def contacts(bodies, pairs, meshes, x, r, still, f, touched, outs, near):
 PROGRAM = Program(
     Path(__file__).resolve().parents[1] / "lattice.program",
     (LAWS, "backends.lattice.kernels"),
-    (run, ledger, equilibrium, look, remember, overstretched, joint_forces, contacts, set_thickness),
+    (run, ledger, equilibrium, stands, look, remember, overstretched, joint_forces, contacts, set_thickness),
 )

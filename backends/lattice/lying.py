@@ -1,0 +1,137 @@
+"""Sheets that lie on a plane at rest: friction holds each where it lies.
+
+At rest a contact has its normal force alone. What would push a sheet along the plane is held at one of its
+boxes, by springs along the plane and about its normal; what they hold must be less than friction can.
+
+Where a sheet slopes over an edge, friction turns the force of the edge towards the plate's normal (see
+mechanics.edge). Such a force has no potential, and the symmetric stiffness of a balance would miss that. So
+balances are found with forces along the normals of the sheet, and what friction adds at the last one acts as
+a load on the next, until it changes no more.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from backends.lattice.arrays import JOINT, LOAD, System
+from mdlgen.model.rotations import matrices, vectors
+from mdlgen.model.tables import BOX_PLANE, GROUND, Floats, Model, PlanePart, SheetPart
+
+# How far what holds a sheet gives way under the load that residuals are measured by [mm].
+GIVES = 1e-4
+# Of that load: a force along the plane below this is none.
+NONE = 1e-6
+
+
+# Balances that are found anew for what friction adds at edges, and its change, of the load, that ends them.
+MOST_GRIPS, STEADY = 40, 1e-7
+
+
+class Hold(NamedTuple):
+    """A sheet, the plane it lies on, the box that is held, and the stiffness [N/mm]."""
+
+    sheet: SheetPart
+    plane: PlanePart
+    box: int
+    stiffness: float
+
+    def pulls(self, model: Model, x: Floats, r: Floats) -> float:
+        """What it holds [N] with bodies at x (n, 3), their rotations r (n, 9): the force along the plane, and
+        the couple about its normal over half of the sheet's shorter side."""
+        axes, own = model.bodies.rotation[self.plane.body], r[self.box].reshape(3, 3)
+        turn = vectors(axes.T @ own @ model.bodies.rotation[self.box].T @ axes)
+        # in the frame halfway, as of any bushing
+        moved = (x[self.box] - model.bodies.position[self.box]) @ axes @ matrices(0.5 * turn)
+        couple = _arm(model, self.box) ** 2 * abs(float(turn[2]))
+        return self.stiffness * (float(np.hypot(*moved[:2])) + couple / (0.5 * min(self.sheet.size)))
+
+
+def _arm(model: Model, box: int) -> float:
+    """Half of a box's sides together [mm]."""
+    return float(model.bodies.half[box, :2].sum())
+
+
+def holds(model: Model, loose: list[SheetPart], load: float) -> list[Hold]:
+    """What holds those of the `loose` sheets that lie over a fixed plane with friction: at the box that is
+    furthest inside of it."""
+    return [hold for hold in (_hold(model, sheet, load) for sheet in loose) if hold is not None]
+
+
+def _hold(model: Model, sheet: SheetPart, load: float) -> Hold | None:
+    table, places, best, found = model.contacts, model.bodies.position, 0.0, None
+    for row in np.flatnonzero((table.kind == BOX_PLANE) & (table.mu_static > 0.0)).tolist():
+        if table.part_a[row] != sheet.name:
+            continue
+        plane = next(part for part in model.planes if part.name == table.part_b[row])
+        normal = model.bodies.rotation[plane.body][:, 2]
+        if plane.press is not None or float(normal @ model.gravity) >= 0.0:
+            continue
+        boxes = places[sheet.first : sheet.first + sheet.count] - places[plane.body]
+        own = boxes @ model.bodies.rotation[plane.body]
+        inside = (0.5 * np.array(plane.size[:2]) - np.abs(own[:, :2])).min(axis=1)
+        inside[own[:, 2] <= 0.0] = 0.0
+        at = int(np.argmax(inside))
+        if inside[at] > best:
+            best, found = float(inside[at]), Hold(sheet, plane, sheet.first + at, load / GIVES)
+    return found
+
+
+def held(model: Model, system: System, found: list[Hold]) -> System:
+    """The system with these holds as joints to the ground."""
+    joints = np.zeros(len(found), JOINT)
+    for joint, hold in zip(joints, found, strict=True):
+        axes, own = model.bodies.rotation[hold.plane.body], model.bodies.rotation[hold.box]
+        joint["a"], joint["b"], joint["first"] = GROUND, hold.box, -1
+        joint["ra"] = model.bodies.position[hold.box]
+        joint["fa"], joint["fb"] = axes.ravel(), (own.T @ axes).ravel()
+        k = hold.stiffness
+        joint["k"] = k, k, 0.0, 0.0, 0.0, k * _arm(model, hold.box) ** 2
+    return system._replace(joints=np.concatenate([system.joints, joints]))
+
+
+def slides(model: Model, found: list[Hold], forces: Floats, load: float, x: Floats, r: Floats) -> str | None:
+    """A reason where friction does not hold what it should; `forces` of the contacts (rows,) [N]."""
+    table = model.contacts
+    for hold in found:
+        mine = np.array([hold.sheet.name in ends for ends in zip(table.part_a, table.part_b, strict=True)])
+        most, pulled = float(table.mu_static[mine] @ forces[mine]), hold.pulls(model, x, r)
+        if pulled > most + NONE * load:
+            return (
+                f"sheet {hold.sheet.name} slides on plane {hold.plane.name}: {pulled:.3g} N pull it along, "
+                f"and friction holds {most:.3g} N"
+            )
+    return None
+
+
+class Grip:
+    """What friction adds to the forces of edges, as loads of a system that is without."""
+
+    def __init__(self, system: System) -> None:
+        self._with = system
+        grips = system.bodies["edge"][:, 2] > 0.0
+        self.acts = bool((grips & (system.bodies["ends"] != 0)).any())
+        if not self.acts:
+            self.system = system
+            return
+        bodies, loads = system.bodies.copy(), np.zeros(len(system.nodes), LOAD)
+        bodies["edge"][:, 2] = 0.0
+        loads["body"] = system.nodes
+        self.system = system._replace(bodies=bodies, loads=np.concatenate([system.loads, loads]))
+        self._loads = self.system.loads[len(system.loads) :]
+
+    def changed(self, level: float, x: Floats, r: Floats, room: tuple) -> float:
+        """Sets the loads to what friction adds at places x (n, 3) and rotations r (n, 9), a `level` of which
+        will act. Returns by how much that changes the greatest [N]. `room`: (forces, touched, outs, near)."""
+        from backends.lattice.kernels import entries
+
+        still, forces = np.zeros_like(x), []
+        for system in (self._with, self.system):
+            room[0][:] = 0.0
+            entries.contacts(system.bodies, system.pairs, system.meshes, x, r, still, *room)
+            forces.append(room[0][system.nodes].copy())
+        added = (forces[0] - forces[1]) / level
+        change = float(np.abs(added[:, :3] - self._loads["force"]).max(initial=0.0)) * level
+        self._loads["force"], self._loads["moment"] = added[:, :3], added[:, 3:]
+        return change

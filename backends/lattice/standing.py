@@ -1,0 +1,65 @@
+"""Whether a static balance stands, in how many directions it falls if not, and from which load on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from mdlgen.model.tables import Floats
+
+# A balance that is left so slowly that it grows e-fold in ten seconds stands still [rad/ms].
+SLOW = 1e-4
+PARTS = 10  # halvings between a load at which a balance stands and one at which it does not
+
+
+def falling(band: Floats, border: Floats, corner: Floats) -> int:
+    """Number of directions in which a balance falls that does not stand, by the signs of the pivots of what
+    the kernel `stands` leaves; 1 where they cannot be told."""
+    from scipy.sparse.linalg import splu
+
+    try:
+        factor = splu(
+            whole(band, border, corner),
+            permc_spec="MMD_AT_PLUS_A",
+            diag_pivot_thresh=0.0,
+            options={"SymmetricMode": True},
+        )
+    except RuntimeError:  # exactly singular
+        return 1
+    if not np.array_equal(factor.perm_r, factor.perm_c):
+        return 1
+    return max(1, int((factor.U.diagonal() < 0.0).sum()))
+
+
+def whole(band: Floats, border: Floats, corner: Floats) -> Any:
+    """The whole matrix of a band of blocks (see kernels.band) and its border, a scipy csc_matrix."""
+    from scipy.sparse import bmat, coo_matrix
+
+    nodes = len(band)
+    place = np.indices(band.shape)
+    row, column = 6 * place[0] + place[2], 6 * place[0] + place[1]
+    inside = (row >= column) & (row < 6 * nodes)
+    lower = coo_matrix((band[inside], (row[inside], column[inside])), shape=(6 * nodes, 6 * nodes))
+    square = lower + lower.T
+    square.setdiag(lower.diagonal())
+    return bmat([[square, border.T], [border, corner]] if len(corner) else [[square]], format="csc")
+
+
+def reason(ways: int, begins: float) -> str:
+    """Why a balance that falls in so many directions is no result; it does above a part of the load."""
+    told = "one direction" if ways == 1 else f"{ways} directions"
+    return (
+        f"the balance is unstable: it falls in {told}, above {100 * begins:.3g} % of the load; "
+        "a small load aside leads to one that stands"
+    )
+
+
+def begins(stable: Callable[[float], bool]) -> float:
+    """The part of the load above which no balance stands; `stable(level)`: one is found there, and does."""
+    low, high = 0.0, 1.0
+    for _ in range(PARTS):
+        level = 0.5 * (low + high)
+        low, high = (level, high) if stable(level) else (low, level)
+    return 0.5 * (low + high)
