@@ -49,7 +49,9 @@ class MdlgenError(Exception):
 class SpecError(MdlgenError):
     """The scene cannot be meant as it is written.
 
-    `path` is the way to the value (`("sheets", "note", "thickness")`), `place` where it stands.
+    `path` is the way to the value (`("sheets", "note", "thickness")`), `place` where it stands, `source` its
+    line of the text where that is at hand. `others` are further mistakes of the same scene, in the order of
+    their places.
     """
 
     exit_code = 2
@@ -58,6 +60,8 @@ class SpecError(MdlgenError):
         self.message = " ".join(str(message).split())
         self.path = tuple(path)
         self.place = place
+        self.source = ""
+        self.others: tuple[SpecError, ...] = ()
         super().__init__(str(self))
 
     def __str__(self) -> str:
@@ -65,6 +69,23 @@ class SpecError(MdlgenError):
         if self.path:
             head.append(".".join(str(p) for p in self.path))
         return printable(": ".join([*head, self.message]))
+
+    def with_others(self, others: Iterable[SpecError]) -> SpecError:
+        """The same error, the first of several; a traceback lists the others below it."""
+        self.others = tuple(others)
+        for other in self.others:
+            self.add_note(str(other))
+        return self
+
+    @property
+    def marked(self) -> str:
+        """The line of the text and a caret below the column, two lines for a terminal; "" where unknown."""
+        if not self.source or self.place is None:
+            return ""
+        # a line of a thousand values is shown around the column
+        first = max(0, self.place.column - 60)
+        shown = printable(self.source[first : first + 100])
+        return f"    {shown}\n    {' ' * (self.place.column - 1 - first)}^"
 
     def located(self, place: Place) -> SpecError:
         """The same error with its place in a file."""

@@ -41,8 +41,11 @@ _NAMES: dict[str, Unit] = {
 
 _NUMBER = r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(.*?)\s*")
+# `mm^2`, and `mm2` as it is typed
 _FACTOR = re.compile(r"([A-Za-zµ°]+|1)(?:\^([-+]?[0-9]+(?:\.[0-9]+)?))?")
+_POWER = re.compile(r"([A-Za-zµ°])([0-9])")
 
+_COMMA = re.compile(r"\s*([-+]?[0-9]+(?:,[0-9]+)+)((?:\.[0-9]*)?[^,]*?)\s*")
 
 _SLIPS = {"sec": "s", "gr": "g", "grams": "g", "degrees": "deg", "micron": "um", "mu": "um", "inch": "in"}
 
@@ -54,11 +57,27 @@ def _meant(word: str) -> str:
     return f"; did you mean {' or '.join(near)}?" if near[0] else ""
 
 
+def _powers(text: str) -> str:
+    """With `^` before every power: of mm², and of mm2."""
+    return _POWER.sub(r"\1^\2", text.replace("²", "^2").replace("³", "^3"))
+
+
+def _with_point(comma: re.Match[str]) -> str:
+    """What a number with commas may mean: a decimal comma, or thousands."""
+    number, rest = comma[1], comma[2]
+    meant = []
+    if number.count(",") == 1 and not rest.startswith("."):
+        meant.append(number.replace(",", ".") + rest)
+    if all(len(group) == 3 for group in number.split(",")[1:]):
+        meant.append(number.replace(",", "") + rest)
+    return f"write {' or '.join(meant)}" if meant else "decimals are written with a point, as 0.5"
+
+
 @lru_cache(maxsize=512)
 def parse_unit(text: str) -> Unit:
     """`N*mm/rad`, `N/mm^1.5`, `m/s^2` as a Unit. Raises ValueError with what is wrong."""
     factor, dimension = 1.0, (0.0, 0.0, 0.0, 0.0)
-    for sign, word in re.findall(r"(^|[*/·])([^*/·]*)", text.replace("²", "^2").replace("³", "^3")):
+    for sign, word in re.findall(r"(^|[*/·])([^*/·]*)", _powers(text)):
         match = _FACTOR.fullmatch(word.strip())
         if not match or (match[1] != "1" and match[1] not in _NAMES):
             raise ValueError(f"unknown unit {word.strip()!r} in {text!r}{_meant(word)}")
@@ -84,6 +103,9 @@ def parse_quantity(text: object, expected: str) -> float:
         shown = f"{text} has no unit" if isinstance(text, (int, float)) else f"{text!r} is not a quantity"
         raise ValueError(f"{shown}; expected text with a unit like '1 {expected}'")
     match = _QUANTITY.fullmatch(text[:200])
+    comma = _COMMA.fullmatch(text[:200])
+    if comma:
+        raise ValueError(f"{text.strip()!r} has a comma; {_with_point(comma)}")
     if not match:
         raise ValueError(f"{text[:60]!r} is not a number with a unit; expected like '1 {expected}'")
     if not match[2]:

@@ -139,6 +139,87 @@ class TestSet:
         assert words in error.message
         assert error.place is not None and error.place.file.startswith("--set ")
 
+    def test_a_pattern_meets_every_name_that_fits(self) -> None:
+        text = (samples() / "transport_4x4.yaml").read_text("utf-8")
+        scene = loads(text, "s", ["rollers.motor_*.radius=8 mm", "contacts.*.restitution=0.1"])
+        assert {name: r.radius for name, r in scene.rollers.items() if r.radius != 5.0} == {
+            f"motor_{row}_{side}": 8.0 for row in (1, 2) for side in ("left", "right")
+        }
+        assert {c.restitution for c in scene.contacts} == {0.1}
+
+    @pytest.mark.parametrize(
+        ("override", "told"),
+        [
+            (
+                "sheets.nota.boxes=[4,8]",
+                "there is no 'nota' in sheets; did you mean 'note'? there are: note; "
+                "a new one needs material, size, thickness, mass",
+            ),
+            (
+                "rollers.motor.drive.speed=1 rad/s",
+                "there is no 'motor' in rollers; there are: none; a new one",
+            ),
+            ("sheets.x*.boxes=[4,8]", "nothing here fits 'x*'; there are: note"),
+        ],
+    )
+    def test_a_part_that_is_not_there(self, override: str, told: str) -> None:
+        error = refused(CANTILEVER, override)
+        assert error.message.startswith(told) and error.others == ()
+        assert error.place is not None and error.place.file == f"--set {override.partition('=')[0]}"
+
+
+class TestAllAtOnce:
+    def test_sorted_by_place_and_each_with_its_line(self) -> None:
+        text = (
+            CANTILEVER.replace("thickness: 0.1 mm", "thickness: 0.1", 1)
+            .replace("E_md: 3530 MPa", "E_md: 3530 mm", 1)
+            .replace("sheet: note", "sheet: nota", 1)
+        )
+        first = refused(text)
+        found = [first, *first.others]
+        assert [".".join(map(str, e.path)) for e in found] == [
+            "materials.eur10.E_md",
+            "sheets.note.thickness",
+            "probes.tip.sheet",
+        ]
+        for error in found:
+            assert error.place is not None
+            line = text.splitlines()[error.place.line - 1]
+            assert error.source == line
+            shown, caret = error.marked.splitlines()
+            assert shown == f"    {line}" and caret.index("^") == 3 + error.place.column
+        assert first.__notes__ == [str(e) for e in first.others]
+
+    def test_at_most_twenty(self) -> None:
+        keys = "".join(f"key_{k}: 1\n" for k in range(30))
+        first = refused(CANTILEVER + keys)
+        assert [e.path for e in (first, *first.others[:-1])] == [(f"key_{k}",) for k in range(20)]
+        assert str(first.others[-1]) == "10 more errors; mend these first"
+
+    def test_one_mistake_is_told_once(self) -> None:
+        for old, new in (("thickness:", "thicknes:"), ("  note:", "  notes:"), ("boxes: [", "boxes: [1, ")):
+            assert refused(CANTILEVER.replace(old, new, 1)).others == (), new
+
+    def test_a_missing_key_says_how_it_is_written(self) -> None:
+        text = CANTILEVER.replace("thickness: 0.1 mm", "", 1)
+        assert "the key 'thickness' is missing; write like thickness: 1 mm" in refused(text).message
+
+    def test_a_comma_between_two_values_is_answered(self) -> None:
+        text = (samples() / "verify" / "drop.yaml").read_text("utf-8")
+        assert "restitution: 0.7" in text
+        error = refused(text.replace("restitution: 0.7", "restitution: 0,5"))
+        assert error.message.startswith("unknown key '5': a comma ends the value before it")
+        assert error.others == ()
+
+    def test_set_comes_first(self) -> None:
+        text = CANTILEVER.replace("thickness: 0.1 mm", "thickness: 0.1", 1)
+        first = refused(text, "run.tolerance=x", "name.x=1")
+        assert [e.place.file for e in (first, *first.others) if e.place] == [
+            "--set name.x",  # it cannot be set at all
+            "--set run.tolerance",
+            "scene.yaml",
+        ]
+
 
 def test_every_sample_loads() -> None:
     found = sorted(samples().rglob("*.yaml"))

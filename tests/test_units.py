@@ -56,10 +56,29 @@ def test_any_text_is_a_finite_number_or_a_value_error(text: str) -> None:
         ("180 deg", "rad", math.pi),
         ("300 N/mm^1.5", "N/mm^1.5", 300.0),
         (" 1e3 um ", "mm", 1.0),
+        ("3 N/mm2", "MPa", 3.0),
+        ("3 N/mm²", "MPa", 3.0),
+        ("300 N/mm1.5", "N/mm^1.5", 300.0),
     ],
 )
 def test_known_values(text: str, unit: str, value: float) -> None:
     assert parse_quantity(text, unit) == pytest.approx(value, rel=1e-15)  # a product of table factors
+
+
+@pytest.mark.parametrize(
+    ("text", "meant"),
+    [
+        ("0,1 mm", "write 0.1 mm"),
+        ("-7,5016 mm", "write -7.5016 mm"),
+        ("1,400 mm", "write 1.400 mm or 1400 mm"),
+        ("1,400.5 mm", "write 1400.5 mm"),
+        ("1,2,3 mm", "decimals are written with a point, as 0.5"),
+    ],
+)
+def test_a_decimal_comma_is_answered(text: str, meant: str) -> None:
+    with pytest.raises(ValueError, match="has a comma") as told:
+        parse_quantity(text, "mm")
+    assert str(told.value) == f"{text!r} has a comma; {meant}"
 
 
 @pytest.mark.parametrize(

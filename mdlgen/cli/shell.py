@@ -155,7 +155,7 @@ def told(command: Callable[..., None]) -> Callable[..., None]:
                 os._exit(INTERRUPTED)
             raise typer.Exit(INTERRUPTED) from None
         except MdlgenError as error:
-            say(str(_located(error, options.get("spec"))))
+            _complain(_located(error, options.get("spec")))
             raise typer.Exit(error.exit_code) from None
         except MemoryError:
             say("mdlgen: not enough memory for this; take fewer boxes, or a longer run.print_step")
@@ -225,6 +225,14 @@ def echo_json(value: Any) -> None:
 def say(text: str) -> None:
     """One line on standard error."""
     typer.echo(printable(text), err=True)
+
+
+def _complain(error: MdlgenError) -> None:
+    """One line for each mistake; on a terminal with its line of the text below it, and a caret."""
+    for one in (error, *error.others) if isinstance(error, SpecError) else (error,):
+        say(str(one))
+        if isinstance(one, SpecError) and one.marked and sys.stderr.isatty():
+            typer.echo(one.marked, err=True)
 
 
 def _located(error: MdlgenError, spec: Path | None) -> MdlgenError:

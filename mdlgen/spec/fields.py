@@ -40,6 +40,16 @@ def fail(
     return PydanticCustomError("spec", "{text}", {"text": message, "path": path, "within": within})
 
 
+def fail_all(errors: list[PydanticCustomError]) -> PydanticCustomError:
+    """One error for pydantic to raise that stands for several; each is told on its own."""
+    if len(errors) == 1:
+        return errors[0]
+    first = dict(errors[0].context or {})
+    return PydanticCustomError(
+        "spec", "{text}", {**first, "several": [dict(e.context or {}) for e in errors]}
+    )
+
+
 class quantity:
     """Marks a float as text with a unit of the dimension of `unit`, stored in internal units.
 

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable, Collection, Iterator
 from fnmatch import fnmatchcase
+from functools import partial
 from itertools import product
 
 from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
+from pydantic_core import PydanticCustomError
 
 from mdlgen.errors import did_you_mean
 from mdlgen.spec.action import Load, OnSheet, Probe, Support
 from mdlgen.spec.contact import Contact
-from mdlgen.spec.fields import Acceleration, Name, Strict, default, fail
+from mdlgen.spec.fields import Acceleration, Name, Strict, default, fail, fail_all
 from mdlgen.spec.guide import Guide
 from mdlgen.spec.limits import DEFAULT, Limits
 from mdlgen.spec.machine import Plane, Roller
@@ -21,6 +24,8 @@ from mdlgen.spec.mesh import Mesh
 from mdlgen.spec.part import Part
 from mdlgen.spec.run import Run
 from mdlgen.spec.sheet import Sheet
+
+MOST_ERRORS = 100  # that are looked for in contacts: more are not shown
 
 
 class Scene(Strict):
@@ -74,37 +79,55 @@ class Scene(Strict):
         self._limits = (info.context or {}).get("limits", DEFAULT)
         self._count()
         self._names_unique()
-        for name, sheet in self.sheets.items():
-            _known(sheet.material, self.materials, "material", ("sheets", name, "material"))
-            material = self.materials[sheet.material]
-            if material.D_twist is not None and sheet.layout == "edge_to_edge":
-                raise fail(
-                    f"sheet {name}: D_twist acts with layouts plate and center_to_center only: in "
-                    "edge_to_edge the two corner bushings lock the twist; leave D_twist out or "
-                    "change the layout",
-                    ("materials", sheet.material, "D_twist"),
-                )
-            if material.G is not None and sheet.layout != "plate":
-                raise fail(
-                    f"sheet {name}: G acts with layout plate only: in {sheet.layout} shear goes with the "
-                    "membrane stiffness across the joint; leave G out or change the layout",
-                    ("materials", sheet.material, "G"),
-                )
+        errors: list[PydanticCustomError] = []
+        for check in self._checks():
+            try:
+                check()
+            except PydanticCustomError as error:
+                errors.append(error)
+        _, wrong = self._find_pairs()
+        if errors or wrong:
+            raise fail_all([*errors, *wrong])
+        return self
+
+    def _checks(self) -> Iterator[Callable[[], None]]:
+        """What is to be looked at one by one, so that each mistake is told."""
+        for name in self.sheets:
+            yield partial(self._check_material, name)
         for kind in ("probes", "loads", "supports"):
             items = getattr(self, kind)
             for key, item in items.items() if isinstance(items, dict) else enumerate(items):
-                self._on_sheet(item, (kind, key))
-        for name, roller in self.rollers.items():
-            if roller.one_way is not None and self.run.analysis == "static":
-                raise fail(
-                    f"roller {name}: one_way acts by speed, and a static analysis has none; leave it out",
-                    ("rollers", name, "one_way"),
-                )
+                yield partial(self._on_sheet, item, (kind, key))
+        for name in self.rollers:
+            yield partial(self._check_clutch, name)
         for name, mesh in self.meshes.items():
             if mesh.on is not None:
-                _known(mesh.on, self.rollers, "roller", ("meshes", name, "on"))
-        self.contact_pairs()
-        return self
+                yield partial(known, mesh.on, self.rollers, "roller", ("meshes", name, "on"))
+
+    def _check_material(self, name: str) -> None:
+        sheet = self.sheets[name]
+        known(sheet.material, self.materials, "material", ("sheets", name, "material"))
+        material = self.materials[sheet.material]
+        if material.D_twist is not None and sheet.layout == "edge_to_edge":
+            raise fail(
+                f"sheet {name}: D_twist acts with layouts plate and center_to_center only: in "
+                "edge_to_edge the two corner bushings lock the twist; leave D_twist out or "
+                "change the layout",
+                ("materials", sheet.material, "D_twist"),
+            )
+        if material.G is not None and sheet.layout != "plate":
+            raise fail(
+                f"sheet {name}: G acts with layout plate only: in {sheet.layout} shear goes with the "
+                "membrane stiffness across the joint; leave G out or change the layout",
+                ("materials", sheet.material, "G"),
+            )
+
+    def _check_clutch(self, name: str) -> None:
+        if self.rollers[name].one_way is not None and self.run.analysis == "static":
+            raise fail(
+                f"roller {name}: one_way acts by speed, and a static analysis has none; leave it out",
+                ("rollers", name, "one_way"),
+            )
 
     def _count(self) -> None:
         boxes = sum(sheet.boxes[0] * sheet.boxes[1] for sheet in self.sheets.values())
@@ -132,7 +155,7 @@ class Scene(Strict):
                     )
 
     def _on_sheet(self, item: OnSheet, path: tuple[str | int, ...]) -> None:
-        _known(item.sheet, self.sheets, "sheet", (*path, "sheet"))
+        known(item.sheet, self.sheets, "sheet", (*path, "sheet"))
         if item.at is None:
             return
         sheet = self.sheets[item.sheet]
@@ -149,10 +172,17 @@ class Scene(Strict):
 
         Raises the error for a part that does not exist, a pair given twice, or one that is not modelled.
         """
+        pairs, errors = self._find_pairs()
+        if errors:
+            raise fail_all(errors)
+        return pairs
+
+    def _find_pairs(self) -> tuple[list[tuple[int, str, str]], list[PydanticCustomError]]:
+        """The pairs, and what is wrong with each contact that has none or may not have them."""
         machine = [*self.rollers, *self.planes, *self.guides, *self.meshes, *self.parts]
         rank = {n: i for i, n in enumerate([*self.sheets, *machine])}
         taken: dict[tuple[str, str], int] = {}
-        pairs: list[tuple[int, str, str]] = []
+        errors: list[PydanticCustomError] = []
         looked = 0
         for index, contact in enumerate(self.contacts):
             path = ("contacts", index, "between")
@@ -160,26 +190,35 @@ class Scene(Strict):
             if told := self._limits.exceeded(
                 "contacts", looked / 100, "hundreds of names that patterns meet"
             ):
-                raise fail(told, path)
-            sides = [_matching(p, rank, (*path, i)) for i, p in enumerate(contact.between)]
-            found = False
-            for one, two in product(*sides):
-                if one == two:
+                return [], [*errors, fail(told, path)]
+            try:
+                self._take_pairs(index, rank, taken)
+            except PydanticCustomError as error:
+                errors.append(error)
+            if len(errors) > MOST_ERRORS:
+                break
+        return [(index, *pair) for pair, index in taken.items()], errors
+
+    def _take_pairs(self, index: int, rank: dict[str, int], taken: dict[tuple[str, str], int]) -> None:
+        """Adds the pairs of one contact to those that are taken."""
+        path = ("contacts", index, "between")
+        sides = [matching(p, rank, (*path, i)) for i, p in enumerate(self.contacts[index].between)]
+        found = False
+        for one, two in product(*sides):
+            if one == two:
+                continue
+            a, b = sorted((one, two), key=rank.__getitem__)
+            if (a, b) in taken:
+                if taken[a, b] == index:
                     continue
-                a, b = sorted((one, two), key=rank.__getitem__)
-                if (a, b) in taken:
-                    if taken[a, b] == index:
-                        continue
-                    raise fail(f"the pair {a} / {b} already has contacts.{taken[a, b]}; give it one", path)
-                self._modelled(a, b, path)
-                if told := self._limits.exceeded("contacts", len(pairs) + 1, "pairs of parts in contact"):
-                    raise fail(told, path)
-                taken[a, b] = index
-                found = True
-                pairs.append((index, a, b))
-            if not found:
-                raise fail("between names one part only; a contact needs two", path)
-        return pairs
+                raise fail(f"the pair {a} / {b} already has contacts.{taken[a, b]}; give it one", path)
+            self._modelled(a, b, path)
+            if told := self._limits.exceeded("contacts", len(taken) + 1, "pairs of parts in contact"):
+                raise fail(told, path)
+            taken[a, b] = index
+            found = True
+        if not found:
+            raise fail("between names one part only; a contact needs two", path)
 
     def _modelled(self, a: str, b: str, path: tuple[str | int, ...]) -> None:
         if a in self.sheets:
@@ -239,7 +278,8 @@ class Scene(Strict):
             )
 
 
-def _known(name: str, table: dict, kind: str, path: tuple[str | int, ...]) -> None:
+def known(name: str, table: Collection[str], kind: str, path: tuple[str | int, ...]) -> None:
+    """Raises the error for a name that is not in a table."""
     if name not in table:
         close = did_you_mean(name, table)
         raise fail(f"there is no {kind} {name!r}{close or ';'} there are: {', '.join(table) or 'none'}", path)
@@ -249,7 +289,8 @@ def _cosine(one: tuple[float, float, float], two: tuple[float, float, float]) ->
     return max(-1.0, min(1.0, sum(p * q for p, q in zip(one, two, strict=True))))
 
 
-def _matching(pattern: str, parts: dict[str, int], path: tuple[str | int, ...]) -> list[str]:
+def matching(pattern: str, parts: Collection[str], path: tuple[str | int, ...]) -> list[str]:
+    """The parts that a name or a pattern means; raises the error where there is none."""
     if not re.fullmatch(r"[A-Za-z0-9_*?]{1,64}", pattern):
         raise fail(f"{pattern[:80]!r} is not a name or a pattern of letters, digits, _, * and ?", path)
     if pattern.isidentifier():

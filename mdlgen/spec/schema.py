@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any, get_args
 
 from pydantic import BaseModel
@@ -42,6 +43,31 @@ def model_at(path: tuple[str | int, ...]) -> type[BaseModel] | None:
 def keys(model: type[BaseModel]) -> dict[str, FieldInfo]:
     """The fields of a model, as a file calls them."""
     return {field.alias or name: field for name, field in model.model_fields.items()}
+
+
+@cache
+def example(model: type[BaseModel], key: str) -> str:
+    """How the value of a key may look in a file, from its JSON schema; "" where that does not say."""
+    schema = model.model_json_schema(schema_generator=_Schema)
+    own = schema.get("properties", {}).get(key)
+    return _looks(own, schema.get("$defs", {})) if own else ""
+
+
+def _looks(schema: dict[str, Any], models: dict[str, Any]) -> str:
+    for choice in ("anyOf", "oneOf"):
+        if choice in schema:
+            return _looks(schema[choice][0], models)
+    if schema.get("examples"):
+        return str(schema["examples"][0])
+    if "const" in schema or "enum" in schema:
+        return str(schema.get("const", (schema.get("enum") or [""])[0]))
+    kind = schema.get("type")
+    if kind == "array":
+        items = schema.get("prefixItems") or [schema.get("items", {})] * schema.get("minItems", 1)
+        shown = [_looks(item, models) for item in items]
+        return f"[{', '.join(shown)}]" if all(shown) else ""
+    plain = {"integer": "10", "number": "0.5", "boolean": "true"}
+    return plain.get(str(kind), "my_name" if schema.get("pattern") else "")
 
 
 def _model_in(annotation: Any) -> type[BaseModel] | None:

@@ -1,0 +1,212 @@
+"""What is wrong with a scene: each mistake in one line, with its place in the text and an example."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from typing import Any
+
+from pydantic import ValidationError
+from pydantic_core import PydanticCustomError
+
+from mdlgen.errors import SpecError, did_you_mean
+from mdlgen.spec.document import Document, SpecPath
+from mdlgen.spec.scene import known, matching
+
+MOST = 20
+# Tables of parts by name: what --set makes anew here is more often a name that is misspelt.
+_MOST_LOOKS = 1000  # at names beside other mistakes
+_TABLES = ("materials", "sheets", "rollers", "planes", "guides", "meshes", "parts", "probes")
+
+
+class Mistakes:
+    """The mistakes of a document, in the order of their places; those of --set first."""
+
+    def __init__(self, document: Document):
+        self.document = document
+        self.found: list[tuple[tuple[Any, ...], SpecError]] = []
+
+    def add(self, error: SpecError, missing: bool = False) -> None:
+        """One that has its place."""
+        place = error.place
+        order = (0, 0, 0) if place is None else (int(place.file == self.document.file), *place[1:])
+        self.found.append(((*order, missing), error))
+
+    def take(self, error: ValidationError) -> None:
+        """All that validation found."""
+        errors = [e for told in error.errors(include_url=False) for e in _each(told)]
+        misspelt = {e["loc"][:-1] for e in errors if e["type"] == "extra_forbidden"}
+        unmade: dict[SpecPath, list[str]] = {}
+        for told in errors:
+            path = tuple(told["loc"])
+            if told["type"] == "missing":
+                made = next((m for m in self.document.made if path[:-1] == m and m[0] in _TABLES), None)
+                if made is not None:
+                    unmade.setdefault(made, []).append(str(path[-1]))
+                    continue
+                if path[:-1] in misspelt and self._spelt_otherwise(path, errors):
+                    continue
+            self.add(_describe(told, self.document), told["type"] == "missing")
+        for path, keys in unmade.items():
+            self.add(self._not_there(path, keys))
+        # names that dangle are looked at by the scene itself, once each value is good
+        renamed = any(e["loc"][-1:] == ("[key]",) or e["type"] == "extra_forbidden" for e in errors)
+        if not renamed and not unmade and not any(e["loc"] == () for e in errors):
+            for told in _dangling(self.document.data):
+                self.add(_describe({"type": "spec", "loc": (), "ctx": told.context}, self.document))
+
+    def _spelt_otherwise(self, path: SpecPath, errors: Sequence[Any]) -> bool:
+        """Whether a key is missing since it is misspelt: then that is said, and this is not."""
+        given = [
+            str(e["loc"][-1]) for e in errors if e["type"] == "extra_forbidden" and e["loc"][:-1] == path[:-1]
+        ]
+        known = _allowed_keys(path[:-1])
+        if len(given) > MOST:
+            return True
+        return any(difflib.get_close_matches(key, known, n=1) == [path[-1]] for key in given)
+
+    def _not_there(self, path: SpecPath, missing: list[str]) -> SpecError:
+        """A part that --set would make without what it needs."""
+        table, name = str(path[0]), str(path[1])
+        there = [key for key in self.document.data[table] if (table, key) not in self.document.made]
+        text = (
+            f"there is no {name!r} in {table}{did_you_mean(name, there) or ';'} "
+            f"there are: {', '.join(map(str, there))[:200] or 'none'}; "
+            f"a new one needs {', '.join(missing)}"
+        )
+        keys = self.document.keys
+        place = next((keys[p] for p in keys if p[:2] == path), self.document.place(path))
+        return SpecError(text, path, place)
+
+    def error(self) -> SpecError:
+        """The first of them; the others are its `others`, MOST in all."""
+        told: dict[str, SpecError] = {}
+        for _, error in sorted(self.found, key=lambda item: item[0]):
+            told.setdefault(str(error), error)
+        errors = list(told.values())
+        for error in errors[:MOST]:
+            error.source = self.document.line(error.place)
+        first, *others = errors[:MOST]
+        if len(errors) > MOST:
+            others.append(SpecError(f"{len(errors) - MOST} more errors; mend these first"))
+        return first.with_others(others)
+
+
+def _each(error: Any) -> Iterator[Any]:
+    """The errors that one of the scene's own stands for."""
+    context = error.get("ctx") or {}
+    if error["type"] != "spec" or not context.get("several"):
+        yield error
+        return
+    for own in context["several"]:
+        yield {**error, "ctx": own}
+
+
+def _dangling(data: Any) -> list[PydanticCustomError]:
+    """Names in plain data of materials, sheets and parts that there are not; other mistakes aside."""
+    tables = {name: data[name] for name in _TABLES if isinstance(data.get(name), dict)}
+    sheets, materials = tables.get("sheets", {}), tables.get("materials", {})
+    parts = [name for kind in _TABLES[1:-1] for name in tables.get(kind, {})]
+    looks: list[Callable[[], object]] = []
+    for name, sheet in sheets.items():
+        if isinstance(word := _at(sheet, ("material",)), str):
+            looks.append(partial(known, word, materials, "material", ("sheets", name, "material")))
+    for kind in ("probes", "loads", "supports"):
+        for key, item in _items(data.get(kind)):
+            if isinstance(word := _at(item, ("sheet",)), str):
+                looks.append(partial(known, word, sheets, "sheet", (kind, key, "sheet")))
+    for key, contact in _items(data.get("contacts")):
+        for k, word in _items(_at(contact, ("between",))):
+            if isinstance(word, str):
+                looks.append(partial(matching, word, parts, ("contacts", key, "between", k)))
+    found = []
+    for look in looks[:_MOST_LOOKS]:
+        try:
+            look()
+        except PydanticCustomError as error:
+            found.append(error)
+        if len(found) > MOST:
+            break
+    return found
+
+
+def _items(value: Any) -> list[tuple[Any, Any]]:
+    """Keys and values of a mapping, or of a list."""
+    if isinstance(value, dict):
+        return list(value.items())
+    return list(enumerate(value)) if isinstance(value, list) else []
+
+
+def _describe(error: Any, document: Document) -> SpecError:
+    path = _as_written(tuple(p for p in error["loc"] if p != "[key]"), document)
+    kind, context = error["type"], error.get("ctx") or {}
+    prefer_key = error["loc"][-1:] == ("[key]",)
+    if kind == "spec":
+        message = context["text"]
+        if context.get("path") is not None or context.get("within"):
+            path = tuple(context["path"] or (*path, *context["within"]))
+            prefer_key = path in document.keys and not isinstance(_at(document.data, path), str)
+    elif kind == "extra_forbidden":
+        message, prefer_key = f"unknown key {path[-1]!r}{_did_you_mean(path)}", True
+    elif kind == "missing":
+        message = f"the key {path[-1]!r} is missing{_example(path)}"
+        path = path[:-1]
+    else:
+        said = re.sub(
+            r"valid dictionary or instance of \w+|valid dictionary or object.*", "mapping", error["msg"]
+        )
+        if kind in ("tuple_type", "list_type") and isinstance(error["input"], dict):
+            said = "expected a list, each item begun with '- '"
+        message = f"{said.replace('valid tuple', 'list')}, got {error['input']!r}"[:300] + _example(path)
+    return SpecError(message, path, document.place(path, prefer_key))
+
+
+def _as_written(path: SpecPath, document: Document) -> SpecPath:
+    """A list stands for {points: list}, a number for both frictions: without that key where the text
+    has none."""
+    for k, key in enumerate(path):
+        given = _at(document.data, path[:k])
+        if key == "points" and isinstance(given, list):
+            return path[:k] + path[k + 1 :]
+        if key in ("static", "dynamic") and given is not None and not isinstance(given, (dict, list)):
+            return path[:k]
+    return path
+
+
+def _at(data: Any, path: Sequence[str | int]) -> Any:
+    for key in path:
+        try:
+            data = data[key]
+        except (KeyError, IndexError, TypeError):
+            return None
+    return data
+
+
+def _did_you_mean(path: SpecPath) -> str:
+    known = _allowed_keys(path[:-1])
+    word = str(path[-1])
+    if re.fullmatch(r"[0-9]+", word):
+        return ": a comma ends the value before it; decimals are written with a point, as 0.5"
+    close = difflib.get_close_matches(word, known, n=1)
+    if close:
+        return f"; did you mean {close[0]!r}?"
+    return f"; allowed: {', '.join(known)}" if known else ""
+
+
+def _allowed_keys(path: SpecPath) -> list[str]:
+    """Keys that the model at `path` knows, found by walking the annotations of Scene."""
+    from mdlgen.spec.schema import keys, model_at
+
+    model = model_at(path)
+    return list(keys(model)) if model else []
+
+
+def _example(path: SpecPath) -> str:
+    """How the value of a key may look, as the end of a message; "" where that is not known."""
+    from mdlgen.spec.schema import example, model_at
+
+    model = model_at(path[:-1])
+    shown = example(model, str(path[-1])) if model else ""
+    return f"; write like {path[-1]}: {shown}" if shown else ""

@@ -1,0 +1,108 @@
+"""`--set PATH=VALUE` on the plain data of a scene."""
+
+from __future__ import annotations
+
+import re
+from fnmatch import fnmatchcase
+from typing import Any
+
+from mdlgen.errors import Place, SpecError, did_you_mean
+from mdlgen.spec.document import Document, SpecPath, parse
+
+# With --set, giving one of these takes the other away, so that an alternative can be tried.
+_ALTERNATIVES = (
+    {"k_tx", "D_cd"},
+    {"k_ty", "D_md"},
+    {"E_md", "curve_md"},
+    {"E_cd", "curve_cd"},
+    {"points", "file"},
+    {"turn", "rotation"},
+    {"speed", "profile"},
+    {"ramp", "profile"},
+    {"at", "edge"},
+    {"force", "moment", "stress"},
+    {"mass", "density"},
+    {"time", "loss_factor"},
+    {"time", "at"},
+    *({old, new} for old in ("ratio", "ratio_ty", "rotation") for new in ("time", "loss_factor", "at")),
+)
+MOST_PLACES = 10_000  # that one pattern may meet
+
+
+def set_value(document: Document, override: str) -> None:
+    """Apply one `PATH=VALUE` to the plain data; `*` and `?` in a part of PATH meet every name that fits.
+
+    Raises SpecError; the data is then as it was.
+    """
+    path_text, equals, value_text = override.partition("=")
+    file = f"--set {path_text}"
+    here = Place(file, 1, 1)
+    words = path_text.strip().split(".")
+    if not equals or not all(re.fullmatch(r"[A-Za-z0-9_*?]{1,64}", w) for w in words):
+        raise SpecError(
+            f"{override[:80]!r} is not PATH=VALUE; write like sheets.note.boxes=[20,30]", place=here
+        )
+    value = parse(value_text, file)
+    for path in _met(document.data, words, here):
+        _put(document, path, value.copy(), here)
+
+
+def _met(data: Any, words: list[str], here: Place) -> list[SpecPath]:
+    """Every path that words with patterns mean; keys that are not there yet are made where no pattern is."""
+    found: list[tuple[SpecPath, Any]] = [((), data)]
+    for word in words:
+        step: list[tuple[SpecPath, Any]] = []
+        for path, node in found:
+            step += [((*path, key), inner) for key, inner in _inside(node, word, path, here)]
+        if not step:
+            known = dict.fromkeys(str(key) for _, node in found for key in node)
+            raise SpecError(
+                f"nothing here fits {word!r}{did_you_mean(word, known) or ';'} "
+                f"there are: {', '.join(known)[:200] or 'none'}",
+                tuple(words[: len(found[0][0])]),
+                here,
+            )
+        if len(step) > MOST_PLACES:
+            raise SpecError(f"{word!r} meets more than {MOST_PLACES} values", place=here)
+        found = step
+    return [path for path, _ in found]
+
+
+def _inside(node: Any, word: str, path: SpecPath, here: Place) -> list[tuple[str | int, Any]]:
+    """(key, value) of what a word means in a mapping or a list."""
+    pattern = "*" in word or "?" in word
+    if node is None:
+        node = {}
+    if isinstance(node, list):
+        if pattern:
+            return [(k, item) for k, item in enumerate(node) if fnmatchcase(str(k), word)]
+        if not re.fullmatch(r"[0-9]{1,6}", word) or int(word) >= len(node):
+            raise SpecError(f"no item {word!r}; the list has {len(node)}, counted from 0", path, here)
+        return [(int(word), node[int(word)])]
+    if isinstance(node, dict):
+        if pattern:
+            return [(key, item) for key, item in node.items() if fnmatchcase(str(key), word)]
+        return [(word, node.get(word))]
+    raise SpecError(f"has a plain value; it has no part {word!r}", path, here)
+
+
+def _put(document: Document, path: SpecPath, value: Document, here: Place) -> None:
+    """Put a value at a path, with the mappings that lead to it."""
+    node: Any = document.data
+    for depth, key in enumerate(path[:-1]):
+        if isinstance(node, dict) and node.get(key) is None:
+            node[key] = {}
+            document.made.add(path[: depth + 1])
+        node = node[key]
+    last = path[-1]
+    if isinstance(node, dict):
+        for group in _ALTERNATIVES:
+            if last in group:
+                for other in group - {last}:
+                    node.pop(other, None)
+    node[last] = value.data
+    for table, source in ((document.places, value.places), (document.keys, value.keys)):
+        for known in [p for p in table if p[: len(path)] == path]:
+            del table[known]
+        table.update({path + tail: Place(here.file, *place[1:]) for tail, place in source.items()})
+    document.keys.setdefault(path, here)
