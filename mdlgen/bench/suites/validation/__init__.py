@@ -8,9 +8,9 @@ wrong is a finding.
 from __future__ import annotations
 
 from mdlgen.bench.case import Case
-from mdlgen.bench.suites.validation import belts, bending, plates, rigid, rolling, swinging
+from mdlgen.bench.suites.validation import belts, bending, edges, plates, rigid, rolling, swinging
 
-GROUPS = (bending, plates, swinging, belts, rolling, rigid)
+GROUPS = (bending, plates, swinging, belts, rolling, rigid, edges)
 
 
 def cases(solver: str, reference: str, quick: bool) -> list[Case]:
