@@ -1,4 +1,4 @@
-"""Flexible sheets that meet a plate: dropped flat onto it, and against its end."""
+"""Flexible sheets that meet a plate: dropped flat onto it, hung over its edge, and against its end."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mdlgen.bench.case import Case, Finding, Run
-from mdlgen.bench.oracles import impact
+from mdlgen.bench.oracles import impact, overhang
 from mdlgen.bench.suites.validation.rows import Basis, against, row
 from mdlgen.results.events import events
 from mdlgen.results.result import Result
@@ -17,12 +17,14 @@ GRAVITY, STIFFNESS, SMOOTHING = 9.81e-3, 100.0, 1e-3  # [mm/ms^2], [N/mm^1.5], [
 MASS, THICK = 0.72, 0.1  # of the note [g], [mm]
 NOTE = "{E_md: 3530 MPa, E_cd: 1113 MPa, D_md: 0.40 N*mm, D_cd: 0.24 N*mm}"
 DROPS = ((1.0, 0.5), (3.0, 0.5), (10.0, 0.5), (3.0, 0.2), (3.0, 0.8))  # height [mm], restitution
+OUT = ((40.0, 200.0), (60.0, 200.0), (80.0, 200.0), (110.0, 300.0))  # beyond the edge, length [mm]
+WIDTH, AREAL, BENDING = 20.0, 80e-6, 0.4  # [mm], [g/mm^2], [N mm]
 # Depth of the leading lower corner below the face [mm], friction, radius of the end [mm].
 ENDS = (
     (0.2, 0.3, 0.5),
     (0.7, 0.3, 0.5),
     (0.2, 0.6, 0.5),
-    (0.1, 0.1, 0.02),
+    (0.2, 0.1, 0.02),
     (0.5, 0.6, 0.02),
     (0.9, 0.1, 0.02),
 )
@@ -32,7 +34,7 @@ def cases(quick: bool) -> list[Case]:
     """All rows, or the short ones."""
     if quick:
         return [_drop(1.0, 0.5), _end(0.7, 0.3, 0.5)]
-    return [*(_drop(*drop) for drop in DROPS), *(_end(*end) for end in ENDS)]
+    return [*(_drop(*drop) for drop in DROPS), *(_hangs(*out) for out in OUT), *(_end(*end) for end in ENDS)]
 
 
 def _drop(height: float, restitution: float) -> Case:
@@ -51,6 +53,26 @@ def _drop(height: float, restitution: float) -> Case:
     )
     name = f"note dropped flat from {height:g} mm, c_R {restitution:g}"
     return row("Sheets on plates", name, Run("verify/slide", sets), Rebound(height, restitution))
+
+
+def _hangs(out: float, length: float) -> Case:
+    strip = (
+        f"{{material: note, size: [{length} mm, {WIDTH} mm], thickness: {THICK} mm,"
+        f" mass: {AREAL * length * WIDTH!r} g, boxes: [{round(length / 5)}, 1], layout: plate,"
+        f" center: [{out - length / 2!r} mm, 0 mm, {THICK / 2} mm]}}"
+    )
+    table = "{center: [-150 mm, 0 mm, -5 mm], normal: z, size: [300 mm, 100 mm, 10 mm], mass: 100 g}"
+    sets = (
+        f"materials.note={NOTE}",
+        f"materials.note.D_md={BENDING} N*mm",
+        f"sheets={{strip: {strip}}}",
+        f"planes={{table: {table}}}",
+        f"contacts=[{{between: [strip, table], stiffness: {STIFFNESS} N/mm^1.5, friction: 0.5}}]",
+        "run={analysis: static}",
+        "probes={tip: {sheet: strip, edge: x_max}}",
+    )
+    name = f"strip of {length:g} mm that hangs over a table's edge by {out:g} mm"
+    return row("Sheets on plates", name, Run("verify/slide", sets), Sag(out, length))
 
 
 def _end(below: float, friction: float, radius: float) -> Case:
@@ -117,6 +139,25 @@ class Rebound:
                 "height of the first rebound", up**2 / (2.0 * GRAVITY), z[lowest:].max(), 0.02, "mm", basis
             )
         ]
+
+
+@dataclass(frozen=True)
+class Sag:
+    """How far the end of a strip hangs below the table that it lies on."""
+
+    out: float  # [mm]
+    length: float  # [mm]
+
+    def __call__(self, result: Result, _: Result | None) -> list[Finding]:
+        # the round of the edge is touched a radius before the end of the plate
+        beyond = self.out + result.model.planes[0].edges[0]
+        exact = overhang.overhang(AREAL * WIDTH * GRAVITY, BENDING * WIDTH, self.length, beyond)
+        tip = result.anchor_motion(0)[0][-1]
+        basis = Basis(
+            "the heavy elastica from where the strip leaves the table (boundary value problem)",
+            "boxes of 5 mm",
+        )
+        return [against("sag of the end", exact.sag, THICK / 2 - float(tip[2]), 0.02, "mm", basis)]
 
 
 @dataclass(frozen=True)
