@@ -34,7 +34,7 @@ SUMMARY: dict[str, tuple[str, str]] = {
     "energy.elastic": ("N mm", "elastic energy at the end, of joints, contacts and springs"),
     "energy.dissipated": ("N mm", "energy taken by damping, friction and restitution"),
     "energy.numerical": ("N mm", "energy taken by the numerical damping of the integrator; null with exudyn"),
-    "energy.driven": ("N mm", "work of drives, loads and weight"),
+    "energy.driven": ("N mm", "work of drives and loads"),
     "energy.balance_error": (
         "",
         "error of the energy balance over `energy.scale`; positive: a gain",
@@ -157,7 +157,7 @@ Words in capitals stand for names of your scene. Vectors are [x, y, z]. A number
 null. A penetration of a roller counts sheets only; `contacts` has each pair of parts.
 
 {table(("key", "unit", "meaning"), rows)}
-Names of `estimates` say what they are of, such as `note.position` or `motor_1.center`. See
+Names of `estimates` are places in this file without their units, such as `sheets.note.position`. See
 [the error estimate](../theory/estimates.md).
 
 ## series.csv
