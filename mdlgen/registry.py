@@ -18,9 +18,12 @@ if TYPE_CHECKING:
 
 Progress = Callable[[float, float, int, int], None]
 
-EMITTERS = {"motionview": "backends.motionview", "motionsolve": "backends.motionsolve"}
-READERS = {"motionview": "backends.motionview.reader", "motionsolve": "backends.motionsolve.reader"}
-SOLVERS = {"exudyn": "backends.exudyn_local", "lattice": "backends.lattice"}
+EMITTERS = {"motionview": "mdlgen.backends.motionview", "motionsolve": "mdlgen.backends.motionsolve"}
+READERS = {
+    "motionview": "mdlgen.backends.motionview.reader",
+    "motionsolve": "mdlgen.backends.motionsolve.reader",
+}
+SOLVERS = {"exudyn": "mdlgen.backends.exudyn_local", "lattice": "mdlgen.backends.lattice"}
 AUTO = ("lattice", "exudyn")  # in this order: the fast one where it can represent the scene
 
 

@@ -15,8 +15,8 @@ from functools import partial
 import atheris
 from pydantic_core import PydanticCustomError
 
-with atheris.instrument_imports(include=["mdlgen", "backends"]):
-    from backends.motionview.reader import read
+with atheris.instrument_imports(include=["mdlgen"]):
+    from mdlgen.backends.motionview.reader import read
     from mdlgen.errors import MdlgenError
     from mdlgen.paths import samples
     from mdlgen.spec.limits import Tally

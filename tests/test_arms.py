@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import mdlgen
-from backends.motionsolve import validate
+from mdlgen.backends.motionsolve import validate
 from mdlgen.errors import RefusedError, SpecError
 from mdlgen.model.lower import lower
 from mdlgen.model.tables import Floats, Model

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import mdlgen
-from backends.lattice import run
+from mdlgen.backends.lattice import run
 from mdlgen.model.lower import lower
 from mdlgen.results import audit
 from mdlgen.results.result import Energy

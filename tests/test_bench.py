@@ -122,7 +122,7 @@ def test_a_quick_suite_end_to_end(tmp_path):
 FAKES = {
     "shifted": """
         from dataclasses import replace
-        from backends.exudyn_local import solve as honest
+        from mdlgen.backends.exudyn_local import solve as honest
 
         def solve(model, progress=None, step=None):
             result = honest(model, progress, step)
@@ -138,7 +138,7 @@ FAKES = {
             raise RefusedError("no sheets here")
         """,
     "talking": """
-        from backends.exudyn_local import solve as honest
+        from mdlgen.backends.exudyn_local import solve as honest
 
         def solve(model, progress=None, step=None):
             print("noise on standard output")

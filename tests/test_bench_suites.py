@@ -146,10 +146,12 @@ def test_a_reference_of_other_code_is_another_file(tmp_path):
     from mdlgen.bench.reference import file_of
 
     run = Run("transport_4x4", ("run.duration=1 ms",), 0.1)
-    one = file_of(Reference(run, "exudyn"), "backends.exudyn_local", tmp_path)
-    assert one == file_of(Reference(run, "exudyn"), "backends.exudyn_local", tmp_path)
+    one = file_of(Reference(run, "exudyn"), "mdlgen.backends.exudyn_local", tmp_path)
+    assert one == file_of(Reference(run, "exudyn"), "mdlgen.backends.exudyn_local", tmp_path)
     assert one != file_of(Reference(run, "exudyn"), "mdlgen.bench", tmp_path)
-    assert one != file_of(Reference(replace(run, step=0.2), "exudyn"), "backends.exudyn_local", tmp_path)
+    assert one != file_of(
+        Reference(replace(run, step=0.2), "exudyn"), "mdlgen.backends.exudyn_local", tmp_path
+    )
     assert isinstance(one, Path)
 
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 from written import Text, model_of
 
-import backends.motionview as motionview
+import mdlgen.backends.motionview as motionview
 from mdlgen.errors import RefusedError
 
 SMALL = "sheets.note.boxes=[3,4]"

@@ -162,7 +162,7 @@ def test_a_run_ends_where_a_joint_goes_beyond_its_curve(solver: str) -> None:
 
 
 def test_joints_with_curves_are_not_folded() -> None:
-    from backends.lattice.arrays import build
+    from mdlgen.backends.lattice.arrays import build
 
     bent = mdlgen.lower(load(TENSION, ["sheets.strip.boxes=[4,3]"]))
     system = build(bent)

@@ -17,10 +17,10 @@ import pytest
 from lxml import etree
 
 import mdlgen
-from backends import motionsolve
-from backends.motionsolve.axes import along
-from backends.motionsolve.environment import comment
-from backends.motionsolve.schema import schema
+from mdlgen.backends import motionsolve
+from mdlgen.backends.motionsolve.axes import along
+from mdlgen.backends.motionsolve.environment import comment
+from mdlgen.backends.motionsolve.schema import schema
 from mdlgen.cli import app
 from mdlgen.errors import MdlgenError, RefusedError, SpecError
 from mdlgen.model.tables import Model
@@ -410,7 +410,7 @@ def test_names_that_would_meet_are_refused() -> None:
 
 def test_what_is_pasted_is_escaped_and_cannot_end_a_comment() -> None:
     assert "--" not in comment("a --> b")
-    from backends.motionsolve.environment import environment
+    from mdlgen.backends.motionsolve.environment import environment
 
     assert environment().from_string("{{ x }}").render(x='"<&>') == "&#34;&lt;&amp;&gt;"
 

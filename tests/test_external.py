@@ -15,10 +15,10 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-import backends.motionview as motionview
 import mdlgen
-from backends.motionview.reader import lint, read
+import mdlgen.backends.motionview as motionview
 from mdlgen import registry
+from mdlgen.backends.motionview.reader import lint, read
 from mdlgen.checks import lints
 from mdlgen.cli import app
 from mdlgen.errors import RefusedError, SpecError
@@ -179,7 +179,7 @@ def test_a_scene_with_externals_is_refused_by_name_and_place(
 
 
 def test_solvers_refuse_it_by_themselves(monkeypatch: pytest.MonkeyPatch) -> None:
-    from backends import exudyn_local
+    from mdlgen.backends import exudyn_local
 
     model = model_of()
     with pytest.raises(RefusedError, match="Exudyn: feed is the body b_feed"):
@@ -482,7 +482,7 @@ def test_the_script_reaches_into_the_system() -> None:
 
 def test_it_loads_no_solver() -> None:
     code = (
-        "import sys, mdlgen, backends.motionview as m\n"
+        "import sys, mdlgen, mdlgen.backends.motionview as m\n"
         f"model = mdlgen.lower(mdlgen.load({str(FOUR)!r}, ['{SMALL}']))\n"
         "m.emit(model, only='sheets'), m.companion(model, only='sheets')\n"
         "assert not {'scipy', 'numba', 'exudyn'} & set(sys.modules)\n"

@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from backends.exudyn_local import solve
+from mdlgen.backends.exudyn_local import solve
 from mdlgen.cli import app
 from mdlgen.model.lower import lower
 from mdlgen.spec.load import load, loads
@@ -388,10 +388,10 @@ def test_a_state_that_goes_non_finite_ends_with_a_reason():
 
 def test_a_long_run_has_no_estimate():
     """Two runs of 40 ms of the transport would take too long; one of 2 ms is estimated."""
-    from backends.exudyn_local import kernels
-    from backends.exudyn_local.solve import ESTIMATED
-    from backends.exudyn_local.step import choose_steps, cost
-    from backends.exudyn_local.system import build
+    from mdlgen.backends.exudyn_local import kernels
+    from mdlgen.backends.exudyn_local.solve import ESTIMATED
+    from mdlgen.backends.exudyn_local.step import choose_steps, cost
+    from mdlgen.backends.exudyn_local.system import build
 
     model = lower(load("samples/transport_4x4.yaml", ["run.duration=40 ms"]))
     system, _ = build(model)

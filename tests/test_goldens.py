@@ -11,10 +11,10 @@ from typing import Any
 
 import pytest
 
-import backends.motionview as motionview
-from backends.motionview.banner import banner
-from backends.motionview.environment import environment
-from backends.motionview.views import scene_view
+import mdlgen.backends.motionview as motionview
+from mdlgen.backends.motionview.banner import banner
+from mdlgen.backends.motionview.environment import environment
+from mdlgen.backends.motionview.views import scene_view
 from mdlgen.model.lower import lower
 from mdlgen.model.tables import Model
 from mdlgen.paths import samples, templates

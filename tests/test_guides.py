@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import mdlgen
-from backends.lattice import solve as lattice
+from mdlgen.backends.lattice import solve as lattice
 from mdlgen.checks import lints
 from mdlgen.errors import SpecError
 from mdlgen.mechanics.guide import BOTH, INSIDE, OUTSIDE, box_guide

@@ -42,17 +42,21 @@ def test_what_does_not_run_imports_no_solver(command: str) -> None:
     assert ("jinja2" in found) == (command == "mdl")
 
 
-@pytest.mark.parametrize("first", ["mdlgen.mechanics.contact", "backends.lattice.kernels.band"])
+@pytest.mark.parametrize("first", ["mdlgen.mechanics.contact", "mdlgen.backends.lattice.kernels.band"])
 def test_compiled_code_is_kept_in_one_place_whoever_imports_it_first(first: str) -> None:
     code = (
         f"import {first}\n"
-        "from backends.lattice.kernels import band, march\n"
+        "from mdlgen.backends.lattice.kernels import band, march\n"
         "from mdlgen.mechanics import plate\n"
         "for one in (band.factor, march.run, plate.box_plane):\n"
         "    print(one.dispatcher._cache.cache_path.replace('\\\\', '/').split('/')[-2].rsplit('_', 1)[0])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.split() == ["backends.lattice.kernels", "backends.lattice.kernels", "mdlgen.mechanics"]
+    assert done.stdout.split() == [
+        "mdlgen.backends.lattice.kernels",
+        "mdlgen.backends.lattice.kernels",
+        "mdlgen.mechanics",
+    ]
 
 
 def test_rooms_import_only_lower_rooms() -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from backends.motionview.reader import Report, include, lint, read
+from mdlgen.backends.motionview.reader import Report, include, lint, read
 
 BODY = '*Body( {0}, "{0}", P_Global_Origin, , , ,  )\n*SetBodyInertia( {0}, 1, 1, 1, 1 )\n'
 

@@ -22,8 +22,8 @@ from test_symmetry import MACHINE
 
 import mdlgen
 import mdlgen.errors
-from backends.lattice import run as lattice
-from backends.lattice.kernels import entries
+from mdlgen.backends.lattice import run as lattice
+from mdlgen.backends.lattice.kernels import entries
 from mdlgen.errors import OutputError
 from mdlgen.model.tables import Model
 from mdlgen.paths import samples

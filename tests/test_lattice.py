@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import mdlgen
-from backends.lattice.arrays import build
-from backends.lattice.kernels import band, dense, forces, step
+from mdlgen.backends.lattice.arrays import build
+from mdlgen.backends.lattice.kernels import band, dense, forces, step
 from mdlgen.bench.suites import flight
 from mdlgen.bench.suites.impact import thrown
 from mdlgen.errors import RefusedError
@@ -46,7 +46,7 @@ def run(made: Model, step: float | None = None) -> Result:
 
 
 def _fixed(made: Model, step: float) -> Result:
-    from backends.lattice import solve
+    from mdlgen.backends.lattice import solve
 
     return solve(made, step=step)
 
@@ -392,7 +392,7 @@ def test_a_run_that_cannot_converge_says_where() -> None:
 
 
 def test_a_block_that_loses_energy_unseen_has_failed(monkeypatch: pytest.MonkeyPatch) -> None:
-    from backends.lattice import run as solver
+    from mdlgen.backends.lattice import run as solver
 
     made = thrown(1.0, 1.0).model()
     # a step of the user's own is halved where a contact would begin and end within it
@@ -406,7 +406,7 @@ def test_a_block_that_loses_energy_unseen_has_failed(monkeypatch: pytest.MonkeyP
 
 
 def test_a_tolerance_that_is_not_reached_is_a_failure(monkeypatch: pytest.MonkeyPatch) -> None:
-    from backends.lattice import run as solver
+    from mdlgen.backends.lattice import run as solver
 
     monkeypatch.setattr(solver, "MOST_REFINED", 1)
     monkeypatch.setattr(solver, "first_step", lambda _: 0.25)

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import mdlgen
-from backends.lattice import static
-from backends.lattice.arrays import build
-from backends.lattice.kernels.band import empty
-from backends.lattice.run import start
+from mdlgen.backends.lattice import static
+from mdlgen.backends.lattice.arrays import build
+from mdlgen.backends.lattice.kernels.band import empty
+from mdlgen.backends.lattice.run import start
 from mdlgen.bench.oracles import overhang
 from mdlgen.errors import RefusedError
 from mdlgen.mechanics.vector import exp_rotation
@@ -88,7 +88,7 @@ def test_the_stiffness_is_the_derivative_of_the_forces(
     spread: float, bent: tuple[str, ...], away: float
 ) -> None:
     """Any state, gaps and turns of `spread`; to the round-off of the differences."""
-    from backends.lattice.kernels import forces, stiffness
+    from mdlgen.backends.lattice.kernels import forces, stiffness
 
     pulled = "loads=[{sheet: note, edge: y_max, force: [0.002 N, 0 N, 0.004 N]}]"
     made = model("cantilever", "sheets.note.boxes=[2,3]", pulled, *bent)

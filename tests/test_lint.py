@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from backends.motionview.reader import lint
+from mdlgen.backends.motionview.reader import lint
 from mdlgen.cli import app
 
 STANDARD = "*StandardInclude(FILE)"

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from written import Text, model_of
 
-import backends.motionview as motionview
+import mdlgen.backends.motionview as motionview
 from mdlgen.errors import SpecError
 from mdlgen.model.tables import GROUND, JOINT_X, JOINT_Y, SUPPORT, Model
 
@@ -563,7 +563,7 @@ def _subprocess(code: str, **environment: str) -> str:
 
 _EMIT = """
 import hashlib, sys
-import backends.motionview as mv
+import mdlgen.backends.motionview as mv
 from mdlgen.model.lower import lower
 from mdlgen.paths import samples
 from mdlgen.spec.load import load

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from backends.motionview import emit
+from mdlgen.backends.motionview import emit
 from mdlgen.errors import SpecError
 from mdlgen.model.lower import lower
 from mdlgen.spec.fields import RESERVED

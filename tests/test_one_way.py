@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import mdlgen
-from backends.lattice.arrays import build
-from backends.motionsolve import read, validate
+from mdlgen.backends.lattice.arrays import build
+from mdlgen.backends.motionsolve import read, validate
 from mdlgen.errors import RefusedError, SpecError
 from mdlgen.mechanics.driven import clutch
 from mdlgen.model.lower import lower

@@ -33,6 +33,40 @@ def installed(tmp_path_factory):
     return folder / "site"
 
 
+def test_the_wheel_installs_one_package_and_leaves_nothing_behind(installed, tmp_path):
+    """After it ran and was uninstalled, the environment is as it was before."""
+    assert {path.name.split("-")[0] for path in installed.iterdir()} == {"mdlgen"}
+    assert (installed / "mdlgen" / "backends" / "lattice" / "run.py").is_file()
+    (wheel,) = installed.parent.glob("*.whl")
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", tmp_path / "venv"], check=True)
+    python = next(p for p in (tmp_path / "venv").glob("*/python*") if p.stem == "python")
+    (site,) = (tmp_path / "venv").glob("**/site-packages")
+    # what it needs is taken from here, by a file that is there before and after
+    here = [path for path in sys.path if path.endswith("site-packages")]
+    (site / "needs.pth").write_text("\n".join(here))
+    surroundings = {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "PYTHONPYCACHEPREFIX")}
+    surroundings |= {"MDLGEN_CACHE": str(tmp_path / "cache"), "PYTHONDONTWRITEBYTECODE": ""}
+
+    def call(*args: str | Path) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            [*args], cwd=tmp_path, env=surroundings, capture_output=True, text=True, check=False
+        )
+
+    def pip(*args: str | Path) -> None:
+        done = call(sys.executable, "-m", "pip", "--python", python, *args)
+        assert done.returncode == 0, done.stderr
+
+    before = sorted(site.rglob("*"))
+    pip("install", "-q", "--no-deps", "--no-index", wheel)
+    place = call(python, "-c", "import mdlgen.backends.lattice as l; print(l.__file__)")
+    assert place.stdout.startswith(str(site)), place.stderr
+    scene = site / "mdlgen" / "_samples" / "transport_4x4.yaml"
+    ran = call(python, "-m", "mdlgen", "mdl", scene, "-o", "note.mdl")
+    assert ran.returncode == 0 and (tmp_path / "note.mdl").is_file(), ran.stderr
+    pip("uninstall", "-q", "-y", "mdlgen")
+    assert sorted(site.rglob("*")) == before
+
+
 def run_installed(installed, folder, *args):
     environment = {**os.environ, "PYTHONPATH": str(installed)}
     return subprocess.run(

@@ -234,7 +234,7 @@ def test_a_users_own_numba_stays_as_it_was(tmp_path: Path) -> None:
     code = (
         "import numba.core.caching as c, numba.core.config as config\n"
         "before = config.CACHE_DIR, c.FunctionCache.save_overload\n"
-        "import mdlgen, backends.lattice, backends.exudyn_local.shipped, tiny.kernels as k\n"
+        "import mdlgen, mdlgen.backends.lattice, mdlgen.backends.exudyn_local.shipped, tiny.kernels as k\n"
         "k.use()\n"
         "import own\n"
         "print([own.twice(2), (config.CACHE_DIR, c.FunctionCache.save_overload) == before])"

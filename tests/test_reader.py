@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 import mdlgen
-from backends.motionview.reader import Report, lint, read, values
+from mdlgen.backends.motionview.reader import Report, lint, read, values
 from mdlgen.errors import SpecError
 from mdlgen.paths import samples
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import mdlgen
-from backends.lattice.arrays import build
-from backends.motionsolve import validate
+from mdlgen.backends.lattice.arrays import build
+from mdlgen.backends.motionsolve import validate
 from mdlgen.errors import SpecError
 from mdlgen.mechanics.pair import pair_force
 from mdlgen.mechanics.point import OUT

@@ -11,7 +11,7 @@ from solids import binary, brick, cylinder, halved, prism
 from test_roller_plate import DOWN, MASS, RADIUS, SOLVERS, G, K, N, depth, press, scene, spun
 
 import mdlgen
-from backends.lattice.arrays import build
+from mdlgen.backends.lattice.arrays import build
 from mdlgen.errors import SpecError
 from mdlgen.mechanics.pair import pair_force
 from mdlgen.mechanics.point import OUT

@@ -191,8 +191,8 @@ def test_a_side_that_a_neighbour_covers_owns_no_contact():
 
 
 def test_the_search_finds_the_pairs_that_are_near_and_no_other():
-    from backends.lattice.arrays import build
-    from backends.lattice.kernels import search
+    from mdlgen.backends.lattice.arrays import build
+    from mdlgen.backends.lattice.kernels import search
 
     model = lower(loads(stack(3, "[4, 6]"), overrides=["run.prune=false"]))
     system = build(model)
@@ -370,8 +370,8 @@ def test_a_stack_at_rest_does_not_creep_or_gain_energy():
 
 
 def test_boxes_that_lean_have_not_crossed_where_a_centre_passes_a_plane():
-    from backends.lattice.arrays import build
-    from backends.lattice.kernels import search, sides
+    from mdlgen.backends.lattice.arrays import build
+    from mdlgen.backends.lattice.kernels import search, sides
 
     model = lower(loads(stack(2, "[1, 1]")))
     system = build(model)

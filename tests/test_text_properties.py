@@ -14,8 +14,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from backends.motionview import emit
-from backends.motionview.reader import read
+from mdlgen.backends.motionview import emit
+from mdlgen.backends.motionview.reader import read
 from mdlgen.errors import SpecError
 from mdlgen.model.lower import lower
 from mdlgen.spec.load import loads

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from backends.lattice.kernels import coupled, two_sets
-from backends.lattice.kernels.band import PAD, factor
-from backends.lattice.kernels.border import eliminate
+from mdlgen.backends.lattice.kernels import coupled, two_sets
+from mdlgen.backends.lattice.kernels.band import PAD, factor
+from mdlgen.backends.lattice.kernels.border import eliminate
 
 NODES, BORDER = 4, 2  # of a sheet; unknowns of rollers
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from backends.motionview.reader import read
+from mdlgen.backends.motionview.reader import read
 from mdlgen.model.lower import lower
 from mdlgen.model.tables import Model
 from mdlgen.paths import samples

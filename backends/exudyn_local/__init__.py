@@ -6,6 +6,6 @@ law that the oracles test, and any curve or share rule costs the same.
 
 from __future__ import annotations
 
-from backends.exudyn_local.solve import solve
+from mdlgen.backends.exudyn_local.solve import solve
 
 __all__ = ["solve"]

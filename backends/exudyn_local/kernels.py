@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from backends.exudyn_local.system import System
+from mdlgen.backends.exudyn_local.system import System
 from mdlgen.mechanics.arm import hung, moved, speeding, torque_of, turn_of, way_of
 from mdlgen.mechanics.bushing import bushing
 from mdlgen.mechanics.curve import curve_excess, middle_and_gap

@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from backends.exudyn_local import kernels
-from backends.exudyn_local.shipped import begin, ledger, overstretched, passed, set_limits
-from backends.exudyn_local.system import MM, MS, PER_MM, System
+from mdlgen.backends.exudyn_local import kernels
+from mdlgen.backends.exudyn_local.shipped import begin, ledger, overstretched, passed, set_limits
+from mdlgen.backends.exudyn_local.system import MM, MS, PER_MM, System
 from mdlgen.model import curves
 from mdlgen.model.fold import Folds
 from mdlgen.model.meshes import carried

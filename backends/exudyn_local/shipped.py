@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from backends.exudyn_local.between import passed, set_limits
-from backends.exudyn_local.kernels import forces, jacobian, ledger, place_all, set_owners
+from mdlgen.backends.exudyn_local.between import passed, set_limits
+from mdlgen.backends.exudyn_local.kernels import forces, jacobian, ledger, place_all, set_owners
 from mdlgen.mechanics import curve, pair
 from mdlgen.mechanics.tree import set_thickness
 from mdlgen.program.kernel import LAWS, njit
@@ -32,6 +32,6 @@ def overstretched(points, bushings, x, r):
 
 PROGRAM = Program(
     Path(__file__).with_name("exudyn.program"),
-    (LAWS, "backends.exudyn_local"),
+    (LAWS, "mdlgen.backends.exudyn_local"),
     (forces, jacobian, ledger, begin, overstretched, passed, set_limits, set_owners, set_thickness),
 )

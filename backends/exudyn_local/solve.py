@@ -16,12 +16,12 @@ from typing import Any
 
 import numpy as np
 
-from backends.exudyn_local import kernels
-from backends.exudyn_local.recorder import Recorder
-from backends.exudyn_local.shipped import PROGRAM, forces, jacobian, ledger, passed
-from backends.exudyn_local.stability import falling
-from backends.exudyn_local.step import choose_steps, cost, given_steps
-from backends.exudyn_local.system import MM, MS, Pattern, System, build
+from mdlgen.backends.exudyn_local import kernels
+from mdlgen.backends.exudyn_local.recorder import Recorder
+from mdlgen.backends.exudyn_local.shipped import PROGRAM, forces, jacobian, ledger, passed
+from mdlgen.backends.exudyn_local.stability import falling
+from mdlgen.backends.exudyn_local.step import choose_steps, cost, given_steps
+from mdlgen.backends.exudyn_local.system import MM, MS, Pattern, System, build
 from mdlgen.model.external import refuse_externals
 from mdlgen.model.sheet_pairs import refuse_searched
 from mdlgen.model.tables import Model

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from backends.exudyn_local import kernels
-from backends.exudyn_local.shipped import jacobian
-from backends.exudyn_local.system import Pattern, System
+from mdlgen.backends.exudyn_local import kernels
+from mdlgen.backends.exudyn_local.shipped import jacobian
+from mdlgen.backends.exudyn_local.system import Pattern, System
 from mdlgen.model.tables import Floats
 
 # A balance that is left so slowly that it grows e-fold in a second stands still [rad/s].

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from backends.exudyn_local import kernels
-from backends.exudyn_local.shipped import ledger
-from backends.exudyn_local.system import MS, System
+from mdlgen.backends.exudyn_local import kernels
+from mdlgen.backends.exudyn_local.shipped import ledger
+from mdlgen.backends.exudyn_local.system import MS, System
 from mdlgen.model.impact import approach_time, impact_time, lasting
 from mdlgen.model.tables import OF_MACHINE, Model
 

@@ -20,7 +20,7 @@ Progress = Callable[[float, float, int, int], None]
 
 def check(model: Model) -> None:
     """Raises RefusedError by name for what this solver cannot represent."""
-    from backends.lattice import scope
+    from mdlgen.backends.lattice import scope
 
     scope.check(model)
 
@@ -32,7 +32,7 @@ def solve(
     without: tuple[str, ...] = (),
     keep: Keep | None = None,
 ) -> Result:
-    """Run a Model; see `backends.lattice.run.solve`."""
-    from backends.lattice import run
+    """Run a Model; see `mdlgen.backends.lattice.run.solve`."""
+    from mdlgen.backends.lattice import run
 
     return run.solve(model, progress, step, without, keep)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from backends.lattice.search import Search, plan
+from mdlgen.backends.lattice.search import Search, plan
 from mdlgen.mechanics.arm import ARM, arm
 from mdlgen.mechanics.curve import FOLLOWS, curve_points, follow
 from mdlgen.mechanics.driven import DRIVEN, drive
@@ -24,7 +24,7 @@ from mdlgen.model.rotations import matrices
 from mdlgen.model.tables import BOX_BOX, BOX_MESH, CYLINDER_MESH, GROUND, SUPPORT, Floats, Ints, Model
 
 if TYPE_CHECKING:
-    from backends.lattice.mirror import Mirror
+    from mdlgen.backends.lattice.mirror import Mirror
 
 BODY = np.dtype(
     [

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from backends.lattice.arrays import JOINT, LOAD, System
+from mdlgen.backends.lattice.arrays import JOINT, LOAD, System
 from mdlgen.model.rotations import matrices, vectors
 from mdlgen.model.tables import BOX_PLANE, GROUND, Floats, Model, PlanePart, SheetPart
 
@@ -124,7 +124,7 @@ class Grip:
     def changed(self, level: float, x: Floats, r: Floats, room: tuple) -> float:
         """Sets the loads to what friction adds at places x (n, 3) and rotations r (n, 9), a `level` of which
         will act. Returns by how much that changes the greatest [N]. `room`: (forces, touched, outs, near)."""
-        from backends.lattice.kernels import entries
+        from mdlgen.backends.lattice.kernels import entries
 
         still, forces = np.zeros_like(x), []
         for system in (self._with, self.system):

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from backends.lattice.record import Recorder
+from mdlgen.backends.lattice.record import Recorder
 from mdlgen.errors import OutputError
 from mdlgen.results.keep import Keep, State
 

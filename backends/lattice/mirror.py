@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from backends.lattice.arrays import IMAGE, System, reach
+from mdlgen.backends.lattice.arrays import IMAGE, System, reach
 from mdlgen.model.tables import Floats, Ints
 
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from backends.lattice.arrays import System
+from mdlgen.backends.lattice.arrays import System
 from mdlgen.model.meshes import carried
 from mdlgen.model.rotations import euler_parameters
 from mdlgen.model.tables import Model
@@ -42,7 +42,7 @@ class Recorder:
 
     def store(self, t: float) -> None:
         """The state at the end of a step."""
-        from backends.lattice.kernels import observe
+        from mdlgen.backends.lattice.kernels import observe
 
         bodies, joints, pairs, _, gravity, nodes, points, _, meshes = self.tables
         x, r, v, l, s, vb, _, _ = self.state

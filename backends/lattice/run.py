@@ -12,14 +12,14 @@ from typing import Any
 
 import numpy as np
 
-from backends.lattice.arrays import System, build, partner
-from backends.lattice.kernels.entries import PROGRAM
-from backends.lattice.mark import Mark, Stage
-from backends.lattice.mirror import halve
-from backends.lattice.record import Recorder, Stand
-from backends.lattice.scope import check
-from backends.lattice.static import rest
-from backends.lattice.symmetry import find
+from mdlgen.backends.lattice.arrays import System, build, partner
+from mdlgen.backends.lattice.kernels.entries import PROGRAM
+from mdlgen.backends.lattice.mark import Mark, Stage
+from mdlgen.backends.lattice.mirror import halve
+from mdlgen.backends.lattice.record import Recorder, Stand
+from mdlgen.backends.lattice.scope import check
+from mdlgen.backends.lattice.static import rest
+from mdlgen.backends.lattice.symmetry import find
 from mdlgen.errors import SpecError
 from mdlgen.model.curves import overstretched
 from mdlgen.model.fold import Folds
@@ -206,7 +206,7 @@ def _once(
 ) -> Result:
     """One run at a step, or the next smaller one that outputs fall on; `miss`, `made`: see MISS and MADE, 0
     for any; `anew`: a new factor for each step; `keep` as of `solve`."""
-    from backends.lattice.kernels import entries, march, step
+    from mdlgen.backends.lattice.kernels import entries, march, step
 
     run = model.run
     outputs = max(1, round(run.duration / run.print_step))
@@ -308,7 +308,7 @@ def _part(recorder: Recorder, stand: Stand, dt: float, steps: int) -> Result:
 
 def start(model: Model, system: System) -> tuple:
     """State at the start, and the arrays of a step."""
-    from backends.lattice.kernels import forces, step
+    from mdlgen.backends.lattice.kernels import forces, step
 
     state, mid, matrix = step.empty(system, forces.WIDE)
     x, r, v, l, _, _, u, _ = state
@@ -336,7 +336,7 @@ def _reason(
     model: Model, system: System, status: int, t: float, dt: float, state: tuple, counters: Floats
 ) -> str:
     """Why a run ended before its end."""
-    from backends.lattice.kernels import march, step
+    from mdlgen.backends.lattice.kernels import march, step
 
     names = model.bodies.name
     if status == march.STOPPED and counters[step.THROUGH] >= 0:
@@ -380,7 +380,7 @@ def _reason(
 def _arrays(model: Model, system: System) -> tuple[Any, Any, Any, Any, Any, Any, Any, Any, Any, Any]:
     """What a run works on: tables, state, middle, matrix, boxes that touch, free sheets, what is kept,
     bounds, the search, made for the start, and joints with a damping time."""
-    from backends.lattice.kernels import alone, damped, entries, forces, momentum
+    from mdlgen.backends.lattice.kernels import alone, damped, entries, forces, momentum
 
     tables = system.tables
     kept = (np.zeros((len(model.contacts), 9)), np.zeros(system.marks, bool))
@@ -405,7 +405,7 @@ def _arrays(model: Model, system: System) -> tuple[Any, Any, Any, Any, Any, Any,
 
 def _warm(model: Model, system: System) -> None:
     """Compiles, or loads from the cache, before the clock of the run starts."""
-    from backends.lattice.kernels import march, step
+    from mdlgen.backends.lattice.kernels import march, step
 
     moving = _arrays(model, system)
     tables, state, mid, _, _, _, kept, _, _, _ = moving

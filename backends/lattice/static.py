@@ -7,9 +7,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from backends.lattice import lying, standing
-from backends.lattice.arrays import System, partner
-from backends.lattice.record import Recorder
+from mdlgen.backends.lattice import lying, standing
+from mdlgen.backends.lattice.arrays import System, partner
+from mdlgen.backends.lattice.record import Recorder
 from mdlgen.mechanics.mesh import LOST
 from mdlgen.mechanics.pair import DEEP_ROLLER
 from mdlgen.model import curves
@@ -30,8 +30,8 @@ TETHER = 1e-9
 
 def rest(model: Model, system: System, moving: tuple) -> Result:
     """The Result of a Model at rest; `moving` is (state, mid, matrix) at the start."""
-    from backends.lattice.kernels import entries
-    from backends.lattice.kernels.band import PAD
+    from mdlgen.backends.lattice.kernels import entries
+    from mdlgen.backends.lattice.kernels.band import PAD
 
     state, mid, _ = moving
     x, r, v, l, s = state[:5]
@@ -163,7 +163,7 @@ def _reach(model: Model) -> float:
 
 def _touch(model: Model, system: System, state: tuple, mid: tuple, rows: tuple) -> str | None:
     """Contacts at rest into the rows of the Recorder; a reason where a box is too deep in a plane."""
-    from backends.lattice.kernels import entries
+    from mdlgen.backends.lattice.kernels import entries
 
     x, r = state[:2]
     f, touched, outs, near = mid[4], mid[5], mid[6], mid[8]
@@ -189,7 +189,7 @@ def _touch(model: Model, system: System, state: tuple, mid: tuple, rows: tuple) 
 
 def _stretched(model: Model, system: System, x: np.ndarray, r: np.ndarray) -> str | None:
     """A reason where a joint is beyond its curve."""
-    from backends.lattice.kernels.entries import overstretched
+    from mdlgen.backends.lattice.kernels.entries import overstretched
 
     joint, strain = overstretched(system.points, system.joints, x, r)
     return None if joint < 0 else curves.overstretched(model, int(system.joints["row"][joint]), float(strain))

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from backends.lattice.arrays import System
-from backends.lattice.mirror import Mirror
+from mdlgen.backends.lattice.arrays import System
+from mdlgen.backends.lattice.mirror import Mirror
 from mdlgen.model.rotations import matrices
 from mdlgen.model.tables import BOX_BOX, Floats, GuidePart, Ints, Model, PlanePart, RollerPart, SheetPart
 
@@ -244,7 +244,7 @@ def _loads(model: Model, mirror: Mirror) -> bool:
 def _joints(model: Model, system: System, mirror: Mirror) -> bool:
     """Whether joints are seen as joints: between the same bodies, as stiff, with the same forces in a random
     state and in its image; and whether one that goes across joins a box to its own image."""
-    from backends.lattice.kernels.entries import joint_forces
+    from mdlgen.backends.lattice.kernels.entries import joint_forces
 
     joints, image, count = system.joints, mirror.image, len(mirror.image)
     if not len(joints):

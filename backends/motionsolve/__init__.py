@@ -5,35 +5,35 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from backends.motionsolve.reader import Reading
+    from mdlgen.backends.motionsolve.reader import Reading
     from mdlgen.model.tables import Model
 
 __all__ = ["check", "emit", "read", "validate"]
 
 
 def emit(model: Model) -> str:
-    """The deck; see `backends.motionsolve.text.emit`."""
-    from backends.motionsolve import text
+    """The deck; see `mdlgen.backends.motionsolve.text.emit`."""
+    from mdlgen.backends.motionsolve import text
 
     return text.emit(model)
 
 
 def check(model: Model) -> None:
     """Raises RefusedError by name for what the deck cannot represent."""
-    from backends.motionsolve import text
+    from mdlgen.backends.motionsolve import text
 
     text.check(model)
 
 
 def read(text: str, file: str = "<deck>") -> Reading:
-    """A deck read back; see `backends.motionsolve.reader.read`."""
-    from backends.motionsolve import reader
+    """A deck read back; see `mdlgen.backends.motionsolve.reader.read`."""
+    from mdlgen.backends.motionsolve import reader
 
     return reader.read(text, file)
 
 
 def validate(text: str, file: str = "<deck>") -> list[str]:
-    """What is wrong in a deck, one line each; see `backends.motionsolve.schema.validate`."""
-    from backends.motionsolve import schema
+    """What is wrong in a deck, one line each; see `mdlgen.backends.motionsolve.schema.validate`."""
+    from mdlgen.backends.motionsolve import schema
 
     return schema.validate(text, file)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from backends.motionsolve.rows import Cosines
-from backends.motionsolve.units import number
+from mdlgen.backends.motionsolve.rows import Cosines
+from mdlgen.backends.motionsolve.units import number
 from mdlgen.model.tables import Floats
 
 _PARALLEL = 1e-9  # sine of the angle below which an axis is the global Z

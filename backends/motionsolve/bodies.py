@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from backends.motionsolve.axes import cosines
-from backends.motionsolve.rows import Body, Box, Cosines, Deck, Shell
-from backends.motionsolve.units import Triple, numbers, per_thousand, thousandfold, triples
+from mdlgen.backends.motionsolve.axes import cosines
+from mdlgen.backends.motionsolve.rows import Body, Box, Cosines, Deck, Shell
+from mdlgen.backends.motionsolve.units import Triple, numbers, per_thousand, thousandfold, triples
 from mdlgen.model.guides import facets
 from mdlgen.model.meshes import origin
 from mdlgen.model.rim_facets import WHOLE, graphics, rim_facets

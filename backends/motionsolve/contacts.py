@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from functools import cache, partial
 
-from backends.motionsolve.bodies import facet_ids, graphic_id, rim_ids
-from backends.motionsolve.rows import Contact, Deck, Law
-from backends.motionsolve.units import number, thousandfold
+from mdlgen.backends.motionsolve.bodies import facet_ids, graphic_id, rim_ids
+from mdlgen.backends.motionsolve.rows import Contact, Deck, Law
+from mdlgen.backends.motionsolve.units import number, thousandfold
 from mdlgen.model.rim_facets import Side, graphics, meetings
 from mdlgen.model.tables import Model
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Protocol
 
-from backends.motionsolve.rows import Deck
+from mdlgen.backends.motionsolve.rows import Deck
 from mdlgen.model import naming
 from mdlgen.model.tables import Model
 

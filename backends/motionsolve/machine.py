@@ -6,11 +6,20 @@ from itertools import pairwise
 
 import numpy as np
 
-from backends.motionsolve.axes import along, cosines
-from backends.motionsolve.bodies import GROUND_ID, add_body, body_id, graphic_id
-from backends.motionsolve.requests import add_request
-from backends.motionsolve.rows import Bushing, BushingGroup, Clutch, Cylinder, Deck, Joint, Motion, Spring
-from backends.motionsolve.units import number, per_thousand, thousandfold, triples
+from mdlgen.backends.motionsolve.axes import along, cosines
+from mdlgen.backends.motionsolve.bodies import GROUND_ID, add_body, body_id, graphic_id
+from mdlgen.backends.motionsolve.requests import add_request
+from mdlgen.backends.motionsolve.rows import (
+    Bushing,
+    BushingGroup,
+    Clutch,
+    Cylinder,
+    Deck,
+    Joint,
+    Motion,
+    Spring,
+)
+from mdlgen.backends.motionsolve.units import number, per_thousand, thousandfold, triples
 from mdlgen.model.tables import ArmPart, Floats, Model, OneWay, PlanePart, Press, RollerPart
 
 _CONVERT = ((0, per_thousand), (1, thousandfold))  # the columns of a profile

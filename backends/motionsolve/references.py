@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import lxml.etree as etree
 
-from backends.motionsolve.parse import children, line
+from mdlgen.backends.motionsolve.parse import children, line
 
 Problem = tuple[int, str]
 

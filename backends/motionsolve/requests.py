@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from backends.motionsolve.bodies import GLOBAL_FRAME
-from backends.motionsolve.rows import Deck
+from mdlgen.backends.motionsolve.bodies import GLOBAL_FRAME
+from mdlgen.backends.motionsolve.rows import Deck
 
 
 def add_request(deck: Deck, name: str, label: str, quantities: str, markers: list[int]) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from backends.motionsolve.units import Triple
+from mdlgen.backends.motionsolve.units import Triple
 
 Cosines = tuple[str, str, str, str, str, str]
 

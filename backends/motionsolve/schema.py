@@ -6,8 +6,8 @@ from functools import lru_cache
 
 import lxml.etree as etree
 
-from backends.motionsolve.parse import root
-from backends.motionsolve.references import dangling
+from mdlgen.backends.motionsolve.parse import root
+from mdlgen.backends.motionsolve.references import dangling
 from mdlgen.errors import SpecError, printable
 from mdlgen.paths import templates
 

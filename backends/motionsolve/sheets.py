@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from backends.motionsolve.axes import cosines
-from backends.motionsolve.bodies import body_id
-from backends.motionsolve.requests import add_request
-from backends.motionsolve.rows import (
+from mdlgen.backends.motionsolve.axes import cosines
+from mdlgen.backends.motionsolve.bodies import body_id
+from mdlgen.backends.motionsolve.requests import add_request
+from mdlgen.backends.motionsolve.rows import (
     Bushing,
     BushingGroup,
     Cosines,
@@ -15,7 +15,7 @@ from backends.motionsolve.rows import (
     Spline,
     Surface,
 )
-from backends.motionsolve.units import Triple, number, numbers, per_thousand, triples
+from mdlgen.backends.motionsolve.units import Triple, number, numbers, per_thousand, triples
 from mdlgen.model.curves import Written, straight_points, written
 from mdlgen.model.tables import CLAMP, Model
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from backends.motionsolve import gate
-from backends.motionsolve.banner import banner
-from backends.motionsolve.environment import environment
-from backends.motionsolve.views import deck_view
+from mdlgen.backends.motionsolve import gate
+from mdlgen.backends.motionsolve.banner import banner
+from mdlgen.backends.motionsolve.environment import environment
+from mdlgen.backends.motionsolve.views import deck_view
 from mdlgen.errors import SpecError
 from mdlgen.model.external import refuse_externals
 from mdlgen.model.rolling import refuse_rolling

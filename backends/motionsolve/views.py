@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from backends.motionsolve.bodies import add_bodies, add_frames
-from backends.motionsolve.contacts import add_contacts
-from backends.motionsolve.machine import add_plates, add_rollers
-from backends.motionsolve.rows import Deck, Run
-from backends.motionsolve.sheets import add_bushings, add_loads, add_probes, add_surfaces
-from backends.motionsolve.units import acceleration, number, per_thousand
+from mdlgen.backends.motionsolve.bodies import add_bodies, add_frames
+from mdlgen.backends.motionsolve.contacts import add_contacts
+from mdlgen.backends.motionsolve.machine import add_plates, add_rollers
+from mdlgen.backends.motionsolve.rows import Deck, Run
+from mdlgen.backends.motionsolve.sheets import add_bushings, add_loads, add_probes, add_surfaces
+from mdlgen.backends.motionsolve.units import acceleration, number, per_thousand
 from mdlgen.model.tables import Model
 
 # The longest step where nothing else is said: the paper's, in the Model's unit [ms].

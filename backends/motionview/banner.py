@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from backends.motionview import script
-from backends.motionview.forms import unverified
-from backends.motionview.rows import SceneView
-from backends.motionview.units import number
+from mdlgen.backends.motionview import script
+from mdlgen.backends.motionview.forms import unverified
+from mdlgen.backends.motionview.rows import SceneView
+from mdlgen.backends.motionview.units import number
 from mdlgen.model.curves import TEXT_BEYOND, limit
 from mdlgen.model.ends import edge_note
 from mdlgen.model.tables import Model

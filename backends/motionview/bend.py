@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from backends.motionview.rows import BendView, EarView, FrameView, Value
-from backends.motionview.units import number
+from mdlgen.backends.motionview.rows import BendView, EarView, FrameView, Value
+from mdlgen.backends.motionview.units import number
 from mdlgen.model.tables import SUPPORT, Bend, Model, SheetPart
 
 

@@ -12,8 +12,8 @@ from textwrap import dedent
 
 from jinja2 import Environment
 
-from backends.motionview.units import number
 from mdlgen import templating
+from mdlgen.backends.motionview.units import number
 
 _DEFINITION = re.compile(r"^ *\*DefineDataSet\(.*?^ *\*EndDefine\(\)\n", re.M | re.S)
 _NAMED = re.compile(r"(?<=[(,] )def_ds_")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from backends.motionview.rows import SceneView, SystemView
+from mdlgen.backends.motionview.rows import SceneView, SystemView
 
 _BUSH = "SetOrientation of a Bush by two axes (seen by one axis, and by two for pairs of bushings)"
 

@@ -7,8 +7,8 @@ from itertools import groupby
 
 import numpy as np
 
-from backends.motionview.cells import rough_boxes
-from backends.motionview.rows import (
+from mdlgen.backends.motionview.cells import rough_boxes
+from mdlgen.backends.motionview.rows import (
     ArmView,
     Axis,
     ContactView,
@@ -20,7 +20,7 @@ from backends.motionview.rows import (
     SectorView,
     Value,
 )
-from backends.motionview.units import number
+from mdlgen.backends.motionview.units import number
 from mdlgen.model.rim_facets import DEEP, Side, graphics, meetings
 from mdlgen.model.tables import Floats, GuidePart, MeshPart, Model, PlanePart, RimPart, RollerPart
 

@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from backends.motionview.environment import environment
-from backends.motionview.system import kept_contacts, system_view
-from backends.motionview.units import mdl_value, number
-from backends.motionview.views import scene_view
+from mdlgen.backends.motionview.environment import environment
+from mdlgen.backends.motionview.system import kept_contacts, system_view
+from mdlgen.backends.motionview.units import mdl_value, number
+from mdlgen.backends.motionview.views import scene_view
 from mdlgen.model.tables import Ints, Model
 
 # What MotionView takes where a text says nothing [mm/s^2], [mm/s].

@@ -6,9 +6,9 @@ from itertools import islice
 
 import numpy as np
 
-from backends.motionview.bend import bend_view
-from backends.motionview.cells import Differences, differences, grid_views, zone_views
-from backends.motionview.rows import (
+from mdlgen.backends.motionview.bend import bend_view
+from mdlgen.backends.motionview.cells import Differences, differences, grid_views, zone_views
+from mdlgen.backends.motionview.rows import (
     Bush,
     CurveView,
     JointGroup,
@@ -18,7 +18,7 @@ from backends.motionview.rows import (
     SupportView,
     Value,
 )
-from backends.motionview.units import number
+from mdlgen.backends.motionview.units import number
 from mdlgen.model import naming
 from mdlgen.model.curves import straight_points, written
 from mdlgen.model.plate import SHEAR_RATIO

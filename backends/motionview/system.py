@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from backends.motionview.machine import contact_views, guide_graphics, pair_rows, rough_pairs
-from backends.motionview.rows import Attachment, Pair, SystemView
-from backends.motionview.units import number
-from backends.motionview.views import given_values, scene_view
+from mdlgen.backends.motionview.machine import contact_views, guide_graphics, pair_rows, rough_pairs
+from mdlgen.backends.motionview.rows import Attachment, Pair, SystemView
+from mdlgen.backends.motionview.units import number
+from mdlgen.backends.motionview.views import given_values, scene_view
 from mdlgen.model.rim_facets import WHOLE, Meeting, meetings
 from mdlgen.model.rim_facets import graphics as roller_graphics
 from mdlgen.model.tables import BOX_BOX, Ints, Model

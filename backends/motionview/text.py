@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from backends.motionview import gate
-from backends.motionview.banner import banner
-from backends.motionview.environment import environment
-from backends.motionview.notes import notes
-from backends.motionview.system import system_view
-from backends.motionview.views import scene_view
+from mdlgen.backends.motionview import gate
+from mdlgen.backends.motionview.banner import banner
+from mdlgen.backends.motionview.environment import environment
+from mdlgen.backends.motionview.notes import notes
+from mdlgen.backends.motionview.system import system_view
+from mdlgen.backends.motionview.views import scene_view
 from mdlgen.errors import RefusedError, SpecError
 from mdlgen.model.external import refuse_externals
 from mdlgen.model.rolling import refuse_rolling

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from backends.motionview.idle import idle_values
-from backends.motionview.machine import (
+from mdlgen.backends.motionview.idle import idle_values
+from mdlgen.backends.motionview.machine import (
     contact_views,
     guide_view,
     mesh_view,
@@ -13,9 +13,9 @@ from backends.motionview.machine import (
     plane_view,
     roller_view,
 )
-from backends.motionview.rows import SceneView, Value
-from backends.motionview.sheets import probe_view, sheet_view, support_views
-from backends.motionview.units import mdl_value, number, with_unit
+from mdlgen.backends.motionview.rows import SceneView, Value
+from mdlgen.backends.motionview.sheets import probe_view, sheet_view, support_views
+from mdlgen.backends.motionview.units import mdl_value, number, with_unit
 from mdlgen.model.tables import Model, Parameter
 
 

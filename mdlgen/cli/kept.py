@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from mdlgen.results.keep import Keep
 
 FOLDER, SEAL = "checkpoint", "run.json"
-ROOMS = ("backends.lattice", "mdlgen.mechanics")
+ROOMS = ("mdlgen.backends.lattice", "mdlgen.mechanics")
 
 
 @dataclass(frozen=True)

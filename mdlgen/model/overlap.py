@@ -86,7 +86,7 @@ def _into_box(roller: Rod, box: Box) -> float:
     return least
 
 
-def _ways(roller: Rod, box: Box) -> Iterator[Floats]:
+def _ways(roller: Rod, box: Box) -> Iterator[np.ndarray]:
     """Directions in which the two may be apart; most that are, are so in one of the first."""
     yield from box.axes.T
     yield roller.axis

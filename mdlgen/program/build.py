@@ -30,7 +30,7 @@ from mdlgen.program.ship import Program
 
 # Where the programs are, and the scenes in which all of their entries are called with all types that there
 # are: solver, sample, values.
-PROGRAMS = ("backends.lattice.kernels.entries", "backends.exudyn_local.shipped")
+PROGRAMS = ("mdlgen.backends.lattice.kernels.entries", "mdlgen.backends.exudyn_local.shipped")
 _SHORT = ("run.duration=0.4 ms", "run.print_step=0.2 ms", "run.step=0.1 ms")
 _FEW = ("sheets.note.boxes=[2, 3]",)
 SCENES: tuple[tuple[str, str, tuple[str, ...]], ...] = (

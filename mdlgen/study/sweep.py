@@ -21,7 +21,7 @@ from mdlgen.study.variable import check_count, check_paths, grid, variable
 from mdlgen.study.workers import Runner
 
 WHAT = "sweep"
-ROOMS = ("backends.lattice", "mdlgen.mechanics")
+ROOMS = ("mdlgen.backends.lattice", "mdlgen.mechanics")
 # How many cases are tried for one that can be read, from which the names of its numbers are known.
 LOOKED_AT = 100
 

@@ -12,12 +12,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from backends.lattice.kernels.band import factor
-from backends.lattice.kernels.border import eliminate, solve_bordered
-from backends.lattice.kernels.chain import follow, link, opening
-from backends.lattice.kernels.dense import copy
-from backends.lattice.kernels.forces import joint_forces, near_pairs, other_forces, pair_forces
-from backends.lattice.kernels.stiffness import contacts_into, rollers_into, sheets_into
+from mdlgen.backends.lattice.kernels.band import factor
+from mdlgen.backends.lattice.kernels.border import eliminate, solve_bordered
+from mdlgen.backends.lattice.kernels.chain import follow, link, opening
+from mdlgen.backends.lattice.kernels.dense import copy
+from mdlgen.backends.lattice.kernels.forces import joint_forces, near_pairs, other_forces, pair_forces
+from mdlgen.backends.lattice.kernels.stiffness import contacts_into, rollers_into, sheets_into
 from mdlgen.program.kernel import njit
 
 MOST_ROUNDS = 100

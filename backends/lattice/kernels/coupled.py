@@ -13,9 +13,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from backends.lattice.kernels.border import solve_bordered
-from backends.lattice.kernels.dense import copy
-from backends.lattice.kernels.two_sets import Sets, sets, solve_sets
+from mdlgen.backends.lattice.kernels.border import solve_bordered
+from mdlgen.backends.lattice.kernels.dense import copy
+from mdlgen.backends.lattice.kernels.two_sets import Sets, sets, solve_sets
 from mdlgen.mechanics.vector import mat, matmul, nine, transpose_matmul
 from mdlgen.program.kernel import njit
 

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from backends.lattice.kernels import forces, search
-from backends.lattice.kernels.balance import equilibrium, stands
-from backends.lattice.kernels.march import run
-from backends.lattice.kernels.observe import ledger
+from mdlgen.backends.lattice.kernels import forces, search
+from mdlgen.backends.lattice.kernels.balance import equilibrium, stands
+from mdlgen.backends.lattice.kernels.march import run
+from mdlgen.backends.lattice.kernels.observe import ledger
 from mdlgen.mechanics import curve, pair
 from mdlgen.mechanics.tree import set_thickness
 from mdlgen.program.kernel import LAWS, njit
@@ -53,6 +53,6 @@ def contacts(bodies, pairs, meshes, x, r, still, f, touched, outs, near):
 
 PROGRAM = Program(
     Path(__file__).resolve().parents[1] / "lattice.program",
-    (LAWS, "backends.lattice.kernels"),
+    (LAWS, "mdlgen.backends.lattice.kernels"),
     (run, ledger, equilibrium, stands, look, remember, overstretched, joint_forces, contacts, set_thickness),
 )

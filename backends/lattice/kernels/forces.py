@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from backends.lattice.kernels.image import reflect, reflect_rates
+from mdlgen.backends.lattice.kernels.image import reflect, reflect_rates
 from mdlgen.mechanics.arm import moved, way_of
 from mdlgen.mechanics.bushing import bushing_pair
 from mdlgen.mechanics.curve import curve_excess

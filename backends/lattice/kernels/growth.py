@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from backends.lattice.kernels.dense import lu_solve_transposed
-from backends.lattice.kernels.slopes import core, couple_growth, hat_left, hat_right, outer
+from mdlgen.backends.lattice.kernels.dense import lu_solve_transposed
+from mdlgen.backends.lattice.kernels.slopes import core, couple_growth, hat_left, hat_right, outer
 from mdlgen.mechanics.arm import turn_of, way_of
 from mdlgen.mechanics.driven import clutch
 from mdlgen.mechanics.point import COUPLE, OUT, POINT

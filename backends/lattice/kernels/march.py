@@ -6,11 +6,21 @@ import math
 
 import numpy as np
 
-from backends.lattice.kernels.damped import overshoot, take_off
-from backends.lattice.kernels.dense import copy
-from backends.lattice.kernels.search import look, strayed
-from backends.lattice.kernels.step import CLOSE, ROUNDS, STEPS, STRAIN, TOUCHING, WORST, carry, midpoint, spun
-from backends.lattice.kernels.swept import swept
+from mdlgen.backends.lattice.kernels.damped import overshoot, take_off
+from mdlgen.backends.lattice.kernels.dense import copy
+from mdlgen.backends.lattice.kernels.search import look, strayed
+from mdlgen.backends.lattice.kernels.step import (
+    CLOSE,
+    ROUNDS,
+    STEPS,
+    STRAIN,
+    TOUCHING,
+    WORST,
+    carry,
+    midpoint,
+    spun,
+)
+from mdlgen.backends.lattice.kernels.swept import swept
 from mdlgen.mechanics.arm import speeding
 from mdlgen.mechanics.crossing import deepest
 from mdlgen.mechanics.curve import overstretched

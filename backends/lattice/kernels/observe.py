@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from backends.lattice.kernels.forces import joint_forces, near_pairs, pair_forces
+from mdlgen.backends.lattice.kernels.forces import joint_forces, near_pairs, pair_forces
 from mdlgen.mechanics.arm import hung, way_of
 from mdlgen.mechanics.driven import prescribed
 from mdlgen.mechanics.vector import back, dot, mat, rotate, three, vec

@@ -16,13 +16,22 @@ import math
 
 import numpy as np
 
-from backends.lattice.kernels.alone import APART, INSIDE, PLANES, choose, columns, forget, release, unsee
-from backends.lattice.kernels.band import empty as no_band
-from backends.lattice.kernels.band import factor, solve
-from backends.lattice.kernels.border import eliminate
-from backends.lattice.kernels.coupled import couplings, couplings_in_box_axes, solve_coupled
-from backends.lattice.kernels.dense import copy
-from backends.lattice.kernels.forces import (
+from mdlgen.backends.lattice.kernels.alone import (
+    APART,
+    INSIDE,
+    PLANES,
+    choose,
+    columns,
+    forget,
+    release,
+    unsee,
+)
+from mdlgen.backends.lattice.kernels.band import empty as no_band
+from mdlgen.backends.lattice.kernels.band import factor, solve
+from mdlgen.backends.lattice.kernels.border import eliminate
+from mdlgen.backends.lattice.kernels.coupled import couplings, couplings_in_box_axes, solve_coupled
+from mdlgen.backends.lattice.kernels.dense import copy
+from mdlgen.backends.lattice.kernels.forces import (
     clutch_torques,
     joint_forces,
     near_pairs,
@@ -32,12 +41,18 @@ from backends.lattice.kernels.forces import (
     place,
     turn_roller,
 )
-from backends.lattice.kernels.image import reflect
-from backends.lattice.kernels.momentum import keep
-from backends.lattice.kernels.sides import crossed, part_of_change
-from backends.lattice.kernels.tangent import contacts_into, in_box_axes, joints_into, masses, rollers_into
-from backends.lattice.kernels.touching import settle
-from backends.lattice.kernels.two_sets import deal
+from mdlgen.backends.lattice.kernels.image import reflect
+from mdlgen.backends.lattice.kernels.momentum import keep
+from mdlgen.backends.lattice.kernels.sides import crossed, part_of_change
+from mdlgen.backends.lattice.kernels.tangent import (
+    contacts_into,
+    in_box_axes,
+    joints_into,
+    masses,
+    rollers_into,
+)
+from mdlgen.backends.lattice.kernels.touching import settle
+from mdlgen.backends.lattice.kernels.two_sets import deal
 from mdlgen.mechanics.arm import moved, torque_of, turn_of, way_of
 from mdlgen.mechanics.driven import clutch, prescribed
 from mdlgen.mechanics.vector import back, dot, exp_rotation, mat, matmul, rotate, three, vec

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from backends.lattice.kernels.dense import copy
+from mdlgen.backends.lattice.kernels.dense import copy
 from mdlgen.mechanics.curve import curve_spring
 from mdlgen.mechanics.pair import pair_force
 from mdlgen.mechanics.point import OUT

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from backends.lattice.kernels.forces import place_box, place_roller
+from mdlgen.backends.lattice.kernels.forces import place_box, place_roller
 from mdlgen.mechanics.arm import turn_of, way_of
 from mdlgen.mechanics.crossing import above, buried, closing, deepest, unseen
 from mdlgen.mechanics.laws import sign_step

@@ -7,8 +7,8 @@ rounds for them, and the matrix stays positive.
 
 from __future__ import annotations
 
-from backends.lattice.kernels.band import PAD
-from backends.lattice.kernels.slopes import core, couple_growth, hat_left, hat_right, outer
+from mdlgen.backends.lattice.kernels.band import PAD
+from mdlgen.backends.lattice.kernels.slopes import core, couple_growth, hat_left, hat_right, outer
 from mdlgen.mechanics.arm import turn_of, way_of
 from mdlgen.mechanics.curve import curve_spring
 from mdlgen.mechanics.driven import clutch

@@ -16,10 +16,10 @@ from __future__ import annotations
 
 import math
 
-from backends.lattice.kernels.alone import PLANES, unsee
-from backends.lattice.kernels.dense import lu
-from backends.lattice.kernels.forces import pair_forces, place_box, place_roller
-from backends.lattice.kernels.growth import activate, clutches, gradient, newton, newton_matrix
+from mdlgen.backends.lattice.kernels.alone import PLANES, unsee
+from mdlgen.backends.lattice.kernels.dense import lu
+from mdlgen.backends.lattice.kernels.forces import pair_forces, place_box, place_roller
+from mdlgen.backends.lattice.kernels.growth import activate, clutches, gradient, newton, newton_matrix
 from mdlgen.mechanics.arm import turn_of, way_of
 from mdlgen.mechanics.driven import clutch
 from mdlgen.mechanics.pair import BOX_BOX, on_fixed_plate

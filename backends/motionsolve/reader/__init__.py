@@ -5,9 +5,9 @@ from __future__ import annotations
 from functools import cached_property
 from typing import Any
 
-from backends.motionsolve.parse import root
-from backends.motionsolve.reader.elements import Key, elements
-from backends.motionsolve.reader.values import values
+from mdlgen.backends.motionsolve.parse import root
+from mdlgen.backends.motionsolve.reader.elements import Key, elements
+from mdlgen.backends.motionsolve.reader.values import values
 
 __all__ = ["Reading", "read"]
 
@@ -21,7 +21,7 @@ class Reading:
 
     @cached_property
     def values(self) -> dict[str, Any]:
-        """Every entity by kind and name, in mm, N, kg, s, rad; see `backends.motionsolve.reader.values`."""
+        """Every entity by kind and name, in mm, N, kg, s, rad; see `values`."""
         return values(self._root, self._file)
 
     def elements(self) -> list[tuple[Key, int, dict[str, str]]]:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from backends.motionsolve.reader.entity import Entity, Vector
-from backends.motionsolve.reader.index import Index
+from mdlgen.backends.motionsolve.reader.entity import Entity, Vector
+from mdlgen.backends.motionsolve.reader.index import Index
 
 Axes = tuple[Vector, Vector, Vector]
 GLOBAL: Axes = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))

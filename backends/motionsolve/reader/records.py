@@ -6,9 +6,9 @@ import math
 import re
 from typing import Any, NamedTuple
 
-from backends.motionsolve.reader.entity import Entity
-from backends.motionsolve.reader.index import Index
-from backends.motionsolve.reader.markers import Marker
+from mdlgen.backends.motionsolve.reader.entity import Entity
+from mdlgen.backends.motionsolve.reader.index import Index
+from mdlgen.backends.motionsolve.reader.markers import Marker
 
 _ID = re.compile(r"(?<![\w.])[0-9]+(?![\w.])")
 _CALL = re.compile(r"[A-Za-z]\w*\([^()]*\)")

@@ -12,11 +12,11 @@ from typing import Any
 
 import lxml.etree as etree
 
-from backends.motionsolve.parse import children, line, trouble
-from backends.motionsolve.reader import records
-from backends.motionsolve.reader.entity import Entity
-from backends.motionsolve.reader.index import Index
-from backends.motionsolve.reader.markers import markers
+from mdlgen.backends.motionsolve.parse import children, line, trouble
+from mdlgen.backends.motionsolve.reader import records
+from mdlgen.backends.motionsolve.reader.entity import Entity
+from mdlgen.backends.motionsolve.reader.index import Index
+from mdlgen.backends.motionsolve.reader.markers import markers
 
 _Record = Callable[[records.Deck, Entity], dict[str, Any] | None]
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from backends.motionview.reader.reading import Reading
-from backends.motionview.reader.report import Finding, Report
+from mdlgen.backends.motionview.reader.reading import Reading
+from mdlgen.backends.motionview.reader.report import Finding, Report
 
 __all__ = ["Finding", "Reading", "Report", "lint", "read", "values"]
 

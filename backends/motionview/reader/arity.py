@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from backends.motionview.reader.statement import Statement
+from mdlgen.backends.motionview.reader.statement import Statement
 
 _TABLE = """
 BeginMDL 2-3            EndMDL 0              StandardInclude 1-3    Include 1

@@ -10,13 +10,13 @@ import re
 from collections.abc import Iterable
 from typing import Any
 
-from backends.motionview.reader.expand import Expansion
-from backends.motionview.reader.program import Guard
-from backends.motionview.reader.report import Notes
-from backends.motionview.reader.scope import Scope, Slot
-from backends.motionview.reader.statement import Statement
-from backends.motionview.reader.things import members
-from backends.motionview.reader.values import values_of
+from mdlgen.backends.motionview.reader.expand import Expansion
+from mdlgen.backends.motionview.reader.program import Guard
+from mdlgen.backends.motionview.reader.report import Notes
+from mdlgen.backends.motionview.reader.scope import Scope, Slot
+from mdlgen.backends.motionview.reader.statement import Statement
+from mdlgen.backends.motionview.reader.things import members
+from mdlgen.backends.motionview.reader.values import values_of
 
 _PATH = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*")
 _SETTERS = ("setreal", "setinteger", "setval")

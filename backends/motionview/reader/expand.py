@@ -7,13 +7,13 @@ from collections.abc import Iterator
 from functools import lru_cache
 from typing import NamedTuple
 
-from backends.motionview.reader.pair import Unmade
-from backends.motionview.reader.program import Definition, Guard, Item, Program
-from backends.motionview.reader.report import Notes
-from backends.motionview.reader.scope import Declaration, Parameter, Scope, Setting, Slot
-from backends.motionview.reader.statement import Statement
-from backends.motionview.reader.things import BUILT_INS, CLASSES
-from backends.motionview.reader.world import World
+from mdlgen.backends.motionview.reader.pair import Unmade
+from mdlgen.backends.motionview.reader.program import Definition, Guard, Item, Program
+from mdlgen.backends.motionview.reader.report import Notes
+from mdlgen.backends.motionview.reader.scope import Declaration, Parameter, Scope, Setting, Slot
+from mdlgen.backends.motionview.reader.statement import Statement
+from mdlgen.backends.motionview.reader.things import BUILT_INS, CLASSES
+from mdlgen.backends.motionview.reader.world import World
 from mdlgen.errors import SpecError
 
 # After expansion, as a number and in times the statements of the text: definitions in definitions multiply.

@@ -12,13 +12,13 @@ import re
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from backends.motionview.reader.functions import FUNCTIONS
-from backends.motionview.reader.operators import arithmetic, compare, truth
-from backends.motionview.reader.report import Trouble
-from backends.motionview.reader.statement import SOLVER, TEXT
+from mdlgen.backends.motionview.reader.functions import FUNCTIONS
+from mdlgen.backends.motionview.reader.operators import arithmetic, compare, truth
+from mdlgen.backends.motionview.reader.report import Trouble
+from mdlgen.backends.motionview.reader.statement import SOLVER, TEXT
 
 if TYPE_CHECKING:
-    from backends.motionview.reader.scope import Scope
+    from mdlgen.backends.motionview.reader.scope import Scope
 
 Run = Callable[["Scope"], Any]
 MOST_NESTED = 24  # parentheses in parentheses; a real file has five

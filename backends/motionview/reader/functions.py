@@ -6,11 +6,11 @@ import math
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from backends.motionview.reader.operators import named, shown
-from backends.motionview.reader.report import Trouble
+from mdlgen.backends.motionview.reader.operators import named, shown
+from mdlgen.backends.motionview.reader.report import Trouble
 
 if TYPE_CHECKING:
-    from backends.motionview.reader.scope import Scope
+    from mdlgen.backends.motionview.reader.scope import Scope
 
 Function = Callable[["Scope", Sequence[Any], int], Any]
 

@@ -6,10 +6,10 @@ import re
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 
-from backends.motionview.reader.report import Notes
-from backends.motionview.reader.scanner import statements
-from backends.motionview.reader.source import Source
-from backends.motionview.reader.statement import Statement
+from mdlgen.backends.motionview.reader.report import Notes
+from mdlgen.backends.motionview.reader.scanner import statements
+from mdlgen.backends.motionview.reader.source import Source
+from mdlgen.backends.motionview.reader.statement import Statement
 from mdlgen.errors import OutputError
 from mdlgen.paths import MOST_BYTES, read_at_most
 

@@ -6,11 +6,11 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from backends.motionview.reader.expand import Expansion
-from backends.motionview.reader.report import Trouble
-from backends.motionview.reader.scope import Scope
-from backends.motionview.reader.statement import Statement
-from backends.motionview.reader.things.joints import JOINTS
+from mdlgen.backends.motionview.reader.expand import Expansion
+from mdlgen.backends.motionview.reader.report import Trouble
+from mdlgen.backends.motionview.reader.scope import Scope
+from mdlgen.backends.motionview.reader.statement import Statement
+from mdlgen.backends.motionview.reader.things.joints import JOINTS
 
 _PATH = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*")
 # Statements that look at what they name, or hand it on, and do nothing to it.

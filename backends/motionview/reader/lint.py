@@ -5,17 +5,17 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from backends.motionview.reader import arity
-from backends.motionview.reader.expand import Lost
-from backends.motionview.reader.report import Notes, Trouble
-from backends.motionview.reader.scope import Scope
-from backends.motionview.reader.settable import ACTED, acts, harmless
-from backends.motionview.reader.statement import Statement
-from backends.motionview.reader.things.external import External
-from backends.motionview.reader.traps import traps
+from mdlgen.backends.motionview.reader import arity
+from mdlgen.backends.motionview.reader.expand import Lost
+from mdlgen.backends.motionview.reader.report import Notes, Trouble
+from mdlgen.backends.motionview.reader.scope import Scope
+from mdlgen.backends.motionview.reader.settable import ACTED, acts, harmless
+from mdlgen.backends.motionview.reader.statement import Statement
+from mdlgen.backends.motionview.reader.things.external import External
+from mdlgen.backends.motionview.reader.traps import traps
 
 if TYPE_CHECKING:
-    from backends.motionview.reader.reading import Reading
+    from mdlgen.backends.motionview.reader.reading import Reading
 
 # Statements whose arguments were all looked at when the values were found.
 _SEEN = {

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from backends.motionview.reader.pair import Pair
-from backends.motionview.reader.report import Trouble
+from mdlgen.backends.motionview.reader.pair import Pair
+from mdlgen.backends.motionview.reader.report import Trouble
 
 MOST_TEXT = 100_000  # characters; more is no label
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from backends.motionview.reader.report import Notes
-from backends.motionview.reader.statement import Statement
+from mdlgen.backends.motionview.reader.report import Notes
+from mdlgen.backends.motionview.reader.statement import Statement
 
 _CLOSING = {
     "enddefine": "*Define...",

@@ -9,16 +9,16 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from backends.motionview.reader.change import Changes
-from backends.motionview.reader.expand import expand
-from backends.motionview.reader.include import Includes
-from backends.motionview.reader.instance import Attached, acting_on, attachments
-from backends.motionview.reader.program import program
-from backends.motionview.reader.remainder import Rest, remainder
-from backends.motionview.reader.report import Notes, Report
-from backends.motionview.reader.source import Source
-from backends.motionview.reader.statement import Statement
-from backends.motionview.reader.values import values
+from mdlgen.backends.motionview.reader.change import Changes
+from mdlgen.backends.motionview.reader.expand import expand
+from mdlgen.backends.motionview.reader.include import Includes
+from mdlgen.backends.motionview.reader.instance import Attached, acting_on, attachments
+from mdlgen.backends.motionview.reader.program import program
+from mdlgen.backends.motionview.reader.remainder import Rest, remainder
+from mdlgen.backends.motionview.reader.report import Notes, Report
+from mdlgen.backends.motionview.reader.source import Source
+from mdlgen.backends.motionview.reader.statement import Statement
+from mdlgen.backends.motionview.reader.values import values
 
 
 class Reading:
@@ -76,7 +76,7 @@ class Reading:
     @cached_property
     def report(self) -> Report:
         """Everything that was found."""
-        from backends.motionview.reader.lint import lint
+        from mdlgen.backends.motionview.reader.lint import lint
 
         _ = self.values
         with _without_collection():

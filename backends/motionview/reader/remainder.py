@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from backends.motionview.reader.expand import Expansion
-from backends.motionview.reader.settable import acts, harmless
-from backends.motionview.reader.statement import Statement
-from backends.motionview.reader.things import CLASSES
+from mdlgen.backends.motionview.reader.expand import Expansion
+from mdlgen.backends.motionview.reader.settable import acts, harmless
+from mdlgen.backends.motionview.reader.statement import Statement
+from mdlgen.backends.motionview.reader.things import CLASSES
 
 # Things that have a record, or that make bodies that have one; a system shows by what is in it.
 _SHOWN = set(CLASSES) - {"ActionReactionForce", "ActionOnlyForce", "Coupler", "SolverVariable"} | {"DataSet"}

@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from backends.motionview.reader.report import Notes
-from backends.motionview.reader.source import Source
-from backends.motionview.reader.statement import NEXT, Split, Statement
+from mdlgen.backends.motionview.reader.report import Notes
+from mdlgen.backends.motionview.reader.source import Source
+from mdlgen.backends.motionview.reader.statement import NEXT, Split, Statement
 
 # A statement as nearly all are written, read in one step: a word first, perhaps a label, no brackets.
 _USUAL = r"""\s*([\w.]++)\s*+(?:,\s*("[^"\\\n]*+")\s*+)?(?:,([^()\[\]{}"`*]*+))?\)"""

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from backends.motionview.reader.program import Definition, Guard
-from backends.motionview.reader.report import Trouble
-from backends.motionview.reader.statement import Statement
+from mdlgen.backends.motionview.reader.program import Definition, Guard
+from mdlgen.backends.motionview.reader.report import Trouble
+from mdlgen.backends.motionview.reader.statement import Statement
 
 if TYPE_CHECKING:
-    from backends.motionview.reader.world import World
+    from mdlgen.backends.motionview.reader.world import World
 
 CONSTANTS: dict[str, Any] = {
     "pi": math.pi,

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 
-from backends.motionview.reader.statement import Statement
-from backends.motionview.reader.things.joints import JOINTS
+from mdlgen.backends.motionview.reader.statement import Statement
+from mdlgen.backends.motionview.reader.things.joints import JOINTS
 
 Parts = dict[str, tuple[str, ...]]  # by kind of thing: itself is the part ""
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from backends.motionview.reader.source import Source
+from mdlgen.backends.motionview.reader.source import Source
 from mdlgen.errors import Place
 
 # A string may run over lines, but not into a line that starts a statement: then a quote is missing.

@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from backends.motionview.reader.report import Notes, Trouble
-from backends.motionview.reader.things.bodies import Body
-from backends.motionview.reader.things.drives import Contact
-from backends.motionview.reader.things.external import External
-from backends.motionview.reader.things.forces import GROUPS, Bush
-from backends.motionview.reader.things.graphics import CAPS, Graphic
-from backends.motionview.reader.things.joints import Joint
-from backends.motionview.reader.things.thing import Thing
-from backends.motionview.reader.things.vectors import dot
-from backends.motionview.reader.world import World
+from mdlgen.backends.motionview.reader.report import Notes, Trouble
+from mdlgen.backends.motionview.reader.things.bodies import Body
+from mdlgen.backends.motionview.reader.things.drives import Contact
+from mdlgen.backends.motionview.reader.things.external import External
+from mdlgen.backends.motionview.reader.things.forces import GROUPS, Bush
+from mdlgen.backends.motionview.reader.things.graphics import CAPS, Graphic
+from mdlgen.backends.motionview.reader.things.joints import Joint
+from mdlgen.backends.motionview.reader.things.thing import Thing
+from mdlgen.backends.motionview.reader.things.vectors import dot
+from mdlgen.backends.motionview.reader.world import World
 
 _SLACK = 1e-9  # relative, for sums of inertia that are equal but for rounding
 

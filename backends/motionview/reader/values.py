@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from backends.motionview.reader.report import Notes, Trouble
-from backends.motionview.reader.things.beams import PolyBeam
-from backends.motionview.reader.things.bodies import Body
-from backends.motionview.reader.things.data import Option, Table, Value
-from backends.motionview.reader.things.systems import DataSet
-from backends.motionview.reader.things.thing import Thing
-from backends.motionview.reader.world import World
+from mdlgen.backends.motionview.reader.report import Notes, Trouble
+from mdlgen.backends.motionview.reader.things.beams import PolyBeam
+from mdlgen.backends.motionview.reader.things.bodies import Body
+from mdlgen.backends.motionview.reader.things.data import Option, Table, Value
+from mdlgen.backends.motionview.reader.things.systems import DataSet
+from mdlgen.backends.motionview.reader.things.thing import Thing
+from mdlgen.backends.motionview.reader.world import World
 
 # Kind of thing -> where it is listed.
 LISTS = {

@@ -10,17 +10,17 @@ import re
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
-from backends.motionview.reader.expression import Compiled, compiled, literal, solver_parts
-from backends.motionview.reader.functions import FUNCTIONS
-from backends.motionview.reader.operators import shown, truth
-from backends.motionview.reader.pair import Pair, Unmade
-from backends.motionview.reader.program import Guard, Program
-from backends.motionview.reader.report import Notes, Trouble
-from backends.motionview.reader.scope import Declaration, Scope, Setting, Slot
-from backends.motionview.reader.statement import Statement
+from mdlgen.backends.motionview.reader.expression import Compiled, compiled, literal, solver_parts
+from mdlgen.backends.motionview.reader.functions import FUNCTIONS
+from mdlgen.backends.motionview.reader.operators import shown, truth
+from mdlgen.backends.motionview.reader.pair import Pair, Unmade
+from mdlgen.backends.motionview.reader.program import Guard, Program
+from mdlgen.backends.motionview.reader.report import Notes, Trouble
+from mdlgen.backends.motionview.reader.scope import Declaration, Scope, Setting, Slot
+from mdlgen.backends.motionview.reader.statement import Statement
 
 if TYPE_CHECKING:
-    from backends.motionview.reader.things.thing import Thing
+    from mdlgen.backends.motionview.reader.things.thing import Thing
 
 Vector = tuple[float, float, float]
 Frame = tuple[Vector, tuple[Vector, Vector, Vector]]  # origin, and the axes as columns of rows
@@ -56,7 +56,7 @@ class World:
         self._compiled: dict[str, Compiled | Trouble] = {}
         self._at: tuple[Statement, int] | None = None
         self._on_bodies: dict[str, dict[int, list[Thing]]] = {}  # graphics and joints by their body
-        from backends.motionview.reader import things  # which needs this module
+        from mdlgen.backends.motionview.reader import things  # which needs this module
 
         self._makers = things
 

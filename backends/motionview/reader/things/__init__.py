@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from backends.motionview.reader.pair import Pair
-from backends.motionview.reader.things.beams import PolyBeam
-from backends.motionview.reader.things.bodies import Body, Ground
-from backends.motionview.reader.things.curves import Curve
-from backends.motionview.reader.things.data import BuiltInOption, Option, Table, Value
-from backends.motionview.reader.things.drives import Contact, Coupler, Motion, SolverVariable, Template
-from backends.motionview.reader.things.forces import Bush, CoilSpring, Force, Output
-from backends.motionview.reader.things.geometry import (
+from mdlgen.backends.motionview.reader.pair import Pair
+from mdlgen.backends.motionview.reader.things.beams import PolyBeam
+from mdlgen.backends.motionview.reader.things.bodies import Body, Ground
+from mdlgen.backends.motionview.reader.things.curves import Curve
+from mdlgen.backends.motionview.reader.things.data import BuiltInOption, Option, Table, Value
+from mdlgen.backends.motionview.reader.things.drives import Contact, Coupler, Motion, SolverVariable, Template
+from mdlgen.backends.motionview.reader.things.forces import Bush, CoilSpring, Force, Output
+from mdlgen.backends.motionview.reader.things.geometry import (
     GlobalFrame,
     GlobalPoint,
     GlobalVector,
@@ -19,15 +19,15 @@ from backends.motionview.reader.things.geometry import (
     Point,
     VectorThing,
 )
-from backends.motionview.reader.things.graphics import Graphic
-from backends.motionview.reader.things.joints import JOINTS, Joint
-from backends.motionview.reader.things.surfaces import DeformableSurface
-from backends.motionview.reader.things.systems import DataSet, System
-from backends.motionview.reader.things.thing import Thing
+from mdlgen.backends.motionview.reader.things.graphics import Graphic
+from mdlgen.backends.motionview.reader.things.joints import JOINTS, Joint
+from mdlgen.backends.motionview.reader.things.surfaces import DeformableSurface
+from mdlgen.backends.motionview.reader.things.systems import DataSet, System
+from mdlgen.backends.motionview.reader.things.thing import Thing
 
 if TYPE_CHECKING:
-    from backends.motionview.reader.scope import Declaration, Scope
-    from backends.motionview.reader.world import World
+    from mdlgen.backends.motionview.reader.scope import Declaration, Scope
+    from mdlgen.backends.motionview.reader.world import World
 
 # By the name of the statement, without Pair at its end.
 CLASSES: dict[str, type[Thing]] = {

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from backends.motionview.reader.report import Trouble
-from backends.motionview.reader.things.bodies import Body
-from backends.motionview.reader.things.geometry import PartMarker
-from backends.motionview.reader.things.solids import Mass
-from backends.motionview.reader.things.thing import Thing
-from backends.motionview.reader.things.vectors import GLOBAL, Axes, minus, unit
-from backends.motionview.reader.world import Vector
+from mdlgen.backends.motionview.reader.report import Trouble
+from mdlgen.backends.motionview.reader.things.bodies import Body
+from mdlgen.backends.motionview.reader.things.geometry import PartMarker
+from mdlgen.backends.motionview.reader.things.solids import Mass
+from mdlgen.backends.motionview.reader.things.thing import Thing
+from mdlgen.backends.motionview.reader.things.vectors import GLOBAL, Axes, minus, unit
+from mdlgen.backends.motionview.reader.world import Vector
 
 
 class PolyBeam(Thing):

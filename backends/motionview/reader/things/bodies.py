@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
-from backends.motionview.reader.report import Trouble
-from backends.motionview.reader.things.geometry import NO_PART, PartMarker
-from backends.motionview.reader.things.orientation import axes
-from backends.motionview.reader.things.solids import Mass, total
-from backends.motionview.reader.things.thing import SIDE_LABELS, Chosen, Thing
-from backends.motionview.reader.things.vectors import GLOBAL, Axes
-from backends.motionview.reader.world import Vector
+from mdlgen.backends.motionview.reader.report import Trouble
+from mdlgen.backends.motionview.reader.things.geometry import NO_PART, PartMarker
+from mdlgen.backends.motionview.reader.things.orientation import axes
+from mdlgen.backends.motionview.reader.things.solids import Mass, total
+from mdlgen.backends.motionview.reader.things.thing import SIDE_LABELS, Chosen, Thing
+from mdlgen.backends.motionview.reader.things.vectors import GLOBAL, Axes
+from mdlgen.backends.motionview.reader.world import Vector
 
 INERTIA = ("ixx", "iyy", "izz", "ixy", "iyz", "ixz")
 _RATES = ("vx", "vy", "vz", "wx", "wy", "wz")

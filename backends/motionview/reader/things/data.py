@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from backends.motionview.reader.report import Trouble
-from backends.motionview.reader.things.thing import Thing
+from mdlgen.backends.motionview.reader.report import Trouble
+from mdlgen.backends.motionview.reader.things.thing import Thing
 
 _DEFAULTS: dict[str, Any] = {"Real": 0.0, "Integer": 0.0, "String": "", "Boolean": False, "Filename": ""}
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from backends.motionview.reader.report import Trouble
-from backends.motionview.reader.things.thing import Thing
+from mdlgen.backends.motionview.reader.report import Trouble
+from mdlgen.backends.motionview.reader.things.thing import Thing
 
 _FORCES = {
     "POISSON": ("penalty", "restitution"),

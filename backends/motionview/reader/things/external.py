@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from backends.motionview.reader.report import Trouble
-from backends.motionview.reader.scope import Parameter
-from backends.motionview.reader.things.thing import Identifier
+from mdlgen.backends.motionview.reader.report import Trouble
+from mdlgen.backends.motionview.reader.scope import Parameter
+from mdlgen.backends.motionview.reader.things.thing import Identifier
 
 _NAMES = ("id", "idstring", "full_varname", "varname")
 # Keywords of *Attachment, in any case, and the kinds of thing that they are.

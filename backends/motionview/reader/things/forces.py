@@ -5,17 +5,17 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from backends.motionview.reader.report import Trouble
-from backends.motionview.reader.things.geometry import PartMarker
-from backends.motionview.reader.things.orientation import Directions, axes
-from backends.motionview.reader.things.thing import SIDE_LABELS, Chosen, Thing
-from backends.motionview.reader.things.vectors import GLOBAL, Axes, minus, one_axis
-from backends.motionview.reader.world import Vector
+from mdlgen.backends.motionview.reader.report import Trouble
+from mdlgen.backends.motionview.reader.things.geometry import PartMarker
+from mdlgen.backends.motionview.reader.things.orientation import Directions, axes
+from mdlgen.backends.motionview.reader.things.thing import SIDE_LABELS, Chosen, Thing
+from mdlgen.backends.motionview.reader.things.vectors import GLOBAL, Axes, minus, one_axis
+from mdlgen.backends.motionview.reader.world import Vector
 
 if TYPE_CHECKING:
-    from backends.motionview.reader.scope import Declaration
-    from backends.motionview.reader.things.joints import Joint
-    from backends.motionview.reader.world import World
+    from mdlgen.backends.motionview.reader.scope import Declaration
+    from mdlgen.backends.motionview.reader.things.joints import Joint
+    from mdlgen.backends.motionview.reader.world import World
 
 # How many arguments stand after the word that says how a stiffness or a force is given.
 TOKENS = {"LIN": 1, "CRV": 3, "SPL3D": 4, "EXPR": 1, "USER": 1}

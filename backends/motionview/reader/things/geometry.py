@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from backends.motionview.reader.things.orientation import axes
-from backends.motionview.reader.things.thing import SIDE_LABELS, Thing
-from backends.motionview.reader.things.vectors import GLOBAL, Axes
-from backends.motionview.reader.world import Frame, Vector
+from mdlgen.backends.motionview.reader.things.orientation import axes
+from mdlgen.backends.motionview.reader.things.thing import SIDE_LABELS, Thing
+from mdlgen.backends.motionview.reader.things.vectors import GLOBAL, Axes
+from mdlgen.backends.motionview.reader.world import Frame, Vector
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -5,12 +5,20 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from backends.motionview.reader.report import Trouble
-from backends.motionview.reader.things.orientation import Directions
-from backends.motionview.reader.things.solids import Mass, box, frustum, sphere
-from backends.motionview.reader.things.thing import Thing
-from backends.motionview.reader.things.vectors import GLOBAL, Axes, along, minus, round_axes, two_axes, unit
-from backends.motionview.reader.world import Vector
+from mdlgen.backends.motionview.reader.report import Trouble
+from mdlgen.backends.motionview.reader.things.orientation import Directions
+from mdlgen.backends.motionview.reader.things.solids import Mass, box, frustum, sphere
+from mdlgen.backends.motionview.reader.things.thing import Thing
+from mdlgen.backends.motionview.reader.things.vectors import (
+    GLOBAL,
+    Axes,
+    along,
+    minus,
+    round_axes,
+    two_axes,
+    unit,
+)
+from mdlgen.backends.motionview.reader.world import Vector
 
 CAPS = {"CAPBOTH", "CAPBEGIN", "CAPEND", "CAPNONE"}
 

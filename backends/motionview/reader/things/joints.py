@@ -12,12 +12,12 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from backends.motionview.reader.report import Trouble
-from backends.motionview.reader.things.forces import Bush
-from backends.motionview.reader.things.geometry import PartMarker
-from backends.motionview.reader.things.orientation import Directions
-from backends.motionview.reader.things.thing import Thing
-from backends.motionview.reader.things.vectors import (
+from mdlgen.backends.motionview.reader.report import Trouble
+from mdlgen.backends.motionview.reader.things.forces import Bush
+from mdlgen.backends.motionview.reader.things.geometry import PartMarker
+from mdlgen.backends.motionview.reader.things.orientation import Directions
+from mdlgen.backends.motionview.reader.things.thing import Thing
+from mdlgen.backends.motionview.reader.things.vectors import (
     GLOBAL,
     Axes,
     cross,
@@ -27,7 +27,7 @@ from backends.motionview.reader.things.vectors import (
     two_axes,
     unit,
 )
-from backends.motionview.reader.world import Vector
+from mdlgen.backends.motionview.reader.world import Vector
 
 # kind: (type in the deck, how the arguments after the origin say the axes)
 JOINTS = {

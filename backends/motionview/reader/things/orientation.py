@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from backends.motionview.reader.report import Trouble
-from backends.motionview.reader.statement import Statement
-from backends.motionview.reader.things.thing import Chosen, Thing, mirrored
-from backends.motionview.reader.things.vectors import Axes, minus, one_axis, two_axes
-from backends.motionview.reader.world import Vector
+from mdlgen.backends.motionview.reader.report import Trouble
+from mdlgen.backends.motionview.reader.statement import Statement
+from mdlgen.backends.motionview.reader.things.thing import Chosen, Thing, mirrored
+from mdlgen.backends.motionview.reader.things.vectors import Axes, minus, one_axis, two_axes
+from mdlgen.backends.motionview.reader.world import Vector
 
 if TYPE_CHECKING:
-    from backends.motionview.reader.scope import Scope
+    from mdlgen.backends.motionview.reader.scope import Scope
 
 
 class Directions:

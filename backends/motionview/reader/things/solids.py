@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from backends.motionview.reader.things.vectors import Axes
-from backends.motionview.reader.world import Vector
+from mdlgen.backends.motionview.reader.things.vectors import Axes
+from mdlgen.backends.motionview.reader.world import Vector
 
 DENSITY = 7.86e-6  # kg/mm3, steel: MotionView's own, seen in a deck
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from backends.motionview.reader.things.thing import Thing
+from mdlgen.backends.motionview.reader.things.thing import Thing
 
 
 class DeformableSurface(Thing):

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from backends.motionview.reader.pair import Pair, Unmade
-from backends.motionview.reader.report import Trouble
-from backends.motionview.reader.things.external import External
-from backends.motionview.reader.things.thing import Thing
+from mdlgen.backends.motionview.reader.pair import Pair, Unmade
+from mdlgen.backends.motionview.reader.report import Trouble
+from mdlgen.backends.motionview.reader.things.external import External
+from mdlgen.backends.motionview.reader.things.thing import Thing
 
 if TYPE_CHECKING:
-    from backends.motionview.reader.scope import Declaration, Scope
-    from backends.motionview.reader.world import World
+    from mdlgen.backends.motionview.reader.scope import Declaration, Scope
+    from mdlgen.backends.motionview.reader.world import World
 
 
 class System(Thing):

@@ -8,15 +8,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from backends.motionview.reader.operators import named
-from backends.motionview.reader.pair import Pair, Unmade
-from backends.motionview.reader.report import Trouble
-from backends.motionview.reader.statement import Statement
-from backends.motionview.reader.world import Vector
+from mdlgen.backends.motionview.reader.operators import named
+from mdlgen.backends.motionview.reader.pair import Pair, Unmade
+from mdlgen.backends.motionview.reader.report import Trouble
+from mdlgen.backends.motionview.reader.statement import Statement
+from mdlgen.backends.motionview.reader.world import Vector
 
 if TYPE_CHECKING:
-    from backends.motionview.reader.scope import Declaration, Scope, Setting
-    from backends.motionview.reader.world import World
+    from mdlgen.backends.motionview.reader.scope import Declaration, Scope, Setting
+    from mdlgen.backends.motionview.reader.world import World
 
 SIDES = {"LEFT": "l", "RIGHT": "r"}
 SIDE_LABELS = {"": "", "l": "-left", "r": "-right"}

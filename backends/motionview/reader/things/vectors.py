@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from backends.motionview.reader.report import Trouble
-from backends.motionview.reader.world import Vector
+from mdlgen.backends.motionview.reader.report import Trouble
+from mdlgen.backends.motionview.reader.world import Vector
 
 Axes = tuple[Vector, Vector, Vector]
 GLOBAL: Axes = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
