@@ -14,7 +14,7 @@ from pydantic.fields import FieldInfo
 
 from mdlgen.spec.contact import Friction
 from mdlgen.spec.curve import Curve
-from mdlgen.spec.fields import Default, one_or_two, quantity
+from mdlgen.spec.fields import Default, one_or_two, quantity, ratio
 from mdlgen.spec.grading import Graded
 from mdlgen.spec.scene import Scene
 
@@ -92,11 +92,27 @@ def _section(path: str, model: type[BaseModel]) -> str:
     words = "\n\n".join(
         " ".join(part.split()) for part in (model.__doc__ or "").split("\n\n") if part.strip()
     )
+    either = [key for way in _either(model) for key in way["required"]]
     rows = [
-        (f"`{key}`", _linked(value(a, f), a), shown_default(f), describe(f)) for key, a, f in fields(model)
+        (
+            f"`{key}`",
+            _linked(value(a, f), a),
+            f"**one of** {', '.join(either)}" if key in either else shown_default(f),
+            describe(f),
+        )
+        for key, a, f in fields(model)
     ]
     picture = f"{PICTURES[path]}\n\n" if path in PICTURES else ""
     return f"{title}\n\n{words}\n\n{picture}{table(('key', 'value', 'default', 'meaning'), rows)}"
+
+
+def _either(model: type[BaseModel]) -> list[dict[str, Any]]:
+    """Keys of which exactly one is required, as the JSON schema says it."""
+    change = model.model_config.get("json_schema_extra")
+    schema: dict[str, Any] = {}
+    if callable(change):
+        change(schema)  # pyright: ignore[reportCallIssue]
+    return schema.get("oneOf", [])
 
 
 def _linked(text: str, annotation: Any) -> str:
@@ -154,6 +170,8 @@ def _marked(annotation: Any, marks: list[Any]) -> str:
             several = ", or two" if isinstance(mark, one_or_two) else ""
             limits = f", {mark.allowed()}" if mark.low is not None else ""
             return f"quantity [{mark.unit}]{several}{limits}"
+        if isinstance(mark, ratio):
+            return f"number or percentage, {mark.low:g} to {mark.high:g}"
         if isinstance(mark, WithJsonSchema) and mark.json_schema is not None:
             return _from_schema(mark.json_schema)
         if isinstance(mark, FieldInfo) and mark.metadata:

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from mdlgen.spec.fields import SpeedScale, Strict, default, fail, quantity
+from mdlgen.spec.fields import SpeedScale, Strict, default, fail, of_percent, quantity, ratio
+
+Coefficient = Annotated[float, ratio(0.0, 1e3)]
+Share = Annotated[float, ratio(0.0, 1.0)]
 
 
 class Friction(Strict):
@@ -15,8 +19,8 @@ class Friction(Strict):
     A plain number is both coefficients; the speeds follow the contact's `smoothing` where left out.
     """
 
-    static: float = Field(ge=0, le=1e3, description="coefficient at the stiction velocity")
-    dynamic: float = Field(ge=0, le=1e3, description="coefficient from the friction velocity on")
+    static: Coefficient = Field(description="coefficient at the stiction velocity")
+    dynamic: Coefficient = Field(description="coefficient from the friction velocity on")
     stiction_velocity: SpeedScale | None = Field(
         default=None, description="slip speed at which friction is static; the smoothing where left out"
     )
@@ -29,10 +33,17 @@ class Friction(Strict):
     @model_validator(mode="before")
     @classmethod
     def _number(cls, value: Any) -> Any:
+        value = of_percent(value)
         if isinstance(value, (int, float)) and not isinstance(value, bool):
             return {"static": value, "dynamic": value}
         if not isinstance(value, (dict, Friction)):
-            raise fail(f"{value!r} is not a friction; give a number, or static and dynamic"[:200])
+            comma = re.fullmatch(r"[0-9]+,[0-9]+( *%)?", str(value))
+            meant = (
+                f"; write {str(value).replace(',', '.')}"
+                if comma
+                else "; give a number, or static and dynamic"
+            )
+            raise fail(f"{value!r} is not a friction{meant}"[:200])
         return value
 
     def speeds(self, smoothing: float) -> tuple[float, float]:
@@ -59,7 +70,7 @@ class Contact(Strict):
     stiffness: Annotated[float, quantity("N/mm^1.5", 0.0, open_low=True)] = Field(
         description="k of one pair (Eq. 10)"
     )
-    restitution: float = Field(default=0.5, ge=0, le=1, description="coefficient of restitution c_R (Eq. 11)")
+    restitution: Share = Field(default=0.5, description="coefficient of restitution c_R (Eq. 11)")
     friction: Friction = Field(
         default_factory=lambda: Friction(static=0.0, dynamic=0.0),
         description="coefficient of friction mu (Eq. 12): a number, or a mapping; 0 where left out",
@@ -67,10 +78,8 @@ class Contact(Strict):
     smoothing: SpeedScale = Field(
         default=default("1 mm/s"), description="speed over which damping and friction change sign; 1 mm/s"
     )
-    rolling_resistance: float = Field(
+    rolling_resistance: Share = Field(
         default=0.0,
-        ge=0,
-        le=1,
         description="f of a roller that rolls on the other part: a couple f N R against its angular velocity "
         "about its axis relative to that part, N the normal force, R its radius (of two rollers 1/R = 1/R1 + "
         "1/R2; on an arc of radius A 1/R1 + 1/A, in its hollow 1/R1 - 1/A; of a rim the greatest), so that a "

@@ -143,19 +143,85 @@ def _each(read: Callable[[Any], float], value: Any, example: str) -> float | tup
     return found[0], found[1]
 
 
+class ratio:
+    """Marks a float from `low` to `high` as a plain number, or text in percent."""
+
+    def __init__(self, low: float, high: float):
+        self.low, self.high = low, high
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_before_validator_function(self.read, handler(source))
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: Any) -> dict[str, Any]:
+        number = {"type": "number", "minimum": self.low, "maximum": self.high}
+        return {"anyOf": [number, {"type": "string", "pattern": _PERCENT.pattern, "examples": ["50 %"]}]}
+
+    def read(self, value: Any) -> float:
+        """The plain number; raises the error that names the range."""
+        number = of_percent(value)
+        allowed = f"allowed: {self.low:g} to {self.high:g}, as {(self.low + min(self.high, 1.0)) / 2:g}"
+        if not _is_number(number):
+            comma = isinstance(value, str) and re.fullmatch(r"[0-9]+,[0-9]+( *%)?", value)
+            meant = f"write {value.replace(',', '.')}; " if comma else ""
+            raise fail(f"{value!r} is not a number or a percentage; {meant}{allowed}"[:200])
+        if not self.low <= number <= self.high:
+            raise fail(f"{value} is outside what is {allowed}"[:200])
+        return float(number)
+
+
+_PERCENT = re.compile(r"^[-+]?(?:[0-9]{1,18}(?:\.[0-9]{0,18})?|\.[0-9]{1,18}) *%$")
+
+
+def of_percent(value: Any) -> Any:
+    """`30 %` as 0.3; what is no percentage as it is."""
+    if isinstance(value, str) and _PERCENT.match(value):
+        return float(value.rstrip("% ")) / 100.0
+    return value
+
+
+def reading(text: Any, unit: str, otherwise: float) -> float:
+    """A value that another one follows from, in internal units; `otherwise` where it cannot be read, which
+    its own field reports."""
+    if isinstance(text, Default):
+        return float(text)
+    try:
+        return parse_quantity(text, unit) or otherwise
+    except ValueError:
+        return otherwise
+
+
+def following(value: float) -> Default:
+    """A value that follows from others, for a field that `quantity` marks."""
+    found = Default(value)
+    found.text = ""
+    return found
+
+
+def one_of(*names: str) -> Callable[[dict[str, Any]], None]:
+    """For a model's JSON schema: exactly one of these keys is required."""
+
+    def change(schema: dict[str, Any]) -> None:
+        schema["required"] = [name for name in schema.get("required", []) if name not in names]
+        schema["oneOf"] = [{"required": [name]} for name in names]
+
+    return change
+
+
 def numbers(low: float, high: float) -> tuple[BeforeValidator, WithJsonSchema]:
     """One plain number, or a list of two, MD and CD, from `low` to `high`."""
 
     def read(value: Any) -> float:
+        value = of_percent(value)
         if not _is_number(value):
             raise fail(f"{value!r} is not a number; allowed are {low:g} to {high:g}"[:200])
         if not low <= value <= high:
             raise fail(f"{value:g} is outside what is allowed: {low:g} to {high:g}")
         return float(value)
 
-    one = {"type": "number", "minimum": low, "maximum": high}
+    percent = {"type": "string", "pattern": _PERCENT.pattern}
+    one = {"anyOf": [{"type": "number", "minimum": low, "maximum": high}, percent]}
     return BeforeValidator(lambda value: _each(read, value, f"{(low + high) / 2:g}")), WithJsonSchema(
-        {"anyOf": [one, {"type": "array", "minItems": 2, "maxItems": 2, "items": one}]}
+        {"anyOf": [*one["anyOf"], {"type": "array", "minItems": 2, "maxItems": 2, "items": one}]}
     )
 
 
@@ -230,6 +296,7 @@ TimeOrZero = Annotated[float, quantity("ms", 0.0)]
 Frequency = Annotated[float, quantity("Hz", 0.0, open_low=True)]
 Times = Annotated[float | tuple[float, float], one_or_two("ms", 0.0)]
 LossFactors = Annotated[float | tuple[float, float], *numbers(0.0, 10.0)]
+Ratio = Annotated[float, ratio(0.0, 10.0)]
 Stiffness = Annotated[float, quantity("N/mm", 0.0)]
 Torsion = Annotated[float, quantity("N*mm/rad", 0.0)]
 Modulus = Annotated[float, quantity("MPa", 0.0, open_low=True)]
@@ -261,7 +328,7 @@ Direction = Annotated[
     WithJsonSchema(
         {
             "anyOf": [
-                {"enum": ["x", "y", "z", "-x", "-y", "-z"]},
+                {"enum": ["x", "y", "z", "-x", "-y", "-z", "+x", "+y", "+z"]},
                 {"minItems": 3, "maxItems": 3, "type": "array", "items": {"type": "number"}},
             ]
         }

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 
 from mdlgen.spec.fields import (
     Direction,
@@ -13,6 +13,7 @@ from mdlgen.spec.fields import (
     Mass,
     Position,
     PositiveLength,
+    Ratio,
     Size3,
     Stiffness,
     Strict,
@@ -20,7 +21,10 @@ from mdlgen.spec.fields import (
     Torsion,
     default,
     fail,
+    following,
+    one_of,
     quantity,
+    reading,
 )
 from mdlgen.spec.guide import check_edge
 from mdlgen.spec.rim import Rim
@@ -45,6 +49,14 @@ class Drive(Strict):
     speed: AngularSpeed | None = Field(
         default=None, description="angular speed about the axis (right-hand rule)"
     )
+    surface_speed: Annotated[float, quantity("mm/s", 0.0)] | None = Field(
+        default=None,
+        description="in place of speed: speed of the roller's surface where it faces the sheet that it has a "
+        "contact with, along `direction`",
+    )
+    direction: Direction | None = Field(
+        default=None, description="with surface_speed: where the surface moves to, where it faces the sheet"
+    )
     ramp: TimeOrZero = Field(default=default("0 ms"), description="time from 0 to the full speed, linear")
     profile: tuple[Corner, ...] | None = Field(
         default=None,
@@ -55,8 +67,14 @@ class Drive(Strict):
 
     @model_validator(mode="after")
     def _one_law(self) -> Drive:
-        if (self.speed is None) == (self.profile is None):
-            raise fail("give exactly one of speed and profile")
+        given = [n for n in ("speed", "surface_speed", "profile") if getattr(self, n) is not None]
+        if len(given) != 1:
+            raise fail("give exactly one of speed and profile, or surface_speed with direction")
+        if (self.direction is None) != (self.surface_speed is None):
+            told = (
+                "direction goes with surface_speed" if self.direction else "surface_speed needs a direction"
+            )
+            raise fail(f"{told}, as surface_speed: 450 mm/s, direction: +x")
         if self.profile is None:
             return self
         if "ramp" in self.model_fields_set:
@@ -96,9 +114,7 @@ class Press(Strict):
         "counterpart (a roller, plane or guide it has a contact with), or its centre as given where it has "
         "none, as a plate",
     )
-    damping_ratio: float = Field(
-        default=0.05, ge=0, le=10, description="relative damping of spring and roller or plate"
-    )
+    damping_ratio: Ratio = Field(default=0.05, description="relative damping of spring and roller or plate")
     carrier_mass: Mass | None = Field(
         default=None,
         description="mass of the slide between spring and roller, a thousandth of the roller's where left "
@@ -141,9 +157,12 @@ class Arm(Strict):
 class Roller(Strict):
     """A cylinder that turns about its axis: driven, free, or pressed and free."""
 
+    model_config = ConfigDict(json_schema_extra=one_of("radius", "diameter"))
+
     center: Position = Field(description="middle of the cylinder")
     axis: Direction = Field(description="axis of rotation")
     radius: PositiveLength = Field(description="radius R")
+    diameter: PositiveLength | None = Field(default=None, description="2 R, in place of radius")
     width: PositiveLength = Field(description="length along the axis")
     mass: Mass = Field(description="mass m; the inertia is that of a solid cylinder")
     drive: Drive | None = Field(
@@ -155,6 +174,20 @@ class Roller(Strict):
     press: Press | None = Field(default=None, description="slide and spring; without it the axis is fixed")
     arm: Arm | None = Field(default=None, description="an arm that carries it in place of a fixed axis")
     rim: Rim | None = Field(default=None, description="sectors of the rim that are unlike the rest")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _radius(cls, value: Any) -> Any:
+        if not isinstance(value, dict) or value.get("diameter") is None:
+            return value
+        if value.get("radius") is not None:
+            raise fail("radius and diameter are both given; give one of them", within=("diameter",))
+        return {**value, "radius": following(reading(value["diameter"], "mm", 1.0) / 2)}
+
+    @model_validator(mode="after")
+    def _plain(self) -> Roller:
+        """The same with its radius alone."""
+        return self if self.diameter is None else self.model_copy(update={"diameter": None})
 
     @model_validator(mode="after")
     def _arm(self) -> Roller:
@@ -179,9 +212,17 @@ class Plane(Strict):
     normal: Direction = Field(description="outward normal of the contact face")
     size: Size3 = Field(
         description="two lengths of the face, then the thickness along the normal. The first length is along "
-        "global x as far as that lies in the face, or along global y where the normal is near x"
+        "global x as far as that lies in the face, or along global y where the normal is near x; or as "
+        "`along` says"
     )
-    mass: Mass = Field(description="mass of the plate; only a plate with press moves")
+    along: Direction | None = Field(
+        default=None,
+        description="direction of the first length of size, one of the two sides of the face",
+    )
+    mass: Mass = Field(
+        default=default("1 g"),
+        description="mass of the plate, for the text alone where it is fixed; a plate with press needs it",
+    )
     press: Press | None = Field(
         default=None, description="slide and spring; without it the plate is fixed. It does not turn"
     )
@@ -196,6 +237,8 @@ class Plane(Strict):
         check_edge(self.edge_radius, self.size[2])
         if self.press is None:
             return self
+        if "mass" not in self.model_fields_set:
+            raise fail("a plate with press moves, so its mass counts; write like mass: 20 g")
         if abs(sum(d * n for d, n in zip(self.press.direction, self.normal, strict=True))) < 0.05:
             raise fail(
                 "the direction lies in the plate's own face, or less than 3 degrees off it, where it presses "
@@ -203,3 +246,30 @@ class Plane(Strict):
                 within=("press", "direction"),
             )
         return self
+
+    @model_validator(mode="after")
+    def _first_along(self) -> Plane:
+        """The same with its lengths in the usual order."""
+        if self.along is None:
+            return self
+        first, second = self.sides
+        one, two = (
+            abs(sum(a * s for a, s in zip(self.along, side, strict=True))) for side in (first, second)
+        )
+        if max(one, two) < 1.0 - 1e-9:
+            shown = " or ".join(f"[{', '.join(f'{c:.4g}' for c in side)}]" for side in (first, second))
+            raise fail(f"the sides of this plate lie along {shown}; give one of them", within=("along",))
+        a, b, thickness = self.size
+        return self.model_copy(
+            update={"along": None, "size": (a, b, thickness) if one > two else (b, a, thickness)}
+        )
+
+    @property
+    def sides(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+        """Unit vectors along the first and the second length."""
+        n = self.normal
+        near = (0.0, 1.0, 0.0) if abs(n[0]) > 0.9 else (1.0, 0.0, 0.0)
+        lean = sum(p * q for p, q in zip(near, n, strict=True))
+        flat = [p - lean * q for p, q in zip(near, n, strict=True)]
+        x, y, z = (f / math.hypot(*flat) for f in flat)
+        return (x, y, z), (n[1] * z - n[2] * y, n[2] * x - n[0] * z, n[0] * y - n[1] * x)

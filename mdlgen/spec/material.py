@@ -8,7 +8,7 @@ from typing import Literal
 from pydantic import Field, model_validator
 
 from mdlgen.spec.curve import Curve
-from mdlgen.spec.fields import Frequency, LossFactors, Modulus, Plate, Strict, Times, Torsion, fail
+from mdlgen.spec.fields import Frequency, LossFactors, Modulus, Plate, Ratio, Strict, Times, Torsion, fail
 
 RATIO = 0.12  # the paper's zeta (Table 2)
 
@@ -21,17 +21,13 @@ class Damping(Strict):
     tau strain rate) for each component of a joint, c = tau k, on any grid the same.
     """
 
-    ratio: float | None = Field(
+    ratio: Ratio | None = Field(
         default=None,
-        ge=0,
-        le=10,
         description="relative damping zeta of every component but ty (Eq. 7), of one box and its joint; 0.12 "
         "where nothing is given",
     )
-    ratio_ty: float | None = Field(
+    ratio_ty: Ratio | None = Field(
         default=None,
-        ge=0,
-        le=10,
         description="zeta of the rotation about y; the same as ratio where left out",
     )
     rotation: Literal["inertia", "paper"] | None = Field(

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from mdlgen.spec.fields import PositiveLength, Strict, Time, default, fail
+from mdlgen.spec.fields import PositiveLength, Strict, Time, default, fail, ratio
 
 
 class Run(Strict):
@@ -17,10 +17,8 @@ class Run(Strict):
         default="transient", description="transient: motion over time; static: the state of rest"
     )
     step: Time | None = Field(default=None, description="time step; chosen from the tolerance where left out")
-    tolerance: float = Field(
+    tolerance: Annotated[float, ratio(1e-12, 0.1)] = Field(
         default=1e-3,
-        ge=1e-12,
-        le=0.1,
         description="wanted error of positions of sheets and orientation of single blocks, relative to "
         "max(travel, sheet length / 10), and of slides and arm angles, relative to their range, at least "
         "to the same lengths",

@@ -24,6 +24,7 @@ from mdlgen.spec.mesh import Mesh
 from mdlgen.spec.part import Part
 from mdlgen.spec.run import Run
 from mdlgen.spec.sheet import Sheet
+from mdlgen.spec.surface import with_rates
 
 MOST_ERRORS = 100  # that are looked for in contacts: more are not shown
 
@@ -85,9 +86,10 @@ class Scene(Strict):
                 check()
             except PydanticCustomError as error:
                 errors.append(error)
-        _, wrong = self._find_pairs()
+        pairs, wrong = self._find_pairs()
         if errors or wrong:
             raise fail_all([*errors, *wrong])
+        with_rates(self, pairs)
         return self
 
     def _checks(self) -> Iterator[Callable[[], None]]:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, ValidationInfo, model_validator
+from pydantic import ConfigDict, Field, ValidationInfo, model_validator
 
 from mdlgen.spec.fields import (
     Angle,
@@ -21,8 +21,11 @@ from mdlgen.spec.fields import (
     Velocity,
     default,
     fail,
+    following,
+    one_of,
     origin,
     quantity,
+    reading,
 )
 from mdlgen.spec.grading import Graded, Grading
 from mdlgen.spec.limits import DEFAULT
@@ -47,10 +50,18 @@ class Clamp(Strict):
 class Sheet(Strict):
     """One sheet of material, flat, with x = machine direction and y = cross direction."""
 
+    model_config = ConfigDict(json_schema_extra=one_of("mass", "grammage", "density"))
+
     material: Name = Field(description="name of a material")
     size: Size2 = Field(description="[L_x, L_y] of the outline")
     thickness: Annotated[float, quantity("mm", 0.01, 50.0, slip=1000.0)] = Field(description="thickness s")
     mass: Mass = Field(description="mass M of the whole sheet")
+    grammage: Annotated[float, quantity("g/m^2", 0.0, open_low=True)] | None = Field(
+        default=None, description="mass per area, in place of mass"
+    )
+    density: Annotated[float, quantity("kg/m^3", 0.0, open_low=True)] | None = Field(
+        default=None, description="density, in place of mass; times size and thickness"
+    )
     boxes: Counts2 = Field(description="[n_x, n_y] boxes; [1, 1] is one rigid block")
     layout: Literal["edge_to_edge", "center_to_center", "plate"] = Field(
         default="edge_to_edge",
@@ -84,6 +95,31 @@ class Sheet(Strict):
     surface: bool = Field(
         default=False, description="deformable surface on the box centres, to look at in MotionView"
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _mass(cls, value: Any) -> Any:
+        given = [
+            n for n in ("mass", "grammage", "density") if isinstance(value, dict) and value.get(n) is not None
+        ]
+        if len(given) > 1:
+            raise fail(f"{' and '.join(given)} are given; give one of them", within=(given[1],))
+        if given in ([], ["mass"]):
+            return value
+        size, area = value.get("size"), 1.0
+        for side in size if isinstance(size, (list, tuple)) else ():
+            area *= reading(side, "mm", 1.0)
+        if given == ["grammage"]:
+            return {**value, "mass": following(reading(value["grammage"], "g/m^2", 1.0) * area)}
+        volume = area * reading(value.get("thickness"), "mm", 1.0)
+        return {**value, "mass": following(reading(value["density"], "kg/m^3", 1.0) * volume)}
+
+    @model_validator(mode="after")
+    def _plain(self) -> Sheet:
+        """The same with its mass alone."""
+        if self.grammage is None and self.density is None:
+            return self
+        return self.model_copy(update={"grammage": None, "density": None})
 
     @model_validator(mode="after")
     def _counts(self, info: ValidationInfo) -> Sheet:
@@ -243,6 +279,14 @@ class Sheet(Strict):
         if self.clamp.edge.endswith("min"):
             return at < lines[row] + slack
         return at > lines[-1 - row] - slack
+
+    @property
+    def normal(self) -> tuple[float, float, float]:
+        """Unit normal of the flat sheet as it starts, global axes."""
+        a, b, c = self.rotation if self.rotation is not None else (0.0, 0.0, 0.0)
+        y, z = -math.sin(a), math.cos(a)  # about x, then y, then z
+        x, z = z * math.sin(b), z * math.cos(b)
+        return x * math.cos(c) - y * math.sin(c), x * math.sin(c) + y * math.cos(c), z
 
     @property
     def lines(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
