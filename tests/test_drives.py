@@ -66,8 +66,7 @@ def test_a_roller_turns_as_its_profile_says_and_takes_the_sheet_along(tmp_path: 
     moved = result.sheet_motion(0)[0][:, 0]
     assert path.max() == pytest.approx(7.55 * 0.675, rel=1e-3)
     assert np.abs(moved - moved[0] - path).max() < 0.02 * path.max()
-    # what a nip stores while it goes from box to box is right to some per cent (see results.audit)
-    assert abs(result.energy.balance_error) < 0.02
+    assert abs(result.energy.balance_error) < (2e-3 if solver == "lattice" else 0.01)
 
 
 def test_both_solvers_agree_about_a_profile(tmp_path: Path) -> None:

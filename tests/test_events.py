@@ -97,8 +97,8 @@ def test_the_note_goes_from_row_1_to_row_2() -> None:
     assert of(found, "enter", "motor_2")[0]["speed_mm_per_s"] == pytest.approx(1400, rel=0.02)
     # row 1 pulls the note along, and row 2 has to catch it
     for event in of(found, "slip", "motor"):
-        assert 0.0 < event["part_of_surface_speed"] < 0.03
-        assert event["mean_mm_per_s"] < event["max_mm_per_s"] < 200.0  # as row 2 catches it
+        assert 0.0 < event["part_of_surface_speed"] < 0.02
+        assert event["mean_mm_per_s"] < event["max_mm_per_s"] < 150.0  # as row 2 catches it
     assert of(found, "slip", "motor_1")[0]["contact_ms"] == times(found, "leave", "motor_1")[0] - 0.25
     assert not of(found, "jam") and not of(found, "double_feed") and not of(found, "gap")
     assert [e["time_ms"] for e in found] == sorted(e["time_ms"] for e in found)

@@ -145,7 +145,7 @@ def test_a_turning_rim_gives_back_what_it_stores() -> None:
     work = np.concatenate([[0.0], np.cumsum(0.5 * np.add(torque[1:], torque[:-1]) * np.diff(angles))])
     energy = np.array(energy)
     assert np.ptp(energy) > 1.0
-    assert np.abs(work + energy - energy[0]).max() < 0.01 * np.ptp(energy)
+    assert np.abs(work + energy - energy[0]).max() < 0.002 * np.ptp(energy)
     assert max(opposite) < 1e-9
 
 
@@ -160,7 +160,7 @@ def test_a_sheet_moves_only_while_the_rubber_passes(solver: str) -> None:
     turned = np.degrees(result.model.roller("feed").turned(result.time))
     moved = way(result)
     assert np.abs(moved[turned < 115.0]).max() < 0.03  # creep of the plastic
-    assert np.ptp(moved[turned > 220.0]) < 0.002 * moved[-1]  # it rings where it is let go
+    assert np.ptp(moved[turned > 220.0]) < 0.04  # it rings where it is let go: by 0.037 mm at any step
     assert moved[-1] == pytest.approx(15.0 * np.pi / 2, rel=0.01)
     during = (turned > 140.0) & (turned < 200.0)
     speed = np.gradient(moved, result.time)[during]

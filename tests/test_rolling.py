@@ -186,8 +186,8 @@ def _under(out, at, shared, speed, k, law):
 @pytest.mark.parametrize("beta", [0.6, 1.0])
 def test_all_points_of_a_nip_are_damped_by_its_one_rate(rate: float, beta: float) -> None:
     """Two boxes side by side, the joint anywhere under the roller: together F = k z^1.5 (1 + beta s(rate))
-    along the normal of the face, never below zero, and nothing along the face; what is lost is the work of
-    the damping."""
+    along the normal of the face, never below zero, and nothing along it; stored is 2/5 k z^2.5, and what
+    is lost is the work of the damping."""
     law, k, z = (beta, 0.0, 0.0, 1.0, 1.0, 0.01), 300.0, 0.04
     x = rate / 0.01
     step = math.copysign(1.0, rate) if abs(x) >= 1.0 else 0.5 * x * (3.0 - x * x)
@@ -203,6 +203,7 @@ def test_all_points_of_a_nip_are_damped_by_its_one_rate(rate: float, beta: float
         force = k * z**1.5 * (1.0 + beta * step)
         assert total[2] == pytest.approx(-force, rel=2e-3, abs=1e-9)
         assert abs(total[0]) <= 1e-3 * force + 1e-12
+        assert total[13] == pytest.approx(0.4 * k * z**2.5, rel=2e-3)
         assert total[14] == pytest.approx(beta * step * k * z**1.5 * rate, rel=5e-3, abs=2e-4 * force)
 
 

@@ -71,7 +71,7 @@ def _paper_says(summary):
         nip = summary["rollers"][f"counter_2_{side}"]
         assert 26 <= nip["free_of_counterpart_at_ms"] <= 32
         assert nip["contacts"][f"motor_2_{side}"]["max_penetration_mm"] == pytest.approx(0.22, abs=0.01)
-    assert abs(summary["energy"]["balance_error"]) < 2e-2  # of an energy without drag in the nips
+    assert abs(summary["energy"]["balance_error"]) < 5e-3  # of an energy without drag in the nips
     # symmetric scene, symmetric answer
     assert abs(note["yaw_deg"]) < 1e-3
     assert abs(note["travel_mm"][1]) < 1e-3

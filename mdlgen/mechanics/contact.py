@@ -26,6 +26,13 @@ WHOLE = 4.0  # no sector but the whole round: more than half a turn
 _GAUSS = 1.0 / math.sqrt(3.0)
 
 
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _stored(t, reach):
+    """Integral from 0 to t of the square of a pressure that falls as 1 - (t/reach)^2."""
+    s = (t / reach) ** 2
+    return t * (1.0 - s * (2.0 / 3.0 - 0.2 * s))
+
+
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _face(
     out,
@@ -141,17 +148,23 @@ def _face(
             under = local(p, r, q, l0[p] + u * up, l0[r] + u * ur, sign * half[q])
             foot = add(add(xa, rotate(ra, under)), aside)
             across = rotate(ra, local(p, r, q, -ur, up, 0.0))
+            # the 2-point rule costs 5/12 z/R of the force, the lean of the pressure 1/3 z/R
+            lost = 5.0 / 12.0 + draw * draw / 3.0
+            if spread:
+                # energies of two points add up to it where they have all of the nip, and else do not; the
+                # round is z/(4R) narrower than its parabola
+                part = 0.5 * weight * foundation * (1.0 + 0.25 * (radius - e) / radius)
+                out[13] += part * (_stored(right, reach) - _stored(left, reach)) * (radius - e) ** 2
             for point in range(2 if spread else 1):
                 t = nearest
                 if spread:
                     t = 0.5 * (left + right) + (point - 0.5) * _GAUSS * (right - left)
                 zeta = radius - math.sqrt(t * t + e * e)
                 if spread:
-                    # the 2-point rule costs 5/12 z/R of the force, the lean of the pressure 1/3 z/R
-                    lost = 5.0 / 12.0 + draw * draw / 3.0
                     length = 0.5 * (right - left) * (1.0 + lost * (radius - e) / radius)
                     spring = weight * foundation * length * zeta
                     energy = 0.6 * spring * zeta  # 2/5 F z: both points are 2/3 z deep
+                    out[13] -= energy
                     t *= draw
                 else:
                     spring = weight * zeta * math.sqrt(zeta)
