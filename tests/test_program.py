@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import pickle
 import subprocess
 import sys
 from pathlib import Path
@@ -281,6 +282,51 @@ def test_machine_code_is_made_for_other_machines(
         machine = llvm.Target.from_triple(triple).create_target_machine(opt=3, reloc="pic")
         code = native.emit(machine, bitcode)
         assert code.startswith(magic) and len(code) > 1000
+
+
+# Samples whose contacts do not rattle: the last bit of a force stays the last bit of a place.
+CALM = ("transport_4x4", "stack", "cantilever", "snatch", "verify/tension")
+RATTLING = (
+    *("transport_4x2", "transport_tilted", "pick", "channel"),
+    *("guide_joint", "retard_pad", "spring_plate"),
+)
+RUN = """
+import sys, pickle, mdlgen
+from mdlgen.paths import samples
+solver, *names = sys.argv[1:]
+found = {}
+for name in names:
+    result = mdlgen.solve(mdlgen.lower(mdlgen.load(samples() / f"{name}.yaml")), solver)
+    found[name] = result.status, result.steps, result.error_estimate, result.position
+with open("found", "wb") as stream:
+    pickle.dump((found, "numba" in sys.modules), stream)
+"""
+
+
+@pytest.mark.skipif(
+    not os.environ.get("MDLGEN_COMPARE"), reason="numba compiles for minutes: MDLGEN_COMPARE=1"
+)
+@pytest.mark.parametrize(
+    ("solver", "names"),
+    [("lattice", (*CALM, *RATTLING)), ("exudyn", ("cantilever", "transport_4x2", "pick"))],
+)
+def test_samples_run_as_shipped_as_by_numba(tmp_path: Path, solver: str, names: tuple[str, ...]) -> None:
+    """Places agree to 1e-9 of the travel, where contacts rattle to the error estimate."""
+    found: list[dict[str, Any]] = []
+    for alone in ("0", "1"):
+        folder = tmp_path / alone
+        folder.mkdir()
+        surroundings = {**os.environ, "MDLGEN_NUMBA": alone, "PYTHONPATH": os.pathsep.join(sys.path)}
+        subprocess.run([sys.executable, "-c", RUN, solver, *names], cwd=folder, env=surroundings, check=True)
+        runs, by_numba = pickle.loads((folder / "found").read_bytes())
+        assert by_numba == (alone == "1"), "the programs fit: python -m mdlgen.program.build --check"
+        found.append(runs)
+    for name in names:
+        (status, steps, estimate, places), (*alike, _, others) = (runs[name] for runs in found)
+        assert [status, steps] == alike and status == "ok", name
+        travel = np.abs(places - places[0]).max() or np.abs(places).max()
+        allowed = 1e-9 if name in CALM else estimate or 1e-4
+        assert np.abs(places - others).max() <= allowed * travel, name
 
 
 def test_types_are_told_and_checked() -> None:
