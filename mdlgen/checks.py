@@ -127,7 +127,7 @@ def _deep_nip(model: Model) -> Iterator[Lint]:
         if _deep(depth, sheet):
             yield Lint(
                 "W105",
-                f"contacts.{model.contacts.entry[row]}.stiffness",
+                f"contacts.{model.contacts.called(row)}.stiffness",
                 f"the preload {roller.press.preload:g} N of {roller.name} presses {depth:.3g} mm deep, "
                 f"more than {sheet.thickness / 2:g} mm, half of the thickness of {sheet.name}: "
                 "the rollers meet through it",
@@ -145,7 +145,7 @@ def _smoothing(model: Model) -> Iterator[Lint]:
             continue
         coarse = max(float(contacts.smoothing[row]), float(contacts.stiction_velocity[row]))
         fine = min(float(contacts.smoothing[row]), float(contacts.stiction_velocity[row]))
-        where = f"contacts.{contacts.entry[row]}.smoothing"
+        where = f"contacts.{contacts.called(row)}.smoothing"
         told = f"of the surface speed {speed * 1e3:.4g} mm/s"
         if coarse > COARSE_SMOOTHING * speed:
             yield Lint(
@@ -171,7 +171,7 @@ def _idle_rolling(model: Model) -> Iterator[Lint]:
             one, two = contacts.part_a[rows[0]], contacts.part_b[rows[0]]
             yield Lint(
                 "W125",
-                f"contacts.{entry}.rolling_resistance",
+                f"contacts.{contacts.called(rows[0])}.rolling_resistance",
                 f"{contacts.rolling[rows[0]]:g} between {one} and {two} does nothing: neither is a roller",
                 "leave it out, or name a contact with a roller",
             )

@@ -229,5 +229,5 @@ def test_every_sample_loads() -> None:
 
 
 def test_a_mapping_where_a_list_is_due_says_how_items_begin() -> None:
-    told = refused(f"{CANTILEVER}\ncontacts:\n  grip: {{between: [note, note], stiffness: 300 N/mm^1.5}}\n")
-    assert "contacts: expected a list, each item begun with '- ', got {'grip'" in str(told)
+    told = refused(f"{CANTILEVER}\nloads:\n  pull: {{sheet: note, edge: y_max, force: [0 N, 1 N, 0 N]}}\n")
+    assert "loads: expected a list, each item begun with '- ', got {'pull'" in str(told)

@@ -181,6 +181,10 @@ def _rounded(value: Any) -> Any:
     return value
 
 
+# columns of Contacts that say which contact it is, not how it acts
+_NO_LAW = ("entry", "part_a", "part_b", "name")
+
+
 def _contacts(model: Model, mirror: Mirror) -> Mirror | None:
     """The Mirror with the rows of contacts, where each row has an image with the same law, and no box reaches
     a part on the other side. Boxes of two sheets meet on one side or on the other, as both are cut between
@@ -191,7 +195,7 @@ def _contacts(model: Model, mirror: Mirror) -> Mirror | None:
     names = {part.body: part.name for part in parts}
     seen = {name: names[int(image[body])] for name, body in place.items()}
     ends = list(zip(table.part_a, table.part_b, strict=True))
-    columns = [getattr(table, f.name) for f in fields(table) if f.name not in ("entry", "part_a", "part_b")]
+    columns = [getattr(table, f.name) for f in fields(table) if f.name not in _NO_LAW]
     laws = list(zip(*(c.tolist() if isinstance(c, np.ndarray) else c for c in columns), strict=True))
     rows = {(*pair, law): row for row, (pair, law) in enumerate(zip(ends, laws, strict=True))}
     told = np.array(

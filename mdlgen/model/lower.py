@@ -193,6 +193,7 @@ def _sheets(scene: Scene) -> tuple[tuple[SheetPart, ...], list[Cells]]:
 
 def _contacts(scene: Scene) -> Contacts:
     rows = scene.contact_pairs()
+    named = any(contact.name for contact in scene.contacts)
 
     def column(read: Callable) -> Floats:
         return np.array([read(scene.contacts[i]) for i, _, _ in rows], dtype=float)
@@ -219,6 +220,7 @@ def _contacts(scene: Scene) -> Contacts:
         smoothing=column(lambda c: c.smoothing),
         rolling=column(lambda c: c.rolling_resistance),
         share=tuple(scene.contacts[i].share for i, _, _ in rows),
+        name=tuple(scene.contacts[i].name or "" for i, _, _ in rows) if named else (),
     )
 
 

@@ -460,9 +460,14 @@ class Contacts(Frozen):
     smoothing: Floats  # [mm/ms]
     rolling: Floats  # coefficient of rolling resistance
     share: tuple[str, ...]  # width or pair
+    name: tuple[str, ...] = ()  # of the entries that have one, "" of others; none where no entry has
 
     def __len__(self) -> int:
         return len(self.part_a)
+
+    def called(self, row: int) -> str:
+        """What a user calls the entry of a row: its name, or its index in the list."""
+        return (self.name[row] if self.name else "") or str(self.entry[row])
 
     @property
     def of_machine(self) -> NDArray[np.bool_]:

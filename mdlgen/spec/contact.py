@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from mdlgen.spec.fields import SpeedScale, Strict, default, fail, of_percent, quantity, ratio
+from mdlgen.spec.fields import Name, SpeedScale, Strict, default, fail, of_percent, quantity, ratio
 
 Coefficient = Annotated[float, ratio(0.0, 1e3)]
 Share = Annotated[float, ratio(0.0, 1.0)]
@@ -56,16 +56,29 @@ class Friction(Strict):
 
 
 def _two(value: Any) -> Any:
-    if not isinstance(value, (list, tuple)) or len(value) != 2 or not all(isinstance(v, str) for v in value):
-        raise fail(f"between needs two names or patterns like 'motor_*', got {value!r}"[:200])
-    return tuple(value)
+    if not isinstance(value, (list, tuple)) or len(value) != 2 or not all(_is_side(v) for v in value):
+        raise fail(f"between needs two names, patterns like 'motor_*', or lists of them, got {value!r}"[:200])
+    return tuple(side if isinstance(side, str) else tuple(side) for side in value)
+
+
+def _is_side(value: Any) -> bool:
+    if isinstance(value, (list, tuple)):
+        return len(value) > 0 and all(isinstance(item, str) for item in value)
+    return isinstance(value, str)
+
+
+Side = str | tuple[str, ...]
 
 
 class Contact(Strict):
     """Normal force k z^1.5 with restitution (Eqs. 9-11) and friction, for each pair of parts named."""
 
-    between: Annotated[tuple[str, str], BeforeValidator(_two)] = Field(
-        description="two parts by name or pattern; every pair that matches gets this contact"
+    name: Name | None = Field(
+        default=None, description="its name, where contacts are a list; in a mapping the key is the name"
+    )
+    between: Annotated[tuple[Side, Side], BeforeValidator(_two)] = Field(
+        description="two parts by name or pattern, or lists of them; every pair of one of each side that "
+        "matches gets this contact"
     )
     stiffness: Annotated[float, quantity("N/mm^1.5", 0.0, open_low=True)] = Field(
         description="k of one pair (Eq. 10)"

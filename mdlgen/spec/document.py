@@ -41,6 +41,7 @@ class Document:
         self, data: Any, places: dict[SpecPath, Place], keys: dict[SpecPath, Place], file: str, text: str = ""
     ):
         self.data, self.places, self.keys, self.file, self.text = data, places, keys, file, text
+        self.origins: dict[SpecPath, SpecPath] = {}  # where what is copied or moved stands in the text
         self.made: set[SpecPath] = set()  # mappings that --set made on its way
 
     def place(self, path: SpecPath, prefer_key: bool = False) -> Place:

@@ -64,7 +64,8 @@ def meant(
         except SpecError as error:
             mistakes.add(error)
     try:
-        context = {"folder": folder, "limits": limits, "tally": Tally(limits)}
+        origins = document.origins
+        context = {"folder": folder, "limits": limits, "tally": Tally(limits), "origins": origins}
         scene = Scene.model_validate(document.data, context=context)
     except ValidationError as error:
         mistakes.take(error)

@@ -14,11 +14,13 @@ from pydantic_core import PydanticCustomError
 from mdlgen.errors import SpecError, did_you_mean
 from mdlgen.spec.document import Document, SpecPath
 from mdlgen.spec.scene import known, matching
+from mdlgen.spec.shorthand import in_the_text
 
 MOST = 20
 # Tables of parts by name: what --set makes anew here is more often a name that is misspelt.
 _MOST_LOOKS = 1000  # at names beside other mistakes
 _TABLES = ("materials", "sheets", "rollers", "planes", "guides", "meshes", "parts", "probes")
+_NAMED = ("contacts", *_TABLES)
 
 
 class Mistakes:
@@ -42,7 +44,8 @@ class Mistakes:
         for told in errors:
             path = tuple(told["loc"])
             if told["type"] == "missing":
-                made = next((m for m in self.document.made if path[:-1] == m and m[0] in _TABLES), None)
+                owner = in_the_text(path[:-1], self.document.origins)
+                made = next((m for m in self.document.made if owner == m and m[0] in _NAMED), None)
                 if made is not None:
                     unmade.setdefault(made, []).append(str(path[-1]))
                     continue
@@ -140,18 +143,20 @@ def _items(value: Any) -> list[tuple[Any, Any]]:
 
 
 def _describe(error: Any, document: Document) -> SpecError:
-    path = _as_written(tuple(p for p in error["loc"] if p != "[key]"), document)
+    inner = tuple(p for p in error["loc"] if p != "[key]")
+    path = _as_written(in_the_text(inner, document.origins), document)
     kind, context = error["type"], error.get("ctx") or {}
     prefer_key = error["loc"][-1:] == ("[key]",)
     if kind == "spec":
         message = context["text"]
         if context.get("path") is not None or context.get("within"):
-            path = tuple(context["path"] or (*path, *context["within"]))
+            path = tuple(context["path"] or (*inner, *context["within"]))
+            path = _as_written(in_the_text(path, document.origins), document)
             prefer_key = path in document.keys and not isinstance(_at(document.data, path), str)
     elif kind == "extra_forbidden":
-        message, prefer_key = f"unknown key {path[-1]!r}{_did_you_mean(path)}", True
+        message, prefer_key = f"unknown key {path[-1]!r}{_did_you_mean(inner)}", True
     elif kind == "missing":
-        message = f"the key {path[-1]!r} is missing{_example(path)}"
+        message = f"the key {path[-1]!r} is missing{_example(inner)}"
         path = path[:-1]
     else:
         said = re.sub(
@@ -159,7 +164,7 @@ def _describe(error: Any, document: Document) -> SpecError:
         )
         if kind in ("tuple_type", "list_type") and isinstance(error["input"], dict):
             said = "expected a list, each item begun with '- '"
-        message = f"{said.replace('valid tuple', 'list')}, got {error['input']!r}"[:300] + _example(path)
+        message = f"{said.replace('valid tuple', 'list')}, got {error['input']!r}"[:300] + _example(inner)
     return SpecError(message, path, document.place(path, prefer_key))
 
 

@@ -8,6 +8,7 @@ from collections.abc import Callable, Collection, Iterator
 from fnmatch import fnmatchcase
 from functools import partial
 from itertools import product
+from typing import Any
 
 from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 from pydantic_core import PydanticCustomError
@@ -24,9 +25,20 @@ from mdlgen.spec.mesh import Mesh
 from mdlgen.spec.part import Part
 from mdlgen.spec.run import Run
 from mdlgen.spec.sheet import Sheet
+from mdlgen.spec.shorthand import Defaults, written_out
 from mdlgen.spec.surface import with_rates
 
 MOST_ERRORS = 100  # that are looked for in contacts: more are not shown
+
+
+def _list_or_names(schema: dict[str, Any]) -> None:
+    """A list, or a mapping of names, in the JSON schema."""
+    items = schema.pop("items")
+    kind = schema.pop("type")
+    schema["anyOf"] = [
+        {"type": kind, "items": items},
+        {"type": "object", "additionalProperties": items},
+    ]
 
 
 class Scene(Strict):
@@ -53,7 +65,13 @@ class Scene(Strict):
         default_factory=dict, description="bodies of your own MotionView model, by name"
     )
     contacts: tuple[Contact, ...] = Field(
-        default=(), strict=False, description="which parts touch, and how; parts of no contact pass through"
+        default=(),
+        strict=False,
+        description="which parts touch, and how, as a list or by name; parts of no contact pass through",
+        json_schema_extra=_list_or_names,
+    )
+    defaults: Defaults | None = Field(
+        default=None, description="what contacts and rollers have where they do not say it"
     )
     loads: tuple[Load, ...] = Field(default=(), strict=False, description="forces and moments on sheets")
     run: Run = Field(default_factory=Run, description="duration, analysis and accuracy")
@@ -74,6 +92,11 @@ class Scene(Strict):
         kinds = ("sheets", "rollers", "planes", "guides", "parts", "contacts", "loads", "probes", "supports")
         told = ", ".join(f"{len(getattr(self, kind))} {kind}" for kind in kinds if getattr(self, kind))
         return f"<Scene {self.name}: {told}>"
+
+    @model_validator(mode="before")
+    @classmethod
+    def _written_out(cls, value: Any, info: ValidationInfo) -> Any:
+        return written_out(value, (info.context or {}).get("origins", {}))
 
     @model_validator(mode="after")
     def _references(self, info: ValidationInfo) -> Scene:
@@ -188,7 +211,9 @@ class Scene(Strict):
         looked = 0
         for index, contact in enumerate(self.contacts):
             path = ("contacts", index, "between")
-            looked += len(rank) * sum(not pattern.isidentifier() for pattern in contact.between)
+            patterns = [p for side in contact.between for p in ((side,) if isinstance(side, str) else side)]
+            looked += len(rank) * sum(not pattern.isidentifier() for pattern in patterns)
+            looked += len(patterns)
             if told := self._limits.exceeded(
                 "contacts", looked / 100, "hundreds of names that patterns meet"
             ):
@@ -204,7 +229,7 @@ class Scene(Strict):
     def _take_pairs(self, index: int, rank: dict[str, int], taken: dict[tuple[str, str], int]) -> None:
         """Adds the pairs of one contact to those that are taken."""
         path = ("contacts", index, "between")
-        sides = [matching(p, rank, (*path, i)) for i, p in enumerate(self.contacts[index].between)]
+        sides = [_side(p, rank, (*path, i)) for i, p in enumerate(self.contacts[index].between)]
         found = False
         for one, two in product(*sides):
             if one == two:
@@ -213,7 +238,8 @@ class Scene(Strict):
             if (a, b) in taken:
                 if taken[a, b] == index:
                     continue
-                raise fail(f"the pair {a} / {b} already has contacts.{taken[a, b]}; give it one", path)
+                other = self.contacts[taken[a, b]].name or taken[a, b]
+                raise fail(f"the pair {a} / {b} already has contacts.{other}; give it one", path)
             self._modelled(a, b, path)
             if told := self._limits.exceeded("contacts", len(taken) + 1, "pairs of parts in contact"):
                 raise fail(told, path)
@@ -289,6 +315,14 @@ def known(name: str, table: Collection[str], kind: str, path: tuple[str | int, .
 
 def _cosine(one: tuple[float, float, float], two: tuple[float, float, float]) -> float:
     return max(-1.0, min(1.0, sum(p * q for p, q in zip(one, two, strict=True))))
+
+
+def _side(side: str | tuple[str, ...], parts: Collection[str], path: tuple[str | int, ...]) -> list[str]:
+    """The parts of one side of a contact, each once."""
+    if isinstance(side, str):
+        return matching(side, parts, path)
+    found = [name for k, pattern in enumerate(side) for name in matching(pattern, parts, (*path, k))]
+    return list(dict.fromkeys(found))
 
 
 def matching(pattern: str, parts: Collection[str], path: tuple[str | int, ...]) -> list[str]:

@@ -10,6 +10,7 @@ from pydantic.fields import FieldInfo
 from pydantic.json_schema import GenerateJsonSchema
 
 from mdlgen.spec.scene import Scene
+from mdlgen.spec.shorthand import OF_CONTACTS, OF_ROLLERS
 
 
 class _Schema(GenerateJsonSchema):
@@ -21,6 +22,10 @@ class _Schema(GenerateJsonSchema):
 def json_schema() -> dict[str, Any]:
     """JSON schema of a scene file."""
     schema = Scene.model_json_schema(schema_generator=_Schema)
+    defaults = schema["$defs"]["Defaults"]["properties"]
+    for kind, model, names in (("contacts", "Contact", OF_CONTACTS), ("rollers", "Roller", OF_ROLLERS)):
+        refs = {name: {"$ref": f"#/$defs/{model}/properties/{name}"} for name in names}
+        defaults[kind] |= {"additionalProperties": False, "properties": refs}
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
 
 
