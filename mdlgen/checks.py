@@ -177,6 +177,23 @@ def _idle_rolling(model: Model) -> Iterator[Lint]:
             )
 
 
+def _idle_roller(model: Model) -> Iterator[Lint]:
+    contacts = model.contacts
+    rubs = (contacts.mu_static > 0.0) | (contacts.mu_dynamic > 0.0)
+    for roller in model.rollers:
+        own = np.array(
+            [roller.name in pair for pair in zip(contacts.part_a, contacts.part_b, strict=True)], bool
+        )
+        if roller.speed is None and np.any(own) and not np.any(rubs & own):
+            row = int(np.argmax(own))
+            yield Lint(
+                "W126",
+                f"contacts.{contacts.called(row)}.friction",
+                f"{roller.name} turns freely and none of its contacts has friction, so nothing turns it",
+                "give friction, as friction: 0.5, or a drive",
+            )
+
+
 def _idle_drive(model: Model) -> Iterator[Lint]:
     for roller in model.rollers:
         where = f"rollers.{roller.name}.drive"
@@ -463,6 +480,7 @@ CHECKS: tuple[Callable[[Model], Iterator[Lint]], ...] = (
     _deep_nip,
     _smoothing,
     _idle_rolling,
+    _idle_roller,
     _idle_drive,
     _untouched,
     _unfaced,

@@ -93,6 +93,10 @@ SCENE = {
         "Rolling resistance is a couple against the turning of a roller relative to what it rolls on. A "
         "contact of parts that are no rollers slides and does not roll; what resists there is friction."
     ),
+    "W126": (
+        "A roller without a drive is turned by friction alone, and here each of its contacts has none: "
+        "friction left out is 0. It stands still, pressed or not, while sheets slip past it."
+    ),
     "W130": (
         "The damping time tau of a material is that of its law stress = E (strain + tau strain rate), and "
         "follows from a loss factor at a frequency: tau = eta/(2 pi f). Paper loses 1 to 10 % at 10 to 100 "

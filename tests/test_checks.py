@@ -100,6 +100,15 @@ def test_a_pressed_roller_whose_counterpart_is_forgotten() -> None:
     assert "W118" not in {lint.code for lint in found("channel", f"contacts=[{sheet}]", aside)}
 
 
+def test_a_free_roller_that_nothing_turns() -> None:
+    still = [f"contacts.{k}.friction=0" for k in (0, 5)]
+    (hit,) = (lint for lint in found("transport_4x4", *still) if lint.code == "W126")
+    assert hit.where == "contacts.0.friction" and hit.message.startswith("counter_1_left turns freely")
+    # with friction on its counterpart alone it turns, and so does a driven one
+    assert "W126" not in {lint.code for lint in found("transport_4x4", "contacts.5.friction=0")}
+    assert "W126" not in {lint.code for lint in found("transport_4x4", "contacts.4.friction=0")}
+
+
 def test_every_check_is_tested() -> None:
     assert {code for code, *_ in CASES} == {f"W{k}" for k in range(101, 116)}
     assert len(CHECKS) >= 11

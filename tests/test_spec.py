@@ -115,6 +115,10 @@ class TestSet:
         text = (samples() / "verify" / "drop.yaml").read_text("utf-8")
         assert loads(text, "s", ["contacts.0.restitution=0.9"]).contacts[0].restitution == 0.9
 
+    def test_a_text_in_place_of_a_list_is_answered(self) -> None:
+        with pytest.raises(SpecError, match=r"write \['run.tolerance=1e-2'\]"):
+            loads(CANTILEVER, "s", "run.tolerance=1e-2")
+
     def test_last_one_wins(self) -> None:
         scene = loads(CANTILEVER, "s", ["run.tolerance=1e-2", "run.tolerance=1e-4"])
         assert scene.run.tolerance == 1e-4

@@ -57,6 +57,10 @@ def meant(
     """The Scene of a text that has been parsed, in which `overrides` are set; as `loads`."""
     if not isinstance(document.data, dict):
         raise SpecError("a scene is a mapping of keys to values", place=document.place(()))
+    if isinstance(overrides, str):  # its letters are no overrides
+        raise SpecError(
+            f"overrides are a list of texts; write [{overrides[:80]!r}]", place=document.place(())
+        )
     mistakes = Mistakes(document)
     for override in overrides:
         try:
