@@ -109,7 +109,7 @@ def test_the_readmes_first_scene_has_no_lint():
 
 def test_the_manuals_pieces_of_scenes_load():
     scene, *pieces = (YAML(typ="safe").load(block) for block in yaml_blocks("docs/reference/scene.md"))
-    graded, zones, shape, rims, guides, meshes, parts = pieces
+    graded, zones, shape, rims, guides, meshes, named, parts = pieces
 
     def lowered(**more):
         return mdlgen.lower(mdlgen.loads(json.dumps({**scene, **more})))
@@ -132,6 +132,9 @@ def test_the_manuals_pieces_of_scenes_load():
     turned = {name: {**plain, **part} for name, part in rims["rollers"].items()}
     made = lowered(rollers=scene["rollers"] | turned)
     assert made.roller("feed").rim is not None and made.roller("skim").arm is not None
+    # contacts by name, and what all of them have
+    grips = mdlgen.loads(json.dumps({**scene, **named})).contacts
+    assert {contact.friction.static for contact in grips} == {0.8}
     # meshes lie beside the samples; the mesh turns with a roller of the scene
     files = {**scene, "meshes": meshes["meshes"], "contacts": scene["contacts"] + meshes["contacts"]}
     assert len(mdlgen.lower(loads(json.dumps(files), "scene", (), ROOT / "samples")).meshes) == 2

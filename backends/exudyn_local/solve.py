@@ -374,8 +374,7 @@ def _unbalanced_energy(model: Model, result: Result, recorder: Recorder, h: floa
     wrong.
     """
     if any(sheet.count > 1 for sheet in model.sheets):
-        # while a nip goes from box to box its stored energy is right to some per cent only: what counts is
-        # the end, where it has come back
+        # what an edge stores as it comes into a nip comes back some steps later: the end counts
         return audit.reason(model, result.energy, h / MS, audit.LOSS)
     for off in (recorder.gained, recorder.vanished):
         worst = replace(result.energy, balance_error=off / MM / result.energy.scale)

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from mdlgen.model.tables import Model
     from mdlgen.results.result import Energy
 
-# Energy that the integration makes or loses, relative to the scale, above which a run fails. Where a contact
-# goes from box to box of a sheet, its stored energy is right to a few per cent only at any step.
+# Energy that the integration makes or loses, relative to the scale, above which a run fails. Contacts that
+# open and close within a step, as where an edge comes into a nip, lose more than they make.
 GAIN, LOSS, LOSS_RIGID = 0.02, 0.05, 0.01
 # How much finer a step is advised where none was given.
 FINER = 4.0

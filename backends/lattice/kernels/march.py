@@ -197,8 +197,10 @@ def run(
             if search.regions.size > 0 and strayed(bodies, search, x, u, dt) and not look(pairs, search, x):
                 return CROWDED, t
             rounds = counters[ROUNDS]
-            # a halved step's guess is the better, and what it may leave must fall as fast
-            limit = pace[3] * max(tolerance * 0.25**level, LEAST)
+            # a halved step's guess is the better, and what it may leave must fall as fast; where sheets lie
+            # on each other rounds do not come as far
+            least = LEAST if search.regions.size == 0 else tolerance
+            limit = pace[3] * max(tolerance * 0.25**level, least)
             solved = midpoint(system, state, mid, matrix, alone, free, t, dt, limit, fresh, counters)
             missed, fast = _missed(bodies, nodes, u, guess) if solved else (0.0, 0.0)
             most = pace[1] * max(fast, pace[3]) if pace[1] > 0.0 else 1e300
