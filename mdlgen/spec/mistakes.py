@@ -213,5 +213,5 @@ def _example(path: SpecPath) -> str:
     from mdlgen.spec.schema import example, model_at
 
     model = model_at(path[:-1])
-    shown = example(model, str(path[-1])) if model else ""
+    shown = example(model, str(path[-1])) if model and path else ""
     return f"; write like {path[-1]}: {shown}" if shown else ""
