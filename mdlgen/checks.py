@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from mdlgen.check_damping import damping
+from mdlgen.check_parameters import parameters
 from mdlgen.lint import Lint
 from mdlgen.model import press
 from mdlgen.model.guides import depths
@@ -490,4 +491,5 @@ CHECKS: tuple[Callable[[Model], Iterator[Lint]], ...] = (
     _density,
     _guessed_bending,
     damping,
+    parameters,
 )

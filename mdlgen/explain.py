@@ -97,6 +97,15 @@ SCENE = {
         "A roller without a drive is turned by friction alone, and here each of its contacts has none: "
         "friction left out is 0. It stands still, pressed or not, while sheets slip past it."
     ),
+    "W127": (
+        "A parameter is a named value; others follow from it by formulas such as speed/radius. This one "
+        "stands in no formula, so changing it changes nothing. It may be misspelt where it was meant."
+    ),
+    "W128": (
+        "Each value of a data set in MotionView text that is a formula here is one there, too, and follows "
+        "its parameters. Some values have no place in a data set: lines of clamps and zones, sizes of "
+        "dog-ears, steps of a run. They stand in the text as numbers."
+    ),
     "W130": (
         "The damping time tau of a material is that of its law stress = E (strain + tau strain rate), and "
         "follows from a loss factor at a frequency: tau = eta/(2 pi f). Paper loses 1 to 10 % at 10 to 100 "

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -44,6 +45,11 @@ _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(.*?)\s*")
 # `mm^2`, and `mm2` as it is typed
 _FACTOR = re.compile(r"([A-Za-zµ°]+|1)(?:\^([-+]?[0-9]+(?:\.[0-9]+)?))?")
 _POWER = re.compile(r"([A-Za-zµ°])([0-9])")
+
+# A unit as it stands in a formula behind a number: names joined by * and /, each with its power.
+_KNOWN = "|".join(sorted(_NAMES, key=len, reverse=True))
+_ONE = rf"(?:{_KNOWN})(?:\^[-+]?[0-9]+(?:\.[0-9]+)?|[0-9²³])?(?![\w°.(])"
+UNIT_TEXT = rf"{_ONE}(?:\s*[*/·]\s*{_ONE})*"
 
 _COMMA = re.compile(r"\s*([-+]?[0-9]+(?:,[0-9]+)+)((?:\.[0-9]*)?[^,]*?)\s*")
 
@@ -93,6 +99,23 @@ def parse_unit(text: str) -> Unit:
     return Unit(factor, dimension)
 
 
+def parse_number(text: str, example: str = "1 mm") -> tuple[float, str]:
+    """The value of `text` ("0.72 g") in internal units, and its unit. Raises ValueError."""
+    match = _QUANTITY.fullmatch(text[:200])
+    comma = _COMMA.fullmatch(text[:200])
+    if comma:
+        raise ValueError(f"{text.strip()!r} has a comma; {_with_point(comma)}")
+    if not match:
+        raise ValueError(f"{text[:60]!r} is not a number with a unit; expected like '{example}'")
+    if not match[2]:
+        unit = example.partition(" ")[2]
+        raise ValueError(f"{text.strip()} has no unit; expected like '{match[1]} {unit}'")
+    value = float(match[1]) * parse_unit(match[2]).factor
+    if not math.isfinite(value):
+        raise ValueError(f"{text.strip()!r} is not finite; allowed are values below 1.8e308")
+    return value, match[2]
+
+
 def parse_quantity(text: object, expected: str) -> float:
     """The value of `text` ("0.72 g") in internal units; `expected` is a unit of the right dimension.
 
@@ -102,21 +125,44 @@ def parse_quantity(text: object, expected: str) -> float:
     if isinstance(text, bool) or not isinstance(text, str):
         shown = f"{text} has no unit" if isinstance(text, (int, float)) else f"{text!r} is not a quantity"
         raise ValueError(f"{shown}; expected text with a unit like '1 {expected}'")
-    match = _QUANTITY.fullmatch(text[:200])
-    comma = _COMMA.fullmatch(text[:200])
-    if comma:
-        raise ValueError(f"{text.strip()!r} has a comma; {_with_point(comma)}")
-    if not match:
-        raise ValueError(f"{text[:60]!r} is not a number with a unit; expected like '1 {expected}'")
-    if not match[2]:
-        raise ValueError(f"{text.strip()} has no unit; expected like '{match[1]} {expected}'")
-    unit = parse_unit(match[2])
-    if any(abs(a - b) > 1e-9 for a, b in zip(unit.dimension, parse_unit(expected).dimension, strict=True)):
+    value, unit = parse_number(text, f"1 {expected}")
+    if not same(parse_unit(unit).dimension, parse_unit(expected).dimension):
         raise ValueError(f"{text.strip()!r} has the wrong unit; expected a unit like '{expected}'")
-    value = float(match[1]) * unit.factor
-    if not math.isfinite(value):
-        raise ValueError(f"{text.strip()!r} is not finite; allowed are values below 1.8e308")
     return value
+
+
+def check_unit(text: str, dimension: Sequence[float], expected: str) -> None:
+    """Raises ValueError where what a formula comes to is not of the dimension of a unit; it names both."""
+    if not same(dimension, parse_unit(expected).dimension):
+        due = "a plain number is due" if expected == "1" else f"expected a unit like '{expected}'"
+        told = "has no unit" if same(dimension, (0.0,) * 4) else f"has the unit {unit_of(dimension)}"
+        raise ValueError(f"{text.strip()[:80]!r} {told}; {due}")
+
+
+def same(one: Sequence[float], other: Sequence[float]) -> bool:
+    """Whether two dimensions are one, but for the round-off of fractional powers."""
+    return all(abs(a - b) <= 1e-9 for a, b in zip(one, other, strict=True))
+
+
+# As a reader of the field writes what has such a dimension.
+_USUAL = (
+    *("mm", "g", "s", "rad", "N", "MPa", "rad/s", "Hz", "mm/s", "mm/s^2", "rad/s^2", "mm^2", "mm^3", "N/mm"),
+    *("N*mm", "N*mm/rad", "N/mm^1.5", "g/mm^2", "g/mm^3", "g*mm^2", "N*s/mm", "N*mm*s/rad"),
+)
+
+
+def unit_of(dimension: Sequence[float]) -> str:
+    """A unit of a dimension, as `N/mm`; "no unit" where it has none."""
+    for text in _USUAL:
+        if same(parse_unit(text).dimension, dimension):
+            return text
+    named = zip(("mm", "g", "s", "rad"), dimension, strict=True)
+    return "*".join(f"{name}^{power:.6g}" for name, power in named if abs(power) > 1e-9) or "no unit"
+
+
+def is_unit(name: str) -> bool:
+    """Whether a name is that of a unit."""
+    return name in _NAMES
 
 
 def format_quantity(value: float, unit: str) -> str:

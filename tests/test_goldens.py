@@ -203,13 +203,22 @@ PART = (
     _put("contacts", [{"between": ["note", "feed"], "stiffness": "300 N/mm^1.5", "friction": 0.9}]),
     *ONE_OF_EACH[5:],
 )
+NAMED = (
+    _put(
+        "parameters", {"force": "3 N", "more": "force*1.5", "heavy": "0.5 g", "turned": "3 deg", "spare": 2}
+    ),
+    _put("rollers", {"under": ROLLER | {"mass": "heavy*2", "center": ["0 mm", "0 mm", "-(more/0.9 N/mm)"]}}),
+    _put("sheets.note.turn", "asin(tan(turned))"),
+    _put("sheets.note.mass", "max(heavy, 0.1 g) + abs(-heavy/4)"),
+)
 TILTED_GRAVITY = 'gravity=["1 m/s^2","0 m/s^2","-9.5 m/s^2"]'
 WORDY = (*CONTACTS, "rollers.under.press={direction: z, stiffness: 0.3 N/mm, preload: 3 N}", TILTED_GRAVITY)
 
 # For each template: what its sections show, and the scene that shows it.
 PARTS: dict[str, dict[str, tuple[str, ...]]] = {
-    "model.mdl.j2": {"one of each": ONE_OF_EACH},
-    "system.mdl.j2": {"for a part of another model": PART, "for none": BLOCK},
+    "model.mdl.j2": {"one of each": ONE_OF_EACH, "parameters": (*NAMED, *BLOCK)},
+    "parameters.mdl.j2": {"values, formulas, one that nothing uses": NAMED},
+    "system.mdl.j2": {"for a part of another model": PART, "for none": BLOCK, "parameters": (*NAMED, *BLOCK)},
     "banner.mdl.j2": {
         "a sheet only": PLAIN,
         "curves": CURVED,

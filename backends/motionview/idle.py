@@ -5,10 +5,12 @@ A value that a user can edit and that changes nothing would be worse than one th
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
+from mdlgen.formulas import names
+from mdlgen.model.parameters import OF_USER
 from mdlgen.model.tables import Model
 
 _FRICTION = ("mu_s", "mu_d", "v_s", "v_d")
@@ -18,7 +20,7 @@ _STIFFNESS = ("E_md", "E_cd", "k_tx", "k_ty", "k_tz", "D_md", "D_cd", "D_twist",
 
 def idle_values(model: Model, set_contact: bool, kept: Sequence[int]) -> dict[tuple[str, str], str]:
     """Reason by (data set, member); `kept` are the contacts (rows) that have statements in the text."""
-    found = _contacts(model, set_contact, kept)
+    found = _contacts(model, set_contact, kept) | _unused(model)
     for p in model.parameters:
         if p.member in ("E_md", "E_cd") and p.path is None:
             found[p.data_set, p.member] = "the first slope of its curve"
@@ -44,6 +46,28 @@ def idle_values(model: Model, set_contact: bool, kept: Sequence[int]) -> dict[tu
     if model.run.analysis == "static":
         found |= {("run", member): "the run is static" for member in ("end", "print")}
     return found
+
+
+def _unused(model: Model) -> dict[tuple[str, str], str]:
+    """The user's parameters that no value of the text follows from."""
+    rows = [p for p in model.parameters if p.data_set == OF_USER]
+    used = used_by(model, (p.formula for p in model.parameters if p.data_set != OF_USER and p.formula))
+    return {
+        (OF_USER, p.member): "no value of this text follows from it" for p in rows if p.member not in used
+    }
+
+
+def used_by(model: Model, texts: Iterable[str]) -> set[str]:
+    """The user's parameters that formulas, and places of probes and supports, follow from."""
+    own = {p.member: p.formula for p in model.parameters if p.data_set == OF_USER}
+    places = (text for anchor in (*model.probes, *model.supports) for text in anchor.formulas if text)
+    waiting, used = [*texts, *places], set()
+    while waiting:
+        for name in names(waiting.pop()):
+            if name not in used:
+                used.add(name)
+                waiting += [own[name]] if own[name] else []
+    return used
 
 
 def _rims(model: Model, set_contact: bool, kept: Sequence[int]) -> dict[tuple[str, str], str]:

@@ -16,6 +16,12 @@ class Value(NamedTuple):
     label: str
     number: str
     edit: str  # EDIT or NO_EDIT
+    formula: str = ""  # that gives the number
+
+    @property
+    def said(self) -> str:
+        """What the text sets it to."""
+        return self.formula or self.number
 
 
 class Point(NamedTuple):
@@ -332,6 +338,7 @@ class SceneView:
 
     name: str
     static: bool
+    parameters: list[Value]
     run: list[Value]
     sheets: list[SheetView]
     supports: list[SupportView]

@@ -8,6 +8,7 @@ import numpy as np
 
 from mdlgen.backends.motionview.bend import bend_view
 from mdlgen.backends.motionview.cells import Differences, differences, grid_views, zone_views
+from mdlgen.backends.motionview.formula import mdl_formula, units_of
 from mdlgen.backends.motionview.rows import (
     Bush,
     CurveView,
@@ -178,7 +179,7 @@ def support_views(model: Model) -> list[SupportView]:
                 sheet=model.sheets[support.sheet].name,
                 points=points,
                 edge=support.edge,
-                given=[*([] if support.edge else _place(*support.at)), factor],
+                given=[*_place(model, support), factor],
                 count=len(parts),
                 fixed=(x, y, z),
                 bushes=[
@@ -201,7 +202,7 @@ def probe_view(model: Model, probe: Anchor) -> ProbeView:
         sheet=model.sheets[probe.sheet].name,
         points=points,
         edge=probe.edge,
-        given=[] if probe.edge else _place(*probe.at),
+        given=_place(model, probe),
         markers=[(f"m_probe_{probe.name}{e}", b, p) for e, b, p in zip(ends, bodies, on, strict=True)],
     )
 
@@ -221,9 +222,18 @@ def _frame(sheet: SheetPart, body: int) -> str:
     return f"{sheet.name}_f{frame}" if frame else sheet.name
 
 
-def _place(x: float, y: float) -> list[Value]:
-    """x and y of a material point, from the sheet's centre in sheet axes."""
+def _place(model: Model, anchor: Anchor) -> list[Value]:
+    """x and y of a material point, from the sheet's centre in sheet axes; of an edge none."""
+    if anchor.edge:
+        return []
+    units = units_of(model)
     return [
-        Value(axis, f"{axis} from the centre of the sheet (mm)", number(round(float(v), 12)), "EDIT")
-        for axis, v in zip(AXES, (x, y), strict=False)
+        Value(
+            axis,
+            f"{axis} from the centre of the sheet (mm)",
+            number(round(float(value), 12)),
+            "EDIT",
+            mdl_formula(formula, "mm", units) if formula else "",
+        )
+        for axis, value, formula in zip(AXES, anchor.at, anchor.formulas, strict=False)
     ]

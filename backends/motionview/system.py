@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from mdlgen.backends.motionview.idle import used_by
 from mdlgen.backends.motionview.machine import contact_views, guide_graphics, pair_rows, rough_pairs
-from mdlgen.backends.motionview.rows import Attachment, Pair, SystemView
+from mdlgen.backends.motionview.rows import Attachment, Pair, SystemView, Value
 from mdlgen.backends.motionview.units import number
 from mdlgen.backends.motionview.views import given_values, scene_view
+from mdlgen.model.parameters import OF_USER
 from mdlgen.model.rim_facets import WHOLE, Meeting, meetings
 from mdlgen.model.rim_facets import graphics as roller_graphics
 from mdlgen.model.tables import BOX_BOX, Ints, Model
@@ -29,6 +32,7 @@ def system_view(model: Model, set_contact: bool) -> SystemView:
     of_sheets = np.flatnonzero(~table.of_machine).tolist()
     scene = replace(
         scene_view(model, set_contact),
+        parameters=_used(model, given, of_sheets),
         rollers=[],
         planes=[],
         guides=[],
@@ -43,6 +47,21 @@ def system_view(model: Model, set_contact: bool) -> SystemView:
         attachments=attachments(model),
         scene=scene,
     )
+
+
+def _used(model: Model, given: dict[str, list[Value]], contacts: Sequence[int]) -> list[Value]:
+    """The user's parameters that something of the sheets follows from."""
+    machine = {p.name for p in (*model.rollers, *model.planes, *model.guides, *model.meshes)} | {"run"}
+    written = {f"contact_{int(model.contacts.entry[row])}" for row in contacts}
+    of_sheets = (
+        p.formula
+        for p in model.parameters
+        if p.formula
+        and p.data_set not in machine | {OF_USER}
+        and (p.data_set in written or not p.data_set.startswith("contact_"))
+    )
+    used = used_by(model, of_sheets)
+    return [value for value in given.get(OF_USER, []) if value.member in used]
 
 
 def attachments(model: Model) -> list[Attachment]:

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+
+from mdlgen.units import parse_unit, same
 
 
 def number(value: float) -> str:
@@ -15,31 +18,31 @@ def _fifteen(value: float) -> float:
     return float(f"{value:.15g}")
 
 
-def mdl_value(value: float, unit: str) -> float:
-    """`value` in the unit that MotionView has for the internal `unit`.
+def factor(dimension: Sequence[float]) -> float:
+    """What a value of a dimension in internal units (mm, g, ms, rad) is multiplied by in a formula, where the
+    units are mm, N, s, rad and so N s^2/mm for a mass."""
+    return 1e-6 ** dimension[1] * 1e-3 ** dimension[2]
 
-    Raises KeyError for a unit that no Parameter has.
-    """
-    return {
-        "mm": lambda: value,
-        "N": lambda: value,
-        "1": lambda: value,
-        "MPa": lambda: value,
-        "N/mm": lambda: value,
-        "N*mm": lambda: value,
-        "N*mm/rad": lambda: value,
-        "N/mm^1.5": lambda: value,
-        "g": lambda: _fifteen(value / 1000),
-        "g/mm^3": lambda: _fifteen(value / 1000),
-        "g*mm^2": lambda: _fifteen(value / 1000),
-        "N*mm*ms/rad": lambda: _fifteen(value / 1000),
-        "ms": lambda: _fifteen(value / 1000),
-        "1/ms": lambda: _fifteen(value * 1000),
-        "mm/ms": lambda: _fifteen(value * 1000),
-        "rad/ms": lambda: _fifteen(value * 1000),
-        "mm/ms^2": lambda: _fifteen(value * 1e6),
-        "rad": lambda: _fifteen(math.degrees(value)),
-    }[unit]()
+
+def in_kg(dimension: Sequence[float]) -> bool:
+    """Whether a text has what is of this dimension by kg: masses, densities, inertias."""
+    return dimension[1] == 1.0 and dimension[2] == 0.0
+
+
+def in_degrees(dimension: Sequence[float]) -> bool:
+    """Whether a text has what is of this dimension in degrees."""
+    return same(dimension, (0.0, 0.0, 0.0, 1.0))
+
+
+def mdl_value(value: float, unit: str) -> float:
+    """`value` in the unit that MotionView has for the internal `unit`."""
+    dimension = parse_unit(unit).dimension
+    if in_degrees(dimension):
+        return _fifteen(math.degrees(value))
+    scale = 1e-3 if in_kg(dimension) else factor(dimension)
+    if abs(scale - 1.0) < 1e-9:
+        return value
+    return _fifteen(value / round(1 / scale) if scale < 1.0 else value * round(scale))
 
 
 # What a label names as the unit where the label has none yet.

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
+from mdlgen.backends.motionview.formula import mdl_formula, units_of
 from mdlgen.backends.motionview.idle import idle_values
 from mdlgen.backends.motionview.machine import (
     contact_views,
@@ -16,6 +17,7 @@ from mdlgen.backends.motionview.machine import (
 from mdlgen.backends.motionview.rows import SceneView, Value
 from mdlgen.backends.motionview.sheets import probe_view, sheet_view, support_views
 from mdlgen.backends.motionview.units import mdl_value, number, with_unit
+from mdlgen.model.parameters import OF_USER
 from mdlgen.model.tables import Model, Parameter
 
 
@@ -24,6 +26,7 @@ def scene_view(model: Model, set_contact: bool) -> SceneView:
     given = given_values(model, set_contact, model.pairs.contact.tolist())
     return SceneView(
         name=model.name,
+        parameters=given.get(OF_USER, []),
         static=model.run.analysis == "static",
         run=given["run"],
         sheets=[sheet_view(model, k, given) for k in range(len(model.sheets))],
@@ -42,15 +45,17 @@ def scene_view(model: Model, set_contact: bool) -> SceneView:
 def given_values(model: Model, set_contact: bool, kept: Sequence[int]) -> dict[str, list[Value]]:
     """Members by data set, in the order of the parameters; `kept` as in `idle_values`."""
     idle = idle_values(model, set_contact, kept)
+    units = units_of(model)
     tables: dict[str, list[Value]] = {}
     for p in model.parameters:
-        tables.setdefault(p.data_set, []).append(_value(p, idle.get((p.data_set, p.member))))
+        tables.setdefault(p.data_set, []).append(_value(p, idle.get((p.data_set, p.member)), units))
     return tables
 
 
-def _value(parameter: Parameter, idle: str | None) -> Value:
+def _value(parameter: Parameter, idle: str | None, units: Mapping[str, str]) -> Value:
     label = with_unit(parameter.label, parameter.unit)
     text = number(mdl_value(parameter.value, parameter.unit))
+    formula = mdl_formula(parameter.formula, parameter.unit, units) if parameter.formula else ""
     if idle:
-        return Value(parameter.member, f"{label}; {idle}", text, "NO_EDIT")
-    return Value(parameter.member, label, text, "EDIT")
+        return Value(parameter.member, f"{label}; {idle}", text, "NO_EDIT", formula)
+    return Value(parameter.member, label, text, "EDIT", formula)

@@ -15,7 +15,9 @@ from mdlgen.spec.action import OnSheet
 from mdlgen.spec.scene import Scene
 
 
-def anchor(name: str, item: OnSheet, sheets: tuple[SheetPart, ...]) -> Anchor:
+def anchor(
+    name: str, item: OnSheet, sheets: tuple[SheetPart, ...], formulas: tuple[str, str] = ("", "")
+) -> Anchor:
     """The material point of a probe or support, or the middle of an edge."""
     index = next(k for k, s in enumerate(sheets) if s.name == item.sheet)
     sheet = sheets[index]
@@ -30,6 +32,7 @@ def anchor(name: str, item: OnSheet, sheets: tuple[SheetPart, ...]) -> Anchor:
         node=grid.nearest_node(sheet, at),
         at=at,
         edge=item.edge,
+        formulas=formulas,
     )
 
 

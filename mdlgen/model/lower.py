@@ -21,7 +21,7 @@ from mdlgen.model.machine import lower_planes, lower_rollers
 from mdlgen.model.meshes import loaded, lower_meshes
 from mdlgen.model.meshes import placed as mesh_placed
 from mdlgen.model.pairs import find_pairs
-from mdlgen.model.parameters import parameters
+from mdlgen.model.parameters import parameters, unfollowed
 from mdlgen.model.rotations import matrices
 from mdlgen.model.shape import bend, box_rotations, joint_creases, joint_frames, joint_turns, placed
 from mdlgen.model.stiffness import between, coefficients, derived, extent
@@ -91,7 +91,10 @@ def _lower(scene: Scene) -> Model:
     externals = lower_externals(scene)
     gravity = np.array(scene.gravity)
     bodies = _bodies(sheets, boxes, rollers, planes, guides, meshes)
-    supports = tuple(anchor(f"support_{k}", item, sheets) for k, item in enumerate(scene.supports))
+    supports = tuple(
+        anchor(f"support_{k}", item, sheets, _formulas(scene, "supports", k))
+        for k, item in enumerate(scene.supports)
+    )
     held = support_bushings(scene.supports, supports, sheets, bodies)
     joints, extents = _joints(scene, sheets, boxes)
     bushings = joined([*joints, *held])
@@ -101,6 +104,7 @@ def _lower(scene: Scene) -> Model:
     naming.check_unique("bushings", bushings.name)
     pressed = (*rollers, *planes)
     starts = {part.name: (part.press.touch, part.press.start) for part in pressed if part.press is not None}
+    rows = parameters(scene, starts, run)
     return Model(
         name=scene.name,
         gravity=gravity,
@@ -127,12 +131,22 @@ def _lower(scene: Scene) -> Model:
         ),
         external_pairs=external_pairs(sheets, externals, contacts),
         loads=lower_loads(scene, sheets),
-        probes=tuple(anchor(name, scene.probes[name], sheets) for name in sorted(scene.probes)),
+        probes=tuple(
+            anchor(name, scene.probes[name], sheets, _formulas(scene, "probes", name))
+            for name in sorted(scene.probes)
+        ),
         supports=supports,
         tension=find_tension(scene, sheets),
-        parameters=parameters(scene, starts, run),
+        parameters=rows,
         run=run,
+        unfollowed=unfollowed(scene, rows),
     )
+
+
+def _formulas(scene: Scene, kind: str, key: str | int) -> tuple[str, str]:
+    """Those of the place of a probe or support."""
+    x, y = (scene.formulas.get((kind, key, "at", axis), "") for axis in range(2))
+    return x, y
 
 
 def _run(scene: Scene) -> RunSettings:

@@ -2,19 +2,115 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+from mdlgen.formulas import Dimension, is_formula
 from mdlgen.model.meshes import LIGHT
 from mdlgen.model.tables import Parameter, RunSettings
 from mdlgen.spec.machine import Press
 from mdlgen.spec.material import Damping
 from mdlgen.spec.scene import Scene
+from mdlgen.units import parse_unit, same, unit_of
 
 _NAMED_AXES = ("x", "y", "z")
+OF_USER = "parameters"  # data set of those that the user named
+# Members of a contact -> what they are of its friction.
+FRICTION = {"mu_s": "static", "mu_d": "dynamic", "v_s": "stiction_velocity", "v_d": "friction_velocity"}
+# Internal units as parameters have them.
+_UNITS = (
+    *("mm", "N", "1", "MPa", "N/mm", "N*mm", "N*mm/rad", "N/mm^1.5", "g", "g/mm^3", "g*mm^2"),
+    *("N*mm*ms/rad", "ms", "1/ms", "mm/ms", "rad/ms", "mm/ms^2", "rad"),
+)
+
+
+def unit(dimension: Dimension) -> str:
+    """The internal unit of a dimension."""
+    for known in _UNITS:
+        if same(parse_unit(known).dimension, dimension):
+            return known
+    named = zip(("mm", "g", "ms", "rad"), dimension, strict=True)
+    return "*".join(f"{name}^{power!r}" for name, power in named if power)
+
+
+def in_text(dimension: Dimension) -> str:
+    """The unit in which a text shows a dimension, in the letters that a label may have."""
+    shown = unit_of(dimension)
+    if shown in ("no unit", "g", "rad"):
+        shown = {"no unit": "", "g": "kg", "rad": "deg"}[shown]
+    elif shown.startswith("g"):
+        shown = f"k{shown}"
+    return shown.replace("*", " ").replace("^1.5", " to the 1.5").replace("^", "")
 
 
 def parameters(
     scene: Scene, starts: dict[str, tuple[float, float]], run: RunSettings
 ) -> tuple[Parameter, ...]:
     """All parameters of a scene; `starts` gives (touch, start) of each pressed roller and plate [mm]."""
+    rows = _given(scene, starts, run)
+    if not scene.formulas and not scene.parameters:
+        return tuple(rows)
+    return (*_own(scene), *(_with_formula(scene, row) for row in rows))
+
+
+def unfollowed(scene: Scene, rows: tuple[Parameter, ...]) -> tuple[tuple[str, str], ...]:
+    """Formulas of values that no row has, and that so are numbers in a text: where they stand, and texts.
+
+    Gravity, loads and frictions are not among them: a script sets them, or a text is refused.
+    """
+    had = {row.path for row in rows} | {_source(scene, row)[0] for row in rows if row.formula}
+    return tuple(
+        (".".join(map(str, path)), formula)
+        for path, formula in sorted(scene.formulas.items(), key=lambda item: str(item[0]))
+        if path not in had and path[0] not in ("gravity", "loads") and path[2:3] != ("at",)
+    )
+
+
+def _own(scene: Scene) -> list[Parameter]:
+    """The parameters that the user named."""
+    rows = []
+    for name, amount in scene.amounts.items():
+        given = scene.parameters[name]
+        formula = given if isinstance(given, str) and is_formula(given, scene.parameters) else ""
+        shown = in_text(amount.dimension)
+        label = f"Parameter {name}" + (f" ({shown})" if shown else "")
+        rows.append(
+            Parameter(OF_USER, name, label, amount.value, unit(amount.dimension), (OF_USER, name), formula)
+        )
+    return rows
+
+
+def _with_formula(scene: Scene, row: Parameter) -> Parameter:
+    """A row with its formula: that of its value, or of the one that it follows from where it is left out."""
+    formula = scene.formulas.get(row.path or (), "")
+    if not formula:
+        source, template = _source(scene, row)
+        followed = scene.formulas.get(source, "")
+        formula = template.format(followed) if followed else ""
+    return replace(row, formula=formula)
+
+
+def _source(scene: Scene, row: Parameter) -> tuple[tuple[str | int, ...], str]:
+    """Where the value stands that a row follows from, and how."""
+    path = row.path or ()
+    if row.data_set.startswith("contact_") and row.member in FRICTION:
+        index = int(row.data_set.removeprefix("contact_"))
+        base, friction = ("contacts", index), scene.contacts[index].friction
+        own, smooth = ((*base, "friction", FRICTION[member]) for member in (row.member, "v_s"))
+        if row.member in ("mu_s", "mu_d") or getattr(friction, FRICTION[row.member]) is not None:
+            return own, "{}"
+        slow = smooth if friction.stiction_velocity is not None else (*base, "smoothing")
+        return slow, "{}" if row.member == "v_s" or friction.static == friction.dynamic else "1.5*({})"
+    if path[-2:] == ("press", "carrier_mass") and path[:1] == ("rollers",):
+        return (*path[:2], "mass"), "({})/1000"
+    if path[-2:] == ("damping", "ratio_ty"):
+        return (*path[:-1], "ratio"), "{}"
+    if path == ("run", "print_step"):
+        return ("run", "duration"), "({})/200"
+    return (), "{}"
+
+
+def _given(scene: Scene, starts: dict[str, tuple[float, float]], run: RunSettings) -> list[Parameter]:
+    """All parameters but those that the user named, as numbers."""
     rows: list[Parameter] = []
     for name in sorted(scene.sheets):
         rows += _sheet(scene, name)
@@ -54,7 +150,7 @@ def parameters(
             rows.append(Parameter(group, member, label, value, unit, (*base, path) if path else None))
     rows.append(Parameter("run", "end", "End time", run.duration, "ms", ("run", "duration")))
     rows.append(Parameter("run", "print", "Print interval", run.print_step, "ms", ("run", "print_step")))
-    return tuple(rows)
+    return rows
 
 
 def _center(name: str, center: tuple[float, ...], base: tuple[str, str]) -> list[Parameter]:

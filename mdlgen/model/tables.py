@@ -516,6 +516,7 @@ class Anchor(Frozen):
     node: Ints  # nearest grid node as in Bushings.node; for the text
     at: tuple[float, float]  # sheet axes, from the centre [mm]
     edge: str | None
+    formulas: tuple[str, str] = ("", "")  # of `at`, as of a Parameter
 
 
 @dataclass(frozen=True)
@@ -547,6 +548,7 @@ class Parameter:
     value: float  # internal units
     unit: str  # internal unit, as the user may write it
     path: tuple[str | int, ...] | None  # where it stands in the spec; None: computed
+    formula: str = ""  # over the parameters of the scene, as the user wrote it; "": a number
 
 
 @dataclass(frozen=True)
@@ -585,6 +587,7 @@ class Model(Frozen):
     tension: Tension | None
     parameters: tuple[Parameter, ...]
     run: RunSettings
+    unfollowed: tuple[tuple[str, str], ...] = ()  # formulas of what is no Parameter: places, texts
 
     def __repr__(self) -> str:
         kinds = ("sheets", "rollers", "planes", "guides", "bushings", "contacts")

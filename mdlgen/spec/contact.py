@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, model_validator
 
 from mdlgen.spec.fields import Name, SpeedScale, Strict, default, fail, of_percent, quantity, ratio
+from mdlgen.spec.parameter import is_formula
 
 Coefficient = Annotated[float, ratio(0.0, 1e3)]
 Share = Annotated[float, ratio(0.0, 1.0)]
@@ -34,6 +35,8 @@ class Friction(Strict):
     @classmethod
     def _number(cls, value: Any) -> Any:
         value = of_percent(value)
+        if isinstance(value, str) and is_formula(value):
+            return {"static": value, "dynamic": value}
         if isinstance(value, (int, float)) and not isinstance(value, bool):
             return {"static": value, "dynamic": value}
         if not isinstance(value, (dict, Friction)):

@@ -7,10 +7,18 @@ import re
 from collections.abc import Callable
 from typing import Annotated, Any
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, GetCoreSchemaHandler, WithJsonSchema
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    GetCoreSchemaHandler,
+    WithJsonSchema,
+    WrapValidator,
+)
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
-from mdlgen.units import parse_quantity, parse_unit
+from mdlgen.spec.parameter import Computed, Unknown, amount, computed
+from mdlgen.units import check_unit, format_quantity, parse_quantity, parse_unit
 
 # What a quantity may be in the unit of its field, but for 0: products of some of them are still numbers.
 SMALLEST, LARGEST = 1e-20, 1e20
@@ -69,24 +77,22 @@ class quantity:
         self.unit, self.low, self.high, self.open_low, self.slip = unit, low, high, open_low, slip
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_before_validator_function(self.read, handler(source))
+        return core_schema.no_info_wrap_validator_function(_keeping(self.read), handler(source))
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: Any) -> dict[str, Any]:
         limits = f"; {self.allowed()}" if self.low is not None else ""
         return {
             "type": "string",
-            "description": f"number with a unit such as {self.unit}{limits}",
+            "description": f"number with a unit such as {self.unit}, or a formula{limits}",
             "examples": [f"1 {self.unit}"],
         }
 
     def read(self, text: Any) -> float:
-        """The value in internal units; raises the error that names the unit or range expected."""
-        if isinstance(text, Default):
-            return float(text)
-        try:
-            value = parse_quantity(text, self.unit)
-        except ValueError as error:
-            raise fail(str(error)) from None
+        """The value in internal units, a Computed where it is a formula; raises the error that names the unit
+        or range expected."""
+        if isinstance(text, (Default, Computed)):
+            return text
+        value = _told_of(lambda: of_text(text, self.unit))
         size = abs(value) / parse_unit(self.unit).factor
         if value != 0.0 and not SMALLEST <= size <= LARGEST:
             raise fail(
@@ -150,15 +156,15 @@ class ratio:
         self.low, self.high = low, high
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_before_validator_function(self.read, handler(source))
+        return core_schema.no_info_wrap_validator_function(_keeping(self.read), handler(source))
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: Any) -> dict[str, Any]:
         number = {"type": "number", "minimum": self.low, "maximum": self.high}
-        return {"anyOf": [number, {"type": "string", "pattern": _PERCENT.pattern, "examples": ["50 %"]}]}
+        return {"anyOf": [number, _PERCENT_OR_FORMULA]}
 
     def read(self, value: Any) -> float:
-        """The plain number; raises the error that names the range."""
-        number = of_percent(value)
+        """The plain number, a Computed where it is a formula; raises the error that names the range."""
+        number = of_percent(_told_of(lambda: of_formula(value, "1")))
         allowed = f"allowed: {self.low:g} to {self.high:g}, as {(self.low + min(self.high, 1.0)) / 2:g}"
         if not _is_number(number):
             comma = isinstance(value, str) and re.fullmatch(r"[0-9]+,[0-9]+( *%)?", value)
@@ -166,10 +172,53 @@ class ratio:
             raise fail(f"{value!r} is not a number or a percentage; {meant}{allowed}"[:200])
         if not self.low <= number <= self.high:
             raise fail(f"{value} is outside what is {allowed}"[:200])
-        return float(number)
+        return number if isinstance(number, Computed) else float(number)
+
+
+def _keeping(read: Callable[[Any], Any]) -> Callable[[Any, Callable[[Any], Any]], Any]:
+    """A validator that lets a Computed pass as it is: pydantic makes a plain number of it."""
+
+    def validate(value: Any, inner: Callable[[Any], Any]) -> Any:
+        found = read(value)
+        checked = inner(found)
+        if isinstance(found, tuple):
+            return tuple(f if isinstance(f, Computed) else c for f, c in zip(found, checked, strict=True))
+        return found if isinstance(found, Computed) else checked
+
+    return validate
+
+
+def of_formula(value: Any, unit: str) -> Any:
+    """A Computed of a text that is a formula of the dimension of `unit`; anything else as it is.
+
+    Raises ValueError.
+    """
+    found = amount(value)
+    if found is None:
+        return value
+    check_unit(value, found.dimension, unit)
+    return computed(found.value, value)
+
+
+def of_text(text: Any, unit: str) -> float:
+    """The value of a text in internal units, a Computed where it is a formula. Raises ValueError."""
+    found = of_formula(text, unit)
+    return found if isinstance(found, Computed) else parse_quantity(found, unit)
+
+
+def _told_of(read: Callable[[], Any]) -> Any:
+    """What is read, with its mistakes as errors for pydantic."""
+    try:
+        return read()
+    except Unknown as error:
+        raise PydanticCustomError("unknown", "{text}", {"text": str(error)}) from None
+    except ValueError as error:
+        raise fail(str(error)) from None
 
 
 _PERCENT = re.compile(r"^[-+]?(?:[0-9]{1,18}(?:\.[0-9]{0,18})?|\.[0-9]{1,18}) *%$")
+
+_PERCENT_OR_FORMULA = {"type": "string", "description": "a percentage or a formula", "examples": ["50 %"]}
 
 
 def of_percent(value: Any) -> Any:
@@ -185,9 +234,24 @@ def reading(text: Any, unit: str, otherwise: float) -> float:
     if isinstance(text, Default):
         return float(text)
     try:
-        return parse_quantity(text, unit) or otherwise
+        return of_text(text, unit) or otherwise
     except ValueError:
         return otherwise
+
+
+def combined(value: float, template: str, *parts: tuple[Any, str]) -> float:
+    """A value that follows from others, for a field that `quantity` marks: a formula where one of its parts
+    is one. Each part is what was given, and its unit; {0}, {1} stand for them in `template`."""
+    if any(isinstance(part, Computed) or amount(part) is not None for part, _ in parts):
+        texts = [_as_text(part, unit) for part, unit in parts]
+        return computed(value, template.format(*(f"({text})" for text in texts)))
+    return following(value)
+
+
+def _as_text(part: Any, unit: str) -> str:
+    if isinstance(part, Computed):
+        return part.formula
+    return format_quantity(part, unit) if isinstance(part, float) else str(part)
 
 
 def following(value: float) -> Default:
@@ -207,20 +271,20 @@ def one_of(*names: str) -> Callable[[dict[str, Any]], None]:
     return change
 
 
-def numbers(low: float, high: float) -> tuple[BeforeValidator, WithJsonSchema]:
+def numbers(low: float, high: float) -> tuple[WrapValidator, WithJsonSchema]:
     """One plain number, or a list of two, MD and CD, from `low` to `high`."""
 
     def read(value: Any) -> float:
-        value = of_percent(value)
+        value = of_percent(_told_of(lambda: of_formula(value, "1")))
         if not _is_number(value):
             raise fail(f"{value!r} is not a number; allowed are {low:g} to {high:g}"[:200])
         if not low <= value <= high:
             raise fail(f"{value:g} is outside what is allowed: {low:g} to {high:g}")
-        return float(value)
+        return value if isinstance(value, Computed) else float(value)
 
-    percent = {"type": "string", "pattern": _PERCENT.pattern}
-    one = {"anyOf": [{"type": "number", "minimum": low, "maximum": high}, percent]}
-    return BeforeValidator(lambda value: _each(read, value, f"{(low + high) / 2:g}")), WithJsonSchema(
+    one = {"anyOf": [{"type": "number", "minimum": low, "maximum": high}, _PERCENT_OR_FORMULA]}
+    example = f"{(low + high) / 2:g}"
+    return WrapValidator(_keeping(lambda value: _each(read, value, example))), WithJsonSchema(
         {"anyOf": [*one["anyOf"], {"type": "array", "minItems": 2, "maxItems": 2, "items": one}]}
     )
 

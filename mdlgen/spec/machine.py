@@ -19,9 +19,9 @@ from mdlgen.spec.fields import (
     Strict,
     TimeOrZero,
     Torsion,
+    combined,
     default,
     fail,
-    following,
     one_of,
     quantity,
     reading,
@@ -182,7 +182,9 @@ class Roller(Strict):
             return value
         if value.get("radius") is not None:
             raise fail("radius and diameter are both given; give one of them", within=("diameter",))
-        return {**value, "radius": following(reading(value["diameter"], "mm", 1.0) / 2)}
+        diameter = value["diameter"]
+        half = combined(reading(diameter, "mm", 1.0) / 2, "{0}/2", (diameter, "mm"))
+        return {**value, "radius": half}
 
     @model_validator(mode="after")
     def _plain(self) -> Roller:

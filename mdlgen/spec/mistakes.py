@@ -19,7 +19,7 @@ from mdlgen.spec.shorthand import in_the_text
 MOST = 20
 # Tables of parts by name: what --set makes anew here is more often a name that is misspelt.
 _MOST_LOOKS = 1000  # at names beside other mistakes
-_TABLES = ("materials", "sheets", "rollers", "planes", "guides", "meshes", "parts", "probes")
+_TABLES = ("parameters", "materials", "sheets", "rollers", "planes", "guides", "meshes", "parts", "probes")
 _NAMED = ("contacts", *_TABLES)
 
 
@@ -39,6 +39,8 @@ class Mistakes:
     def take(self, error: ValidationError) -> None:
         """All that validation found."""
         errors = [e for told in error.errors(include_url=False) for e in _each(told)]
+        # a formula over a parameter that has a mistake: the mistake is told where it is
+        errors = [e for e in errors if e["type"] != "unknown"] or errors
         misspelt = {e["loc"][:-1] for e in errors if e["type"] == "extra_forbidden"}
         unmade: dict[SpecPath, list[str]] = {}
         for told in errors:
@@ -111,7 +113,7 @@ def _dangling(data: Any) -> list[PydanticCustomError]:
     """Names in plain data of materials, sheets and parts that there are not; other mistakes aside."""
     tables = {name: data[name] for name in _TABLES if isinstance(data.get(name), dict)}
     sheets, materials = tables.get("sheets", {}), tables.get("materials", {})
-    parts = [name for kind in _TABLES[1:-1] for name in tables.get(kind, {})]
+    parts = [name for kind in _TABLES[2:-1] for name in tables.get(kind, {})]
     looks: list[Callable[[], object]] = []
     for name, sheet in sheets.items():
         if isinstance(word := _at(sheet, ("material",)), str):

@@ -10,10 +10,18 @@ from functools import partial
 from itertools import product
 from typing import Any
 
-from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
+from pydantic import (
+    Field,
+    ModelWrapValidatorHandler,
+    PrivateAttr,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
 from pydantic_core import PydanticCustomError
 
 from mdlgen.errors import did_you_mean
+from mdlgen.formulas import Amount
 from mdlgen.spec.action import Load, OnSheet, Probe, Support
 from mdlgen.spec.contact import Contact
 from mdlgen.spec.fields import Acceleration, Name, Strict, default, fail, fail_all
@@ -22,6 +30,18 @@ from mdlgen.spec.limits import DEFAULT, Limits
 from mdlgen.spec.machine import Plane, Roller
 from mdlgen.spec.material import Material
 from mdlgen.spec.mesh import Mesh
+from mdlgen.spec.parameter import (
+    MOST as MOST_PARAMETERS,
+)
+from mdlgen.spec.parameter import (
+    NO_PARAMETERS,
+    Parameters,
+    ParameterValue,
+    current,
+    formulas_of,
+    of_scene,
+    without_formulas,
+)
 from mdlgen.spec.part import Part
 from mdlgen.spec.run import Run
 from mdlgen.spec.sheet import Sheet
@@ -48,6 +68,10 @@ class Scene(Strict):
     gravity: Acceleration = Field(
         default=(default("0 m/s^2"), default("0 m/s^2"), default("-9.81 m/s^2")),
         description="acceleration of gravity, global axes",
+    )
+    parameters: dict[Name, ParameterValue] = Field(
+        default_factory=dict,
+        description="named values; every quantity may be a formula over them, as -radius - gap/2",
     )
     materials: dict[Name, Material] = Field(
         default_factory=dict, description="sheet materials by name; a sheet names one of them"
@@ -82,6 +106,18 @@ class Scene(Strict):
         default=(), strict=False, description="points of sheets that are held"
     )
     _limits: Limits = PrivateAttr(default=DEFAULT)
+    _amounts: dict[str, Amount] = PrivateAttr(default_factory=dict)
+    _formulas: dict[tuple[str | int, ...], str] = PrivateAttr(default_factory=dict)
+
+    @property
+    def amounts(self) -> dict[str, Amount]:
+        """What each parameter comes to."""
+        return self._amounts
+
+    @property
+    def formulas(self) -> dict[tuple[str | int, ...], str]:
+        """The values that are formulas: where each stands, and its text."""
+        return self._formulas
 
     @property
     def limits(self) -> Limits:
@@ -93,10 +129,18 @@ class Scene(Strict):
         told = ", ".join(f"{len(getattr(self, kind))} {kind}" for kind in kinds if getattr(self, kind))
         return f"<Scene {self.name}: {told}>"
 
-    @model_validator(mode="before")
+    @model_validator(mode="wrap")
     @classmethod
-    def _written_out(cls, value: Any, info: ValidationInfo) -> Any:
-        return written_out(value, (info.context or {}).get("origins", {}))
+    def _with_parameters(cls, value: Any, handler: ModelWrapValidatorHandler[Scene], info: ValidationInfo):
+        """The scene of what is written out, whose formulas are over its parameters."""
+        if not isinstance(value, dict):
+            return handler(value)
+        given = value.get("parameters")
+        parameters = Parameters(given) if isinstance(given, dict) else NO_PARAMETERS
+        with of_scene(parameters):
+            scene = handler(written_out(value, (info.context or {}).get("origins", {})))
+        scene._amounts = parameters.amounts
+        return scene
 
     @model_validator(mode="after")
     def _references(self, info: ValidationInfo) -> Scene:
@@ -113,6 +157,9 @@ class Scene(Strict):
         if errors or wrong:
             raise fail_all([*errors, *wrong])
         with_rates(self, pairs)
+        self._formulas = dict(formulas_of(self))
+        for name in type(self).model_fields if self._formulas else ():
+            vars(self)[name] = without_formulas(getattr(self, name))
         return self
 
     def _checks(self) -> Iterator[Callable[[], None]]:
@@ -153,6 +200,24 @@ class Scene(Strict):
                 f"roller {name}: one_way acts by speed, and a static analysis has none; leave it out",
                 ("rollers", name, "one_way"),
             )
+
+    @field_validator("parameters", mode="wrap")
+    @classmethod
+    def _evaluated(cls, value: Any, handler: Callable[[Any], Any]) -> Any:
+        """Names of the form that parts have too, and for each what is wrong with its value."""
+        found = handler(value)
+        parameters = current()
+        if len(found) > MOST_PARAMETERS:
+            raise fail(f"{len(found)} parameters; allowed are {MOST_PARAMETERS}")
+        lower: dict[str, str] = {}
+        wrong = [fail(told, ("parameters", name)) for name, told in parameters.own.items()]
+        for name in found:
+            if lower.setdefault(name.lower(), name) != name:
+                told = f"the name {name!r} is used twice (also {lower[name.lower()]})"
+                wrong.append(fail(told, ("parameters", name)))
+        if wrong:
+            raise fail_all(wrong)
+        return found
 
     def _count(self) -> None:
         boxes = sum(sheet.boxes[0] * sheet.boxes[1] for sheet in self.sheets.values())

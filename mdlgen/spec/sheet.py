@@ -19,9 +19,9 @@ from mdlgen.spec.fields import (
     Spin,
     Strict,
     Velocity,
+    combined,
     default,
     fail,
-    following,
     one_of,
     origin,
     quantity,
@@ -106,13 +106,14 @@ class Sheet(Strict):
             raise fail(f"{' and '.join(given)} are given; give one of them", within=(given[1],))
         if given in ([], ["mass"]):
             return value
-        size, area = value.get("size"), 1.0
-        for side in size if isinstance(size, (list, tuple)) else ():
-            area *= reading(side, "mm", 1.0)
-        if given == ["grammage"]:
-            return {**value, "mass": following(reading(value["grammage"], "g/m^2", 1.0) * area)}
-        volume = area * reading(value.get("thickness"), "mm", 1.0)
-        return {**value, "mass": following(reading(value["density"], "kg/m^3", 1.0) * volume)}
+        size = value.get("size")
+        parts = [(side, "mm") for side in (size if isinstance(size, (list, tuple)) else ())]
+        if given == ["density"]:
+            parts.append((value.get("thickness"), "mm"))
+        parts.append((value[given[0]], {"grammage": "g/m^2", "density": "kg/m^3"}[given[0]]))
+        mass = math.prod(reading(part, unit, 1.0) for part, unit in parts)
+        product = "*".join(f"{{{k}}}" for k in range(len(parts)))
+        return {**value, "mass": combined(mass, product, *parts)}
 
     @model_validator(mode="after")
     def _plain(self) -> Sheet:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from mdlgen.spec.fields import fail
+from mdlgen.spec.fields import combined, fail
 from mdlgen.spec.sheet import Sheet
 
 if TYPE_CHECKING:
@@ -26,7 +26,13 @@ def with_rates(scene: Scene, pairs: Iterable[tuple[int, str, str]]) -> None:
         drive = roller.drive
         if drive is None or drive.surface_speed is None:
             continue
-        rate = _sense(scene, name, pairs) * drive.surface_speed / roller.radius
+        sense = _sense(scene, name, pairs)
+        rate = combined(
+            sense * drive.surface_speed / roller.radius,
+            "-{0}/{1}" if sense < 0.0 else "{0}/{1}",
+            (drive.surface_speed, "mm/s"),
+            (roller.radius, "mm"),
+        )
         plain = drive.model_copy(update={"speed": rate, "surface_speed": None, "direction": None})
         scene.rollers[name] = roller.model_copy(update={"drive": plain})
 

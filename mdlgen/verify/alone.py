@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+from mdlgen.formulas import names
+from mdlgen.model.parameters import OF_USER
 from mdlgen.model.rim_facets import WHOLE, graphics, meetings
 from mdlgen.model.tables import Model
 from mdlgen.verify.tables import ANY, Table
@@ -19,9 +21,9 @@ def definition(model: Model) -> str:
 
 def of_sheets(said: dict[str, Table], model: Model, own_machine: bool) -> dict[str, Table]:
     """What must be said of the sheets; with `own_machine` the parts they touch may have any name."""
-    machine = _machine(model)
+    machine, unused = _machine(model), _unused(model)
     kept = {
-        kind: table.only(lambda name: name.partition(".")[0] not in machine)
+        kind: table.only(lambda name: name.partition(".")[0] not in machine and name not in unused)
         for kind, table in said.items()
         if kind not in MACHINE_KINDS
     }
@@ -55,6 +57,21 @@ def _machine(model: Model) -> set[str]:
     of_sheets = {int(table.entry[r]) for r in range(len(table)) if not table.of_machine[r]}
     names |= {f"ds_contact_{e}" for e in set(table.entry.tolist()) - of_sheets}
     return names
+
+
+def _unused(model: Model) -> set[str]:
+    """The user's parameters that nothing of the sheets follows from."""
+    own = {p.member: p.formula for p in model.parameters if p.data_set == OF_USER}
+    machine = _machine(model)
+    texts = [p.formula for p in model.parameters if f"ds_{p.data_set}" not in machine | {f"ds_{OF_USER}"}]
+    texts += [text for anchor in (*model.probes, *model.supports) for text in anchor.formulas]
+    used: set[str] = set()
+    while texts:
+        text = texts.pop()
+        fresh = set(names(text)) - used if text else set()
+        used |= fresh
+        texts += [own[name] for name in fresh]
+    return {f"ds_{OF_USER}.real_{name}" for name in own if name not in used}
 
 
 def _any_machine(table: Table, model: Model) -> tuple[tuple[str, ...], ...]:

@@ -10,6 +10,7 @@ from mdlgen.model.curves import written
 from mdlgen.model.guides import outer
 from mdlgen.model.rim_facets import DEEP, Side, graphics, meetings
 from mdlgen.model.tables import Anchor, GuidePart, MeshPart, Model, RollerPart, SheetPart
+from mdlgen.units import parse_unit
 from mdlgen.verify.bend import shape
 from mdlgen.verify.cells import cells, damping_times
 from mdlgen.verify.expected import KG, SECOND, body_name
@@ -39,11 +40,20 @@ FACTORS = {
 }
 
 
+def factor(unit: str) -> float:
+    """From the Model's unit to that of the text, for units that only a user's parameters have, too."""
+    if unit in FACTORS:
+        return FACTORS[unit]
+    _, mass, time, _ = parse_unit(unit).dimension
+    # the text has what weighs by kg; with a time, a mass is a force N by s^2/mm
+    return (KG if (mass, time) == (1.0, 0.0) else 1e-6**mass) * SECOND**time
+
+
 def data(model: Model) -> Table:
     """All numbers of all data sets: those that the user gave, and those that follow from them."""
     found: dict[str, float] = {}
     for p in model.parameters:
-        found[f"ds_{p.data_set}.real_{p.member}"] = p.value * FACTORS[p.unit]
+        found[f"ds_{p.data_set}.real_{p.member}"] = p.value * factor(p.unit)
     for index, sheet in enumerate(model.sheets):
         for member, value in _derived(model, index).items():
             # a value that the user gave stands there already

@@ -16,23 +16,25 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel
 
+from mdlgen.formulas import Amount
 from mdlgen.model import grid
 from mdlgen.model.lower import lower
+from mdlgen.model.parameters import FRICTION, OF_USER
 from mdlgen.model.stiffness import SUPPORT_FACTOR
 from mdlgen.model.supports import joined, support_bushings
 from mdlgen.model.tables import SUPPORT, Anchor, Bushings, Model, Parameter, Press, RollerPart
 from mdlgen.spec.grading import Graded, Grading
+from mdlgen.spec.parameter import Parameters
 from mdlgen.spec.rim import TURN
 from mdlgen.spec.scene import Scene
 from mdlgen.spec.sheet import Sheet
-from mdlgen.verify.expected_numbers import FACTORS
+from mdlgen.verify.expected_numbers import FACTORS, factor
 
 STEP = 1.0625  # a value is turned to this many times itself, exactly
 # A stiffness is turned far: k_z and k_tz follow the larger of two, and must follow the other one too.
 FAR: dict[str, float] = {"MPa": 17.0, "N*mm": 17.0, "N*mm/rad": 17.0}
 # and 0 to this, in internal units
 FROM_ZERO = {"mm": 0.5, "rad": 0.125, "rad/ms": 0.03125, "mm/ms": 0.25, "N": 0.5, "ms": 0.25, "1": 0.0625}
-_FRICTION = {"mu_s": "static", "mu_d": "dynamic", "v_s": "stiction_velocity", "v_d": "friction_velocity"}
 
 _BEGINS = ("touch", "start")  # of what is pressed, computed for the scene as it is written
 
@@ -59,7 +61,9 @@ def knobs(scene: Scene, model: Model) -> Iterator[Knob]:
             value = _wider(scene, p)
         where = f"ds_{p.data_set}.real_{p.member}"
         path = _path(p, sheets)
-        if path is not None:
+        if p.data_set == OF_USER:
+            yield Knob(where, value * factor(p.unit), _moved(base, model, p.member, value))
+        elif path is not None:
             yield Knob(where, value * FACTORS[p.unit], _turned(base, path, value, model))
         elif p.member in _BEGINS:
             yield Knob(where, value * FACTORS[p.unit], _begun(model, p.data_set, p.member, value))
@@ -76,6 +80,31 @@ def knobs(scene: Scene, model: Model) -> Iterator[Knob]:
     for item in model.supports:
         stiffer = SUPPORT_FACTOR * STEP
         yield Knob(f"ds_{item.name}.real_factor", stiffer, _stiffer(model, item.name))
+
+
+def _moved(scene: Scene, base: Model, name: str, value: float) -> Callable[[], Model]:
+    """A parameter that the user named: all that a text has formulas for follows."""
+
+    def model() -> Model:
+        own = Amount(value, scene.amounts[name].dimension)
+        parameters = Parameters({**scene.parameters, name: own})
+        sheets, changed = {s.name for s in base.sheets}, scene.model_copy()
+        changed._amounts = parameters.amounts
+        for p in base.parameters:
+            path = _path(p, sheets)
+            if p.formula and p.data_set != OF_USER and path is not None:
+                changed = _with(changed, path, parameters.evaluated(p.formula).value)
+        for kind, anchors in (("probes", base.probes), ("supports", base.supports)):
+            for k, item in enumerate(anchors):
+                for axis, text in enumerate(item.formulas):
+                    if text:
+                        path = (kind, item.name if kind == "probes" else k, "at", axis)
+                        changed = _with(changed, path, parameters.evaluated(text).value)
+        for sheet in sheets:
+            changed = _along(changed, scene, sheet)
+        return as_written(changed, base)
+
+    return model
 
 
 def _later(scene: Scene, time: Parameter) -> float:
@@ -157,9 +186,9 @@ def _given_lengths(sheet: Sheet) -> Grading | None:
 def _path(parameter: Parameter, sheets: set[str]) -> Path | None:
     """Where a parameter stands in the pinned scene."""
     path = parameter.path
-    if path is None and parameter.member in _FRICTION:
+    if path is None and parameter.member in FRICTION:
         index = int(parameter.data_set.removeprefix("contact_"))
-        return ("contacts", index, "friction", _FRICTION[parameter.member])
+        return ("contacts", index, "friction", FRICTION[parameter.member])
     if path is not None and path[0] == "materials":
         assert parameter.data_set in sheets
         return ("materials", parameter.data_set, *path[2:])

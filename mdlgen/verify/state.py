@@ -7,7 +7,6 @@ make of the material point that the Model has for the probe.
 
 from __future__ import annotations
 
-import ast
 import hashlib
 import math
 from collections.abc import Callable, Mapping
@@ -15,6 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from mdlgen.expressions import Function, Grammar, read
 from mdlgen.model.tables import Floats
 
 _MOST = 100_000  # characters of an expression
@@ -84,8 +84,6 @@ def request(text: str, markers: Places) -> float:
     """Value of an output's expression in the made-up state. Raises Unreadable."""
 
     def measure(name: str, names: list[str]) -> float:
-        if not 1 <= len(names) <= 3:
-            raise Unreadable(f"{name} takes one to three markers")
         i, j, axes = (markers[n] for n in (*names, *["Global_Frame"] * (3 - len(names))))
         one, other = motion(i.body), motion(j.body)
         vector = {
@@ -107,51 +105,33 @@ def law(text: str, time: float) -> float:
     return _value(text, {"time": time, "pi": math.pi}, none)
 
 
-_MEASURES = {f"{kind}{axis}" for kind in "DVW" for axis in "XYZ"}
-_FUNCTIONS: dict[str, Callable[..., Any]] = {
-    "max": max,
-    "min": min,
-    "abs": abs,
-    "sqrt": math.sqrt,
-    "sin": math.sin,
-    "cos": math.cos,
-}
-_OPERATORS: dict[type, Callable[[float, float], float]] = {
-    ast.Add: lambda a, b: a + b,
-    ast.Sub: lambda a, b: a - b,
-    ast.Mult: lambda a, b: a * b,
-    ast.Div: lambda a, b: a / b,
-    ast.Pow: lambda a, b: a**b,
+_MEASURES = tuple(f"{kind}{axis}" for kind in "DVW" for axis in "XYZ")
+_FUNCTIONS = {
+    "max": Function(max, 1, math.inf),
+    "min": Function(min, 1, math.inf),
+    "abs": Function(abs),
+    "sqrt": Function(math.sqrt),
+    "sin": Function(math.sin),
+    "cos": Function(math.cos),
 }
 
 
 def _value(text: str, names: Mapping[str, float], measure: Callable[[str, list[str]], float]) -> float:
     """The expression language of the solver is, for what is written here, that of Python."""
-    if len(text) > _MOST:
-        raise Unreadable(f"an expression of {len(text)} characters")
+
+    def named(name: str) -> float:
+        if name.lower() not in names:
+            raise Unreadable(f"{name[:80]} is not known in a solver expression")
+        return names[name.lower()]
+
+    def measured(name: str) -> Callable[..., float]:
+        return lambda *markers: measure(name, list(markers))
+
+    measures = {name.lower(): Function(measured(name), 1, 3, "names") for name in _MEASURES}
+    grammar = Grammar(_FUNCTIONS | measures, "", folded=True, characters=_MOST, depth=100)
     try:
-        value = _node(ast.parse(text.strip(), mode="eval").body, names, measure)
-    except (SyntaxError, ValueError, RecursionError, MemoryError, ArithmeticError, TypeError) as error:
-        raise Unreadable(f"{text[:80]} has no value ({error})") from None
-    if not isinstance(value, float | int) or not math.isfinite(value):
-        raise Unreadable(f"{text[:80]} has no finite value")
-    return float(value)
-
-
-def _node(node: ast.expr, names: Mapping[str, float], measure: Callable[[str, list[str]], float]) -> float:
-    if isinstance(node, ast.Constant) and isinstance(node.value, int | float):
-        return float(node.value)
-    if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub | ast.UAdd):
-        value = _node(node.operand, names, measure)
-        return -value if isinstance(node.op, ast.USub) else value
-    if isinstance(node, ast.BinOp) and type(node.op) in _OPERATORS:
-        return _OPERATORS[type(node.op)](_node(node.left, names, measure), _node(node.right, names, measure))
-    if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and not node.keywords:
-        name = node.func.id
-        if name.upper() in _MEASURES:
-            return measure(name.upper(), [ast.unparse(argument) for argument in node.args])
-        if name.lower() in _FUNCTIONS:
-            return float(_FUNCTIONS[name.lower()](*(_node(a, names, measure) for a in node.args)))
-    if isinstance(node, ast.Name) and node.id.lower() in names:
-        return names[node.id.lower()]
-    raise Unreadable(f"{ast.unparse(node)[:80]} is not known in a solver expression")
+        value = read(text, grammar).value(named)
+    except ValueError as error:
+        raise Unreadable(f"{text[:80]} has no value ({error})"[:300]) from None
+    assert value is not None, "each name has a value"
+    return value
