@@ -17,6 +17,7 @@ LARGE = ("run", "lint", "mdl", "deck", "verify")
 def main() -> None:
     """Entry point: an interrupt while the command line itself is loaded ends as one later does."""
     gc.set_threshold(MANY)
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # else it looks into each installed package
     try:
         from mdlgen.cli import main as run
 

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import math
+import weakref
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -228,11 +231,24 @@ def test_supports_are_no_joints() -> None:
     assert len(model.bushings) > 2 * len(sheet_joints(model)) == 14
 
 
+def test_joints_are_worked_out_once_for_each_model_and_go_with_it() -> None:
+    model = small_model()
+    joints = sheet_joints(model)
+    assert sheet_joints(model) is joints
+    assert sheet_joints(replace(model)) is not joints
+    left = weakref.ref(joints)
+    del model, joints
+    gc.collect()
+    assert left() is None
+
+
+@pytest.mark.parametrize("kept", [0, 10_000])
 @pytest.mark.parametrize("chunk", [1, 3, 10_000])
 def test_peaks_have_sign_and_time_however_they_are_sought(
-    chunk: int, monkeypatch: pytest.MonkeyPatch
+    chunk: int, kept: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(strain, "_CHUNK", chunk)
+    monkeypatch.setattr(strain, "_KEPT", kept)
     model = strip("sheets.strip.boxes=[3,1]", "run.analysis=transient", "run.duration=10 ms")
     result = moving(model, times=11, speed=0.0)
     result.position[:, 2, 0] += 0.2 * np.array([0, 1, 2, 3, 4, 3, 2, 1, 0, -3, 0])

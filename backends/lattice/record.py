@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from importlib import metadata
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +12,7 @@ from mdlgen.model.rotations import euler_parameters
 from mdlgen.model.tables import Model
 from mdlgen.results import audit
 from mdlgen.results.result import ContactStatistics, Energy, Result
+from mdlgen.version import of
 
 STORED = {"x": 3, "r": 9, "u": 3, "w": 3}
 TOGETHER = 20_000  # bodies, times states, whose rotations are looked at together
@@ -176,4 +176,4 @@ def _without_jumps(parameters: np.ndarray) -> np.ndarray:
 
 
 def _versions() -> dict[str, str]:
-    return {name: metadata.version(name) for name in ("numba", "llvmlite")}
+    return {name: of(name) for name in ("numba", "llvmlite")}

@@ -2,27 +2,59 @@
 
 from __future__ import annotations
 
-from mdlgen.cli import bench as bench
-from mdlgen.cli import cache as cache
-from mdlgen.cli import calibrate as calibrate
-from mdlgen.cli import optimize as optimize
-from mdlgen.cli import report as report
-from mdlgen.cli import run as run
-from mdlgen.cli import scene as scene
-from mdlgen.cli import sweep as sweep
-from mdlgen.cli import texts as texts
-from mdlgen.cli.shell import app
+import copy
+import sys
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import typer
+
+    app: typer.Typer
 
 __all__ = ["app", "main"]
 
-# as one comes by them
-ORDER = (
-    *("new", "check", "mdl", "deck", "verify", "lint", "run", "report", "view", "export"),
-    *("sweep", "optimize", "calibrate", "bench", "explain", "schema", "cache"),
-)
-app.registered_commands.sort(key=lambda command: ORDER.index(getattr(command.callback, "__name__", "")))
+# Commands as one comes by them, and the module of each.
+COMMANDS = {
+    "new": "scene",
+    "check": "scene",
+    "mdl": "texts",
+    "deck": "texts",
+    "verify": "texts",
+    "lint": "texts",
+    "run": "run",
+    "report": "report",
+    "view": "report",
+    "export": "report",
+    "sweep": "sweep",
+    "optimize": "optimize",
+    "calibrate": "calibrate",
+    "bench": "bench",
+    "explain": "scene",
+    "schema": "scene",
+    "cache": "cache",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name == "app":  # with all commands
+        return _app(list(COMMANDS))
+    raise AttributeError(f"module 'mdlgen.cli' has no attribute {name!r}")
+
+
+def _app(names: list[str]) -> typer.Typer:
+    """The command line with some of its commands: to make all of them ready takes longer than most do."""
+    from mdlgen.cli.shell import app
+
+    for room in {COMMANDS[name] for name in names}:
+        import_module(f"mdlgen.cli.{room}")
+    made = copy.copy(app)
+    there = {getattr(command.callback, "__name__", ""): command for command in app.registered_commands}
+    made.registered_commands = [there[name] for name in names]
+    return made
 
 
 def main() -> None:
     """Entry point of the command `mdlgen`."""
-    app()
+    wanted = sys.argv[1] if len(sys.argv) > 1 else ""
+    _app([wanted] if wanted in COMMANDS else list(COMMANDS))()

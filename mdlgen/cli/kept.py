@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -48,14 +49,20 @@ def task(spec: Path, sets: list[str] | None, limits: list[str] | None, solver: s
 def kept(folder: Path, of: Task, model: Model, every: float) -> Keep:
     """Keeps a run of lattice in `folder`, beside its results, every so many seconds."""
     from mdlgen.results.keep import Keep
-    from mdlgen.results.seal import digest, surroundings
-
-    code = surroundings(*ROOMS)
+    from mdlgen.results.seal import digest
 
     def seal() -> dict[str, str]:
-        return {SEAL: json.dumps({"task": asdict(of), "model": digest(model), **code}, indent=1)}
+        return {SEAL: json.dumps({"task": asdict(of), "model": digest(model), **code()}, indent=1)}
 
     return Keep(folder / FOLDER, every, seal)
+
+
+@functools.cache
+def code() -> dict[str, str]:
+    """What bits follow from in this process: to be asked for before its files can have changed."""
+    from mdlgen.results.seal import surroundings
+
+    return surroundings(*ROOMS)
 
 
 def is_kept(folder: Path) -> bool:
@@ -87,9 +94,9 @@ def again(folder: Path) -> tuple[Task, dict[str, Any]]:
 
 def compare(folder: Path, seal: dict[str, Any], model: Model) -> None:
     """Raises RefusedError by name where a run would not go on to the same bits."""
-    from mdlgen.results.seal import digest, surroundings
+    from mdlgen.results.seal import digest
 
-    now = {"model": digest(model), **surroundings(*ROOMS)}
+    now = {"model": digest(model), **code()}
     words = {"model": "a file that the scene names", "code": "the solver's code"}
     for name, value in now.items():
         if seal.get(name) != value:

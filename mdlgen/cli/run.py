@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import sys
+import time
 from pathlib import Path
 from threading import Thread
 from typing import TYPE_CHECKING, Annotated
@@ -30,7 +32,14 @@ from mdlgen.cli.shell import (
 from mdlgen.errors import AccuracyError
 
 if TYPE_CHECKING:
+    from mdlgen.model.tables import Model
     from mdlgen.results.keep import Keep
+
+# Compiled code comes back for a moment some thousand times a second: how long it waits for what another
+# thread does in Python [s]. By default that is 5 ms each time.
+INTERVAL = 2e-4
+# A run that goes on after so long [s] may be kept, and its code change meanwhile.
+LONG = 1.0
 
 
 @app.command()
@@ -90,8 +99,8 @@ def run(
         assert spec is not None
         task, seal = kept.task(spec, sets, limits, solver, check_step), None
         model = task.model()
-    from mdlgen.report.page import load_page, page
-    from mdlgen.report.pictures import are_drawn, load_drawing, pictures_of
+    from mdlgen.report.page import page
+    from mdlgen.report.pictures import are_drawn, pictures_of
     from mdlgen.report.text import summary_text
     from mdlgen.results.keep import Keep
     from mdlgen.results.store import check_folder, save
@@ -113,9 +122,7 @@ def run(
     else:
         keep = Keep()
         keep.begun.set()
-    # what draws takes half a second to load: compiled code leaves a second core to it, not what comes before
-    for load in (load_drawing, load_page) if drawn else (load_page,):
-        Thread(target=lambda load=load: keep.begun.wait() and load(), daemon=True).start()
+    Thread(target=_ahead, args=(keep, model, drawn), daemon=True).start()
     if seal is None and kept.is_kept(folder) and not quiet:
         say(f"{folder} holds a run that was cut off; this one takes its place (--resume {folder} goes on)")
     # a solver may talk on standard output, which is kept for results
@@ -153,6 +160,27 @@ def run(
             f"above run.tolerance {model.run.tolerance:g}; the files in {folder} hold this result; "
             "give a smaller run.step"
         )
+
+
+def _ahead(keep: Keep, model: Model, drawn: bool) -> None:
+    """Does what is needed later on, once compiled code leaves a second core to it: what comes before does
+    not."""
+    from mdlgen.cli import kept
+    from mdlgen.report.page import prepare
+    from mdlgen.report.pictures import load_drawing
+
+    keep.begun.wait()
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(INTERVAL)
+    # what fails here fails again where it is needed, and is told there
+    with contextlib.suppress(Exception):
+        prepare(model)
+        if drawn:
+            load_drawing()
+    sys.setswitchinterval(before)
+    if keep.folder is not None:
+        time.sleep(LONG)
+        kept.code()
 
 
 def _save_part(keep: Keep, folder: Path) -> None:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mdlgen.checks import lints
+from mdlgen.model.once import Once
 from mdlgen.paths import templates
 from mdlgen.report import boxes
 from mdlgen.report.animation import animation, frames, packed
@@ -18,10 +19,12 @@ from mdlgen.report.curves import Panel, panels
 from mdlgen.report.differences import differences, percent, shown
 from mdlgen.report.maps import Map, maps
 from mdlgen.results.result import Result
-from mdlgen.results.strain import histories
+from mdlgen.results.strain import histories, sheet_joints
 
 if TYPE_CHECKING:
     from jinja2 import Environment
+
+    from mdlgen.model.tables import Model
 
 _LIBRARY = ("three.core.min.js", "three.module.min.js")
 _STEPS = 18  # of colour in a map: .c0 to .c18 in style.css
@@ -56,11 +59,17 @@ def page(results: Sequence[Result], names: Sequence[str] = ()) -> str:
     )
 
 
-def load_page() -> None:
-    """Loads what the page and the files beside it are made with, ahead of the first ones."""
+def prepare(model: Model) -> None:
+    """Loads what the page and the files beside it are made with, and works out what does not wait for the
+    run."""
     import h5py  # noqa: F401
 
     environment().get_template("page.html.j2")
+    sheet_joints(model)
+    _lints(model)
+
+
+_lints = Once(lints)
 
 
 @lru_cache(maxsize=1)
@@ -101,7 +110,7 @@ def _run(result: Result, name: str) -> dict[str, Any]:
         "parameters": [asdict(parameter) for parameter in result.model.parameters],
         "source": result.source,
         "maps": [_map(found) for found in maps(result)],
-        "lints": [asdict(lint) for lint in lints(result.model)],
+        "lints": [asdict(lint) for lint in _lints(result.model)],
         "drawn": {
             "name": name,
             "scene": summary["scene"],

@@ -150,6 +150,13 @@ class Result:
         return strains(self, limits(self.model.curves))
 
     @cached_property
+    def borne(self) -> Floats | None:
+        """What all joints bear at all stored times, as `results.strain.all_borne` has it, and kept."""
+        from mdlgen.results.strain import all_borne
+
+        return all_borne(self)
+
+    @cached_property
     def events(self) -> list[dict[str, Any]]:
         """What happened to the sheets, by time; worked out when first asked for, and kept."""
         from mdlgen.results.events import events

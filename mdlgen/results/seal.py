@@ -6,14 +6,14 @@ import hashlib
 import platform
 from collections.abc import Callable
 from dataclasses import fields, is_dataclass
-from importlib import import_module, metadata
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from mdlgen.program.kernel import alone
-from mdlgen.version import version
+from mdlgen.version import of, version
 
 
 def digest(value: Any) -> str:
@@ -64,8 +64,8 @@ def surroundings(*rooms: str) -> dict[str, str]:
         "code": code.hexdigest(),
         "python": platform.python_version(),
         "numpy": np.__version__,
-        "numba": metadata.version("numba"),
-        "llvmlite": metadata.version("llvmlite"),
+        "numba": of("numba"),
+        "llvmlite": of("llvmlite"),
         "compiled": "by numba" if alone() else "where the program does not fit",
         "processor": f"{platform.machine()} {llvm.get_host_cpu_name()}",
     }

@@ -42,6 +42,6 @@ def csv(result: Result) -> str:
     """`series` as text; numbers as Python writes them, so that they read back exactly."""
     table = series(result)
     lines = [",".join(table)]
-    for row in zip(*table.values(), strict=True):
-        lines.append(",".join(repr(float(value)) for value in row))
+    for row in np.stack(list(table.values()), axis=1, dtype=float).tolist():
+        lines.append(",".join(map(repr, row)))
     return "\n".join(lines) + "\n"

@@ -81,12 +81,9 @@ def hdf5(result: Result) -> bytes:
     complete(result)
     stream = io.BytesIO()
     with h5py.File(stream, "w") as file:
-
-        def put(name: str, data: Any) -> None:
-            file.create_dataset(name, data=data, track_times=False)
-
+        put = tree.Writer(file).put
         for name in STATES:
-            put(name, np.ascontiguousarray(getattr(result, name)))
+            put(name, getattr(result, name))
         for name in STATISTICS:
             put(f"statistics/{name}", np.asarray(getattr(result.statistics, name), dtype=float))
         for name, data in _joints(result).items():

@@ -7,16 +7,20 @@ corners together. It stands for the material between the two box centres (betwee
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from mdlgen.model.grid import local
+from mdlgen.model.once import Once
 from mdlgen.model.rotations import euler_parameters, matrices
 from mdlgen.model.tables import CLAMP, GROUND, JOINT_X, SUPPORT, Floats, Frozen, Ints, Model
 from mdlgen.results.result import Result
 
 # States of joints worked on at a time: the arrays of so many stay in the cache.
 _CHUNK = 10_000
+# Numbers of a run that are kept: peaks, differences and curves are all of the same ones.
+_KEPT = 4_000_000
 # Peaks in the order that `_measure` gives them in.
 _KINDS = ("stretch", "squeeze", "curvature", "twist")
 
@@ -79,6 +83,7 @@ class Strains:
         return 1.0 - np.maximum(self.stretch.value, -self.squeeze.value) / self.limit
 
 
+@Once
 def sheet_joints(model: Model) -> SheetJoints:
     """The joints of a Model's sheets."""
     bushings = model.bushings
@@ -106,7 +111,10 @@ def sheet_joints(model: Model) -> SheetJoints:
     halves = [model.bodies.half[end, axis] for end in ends]
     length = np.where(a == GROUND, halves[0], halves[0] + halves[1])
     nodes = (bushings.node[first] + bushings.node[last]) / 2
-    at = np.array([local(model.sheets[k], x, y)[:2] for k, (x, y) in zip(sheet, nodes, strict=True)])
+    at = np.zeros((len(nodes), 2))
+    for k, one in enumerate(model.sheets):
+        mine = sheet == k
+        at[mine] = local(one, *nodes[mine].T)[:, :2]
     return SheetJoints(
         name=tuple(_name(bushings.name[i], i != j) for i, j in zip(first, last, strict=True)),
         bushing=first,
@@ -120,7 +128,7 @@ def sheet_joints(model: Model) -> SheetJoints:
         origin=origin,
         axes=axes,
         rest=bushings.rest[first],
-        at=at.reshape(-1, 2),
+        at=at,
     )
 
 
@@ -159,8 +167,7 @@ def _peaks(result: Result, fixed: _Fixed, axis: int) -> tuple[Floats, Ints]:
     columns = np.arange(count)
     for start in range(0, len(result.time), frames):
         part = slice(start, start + frames)
-        side_a, side_b = _states(result, part, fixed.a), _states(result, part, fixed.b)
-        measured = _measure(side_a, side_b, fixed, axis)
+        measured = _borne(result, part, fixed, axis)
         sizes = (measured[0], -measured[1], np.abs(measured[2]), np.abs(measured[3]))
         for k, (values, size) in enumerate(zip(measured, sizes, strict=True)):
             row = size.argmax(axis=0)
@@ -187,8 +194,7 @@ def histories(result: Result, at: Ints) -> tuple[SheetJoints, Floats, Floats] | 
         frames = max(1, _CHUNK // len(along))
         for start in range(0, len(at), frames):
             part = at[start : start + frames]
-            sides = _states(result, part, fixed.a), _states(result, part, fixed.b)
-            measured = _measure(*sides, fixed, axis)
+            measured = _borne(result, part, fixed, axis)
             stretch[start : start + frames, along] = measured[0]
             bend[start : start + frames, along] = measured[2]
     return joints, stretch, bend
@@ -210,33 +216,60 @@ def apart(one: Result, other: Result, at: Ints, there: Ints) -> tuple[SheetJoint
                 states = zip(
                     (one, other), (at[part : part + frames], there[part : part + frames]), strict=True
                 )
-                measured = [
-                    _measure(_states(run, now, fixed.a), _states(run, now, fixed.b), fixed, axis)
-                    for run, now in states
-                ]
+                measured = [_borne(run, now, fixed, axis) for run, now in states]
                 for k, (a, b) in enumerate(zip(*measured, strict=True)):
                     found[k, mine] = np.maximum(found[k, mine], np.abs(a - b).max(axis=0))
     return joints, found
+
+
+def all_borne(result: Result) -> Floats | None:
+    """Strain of the more and of the less stretched bushing, curvature and twist [1/mm] of all joints at all
+    stored states, (4, t, joints); None where that is much."""
+    joints = sheet_joints(result.model)
+    if len(_KINDS) * len(result.time) * len(joints) > _KEPT:
+        return None
+    found = np.empty((len(_KINDS), len(result.time), len(joints)))
+    for axis in (0, 1):
+        along = np.flatnonzero(joints.axis == axis)
+        fixed, frames = _Fixed(result.model, joints, along), max(1, _CHUNK // max(len(along), 1))
+        for start in range(0, len(result.time), frames):
+            part = slice(start, start + frames)
+            found[:, part, along] = _measure(result, part, fixed, axis)
+    return found
+
+
+def _borne(result: Result, part: slice | Ints, fixed: _Fixed, axis: int) -> tuple[Floats, ...]:
+    """As `all_borne`, of some joints along `axis` at some states."""
+    known = result.borne
+    if known is None:
+        return _measure(result, part, fixed, axis)
+    return tuple(known[:, part].take(fixed.mine, axis=2))
 
 
 class _Fixed:
     """What does not change over a run, of some joints; quaternions and vectors component by component."""
 
     def __init__(self, model: Model, joints: SheetJoints, mine: Ints):
-        # the last row stands for the ground
-        turned = np.concatenate([model.bodies.rotation, np.eye(3)[None]])
-        placed = np.concatenate([model.bodies.position, np.zeros((1, 3))])
+        self.mine = mine
         self.a, self.b = joints.a[mine], joints.b[mine]
         self.way, self.length, self.spread = joints.way[mine], joints.length[mine], joints.spread[mine]
-        axes, origin = joints.axes[mine], joints.origin[mine]
+        self._model, self._joints = model, joints
+
+    @cached_property
+    def sides(self) -> list[tuple[Quaternion, Quaternion]]:
+        """Bushing axes as seen from a and from b, and the arm to the middle as seen along these axes."""
+        # the last row stands for the ground
+        turned = np.concatenate([self._model.bodies.rotation, np.eye(3)[None]])
+        placed = np.concatenate([self._model.bodies.position, np.zeros((1, 3))])
+        axes, origin = self._joints.axes[self.mine], self._joints.origin[self.mine]
         # without stress the frame on b has turned onto the one on a
-        sides = (axes, axes @ matrices(-joints.rest[mine]))
-        # bushing axes as seen from each body, and the arm to the middle as seen along these axes
-        self.frames, self.arms = [], []
-        for body, own in zip((self.a, self.b), sides, strict=True):
-            seen = np.einsum("nki,nkj->nij", turned[body], own)
-            self.frames.append(tuple(euler_parameters(seen).T))
-            self.arms.append(tuple(np.einsum("nki,nk->in", axes, origin - placed[body])))
+        own = (axes, axes @ matrices(-self._joints.rest[self.mine]))
+        found = []
+        for body, frame in zip((self.a, self.b), own, strict=True):
+            seen = np.einsum("nki,nkj->nij", turned[body], frame)
+            arm = np.einsum("nki,nk->in", axes, origin - placed[body])
+            found.append((tuple(euler_parameters(seen).T), tuple(arm)))
+        return found
 
 
 def _states(result: Result, part: slice | Ints, bodies: Ints) -> tuple[Floats, Floats]:
@@ -251,15 +284,14 @@ def _states(result: Result, part: slice | Ints, bodies: Ints) -> tuple[Floats, F
     return position, rotation
 
 
-def _measure(
-    side_a: tuple[Floats, Floats], side_b: tuple[Floats, Floats], fixed: _Fixed, axis: int
-) -> tuple[Floats, ...]:
-    """Strain of the more and of the less stretched bushing, curvature and twist, (t, joints) each.
+def _measure(result: Result, part: slice | Ints, fixed: _Fixed, axis: int) -> tuple[Floats, ...]:
+    """As `_borne`, (t, joints) each.
 
     As in `mechanics.bushing`: the gap is measured along the frame halfway between the two bodies.
     """
-    frame_a = _product(tuple(side_a[1]), fixed.frames[0])
-    frame_b = _product(tuple(side_b[1]), fixed.frames[1])
+    side_a, side_b = _states(result, part, fixed.a), _states(result, part, fixed.b)
+    (own_a, arm_a), (own_b, arm_b) = fixed.sides
+    frame_a, frame_b = _product(tuple(side_a[1]), own_a), _product(tuple(side_b[1]), own_b)
     w, x, y, z = _product((frame_a[0], -frame_a[1], -frame_a[2], -frame_a[3]), frame_b)
     # of q and -q, which are the same rotation, the one of less than half a turn
     flip = np.where(w < 0.0, -1.0, 1.0)
@@ -275,8 +307,8 @@ def _measure(
     apart = sum(m * g for m, g in zip(_column(middle, axis), gap, strict=True)) / sum(q * q for q in middle)
     back = (half[0], -half[1], -half[2], -half[3])
     # row k of a rotation is column k of its inverse
-    apart = apart + sum(h * r for h, r in zip(_column(back, axis), fixed.arms[1], strict=True))
-    apart = apart - sum(h * r for h, r in zip(_column(half, axis), fixed.arms[0], strict=True))
+    apart = apart + sum(h * r for h, r in zip(_column(back, axis), arm_b, strict=True))
+    apart = apart - sum(h * r for h, r in zip(_column(half, axis), arm_a, strict=True))
     # the two corners are apart by more and by less, where the joint turns in the plane (bushing_pair)
     corner = 2.0 * np.abs(z) / norm * fixed.spread
     stretch = apart * fixed.way

@@ -84,6 +84,8 @@ def _side(
     across = corners @ end.along
     beside = (depth.max(axis=0) > 0.0) & (depth.min(axis=0) < thick)
     beside &= (across.min(axis=0) < end.length) & (across.max(axis=0) > -end.length)
+    if not (beside & faces & (inside <= 0.0)).any():  # none comes from outside
+        return
     arm = half[:, p, None] * way
     rate = result.velocity[:, boxes] + np.cross(result.spin[:, boxes], arm) - result.velocity[:, body, None]
     speed = -(rate @ end.out)

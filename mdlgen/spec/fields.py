@@ -36,7 +36,7 @@ class Strict(BaseModel):
     """Extra keys forbidden, no coercion, finite numbers only, frozen after validation."""
 
     model_config = ConfigDict(
-        extra="forbid", strict=True, allow_inf_nan=False, frozen=True, validate_default=True
+        extra="forbid", strict=True, allow_inf_nan=False, frozen=True, validate_default=True, defer_build=True
     )
 
 
