@@ -13,16 +13,20 @@ from mdlgen.model import press
 from mdlgen.model.guides import depths
 from mdlgen.model.overlap import Overlaps
 from mdlgen.model.rolling import rolls
+from mdlgen.model.sheet_overlap import SheetOverlaps
+from mdlgen.model.sheet_pairs import linked
 from mdlgen.model.tables import (
     BOX_BOX,
     BOX_CYLINDER,
     BOX_GUIDE,
     BOX_MESH,
     BOX_PLANE,
+    CYLINDER_CYLINDER,
     EXTERNAL,
     SUPPORT,
     Floats,
     Model,
+    PlanePart,
     RollerPart,
     SheetPart,
 )
@@ -34,12 +38,19 @@ COARSE_SMOOTHING, FINE_SMOOTHING = 0.05, 1e-4  # of the surface speed
 # Of a sheet's thickness: half of it, and 1 % more, so that neither round-off of places is a
 # finding nor a depth that reads as half of the thickness.
 DEEP = 0.505
+BESIDE = 1.5  # boxes that carry a roller, over those that it stands on: their neighbours tilt with them
 FLAT = 0.1  # a roller is parallel to a sheet while |axis . normal| is below this
 
 
 def lints(model: Model) -> list[Lint]:
     """All findings, sorted by code and place."""
     found = {lint for check in CHECKS for lint in check(model)}
+    return sorted(found, key=lambda lint: (lint.code, lint.where, lint.message))
+
+
+def missing_contacts(model: Model) -> list[Lint]:
+    """Those of the findings that make a run end early, or its numbers wrong: contacts that are not there."""
+    found = {lint for check in MISSING for lint in check(model)}
     return sorted(found, key=lambda lint: (lint.code, lint.where, lint.message))
 
 
@@ -134,6 +145,54 @@ def _deep_nip(model: Model) -> Iterator[Lint]:
                 "the rollers meet through it",
                 "raise the stiffness or lower the preload",
             )
+
+
+def _deep_stack(model: Model) -> Iterator[Lint]:
+    """Sheets under a pressed roller that it pushes too far into each other, or into a plate, as a run begins:
+    there the roller is in balance with the sheet that it touches, and that sheet with nothing below it."""
+    sheets, planes = {s.name: s for s in model.sheets}, {p.name: p for p in model.planes}
+    groups, table = linked(list(sheets), model.contacts), model.contacts
+    nips = np.flatnonzero(table.kind == CYLINDER_CYLINDER).tolist()
+    nipped = {name for row in nips for name in (table.part_a[row], table.part_b[row])}
+    for _, touched, roller in _nips(model):
+        spring = roller.press
+        if spring is None or spring.preload <= 0.0:
+            continue
+        for row in np.flatnonzero(np.isin(table.kind, (BOX_BOX, BOX_PLANE))):
+            one, name = sheets[table.part_a[row]], table.part_b[row]
+            below = sheets.get(name)
+            on_plane = name in planes and roller.name not in nipped and _faces(planes[name], spring.direction)
+            if one.name not in groups[touched.name] or not (below or on_plane):
+                continue
+            both = [sheet for sheet in (one, below) if sheet is not None]
+            boxes = BESIDE * min(_boxes_under(sheet, roller) for sheet in both)
+            if boxes == 0:
+                continue
+            thin = min(both, key=lambda sheet: sheet.thickness)
+            # a constant force F on k z^1.5 is stopped where its work F z is 0.4 k z^2.5
+            wanted = 2.5 * spring.preload / (boxes * (0.5 * thin.thickness) ** 1.5)
+            stiffness = float(table.stiffness[row])
+            if stiffness < wanted:
+                depth = (2.5 * spring.preload / (boxes * stiffness)) ** (2 / 3)
+                yield Lint(
+                    "W122",
+                    f"contacts.{table.called(row)}.stiffness",
+                    f"as the run begins, the preload {spring.preload:g} N of {roller.name} pushes {one.name} "
+                    f"some {depth:.2g} mm into {name}, more than half of the thickness of {thin.name}",
+                    f"give a stiffness of {wanted:.3g} N/mm^1.5 or more, or less preload; a smaller run.step "
+                    "does not help",
+                )
+
+
+def _faces(plane: PlanePart, direction: Floats) -> bool:
+    """Whether what moves along a direction comes to the face of a plane."""
+    return float(plane.normal @ direction) < -1.0 + FLAT
+
+
+def _boxes_under(sheet: SheetPart, roller: RollerPart) -> float:
+    """How many boxes of a sheet, flat where it starts, a roller stands on."""
+    shares = press.covered_shares(sheet, roller.center, roller.axis, roller.width, False)
+    return sum(share for share, _ in shares)
 
 
 def _smoothing(model: Model) -> Iterator[Lint]:
@@ -463,6 +522,19 @@ def _unmet(model: Model) -> Iterator[Lint]:
         )
 
 
+def _on_each_other(model: Model) -> Iterator[Lint]:
+    """Sheets that lie on or in another sheet, a roller, a plane or a guide and have no contact with it."""
+    sheets, parts = SheetOverlaps(model).begin()
+    says = "it lies on {}, or in it, and has no contact with it: the two go through each other"
+    remedy = "add to contacts {{between: [{}, {}], stiffness: 300 N/mm^1.5, friction: 0.5}}"
+    for one, two in sheets:
+        message, what = says.format(f"sheet {two.name}"), remedy.format(one.name, two.name)
+        yield Lint("W120", f"sheets.{one.name}", message, what)
+    for sheet, part in parts:
+        message, what = says.format(model.called(part.body)), remedy.format(sheet.name, part.name)
+        yield Lint("W121", f"sheets.{sheet.name}", message, what)
+
+
 def _box_corners(model: Model, sheet: SheetPart) -> Floats:
     """All corners of all boxes as they begin [mm], (8 boxes, 3)."""
     boxes = slice(sheet.first, sheet.first + sheet.count)
@@ -472,6 +544,7 @@ def _box_corners(model: Model, sheet: SheetPart) -> Floats:
     return (model.bodies.position[boxes][:, None] + turned).reshape(-1, 3)
 
 
+MISSING: tuple[Callable[[Model], Iterator[Lint]], ...] = (_unfaced, _unmet, _on_each_other)
 CHECKS: tuple[Callable[[Model], Iterator[Lint]], ...] = (
     _modulus,
     _aspect,
@@ -479,13 +552,13 @@ CHECKS: tuple[Callable[[Model], Iterator[Lint]], ...] = (
     _idle_clamp,
     _facets,
     _deep_nip,
+    _deep_stack,
     _smoothing,
     _idle_rolling,
     _idle_roller,
     _idle_drive,
     _untouched,
-    _unfaced,
-    _unmet,
+    *MISSING,
     _free_static,
     _interference,
     _density,

@@ -89,6 +89,24 @@ SCENE = {
         "Give the two a contact. What overlaps from the start, as a roller that looks out of a hole in a "
         "plate, is not counted."
     ),
+    "W120": (
+        "At the start two sheets are nearer to each other than half of the thickness of the thinner one, or "
+        "one is in the other, and no contact names the two. Without a contact they do not feel each other. A "
+        "run ends, with both names, where they are in each other by more than half of that thickness."
+    ),
+    "W121": (
+        "At the start a sheet is nearer to a roller, a plane or a guide than three quarters of its "
+        "thickness, or in it, and no contact names the two. A run ends, with both names, where the middle of "
+        "a sheet comes 0.05 mm into such a part. A sheet that is in a part from the start is taken to pass "
+        "through a hole, and its run goes on. Meshes are not looked at."
+    ),
+    "W122": (
+        "A pressed roller begins in balance with the sheet that it touches. That sheet, and those below it, "
+        "begin where the scene puts them and sink into each other and into the plate as the run begins. A "
+        "constant force F on a contact F = k z^1.5 is stopped at the depth (2.5 F/(n k))^(2/3), 1.84 times "
+        "that at rest; n is 1.5 times the number of boxes under the roller. Where that depth is half of a "
+        "thickness the run ends. Give a stiffer contact or less preload; a finer step changes nothing."
+    ),
     "W125": (
         "Rolling resistance is a couple against the turning of a roller relative to what it rolls on. A "
         "contact of parts that are no rollers slides and does not roll; what resists there is friction."

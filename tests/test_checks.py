@@ -6,10 +6,11 @@ from pathlib import Path
 
 import pytest
 
+import mdlgen
 from mdlgen.checks import CHECKS, Lint, lints
 from mdlgen.model.lower import lower
 from mdlgen.paths import samples
-from mdlgen.spec.load import load
+from mdlgen.spec.load import load, loads
 
 SAMPLES = sorted(samples().rglob("*.yaml"))
 
@@ -134,3 +135,42 @@ def test_rigid_body_freedom_is_counted(supports: str, free: int) -> None:
     assert bool(messages) == (free > 0)
     if free:
         assert f"in {free} of 6 ways" in messages[0]
+
+
+STACK = """
+name: pressed
+materials: {{paper: {{E_md: 3530 MPa, E_cd: 1113 MPa, D_md: 0.4 N*mm, D_cd: 0.2 N*mm}}}}
+sheets:
+  top: {{material: paper, size: [60 mm, 40 mm], thickness: 0.1 mm, mass: 0.2 g, boxes: [6, 4],
+         center: [0 mm, 0 mm, 0.15 mm]}}
+  low: {{material: paper, size: [60 mm, 40 mm], thickness: 0.1 mm, mass: 0.2 g, boxes: [6, 4],
+         center: [0.2 mm, 0.3 mm, 0.05 mm]}}
+rollers:
+  pick: {{center: [4 mm, 0 mm, 8.3 mm], axis: y, radius: 8 mm, width: 16 mm, mass: 10 g,
+          press: {{direction: -z, stiffness: 0.3 N/mm, preload: 3 N}}}}
+planes:
+  table: {{center: [0 mm, 0 mm, -5 mm], normal: z, size: [200 mm, 200 mm, 10 mm], mass: 1 g}}
+contacts:
+  pulls: {{between: [top, pick], stiffness: 1000 N/mm^1.5, friction: 1}}
+  each: {{between: [top, low], stiffness: {each} N/mm^1.5, friction: 0.5}}
+  table: {{between: [low, table], stiffness: 2000 N/mm^1.5, friction: 0.5}}
+  stop: {{between: [pick, table], stiffness: 300 N/mm^1.5, friction: 0.5}}
+run: {{duration: 3 ms, print_step: 0.5 ms}}
+"""
+
+
+@pytest.mark.parametrize(("each", "deep"), [(60, True), (1000, False)])
+@pytest.mark.parametrize("step", ["0.05 ms", "0.002 ms"])
+def test_a_stack_that_a_roller_presses_together_too_deep(each: int, deep: bool, step: str) -> None:
+    """The roller stands on two boxes: 3 N are stopped by 60 N/mm^1.5 on these and on half as many beside
+    them at (2.5*3/(3*60))^(2/3) = 0.12 mm. The run ends so, whatever its step, and says so."""
+    model = lower(loads(STACK.format(each=each), overrides=[f"run.step={step}"]))
+    hits = [lint for lint in lints(model) if lint.code == "W122"]
+    assert [lint.where for lint in hits] == ["contacts.each.stiffness"] * deep
+    result = mdlgen.solve(model)
+    assert result.ok is not deep
+    if deep:
+        assert "some 0.12 mm into low" in hits[0].message
+        assert "224 N/mm^1.5 or more" in hits[0].remedy
+        assert "is more than half of its thickness into box low" in result.status
+        assert result.status.endswith("a stiffer contact would hold it, a smaller run.step would not")

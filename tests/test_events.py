@@ -168,8 +168,10 @@ def test_the_gap_between_two_sheets_is_told_where_the_second_enters() -> None:
 
 
 def test_two_sheets_in_one_nip_are_a_double_feed_and_two_beside_each_other_are_not() -> None:
-    over = f"sheets.b={{{SHEET}, center: [-20 mm, 0 mm, 0 mm]}}"
-    found = events(solved(NIP, "lattice", over, "run.duration=10 ms"))
+    over = (f"sheets.b={{{SHEET}, center: [-10 mm, 0 mm, 0.1 mm]}}", "rollers.idler.center.2=5.2 mm")
+    law = "stiffness: 300 N/mm^1.5, friction: 0.8, smoothing: 10 mm/s"
+    text = NIP.replace("run:", f"  - {{between: [a, b], {law}}}\nrun:")
+    found = events(solved(text, "lattice", *over, "run.duration=10 ms", "run.step=0.05 ms"))
     both = of(found, "double_feed")
     assert both and all({e["sheet"], e["other"]} == {"a", "b"} for e in both)
     assert min(e["time_ms"] for e in both) < 2.0 and max(e["duration_ms"] for e in both) > 5.0

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 from synthetic import SPEED, moving, small_model
 
 import mdlgen
@@ -17,10 +18,12 @@ from mdlgen import registry
 from mdlgen.errors import OutputError, SpecError
 from mdlgen.model.lower import lower
 from mdlgen.model.tables import Model
+from mdlgen.paths import samples
 from mdlgen.report.figures import figure
 from mdlgen.results import store
 from mdlgen.results.compare import compare, scale
 from mdlgen.results.result import Result
+from mdlgen.results.series import series
 from mdlgen.results.summary import summary
 from mdlgen.spec.load import loads
 
@@ -28,7 +31,7 @@ FILES = ["result.h5", "series.csv", "summary.json"]
 PROMISED = {
     "scene", "solver", "status", "t_end_ms", "steps", "step_ms", "wall_s", "compile_s", "build_s", "pairs",
     "error_estimate", "tolerance", "energy", "events", "sheets", "rollers", "guides", "meshes", "probes",
-    "versions", "error_estimate_of", "estimates", "estimate_scales",
+    "versions", "error_estimate_of", "estimates", "estimate_scales", "planes",
 }  # fmt: skip
 WORK = {"rounds", "estimate_s", "halved"}  # what a run and the estimate of its error took
 STRIP = """
@@ -175,12 +178,42 @@ class TestFiles:
         columns += [
             f"{r.name}.{c}" for r in result.model.rollers for c in ("z_mm", "omega_rad_per_s", "force_n")
         ]
+        columns += [f"{plane.name}.force_n" for plane in result.model.planes]
         assert list(rows[0]) == columns
         assert len(rows) == len(result.time)
         last = rows[-1]
         assert float(last["time_ms"]) == result.time[-1]
         assert float(last["note.x_mm"]) == pytest.approx(SPEED * result.time[-1], rel=1e-12)
         assert float(last["note.vx_mm_per_s"]) == pytest.approx(1400, rel=1e-12)
+
+    def test_forces_on_fixed_parts(self, result: Result) -> None:
+        """Planes that do not move have the sum of their contacts, at the end and over time."""
+        text = (samples() / "verify" / "slide.yaml").read_text("utf-8")
+        model = lower(loads(text))
+        ended = moving(model, speed=0.0)
+        force = ended.contact_force
+        force[:] = np.linspace(1.0, 2.0, len(force))[:, None]
+        (plane,) = model.planes
+        told = summary(ended)["planes"][plane.name]
+        assert told["nip_force_n"] == 2.0 * len(model.contacts)
+        assert "center_mm" not in told and told["contacts"]["block"]["max_force_n"] == 0.0
+        np.testing.assert_array_equal(series(ended)[f"{plane.name}.force_n"], force.sum(axis=1))
+
+    @pytest.mark.parametrize("yaw", [0.0, 0.2, -2.5])
+    @pytest.mark.parametrize("turn", [0.0, 1.0, math.pi / 2, 2.8])
+    @pytest.mark.parametrize("about", [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.6, 0.8, 0.0]])
+    def test_a_curve_that_a_sheet_goes_round_is_no_yaw(
+        self, yaw: float, turn: float, about: list[float]
+    ) -> None:
+        """A sheet at 10 deg turns by `yaw` in its plane, and is led round an axis of that plane."""
+        model = small_model("sheets.note.turn=10 deg")
+        ended, own = moving(model, times=5), Rotation.from_euler("z", 10, degrees=True)
+        parts = np.linspace(0.0, 1.0, 5)
+        for k, part in enumerate(parts):
+            round_it = Rotation.from_rotvec(part * turn * own.apply(about))
+            turned = round_it * Rotation.from_rotvec([0.0, 0.0, part * yaw]) * own
+            ended.rotation[k, : model.sheets[0].count] = turned.as_quat(scalar_first=True)
+        np.testing.assert_allclose(ended.sheet_motion(0)[2], parts * yaw + np.radians(10), atol=1e-12)
 
     def test_the_same_result_gives_the_same_bytes(self, result: Result) -> None:
         assert store.hdf5(result) == store.hdf5(result)

@@ -10,11 +10,10 @@ from mdlgen.backends.exudyn_local import kernels
 from mdlgen.backends.exudyn_local.shipped import begin, ledger, overstretched, passed, set_limits
 from mdlgen.backends.exudyn_local.system import MM, MS, PER_MM, System
 from mdlgen.model import curves
-from mdlgen.model.fold import Folds
 from mdlgen.model.meshes import carried
-from mdlgen.model.overlap import Overlaps
 from mdlgen.model.rotations import euler_parameters
 from mdlgen.model.tables import Model
+from mdlgen.model.unheld import Unheld
 from mdlgen.results import audit
 from mdlgen.results.result import ContactStatistics, Energy, Result
 
@@ -53,7 +52,7 @@ class Recorder:
         set_limits(system.bodies, system.pairs, self._deepest)
         # coordinates and velocities of the last step
         self._before: tuple[np.ndarray, np.ndarray] | None = None
-        self._overlaps, self._folds = Overlaps(model), Folds(model)
+        self._unheld = Unheld(model)
 
     def plan(self, h: float) -> None:
         """Which times are stored: the print times, at the first step that reaches them, and the end."""
@@ -78,7 +77,7 @@ class Recorder:
         if done < len(self._due) and t >= self._due[done]:
             self._store(t)
         if self.reason is None:
-            self._watch(t)
+            self._watch(t, step)
         if self.reason is None:
             self._between(q, v, t, step)
         if self.progress is not None and self.steps % 20 == 0:
@@ -94,7 +93,7 @@ class Recorder:
         """Observe and store one state outside the stepping (the start, or a static result)."""
         self._observe(q, v, t)
         self._store(t)
-        self._watch(t)
+        self._watch(t, 0.0)
         self._before = np.array(q), np.array(v)
 
     def _observe(self, q: np.ndarray, v: np.ndarray, t: float) -> None:
@@ -146,10 +145,9 @@ class Recorder:
         self._stored["u"].append(u[:-1].copy())
         self._stored["w"].append(w[:-1].copy())
         self._stored["f"].append(self._force.copy())
-        self.reason = self.reason or self._overlaps.found(x[:-1] / MM, t / MS)
-        self.reason = self.reason or self._folds.found(x[:-1] / MM, r[:-1], t / MS)
+        self.reason = self.reason or self._unheld.found(x[:-1] / MM, r[:-1], t / MS)
 
-    def _watch(self, t: float) -> None:
+    def _watch(self, t: float, step: float) -> None:
         """Sets the reason of a failure where a joint is beyond its curve, a body left its bounds or went deep
         into a plate."""
         x = self._work[0][:-1]
@@ -161,7 +159,7 @@ class Recorder:
                 self.reason = curves.overstretched(self.model, row, float(strain), time)
         deep = np.flatnonzero(self._pairs[:, 15] > self._deepest)
         if deep.size:
-            self._too_deep(int(deep[0]), t)
+            self._too_deep(int(deep[0]), t, step)
         out = np.flatnonzero(((x < self._low) | (x > self._high)).any(axis=1))
         if out.size:
             at = ", ".join(f"{value:.4g}" for value in x[out[0]] * PER_MM)
@@ -174,15 +172,14 @@ class Recorder:
             tables, was = self.system, self._before
             pair = passed(tables.bodies, tables.pairs, tables.meshes, *was, q, v, t - step, step)
             if pair >= 0:
-                self._too_deep(pair, t)
+                self._too_deep(pair, t, step)
         self._before = np.array(q), np.array(v)
 
-    def _too_deep(self, pair: int, t: float) -> None:
-        ends = (int(side[pair]) for side in (self.model.pairs.a, self.model.pairs.b))
-        self.reason = (
-            f"{self.model.too_deep(*ends)} at {t / MS:.6g} ms; "
-            "a stiffer contact or a smaller run.step would hold it"
-        )
+    def _too_deep(self, pair: int, t: float, step: float) -> None:
+        one, two = (int(side[pair]) for side in (self.model.pairs.a, self.model.pairs.b))
+        rate = self._work[2]
+        way = step / MM * float(np.linalg.norm(rate[one] - rate[two]))
+        self.reason = f"{self.model.too_deep(one, two)} at {t / MS:.6g} ms; {self.model.held_by(one, way)}"
 
     def result(self, solver: str, reason: str | None) -> Result:
         """The Result in mm, N, g, ms."""

@@ -22,9 +22,8 @@ from mdlgen.backends.lattice.static import rest
 from mdlgen.backends.lattice.symmetry import find
 from mdlgen.errors import SpecError
 from mdlgen.model.curves import overstretched
-from mdlgen.model.fold import Folds
-from mdlgen.model.overlap import Overlaps
 from mdlgen.model.tables import Floats, Model
+from mdlgen.model.unheld import Unheld
 from mdlgen.results import audit
 from mdlgen.results.estimates import estimated, open_yet
 from mdlgen.results.keep import Keep
@@ -50,7 +49,7 @@ FREE_GAIN = 1e-3
 SAME_END = 0.01
 
 # How a halved run ends, beside those of march.
-PASSED, OVERLAPPED, FOLDED = -1, -2, -3
+PASSED, OVERLAPPED = -1, -2
 # Steps of one run, and those that compiled code takes before it is asked again.
 MOST_STEPS, MOST_AT_ONCE = 1e9, 1000
 
@@ -226,8 +225,8 @@ def _once(
     tables, state, mid, _, _, _, kept, _, _, damped = moving
     counters, work, fresh = np.zeros(step.COUNTERS), np.zeros(4), np.zeros(3)
     before = (state[6].copy(), state[7].copy(), np.zeros(2))
-    recorder, overlaps = Recorder(model, system, tables, state, mid, kept), Overlaps(model)
-    folds = _folds(model, system)
+    recorder = Recorder(model, system, tables, state, mid, kept)
+    unheld = _unheld(model, system)
     recorder.store(0.0)
     # the guess of a step is the better the finer it is: what is left of it must fall as fast
     part = (ROUND_OFF if _flexible(model) else ROUND_OFF_RIGID) * min(1.0, (dt / FIRST_STEP) ** 2)
@@ -258,11 +257,8 @@ def _once(
             status = PASSED
             counters[step.WORST] = passed
             break
-        if overlaps.found(state[0], t) is not None:
+        if unheld.found(state[0], state[1], t) is not None:
             status = OVERLAPPED
-            break
-        if folds.found(state[0], state[1], t) is not None:
-            status = FOLDED
             break
         if keep is not None:
             keep.part = partial(_part, recorder, recorder.stand(work), dt, int(counters[step.STEPS]))
@@ -288,9 +284,9 @@ def _once(
     return result.failed(unbalanced if result.ok else f"{result.status}; and {unbalanced}")
 
 
-def _folds(model: Model, system: System) -> Folds:
-    """What looks for sheets in themselves, where one side is solved on that side."""
-    return Folds(model, None if system.mirror is None else ~system.mirror.gone)
+def _unheld(model: Model, system: System) -> Unheld:
+    """What looks for overlaps that no contact hinders, where one side is solved on that side."""
+    return Unheld(model, None if system.mirror is None else ~system.mirror.gone)
 
 
 def _unbalanced(run: Result) -> str | None:
@@ -354,12 +350,13 @@ def _reason(
     if status == march.DEEP:
         pair = int(counters[step.WORST])
         box, plate = int(system.pairs["a"][pair]), partner(model, system.pairs[pair])
-        told = f"{model.too_deep(box, plate)} at {t:.6g} ms"
-        return f"{told}; a stiffer contact or a smaller run.step would hold it"
+        rates = [
+            state[6][np.flatnonzero(system.nodes == int(system.pairs[end][pair])), :3].sum(0) for end in "ab"
+        ]
+        way = dt * float(np.linalg.norm(rates[0] - rates[1]))
+        return f"{model.too_deep(box, plate)} at {t:.6g} ms; {model.held_by(box, way)}"
     if status == OVERLAPPED:
-        return Overlaps(model).found(state[0], t) or "two parts overlap"
-    if status == FOLDED:
-        return _folds(model, system).found(state[0], state[1], t) or "a sheet lies in itself"
+        return _unheld(model, system).found(state[0], state[1], t) or "two parts overlap"
     if status == PASSED:
         return (
             f"box {names[int(counters[step.WORST])]} has passed the plane of the scene's symmetry at "

@@ -13,9 +13,8 @@ from mdlgen.backends.lattice.record import Recorder
 from mdlgen.mechanics.mesh import LOST
 from mdlgen.mechanics.pair import DEEP_ROLLER
 from mdlgen.model import curves
-from mdlgen.model.fold import Folds
-from mdlgen.model.overlap import Overlaps
 from mdlgen.model.tables import BOX_GUIDE, BOX_PLANE, GROUND, ON_PARTS, Model, SheetPart
+from mdlgen.model.unheld import Unheld
 from mdlgen.results.result import Result
 
 FIRST_PART = 1.0  # of the load
@@ -86,8 +85,7 @@ def rest(model: Model, system: System, moving: tuple) -> Result:
     if reason is None:
         reason = _stretched(model, system, x, r) or _touch(model, system, state, mid, rows)
         reason = reason or lying.slides(model, found, rows[0][:, 5], load, x, r)
-        reason = reason or _outside(model, x) or Overlaps(model).found(x, 0.0)
-        reason = reason or Folds(model).found(x, r, 0.0)
+        reason = reason or _outside(model, x) or Unheld(model).found(x, r, 0.0)
     if reason is None and (ways := falls(1.0)) > 0:
         reason = standing.reason(ways, standing.begins(stable))
     wall = clock.perf_counter() - begun

@@ -48,7 +48,11 @@ SUMMARY: dict[str, tuple[str, str]] = {
     "versions.PACKAGE": ("", "versions of mdlgen, Python, numpy and the solver"),
     "sheets.NAME.travel_mm": ("mm", "displacement of the centre of mass, [x, y, z]"),
     "sheets.NAME.speed_mm_per_s": ("mm/s", "velocity of the centre of mass at the end, [x, y, z]"),
-    "sheets.NAME.yaw_deg": ("deg", "rotation about z at the end"),
+    "sheets.NAME.yaw_deg": (
+        "deg",
+        "turn of the sheet about its normal, with the `turn` that it begins with; it does not change where "
+        "the sheet only bends or goes round a curve",
+    ),
     "sheets.NAME.boxes": ("", "number of boxes"),
     "sheets.NAME.bushings": ("", "number of bushings"),
     "sheets.NAME.strain": ("", "null for a sheet without joints"),
@@ -75,17 +79,21 @@ SUMMARY: dict[str, tuple[str, str]] = {
     "rollers.NAME.omega_rad_per_s": ("rad/s", "speed about the roller's axis at the end"),
     "rollers.NAME.free_of_counterpart_at_ms": (
         "ms",
-        "end of the last interval of force against another roller; 0 if never, null if it still acts",
+        "time at which the force between it and other rollers ended, for the last time: a sheet came between "
+        "them, or it was lifted; 0 where there was none, null where one acts at the end",
     ),
     **{
         f"{part}.NAME.{key}": words
         for part in ("rollers", "planes")
         for key, words in {
-            "center_mm": ("mm", "centre at the end, [x, y, z]; `planes` lists pressed plates only"),
-            "nip_force_n": ("N", "sum of normal forces at the end"),
+            "center_mm": ("mm", "centre at the end, [x, y, z]; of a plane only where it is pressed"),
             "max_penetration_mm": ("mm", "greatest depth in sheets"),
             "mean_penetration_mm": ("mm", "mean depth in sheets over the time in contact"),
         }.items()
+    },
+    **{
+        f"{part}.NAME.nip_force_n": ("N", "sum of the normal forces on it at the end")
+        for part in ("rollers", "planes", "guides", "meshes")
     },
     **{
         f"{part}.NAME.{CONTACT}.{key}": words
@@ -108,9 +116,9 @@ SERIES: dict[str, tuple[str, str]] = {
     "NAME.vx_mm_per_s": ("mm/s", "velocity of it; so too `vy_mm_per_s`, `vz_mm_per_s`"),
     "NAME.vy_mm_per_s": ("mm/s", "the same along y"),
     "NAME.vz_mm_per_s": ("mm/s", "the same along z"),
-    "NAME.yaw_deg": ("deg", "rotation of a sheet about z"),
+    "NAME.yaw_deg": ("deg", "turn of a sheet about its normal, as `yaw_deg` of the summary"),
     "NAME.omega_rad_per_s": ("rad/s", "speed of a roller about its axis"),
-    "NAME.force_n": ("N", "sum of normal forces on a roller, pressed plate, guide or mesh"),
+    "NAME.force_n": ("N", "sum of the normal forces on a roller, plane, guide or mesh"),
 }
 STATES: dict[str, tuple[str, str, str]] = {
     "time": ("(t,)", "ms", "stored times"),

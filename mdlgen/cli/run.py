@@ -87,6 +87,7 @@ def run(
     Example: mdlgen run --resume out
     """
     from mdlgen import registry
+    from mdlgen.checks import missing_contacts
     from mdlgen.cli import kept
 
     kept.single(spec, resume, bool(sets or limits or output or check_step or solver != "auto"))
@@ -110,6 +111,9 @@ def run(
     name, why = registry.chosen(task.solver, model)
     if task.solver == "auto" and why and not quiet:
         say(f"{name} runs this scene ({why})")
+    if not quiet:
+        for lint in missing_contacts(model):
+            say(str(lint))
     for asked, wish in ((keep_partial, "--keep-partial"), (checkpoint is not None, "--checkpoint")):
         if asked:
             kept.check(name, why, wish)

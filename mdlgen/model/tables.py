@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 GROUND = -1
+# A contact that goes from touching to too deep in fewer than so many steps may be held by finer ones.
+FEW_STEPS = 4
 AXES = ("x", "y", "z")
 
 
@@ -627,6 +629,15 @@ class Model(Frozen):
             return f"{self.called(one)} and {self.called(other)} overlap by more than the smaller radius"
         size = "radius" if rollers & {one, other} else "thickness"
         return f"{self.called(one)} is more than half of its {size} into {self.called(other)}"
+
+    def held_by(self, one: int, way: float) -> str:
+        """What would hold a body that is too deep in another one and comes nearer by `way` [mm] in a step: a
+        finer step only where a few of its steps are that deep."""
+        sheet = self.sheet_of(one)
+        finer = sheet is None or way > 0.5 * sheet.thickness / FEW_STEPS
+        if finer:
+            return "a stiffer contact or a smaller run.step would hold it"
+        return "a stiffer contact would hold it, a smaller run.step would not"
 
     def bounds_of(self, body: int) -> tuple[str, str]:
         """What the bounds of a body are, and what to do where it has left them."""

@@ -188,8 +188,9 @@ def summary_text(told: dict[str, Any]) -> str:
         lines.append(f"strain {told['strain']:.6g}")
     if told["rollers"]:
         lines += _rollers(told["rollers"])
-    if told.get("planes"):
-        lines += _plates(told["planes"])
+    plates = {name: plane for name, plane in told.get("planes", {}).items() if "center_mm" in plane}
+    if plates:
+        lines += _plates(plates)
     if told["error_estimate"] is not None:
         worst = f" ({told['error_estimate_of']})" if told["error_estimate_of"] else ""
         lines.append(f"error estimate {told['error_estimate']:.2g}{worst}, tolerance {told['tolerance']:g}")

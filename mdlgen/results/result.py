@@ -181,19 +181,19 @@ class Result:
     def sheet_motion(self, index: int) -> tuple[Floats, Floats, Floats]:
         """Centre of mass [mm], its velocity [mm/ms] and the yaw [rad] of a sheet, (t, 3), (t, 3), (t,).
 
-        The yaw is the mean over boxes, by their mass, of the turn about the sheet's first normal since the
-        start, plus the turn of the sheet at the start about that normal.
+        The yaw is the turn of boxes about their own normals since the start, what is left of their rotations
+        once the shortest turn that takes the sheet's first normal to theirs is taken off; so it stays as it
+        is where the sheet only bends or goes round a curve. It is the mean over boxes, by their mass times
+        cos^2 of half the angle between both normals, plus the turn of the sheet's x axis about z at the
+        start.
         """
         sheet = self.model.sheets[index]
         boxes = slice(sheet.first, sheet.first + sheet.count)
         share = self.model.mass_share(index)
         place = share @ self.position[:, boxes]
         rate = self.sheet_velocity(index)
-        along = share @ column(self.rotation[:, boxes], 0)
-        normal = sheet.rotation[:, 2]
-        flat = (
-            along
-            @ np.stack([np.cross(sheet.rotation[:, 1], normal), np.cross(normal, sheet.rotation[:, 0])]).T
-        )
+        x, y = (share @ column(self.rotation[:, boxes], k) for k in (0, 1))
+        east, north = sheet.rotation[:, 0], sheet.rotation[:, 1]
+        turn = np.arctan2(x @ north - y @ east, x @ east + y @ north)
         start = np.arctan2(sheet.rotation[1, 0], sheet.rotation[0, 0])
-        return place, rate, start + np.unwrap(np.arctan2(flat[:, 1], flat[:, 0]))
+        return place, rate, start + np.unwrap(turn)

@@ -11,7 +11,7 @@ from mdlgen.results.summary import PER_SECOND, part_rows
 
 def series(result: Result) -> dict[str, Floats]:
     """Column name -> values at the stored times: sheets (centre of mass), probes, rollers, pressed plates,
-    then guides and meshes."""
+    then what does not move: planes, guides and meshes."""
     table: dict[str, Floats] = {"time_ms": result.time}
     for index, sheet in enumerate(result.model.sheets):
         place, rate, yaw = result.sheet_motion(index)
@@ -28,7 +28,8 @@ def series(result: Result) -> dict[str, Floats]:
         rows = list(part_rows(result, plate))
         table[f"{plate.name}.z_mm"] = result.position[:, plate.body, 2]
         table[f"{plate.name}.force_n"] = result.contact_force[:, rows].sum(axis=1)
-    for part in (*result.model.guides, *result.model.meshes):
+    fixed = [plane for plane in result.model.planes if plane.press is None]
+    for part in (*fixed, *result.model.guides, *result.model.meshes):
         table[f"{part.name}.force_n"] = result.contact_force[:, list(part_rows(result, part))].sum(axis=1)
     return table
 

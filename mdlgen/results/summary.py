@@ -55,8 +55,9 @@ def summary(result: Result, without: Collection[str] = ()) -> dict[str, Any]:
         **({} if "events" in without else {"events": result.events}),
         "sheets": {s.name: _sheet(result, k, "bearing" not in without) for k, s in enumerate(model.sheets)},
         "rollers": {r.name: _roller(result, r) for r in model.rollers},
-        "guides": {g.name: {"contacts": _contacts(result, part_rows(result, g))} for g in model.guides},
-        "meshes": {m.name: {"contacts": _contacts(result, part_rows(result, m))} for m in model.meshes},
+        "planes": {p.name: _plane(result, p) for p in model.planes},
+        "guides": {g.name: _touched(result, g) for g in model.guides},
+        "meshes": {m.name: _touched(result, m) for m in model.meshes},
         "probes": {p.name: _probe(result, k) for k, p in enumerate(model.probes)},
         "versions": versions(result),
     }
@@ -66,8 +67,6 @@ def summary(result: Result, without: Collection[str] = ()) -> dict[str, Any]:
         told["estimate_scales"] = {
             name: {"scale": found.scale, "unit": found.unit} for name, found in estimates.items()
         }
-    if model.plates:
-        told["planes"] = {plate.name: _pressing(result, plate) for plate, _ in model.plates}
     if model.tension is not None:
         told["strain"] = strain(result) if len(result.time) else None
     return plain(told)
@@ -184,23 +183,31 @@ def _contacts(result: Result, rows: dict[int, str]) -> dict[str, dict[str, float
     }
 
 
-def _pressing(result: Result, part: RollerPart | PlanePart) -> dict[str, Any]:
-    """Where a roller or a plate is at the end, and how it presses on what it touches."""
+def _touched(result: Result, part: RollerPart | PlanePart | GuidePart | MeshPart) -> dict[str, Any]:
+    """The sum of normal forces on a part at the end, and its contacts."""
     rows = part_rows(result, part)
+    force = float(result.contact_force[-1, list(rows)].sum()) if len(result.time) else None
+    return {"nip_force_n": force, "contacts": _contacts(result, rows)}
+
+
+def _pressing(result: Result, part: RollerPart | PlanePart) -> dict[str, Any]:
+    """How a roller or a plane presses on what it touches."""
     sheets = {s.name for s in result.model.sheets}
-    on_sheets = [k for k, other in rows.items() if other in sheets]
-    told: dict[str, Any] = {"center_mm": None, "nip_force_n": None}
-    if len(result.time):
-        told = {
-            "center_mm": result.position[-1, part.body],
-            "nip_force_n": float(result.contact_force[-1, list(rows)].sum()),
-        }
+    on_sheets = [k for k, other in part_rows(result, part).items() if other in sheets]
     return {
-        **told,
+        **_touched(result, part),
         "max_penetration_mm": max((result.statistics.max_depth[k] for k in on_sheets), default=0.0),
         "mean_penetration_mm": _mean(result.statistics.mean_depth, on_sheets, result),
-        "contacts": _contacts(result, rows),
     }
+
+
+def _centre(result: Result, part: RollerPart | PlanePart) -> dict[str, Any]:
+    return {"center_mm": result.position[-1, part.body] if len(result.time) else None}
+
+
+def _plane(result: Result, plane: PlanePart) -> dict[str, Any]:
+    """Where it is at the end, of one that moves, and how it presses."""
+    return {**({} if plane.press is None else _centre(result, plane)), **_pressing(result, plane)}
 
 
 def _roller(result: Result, roller: RollerPart) -> dict[str, Any]:
@@ -210,6 +217,7 @@ def _roller(result: Result, roller: RollerPart) -> dict[str, Any]:
     speed = float(result.spin[-1, roller.body] @ roller.axis) * PER_SECOND if len(result.time) else None
     return {
         "omega_rad_per_s": speed,
+        **_centre(result, roller),
         **_pressing(result, roller),
         # nan, a contact that still acts, wins: the roller is not free then
         "free_of_counterpart_at_ms": np.max(result.statistics.last_force_at[on_rollers], initial=0.0),
