@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 
 import numpy as np
@@ -69,17 +70,23 @@ def _modulus(model: Model) -> Iterator[Lint]:
 
 
 def _aspect(model: Model) -> Iterator[Lint]:
+    """A sheet with one box across is meant not to bend that way, so the shape of its boxes is no finding."""
     for sheet in model.sheets:
+        if min(sheet.n_x, sheet.n_y) == 1:
+            continue
         lengths = 2 * model.bodies.half[sheet.first : sheet.first + sheet.count, :2]
         aspects = np.maximum(lengths[:, 0] / lengths[:, 1], lengths[:, 1] / lengths[:, 0])
         worst = int(np.argmax(aspects))
         (d_x, d_y), aspect = lengths[worst].tolist(), float(aspects[worst])
-        if sheet.count > 1 and aspect > MAX_ASPECT:
+        if aspect > MAX_ASPECT:
+            counts, one = [sheet.n_x, sheet.n_y], [sheet.n_x, sheet.n_y]
+            counts[int(d_y > d_x)] = math.ceil(counts[int(d_y > d_x)] * aspect / MAX_ASPECT)
+            one[int(d_y > d_x)] = 1
             yield Lint(
                 "W102",
                 f"sheets.{sheet.name}.boxes",
                 f"boxes of {d_x:.3g} mm x {d_y:.3g} mm are {aspect:.3g} times as long as wide",
-                f"choose counts nearer to the sheet's shape, up to {MAX_ASPECT:g} is usual",
+                f"take {counts} boxes, or {one} where the sheet bends one way only",
             )
 
 
@@ -158,7 +165,7 @@ def _deep_stack(model: Model) -> Iterator[Lint]:
         spring = roller.press
         if spring is None or spring.preload <= 0.0:
             continue
-        for row in np.flatnonzero(np.isin(table.kind, (BOX_BOX, BOX_PLANE))):
+        for row in np.flatnonzero(np.isin(table.kind, (BOX_BOX, BOX_PLANE))).tolist():
             one, name = sheets[table.part_a[row]], table.part_b[row]
             below = sheets.get(name)
             on_plane = name in planes and roller.name not in nipped and _faces(planes[name], spring.direction)

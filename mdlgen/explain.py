@@ -10,8 +10,9 @@ SCENE = {
         "E_md of a banknote is some 3500 MPa = 3.5 GPa. If the sheet is no paper, nothing is wrong."
     ),
     "W102": (
-        "Boxes that are much longer than wide bend much more coarsely one way than the other, so that "
-        "boxes are wasted on the fine way. Choose boxes: [n_x, n_y] so that d_x and d_y are alike."
+        "Boxes that are more than five times as long as wide resolve bending along their length much more "
+        "coarsely than across it. Take more boxes along their length. A sheet that bends one way only needs "
+        "one box across, as boxes: [20, 1]; of such a sheet this is not asked."
     ),
     "W103": (
         "A clamped sheet on which nothing acts stays as it is: there is no gravity, load, contact or "

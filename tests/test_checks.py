@@ -65,6 +65,15 @@ def test_fires(code: str, sample: str, overrides: list[str], where: str) -> None
         assert str(lint).isascii() and "\n" not in str(lint)
 
 
+def test_the_advice_on_long_boxes_ends_the_finding() -> None:
+    (lint,) = [x for x in found("cantilever", "sheets.note.boxes=[2,40]") if x.code == "W102"]
+    assert lint.remedy == "take [5, 40] boxes, or [1, 40] where the sheet bends one way only"
+    for boxes in ("[5,40]", "[1,40]", "[40,1]"):
+        assert "W102" not in {x.code for x in found("cantilever", f"sheets.note.boxes={boxes}")}
+    (lint,) = [x for x in found("cantilever", "sheets.note.boxes=[40,3]") if x.code == "W102"]
+    assert lint.remedy.startswith("take [40, 16] boxes, or [40, 1]")
+
+
 @pytest.mark.parametrize("radius", [7.45, 3.3, 5.0, 10.2])
 @pytest.mark.parametrize("thickness", [0.08, 0.1, 0.12])
 @pytest.mark.parametrize("height", [0.0, 0.3, 1.1, 2.7])
