@@ -87,6 +87,14 @@ def test_json_of_a_sweep(tmp_path: Path) -> None:
     assert all(Path(file).is_file() for file in told["files"])
 
 
+def test_the_schema_goes_to_a_file_as_it_is_printed(tmp_path: Path) -> None:
+    code, printed, _ = run("schema")
+    code_of_file, out, err = run("schema", "-o", str(tmp_path / "s.json"))
+    assert code == code_of_file == 0 and out == "" and "wrote" in err
+    assert (tmp_path / "s.json").read_text() == printed
+    assert run("schema", "-o", "-")[1] == printed
+
+
 def test_json_of_a_list_and_of_codes() -> None:
     assert "transport_4x4" in found("new", "--list")
     assert list(found("explain", "W104")) == ["W104"]
@@ -169,12 +177,19 @@ class TestCompletion:
             ("mdlgen explain W10", "W104"),
             ("mdlgen new --from can", "cantilever"),
             ("mdlgen calibrate x.yaml --fit D_", "D_cd"),
+            # bash takes `=` as the end of a word, and replaces what stands behind it
+            (f"mdlgen run {FOUR} --set run.analysis = st", "static"),
+            (f"mdlgen run {FOUR} --set run.analysis =", "transient"),
+            (f"mdlgen run --set run.step = 1 {FOUR} --set sheets.note.layout = pl", "plate"),
+            (f"mdlgen run {FOUR} --solver = la", "lattice"),
+            (f"mdlgen run {FOUR} --set = run.analysis = st", "static"),
+            (f"mdlgen run {FOUR} --set run.analysis = none", ""),
         ],
     )
     def test_a_shell_is_offered_them(self, line: str, offers: str) -> None:
         words = {"COMP_WORDS": line, "COMP_CWORD": str(len(line.split()) - 1)}
         done = subprocess.run(
-            [sys.executable, "-c", "from mdlgen.cli import app; app(prog_name='mdlgen')"],
+            [sys.executable, "-c", "import sys; sys.argv[0] = 'mdlgen'; from mdlgen.cli import main; main()"],
             env={**os.environ, "_MDLGEN_COMPLETE": "complete_bash", **words},
             capture_output=True,
             text=True,

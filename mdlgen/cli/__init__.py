@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import os
 import sys
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
@@ -56,5 +57,9 @@ def _app(names: list[str]) -> typer.Typer:
 
 def main() -> None:
     """Entry point of the command `mdlgen`."""
+    if os.environ.get("_MDLGEN_COMPLETE") == "complete_bash":
+        from mdlgen.cli.completion import mend_bash
+
+        mend_bash()
     wanted = sys.argv[1] if len(sys.argv) > 1 else ""
     _app([wanted] if wanted in COMMANDS else list(COMMANDS))()

@@ -1,10 +1,13 @@
 """What a shell offers for an option: names that the code knows, and paths of the scene that the line names.
 
-A value behind `=` is offered by zsh and fish; bash takes the sign as the end of a word.
+Bash takes `=` as the end of a word: it gives `--set`, `run.analysis`, `=`, `st`, and puts what is offered in
+the place of the last. `mend_bash` puts such words together again, and keeps what stands before the last `=`.
 """
 
 from __future__ import annotations
 
+import os
+import shlex
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, Literal, get_args, get_origin
@@ -69,9 +72,40 @@ def sheets_only(incomplete: str) -> list[str]:
     return _of(("sheets",), incomplete)
 
 
+# What bash has taken off the word that is completed, up to its last `=`, for the rest of this process.
+BEFORE = "_MDLGEN_COMPLETE_BEFORE"
+
+
+def mend_bash() -> None:
+    """Before the command line looks at them: the words that bash gives, as they were typed."""
+    try:
+        words, at = shlex.split(os.environ["COMP_WORDS"]), int(os.environ["COMP_CWORD"])
+    except (KeyError, ValueError):  # not called by bash, or a quote is open
+        return
+    typed = whole(words[: at + 1])
+    option, sign, value = typed[-1].partition("=") if typed[-1].startswith("--") else ("", "", typed[-1])
+    before = value[: value.rfind("=") + 1]
+    os.environ[BEFORE] = before
+    os.environ["COMP_WORDS"] = shlex.join([*typed[:-1], option + sign + value[len(before) :]])
+    os.environ["COMP_CWORD"] = str(len(typed) - 1)
+
+
+def whole(words: list[str]) -> list[str]:
+    """Words put together again where `=` has cut them."""
+    found: list[str] = []
+    for k, word in enumerate(words):
+        if found and (word == "=" or words[k - 1] == "="):
+            found[-1] += word
+        else:
+            found.append(word)
+    return found
+
+
 def scene_paths(ctx: Any, incomplete: str) -> list[str]:
     """Of `--set` and its like: the next part of a path, or behind `=` the values that a key may have."""
-    return paths(_scene(ctx.params.get("spec")), incomplete)
+    before = os.environ.get(BEFORE, "")
+    offered = paths(_scene(ctx.params.get("spec")), before + incomplete)
+    return [text[len(before) :] for text in offered]
 
 
 def paths(scene: Any, incomplete: str) -> list[str]:

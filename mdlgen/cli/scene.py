@@ -148,11 +148,28 @@ def explain(
 
 @app.command()
 @told
-def schema(quiet: Quiet = False, verbose: Verbose = False) -> None:
+def schema(
+    output: Annotated[
+        Path,
+        typer.Option(
+            "-o", "--output", metavar="FILE.json", help="Where to write: standard output if left out, or -."
+        ),
+    ] = Path("-"),
+    quiet: Quiet = False,
+    verbose: Verbose = False,
+) -> None:
     """Print the JSON schema of a scene file, for editors.
 
-    Example: mdlgen schema > scene.schema.json
+    Example: mdlgen schema -o scene.schema.json
     """
+    import json
+
+    from mdlgen import paths
     from mdlgen.spec.schema import json_schema
 
-    echo_json(json_schema())
+    if str(output) == "-":
+        echo_json(json_schema())
+        return
+    paths.write_atomic(output, json.dumps(json_schema(), indent=2) + "\n")
+    if not quiet:
+        say(f"wrote {output}")
