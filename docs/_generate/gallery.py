@@ -11,7 +11,10 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 SAMPLES = ROOT / "samples"
 PICTURES = ROOT / "docs" / "pictures" / "samples"
 GROUPS = {
-    "Transport of a note": ("transport_4x4", "transport_4x2", "transport_tilted", "tilt_correction"),
+    "Transport of a note": (
+        *("transport_4x4", "transport_nips", "transport_4x2", "transport_tilted"),
+        "tilt_correction",
+    ),
     "Channels and guides": ("channel", "guide_joint"),
     "Stacks and feeders": (
         *("stack", "spring_plate", "retard_pad", "feeder_window", "feeder", "feeder_one"),

@@ -22,6 +22,7 @@ TARGET = ROOT / "docs" / "pictures"
 # when a sample shows what it is for [ms]; half of the run where none is given
 AT = {
     "transport_4x4": 30.0,
+    "transport_nips": 30.0,
     "transport_4x2": 110.0,
     "transport_tilted": 60.0,
     "tilt_correction": 60.0,

@@ -321,7 +321,8 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
 
 
-def _axis(value: Any) -> tuple[float, float, float]:
+def read_direction(value: Any) -> tuple[float, float, float]:
+    """The unit vector of a direction; raises the error that says what is allowed."""
     if isinstance(value, str):
         match = re.fullmatch(r"([-+]?)([xyz])", value)
         if not match:
@@ -388,7 +389,7 @@ Point2 = Annotated[tuple[Length, Length], _fixed_length(2, "lengths like '1 mm'"
 Counts2 = Annotated[tuple[int, int], _fixed_length(2, "whole numbers")]
 Direction = Annotated[
     tuple[float, float, float],
-    BeforeValidator(_axis),
+    BeforeValidator(read_direction),
     WithJsonSchema(
         {
             "anyOf": [

@@ -28,6 +28,7 @@ from mdlgen.spec.fields import (
 )
 from mdlgen.spec.guide import check_edge
 from mdlgen.spec.rim import Rim
+from mdlgen.spec.rows import Mirror, Repeat
 
 # A solver keeps them beside each body, and a text writes them into one expression.
 MOST_CORNERS = 16
@@ -174,6 +175,8 @@ class Roller(Strict):
     press: Press | None = Field(default=None, description="slide and spring; without it the axis is fixed")
     arm: Arm | None = Field(default=None, description="an arm that carries it in place of a fixed axis")
     rim: Rim | None = Field(default=None, description="sectors of the rim that are unlike the rest")
+    repeat: Repeat | None = Field(default=None, description="a row of such rollers")
+    mirror: Mirror | None = Field(default=None, description="a second one, its mirror image")
 
     @model_validator(mode="before")
     @classmethod
@@ -233,6 +236,8 @@ class Plane(Strict):
         description="radius of the edges of its face; 0.1 mm where left out, or half of a thinner plate. See "
         "edge_radius of a guide",
     )
+    repeat: Repeat | None = Field(default=None, description="a row of such planes")
+    mirror: Mirror | None = Field(default=None, description="a second one, its mirror image")
 
     @model_validator(mode="after")
     def _presses(self) -> Plane:

@@ -14,12 +14,13 @@ from pydantic_core import PydanticCustomError
 from mdlgen.errors import SpecError, did_you_mean
 from mdlgen.spec.document import Document, SpecPath
 from mdlgen.spec.scene import known, matching
-from mdlgen.spec.shorthand import in_the_text
+from mdlgen.spec.shorthand import in_the_text, written_out
 
 MOST = 20
 # Tables of parts by name: what --set makes anew here is more often a name that is misspelt.
 _MOST_LOOKS = 1000  # at names beside other mistakes
-_TABLES = ("parameters", "materials", "sheets", "rollers", "planes", "guides", "meshes", "parts", "probes")
+_PARTS = ("sheets", "rollers", "planes", "guides", "meshes", "parts")
+_TABLES = ("parameters", "materials", *_PARTS, "nips", "probes")
 _NAMED = ("contacts", *_TABLES)
 
 
@@ -111,9 +112,10 @@ def _each(error: Any) -> Iterator[Any]:
 
 def _dangling(data: Any) -> list[PydanticCustomError]:
     """Names in plain data of materials, sheets and parts that there are not; other mistakes aside."""
+    data = written_out(data, {})
     tables = {name: data[name] for name in _TABLES if isinstance(data.get(name), dict)}
     sheets, materials = tables.get("sheets", {}), tables.get("materials", {})
-    parts = [name for kind in _TABLES[2:-1] for name in tables.get(kind, {})]
+    parts = [name for kind in _PARTS for name in tables.get(kind, {})]
     looks: list[Callable[[], object]] = []
     for name, sheet in sheets.items():
         if isinstance(word := _at(sheet, ("material",)), str):

@@ -30,6 +30,7 @@ from mdlgen.spec.limits import DEFAULT, Limits
 from mdlgen.spec.machine import Plane, Roller
 from mdlgen.spec.material import Material
 from mdlgen.spec.mesh import Mesh
+from mdlgen.spec.nip import Nip, names_of
 from mdlgen.spec.parameter import (
     MOST as MOST_PARAMETERS,
 )
@@ -78,6 +79,10 @@ class Scene(Strict):
     )
     sheets: dict[Name, Sheet] = Field(min_length=1, description="sheets by name, one at least")
     rollers: dict[Name, Roller] = Field(default_factory=dict, description="rollers by name")
+    nips: dict[Name, Nip] = Field(
+        default_factory=dict,
+        description="pairs of rollers that grip a sheet, placed in balance with their contacts, by name",
+    )
     planes: dict[Name, Plane] = Field(default_factory=dict, description="flat plates by name")
     guides: dict[Name, Guide] = Field(
         default_factory=dict, description="fixed plates that lead sheets, straight or bent to an arc, by name"
@@ -172,9 +177,26 @@ class Scene(Strict):
                 yield partial(self._on_sheet, item, (kind, key))
         for name in self.rollers:
             yield partial(self._check_clutch, name)
+        for name in self.nips:
+            yield partial(self._check_nip, name)
         for name, mesh in self.meshes.items():
             if mesh.on is not None:
                 yield partial(known, mesh.on, self.rollers, "roller", ("meshes", name, "on"))
+
+    def _check_nip(self, name: str) -> None:
+        nip, path = self.nips[name], ("nips", name)
+        if nip.sheet is not None:
+            known(nip.sheet, self.sheets, "sheet", (*path, "sheet"))
+        elif len(self.sheets) > 1:
+            raise fail(f"which sheet is between them? give sheet, as sheet: {next(iter(self.sheets))}", path)
+        rollers = names_of(name, {"lower": nip.lower, "upper": nip.upper})
+        if all(self.rollers[roller].press is not None for roller in rollers):
+            raise fail("both rollers have a press; give one of them a fixed axis", (*path, "upper", "press"))
+        for side in ("lower", "upper"):
+            given = getattr(nip, side).get("contact")
+            if isinstance(given, dict) and given.get("share", "width") != "width":
+                told = "a nip is in balance with share: width only; leave share out"
+                raise fail(told, (*path, side, "contact", "share"))
 
     def _check_material(self, name: str) -> None:
         sheet = self.sheets[name]

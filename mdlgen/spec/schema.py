@@ -10,7 +10,7 @@ from pydantic.fields import FieldInfo
 from pydantic.json_schema import GenerateJsonSchema
 
 from mdlgen.spec.scene import Scene
-from mdlgen.spec.shorthand import OF_CONTACTS, OF_ROLLERS
+from mdlgen.spec.shorthand import OF_CONTACTS, OF_NIPS, OF_ROLLERS
 
 
 class _Schema(GenerateJsonSchema):
@@ -26,6 +26,21 @@ def json_schema() -> dict[str, Any]:
     for kind, model, names in (("contacts", "Contact", OF_CONTACTS), ("rollers", "Roller", OF_ROLLERS)):
         refs = {name: {"$ref": f"#/$defs/{model}/properties/{name}"} for name in names}
         defaults[kind] |= {"additionalProperties": False, "properties": refs}
+    rollers = {
+        name: ref for name, ref in defaults["rollers"]["properties"].items() if name not in ("center", "axis")
+    }
+    contact = {
+        "type": "object",
+        "additionalProperties": False,
+        "properties": defaults["contacts"]["properties"],
+    }
+    side = {"name": {"type": "string"}, "contact": contact, **rollers}
+    nip = schema["$defs"]["Nip"]["properties"]
+    for name in ("lower", "upper"):
+        nip[name] |= {"additionalProperties": False, "properties": side}
+    nip["contact"]["anyOf"][0] |= contact
+    refs = {name: {"$ref": f"#/$defs/Nip/properties/{name}"} for name in OF_NIPS}
+    defaults["nips"] |= {"additionalProperties": False, "properties": refs}
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
 
 

@@ -1,4 +1,4 @@
-"""What a scene says once, or by name, written out: contacts by name, and defaults."""
+"""What a scene says once, or by name, written out: rows of parts, nips, contacts by name, and defaults."""
 
 from __future__ import annotations
 
@@ -7,19 +7,24 @@ from typing import Any
 from pydantic import Field, model_validator
 
 from mdlgen.errors import did_you_mean
+from mdlgen.spec import nip
 from mdlgen.spec.contact import Contact
 from mdlgen.spec.fields import Strict, fail
 from mdlgen.spec.machine import Roller
+from mdlgen.spec.nip import Nip
+from mdlgen.spec.rows import expanded
 
 Path = tuple[str | int, ...]
 # Of two words for one value a part's own counts, not the default's other one.
 _WORDS = ({"radius", "diameter"},)
+_MOST_STEPS = 8  # from what is made to the text: a contact, of a nip, of a row, of the defaults
 OF_CONTACTS = tuple(name for name in Contact.model_fields if name not in ("between", "name"))
-OF_ROLLERS = tuple(Roller.model_fields)
+OF_ROLLERS = tuple(name for name in Roller.model_fields if name not in ("repeat", "mirror"))
+OF_NIPS = tuple(name for name in Nip.model_fields if name not in ("repeat", "mirror"))
 
 
 class Defaults(Strict):
-    """What contacts and rollers have where they do not say it themselves.
+    """What contacts, rollers and nips have where they do not say it themselves.
 
     A mapping such as `press` is filled key by key where a part gives some of it. `KEY: null` on a part leaves
     the default out.
@@ -33,12 +38,17 @@ class Defaults(Strict):
         default_factory=dict,
         description="keys of every roller",
     )
+    nips: dict[str, Any] = Field(
+        default_factory=dict,
+        description="keys of every nip",
+    )
 
     @model_validator(mode="after")
     def _known(self) -> Defaults:
         for kind, given, names in (
             ("contacts", self.contacts, OF_CONTACTS),
             ("rollers", self.rollers, OF_ROLLERS),
+            ("nips", self.nips, OF_NIPS),
         ):
             for key in given:
                 if key not in names:
@@ -52,7 +62,14 @@ def written_out(data: Any, origins: dict[Path, Path]) -> Any:
     copied stand in the text. What is not of the right form is left for validation."""
     if not isinstance(data, dict):
         return data
-    data = dict(data)
+    data = expanded(data, origins)
+    given = data.get("defaults")
+    defaults = given if isinstance(given, dict) else {}
+    if isinstance(data.get("nips"), dict) and isinstance(defaults.get("nips"), dict):
+        data["nips"] = {
+            name: _deep(item, defaults["nips"], ("nips", name), ("defaults", "nips"), origins)
+            for name, item in data["nips"].items()
+        }
     contacts = data.get("contacts")
     if isinstance(contacts, dict):
         data["contacts"] = []
@@ -61,9 +78,12 @@ def written_out(data: Any, origins: dict[Path, Path]) -> Any:
             origins["contacts", index, "name"] = ("contacts", name)
             named = {**contact, "name": name} if isinstance(contact, dict) else contact
             data["contacts"].append(named)
-    defaults = data.get("defaults")
-    if not isinstance(defaults, dict):
-        return data
+
+    def fill(item: Any, kind: str) -> Any:
+        own, names = defaults.get(kind), {"rollers": OF_ROLLERS, "contacts": OF_CONTACTS}[kind]
+        return _filled(item, own, names, (kind,), {}) if isinstance(own, dict) else item
+
+    nip.written(data, origins, fill)
     of_contacts, of_rollers = defaults.get("contacts"), defaults.get("rollers")
     if isinstance(of_contacts, dict) and isinstance(data.get("contacts"), (list, tuple)):
         data["contacts"] = [
@@ -76,6 +96,21 @@ def written_out(data: Any, origins: dict[Path, Path]) -> Any:
             for name, item in data["rollers"].items()
         }
     return data
+
+
+def _deep(item: Any, defaults: dict[str, Any], path: Path, source: Path, origins: dict[Path, Path]) -> Any:
+    """A mapping, and those in it, with what they do not say themselves."""
+    if not isinstance(item, dict):
+        return item
+    given = {*item, *(word for words in _WORDS if words & set(item) for word in words)}
+    item = dict(item)
+    for key, value in defaults.items():
+        if key not in given:
+            item[key] = value
+            origins[(*path, key)] = (*source, key)
+        elif isinstance(value, dict):
+            item[key] = _deep(item.get(key), value, (*path, key), (*source, key), origins)
+    return item
 
 
 def _filled(
@@ -103,7 +138,9 @@ def _filled(
 
 def in_the_text(path: Path, origins: dict[Path, Path]) -> Path:
     """Where a value of the scene stands in the text."""
-    for end in range(len(path), 0, -1):
-        if path[:end] in origins:
-            return origins[path[:end]] + path[end:]
+    for _ in range(_MOST_STEPS):
+        end = next((end for end in range(len(path), 0, -1) if path[:end] in origins), 0)
+        if not end:
+            break
+        path = origins[path[:end]] + path[end:]
     return path

@@ -1,0 +1,227 @@
+"""Nips: two rollers with a sheet between them, placed in balance, with their contacts."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import Annotated, Any
+
+from pydantic import Field
+from pydantic_core import PydanticCustomError
+
+from mdlgen.spec.fields import Direction, Name, Position, Strict, of_text, quantity, read_direction
+from mdlgen.spec.rows import ZERO, Mirror, Repeat
+
+Path = tuple[str | int, ...]
+Fill = Callable[[Any, str], Any]
+SIDES = ("lower", "upper")
+_WEIGHT = ["0 m/s^2", "0 m/s^2", "-9.81 m/s^2"]
+_ATOM = re.compile(r"[A-Za-z_]\w*|[0-9.]+(?:e[-+]?[0-9]+)? *[A-Za-z][\w/*^.]*|[0-9.]+")
+
+
+class Nip(Strict):
+    """Two rollers that grip a sheet: both are placed so that each presses it with `force`, and each has its
+    contact with it. One of them may have a press, whose preload follows, or both have fixed axes."""
+
+    at: Position = Field(description="where the middle plane of the sheet passes, between the two rollers")
+    normal: Direction = Field(
+        default=(0.0, 0.0, 1.0), description="from the lower to the upper roller; z where left out"
+    )
+    axis: Direction = Field(default=(0.0, 1.0, 0.0), description="axis of both rollers; y where left out")
+    sheet: Name | None = Field(
+        default=None, description="the sheet between them; may be left out where there is one only"
+    )
+    force: Annotated[float, quantity("N", 0.0, open_low=True)] = Field(
+        description="force with which each roller presses the sheet, at rest"
+    )
+    lower: dict[str, Any] = Field(
+        description="keys of the roller on the side that the normal comes from, but center and axis; `name`, "
+        "NIP_lower where left out; `contact`, keys of its contact with the sheet"
+    )
+    upper: dict[str, Any] = Field(description="the same of the roller on the other side; NIP_upper")
+    contact: dict[str, Any] | None = Field(
+        default=None,
+        description="keys of the contact of the two rollers, which they meet in while no sheet is between "
+        "them; none where left out",
+    )
+    repeat: Repeat | None = Field(default=None, description="a row of such nips")
+    mirror: Mirror | None = Field(default=None, description="a second one, its mirror image")
+
+
+def names_of(name: str, nip: Any) -> list[str]:
+    """The names of the two rollers of a nip."""
+    sides = [nip.get(side) if isinstance(nip, dict) else None for side in SIDES]
+    return [
+        str(given["name"]) if isinstance(given, dict) and "name" in given else f"{name}_{side}"
+        for given, side in zip(sides, SIDES, strict=True)
+    ]
+
+
+def written(data: dict[str, Any], origins: dict[Path, Path], fill: Fill) -> None:
+    """Adds the rollers and contacts of nips to `data`, whose contacts are a list; `fill` gives a part its
+    defaults. A nip that is not of the right form is left for validation."""
+    nips = data.get("nips")
+    if not isinstance(nips, dict):
+        return
+    rollers = dict(data["rollers"]) if isinstance(data.get("rollers"), dict) else {}
+    contacts = list(data["contacts"]) if isinstance(data.get("contacts"), (list, tuple)) else []
+    for name, nip in nips.items():
+        if not isinstance(nip, dict) or not all(isinstance(nip.get(side), dict) for side in SIDES):
+            continue
+        own = dict(zip(SIDES, names_of(name, nip), strict=True))
+        # what stands under rollers, too, counts there: --set rollers.entry_upper.mass=..
+        given = {side: rollers.get(roller) for side, roller in own.items()}
+        nip = nip | {side: merged(nip[side], g) for side, g in given.items() if isinstance(g, dict)}
+        made = _Written(data, name, nip, fill)
+        for side, roller in own.items():
+            for key in ("", *nip[side]):
+                tail = (key,) if key else ()
+                if not isinstance(given[side], dict) or (key and key not in given[side]):
+                    origins["rollers", roller, *tail] = ("nips", name, side, *tail)
+            for key, path in (("center", ("at",)), ("axis", ("axis",)), ("press.preload", ("force",))):
+                origins["rollers", roller, *key.split(".")] = ("nips", name, *path)
+            rollers[roller] = made.roller(side)
+        for path, contact in made.contacts(names_of(name, nip)):
+            origins["contacts", len(contacts)] = path
+            contacts.append(contact)
+    data["rollers"], data["contacts"] = rollers, contacts
+
+
+def merged(one: Any, other: Any) -> Any:
+    """A mapping with what another one says in its place, key by key."""
+    if not isinstance(one, dict) or not isinstance(other, dict):
+        return other
+    return {**one, **{key: merged(one[key], v) if key in one else v for key, v in other.items()}}
+
+
+class _Written:
+    """One nip; all values are texts."""
+
+    def __init__(self, data: dict[str, Any], name: str, nip: dict[str, Any], fill: Fill):
+        self.data, self.name, self.nip, self.fill = data, name, nip, fill
+        self.sides = {side: fill(nip[side], "rollers") for side in SIDES}
+        self.ways = {side: fill(self.sides[side].get("contact", {}), "contacts") for side in SIDES}
+        given = data.get("sheets")
+        sheets = given if isinstance(given, dict) else {}
+        only = next(iter(sheets)) if len(sheets) == 1 else None
+        self.sheet = nip.get("sheet", only)
+        sheet = sheets.get(self.sheet) if isinstance(self.sheet, str) else None
+        thickness = sheet.get("thickness") if isinstance(sheet, dict) else None
+        self.thickness = _good(thickness, "mm")
+        self.force = _good(nip.get("force"), "N")
+        try:
+            self.normal = read_direction(nip.get("normal", "z"))
+        except PydanticCustomError:
+            self.normal = (0.0, 0.0, 1.0)
+
+    def contacts(self, names: list[str]) -> list[tuple[Path, Any]]:
+        """Contacts of the rollers with each other, and of each with the sheet; where each stands."""
+        found: list[tuple[Path, Any]] = []
+        base = ("nips", self.name)
+        if isinstance(self.nip.get("contact"), dict):
+            between = {"between": list(names), "name": self.name}
+            found.append(((*base, "contact"), {**self.nip["contact"], **between}))
+        for side, own in zip(SIDES, names, strict=True):
+            if isinstance(self.ways[side], dict) and isinstance(self.sheet, str):
+                given = self.sides[side].get("contact", {})
+                between = {"between": [self.sheet, own], "name": f"{self.name}_{side}"}
+                found.append(((*base, side, "contact"), {**given, **between}))
+        return found
+
+    def roller(self, side: str) -> dict[str, Any]:
+        """A roller without its nip's own keys, in its place, its press with the preload."""
+        given = {k: v for k, v in self.nip[side].items() if k not in ("name", "contact")}
+        given = {"axis": self.nip.get("axis", "y"), "center": self._center(side)} | given
+        press = self.sides[side].get("press")
+        if isinstance(press, dict):
+            down = [-v if side == "upper" else v for v in self.normal]
+            own = {"direction": [v + 0.0 for v in down], **press}
+            preload = self._preload(side, own, down)
+            given["press"] = {**own, "preload": preload} if preload else own
+        return given
+
+    def _center(self, side: str) -> Any:
+        at, away = self.nip.get("at"), self._away(side)
+        if away is None or not isinstance(at, (list, tuple)) or len(at) != 3:
+            return at
+        found = []
+        for place, n in zip(at, self.normal, strict=True):
+            n = n if side == "upper" else -n
+            if n == 0.0 or not isinstance(place, str):
+                found.append(place)
+                continue
+            size = f"({away})" if abs(n) == 1.0 else f"{abs(n)!r}*({away})"
+            sign = "-" if n < 0.0 else "+"
+            zero = ZERO.fullmatch(place)
+            found.append(f"{sign if n < 0.0 else ''}{size}" if zero else f"{_part(place)} {sign} {size}")
+        return found
+
+    def _away(self, side: str) -> str | None:
+        """From the middle plane of the sheet to the axis: R + s/2 - d."""
+        radius, depth = self._radius(side), self._depth(side)
+        if radius is None or depth is None or self.thickness is None:
+            return None
+        return f"{radius} + {self.thickness}/2 - {depth}"
+
+    def _radius(self, side: str) -> str | None:
+        given = self.sides[side]
+        diameter = _good(given.get("diameter"), "mm")
+        return f"{diameter}/2" if diameter else _good(given.get("radius"), "mm")
+
+    def _depth(self, side: str) -> str | None:
+        """How deep the roller presses into the sheet: F = k d^1.5 (Eq. 10)."""
+        way = self.ways[side]
+        stiffness = _good(way.get("stiffness") if isinstance(way, dict) else None, "N/mm^1.5")
+        return f"({self.force}/{stiffness})^(2/3)" if self.force and stiffness else None
+
+    def _preload(self, side: str, press: dict[str, Any], down: list[float]) -> str | None:
+        """What the spring has where the rollers just touch: the force, less the weight, and less what it
+        gains on the way from there to the sheet's place between them."""
+        found, between = self.force, self._between()
+        if found is None:
+            return None
+        meeting = self.fill(self.nip.get("contact"), "contacts")
+        if between and isinstance(meeting, dict):
+            stiffness, own = (_good(given.get("stiffness"), unit) for given, unit in
+                              ((press, "N/mm"), (meeting, "N/mm^1.5")))  # fmt: skip
+            if stiffness is None or own is None:
+                return None
+            found += f" - {stiffness}*({between})"
+            if of_text(between, "mm") < 0.0:  # they meet through the sheet
+                found += f" + {own}*(-({between}))^1.5"
+        return found + self._weight(side, press, down)
+
+    def _between(self) -> str | None:
+        """What is left of the sheet between the two rollers."""
+        low, high = (self._depth(side) for side in SIDES)
+        return f"{self.thickness} - {low} - {high}" if self.thickness and low and high else None
+
+    def _weight(self, side: str, press: dict[str, Any], down: list[float]) -> str:
+        """Less the weight of roller and carrier along the press."""
+        mass, carrier = _good(self.sides[side].get("mass"), "g"), press.get("carrier_mass")
+        gravity = self.data.get("gravity", _WEIGHT)
+        pulls = gravity if isinstance(gravity, (list, tuple)) and len(gravity) == 3 else []
+        heavy = f"1.001*{mass}" if carrier is None else f"({mass} + {_good(carrier, 'g')})"
+        if mass is None or "None" in heavy:
+            return ""
+        found = ""
+        for way, pull in zip(down, pulls, strict=False):
+            text = _good(pull, "m/s^2")
+            if way == 0.0 or text is None or ZERO.fullmatch(str(pull)):
+                continue
+            factor = "" if abs(way) == 1.0 else f"*{abs(way)!r}"
+            found += f" {'-' if way > 0.0 else '+'} {heavy}*{text}{factor}"
+        return found
+
+
+def _good(text: Any, unit: str) -> str | None:
+    """A text as a part of a formula; None where it is no value of such a unit: its own field reports it."""
+    try:
+        of_text(text, unit)
+    except ValueError:
+        return None
+    return _part(text)
+
+
+def _part(text: str) -> str:
+    return text if _ATOM.fullmatch(text) else f"({text})"
