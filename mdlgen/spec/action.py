@@ -29,7 +29,7 @@ class Probe(OnSheet):
 
 
 class Load(OnSheet):
-    """A dead load: its direction stays that of the start, in sheet axes."""
+    """A load, given in the axes of the sheet at the start. Its direction does not turn with the sheet."""
 
     force: ForceVector | None = Field(default=None, description="total force, sheet axes at the start")
     moment: MomentVector | None = Field(

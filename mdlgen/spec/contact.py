@@ -27,8 +27,8 @@ class Friction(Strict):
     )
     friction_velocity: SpeedScale | None = Field(
         default=None,
-        description="slip speed from which on friction is dynamic; the stiction velocity where left out, or "
-        "1.5 times it where the two coefficients differ",
+        description="slip speed from which on friction is dynamic; where left out the stiction velocity, or "
+        "1.5 times that where the two coefficients differ",
     )
 
     @model_validator(mode="before")
@@ -80,8 +80,8 @@ class Contact(Strict):
         default=None, description="its name, where contacts are a list; in a mapping the key is the name"
     )
     between: Annotated[tuple[Side, Side], BeforeValidator(_two)] = Field(
-        description="two parts by name or pattern, or lists of them; every pair of one of each side that "
-        "matches gets this contact"
+        description="two sides, each a name, a pattern as 'motor_*' or a list of them; each part of one side "
+        "has this contact with each part of the other"
     )
     stiffness: Annotated[float, quantity("N/mm^1.5", 0.0, open_low=True)] = Field(
         description="k of one pair (Eq. 10)"
@@ -92,20 +92,22 @@ class Contact(Strict):
         description="coefficient of friction mu (Eq. 12): a number, or a mapping; 0 where left out",
     )
     smoothing: SpeedScale = Field(
-        default=default("1 mm/s"), description="speed over which damping and friction change sign; 1 mm/s"
+        default=default("1 mm/s"),
+        description="slip speed over which friction rises from 0 to its full value, and speed of approach "
+        "over which damping does",
     )
     rolling_resistance: Share = Field(
         default=0.0,
-        description="f of a roller that rolls on the other part: a couple f N R against its angular velocity "
-        "about its axis relative to that part, N the normal force, R its radius (of two rollers 1/R = 1/R1 + "
-        "1/R2; on an arc of radius A 1/R1 + 1/A, in its hollow 1/R1 - 1/A; of a rim the greatest), so that a "
-        "roller that rolls at a steady speed is held back by f N; its sign changes over `smoothing`, of the "
-        "angular velocity times R",
+        description="coefficient f of a roller that rolls on the other part: at a steady speed it is held "
+        "back by f N, where N is the normal force. The couple is f N R, against the angular velocity of the "
+        "roller relative to the other part. R is its radius; of two rollers 1/R = 1/R1 + 1/R2; on an arc of "
+        "radius A 1/R = 1/R1 + 1/A, in its hollow 1/R = 1/R1 - 1/A; of a rim the greatest radius. The couple "
+        "rises over `smoothing`, as the angular velocity times R",
     )
     share: Literal["width", "pair"] = Field(
         default="width",
-        description="width: boxes under one roller, or on boxes of another sheet, share k by the area they "
-        "cover; pair: k each, as MotionSolve",
+        description="width: all boxes under one roller, or on one box of another sheet, have k together, "
+        "each by the part that it covers; pair: each box has k, as in MotionSolve",
     )
 
     @model_validator(mode="after")

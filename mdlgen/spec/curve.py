@@ -61,7 +61,7 @@ Point = Annotated[tuple[Strain, Stress], BeforeValidator(_pair)]
 
 
 class Curve(Strict):
-    """Stress over strain in tension, from (0, 0); compression follows the same curve, both signs turned.
+    """Stress over strain in tension, from (0, 0); compression follows the same curve with both signs changed.
 
     Between points and their mirror images the curve is the monotone cubic of Fritsch and Carlson (PCHIP).
     """

@@ -26,10 +26,12 @@ class Graded(Strict):
         default=(), strict=False, description="places along the side, from the sheet's centre"
     )
     width: PositiveLength | None = Field(
-        default=None, description="around each place: finest within half of it, as elsewhere beyond it"
+        default=None,
+        description="boxes are shortest up to half of this away from each place, and grow to their full "
+        "length at this distance",
     )
     ratio: Annotated[float, Field(gt=1, le=100)] | None = Field(
-        default=None, description="how many times as long the boxes are elsewhere"
+        default=None, description="length of the boxes elsewhere over that of the shortest"
     )
 
     @model_validator(mode="before")

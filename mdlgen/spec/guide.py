@@ -50,10 +50,11 @@ class Line(Strict):
     from_: Position = Field(alias="from", description="where it begins")
     to: Position = Field(description="where it ends")
     axis: Direction = Field(
-        description="direction across the sheet; sides are as seen with the axis towards you"
+        description="direction across the sheet; left and right are as seen with the axis towards you"
     )
     side: Literal["left", "right", "both"] = Field(
-        description="which side is touched, on the way along it; of both the line is the middle of the plate"
+        description="which side is touched, seen on the way from `from` to `to`; with both the line is the "
+        "middle of the plate"
     )
 
     @model_validator(mode="after")
@@ -75,7 +76,7 @@ class Arc(Strict):
         description="direction across the sheet; angles turn about it by the right-hand rule"
     )
     radius: PositiveLength = Field(
-        description="radius of the face that is touched; with side: both that of the plate's middle"
+        description="radius of the face that is touched; with side: both, of the middle of the plate"
     )
     from_: Angle = Field(
         alias="from",
@@ -109,10 +110,10 @@ class Guide(Strict):
     )
     edge_radius: LengthOrZero | None = Field(
         default=None,
-        description="radius of the edges of the face that is touched; 0.1 mm where left out, or half of a "
-        "thinner plate. A sheet "
-        "climbs an edge where its corner is less than edge_radius (1 - sin(atan mu)) below the face, or else "
-        "it stubs. The edges of the other face have 0.1 mm at most",
+        description="radius of the edges of the face that is touched; where left out 0.1 mm, or half of the "
+        "thickness if that is less. A sheet whose corner is less than edge_radius (1 - sin(atan mu)) below "
+        "the face climbs the edge; a lower one is stopped (event stub). The edges of the other face have 0.1 "
+        "mm at most",
     )
 
     @property

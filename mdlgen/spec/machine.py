@@ -52,11 +52,10 @@ class Drive(Strict):
     )
     surface_speed: Annotated[float, quantity("mm/s", 0.0)] | None = Field(
         default=None,
-        description="in place of speed: speed of the roller's surface where it faces the sheet that it has a "
-        "contact with, along `direction`",
+        description="in place of speed: how fast the roller's surface moves where it touches its sheet",
     )
     direction: Direction | None = Field(
-        default=None, description="with surface_speed: where the surface moves to, where it faces the sheet"
+        default=None, description="with surface_speed: which way the surface moves where it touches its sheet"
     )
     ramp: TimeOrZero = Field(default=default("0 ms"), description="time from 0 to the full speed, linear")
     profile: tuple[Corner, ...] | None = Field(
@@ -96,10 +95,12 @@ class OneWay(Strict):
         "one in which it may turn faster than its drive"
     )
     torque: Annotated[float, quantity("N*mm", 0.0, open_low=True)] = Field(
-        description="torque that the clutch takes at the creep; more in proportion beyond"
+        description="torque of the clutch where the roller is turned against the free sense at the speed "
+        "`creep`; it is proportional to that speed"
     )
     creep: Annotated[float, quantity("rad/s", 0.0, open_low=True)] = Field(
-        default=default("0.1 rad/s"), description="speed against the free sense at which it takes the torque"
+        default=default("0.1 rad/s"),
+        description="speed against the free sense at which the clutch has its `torque`",
     )
 
 
@@ -108,18 +109,21 @@ class Press(Strict):
 
     direction: Direction = Field(description="where the spring pushes to")
     stiffness: Stiffness = Field(description="spring stiffness")
-    preload: Annotated[float, quantity("N", 0.0)] = Field(description="spring force at the free length")
+    preload: Annotated[float, quantity("N", 0.0)] = Field(
+        description="spring force where the spring has its free_length; weight along `direction` adds to it"
+    )
     free_length: PositiveLength = Field(
         default=default("6 mm"),
-        description="spring length at which the preload is stated: where the roller just touches its "
-        "counterpart (a roller, plane or guide it has a contact with), or its centre as given where it has "
-        "none, as a plate",
+        description="length of the spring where its force is `preload`. A roller is there where it just "
+        "touches its counterpart, a roller, plane or guide that it has a contact with. A plate, or a roller "
+        "without a counterpart, is there with its `center` as given. A plate moves by this length at most, "
+        "either way",
     )
     damping_ratio: Ratio = Field(default=0.05, description="relative damping of spring and roller or plate")
     carrier_mass: Mass | None = Field(
         default=None,
-        description="mass of the slide between spring and roller, a thousandth of the roller's where left "
-        "out; a plate is its own slide, to which this adds",
+        description="mass of the slide between spring and roller; a thousandth of the roller's where left "
+        "out. A plate is its own slide; this mass adds to it",
     )
 
 
@@ -127,7 +131,7 @@ class Arm(Strict):
     """A rigid arm that pivots about an axis parallel to the roller's and carries it at its end.
 
     Angles and torques are about the direction of the roller's axis (right-hand rule), from where the arm is
-    as the run begins. What drives the roller drives it against the arm, as a motor on it does.
+    as the run begins. A drive turns the roller against the arm, as a motor that sits on the arm does.
     """
 
     pivot: Position = Field(description="a point of the axis that the arm turns about, which is fixed")
@@ -216,9 +220,9 @@ class Plane(Strict):
     )
     normal: Direction = Field(description="outward normal of the contact face")
     size: Size3 = Field(
-        description="two lengths of the face, then the thickness along the normal. The first length is along "
-        "global x as far as that lies in the face, or along global y where the normal is near x; or as "
-        "`along` says"
+        description="two lengths of the face, then the thickness along the normal. The first length lies "
+        "along `along`; where that is left out, along the projection of global x on the face, or of global y "
+        "where the normal is near x"
     )
     along: Direction | None = Field(
         default=None,
@@ -233,8 +237,8 @@ class Plane(Strict):
     )
     edge_radius: LengthOrZero | None = Field(
         default=None,
-        description="radius of the edges of its face; 0.1 mm where left out, or half of a thinner plate. See "
-        "edge_radius of a guide",
+        description="radius of the edges of its face, see edge_radius of a guide; where left out 0.1 mm, or "
+        "half of the thickness if that is less",
     )
     repeat: Repeat | None = Field(default=None, description="a row of such planes")
     mirror: Mirror | None = Field(default=None, description="a second one, its mirror image")

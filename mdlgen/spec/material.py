@@ -23,24 +23,25 @@ class Damping(Strict):
 
     ratio: Ratio | None = Field(
         default=None,
-        description="relative damping zeta of every component but ty (Eq. 7), of one box and its joint; 0.12 "
+        description="damping ratio zeta of one box on its joint, for all components but ty (Eq. 7); 0.12 "
         "where nothing is given",
     )
     ratio_ty: Ratio | None = Field(
         default=None,
-        description="zeta of the rotation about y; the same as ratio where left out",
+        description="damping ratio of the rotation about y; as ratio where left out",
     )
     rotation: Literal["inertia", "paper"] | None = Field(
         default=None,
-        description="with ratio. inertia, also where left out: c_t = 2 zeta sqrt(k_t I), I the box inertia "
-        "about its edge; paper: the paper's formula with the box mass in g in place of I (Table 2)",
+        description="how rotations are damped, with ratio. inertia, the default: c_t = 2 zeta sqrt(k_t I), "
+        "where I is the inertia of a box about its edge; paper: with the mass of a box in g in place of I "
+        "(Table 2)",
     )
     time: Times | None = Field(
         default=None,
-        description="damping time tau, in place of ratio: stress = E (strain + tau strain rate), and so in "
-        "bending, on any grid; [tau_md, tau_cd] for MD and CD. What follows from E_md or D_md (k_ty) has "
-        "tau_md, from E_cd or D_cd (k_tx) tau_cd; shear, twist, k_z and a given k_tz have the mean of both; "
-        "of a measured curve it is a time of its first slope",
+        description="damping time tau, in place of ratio, the same on any grid: stress = E (strain + tau "
+        "strain rate), in bending too. [tau_md, tau_cd] gives MD and CD each their own: tau_md acts on what "
+        "follows from E_md, D_md or k_ty, tau_cd on what follows from E_cd, D_cd or k_tx, their mean on "
+        "shear, twist, k_z and a given k_tz. With a measured curve E is its first slope",
     )
     loss_factor: LossFactors | None = Field(
         default=None,

@@ -47,13 +47,13 @@ class Mesh(Strict):
     density: Density | None = Field(default=None, description="density, in place of mass")
     at: Literal["nodes", "centres"] = Field(
         default="nodes",
-        description="where the depth of an element, or of what a box covers of it, is looked at: in its "
-        "corners, or in its middle",
+        description="where the depth of a triangle, or of the part of it that a box covers, is measured: at "
+        "its corners (nodes) or in its middle (centres)",
     )
     edge_radius: LengthOrZero = Field(
         default=default("0 mm"),
-        description="radius of its edges where the outer sides of a sheet meet them, below 1 mm; 0: as sharp "
-        "as its triangles make them",
+        description="radius of its edges where the outer sides of a sheet meet them, below 1 mm; 0: the "
+        "edges are as sharp as those of the triangles",
     )
     _solid: Solid | None = PrivateAttr(default=None)
 

@@ -48,7 +48,7 @@ class Part(Strict):
     """A body of the user's MotionView model, of which nothing else is known here."""
 
     external: Annotated[Literal[True], BeforeValidator(_true)] = Field(
-        description="true: the body stands in a MotionView model of your own; there is no local run then"
+        description="true: the body is one of your own MotionView model; such a scene has no local run"
     )
     body: EntityPath = Field(description="variable of the body there")
     graphics: Annotated[tuple[EntityPath, ...], BeforeValidator(_paths)] = Field(

@@ -16,22 +16,22 @@ _SAME = 1e-9  # rad: two sectors that meet may differ by the rounding of their a
 
 
 class Sector(Strict):
-    """A part of the round; what is left out is as the roller and its contacts have it."""
+    """A part of the circumference. A key that is left out is as for the rest of the roller."""
 
     from_: Angle = Field(
         alias="from",
-        description="angle where it begins as the run begins: about the axis by the right-hand "
-        "rule, from global x, or from global y where the axis is near x",
+        description="angle of its first end at the start of the run: about the axis by the right-hand rule, "
+        "from global x, or from global y where the axis is near x",
     )
-    to: Angle = Field(description="angle where it ends")
+    to: Angle = Field(description="angle of its other end")
     radius: PositiveLength | None = Field(
         default=None, description="radius of the sector; the roller's where left out"
     )
     friction: Annotated[float, Field(ge=0, le=1e3)] = Field(
-        default=1.0, description="friction in times that of each of the roller's contacts"
+        default=1.0, description="factor to the friction of each of the roller's contacts"
     )
     stiffness: Annotated[float, Field(ge=1e-3, le=1e3)] = Field(
-        default=1.0, description="stiffness k in times that of each of the roller's contacts"
+        default=1.0, description="factor to the stiffness k of each of the roller's contacts"
     )
     restitution: Annotated[float, Field(ge=0, le=1)] | None = Field(
         default=None, description="coefficient of restitution c_R; that of the contact where left out"
@@ -48,7 +48,7 @@ class Sector(Strict):
 
 
 class Rim(Strict):
-    """Sectors of a roller, fixed to it; between them it is as the roller and its contacts say."""
+    """Sectors of a roller that turn with it. The rest of it is as the roller and its contacts say."""
 
     sectors: Annotated[tuple[Sector, ...], Field(strict=False)] = Field(
         description=f"1 to {MOST_SECTORS}, in the order of their angles as the run begins"

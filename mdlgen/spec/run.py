@@ -19,19 +19,20 @@ class Run(Strict):
     step: Time | None = Field(default=None, description="time step; chosen from the tolerance where left out")
     tolerance: Annotated[float, ratio(1e-12, 0.1)] = Field(
         default=1e-3,
-        description="wanted error of positions of sheets and orientation of single blocks, relative to "
-        "max(travel, sheet length / 10), and of slides and arm angles, relative to their range, at least "
-        "to the same lengths",
+        description="error that the estimate must not exceed: of positions of sheets, and of turns of rigid "
+        "blocks, relative to the travel, or to a tenth of the sheet's length if that is more; of slides and "
+        "arms relative to their range, or to the same lengths if these are more",
     )
     print_step: Time | None = Field(
         default=None, description="time between outputs; duration / 200 where left out"
     )
-    prune: bool = Field(default=True, description="leave out contacts of pairs that cannot touch")
+    prune: bool = Field(default=True, description="leave out pairs of boxes and parts that cannot touch")
     symmetry: bool = Field(
         default=True, description="solve one half of a scene that is its own mirror image (lattice)"
     )
     margin: PositiveLength = Field(
-        default=default("5 mm"), description="added to the swept bounds from which contacts are kept"
+        default=default("5 mm"),
+        description="how far a body may go beyond the bounds that its speeds allow; pairs within are kept",
     )
 
     @model_validator(mode="after")

@@ -96,11 +96,12 @@ class Scene(Strict):
     contacts: tuple[Contact, ...] = Field(
         default=(),
         strict=False,
-        description="which parts touch, and how, as a list or by name; parts of no contact pass through",
+        description="which parts can touch, and how, as a list or by name; parts without a contact pass "
+        "through each other",
         json_schema_extra=_list_or_names,
     )
     defaults: Defaults | None = Field(
-        default=None, description="what contacts and rollers have where they do not say it"
+        default=None, description="values of keys that contacts and rollers leave out"
     )
     loads: tuple[Load, ...] = Field(default=(), strict=False, description="forces and moments on sheets")
     run: Run = Field(default_factory=Run, description="duration, analysis and accuracy")

@@ -16,7 +16,7 @@ class Curl(Strict):
     """Bent to a circle along one direction."""
 
     radius: Length = Field(
-        description="radius of the bent sheet; its edges rise along its z axis; negative: they sink"
+        description="radius of the bent sheet; positive: its edges rise along its z axis, negative: they sink"
     )
     along: Direction = Field(description="the direction that is bent: x (MD) or y (CD)")
 
@@ -30,7 +30,7 @@ class Fold(Strict):
         description="angle by which the sheet turns there, towards its z axis; -170 to 170 deg"
     )
     stiffness: Annotated[float, Field(ge=1e-3, le=10)] = Field(
-        default=1.0, description="bending stiffness of the crease in times that of the sheet"
+        default=1.0, description="factor to the bending stiffness of the sheet, for the crease"
     )
 
     @model_validator(mode="after")
@@ -57,7 +57,7 @@ class DogEar(Strict):
         description="angle by which the corner turns towards the sheet's z axis; -170 to 170 deg"
     )
     stiffness: Annotated[float, Field(ge=1e-3, le=10)] = Field(
-        default=1.0, description="bending stiffness of the crease in times that of the sheet"
+        default=1.0, description="factor to the bending stiffness of the sheet, for the crease"
     )
 
     @model_validator(mode="after")
@@ -78,7 +78,8 @@ class Shape(Strict):
 
     start: Literal["bent", "flat"] = Field(
         default="bent",
-        description="bent: it begins in this shape; flat: it begins flat, and its joints push towards it",
+        description="bent: the sheet begins in this shape; flat: it begins flat, and its joints push it "
+        "towards this shape",
     )
     curl: Curl | None = Field(default=None, description="a curl")
     folds: tuple[Fold, ...] = Field(default=(), strict=False, description="creases, parallel to each other")

@@ -60,13 +60,14 @@ class Sheet(Strict):
         default=None, description="mass per area, in place of mass"
     )
     density: Annotated[float, quantity("kg/m^3", 0.0, open_low=True)] | None = Field(
-        default=None, description="density, in place of mass; times size and thickness"
+        default=None, description="density, in place of mass; the mass is density times size and thickness"
     )
     boxes: Counts2 = Field(description="[n_x, n_y] boxes; [1, 1] is one rigid block")
     layout: Literal["edge_to_edge", "center_to_center", "plate"] = Field(
         default="edge_to_edge",
-        description="two bushings per pair at the shared corners, or one at the edge's middle; plate: one "
-        "there with the bending, twist, membrane and shear stiffness of an orthotropic plate",
+        description="how two boxes are joined. edge_to_edge: two bushings at the shared corners; "
+        "center_to_center: one in the middle of the shared edge; plate: one there with the bending, twist, "
+        "membrane and shear stiffness of an orthotropic plate",
     )
     grid: Literal["tiled", "paper"] = Field(
         default="tiled",
@@ -84,8 +85,8 @@ class Sheet(Strict):
     )
     velocity: Velocity = Field(
         default=origin("m/s"),
-        description="initial velocity of the middle of the outline, where `center` is; the centre of mass of "
-        "a sheet with zones is elsewhere, and moves with the spin about that middle, too",
+        description="initial velocity of the middle of the outline, which is at `center`. The centre of mass "
+        "of a sheet with zones is elsewhere, so that `spin` adds to its velocity",
     )
     spin: Spin = Field(
         default=origin("rad/s"),

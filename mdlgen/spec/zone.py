@@ -20,7 +20,7 @@ Factor = Annotated[float, Field(ge=1e-3, le=1e3)]
 
 
 class Zone(Strict):
-    """A rectangle of the sheet. A box that it covers in part has its share of what it changes.
+    """A rectangle of the sheet. A box that it covers in part is changed by that part.
 
     The sheet's mass is that of the whole sheet, zones included.
     """
@@ -30,10 +30,12 @@ class Zone(Strict):
     thickness: Annotated[float, quantity("mm", 0.01, 50.0, slip=1000.0)] | None = Field(
         default=None, description="thickness here; bending goes with its third power"
     )
-    density: Factor = Field(default=1.0, description="density in times that of the rest")
-    stiffness: Factor = Field(default=1.0, description="moduli in times those of the rest")
+    density: Factor = Field(default=1.0, description="factor to the density of the rest")
+    stiffness: Factor = Field(
+        default=1.0, description="factor to the moduli and the bending stiffness D of the rest"
+    )
     friction: Annotated[float, Field(ge=0, le=1e3)] = Field(
-        default=1.0, description="friction of every contact in times that of the rest"
+        default=1.0, description="factor to the friction of every contact"
     )
 
     @model_validator(mode="after")
