@@ -116,7 +116,7 @@ def _parts(model: Model, balanced: Callable, load: float, place: tuple) -> str |
         if part < LEAST_PART or rounds > MANY:
             break
     if level < 1.0 and reason is None:
-        reason = f"no balance was found above {100 * level:.3g} % of the load in {rounds} rounds"
+        reason = f"no balance was found above {100 * level:.3g} % of the load in {rounds} iterations"
     return reason
 
 

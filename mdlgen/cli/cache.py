@@ -17,7 +17,7 @@ def cache(
     clear: Annotated[bool, typer.Option("--clear", help="Remove what is kept.")] = False,
     check: Annotated[
         bool,
-        typer.Option("--check", help="Tell which solver's program fits its kernels; exit code 3: not all."),
+        typer.Option("--check", help="Print which shipped programs fit; exit code 3: not all do."),
     ] = False,
     quiet: Quiet = False,
     verbose: Verbose = False,

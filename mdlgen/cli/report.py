@@ -103,7 +103,7 @@ def export(
 
     writers = {".glb": glb, ".vtkhdf": vtkhdf}
     if output.suffix.lower() not in writers:
-        raise SpecError(f"{output}: the ending tells the format; there are: {', '.join(writers)}")
+        raise SpecError(f"{output}: the name's ending chooses the format; there are: {', '.join(writers)}")
     paths.write_atomic(output, writers[output.suffix.lower()](load(folder)))
     if not quiet:
         say(f"wrote {output}")

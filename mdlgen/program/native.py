@@ -165,7 +165,7 @@ class Call:
                 self._writers[k](row.words, arg)
                 last[k] = arg
         if self._function(row.address) != 0:
-            raise MemoryError(f"{self.name}: no room for its arrays")
+            raise MemoryError(f"{self.name}: not enough memory for its arrays")
         return self._read(row.result)
 
     def release(self) -> None:

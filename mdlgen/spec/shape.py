@@ -95,7 +95,7 @@ class Shape(Strict):
         if self.curl is not None and self.curl.radius == 0.0:
             raise fail("curl.radius is 0 mm; give the radius, or leave the curl out")
         if self.dog_ears and ways:
-            raise fail("dog_ears beside a curl or folds are not modelled; give the one or the other")
+            raise fail("dog_ears together with a curl or folds are not modelled; give the one or the other")
         if self.dog_ears and self.start == "flat":
             raise fail("dog_ears begin folded; start: flat goes with a curl and folds")
         if not ways and not self.dog_ears:

@@ -58,7 +58,7 @@ def report_text(found: Verification) -> str:
     turned = found.turned
     if turned is not None:
         lines.append(
-            f"{turned.values} values of data sets turned, each in the text and in the spec: "
+            f"{turned.values} values of data sets changed, each in the text and in the scene: "
             f"largest difference {turned.largest:.1e}"
         )
         if turned.shown_only:

@@ -49,7 +49,7 @@ def remarks(given: Any, own: Own, found: Verification) -> None:
             notes.append(str(finding))
     found.notes += notes[:_MOST_NOTES]
     if len(notes) > _MOST_NOTES:
-        found.notes.append(f"and {len(notes) - _MOST_NOTES} more remarks, which mdlgen lint tells")
+        found.notes.append(f"and {len(notes) - _MOST_NOTES} more remarks, which mdlgen lint prints")
 
 
 def _short(statement: Any) -> str:

@@ -72,7 +72,7 @@ class _Turner:
             if compared.largest > turned.largest:
                 turned.largest, turned.where = compared.largest, f"{path}: {kind} {compared.where}"
             for difference in compared.differences[:_MOST]:
-                what = f"{difference.what}, with {path} turned to {knob.value:g}"
+                what = f"{difference.what}, with {path} changed to {knob.value:g}"
                 turned.differences.append(Difference(kind, difference.name, what))
 
     def _tables(self, values: Values) -> dict[str, Table]:
