@@ -7,6 +7,7 @@ import contextlib
 import io
 import re
 import shlex
+import shutil
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -139,6 +140,47 @@ def test_the_commands_of_the_readme_print_what_it_says(
             else:
                 check_printed(inline, done.output, line)
     assert opened == [(tmp_path / "out" / "one_nip" / "report.html").as_uri()]
+
+
+# Commands in examples that need what a test has not at hand; each is run by another file of tests.
+ELSEWHERE = {
+    "bench": "test_bench.py, test_validation.py",
+    "cache": "test_packaging.py",
+    "run --resume": "test_keep.py",
+    "calibrate samples/cantilever.yaml --measured decay.csv": "test_calibrate.py",
+    "sweep scene.yaml": "test_sweep_cluster.py, with a scheduler",
+}
+EXAMPLES = [
+    page
+    for page in PAGES
+    if re.search(r"^ {4,}mdlgen [^\n]*$", page.read_text("utf-8"), re.MULTILINE)
+    and page.parent.name in ("how-to", "motionview", "reference")
+]
+
+
+@pytest.mark.parametrize("page", EXAMPLES, ids=lambda p: p.stem)
+def test_examples_of_other_pages_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Indented commands, with samples of few boxes and a short run, and the results that they speak of."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("webbrowser.open", lambda url: True)
+    shutil.copytree(samples(), tmp_path / "samples")
+    for name in ("transport_4x4", "tilt_correction", "cantilever"):
+        file = tmp_path / "samples" / f"{name}.yaml"
+        text = re.sub(r"boxes: \[\d+, \d+\]", "boxes: [5, 6]", file.read_text("utf-8"))
+        file.write_text(re.sub(r"duration: \d+ ms", "duration: 4 ms", text), "utf-8")
+    shutil.copy(tmp_path / "samples" / "transport_4x4.yaml", tmp_path / "scene.yaml")
+    for folder, step in (("coarse", 0.2), ("fine", 0.1), ("coarse_step", 0.2), ("fine_step", 0.1)):
+        run(f"run samples/transport_4x4.yaml --set run.step={step}ms -o out/{folder}")
+    run("run samples/transport_4x4.yaml --set run.step=0.1ms --set run.duration=50ms -o out/transport_4x4")
+    lines = re.findall(r"^ {4,}mdlgen ((?!.*OPTIONS\])[^\n]*)$", page.read_text("utf-8"), re.MULTILINE)
+    for line in lines:
+        if not line.startswith(tuple(ELSEWHERE)):
+            run(line)
+
+
+def run(line: str) -> None:
+    done = CliRunner().invoke(app, shlex.split(line))
+    assert done.exit_code == 0, f"mdlgen {line}\n{done.output}"
 
 
 def test_what_is_printed_is_compared() -> None:
