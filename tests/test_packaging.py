@@ -109,7 +109,7 @@ def test_the_readmes_first_scene_has_no_lint():
 
 def test_the_manuals_pieces_of_scenes_load():
     scene, *pieces = (YAML(typ="safe").load(block) for block in yaml_blocks("docs/reference/scene.md"))
-    graded, zones, shape, rims, guides, meshes, named, parts = pieces
+    formulas, graded, zones, shape, rims, nips, guides, meshes, named, parts = pieces
 
     def lowered(**more):
         return mdlgen.lower(mdlgen.loads(json.dumps({**scene, **more})))
@@ -132,6 +132,17 @@ def test_the_manuals_pieces_of_scenes_load():
     turned = {name: {**plain, **part} for name, part in rims["rollers"].items()}
     made = lowered(rollers=scene["rollers"] | turned)
     assert made.roller("feed").rim is not None and made.roller("skim").arm is not None
+    # values that follow from parameters, and rollers and contacts that a nip makes
+    motor = {**scene["rollers"]["motor"], **formulas["rollers"]["motor"], "radius": "radius"}
+    driven = lowered(parameters=formulas["parameters"], rollers={**scene["rollers"], "motor": motor})
+    assert driven.roller("motor").speed == pytest.approx(1.4 / 7.5)  # rad/ms
+    wide = {**scene["sheets"]["note"], "size": ["67 mm", "127 mm"], "boxes": [10, 20]}
+    gripped = mdlgen.loads(
+        json.dumps({**scene, **nips, "sheets": {"note": wide}, "rollers": {}, "contacts": []})
+    )
+    assert {name for name in gripped.rollers if name.startswith("entry_")} == {
+        f"entry_{side}_{end}" for side in ("left", "right") for end in ("lower", "upper")
+    }
     # contacts by name, and what all of them have
     grips = mdlgen.loads(json.dumps({**scene, **named})).contacts
     assert {contact.friction.static for contact in grips} == {0.8}
