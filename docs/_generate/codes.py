@@ -9,7 +9,7 @@ from mdlgen.explain import SCENE, TEXT
 EXITS = (
     ("0", "done"),
     ("1", "an internal error; `-v` shows the traceback. Please report it"),
-    ("2", "a scene, a value or a call that cannot be meant; a MotionView text with errors (`lint`)"),
+    ("2", "a mistake in a scene, a value or a call; a MotionView text with errors (`lint`)"),
     ("3", "a file that cannot be read or written"),
     ("4", "a solver failed; the reason is printed and nothing is written"),
     ("5", "an accuracy check failed: `run.tolerance` was missed, or `verify` found a difference"),
