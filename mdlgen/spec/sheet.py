@@ -185,7 +185,10 @@ class Sheet(Strict):
                     )
             for other in names[:k]:
                 if zone.meets(self.zones[other]):
-                    raise fail(f"the zones {other} and {name} overlap; end one where the other begins", within=("zones", name))
+                    raise fail(
+                        f"the zones {other} and {name} overlap; end one where the other begins",
+                        within=("zones", name),
+                    )
 
     def _check_shape(self) -> None:
         if self.shape is None:
