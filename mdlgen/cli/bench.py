@@ -52,8 +52,8 @@ def bench(
         bool | None,
         typer.Option(
             "--peers/--no-peers",
-            help="MuJoCo and an Exudyn script beside ours in transport: where the extra `peers` is "
-            "installed and no solver is chosen, if left out.",
+            help="Run MuJoCo and a plain Exudyn script in transport too; if left out, where the extra "
+            "`peers` is installed and no solver is chosen.",
         ),
     ] = None,
     page: Annotated[

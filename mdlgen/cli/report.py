@@ -18,7 +18,7 @@ PAGE = "report.html"
 def report(
     folders: Annotated[
         list[Path],
-        typer.Argument(metavar="DIR ...", help="What `mdlgen run` wrote; of several, one page with all."),
+        typer.Argument(metavar="DIR ...", help="Folders that `mdlgen run` wrote; several go on one page."),
     ],
     output: Annotated[
         Path | None,

@@ -64,12 +64,14 @@ def run(
             "--checkpoint",
             metavar="SECONDS",
             min=0.0,
-            help="How often a state to go on from is kept in DIR/checkpoint: 60 if left out.",
+            help="Seconds between the states that --resume goes on from; 60 if left out.",
         ),
     ] = None,
     keep_partial: Annotated[
         bool,
-        typer.Option("--keep-partial", help="After Ctrl-C write what there is into DIR/partial, marked so."),
+        typer.Option(
+            "--keep-partial", help="After Ctrl-C write the results so far into DIR/partial, marked as a part."
+        ),
     ] = False,
     pictures: Pictures = False,
     sets: Sets = None,

@@ -118,7 +118,7 @@ def explain(
         str | None,
         typer.Argument(
             metavar="CODE",
-            help="As W104, or dangling: all are listed if left out.",
+            help="A code, as W104 or dangling; all are listed if left out.",
             autocompletion=completion.codes,
         ),
     ] = None,

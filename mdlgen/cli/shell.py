@@ -118,7 +118,7 @@ Pictures = Annotated[
     bool,
     typer.Option(
         "--pictures",
-        help="Draw report.png and strain.png too; a folder that has them gets them anew in any case.",
+        help="Draw report.png and strain.png too. Where DIR has them already, they are drawn in any case.",
     ),
 ]
 Lets = Annotated[

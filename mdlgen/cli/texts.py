@@ -45,7 +45,7 @@ def mdl(
         typer.Option(
             "--only",
             metavar="sheets",
-            help="The sheets and their contacts alone, as a system definition to bring into your own model.",
+            help="Only the sheets and their contacts, as a system definition to import into your own model.",
             autocompletion=completion.sheets_only,
         ),
     ] = None,
@@ -53,7 +53,9 @@ def mdl(
     limits: Raised = None,
     set_contact: Annotated[
         bool,
-        typer.Option("--set-contact", help="Write contact numbers with SetContact, unverified in its order."),
+        typer.Option(
+            "--set-contact", help="Write contact numbers with SetContact; their order is unverified."
+        ),
     ] = False,
     companion: Annotated[
         Path | None,
@@ -196,7 +198,7 @@ def verify(
     spec: Spec,
     text: Annotated[
         Path | None,
-        typer.Option("--text", metavar="FILE.mdl", help="A text to take in place of the one mdlgen writes."),
+        typer.Option("--text", metavar="FILE.mdl", help="A text to check in place of the one mdlgen writes."),
     ] = None,
     script: Annotated[
         Path | None,
@@ -208,20 +210,24 @@ def verify(
     ] = None,
     deck: Annotated[
         Path | None,
-        typer.Option("--deck", metavar="FILE.xml", help="A deck to take in place of the one mdlgen writes."),
+        typer.Option("--deck", metavar="FILE.xml", help="A deck to check in place of the one mdlgen writes."),
     ] = None,
     only: Annotated[
         str | None,
         typer.Option(
             "--only",
             metavar="sheets",
-            help="The sheets alone; --text may be a model that has them.",
+            help="Check the sheets only; --text may be a whole model that holds them.",
             autocompletion=completion.sheets_only,
         ),
     ] = None,
     turn: Annotated[
         bool,
-        typer.Option("--turn/--no-turn", help="Also change each value of the data sets, in text and scene."),
+        typer.Option(
+            "--perturb/--no-perturb",
+            "--turn/--no-turn",
+            help="Also change each value of the data sets, in text and scene, and compare again.",
+        ),
     ] = True,
     sets: Sets = None,
     limits: Raised = None,
