@@ -24,10 +24,10 @@ OF_NIPS = tuple(name for name in Nip.model_fields if name not in ("repeat", "mir
 
 
 class Defaults(Strict):
-    """What contacts, rollers and nips have where they do not say it themselves.
+    """Values of keys that contacts, rollers and nips leave out.
 
-    A mapping such as `press` is filled key by key where a part gives some of it. `KEY: null` on a part leaves
-    the default out.
+    Where a part gives some keys of a mapping such as `press`, the others come from here. `KEY: null` on a
+    part leaves the default out.
     """
 
     contacts: dict[str, Any] = Field(
