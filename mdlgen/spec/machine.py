@@ -110,7 +110,7 @@ class Press(Strict):
     direction: Direction = Field(description="where the spring pushes to")
     stiffness: Stiffness = Field(description="spring stiffness")
     preload: Annotated[float, quantity("N", 0.0)] = Field(
-        description="spring force where the spring has its free_length; weight along `direction` adds to it"
+        description="force of the spring at its free_length; weight along `direction` presses in addition"
     )
     free_length: PositiveLength = Field(
         default=default("6 mm"),
