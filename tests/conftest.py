@@ -3,12 +3,20 @@ which two workers do not compile the same for minutes."""
 
 from __future__ import annotations
 
+import functools
+import os
+
 import pytest
+import ran
+import typer.main
 from hypothesis import settings
 
 from mdlgen.program import build
 from mdlgen.program.file import Unfit
 from mdlgen.program.kernel import alone
+
+# A process makes its commands ready once; tests that call hundreds of them in one process would each time.
+typer.main.get_command = functools.cache(typer.main.get_command)
 
 settings.register_profile("mdlgen", deadline=None, derandomize=True)
 settings.load_profile("mdlgen")
@@ -22,6 +30,13 @@ PLAIN = (
     *("test_motionview", "test_names", "test_packaging", "test_reader", "test_rotations", "test_spec"),
     *("test_supply", "test_text_properties", "test_units", "test_verify"),
 )
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _shared_runs(tmp_path_factory: pytest.TempPathFactory) -> None:
+    """Workers read the results of each other's runs; see ran.solved."""
+    if os.environ.get("PYTEST_XDIST_WORKER"):
+        ran.folder = tmp_path_factory.getbasetemp().parent / "ran"
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -1,12 +1,57 @@
-"""Runs that more than one test looks at: small, and by the real solver."""
+"""Runs that more than one test looks at, by the real solvers."""
 
 from __future__ import annotations
 
+import os
+import pickle
+import uuid
+from copy import deepcopy
 from functools import lru_cache
+from pathlib import Path
 
 import mdlgen
+from mdlgen.model.tables import Model
 from mdlgen.paths import samples
 from mdlgen.results.result import Result
+from mdlgen.results.seal import digest
+
+# Folder that the workers of one session share, see conftest; None: there is one worker.
+folder: Path | None = None
+MOST = 32  # results that a worker holds
+_held: dict[str, Result] = {}
+
+
+def solved(model: Model, solver: str = "auto") -> Result:
+    """The result of a model, of the run before where there was one of an equal model in this session: a test
+    of each solver and one that both agree look at the same runs.
+
+    Not for what asks whether two runs are the same.
+    """
+    key = f"{digest(model)}_{solver}"
+    result = _held.pop(key, None) or _read(key)
+    if result is None:
+        result = mdlgen.solve(model, solver)
+        assert result.ok, result.status
+        _write(key, result)
+    _held[key] = result
+    if len(_held) > MOST:
+        del _held[next(iter(_held))]
+    return deepcopy(result)
+
+
+def _read(key: str) -> Result | None:
+    if folder is None or not (folder / key).exists():
+        return None
+    return pickle.loads((folder / key).read_bytes())
+
+
+def _write(key: str, result: Result) -> None:
+    # what lattice runs takes as long to write
+    if folder is not None and result.solver == "exudyn":
+        folder.mkdir(exist_ok=True)
+        part = folder / uuid.uuid4().hex
+        part.write_bytes(pickle.dumps(result))
+        os.replace(part, folder / key)
 
 
 @lru_cache(maxsize=8)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from ran import solved
 
 import mdlgen
 from mdlgen.backends.motionsolve import validate
@@ -53,12 +54,6 @@ run: {duration: 1200 ms, print_step: 1 ms, prune: false}
 SOLVERS = ("lattice", "exudyn")
 G = 9.81e-3  # mm/ms^2
 HELD = ("rollers.motor.drive.speed=0 rad/s", "sheets.note.clamp={edge: x_min, length: 0 mm}")
-
-
-def solved(made: Model, solver: str) -> Result:
-    result = mdlgen.solve(made, solver)
-    assert result.ok, result.status
-    return result
 
 
 def skimmer(*overrides: str) -> Model:

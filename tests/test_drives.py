@@ -6,12 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from ran import solved
 
 import mdlgen
 from mdlgen.checks import lints
 from mdlgen.errors import SpecError
 from mdlgen.model.lower import lower
-from mdlgen.model.tables import Floats, Model
+from mdlgen.model.tables import Floats
 from mdlgen.registry import emitter
 from mdlgen.results.compare import compare, travel
 from mdlgen.results.result import Result
@@ -27,12 +28,6 @@ def scene(folder: Path, *overrides: str) -> mdlgen.Scene:
     file = folder / "prof.yaml"
     file.write_text(FORTH_AND_BACK)
     return load(file, overrides)
-
-
-def solved(model: Model, solver: str) -> Result:
-    result = mdlgen.solve(model, solver)
-    assert result.ok, result.status
-    return result
 
 
 def spin(result: Result, name: str) -> Floats:

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 import math
+from itertools import product
 
 import numpy as np
 import pytest
 
 import mdlgen
-from mdlgen.backends.lattice.arrays import build
-from mdlgen.backends.lattice.kernels import band, dense, forces, step
+from mdlgen.backends.lattice.arrays import System, build
+from mdlgen.backends.lattice.kernels import band, dense, entries, forces, step
 from mdlgen.bench.suites import flight
 from mdlgen.bench.suites.impact import thrown
 from mdlgen.errors import RefusedError
 from mdlgen.mechanics.bushing import bushing, bushing_pair
 from mdlgen.mechanics.vector import exp_rotation
 from mdlgen.model.lower import lower
-from mdlgen.model.tables import Model
+from mdlgen.model.tables import BOX_CYLINDER, Model
 from mdlgen.paths import samples
 from mdlgen.registry import chosen
 from mdlgen.results.compare import compare, travel
@@ -152,6 +153,21 @@ def test_a_small_matrix_is_factored_and_solved_transposed(many: int) -> None:
     assert not dense.lu(room, swaps, many)
 
 
+def into_rollers(system: System, x: np.ndarray, r: np.ndarray) -> np.ndarray:
+    """Whether the corners or the middles of the sides of a box, or of its faces, are in a roller, of each
+    pair."""
+    found = np.zeros(len(system.pairs), bool)
+    points = np.array(list(product((-1.0, 0.0, 1.0), repeat=3)))
+    for p in np.flatnonzero(system.pairs["kind"] == BOX_CYLINDER):
+        box, roller = (system.bodies[system.pairs[p][end]] for end in "ab")
+        a, b = system.pairs[p]["a"], system.pairs[p]["b"]
+        out = x[a] + (points * box["half"]) @ r[a].reshape(3, 3).T - x[b]
+        along = out @ roller["axis"]
+        off = np.linalg.norm(out - along[:, None] * roller["axis"], axis=1)
+        found[p] = ((off < roller["size"][0]) & (np.abs(along) < 0.5 * roller["size"][1])).any()
+    return found
+
+
 def test_what_touches_after_a_step_was_near_before_it() -> None:
     system = build(mdlgen.lower(load(samples() / "transport_4x4.yaml")))
     rng = np.random.default_rng(3)
@@ -186,11 +202,14 @@ def test_what_touches_after_a_step_was_near_before_it() -> None:
         close = forces.near_pairs(
             system.bodies, system.pairs, system.meshes, x, r, um, wm, step.FAR, ahead, near
         )
-        listed, every = set(near[:close].tolist()), np.arange(len(system.pairs))
-        assert close < 0.7 * len(every)
-        many, _, _ = forces.pair_forces(
-            system.bodies, system.pairs, system.meshes, every, len(every), xm, rm, um, wm, f, touched, outs
+        listed = set(near[:close].tolist())
+        assert close < 0.7 * len(system.pairs)
+        still = np.zeros_like(um)
+        many = entries.contacts(
+            system.bodies, system.pairs, system.meshes, xm, rm, still, f, touched, outs, near
         )
+        sure = set(np.flatnonzero(into_rollers(system, xm, rm)).tolist())
+        assert sure and sure <= listed
         assert set(touched[:many].tolist()) <= listed
         seen += many
     assert seen > 500

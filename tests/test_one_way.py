@@ -6,8 +6,8 @@ import re
 
 import numpy as np
 import pytest
+from ran import solved
 
-import mdlgen
 from mdlgen.backends.lattice.arrays import build
 from mdlgen.backends.motionsolve import read, validate
 from mdlgen.errors import RefusedError, SpecError
@@ -34,12 +34,6 @@ SOLVERS = ("lattice", "exudyn")
 
 def model(*overrides: str) -> Model:
     return lower(loads(FORTH_AND_BACK, "one_way", overrides))
-
-
-def solved(made: Model, solver: str) -> Result:
-    result = mdlgen.solve(made, solver)
-    assert result.ok, result.status
-    return result
 
 
 def spin(result: Result, name: str) -> Floats:

@@ -14,6 +14,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from mdlgen import paths
+from mdlgen.backends.lattice.kernels.entries import PROGRAM
+from mdlgen.paths import samples
 from mdlgen.program import build, file, layout, native
 from mdlgen.program.file import Unfit
 from mdlgen.program.layout import Misfit
@@ -212,6 +215,28 @@ def test_memory_stays_flat(tmp_path: Path, made: bytes) -> None:
     assert grown < 20_000, "kB, of 3,200,000 made"
 
 
+def test_memory_stays_flat_over_many_runs(tmp_path: Path) -> None:
+    """A hundred runs leave less than a thirtieth of what they held one by one."""
+    if PROGRAM.why_not() is not None:
+        pytest.skip("numba compiles, since the program does not fit")
+    sets = ["sheets.note.boxes=[2, 3]", "run.duration=4 ms", "run.step=0.1 ms", "run.print_step=1 ms"]
+    code = (
+        "import resource, tracemalloc, mdlgen\n"
+        f"made = mdlgen.lower(mdlgen.load({str(samples() / 'transport_4x4.yaml')!r}, {sets!r}))\n"
+        "def most(runs):\n"
+        "    assert all(mdlgen.solve(made, 'lattice').ok for _ in range(runs))\n"
+        "    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss\n"
+        "before, after = most(30), most(100)\n"
+        "tracemalloc.start()\n"
+        "most(1)\n"
+        "print([after - before, tracemalloc.get_traced_memory()[1] / 1024])"
+    )
+    cache = str(paths.user_cache())
+    grown, held = told(python(code, tmp_path, Path(cache), PYTHONPATH=os.pathsep.join(sys.path)))
+    assert held > 500
+    assert grown < 100 * held / 30, "kB"
+
+
 def test_arguments_are_forgotten_as_a_solver_ends(tmp_path: Path, made: bytes) -> None:
     package(tmp_path, made)
     code = (
@@ -275,8 +300,9 @@ def test_machine_code_is_made_for_other_machines(
     path = tmp_path / "tiny.program"
     path.write_bytes(made)
     programs = [file.read(path)[1]]
+    # that of lattice takes the most time: as this machine's own runs have it, it is made in every test of one
     for program in build.programs():
-        if program.path.exists():
+        if program.path.exists() and (program.name != "lattice" or triple.startswith(("arm64", "x86_64-pc"))):
             programs.append(file.read(program.path)[1])
     for bitcode in programs:
         machine = llvm.Target.from_triple(triple).create_target_machine(opt=3, reloc="pic")

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from ran import solved
 
-import mdlgen
 from mdlgen.backends.lattice.arrays import build
 from mdlgen.backends.motionsolve import validate
 from mdlgen.errors import SpecError
@@ -59,12 +59,6 @@ TWO = (
 
 def model(*overrides: str) -> Model:
     return lower(loads(FEED, "rims", overrides))
-
-
-def solved(made: Model, solver: str) -> Result:
-    result = mdlgen.solve(made, solver)
-    assert result.ok, result.status
-    return result
 
 
 def way(result: Result) -> Floats:

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from ran import solved
 from solids import binary, brick, cylinder, halved, prism
 from test_roller_plate import DOWN, MASS, RADIUS, SOLVERS, G, K, N, depth, press, scene, spun
 
-import mdlgen
 from mdlgen.backends.lattice.arrays import build
 from mdlgen.errors import SpecError
 from mdlgen.mechanics.pair import pair_force
@@ -18,7 +18,6 @@ from mdlgen.mechanics.point import OUT
 from mdlgen.model.lower import lower
 from mdlgen.model.tables import CYLINDER_MESH, Model
 from mdlgen.registry import emitter
-from mdlgen.results.result import Result
 from mdlgen.spec.load import load
 from mdlgen.verify.verification import verify
 
@@ -57,12 +56,6 @@ def made(tmp_path: Path, solid: tuple[np.ndarray, np.ndarray], *sets: str, **giv
     file = tmp_path / "scene.yaml"
     file.write_text(scene(PART, **given))
     return lower(load(file, sets))
-
-
-def solved(model: Model, solver: str) -> Result:
-    result = mdlgen.solve(model, solver)
-    assert result.ok, result.status
-    return result
 
 
 def law(model: Model, at: np.ndarray) -> np.ndarray:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import ran
 from numba import njit
 from solids import binary, cylinder
 
@@ -55,9 +56,7 @@ LAYOUTS = {
 
 
 def solved(text: str, solver: str, *overrides: str, folder: Path | None = None) -> Result:
-    result = mdlgen.solve(lower(loads(text, "rolling", overrides, folder=folder)), solver)
-    assert result.ok, result.status
-    return result
+    return ran.solved(lower(loads(text, "rolling", overrides, folder=folder)), solver)
 
 
 def damped(c_r: float) -> tuple[str, ...]:
