@@ -310,7 +310,8 @@ def _untouched(model: Model) -> Iterator[Lint]:
                 "W109",
                 f"sheets.{sheet.name}",
                 "the sheet has no contact with any roller, plane or guide of the scene",
-                f"add to contacts like {{between: [{sheet.name}, ...], stiffness: 300 N/mm^1.5}}",
+                f"add to contacts like {{between: [{sheet.name}, ...], stiffness: 300 N/mm^1.5, "
+                "friction: 0.5}",
             )
     machine = (
         *(("rollers", r) for r in model.rollers),
@@ -512,7 +513,8 @@ def _unfaced(model: Model) -> Iterator[Lint]:
                     "W118",
                     f"rollers.{roller.name}.press",
                     f"it presses towards {other.name} and has no contact with it, so it goes through it",
-                    f"add to contacts {{between: [{roller.name}, {other.name}], stiffness: 30 N/mm^1.5}}",
+                    f"add to contacts {{between: [{roller.name}, {other.name}], stiffness: 30 N/mm^1.5, "
+                    "friction: 0.5}",
                 )
 
 
@@ -525,7 +527,7 @@ def _unmet(model: Model) -> Iterator[Lint]:
             f"rollers.{roller}",
             f"it comes into {model.called(pair.part.body)} and has no contact with it: a run ends where they "
             "overlap",
-            f"add to contacts {{between: [{roller}, {part}], stiffness: 30 N/mm^1.5}}",
+            f"add to contacts {{between: [{roller}, {part}], stiffness: 30 N/mm^1.5, friction: 0.5}}",
         )
 
 

@@ -43,7 +43,7 @@ SCENE = {
     ),
     "W109": (
         "A sheet that has no contact flies through the machine. Contacts are named one by one, or by a "
-        "pattern: {between: [note, 'motor_*'], stiffness: 300 N/mm^1.5}."
+        "pattern: {between: [note, 'motor_*'], stiffness: 300 N/mm^1.5, friction: 0.5}."
     ),
     "W110": (
         "A static analysis looks for rest, and a sheet that may move as a rigid body has none, or any. "

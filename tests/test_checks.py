@@ -102,7 +102,8 @@ def test_a_roller_that_begins_half_of_the_thickness_deep_is_no_finding(
 
 
 def test_a_pressed_roller_whose_counterpart_is_forgotten() -> None:
-    sheet = ", ".join(f"{{between: [note, {name}], stiffness: 300 N/mm^1.5}}" for name in ("motor", "idler"))
+    law = "stiffness: 300 N/mm^1.5, friction: 0"
+    sheet = ", ".join(f"{{between: [note, {name}], {law}}}" for name in ("motor", "idler"))
     (hit,) = (lint for lint in found("channel", f"contacts=[{sheet}]") if lint.code == "W118")
     assert hit.where == "rollers.idler.press" and "motor" in hit.message and "[idler, motor]" in hit.remedy
     # where the two are not opposite each other there is nothing to forget

@@ -134,7 +134,7 @@ SCENE = {
     },
     "contacts": [
         {"between": ["note", "low"], "stiffness": "300 N/mm^1.5", "friction": 0.5},
-        {"between": ["note", "up"], "stiffness": "300 N/mm^1.5"},
+        {"between": ["note", "up"], "stiffness": "300 N/mm^1.5", "friction": 0},
     ],
     "loads": [{"sheet": "note", "at": ["9 mm", "0 mm"], "force": ["0 N", "0.5 N", "0 N"]}],
     "supports": [{"sheet": "note", "at": ["-9 mm", "0 mm"], "fix": ["z"]}],
@@ -399,7 +399,7 @@ def test_a_spring_shorter_than_its_compression_is_refused_by_name() -> None:
 
 
 def test_names_that_would_meet_are_refused() -> None:
-    contact = 'contacts=[{"between":["motor_1_left","counter_1_left"],"stiffness":"1 N/mm^1.5"}]'
+    contact = 'contacts=[{"between":["motor_1_left","counter_1_left"],"stiffness":"1 N/mm^1.5","friction":0}]'
     fine = json.loads(
         '{"center":["500 mm","0 mm","0 mm"],"axis":"y","radius":"1 mm","width":"1 mm","mass":"1 g"}'
     )

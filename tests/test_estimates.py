@@ -38,7 +38,7 @@ def arm(stiffness: float = 4000.0, **run: Any) -> Model:
         "rollers": {
             "a": {**roller, "mass": "1 g", "arm": {**swing, "stiffness": f"{stiffness} N*mm/rad"}},
         },
-        "contacts": [{"between": ["n", "a"], "stiffness": "10 N/mm^1.5"}],
+        "contacts": [{"between": ["n", "a"], "stiffness": "10 N/mm^1.5", "friction": 0}],
         "run": {"duration": "50 ms", "margin": "20 mm", "print_step": "0.125 ms"},
     }
     return lowered(scene, **run)

@@ -199,7 +199,7 @@ sheets:
          center: [0 mm, 0 mm, 9 mm]}
 rollers:
   r: {center: [6 mm, 0 mm, 0 mm], axis: y, radius: 9 mm, width: 20 mm, mass: 10 g}
-contacts: [{between: [note, r], stiffness: 300 N/mm^1.5}]
+contacts: [{between: [note, r], stiffness: 300 N/mm^1.5, friction: 0}]
 run: {duration: 100 ms}
 """
     result = solve(lower(loads(text)))
@@ -264,7 +264,7 @@ sheets:
           velocity: [1 m/s, 0 m/s, 0 m/s]}
 rollers:
   post: {center: [30 mm, 0 mm, 0 mm], axis: z, radius: 5 mm, width: 20 mm, mass: 10 g}
-contacts: [{between: [block, post], stiffness: 300 N/mm^1.5, restitution: 1.0}]
+contacts: [{between: [block, post], stiffness: 300 N/mm^1.5, restitution: 1.0, friction: 0}]
 run: {duration: 30 ms}
 """
 

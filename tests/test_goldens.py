@@ -140,6 +140,7 @@ MESHES = _put(
         "wedge": MESH | {"rotation": ["10 deg", "20 deg", "30 deg"]},
     },
 )
+SMOOTH = {"smoothing": "20 mm/s"}
 CONTACTS = (
     _put("rollers", {"under": ROLLER | {"drive": DRIVE}}),
     _put("planes", {"level": PLANE | {"center": ["0 mm", "0 mm", "-6 mm"]}}),
@@ -147,7 +148,7 @@ CONTACTS = (
         "contacts",
         [
             {"between": ["note", "under"], "stiffness": "300 N/mm^1.5", "friction": 0.9},
-            {"between": ["note", "level"], "stiffness": "100 N/mm^1.5", "smoothing": "20 mm/s"},
+            {"between": ["note", "level"], "friction": 0, "stiffness": "100 N/mm^1.5"} | SMOOTH,
         ],
     ),
 )

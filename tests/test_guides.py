@@ -352,7 +352,7 @@ def test_a_sheet_that_begins_in_a_guide_is_told():
         ),
         (
             "contacts: [{",
-            "contacts: [{between: [l, r], stiffness: 1 N/mm^1.5}, {",
+            "contacts: [{between: [l, r], stiffness: 1 N/mm^1.5, friction: 0}, {",
             "guide touches sheets and rollers only",
         ),
     ],

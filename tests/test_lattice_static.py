@@ -31,7 +31,7 @@ FLOOR = (
 )
 POST = (
     "rollers={post: {center: [0 mm, 20 mm, -25 mm], axis: x, radius: 8 mm, width: 60 mm, mass: 10 g}}",
-    "contacts=[{between: [note, post], stiffness: 300 N/mm^1.5, restitution: 0.1}]",
+    "contacts=[{between: [note, post], stiffness: 300 N/mm^1.5, restitution: 0.1, friction: 0}]",
 )
 NIP = """
 name: nip
@@ -44,8 +44,8 @@ rollers:
   top: {center: [0 mm, 0 mm, 6 mm], axis: y, radius: 5 mm, width: 8 mm, mass: 10 g,
         press: {direction: -z, stiffness: 0.3 N/mm, preload: 3 N}}
 contacts:
-  - {between: [block, post], stiffness: 300 N/mm^1.5, restitution: 0.5}
-  - {between: [block, top], stiffness: 100 N/mm^1.5, restitution: 0.5}
+  - {between: [block, post], stiffness: 300 N/mm^1.5, restitution: 0.5, friction: 0}
+  - {between: [block, top], stiffness: 100 N/mm^1.5, restitution: 0.5, friction: 0}
 run: {analysis: static}
 """
 

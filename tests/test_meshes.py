@@ -51,8 +51,8 @@ meshes:
   two: {file: small.obj, units: cm, center: [0 mm, 0 mm, 6 mm], on: c, density: 1.2 g/cm^3, at: centres}
   three: {file: wedge.stl, center: [1 mm, 2 mm, -30 mm], rotation: [10 deg, 20 deg, 30 deg]}
 contacts:
-- {between: [r, c], stiffness: 30 N/mm^1.5}
-- {between: [note, "t*"], stiffness: 30 N/mm^1.5}
+- {between: [r, c], stiffness: 30 N/mm^1.5, friction: 0}
+- {between: [note, "t*"], stiffness: 30 N/mm^1.5, friction: 0}
 - {between: [note, one], stiffness: 30 N/mm^1.5, friction: 0.2}
 run: {duration: 1 ms}
 """
@@ -648,7 +648,8 @@ def test_a_run_ends_where_a_mesh_does_not_hold_a_box(tmp_path, solver):
         "sheets: {s: {material: m, size: [20 mm, 20 mm], thickness: 0.2 mm, mass: 1 g, boxes: [2, 2],\n"
         "             center: [0 mm, 0 mm, 1 mm]}}\n"
         "meshes: {p: {file: plate.stl}}\n"
-        "contacts: [{between: [s, p], stiffness: 1e-4 N/mm^1.5}]\nrun: {duration: 30 ms, step: 0.1 ms}\n"
+        "contacts: [{between: [s, p], stiffness: 1e-4 N/mm^1.5, friction: 0}]\n"
+        "run: {duration: 30 ms, step: 0.1 ms}\n"
     )
     result = mdlgen.solve(lower(loads(text, folder=tmp_path)), solver)
     assert not result.ok and "into mesh p" in result.status

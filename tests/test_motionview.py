@@ -529,7 +529,7 @@ def test_numbers_read_as_the_user_wrote_them():
 
 def test_names_that_would_meet_are_refused():
     sheet = '"material":"eur10","size":["67 mm","127 mm"],"thickness":"0.1 mm","mass":"0.72 g","boxes":[1,1]'
-    contact = 'contacts=[{"between":["motor_1_left","counter_1_left"],"stiffness":"1 N/mm^1.5"}]'
+    contact = 'contacts=[{"between":["motor_1_left","counter_1_left"],"stiffness":"1 N/mm^1.5","friction":0}]'
     for name in ("contact_0", "Global_Origin", "counter_1_left_ANCHOR"):
         model = model_of("transport_4x4.yaml", f'sheets={{"{name}":{{{sheet}}}}}', contact, "probes={}")
         with pytest.raises(SpecError, match="would be called"):

@@ -17,7 +17,7 @@ from mdlgen.model.overlap import HAIR, Box, Overlaps, Rod, in_box, in_triangles
 from mdlgen.spec.load import load, loads
 
 ROD = Rod(np.zeros(3), np.array([0.0, 1.0, 0.0]), 10.0, 8.0)
-OTHER = "  - {between: [strip, r], stiffness: 1 N/mm^1.5}"
+OTHER = "  - {between: [strip, r], stiffness: 1 N/mm^1.5, friction: 0}"
 
 
 def without(text: str) -> str:

@@ -149,7 +149,7 @@ def test_the_manuals_pieces_of_scenes_load():
     # meshes lie beside the samples; the mesh turns with a roller of the scene
     files = {**scene, "meshes": meshes["meshes"], "contacts": scene["contacts"] + meshes["contacts"]}
     assert len(mdlgen.lower(loads(json.dumps(files), "scene", (), ROOT / "samples")).meshes) == 2
-    feed = {"between": ["note", "feed"], "stiffness": "300 N/mm^1.5"}
+    feed = {"between": ["note", "feed"], "stiffness": "300 N/mm^1.5", "friction": 0}
     imported = lowered(parts=parts["parts"], contacts=[*scene["contacts"], feed])
     assert [part.body for part in imported.externals] == ["MODEL.sys_feed.b_feed"]
 

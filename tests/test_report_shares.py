@@ -27,7 +27,7 @@ sheets:
   top:
     {{material: m, size: [60 mm, 40 mm], thickness: 0.1 mm, mass: 0.3 g, boxes: {top}, center: {at},
      turn: {turn}}}
-contacts: [{{between: [low, top], stiffness: 100 N/mm^1.5}}]
+contacts: [{{between: [low, top], stiffness: 100 N/mm^1.5, friction: 0}}]
 run: {{duration: 1 ms}}
 """
 ON = """
@@ -41,7 +41,7 @@ rollers:
      drive: {{speed: 1 rad/s}}}}
 meshes:
   part: {{file: part.stl, center: {place}{more}}}
-contacts: [{{between: [note, {other}], stiffness: 100 N/mm^1.5}}]
+contacts: [{{between: [note, {other}], stiffness: 100 N/mm^1.5, friction: 0}}]
 run: {{duration: 1 ms}}
 """
 

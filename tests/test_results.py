@@ -95,7 +95,8 @@ class TestSummary:
         assert rollers[first]["free_of_counterpart_at_ms"] is None
 
     def test_a_roller_without_counterpart_was_never_in_contact(self) -> None:
-        alone = moving(small_model("contacts=[{between: [note, motor_1_left], stiffness: 300 N/mm^1.5}]"))
+        contact = "{between: [note, motor_1_left], stiffness: 300 N/mm^1.5, friction: 0}"
+        alone = moving(small_model(f"contacts=[{contact}]"))
         roller = summary(alone)["rollers"]["counter_1_left"]
         assert (roller["free_of_counterpart_at_ms"], roller["nip_force_n"], roller["contacts"]) == (
             0.0,

@@ -289,5 +289,5 @@ def test_two_rims_do_not_meet() -> None:
     with pytest.raises(SpecError, match="both have a rim of sectors"):
         model(
             "rollers.hold.rim={sectors: [{from: 0 deg, to: 30 deg}]}",
-            "contacts.1={between: [feed, hold], stiffness: 30 N/mm^1.5}",
+            "contacts.1={between: [feed, hold], stiffness: 30 N/mm^1.5, friction: 0}",
         )

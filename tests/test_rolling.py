@@ -104,7 +104,7 @@ def test_a_sheet_coasts_under_one_roller_over_a_plane(plane: int, c_r: float) ->
     still takes 0.27 % at restitution 0, and 0.8 % with 40 boxes, where 8.7 and 7.9 % were lost with two
     rates. Nothing is lost at restitution 1, and less on a harder plane; the rate is of each box alone."""
     text = "\n".join(line for line in COAST.splitlines() if "low" not in line) + PLANE
-    bed = f"  - {{between: [n, bed], stiffness: {plane} N/mm^1.5, restitution: 1}}"
+    bed = f"  - {{between: [n, bed], stiffness: {plane} N/mm^1.5, restitution: 1, friction: 0}}"
     text = text.replace('"???"', "top").replace("contacts:", f"contacts:\n{bed}")
     assert abs(loss(solved(text, "lattice", f"contacts.1.restitution={c_r}"))) < 1e-3
 
@@ -156,7 +156,7 @@ def test_a_slipping_nip_pulls_with_mu_n(both: bool, c_r: float) -> None:
         if both
         else COAST.replace(
             "contacts:",
-            "contacts:\n  - {between: [n, low], stiffness: 300 N/mm^1.5, smoothing: 5 mm/s}",
+            "contacts:\n  - {between: [n, low], stiffness: 300 N/mm^1.5, smoothing: 5 mm/s, friction: 0}",
         ).replace('"???"', "top")
     )
     still = ("rollers.low.drive={speed: 0 rad/s}", "rollers.top.drive={speed: 0 rad/s}", grip)
@@ -277,7 +277,7 @@ def test_a_text_that_cannot_say_it_refuses_by_name(backend: str) -> None:
 
 
 def test_a_resistance_where_nothing_rolls_is_found() -> None:
-    idle = "contacts=[{between: [n, bed], stiffness: 300 N/mm^1.5, rolling_resistance: 0.1}]"
+    idle = "contacts=[{between: [n, bed], stiffness: 300 N/mm^1.5, rolling_resistance: 0.1, friction: 0}]"
     found = [lint.code for lint in lints(lower(loads(COAST + PLANE, "rolling", (idle,))))]
     assert "W125" in found
     assert "W125" not in [lint.code for lint in lints(lower(loads(COAST, "rolling", RESIST)))]

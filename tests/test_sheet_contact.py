@@ -418,7 +418,7 @@ sheets:
   low: {{material: hard, {sheet}}}
   top: {{material: soft, {sheet}, center: [0 mm, 0 mm, 0.1 mm]}}
 contacts:
-  - {{between: [low, top], stiffness: 100 N/mm^1.5}}
+  - {{between: [low, top], stiffness: 100 N/mm^1.5, friction: 0}}
 run: {{analysis: static}}
 """)
     )

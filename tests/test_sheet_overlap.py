@@ -34,7 +34,7 @@ contacts:
 run: {{duration: {time} ms, print_step: 1 ms}}
 """
 EACH_OTHER = "  each: {between: [top, low], stiffness: 300 N/mm^1.5, friction: 0.5}"
-BOTH = "  both: {between: [top, [low, table]], stiffness: 300 N/mm^1.5}"
+BOTH = "  both: {between: [top, [low, table]], stiffness: 300 N/mm^1.5, friction: 0}"
 ROLLER = """rollers:
   r: {{center: [0 mm, 0 mm, {z} mm], axis: y, radius: 8 mm, width: 10 mm, mass: 5 g,
        drive: {{speed: 10 rad/s}}}}"""
@@ -74,7 +74,8 @@ def codes(model: Model) -> list[tuple[str, str]]:
     ],
 )
 def test_sheets_that_lie_on_each_other_need_a_contact(top: float, aside: float, says: bool) -> None:
-    found = codes(two(top, aside=aside, contacts="  t: {between: [top, table], stiffness: 1 N/mm^1.5}"))
+    given = "  t: {between: [top, table], stiffness: 1 N/mm^1.5, friction: 0}"
+    found = codes(two(top, aside=aside, contacts=given))
     assert [code for code, _ in found] == ["W120"] * says
     if says:
         assert "sheet top" in found[0][1]

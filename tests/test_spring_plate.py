@@ -39,7 +39,7 @@ sheets:
 planes:
   plate: {center: [0 mm, 0 mm, -2 mm], normal: z, size: [40 mm, 40 mm, 4 mm], mass: 50 g,
     press: {direction: z, stiffness: 0.5 N/mm, preload: 1 N, damping_ratio: 0}}
-contacts: [{between: [block, plate], stiffness: 30000 N/mm^1.5, restitution: 0.3}]
+contacts: [{between: [block, plate], stiffness: 30000 N/mm^1.5, restitution: 0.3, friction: 0}]
 run: {duration: 200 ms, print_step: 0.5 ms}
 """
 # Spring and contact as two springs in a row: what a contact so stiff changes of the period is below 1e-4.
@@ -211,7 +211,7 @@ sheets:
 planes:
   plate: {center: [17 mm, 0 mm, -3.05 mm], normal: z, size: [6 mm, 20 mm, 6 mm], mass: 2 g,
     press: {direction: z, stiffness: 0.01 N/mm, preload: 25 mN}}
-contacts: [{between: [strip, plate], stiffness: 10 N/mm^1.5}]
+contacts: [{between: [strip, plate], stiffness: 10 N/mm^1.5, friction: 0}]
 run: {analysis: static}
 """
 

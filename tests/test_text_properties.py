@@ -463,7 +463,7 @@ PLAIN: Spec = {
             "mass": "1 g",
         }
     },
-    "contacts": [{"between": ["note", "roll"], "stiffness": "1 N/mm^1.5"}],
+    "contacts": [{"between": ["note", "roll"], "stiffness": "1 N/mm^1.5", "friction": 0}],
     "probes": {"lead": {"sheet": "note", "edge": "x_max"}},
     "supports": [{"sheet": "note", "at": ["0 mm", "0 mm"], "fix": ["z"]}],
 }

@@ -33,6 +33,7 @@ COMMANDS = {
     "bench": "bench",
     "explain": "scene",
     "schema": "scene",
+    "upgrade": "scene",
     "cache": "cache",
 }
 

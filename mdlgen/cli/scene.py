@@ -173,3 +173,35 @@ def schema(
     paths.write_atomic(output, json.dumps(json_schema(), indent=2) + "\n")
     if not quiet:
         say(f"wrote {output}")
+
+
+@app.command()
+@told
+def upgrade(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="The scene file, which is rewritten.")],
+    check: Annotated[
+        bool, typer.Option("--check", help="Say what would be written; exit code 3: something.")
+    ] = False,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
+) -> None:
+    """Write into a scene of an older version what must be said today.
+
+    A contact without friction had none: it gets `friction: 0`. Comments and form stay.
+
+    Example: mdlgen upgrade scene.yaml --check
+    """
+    from mdlgen import paths
+    from mdlgen.spec.load import read
+    from mdlgen.spec.upgrade import upgraded
+
+    text, changes = upgraded(read(file), str(file))
+    if not quiet:
+        for change in changes:
+            typer.echo(change)
+        if not changes:
+            typer.echo(f"{file}: nothing to write")
+    if changes and check:
+        raise typer.Exit(3)
+    if changes:
+        paths.write_atomic(file, text.encode("utf-8"))

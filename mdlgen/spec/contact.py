@@ -88,8 +88,7 @@ class Contact(Strict):
     )
     restitution: Share = Field(default=0.5, description="coefficient of restitution c_R (Eq. 11)")
     friction: Friction = Field(
-        default_factory=lambda: Friction(static=0.0, dynamic=0.0),
-        description="coefficient of friction mu (Eq. 12): a number, or a mapping; 0 where left out",
+        description="coefficient of friction mu (Eq. 12): a number, or a mapping; 0 where there is none"
     )
     smoothing: SpeedScale = Field(
         default=default("1 mm/s"),

@@ -160,7 +160,8 @@ def _describe(error: Any, document: Document) -> SpecError:
     elif kind == "extra_forbidden":
         message, prefer_key = f"unknown key {path[-1]!r}{_did_you_mean(inner)}", True
     elif kind == "missing":
-        message = f"the key {path[-1]!r} is missing{_example(inner)}"
+        none = "; 0 where none is meant: mdlgen upgrade FILE writes it" if inner[-1] == "friction" else ""
+        message = f"the key {path[-1]!r} is missing{_example(inner)}{none}"
         path = path[:-1]
     else:
         said = re.sub(

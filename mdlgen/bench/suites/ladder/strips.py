@@ -84,7 +84,8 @@ def _wrap(reference: str) -> list[Case]:
         "sheets.note.clamp=null",
         "materials.eur10.D_cd=0.001 N*mm",
         "rollers={post: {center: [0 mm, 0 mm, -15.05 mm], axis: x, radius: 15 mm, width: 60 mm, mass: 10 g}}",
-        "contacts=[{between: [note, post], stiffness: 300 N/mm^1.5, restitution: 0.2, smoothing: 20 mm/s}]",
+        "contacts=[{between: [note, post], stiffness: 300 N/mm^1.5, restitution: 0.2, friction: 0,"
+        " smoothing: 20 mm/s}]",
         "supports=[{sheet: note, at: [-33.5 mm, 0 mm], fix: [x, y, z]},"
         " {sheet: note, at: [33.5 mm, 0 mm], fix: [y, z]}]",
         "materials.eur10.damping.ratio=1",
