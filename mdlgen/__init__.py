@@ -25,9 +25,19 @@ if TYPE_CHECKING:
 __all__ = ["Model", "Result", "Scene", "compare", "emit", "load", "loads", "lower", "solve"]
 
 _CLASSES = {
+    "Contact": "mdlgen.spec.contact",
+    "Guide": "mdlgen.spec.guide",
+    "Material": "mdlgen.spec.material",
+    "Mesh": "mdlgen.spec.mesh",
     "Model": "mdlgen.model.tables",
+    "Nip": "mdlgen.spec.nip",
+    "Plane": "mdlgen.spec.machine",
+    "Probe": "mdlgen.spec.action",
     "Result": "mdlgen.results.result",
+    "Roller": "mdlgen.spec.machine",
+    "Run": "mdlgen.spec.run",
     "Scene": "mdlgen.spec.scene",
+    "Sheet": "mdlgen.spec.sheet",
 }
 
 

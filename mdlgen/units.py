@@ -165,6 +165,16 @@ def is_unit(name: str) -> bool:
     return name in _NAMES
 
 
+def exact_quantity(value: float, unit: str) -> str:
+    """The shortest text that `parse_quantity` reads as exactly this value, where there is one."""
+    factor = parse_unit(unit).factor
+    near = value / factor
+    tries = [float(f"{near:.15g}"), near, math.nextafter(near, math.inf), math.nextafter(near, -math.inf)]
+    found = next((number for number in tries if number * factor == value), near)
+    shown = repr(int(found)) if found.is_integer() and abs(found) < 1e15 else repr(found)
+    return f"{shown} {unit}"
+
+
 def format_quantity(value: float, unit: str) -> str:
     """The inverse of `parse_quantity`: shortest text that reads back as the same float where possible."""
     return f"{value / parse_unit(unit).factor!r} {unit}"

@@ -19,6 +19,7 @@ from mdlgen.cli.shell import (
     Raised,
     Sets,
     Solver,
+    Strict,
     Verbose,
     app,
     beside,
@@ -27,6 +28,7 @@ from mdlgen.cli.shell import (
     progress_bar,
     say,
     source_of,
+    strictly,
     told,
 )
 from mdlgen.errors import AccuracyError
@@ -76,6 +78,7 @@ def run(
     pictures: Pictures = False,
     sets: Sets = None,
     limits: Raised = None,
+    strict: Strict = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print summary.json.")] = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
@@ -102,6 +105,8 @@ def run(
         assert spec is not None
         task, seal = kept.task(spec, sets, limits, solver, check_step), None
         model = task.model()
+    if strict:
+        strictly(model)
     from mdlgen.report.page import page
     from mdlgen.report.pictures import are_drawn, pictures_of
     from mdlgen.report.text import summary_text

@@ -15,11 +15,13 @@ from mdlgen.cli.shell import (
     Raised,
     Sets,
     Spec,
+    Strict,
     Verbose,
     app,
     echo_json,
     model_of,
     say,
+    strictly,
     told,
 )
 from mdlgen.errors import OutputError, SpecError, did_you_mean
@@ -87,6 +89,7 @@ def check(
     spec: Spec,
     sets: Sets = None,
     limits: Raised = None,
+    strict: Strict = False,
     as_json: Annotated[bool, typer.Option("--json", help="As JSON, in mm, N, g, ms, rad.")] = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
@@ -99,7 +102,8 @@ def check(
     from mdlgen.report.overview import overview
     from mdlgen.report.text import overview_text
 
-    found = overview(model_of(spec, sets, limits))
+    model = model_of(spec, sets, limits)
+    found = overview(model)
     if as_json:
         echo_json(found)
     elif not quiet and sys.stdout.isatty():
@@ -109,6 +113,8 @@ def check(
     else:
         for lint in found["lints"]:
             typer.echo("{code} {where}: {message}; {remedy}".format(**lint))
+    if strict:
+        strictly(model)
 
 
 @app.command()

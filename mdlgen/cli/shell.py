@@ -130,6 +130,7 @@ Lets = Annotated[
         "given more than once.",
     ),
 ]
+Strict = Annotated[bool, typer.Option("--strict", help="Take what check finds as errors: exit code 2.")]
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
 Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="Print errors and asked-for output only.")]
 Verbose = Annotated[
@@ -170,6 +171,15 @@ def told(command: Callable[..., None]) -> Callable[..., None]:
             raise typer.Exit(1) from None
 
     return run
+
+
+def strictly(model: Model) -> None:
+    """Raises SpecError where a scene has lints, with all of them."""
+    from mdlgen.checks import lints
+
+    found = [SpecError(str(lint)) for lint in lints(model)]
+    if found:
+        raise found[0].with_others(found[1:])
 
 
 _busy = Lock()

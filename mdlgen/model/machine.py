@@ -60,7 +60,7 @@ def lower_rollers(
                 speed=_speed(roller.drive) if roller.drive else None,
                 ramp=roller.drive.ramp if roller.drive else 0.0,
                 profile=np.array(roller.drive.profile) if roller.drive and roller.drive.profile else None,
-                one_way=OneWay(**roller.one_way.model_dump()) if roller.one_way else None,
+                one_way=OneWay(**dict(roller.one_way)) if roller.one_way else None,
                 press=_press(scene, name, sheets, contacts) if roller.press else None,
                 rim=lower_rim(roller),
                 arm=_arm(roller) if roller.arm else None,

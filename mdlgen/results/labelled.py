@@ -1,4 +1,4 @@
-"""States with names on their axes, for those who work with xarray."""
+"""A result for those who work with xarray and pandas: names on its axes and columns."""
 
 from __future__ import annotations
 
@@ -41,3 +41,14 @@ def dataset(result: Result) -> Any:
         },
         attrs={"scene": result.model.name, "solver": result.solver, "status": result.status},
     )
+
+
+def frame(result: Result) -> Any:
+    """See `Result.to_pandas`. Raises RefusedError where pandas is not installed."""
+    try:
+        import pandas
+    except ImportError:
+        raise RefusedError("to_pandas needs pandas; install it: pip install 'mdlgen[pandas]'") from None
+    from mdlgen.results.series import series
+
+    return pandas.DataFrame(series(result)).set_index("time_ms")

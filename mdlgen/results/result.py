@@ -13,7 +13,10 @@ from mdlgen.model.rotations import column, turns
 from mdlgen.model.tables import Floats, Model
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from mdlgen.results.estimates import Estimate
+    from mdlgen.results.named import ProbeResult, RollerResult, SheetResult
     from mdlgen.results.strain import Strains
 
 
@@ -132,6 +135,35 @@ class Result:
         from mdlgen.results.summary import summary
 
         return summary(self)
+
+    @property
+    def sheets(self) -> Mapping[str, SheetResult]:
+        """What became of each sheet, by name."""
+        from mdlgen.results.named import sheets
+
+        return sheets(self)
+
+    @property
+    def rollers(self) -> Mapping[str, RollerResult]:
+        """What became of each roller, by name."""
+        from mdlgen.results.named import rollers
+
+        return rollers(self)
+
+    @property
+    def probes(self) -> Mapping[str, ProbeResult]:
+        """Where each probe went, by name."""
+        from mdlgen.results.named import probes
+
+        return probes(self)
+
+    def to_pandas(self) -> Any:
+        """What series.csv holds, as a pandas.DataFrame over `time_ms`; units stand in the names of the
+        columns. Needs the extra `pandas`.
+        """
+        from mdlgen.results.labelled import frame
+
+        return frame(self)
 
     def to_xarray(self) -> Any:
         """The states as an xarray.Dataset over `time` [ms], `body` and `contact`, by their names, in the

@@ -90,6 +90,7 @@ class Curve(Strict):
             data = {"points": data}
         if not isinstance(data, dict):
             raise fail(f"expected a list of [strain, stress], or points or file, got {data!r}"[:200])
+        data = {key: value for key, value in data.items() if key != "file" or value is not None}
         if ("points" in data) == ("file" in data):
             raise fail("give exactly one of points and file")
         told = info.context or {}

@@ -18,7 +18,7 @@ from pydantic import (
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from mdlgen.spec.parameter import Computed, Unknown, amount, computed
-from mdlgen.units import check_unit, format_quantity, parse_quantity, parse_unit
+from mdlgen.units import check_unit, exact_quantity, format_quantity, parse_quantity, parse_unit
 
 # What a quantity may be in the unit of its field, but for 0: products of some of them are still numbers.
 SMALLEST, LARGEST = 1e-20, 1e20
@@ -36,7 +36,13 @@ class Strict(BaseModel):
     """Extra keys forbidden, no coercion, finite numbers only, frozen after validation."""
 
     model_config = ConfigDict(
-        extra="forbid", strict=True, allow_inf_nan=False, frozen=True, validate_default=True, defer_build=True
+        extra="forbid",
+        strict=True,
+        allow_inf_nan=False,
+        frozen=True,
+        validate_default=True,
+        serialize_by_alias=True,
+        defer_build=True,
     )
 
 
@@ -77,7 +83,16 @@ class quantity:
         self.unit, self.low, self.high, self.open_low, self.slip = unit, low, high, open_low, slip
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_wrap_validator_function(_keeping(self.read), handler(source))
+        written = core_schema.plain_serializer_function_ser_schema(self.written)
+        return core_schema.no_info_wrap_validator_function(
+            _keeping(self.read), handler(source), serialization=written
+        )
+
+    def written(self, value: Any) -> Any:
+        """A value, or a list of them, as a file has it: a text that reads back as the same."""
+        if isinstance(value, (list, tuple)):
+            return [self.written(item) for item in value]
+        return exact_quantity(value, self.unit)
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: Any) -> dict[str, Any]:
         limits = f"; {self.allowed()}" if self.low is not None else ""

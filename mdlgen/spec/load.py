@@ -16,6 +16,7 @@ from mdlgen.spec.limits import DEFAULT, Limits, Tally
 from mdlgen.spec.mistakes import Mistakes
 from mdlgen.spec.scene import Scene
 from mdlgen.spec.setting import set_value
+from mdlgen.spec.source import Source
 
 MAX_BYTES = 2_000_000
 
@@ -76,4 +77,5 @@ def meant(
         raise mistakes.error() from None
     if mistakes.found:
         raise mistakes.error()
+    scene._source = Source(document, folder)
     return scene

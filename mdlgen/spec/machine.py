@@ -77,7 +77,7 @@ class Drive(Strict):
             raise fail(f"{told}, as surface_speed: 450 mm/s, direction: +x")
         if self.profile is None:
             return self
-        if "ramp" in self.model_fields_set:
+        if self.ramp != 0.0:
             raise fail("ramp goes with speed; a profile has its own times")
         if not 2 <= len(self.profile) <= MOST_CORNERS:
             raise fail(f"profile: {len(self.profile)} corners; allowed 2 to {MOST_CORNERS}")

@@ -160,8 +160,9 @@ def _describe(error: Any, document: Document) -> SpecError:
     elif kind == "extra_forbidden":
         message, prefer_key = f"unknown key {path[-1]!r}{_did_you_mean(inner)}", True
     elif kind == "missing":
-        none = "; 0 where none is meant: mdlgen upgrade FILE writes it" if inner[-1] == "friction" else ""
-        message = f"the key {path[-1]!r} is missing{_example(inner)}{none}"
+        friction = "; write like friction: 0.5, or 0 where there is none; mdlgen upgrade FILE writes 0"
+        example = friction if inner[-1] == "friction" else _example(inner)
+        message = f"the key {path[-1]!r} is missing{example}"
         path = path[:-1]
     else:
         said = re.sub(

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import math
 import re
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
 from fnmatch import fnmatchcase
 from functools import partial
 from itertools import product
@@ -24,6 +25,7 @@ from mdlgen.errors import did_you_mean
 from mdlgen.formulas import Amount
 from mdlgen.spec.action import Load, OnSheet, Probe, Support
 from mdlgen.spec.contact import Contact
+from mdlgen.spec.document import Document
 from mdlgen.spec.fields import Acceleration, Name, Strict, default, fail, fail_all
 from mdlgen.spec.guide import Guide
 from mdlgen.spec.limits import DEFAULT, Limits
@@ -47,6 +49,7 @@ from mdlgen.spec.part import Part
 from mdlgen.spec.run import Run
 from mdlgen.spec.sheet import Sheet
 from mdlgen.spec.shorthand import Defaults, written_out
+from mdlgen.spec.source import Source, text_of, text_of_data
 from mdlgen.spec.surface import with_rates
 
 MOST_ERRORS = 100  # that are looked for in contacts: more are not shown
@@ -72,6 +75,7 @@ class Scene(Strict):
     )
     parameters: dict[Name, ParameterValue] = Field(
         default_factory=dict,
+        exclude=True,  # of what is dumped: values are numbers there
         description="named values; every quantity may be a formula over them, as -radius - gap/2",
     )
     materials: dict[Name, Material] = Field(
@@ -81,6 +85,7 @@ class Scene(Strict):
     rollers: dict[Name, Roller] = Field(default_factory=dict, description="rollers by name")
     nips: dict[Name, Nip] = Field(
         default_factory=dict,
+        exclude=True,  # of what is dumped: the rollers and contacts are there
         description="pairs of rollers that grip a sheet, placed in balance with their contacts, by name",
     )
     planes: dict[Name, Plane] = Field(default_factory=dict, description="flat plates by name")
@@ -101,7 +106,7 @@ class Scene(Strict):
         json_schema_extra=_list_or_names,
     )
     defaults: Defaults | None = Field(
-        default=None, description="values of keys that contacts and rollers leave out"
+        default=None, exclude=True, description="values of keys that contacts and rollers leave out"
     )
     loads: tuple[Load, ...] = Field(default=(), strict=False, description="forces and moments on sheets")
     run: Run = Field(default_factory=Run, description="duration, analysis and accuracy")
@@ -112,6 +117,7 @@ class Scene(Strict):
         default=(), strict=False, description="points of sheets that are held"
     )
     _limits: Limits = PrivateAttr(default=DEFAULT)
+    _source: Source = PrivateAttr(default_factory=Source)
     _amounts: dict[str, Amount] = PrivateAttr(default_factory=dict)
     _formulas: dict[tuple[str | int, ...], str] = PrivateAttr(default_factory=dict)
 
@@ -129,6 +135,32 @@ class Scene(Strict):
     def limits(self) -> Limits:
         """What the scene may grow to; not part of what is written."""
         return self._limits
+
+    def with_(self, changes: Mapping[str, Any] | None = None, **more: Any) -> Scene:
+        """The scene with other values, by dotted path as of `--set`.
+
+        `{"rollers.motor.drive.speed": "60 rad/s"}`; a path may have patterns, and what follows from a value
+        follows anew. Raises SpecError.
+        """
+        from mdlgen.spec.load import meant
+
+        overrides = [f"{path}={json.dumps(value)}" for path, value in {**(changes or {}), **more}.items()]
+        return meant(self._document(), overrides, self._source.folder, self._limits)
+
+    def to_yaml(self) -> str:
+        """The scene as the text of a file. One that came from a file has its comments, formulas and
+        shorthand; another one has each value in the unit of its key."""
+        document = self._source.document
+        if document is not None:
+            return text_of(document)
+        return text_of_data(self.model_dump(mode="json", exclude_defaults=True))
+
+    def _document(self) -> Document:
+        """What the scene was read from, to be changed; or the like of one that was made in Python."""
+        document = self._source.document
+        if document is not None:
+            return document.copy()
+        return Document(self.model_dump(mode="json", exclude_defaults=True), {}, {}, self.name)
 
     def __repr__(self) -> str:
         kinds = ("sheets", "rollers", "planes", "guides", "parts", "contacts", "loads", "probes", "supports")

@@ -47,9 +47,9 @@ def _without_friction(data: Any) -> list[SpecPath]:
     if isinstance(given, dict) and "friction" in given:
         return []
     contacts = data.get("contacts")
-    items = contacts.items() if isinstance(contacts, dict) else enumerate(contacts or ())
     if not isinstance(contacts, (dict, list)):
         return []
+    items = contacts.items() if isinstance(contacts, dict) else enumerate(contacts)
     return [
         ("contacts", key)
         for key, item in items

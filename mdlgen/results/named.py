@@ -1,0 +1,129 @@
+"""What became of each part of a scene, by its name, in the units of summary.json: mm, mm/s, deg, N, rad/s."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from mdlgen.model.tables import Floats
+from mdlgen.results.compare import travel
+from mdlgen.results.summary import PER_SECOND, part_rows
+
+if TYPE_CHECKING:
+    from mdlgen.results.result import Result
+
+_SHOWN = 4  # digits
+
+
+@dataclass(frozen=True, repr=False, eq=False, kw_only=True)
+class _Named:
+    """Shows its values at the end with their units."""
+
+    units: ClassVar[dict[str, str]] = {}
+    name: str
+
+    def __repr__(self) -> str:
+        told = ", ".join(f"{key} {_text(getattr(self, key))} {unit}" for key, unit in self.units.items())
+        return f"<{self.name}: {told}>"
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, np.ndarray):
+        return f"[{', '.join(f'{v + 0.0:.{_SHOWN}g}' for v in value)}]"
+    return f"{value:.{_SHOWN}g}"
+
+
+@dataclass(frozen=True, repr=False, eq=False, kw_only=True)
+class SheetResult(_Named):
+    """A sheet: values at the end, and its motion over `time`."""
+
+    units: ClassVar[dict[str, str]] = {"travel": "mm", "speed": "mm/s", "yaw": "deg"}
+    travel: Floats  # [mm], of the centre of mass since the start, (3,)
+    speed: Floats  # [mm/s], velocity of the centre of mass at the end, (3,)
+    yaw: float  # [deg], at the end
+    time: Floats  # of what follows [ms], (t,)
+    position: Floats  # of the centre of mass [mm], (t, 3)
+    velocity: Floats  # [mm/s], (t, 3)
+    turn: Floats  # yaw [deg], (t,)
+
+
+@dataclass(frozen=True, repr=False, eq=False, kw_only=True)
+class RollerResult(_Named):
+    """A roller: values at the end, and its motion over `time`."""
+
+    units: ClassVar[dict[str, str]] = {"speed": "rad/s", "center": "mm", "nip_force": "N"}
+    speed: float  # [rad/s], about its axis
+    center: Floats  # [mm], (3,)
+    nip_force: float  # [N], sum of the normal forces on it
+    time: Floats  # of what follows [ms], (t,)
+    rate: Floats  # speed about its axis [rad/s], (t,)
+    force: Floats  # sum of the normal forces [N], (t,)
+
+
+@dataclass(frozen=True, repr=False, eq=False, kw_only=True)
+class ProbeResult(_Named):
+    """A probe: values at the end, and its motion over `time`."""
+
+    units: ClassVar[dict[str, str]] = {"displacement": "mm", "speed": "mm/s"}
+    displacement: Floats  # [mm], since the start, (3,)
+    speed: Floats  # [mm/s], velocity at the end, (3,)
+    time: Floats  # of what follows [ms], (t,)
+    position: Floats  # [mm], (t, 3)
+    velocity: Floats  # [mm/s], (t, 3)
+
+
+def sheets(result: Result) -> Mapping[str, SheetResult]:
+    """By name; a run that stored no state has none."""
+    found = {}
+    for k, sheet in enumerate(result.model.sheets if len(result.time) else ()):
+        place, rate, yaw = result.sheet_motion(k)
+        found[sheet.name] = SheetResult(
+            name=sheet.name,
+            travel=np.asarray(travel(result, k), dtype=float),
+            speed=rate[-1] * PER_SECOND,
+            yaw=math.degrees(yaw[-1]),
+            time=result.time,
+            position=place,
+            velocity=rate * PER_SECOND,
+            turn=np.degrees(yaw),
+        )
+    return MappingProxyType(found)
+
+
+def rollers(result: Result) -> Mapping[str, RollerResult]:
+    """By name; a run that stored no state has none."""
+    found = {}
+    for roller in result.model.rollers if len(result.time) else ():
+        rate = result.spin[:, roller.body] @ roller.axis * PER_SECOND
+        force = result.contact_force[:, list(part_rows(result, roller))].sum(axis=1)
+        found[roller.name] = RollerResult(
+            name=roller.name,
+            speed=float(rate[-1]),
+            center=result.position[-1, roller.body],
+            nip_force=float(force[-1]),
+            time=result.time,
+            rate=rate,
+            force=force,
+        )
+    return MappingProxyType(found)
+
+
+def probes(result: Result) -> Mapping[str, ProbeResult]:
+    """By name; a run that stored no state has none."""
+    found = {}
+    for k, probe in enumerate(result.model.probes if len(result.time) else ()):
+        place, rate = result.anchor_motion(k)
+        found[probe.name] = ProbeResult(
+            name=probe.name,
+            displacement=place[-1] - place[0],
+            speed=rate[-1] * PER_SECOND,
+            time=result.time,
+            position=place,
+            velocity=rate * PER_SECOND,
+        )
+    return MappingProxyType(found)

@@ -1,0 +1,127 @@
+"""Scenes in Python: changed, written and read back; results by name."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import mdlgen
+from mdlgen.errors import SpecError
+from mdlgen.paths import samples
+from mdlgen.spec.load import load, loads
+from mdlgen.spec.scene import Scene
+from mdlgen.units import exact_quantity, parse_quantity
+
+SAMPLES = sorted(samples().rglob("*.yaml"))
+NIPS = samples() / "transport_nips.yaml"
+# what a scene is said by, and no part of what is dumped
+SHORT = ("parameters", "nips", "defaults")
+
+
+def same(one: Scene, other: Scene, without: tuple[str, ...] = ()) -> None:
+    for name in type(one).model_fields:
+        if name not in without:
+            assert getattr(one, name) == getattr(other, name), name
+
+
+@pytest.mark.parametrize("sample", SAMPLES, ids=lambda p: p.stem)
+def test_a_scene_is_written_as_it_was_read(sample: Path) -> None:
+    assert load(sample).to_yaml() == sample.read_text("utf-8")
+
+
+@pytest.mark.parametrize("sample", SAMPLES, ids=lambda p: p.stem)
+def test_what_is_dumped_is_the_same_scene(sample: Path) -> None:
+    if sample.stem == "pick":
+        pytest.skip("its meshes are files beside it")
+    scene = load(sample)
+    again = Scene.model_validate(scene.model_dump())
+    same(scene, again, SHORT)
+    # to the last bit, through a text of a file, too
+    same(again, loads(again.to_yaml()))
+
+
+@pytest.mark.parametrize("unit", ["mm", "rad/s", "m/s^2", "deg", "N*mm/rad", "g", "ms", "um"])
+def test_a_value_is_written_so_that_it_reads_back(unit: str) -> None:
+    rng = np.random.default_rng(3)
+    values = [parse_quantity(f"{v!r} {unit}", unit) for v in rng.lognormal(0.0, 5.0, 2000).tolist()]
+    back = [parse_quantity(exact_quantity(v, unit), unit) for v in values]
+    assert back == values
+    assert exact_quantity(parse_quantity(f"186.7 {unit}", unit), unit) == f"186.7 {unit}"
+
+
+def test_values_are_changed_and_what_follows_follows() -> None:
+    scene = load(NIPS)
+    faster = scene.with_({"parameters.speed": "900 mm/s", "sheets.note.boxes": [4, 6]}, name="faster")
+    drive = faster.rollers["motor_1_left"].drive
+    assert drive is not None and drive.speed == pytest.approx(0.12, rel=1e-15)
+    assert faster.sheets["note"].boxes == (4, 6) and faster.name == "faster"
+    assert scene.sheets["note"].boxes == (10, 20) and scene.name == "transport_nips"
+    same(loads(faster.to_yaml()), faster)
+    text, before = faster.to_yaml(), NIPS.read_text("utf-8")
+    assert "# row 1 is 20 mm behind the leading edge" in text and "speed: speed/radius" in text
+    # comments, too, stand where they stood
+    assert text.count("#") == before.count("#")
+    many = scene.with_({"nips.*.force": "4 N"})
+    assert {nip.force for nip in many.nips.values()} == {4.0}
+    with pytest.raises(SpecError, match="did you mean 'note'"):
+        scene.with_({"sheets.nte.boxes": [1, 1]})
+    with pytest.raises(SpecError, match="wrong unit"):
+        scene.with_({"sheets.note.mass": "3 mm"})
+
+
+def test_a_scene_made_of_parts() -> None:
+    # texts with units where the types say what they become
+    material: Any = mdlgen.Material
+    sheet: Any = mdlgen.Sheet
+    roller: Any = mdlgen.Roller
+    contact: Any = mdlgen.Contact
+    low = ["0 mm", "0 mm", "-7.5 mm"]
+    scene = Scene(
+        name="made",
+        materials={"p": material(E_md="3.5 GPa", E_cd="1.1 GPa")},
+        sheets={
+            "note": sheet(
+                material="p", size=["60 mm", "40 mm"], thickness="0.1 mm", grammage="80 g/m^2", boxes=[6, 4]
+            )
+        },
+        rollers={"motor": roller(center=low, axis="y", diameter="15 mm", width="8 mm", mass="1 g")},
+        contacts=(contact(between=["note", "motor"], stiffness="300 N/mm^1.5", friction=0.5),),
+    )
+    assert scene.rollers["motor"].radius == 7.5 and scene.sheets["note"].mass == pytest.approx(0.192)
+    same(loads(scene.to_yaml()), scene)
+    turning = scene.with_({"rollers.motor.drive.speed": "60 rad/s"})
+    drive = turning.rollers["motor"].drive
+    assert drive is not None and drive.speed == 0.06
+    assert len(mdlgen.lower(turning).rollers) == 1
+
+
+def test_an_override_is_no_text() -> None:
+    with pytest.raises(SpecError, match="overrides are a list of texts"):
+        mdlgen.load(NIPS, "run.duration=3 ms")
+
+
+def test_results_by_name() -> None:
+    scene = load(samples() / "transport_4x4.yaml").with_(
+        {"sheets.note.boxes": [4, 6], "run.duration": "2 ms", "run.tolerance": 0.05}
+    )
+    result = mdlgen.solve(mdlgen.lower(scene))
+    assert result.ok
+    told = result.summary()
+    note, motor, lead = result.sheets["note"], result.rollers["motor_1_left"], result.probes["lead"]
+    np.testing.assert_allclose(note.travel, told["sheets"]["note"]["travel_mm"])
+    np.testing.assert_allclose(note.speed, told["sheets"]["note"]["speed_mm_per_s"])
+    assert note.yaw == pytest.approx(told["sheets"]["note"]["yaw_deg"])
+    assert motor.speed == pytest.approx(told["rollers"]["motor_1_left"]["omega_rad_per_s"])
+    assert motor.nip_force == pytest.approx(told["rollers"]["motor_1_left"]["nip_force_n"])
+    np.testing.assert_allclose(lead.displacement, told["probes"]["lead"]["displacement_mm"], atol=1e-12)
+    assert note.position.shape == (len(result.time), 3) and motor.force.shape == result.time.shape
+    assert " mm/s, yaw " in repr(note) and " rad/s, center [" in repr(motor)
+    with pytest.raises(KeyError):
+        result.sheets["nte"]
+    pandas = pytest.importorskip("pandas")
+    table = result.to_pandas()
+    assert isinstance(table, pandas.DataFrame) and table.index.name == "time_ms"
+    np.testing.assert_array_equal(table["note.x_mm"], note.position[:, 0])
