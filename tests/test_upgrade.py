@@ -86,3 +86,17 @@ def test_the_command(tmp_path: Path) -> None:
     loads(file.read_text())
     again = run(app, ["upgrade", str(file)])
     assert again.exit_code == 0 and "nothing to write" in again.output
+
+
+@pytest.mark.parametrize("command", ["check", "run"])
+def test_strict_takes_lints_as_errors(command: str, tmp_path: Path) -> None:
+    odd = ["--set", "materials.eur10.E_md=3.53 MPa", "--set", "rollers.motor_1_left.drive.ramp=90 ms"]
+    args = [command, str(samples() / "transport_4x4.yaml"), *odd, "--strict", "-q"]
+    run = CliRunner().invoke(app, [*args, *(["-o", str(tmp_path / "out")] if command == "run" else [])])
+    assert run.exit_code == 2 and "W101 materials.eur10.E_md" in run.output and "W113" in run.output
+    assert not (tmp_path / "out").exists()
+
+
+def test_strict_of_a_scene_without_lints_is_as_without() -> None:
+    run = CliRunner().invoke(app, ["check", str(samples() / "transport_4x4.yaml"), "--strict"])
+    assert run.exit_code == 0
