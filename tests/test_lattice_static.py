@@ -364,7 +364,7 @@ def test_small_parts_that_all_balance_end_too(monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setattr(static, "MOST", 10 * static.FEW)
     made = model("cantilever", "sheets.note.boxes=[1,2]")
     reason = static._parts(made, lambda level, load: (True, static.FEW + 1, 0, 0.0), 1.0, (np.zeros(3),))
-    assert reason == f"no balance was found above 10 % of the load in {10 * (static.FEW + 1)} rounds"
+    assert reason == f"no balance was found above 10 % of the load in {10 * (static.FEW + 1)} iterations"
 
 
 def test_driven_rollers_are_refused_and_others_are_not() -> None:
