@@ -64,8 +64,15 @@ class Recorder:
         self._times.append(t)
         for name, array in (("x", x), ("r", r), ("u", u), ("w", w)):
             self._stored[name].append(array[:count].copy())
-        # forces are those in the middle of the last step, where the rule has them; at the start as it begins
-        self._stored["f"].append(force if t == 0.0 else self.kept[0][:, 5].copy())
+        if t == 0.0:
+            self.kept[0][:, 5] = force
+        # forces in the middle of the last step, where the rule has them, until the next one tells what they
+        # are at its end; at the start as it begins
+        self._stored["f"].append(self.kept[0][:, 5].copy())
+
+    def between(self) -> None:
+        """The step after the last state that is stored has been taken: forces there lie between both."""
+        self._stored["f"][-1] = self.kept[0][:, 9].copy()
 
     def arrays(self) -> dict[str, np.ndarray]:
         """All that it has stored, and what the compiled code added up."""

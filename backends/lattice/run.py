@@ -246,6 +246,8 @@ def _once(
         for taken in range(0, each, MOST_AT_ONCE):
             steps = np.full(min(each - taken, MOST_AT_ONCE), dt)
             status, t = march.run(*moving, t, steps, tolerance, fresh, counters, work, before, pace)
+            if taken == 0:
+                recorder.between()
             if status != march.DONE:
                 break
         if status != march.DONE:
@@ -380,7 +382,7 @@ def _arrays(model: Model, system: System) -> tuple[Any, Any, Any, Any, Any, Any,
     from mdlgen.backends.lattice.kernels import alone, damped, entries, forces, momentum
 
     tables = system.tables
-    kept = (np.zeros((len(model.contacts), 9)), np.zeros(system.marks, bool))
+    kept = (np.zeros((len(model.contacts), 10)), np.zeros(system.marks, bool))
     bounds = (model.pairs.low, model.pairs.high)
     state, mid, matrix = start(model, system)
     entries.look(system.pairs, system.search, state[0])

@@ -81,7 +81,7 @@ def rest(model: Model, system: System, moving: tuple) -> Result:
     falls(0.0)
     begun = clock.perf_counter()
     reason = _parts(model, balanced, load, (x, r, s))
-    rows = (np.zeros((len(model.contacts), 9)), np.zeros(len(system.pairs), bool))
+    rows = (np.zeros((len(model.contacts), 10)), np.zeros(len(system.pairs), bool))
     if reason is None:
         reason = _stretched(model, system, x, r) or _touch(model, system, state, mid, rows)
         reason = reason or lying.slides(model, found, rows[0][:, 5], load, x, r)

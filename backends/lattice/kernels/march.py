@@ -56,8 +56,9 @@ def _deep(bodies, pairs, mid, count):
 def _watch(pairs, mid, count, t, dt, kept):
     """Adds what contacts did in a step to `kept`.
 
-    kept: per row of the contacts (rows, 9) greatest depth, greatest force, sums over time of depth and force,
-    time in contact, force and depth now, whether it acts, when it last ended to; and marks of pairs.
+    kept: per row of the contacts (rows, 10) greatest depth, greatest force, sums over time of depth and
+    force, time in contact, force and depth now, whether it acts, when it last ended to, force where the first
+    step of a run began; and marks of pairs.
     """
     xm, rm, um, wm, f, touched, outs, totals, near = mid
     rows, marks = kept
@@ -80,6 +81,14 @@ def _watch(pairs, mid, count, t, dt, kept):
             rows[row, 2] += dt * depth
             rows[row, 3] += dt * force
             rows[row, 4] += dt
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _begun(rows, part):
+    """The force of each row of the contacts where a step begins, a `part` of the way from the middle of the
+    step before, whose force stands in the last column, to that of this step."""
+    for row in range(rows.shape[0]):
+        rows[row, 9] += part * (rows[row, 5] - rows[row, 9])
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -173,7 +182,9 @@ def run(
     x, r, v, l, s, vb, u, ub = state
     keep_u, keep_b, guess = u.copy(), ub.copy(), u.copy()
     last_u, last_b, spans = before
-    mass, rows = 0.0, np.zeros(kept[0].shape[0])
+    mass, rows, begun = 0.0, np.zeros(kept[0].shape[0]), t
+    for row in range(rows.size):
+        kept[0][row, 9] = kept[0][row, 5]
     for n in range(nodes.size):
         mass += bodies[nodes[n]].mass
     for whole in steps:
@@ -214,7 +225,7 @@ def run(
                 # of the way from the middle of the step before, what is in this step
                 inside = dt / (dt + spans[0]) if spans[0] > 0.0 else 0.0
                 slower = keep_u, keep_b, inside
-                deep, made = swept(system, state, mid, counts, t, dt, allowed, slower, rows)
+                deep, made = swept(system, state, mid, counts, t, dt, allowed, slower, kept[0][:, 5], rows)
             coarse = missed > AGAIN * most or made > AGAIN * allowed
             if not solved or ((coarse or deep >= 0) and level < FINEST):
                 copy(u, keep_u)
@@ -232,11 +243,13 @@ def run(
                 overshoot(system, damped, state, mid, free, keep_u, course, dt)
             copy(last_u, keep_u)
             copy(last_b, keep_b)
+            _account(system, mid, ub, vb, t, dt, work)
+            _watch(pairs, mid, int(counters[TOUCHING]), t, dt, kept)
+            if t == begun:
+                _begun(kept[0], spans[0] / (spans[0] + dt))
             # between the middles of the two steps
             spans[1] = 0.5 * (spans[0] + dt)
             spans[0] = dt
-            _account(system, mid, ub, vb, t, dt, work)
-            _watch(pairs, mid, int(counters[TOUCHING]), t, dt, kept)
             carry(system, state, mid, t, dt)
             if damped[0].size > 0:
                 work[0] += take_off(bodies, nodes, damped[3], mid[1], r, v, l)

@@ -46,10 +46,10 @@ def _place(system, state, b, h, t, xs, rs, us, ws):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def _hits(bodies, pair):
+def _hits(bodies, pair, acted):
     """Whether a pair's contacts are impacts: under a roller the boxes of a sheet take turns, and together
-    store what the one before did."""
-    return pair.kind != BOX_CYLINDER or bodies[pair.a].exposed == BLOCK
+    store what the one before did, but where none of them touched it. `acted`: see swept."""
+    return pair.kind != BOX_CYLINDER or bodies[pair.a].exposed == BLOCK or acted[pair.row] == 0.0
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -96,7 +96,7 @@ def _turning_back(rate, faster, beta, smoothing):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _made(bodies, pairs, state, mid, count, dt, before, rows):
+def _made(bodies, pairs, state, mid, count, dt, before, acted, rows):
     """Adds to `rows` (contacts,) the energy that contacts store in a step beyond the work done on them;
     returns what their damping should have taken and did not.
 
@@ -107,7 +107,7 @@ def _made(bodies, pairs, state, mid, count, dt, before, rows):
     kept = 0.0
     for k in range(count):
         pair = pairs[touched[k]]
-        if not _hits(bodies, pair):
+        if not _hits(bodies, pair, acted):
             continue
         row, law = pair.row, pair.law
         one, spin_one = _changed(bodies[pair.a], pair.a, state, mid, before)
@@ -135,10 +135,11 @@ def _made(bodies, pairs, state, mid, count, dt, before, rows):
 
 
 @njit(cache=True, error_model="numpy")
-def swept(system, state, mid, counts, t, dt, allowed, before, rows):
+def swept(system, state, mid, counts, t, dt, allowed, before, acted, rows):
     """What the near pairs do in a step from t, beyond what is known of its middle: (the first that comes
     deeper than it may, or to another side, or -1; the energy that contacts make or lose in it, where
-    `allowed` is above zero). `counts`: how many pairs touch in the middle, how many are near.
+    `allowed` is above zero). `counts`: how many pairs touch in the middle, how many are near; `acted`
+    (contacts,): 0 for a row of the contacts without a force in the step before.
 
     The states between are looked at as often as a pair could cross unseen, by the law of the contact: none
     for pairs that are slow for what they could cross, which is nearly all of them.
@@ -152,7 +153,7 @@ def swept(system, state, mid, counts, t, dt, allowed, before, rows):
     rows[:] = 0.0
     total = 0.0
     if allowed > 0.0:
-        total = _made(bodies, pairs, state, mid, count, dt, before, rows)
+        total = _made(bodies, pairs, state, mid, count, dt, before, acted, rows)
     known = 0
     for at in range(close):
         pair = pairs[near[at]]
@@ -166,7 +167,8 @@ def swept(system, state, mid, counts, t, dt, allowed, before, rows):
         enters = False
         if allowed > 0.0 and not touches:
             half = 0.5 * way
-            enters = 0.4 * pair.k * half * half * math.sqrt(half) > LITTLE * allowed and _hits(bodies, pair)
+            enters = 0.4 * pair.k * half * half * math.sqrt(half) > LITTLE * allowed
+            enters = enters and _hits(bodies, pair, acted)
             enters = enters and not _clear(bodies, pair, x, r, way)
         if way <= band and side == 0 and not solid and not enters:
             continue
