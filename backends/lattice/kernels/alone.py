@@ -12,6 +12,9 @@ from mdlgen.program.kernel import BORROWS, njit
 
 # Where contacts stand: all apart; those with fixed plates in the matrix of the sheet; all of them there.
 APART, PLANES, INSIDE = 0, 1, 2
+# Boxes that may stand apart in any case. With more than stand apart, all contacts stand in a matrix without
+# the growth of friction with the normal force, and steps are halved where friction is high.
+FEWEST = 48
 # Memory for columns of the inverse [bytes].
 COLUMNS = 64e6
 
@@ -63,7 +66,7 @@ def empty(system, wide: int) -> Alone:
     nodes, border, pairs = len(system.nodes), system.border, len(system.pairs)
     slots = int(min(nodes, max(8, COLUMNS / (288 * max(nodes, 1)))))
     # above this a factor of the whole matrix is cheaper than one of this system
-    most = int(min(slots, max(8.0, (1.5 * nodes * system.reach**2) ** (1 / 3))))
+    most = int(min(slots, max(FEWEST, (1.5 * nodes * system.reach**2) ** (1 / 3))))
     size = 6 * most + border
     return Alone(
         slot_of=np.full(nodes, -1, np.int64),
@@ -106,7 +109,7 @@ def empty(system, wide: int) -> Alone:
     )
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def forget(alone):
     """Drops the columns of a matrix that is no more."""
     alone.slot_of[:] = -1
@@ -114,7 +117,7 @@ def forget(alone):
     alone.kept[0] = alone.kept[2] = 0
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def release(alone, m):
     """Unmarks the m chosen boxes."""
     for i in range(m):
@@ -123,7 +126,7 @@ def release(alone, m):
     alone.kept[0] = alone.kept[1] = 0
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def choose(bodies, pairs, touched, count, where, alone, m, most):
     """Adds boxes that touch to the m chosen ones; returns how many they are, -1: more than `most`,
     or boxes of two sheets touch each other: they stand in the matrix."""
@@ -180,7 +183,7 @@ def columns(a, alone, m):
     alone.kept[2] = m
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def unsee(alone):
     """Forgets which pairs were looked at."""
     for k in range(alone.state[2]):
