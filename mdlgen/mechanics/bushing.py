@@ -24,10 +24,10 @@ from mdlgen.mechanics.vector import (
     transpose_matmul,
     turned,
 )
-from mdlgen.program.kernel import njit
+from mdlgen.program.kernel import FUSED, njit
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@njit(cache=True, error_model="numpy", forceinline=True, **FUSED)
 def bushing(xa, fa, va, wa, ra, xb, fb, vb, wb, rb, k, kt, c, ct):
     """Force and torque that a bushing puts on body b at its centre, and the torque on body a.
 
@@ -66,7 +66,7 @@ def bushing(xa, fa, va, wa, ra, xb, fb, vb, wb, rb, k, kt, c, ct):
     return force, torque_b, torque_a, energy, power
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@njit(cache=True, error_model="numpy", forceinline=True, **FUSED)
 def bushing_pair(xa, fa, va, wa, ra, xb, fb, vb, wb, rb, e, k, kt, c, ct):
     """Two equal bushings side by side, at e and -e (bushing axes) from the ends of the arms ra and rb.
 

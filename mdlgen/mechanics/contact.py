@@ -20,7 +20,7 @@ import numpy as np
 
 from mdlgen.mechanics.point import push, push_in_nip
 from mdlgen.mechanics.vector import add, back, dot, rotate, scale, sub
-from mdlgen.program.kernel import BORROWS, OWNS, njit
+from mdlgen.program.kernel import BORROWS, FUSED, OWNS, njit
 
 WHOLE = 4.0  # no sector but the whole round: more than half a turn
 _GAUSS = 1.0 / math.sqrt(3.0)
@@ -33,7 +33,7 @@ def _stored(t, reach):
     return t * (1.0 - s * (2.0 / 3.0 - 0.2 * s))
 
 
-@njit(cache=True, error_model="numpy", **BORROWS)
+@njit(cache=True, error_model="numpy", **BORROWS, **FUSED)
 def _face(
     out,
     p,

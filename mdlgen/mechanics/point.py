@@ -21,7 +21,7 @@ import math
 
 from mdlgen.mechanics.laws import damped, friction_over_speed, sign_step
 from mdlgen.mechanics.vector import add, cross, dot, scale, sub
-from mdlgen.program.kernel import BORROWS, njit
+from mdlgen.program.kernel import BORROWS, FUSED, njit
 
 OUT = 16
 POINT = 23
@@ -60,7 +60,7 @@ def push_in_nip(out, point, normal, foot, way, spring, depth, energy, xa, va, wa
             out[at + 20 + i] = way[i]
 
 
-@njit(cache=True, error_model="numpy", **BORROWS)
+@njit(cache=True, error_model="numpy", **BORROWS, **FUSED)
 def _push(out, point, normal, rate, spring, depth, energy, xa, va, wa, xb, vb, wb, law):
     """Adds the force of a point that is damped by a rate; returns where it stands in `out`, 0: nowhere."""
     ra, rb = sub(point, xa), sub(point, xb)

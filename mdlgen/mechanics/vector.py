@@ -4,41 +4,41 @@ from __future__ import annotations
 
 import math
 
-from mdlgen.program.kernel import njit
+from mdlgen.program.kernel import FUSED, njit
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@njit(cache=True, error_model="numpy", forceinline=True, **FUSED)
 def add(a, b):
     return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@njit(cache=True, error_model="numpy", forceinline=True, **FUSED)
 def sub(a, b):
     return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@njit(cache=True, error_model="numpy", forceinline=True, **FUSED)
 def scale(s, a):
     return (s * a[0], s * a[1], s * a[2])
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@njit(cache=True, error_model="numpy", forceinline=True, **FUSED)
 def dot(a, b):
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@njit(cache=True, error_model="numpy", forceinline=True, **FUSED)
 def cross(a, b):
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@njit(cache=True, error_model="numpy", forceinline=True, **FUSED)
 def vec(array, row):
     """Row of an (n, 3) array."""
     return (array[row, 0], array[row, 1], array[row, 2])
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@njit(cache=True, error_model="numpy", forceinline=True, **FUSED)
 def mat(array, row):
     """Row of an (n, 9) array."""
     return (
@@ -54,19 +54,19 @@ def mat(array, row):
     )
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@njit(cache=True, error_model="numpy", forceinline=True, **FUSED)
 def three(a):
     """The first three numbers of an array or a record's field."""
     return (a[0], a[1], a[2])
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@njit(cache=True, error_model="numpy", forceinline=True, **FUSED)
 def nine(a):
     """The first nine."""
     return (a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8])
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@njit(cache=True, error_model="numpy", forceinline=True, **FUSED)
 def rotate(m, a):
     """m a."""
     return (
@@ -76,7 +76,7 @@ def rotate(m, a):
     )
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@njit(cache=True, error_model="numpy", forceinline=True, **FUSED)
 def back(m, a):
     """m^T a."""
     return (
@@ -86,7 +86,7 @@ def back(m, a):
     )
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@njit(cache=True, error_model="numpy", forceinline=True, **FUSED)
 def matmul(m, n):
     """m n."""
     return (
@@ -102,13 +102,13 @@ def matmul(m, n):
     )
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@njit(cache=True, error_model="numpy", forceinline=True, **FUSED)
 def transpose_matmul(m, n):
     """m^T n."""
     return matmul((m[0], m[3], m[6], m[1], m[4], m[7], m[2], m[5], m[8]), n)
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@njit(cache=True, error_model="numpy", forceinline=True, **FUSED)
 def log_rotation(m):
     """Rotation vector of m, |theta| <= pi."""
     w = (0.5 * (m[7] - m[5]), 0.5 * (m[2] - m[6]), 0.5 * (m[3] - m[1]))
@@ -133,7 +133,7 @@ def log_rotation(m):
     return scale(math.pi, axis)
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@njit(cache=True, error_model="numpy", forceinline=True, **FUSED)
 def sines(angle2):
     """sin(a)/a and (1 - cos(a))/a^2 of the square of an angle."""
     if angle2 < 0.01:
@@ -145,14 +145,14 @@ def sines(angle2):
     return math.sin(angle) / angle, (1.0 - math.cos(angle)) / angle2
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@njit(cache=True, error_model="numpy", forceinline=True, **FUSED)
 def exp_rotation(theta):
     """Rotation matrix of a rotation vector."""
     s, c = sines(dot(theta, theta))
     return turned(theta, s, c)
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@njit(cache=True, error_model="numpy", forceinline=True, **FUSED)
 def turned(theta, s, c):
     """The same with what `sines` gives of the vector's square."""
     x, y, z = theta

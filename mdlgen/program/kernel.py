@@ -29,6 +29,8 @@ LOG = logging.getLogger("mdlgen.compiling")
 # its caller, and can make no array; what it calls inherits that, but for what OWNS arrays of its own.
 BORROWS: dict[str, Any] = {"_nrt": False}
 OWNS: dict[str, Any] = {"_nrt": True}
+# A sum of products may be rounded once, where the processor has an instruction for it.
+FUSED: dict[str, Any] = {"fastmath": {"contract"}}
 
 # Room of the laws that kernels of all solvers call.
 LAWS = "mdlgen.mechanics"

@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from mdlgen.program.kernel import njit
+from mdlgen.program.kernel import BORROWS, njit
 
 PAD = 16
 _VECTOR = 8
@@ -23,7 +23,7 @@ def empty(nodes: int, reach: int) -> np.ndarray:
     return np.zeros((nodes, 6, 6 * (reach + 1) + PAD))
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False)
+@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False, **BORROWS)
 def factor(a):
     """Cholesky factor in place. Returns False where a pivot is not positive."""
     nodes, blocks = a.shape[0], (a.shape[2] - PAD) // 6
@@ -65,7 +65,14 @@ def factor(a):
     return True
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False, forceinline=True)
+@njit(
+    cache=True,
+    error_model="numpy",
+    fastmath={"contract", "reassoc"},
+    boundscheck=False,
+    forceinline=True,
+    **BORROWS,
+)
 def _down(col, x, base, length):
     """Forward step of one block column."""
     for c in range(6):
@@ -82,7 +89,14 @@ def _down(col, x, base, length):
         out[r] -= x0 * c0[r] + x1 * c1[r] + x2 * c2[r] + x3 * c3[r] + x4 * c4[r] + x5 * c5[r]
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False, forceinline=True)
+@njit(
+    cache=True,
+    error_model="numpy",
+    fastmath={"contract", "reassoc"},
+    boundscheck=False,
+    forceinline=True,
+    **BORROWS,
+)
 def _down_two(col, x, y, base, length):
     """The same for two right-hand sides."""
     for c in range(6):
@@ -103,7 +117,14 @@ def _down_two(col, x, y, base, length):
         two[r] -= y0 * v0 + y1 * v1 + y2 * v2 + y3 * v3 + y4 * v4 + y5 * v5
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False, forceinline=True)
+@njit(
+    cache=True,
+    error_model="numpy",
+    fastmath={"contract", "reassoc"},
+    boundscheck=False,
+    forceinline=True,
+    **BORROWS,
+)
 def _up(col, x, base, length):
     """Backward step of one block column."""
     end = 6 + length
@@ -132,7 +153,7 @@ def _up(col, x, base, length):
         x[base + c] = v * col[c, c]
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)
 def _lengths(a):
     """Rows of a column behind its own block, in whole vectors; the first node where fewer are left."""
     nodes, blocks = a.shape[0], (a.shape[2] - PAD) // 6
@@ -140,7 +161,7 @@ def _lengths(a):
     return length, nodes - (length + 11) // 6
 
 
-@njit(cache=True, error_model="numpy", boundscheck=False)
+@njit(cache=True, error_model="numpy", boundscheck=False, **BORROWS)
 def solve(a, x, first=0):
     """Solves in place with a factor; x (6 nodes,), which is zero before node `first`."""
     nodes = a.shape[0]
@@ -151,7 +172,7 @@ def solve(a, x, first=0):
         _up(a[j], x, 6 * j, length if j < short else min(length, 6 * (nodes - j) - 6))
 
 
-@njit(cache=True, error_model="numpy", boundscheck=False)
+@njit(cache=True, error_model="numpy", boundscheck=False, **BORROWS)
 def solve_six(a, x, first=0):
     """Solves for six right-hand sides at once, x (6, 6 nodes): a column is read from memory once for all, and
     on the way down into registers once for two."""

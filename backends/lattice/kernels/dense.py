@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from mdlgen.program.kernel import njit
+from mdlgen.program.kernel import BORROWS, njit
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def copy(into, of):
     """Copies a whole array of up to three dimensions; loops, since an assignment of slices brings the texts
     of its errors along, which no shipped program may hold."""
@@ -25,7 +25,7 @@ def copy(into, of):
                     into[i, j, k] = of[i, j, k]
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False)
+@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False, **BORROWS)
 def lu(jac, swaps, many):
     """Factors in place, with row exchange, four columns at a time. Returns False where that fails."""
     for j in range(0, many, 4):
@@ -76,7 +76,7 @@ def lu(jac, swaps, many):
     return True
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False)
+@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False, **BORROWS)
 def lu_solve_transposed(jac, swaps, b, many):
     """Solves with the transpose of what was factored, in place."""
     for i in range(many):

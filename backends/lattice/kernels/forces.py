@@ -38,12 +38,12 @@ from mdlgen.mechanics.vector import (
     transpose_matmul,
     vec,
 )
-from mdlgen.program.kernel import BORROWS, njit
+from mdlgen.program.kernel import BORROWS, FUSED, njit
 
 WIDE = OUT + 1 + POINT * MOST_POINTS
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@njit(cache=True, error_model="numpy", forceinline=True, **FUSED)
 def place_box(b, h, rate, spin, x, r, xm, rm, um, wm):
     """One free box after h at a velocity and an angular velocity."""
     m = matmul(exp_rotation(scale(h, spin)), mat(r, b))
@@ -67,7 +67,7 @@ def turn_roller(body, b, h, t, turning, r, rm):
         rm[b, i] = m[i]
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@njit(cache=True, error_model="numpy", forceinline=True, **FUSED)
 def place_roller(body, b, h, t, rate, turning, x, r, xm, rm, um, wm):
     """One roller after h at the rates of its slide and its spin, where it has them; t: that time. One that is
     round need not turn. A pressed plate has a slide alone."""
@@ -88,7 +88,7 @@ def place_roller(body, b, h, t, rate, turning, x, r, xm, rm, um, wm):
         wm[b, i] = turning * body.axis[i]
 
 
-@njit(cache=True, error_model="numpy", **BORROWS)
+@njit(cache=True, error_model="numpy", **BORROWS, **FUSED)
 def place(bodies, nodes, images, h, t, u, ub, x, r, xm, rm, um, wm):
     """The state after h at the velocities u (nodes, 6) and ub (border,), from positions x and rotations
     r: xm, rm, and the velocities of all bodies um, wm."""
@@ -112,7 +112,7 @@ def _add(f, b, force, torque):
         f[b, 3 + i] += torque[i]
 
 
-@njit(cache=True, error_model="numpy", **BORROWS)
+@njit(cache=True, error_model="numpy", **BORROWS, **FUSED)
 def joint_forces(joints, points, x, r, u, w, f, lag=0.0):
     """Adds the forces of all joints to f (bodies, 6), with `lag` [ms] times the stiffness on top of the
     damping, less the damping time that a joint has itself. `points` are those of the curves that some follow.

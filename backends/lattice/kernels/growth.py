@@ -11,7 +11,7 @@ from mdlgen.mechanics.vector import add, back, cross, mat, scale, sub, three, ve
 from mdlgen.program.kernel import BORROWS, njit
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def activate(bodies, pairs, count, alone):
     """Lists the chosen boxes that touch now, kept[1] in number. Returns whether they are those of the last
     time."""
@@ -148,7 +148,7 @@ def gradient(bodies, pairs, h, x, count, alone, acting, many, chord):
                     growth[index[l], index[j]] += direction[l, i] * v
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def clutches(bodies, h, t, ub, alone, m, acting):
     """Adds what the impulses of clutches lose as their rollers turn faster."""
     for b in alone.rollers:
@@ -158,7 +158,7 @@ def clutches(bodies, h, t, ub, alone, m, acting):
             alone.growth[at, at] += h * clutch(bodies[b], ub[spin] + alone.z[6 * m + spin], t)[1]
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False)
+@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False, **BORROWS)
 def newton_matrix(alone, acting, many):
     """1 + W growth of the boxes that touch and of the rollers, transposed: what a column is made of are rows
     of W, which is symmetric."""
@@ -188,7 +188,7 @@ def newton_matrix(alone, acting, many):
         jac[c, c] += 1.0
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
+@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, **BORROWS)
 def newton(alone, m, acting, many):
     """A step of Newton's method, of all chosen boxes and the rollers, with the factored matrix; `push` is
     what it takes off the impulses on the boxes."""

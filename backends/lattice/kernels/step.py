@@ -56,7 +56,7 @@ from mdlgen.backends.lattice.kernels.two_sets import deal
 from mdlgen.mechanics.arm import moved, torque_of, turn_of, way_of
 from mdlgen.mechanics.driven import clutch, prescribed
 from mdlgen.mechanics.vector import back, dot, exp_rotation, mat, matmul, rotate, three, vec
-from mdlgen.program.kernel import njit
+from mdlgen.program.kernel import BORROWS, njit
 
 # Rounds of one step before it is given up.
 MOST_ROUNDS = 40
@@ -76,7 +76,7 @@ LITTLE, MUCH = 0.05, 0.7
 STEPS, ROUNDS, FACTORS, TOUCHING, WORST, STRAIN, THROUGH, CLOSE, COUNTERS = 0, 1, 2, 3, 4, 5, 6, 7, 8
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def _residual(bodies, nodes, gravity, t, h, u, ub, v, l, vb, s, xm, rm, f, res, resb):
     """Residual of the step's equations into res (6 nodes,) and resb (border,); t is in the middle."""
     for n in range(nodes.size):
@@ -104,7 +104,7 @@ def _residual(bodies, nodes, gravity, t, h, u, ub, v, l, vb, s, xm, rm, f, res, 
             resb[spin_at] = p[4] * (ub[spin_at] - vb[spin_at]) - h * about
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def _weights(bodies, gravity, f):
     """Weight of what slides, and of rollers on arms, on top of the forces on them."""
     for k in range(bodies.size - 1):
@@ -114,7 +114,7 @@ def _weights(bodies, gravity, f):
                 f[k, i] += mass * gravity[i]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def _turn(nodes, r, res, inward):
     """Turns a vector of the nodes into box axes, or back."""
     for n in range(nodes.size):
@@ -271,7 +271,7 @@ def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, c
     return False
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def spun(body, u, v, t, dt):
     """Spin of a roller at the end of a step from t, from those at its middle and its beginning: 2 u - v, but
     for a clutch that is stiff for the step.
@@ -287,7 +287,7 @@ def spun(body, u, v, t, dt):
     return 2.0 * u - v - added * stiff * stiff / (1.0 + stiff * stiff)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def carry(system, state, mid, t, dt):
     """From the middle to the end of a step."""
     bodies, joints, pairs, loads, gravity, nodes, points, images, meshes = system

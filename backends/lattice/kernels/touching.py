@@ -37,7 +37,7 @@ GOOD = 0.04
 NEAR = 10.0
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def _mine(bodies, pairs, near, where, alone):
     """Lists the near pairs of the chosen boxes and those between rollers."""
     unsee(alone)
@@ -78,7 +78,7 @@ def _take(pairs, nodes, alone, m, known):
     return count
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def _impulses(bodies, nodes, xm, h, t, ub, alone, m, p):
     """Forces times h, in box axes and along the freedoms of rollers at xm, into p; of clutches at t and the
     rates ub + z."""
@@ -101,7 +101,7 @@ def _impulses(bodies, nodes, xm, h, t, ub, alone, m, p):
             p[6 * m + spin] = h * (about + clutch(bodies[b], ub[spin] + alone.z[6 * m + spin], t)[0])
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def _begin(bodies, nodes, x, h, ub, alone, m, res, resb):
     """Sets z to zero, z0 to what the residual changes, and the measures of both, with rollers at x."""
     z, z0, own, measure = alone.z, alone.z0, alone.own, alone.measure
@@ -126,7 +126,7 @@ def _begin(bodies, nodes, x, h, ub, alone, m, res, resb):
         z0[6 * m + i] = -own[i] * resb[i]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def _evaluate(bodies, pairs, meshes, nodes, h, t, state, mid, alone, m):
     """Contact forces on the chosen boxes and the rollers, with their velocities changed by z; returns how
     many pairs touch."""
@@ -159,7 +159,7 @@ def _evaluate(bodies, pairs, meshes, nodes, h, t, state, mid, alone, m):
     return count
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
+@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, **BORROWS)
 def _gap(alone, m, many):
     """What is left of the system's equations, into `gap`; returns its square, in velocities."""
     w, p, p0, push = alone.w, alone.p, alone.p0, alone.push
@@ -180,7 +180,7 @@ def _gap(alone, m, many):
     return total
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False)
+@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False, **BORROWS)
 def _apply(alone, m, res, resb):
     """Completes what is to be taken off by what the contacts add to it."""
     used, p0 = alone.used, alone.p0
@@ -195,7 +195,7 @@ def _apply(alone, m, res, resb):
         resb[i] = -alone.z[6 * m + i]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def settle(system, alone, m, where, h, t, state, mid, near, known, rest, limits):
     """Solves for the velocities of the m chosen boxes and of the rollers. Returns whether it converged: what
     is left is below limits[0], or a round moved them by less than limits[1].
