@@ -83,9 +83,11 @@ def _add_outer(growth, force, torque, way, turn):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _pair_growth(pair, out, axes, h, x, chord, growth):
+def _pair_growth(pair, out, axes, h, mid, chord, growth):
     """What the points of one pair do together: a 6 x 6 matrix of the motion of one body against the other,
-    seen from the centre of the first, in the axes of the box."""
+    seen from the centre of the first, in the axes of the box. `mid`: places, rotations, velocities, angular
+    velocities."""
+    x, _r, u, w = mid
     for i in range(6):
         for j in range(6):
             growth[i, j] = 0.0
@@ -104,12 +106,20 @@ def _pair_growth(pair, out, axes, h, x, chord, growth):
             foot = back(axes, sub((out[at + 17], out[at + 18], out[at + 19]), vec(x, pair.a)))
             way = back(axes, (out[at + 20], out[at + 21], out[at + 22]))
             force = scale(damping, sub(normal, scale(phi, slip)))
-            _add_outer(growth, force, cross(arm, force), way, cross(foot, way))
+            # as the face turns so does the way along which a passing sheet closes; a roller's own turning
+            # is across it wherever the foot is
+            passing = sub(
+                add(back(axes, vec(u, pair.a)), cross(back(axes, vec(w, pair.a)), foot)),
+                back(axes, vec(u, pair.b)),
+            )
+            turn = add(cross(foot, way), scale(h, cross(way, passing)))
+            _add_outer(growth, force, cross(arm, force), way, turn)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def gradient(bodies, pairs, h, x, count, alone, acting, many, chord):
+def gradient(bodies, pairs, h, mid, count, alone, acting, many, chord):
     """Growth of the contact impulses with the velocities of the boxes that touch and of the rollers."""
+    x = mid[0]
     growth, one, direction, index = alone.growth, alone.pair, alone.direction, alone.which
     for i in range(many):
         for j in range(many):
@@ -118,7 +128,7 @@ def gradient(bodies, pairs, h, x, count, alone, acting, many, chord):
         pair, out = pairs[alone.touched[k]], alone.outs[k]
         node = bodies[pair.a].node
         axes = mat(alone.axes, pair.a)
-        _pair_growth(pair, out, axes, h, x, chord, one)
+        _pair_growth(pair, out, axes, h, mid, chord, one)
         moving, first = 0, 0
         if node >= 0:
             first = 6 * alone.rank[alone.place_of[node]]

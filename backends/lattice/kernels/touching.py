@@ -230,7 +230,7 @@ def settle(system, alone, m, where, h, t, state, mid, near, known, rest, limits)
         acting = alone.kept[1]
         short = 6 * acting + ub.size
         if not (same and alone.kept[0] == 1):
-            gradient(bodies, pairs, h, mid[0], count, alone, acting, short, chord)
+            gradient(bodies, pairs, h, mid, count, alone, acting, short, chord)
             clutches(bodies, h, t, ub, alone, m, acting)
             newton_matrix(alone, acting, short)
             if not lu(alone.jac, alone.swaps, short):
