@@ -365,7 +365,7 @@ def test_a_balance_that_does_not_stand_fails():
     assert "unstable: it falls in one direction" in result.status
 
 
-@pytest.mark.parametrize("across", [1e-3, -1e-2])
+@pytest.mark.parametrize("across", [2e-3, -1e-2])
 def test_a_buckled_column_is_the_elastica(across):
     from mdlgen.bench.oracles import loaded
 

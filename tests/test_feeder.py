@@ -16,7 +16,7 @@ from mdlgen.results.result import Result
 from mdlgen.spec.load import load
 from mdlgen.verify.verification import verify
 
-COARSE = ("sheets.note_1.boxes=[10,8]",)
+COARSE = ("sheets.note_1.boxes=[10,8]", "run.step=0.0625 ms")
 # note on rejection roller below note on note
 SWAPPED = ("contacts.3.friction=0.15", "contacts.6.friction=0.5")
 STANDS, RUBBER = 40.0, 200.0  # ms: the notes have come to rest at the rejection roller; the rubber is near
