@@ -51,7 +51,7 @@ def test_the_note_waits_for_the_rubber() -> None:
 
 
 def test_one_note_leaves_where_the_frictions_have_their_order() -> None:
-    result = run("feeder", f"run.duration={FED} ms")
+    result = run("feeder", COARSE[1], f"run.duration={FED} ms")
     assert abs(place(result, 0, RUBBER) - place(result, 0, STANDS)) < 0.2
     assert place(result, 0, FED) - place(result, 0, RUBBER) > 6.0
     assert abs(place(result, 1, FED) - place(result, 1, STANDS)) < 0.2
