@@ -173,8 +173,3 @@ def exact_quantity(value: float, unit: str) -> str:
     found = next((number for number in tries if number * factor == value), near)
     shown = repr(int(found)) if found.is_integer() and abs(found) < 1e15 else repr(found)
     return f"{shown} {unit}"
-
-
-def format_quantity(value: float, unit: str) -> str:
-    """The inverse of `parse_quantity`: shortest text that reads back as the same float where possible."""
-    return f"{value / parse_unit(unit).factor!r} {unit}"

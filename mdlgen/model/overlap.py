@@ -67,13 +67,9 @@ def rod(roller: RollerPart, center: Floats) -> Rod:
     return Rod(center, roller.axis, radius, 0.5 * roller.width)
 
 
-def in_box(roller: Rod, box: Box) -> float:
-    """How far a roller and a block overlap, by the way that is shortest out; 0 where they are apart [mm]."""
-    return max(0.0, _into_box(roller, box))
-
-
-def _into_box(roller: Rod, box: Box) -> float:
-    """As `in_box`; below zero by how far they are apart at least."""
+def into_box(roller: Rod, box: Box) -> float:
+    """How far a roller and a block overlap, by the way that is shortest out [mm]; below zero by how far they
+    are apart at least."""
     gap = box.center - roller.center
     least = math.inf
     for way in _ways(roller, box):
@@ -100,13 +96,9 @@ def _ways(roller: Rod, box: Box) -> Iterator[np.ndarray]:
     yield away - roller.axis * float(away @ roller.axis)
 
 
-def in_triangles(roller: Rod, triangles: Floats) -> float:
-    """How far triangles (n, 3, 3) come into a roller from its round; 0 where they are apart [mm]."""
-    return max(0.0, _into_triangles(roller, triangles))
-
-
-def _into_triangles(roller: Rod, triangles: Floats) -> float:
-    """As `in_triangles`; below zero by how far they are apart at least."""
+def into_triangles(roller: Rod, triangles: Floats) -> float:
+    """How far triangles (n, 3, 3) come into a roller from its curved face [mm]; below zero by how far they
+    are apart at least."""
     extent = np.array([roller.reach(way) for way in np.eye(3)])
     low, high = triangles.min(axis=1), triangles.max(axis=1)
     gaps = np.maximum(low - roller.center, roller.center - high) - extent
@@ -204,10 +196,10 @@ class Overlaps:
             if part.body not in self._triangles:
                 places = part.center + part.corners @ part.axes.T
                 self._triangles[part.body] = places[part.triangles]
-            return _into_triangles(shape, self._triangles[part.body])
+            return into_triangles(shape, self._triangles[part.body])
         if part.body not in self._boxes:
             self._boxes[part.body] = _boxes(part, position[part.body], self._model.bodies.rotation[part.body])
-        return max(_into_box(shape, box) for box in self._boxes[part.body])
+        return max(into_box(shape, box) for box in self._boxes[part.body])
 
     def found(self, position: Floats, time: float) -> str | None:
         """Why a run cannot go on from places of bodies (n, 3) at a time [ms]; None: it can.

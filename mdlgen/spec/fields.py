@@ -18,7 +18,7 @@ from pydantic import (
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from mdlgen.spec.parameter import Computed, Unknown, amount, computed
-from mdlgen.units import check_unit, exact_quantity, format_quantity, parse_quantity, parse_unit
+from mdlgen.units import check_unit, exact_quantity, parse_quantity, parse_unit
 
 # What a quantity may be in the unit of its field, but for 0: products of some of them are still numbers.
 SMALLEST, LARGEST = 1e-20, 1e20
@@ -266,7 +266,7 @@ def combined(value: float, template: str, *parts: tuple[Any, str]) -> float:
 def _as_text(part: Any, unit: str) -> str:
     if isinstance(part, Computed):
         return part.formula
-    return format_quantity(part, unit) if isinstance(part, float) else str(part)
+    return exact_quantity(part, unit) if isinstance(part, float) else str(part)
 
 
 def following(value: float) -> Default:

@@ -67,7 +67,6 @@ BUILT_INS: dict[str, type[Thing]] = {
     "Global_Frame": GlobalFrame,
     "Op_Compliant": BuiltInOption,
 }
-HOLDERS = {"System", "Analysis", "Graphic"}
 
 
 def made(world: World, declaration: Declaration) -> Any:
