@@ -145,6 +145,7 @@ FAKES = {
             return honest(model, progress, step)
         """,
 }
+RECORD = "\nfrom mdlgen.backend import Backend\n\nBACKEND = Backend(solve=solve)\n"
 
 
 @pytest.fixture
@@ -152,7 +153,7 @@ def fake(tmp_path, monkeypatch):
     """Registers a solver of FAKES by its name."""
 
     def register(name: str) -> str:
-        (tmp_path / f"bench_{name}.py").write_text(textwrap.dedent(FAKES[name]))
+        (tmp_path / f"bench_{name}.py").write_text(textwrap.dedent(FAKES[name]) + RECORD)
         monkeypatch.syspath_prepend(str(tmp_path))
         monkeypatch.setitem(registry.SOLVERS, name, f"bench_{name}")
         return name

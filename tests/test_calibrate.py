@@ -13,6 +13,7 @@ from synthetic import moving
 
 import mdlgen
 from mdlgen import registry
+from mdlgen.backend import Backend
 from mdlgen.calibrate.calibration import calibrate
 from mdlgen.calibrate.measured import Decay, read_measured
 from mdlgen.calibrate.search import MAX_RUNS
@@ -382,7 +383,7 @@ class Fake:
 
 
 def test_a_failed_run_ends_with_its_reason(cli: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(registry, "solver", lambda name: Fake("Newton at box note_1_1"))
+    monkeypatch.setattr(registry, "solver", lambda name: Backend(solve=Fake("Newton at box note_1_1").solve))
     ended = cli("--measured", "60 mm", "--fit", "k_tx", "-o", "found.yaml")
     assert (ended.code, ended.out) == (4, "")
     assert "Newton at box note_1_1" in ended.err and len(ended.err.splitlines()) == 1

@@ -18,6 +18,7 @@ from synthetic import moving
 
 import mdlgen
 from mdlgen import registry
+from mdlgen.backend import Backend
 from mdlgen.cli import app, shell
 from mdlgen.errors import RefusedError
 from mdlgen.model.tables import Model
@@ -336,7 +337,7 @@ class Fake:
 
 
 def test_run_writes_all_files(mdl: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(registry, "solver", lambda name: Fake())
+    monkeypatch.setattr(registry, "solver", lambda name: Backend(solve=Fake().solve))
     ended = mdl("run", FOUR, *SMALL)
     assert (ended.code, ended.err) == (0, "")
     names = ["report.html", "result.h5", "series.csv", "summary.json"]
@@ -348,7 +349,7 @@ def test_run_writes_all_files(mdl: Run, tmp_path: Path, monkeypatch: pytest.Monk
 def test_pictures_are_drawn_when_asked_for_and_anew_where_there_are_some(
     mdl: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(registry, "solver", lambda name: Fake())
+    monkeypatch.setattr(registry, "solver", lambda name: Backend(solve=Fake().solve))
     mdl("run", FOUR, *SMALL, "-o", "d", "--pictures")
     old = (tmp_path / "d" / "report.png").read_bytes()
     assert old.startswith(b"\x89PNG") and (tmp_path / "d" / "strain.png").exists()
@@ -361,7 +362,9 @@ def test_pictures_are_drawn_when_asked_for_and_anew_where_there_are_some(
 
 
 def test_a_failed_run_writes_nothing(mdl: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(registry, "solver", lambda name: Fake(status="Newton at 3 ms in box note_1_1"))
+    monkeypatch.setattr(
+        registry, "solver", lambda name: Backend(solve=Fake(status="Newton at 3 ms in box note_1_1").solve)
+    )
     ended = mdl("run", FOUR, *SMALL, "-o", "d")
     assert (ended.code, ended.out) == (4, "")
     assert "Newton at 3 ms in box note_1_1" in ended.err and len(ended.err.splitlines()) == 1
@@ -371,10 +374,10 @@ def test_a_failed_run_writes_nothing(mdl: Run, tmp_path: Path, monkeypatch: pyte
 def test_a_failed_run_leaves_the_old_result(
     mdl: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(registry, "solver", lambda name: Fake())
+    monkeypatch.setattr(registry, "solver", lambda name: Backend(solve=Fake().solve))
     mdl("run", FOUR, *SMALL, "-o", "d")
     old = {n: (tmp_path / n).read_bytes() for n in files(tmp_path)}
-    monkeypatch.setattr(registry, "solver", lambda name: Fake(status="no"))
+    monkeypatch.setattr(registry, "solver", lambda name: Backend(solve=Fake(status="no").solve))
     assert mdl("run", FOUR, *SMALL, "-o", "d").code == 4
     assert {n: (tmp_path / n).read_bytes() for n in files(tmp_path)} == old
 
@@ -382,13 +385,14 @@ def test_a_failed_run_leaves_the_old_result(
 def test_a_missed_tolerance_is_exit_5_and_keeps_the_files(
     mdl: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(registry, "solver", lambda name: Fake(error=1.0))  # 1 mm of 70: 1.4 %
+    # 1 mm of 70: 1.4 %
+    monkeypatch.setattr(registry, "solver", lambda name: Backend(solve=Fake(error=1.0).solve))
     ended = mdl("run", FOUR, *SMALL, "-o", "d", "--check-step")
     assert ended.code == 5
     assert "above run.tolerance 0.001" in ended.err and "d" in ended.err
     told = json.loads((tmp_path / "d" / "summary.json").read_text())
     assert told["error_estimate"] == pytest.approx(1 / 70, rel=1e-9)
-    monkeypatch.setattr(registry, "solver", lambda name: Fake(error=0.01))
+    monkeypatch.setattr(registry, "solver", lambda name: Backend(solve=Fake(error=0.01).solve))
     assert mdl("run", FOUR, *SMALL, "-o", "d", "--check-step").code == 0
 
 

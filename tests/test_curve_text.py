@@ -14,7 +14,7 @@ from mdlgen.model import curves
 from mdlgen.model.lower import lower
 from mdlgen.model.tables import Model
 from mdlgen.paths import samples
-from mdlgen.registry import emitter, reader
+from mdlgen.registry import emitter
 from mdlgen.spec.load import load
 from mdlgen.verify.outcome import Verification
 from mdlgen.verify.verification import verify
@@ -28,7 +28,7 @@ def model_of(*overrides: str) -> Model:
 
 
 def values(text: str) -> dict:
-    reading = reader("motionview").read(text, "snatch.mdl")
+    reading = emitter("motionview").read(text, "snatch.mdl")
     found = reading.values
     assert not reading.report.findings, [str(f) for f in reading.report.findings[:3]]
     return found
@@ -65,7 +65,7 @@ def test_a_joint_pulls_as_the_local_run_has_it(backend: str) -> None:
     """The force that text and deck give at an elongation of each bushing, by their own numbers."""
     model = model_of()
     text = mdlgen.emit(model, backend)
-    found = values(text) if backend == "motionview" else reader(backend).read(text, "snatch.xml").values
+    found = values(text) if backend == "motionview" else emitter(backend).read(text, "snatch.xml").values
     table = model.curves
     for row in np.flatnonzero(table.of >= 0):
         law = found["bushings"][f"bsh_{model.bushings.name[row]}"]["curves"][f"k.{table.axis[row]}"]
@@ -206,7 +206,7 @@ LITTLE = """*BeginMDL( m, "m" )
 )
 def test_what_the_reader_says_of_a_curve(curve: str, law: str, words: str) -> None:
     text = LITTLE.format(curve=curve, law=law, rest=BUSH)
-    reading = reader("motionview").read(text, "little.mdl")
+    reading = emitter("motionview").read(text, "little.mdl")
     found = reading.values
     told = " ".join(str(f) for f in reading.report.findings)
     assert words in told and bool(words) == bool(reading.report.findings)

@@ -25,7 +25,7 @@ from mdlgen.cli import app
 from mdlgen.errors import MdlgenError, RefusedError, SpecError
 from mdlgen.model.tables import Model
 from mdlgen.paths import samples, templates
-from mdlgen.registry import reader
+from mdlgen.registry import emitter
 
 ROOT = Path(__file__).parents[1]
 REAL = ROOT.parent / "shared" / "mdl" / "samples"
@@ -248,7 +248,7 @@ def assert_same(mine: Any, theirs: Any, where: str, scale: float = 0.0) -> None:
 
 def test_the_deck_has_the_values_of_the_text(case: tuple[Model, str]) -> None:
     model, deck = case
-    text = reader("motionview").read(mdlgen.emit(model)).values
+    text = emitter("motionview").read(mdlgen.emit(model)).values
     found = motionsolve.read(deck).values
     for kind in KINDS:
         assert set(found[kind]) == set(text[kind]), kind
@@ -461,7 +461,7 @@ def test_the_reader_reads_the_deck_that_motionview_exported() -> None:
     """And finds there what the reader of MDL finds in the text that it was exported from (8 digits)."""
     file = REAL / "tire_test_rig.xml"
     found = motionsolve.read(file.read_text("utf-8"), file.name).values
-    text = reader("motionview").read((REAL / "tire_test_rig.mdl").read_text("utf-8", "replace")).values
+    text = emitter("motionview").read((REAL / "tire_test_rig.mdl").read_text("utf-8", "replace")).values
     checked = 0
     for kind in ("bodies", "markers", "graphics", "joints"):
         for name in set(found[kind]) & set(text[kind]):

@@ -17,7 +17,7 @@ from mdlgen.mechanics.point import OUT
 from mdlgen.model.guides import SAG, facets
 from mdlgen.model.lower import lower
 from mdlgen.paths import samples
-from mdlgen.registry import emitter, reader
+from mdlgen.registry import emitter
 from mdlgen.results.series import series
 from mdlgen.spec.load import load, loads
 from mdlgen.verify.verification import verify
@@ -318,7 +318,7 @@ def test_a_changed_facet_is_seen(tmp_path):
         changed.write_text(text.replace(old, new, 1))
         found = verify(scene, model, text=changed)
         assert found.all_differences()
-    assert not reader("motionview").read(text, "own").notes.findings()
+    assert not emitter("motionview").read(text, "own").notes.findings()
 
 
 # -- what is refused, and what is told

@@ -28,7 +28,7 @@ from mdlgen.mechanics.point import MOST_POINTS, OUT, POINT
 from mdlgen.mechanics.tree import closest, depth_at, plant
 from mdlgen.model.lower import lower
 from mdlgen.paths import samples
-from mdlgen.registry import emitter, reader, validator
+from mdlgen.registry import emitter
 from mdlgen.spec.limits import DEFAULT, Tally
 from mdlgen.spec.load import load, loads
 from mdlgen.spec.solid import BYTES, moments, read_solid
@@ -690,8 +690,8 @@ def test_meshes_are_the_same_in_text_script_deck_and_model(folder):
     turned = {p.data_set for p in model.parameters if p.data_set in scene.meshes}
     assert turned == set(scene.meshes) and found.turned is not None and found.turned.largest <= 1e-12
     assert [str(d) for d in verify(scene, model, only="sheets").all_differences()] == []
-    assert not reader("motionview").read(emitter("motionview").emit(model), "own").notes.findings()
-    assert not validator("motionsolve").validate(emitter("motionsolve").emit(model), "deck")
+    assert not emitter("motionview").read(emitter("motionview").emit(model), "own").notes.findings()
+    assert not emitter("motionsolve").validate(emitter("motionsolve").emit(model), "deck")
 
 
 def test_a_changed_mesh_is_seen_in_text_and_deck(folder, tmp_path):

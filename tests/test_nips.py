@@ -16,7 +16,7 @@ from mdlgen.errors import SpecError
 from mdlgen.model.lower import lower
 from mdlgen.model.tables import Model
 from mdlgen.paths import samples
-from mdlgen.registry import emitter, reader
+from mdlgen.registry import emitter
 from mdlgen.spec.load import load, loads
 from mdlgen.spec.schema import json_schema
 from mdlgen.spec.shorthand import OF_NIPS
@@ -117,7 +117,7 @@ def test_the_text_has_force_and_speed_as_values_that_move_what_follows() -> None
     text = emitter("motionview").emit(model)
     assert "*SetReal( ds_parameters.real_nip_force, 3.194847641 )" in text
     pressed = text.replace("real_nip_force, 3.194847641", "real_nip_force, 4.0").replace("1400.25", "2800.5")
-    values = reader("motionview").read(pressed).values["datasets"]
+    values = emitter("motionview").read(pressed).values["datasets"]
     depth = (4.0 / 300.0) ** (2 / 3)
     for row in ("1_left", "1_right", "2_left", "2_right"):
         assert values[f"ds_motor_{row}"]["real_z"] == pytest.approx(-7.55 + depth, rel=1e-14)

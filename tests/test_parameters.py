@@ -21,7 +21,7 @@ from mdlgen.formulas import Amount, evaluated
 from mdlgen.model.lower import lower
 from mdlgen.model.tables import Model
 from mdlgen.paths import samples
-from mdlgen.registry import emitter, reader
+from mdlgen.registry import emitter
 from mdlgen.spec.fields import IDENTIFIER
 from mdlgen.spec.load import loads
 from mdlgen.spec.scene import Scene
@@ -162,7 +162,7 @@ def test_speed_over_radius_is_a_rate_and_set_and_the_text_turn_it() -> None:
         "*SetReal( ds_motor_2_left.real_omega, ds_parameters.real_v.value/ds_parameters.real_r.value )"
         in text
     )
-    faster = reader("motionview").read(text.replace("real_v, 1400.0", "real_v, 2800.0")).values
+    faster = emitter("motionview").read(text.replace("real_v, 1400.0", "real_v, 2800.0")).values
     assert faster["datasets"]["ds_motor_2_left"]["real_omega"] == pytest.approx(2800 / 7.5, rel=1e-15)
 
 
@@ -172,7 +172,7 @@ def test_masses_are_in_kg_and_angles_in_degrees_in_a_text() -> None:
     scene = loads(text + "parameters: {heavy: 1.76 g, tip: 0.5, more: 3 deg}\n")
     model = lower(scene)
     said = emitter("motionview").emit(model)
-    values = reader("motionview").read(said).values["datasets"]
+    values = emitter("motionview").read(said).values["datasets"]
     assert values["ds_parameters"] == {"real_heavy": 0.00176, "real_tip": 0.5, "real_more": 3.0}
     assert values["ds_motor_1_left"]["real_M"] == pytest.approx(0.00088, rel=1e-15)
     assert values["ds_note"]["real_turn"] == pytest.approx(2 * np.degrees(np.arcsin(0.125)), rel=1e-14)

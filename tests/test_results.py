@@ -15,6 +15,7 @@ from synthetic import SPEED, moving, small_model
 
 import mdlgen
 from mdlgen import registry
+from mdlgen.backend import Backend
 from mdlgen.errors import OutputError, SpecError
 from mdlgen.model.lower import lower
 from mdlgen.model.tables import Model
@@ -326,7 +327,7 @@ class TestRegistry:
                 h = step or 0.05
                 return replace(moving(model, shift=h), step=h)
 
-        monkeypatch.setattr(registry, "solver", lambda name: Fake())
+        monkeypatch.setattr(registry, "solver", lambda name: Backend(solve=Fake().solve))
         found = mdlgen.solve(model, check_step=True)
         assert asked == [None, 0.025]
         assert found.step == 0.025
@@ -337,7 +338,7 @@ class TestRegistry:
             def solve(self, model: Model, progress: object = None, step: float | None = None) -> Result:
                 return moving(model).failed("no") if step else moving(model)
 
-        monkeypatch.setattr(registry, "solver", lambda name: Fake())
+        monkeypatch.setattr(registry, "solver", lambda name: Backend(solve=Fake().solve))
         assert mdlgen.solve(model, check_step=True).status == "at half the step (0.025 ms): no"
 
 

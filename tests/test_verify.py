@@ -12,7 +12,7 @@ from mutations import mutations, omissions
 from mdlgen.errors import MdlgenError, RefusedError, SpecError
 from mdlgen.model.lower import lower
 from mdlgen.paths import samples
-from mdlgen.registry import emitter, reader
+from mdlgen.registry import emitter
 from mdlgen.spec.load import load
 from mdlgen.verify.expected import expected, stations
 from mdlgen.verify.outcome import Verification
@@ -66,13 +66,13 @@ def test_a_change_of_any_number_name_or_sign_is_caught(seed: int, tmp_path: Path
     scene = load(RICH)
     model = lower(scene)
     text = emitter("motionview").emit(model, set_contact=seed % 2 == 1)
-    before = reader("motionview").read(text)
+    before = emitter("motionview").read(text)
     assert not before.report.findings
     file = tmp_path / "rich.mdl"
     altered = 0
     for change in mutations(text, seed, 40):
         try:
-            after = reader("motionview").read(change.text)
+            after = emitter("motionview").read(change.text)
             same = after.values == before.values and not after.report.findings and rest(after) == rest(before)
         except SpecError:
             same = False
@@ -137,7 +137,7 @@ def test_a_formula_that_became_a_number_is_caught(old: str, new: str, tmp_path: 
 def test_values_found_again_are_those_of_a_whole_reading() -> None:
     """What `changed` leaves as it is does not depend on the value that was changed."""
     text = emitted(RICH, set_contact=True)
-    reading = reader("motionview").read(text)
+    reading = emitter("motionview").read(text)
     base = reading.values
     tried = 0
     for path, member in base["members"].items():
@@ -148,7 +148,7 @@ def test_values_found_again_are_those_of_a_whole_reading() -> None:
         changed = reading.changed(path, number)
         start = text.index(f"*SetReal( {path}, ")
         end = text.index("\n", start)
-        whole = reader("motionview").read(f"{text[:start]}*SetReal( {path}, {number} ){text[end:]}").values
+        whole = emitter("motionview").read(f"{text[:start]}*SetReal( {path}, {number} ){text[end:]}").values
         merged = {kind: dict(records) for kind, records in base.items()}
         for kind, records in changed.items():
             for key, record in records.items():
@@ -659,6 +659,5 @@ def test_a_missing_body_is_told_by_name(tmp_path: Path) -> None:
 def test_expected_values_need_no_text(monkeypatch: pytest.MonkeyPatch) -> None:
     """The tables to compare with come from the Model alone: without any backend at hand."""
     monkeypatch.setattr("mdlgen.registry.EMITTERS", {})
-    monkeypatch.setattr("mdlgen.registry.READERS", {})
     model = lower(load(RICH))
     assert expected(model, stations(model))["bodies"].names

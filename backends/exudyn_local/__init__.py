@@ -6,6 +6,21 @@ law that the oracles test, and any curve or share rule costs the same.
 
 from __future__ import annotations
 
+from mdlgen.backend import Backend, Shipped
 from mdlgen.backends.exudyn_local.solve import solve
 
-__all__ = ["solve"]
+__all__ = ["BACKEND", "solve"]
+_SHORT = ("run.duration=0.4 ms", "run.print_step=0.2 ms", "run.step=0.1 ms")
+_FEW = ("sheets.note.boxes=[2, 3]",)
+BACKEND = Backend(
+    solve=solve,
+    shipped=Shipped(
+        "mdlgen.backends.exudyn_local.shipped",
+        (
+            ("transport_4x4.yaml", _SHORT),
+            ("pick.yaml", _SHORT),
+            ("cantilever.yaml", _FEW),
+            ("verify/tension.yaml", ()),
+        ),
+    ),
+)

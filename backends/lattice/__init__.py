@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING
+
+from mdlgen.backend import Backend, Capabilities, Progress, Shipped
 
 if TYPE_CHECKING:
     from mdlgen.model.tables import Model
     from mdlgen.results.keep import Keep
     from mdlgen.results.result import Result
 
-__all__ = ["check", "solve"]
-
-# Its runs can be gone on with: see `mdlgen.results.keep`.
-KEEPS = True
-
-Progress = Callable[[float, float, int, int], None]
+__all__ = ["BACKEND", "check", "solve"]
 
 
 def check(model: Model) -> None:
@@ -36,3 +32,16 @@ def solve(
     from mdlgen.backends.lattice import run
 
     return run.solve(model, progress, step, without, keep)
+
+
+_SHORT = ("run.duration=0.4 ms", "run.print_step=0.2 ms", "run.step=0.1 ms")
+_FEW = ("sheets.note.boxes=[2, 3]",)
+BACKEND = Backend(
+    check=check,
+    solve=solve,
+    capabilities=Capabilities(resumes=True),
+    shipped=Shipped(
+        "mdlgen.backends.lattice.kernels.entries",
+        (("transport_4x4.yaml", _SHORT), ("pick.yaml", _SHORT), ("cantilever.yaml", _FEW)),
+    ),
+)

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from mdlgen.backend import Backend
+
 if TYPE_CHECKING:
     from mdlgen.backends.motionsolve.reader import Reading
     from mdlgen.model.tables import Model
 
-__all__ = ["check", "emit", "read", "validate"]
+__all__ = ["BACKEND", "check", "emit", "read", "validate"]
 
 
 def emit(model: Model) -> str:
@@ -37,3 +39,6 @@ def validate(text: str, file: str = "<deck>") -> list[str]:
     from mdlgen.backends.motionsolve import schema
 
     return schema.validate(text, file)
+
+
+BACKEND = Backend(check=check, emit=emit, read=read, validate=validate)

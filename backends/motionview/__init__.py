@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mdlgen.backend import Backend
+
 if TYPE_CHECKING:
+    from mdlgen.backends.motionview.reader import Reading
     from mdlgen.model.tables import Model
 
-__all__ = ["check", "companion", "companion_reasons", "emit"]
+__all__ = ["BACKEND", "check", "companion", "companion_reasons", "emit", "read"]
 
 
 def emit(model: Model, *, set_contact: bool = False, only: str | None = None) -> str:
@@ -36,3 +40,13 @@ def companion_reasons(model: Model, set_contact: bool = False, only: str | None 
     from mdlgen.backends.motionview import script
 
     return script.reasons(model, set_contact, only)
+
+
+def read(text: str, file: str = "<text>", folder: Path | None = None) -> Reading:
+    """A text read back; see `mdlgen.backends.motionview.reader.read`."""
+    from mdlgen.backends.motionview import reader
+
+    return reader.read(text, file, folder)
+
+
+BACKEND = Backend(check=check, emit=emit, companion=companion, companion_reasons=companion_reasons, read=read)

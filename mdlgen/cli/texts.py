@@ -77,7 +77,7 @@ def mdl(
     from mdlgen import paths, registry
 
     model = model_of(spec, sets, limits)
-    backend = registry.emitter("motionview")
+    backend = registry.emitter(registry.TEXT)
     text = backend.emit(model, set_contact=set_contact, only=only)
     script = backend.companion(model, set_contact=set_contact, only=only)
     to_stdout = output is not None and str(output) == "-"
@@ -132,7 +132,7 @@ def deck(
     from mdlgen import paths, registry
 
     model = model_of(spec, sets, limits)
-    text = registry.emitter("motionsolve").emit(model)
+    text = registry.emitter(registry.DECK).emit(model)
     if output is not None and str(output) == "-":
         typer.echo(text, nl=False)
         return
@@ -166,12 +166,12 @@ def lint(
     import json
 
     from mdlgen import paths
-    from mdlgen.registry import reader
+    from mdlgen.registry import TEXT, emitter
 
     to_stdout = values is not None and str(values) == "-"
     if to_stdout and as_json:
         raise SpecError("--json and --values - both take standard output; give --values a file")
-    reading = reader("motionview").read(paths.read_exactly(text), str(text), text.parent)
+    reading = emitter(TEXT).read(paths.read_exactly(text), str(text), text.parent)
     if values is not None:
         found = json.dumps(reading.values, allow_nan=False, indent=1) + "\n"
         typer.echo(found, nl=False) if to_stdout else paths.write_atomic(values, found)

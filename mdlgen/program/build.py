@@ -28,20 +28,6 @@ from mdlgen.program.layout import described, words
 from mdlgen.program.native import SMALL
 from mdlgen.program.ship import Program
 
-# Where the programs are, and the scenes in which all of their entries are called with all types that there
-# are: solver, sample, values.
-PROGRAMS = ("mdlgen.backends.lattice.kernels.entries", "mdlgen.backends.exudyn_local.shipped")
-_SHORT = ("run.duration=0.4 ms", "run.print_step=0.2 ms", "run.step=0.1 ms")
-_FEW = ("sheets.note.boxes=[2, 3]",)
-SCENES: tuple[tuple[str, str, tuple[str, ...]], ...] = (
-    ("lattice", "transport_4x4.yaml", _SHORT),
-    ("lattice", "pick.yaml", _SHORT),
-    ("lattice", "cantilever.yaml", _FEW),
-    ("exudyn", "transport_4x4.yaml", _SHORT),
-    ("exudyn", "pick.yaml", _SHORT),
-    ("exudyn", "cantilever.yaml", _FEW),
-    ("exudyn", "verify/tension.yaml", ()),
-)
 # What a program may call of the system it runs on.
 SYSTEM = (
     *("malloc", "free", "memcpy", "memmove", "memset"),
@@ -121,7 +107,7 @@ def main() -> None:
     wanted = parser.parse_args()
     if wanted.check:
         sys.exit(_check())
-    for name in PROGRAMS:
+    for name in _shipped():
         with tempfile.TemporaryDirectory() as folder:
             surroundings = {
                 **os.environ,
@@ -135,9 +121,16 @@ def main() -> None:
             subprocess.run([sys.executable, "-c", code], env=surroundings, check=True)
 
 
+def _shipped() -> dict[str, Any]:
+    """What comes with each solver that has a program (`mdlgen.backend.Shipped`), by the solver's name."""
+    registry = importlib.import_module("mdlgen.registry")
+    found = {name: registry.solver(name).shipped for name in registry.AUTO}
+    return {name: shipped for name, shipped in found.items() if shipped is not None}
+
+
 def programs() -> list[Program]:
     """All programs of this installation."""
-    return [importlib.import_module(name).PROGRAM for name in PROGRAMS]
+    return [importlib.import_module(shipped.module).PROGRAM for shipped in _shipped().values()]
 
 
 def _check() -> int:
@@ -153,11 +146,12 @@ def _check() -> int:
 
 
 def make(name: str) -> None:
-    """Makes one program, in a process in which numba optimises nothing."""
+    """Makes the program of a solver, in a process in which numba optimises nothing."""
     warnings.simplefilter("ignore")  # what is not optimised numba would not keep
-    program: Program = importlib.import_module(name).PROGRAM
+    shipped = _shipped()[name]
+    program: Program = importlib.import_module(shipped.module).PROGRAM
     types = watched(program)
-    _play("lattice" if "lattice" in name else "exudyn")
+    _play(name, shipped.scenes)
     if missing := [entry for entry, found in types.items() if not found]:
         sys.exit(f"{program.path.name}: no scene calls {', '.join(missing)}")
     size = write(program, types)
@@ -177,14 +171,13 @@ def watched(program: Program) -> Types:
     return found
 
 
-def _play(solver: str) -> None:
-    """Runs the SCENES of a solver."""
+def _play(solver: str, scenes: tuple[tuple[str, tuple[str, ...]], ...]) -> None:
+    """Runs the scenes of a solver (sample, values)."""
     load, lower = (importlib.import_module(f"mdlgen.{name}") for name in ("spec.load", "model.lower"))
     samples = importlib.import_module("mdlgen.paths").samples()
     solve = importlib.import_module("mdlgen.registry").solve
-    for name, sample, sets in SCENES:
-        if name == solver:
-            solve(lower.lower(load.load(samples / sample, sets)), name)
+    for sample, sets in scenes:
+        solve(lower.lower(load.load(samples / sample, sets)), solver)
 
 
 def write(program: Program, types: Types) -> int:

@@ -10,7 +10,7 @@ from typing import Any
 from mdlgen.errors import SpecError
 from mdlgen.model.tables import Model
 from mdlgen.paths import read_exactly, read_text
-from mdlgen.registry import emitter, reader
+from mdlgen.registry import TEXT, emitter
 from mdlgen.spec.scene import Scene
 from mdlgen.verify import alone, script
 from mdlgen.verify.expected import expected, stations
@@ -67,7 +67,7 @@ class Subject:
         self.model = model
         self.only = "sheets" if only_sheets or model.externals else None
         self.text = text
-        self.writer = emitter("motionview")
+        self.backend = emitter(TEXT)
         self.times = stations(model)
 
     def said(self, model: Model | None = None) -> dict[str, Table]:
@@ -82,12 +82,12 @@ class Subject:
         if self.text is None:
             return [self.own(set_contact)]
         path = self.text.path
-        return self._read(reader("motionview").read(self.text.text, str(path), path.parent), str(path))
+        return self._read(self.backend.read(self.text.text, str(path), path.parent), str(path))
 
     def own(self, set_contact: bool) -> Read:
         """The text that mdlgen writes."""
-        text = self.writer.emit(self.model, set_contact=set_contact, only=self.only)
-        return self._read(reader("motionview").read(text, "<text>"), "<text>")[0]
+        text = self.backend.emit(self.model, set_contact=set_contact, only=self.only)
+        return self._read(self.backend.read(text, "<text>"), "<text>")[0]
 
     def _read(self, reading: Any, file: str) -> list[Read]:
         for finding in reading.notes.findings():
@@ -104,5 +104,5 @@ class Subject:
 
     def script(self, set_contact: bool) -> script.Script:
         """The script that mdlgen writes for a text; empty where it needs none."""
-        text = self.writer.companion(self.model, set_contact=set_contact, only=self.only)
+        text = self.backend.companion(self.model, set_contact=set_contact, only=self.only)
         return script.NONE if text is None else script.read(text)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from mdlgen.errors import RefusedError, SpecError
 from mdlgen.model.tables import Model
-from mdlgen.registry import emitter, reader, validator
+from mdlgen.registry import DECK, emitter
 from mdlgen.spec.scene import Scene
 from mdlgen.verify.companion import beside, chosen, of_systems, taken
 from mdlgen.verify.elements import element_differences
@@ -154,8 +154,9 @@ def _deck(
     said: dict[str, Table], subject: Subject, text: Values, given: File | None, found: Verification
 ) -> None:
     """The deck against the Model; and its markers, which a text leaves to MotionView, against the text's."""
+    backend = emitter(DECK)
     try:
-        own = emitter("motionsolve").emit(subject.model)
+        own = backend.emit(subject.model)
     except RefusedError as error:
         own = None
         if given is None:
@@ -165,8 +166,8 @@ def _deck(
         assert own is not None
         given, own = File(own, Path("<deck>")), None
     file = str(given.path)
-    reading = reader("motionsolve").read(given.text, file)
-    problems = validator("motionsolve").validate(given.text, file)
+    reading = backend.read(given.text, file)
+    problems = backend.validate(given.text, file)
     found.differences += (Difference("deck", "", problem) for problem in problems)
     try:
         values = reading.values
@@ -175,7 +176,7 @@ def _deck(
             found.differs("deck", "", error.message)
         return
     if own is not None:
-        mine = reader("motionsolve").read(own, "<deck>")
+        mine = backend.read(own, "<deck>")
         found.differences += element_differences(mine, reading, file)
     tables = Found(subject.times).tables(values)
     tables["contacts"] = contact_table(values, {})

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from mdlgen.backend import Backend
 from mdlgen.bench.peers.exudyn_contact import GRAM, MM, MS, contacts
 from mdlgen.bench.peers.scene import Motion, anchor, check
 from mdlgen.model.tables import Model, RollerPart
@@ -164,3 +165,6 @@ def _turned(roller: RollerPart) -> Any:
         return speed * (t * t / (2 * ramp) if t < ramp else t - ramp / 2)
 
     return angle
+
+
+BACKEND = Backend(solve=solve)

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from mdlgen.backend import Backend
 from mdlgen.bench.peers import MISSING
 from mdlgen.bench.peers.scene import Motion, check
 from mdlgen.errors import RefusedError
@@ -210,3 +211,6 @@ def _words(numbers: Any) -> str:
 def _speed(roller: RollerPart, at: float) -> float:
     """Of a driven roller [rad/ms]: a linear ramp."""
     return (roller.speed or 0.0) * min(1.0, at / roller.ramp if roller.ramp else 1.0)
+
+
+BACKEND = Backend(solve=solve)

@@ -6,13 +6,12 @@ from importlib import import_module
 
 from mdlgen.bench.case import Case
 from mdlgen.errors import SpecError, did_you_mean
+from mdlgen.registry import AUTO
 
 SUITES = (
     *("transport", "elastica", "impact", "friction", "flight", "scaling", "skip", "feeder", "stability"),
     "validation",
 )
-# The solver whose finest run the others are compared with, where it is there.
-REFERENCE = ("lattice", "exudyn")
 
 
 def cases(suite: str, solver: str, solvers: tuple[str, ...], quick: bool) -> list[Case]:
@@ -23,5 +22,6 @@ def cases(suite: str, solver: str, solvers: tuple[str, ...], quick: bool) -> lis
     if suite not in SUITES:
         close = did_you_mean(suite[:40], SUITES)
         raise SpecError(f"there is no suite {suite[:40]!r}{close or ';'} there are: {', '.join(SUITES)}")
-    known = [name for name in REFERENCE if name in solvers] or [solver]
+    # the solver whose finest run the others are compared with, where it is there
+    known = [name for name in AUTO if name in solvers] or [solver]
     return import_module(f"mdlgen.bench.suites.{suite}").cases(solver, known[0], quick)

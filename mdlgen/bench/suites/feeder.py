@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mdlgen.bench.case import Case, Finding, Reference, Run
+from mdlgen.registry import REFERENCE
 from mdlgen.results.compare import compare
 from mdlgen.results.result import Result
 from mdlgen.results.summary import summary
@@ -33,7 +34,7 @@ LIMIT = 1800.0  # [s]
 
 def cases(solver: str, reference: str, quick: bool) -> list[Case]:
     """A piece against the other solver for Exudyn; else the wait of each grid, and whole runs."""
-    if solver == "exudyn":
+    if solver == REFERENCE:
         sets = (*(COARSE if quick else GRIDS["e2e 200"]), f"run.duration={PIECE} ms")
         run = Run(SAMPLE, sets)
         return [

@@ -6,6 +6,7 @@ import numpy as np
 
 from mdlgen.bench.case import Case, Finding, Run
 from mdlgen.bench.momentum import energy, momentum
+from mdlgen.registry import REFERENCE
 from mdlgen.results.result import Result
 
 SAMPLE = "cantilever"
@@ -22,13 +23,13 @@ SCENE = (
     "run.analysis=transient",
     "run.prune=false",
 )
-STEPS = {"exudyn": (0.1, 0.05)}
+STEPS = {REFERENCE: (0.1, 0.05)}
 OTHER_STEPS = (0.2, 0.1, 0.05)
 LINEAR, ANGULAR, ENERGY = 1e-12, 1e-6, 1e-6
 # Stored states from the last touch to the first that counts: a rule of several steps remembers the touch.
 LATER = 12
 # Generalised-alpha is of second order in the momentum too; a midpoint rule keeps it.
-ANGULAR_OF = {"exudyn": 1e-4}
+ANGULAR_OF = {REFERENCE: 1e-4}
 
 
 def cases(solver: str, reference: str, quick: bool) -> list[Case]:

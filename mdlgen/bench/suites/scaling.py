@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mdlgen.bench.case import Case, Finding, Run
+from mdlgen.registry import REFERENCE
 from mdlgen.results.result import Result
 
 SAMPLE = "transport_4x4"
@@ -11,13 +12,13 @@ SAMPLE = "transport_4x4"
 GRIDS = ((6, 12), (10, 20), (14, 28), (18, 36), (20, 40))
 STEP = 0.05  # [ms]
 # Of the run [ms]: the whole transport, and a piece of it where that would take an hour.
-DURATION = {"exudyn": 2.0}
+DURATION = {REFERENCE: 2.0}
 OTHER_DURATION = 50.0
 
 
 def cases(solver: str, reference: str, quick: bool) -> list[Case]:
     """72 to 800 boxes; what is compared is the wall time of the whole run."""
-    duration = DURATION["exudyn"] if quick else DURATION.get(solver, OTHER_DURATION)
+    duration = DURATION[REFERENCE] if quick else DURATION.get(solver, OTHER_DURATION)
     return [
         Case(
             "scaling",

@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from mdlgen.bench.case import Case, Finding, Measure, Reference, Run
+from mdlgen.registry import FAST, REFERENCE
 from mdlgen.results.compare import scale
 from mdlgen.results.result import Result
 
 SAMPLE = "transport_4x4"
 STEP = 0.05  # [ms]
 # Of the run [ms]; exudyn takes a second for each.
-DURATION = {"exudyn": 5.0}
+DURATION = {REFERENCE: 5.0}
 OTHER_DURATION, QUICK_DURATION = 50.0, 1.0
 # Leaving out these changes nothing but the order of sums.
 EXACT = 1e-6
@@ -41,7 +42,7 @@ def near(result: Result, reference: Result | None) -> list[Finding]:
 
 # What a solver does by itself and can do without: its name there, what it is, what a run without it gives.
 OWN: dict[str, tuple[tuple[str, str, Measure], ...]] = {
-    "lattice": (
+    FAST: (
         ("folding", "folded bushings", unchanged),
         ("factors", "kept factors", near),
         ("symmetry", "a half of what is symmetric", near),

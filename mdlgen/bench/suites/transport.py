@@ -7,15 +7,16 @@ import numpy as np
 from mdlgen.bench.case import Case, Finding, Reference, Run
 from mdlgen.bench.peers import PEERS, SHEETS, PeerRun
 from mdlgen.bench.peers import STEPS as PEER_STEPS
+from mdlgen.registry import REFERENCE
 from mdlgen.results.compare import compare, scale, travel
 from mdlgen.results.result import Result
 
 SAMPLE = "transport_4x4"
 # Steps [ms]; exudyn's shorter list because its time is minutes. The reference's step, per solver: below a
 # tenth of the finest step that is measured, but for exudyn, which would take an hour.
-STEPS = {"exudyn": (0.1, 0.05, 0.025)}
+STEPS = {REFERENCE: (0.1, 0.05, 0.025)}
 OTHER_STEPS = (0.25, 0.125, 0.0625, 0.025)
-FINEST = {"exudyn": 0.0125}
+FINEST = {REFERENCE: 0.0125}
 OTHER_FINEST = 0.002
 QUICK = ("run.duration=4 ms", "run.print_step=0.1 ms")
 GRIDS = ((10, 20), (20, 30))
@@ -42,7 +43,7 @@ def cases(solver: str, reference: str, quick: bool) -> list[Case]:
             forced = Case("transport", f"{name}, step given", chosen.run, forced_step, exact)
             made += [forced.at(step) for step in (steps[:2] if quick else steps)]
     # another solver's grid of 600 boxes costs minutes and adds nothing to the comparison
-    return made if solver != "exudyn" else [case for case in made if "20 x 30" not in case.name]
+    return made if solver != REFERENCE else [case for case in made if "20 x 30" not in case.name]
 
 
 def promised(result: Result, reference: Result | None) -> list[Finding]:
