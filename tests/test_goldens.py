@@ -140,14 +140,14 @@ MESHES = _put(
         "wedge": MESH | {"rotation": ["10 deg", "20 deg", "30 deg"]},
     },
 )
-SMOOTH = {"smoothing": "20 mm/s"}
+SMOOTH, FINE = {"smoothing": "20 mm/s"}, {"smoothing": "1 mm/s"}
 CONTACTS = (
     _put("rollers", {"under": ROLLER | {"drive": DRIVE}}),
     _put("planes", {"level": PLANE | {"center": ["0 mm", "0 mm", "-6 mm"]}}),
     _put(
         "contacts",
         [
-            {"between": ["note", "under"], "stiffness": "300 N/mm^1.5", "friction": 0.9},
+            {"between": ["note", "under"], "stiffness": "300 N/mm^1.5", "friction": 0.9} | FINE,
             {"between": ["note", "level"], "friction": 0, "stiffness": "100 N/mm^1.5"} | SMOOTH,
         ],
     ),

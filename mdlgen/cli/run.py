@@ -92,6 +92,7 @@ def run(
     Example: mdlgen run --resume out
     """
     from mdlgen import registry
+    from mdlgen.check_smoothing import notice
     from mdlgen.checks import missing_contacts
     from mdlgen.cli import kept
 
@@ -119,8 +120,9 @@ def run(
     if task.solver == "auto" and why and not quiet:
         say(f"{name} runs this scene ({why})")
     if not quiet:
-        for lint in missing_contacts(model):
-            say(str(lint))
+        for text in (*map(str, missing_contacts(model)), notice(model)):
+            if text:
+                say(text)
     for asked, wish in ((keep_partial, "--keep-partial"), (checkpoint is not None, "--checkpoint")):
         if asked:
             kept.check(name, why, wish)

@@ -98,6 +98,7 @@ def check(
 
     Example: mdlgen check samples/transport_4x4.yaml --set sheets.note.boxes=[20,30]
     """
+    from mdlgen.check_smoothing import notice
     from mdlgen.cli import tables
     from mdlgen.report.overview import overview
     from mdlgen.report.text import overview_text
@@ -113,6 +114,8 @@ def check(
     else:
         for lint in found["lints"]:
             typer.echo("{code} {where}: {message}; {remedy}".format(**lint))
+    if not quiet and (told := notice(model)):
+        say(told)
     if strict:
         strictly(model)
 
@@ -193,7 +196,8 @@ def upgrade(
 ) -> None:
     """Write into a scene of an older version what must be said today.
 
-    A contact without friction had none: it gets `friction: 0`. Comments and form stay.
+    A contact without friction had none: it gets `friction: 0`. Without smoothing it had 1 mm/s: it gets that
+    where it would have another value today. Comments and form stay.
 
     Example: mdlgen upgrade scene.yaml --check
     """
@@ -201,7 +205,7 @@ def upgrade(
     from mdlgen.spec.load import read
     from mdlgen.spec.upgrade import upgraded
 
-    text, changes = upgraded(read(file), str(file))
+    text, changes = upgraded(read(file), str(file), folder=file.parent)
     if not quiet:
         for change in changes:
             typer.echo(change)

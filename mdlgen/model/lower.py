@@ -51,6 +51,7 @@ from mdlgen.model.tables import (
     SheetPart,
 )
 from mdlgen.spec.scene import Scene
+from mdlgen.spec.smoothing import following, speeds
 
 
 def lower(scene: Scene) -> Model:
@@ -140,6 +141,7 @@ def _lower(scene: Scene) -> Model:
         parameters=rows,
         run=run,
         unfollowed=unfollowed(scene, rows),
+        following=tuple(following(scene)),
     )
 
 
@@ -208,6 +210,7 @@ def _sheets(scene: Scene) -> tuple[tuple[SheetPart, ...], list[Cells]]:
 def _contacts(scene: Scene) -> Contacts:
     rows = scene.contact_pairs()
     named = any(contact.name for contact in scene.contacts)
+    speed = speeds(scene, rows)
 
     def column(read: Callable) -> Floats:
         return np.array([read(scene.contacts[i]) for i, _, _ in rows], dtype=float)
@@ -229,9 +232,9 @@ def _contacts(scene: Scene) -> Contacts:
         restitution=column(lambda c: c.restitution),
         mu_static=column(lambda c: c.friction.static),
         mu_dynamic=column(lambda c: c.friction.dynamic),
-        stiction_velocity=column(lambda c: c.friction.speeds(c.smoothing)[0]),
-        friction_velocity=column(lambda c: c.friction.speeds(c.smoothing)[1]),
-        smoothing=column(lambda c: c.smoothing),
+        stiction_velocity=np.array([speed[i].stiction for i, _, _ in rows], dtype=float),
+        friction_velocity=np.array([speed[i].friction for i, _, _ in rows], dtype=float),
+        smoothing=np.array([speed[i].smoothing for i, _, _ in rows], dtype=float),
         rolling=column(lambda c: c.rolling_resistance),
         share=tuple(scene.contacts[i].share for i, _, _ in rows),
         name=tuple(scene.contacts[i].name or "" for i, _, _ in rows) if named else (),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 from mdlgen.formulas import Dimension, is_formula
@@ -10,6 +11,8 @@ from mdlgen.model.tables import Parameter, RunSettings
 from mdlgen.spec.machine import Press
 from mdlgen.spec.material import Damping
 from mdlgen.spec.scene import Scene
+from mdlgen.spec.smoothing import formulas as smoothing_formulas
+from mdlgen.spec.smoothing import speeds
 from mdlgen.units import parse_unit, same, unit_of
 
 _NAMED_AXES = ("x", "y", "z")
@@ -49,7 +52,8 @@ def parameters(
     rows = _given(scene, starts, run)
     if not scene.formulas and not scene.parameters:
         return tuple(rows)
-    return (*_own(scene), *(_with_formula(scene, row) for row in rows))
+    formulas = {**scene.formulas, **smoothing_formulas(scene)}
+    return (*_own(scene), *(_with_formula(scene, formulas, row) for row in rows))
 
 
 def unfollowed(scene: Scene, rows: tuple[Parameter, ...]) -> tuple[tuple[str, str], ...]:
@@ -80,12 +84,12 @@ def _own(scene: Scene) -> list[Parameter]:
     return rows
 
 
-def _with_formula(scene: Scene, row: Parameter) -> Parameter:
+def _with_formula(scene: Scene, formulas: Mapping[tuple[str | int, ...], str], row: Parameter) -> Parameter:
     """A row with its formula: that of its value, or of the one that it follows from where it is left out."""
-    formula = scene.formulas.get(row.path or (), "")
+    formula = formulas.get(row.path or (), "")
     if not formula:
         source, template = _source(scene, row)
-        followed = scene.formulas.get(source, "")
+        followed = formulas.get(source, "")
         formula = template.format(followed) if followed else ""
     return replace(row, formula=formula)
 
@@ -100,6 +104,8 @@ def _source(scene: Scene, row: Parameter) -> tuple[tuple[str | int, ...], str]:
         if row.member in ("mu_s", "mu_d") or getattr(friction, FRICTION[row.member]) is not None:
             return own, "{}"
         slow = smooth if friction.stiction_velocity is not None else (*base, "smoothing")
+        if scene.contacts[index].smoothing is None and friction.friction_velocity is not None:
+            return slow, f"min({{}}, {1e3 * friction.friction_velocity!r} mm/s)"
         return slow, "{}" if row.member == "v_s" or friction.static == friction.dynamic else "1.5*({})"
     if path[-2:] == ("press", "carrier_mass") and path[:1] == ("rollers",):
         return (*path[:2], "mass"), "({})/1000"
@@ -135,10 +141,8 @@ def _given(scene: Scene, starts: dict[str, tuple[float, float]], run: RunSetting
         rows += _guide(scene, name)
     for name in sorted(scene.meshes):
         rows += _mesh(scene, name)
-    for index, contact in enumerate(scene.contacts):
-        base, group = ("contacts", index), f"contact_{index}"
-        friction, smooth = contact.friction, contact.smoothing
-        slow, fast = friction.speeds(smooth)
+    for index, (contact, (smooth, slow, fast)) in enumerate(zip(scene.contacts, speeds(scene), strict=True)):
+        base, group, friction = ("contacts", index), f"contact_{index}", contact.friction
         for member, label, value, unit, path in (
             ("k", "Stiffness k (N/mm to the 1.5)", contact.stiffness, "N/mm^1.5", "stiffness"),
             ("c_R", "Restitution c_R", contact.restitution, "1", "restitution"),

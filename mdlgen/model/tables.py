@@ -590,6 +590,7 @@ class Model(Frozen):
     parameters: tuple[Parameter, ...]
     run: RunSettings
     unfollowed: tuple[tuple[str, str], ...] = ()  # formulas of what is no Parameter: places, texts
+    following: tuple[int, ...] = ()  # entries of the contacts whose smoothing follows from the speeds
 
     def __repr__(self) -> str:
         kinds = ("sheets", "rollers", "planes", "guides", "bushings", "contacts")

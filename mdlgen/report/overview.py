@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from mdlgen.check_smoothing import smoothings
 from mdlgen.checks import lints
 from mdlgen.model.tables import MeshPart, Model, SheetPart
 
@@ -37,6 +38,7 @@ def overview(model: Model) -> dict[str, Any]:
             "margin_mm": model.pairs.margin,
             "external": len(model.external_pairs),
         },
+        "smoothing": smoothings(model),
         "lints": [asdict(lint) for lint in lints(model)],
     }
 

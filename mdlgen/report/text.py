@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from mdlgen.check_smoothing import lines as smoothing_lines
 from mdlgen.report.overview import UNITS
 
 FEW = 3  # names that are listed in a line
@@ -55,6 +56,7 @@ def overview_parts(told: dict[str, Any]) -> list[str | Rows]:
         + (f", {len(told['meshes'])} meshes" if told["meshes"] else ""),
         f"contact: {told['contacts']} pairs of parts; {pairs['possible']} pairs of bodies possible, "
         f"{pairs['kept']} kept (margin {pairs['margin_mm']:g} mm)",
+        *smoothing_lines(told["smoothing"]),
     ]
     for name, mesh in told["meshes"].items():
         size = " x ".join(f"{v:.4g}" for v in mesh["size_mm"])

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from mdlgen.spec.fields import Name, SpeedScale, Strict, default, fail, of_percent, quantity, ratio
+from mdlgen.spec.fields import Name, SpeedScale, Strict, fail, of_percent, quantity, ratio
 from mdlgen.spec.parameter import is_formula
 
 Coefficient = Annotated[float, ratio(0.0, 1e3)]
@@ -90,10 +90,12 @@ class Contact(Strict):
     friction: Friction = Field(
         description="coefficient of friction mu (Eq. 12): a number, or a mapping; 0 where there is none"
     )
-    smoothing: SpeedScale = Field(
-        default=default("1 mm/s"),
+    smoothing: SpeedScale | None = Field(
+        default=None,
         description="slip speed over which friction rises from 0 to its full value, and speed of approach "
-        "over which damping does",
+        "over which damping does; where left out 1 % of the fastest driven surface, or of the fastest sheet "
+        "at the start, but 1 mm/s at least and 20 mm/s at most; 1 mm/s where the contact has a sheet on a "
+        "sheet",
     )
     rolling_resistance: Share = Field(
         default=0.0,
@@ -111,7 +113,10 @@ class Contact(Strict):
 
     @model_validator(mode="after")
     def _order(self) -> Contact:
-        slow, fast = self.friction.speeds(self.smoothing)
+        smoothing = self.smoothing
+        if smoothing is None:  # it follows from the scene, and then is no more than a friction velocity
+            smoothing = self.friction.friction_velocity or 0.0
+        slow, fast = self.friction.speeds(smoothing)
         if fast < slow:
             raise fail(
                 f"friction.friction_velocity {1e3 * fast:g} mm/s is below the stiction velocity "

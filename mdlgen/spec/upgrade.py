@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any, NamedTuple
 
-from mdlgen.errors import Place
+from mdlgen.errors import MdlgenError, Place
 from mdlgen.spec.document import Document, SpecPath, parse
 from mdlgen.spec.limits import DEFAULT, Limits
+from mdlgen.spec.load import meant
+from mdlgen.spec.shorthand import in_the_text
+from mdlgen.spec.smoothing import following
+
+FRICTION, SMOOTHING = ("friction", "0"), ("smoothing", "1 mm/s")
 
 
 class Change(NamedTuple):
@@ -14,28 +20,53 @@ class Change(NamedTuple):
 
     path: SpecPath
     place: Place
-    text: str
+    key: str
+    value: str
 
     def __str__(self) -> str:
-        return f"{self.place.file}:{self.place.line}: {'.'.join(map(str, self.path))}: {self.text}"
+        path = ".".join(map(str, self.path))
+        return f"{self.place.file}:{self.place.line}: {path}: {self.key}: {self.value}"
 
 
-def upgraded(text: str, file: str, limits: Limits = DEFAULT) -> tuple[str, list[Change]]:
-    """The text with `friction: 0` in each contact that gives none, which it meant before friction had to be
-    given; and what was changed. Raises SpecError for what is not YAML."""
+def upgraded(
+    text: str, file: str, limits: Limits = DEFAULT, folder: Path | None = None
+) -> tuple[str, list[Change]]:
+    """The text with what each contact meant where it left a key out, and what was changed.
+
+    `friction: 0`: before it had to be given. `smoothing: 1 mm/s`: before it followed the scene, which is only
+    looked at in a scene that is otherwise valid; `folder` is where its files are. Raises SpecError for what
+    is not YAML.
+    """
     document = parse(text, file, limits)
-    changes = [Change(path, document.place(path), "friction: 0") for path in _without_friction(document.data)]
+    changes = _changes(document, _without_friction(document.data), FRICTION)
+    text = _with(text, document, changes)
+    fast = _following(text, file, limits, folder)
+    if not fast:
+        return text, changes
+    text = _with(text, again := parse(text, file, limits), _changes(again, fast, SMOOTHING))
+    changes += _changes(document, fast, SMOOTHING)
+    return text, sorted(changes, key=lambda change: (change.place.line, change.place.column))
+
+
+def _changes(document: Document, paths: list[SpecPath], what: tuple[str, str]) -> list[Change]:
+    return [Change(path, document.place(path), *what) for path in paths]
+
+
+def _with(text: str, document: Document, changes: list[Change]) -> str:
+    """A text with one more key in some mappings of its document."""
     lines = text.splitlines(keepends=True)
     marks = sorted(((*_mark(document, change.path), change) for change in changes), reverse=True)
     for line, column, change in marks:
         before, after = lines[line - 1][: column - 1], lines[line - 1][column - 1 :]
         if document.line(change.place)[change.place.column - 1 :].startswith("{"):
-            key = '"friction"' if after.startswith('"') else "friction"
-            lines[line - 1] = f"{before}{key}: 0, {after}"
+            quoted = after.startswith('"')
+            key = f'"{change.key}"' if quoted else change.key
+            value = f'"{change.value}"' if quoted and " " in change.value else change.value
+            lines[line - 1] = f"{before}{key}: {value}, {after}"
         else:  # one key a line, the first perhaps behind a dash
             end = "\r\n" if lines[line - 1].endswith("\r\n") else "\n"
-            lines[line - 1] = f"{before}friction: 0{end}{' ' * (column - 1)}{after}"
-    return "".join(lines), changes
+            lines[line - 1] = f"{before}{change.key}: {change.value}{end}{' ' * (column - 1)}{after}"
+    return "".join(lines)
 
 
 def _without_friction(data: Any) -> list[SpecPath]:
@@ -55,6 +86,18 @@ def _without_friction(data: Any) -> list[SpecPath]:
         for key, item in items
         if isinstance(item, dict) and "between" in item and "friction" not in item
     ]
+
+
+def _following(text: str, file: str, limits: Limits, folder: Path | None) -> list[SpecPath]:
+    """The contacts whose smoothing follows from the scene and is not 1 mm/s; not those of nips, which are
+    younger than that."""
+    document = parse(text, file, limits)
+    try:
+        scene = meant(document, (), folder, limits)
+    except MdlgenError:
+        return []
+    paths = [in_the_text(("contacts", k), document.origins) for k in following(scene)]
+    return [path for path in paths if path[0] == "contacts" and (*path, "smoothing") not in document.keys]
 
 
 def _mark(document: Document, path: SpecPath) -> tuple[int, int]:

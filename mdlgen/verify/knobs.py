@@ -28,6 +28,7 @@ from mdlgen.spec.parameter import Parameters
 from mdlgen.spec.rim import TURN
 from mdlgen.spec.scene import Scene
 from mdlgen.spec.sheet import Sheet
+from mdlgen.spec.smoothing import speeds
 from mdlgen.verify.expected_numbers import FACTORS, factor
 
 STEP = 1.0625  # a value is turned to this many times itself, exactly
@@ -153,10 +154,10 @@ def pinned(scene: Scene) -> Scene:
             press = press.model_copy(update={"carrier_mass": roller.mass / 1000})
         rollers[name] = roller.model_copy(update={"press": press})
     contacts = []
-    for contact in scene.contacts:
-        slow, fast = contact.friction.speeds(contact.smoothing)
-        speeds = {"stiction_velocity": slow, "friction_velocity": fast}
-        contacts.append(contact.model_copy(update={"friction": contact.friction.model_copy(update=speeds)}))
+    for contact, (smoothing, slow, fast) in zip(scene.contacts, speeds(scene), strict=True):
+        own = {"stiction_velocity": slow, "friction_velocity": fast}
+        friction = contact.friction.model_copy(update=own)
+        contacts.append(contact.model_copy(update={"friction": friction, "smoothing": smoothing}))
     run = scene.run
     if run.print_step is None:
         run = run.model_copy(update={"print_step": run.duration / 200})

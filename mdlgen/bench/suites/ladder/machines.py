@@ -33,8 +33,10 @@ def _fast(speed: float) -> Case:
         "planes={}",
         f"rollers={{rear: {{center: [-25 mm, 0 mm, 0 mm], {roller}, {drive}}},"
         f" front: {{center: [25 mm, 0 mm, 0 mm], {roller}, {drive}}}}}",
-        "contacts=[{between: [block, rear], stiffness: 80 N/mm^1.5, friction: 0.3, restitution: 1},"
-        " {between: [block, front], stiffness: 80 N/mm^1.5, friction: 0.3, restitution: 1}]",
+        "contacts=[{between: [block, rear], stiffness: 80 N/mm^1.5, friction: 0.3, restitution: 1,"
+        " smoothing: 1 mm/s},"
+        " {between: [block, front], stiffness: 80 N/mm^1.5, friction: 0.3, restitution: 1,"
+        " smoothing: 1 mm/s}]",
         "run.duration=50 ms",
         "run.prune=false",
     )

@@ -105,7 +105,10 @@ def _web() -> Case:
             drive = f"drive: {{speed: {-place * turn!r} rad/s}}"
             rollers.append(f"{side}_{name}: {{center: {center}, {shape}, {drive}{more}}}")
     contact = f"stiffness: 300 N/mm^1.5, friction: {GRIP}, smoothing: {1e3 * SMOOTH} mm/s"
-    pairs = [f"{{between: [low_{n}, top_{n}], stiffness: 30 N/mm^1.5, friction: 0}}" for n in ("in", "out")]
+    pairs = [
+        f"{{between: [low_{n}, top_{n}], stiffness: 30 N/mm^1.5, friction: 0, smoothing: 1 mm/s}}"
+        for n in ("in", "out")
+    ]
     sets = (
         NONE,
         f"materials={{p: {{E_md: {MODULUS} MPa, E_cd: {MODULUS} MPa, D_md: 0.1 N*mm, D_cd: 0.1 N*mm}}}}",

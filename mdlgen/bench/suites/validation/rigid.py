@@ -90,7 +90,8 @@ def _two_blocks() -> Case:
     )
     contacts = (
         f"[{{between: [block, base], stiffness: 1000 N/mm^1.5, restitution: 0.3, friction: {MU}}},"
-        " {between: [base, floor], stiffness: 1000 N/mm^1.5, restitution: 0.3, friction: 0}]"
+        " {between: [base, floor], stiffness: 1000 N/mm^1.5, restitution: 0.3, friction: 0,"
+        " smoothing: 1 mm/s}]"
     )
     sets = (f"sheets={sheets}", f"contacts={contacts}", "run.duration=240 ms")
     return row("Rigid bodies", "block on a block that lies on ice", Run("verify/slide", sets), slides)

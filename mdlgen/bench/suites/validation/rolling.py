@@ -54,7 +54,7 @@ def _in_nip(restitution: float, mass: float, velocity: float, low: float, drive:
     contacts = (
         f"[{{between: [n, low_a], {contact}, friction: {low}}},"
         f" {{between: [n, top_a], {contact}, friction: 0}},"
-        " {between: [low_a, top_a], stiffness: 30 N/mm^1.5, friction: 0}]"
+        " {between: [low_a, top_a], stiffness: 30 N/mm^1.5, friction: 0, smoothing: 1 mm/s}]"
     )
     sets = (
         *(NONE, PAPER, f"sheets={sheet}", "planes={}", f"rollers={{{nip('a', 0.0, 40.0, drive, STIFF)}}}"),
@@ -85,7 +85,8 @@ def _spin_up() -> Case:
         "planes={}",
         f"rollers={{rear: {{center: [-25 mm, 0 mm, 0 mm], {roller}}},"
         f" front: {{center: [25 mm, 0 mm, 0 mm], {roller}}}}}",
-        f"contacts=[{{between: [block, '*r*'], stiffness: 80 N/mm^1.5, friction: {RUB}, restitution: 0.5}}]",
+        f"contacts=[{{between: [block, '*r*'], stiffness: 80 N/mm^1.5, friction: {RUB}, restitution: 0.5,"
+        " smoothing: 1 mm/s}]",
         "run.duration=20 ms",
         "run.prune=false",
     )
@@ -108,7 +109,8 @@ def _skew() -> Case:
         for which, mu in (("low*", 0.9), ("top*", 0.1))
     )
     pairs = ", ".join(
-        f"{{between: [low_{name}, top_{name}], stiffness: 30 N/mm^1.5, friction: 0}}" for name in "ab"
+        f"{{between: [low_{name}, top_{name}], stiffness: 30 N/mm^1.5, friction: 0, smoothing: 1 mm/s}}"
+        for name in "ab"
     )
     sets = (
         *(NONE, PAPER, f"sheets={sheet}", "planes={}", f"rollers={{{rollers}}}"),
