@@ -10,10 +10,11 @@ from mdlgen.backend import Backend, Progress
 from mdlgen.errors import RefusedError, SpecError, did_you_mean
 from mdlgen.model.external import refuse_externals
 from mdlgen.model.tables import Model
+from mdlgen.program.kernel import LAWS
 
 if TYPE_CHECKING:
-    from mdlgen.results.keep import Keep
     from mdlgen.results.result import Result
+    from mdlgen.runs.checkpoint import Checkpointer
 
 # Name of a backend -> its package.
 EMITTERS = {"motionview": "mdlgen.backends.motionview", "motionsolve": "mdlgen.backends.motionsolve"}
@@ -43,6 +44,22 @@ def check_solver(name: str) -> None:
     """Raises SpecError for a solver that there is not, without importing one."""
     if name != "auto":
         _known(name, SOLVERS, "solver")
+
+
+def packages(name: str) -> tuple[str, ...]:
+    """The packages from whose code the bits of a solver's runs follow; `auto`: of all it may choose from."""
+    return (*(SOLVERS[each] for each in (AUTO if name == "auto" else (name,))), LAWS)
+
+
+def check_resumes(name: str, reason: str, wish: str) -> None:
+    """Raises RefusedError by name where a solver, chosen for a reason, writes no checkpoints for a wish."""
+    if not solver(name).capabilities.resumes:
+        why = f" ({reason})" if reason else ""
+        others = [other for other in SOLVERS if solver(other).capabilities.resumes]
+        raise RefusedError(
+            f"{wish}: {name} runs this scene{why}, whose accelerations and factors stay inside of it, so "
+            f"that no run of it goes on to the same bits; {', '.join(others)} keeps them"
+        )
 
 
 def chosen(name: str, model: Model) -> tuple[str, str]:
@@ -75,11 +92,13 @@ def solve(
     name: str = "auto",
     progress: Progress | None = None,
     check_step: bool = False,
-    keep: Keep | None = None,
+    checkpointer: Checkpointer | None = None,
 ) -> Result:
-    """Run a Model; see `mdlgen.solve`. `keep` is given what the run can go on from, by a solver that can."""
+    """Run a Model; see `mdlgen.solve`. `checkpointer` writes states, of a solver that can."""
     backend = solver(chosen(name, model)[0])
-    options: dict[str, Any] = {"keep": keep} if keep is not None and backend.capabilities.resumes else {}
+    options: dict[str, Any] = {}
+    if checkpointer is not None and backend.capabilities.resumes:
+        options["keep"] = checkpointer
     result = backend.solve(model, progress, **options)
     # a static run has no step, and a failed one nothing to compare
     if not check_step or not result.ok or result.step <= 0.0:

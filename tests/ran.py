@@ -13,7 +13,7 @@ import mdlgen
 from mdlgen.model.tables import Model
 from mdlgen.paths import samples
 from mdlgen.results.result import Result
-from mdlgen.results.seal import digest
+from mdlgen.runs.provenance import digest
 
 # Folder that the workers of one session share, see conftest; None: there is one worker.
 folder: Path | None = None

@@ -8,8 +8,8 @@ from mdlgen.backend import Backend, Capabilities, Progress, Shipped
 
 if TYPE_CHECKING:
     from mdlgen.model.tables import Model
-    from mdlgen.results.keep import Keep
     from mdlgen.results.result import Result
+    from mdlgen.runs.checkpoint import Checkpointer
 
 __all__ = ["BACKEND", "check", "solve"]
 
@@ -26,7 +26,7 @@ def solve(
     progress: Progress | None = None,
     step: float | None = None,
     without: tuple[str, ...] = (),
-    keep: Keep | None = None,
+    keep: Checkpointer | None = None,
 ) -> Result:
     """Run a Model; see `mdlgen.backends.lattice.run.solve`."""
     from mdlgen.backends.lattice import run

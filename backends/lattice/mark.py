@@ -9,7 +9,7 @@ import numpy as np
 
 from mdlgen.backends.lattice.record import Recorder
 from mdlgen.errors import OutputError
-from mdlgen.results.keep import Keep, State
+from mdlgen.runs.checkpoint import Checkpointer, State
 
 
 class Stage(NamedTuple):
@@ -37,7 +37,7 @@ class Mark:
         work = {} if stage.ended else self._work
         return {**self._state, **work, **stored, "stage": np.array(stage, dtype=float)}
 
-    def back(self, keep: Keep, number: int) -> Stage | None:
+    def back(self, keep: Checkpointer, number: int) -> Stage | None:
         """Takes the pass back to where it was kept; None where it was not. Raises OutputError."""
         stored = {name: array[:0] for name, array in self._recorder.arrays().items()}
         fixed = {name: self._recorder.kept[k] for k, name in enumerate(("rows", "marks"))}

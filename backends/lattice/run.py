@@ -26,8 +26,8 @@ from mdlgen.model.tables import Floats, Model
 from mdlgen.model.unheld import Unheld
 from mdlgen.results import audit
 from mdlgen.results.estimates import estimated, open_yet
-from mdlgen.results.keep import Keep
 from mdlgen.results.result import Result
+from mdlgen.runs.checkpoint import Checkpointer
 
 # Longest first step at a tolerance of 1e-3 [ms]; it goes with the root of the tolerance.
 FIRST_STEP = 0.2
@@ -66,7 +66,7 @@ def solve(
     progress: Progress | None = None,
     step: float | None = None,
     without: tuple[str, ...] = (),
-    keep: Keep | None = None,
+    keep: Checkpointer | None = None,
 ) -> Result:
     """Run a Model; `progress(time, end, steps, touching)` is told where it stands (times in ms).
 
@@ -134,7 +134,7 @@ def _ended(run: Result) -> bool:
     return finite and bool(run.time[-1] >= run.model.run.duration * (1.0 - 1e-9))
 
 
-def _refined(model: Model, system: System, progress: Progress | None, keep: Keep | None) -> Result:
+def _refined(model: Model, system: System, progress: Progress | None, keep: Checkpointer | None) -> Result:
     """Halves the step until estimates are within the tolerance; fails where they never are.
 
     A run that ends early has its reason from the physics of the scene or from its step: it is reported where
@@ -201,7 +201,7 @@ def _once(
     miss: float = 0.0,
     made: float = 0.0,
     anew: bool = False,
-    keep: Keep | None = None,
+    keep: Checkpointer | None = None,
 ) -> Result:
     """One run at a step, or the next smaller one that outputs fall on; `miss`, `made`: see MISS and MADE, 0
     for any; `anew`: a new factor for each step; `keep` as of `solve`."""

@@ -31,11 +31,11 @@ from mdlgen.cli.shell import (
     strictly,
     told,
 )
-from mdlgen.errors import AccuracyError
+from mdlgen.errors import AccuracyError, SpecError
 
 if TYPE_CHECKING:
     from mdlgen.model.tables import Model
-    from mdlgen.results.keep import Keep
+    from mdlgen.runs.checkpoint import Checkpointer
 
 # Compiled code comes back for a moment some thousand times a second: how long it waits for what another
 # thread does in Python [s]. By default that is 5 ms each time.
@@ -94,30 +94,30 @@ def run(
     from mdlgen import registry
     from mdlgen.check_smoothing import notice
     from mdlgen.checks import missing_contacts
-    from mdlgen.cli import kept
+    from mdlgen.runs import resume as runs
 
-    kept.single(spec, resume, bool(sets or limits or output or check_step or solver != "auto"))
+    _check_single(spec, resume, bool(sets or limits or output or check_step or solver != "auto"))
     registry.check_solver(solver)
     if resume is not None:
-        task, seal = kept.again(resume)
-        model = task.model()
-        kept.compare(resume, seal, model)
+        request, there = runs.resumed(resume)
+        model = request.model()
+        runs.check_same(resume, there, model, registry.packages(registry.chosen(request.solver, model)[0]))
     else:
         assert spec is not None
-        task, seal = kept.task(spec, sets, limits, solver, check_step), None
-        model = task.model()
+        request = runs.request(spec, sets, limits, solver, check_step)
+        model = request.model()
     if strict:
         strictly(model)
     from mdlgen.report.page import page
     from mdlgen.report.pictures import are_drawn, pictures_of
     from mdlgen.report.text import summary_text
-    from mdlgen.results.keep import Keep
     from mdlgen.results.store import check_folder, save
+    from mdlgen.runs.checkpoint import Checkpointer
 
     folder = resume or output or Path("out") / model.name
     check_folder(folder)
-    name, why = registry.chosen(task.solver, model)
-    if task.solver == "auto" and why and not quiet:
+    name, why = registry.chosen(request.solver, model)
+    if request.solver == "auto" and why and not quiet:
         say(f"{name} runs this scene ({why})")
     if not quiet:
         for text in (*map(str, missing_contacts(model)), notice(model)):
@@ -125,64 +125,75 @@ def run(
                 say(text)
     for asked, wish in ((keep_partial, "--keep-partial"), (checkpoint is not None, "--checkpoint")):
         if asked:
-            kept.check(name, why, wish)
+            registry.check_resumes(name, why, wish)
     drawn = pictures or are_drawn(folder)
     every = 60.0 if checkpoint is None else checkpoint
-    if seal is not None:
-        keep = Keep(folder / kept.FOLDER, every)
-    elif name == "lattice":
-        keep = kept.kept(folder, task, model, every)
+    packages = registry.packages(name)
+    if resume is not None:
+        checkpointer = Checkpointer(folder / runs.FOLDER, every)
+    elif registry.solver(name).capabilities.resumes:
+        checkpointer = runs.checkpointer(folder, request, model, every, packages)
     else:
-        keep = Keep()
-        keep.begun.set()
-    Thread(target=_ahead, args=(keep, model, drawn), daemon=True).start()
-    if seal is None and kept.is_kept(folder) and not quiet:
+        checkpointer = Checkpointer()
+        checkpointer.begun.set()
+    Thread(target=_ahead, args=(checkpointer, model, drawn, packages), daemon=True).start()
+    if resume is None and runs.can_resume(folder) and not quiet:
         say(f"{folder} holds a run that was cut off; this one takes its place (--resume {folder} goes on)")
     # a solver may talk on standard output, which is kept for results
     try:
-        with progress_bar(quiet, task.check_step) as progress, chatter(verbose):
-            result = beside(lambda: registry.solve(model, task.solver, progress, task.check_step, keep))
+        with progress_bar(quiet, request.check_step) as progress, chatter(verbose):
+            result = beside(
+                lambda: registry.solve(model, request.solver, progress, request.check_step, checkpointer)
+            )
     except KeyboardInterrupt:
-        keep.lock.acquire(timeout=0.5)  # a file that is being written is soon complete
+        checkpointer.lock.acquire(timeout=0.5)  # a file that is being written is soon complete
         if keep_partial:
-            _save_part(keep, folder)
-        if keep.written:
+            _save_part(checkpointer, folder)
+        if checkpointer.written:
             say(f"mdlgen run --resume {folder} goes on with this run")
         raise
     if not result.ok:
-        if keep.written:
-            keep.drop()
+        if checkpointer.written:
+            checkpointer.drop()
             with contextlib.suppress(OSError):  # the folder is empty where it was made for what was kept
                 folder.rmdir()
-        say(f"{task.spec}: the run failed: {result.status}; nothing was written into {folder}")
+        say(f"{request.spec}: the run failed: {result.status}; nothing was written into {folder}")
         raise typer.Exit(SOLVER_FAILED)
-    result.source = source_of(task.text, task.sets)
+    result.source = source_of(request.text, request.sets)
     also = pictures_of(result) if drawn else {}
     summary = save(result, folder, {**also, "report.html": page([result]).encode("utf-8")})
-    keep.drop()
+    checkpointer.drop()
     if as_json:
         echo_json(summary)
     elif not quiet:
         typer.echo(summary_text(summary))
         typer.echo(f"wrote {folder}")
-    if task.check_step and result.error_estimate is None and not quiet:
+    if request.check_step and result.error_estimate is None and not quiet:
         say("a static run has no step: --check-step compared nothing")
     if result.error_estimate is not None and not result.error_estimate <= model.run.tolerance:
         raise AccuracyError(
-            f"{task.spec}: the error estimate of {result.error_estimate_of} is {result.error_estimate:.3g}, "
-            f"above run.tolerance {model.run.tolerance:g}; the files in {folder} hold this result; "
-            "give a smaller run.step"
+            f"{request.spec}: the error estimate of {result.error_estimate_of} is "
+            f"{result.error_estimate:.3g}, above run.tolerance {model.run.tolerance:g}; the files in {folder} "
+            "hold this result; give a smaller run.step"
         )
 
 
-def _ahead(keep: Keep, model: Model, drawn: bool) -> None:
+def _check_single(spec: Path | None, resume: Path | None, others: bool) -> None:
+    """Raises SpecError unless exactly one of a scene and a run to go on with is named."""
+    if (spec is None) == (resume is None):
+        raise SpecError("name a scene, mdlgen run SPEC, or a run to go on with, mdlgen run --resume DIR")
+    if resume is not None and others:
+        raise SpecError("--resume takes scene, values, solver and folder from the run that it goes on with")
+
+
+def _ahead(checkpointer: Checkpointer, model: Model, drawn: bool, packages: tuple[str, ...]) -> None:
     """Does what is needed later on, once compiled code leaves a second core to it: what comes before does
     not."""
-    from mdlgen.cli import kept
     from mdlgen.report.page import prepare
     from mdlgen.report.pictures import load_drawing
+    from mdlgen.runs.resume import code
 
-    keep.begun.wait()
+    checkpointer.begun.wait()
     before = sys.getswitchinterval()
     sys.setswitchinterval(INTERVAL)
     # what fails here fails again where it is needed, and is told there
@@ -191,18 +202,18 @@ def _ahead(keep: Keep, model: Model, drawn: bool) -> None:
         if drawn:
             load_drawing()
     sys.setswitchinterval(before)
-    if keep.folder is not None:
+    if checkpointer.folder is not None:
         time.sleep(LONG)
-        kept.code()
+        code(packages)
 
 
-def _save_part(keep: Keep, folder: Path) -> None:
+def _save_part(checkpointer: Checkpointer, folder: Path) -> None:
     from mdlgen.results.store import save
 
-    if keep.part is None:
-        say("there is no part to keep yet")
+    if checkpointer.part is None:
+        say("there is no part to checkpointer yet")
         return
-    part = keep.part()
+    part = checkpointer.part()
     part = part.part(
         f"interrupted at {part.time[-1]:.6g} of {part.model.run.duration:g} ms, at {part.step:g} ms a step"
     )

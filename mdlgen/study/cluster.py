@@ -29,12 +29,10 @@ Versions = dict[str, str]
 @cache
 def versions() -> Versions:
     """What the bits of a row follow from, of this process; the same on every machine of a cluster."""
-    from mdlgen.results.seal import surroundings
-    from mdlgen.study.sweep import ROOMS
+    from mdlgen import registry
+    from mdlgen.runs.provenance import provenance
 
-    found = surroundings(*ROOMS)
-    del found["processor"]
-    return found
+    return provenance(registry.packages("auto"))
 
 
 def _here() -> Versions:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +20,7 @@ from mdlgen.study.link import check_links
 from mdlgen.study.measure import known
 from mdlgen.study.row import Row
 from mdlgen.study.search import Enough, Outcome
-from mdlgen.study.sweep import ROOMS, first_model
+from mdlgen.study.sweep import first_model
 from mdlgen.study.task import Task
 from mdlgen.study.variable import check_paths
 from mdlgen.study.workers import Runner
@@ -51,10 +51,10 @@ class Optimisation:
 
     def asked(self) -> Asked:
         """What the journal says of it."""
-        from mdlgen.results.seal import surroundings
+        from mdlgen import registry
+        from mdlgen.runs.provenance import provenance
 
-        now = surroundings(*ROOMS)
-        del now["processor"]
+        now = provenance(registry.packages(self.task.solver))
         told = {"what": WHAT, **asdict(self), **now}
         del told["variables"]
         return json.loads(json.dumps(told))
@@ -90,7 +90,7 @@ def optimisation(
     together: int = 1,
 ) -> Optimisation:
     """Raises SpecError for what cannot be meant, RefusedError where Optuna is needed and not installed."""
-    from mdlgen.results.seal import digest
+    from mdlgen.runs.provenance import digest
 
     found = variables(vary)
     check_links(task.lets, [variable.path for variable in found])
@@ -169,10 +169,15 @@ def _read(folder: Path, asked: Asked) -> Optimisation:
 def _compare(folder: Path, there: Asked, now: Asked) -> None:
     if there.get("what") != WHAT:
         raise OutputError(f"{folder}: the journal there is not of a {WHAT}")
+    from mdlgen.runs.provenance import check_same
+
+    # more runs may be allowed now
+    asked = {field.name for field in fields(Optimisation)} - {"most", "model"}
     for name, value in now.items():
-        # more runs may be allowed now
-        if name != "most" and there.get(name) != value:
+        if name in asked and there.get(name) != value:
             raise RefusedError(f"{folder}: holds another {WHAT}: its {name} differs; name another folder")
+    others = asked | {"what", "most"}
+    check_same(folder, there, {name: value for name, value in now.items() if name not in others})
 
 
 class Runs:

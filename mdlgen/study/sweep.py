@@ -21,7 +21,6 @@ from mdlgen.study.variable import check_count, check_paths, grid, variable
 from mdlgen.study.workers import Runner
 
 WHAT = "sweep"
-ROOMS = ("mdlgen.backends.lattice", "mdlgen.mechanics")
 # How many cases are tried for one that can be read, from which the names of its numbers are known.
 LOOKED_AT = 100
 
@@ -40,10 +39,10 @@ class Sweep:
 
     def asked(self) -> Asked:
         """What the journal says of it."""
-        from mdlgen.results.seal import surroundings
+        from mdlgen import registry
+        from mdlgen.runs.provenance import provenance
 
-        now = surroundings(*ROOMS)
-        del now["processor"]
+        now = provenance(registry.packages(self.task.solver))
         cases = [[list(value) for value in case.values] for case in self.cases]
         task = asdict(self.task)
         told = {"what": WHAT, "name": self.name, "task": task, "how": self.how, "cases": cases}
@@ -82,7 +81,7 @@ def sweep(
 
     Raises SpecError for a measure that there is not, and where not one of the cases can be read.
     """
-    from mdlgen.results.seal import digest
+    from mdlgen.runs.provenance import digest
     from mdlgen.study.link import check_links
 
     check_links(task.lets, [path for path, _ in cases[0].values])
@@ -115,7 +114,7 @@ def opened(folder: Path, wanted: Sweep | None, resume: bool) -> tuple[Sweep, Jou
     Raises OutputError, and RefusedError by name where another sweep is there, or where it would not go on to
     the same bits.
     """
-    from mdlgen.results.seal import digest
+    from mdlgen.runs.provenance import digest
 
     if not resume:
         assert wanted is not None, "a new sweep has been asked for"
@@ -158,19 +157,18 @@ _WORDS = {
     "keep": "--keep",
     "cases": "--over, --sample or --seed",
 }
-_BITS = {"model": "a file that the scene names", "code": "the solver's code"}
 
 
 def _compare(folder: Path, there: Asked, now: Asked) -> None:
     """Raises RefusedError by name where the sweep in `folder` is another one, or would give other bits."""
+    from mdlgen.runs.provenance import check_same
+
     mine, theirs = {**now["task"], "cases": now["cases"]}, {**there["task"], "cases": there["cases"]}
     for name, word in _WORDS.items():
         if mine[name] != theirs.get(name):
             raise RefusedError(f"{folder}: holds another sweep: {word} differs; name another folder")
-    for name, value in now.items():
-        if name not in ("what", "name", "task", "how", "cases") and there.get(name) != value:
-            what = _BITS.get(name, f"{name} ({str(there.get(name))[:60]}, now {value})")
-            raise RefusedError(f"{folder}: cannot go on to the same bits: {what} has changed; run it anew")
+    others = ("what", "name", "task", "how", "cases")
+    check_same(folder, there, {name: value for name, value in now.items() if name not in others})
 
 
 def run(wanted: Sweep, journal: Journal, runner: Runner, progress: Count | None = None) -> list[Row]:

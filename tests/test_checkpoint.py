@@ -27,10 +27,10 @@ from mdlgen.backends.lattice.kernels import entries
 from mdlgen.errors import OutputError
 from mdlgen.model.tables import Model
 from mdlgen.paths import samples
-from mdlgen.results.keep import Keep, State
 from mdlgen.results.result import Result
-from mdlgen.results.seal import digest
 from mdlgen.results.store import hdf5, read
+from mdlgen.runs.checkpoint import Checkpointer, State
+from mdlgen.runs.provenance import digest
 from mdlgen.spec.load import loads
 
 SCENES = {
@@ -74,15 +74,15 @@ class Cut(Exception):
     """A run is cut off."""
 
 
-def sealed() -> dict[str, str]:
+def written_with() -> dict[str, str]:
     return {"run.json": "{}"}
 
 
-class Cutting(Keep):
+class Cutting(Checkpointer):
     """Keeps a state at every stored time, and cuts off after some."""
 
-    def __init__(self, folder: Path, seal: Callable[[], dict[str, str]] | None, after: int):
-        super().__init__(folder, 0.0, seal)
+    def __init__(self, folder: Path, provenance: Callable[[], dict[str, str]] | None, after: int):
+        super().__init__(folder, 0.0, written_with)
         self.left = after
 
     def save(self, number: int, state: State) -> None:
@@ -99,15 +99,15 @@ def test_a_run_goes_on_to_the_same_bits(name: str, tmp_path: Path) -> None:
     assert whole.ok, whole.status
     assert whole.halved == (name in ("halved", "feeder"))
     cuts = 0
-    seal: Callable[[], dict[str, str]] | None = sealed
+    provenance: Callable[[], dict[str, str]] | None = written_with
     while True:
         try:
-            keep = Cutting(tmp_path / "c", seal, 8 + 5 * cuts)
+            keep = Cutting(tmp_path / "c", provenance, 8 + 5 * cuts)
             result = lattice.solve(model, keep=keep)
             break
         except Cut:
             cuts += 1
-            seal = None
+            provenance = None
             starts_like(whole, keep)
     assert cuts >= 3
     assert bits(hdf5(result)) == bits(hdf5(whole))
@@ -115,7 +115,7 @@ def test_a_run_goes_on_to_the_same_bits(name: str, tmp_path: Path) -> None:
     assert (result.energy, result.error_estimate) == (whole.energy, whole.error_estimate)
 
 
-def starts_like(whole: Result, keep: Keep) -> None:
+def starts_like(whole: Result, keep: Checkpointer) -> None:
     """What is kept as a part, at the step of the whole, is its beginning."""
     assert keep.part is not None
     part = keep.part()
@@ -147,8 +147,8 @@ def test_a_run_that_failed_says_so_again(tmp_path: Path) -> None:
     ]
     sets += ["run.duration=12 ms", "run.step=0.1 ms", "run.print_step=0.4 ms"]
     model = mdlgen.lower(mdlgen.load(samples() / "stack.yaml", sets))
-    first = lattice.solve(model, keep=Keep(tmp_path / "c", 0.0, sealed))
-    again = lattice.solve(model, keep=Keep(tmp_path / "c", 0.0))
+    first = lattice.solve(model, keep=Checkpointer(tmp_path / "c", 0.0, written_with))
+    again = lattice.solve(model, keep=Checkpointer(tmp_path / "c", 0.0))
     assert "more than half of its thickness into box note_4" in first.status
     assert first.time[-1] > 6.0
     assert again.status == first.status
@@ -168,7 +168,7 @@ def kept(folder: Path) -> Model:
     """A run that is cut off in `folder`."""
     model = scene("verify/drop")
     with pytest.raises(Cut):
-        lattice.solve(model, keep=Cutting(folder, sealed, 9))
+        lattice.solve(model, keep=Cutting(folder, written_with, 9))
     return model
 
 
@@ -202,7 +202,7 @@ def test_a_damaged_state_is_refused(tmp_path: Path, what: str) -> None:
         del state["stored.u"]
         np.savez(path, **state)
     with pytest.raises(OutputError) as told:
-        lattice.solve(model, keep=Keep(folder, 60.0))
+        lattice.solve(model, keep=Checkpointer(folder, 60.0))
     assert "is not a state of this run" in str(told.value) and "\n" not in str(told.value)
 
 
@@ -210,7 +210,7 @@ def test_a_linked_folder_is_not_written_through(tmp_path: Path) -> None:
     (tmp_path / "real").mkdir()
     (tmp_path / "c").symlink_to("real")
     with pytest.raises(OutputError, match="symbolic link"):
-        lattice.solve(scene("verify/drop"), keep=Cutting(tmp_path / "c", sealed, 1))
+        lattice.solve(scene("verify/drop"), keep=Cutting(tmp_path / "c", written_with, 1))
     assert list((tmp_path / "real").iterdir()) == []
 
 
@@ -316,18 +316,19 @@ def test_a_run_that_fails_leaves_nothing_to_go_on_with(tmp_path: Path) -> None:
 
 
 def test_a_run_of_other_code_or_another_scene_is_refused(tmp_path: Path) -> None:
-    from mdlgen.cli import kept as room
+    from mdlgen.registry import packages
+    from mdlgen.runs import resume as room
 
     spec = tmp_path / "scene.yaml"
     text = (samples() / "verify" / "tension.yaml").read_text("utf-8")
     spec.write_text(text)
-    of = room.task(spec, None, None, "lattice", False)
+    of = room.request(spec, None, None, "lattice", False)
     model = of.model()
-    keep = room.kept(tmp_path, of, model, 0.0)
+    keep = room.checkpointer(tmp_path, of, model, 0.0, packages("lattice"))
     keep.save(0, {"x": np.zeros(1)})
-    again, seal = room.again(tmp_path)
+    again, there = room.resumed(tmp_path)
     assert again == of and digest(again.model()) == digest(model)
-    room.compare(tmp_path, seal, model)
+    room.check_same(tmp_path, there, model, packages("lattice"))
     for name, words in (
         ("code", "solver's code"),
         ("numba", "numba"),
@@ -335,10 +336,10 @@ def test_a_run_of_other_code_or_another_scene_is_refused(tmp_path: Path) -> None
         ("processor", "proc"),
     ):
         with pytest.raises(mdlgen.errors.RefusedError, match=words):
-            room.compare(tmp_path, {**seal, name: "another"}, model)
+            room.check_same(tmp_path, {**there, name: "another"}, model, packages("lattice"))
     for bad in ("", "[]", '{"task": 1}', '{"task": {"spec": 1}}', "{" * 100_000):
         (tmp_path / "checkpoint" / "run.json").write_text(bad)
         with pytest.raises(OutputError):
-            room.again(tmp_path)
+            room.resumed(tmp_path)
     with zipfile.ZipFile(tmp_path / "checkpoint" / "pass_0.npz") as file:
         assert file.namelist() == ["x.npy"]

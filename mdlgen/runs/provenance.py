@@ -1,17 +1,21 @@
-"""What a run that goes on must have in common with the one that it continues, so that bits agree."""
+"""Provenance: what the bits of a run follow from, and whether another run would have the same.
+
+One that goes on from a checkpoint or a journal must have all of it in common with what it continues.
+"""
 
 from __future__ import annotations
 
 import hashlib
 import platform
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass
-from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from mdlgen.errors import RefusedError
 from mdlgen.program.kernel import alone
 from mdlgen.version import of, version
 
@@ -50,13 +54,13 @@ def _add(value: Any, update: Callable[[bytes], None]) -> None:
         raise TypeError(f"no digest of {type(value).__name__}")
 
 
-def surroundings(*rooms: str) -> dict[str, str]:
-    """What else bits follow from: the code of some rooms, versions of the compiler, the processor."""
-    import llvmlite.binding as llvm
-
+def provenance(packages: tuple[str, ...]) -> dict[str, str]:
+    """Name -> value of what bits follow from beside the Model: the code of some packages, versions of Python
+    and of the compiler."""
     code = hashlib.sha256()
-    for room in rooms:
-        folder = Path(str(import_module(room).__file__)).parent
+    for package in packages:
+        found = find_spec(package)
+        folder = Path(str(found and found.origin)).parent
         for source in sorted((*folder.rglob("*.py"), *folder.rglob("*.program"))):
             code.update(source.read_bytes())
     return {
@@ -67,5 +71,25 @@ def surroundings(*rooms: str) -> dict[str, str]:
         "numba": of("numba"),
         "llvmlite": of("llvmlite"),
         "compiled": "by numba" if alone() else "where the program does not fit",
-        "processor": f"{platform.machine()} {llvm.get_host_cpu_name()}",
     }
+
+
+def processor() -> dict[str, str]:
+    """The processor, as another name and value: sums may be rounded otherwise on another one."""
+    import llvmlite.binding as llvm
+
+    return {"processor": f"{platform.machine()} {llvm.get_host_cpu_name()}"}
+
+
+_WORDS = {"model": "a file that the scene names", "code": "the solver's code"}
+
+
+def check_same(folder: Path, there: Mapping[str, Any], now: Mapping[str, str]) -> None:
+    """Raises RefusedError by name where what is in `folder` would not go on to the same bits.
+
+    `there` holds the provenance and the digest of the Model as they were, `now` as they are.
+    """
+    for name, value in now.items():
+        if there.get(name) != value:
+            what = _WORDS.get(name, f"{name} ({str(there.get(name))[:60]}, now {value})")
+            raise RefusedError(f"{folder}: cannot go on to the same bits: {what} has changed; run it anew")

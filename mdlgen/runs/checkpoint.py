@@ -1,8 +1,8 @@
-"""What is kept of a run while it goes on: states from which it can go on, and a view of its part so far.
+"""Checkpoints: states of a run on the disk, from which it goes on, and a view of its part so far.
 
 A run consists of passes, at a step each. What a pass carries from one stored time to the next is written as
 it is, array by array, so that a run that goes on from there takes the same steps to the last bit. A pass
-that is not kept is run again.
+that has no checkpoint is run again.
 """
 
 from __future__ import annotations
@@ -23,26 +23,26 @@ from mdlgen.results.result import Result
 State = dict[str, np.ndarray]
 
 
-class Keep:
+class Checkpointer:
     """Counts the passes of a run, and writes and reads their states in `folder` (None: nothing is written).
 
     `every` is the time between two states that are written [s]; with the first one stand the files that
-    `seal` gives (name -> text; run.json), None where the folder has them. `part` is a way to the result so
-    far, None as long as there is none; `lock` is held while files are written. `begun` is set when the first
-    pass begins: all is loaded and compiled then, and compiled code leaves a second core free.
+    `provenance` gives (name -> text; run.json), None where the folder has them. `part` is a way to the result
+    so far, None as long as there is none; `lock` is held while files are written. `begun` is set when the
+    first pass begins: all is loaded and compiled then, and compiled code leaves a second core free.
     """
 
     def __init__(
         self,
         folder: Path | None = None,
         every: float = float("inf"),
-        seal: Callable[[], Mapping[str, str]] | None = None,
+        provenance: Callable[[], Mapping[str, str]] | None = None,
     ):
-        self.folder, self.every, self._seal = folder, every, seal
+        self.folder, self.every, self._provenance = folder, every, provenance
         self.part: Callable[[], Result] | None = None
         self.lock = Lock()
         self.begun = Event()
-        self.written = folder is not None and seal is None
+        self.written = folder is not None and provenance is None
         self._pass = -1
         self._last = time.monotonic()
 
@@ -68,16 +68,16 @@ class Keep:
         if self.folder.is_symlink():
             raise OutputError(f"{self.folder}: is a symbolic link; name the folder itself")
         with self.lock:
-            if self._seal is not None:
+            if self._provenance is not None:
                 self.drop()  # of another run
-                files |= {self.folder / name: text for name, text in self._seal().items()}
+                files |= {self.folder / name: text for name, text in self._provenance().items()}
                 try:
                     self.folder.mkdir(parents=True, exist_ok=True)
                 except OSError as error:
                     what = error.strerror or error
                     raise OutputError(f"{self.folder}: cannot make this folder: {what}") from None
             write_together(files)
-            self._seal = None
+            self._provenance = None
         self.written = True
         self._last = time.monotonic()
 
@@ -87,7 +87,7 @@ class Keep:
         It has some of the arrays of `like`, with their types and shapes; where the first axis there has no
         length it has any. Raises OutputError for a file that does not fit.
         """
-        if self.folder is None or self._seal is not None or not self._path(number).exists():
+        if self.folder is None or self._provenance is not None or not self._path(number).exists():
             return None
         path = self._path(number)
         try:

@@ -1,0 +1,1 @@
+"""Runs as such: what they can be gone on with, and what their bits follow from."""
