@@ -173,8 +173,8 @@ def run(
     if result.error_estimate is not None and not result.error_estimate <= model.run.tolerance:
         raise AccuracyError(
             f"{request.spec}: the error estimate of {result.error_estimate_of} is "
-            f"{result.error_estimate:.3g}, above run.tolerance {model.run.tolerance:g}; the files in {folder} "
-            "hold this result; give a smaller run.step"
+            f"{result.error_estimate:.3g}, above run.tolerance {model.run.tolerance:g}; the files in "
+            f"{folder} hold this result; give a smaller run.step"
         )
 
 
