@@ -11,9 +11,11 @@ from mdlgen.check_damping import damping
 from mdlgen.check_parameters import parameters
 from mdlgen.lint import Lint
 from mdlgen.model import press
-from mdlgen.model.guides import depths
 from mdlgen.model.overlap import Overlaps
+from mdlgen.model.parts.kinds import WITH_SHEET
+from mdlgen.model.parts.roller import FLAT
 from mdlgen.model.rolling import rolls
+from mdlgen.model.sheet_corners import corners
 from mdlgen.model.sheet_overlap import SheetOverlaps
 from mdlgen.model.sheet_pairs import linked
 from mdlgen.model.tables import (
@@ -40,7 +42,6 @@ COARSE_SMOOTHING, FINE_SMOOTHING = 0.05, 1e-4  # of the surface speed
 # finding nor a depth that reads as half of the thickness.
 DEEP = 0.505
 BESIDE = 1.5  # boxes that carry a roller, over those that it stands on: their neighbours tilt with them
-FLAT = 0.1  # a roller is parallel to a sheet while |axis . normal| is below this
 
 
 def lints(model: Model) -> list[Lint]:
@@ -369,46 +370,26 @@ def _held(model: Model, index: int, sheet: SheetPart) -> int:
     planes = {p.name: p for p in model.planes}
     for row in np.flatnonzero(model.contacts.kind == BOX_PLANE):
         if model.contacts.part_a[row] == sheet.name:
-            for corner in _corners(sheet):
+            for corner in corners(sheet):
                 hold(corner, planes[model.contacts.part_b[row]].normal)
     return int(np.linalg.matrix_rank(np.array(rows), tol=1e-9)) if rows else 0
 
 
 def _interference(model: Model) -> Iterator[Lint]:
-    for row, sheet, roller in _nips(model):
-        normal, center = sheet.rotation[:, 2], model.bodies.position[roller.body]
-        if abs(float(roller.axis @ normal)) > FLAT or sheet.count == 1:
-            continue
-        depth = roller.radius + sheet.thickness / 2 - abs(float((center - sheet.center) @ normal))
-        on_sheet = press.covered_shares(sheet, center, roller.axis, roller.width, True)
-        if on_sheet and _deep(depth, sheet):
-            yield _deep_start(model, row, f"rollers.{roller.name}.center", roller.name, depth, sheet)
-    planes = {p.name: p for p in model.planes}
-    for row in np.flatnonzero(model.contacts.kind == BOX_PLANE):
-        plane = planes[model.contacts.part_b[row]]
-        sheet = next(s for s in model.sheets if s.name == model.contacts.part_a[row])
-        face = model.bodies.position[plane.body] + plane.normal * plane.size[2] / 2
-        frame = model.bodies.rotation[plane.body]
-        corners = _corners(sheet) if sheet.bend is None else _box_corners(model, sheet)
-        over = np.all(np.abs((corners - face) @ frame[:, :2]) <= np.array(plane.size[:2]) / 2, axis=1)
-        depth = float(np.max(-((corners - face) @ plane.normal)[over], initial=0.0))
-        if _deep(depth, sheet) and depth < plane.size[2]:
-            yield _deep_start(model, int(row), f"planes.{plane.name}.center", plane.name, depth, sheet)
-    guides = {g.name: g for g in model.guides}
-    for row in np.flatnonzero(model.contacts.kind == BOX_GUIDE):
-        guide = guides[model.contacts.part_b[row]]
-        sheet = next(s for s in model.sheets if s.name == model.contacts.part_a[row])
-        depth = max(float(depths(guide, points, at).max()) for at, points in _boxes(model, sheet))
-        if _deep(depth, sheet):
-            yield _deep_start(model, int(row), f"guides.{guide.name}", guide.name, depth, sheet)
-    sheets = {s.name: s for s in model.sheets}
-    for row in np.flatnonzero(model.contacts.kind == BOX_BOX):
-        one, two = sheets[model.contacts.part_a[row]], sheets[model.contacts.part_b[row]]
-        depth = _overlap(one, two)
-        thin = min(one, two, key=lambda s: s.thickness)
-        if _deep(depth, thin):
-            thick = two if thin is one else one
-            yield _deep_start(model, int(row), f"sheets.{thick.name}.center", thick.name, depth, thin)
+    sheets, parts = {s.name: s for s in model.sheets}, {part.name: part for part in model.machine}
+    for row, number in enumerate(model.contacts.kind.tolist()):
+        one, other = model.contacts.part_a[row], model.contacts.part_b[row]
+        if number == BOX_BOX:
+            two = (sheets[one], sheets[other])
+            thin, thick = two if two[0].thickness <= two[1].thickness else two[::-1]
+            depth = _overlap(*two)
+            if _deep(depth, thin):
+                yield _deep_start(model, row, f"sheets.{thick.name}.center", thick.name, depth, thin)
+        elif number in WITH_SHEET:
+            kind, sheet, part = WITH_SHEET[number], sheets[one], parts[other]
+            depth = kind.depth_at_start(model, sheet, part)
+            if _deep(depth, sheet):
+                yield _deep_start(model, row, kind.place(part), part.name, depth, sheet)
 
 
 def _overlap(one: SheetPart, two: SheetPart) -> float:
@@ -416,7 +397,7 @@ def _overlap(one: SheetPart, two: SheetPart) -> float:
     normal = one.rotation[:, 2]
     if abs(float(normal @ two.rotation[:, 2])) < 1 - FLAT**2:
         return 0.0
-    first, second = _corners(one), _corners(two)
+    first, second = corners(one), corners(two)
     for axis in (*one.rotation.T[:2], *two.rotation.T[:2]):
         a, b = first @ axis, second @ axis
         if max(a.min(), b.min()) >= min(a.max(), b.max()):
@@ -459,22 +440,6 @@ def _nips(model: Model) -> Iterator[tuple[int, SheetPart, RollerPart]]:
     rollers = {r.name: r for r in model.rollers}
     for row in np.flatnonzero(model.contacts.kind == BOX_CYLINDER):
         yield int(row), sheets[model.contacts.part_a[row]], rollers[model.contacts.part_b[row]]
-
-
-def _boxes(model: Model, sheet: SheetPart) -> Iterator[tuple[Floats, Floats]]:
-    """Centre and corners of each box of a sheet at the start [mm], (3,) and (8, 3)."""
-    signs = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)], dtype=float)
-    bodies = model.bodies
-    for body in range(sheet.first, sheet.first + sheet.count):
-        at = bodies.position[body]
-        yield at, at + (signs * bodies.half[body]) @ bodies.rotation[body].T
-
-
-def _corners(sheet: SheetPart) -> Floats:
-    """The eight corners of the flat sheet [mm], (8, 3)."""
-    half = np.array([*sheet.outline, sheet.thickness]) / 2
-    signs = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)], dtype=float)
-    return sheet.center + signs * half @ sheet.rotation.T
 
 
 def _guessed_bending(model: Model) -> Iterator[Lint]:
@@ -542,15 +507,6 @@ def _on_each_other(model: Model) -> Iterator[Lint]:
     for sheet, part in parts:
         message, what = says.format(model.called(part.body)), remedy.format(sheet.name, part.name)
         yield Lint("W121", f"sheets.{sheet.name}", message, what)
-
-
-def _box_corners(model: Model, sheet: SheetPart) -> Floats:
-    """All corners of all boxes as they begin [mm], (8 boxes, 3)."""
-    boxes = slice(sheet.first, sheet.first + sheet.count)
-    signs = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)], dtype=float)
-    arms = signs[None] * model.bodies.half[boxes][:, None]
-    turned = np.einsum("nij,nkj->nki", model.bodies.rotation[boxes], arms)
-    return (model.bodies.position[boxes][:, None] + turned).reshape(-1, 3)
 
 
 MISSING: tuple[Callable[[Model], Iterator[Lint]], ...] = (_unfaced, _unmet, _on_each_other)

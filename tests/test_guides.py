@@ -14,8 +14,8 @@ from mdlgen.checks import lints
 from mdlgen.errors import SpecError
 from mdlgen.mechanics.guide import BOTH, INSIDE, OUTSIDE, box_guide
 from mdlgen.mechanics.point import OUT
-from mdlgen.model.guides import SAG, facets
 from mdlgen.model.lower import lower
+from mdlgen.model.parts.guide import SAG, facets
 from mdlgen.paths import samples
 from mdlgen.registry import emitter
 from mdlgen.results.series import series

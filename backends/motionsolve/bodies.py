@@ -11,8 +11,8 @@ import numpy as np
 from mdlgen.backends.motionsolve.axes import cosines
 from mdlgen.backends.motionsolve.rows import Body, Box, Cosines, Deck, Shell
 from mdlgen.backends.motionsolve.units import Triple, numbers, per_thousand, thousandfold, triples
-from mdlgen.model.guides import facets
 from mdlgen.model.meshes import origin
+from mdlgen.model.parts.guide import facets
 from mdlgen.model.rim_facets import WHOLE, graphics, rim_facets
 from mdlgen.model.shape import ground_frames
 from mdlgen.model.tables import MeshPart, Model

@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mdlgen.model.machine import frame
-from mdlgen.model.tables import BOX_GUIDE, BOX_PLANE, Contacts, Floats, GuidePart, Model, PlanePart
+from mdlgen.model.frames import frame
+from mdlgen.model.tables import ON_PLATES, Contacts, Floats, GuidePart, Model, PlanePart
 
 FLUSH = 1e-6  # mm: a face that another one continues within this has no edge there
 _STATIONS = np.linspace(-1.0, 1.0, 9) * (1.0 - 1e-9)
@@ -80,7 +80,7 @@ def with_ends(
 ) -> tuple[tuple[PlanePart, ...], tuple[GuidePart, ...]]:
     """The parts with their free ends: those that no plate continues which the same sheets touch."""
     touch: dict[str, set[str]] = {}
-    for row in np.flatnonzero(np.isin(contacts.kind, (BOX_PLANE, BOX_GUIDE))).tolist():
+    for row in np.flatnonzero(np.isin(contacts.kind, ON_PLATES)).tolist():
         touch.setdefault(contacts.part_b[row], set()).add(contacts.part_a[row])
     slabs = [slab(part) for part in (*planes, *guides)]
     return (
@@ -93,7 +93,7 @@ def with_ends(
 
 def edge_note(model: Model) -> tuple[str, ...]:
     """What a text says of the edges of the plates that sheets touch."""
-    if not np.isin(model.contacts.kind, (BOX_PLANE, BOX_GUIDE)).any():
+    if not np.isin(model.contacts.kind, ON_PLATES).any():
         return ()
     return (
         "  Planes and guides are boxes with sharp edges here, where MotionSolve finds normals of its own. In",

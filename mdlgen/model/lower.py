@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -13,29 +14,19 @@ from mdlgen.model.cells import Cells, cells, zone_parts
 from mdlgen.model.curves import lower_curves
 from mdlgen.model.ends import with_ends
 from mdlgen.model.external import external_pairs, lower_externals
-from mdlgen.model.frames import frame
-from mdlgen.model.guides import inertia as guide_inertia
-from mdlgen.model.guides import lower_guides
 from mdlgen.model.joints import Joints, find_joints
-from mdlgen.model.machine import lower_planes, lower_rollers
-from mdlgen.model.meshes import loaded, lower_meshes
-from mdlgen.model.meshes import placed as mesh_placed
+from mdlgen.model.meshes import loaded
 from mdlgen.model.pairs import find_pairs
 from mdlgen.model.parameters import parameters, unfollowed
+from mdlgen.model.parts.kind import Before
+from mdlgen.model.parts.kinds import KINDS, kind_of
+from mdlgen.model.press_parts import Bow, Face, Facets
 from mdlgen.model.rotations import matrices
 from mdlgen.model.shape import bend, box_rotations, joint_creases, joint_frames, joint_turns, placed
 from mdlgen.model.stiffness import between, coefficients, derived, extent
 from mdlgen.model.supports import joined, support_bushings
 from mdlgen.model.tables import (
     BOX_BOX,
-    BOX_CYLINDER,
-    BOX_GUIDE,
-    BOX_MESH,
-    BOX_PLANE,
-    CYLINDER_CYLINDER,
-    CYLINDER_GUIDE,
-    CYLINDER_MESH,
-    CYLINDER_PLANE,
     EXTERNAL,
     Bodies,
     Bushings,
@@ -52,6 +43,8 @@ from mdlgen.model.tables import (
 )
 from mdlgen.spec.scene import Scene
 from mdlgen.spec.smoothing import following, speeds
+
+Part = RollerPart | PlanePart | GuidePart | MeshPart
 
 
 def lower(scene: Scene) -> Model:
@@ -83,15 +76,14 @@ def _lower(scene: Scene) -> Model:
     sheets, boxes = _sheets(scene)
     first = sum(s.count for s in sheets)
     contacts = _contacts(scene)
-    rollers = lower_rollers(scene, sheets, contacts, first)
-    planes = lower_planes(scene, sheets, contacts, first + len(rollers))
-    guides = lower_guides(scene, first + len(rollers) + len(planes))
-    planes, guides = with_ends(planes, guides, contacts)
-    meshes = lower_meshes(scene, rollers, first + len(rollers) + len(planes) + len(guides))
+    parts = _machine(scene, sheets, contacts, first)
+    rollers, meshes = parts["rollers"], parts["meshes"]
+    planes, guides = with_ends(parts["planes"], parts["guides"], contacts)
     rollers = loaded(rollers, meshes)
     externals = lower_externals(scene)
     gravity = np.array(scene.gravity)
-    bodies = _bodies(sheets, boxes, rollers, planes, guides, meshes)
+    machine = (*rollers, *planes, *guides, *meshes)
+    bodies = _bodies(sheets, boxes, rollers, machine)
     supports = tuple(
         anchor(f"support_{k}", item, sheets, _formulas(scene, "supports", k))
         for k, item in enumerate(scene.supports)
@@ -122,7 +114,7 @@ def _lower(scene: Scene) -> Model:
         pairs=find_pairs(
             gravity,
             sheets,
-            (*rollers, *planes, *guides, *meshes),
+            machine,
             bodies,
             contacts,
             run,
@@ -215,13 +207,11 @@ def _contacts(scene: Scene) -> Contacts:
     def column(read: Callable) -> Floats:
         return np.array([read(scene.contacts[i]) for i, _, _ in rows], dtype=float)
 
-    with_sheet = dict.fromkeys(scene.rollers, BOX_CYLINDER)
-    with_sheet |= dict.fromkeys(scene.planes, BOX_PLANE) | dict.fromkeys(scene.parts, EXTERNAL)
-    with_sheet |= dict.fromkeys(scene.guides, BOX_GUIDE) | dict.fromkeys(scene.meshes, BOX_MESH)
-    with_sheet |= dict.fromkeys(scene.sheets, BOX_BOX)
-    with_roller = dict.fromkeys(scene.rollers, CYLINDER_CYLINDER)
-    with_roller |= dict.fromkeys(scene.planes, CYLINDER_PLANE)
-    with_roller |= dict.fromkeys(scene.guides, CYLINDER_GUIDE) | dict.fromkeys(scene.meshes, CYLINDER_MESH)
+    with_sheet = dict.fromkeys(scene.sheets, BOX_BOX) | dict.fromkeys(scene.parts, EXTERNAL)
+    with_roller: dict[str, int] = {}
+    for kind in KINDS:
+        with_sheet |= dict.fromkeys(getattr(scene, kind.table), kind.with_sheet)
+        with_roller |= dict.fromkeys(getattr(scene, kind.table), kind.with_roller)
     kinds = [(with_roller if a in scene.rollers else with_sheet)[b] for _, a, b in rows]
     return Contacts(
         entry=np.array([i for i, _, _ in rows], dtype=np.int64),
@@ -241,13 +231,28 @@ def _contacts(scene: Scene) -> Contacts:
     )
 
 
+def _machine(
+    scene: Scene, sheets: tuple[SheetPart, ...], contacts: Contacts, first: int
+) -> dict[str, tuple[Any, ...]]:
+    """All parts of the machine by the table that they stand in; their bodies are numbered from `first`."""
+    kinds = {name: kind for kind in KINDS for name in getattr(scene, kind.table)}
+
+    def face(name: str, at: Floats, roller: str) -> Face | Bow | Facets | None:
+        return kinds[name].face(scene, name, at, roller)
+
+    found: dict[str, tuple[Any, ...]] = {}
+    for kind in KINDS:
+        before = Before(sheets, contacts, found.get("rollers", ()), face)
+        found[kind.table] = kind.lower(scene, before, first)
+        first += len(found[kind.table])
+    return found
+
+
 def _bodies(
     sheets: tuple[SheetPart, ...],
     boxes: list[Cells],
     rollers: tuple[RollerPart, ...],
-    planes: tuple[PlanePart, ...],
-    guides: tuple[GuidePart, ...],
-    meshes: tuple[MeshPart, ...],
+    machine: tuple[Part, ...],
 ) -> Bodies:
     names, labels, tables = [], [], []
     for sheet, box in zip(sheets, boxes, strict=True):
@@ -273,82 +278,15 @@ def _bodies(
                 box.friction,
             )
         )
-    zero, none, one = np.zeros((1, 3)), np.zeros((1, 4), bool), np.ones(1)
-    for roller in rollers:
-        names.append(roller.name)
-        labels.append(f"Roller {roller.name}")
-        start = roller.press.start * roller.press.direction if roller.press else np.zeros(3)
-        inertia = np.array([[roller.inertia_transverse, roller.inertia_transverse, roller.inertia_axial]])
-        tables.append(
-            (
-                (roller.center + start)[None],
-                frame(roller.axis)[None],
-                np.array([roller.mass]),
-                inertia,
-                zero,
-                zero,
-                np.array([False]),
-                zero,
-                none,
-                one,
-            )
-        )
-    for plane in planes:
-        names.append(plane.name)
-        labels.append(f"Plane {plane.name}")
-        a, b, c = plane.size
-        inertia = plane.mass / 12 * np.array([[b * b + c * c, a * a + c * c, a * a + b * b]])
-        half = np.array([plane.size]) / 2
-        start = plane.press.start * plane.press.direction if plane.press else np.zeros(3)
-        tables.append(
-            (
-                (plane.center + start)[None],
-                frame(plane.normal)[None],
-                np.array([plane.sliding_mass]),
-                inertia,
-                zero,
-                zero,
-                np.array([plane.press is None]),
-                half,
-                none,
-                one,
-            )
-        )
-    for guide in guides:
-        names.append(guide.name)
-        labels.append(f"Guide {guide.name}")
-        tables.append(
-            (
-                guide.center[None],
-                guide.axes[None],
-                np.array([guide.mass]),
-                guide_inertia(guide)[None],
-                zero,
-                zero,
-                np.array([True]),
-                zero,
-                none,
-                one,
-            )
-        )
-    for mesh in meshes:
-        names.append(mesh.name)
-        labels.append(f"Mesh {mesh.name}")
-        position, rotation = mesh_placed(mesh, rollers)
-        tables.append(
-            (
-                position[None],
-                rotation[None],
-                np.array([mesh.mass]),
-                mesh.mass * mesh.gyration[None],
-                zero,
-                zero,
-                np.array([mesh.on < 0]),
-                zero,
-                none,
-                one,
-            )
-        )
+    still, covered = np.zeros((1, 3)), np.zeros((1, 4), bool)
+    for part in machine:
+        kind = kind_of(part)
+        names.append(part.name)
+        labels.append(f"{kind.name.capitalize()} {part.name}")
+        body = kind.body(part, rollers)
+        place, turn, inertia, half = (np.asarray(column)[None] for column in (*body[:2], body[3], body[5]))
+        mass, fixed = np.array([body.mass]), np.array([body.fixed])
+        tables.append((place, turn, mass, inertia, still, still, fixed, half, covered, np.ones(1)))
     columns = [np.concatenate(column) for column in zip(*tables, strict=True)]
     return Bodies(tuple(names), tuple(labels), *columns)
 

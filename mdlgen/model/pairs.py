@@ -17,7 +17,9 @@ import numpy as np
 
 from mdlgen.errors import SpecError
 from mdlgen.model import meshes
-from mdlgen.model.guides import bounds
+from mdlgen.model.parts.kind import SLACK
+from mdlgen.model.parts.kinds import kind_of
+from mdlgen.model.parts.roller import swing
 from mdlgen.model.sheet_pairs import linked, meeting
 from mdlgen.model.tables import (
     BOX_BOX,
@@ -38,8 +40,6 @@ from mdlgen.spec.limits import DEFAULT, Limits
 
 Part = RollerPart | PlanePart | GuidePart | MeshPart
 
-# The centre may be beyond its bounds by one step before the solver sees it; kept pairs reach this far more.
-SLACK = 1.0  # mm
 _TURN_STEPS = 33
 _STATIONS = 65  # times in a run at which the ways of two drives are compared
 
@@ -93,8 +93,8 @@ def find_pairs(
                 low[roller.body] = bodies.position[roller.body] - way
                 high[roller.body] = bodies.position[roller.body] + way
             if roller.arm is not None:  # or swing by as much
-                low[roller.body] = bodies.position[roller.body] - _swing(roller) - margin
-                high[roller.body] = bodies.position[roller.body] + _swing(roller) + margin
+                low[roller.body] = bodies.position[roller.body] - swing(roller) - margin
+                high[roller.body] = bodies.position[roller.body] + swing(roller) + margin
     for plane in (part for part in machine if isinstance(part, PlanePart)):
         if plane.press is None:
             continue
@@ -120,7 +120,7 @@ def find_pairs(
         possible += sheet.count
         boxes = np.arange(sheet.first, sheet.first + sheet.count)
         if sheet.name in extents:
-            part_low, part_high = _part_bounds(other, bodies, rollers)
+            part_low, part_high = kind_of(other).bounds(other, bodies, rollers)
             box_low, box_high = extents[sheet.name]
             boxes = boxes[np.all((box_low <= part_high) & (box_high >= part_low), axis=1)]
         if told := limits.exceeded("pairs", len(kept) + len(boxes), "pairs of bodies kept"):
@@ -170,7 +170,7 @@ def _swept(
     times = np.unique(np.concatenate([np.linspace(0.0, time, _STATIONS), *corners]).clip(0.0, time))
     drives = [_drive(own, part, times) for own, part in driven]
     moves = np.array([fall, shift, *(end for path, _ in drives for end in (path.min(0), path.max(0)))])
-    if any(isinstance(part, (GuidePart, MeshPart)) for _, part in touched):
+    if any(kind_of(part).leads for _, part in touched):
         paths = np.linalg.norm(moves, axis=1)
         way = float(paths[:2].sum() + paths[2:].max(initial=0.0) + sum(map(np.linalg.norm, thrown)))
         way += float(np.linalg.norm(lift))
@@ -258,32 +258,3 @@ def _turned(
     # between two sampled angles a point strays from them by at most its radius times this
     sag = (1 - np.cos(turn / (_TURN_STEPS - 1))) * np.linalg.norm(arms, axis=1)[:, None]
     return (np.min(lows, axis=0) - sag, np.max(highs, axis=0) + sag), extent
-
-
-def _part_bounds(part: Part, bodies: Bodies, rollers: tuple[RollerPart, ...]) -> tuple[Floats, Floats]:
-    """Bounding box of a part; a pressed roller may move by its radius along its slide, a plate by the length
-    of its spring."""
-    center = bodies.position[part.body]
-    if isinstance(part, GuidePart):
-        return bounds(part)
-    if isinstance(part, MeshPart):
-        low, high = meshes.bounds(part, rollers)
-        press = rollers[part.on].press if part.on >= 0 else None
-        more = np.zeros(3) if press is None else rollers[part.on].radius * np.abs(press.direction) + SLACK
-        return low - more, high + more
-    if isinstance(part, PlanePart):
-        extent = np.abs(bodies.rotation[part.body]) @ (np.array(part.size) / 2)
-        if part.press is not None:
-            center, extent = part.center, extent + part.travel + SLACK
-        return center - extent, center + extent
-    extent = np.abs(part.axis) * part.width / 2 + part.reach * np.sqrt(np.maximum(0, 1 - part.axis**2))
-    if part.press is not None:
-        extent = extent + part.reach * np.abs(part.press.direction) + SLACK
-    if part.arm is not None:
-        extent = extent + _swing(part) + SLACK
-    return center - extent, center + extent
-
-
-def _swing(roller: RollerPart) -> Floats:
-    """How far a roller on an arm may go either way, by its radius in any direction across its axis [mm]."""
-    return roller.reach * np.sqrt(np.maximum(0, 1 - roller.axis**2))

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mdlgen.model.guides import Facet
+from mdlgen.model.parts.guide import Facet
 from mdlgen.model.tables import Floats, Model, RollerPart
 
 DEEP = 0.25  # thickness of a box in times the radius

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mdlgen.model.fold import overlaps
-from mdlgen.model.guides import bounds, depths
 from mdlgen.model.overlap import HAIR
+from mdlgen.model.parts.guide import bounds, depths
 from mdlgen.model.tables import (
     Floats,
     GuidePart,

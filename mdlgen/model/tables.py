@@ -12,8 +12,9 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from mdlgen.geometry.arrays import Floats as Floats
+from mdlgen.geometry.arrays import Ints as Ints
+
 GROUND = -1
 # A contact that goes from touching to too deep in fewer than so many steps may be held by finer ones.
 FEW_STEPS = 4
@@ -443,6 +444,8 @@ CYLINDER_PLANE, CYLINDER_GUIDE, CYLINDER_MESH = 7, 8, 9
 # those of a roller with a part that it does not turn with, and all between parts of the machine
 ON_PARTS = (CYLINDER_PLANE, CYLINDER_GUIDE, CYLINDER_MESH)
 OF_MACHINE = (CYLINDER_CYLINDER, *ON_PARTS)
+# those of a sheet with a plate that has ends
+ON_PLATES = (BOX_PLANE, BOX_GUIDE)
 
 
 @dataclass(frozen=True)
@@ -596,6 +599,11 @@ class Model(Frozen):
         kinds = ("sheets", "rollers", "planes", "guides", "bushings", "contacts")
         told = ", ".join(f"{len(getattr(self, kind))} {kind}" for kind in kinds if len(getattr(self, kind)))
         return f"<Model {self.name}: {len(self.bodies.name)} bodies, {told}>"
+
+    @property
+    def machine(self) -> tuple[RollerPart | PlanePart | GuidePart | MeshPart, ...]:
+        """All parts of the machine, as their bodies are numbered."""
+        return (*self.rollers, *self.planes, *self.guides, *self.meshes)
 
     def roller(self, name: str) -> RollerPart:
         return next(r for r in self.rollers if r.name == name)

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from mdlgen.model.guides import depths
+from mdlgen.model.parts.kind import Boxes
+from mdlgen.model.parts.kinds import WITH_SHEET
 from mdlgen.model.rotations import turns
 from mdlgen.model.tables import (
     BOX_BOX,
-    BOX_CYLINDER,
-    BOX_GUIDE,
     BOX_MESH,
-    BOX_PLANE,
     GROUND,
     Floats,
     Ints,
@@ -19,7 +17,6 @@ from mdlgen.model.tables import (
 )
 from mdlgen.report import shares
 from mdlgen.report.shares import EXPONENT
-from mdlgen.report.solids import CORNERS
 from mdlgen.results.result import Result
 from mdlgen.results.strain import SheetJoints
 
@@ -63,6 +60,7 @@ def contact(result: Result, at: Ints) -> tuple[Floats, Floats]:
     """
     model = result.model
     sheets = {sheet.name: sheet for sheet in model.sheets}
+    machine = {part.body: part for part in model.machine}
     found, deepest = np.zeros((len(at), count(model))), np.zeros((len(at), len(model.contacts)))
     for row, kind in enumerate(model.contacts.kind.tolist()):
         pressed = np.flatnonzero(result.contact_force[at, row] > 0.0)
@@ -78,14 +76,17 @@ def contact(result: Result, at: Ints) -> tuple[Floats, Floats]:
             for sheet, part in parts:
                 found[pressed, sheet.first : sheet.first + sheet.count] += part * force
             continue
-        if kind not in (BOX_CYLINDER, BOX_PLANE, BOX_GUIDE):
+        if kind not in WITH_SHEET:
             continue
         mine = model.pairs.contact == row
         boxes = model.pairs.a[mine]
         if not len(pressed) or not len(boxes):
             continue
-        other = int(model.pairs.b[mine][0])
-        deep = _depths(result, kind, boxes, other, model.contacts.part_b[row], at[pressed])
+        body, states = int(model.pairs.b[mine][0]), np.ix_(at[pressed], boxes)
+        shown = Boxes(result.position[states], turns(result.rotation[states]), model.bodies.half[boxes])
+        deep = WITH_SHEET[kind].depths(machine[body], shown, result.position[at[pressed], body])
+        if deep is None:
+            continue
         deep = np.maximum(deep, 0.0)
         deepest[pressed, row] = deep.max(axis=1)
         weight = deep**EXPONENT
@@ -93,29 +94,3 @@ def contact(result: Result, at: Ints) -> tuple[Floats, Floats]:
         part = weight / np.where(total > 0.0, total, 1.0)
         found[np.ix_(pressed, boxes)] += part * result.contact_force[at[pressed], row][:, None]
     return found, deepest
-
-
-def _depths(result: Result, kind: int, boxes: Ints, other: int, name: str, at: Ints) -> Floats:
-    """How deep boxes are in a part [mm], (t, boxes); where they are off it, not above zero."""
-    model = result.model
-    place = result.position[np.ix_(at, boxes)]
-    turn = turns(result.rotation[np.ix_(at, boxes)])
-    half = model.bodies.half[boxes]
-    if kind == BOX_CYLINDER:
-        roller = model.roller(name)
-        offset = np.einsum("tnij,tni->tnj", turn, result.position[at, other][:, None] - place)
-        along = np.einsum("tnij,i->tnj", turn, roller.axis)
-        # the point of the box's middle plane that is nearest to the axis, kept on the box
-        reach = np.clip(-np.einsum("tnk,tnk->tn", offset, along), -roller.width / 2, roller.width / 2)
-        near = offset + reach[..., None] * along
-        beside = np.abs(near[..., :2]) - half[:, :2]
-        away = np.hypot(np.maximum(beside[..., 0], 0.0), np.maximum(beside[..., 1], 0.0))
-        return roller.radius - np.hypot(away, np.maximum(np.abs(near[..., 2]) - half[:, 2], 0.0))
-    if kind == BOX_PLANE:
-        plane = next(p for p in model.planes if p.name == name)
-        face = result.position[at, other][:, None] + plane.normal * plane.size[2] / 2
-        lowest = np.abs(np.einsum("tnij,i->tnj", turn, plane.normal)) * half
-        return lowest.sum(axis=2) - (place - face) @ plane.normal
-    guide = next(g for g in model.guides if g.name == name)
-    corners = place[:, :, None] + np.einsum("tnij,ncj->tnci", turn, CORNERS * half[:, None])
-    return depths(guide, corners, place[:, :, None]).max(axis=2)

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from mdlgen.geometry.solids import BOX, CORNERS
 from mdlgen.model.tables import Floats
 from mdlgen.report import boxes
 from mdlgen.report.animation import frames
 from mdlgen.report.meshes import machine, moving
 from mdlgen.report.motion import names, poses
-from mdlgen.report.solids import BOX, CORNERS
 from mdlgen.results.result import Result
 from mdlgen.version import version
 

@@ -6,13 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mdlgen.model.guides import facets, outer
-from mdlgen.model.tables import Floats, GuidePart, Ints, Model, RollerPart
-from mdlgen.report.solids import BOX, CORNERS, Solid, bar, bent_plate, cylinder, join, slice_
+from mdlgen.geometry.solids import Solid, bar, cylinder, join
+from mdlgen.model.parts.kinds import kind_of
+from mdlgen.model.parts.roller import PROUD
+from mdlgen.model.tables import Floats, GuidePart, Ints, MeshPart, Model, PlanePart, RollerPart
 
-PIECE = 20000  # triangles of a part of a mesh
-MARK = 0.12  # breadth of the mark on a roller, in times its radius
-PROUD = 0.01  # how far the mark stands out, in times the radius
+Part = RollerPart | PlanePart | GuidePart | MeshPart
 CHEEK = 0.4, 0.12  # breadth and thickness of an arm beside its roller, in times the roller's radius
 
 
@@ -36,20 +35,17 @@ def machine(model: Model) -> list[Mesh]:
     touched = {*model.contacts.part_a, *model.contacts.part_b}
     for number, roller in enumerate(model.rollers):
         if roller.name in touched or all(part.on != number for part in model.meshes):
-            found += _roller(roller)
+            found += _drawn(model, roller)
     for number, roller in enumerate(on_arms(model)):
         found.append(Mesh(roller.name, "arm", len(model.bodies.name) + number, *_arm(roller)))
-    for plane in model.planes:
-        found.append(Mesh(plane.name, "plane", plane.body, CORNERS * model.bodies.half[plane.body], BOX))
-    for guide in model.guides:
-        found.append(Mesh(guide.name, "guide", guide.body, *_guide(guide)))
-    for part in model.meshes:
-        points = (part.corners - part.middle) @ part.principal
-        kind = "guide" if part.on < 0 else "mesh"
-        for first in range(0, len(part.triangles), PIECE):  # a page counts corners in 16 bits
-            used, own = np.unique(part.triangles[first : first + PIECE], return_inverse=True)
-            found.append(Mesh(part.name, kind, part.body, points[used], own.reshape(-1, 3)))
+    for part in model.machine[len(model.rollers) :]:
+        found += _drawn(model, part)
     return found
+
+
+def _drawn(model: Model, part: Part) -> list[Mesh]:
+    shown = kind_of(part).drawn(part, model.bodies.half[part.body])
+    return [Mesh(each.name, each.kind, part.body, *each.solid) for each in shown]
 
 
 def on_arms(model: Model) -> list[RollerPart]:
@@ -66,25 +62,6 @@ def moving(model: Model) -> list[int]:
     return [*boxes, *(part.body for part in machine), *(m.body for m in model.meshes if m.on >= 0), *arms]
 
 
-def _roller(roller: RollerPart) -> list[Mesh]:
-    """A cylinder about the z axis of its body, or the sectors of its rim, and a bar across both ends from the
-    axis to the rim."""
-    half, radius, rim = roller.width / 2, roller.radius, roller.rim
-    if rim is None:
-        found = [Mesh(roller.name, "roller", roller.body, *cylinder(radius, -half, half))]
-    else:
-        found = []
-        for name, begin, end, own in zip(rim.name, rim.begin, rim.end, rim.radius, strict=True):
-            kind = "sector" if name.startswith("s") else "roller"
-            solid = slice_(float(own), float(begin), float(end), half)
-            found.append(Mesh(f"{roller.name} {name}", kind, roller.body, *solid))
-            if (0.5 * np.pi - begin) % (2.0 * np.pi) <= end - begin:  # where the mark is
-                radius = float(own)
-    size = np.array([0.5 * MARK * radius, 0.5 * (1.0 + PROUD) * radius, half + PROUD * radius])
-    found.append(Mesh(roller.name, "mark", roller.body, CORNERS * size + [0.0, size[1], 0.0], BOX))
-    return found
-
-
 def _arm(roller: RollerPart) -> Solid:
     """A bar beside each end of its roller, from the pivot, where a pin joins them, along x to its axis."""
     assert roller.arm is not None, "asked only of a roller on an arm"
@@ -96,13 +73,3 @@ def _arm(roller: RollerPart) -> Solid:
     return join(
         bar(length, breadth, near, far), bar(length, breadth, -far, -near), cylinder(breadth / 4, -far, far)
     )
-
-
-def _guide(guide: GuidePart) -> Solid:
-    """A plate in the axes of its body."""
-    if guide.radius > 0.0:
-        far, begin = outer(guide), guide.middle - guide.half_angle
-        return bent_plate(far - guide.thickness, far, begin, begin + 2 * guide.half_angle, guide.width / 2)
-    (facet,) = facets(guide)
-    points = (CORNERS * np.array(facet.lengths) / 2) @ facet.rotation.T + facet.center - guide.center
-    return Solid(points @ guide.axes, BOX)

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 
 from mdlgen.errors import SpecError
+from mdlgen.geometry.solids import CORNERS, FACES
 from mdlgen.model.rotations import turns
 from mdlgen.model.tables import Floats, Ints
 from mdlgen.report import boxes
 from mdlgen.report.figures import STYLE
 from mdlgen.report.meshes import machine
 from mdlgen.report.motion import poses
-from mdlgen.report.solids import CORNERS, FACES
 from mdlgen.results.result import Result
 from mdlgen.results.strain import histories
 from mdlgen.units import parse_quantity

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from mdlgen.geometry.solids import CORNERS
 from mdlgen.model.rotations import turns
 from mdlgen.model.tables import Floats, Ints
 from mdlgen.report import boxes
 from mdlgen.report.animation import frames
 from mdlgen.report.meshes import machine
 from mdlgen.report.motion import poses
-from mdlgen.report.solids import CORNERS
 from mdlgen.results.result import Result
 from mdlgen.results.strain import histories
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from mdlgen.model.ends import End, Slab, ends, slab
 from mdlgen.model.rotations import turns
-from mdlgen.model.tables import BOX_GUIDE, BOX_PLANE, Floats, GuidePart, PlanePart
+from mdlgen.model.tables import ON_PLATES, Floats, GuidePart, PlanePart
 
 if TYPE_CHECKING:
     from mdlgen.results.result import Result
@@ -37,7 +37,7 @@ def stops(result: Result) -> list[Stop]:
     """Each sheet and plate in contact of which the one is stopped by the other's end at a stored state."""
     model, found = result.model, []
     parts: dict[str, PlanePart | GuidePart] = {p.name: p for p in (*model.planes, *model.guides)}
-    for row in np.flatnonzero(np.isin(model.contacts.kind, (BOX_PLANE, BOX_GUIDE))).tolist():
+    for row in np.flatnonzero(np.isin(model.contacts.kind, ON_PLATES)).tolist():
         plate = slab(parts[model.contacts.part_b[row]])
         boxes = model.pairs.a[model.pairs.contact == row]
         boxes = boxes[model.bodies.exposed[boxes].any(axis=1)]

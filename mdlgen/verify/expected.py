@@ -12,9 +12,8 @@ import numpy as np
 
 from mdlgen.model import naming
 from mdlgen.model.curves import straight_points, written
-from mdlgen.model.guides import Facet, facets
-from mdlgen.model.meshes import moments
 from mdlgen.model.meshes import origin as mesh_origin
+from mdlgen.model.parts.guide import Facet, facets
 from mdlgen.model.rim_facets import rim_facets
 from mdlgen.model.shape import apart, ground_frames
 from mdlgen.model.tables import (
@@ -30,6 +29,7 @@ from mdlgen.model.tables import (
     RollerPart,
     SheetPart,
 )
+from mdlgen.spec.solid import moments
 from mdlgen.verify.state import motion
 from mdlgen.verify.tables import Part, Table, table
 

@@ -1,4 +1,4 @@
-"""Rollers and planes: Scene -> tables, with what is pressed in static equilibrium."""
+"""What springs press, rollers and plates, in static equilibrium as the run begins."""
 
 from __future__ import annotations
 
@@ -7,15 +7,11 @@ import numpy as np
 from mdlgen.errors import SpecError
 from mdlgen.model import meshes, press
 from mdlgen.model.frames import frame
-from mdlgen.model.guides import lower_guides
+from mdlgen.model.parts.kind import Before
 from mdlgen.model.press_parts import (
-    Bow,
     Face,
-    Facets,
     Wheel,
-    face_of_guide,
     faces_of_plate,
-    facets_of_mesh,
     onto,
     onto_plate,
 )
@@ -23,61 +19,18 @@ from mdlgen.model.rims import lower_rim, touched, towards
 from mdlgen.model.tables import (
     CYLINDER_CYLINDER,
     ON_PARTS,
-    ArmPart,
     Contacts,
     Floats,
-    OneWay,
-    PlanePart,
     Press,
-    RollerPart,
-    SheetPart,
 )
-from mdlgen.spec.guide import edge_radii
-from mdlgen.spec.machine import Drive, Roller
 from mdlgen.spec.machine import Press as PressSpec
+from mdlgen.spec.machine import Roller
 from mdlgen.spec.scene import Scene
 
 
-def lower_rollers(
-    scene: Scene, sheets: tuple[SheetPart, ...], contacts: Contacts, first: int
-) -> tuple[RollerPart, ...]:
-    parts = []
-    for index, name in enumerate(sorted(scene.rollers)):
-        roller = scene.rollers[name]
-        axial = 0.5 * roller.mass * roller.radius**2
-        transverse = roller.mass * (3 * roller.radius**2 + roller.width**2) / 12
-        parts.append(
-            RollerPart(
-                name=name,
-                body=first + index,
-                center=np.array(roller.center),
-                axis=np.array(roller.axis),
-                radius=roller.radius,
-                width=roller.width,
-                mass=roller.mass,
-                inertia_axial=axial,
-                inertia_transverse=transverse,
-                speed=_speed(roller.drive) if roller.drive else None,
-                ramp=roller.drive.ramp if roller.drive else 0.0,
-                profile=np.array(roller.drive.profile) if roller.drive and roller.drive.profile else None,
-                one_way=OneWay(**dict(roller.one_way)) if roller.one_way else None,
-                press=_press(scene, name, sheets, contacts) if roller.press else None,
-                rim=lower_rim(roller),
-                arm=_arm(roller) if roller.arm else None,
-            )
-        )
-    return tuple(parts)
-
-
-def _speed(drive: Drive) -> float:
-    """The speed of a drive, of a profile the greatest in size [rad/ms]."""
-    if drive.profile is not None:
-        return max((speed for _, speed in drive.profile), key=abs)
-    assert drive.speed is not None, "the spec has one of the two"
-    return drive.speed
-
-
-def _press(scene: Scene, name: str, sheets: tuple[SheetPart, ...], contacts: Contacts) -> Press:
+def roller_press(scene: Scene, name: str, before: Before) -> Press:
+    """The press of a roller. Raises SpecError where what it is pressed against is pressed, too."""
+    sheets, contacts = before.sheets, before.contacts
     roller = scene.rollers[name]
     spec = roller.press
     assert spec is not None
@@ -105,7 +58,7 @@ def _press(scene: Scene, name: str, sheets: tuple[SheetPart, ...], contacts: Con
             others.append(cylinder)
             forces.append(press.cylinder_contact(cylinder, axis, own_radius, roller.width))
         elif contacts.kind[row] in ON_PARTS:
-            face = _face(scene, name, other)
+            face = before.face(other, center, name)
             if face is not None:
                 wheel = _wheel(
                     roller, -face.ways[:, 2] if isinstance(face, Face) else direction, contacts, row
@@ -135,26 +88,6 @@ def _wheel(roller: Roller, towards: Floats, contacts: Contacts, row: int) -> Whe
     return Wheel(np.array(roller.center), np.array(roller.axis), radius, roller.width, stiffness)
 
 
-def _face(scene: Scene, name: str, other: str) -> Face | Bow | Facets | None:
-    """The face of a plane, a guide or a mesh that a pressed roller meets; None: none.
-
-    Raises SpecError where both are pressed.
-    """
-    at = np.array(scene.rollers[name].center)
-    plane = scene.planes.get(other)
-    if other in scene.meshes:
-        return facets_of_mesh(scene.meshes[other])
-    if plane is None:
-        guide = next(g for g in lower_guides(scene, 0) if g.name == other)
-        return face_of_guide(guide, at)
-    if plane.press is not None:
-        raise SpecError(
-            f"{name} and {other} are pressed against each other; give one of them a fixed place",
-            ("rollers", name, "press"),
-        )
-    return faces_of_plate(np.array(plane.center), frame(np.array(plane.normal)), plane.size, at)
-
-
 def _slide(spec: PressSpec, mass: float, carrier: float, touch: float, start: float) -> Press:
     return Press(
         direction=np.array(spec.direction),
@@ -169,8 +102,9 @@ def _slide(spec: PressSpec, mass: float, carrier: float, touch: float, start: fl
     )
 
 
-def _plate_press(scene: Scene, name: str, sheets: tuple[SheetPart, ...], contacts: Contacts) -> Press:
+def plate_press(scene: Scene, name: str, before: Before) -> Press:
     """The press of a plate; the preload is that where it is given."""
+    sheets, contacts = before.sheets, before.contacts
     plane = scene.planes[name]
     spec = plane.press
     assert spec is not None
@@ -206,23 +140,6 @@ def _plate_press(scene: Scene, name: str, sheets: tuple[SheetPart, ...], contact
     return _slide(spec, mass, carrier, 0.0, start)
 
 
-def _arm(roller: Roller) -> ArmPart:
-    spec = roller.arm
-    assert spec is not None
-    pivot, end = np.array(spec.pivot), np.array(roller.center)
-    length = float(np.linalg.norm(np.cross(np.array(roller.axis), end - pivot)))
-    return ArmPart(
-        pivot=pivot,
-        center=0.5 * (pivot + end) if spec.center is None else np.array(spec.center),
-        mass=spec.mass,
-        inertia=spec.mass * length**2 / 12 if spec.inertia is None else spec.inertia,
-        torque=spec.torque,
-        stiffness=spec.stiffness,
-        damping=spec.damping,
-        sprung=spec.sprung,
-    )
-
-
 def _profile(roller: Roller, direction: Floats) -> tuple[float, float]:
     """Radius of a roller along a direction as the run begins [mm], and stiffness in times the contact's."""
     rim = lower_rim(roller)
@@ -230,21 +147,3 @@ def _profile(roller: Roller, direction: Floats) -> tuple[float, float]:
         return roller.radius, 1.0
     radius, sector, _ = touched(rim, towards(frame(np.array(roller.axis)), direction))
     return radius, float(rim.stiffness[sector])
-
-
-def lower_planes(
-    scene: Scene, sheets: tuple[SheetPart, ...], contacts: Contacts, first: int
-) -> tuple[PlanePart, ...]:
-    return tuple(
-        PlanePart(
-            name=name,
-            body=first + index,
-            center=np.array(plane.center),
-            normal=np.array(plane.normal),
-            size=plane.size,
-            mass=plane.mass,
-            press=_plate_press(scene, name, sheets, contacts) if plane.press else None,
-            edges=edge_radii(plane.edge_radius, plane.size[2], 1),
-        )
-        for index, (name, plane) in enumerate(sorted(scene.planes.items()))
-    )

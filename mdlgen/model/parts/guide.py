@@ -1,15 +1,22 @@
-"""Guides: Scene -> tables, and the boxes by which text and deck show them."""
+"""Guides: fixed plates, straight or bent to an arc, and the boxes by which text and deck show them."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
+from mdlgen.geometry.arrays import Floats
+from mdlgen.geometry.rods import Box, Rod, into_box
+from mdlgen.geometry.solids import BOX, CORNERS, Solid, bent_plate
 from mdlgen.model.frames import frame
+from mdlgen.model.parts.kind import Before, Body, Boxes, Drawn
+from mdlgen.model.press_parts import Bow, Face, face_of_guide
 from mdlgen.model.rims import SAG
-from mdlgen.model.tables import Floats, GuidePart
+from mdlgen.model.sheet_corners import each_box
+from mdlgen.model.tables import BOX_GUIDE, CYLINDER_GUIDE, Bodies, GuidePart, Model, RollerPart, SheetPart
 from mdlgen.spec.guide import Guide, edge_radii
 from mdlgen.spec.scene import Scene
 
@@ -24,11 +31,43 @@ class Facet(NamedTuple):
     lengths: tuple[float, float, float]
 
 
-def lower_guides(scene: Scene, first: int) -> tuple[GuidePart, ...]:
-    """All guides; their bodies are numbered from `first`."""
-    return tuple(
-        _guide(name, scene.guides[name], first + index) for index, name in enumerate(sorted(scene.guides))
-    )
+class _Guides:
+    name, table, part = "guide", "guides", GuidePart
+    with_sheet, with_roller = BOX_GUIDE, CYLINDER_GUIDE
+    leads = True
+
+    def lower(self, scene: Scene, before: Before, first: int) -> tuple[GuidePart, ...]:
+        return tuple(
+            _guide(name, scene.guides[name], first + index) for index, name in enumerate(sorted(scene.guides))
+        )
+
+    def face(self, scene: Scene, name: str, at: Floats, roller: str) -> Face | Bow | None:
+        return face_of_guide(_guide(name, scene.guides[name], 0), at)
+
+    def body(self, part: GuidePart, rollers: tuple[RollerPart, ...]) -> Body:
+        return Body(part.center, part.axes, part.mass, _inertia(part), True, np.zeros(3))
+
+    def bounds(
+        self, part: GuidePart, bodies: Bodies, rollers: tuple[RollerPart, ...]
+    ) -> tuple[Floats, Floats]:
+        return bounds(part)
+
+    def overlap(self, part: GuidePart, position: Floats, rotation: Floats) -> Callable[[Rod], float]:
+        blocks = [Box(f.center, f.rotation, np.array(f.lengths) / 2) for f in facets(part)]
+        return lambda rod: max(into_box(rod, block) for block in blocks)
+
+    def depth_at_start(self, model: Model, sheet: SheetPart, part: GuidePart) -> float:
+        return max(float(depths(part, points, at).max()) for at, points in each_box(model, sheet))
+
+    def place(self, part: GuidePart) -> str:
+        return f"guides.{part.name}"
+
+    def depths(self, part: GuidePart, boxes: Boxes, at: Floats) -> Floats:
+        corners = np.einsum("tnij,ncj->tnci", boxes.turn, CORNERS * boxes.half[:, None])
+        return depths(part, boxes.place[:, :, None] + corners, boxes.place[:, :, None]).max(axis=2)
+
+    def drawn(self, part: GuidePart, half: Floats) -> list[Drawn]:
+        return [Drawn(part.name, "guide", _solid(part))]
 
 
 def _guide(name: str, guide: Guide, body: int) -> GuidePart:
@@ -66,7 +105,7 @@ def _guide(name: str, guide: Guide, body: int) -> GuidePart:
     )
 
 
-def inertia(guide: GuidePart) -> Floats:
+def _inertia(guide: GuidePart) -> Floats:
     """Of a fixed body it is of no effect: that of a ball of the guide's width [g mm^2], (3,)."""
     return np.full(3, guide.mass * guide.width**2 / 10)
 
@@ -124,3 +163,16 @@ def depths(guide: GuidePart, points: Floats, center: Floats) -> Floats:
     deep = (guide.thickness / 2 if guide.sides == 3 else 0.0) - sign * inward
     over &= (np.abs(own[..., 2]) <= guide.width / 2) & (deep < guide.thickness)
     return np.where(over, np.maximum(deep, 0.0), 0.0)
+
+
+def _solid(guide: GuidePart) -> Solid:
+    """A plate in the axes of its body."""
+    if guide.radius > 0.0:
+        far, begin = outer(guide), guide.middle - guide.half_angle
+        return bent_plate(far - guide.thickness, far, begin, begin + 2 * guide.half_angle, guide.width / 2)
+    (facet,) = facets(guide)
+    points = (CORNERS * np.array(facet.lengths) / 2) @ facet.rotation.T + facet.center - guide.center
+    return Solid(points @ guide.axes, BOX)
+
+
+GUIDE = _Guides()

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mdlgen.model.tables import Floats, Ints
+from mdlgen.geometry.arrays import Floats, Ints
 
 SIDES = 48  # of a whole round
 # corners of a box in half lengths, and its faces

@@ -1,0 +1,1 @@
+"""Shapes and places, without a scene: triangles of solids, rods and blocks."""

@@ -1,0 +1,1 @@
+"""Kinds of parts of a machine: a file for each, listed in `kinds`."""

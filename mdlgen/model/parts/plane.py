@@ -1,0 +1,93 @@
+"""Planes: plates, fixed or pressed by a spring."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from mdlgen.errors import SpecError
+from mdlgen.geometry.arrays import Floats
+from mdlgen.geometry.rods import Box, Rod, into_box
+from mdlgen.geometry.solids import BOX, CORNERS, Solid
+from mdlgen.model.frames import frame
+from mdlgen.model.parts.kind import SLACK, Before, Body, Boxes, Drawn
+from mdlgen.model.press_parts import Face, faces_of_plate
+from mdlgen.model.pressed import plate_press
+from mdlgen.model.sheet_corners import corners, corners_of_boxes
+from mdlgen.model.tables import BOX_PLANE, CYLINDER_PLANE, Bodies, Model, PlanePart, RollerPart, SheetPart
+from mdlgen.spec.guide import edge_radii
+from mdlgen.spec.scene import Scene
+
+
+class _Planes:
+    name, table, part = "plane", "planes", PlanePart
+    with_sheet, with_roller = BOX_PLANE, CYLINDER_PLANE
+    leads = False
+
+    def lower(self, scene: Scene, before: Before, first: int) -> tuple[PlanePart, ...]:
+        return tuple(
+            PlanePart(
+                name=name,
+                body=first + index,
+                center=np.array(plane.center),
+                normal=np.array(plane.normal),
+                size=plane.size,
+                mass=plane.mass,
+                press=plate_press(scene, name, before) if plane.press else None,
+                edges=edge_radii(plane.edge_radius, plane.size[2], 1),
+            )
+            for index, (name, plane) in enumerate(sorted(scene.planes.items()))
+        )
+
+    def face(self, scene: Scene, name: str, at: Floats, roller: str) -> Face:
+        plane = scene.planes[name]
+        if plane.press is not None:
+            raise SpecError(
+                f"{roller} and {name} are pressed against each other; give one of them a fixed place",
+                ("rollers", roller, "press"),
+            )
+        return faces_of_plate(np.array(plane.center), frame(np.array(plane.normal)), plane.size, at)
+
+    def body(self, part: PlanePart, rollers: tuple[RollerPart, ...]) -> Body:
+        a, b, c = part.size
+        inertia = part.mass / 12 * np.array([b * b + c * c, a * a + c * c, a * a + b * b])
+        start = part.press.start * part.press.direction if part.press else np.zeros(3)
+        place, half = part.center + start, np.array(part.size) / 2
+        return Body(place, frame(part.normal), part.sliding_mass, inertia, part.press is None, half)
+
+    def bounds(
+        self, part: PlanePart, bodies: Bodies, rollers: tuple[RollerPart, ...]
+    ) -> tuple[Floats, Floats]:
+        """A pressed one may move by the length of its spring."""
+        center = bodies.position[part.body]
+        extent = np.abs(bodies.rotation[part.body]) @ (np.array(part.size) / 2)
+        if part.press is not None:
+            center, extent = part.center, extent + part.travel + SLACK
+        return center - extent, center + extent
+
+    def overlap(self, part: PlanePart, position: Floats, rotation: Floats) -> Callable[[Rod], float]:
+        block = Box(position, rotation, np.array(part.size) / 2)
+        return lambda rod: into_box(rod, block)
+
+    def depth_at_start(self, model: Model, sheet: SheetPart, part: PlanePart) -> float:
+        face = model.bodies.position[part.body] + part.normal * part.size[2] / 2
+        axes = model.bodies.rotation[part.body]
+        points = corners(sheet) if sheet.bend is None else corners_of_boxes(model, sheet)
+        over = np.all(np.abs((points - face) @ axes[:, :2]) <= np.array(part.size[:2]) / 2, axis=1)
+        depth = float(np.max(-((points - face) @ part.normal)[over], initial=0.0))
+        return depth if depth < part.size[2] else 0.0
+
+    def place(self, part: PlanePart) -> str:
+        return f"planes.{part.name}.center"
+
+    def depths(self, part: PlanePart, boxes: Boxes, at: Floats) -> Floats:
+        face = at[:, None] + part.normal * part.size[2] / 2
+        lowest = np.abs(np.einsum("tnij,i->tnj", boxes.turn, part.normal)) * boxes.half
+        return lowest.sum(axis=2) - (boxes.place - face) @ part.normal
+
+    def drawn(self, part: PlanePart, half: Floats) -> list[Drawn]:
+        return [Drawn(part.name, "plane", Solid(CORNERS * half, BOX))]
+
+
+PLANE = _Planes()
