@@ -7,8 +7,10 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
+from mdlgen.check_cost import costly
 from mdlgen.check_damping import damping
 from mdlgen.check_parameters import parameters
+from mdlgen.check_ways import against, apart, away, sinks
 from mdlgen.lint import Lint
 from mdlgen.model import press
 from mdlgen.model.overlap import Overlaps
@@ -47,12 +49,6 @@ BESIDE = 1.5  # boxes that carry a roller, over those that it stands on: their n
 def lints(model: Model) -> list[Lint]:
     """All findings, sorted by code and place."""
     found = {lint for check in CHECKS for lint in check(model)}
-    return sorted(found, key=lambda lint: (lint.code, lint.where, lint.message))
-
-
-def missing_contacts(model: Model) -> list[Lint]:
-    """Those of the findings that make a run end early, or its numbers wrong: contacts that are not there."""
-    found = {lint for check in MISSING for lint in check(model)}
     return sorted(found, key=lambda lint: (lint.code, lint.where, lint.message))
 
 
@@ -509,7 +505,6 @@ def _on_each_other(model: Model) -> Iterator[Lint]:
         yield Lint("W121", f"sheets.{sheet.name}", message, what)
 
 
-MISSING: tuple[Callable[[Model], Iterator[Lint]], ...] = (_unfaced, _unmet, _on_each_other)
 CHECKS: tuple[Callable[[Model], Iterator[Lint]], ...] = (
     _modulus,
     _aspect,
@@ -523,11 +518,18 @@ CHECKS: tuple[Callable[[Model], Iterator[Lint]], ...] = (
     _idle_roller,
     _idle_drive,
     _untouched,
-    *MISSING,
+    _unfaced,
+    _unmet,
+    _on_each_other,
     _free_static,
     _interference,
     _density,
     _guessed_bending,
     damping,
     parameters,
+    costly,
+    against,
+    away,
+    apart,
+    sinks,
 )

@@ -108,6 +108,17 @@ SCENE = {
         "that at rest; n is 1.5 times the number of boxes under the roller. Where that depth is half of a "
         "thickness the run ends. Give a stiffer contact or less preload; a finer step changes nothing."
     ),
+    "W123": (
+        "Two driven rollers are at one sheet, and their surfaces move it opposite ways. Probably one turns "
+        "the wrong way: rollers on the two sides of a sheet turn in opposite senses. A roller that is slower "
+        "than 0.6 of the others' speed counts as a retard roller. surface_speed with direction says which "
+        "way the surface moves."
+    ),
+    "W124": (
+        "The driven rollers that touch a sheet as the run begins move it away from all that it could come "
+        "to: the parts that its contacts name lie under it or behind it, and none ahead. Probably they turn"
+        " the wrong way. A positive speed turns about the axis by the right-hand rule."
+    ),
     "W125": (
         "Rolling resistance is a couple against the turning of a roller relative to what it rolls on. A "
         "contact of parts that are no rollers slides and does not roll; what resists there is friction."
@@ -125,6 +136,11 @@ SCENE = {
         "its parameters. Some values have no place in a data set: lines of clamps and zones, sizes of "
         "dog-ears, steps of a run. They stand in the text as numbers."
     ),
+    "W129": (
+        "Contacts name this roller, and in this run it can touch nothing: within the bounds in which all "
+        "moves, with run.margin around them, no box and no other part comes near. Its place, or its axis, "
+        "is probably wrong."
+    ),
     "W130": (
         "The damping time tau of a material is that of its law stress = E (strain + tau strain rate), and "
         "follows from a loss factor at a frequency: tau = eta/(2 pi f). Paper loses 1 to 10 % at 10 to 100 "
@@ -138,6 +154,17 @@ SCENE = {
         "The damping ratio of a mode with angular frequency omega is omega tau/2. Above 1 the lowest bending "
         "mode does not swing, it creeps back. For soft or damped plastics that may be right; for paper the "
         "unit of the time is probably wrong."
+    ),
+    "W133": (
+        "A sheet that lies on a plane sinks into it until k z^1.5 of its boxes carries its weight. Here "
+        "that is deeper than the sheet is thick, so it falls through. Give a stiffer contact: k in N/mm^1.5"
+        " is for one box, and 100 is usual for paper."
+    ),
+    "W134": (
+        "The run is long, and one value makes it at least four times as long as with a usual one: a step, a"
+        " time between outputs or a tolerance that is very small, very many boxes, or a duration of more "
+        "than a second. Often its unit is wrong. What a run takes is estimated from boxes, pairs and steps,"
+        " within a factor of 3."
     ),
 }
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import resource
 import subprocess
 import sys
@@ -204,7 +205,9 @@ def test_a_disk_that_is_full(tmp_path: Path) -> None:
             text=True,
             check=False,
         )
-        assert (done.returncode, done.stderr) == (3, f"{file}: cannot write: File too large\n")
+        *lints, told = done.stderr.splitlines()
+        assert (done.returncode, told) == (3, f"{file}: cannot write: File too large")
+        assert all(re.match(r"W1[0-9]{2} ", lint) for lint in lints)
     assert [p.name for p in tmp_path.rglob("*") if p.is_file()] == ["note.mdl"]
     assert (tmp_path / "note.mdl").read_text() == "old"
 

@@ -93,7 +93,7 @@ def run(
     """
     from mdlgen import registry
     from mdlgen.check_smoothing import notice
-    from mdlgen.checks import missing_contacts
+    from mdlgen.checks import lints
     from mdlgen.runs import resume as runs
 
     _check_single(spec, resume, bool(sets or limits or output or check_step or solver != "auto"))
@@ -119,13 +119,12 @@ def run(
     name, why = registry.chosen(request.solver, model)
     if request.solver == "auto" and why and not quiet:
         say(f"{name} runs this scene ({why})")
-    if not quiet:
-        for text in (*map(str, missing_contacts(model)), notice(model)):
-            if text:
-                say(text)
     for asked, wish in ((keep_partial, "--keep-partial"), (checkpoint is not None, "--checkpoint")):
         if asked:
             registry.check_resumes(name, why, wish)
+    if not quiet:
+        for text in filter(None, (*map(str, lints(model)), notice(model))):
+            say(text)
     drawn = pictures or are_drawn(folder)
     every = 60.0 if checkpoint is None else checkpoint
     packages = registry.packages(name)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from mdlgen.check_cost import cost
 from mdlgen.check_smoothing import smoothings
 from mdlgen.checks import lints
 from mdlgen.model.tables import MeshPart, Model, SheetPart
@@ -39,6 +40,7 @@ def overview(model: Model) -> dict[str, Any]:
             "external": len(model.external_pairs),
         },
         "smoothing": smoothings(model),
+        "cost": None if (of := cost(model)) is None else asdict(of),
         "lints": [asdict(lint) for lint in lints(model)],
     }
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from mdlgen.check_cost import Cost
 from mdlgen.check_smoothing import lines as smoothing_lines
 from mdlgen.report.overview import UNITS
 
@@ -68,6 +69,9 @@ def overview_parts(told: dict[str, Any]) -> list[str | Rows]:
     if told["external_parts"]:
         parts = ", ".join(f"{name} ({part['body']})" for name, part in told["external_parts"].items())
         lines.append(f"external parts: {parts}; {pairs['external']} pairs of bodies with them, all kept")
+    elif told["cost"] is not None:
+        cost = Cost(**told["cost"])
+        lines.append(f"a run takes {cost}{', within a factor of 3' if cost.seconds >= 1.0 else ''}")
     return lines
 
 

@@ -1,0 +1,149 @@
+"""Lints of rollers that turn the wrong way or touch nothing, of soft contacts, and what a run costs."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+import mdlgen
+from mdlgen.check_cost import cost, duration
+from mdlgen.checks import Lint, lints
+from mdlgen.cli import app
+from mdlgen.explain import explain
+from mdlgen.model.lower import lower
+from mdlgen.paths import samples
+from mdlgen.spec.load import load
+
+NEW = ("W123", "W124", "W129", "W133", "W134")
+
+
+def found(sample: str, *sets: str) -> list[Lint]:
+    made = lints(lower(load(samples() / f"{sample}.yaml", sets)))
+    return [lint for lint in made if lint.code in NEW]
+
+
+@pytest.mark.parametrize(
+    ("sample", "sets", "code", "where", "said"),
+    [
+        (
+            "transport_4x4",
+            ["rollers.motor_1_left.drive.speed=-186.7 rad/s"],
+            "W123",
+            "motor_1_left",
+            "along -x",
+        ),
+        # a note that has a place to come to, off a pile too
+        (
+            "feeder",
+            ["rollers.prefeed.drive.speed=-15 rad/s"],
+            "W123",
+            "prefeed",
+            "that of pull_motor along +x",
+        ),
+        ("retard_pad", ["rollers.pick.drive.speed=50 rad/s"], "W123", "feed", "that of pick along -x"),
+        ("channel", ["rollers.motor.drive.speed=-133.333 rad/s"], "W124", "motor", "away from guide_inner"),
+        ("channel", ["sheets.note.velocity=[-1 m/s, 0 m/s, 0 m/s]"], "W124", "motor", "that comes along -x"),
+    ],
+)
+def test_a_roller_that_turns_the_wrong_way(
+    sample: str, sets: list[str], code: str, where: str, said: str
+) -> None:
+    hit = next(lint for lint in found(sample, *sets) if lint.code == code)
+    assert hit.where == f"rollers.{where}.drive" and said in hit.message
+    assert str(hit).isascii() and explain(code)
+
+
+def test_a_slow_roller_and_one_without_friction_may_turn_back() -> None:
+    back = "rollers.motor_1_left.drive.speed=-100 rad/s"
+    assert found("transport_4x4", back) == []
+    smooth = ["rollers.motor_1_left.drive.speed=-186.7 rad/s", "contacts.4.friction=0"]
+    assert found("transport_4x4", *smooth) == []
+
+
+def test_a_sheet_that_leaves_what_it_lies_on_is_no_finding() -> None:
+    """A nip that puts a sheet out of the channel that it is in: nothing is ahead, nothing wholly behind."""
+    sets = ["rollers.motor.drive.speed=-133.333 rad/s", "sheets.note.center=[25 mm, 0 mm, 0 mm]"]
+    assert "W124" not in {lint.code for lint in found("channel", *sets)}
+
+
+def test_a_roller_that_touches_nothing() -> None:
+    # its pressed counterpart follows it
+    hits = found("transport_4x4", "rollers.motor_2_left.center.2=-370 mm")
+    assert {(hit.code, hit.where) for hit in hits} == {
+        ("W129", f"rollers.{name}_2_left.center") for name in ("motor", "counter")
+    }
+    assert "counter_2_left, note" in next(hit for hit in hits if "motor" in hit.where).message
+
+
+def test_a_plane_that_a_sheet_falls_through() -> None:
+    (hit,) = found("stack", "contacts.4.stiffness=1e-4 N/mm^1.5")
+    assert (hit.code, hit.where) == ("W133", "contacts.4.stiffness")
+    # the advice ends the finding, and the depth is a tenth of the thickness
+    advised = hit.remedy.removeprefix("give ").split(" or more")[0]
+    assert found("stack", f"contacts.4.stiffness={advised}") == []
+    assert found("stack", "contacts.4.stiffness=1e-4 N/mm^1.5", "gravity=[0 m/s^2, 0 m/s^2, 0 m/s^2]") == []
+
+
+@pytest.mark.parametrize(
+    ("sample", "value", "where"),
+    [
+        ("transport_4x4", "0.01 us", "run.step"),
+        ("transport_4x4", "500 s", "run.duration"),
+        ("verify/drop", "0.06 us", "run.print_step"),
+        ("transport_4x4", "1e-9", "run.tolerance"),
+        ("transport_4x4", "[200,200]", "sheets.note.boxes"),
+    ],
+)
+def test_the_value_that_makes_a_run_long(sample: str, value: str, where: str) -> None:
+    (hit,) = found(sample, f"{where}={value}")
+    assert (hit.code, hit.where) == ("W134", where)
+
+
+# what is run here ends within a second
+@pytest.mark.parametrize(
+    "sample", ["transport_4x4", "channel", "pick", "stack", "feeder_window", "verify/slide"]
+)
+def test_steps_are_as_foretold_within_a_factor_of_three(sample: str) -> None:
+    model = lower(load(samples() / f"{sample}.yaml"))
+    told, result = cost(model), mdlgen.solve(model)
+    assert told is not None and result.ok
+    assert told.steps / 3 < result.steps < 3 * told.steps
+
+
+def test_a_cost_grows_with_boxes_pairs_and_duration() -> None:
+    model = lower(load(samples() / "transport_4x4.yaml"))
+    base = cost(model)
+    longer = cost(replace(model, run=replace(model.run, duration=10 * model.run.duration)))
+    finer = cost(lower(load(samples() / "transport_4x4.yaml", ["sheets.note.boxes=[20,40]"])))
+    assert base and longer and finer
+    assert 5 * base.seconds < longer.seconds < 11 * base.seconds and longer.steps == 10 * base.steps
+    assert finer.seconds > 3.5 * base.seconds and finer.steps == base.steps
+
+
+@pytest.mark.parametrize(
+    ("seconds", "said"),
+    [
+        (0.2, "less than 1 s"),
+        (2.4, "about 2 s"),
+        (43.0, "about 43 s"),
+        (150.0, "about 2 min"),
+        (7000.0, "about 2 h"),
+        (1e6, "about 12 days"),
+    ],
+)
+def test_a_time_in_words(seconds: float, said: str) -> None:
+    assert duration(seconds) == said
+
+
+def test_check_says_what_a_run_takes() -> None:
+    file = str(samples() / "feeder.yaml")
+    assert (
+        "a run takes about 33 s, some 10000 steps, within a factor of 3"
+        in CliRunner().invoke(app, ["check", file]).stdout
+    )
+    told: Any = json.loads(CliRunner().invoke(app, ["check", file, "--json"]).stdout)
+    assert told["cost"]["steps"] == 12000 and 20.0 < told["cost"]["seconds"] < 60.0
