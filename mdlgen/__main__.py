@@ -10,13 +10,15 @@ INTERRUPTED = 130
 # What a command loads and reads stays to its end. To look for what is none of it each few hundred objects, as
 # Python does of itself, takes up to a tenth of the time.
 MANY = 100_000
+# A run makes little that has to be looked for in this way, and has more than that once it is loaded and read.
+MANY_IN_A_RUN = 1_000_000
 # Commands that hold much at their end: the tables of the compiler, or all things of a large text.
 LARGE = ("run", "lint", "mdl", "deck", "verify")
 
 
 def main() -> None:
     """Entry point: an interrupt while the command line itself is loaded ends as one later does."""
-    gc.set_threshold(MANY)
+    gc.set_threshold(MANY_IN_A_RUN if sys.argv[1:2] == ["run"] else MANY)
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # else it looks into each installed package
     try:
         from mdlgen.cli import main as run

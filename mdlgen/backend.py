@@ -21,6 +21,7 @@ class Capabilities:
     """What a backend can do besides."""
 
     resumes: bool = False  # its runs can be gone on with to the same bits: see `mdlgen.runs.checkpoint`
+    threads: int = 1  # of which a run of it has use
 
 
 @dataclass(frozen=True)

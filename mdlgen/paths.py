@@ -131,6 +131,18 @@ def write_atomic(path: Path, content: str | bytes) -> None:
     write_together({path: content})
 
 
+def check_folder(folder: Path) -> None:
+    """Raises OutputError where `folder` is a symbolic link, or a file stands in its way."""
+    try:
+        if folder.is_symlink():
+            raise OutputError(f"{folder}: is a symbolic link; name the folder itself")
+        for part in (folder, *folder.parents):
+            if part.exists() and not part.is_dir():
+                raise OutputError(f"{part}: is a file; name a folder")
+    except (OSError, ValueError) as error:
+        raise OutputError(f"{folder}: cannot be a folder: {error}") from None
+
+
 def write_together(files: Mapping[Path, str | bytes]) -> None:
     """Write several files: all of them, or none. Raises OutputError.
 

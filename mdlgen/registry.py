@@ -93,12 +93,16 @@ def solve(
     progress: Progress | None = None,
     check_step: bool = False,
     checkpointer: Checkpointer | None = None,
+    threads: int = 1,
 ) -> Result:
-    """Run a Model; see `mdlgen.solve`. `checkpointer` writes states, of a solver that can."""
+    """Run a Model; see `mdlgen.solve`. `checkpointer` writes states, of a solver that can; `threads` are how
+    many it may use, where it has use for them."""
     backend = solver(chosen(name, model)[0])
     options: dict[str, Any] = {}
     if checkpointer is not None and backend.capabilities.resumes:
         options["keep"] = checkpointer
+    if threads > 1 and backend.capabilities.threads > 1:
+        options["threads"] = threads
     result = backend.solve(model, progress, **options)
     # a static run has no step, and a failed one nothing to compare
     if not check_step or not result.ok or result.step <= 0.0:

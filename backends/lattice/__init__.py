@@ -27,11 +27,12 @@ def solve(
     step: float | None = None,
     without: tuple[str, ...] = (),
     keep: Checkpointer | None = None,
+    threads: int = 1,
 ) -> Result:
     """Run a Model; see `mdlgen.backends.lattice.run.solve`."""
     from mdlgen.backends.lattice import run
 
-    return run.solve(model, progress, step, without, keep)
+    return run.solve(model, progress, step, without, keep, threads)
 
 
 _SHORT = ("run.duration=0.4 ms", "run.print_step=0.2 ms", "run.step=0.1 ms")
@@ -39,7 +40,7 @@ _FEW = ("sheets.note.boxes=[2, 3]",)
 BACKEND = Backend(
     check=check,
     solve=solve,
-    capabilities=Capabilities(resumes=True),
+    capabilities=Capabilities(resumes=True, threads=2),
     shipped=Shipped(
         "mdlgen.backends.lattice.kernels.entries",
         (("transport_4x4.yaml", _SHORT), ("pick.yaml", _SHORT), ("cantilever.yaml", _FEW)),

@@ -102,7 +102,7 @@ def halve(system: System, mirror: Mirror) -> System:
     kept = free[0] | free[1]
     joints = system.joints[kept].copy()
     joints["mirrored"] = (gone[ends[0]] | gone[ends[1]])[kept]
-    far = np.unique(np.concatenate([end[kept & gone[end]] for end in ends]))
+    far = np.array(sorted({body for end in ends for body in end[kept & gone[end]].tolist()}), np.int64)
     images = np.zeros(len(far), IMAGE)
     images["body"], images["of"], images["signs"] = far, mirror.image[far], mirror.signs[far]
     images["normal"], images["at"] = mirror.normal, mirror.at

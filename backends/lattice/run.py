@@ -8,11 +8,13 @@ import time as clock
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from typing import Any
+from threading import Event
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from mdlgen.backends.lattice.arrays import System, build, partner
+from mdlgen.backends.lattice.beside import Beside, Stopped, own
 from mdlgen.backends.lattice.kernels.entries import PROGRAM
 from mdlgen.backends.lattice.mark import Mark, Stage
 from mdlgen.backends.lattice.mirror import halve
@@ -60,6 +62,33 @@ Progress = Callable[[float, float, int, int], None]
 FOLDING, FACTORS, SYMMETRY = "folding", "factors", "symmetry"
 
 
+class Watch(NamedTuple):
+    """Who follows a pass: who is told where it stands, what keeps it and by which number, and what stops it
+    where it goes on beside another one."""
+
+    progress: Progress | None = None
+    keep: Checkpointer | None = None
+    number: int = 0
+    stop: Event | None = None
+
+    def beside(self, stop: Event) -> Watch:
+        """Of a pass that goes on beside another one, which is the one to be told of."""
+        return self._replace(progress=None, stop=stop)
+
+    def leave(self) -> None:
+        """Such a pass has ended, and leaves a processor free."""
+        if self.keep is not None:
+            self.keep.free.set()
+
+
+UNSEEN = Watch()
+
+
+def _watch(progress: Progress | None, keep: Checkpointer | None) -> Watch:
+    """Of the next pass."""
+    return Watch(progress, keep, keep.begin() if keep is not None else 0)
+
+
 @PROGRAM.releases
 def solve(
     model: Model,
@@ -67,6 +96,7 @@ def solve(
     step: float | None = None,
     without: tuple[str, ...] = (),
     keep: Checkpointer | None = None,
+    threads: int = 1,
 ) -> Result:
     """Run a Model; `progress(time, end, steps, touching)` is told where it stands (times in ms).
 
@@ -77,7 +107,8 @@ def solve(
 
     `without` names rules that are not to be used: FOLDING of equal bushings, keeping of FACTORS over steps,
     SYMMETRY of both sides. `keep` is given states to go on from, and a run goes on from those that it has, to
-    the same bits.
+    the same bits. With two `threads` or more, two passes go on at the same time, to the same bits as well;
+    told is the progress of the finer one.
     """
     check(model)
     started = clock.perf_counter()
@@ -97,18 +128,49 @@ def solve(
     build_s = clock.perf_counter() - started - compile_s
     wanted = step or model.run.step
     begun = clock.perf_counter()
-    if wanted is not None:
-        made = MADE * model.run.tolerance / 1e-3
-        result = _once(model, system, wanted, progress, made=made, anew=FACTORS in without, keep=keep)
-        if result.ok and step is None and model.run.duration / wanted >= 4:
-            h = result.step
-            again = partial(_once, model, system, progress=progress, keep=keep)
-            result = _compared(result, [], lambda n: again(n * h, made=n * n * made))
+    watch = partial(_watch, progress, keep)
+    together = threads > 1 and PROGRAM.loaded  # numba's code keeps the lock of Python
+    if keep is not None and not (together and threads == 2):
+        keep.free.set()
+    if wanted is None:
+        result = _refined(model, system, watch, together)
     else:
-        result = _refined(model, system, progress, keep)
+        compared = step is None and model.run.duration / wanted >= 4
+        anew = FACTORS in without
+        result = _given(model, system, wanted, watch, anew, compared, together)
     result.estimate_s = clock.perf_counter() - begun - result.wall_s
     result.build_s, result.compile_s = build_s, compile_s
     return result
+
+
+def _given(
+    model: Model,
+    system: System,
+    wanted: float,
+    watch: Callable[[], Watch],
+    anew: bool,
+    compared: bool,
+    together: bool,
+) -> Result:
+    """A run at a step that is given, `compared` with one at twice that step."""
+    made = MADE * model.run.tolerance / 1e-3
+    h = _division(model, wanted).step
+
+    def again(times: int, on: System, seen: Watch) -> Result:
+        return _once(model, on, times * h, seen, made=times * times * made)
+
+    first = partial(_once, model, system, wanted, watch(), made=made, anew=anew)
+    if not compared:
+        return first()
+    if not together:
+        result = first()
+        return _compared(result, [], lambda n: again(n, system, watch())) if result.ok else result
+    seen, beside = watch(), own(system)
+    with Beside(lambda stop: again(2, beside, seen.beside(stop)), seen.leave) as coarse:
+        result = first()
+        if not result.ok:
+            return result
+        return _compared(result, [], lambda n: coarse.result() if n == 2 else again(n, system, watch()))
 
 
 def _compared(result: Result, before: list[Result], again: Callable[[int], Result]) -> Result:
@@ -134,7 +196,7 @@ def _ended(run: Result) -> bool:
     return finite and bool(run.time[-1] >= run.model.run.duration * (1.0 - 1e-9))
 
 
-def _refined(model: Model, system: System, progress: Progress | None, keep: Checkpointer | None) -> Result:
+def _refined(model: Model, system: System, watch: Callable[[], Watch], together: bool) -> Result:
     """Halves the step until estimates are within the tolerance; fails where they never are.
 
     A run that ends early has its reason from the physics of the scene or from its step: it is reported where
@@ -142,15 +204,25 @@ def _refined(model: Model, system: System, progress: Progress | None, keep: Chec
     """
     flexible, part = _flexible(model), model.run.tolerance / 1e-3
 
-    def once(h: float, halved: int) -> Result:
+    def once(h: float, halved: int, seen: Watch, on: System = system) -> Result:
         fine = part * 0.25**halved
-        return _once(model, system, h, progress, 0.0 if flexible else MISS * fine, MADE * fine, keep=keep)
+        return _once(model, on, h, seen, 0.0 if flexible else MISS * fine, MADE * fine)
 
-    runs = [once(first_step(model), 0)]
+    h = first_step(model)
+    pair: list[Result] = []  # the first two, which are needed whatever they find
+    if together:
+        seen, beside = watch(), own(system)
+        with Beside(lambda stop: once(h, 0, seen.beside(stop), beside), seen.leave) as coarse:
+            pair.append(once(0.5 * _division(model, h).step, 1, watch()))
+            runs = [coarse.result()]
+    else:
+        runs = [once(h, 0, watch())]
     for k in range(1, 1 + (MOST_REFINED if flexible else MOST_REFINED_RIGID)):
-        result = once(0.5 * runs[0].step, k)
+        result = pair.pop() if pair else once(0.5 * runs[0].step, k, watch())
         if result.ok and runs[0].ok:
-            result = _compared(result, runs[:2], lambda n, k=k, h=result.step: once(n * h, k - n // 2))
+            result = _compared(
+                result, runs[:2], lambda n, k=k, h=result.step: once(n * h, k - n // 2, watch())
+            )
             near = result.error_estimate is not None and result.error_estimate <= model.run.tolerance
             free = not len(model.pairs)
             if near and not (free and result.energy.balance_error > FREE_GAIN * model.run.tolerance):
@@ -193,20 +265,17 @@ def _speed(model: Model) -> float:
     return max(*drives, *starts, *own, 0.0)
 
 
-def _once(
-    model: Model,
-    system: System,
-    wanted: float,
-    progress: Progress | None,
-    miss: float = 0.0,
-    made: float = 0.0,
-    anew: bool = False,
-    keep: Checkpointer | None = None,
-) -> Result:
-    """One run at a step, or the next smaller one that outputs fall on; `miss`, `made`: see MISS and MADE, 0
-    for any; `anew`: a new factor for each step; `keep` as of `solve`."""
-    from mdlgen.backends.lattice.kernels import entries, march, step
+class Division(NamedTuple):
+    """How a run is divided: stored times after the start, steps between two of them, and the step [ms]."""
 
+    outputs: int
+    each: int
+    step: float
+
+
+def _division(model: Model, wanted: float) -> Division:
+    """Into steps of at most `wanted` [ms] that outputs fall on, or longer ones where outputs are left out.
+    Raises SpecError for too many."""
     run = model.run
     outputs = max(1, round(run.duration / run.print_step))
     each = max(1, math.ceil(run.duration / outputs / wanted - 1e-9))
@@ -220,6 +289,25 @@ def _once(
             "give a shorter run.duration, or a larger run.tolerance or run.step",
             ("run",),
         )
+    return Division(outputs, each, dt)
+
+
+def _once(
+    model: Model,
+    system: System,
+    wanted: float,
+    watch: Watch = UNSEEN,
+    miss: float = 0.0,
+    made: float = 0.0,
+    anew: bool = False,
+) -> Result:
+    """One run at a step, or the next smaller one that outputs fall on; `miss`, `made`: see MISS and MADE, 0
+    for any; `anew`: a new factor for each step. Raises Stopped where `watch` says so."""
+    from mdlgen.backends.lattice.kernels import entries, march, step
+
+    run = model.run
+    outputs, each, dt = _division(model, wanted)
+    progress, keep, number, stop = watch
     begun = clock.perf_counter()
     moving = _arrays(model, system)
     tables, state, mid, _, _, _, kept, _, _, damped = moving
@@ -236,14 +324,22 @@ def _once(
     search = system.search
     few = (fresh, counters, work, before, pace, search.place, system.pairs["beside"])
     mark = Mark((*moving[1:6], damped[1:]), few, recorder)
-    number = keep.begin() if keep is not None else 0
     stage = mark.back(keep, number) if keep is not None else None
     if stage is not None:
         status, t, past = stage.status, stage.t, stage.wall
         entries.look(system.pairs, search, search.place.copy())
+
+    def show() -> None:
+        if keep is not None and stop is None:  # the one beside shows a later part, or a finer one
+            keep.part = partial(_part, recorder, recorder.stand(work), dt, int(counters[step.STEPS]))
+
+    if stage is not None:
+        show()
     todo = range(stage.outputs if stage else 0, 0 if stage and stage.ended else outputs)
     for output in todo:
         for taken in range(0, each, MOST_AT_ONCE):
+            if stop is not None and stop.is_set():
+                raise Stopped
             steps = np.full(min(each - taken, MOST_AT_ONCE), dt)
             status, t = march.run(*moving, t, steps, tolerance, fresh, counters, work, before, pace)
             if taken == 0:
@@ -262,15 +358,14 @@ def _once(
         if unheld.found(state[0], state[1], t) is not None:
             status = OVERLAPPED
             break
-        if keep is not None:
-            keep.part = partial(_part, recorder, recorder.stand(work), dt, int(counters[step.STEPS]))
-            if keep.due() and output + 1 < outputs:
-                wall = past + clock.perf_counter() - begun
-                keep.save(number, mark.arrays(Stage(status, t, output + 1, wall, False)))
+        show()
+        if keep is not None and keep.due(number) and output + 1 < outputs:
+            wall = past + clock.perf_counter() - begun
+            keep.save(number, mark.arrays(Stage(status, t, output + 1, wall, False)))
         if progress is not None:
             progress(t, run.duration, int(counters[step.STEPS]), int(counters[step.TOUCHING]))
     wall = past + clock.perf_counter() - begun
-    if keep is not None and todo and (keep.written or keep.due()):
+    if keep is not None and todo and (keep.written or keep.due(number)):
         keep.save(number, mark.arrays(Stage(status, t, todo.stop, wall, True)))
     reason = None if status == march.DONE else _reason(model, system, status, t, dt, state, counters)
     if status in (march.LEFT, march.DEEP, march.STRETCHED):

@@ -281,12 +281,14 @@ def _joints(model: Model, system: System, mirror: Mirror) -> bool:
 
 
 def _shaken(model: Model) -> tuple[Floats, Floats, Floats, Floats]:
-    """Places, rotations (bodies + 1, 9) and velocities of a random state near the start; last the ground."""
+    """Places, rotations (bodies + 1, 9) and velocities of a state near the start in which no two bodies move
+    alike; last the ground."""
     table, count = model.bodies, len(model.bodies.name)
-    random = np.random.default_rng(0)
     x, r, u, w = (np.zeros((count + 1, n)) for n in (3, 9, 3, 3))
     free = np.where(table.fixed, 0.0, 1.0)[:, None]
-    moved, turned, rate, spin = (free * random.standard_normal((count, 3)) for _ in range(4))
+    # parts of multiples of squares are spread evenly, and follow no rule that boxes in rows follow
+    shares = math.sqrt(2.0) * np.arange(1.0, 12 * count + 1.0) ** 2 % 1.0
+    moved, turned, rate, spin = free * (4.0 * shares - 2.0).reshape(4, count, 3)
     x[:count] = table.position + MOVED * moved
     r[:count] = (matrices(TURNED * turned) @ table.rotation).reshape(-1, 9)
     r[count] = np.eye(3).ravel()

@@ -79,7 +79,7 @@ def bench(
     from mdlgen.bench import page as pages
     from mdlgen.bench.run import bench as run_bench
     from mdlgen.bench.table import markdown
-    from mdlgen.results.store import check_folder
+    from mdlgen.paths import check_folder
 
     shown = "" if page is None else pages.check_page(suites or ())
     check_folder(output)

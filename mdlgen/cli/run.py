@@ -40,7 +40,8 @@ if TYPE_CHECKING:
 # Compiled code comes back for a moment some thousand times a second: how long it waits for what another
 # thread does in Python [s]. By default that is 5 ms each time.
 INTERVAL = 2e-4
-# A run that goes on after so long [s] may be kept, and its code change meanwhile.
+# A run that goes on after so long [s] leaves time for other things; it may be kept, and its code change
+# meanwhile.
 LONG = 1.0
 
 
@@ -108,10 +109,9 @@ def run(
         model = request.model()
     if strict:
         strictly(model)
-    from mdlgen.report.page import page
+    from mdlgen.paths import check_folder
+    from mdlgen.processors import processors
     from mdlgen.report.pictures import are_drawn, pictures_of
-    from mdlgen.report.text import summary_text
-    from mdlgen.results.store import check_folder, save
     from mdlgen.runs.checkpoint import Checkpointer
 
     folder = resume or output or Path("out") / model.name
@@ -134,16 +134,15 @@ def run(
         checkpointer = runs.checkpointer(folder, request, model, every, packages)
     else:
         checkpointer = Checkpointer()
-        checkpointer.begun.set()
+        checkpointer.free.set()
     Thread(target=_ahead, args=(checkpointer, model, drawn, packages), daemon=True).start()
     if resume is None and runs.can_resume(folder) and not quiet:
         say(f"{folder} holds a run that was cut off; this one takes its place (--resume {folder} goes on)")
     # a solver may talk on standard output, which is kept for results
     try:
         with progress_bar(quiet, request.check_step) as progress, chatter(verbose):
-            result = beside(
-                lambda: registry.solve(model, request.solver, progress, request.check_step, checkpointer)
-            )
+            asked = request.solver, progress, request.check_step, checkpointer, processors()
+            result = beside(lambda: registry.solve(model, *asked))
     except KeyboardInterrupt:
         checkpointer.lock.acquire(timeout=0.5)  # a file that is being written is soon complete
         if keep_partial:
@@ -158,6 +157,10 @@ def run(
                 folder.rmdir()
         say(f"{request.spec}: the run failed: {result.status}; nothing was written into {folder}")
         raise typer.Exit(SOLVER_FAILED)
+    from mdlgen.report.page import page
+    from mdlgen.report.text import summary_text
+    from mdlgen.results.store import save
+
     result.source = source_of(request.text, request.sets)
     also = pictures_of(result) if drawn else {}
     summary = save(result, folder, {**also, "report.html": page([result]).encode("utf-8")})
@@ -188,15 +191,16 @@ def _check_single(spec: Path | None, resume: Path | None, others: bool) -> None:
 def _ahead(checkpointer: Checkpointer, model: Model, drawn: bool, packages: tuple[str, ...]) -> None:
     """Does what is needed later on, once compiled code leaves a second core to it: what comes before does
     not."""
-    from mdlgen.report.page import prepare
-    from mdlgen.report.pictures import load_drawing
     from mdlgen.runs.resume import code
 
-    checkpointer.begun.wait()
+    checkpointer.free.wait(LONG)
     before = sys.getswitchinterval()
     sys.setswitchinterval(INTERVAL)
     # what fails here fails again where it is needed, and is told there
     with contextlib.suppress(Exception):
+        from mdlgen.report.page import prepare
+        from mdlgen.report.pictures import load_drawing
+
         prepare(model)
         if drawn:
             load_drawing()

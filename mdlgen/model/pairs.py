@@ -167,7 +167,8 @@ def _swept(
     lift = sum(plates.values(), np.zeros(3))
     driven = [(own, part) for own, part in touched if isinstance(part, RollerPart) and part.speed]
     corners = [part.corners[:, 0] for _, part in driven]
-    times = np.unique(np.concatenate([np.linspace(0.0, time, _STATIONS), *corners]).clip(0.0, time))
+    stations = np.concatenate([np.linspace(0.0, time, _STATIONS), *corners]).clip(0.0, time)
+    times = np.array(sorted(set(stations.tolist())))
     drives = [_drive(own, part, times) for own, part in driven]
     moves = np.array([fall, shift, *(end for path, _ in drives for end in (path.min(0), path.max(0)))])
     if any(kind_of(part).leads for _, part in touched):

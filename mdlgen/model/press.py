@@ -70,9 +70,9 @@ def covered_shares(
     ]
     boxes, whole = j * sheet.n_x + i, len(stations)
     if not shared:
-        boxes, whole = np.unique(boxes), 1
+        boxes, whole = sorted(set(boxes.tolist())), 1
     thick = sheet.thick[boxes]
-    return [(float(np.sum(thick == s)) / whole, float(s)) for s in np.unique(thick)]
+    return [(float(np.sum(thick == s)) / whole, s) for s in sorted(set(thick.tolist()))]
 
 
 def sheet_contact(

@@ -348,7 +348,7 @@ class RollerPart(Frozen):
 
     def turned(self, time: Floats) -> Floats:
         """Angle [rad] by which a driven roller has turned at increasing times [ms] from 0 on."""
-        grid = np.unique(np.concatenate([[0.0], time, self.corners[:, 0]]))
+        grid = np.array(sorted({0.0, *time.tolist(), *self.corners[:, 0].tolist()}))
         speed = self.prescribed(grid)
         angle = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(grid))])
         return angle[np.searchsorted(grid, time)]

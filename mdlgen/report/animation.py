@@ -23,7 +23,12 @@ def frames(result: Result) -> Ints:
     states = len(result.time)
     most = max(2, min(FRAMES, MOST // max(1, boxes.count(result.model))))
     every = max(1, -(-(states - 1) // (most - 1)))
-    return np.unique(np.append(np.arange(0, states, every), states - 1)).astype(np.int64)
+    return thinned(states, every)
+
+
+def thinned(states: int, every: int) -> Ints:
+    """Every n-th of some states, and the last."""
+    return np.array([*range(0, states - 1, every), states - 1], dtype=np.int64)
 
 
 def packed(values: Any, kind: str) -> str:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from mdlgen.model.tables import Floats, Ints
+from mdlgen.report.animation import thinned
 from mdlgen.results.compare import travel
 from mdlgen.results.result import Result
 from mdlgen.results.strain import SheetJoints
@@ -53,7 +54,7 @@ def panels(
 def _thin(result: Result) -> Ints:
     """Stored states that are drawn of what is known at all of them."""
     every = max(1, -(-len(result.time) // POINTS))
-    return np.unique(np.append(np.arange(0, len(result.time), every), len(result.time) - 1))
+    return thinned(len(result.time), every)
 
 
 def _motion(result: Result) -> list[Panel]:

@@ -78,7 +78,7 @@ def _pieces(mesh: MeshPart, size: float) -> tuple[Floats, Floats, Floats]:
         scale = np.sqrt(max(MOST_PIECES - len(parts), 1) / (parts**2).sum())
         parts = np.maximum(1, np.floor(parts * scale)).astype(np.int64)
     middles, normals, areas = [], [], []
-    for n in np.unique(parts).tolist():
+    for n in sorted(set(parts.tolist())):
         mine = parts == n
         u, v = (index.ravel() for index in np.indices((n, n)))
         up = u + v < n

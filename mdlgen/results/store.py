@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from mdlgen.errors import OutputError
-from mdlgen.paths import recover, write_together
+from mdlgen.paths import check_folder, recover, write_together
 from mdlgen.results import tree
 from mdlgen.results.estimates import complete
 from mdlgen.results.result import ContactStatistics, Result
@@ -55,18 +55,6 @@ def save(result: Result, folder: Path, also: Mapping[str, bytes] | None = None) 
         raise OutputError(f"{folder}: cannot make this folder: {error.strerror or error}") from None
     write_together(files)
     return told
-
-
-def check_folder(folder: Path) -> None:
-    """Raises OutputError where `folder` is a symbolic link, or a file stands in its way."""
-    try:
-        if folder.is_symlink():
-            raise OutputError(f"{folder}: is a symbolic link; name the folder itself")
-        for part in (folder, *folder.parents):
-            if part.exists() and not part.is_dir():
-                raise OutputError(f"{part}: is a file; name a folder")
-    except (OSError, ValueError) as error:
-        raise OutputError(f"{folder}: cannot be a folder: {error}") from None
 
 
 def hdf5(result: Result) -> bytes:

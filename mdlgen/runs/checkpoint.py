@@ -28,8 +28,8 @@ class Checkpointer:
 
     `every` is the time between two states that are written [s]; with the first one stand the files that
     `provenance` gives (name -> text; run.json), None where the folder has them. `part` is a way to the result
-    so far, None as long as there is none; `lock` is held while files are written. `begun` is set when the
-    first pass begins: all is loaded and compiled then, and compiled code leaves a second core free.
+    so far, None as long as there is none; `lock` is held while files are written. `free` is set once all is
+    loaded and compiled, and compiled code leaves a processor free.
     """
 
     def __init__(
@@ -41,22 +41,20 @@ class Checkpointer:
         self.folder, self.every, self._provenance = folder, every, provenance
         self.part: Callable[[], Result] | None = None
         self.lock = Lock()
-        self.begun = Event()
+        self.free = Event()
         self.written = folder is not None and provenance is None
         self._pass = -1
-        self._last = time.monotonic()
+        self._last: dict[int, float] = {}  # when each pass was written, or what there was when it began
 
     def begin(self) -> int:
         """The number of the pass that begins."""
-        if not self.begun.is_set():
-            self._last = time.monotonic()
-            self.begun.set()
         self._pass += 1
+        self._last[self._pass] = max(self._last.values(), default=time.monotonic())
         return self._pass
 
-    def due(self) -> bool:
-        """Whether it is time to write a state."""
-        return self.folder is not None and time.monotonic() - self._last >= self.every
+    def due(self, number: int) -> bool:
+        """Whether it is time to write the state of a pass."""
+        return self.folder is not None and time.monotonic() - self._last[number] >= self.every
 
     def save(self, number: int, state: State) -> None:
         """Writes the state of a pass, in place of the one before. Raises OutputError."""
@@ -79,7 +77,7 @@ class Checkpointer:
             write_together(files)
             self._provenance = None
         self.written = True
-        self._last = time.monotonic()
+        self._last[number] = time.monotonic()
 
     def load(self, number: int, like: State) -> State | None:
         """The state of a pass, None where none is kept.

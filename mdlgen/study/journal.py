@@ -12,8 +12,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from mdlgen.errors import OutputError, RefusedError
-from mdlgen.paths import read_at_most
-from mdlgen.results.store import check_folder
+from mdlgen.paths import check_folder, read_at_most
 from mdlgen.study.row import LOST, Row
 
 NAME, FORMAT = "journal.jsonl", 1

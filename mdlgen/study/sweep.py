@@ -9,8 +9,7 @@ from pathlib import Path
 
 from mdlgen.errors import MdlgenError, OutputError, RefusedError, SpecError
 from mdlgen.model.tables import Model
-from mdlgen.paths import write_together
-from mdlgen.results.store import check_folder
+from mdlgen.paths import check_folder, write_together
 from mdlgen.study import table
 from mdlgen.study.case import Case
 from mdlgen.study.journal import Asked, Journal

@@ -18,6 +18,7 @@ from threading import Event, Lock, Thread
 from typing import Protocol
 
 from mdlgen.errors import OutputError
+from mdlgen.processors import processors
 from mdlgen.study.case import Case
 from mdlgen.study.row import LOST, REFUSED, Row
 from mdlgen.study.task import Task
@@ -38,13 +39,6 @@ class Runner(Protocol):
         ...
 
     def close(self) -> None: ...
-
-
-def processors() -> int:
-    """How many this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 class _Process:

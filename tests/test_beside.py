@@ -1,0 +1,141 @@
+"""Two passes of a run at the same time: the same bits as one after the other, and what ends one of them."""
+
+from __future__ import annotations
+
+import threading
+from typing import Any
+
+import pytest
+from same import bits
+from test_symmetry import MACHINE
+
+import mdlgen
+from mdlgen.backends.lattice import run as lattice
+from mdlgen.backends.lattice.beside import Stopped
+from mdlgen.backends.lattice.kernels.entries import PROGRAM
+from mdlgen.errors import OutputError
+from mdlgen.model.tables import Model
+from mdlgen.paths import samples
+from mdlgen.results.result import Result
+from mdlgen.results.store import hdf5
+from mdlgen.runs.checkpoint import Checkpointer
+from mdlgen.spec.load import loads
+
+GIVEN = ["run.duration=4 ms", "run.step=0.1 ms", "run.print_step=0.4 ms"]
+SCENES = {
+    # a step that follows from the tolerance, of flexible sheets and of a rigid block
+    "transport_4x4": ["sheets.note.boxes=[3,5]", "run.duration=6 ms"],
+    "verify/flip": ["run.duration=20 ms"],
+    # a step that is given; pairs that a search finds, meshes, a rim and an arm
+    "transport_tilted": ["sheets.note.boxes=[3,5]", *GIVEN],
+    "stack": ["sheets.note_4.boxes=[4,5]", *GIVEN],
+    "pick": GIVEN,
+    "peel": GIVEN,
+}
+
+
+@pytest.fixture(autouse=True)
+def shipped() -> None:
+    if PROGRAM.why_not() is not None:
+        pytest.skip("numba compiles, since the program does not fit, and its code keeps the lock of Python")
+
+
+@pytest.fixture
+def passes(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Names of the threads in which passes are run, as they begin."""
+    seen: list[str] = []
+    once = lattice._once
+
+    def watched(*args: Any, **named: Any) -> Result:
+        seen.append(threading.current_thread().name)
+        return once(*args, **named)
+
+    monkeypatch.setattr(lattice, "_once", watched)
+    return seen
+
+
+def model_of(name: str, *sets: str) -> Model:
+    return mdlgen.lower(mdlgen.load(samples() / f"{name}.yaml", [*SCENES[name], *sets]))
+
+
+@pytest.mark.parametrize("name", [*SCENES, "halved"])
+def test_two_at_once_find_the_same_bits(name: str, passes: list[str]) -> None:
+    halved = ["run.step=0.1 ms", "run.print_step=0.1 ms"]
+    model = mdlgen.lower(loads(MACHINE, name, halved)) if name == "halved" else model_of(name)
+    one = lattice.solve(model)
+    assert one.ok, one.status
+    assert len(set(passes)) == 1
+    count = len(passes)
+    two = lattice.solve(model, threads=2)
+    assert len(passes) == 2 * count and len(set(passes[count:])) == 2
+    assert bits(hdf5(two)) == bits(hdf5(one))
+    assert (two.steps, two.rounds, two.touched) == (one.steps, one.rounds, one.touched)
+    assert two.energy == one.energy
+
+
+def test_told_is_the_finer_pass() -> None:
+    told: list[tuple[float, float]] = []
+    thread = threading.current_thread()
+
+    def progress(time: float, end: float, steps: int, touching: int) -> None:
+        assert threading.current_thread() is thread
+        told.append((time, steps))
+
+    model = model_of("transport_tilted")
+    result = lattice.solve(model, progress, threads=2)
+    assert [time for time, _ in told] == pytest.approx(result.time[1:])
+    assert told[-1][1] == result.steps
+
+
+def test_a_pass_that_failed_needs_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The coarser one stops soon, and what it would find is dropped."""
+    once, ended = lattice._once, []
+
+    def watched(*args: Any, **named: Any) -> Result:
+        if args[3].stop is None:
+            return once(*args, **named).failed("no end")
+        assert args[3].stop.wait(60.0)
+        try:
+            return once(*args, **named)
+        except Stopped:
+            ended.append("stopped")
+            raise
+
+    monkeypatch.setattr(lattice, "_once", watched)
+    assert lattice.solve(model_of("transport_tilted"), threads=2).status == "no end"
+    assert ended == ["stopped"]
+
+
+@pytest.mark.parametrize("name", ["transport_4x4", "transport_tilted"])
+@pytest.mark.parametrize("coarser", [False, True])
+def test_an_error_in_either_is_raised(name: str, coarser: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    once = lattice._once
+
+    def failing(*args: Any, **named: Any) -> Result:
+        if (args[3].stop is not None) == coarser:
+            raise OutputError("the disk is full")
+        return once(*args, **named)
+
+    monkeypatch.setattr(lattice, "_once", failing)
+    before = threading.active_count()
+    with pytest.raises(OutputError, match="the disk is full"):
+        lattice.solve(model_of(name), threads=2)
+    assert threading.active_count() == before
+
+
+@pytest.mark.parametrize(("threads", "at_the_start"), [(1, True), (2, False), (3, True)])
+def test_a_processor_is_free_where_no_pass_takes_it(
+    threads: int, at_the_start: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    keep, seen, once = Checkpointer(), [], lattice._once
+
+    def watched(*args: Any, **named: Any) -> Result:
+        if args[3].stop is not None or threads == 1:
+            seen.append(keep.free.is_set())
+        return once(*args, **named)
+
+    monkeypatch.setattr(lattice, "_once", watched)
+    assert not keep.free.is_set()
+    lattice.solve(model_of("transport_tilted"), keep=keep, threads=threads)
+    assert seen[0] is at_the_start
+    assert keep.free.is_set()
