@@ -6,9 +6,8 @@ from __future__ import annotations
 import math
 import time as clock
 from collections.abc import Callable
-from dataclasses import replace
 from functools import partial
-from threading import Event
+from threading import Event, Thread
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -179,7 +178,9 @@ def _compared(result: Result, before: list[Result], again: Callable[[int], Resul
     `again(times)` runs at so many times its step: at twice where there is none, and once more coarsely where
     two leave open whether the tolerance is met, since three show how errors fall.
     """
-    found = [replace(run, coarser=()) for run in before if _ended(run)]
+    found = [run for run in before if _ended(run)]
+    for run in found:
+        run.coarser = ()
     found = found if before else [again(2)]
     if not found or not _ended(found[0]) or not (found[0].ok or before):
         return estimated(result, [])
@@ -218,6 +219,8 @@ def _refined(model: Model, system: System, watch: Callable[[], Watch], together:
     else:
         runs = [once(h, 0, watch())]
     for k in range(1, 1 + (MOST_REFINED if flexible else MOST_REFINED_RIGID)):
+        if together and k > 1:  # what estimates need of the runs before, while compiled code is at work
+            Thread(target=lambda bent: [run.strains for run in bent], args=(runs[:2],), daemon=True).start()
         result = pair.pop() if pair else once(0.5 * runs[0].step, k, watch())
         if result.ok and runs[0].ok:
             result = _compared(

@@ -38,8 +38,8 @@ if TYPE_CHECKING:
     from mdlgen.runs.checkpoint import Checkpointer
 
 # Compiled code comes back for a moment some thousand times a second: how long it waits for what another
-# thread does in Python [s]. By default that is 5 ms each time.
-INTERVAL = 2e-4
+# thread does in Python [s]. By default that is 5 ms each time; operations on large arrays come back, too.
+INTERVAL = 1e-5
 # A run that goes on after so long [s] leaves time for other things; it may be kept, and its code change
 # meanwhile.
 LONG = 1.0
@@ -200,6 +200,7 @@ def _ahead(checkpointer: Checkpointer, model: Model, drawn: bool, packages: tupl
     with contextlib.suppress(Exception):
         from mdlgen.report.page import prepare
         from mdlgen.report.pictures import load_drawing
+        from mdlgen.report.text import summary_text  # noqa: F401
 
         prepare(model)
         if drawn:

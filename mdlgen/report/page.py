@@ -64,6 +64,8 @@ def prepare(model: Model) -> None:
     run."""
     import h5py  # noqa: F401
 
+    from mdlgen.results import events, store  # noqa: F401
+
     environment().get_template("page.html.j2")
     sheet_joints(model)
     _lints(model)
