@@ -24,20 +24,44 @@ if TYPE_CHECKING:
 
 __all__ = ["Model", "Result", "Scene", "compare", "emit", "load", "loads", "lower", "solve"]
 
-_CLASSES = {
+CLASSES = {
+    "Arc": "mdlgen.spec.guide",
+    "Arm": "mdlgen.spec.machine",
+    "Clamp": "mdlgen.spec.sheet",
     "Contact": "mdlgen.spec.contact",
+    "Curl": "mdlgen.spec.shape",
+    "Curve": "mdlgen.spec.curve",
+    "Damping": "mdlgen.spec.material",
+    "DogEar": "mdlgen.spec.shape",
+    "Drive": "mdlgen.spec.machine",
+    "Fold": "mdlgen.spec.shape",
+    "Friction": "mdlgen.spec.contact",
+    "Graded": "mdlgen.spec.grading",
+    "Grading": "mdlgen.spec.grading",
     "Guide": "mdlgen.spec.guide",
+    "Line": "mdlgen.spec.guide",
+    "Load": "mdlgen.spec.action",
     "Material": "mdlgen.spec.material",
     "Mesh": "mdlgen.spec.mesh",
+    "Mirror": "mdlgen.spec.rows",
     "Model": "mdlgen.model.tables",
     "Nip": "mdlgen.spec.nip",
+    "OneWay": "mdlgen.spec.machine",
+    "Part": "mdlgen.spec.part",
     "Plane": "mdlgen.spec.machine",
+    "Press": "mdlgen.spec.machine",
     "Probe": "mdlgen.spec.action",
+    "Repeat": "mdlgen.spec.rows",
     "Result": "mdlgen.results.result",
+    "Rim": "mdlgen.spec.rim",
     "Roller": "mdlgen.spec.machine",
     "Run": "mdlgen.spec.run",
     "Scene": "mdlgen.spec.scene",
+    "Sector": "mdlgen.spec.rim",
+    "Shape": "mdlgen.spec.shape",
     "Sheet": "mdlgen.spec.sheet",
+    "Support": "mdlgen.spec.action",
+    "Zone": "mdlgen.spec.zone",
 }
 
 
@@ -46,10 +70,10 @@ def __getattr__(name: str) -> Any:
         from mdlgen.version import version
 
         return version()
-    if name in _CLASSES:
+    if name in CLASSES:
         from importlib import import_module
 
-        return getattr(import_module(_CLASSES[name]), name)
+        return getattr(import_module(CLASSES[name]), name)
     raise AttributeError(f"module 'mdlgen' has no attribute {name!r}")
 
 

@@ -139,3 +139,13 @@ def test_the_schema_knows_them() -> None:
     assert (
         "between" not in defaults["contacts"]["properties"] and "radius" in defaults["rollers"]["properties"]
     )
+
+
+def test_the_json_schema_knows_the_short_forms() -> None:
+    models = json_schema()["$defs"]
+    number, text, both = models["Contact"]["properties"]["friction"]["anyOf"]
+    assert (number["type"], text["type"], both) == ("number", "string", {"$ref": "#/$defs/Friction"})
+    # of a nip the preload follows from its force
+    press = models["Nip"]["properties"]["upper"]["properties"]["press"]["anyOf"][0]
+    assert "preload" in press["properties"] and "preload" not in press["required"]
+    assert "preload" in models["Press"]["required"]

@@ -1,4 +1,4 @@
-"""All generated pages of the manual, by their path below docs/."""
+"""What is generated from the code, by its path from docs/: pages of the manual, the stub of the package."""
 
 from __future__ import annotations
 
@@ -7,14 +7,16 @@ import commands
 import gallery
 import outputs
 import scene
+import stub
 
 
 def pages() -> dict[str, str]:
-    """Path below docs/ -> Markdown. The same code gives the same bytes."""
+    """Path from docs/ -> text. The same code gives the same bytes."""
     return {
         "reference/keys.md": scene.page(),
         "reference/commands.md": commands.page(),
         "reference/codes.md": codes.page(),
         "reference/summary.md": outputs.summary_page(),
         "gallery/index.md": gallery.page(),
+        "../mdlgen/__init__.pyi": stub.stub(),
     }

@@ -70,6 +70,16 @@ def _is_side(value: Any) -> bool:
     return isinstance(value, str)
 
 
+def _number_or_both(schema: dict[str, Any]) -> None:
+    """A coefficient, or a mapping of two, in the JSON schema."""
+    both = {"$ref": schema.pop("$ref")}
+    schema["anyOf"] = [
+        {"type": "number", "minimum": 0.0, "maximum": 1e3, "examples": [0.5]},
+        {"type": "string", "description": "a percentage or a formula", "examples": ["50 %"]},
+        both,
+    ]
+
+
 Side = str | tuple[str, ...]
 
 
@@ -88,7 +98,8 @@ class Contact(Strict):
     )
     restitution: Share = Field(default=0.5, description="coefficient of restitution c_R (Eq. 11)")
     friction: Friction = Field(
-        description="coefficient of friction mu (Eq. 12): a number, or a mapping; 0 where there is none"
+        description="coefficient of friction mu (Eq. 12): a number, or a mapping; 0 where there is none",
+        json_schema_extra=_number_or_both,
     )
     smoothing: SpeedScale | None = Field(
         default=None,

@@ -18,6 +18,7 @@ from pydantic_core import CoreSchema
 
 from mdlgen.errors import OutputError
 from mdlgen.paths import read_at_most
+from mdlgen.spec.beside import beside
 from mdlgen.spec.fields import Strict, fail, quantity
 from mdlgen.spec.limits import Tally
 
@@ -72,6 +73,7 @@ class Curve(Strict):
     )
     file: str | None = Field(
         default=None,
+        exclude=True,  # of what is dumped: the points are there
         description="in place of points: a CSV file of strain and stress, in the folder of the spec or below",
     )
     interpolation: Literal["pchip"] = Field(
@@ -95,10 +97,7 @@ class Curve(Strict):
             raise fail("give exactly one of points and file")
         told = info.context or {}
         tally = told.get("tally") or Tally()
-        if "file" not in data:
-            points = data["points"]
-        else:
-            points = _file_points(data["file"], told.get("folder"), tally)
+        points = _file_points(*beside(data["file"], info), tally) if "file" in data else data["points"]
         if isinstance(points, (list, tuple)):
             if much := tally.exceeded("points", len(points), "points of curves"):
                 raise fail(much)

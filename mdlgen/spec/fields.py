@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 from pydantic import (
     BaseModel,
@@ -44,6 +44,17 @@ class Strict(BaseModel):
         serialize_by_alias=True,
         defer_build=True,
     )
+
+
+Model = TypeVar("Model", bound=BaseModel)
+
+
+def settled(owner: Model, **values: Any) -> Model:
+    """The same, frozen, object with other values, for a validator that runs after its fields are read: a
+    constructor does not hear of another object that is returned."""
+    vars(owner).update(values)
+    owner.model_fields_set.update(values)
+    return owner
 
 
 def fail(

@@ -25,6 +25,7 @@ from mdlgen.spec.fields import (
     one_of,
     quantity,
     reading,
+    settled,
 )
 from mdlgen.spec.guide import check_edge
 from mdlgen.spec.rim import Rim
@@ -196,7 +197,7 @@ class Roller(Strict):
     @model_validator(mode="after")
     def _plain(self) -> Roller:
         """The same with its radius alone."""
-        return self if self.diameter is None else self.model_copy(update={"diameter": None})
+        return self if self.diameter is None else settled(self, diameter=None)
 
     @model_validator(mode="after")
     def _arm(self) -> Roller:
@@ -271,9 +272,7 @@ class Plane(Strict):
             shown = " or ".join(f"[{', '.join(f'{c:.4g}' for c in side)}]" for side in (first, second))
             raise fail(f"the sides of this plate lie along {shown}; give one of them", within=("along",))
         a, b, thickness = self.size
-        return self.model_copy(
-            update={"along": None, "size": (a, b, thickness) if one > two else (b, a, thickness)}
-        )
+        return settled(self, along=None, size=(a, b, thickness) if one > two else (b, a, thickness))
 
     @property
     def sides(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:

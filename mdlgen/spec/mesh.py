@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
+from pydantic import Field, PrivateAttr, ValidationInfo, field_serializer, model_validator
 
+from mdlgen.spec.beside import beside
 from mdlgen.spec.fields import (
     Angles,
     LengthOrZero,
@@ -17,9 +18,11 @@ from mdlgen.spec.fields import (
     fail,
     origin,
     quantity,
+    settled,
 )
 from mdlgen.spec.limits import Tally
 from mdlgen.spec.solid import Solid, read_solid
+from mdlgen.spec.source import Source
 
 Density = Annotated[float, quantity("g/mm^3", 0.0, open_low=True)]
 
@@ -56,6 +59,7 @@ class Mesh(Strict):
         "edges are as sharp as those of the triangles",
     )
     _solid: Solid | None = PrivateAttr(default=None)
+    _from: Source = PrivateAttr(default_factory=Source)
 
     @model_validator(mode="after")
     def _read(self, info: ValidationInfo) -> Mesh:
@@ -65,9 +69,17 @@ class Mesh(Strict):
             raise fail(f"{self.edge_radius:g} mm; allowed: below 1 mm", within=("edge_radius",))
         if self.on is not None and self.mass is None and self.density is None:
             raise fail("on a roller its mass counts; give mass or density")
-        told = info.context or {}
-        self._solid = read_solid(self.file, told.get("folder"), self.units, told.get("tally") or Tally())
-        return self
+        tally = (info.context or {}).get("tally") or Tally()
+        name, folder = beside(self.file, info)
+        self._from = Source(folder=folder)
+        self._solid = read_solid(name, folder, self.units, tally)
+        return settled(self, file=name)
+
+    @field_serializer("file")
+    def _anywhere(self, file: str) -> str:
+        """With its folder, so that what is dumped can be read from anywhere."""
+        folder = self._from.folder
+        return file if folder is None else str(folder.absolute() / file)
 
     @property
     def solid(self) -> Solid:

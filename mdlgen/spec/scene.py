@@ -24,6 +24,7 @@ from pydantic_core import PydanticCustomError
 from mdlgen.errors import did_you_mean
 from mdlgen.formulas import Amount
 from mdlgen.spec.action import Load, OnSheet, Probe, Support
+from mdlgen.spec.beside import PYTHON
 from mdlgen.spec.contact import Contact
 from mdlgen.spec.document import Document
 from mdlgen.spec.fields import Acceleration, Name, Strict, default, fail, fail_all
@@ -145,7 +146,8 @@ class Scene(Strict):
         from mdlgen.spec.load import meant
 
         overrides = [f"{path}={json.dumps(value)}" for path, value in {**(changes or {}), **more}.items()]
-        return meant(self._document(), overrides, self._source.folder, self._limits)
+        folder = self._source.folder if self._source.document is not None else PYTHON
+        return meant(self._document(), overrides, folder, self._limits)
 
     def to_yaml(self) -> str:
         """The scene as the text of a file. One that came from a file has its comments, formulas and

@@ -34,7 +34,10 @@ def json_schema() -> dict[str, Any]:
         "additionalProperties": False,
         "properties": defaults["contacts"]["properties"],
     }
+    press = schema["$defs"]["Press"]
+    followed = {**press, "required": [name for name in press["required"] if name != "preload"]}
     side = {"name": {"type": "string"}, "contact": contact, **rollers}
+    side["press"] = {"anyOf": [followed, {"type": "null"}]}  # of a nip the preload follows from its force
     nip = schema["$defs"]["Nip"]["properties"]
     for name in ("lower", "upper"):
         nip[name] |= {"additionalProperties": False, "properties": side}
