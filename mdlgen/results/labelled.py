@@ -51,4 +51,12 @@ def frame(result: Result) -> Any:
         raise RefusedError("to_pandas needs pandas; install it: pip install 'mdlgen[pandas]'") from None
     from mdlgen.results.series import series
 
-    return pandas.DataFrame(series(result)).set_index("time_ms")
+    table = pandas.DataFrame(series(result)).set_index("time_ms")
+    table.attrs["units"] = {"time_ms": "ms", **{str(name): unit_of(str(name)) for name in table.columns}}
+    return table
+
+
+def unit_of(column: str) -> str:
+    """The unit that stands at the end of the name of a column."""
+    endings = (("_mm_per_s", "mm/s"), ("_rad_per_s", "rad/s"), ("_mm", "mm"), ("_deg", "deg"), ("_n", "N"))
+    return next((unit for ending, unit in endings if column.endswith(ending)), "1")

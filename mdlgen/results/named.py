@@ -24,11 +24,12 @@ _SHOWN = 4  # digits
 class _Named:
     """Shows its values at the end with their units."""
 
-    units: ClassVar[dict[str, str]] = {}
+    units: ClassVar[dict[str, str]] = {}  # of each value
+    shown: ClassVar[tuple[str, ...]] = ()
     name: str
 
     def __repr__(self) -> str:
-        told = ", ".join(f"{key} {_text(getattr(self, key))} {unit}" for key, unit in self.units.items())
+        told = ", ".join(f"{key} {_text(getattr(self, key))} {self.units[key]}" for key in self.shown)
         return f"<{self.name}: {told}>"
 
 
@@ -42,7 +43,16 @@ def _text(value: Any) -> str:
 class SheetResult(_Named):
     """A sheet: values at the end, and its motion over `time`."""
 
-    units: ClassVar[dict[str, str]] = {"travel": "mm", "speed": "mm/s", "yaw": "deg"}
+    units: ClassVar[dict[str, str]] = {
+        "travel": "mm",
+        "speed": "mm/s",
+        "yaw": "deg",
+        "time": "ms",
+        "position": "mm",
+        "velocity": "mm/s",
+        "turn": "deg",
+    }
+    shown: ClassVar[tuple[str, ...]] = ("travel", "speed", "yaw")
     travel: Floats  # [mm], of the centre of mass since the start, (3,)
     speed: Floats  # [mm/s], velocity of the centre of mass at the end, (3,)
     yaw: float  # [deg], at the end
@@ -56,7 +66,15 @@ class SheetResult(_Named):
 class RollerResult(_Named):
     """A roller: values at the end, and its motion over `time`."""
 
-    units: ClassVar[dict[str, str]] = {"speed": "rad/s", "center": "mm", "nip_force": "N"}
+    units: ClassVar[dict[str, str]] = {
+        "speed": "rad/s",
+        "center": "mm",
+        "nip_force": "N",
+        "time": "ms",
+        "rate": "rad/s",
+        "force": "N",
+    }
+    shown: ClassVar[tuple[str, ...]] = ("speed", "center", "nip_force")
     speed: float  # [rad/s], about its axis
     center: Floats  # [mm], (3,)
     nip_force: float  # [N], sum of the normal forces on it
@@ -69,7 +87,14 @@ class RollerResult(_Named):
 class ProbeResult(_Named):
     """A probe: values at the end, and its motion over `time`."""
 
-    units: ClassVar[dict[str, str]] = {"displacement": "mm", "speed": "mm/s"}
+    units: ClassVar[dict[str, str]] = {
+        "displacement": "mm",
+        "speed": "mm/s",
+        "time": "ms",
+        "position": "mm",
+        "velocity": "mm/s",
+    }
+    shown: ClassVar[tuple[str, ...]] = ("displacement", "speed")
     displacement: Floats  # [mm], since the start, (3,)
     speed: Floats  # [mm/s], velocity at the end, (3,)
     time: Floats  # of what follows [ms], (t,)

@@ -15,6 +15,8 @@ from mdlgen.model.tables import Floats, Model
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from mdlgen.report.plots import Plot
+    from mdlgen.report.shown import Shown
     from mdlgen.results.estimates import Estimate
     from mdlgen.results.named import ProbeResult, RollerResult, SheetResult
     from mdlgen.results.strain import Strains
@@ -135,6 +137,29 @@ class Result:
         from mdlgen.results.summary import summary
 
         return summary(self)
+
+    def report(self, path: str | Path) -> Path:
+        """Write the page of this run, report.html, to a file; its path. Raises OutputError."""
+        from mdlgen.paths import write_atomic
+        from mdlgen.report.page import page
+
+        file = Path(path)
+        write_atomic(file, page([self]).encode("utf-8"))
+        return file
+
+    def show(self, height: int = 720) -> Shown:
+        """The page of this run, for a notebook; `height` in pixels."""
+        from mdlgen.report.page import page
+        from mdlgen.report.shown import Shown
+
+        return Shown(page([self]), height)
+
+    def plot(self, what: str = "travel") -> Plot:
+        """One quantity over time: travel, speed, yaw, roller_speed, nip_force or probes. A notebook shows it,
+        `save(path)` writes it as PNG, and `figure` is matplotlib's. Raises SpecError for another one."""
+        from mdlgen.report.plots import plot
+
+        return plot(self, what)
 
     @property
     def sheets(self) -> Mapping[str, SheetResult]:

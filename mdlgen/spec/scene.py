@@ -5,11 +5,11 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
 from functools import partial
 from itertools import product
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pydantic import (
     Field,
@@ -52,6 +52,10 @@ from mdlgen.spec.sheet import Sheet
 from mdlgen.spec.shorthand import Defaults, written_out
 from mdlgen.spec.source import Source, text_of, text_of_data
 from mdlgen.spec.surface import with_rates
+
+if TYPE_CHECKING:
+    from mdlgen.lint import Lint
+    from mdlgen.study.inline import Runs
 
 MOST_ERRORS = 100  # that are looked for in contacts: more are not shown
 
@@ -148,6 +152,27 @@ class Scene(Strict):
         overrides = [f"{path}={json.dumps(value)}" for path, value in {**(changes or {}), **more}.items()]
         folder = self._source.folder if self._source.document is not None else PYTHON
         return meant(self._document(), overrides, folder, self._limits)
+
+    def check(self) -> list[Lint]:
+        """What `mdlgen check` finds: allowed, but probably not meant. Each has `code`, `where`, `message`
+        and `remedy`. Raises SpecError."""
+        from mdlgen.checks import lints
+        from mdlgen.model.lower import lower
+
+        return lints(lower(self))
+
+    def sweep(
+        self, over: Mapping[str, Sequence[object]], measure: Sequence[str] = (), solver: str = "auto"
+    ) -> Runs:
+        """Run every combination of other values, one after the other; `mdlgen sweep` uses all processors.
+
+        `over` is values by dotted path, `{"contacts.0.friction": [0.1, 0.3]}`; `measure` is expressions as of
+        `--measure`, travel, speed and yaw of the sheets where left out. Raises SpecError for a measure that
+        there is not; a case that cannot be run is a row with its reason.
+        """
+        from mdlgen.study.inline import sweep
+
+        return sweep(self, over, measure, solver)
 
     def to_yaml(self) -> str:
         """The scene as the text of a file. One that came from a file has its comments, formulas and
