@@ -10,7 +10,7 @@ import numpy as np
 from mdlgen.check_cost import costly
 from mdlgen.check_damping import damping
 from mdlgen.check_parameters import parameters
-from mdlgen.check_ways import against, apart, away, sinks
+from mdlgen.check_ways import against, apart, away, crosswise, sinks
 from mdlgen.lint import Lint
 from mdlgen.model import press
 from mdlgen.model.overlap import Overlaps
@@ -532,4 +532,5 @@ CHECKS: tuple[Callable[[Model], Iterator[Lint]], ...] = (
     away,
     apart,
     sinks,
+    crosswise,
 )

@@ -166,6 +166,12 @@ SCENE = {
         "than a second. Often its unit is wrong. What a run takes is estimated from boxes, pairs and steps,"
         " within a factor of 3."
     ),
+    "W135": (
+        "A plane stands across the plane of a sheet, as a stop does, and is more than twice as tall as wide, "
+        "and the sheet more than twice as wide. Probably its two lengths are swapped. The first length of "
+        "size lies along the projection of global x on the face, or of global y where the normal is near "
+        "x; along says which side is meant."
+    ),
 }
 
 TEXT = {
