@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import pickle
 import subprocess
 import sys
 from pathlib import Path
@@ -17,7 +16,7 @@ import pytest
 from mdlgen import paths
 from mdlgen.backends.lattice.kernels.entries import PROGRAM
 from mdlgen.paths import samples
-from mdlgen.program import build, file, layout, native
+from mdlgen.program import build, compare, file, layout, native
 from mdlgen.program.file import Unfit
 from mdlgen.program.layout import Misfit
 
@@ -310,49 +309,54 @@ def test_machine_code_is_made_for_other_machines(
         assert code.startswith(magic) and len(code) > 1000
 
 
-# Samples whose contacts do not rattle: the last bit of a force stays the last bit of a place.
-CALM = ("transport_4x4", "stack", "cantilever", "snatch", "verify/tension")
-RATTLING = (
-    *("transport_4x2", "transport_tilted", "pick", "channel"),
-    *("guide_joint", "retard_pad", "spring_plate"),
-)
-RUN = """
-import sys, pickle, mdlgen
-from mdlgen.paths import samples
-solver, *names = sys.argv[1:]
-found = {}
-for name in names:
-    result = mdlgen.solve(mdlgen.lower(mdlgen.load(samples() / f"{name}.yaml")), solver)
-    found[name] = result.status, result.steps, result.error_estimate, result.position
-with open("found", "wb") as stream:
-    pickle.dump((found, "numba" in sys.modules), stream)
-"""
+def test_every_sample_is_compared() -> None:
+    there = {path.relative_to(samples()).with_suffix("").as_posix() for path in samples().rglob("*.yaml")}
+    assert compare.CALM.keys() | compare.RATTLING.keys() == there
+    assert not compare.CALM.keys() & compare.RATTLING.keys()
+    assert compare.EXUDYN.keys() <= there
 
 
 @pytest.mark.skipif(
     not os.environ.get("MDLGEN_COMPARE"), reason="numba compiles for minutes: MDLGEN_COMPARE=1"
 )
 @pytest.mark.parametrize(
-    ("solver", "names"),
-    [("lattice", (*CALM, *RATTLING)), ("exudyn", ("cantilever", "transport_4x2", "pick"))],
+    ("solver", "names"), [("lattice", compare.CALM | compare.RATTLING), ("exudyn", compare.EXUDYN)]
 )
-def test_samples_run_as_shipped_as_by_numba(tmp_path: Path, solver: str, names: tuple[str, ...]) -> None:
+def test_samples_run_as_shipped_as_by_numba(solver: str, names: dict[str, tuple[str, ...]]) -> None:
     """Places agree to 1e-9 of the travel, where contacts rattle to the error estimate."""
-    found: list[dict[str, Any]] = []
-    for alone in ("0", "1"):
-        folder = tmp_path / alone
-        folder.mkdir()
-        surroundings = {**os.environ, "MDLGEN_NUMBA": alone, "PYTHONPATH": os.pathsep.join(sys.path)}
-        subprocess.run([sys.executable, "-c", RUN, solver, *names], cwd=folder, env=surroundings, check=True)
-        runs, by_numba = pickle.loads((folder / "found").read_bytes())
-        assert by_numba == (alone == "1"), "the programs fit: python -m mdlgen.program.build --check"
-        found.append(runs)
-    for name in names:
-        (status, steps, estimate, places), (*alike, _, others) = (runs[name] for runs in found)
-        assert [status, steps] == alike and status == "ok", name
-        travel = np.abs(places - places[0]).max() or np.abs(places).max()
-        allowed = 1e-9 if name in CALM else estimate or 1e-4
-        assert np.abs(places - others).max() <= allowed * travel, name
+    rows = list(compare.compared(solver, names, 1))
+    assert [row.name for row in rows] == list(names)
+    assert [str(row) for row in rows if not row.same] == []
+
+
+def test_a_comparison_sees_what_differs() -> None:
+    places = np.zeros((2, 1, 3))
+    places[1] = 10.0
+    run = compare.Run("ok", 5, 1e-3, places, 1.0)
+    for name, off, same in (
+        ("transport_4x4", 0.9e-8, True),
+        ("transport_4x4", 1.1e-8, False),
+        ("pick", 0.9e-2, True),
+        ("pick", 1.1e-2, False),
+    ):
+        other = run._replace(places=places + off, took=0.9)
+        row = compare._row("lattice", name, [[run], [other]])
+        assert row.same == same
+        assert row.slower == (name == "transport_4x4")
+    assert not compare._row("lattice", "pick", [[run], [run._replace(steps=6)]]).same
+    failed = run._replace(status="no convergence")
+    assert not compare._row("lattice", "pick", [[failed], [failed]]).same
+
+
+def test_a_process_runs_a_sample_by_the_code_that_it_is_asked_for() -> None:
+    if PROGRAM.why_not() is not None:
+        pytest.skip("numba compiles, since the program does not fit")
+    process = compare.Process(numba=False)
+    try:
+        run = process.run("lattice", "transport_4x4", ("run.duration=1 ms", "run.step=0.1 ms"))
+    finally:
+        process.close()
+    assert (run.status, run.steps) == ("ok", 10) and run.took > 0.0 and len(run.places) > 2
 
 
 def test_types_are_told_and_checked() -> None:

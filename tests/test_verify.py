@@ -14,6 +14,7 @@ from mdlgen.model.lower import lower
 from mdlgen.paths import samples
 from mdlgen.registry import emitter
 from mdlgen.spec.load import load
+from mdlgen.verify import verification
 from mdlgen.verify.expected import expected, stations
 from mdlgen.verify.outcome import Verification
 from mdlgen.verify.report import report
@@ -33,9 +34,18 @@ def emitted(spec: Path, overrides: list[str] | None = None, **options) -> str:
     return emitter("motionview").emit(lower(load(spec, overrides or [])), **options)
 
 
+# Grids in place of those of large samples: fewer boxes are written in the same way. transport_4x4 stays.
+FEW = ("sheets.note.boxes=[4, 6]",)
+COARSE = {
+    "feeder_one": ("sheets.note_1.boxes=[4, 6]",),
+    "feeder": ("sheets.note_1.boxes=[4, 3]", "sheets.note_2.boxes=[3, 2]"),
+    **dict.fromkeys(("tilt_correction", "transport_4x2", "transport_nips", "transport_tilted"), FEW),
+}
+
+
 @pytest.mark.parametrize("sample", SAMPLES, ids=lambda p: p.stem)
 def test_every_sample_is_the_same_in_text_script_deck_and_model(sample: Path) -> None:
-    found = check(sample, ["loads=[]"])  # a text with loads is refused
+    found = check(sample, ["loads=[]", *COARSE.get(sample.stem, ())])  # a text with loads is refused
     assert [str(d) for d in found.all_differences()] == []
     assert set(found.kinds) == {"text", "deck"} and not found.notes
     for kinds in found.kinds.values():
@@ -60,6 +70,13 @@ def rest(reading) -> list[tuple[str, ...]]:
     return [found.key for found in reading.remainder()]
 
 
+@pytest.fixture
+def text_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The deck, which is not changed, is not looked at: what is caught is caught in the text."""
+    monkeypatch.setattr(verification, "_deck", lambda *_: None)
+
+
+@pytest.mark.usefixtures("text_alone")
 @pytest.mark.parametrize("seed", range(8))
 def test_a_change_of_any_number_name_or_sign_is_caught(seed: int, tmp_path: Path) -> None:
     """40 random changes for each seed, 320 in all: each that alters a value, or makes the text wrong."""
@@ -90,6 +107,7 @@ def test_a_change_of_any_number_name_or_sign_is_caught(seed: int, tmp_path: Path
     assert altered >= 30
 
 
+@pytest.mark.usefixtures("text_alone")
 @pytest.mark.parametrize("only", [None, "sheets"])
 def test_a_statement_that_is_left_out_is_caught(only: str | None, tmp_path: Path) -> None:
     text = emitted(RICH, only=only)

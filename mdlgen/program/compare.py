@@ -1,0 +1,199 @@
+"""Runs samples by the shipped programs and by what numba compiles: `python -m mdlgen.program.compare`.
+
+A process of each kind runs the same sample in turn, `--repeat` times. Printed are how far their places are
+apart at most, as a part of the travel, what is allowed, and the processor time of the shipped program over
+numba's (medians). The exit code is 1 where places differ by more, or where one of the samples in TIMED takes
+more than 5 % longer. numba compiles for minutes where it has not kept these kernels.
+
+It stands above what it runs, so it knows that by name only.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import importlib
+import os
+import pickle
+import statistics
+import subprocess
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+# Samples and what is set in them, so that none takes long. In the first, the last bit of a force stays the
+# last bit of a place; contacts of the others rattle, and one that closes later changes all that follows.
+CALM: dict[str, tuple[str, ...]] = {
+    "transport_4x4": (),
+    "transport_nips": (),
+    "stack": (),
+    "cantilever": (),
+    "snatch": (),
+    "verify/drop": ("run.duration=60 ms",),
+    "verify/flip": (),
+    "verify/hanging": (),
+    "verify/incline": (),
+    "verify/rollup": (),
+    "verify/slide": (),
+    "verify/tension": (),
+}
+RATTLING: dict[str, tuple[str, ...]] = {
+    "channel": (),
+    "feeder": ("run.duration=6 ms",),
+    "feeder_one": ("run.duration=20 ms",),
+    "feeder_window": (),
+    "guide_joint": (),
+    "peel": ("run.duration=4 ms",),
+    "pick": (),
+    "retard_pad": (),
+    "spring_plate": (),
+    "tilt_correction": ("run.duration=8 ms",),
+    "transport_4x2": (),
+    "transport_tilted": ("run.duration=20 ms",),
+}
+# What exudyn runs: it takes a second for each millisecond.
+EXUDYN = {
+    "cantilever": (),
+    "transport_4x2": ("run.duration=4 ms", "run.step=0.1 ms"),
+    "pick": ("run.duration=2 ms", "run.step=0.1 ms"),
+}
+SAME, UNKNOWN = 1e-9, 1e-4  # parts of the travel; where contacts rattle and there is no estimate
+TIMED, SLOWER = ("transport_4x4", "feeder_one"), 1.05
+
+
+class Run(NamedTuple):
+    """One run of a sample."""
+
+    status: str
+    steps: int
+    estimate: float | None
+    places: np.ndarray  # (t, bodies, 3) [mm]
+    took: float  # processor time [s]
+
+
+@dataclass(frozen=True)
+class Row:
+    """A sample by both."""
+
+    solver: str
+    name: str
+    alike: bool  # status and steps are the same
+    status: str
+    apart: float  # most, as a part of the travel
+    allowed: float
+    ratio: float  # time of the shipped program over numba's
+
+    @property
+    def same(self) -> bool:
+        """Whether both found the same."""
+        return self.alike and self.status == "ok" and self.apart <= self.allowed
+
+    @property
+    def slower(self) -> bool:
+        """Whether the shipped program takes longer than it may."""
+        return self.name in TIMED and self.solver == "lattice" and self.ratio > SLOWER
+
+    def __str__(self) -> str:
+        mark = "" if self.same else "  DIFFERS"
+        mark += "  SLOWER" if self.slower else ""
+        told = f"{self.apart:.1e} of {self.allowed:.0e}, time {self.ratio:.3f}"
+        return f"{self.solver} {self.name}: {self.status}, {told}{mark}"
+
+
+class Other(Exception):
+    """A process does not run what it is asked to."""
+
+
+class Process:
+    """Runs samples by one kind of code."""
+
+    def __init__(self, numba: bool):
+        self._numba = numba
+        path = os.pathsep.join(sys.path)
+        self._process = subprocess.Popen(
+            [sys.executable, "-c", "from mdlgen.program.compare import answer; answer()"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            env={**os.environ, "MDLGEN_NUMBA": str(int(numba)), "PYTHONPATH": path},
+        )
+
+    def run(self, solver: str, name: str, sets: Sequence[str]) -> Run:
+        """A run of a sample. Raises Other where it is by other code."""
+        assert self._process.stdin is not None and self._process.stdout is not None
+        pickle.dump((solver, name, tuple(sets)), self._process.stdin)
+        self._process.stdin.flush()
+        told, by_numba = pickle.load(self._process.stdout)
+        if by_numba != self._numba:
+            raise Other("the programs do not fit: python -m mdlgen.program.build --check")
+        return told
+
+    def close(self) -> None:
+        """Ends the process."""
+        self._process.kill()
+        self._process.communicate()
+
+
+def compared(solver: str, samples: dict[str, tuple[str, ...]], repeat: int) -> Iterator[Row]:
+    """A row of each sample. Raises Other."""
+    with contextlib.ExitStack() as stack:
+        both = [Process(numba) for numba in (False, True)]
+        for process in both:
+            stack.callback(process.close)
+        for name, sets in samples.items():
+            for process in both:  # loads, or compiles, what the sample needs
+                process.run(solver, name, sets)
+            runs = [[process.run(solver, name, sets) for process in both] for _ in range(repeat)]
+            yield _row(solver, name, [list(kind) for kind in zip(*runs, strict=True)])
+
+
+def _row(solver: str, name: str, runs: list[list[Run]]) -> Row:
+    one, two = (kind[-1] for kind in runs)
+    alike = (one.status, one.steps, one.places.shape) == (two.status, two.steps, two.places.shape)
+    travel = np.abs(one.places - one.places[0]).max() or np.abs(one.places).max()
+    apart = float(np.abs(one.places - two.places).max() / travel) if alike else float("inf")
+    took = [statistics.median(run.took for run in kind) for kind in runs]
+    allowed = SAME if name in CALM else one.estimate or UNKNOWN
+    return Row(solver, name, alike, one.status, apart, allowed, took[0] / took[1])
+
+
+def answer() -> None:
+    """Runs what is asked for on standard input."""
+    stream = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)  # a solver may talk there
+    mdlgen: Any = importlib.import_module("mdlgen")
+    folder = importlib.import_module("mdlgen.paths").samples()
+    while True:
+        try:
+            solver, name, sets = pickle.load(sys.stdin.buffer)
+        except EOFError:
+            return
+        model = mdlgen.lower(mdlgen.load(folder / f"{name}.yaml", sets))
+        begun = time.process_time()
+        result = mdlgen.solve(model, solver)
+        took = time.process_time() - begun
+        run = Run(result.status, result.steps, result.error_estimate, result.position, took)
+        pickle.dump((run, "numba" in sys.modules), stream)
+        stream.flush()
+
+
+def main() -> None:
+    """Entry point."""
+    parser = argparse.ArgumentParser(prog="python -m mdlgen.program.compare", description=__doc__)
+    parser.add_argument("samples", nargs="*", help="samples; all if left out")
+    parser.add_argument("--repeat", type=int, default=1, help="runs of each sample by each kind of code")
+    wanted = parser.parse_args()
+    wrong = False
+    for solver, samples in (("lattice", CALM | RATTLING), ("exudyn", EXUDYN)):
+        chosen = {name: sets for name, sets in samples.items() if name in (wanted.samples or samples)}
+        for row in compared(solver, chosen, max(1, wanted.repeat)) if chosen else ():
+            print(row, flush=True)
+            wrong |= not row.same or row.slower
+    sys.exit(int(wrong))
+
+
+if __name__ == "__main__":
+    main()
