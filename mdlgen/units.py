@@ -79,6 +79,10 @@ def _with_point(comma: re.Match[str]) -> str:
     return f"write {' or '.join(meant)}" if meant else "decimals are written with a point, as 0.5"
 
 
+class UnknownUnit(ValueError):
+    """A word that is no unit."""
+
+
 @lru_cache(maxsize=512)
 def parse_unit(text: str) -> Unit:
     """`N*mm/rad`, `N/mm^1.5`, `m/s^2` as a Unit. Raises ValueError with what is wrong."""
@@ -86,7 +90,7 @@ def parse_unit(text: str) -> Unit:
     for sign, word in re.findall(r"(^|[*/·])([^*/·]*)", _powers(text)):
         match = _FACTOR.fullmatch(word.strip())
         if not match or (match[1] != "1" and match[1] not in _NAMES):
-            raise ValueError(f"unknown unit {word.strip()!r} in {text!r}{_meant(word)}")
+            raise UnknownUnit(f"unknown unit {word.strip()!r} in {text!r}{_meant(word)}")
         if match[1] == "1":
             continue
         unit = _NAMES[match[1]]
@@ -123,12 +127,23 @@ def parse_quantity(text: object, expected: str) -> float:
     a value that is not finite.
     """
     if isinstance(text, bool) or not isinstance(text, str):
-        shown = f"{text} has no unit" if isinstance(text, (int, float)) else f"{text!r} is not a quantity"
-        raise ValueError(f"{shown}; expected text with a unit like '1 {expected}'")
-    value, unit = parse_number(text, f"1 {expected}")
+        number = isinstance(text, (int, float)) and not isinstance(text, bool)
+        shown = f"{text} has no unit" if number else f"{text!r} is not a quantity"
+        raise ValueError(f"{shown}; expected text with a unit like '{text if number else 1} {expected}'")
+    due = f"expected a unit like '{expected}', as '{_number_of(text)} {expected}'"
+    try:
+        value, unit = parse_number(text, f"1 {expected}")
+    except UnknownUnit as error:
+        raise ValueError(str(error) if str(error).endswith("?") else f"{error}; {due}") from None
     if not same(parse_unit(unit).dimension, parse_unit(expected).dimension):
-        raise ValueError(f"{text.strip()!r} has the wrong unit; expected a unit like '{expected}'")
+        raise ValueError(f"{text.strip()!r} has the wrong unit; {due}")
     return value
+
+
+def _number_of(text: str) -> str:
+    """The number that a text begins with, 1 where it begins with none."""
+    match = _QUANTITY.fullmatch(text[:200])
+    return match[1] if match else "1"
 
 
 def check_unit(text: str, dimension: Sequence[float], expected: str) -> None:

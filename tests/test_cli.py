@@ -72,7 +72,7 @@ def changed(old: str, new: str) -> tuple[str, int, int]:
 
 BAD = {
     "misspelt key": (*changed("thickness: 0.1 mm", "thicknes: 0.1 mm"), "did you mean 'thickness'?"),
-    "missing unit": (*changed("0.72 g", "0.72"), "0.72 has no unit; expected text with a unit like '1 g'"),
+    "missing unit": (*changed("0.72 g", "0.72"), "0.72 has no unit; expected text with a unit like '0.72 g'"),
     "wrong unit": (*changed("0.72 g", "0.72 mm"), "expected a unit like 'g'"),
     "a name twice": (*changed("motor_1_right:", "motor_1_left:"), "stands twice"),
     "a name twice in another case": (*changed("counter_1_left:\n", "NOTE:\n"), "used twice"),

@@ -11,6 +11,7 @@ import pytest
 import mdlgen
 from mdlgen.errors import SpecError
 from mdlgen.model.lower import lower
+from mdlgen.paths import samples
 from mdlgen.spec.load import loads
 from mdlgen.spec.scene import Scene
 
@@ -126,3 +127,48 @@ def test_hidden_3_a_stop_plate_that_stands_crosswise_is_a_finding() -> None:
     assert "40 mm tall and 10 mm wide" in lint.message and lint.remedy.endswith("along: y")
     # a pin is as wide as tall
     assert codes(changed("along: y, size: [40 mm, 10 mm, 2 mm]", "size: [10 mm, 10 mm, 2 mm]")) == []
+
+
+WRONG = """\
+name: bad
+materials: {p: {E_md: 3 GPa, E_cd: 2}}
+sheets:
+  note_1: {material: q, size: [60 mm, 40 mm], thicknes: 0.1 mm, mass: 0.3 g, boxes: [3, 2]}
+rollers:
+  motor: {center: [0 mm, 0 mm], axis: w, radius: 7,5 mm, width: 8 mm, mass: 1 kgg, drive: {speed: 60 mm/s}}
+contacts:
+  - {between: [note, motor], stiffness: 300 N/mm, friction: 2000, restitution: 1.5}
+"""
+
+
+def test_all_mistakes_at_once_by_place_each_with_what_is_allowed_and_a_corrected_example() -> None:
+    with pytest.raises(SpecError) as told:
+        loads(WRONG, "bad.yaml")
+    errors = [told.value, *told.value.others]
+    assert [str(error).removeprefix("bad.yaml:") for error in errors] == [
+        "2:36: materials.p.E_cd: 2 has no unit; expected text with a unit like '2 MPa'",
+        "4:22: sheets.note_1.material: there is no material 'q'; there are: p",
+        "4:47: sheets.note_1.thicknes: unknown key 'thicknes'; did you mean 'thickness'?",
+        "6:19: rollers.motor.center: expected a list of 3 quantities like '1 mm', got ['0 mm', '0 mm']",
+        "6:39: rollers.motor.axis: 'w' is not a direction; allowed: x, y, z, -x, -y, -z or a vector "
+        "[1, 0, 0]",
+        "6:52: rollers.motor.5 mm: unknown key '5 mm': a comma ends the value before it; decimals are "
+        "written with a point; write radius: 7.5 mm",
+        "6:77: rollers.motor.mass: unknown unit 'kgg' in 'kgg'; expected a unit like 'g', as '1 g'",
+        "6:99: rollers.motor.drive.speed: '60 mm/s' has the wrong unit; expected a unit like 'rad/s', "
+        "as '60 rad/s'",
+        "8:16: contacts.0.between.0: there is no part 'note'; did you mean 'note_1'? there are: note_1, "
+        "motor",
+        "8:41: contacts.0.stiffness: '300 N/mm' has the wrong unit; expected a unit like 'N/mm^1.5', "
+        "as '300 N/mm^1.5'",
+        "8:61: contacts.0.friction: 2000 is outside what is allowed: 0 to 1000, as 0.5",
+        "8:80: contacts.0.restitution: 1.5 is outside what is allowed: 0 to 1, as 0.5",
+    ]
+    # each with its line and a caret below it
+    line, caret = errors[0].marked.splitlines()
+    assert line.strip() == WRONG.splitlines()[1] and line[caret.index("^")] == "2"
+
+
+def test_set_of_a_part_that_there_is_not_says_what_there_is() -> None:
+    with pytest.raises(SpecError, match=r"there is no 'note' in sheets; .*there are: note_1, note_2"):
+        mdlgen.load(samples() / "feeder.yaml", ["sheets.note.boxes=[2,2]"])

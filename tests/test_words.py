@@ -158,7 +158,7 @@ def test_the_normal_is_that_of_the_model(angles: tuple[int, int, int]) -> None:
     ("old", "new", "told"),
     [
         (RADIUS, "radius: 7.5 mm\n    diameter: 15 mm", "radius and diameter are both given"),
-        (RADIUS, "diameter: 15", "expected text with a unit like '1 mm'"),
+        (RADIUS, "diameter: 15", "expected text with a unit like '15 mm'"),
         (RADIUS, "diameter: -15 mm", "more than 0 mm"),
         (MASS, "grammage: 80 g ", "expected a unit like 'g/m^2'"),
         (MASS, "mass: 1 g\n    density: 1 g/cm^3 ", "mass and density are given"),

@@ -22,6 +22,8 @@ _MOST_LOOKS = 1000  # at names beside other mistakes
 _PARTS = ("sheets", "rollers", "planes", "guides", "meshes", "parts")
 _TABLES = ("parameters", "materials", *_PARTS, "nips", "probes")
 _NAMED = ("contacts", *_TABLES)
+# What stands behind a decimal comma: digits, perhaps with a unit.
+_REST = re.compile(r"[0-9]+(?: *[A-Za-z%][\w/*^.%]*)?")
 
 
 class Mistakes:
@@ -42,6 +44,8 @@ class Mistakes:
         errors = [e for told in error.errors(include_url=False) for e in _each(told)]
         # a formula over a parameter that has a mistake: the mistake is told where it is
         errors = [e for e in errors if e["type"] != "unknown"] or errors
+        split = {e["loc"][:-1] + before for e in errors if (before := _before_comma(e, self.document))}
+        errors = [e for e in errors if e["loc"] not in split]
         misspelt = {e["loc"][:-1] for e in errors if e["type"] == "extra_forbidden"}
         unmade: dict[SpecPath, list[str]] = {}
         for told in errors:
@@ -58,7 +62,10 @@ class Mistakes:
         for path, keys in unmade.items():
             self.add(self._not_there(path, keys))
         # names that dangle are looked at by the scene itself, once each value is good
-        renamed = any(e["loc"][-1:] == ("[key]",) or e["type"] == "extra_forbidden" for e in errors)
+        renamed = any(
+            e["loc"][-1:] == ("[key]",) or (e["type"] == "extra_forbidden" and len(e["loc"]) == 1)
+            for e in errors
+        )
         if not renamed and not unmade and not any(e["loc"] == () for e in errors):
             for told in _dangling(self.document.data):
                 self.add(_describe({"type": "spec", "loc": (), "ctx": told.context}, self.document))
@@ -98,6 +105,18 @@ class Mistakes:
         if len(errors) > MOST:
             others.append(SpecError(f"{len(errors) - MOST} more errors; mend these first"))
         return first.with_others(others)
+
+
+def _before_comma(error: Any, document: Document) -> tuple[str, ...]:
+    """The key whose value a decimal comma has cut off, where an unknown key is the rest of it, as in
+    `{radius: 7,5 mm, width: 8 mm}`; else ()."""
+    path = in_the_text(error["loc"], document.origins)
+    if error["type"] != "extra_forbidden" or not _REST.fullmatch(str(path[-1])):
+        return ()
+    keys = list(_at(document.data, path[:-1]) or ())
+    at = keys.index(path[-1]) if path[-1] in keys else 0
+    value = _at(document.data, (*path[:-1], keys[at - 1])) if at else None
+    return (str(keys[at - 1]),) if type(value) in (int, float) else ()
 
 
 def _each(error: Any) -> Iterator[Any]:
@@ -158,7 +177,11 @@ def _describe(error: Any, document: Document) -> SpecError:
             path = _as_written(in_the_text(path, document.origins), document)
             prefer_key = path in document.keys and not isinstance(_at(document.data, path), str)
     elif kind == "extra_forbidden":
-        message, prefer_key = f"unknown key {path[-1]!r}{_did_you_mean(inner)}", True
+        before, prefer_key = _before_comma(error, document), True
+        message = f"unknown key {path[-1]!r}{_did_you_mean(inner)}"
+        if before:
+            meant = f"{before[0]}: {_at(document.data, (*path[:-1], *before))}.{path[-1]}"
+            message += f"; write {meant}"
     elif kind == "missing":
         friction = "; write like friction: 0.5, or 0 where there is none; mdlgen upgrade FILE writes 0"
         example = friction if inner[-1] == "friction" else _example(inner)
@@ -198,8 +221,8 @@ def _at(data: Any, path: Sequence[str | int]) -> Any:
 def _did_you_mean(path: SpecPath) -> str:
     known = _allowed_keys(path[:-1])
     word = str(path[-1])
-    if re.fullmatch(r"[0-9]+", word):
-        return ": a comma ends the value before it; decimals are written with a point, as 0.5"
+    if _REST.fullmatch(word):
+        return ": a comma ends the value before it; decimals are written with a point"
     close = difflib.get_close_matches(word, known, n=1)
     if close:
         return f"; did you mean {close[0]!r}?"
