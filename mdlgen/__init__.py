@@ -120,7 +120,7 @@ def solve(
 ) -> Result:
     """Run a Model. A run that fails returns a Result whose `status` is the reason.
 
-    `progress(time, end, steps, touching)` is told where the run stands (times in ms, pairs that touch).
+    `progress(time, end, steps, touching)` is called as the run goes on (times in ms, pairs that touch).
     `check_step` runs again at half the step and returns the finer result, with `error_estimate` in the norm
     of `run.tolerance`. Raises SpecError for a solver that there is not, RefusedError for what it cannot
     represent.

@@ -24,14 +24,14 @@ def smoothings(model: Model) -> list[dict[str, Any]]:
     ]
 
 
-def lines(told: list[dict[str, Any]]) -> list[str]:
+def lines(message: list[dict[str, Any]]) -> list[str]:
     """The same for a terminal: one line for each speed."""
     groups: dict[tuple[float, bool], list[str]] = {}
-    for item in told:
+    for item in message:
         groups.setdefault((item["mm_per_s"], item["follows"]), []).append(item["contact"])
     return [
         f"smoothing {speed:.4g} mm/s{', from the speeds of the scene' if follows else ''}: "
-        f"{_contacts(names, len(told))}"
+        f"{_contacts(names, len(message))}"
         for (speed, follows), names in groups.items()
     ]
 

@@ -210,19 +210,19 @@ def _smoothing(model: Model) -> Iterator[Lint]:
         coarse = max(float(contacts.smoothing[row]), float(contacts.stiction_velocity[row]))
         fine = min(float(contacts.smoothing[row]), float(contacts.stiction_velocity[row]))
         where = f"contacts.{contacts.called(row)}.smoothing"
-        told = f"of the surface speed {speed * 1e3:.4g} mm/s"
+        message = f"of the surface speed {speed * 1e3:.4g} mm/s"
         if coarse > COARSE_SMOOTHING * speed:
             yield Lint(
                 "W106",
                 where,
-                f"{coarse * 1e3:g} mm/s is {coarse / speed:.2g} {told}: the sheet creeps",
+                f"{coarse * 1e3:g} mm/s is {coarse / speed:.2g} {message}: the sheet creeps",
                 f"use {COARSE_SMOOTHING * speed * 1e3:.2g} mm/s or less",
             )
         if fine < FINE_SMOOTHING * speed:
             yield Lint(
                 "W107",
                 where,
-                f"{fine * 1e3:g} mm/s is {fine / speed:.2g} {told}: Newton converges slowly",
+                f"{fine * 1e3:g} mm/s is {fine / speed:.2g} {message}: Newton converges slowly",
                 f"use {FINE_SMOOTHING * speed * 1e3:.2g} mm/s or more unless creep below that matters",
             )
 

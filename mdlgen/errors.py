@@ -41,7 +41,7 @@ class Place(NamedTuple):
 
 
 class MdlgenError(Exception):
-    """Base of all errors that are told to the user in one line."""
+    """Base of all errors that are reported to the user in one line."""
 
     exit_code = 1
 

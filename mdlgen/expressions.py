@@ -252,8 +252,8 @@ def read(text: str, grammar: Grammar) -> Expression:
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         raise Refused("is not an expression") from None
     found = Expression(text.strip(), tuple(names), tuple(quantities), grammar, tree)
-    if told := _told(tree, grammar, 0):
-        raise Refused(told)
+    if message := _told(tree, grammar, 0):
+        raise Refused(message)
     return found
 
 
@@ -293,4 +293,4 @@ def _told(node: ast.AST, grammar: Grammar, depth: int) -> str:
             inner = list(args)
         case _:
             return f"{type(getattr(node, 'op', node)).__name__} is not allowed"
-    return next((told for part in inner if (told := _told(part, grammar, depth + 1))), "")
+    return next((message for part in inner if (message := _told(part, grammar, depth + 1))), "")

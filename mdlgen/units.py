@@ -150,8 +150,8 @@ def check_unit(text: str, dimension: Sequence[float], expected: str) -> None:
     """Raises ValueError where what a formula comes to is not of the dimension of a unit; it names both."""
     if not same(dimension, parse_unit(expected).dimension):
         due = "a plain number is due" if expected == "1" else f"expected a unit like '{expected}'"
-        told = "has no unit" if same(dimension, (0.0,) * 4) else f"has the unit {unit_of(dimension)}"
-        raise ValueError(f"{text.strip()[:80]!r} {told}; {due}")
+        message = "has no unit" if same(dimension, (0.0,) * 4) else f"has the unit {unit_of(dimension)}"
+        raise ValueError(f"{text.strip()[:80]!r} {message}; {due}")
 
 
 def same(one: Sequence[float], other: Sequence[float]) -> bool:

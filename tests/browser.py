@@ -49,14 +49,14 @@ class Tab:
         asked = {"id": self._number, "method": method, "params": parameters, "sessionId": self._session}
         self._socket.send(json.dumps(asked))
         while True:
-            told = json.loads(self._socket.recv(timeout=WAIT))
-            if told.get("id") == self._number:
-                assert "error" not in told, told["error"]
-                return told["result"]
-            self._heard(told)
+            record = json.loads(self._socket.recv(timeout=WAIT))
+            if record.get("id") == self._number:
+                assert "error" not in record, record["error"]
+                return record["result"]
+            self._heard(record)
 
-    def _heard(self, told: dict[str, Any]) -> None:
-        method, what = told.get("method"), told.get("params", {})
+    def _heard(self, record: dict[str, Any]) -> None:
+        method, what = record.get("method"), record.get("params", {})
         if method == "Runtime.exceptionThrown":
             detail = what["exceptionDetails"]
             self.complaints.append(detail.get("exception", {}).get("description", detail["text"]))
@@ -74,9 +74,9 @@ class Tab:
 
     def ask(self, expression: str) -> Any:
         """The value of an expression, or of what it promises."""
-        told = self.call("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
-        assert "exceptionDetails" not in told, told["exceptionDetails"]
-        return told["result"].get("value")
+        record = self.call("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
+        assert "exceptionDetails" not in record, record["exceptionDetails"]
+        return record["result"].get("value")
 
     def until(self, condition: str) -> None:
         end = time.monotonic() + WAIT
@@ -106,11 +106,11 @@ def tab(profile: Path, *options: str) -> Iterator[Tab]:
         stderr=subprocess.DEVNULL,
     )
     try:
-        told, end = profile / "DevToolsActivePort", time.monotonic() + WAIT
-        while not (told.exists() and len(told.read_text().split()) == 2):
+        message, end = profile / "DevToolsActivePort", time.monotonic() + WAIT
+        while not (message.exists() and len(message.read_text().split()) == 2):
             assert process.poll() is None and time.monotonic() < end, f"{program} did not start"
             time.sleep(0.05)
-        port, path = told.read_text().split()
+        port, path = message.read_text().split()
         with connect(f"ws://127.0.0.1:{port}{path}", max_size=None) as socket:
             target = _call(socket, "Target.createTarget", url="about:blank")["targetId"]
             joined = _call(socket, "Target.attachToTarget", targetId=target, flatten=True)
@@ -127,7 +127,7 @@ def _call(socket: Any, method: str, **parameters: Any) -> dict[str, Any]:
     """A command to the browser itself, before there is a tab."""
     socket.send(json.dumps({"id": 0, "method": method, "params": parameters}))
     while True:
-        told = json.loads(socket.recv(timeout=WAIT))
-        if told.get("id") == 0:
-            assert "error" not in told, told["error"]
-            return told["result"]
+        record = json.loads(socket.recv(timeout=WAIT))
+        if record.get("id") == 0:
+            assert "error" not in record, record["error"]
+            return record["result"]

@@ -53,7 +53,7 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
     for program in build.programs():
         try:
             program.head()
-            told = "numba, since MDLGEN_NUMBA is set" if alone() else "as shipped"
+            message = "numba, since MDLGEN_NUMBA is set" if alone() else "as shipped"
         except Unfit as error:
-            told = f"numba, since {error}"
-        terminalreporter.write_line(f"solver code, {program.name}: {told}")
+            message = f"numba, since {error}"
+        terminalreporter.write_line(f"solver code, {program.name}: {message}")

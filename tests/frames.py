@@ -1,7 +1,7 @@
 """How long a picture of the page takes in a headless Chromium, without a graphics card.
 
 As a program, `python tests/frames.py [COLUMNS ROWS STATES]`, it prints that for a note in `transport_4x4`, of
-20 x 30 boxes at 500 states unless told.
+20 x 30 boxes at 500 states by default.
 """
 
 from __future__ import annotations

@@ -70,9 +70,9 @@ def test_an_elastic_impact_at_coarse_steps_is_right_or_caught_and_the_advice_hel
             assert float(result.velocity[-1, 0, 2]) == pytest.approx(1.0, abs=0.02)
             continue
         caught += 1
-        told = re.match(r"([\d.e+-]+) N mm of energy (came from nowhere|got lost), ", result.status)
-        assert told and "leave out run.step" in result.status
-        assert float(told[1]) == pytest.approx(
+        record = re.match(r"([\d.e+-]+) N mm of energy (came from nowhere|got lost), ", result.status)
+        assert record and "leave out run.step" in result.status
+        assert float(record[1]) == pytest.approx(
             abs(result.energy.balance_error) * result.energy.scale, rel=0.01
         )
     assert caught
@@ -84,8 +84,10 @@ def test_an_elastic_impact_at_coarse_steps_is_right_or_caught_and_the_advice_hel
 def test_the_message_names_the_sum() -> None:
     model = thrown("run.step=0.1 ms")
     bad = Energy(balance_error=0.5, scale=0.2)
-    told = audit.reason(model, bad, 0.1)
-    assert told is not None and told.startswith("0.1 N mm of energy came from nowhere, 50 % of 0.2 N mm")
+    message = audit.reason(model, bad, 0.1)
+    assert message is not None and message.startswith(
+        "0.1 N mm of energy came from nowhere, 50 % of 0.2 N mm"
+    )
     assert audit.reason(model, Energy(balance_error=-0.5, scale=0.2), 0.1) is None  # an integrator that damps
     lost = audit.reason(model, Energy(balance_error=-0.5, scale=0.2), 0.1, audit.LOSS)
     assert lost is not None and "0.1 N mm of energy got lost" in lost

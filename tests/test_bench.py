@@ -13,8 +13,8 @@ from typer.testing import CliRunner
 
 from mdlgen import registry
 from mdlgen.bench import process
-from mdlgen.bench.case import Case, Finding, Run
-from mdlgen.bench.child import Task
+from mdlgen.bench.case import BenchCase, Finding, Run
+from mdlgen.bench.child import Job
 from mdlgen.bench.oracles import chain, elastica, friction, impact
 from mdlgen.bench.row import Outcome, rows
 from mdlgen.bench.run import bench
@@ -101,11 +101,11 @@ def test_friction():
 
 
 def test_a_quick_suite_end_to_end(tmp_path):
-    told = CliRunner().invoke(
+    ended = CliRunner().invoke(
         app, ["bench", "impact", "--quick", "--repeat", "1", "--solver", "exudyn", "-o", str(tmp_path)]
     )
-    assert told.exit_code == 0, told.output
-    assert "c_R = 0.5 at 1 m/s" in told.stdout
+    assert ended.exit_code == 0, ended.output
+    assert "c_R = 0.5 at 1 m/s" in ended.stdout
     found = json.loads((tmp_path / "bench.json").read_text())
     assert {"machine", "versions", "rows"} <= set(found)
     assert {"cpu", "cores", "python"} <= set(found["machine"])
@@ -162,16 +162,18 @@ def fake(tmp_path, monkeypatch):
 
 
 def outcome(solver: str, limit: float = 60.0) -> Outcome:
-    case = Case("stability", "strip", STRIP, drop, limit=limit)
-    return process.run(Task(case, solver, registry.SOLVERS[solver], 1, None))
+    case = BenchCase("stability", "strip", STRIP, drop, limit=limit)
+    return process.run(Job(case, solver, registry.SOLVERS[solver], 1, None))
 
 
 def test_a_wrong_number_with_status_ok_is_seen(fake, tmp_path, monkeypatch):
-    monkeypatch.setattr("mdlgen.bench.suites.elastica.cases", lambda *_: [Case("elastica", "s", STRIP, drop)])
-    told = CliRunner().invoke(
+    monkeypatch.setattr(
+        "mdlgen.bench.suites.elastica.cases", lambda *_: [BenchCase("elastica", "s", STRIP, drop)]
+    )
+    ended = CliRunner().invoke(
         app, ["bench", "elastica", "--repeat", "1", "--solver", fake("shifted"), "-o", str(tmp_path / "out")]
     )
-    assert told.exit_code == 5, told.output
+    assert ended.exit_code == 5, ended.output
     (row,) = json.loads((tmp_path / "out" / "bench.json").read_text())["rows"]
     assert row["status"] == "wrong" and row["error"] > row["tolerance"]
     assert "the solver said ok" in row["reason"]
@@ -186,7 +188,7 @@ def test_a_crash_a_hang_and_a_refusal_are_rows_with_a_reason(fake, monkeypatch):
         ("refusing", "refused: no sheets here"),
     ):
         found = outcome(fake(name), limit=0.0)
-        (row,) = rows(Case("stability", "strip", STRIP, drop), name, found)
+        (row,) = rows(BenchCase("stability", "strip", STRIP, drop), name, found)
         assert row.status == "failed" and row.error is None
         assert reason in (row.reason or ""), (name, row.reason)
 
@@ -199,7 +201,7 @@ def test_a_solver_may_talk(fake):
 
 
 def test_a_failed_solver_has_its_reason_and_no_error():
-    case = Case("stability", "x", STRIP, drop)
+    case = BenchCase("stability", "x", STRIP, drop)
     (row,) = rows(case, "exudyn", Outcome("did not converge at 3 ms"))
     assert (row.status, row.reason, row.error) == ("failed", "did not converge at 3 ms", None)
     bad = replace(Outcome("ok"), findings=[Finding("q", math.inf, 1.0)])

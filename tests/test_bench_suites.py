@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from mdlgen.bench.case import Case, Finding, Run
+from mdlgen.bench.case import BenchCase, Finding, Run
 from mdlgen.bench.fits import EQUAL_ERROR, fits, wall_at
 from mdlgen.bench.row import Outcome, rows
 from mdlgen.bench.run import Bench, bench
@@ -46,7 +46,7 @@ def test_the_reference_of_the_transport_is_ten_times_finer_than_what_is_measured
 
 
 def test_work_and_the_time_of_the_estimate_are_in_a_row():
-    case = Case("transport", "x", STRIP, drop)
+    case = BenchCase("transport", "x", STRIP, drop)
     done = Outcome("ok", [Finding("position", 1e-3)], 0.1, 10, rounds=25, wall=1.0, estimating=0.5)
     made = rows(case, "lattice", done)
     assert (made[0].json()["rounds"], made[0].json()["estimate_s"]) == (25, 0.5)
@@ -57,7 +57,7 @@ def test_work_and_the_time_of_the_estimate_are_in_a_row():
 def test_growth_is_of_the_whole_wall_time():
     made = []
     for boxes in (50, 200, 800):
-        case = Case("scaling", f"{boxes} boxes", STRIP, drop)
+        case = BenchCase("scaling", f"{boxes} boxes", STRIP, drop)
         done = Outcome("ok", [Finding("q", 0.0)], 0.05, boxes, wall=1e-3 * boxes**1.5, boxes=boxes)
         made += rows(case, "lattice", done)
     assert fits(made)["growth"] == {"lattice": pytest.approx(1.5)}
@@ -106,14 +106,14 @@ def test_a_rule_is_taken_away_only_from_a_solver_that_has_it():
 
 
 def test_order_and_equal_error():
-    case = Case("transport", "10 x 20 boxes, step given", Run("transport_4x4"), drop)
+    case = BenchCase("transport", "10 x 20 boxes, step given", Run("transport_4x4"), drop)
     made = []
     for step in (0.1, 0.05, 0.0125):
         done = Outcome("ok", [Finding("position", step**2)], step, 10, 1 / step, boxes=200)
         made += rows(case, "exudyn", done)
-    told = fits(made)
-    assert told["order"] == {"transport, exudyn: position": pytest.approx(2.0)}
-    equal = told["wall_at_equal_error"]["exudyn, 200 boxes"]
+    record = fits(made)
+    assert record["order"] == {"transport, exudyn: position": pytest.approx(2.0)}
+    equal = record["wall_at_equal_error"]["exudyn, 200 boxes"]
     assert equal["wall_s"] == pytest.approx(1 / math.sqrt(EQUAL_ERROR))
     for step in (0.1, 0.05, 0.0125):
         done = Outcome("ok", [Finding("position", step**2)], step, 10, 0.1 / step, boxes=200)
@@ -124,20 +124,20 @@ def test_order_and_equal_error():
 
 
 def test_no_wall_time_is_told_at_an_error_that_was_not_reached():
-    case = Case("transport", "10 x 20 boxes, by hand", Run("transport_4x4"), drop)
+    case = BenchCase("transport", "10 x 20 boxes, by hand", Run("transport_4x4"), drop)
     made = []
     for step, error in ((0.1, 2.38e-3), (0.05, 2.35e-3)):
         done = Outcome("ok", [Finding("position", error)], step, 10, 1 / step, boxes=200)
         made += rows(case, "script", done)
-    told = fits(made)
-    assert told["wall_at_equal_error"] == {}
-    assert told["least_error"] == {"script, 200 boxes": {"error": 2.35e-3, "wall_s": 20.0}}
+    record = fits(made)
+    assert record["wall_at_equal_error"] == {}
+    assert record["least_error"] == {"script, 200 boxes": {"error": 2.35e-3, "wall_s": 20.0}}
 
 
 @pytest.mark.parametrize(("estimate", "honest"), [(4e-4, False), (6e-4, True), (9e-3, True), (2e-2, False)])
 def test_an_estimate_that_is_far_from_the_error_is_named(estimate, honest):
     done = Outcome("ok", [Finding("position", 1e-3)], 0.1, 10, 1.0, estimate=estimate)
-    made = rows(Case("transport", "x", STRIP, drop), "exudyn", done)
+    made = rows(BenchCase("transport", "x", STRIP, drop), "exudyn", done)
     assert (fits(made)["estimates_off"] == []) == honest
 
 
@@ -159,7 +159,7 @@ def test_the_page_of_the_ladder_has_both_solvers_beside_each_other():
     """A rung with two numbers counts once, as its worst, and one that failed stands in each of its lines."""
     from mdlgen.bench.page import page
 
-    case = Case("stability", "wrapped", STRIP, drop)
+    case = BenchCase("stability", "wrapped", STRIP, drop)
     two = [Finding("shape", 1e-3, 2e-2), Finding("position", 5e-2, 1e-3)]
     made = [
         *rows(case, "lattice", Outcome("ok", two, 0.1, 10, 1.0)),

@@ -85,13 +85,13 @@ def test_bending_stiffness_of_the_paper_s_drop_at_full_length(cli: Run) -> None:
     ended = cli("--measured", "60.76 mm", "--fit", "D_cd", "--json", sets=[])
     # the first run of all has a line on compiling
     assert ended.code == 0 and ended.err.replace(f"{shell.COMPILING}\n", "") == ""
-    told = json.loads(ended.out)
+    record = json.loads(ended.out)
     # the heavy elastica (oracles.md); 20 boxes along the length give 0.3 % more
-    assert told["value"] == pytest.approx(0.3591718857, rel=0.01)
-    assert abs(told["residual_mm"]) < 1e-3
-    assert told["runs"] <= MAX_RUNS
-    assert (told["probe"], told["sheet"], told["unit"]) == ("tip", "note", "N*mm")
-    assert told["free_length_mm"] == pytest.approx(127, abs=1e-9)
+    assert record["value"] == pytest.approx(0.3591718857, rel=0.01)
+    assert abs(record["residual_mm"]) < 1e-3
+    assert record["runs"] <= MAX_RUNS
+    assert (record["probe"], record["sheet"], record["unit"]) == ("tip", "note", "N*mm")
+    assert record["free_length_mm"] == pytest.approx(127, abs=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -164,7 +164,7 @@ def test_damping_is_found_from_a_decay(ratio: float) -> None:
     measured = decay(f"materials.eur10.damping.ratio={ratio}")
     found = calibrate(mdlgen.load(CANTILEVER, SMALL), measured, "damping.ratio")
     assert found.ok and found.runs <= MAX_RUNS
-    # what the steps damp by themselves is told: the measured curve has a tenth of it, the rest is linear
+    # what the steps damp by themselves is reported: the measured curve has a tenth of it, the rest is linear
     assert found.step_error is not None and abs(found.step_error) < 0.05
     assert found.value / ratio - 1 == pytest.approx(found.step_error, rel=0.25, abs=1e-3)
     assert found.residual < 1e-3 * measured.drop.max()
@@ -247,11 +247,11 @@ def test_a_curve_is_read_from_a_file(cli: Run, tmp_path: Path) -> None:
     (tmp_path / "decay.csv").write_text("# by hand\nno;Drop [m];time (s)\n" + "\n".join(rows) + "\n")
     ended = cli("--measured", "decay.csv", "--fit", "damping.ratio", "-o", "found.yaml", sets=SMALL)
     assert ended.code == 0
-    told = json.loads(cli("--measured", "decay.csv", "--fit", "damping.ratio", "--json", sets=SMALL).out)
-    assert told["value"] == pytest.approx(0.05, rel=0.02) and told["points"] == 40
+    record = json.loads(cli("--measured", "decay.csv", "--fit", "damping.ratio", "--json", sets=SMALL).out)
+    assert record["value"] == pytest.approx(0.05, rel=0.02) and record["points"] == 40
     text = (tmp_path / "found.yaml").read_text()
-    assert f"    damping:\n      ratio: {told['value']:.6g}\n" in text
-    assert 0.0 < told["numerical_damping"] < 0.05
+    assert f"    damping:\n      ratio: {record['value']:.6g}\n" in text
+    assert 0.0 < record["numerical_damping"] < 0.05
 
 
 @pytest.mark.parametrize(

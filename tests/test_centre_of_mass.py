@@ -56,10 +56,10 @@ def test_a_sheet_that_turns_about_its_centre_of_mass_stays(solver: str, kind: st
     assert (np.linalg.norm(at) > 5.0) == (kind == "zoned")  # a graded sheet of one paper has it in the middle
     result = mdlgen.solve(spinning((at[0], at[1]), **more), solver)
     assert result.ok, result.status
-    told = result.summary()["sheets"]["n"]
+    record = result.summary()["sheets"]["n"]
     # momentum is kept: what moves is round-off; promised are 1e-3 of its size
-    assert np.linalg.norm(told["travel_mm"]) < 1e-6 * 100.0
-    assert np.linalg.norm(told["speed_mm_per_s"]) < 1e-6 * SPIN * 100.0 * 1e3
+    assert np.linalg.norm(record["travel_mm"]) < 1e-6 * 100.0
+    assert np.linalg.norm(record["speed_mm_per_s"]) < 1e-6 * SPIN * 100.0 * 1e3
     table = series(result)
     assert max(np.ptp(table[f"n.{axis}_mm"]) for axis in "xyz") < 1e-6 * 100.0
     half_a_turn = result.sheet_motion(0)[2][-1]

@@ -212,9 +212,9 @@ def test_a_damaged_state_is_refused(tmp_path: Path, what: str) -> None:
     else:
         del state["stored.u"]
         np.savez(path, **state)
-    with pytest.raises(OutputError) as told:
+    with pytest.raises(OutputError) as raised:
         lattice.solve(model, keep=Checkpointer(folder, 60.0))
-    assert "is not a state of this run" in str(told.value) and "\n" not in str(told.value)
+    assert "is not a state of this run" in str(raised.value) and "\n" not in str(raised.value)
 
 
 def test_a_linked_folder_is_not_written_through(tmp_path: Path) -> None:
@@ -276,12 +276,12 @@ def test_an_interrupt_leaves_a_part_that_says_so(cut: tuple[Path, int, str, floa
     # a second is what is promised; the machine may be busy
     assert took < 5.0
     assert not (folder / "d" / "summary.json").exists()
-    told = json.loads((folder / "d" / "partial" / "summary.json").read_text())
-    assert told["status"].startswith("partial: interrupted at ")
-    assert 0.0 < told["t_end_ms"] < 60.0
+    record = json.loads((folder / "d" / "partial" / "summary.json").read_text())
+    assert record["status"].startswith("partial: interrupted at ")
+    assert 0.0 < record["t_end_ms"] < 60.0
     part = read(folder / "d" / "partial")
     assert part["status"].startswith("partial:")
-    assert part["time"][-1] == told["t_end_ms"] and len(part["position"]) == len(part["time"])
+    assert part["time"][-1] == record["t_end_ms"] and len(part["position"]) == len(part["time"])
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")

@@ -140,8 +140,8 @@ def test_every_check_is_tested() -> None:
     ],
 )
 def test_rigid_body_freedom_is_counted(supports: str, free: int) -> None:
-    told = found("cantilever", "sheets.note.clamp=null", "sheets.note.boxes=[3,5]", f"supports={supports}")
-    messages = [lint.message for lint in told if lint.code == "W110"]
+    text = found("cantilever", "sheets.note.clamp=null", "sheets.note.boxes=[3,5]", f"supports={supports}")
+    messages = [lint.message for lint in text if lint.code == "W110"]
     assert bool(messages) == (free > 0)
     if free:
         assert f"in {free} of 6 ways" in messages[0]

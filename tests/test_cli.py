@@ -96,7 +96,7 @@ def test_a_bad_scene_ends_with_one_line(mdl: Run, tmp_path: Path, command: str, 
     assert len(lines) == 1, ended.err
     place = re.match(r"bad\.yaml:(\d+):(\d+): ", lines[0])
     assert place, lines[0]
-    # the name that stands twice is told at the second place, and a pair's name inside its list
+    # the name that stands twice is reported at the second place, and a pair's name inside its list
     assert abs(int(place[1]) - line) <= (1 if case.startswith("a name twice") else 0), lines[0]
     assert int(place[2]) >= 1
     assert words in lines[0]
@@ -138,7 +138,7 @@ def test_a_missing_file(mdl: Run) -> None:
 
 
 @pytest.mark.parametrize(
-    ("call", "told"),
+    ("call", "message"),
     [
         (("chek", "x"), "mdlgen: No such command 'chek'. Did you mean 'check'"),
         (("run", "x.yaml", "--nope"), "mdlgen run: No such option: --nope; mdlgen run --help"),
@@ -146,10 +146,10 @@ def test_a_missing_file(mdl: Run) -> None:
         (("run", "x.yaml", "--checkpoint", "soon"), "mdlgen run: Invalid value for '--checkpoint': "),
     ],
 )
-def test_a_wrong_call_is_told_in_one_line(mdl: Run, call: tuple[str, ...], told: str) -> None:
+def test_a_wrong_call_is_told_in_one_line(mdl: Run, call: tuple[str, ...], message: str) -> None:
     ended = mdl(*call)
     assert ended.code == 2 and ended.out == ""
-    assert ended.err.startswith(told) and len(ended.err.splitlines()) == 1
+    assert ended.err.startswith(message) and len(ended.err.splitlines()) == 1
 
 
 def test_a_file_name_cannot_make_two_lines(mdl: Run) -> None:
@@ -228,11 +228,11 @@ def test_new_into_a_file(mdl: Run, tmp_path: Path) -> None:
 
 
 def test_check_tells_tables_counts_and_lints(mdl: Run) -> None:
-    told = mdl("check", FOUR, "--set", "rollers.motor_1_left.drive.speed=0 rad/s").out
-    assert "10 x 20 = 200 boxes" in told
-    assert re.search(r"k +167\.28 +58\.717 +1672\.8", told)
-    assert "1804 pairs of bodies possible" in told
-    assert "W108 rollers.motor_1_left.drive.speed" in told
+    message = mdl("check", FOUR, "--set", "rollers.motor_1_left.drive.speed=0 rad/s").out
+    assert "10 x 20 = 200 boxes" in message
+    assert re.search(r"k +167\.28 +58\.717 +1672\.8", message)
+    assert "1804 pairs of bodies possible" in message
+    assert "W108 rollers.motor_1_left.drive.speed" in message
     assert mdl("check", FOUR, "-q").out == ""
 
 
@@ -393,8 +393,8 @@ def test_a_missed_tolerance_is_exit_5_and_keeps_the_files(
     ended = mdl("run", FOUR, *SMALL, "-o", "d", "--check-step")
     assert ended.code == 5
     assert "above run.tolerance 0.001" in ended.err and "d" in ended.err
-    told = json.loads((tmp_path / "d" / "summary.json").read_text())
-    assert told["error_estimate"] == pytest.approx(1 / 70, rel=1e-9)
+    record = json.loads((tmp_path / "d" / "summary.json").read_text())
+    assert record["error_estimate"] == pytest.approx(1 / 70, rel=1e-9)
     monkeypatch.setattr(registry, "solver", lambda name: Backend(solve=Fake(error=0.01).solve))
     assert mdl("run", FOUR, *SMALL, "-o", "d", "--check-step").code == 0
 
@@ -422,21 +422,21 @@ def test_run_drop(mdl: Run, tmp_path: Path) -> None:
     ended = mdl("run", *DROP, "-o", "d", "--check-step")
     # the first run of all has a line on what is prepared or compiled
     assert ended.code == 0 and set(ended.err.splitlines()) <= {shell.COMPILING, shell.PREPARING}
-    told = json.loads((tmp_path / "d" / "summary.json").read_text())
-    assert told["status"] == "ok"
+    record = json.loads((tmp_path / "d" / "summary.json").read_text())
+    assert record["status"] == "ok"
     # free fall: g t^2 / 2; the integrator is exact for a parabola but for Newton's tolerance
-    assert told["sheets"]["block"]["travel_mm"] == pytest.approx([0, 0, -9.81e-3 * 60**2 / 2], abs=1e-6)
-    assert told["error_estimate"] < 1e-6
+    assert record["sheets"]["block"]["travel_mm"] == pytest.approx([0, 0, -9.81e-3 * 60**2 / 2], abs=1e-6)
+    assert record["error_estimate"] < 1e-6
 
 
 def test_run_cantilever(mdl: Run, tmp_path: Path) -> None:
     coarse = ["--set", "sheets.note.boxes=[2,20]"]
     ended = mdl("run", samples() / "cantilever.yaml", *coarse, "-o", "d", "--check-step")
     assert ended.code == 0 and "static" in ended.err
-    told = json.loads((tmp_path / "d" / "summary.json").read_text())
-    assert told["error_estimate"] is None
+    record = json.loads((tmp_path / "d" / "summary.json").read_text())
+    assert record["error_estimate"] is None
     # 76.53 mm is the heavy elastica; 20 boxes along the length give 0.2 %
-    assert told["probes"]["tip"]["displacement_mm"][2] == pytest.approx(-76.53, rel=0.005)
+    assert record["probes"]["tip"]["displacement_mm"][2] == pytest.approx(-76.53, rel=0.005)
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")

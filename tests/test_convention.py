@@ -64,8 +64,8 @@ def test_the_names_of_options_mean_the_same_everywhere() -> None:
 
 
 def test_json_of_a_run_is_its_summary(tmp_path: Path) -> None:
-    told = found("run", INCLINE, *SHORT, "-o", str(tmp_path))
-    assert told == json.loads((tmp_path / "summary.json").read_text())
+    message = found("run", INCLINE, *SHORT, "-o", str(tmp_path))
+    assert message == json.loads((tmp_path / "summary.json").read_text())
 
 
 def test_json_of_lint(tmp_path: Path) -> None:
@@ -74,17 +74,17 @@ def test_json_of_lint(tmp_path: Path) -> None:
     clean = found("lint", str(text))
     assert (clean["errors"], clean["findings"]) == (0, []) and clean["statements"] > 50
     text.write_text(text.read_text().replace("*EndMDL()", "*Nonsense( a )\n*EndMDL()"))
-    told = found("lint", str(text))
-    assert [f["code"] for f in told["findings"]] == ["unknown"] and told["warnings"] == 1
+    record = found("lint", str(text))
+    assert [f["code"] for f in record["findings"]] == ["unknown"] and record["warnings"] == 1
     assert run("lint", str(text), "--json", "--values", "-")[0] == 2
 
 
 def test_json_of_a_sweep(tmp_path: Path) -> None:
     over = ["--over", f"{FRICTION}=[0.1, 0.3]", "--workers", "1", "-o", str(tmp_path / "s")]
-    told = found("sweep", INCLINE, *SHORT, *over)
-    assert (told["cases"], told["failed"]) == (2, 0)
-    assert [row["values"] for row in told["rows"]] == [[[FRICTION, "0.1"]], [[FRICTION, "0.3"]]]
-    assert all(Path(file).is_file() for file in told["files"])
+    record = found("sweep", INCLINE, *SHORT, *over)
+    assert (record["cases"], record["failed"]) == (2, 0)
+    assert [row["values"] for row in record["rows"]] == [[[FRICTION, "0.1"]], [[FRICTION, "0.3"]]]
+    assert all(Path(file).is_file() for file in record["files"])
 
 
 def test_the_schema_goes_to_a_file_as_it_is_printed(tmp_path: Path) -> None:
@@ -110,15 +110,15 @@ def searched(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, 
 
 
 def test_json_of_a_search(searched: tuple[Path, dict[str, Any]]) -> None:
-    folder, told = searched
-    assert told["runs"] == 4 and told["set"][0].startswith(f"{FRICTION}=")
+    folder, record = searched
+    assert record["runs"] == 4 and record["set"][0].startswith(f"{FRICTION}=")
     assert (folder / "best.mdl").is_file() and (folder / "a" / "table.csv").is_file()
 
 
 def test_a_search_goes_on_by_its_folder_alone(searched: tuple[Path, dict[str, Any]]) -> None:
-    folder, told = searched
+    folder, record = searched
     again = found("optimize", "--resume", str(folder / "a"))
-    assert again["best"]["values"] == told["best"]["values"] and again["runs"] == 4
+    assert again["best"]["values"] == record["best"]["values"] and again["runs"] == 4
     code, _, err = run("optimize", "--resume", str(folder / "a"), "--set", "run.duration=3 ms")
     assert code == 2 and "takes scene, values, goal and solver" in err
     for words in ([INCLINE], []):

@@ -91,8 +91,8 @@ def test_beyond_the_last_point_a_run_is_refused(solver: str) -> None:
     assert not result.ok
     assert "joint strip_" in result.status and "at rest" in result.status
     assert "beyond the last point of its curve strip_md (0.05)" in result.status
-    told = float(result.status.split("a strain of ")[1].split()[0])
-    assert told > 0.05
+    message = float(result.status.split("a strain of ")[1].split()[0])
+    assert message > 0.05
 
 
 def test_the_command_ends_with_exit_code_4(tmp_path, capsys, monkeypatch) -> None:

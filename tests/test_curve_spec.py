@@ -29,10 +29,10 @@ def curve_of(text: str) -> Curve:
 
 
 def refused(text: str) -> SpecError:
-    with pytest.raises(SpecError) as told:
+    with pytest.raises(SpecError) as raised:
         loads(SCENE.format(curve=text))
-    assert "\n" not in str(told.value)
-    return told.value
+    assert "\n" not in str(raised.value)
+    return raised.value
 
 
 @pytest.mark.parametrize(
@@ -156,10 +156,10 @@ def test_a_file_is_read_in_all_its_forms(tmp_path: Path, text: str) -> None:
     ],
 )
 def test_a_file_that_is_none_is_told_with_its_line(tmp_path: Path, text: str, words: str) -> None:
-    with pytest.raises(SpecError) as told:
+    with pytest.raises(SpecError) as raised:
         from_file(tmp_path, text)
-    assert words in told.value.message and "\n" not in str(told.value)
-    assert told.value.place is not None and told.value.place.line == 3
+    assert words in raised.value.message and "\n" not in str(raised.value)
+    assert raised.value.place is not None and raised.value.place.line == 3
 
 
 @pytest.mark.parametrize(

@@ -208,8 +208,8 @@ def test_what_the_reader_says_of_a_curve(curve: str, law: str, words: str) -> No
     text = LITTLE.format(curve=curve, law=law, rest=BUSH)
     reading = emitter("motionview").read(text, "little.mdl")
     found = reading.values
-    told = " ".join(str(f) for f in reading.report.findings)
-    assert words in told and bool(words) == bool(reading.report.findings)
+    message = " ".join(str(f) for f in reading.report.findings)
+    assert words in message and bool(words) == bool(reading.report.findings)
     if not words:
         assert found["curves"]["crv"]["x"] == (0.0, 1.0) and found["curves"]["crv"]["y"] == (0.0, 5.0)
         law_read = found["bushings"]["bsh"]["curves"]["k.0"]

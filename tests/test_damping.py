@@ -46,7 +46,7 @@ def damped(text: str) -> str:
 
 
 @pytest.mark.parametrize(
-    ("text", "where", "told"),
+    ("text", "where", "message"),
     [
         (
             "{time: 0.1 ms, ratio: 0.1}",
@@ -66,11 +66,11 @@ def damped(text: str) -> str:
         ("{time: [1 ms, 3 Hz]}", "damping.time.1:", "wrong unit; expected a unit like 'ms'"),
     ],
 )
-def test_what_a_damping_cannot_be(text: str, where: str, told: str) -> None:
+def test_what_a_damping_cannot_be(text: str, where: str, message: str) -> None:
     with pytest.raises(SpecError) as error:
         model(damped(text))
     line = str(error.value)
-    assert f"materials.eur10.{where}" in line and told in line and "\n" not in line
+    assert f"materials.eur10.{where}" in line and message in line and "\n" not in line
 
 
 def test_one_form_takes_the_place_of_the_other() -> None:
@@ -86,13 +86,13 @@ def test_one_form_takes_the_place_of_the_other() -> None:
 
 
 def test_the_schema_says_it() -> None:
-    told = json_schema()["$defs"]["Damping"]["properties"]
-    assert set(told) == {"ratio", "ratio_ty", "rotation", "time", "loss_factor", "at"}
-    assert "tau_md" in told["time"]["description"] and "0.12" in told["ratio"]["description"]
+    record = json_schema()["$defs"]["Damping"]["properties"]
+    assert set(record) == {"ratio", "ratio_ty", "rotation", "time", "loss_factor", "at"}
+    assert "tau_md" in record["time"]["description"] and "0.12" in record["ratio"]["description"]
     one, two = (
-        told["time"]["anyOf"][0]["anyOf"]
-        if "anyOf" in told["time"]["anyOf"][0]
-        else told["time"]["anyOf"][:2]
+        record["time"]["anyOf"][0]["anyOf"]
+        if "anyOf" in record["time"]["anyOf"][0]
+        else record["time"]["anyOf"][:2]
     )
     assert one["type"] == "string" and two["maxItems"] == 2
 
@@ -148,10 +148,10 @@ def test_the_derived_table_and_its_text() -> None:
     from mdlgen.report.text import overview_text
 
     made = model(damped("{time: [0.1 ms, 0.2 ms]}"))
-    told = overview(made)["sheets"]["note"]["derived"]
-    assert (told["tau_md"], told["tau_cd"]) == (0.1, 0.2)
-    assert told["c_ty"] == pytest.approx(0.1 * told["k_ty"]) and told["c_x"] == pytest.approx(
-        0.1 * told["k_x"]
+    record = overview(made)["sheets"]["note"]["derived"]
+    assert (record["tau_md"], record["tau_cd"]) == (0.1, 0.2)
+    assert record["c_ty"] == pytest.approx(0.1 * record["k_ty"]) and record["c_x"] == pytest.approx(
+        0.1 * record["k_x"]
     )
     assert "damping time MD 0.1 ms, CD 0.2 ms" in overview_text(overview(made))
     assert "tau_md" not in overview(model())["sheets"]["note"]["derived"]
@@ -509,12 +509,12 @@ def test_the_split_is_kept_and_older_results_load(tmp_path) -> None:
     assert again.energy == result.energy and again.summary()["energy"]["numerical"] == result.energy.numerical
     with h5py.File(tmp_path / "result.h5", "r+") as file:  # as it was before either was known
         text = bytes(file["model/tables"][()]).decode()
-        told = json.loads(text)
-        del told["map"]["energy"]["of"]["numerical"]
-        for sheet in told["map"]["model"]["of"]["sheets"]:
+        record = json.loads(text)
+        del record["map"]["energy"]["of"]["numerical"]
+        for sheet in record["map"]["model"]["of"]["sheets"]:
             del sheet["of"]["damping_times"]
         del file["model/tables"]
-        file.create_dataset("model/tables", data=np.bytes_(json.dumps(told).encode()))
+        file.create_dataset("model/tables", data=np.bytes_(json.dumps(record).encode()))
     old = Result.load(tmp_path)
     assert old.energy.numerical is None and old.energy.dissipated == result.energy.dissipated
     assert old.model.sheets[0].damping_times is None

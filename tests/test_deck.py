@@ -476,7 +476,7 @@ def test_the_reader_reads_the_deck_that_motionview_exported() -> None:
     assert checked > 150
 
 
-# What is put in the place of a pattern's first match, and a word of the problem that must be told.
+# What is put in the place of a pattern's first match, and a word of the problem that must be reported.
 BROKEN = {
     "a marker less": (r'(i_marker_id +)= "\d+"', r'\1= "999999"', "999999"),
     "a graphic less": (r'(i_graphics_id +)= "\d+"', r'\1= "999999"', "Post_Graphic 999999"),

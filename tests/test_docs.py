@@ -227,14 +227,14 @@ def dotted(value: Any, path: str = "") -> Iterator[str]:
 def test_every_number_of_a_run_is_described() -> None:
     described = [outputs.pattern(key) for key in outputs.SUMMARY]
     result = transport()
-    told = result.summary()
-    left = [key for key in dotted(told) if not any(p.fullmatch(key) for p in described)]
+    record = result.summary()
+    left = [key for key in dotted(record) if not any(p.fullmatch(key) for p in described)]
     assert [key for key in left if key not in ("estimates", "estimate_scales")] == []
     columns = [outputs.pattern(key) for key in outputs.SERIES]
     assert [name for name in series(result) if not any(p.fullmatch(name) for p in columns)] == []
     # and each of the plain ones is there
     plain = [key for key in outputs.SUMMARY if not re.search("[A-Z]{4,}|^strain$", key)]
-    assert [key for key in plain if key not in set(dotted(told))] == []
+    assert [key for key in plain if key not in set(dotted(record))] == []
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda p: str(p.relative_to(ROOT)))

@@ -58,22 +58,22 @@ def test_an_arm_that_swings_is_within_its_estimate(stiffness: float, step: str |
     model = arm(stiffness) if step is None else arm(stiffness, step=step)
     result = mdlgen.solve(model, "lattice")
     assert result.ok, result.status
-    told = result.summary()
-    name, value = "rollers.a.angle", told["estimates"]["rollers.a.angle"]
+    record = result.summary()
+    name, value = "rollers.a.angle", record["estimates"]["rollers.a.angle"]
     from mdlgen.results.quantities import swing
 
     angle = swing(result, model.rollers[0])
     exact = swung(model, result)
     exact = exact if abs(angle - exact).max() < abs(angle + exact).max() else -exact
     error = float(np.sqrt(np.mean((angle - exact) ** 2)))
-    assert told["estimate_scales"][name]["scale"] == pytest.approx(0.2, rel=0.02)
+    assert record["estimate_scales"][name]["scale"] == pytest.approx(0.2, rel=0.02)
     if value is None:
         # the period is 2 ms, so that such steps are far from it
         assert step == "0.125 ms"
-        assert told["error_estimate"] is None and told["error_estimate_of"] == name
+        assert record["error_estimate"] is None and record["error_estimate_of"] == name
         return
-    assert error < 1.5 * value * told["estimate_scales"][name]["scale"]
-    assert told["error_estimate"] == value and told["error_estimate_of"] == name
+    assert error < 1.5 * value * record["estimate_scales"][name]["scale"]
+    assert record["error_estimate"] == value and record["error_estimate_of"] == name
     assert step is not None or value <= model.run.tolerance
 
 
@@ -121,20 +121,20 @@ def test_a_run_that_ends_early_for_its_step_is_tried_at_a_finer_one() -> None:
 def test_the_estimates_of_a_run_are_stored_and_read_back(tmp_path: Path) -> None:
     sets = ["sheets.note.boxes=[2,3]", "run.duration=4 ms", "run.step=50 us"]
     result = mdlgen.solve(lower(load("samples/transport_4x4.yaml", sets)), "lattice")
-    told = result.summary()
-    kinds = {name.rpartition(".")[2] for name in told["estimates"]}
+    record = result.summary()
+    kinds = {name.rpartition(".")[2] for name in record["estimates"]}
     assert {"position", "slide", "omega", "force", "max_force", "max_penetration", "displacement"} <= kinds
-    assert {"sheets.note.strain.max_md", "sheets.note.curvature.max_cd"} <= set(told["estimates"])
-    assert set(told["estimates"]) <= set(all_names(result))
-    assert set(told["estimate_scales"]) == set(told["estimates"])
+    assert {"sheets.note.strain.max_md", "sheets.note.curvature.max_cd"} <= set(record["estimates"])
+    assert set(record["estimates"]) <= set(all_names(result))
+    assert set(record["estimate_scales"]) == set(record["estimates"])
     judged = {name: e for name, e in result.estimates.items() if e.judged is not None}
     assert {name.rpartition(".")[2] for name in judged} == {"position", "slide"}
     worst = max(e.value * e.scale / e.judged for e in judged.values() if e.value and e.judged)
-    assert told["error_estimate"] == pytest.approx(worst, rel=1e-12)
-    assert told["error_estimate_of"] in judged
+    assert record["error_estimate"] == pytest.approx(worst, rel=1e-12)
+    assert record["error_estimate_of"] in judged
     result.save(tmp_path)
     back = Result.load(tmp_path)
-    assert back.estimates == result.estimates and back.summary()["estimates"] == told["estimates"]
+    assert back.estimates == result.estimates and back.summary()["estimates"] == record["estimates"]
 
 
 def test_without_a_coarser_run_there_is_no_estimate_and_none_is_zero() -> None:

@@ -79,7 +79,7 @@ def test_an_interval_outlasts_short_breaks_and_grazes() -> None:
 
 def test_the_note_goes_from_row_1_to_row_2() -> None:
     """Row 2 is 38.5 mm ahead of the leading edge, row 1 47 mm from the trailing one: of boxes that touch a
-    roller 0.85 mm beside its foot."""
+    roller 0.85 mm beside its contact line."""
     result = transport("transport_4x4")
     found, place = events(result), result.sheet_motion(0)[0][:, 0]
     for name in ("motor", "counter"):

@@ -193,9 +193,9 @@ def test_solvers_refuse_it_by_themselves(monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 def test_check_counts_and_shows_parts(cli: Run) -> None:
-    told = json.loads(cli("check", "feed.yaml", "--json").out)
-    assert told["pairs"]["external"] == 24
-    assert told["external_parts"]["feed"] == {"body": "b_feed", "graphics": ["gra_feed"]}
+    record = json.loads(cli("check", "feed.yaml", "--json").out)
+    assert record["pairs"]["external"] == 24
+    assert record["external_parts"]["feed"] == {"body": "b_feed", "graphics": ["gra_feed"]}
     shown = cli("check", "feed.yaml").out
     assert "external parts: feed (b_feed), guide (MODEL.sys_guide.b_guide); 24 pairs of bodies" in shown
     assert "external parts" not in cli("check", FOUR).out

@@ -60,9 +60,9 @@ def calls(tmp_path: Path) -> int:
     """How many calls it takes to write NEW over OLD."""
     write(tmp_path, OLD)
     with pytest.MonkeyPatch.context() as patch:
-        told = at_call(0, lambda: None, patch)
+        report = at_call(0, lambda: None, patch)
         write(tmp_path, NEW)
-        return told()
+        return report()
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="kills a process of its own")

@@ -340,7 +340,7 @@ def closed(solid: Solid) -> None:
     assert len(set(sides)) == len(sides) and {(b, a) for a, b in sides} == set(sides)
 
 
-def told(err: str, spec: Path) -> bool:
+def one_line(err: str, spec: Path) -> bool:
     """Whether each mistake has a line, 20 of them at most; one more says how many are left."""
     lines = err.splitlines()
     own = [line for line in lines if line.startswith((str(spec), "mdlgen: "))]
@@ -351,7 +351,7 @@ def checked(spec: Path) -> int:
     """Exit code of check."""
     code, err = command("check", str(spec), "-q")
     assert code in (0, 2), err
-    assert code == 0 or told(err, spec), err
+    assert code == 0 or one_line(err, spec), err
     return code
 
 
@@ -372,7 +372,7 @@ def through(spec: Path) -> int:
         )
         # what cannot be read cannot be written, and what can may still be refused by name
         assert ended in ((0, 2) if code == 0 else (2,)), err
-        assert ended == 0 or told(err, spec), err
+        assert ended == 0 or one_line(err, spec), err
         assert file.exists() == (ended == 0)
         if ended == 0:
             # as a word of its own, and not one that the scene has as a name
@@ -388,7 +388,7 @@ def solved(spec: Path) -> None:
     ended, err = command("run", str(spec), "-q", "-o", str(folder / "d"), *SHORT)
     # 5: it ran, and its files stand, but missed its tolerance
     assert ended in (0, 2, 4, 5), err
-    assert ended == 0 or told(err, spec), err
+    assert ended == 0 or one_line(err, spec), err
     assert (folder / "d" / "summary.json").exists() == (ended in (0, 5))
 
 

@@ -220,12 +220,12 @@ def channel(boxes, step, solver="lattice"):
     model = lower(load(CHANNEL, [f"sheets.note.boxes=[{boxes},1]", f"run.step={step} ms", damped]))
     result = mdlgen.solve(model, solver)
     assert result.ok, result.status
-    lead, told = result.anchor_motion(0)[0], series(result)
+    lead, record = result.anchor_motion(0)[0], series(result)
     assert lead[-1, 2] == pytest.approx(19.4, abs=0.1)  # it is there
     last = [result.time >= result.time[-1] - span for span in (3.0 + 1e-9, 12.0, 24.0)]
     speed = float(np.linalg.norm(lead[-1] - lead[last[0]][0])) / 3.0
     outer, inner = (
-        told[f"guide_{n}.force_n"][at].mean() for n, at in zip(("outer", "inner"), last[1:], strict=True)
+        record[f"guide_{n}.force_n"][at].mean() for n, at in zip(("outer", "inner"), last[1:], strict=True)
     )
     return np.array([speed, outer, inner])
 
@@ -321,7 +321,7 @@ def test_a_changed_facet_is_seen(tmp_path):
     assert not emitter("motionview").read(text, "own").notes.findings()
 
 
-# -- what is refused, and what is told
+# -- what is refused, and what is reported
 
 
 def test_a_sheet_that_begins_in_a_guide_is_told():

@@ -57,10 +57,10 @@ def process(folder: Path, *args: str) -> Ended:
         )
     code, cpu, memory = (float(word) for word in (folder / "used").read_text().split())
     (folder / "used").unlink()
-    told = [f.read_text("utf-8") for f in files]
+    message = [f.read_text("utf-8") for f in files]
     for file in files:
         file.unlink()
-    return Ended(int(code), *told, cpu, memory / 1024)
+    return Ended(int(code), *message, cpu, memory / 1024)
 
 
 def changed(old: str, new: str) -> str:
@@ -178,9 +178,9 @@ def test_a_device_has_no_end(tmp_path: Path) -> None:
 
 
 def refused(text: str, *wishes: str) -> SpecError:
-    with pytest.raises(SpecError) as told:
+    with pytest.raises(SpecError) as refusal:
         mdlgen.lower(loads(text, limits=DEFAULT.raised(wishes)))
-    return told.value
+    return refusal.value
 
 
 @pytest.mark.parametrize(

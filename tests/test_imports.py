@@ -50,10 +50,10 @@ def test_what_does_not_run_imports_no_solver(command: str) -> None:
 
 # No process is started, but for the one that importing h5py asks for the name of the processor.
 WATCH = """
-def told(event, args):
+def imported(event, args):
     started = event in ("subprocess.Popen", "os.system", "os.fork", "os.posix_spawn")
     assert not started or list(args[1]) == ["uname", "-p"], (event, args)
-sys.addaudithook(told)
+sys.addaudithook(imported)
 """
 
 

@@ -118,8 +118,8 @@ def test_files_that_include_each_other_are_named(tmp_path: Path, first: str) -> 
     written(tmp_path, a='*Include("b.mdl")\n', b=f'*Include("{first}")\n', host=text)
     report = report_of(tmp_path, text)
     chain = ["host.mdl", "a.mdl", "b.mdl"]
-    told = " includes ".join((*chain[chain.index(first) :], first))
-    assert [(f.code, f.message) for f in report.errors] == [("cycle", told)]
+    reason = " includes ".join((*chain[chain.index(first) :], first))
+    assert [(f.code, f.message) for f in report.errors] == [("cycle", reason)]
     assert report.errors[0].place.file == str(tmp_path / "b.mdl")
 
 

@@ -335,9 +335,9 @@ def test_a_column_stands_up_to_greenhills_height(part: float, stands: bool) -> N
 
 def test_it_falls_in_as_many_directions_as_modes_are_past() -> None:
     """The second mode of Greenhill's column is at 55.977."""
-    for part, told in ((50.0 / GREENHILL, "in one direction,"), (60.0 / GREENHILL, "in 2 directions,")):
+    for part, message in ((50.0 / GREENHILL, "in one direction,"), (60.0 / GREENHILL, "in 2 directions,")):
         result = mdlgen.solve(lower(loads(COLUMN.format(g=part * GREENHILL / GROUP, boxes=40))), "lattice")
-        assert told in result.status, result.status
+        assert message in result.status, result.status
 
 
 # -- honest ends

@@ -58,10 +58,10 @@ def test_every_code_is_explained_and_none_besides() -> None:
 def test_explain_is_a_command() -> None:
     assert run("explain", "w104") == (0, SCENE["W104"] + "\n")
     assert run("explain", "dangling") == (0, TEXT["dangling"] + "\n")
-    code, told = run("explain")
-    assert code == 0 and all(name in told for name in (*SCENE, *TEXT))
-    code, told = run("explain", "danglin")
-    assert code == 2 and "did you mean 'dangling'?" in told
+    code, message = run("explain")
+    assert code == 0 and all(name in message for name in (*SCENE, *TEXT))
+    code, message = run("explain", "danglin")
+    assert code == 2 and "did you mean 'dangling'?" in message
 
 
 def test_near_misses_are_named() -> None:
@@ -75,9 +75,9 @@ def test_near_misses_are_named() -> None:
         (["check", FOUR, "--set", "sheets.note.material=eur1"], "eur10"),
         (["check", FOUR, "--set", "sheets.note.thicknes=1 mm"], "thickness"),
     ):
-        code, told = run(*args)
-        assert code == 2 and f"did you mean {meant!r}?" in told, told
-        assert len(told.splitlines()) == 1
+        code, message = run(*args)
+        assert code == 2 and f"did you mean {meant!r}?" in message, message
+        assert len(message.splitlines()) == 1
 
 
 def test_check_is_a_table_on_a_terminal_and_plain_elsewhere(
@@ -93,9 +93,9 @@ def test_check_is_a_table_on_a_terminal_and_plain_elsewhere(
         app(args, prog_name="mdlgen")
     assert ended.value.code == 0
     coloured = capsys.readouterr().out
-    told = re.sub(r"\x1b\[[0-9;]*m", "", coloured)
-    assert coloured != told and max(map(len, told.splitlines())) <= 90
-    cells = [line.split() for line in told.splitlines()]
+    message = re.sub(r"\x1b\[[0-9;]*m", "", coloured)
+    assert coloured != message and max(map(len, message.splitlines())) <= 90
+    cells = [line.split() for line in message.splitlines()]
     assert ["code", "where", "what", "what", "to", "do"] in cells
     # every number of the plain tables stands in these
     for line in plain.splitlines():
@@ -105,21 +105,21 @@ def test_check_is_a_table_on_a_terminal_and_plain_elsewhere(
 
 @pytest.mark.parametrize("command", [c.name or c.callback.__name__ for c in app.registered_commands])  # type: ignore[union-attr]
 def test_every_command_has_an_example_in_its_help(command: str) -> None:
-    code, told = run(command, "--help")
-    assert code == 0 and f"Example: mdlgen {command}" in told
+    code, message = run(command, "--help")
+    assert code == 0 and f"Example: mdlgen {command}" in message
 
 
 def test_a_shell_can_complete() -> None:
-    code, told = run("--help")
-    assert code == 0 and "--install-completion" in told
+    code, message = run("--help")
+    assert code == 0 and "--install-completion" in message
 
 
 class TestPython:
     def test_results_show_themselves_in_a_line(self) -> None:
         result = transport()
         assert repr(result) == "<Result transport_4x4, lattice, ok, 50 ms in 201 states, 49 bodies>"
-        told = repr(result.model)
-        assert told.startswith("<Model transport_4x4: 49 bodies, 1 sheets, 8 rollers, 1 planes, 1")
+        message = repr(result.model)
+        assert message.startswith("<Model transport_4x4: 49 bodies, 1 sheets, 8 rollers, 1 planes, 1")
         assert repr(mdlgen.load(FOUR)).startswith(
             "<Scene transport_4x4: 1 sheets, 8 rollers, 1 planes, 7 con"
         )

@@ -195,8 +195,8 @@ def test_a_broken_file_is_refused_in_one_line_at_its_place(folder, what):
     (folder / "bad.stl").write_bytes(content)
     with pytest.raises(SpecError) as found:
         scene_of(folder, ("wedge.stl", "bad.stl"))
-    told = str(found.value)
-    assert message in told and "\n" not in told and told.startswith("scene:") and "meshes.three" in told
+    text = str(found.value)
+    assert message in text and "\n" not in text and text.startswith("scene:") and "meshes.three" in text
 
 
 @pytest.mark.parametrize(
@@ -276,9 +276,9 @@ def test_triangles_of_all_meshes_are_limited_and_the_limit_can_be_raised(folder)
     """256, 96 and 16; what the message tells to write helps, in a go or two for each file."""
     wishes = ["triangles=100"]
     for path in ("one", "two", "two", "three"):  # lines, then triangles
-        with pytest.raises(SpecError, match=rf"meshes.{path}: .* --limit \S+ raises this limit") as told:
+        with pytest.raises(SpecError, match=rf"meshes.{path}: .* --limit \S+ raises this limit") as refused:
             loads(SHAPES, folder=folder, limits=DEFAULT.raised(wishes))
-        wishes = re.findall(r"--limit (\S+)", str(told.value))
+        wishes = re.findall(r"--limit (\S+)", str(refused.value))
     assert wishes == ["triangles=368"]
     assert len(loads(SHAPES, folder=folder, limits=DEFAULT.raised(wishes)).meshes) == 3
 
@@ -320,9 +320,9 @@ def test_a_file_that_claims_too_much_ends_the_command_in_little_memory(folder):
     (folder / "huge.stl").write_bytes(broken("2^32 triangles claimed")[0])
     (folder / "huge.yaml").write_text(SHAPES.replace("wedge.stl", "huge.stl"))
     # a process begins with the greatest memory of the one that it was started from: one between is small
-    told = "import resource, subprocess, sys; code = subprocess.run(sys.argv[1:]).returncode; "
-    told += "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss); sys.exit(code)"
-    command = [sys.executable, "-c", told, sys.executable, "-m", "mdlgen", "check", "huge.yaml"]
+    message = "import resource, subprocess, sys; code = subprocess.run(sys.argv[1:]).returncode; "
+    message += "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss); sys.exit(code)"
+    command = [sys.executable, "-c", message, sys.executable, "-m", "mdlgen", "check", "huge.yaml"]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     assert done.returncode == 2 and len(done.stderr.strip().splitlines()) == 1, done.stderr
     assert "huge.yaml:12" in done.stderr and "claims 4294967295 triangles" in done.stderr
@@ -568,23 +568,23 @@ def test_what_is_too_deep_is_seen(tmp_path):
 
 def transport(folder, count, meshes=True, boxes=(10, 20)):
     """transport_4x4, its motor rollers as cylinders or as meshes of `count` sides, 4 count triangles."""
-    told = YAML(typ="safe").load((samples() / "transport_4x4.yaml").read_text())
-    told["sheets"]["note"]["boxes"] = list(boxes)
+    record = YAML(typ="safe").load((samples() / "transport_4x4.yaml").read_text())
+    record["sheets"]["note"]["boxes"] = list(boxes)
     if meshes:
         (folder / "roller.stl").write_bytes(binary(*cylinder(7.5, 5.0, count)))
-        motors = [name for name in told["rollers"] if name.startswith("motor")]
-        told["meshes"] = {
+        motors = [name for name in record["rollers"] if name.startswith("motor")]
+        record["meshes"] = {
             f"rim_{n}": {
                 "file": "roller.stl",
-                "center": told["rollers"][n]["center"],
+                "center": record["rollers"][n]["center"],
                 "on": n,
                 "mass": "1e-6 g",
             }
             for n in motors
         }
-        (contact,) = [c for c in told["contacts"] if c["between"] == ["note", "motor_*"]]
+        (contact,) = [c for c in record["contacts"] if c["between"] == ["note", "motor_*"]]
         contact["between"] = ["note", "rim_*"]
-    return lower(loads(json.dumps(told), folder=folder))
+    return lower(loads(json.dumps(record), folder=folder))
 
 
 def test_a_roller_of_20000_triangles_transports_as_the_cylinder(tmp_path):

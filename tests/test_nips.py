@@ -207,7 +207,7 @@ parameters: {pitch: 10 mm}
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "path", "told"),
+    ("old", "new", "path", "text"),
     [
         ("force: 3 N", "force: 3 mm", "nips.entry.force", "expected a unit like 'N'"),
         ("force: 3 N", "force: 0.001 N", "nips.entry.force", "at least 0 N"),
@@ -227,12 +227,12 @@ parameters: {pitch: 10 mm}
          "greater than or equal to 1"),
     ],
 )  # fmt: skip
-def test_a_mistake_is_where_it_stands(old: str, new: str, path: str, told: str) -> None:
+def test_a_mistake_is_where_it_stands(old: str, new: str, path: str, text: str) -> None:
     assert old in ONE
     with pytest.raises(SpecError) as raised:
         loads(ONE.replace(old, new, 1), "s.yaml")
     errors = [raised.value, *raised.value.others]
-    found = [e for e in errors if ".".join(map(str, e.path)) == path and told in e.message]
+    found = [e for e in errors if ".".join(map(str, e.path)) == path and text in e.message]
     assert found, [str(e) for e in errors]
     assert found[0].place is not None and found[0].place.file == "s.yaml" and found[0].place.line > 3
 

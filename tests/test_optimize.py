@@ -21,7 +21,7 @@ from mdlgen.study.case import Case
 from mdlgen.study.fragment import fragment
 from mdlgen.study.goal import goal
 from mdlgen.study.optimisation import Optimisation
-from mdlgen.study.row import FAILED, OK, Row
+from mdlgen.study.row import FAILED, OK, CaseRow
 from mdlgen.study.task import Task, task
 
 INCLINE = samples() / "verify" / "incline.yaml"
@@ -38,17 +38,17 @@ class Made:
     def __init__(self, numbers: Numbers, stop: int | None = None):
         self.numbers, self.stop, self.cases = numbers, stop, list[Case]()
 
-    def rows(self, task: Task, cases: Sequence[Case]) -> Iterator[Row]:
+    def rows(self, task: Task, cases: Sequence[Case]) -> Iterator[CaseRow]:
         for case in cases:
             if len(self.cases) == self.stop:
                 raise KeyboardInterrupt
             self.cases.append(case)
             found = self.numbers(dict(case.values))
             if found is None:
-                yield Row(case.index, case.values, FAILED, "it did not converge")
+                yield CaseRow(case.index, case.values, FAILED, "it did not converge")
                 continue
             measures = {n: e.value(found.get) for n, e in task.expressions()}
-            yield Row(case.index, case.values, OK, "ok", measures)
+            yield CaseRow(case.index, case.values, OK, "ok", measures)
 
     def close(self) -> None:
         """Nothing is open."""
@@ -62,7 +62,7 @@ def asked(
 
 def searched(
     folder: Path, wanted: Optimisation, numbers: Numbers, resume: bool = False, stop: int | None = None
-) -> tuple[list[Row], Row | None, Made]:
+) -> tuple[list[CaseRow], CaseRow | None, Made]:
     made = Made(numbers, stop)
     with optimisation.opened(folder, wanted, resume)[1] as journal:
         rows, best = optimisation.run(wanted, journal, made)
@@ -127,7 +127,7 @@ class TestMethods:
         def numbers(values: dict[str, str]) -> dict[str, float]:
             return {X: friction(values)}
 
-        def found(name: str, **more) -> tuple[list[tuple], Row | None]:
+        def found(name: str, **more) -> tuple[list[tuple], CaseRow | None]:
             wanted = asked(
                 f"-{X}", f"{FRICTION}=0.1:0.5", under=[f"{X} <= 0.3"], method="optuna", most=20, **more
             )
@@ -141,7 +141,7 @@ class TestMethods:
         assert len(found("four", together=2)[0]) == 20
 
     @pytest.mark.parametrize(
-        ("options", "told"),
+        ("options", "message"),
         [
             ({"vary": [f"{FRICTION}=0.1:0.5"], "method": "brant"}, "did you mean 'brent'"),
             ({"vary": [f"{FRICTION}=[0.1, 0.5]"], "method": "brent"}, "--method optuna takes lists"),
@@ -153,13 +153,13 @@ class TestMethods:
             ({"vary": ["sheets.block.mas=1 g:2 g"]}, "did you mean 'mass'"),
         ],
     )
-    def test_what_cannot_be_meant_is_told(self, options: dict, told: str) -> None:
+    def test_what_cannot_be_meant_is_told(self, options: dict, message: str) -> None:
         with pytest.raises(SpecError) as error:
             asked(X, *options.pop("vary"), **options)
-        assert told in str(error.value)
+        assert message in str(error.value)
 
     def test_goals_are_read_before_anything_is_run(self) -> None:
-        for minimise, under, told in (
+        for minimise, under, message in (
             ("sheets.block.travel_m.x", [], "did you mean 'sheets.block.travel_mm.x'"),
             ("sheets.block.travel_mm", [], "is a vector"),
             (X, [X], "is not A <= B"),
@@ -168,7 +168,7 @@ class TestMethods:
         ):
             with pytest.raises(SpecError) as error:
                 asked(minimise, f"{FRICTION}=0.1:0.5", under=under)
-            assert told in str(error.value)
+            assert message in str(error.value)
 
 
 class TestRuns:
@@ -231,7 +231,7 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
 
 class TestCommand:
     def test_it_ends_with_the_friction_of_the_closed_form(self, found: tuple[Path, str]) -> None:
-        folder, told = found
+        folder, message = found
         with (folder / "table" / "table.csv").open() as stream:
             rows = list(csv.DictReader(stream))
         best = min(rows, key=lambda row: float(row["objective"]))
@@ -239,21 +239,21 @@ class TestCommand:
         # v = g (sin a - mu cos a) t; friction is less than mu for the 0.3 ms below 1 mm/s, its smoothing
         mu = math.tan(angle) - 0.020 / (9.81 * math.cos(angle) * 0.020)
         assert float(best[FRICTION]) == pytest.approx(mu, rel=0.02)
-        assert len(rows) <= 12 and f"# {FRICTION}: {best[FRICTION]}" in told
+        assert len(rows) <= 12 and f"# {FRICTION}: {best[FRICTION]}" in message
 
     def test_it_writes_the_text_the_piece_and_the_page(self, found: tuple[Path, str]) -> None:
-        folder, told = found
-        assert told.endswith((folder / "table" / "best.yaml").read_text())
+        folder, message = found
+        assert message.endswith((folder / "table" / "best.yaml").read_text())
         assert "*EndMDL()" in (folder / "best.mdl").read_text()
         page = (folder / "table" / "study.html").read_text()
         data = json.loads(page.split('id="data">')[1].split("</script>")[0])
         assert data["objective"] == "objective" and data["best"] is not None
 
     def test_what_is_wrong_ends_in_one_line(self, tmp_path: Path) -> None:
-        for words, told in (
+        for words, message in (
             (["--vary", f"{FRICTION}=0.1:0.5", "--minimise", "sheets.block.yaw_de"], "did you mean"),
             (["--vary", f"{FRICTION}=2", "--minimise", X], "is no range"),
             (["--vary", "d=0.1:0.5", "--let", f"{FRICTION}=e", "--minimise", X], "no variable 'e'"),
         ):
             done = CliRunner().invoke(app, ["optimize", str(INCLINE), *words, "--folder", str(tmp_path)])
-            assert done.exit_code == 2 and told in done.stderr and len(done.stderr.splitlines()) == 1
+            assert done.exit_code == 2 and message in done.stderr and len(done.stderr.splitlines()) == 1

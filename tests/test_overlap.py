@@ -106,7 +106,7 @@ def test_what_was_looked_at_before_changes_nothing(part: str) -> None:
     does not."""
     made = lower(loads(without(scene(part, DOWNWARDS, center="[0 mm, 0 mm, 10.2 mm]"))))
     body, overlaps = made.roller("r").body, Overlaps(made)
-    rng, told = np.random.default_rng(3), 0
+    rng, message = np.random.default_rng(3), 0
     for _ in range(300):
         places = made.bodies.position.copy()
         size = 10.0 ** rng.uniform(-3, 2)
@@ -114,8 +114,8 @@ def test_what_was_looked_at_before_changes_nothing(part: str) -> None:
             places[body] += size * rng.normal(size=3)
             found = overlaps.found(places, 0.0)
             assert found == Overlaps(made).found(places, 0.0)
-            told += found is not None
-    assert 50 < told < 1400
+            message += found is not None
+    assert 50 < message < 1400
 
 
 # -- runs

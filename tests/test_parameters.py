@@ -148,9 +148,9 @@ SHORT += "parameters: {v: 1400 mm/s, r: 7.5 mm}\n"
 
 
 def refused(text: str, sets: tuple[str, ...] = ()) -> SpecError:
-    with pytest.raises(SpecError) as told:
+    with pytest.raises(SpecError) as raised:
         loads(text, "s.yaml", sets)
-    return told.value
+    return raised.value
 
 
 def test_speed_over_radius_is_a_rate_and_set_and_the_text_turn_it() -> None:
@@ -191,7 +191,7 @@ def test_the_sheets_alone_have_the_parameters_that_they_use() -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "told"),
+    ("old", "new", "text"),
     [
         ("v/r", "v + r", "a sum needs one unit, not mm/s and mm"),
         ("v/r", "v*r", "has the unit mm^2*s^-1; expected a unit like 'rad/s'"),
@@ -214,9 +214,9 @@ def test_the_sheets_alone_have_the_parameters_that_they_use() -> None:
         ("v: 1400 mm/s", "v: [1]", "[1] is not a value; write like 3 N"),
     ],
 )
-def test_a_mistake_in_a_formula_is_one_line_where_it_stands(old: str, new: str, told: str) -> None:
+def test_a_mistake_in_a_formula_is_one_line_where_it_stands(old: str, new: str, text: str) -> None:
     error = refused(SHORT.replace(old, new, 1))
-    assert told in error.message and "\n" not in str(error)
+    assert text in error.message and "\n" not in str(error)
     assert error.others == () and error.place is not None and error.place.file == "s.yaml"
     line = SHORT[: SHORT.index(old)].count("\n") + 1
     assert error.place.line == line
@@ -246,9 +246,9 @@ def test_an_error_of_units_names_both(one: str, other: str, sign: str) -> None:
     if a == b:
         assert evaluated(text, {}).unit == a
         return
-    with pytest.raises(ValueError) as told:
+    with pytest.raises(ValueError) as raised:
         evaluated(text, {})
-    assert f"not {a} and {b}" in str(told.value)
+    assert f"not {a} and {b}" in str(raised.value)
 
 
 HOSTILE = (
@@ -271,8 +271,8 @@ def test_a_hostile_formula_ends_with_one_line(text: str) -> None:
     begin = time.process_time()
     error = refused(SHORT, (f"rollers.motor_1_left.drive.speed={json.dumps(text)}",))
     assert time.process_time() - begin < 2.0  # as a good one, on a slow machine
-    for told in (error, *error.others):
-        assert "\n" not in str(told) and len(str(told)) < 600
+    for message in (error, *error.others):
+        assert "\n" not in str(message) and len(str(message)) < 600
     assert "rollers.motor_1_left.drive.speed" in str(error)
 
 

@@ -137,10 +137,10 @@ def test_a_peer_that_fails_is_no_failure_of_the_bench(tmp_path, monkeypatch):
 @pytest.mark.parametrize("solver", [pytest.param("mujoco", marks=needs_mujoco), "exudyn-script"])
 def test_a_row_of_a_peer_end_to_end(tmp_path, monkeypatch, solver):
     monkeypatch.setattr(transport, "OTHER_FINEST", 0.05)  # the reference need not be the bench's own
-    told = CliRunner().invoke(
+    ended = CliRunner().invoke(
         app, ["bench", "transport", "--quick", "--repeat", "1", "--solver", solver, "-o", str(tmp_path)]
     )
-    assert told.exit_code == 0, told.output
+    assert ended.exit_code == 0, ended.output
     rows = json.loads((tmp_path / "bench.json").read_text())["rows"]
     assert [row["quantity"].partition(",")[0] for row in rows] == ["position", "mean displacement"]
     for row in rows:

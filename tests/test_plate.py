@@ -98,7 +98,7 @@ def test_an_end_moment_closes_the_strip(solver: str, axis: str, stiffness: float
     width = size["y" if axis == "x" else "x"]
     moment = 2 * math.pi * stiffness * width / size[axis]
     about = [moment, 0.0, 0.0] if axis == "y" else [0.0, -moment, 0.0]
-    told = ", ".join(f"{m!r} N*mm" for m in about)
+    message = ", ".join(f"{m!r} N*mm" for m in about)
     made = model(
         "cantilever",
         PLATE,
@@ -106,7 +106,7 @@ def test_an_end_moment_closes_the_strip(solver: str, axis: str, stiffness: float
         f"sheets.note.boxes={boxes}",
         f"sheets.note.clamp.edge={axis}_min",
         f"probes.tip.edge={axis}_max",
-        f"loads=[{{sheet: note, edge: {axis}_max, moment: [{told}]}}]",
+        f"loads=[{{sheet: note, edge: {axis}_max, moment: [{message}]}}]",
     )
     shut = moved(made, solver)["tip"]
     there = np.array([-67.0, 0.0, 0.0]) if axis == "x" else np.array([0.0, -127.0, 0.0])
@@ -290,10 +290,10 @@ def test_a_strip_bends_in_its_plane_as_a_beam(boxes: tuple[int, int]) -> None:
     sets = (f"sheets.note.boxes={list(boxes)}", f"loads=[{', '.join(pulls)}]")
     made = model("cantilever", PLATE, STILL, *sets)
     assert -moved(made)["tip"][0] == pytest.approx(bend * 127**2 / 2, rel=1e-3)
-    told = strains(solved(made))
-    assert told is not None  # and at the sheet's edges each joint has the beam's strain
-    assert told.stretch.value.max() == pytest.approx(bend * 33.5, rel=1e-3)
-    assert told.squeeze.value.min() == pytest.approx(-bend * 33.5, rel=1e-3)
+    message = strains(solved(made))
+    assert message is not None  # and at the sheet's edges each joint has the beam's strain
+    assert message.stretch.value.max() == pytest.approx(bend * 33.5, rel=1e-3)
+    assert message.squeeze.value.min() == pytest.approx(-bend * 33.5, rel=1e-3)
 
 
 def test_stiffness_of_each_joint() -> None:

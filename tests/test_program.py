@@ -99,7 +99,7 @@ def python(code: str, folder: Path, cache: Path, *args: str, **more: str) -> sub
     )
 
 
-def told(process: subprocess.Popen[str]) -> Any:
+def answer(process: subprocess.Popen[str]) -> Any:
     """What it printed, evaluated; on standard error it says nothing."""
     out, err = process.communicate(timeout=300)
     assert (process.returncode, err) == (0, "")
@@ -129,13 +129,13 @@ def package(folder: Path, program: bytes | None) -> Path:
 
 def test_a_program_is_called_without_numba(tmp_path: Path, made: bytes) -> None:
     package(tmp_path, made)
-    assert told(python(USE, tmp_path, tmp_path / "cache")) == [FOUND, False, None]
+    assert answer(python(USE, tmp_path, tmp_path / "cache")) == [FOUND, False, None]
     kept = list((tmp_path / "cache" / "programs").iterdir())
     assert [path.suffix for path in kept] == [".o"]
     before = kept[0].stat().st_mtime_ns
-    assert told(python(USE, tmp_path, tmp_path / "cache")) == [FOUND, False, None]
+    assert answer(python(USE, tmp_path, tmp_path / "cache")) == [FOUND, False, None]
     assert kept[0].stat().st_mtime_ns == before, "it is loaded, not made again"
-    assert told(python(USE, tmp_path, tmp_path / "cache", MDLGEN_NUMBA="1"))[:2] == [FOUND, True]
+    assert answer(python(USE, tmp_path, tmp_path / "cache", MDLGEN_NUMBA="1"))[:2] == [FOUND, True]
 
 
 @pytest.mark.parametrize("harm", ["cut", "changed", "foreign", "empty", "other kernels", "of a later LLVM"])
@@ -153,19 +153,19 @@ def test_a_program_that_does_not_fit_is_compiled_by_numba(tmp_path: Path, made: 
         "of a later LLVM": json.dumps(alike).encode() + b"\n" + packed,
     }[harm]
     package(tmp_path, program)
-    found, by_numba, why = told(python(USE, tmp_path, tmp_path / "cache"))
+    found, by_numba, why = answer(python(USE, tmp_path, tmp_path / "cache"))
     assert (found, by_numba) == (FOUND, True)
     assert {"other kernels": "other kernels", "of a later LLVM": "LLVM"}.get(harm, "damaged") in why
 
 
 def test_machine_code_that_is_damaged_is_made_again(tmp_path: Path, made: bytes) -> None:
     package(tmp_path, made)
-    assert told(python(USE, tmp_path, tmp_path / "cache")) == [FOUND, False, None]
+    assert answer(python(USE, tmp_path, tmp_path / "cache")) == [FOUND, False, None]
     (kept,) = (tmp_path / "cache" / "programs").iterdir()
     whole = kept.read_bytes()
     for harm in (whole[:-40], b"", whole[:200] + b"\xff\xff" + whole[202:]):
         kept.write_bytes(harm)
-        assert told(python(USE, tmp_path, tmp_path / "cache")) == [FOUND, False, None]
+        assert answer(python(USE, tmp_path, tmp_path / "cache")) == [FOUND, False, None]
         assert kept.read_bytes()[:32] == hashlib.sha256(kept.read_bytes()[32:]).digest()
 
 
@@ -174,14 +174,14 @@ def test_a_home_that_nobody_writes_to_does_no_harm(tmp_path: Path, made: bytes) 
     package(tmp_path, made)
     (tmp_path / "file").write_text("")
     for kind in ("0", "1"):
-        found = told(python(USE, tmp_path, tmp_path / "file" / "cache", MDLGEN_NUMBA=kind))
+        found = answer(python(USE, tmp_path, tmp_path / "file" / "cache", MDLGEN_NUMBA=kind))
         assert found[:2] == [FOUND, kind == "1"]
 
 
 def test_first_runs_at_once_give_the_same(tmp_path: Path, made: bytes) -> None:
     package(tmp_path, made)
     all_of_them = [python(USE, tmp_path, tmp_path / "cache") for _ in range(3)]
-    assert [told(process) for process in all_of_them] == [[FOUND, False, None]] * 3
+    assert [answer(process) for process in all_of_them] == [[FOUND, False, None]] * 3
     assert [path.suffix for path in (tmp_path / "cache" / "programs").iterdir()] == [".o"]
 
 
@@ -196,7 +196,7 @@ def test_arguments_of_other_types_are_numbas(tmp_path: Path, made: bytes) -> Non
         "print([first, 'numba' in sys.modules, whole.tolist()])"
     )
     found = [[3.0] * 6, [2.0, 1.0] * 3]
-    assert told(python(code, tmp_path, tmp_path / "cache")) == [False, True, found]
+    assert answer(python(code, tmp_path, tmp_path / "cache")) == [False, True, found]
 
 
 def test_memory_stays_flat(tmp_path: Path, made: bytes) -> None:
@@ -210,7 +210,7 @@ def test_memory_stays_flat(tmp_path: Path, made: bytes) -> None:
         "k.PROGRAM.release()\n"
         "print([found[-1] - found[2]])"
     )
-    (grown,) = told(python(code, tmp_path, tmp_path / "cache"))
+    (grown,) = answer(python(code, tmp_path, tmp_path / "cache"))
     assert grown < 20_000, "kB, of 3,200,000 made"
 
 
@@ -231,7 +231,7 @@ def test_memory_stays_flat_over_many_runs(tmp_path: Path) -> None:
         "print([after - before, tracemalloc.get_traced_memory()[1] / 1024])"
     )
     cache = str(paths.user_cache())
-    grown, held = told(python(code, tmp_path, Path(cache), PYTHONPATH=os.pathsep.join(sys.path)))
+    grown, held = answer(python(code, tmp_path, Path(cache), PYTHONPATH=os.pathsep.join(sys.path)))
     assert held > 500
     assert grown < 100 * held / 30, "kB"
 
@@ -247,7 +247,7 @@ def test_arguments_are_forgotten_as_a_solver_ends(tmp_path: Path, made: bytes) -
         "    return weakref.ref(grid)\n"
         "print([solve()()])"
     )
-    assert told(python(code, tmp_path, tmp_path / "cache")) == [None]
+    assert answer(python(code, tmp_path, tmp_path / "cache")) == [None]
 
 
 def test_a_users_own_numba_stays_as_it_was(tmp_path: Path) -> None:
@@ -264,7 +264,7 @@ def test_a_users_own_numba_stays_as_it_was(tmp_path: Path) -> None:
         "import own\n"
         "print([own.twice(2), (config.CACHE_DIR, c.FunctionCache.save_overload) == before])"
     )
-    assert told(python(code, tmp_path, tmp_path / "cache")) == [4, True]
+    assert answer(python(code, tmp_path, tmp_path / "cache")) == [4, True]
     assert [path.name for path in (tmp_path / "__pycache__").glob("own.*.nbi")]
     kept = [path.name.split(".")[1].split("-")[0] for path in (tmp_path / "cache").rglob("*.nbi")]
     assert sorted(kept) == ["_square", "fill", "total"]
@@ -276,7 +276,7 @@ def test_a_process_that_has_numba_can_call_kernels_from_its_own(tmp_path: Path) 
         "from numba import njit\nfrom tiny.kernels import _square\n"
         "@njit\ndef twice(x):\n    return 2 * _square(x)\nprint([twice(3.0)])"
     )
-    assert told(python(code, tmp_path, tmp_path / "cache")) == [36.0]
+    assert answer(python(code, tmp_path, tmp_path / "cache")) == [36.0]
 
 
 @pytest.mark.parametrize(

@@ -134,14 +134,14 @@ def test_results_by_name() -> None:
     )
     result = mdlgen.solve(mdlgen.lower(scene))
     assert result.ok
-    told = result.summary()
+    record = result.summary()
     note, motor, lead = result.sheets["note"], result.rollers["motor_1_left"], result.probes["lead"]
-    np.testing.assert_allclose(note.travel, told["sheets"]["note"]["travel_mm"])
-    np.testing.assert_allclose(note.speed, told["sheets"]["note"]["speed_mm_per_s"])
-    assert note.yaw == pytest.approx(told["sheets"]["note"]["yaw_deg"])
-    assert motor.speed == pytest.approx(told["rollers"]["motor_1_left"]["omega_rad_per_s"])
-    assert motor.nip_force == pytest.approx(told["rollers"]["motor_1_left"]["nip_force_n"])
-    np.testing.assert_allclose(lead.displacement, told["probes"]["lead"]["displacement_mm"], atol=1e-12)
+    np.testing.assert_allclose(note.travel, record["sheets"]["note"]["travel_mm"])
+    np.testing.assert_allclose(note.speed, record["sheets"]["note"]["speed_mm_per_s"])
+    assert note.yaw == pytest.approx(record["sheets"]["note"]["yaw_deg"])
+    assert motor.speed == pytest.approx(record["rollers"]["motor_1_left"]["omega_rad_per_s"])
+    assert motor.nip_force == pytest.approx(record["rollers"]["motor_1_left"]["nip_force_n"])
+    np.testing.assert_allclose(lead.displacement, record["probes"]["lead"]["displacement_mm"], atol=1e-12)
     assert note.position.shape == (len(result.time), 3) and motor.force.shape == result.time.shape
     assert " mm/s, yaw " in repr(note) and " rad/s, center [" in repr(motor)
     with pytest.raises(KeyError):

@@ -909,5 +909,5 @@ def test_data_set_values_stand_in_the_deck(pair: tuple[dict[str, Any], Report, D
     ends = [
         a["end_time"] for t, _, a in deck.elements if t == "Simulate" and a["analysis_type"] == "Transient"
     ]
-    settle, cycle = inputs["steady_state_time"], inputs["cycle_time"]
-    assert [float(e) for e in ends] == [settle, settle + cycle, 2 * settle + cycle, 2 * (settle + cycle)]
+    steady, cycle = inputs["steady_state_time"], inputs["cycle_time"]
+    assert [float(e) for e in ends] == [steady, steady + cycle, 2 * steady + cycle, 2 * (steady + cycle)]

@@ -62,8 +62,8 @@ def numbers(packed: str, kind: str) -> np.ndarray:
 def test_three_js_is_as_its_package_has_it() -> None:
     rows = re.findall(r"^\| (\S+) \| ([0-9a-f]{64}) \|$", (THIRD / "README.md").read_text("utf-8"), re.M)
     assert {name for name, _ in rows} == {p.name for p in THIRD.iterdir()} - {"README.md"}
-    for name, told in rows:
-        assert hashlib.sha256((THIRD / name).read_bytes()).hexdigest() == told, name
+    for name, message in rows:
+        assert hashlib.sha256((THIRD / name).read_bytes()).hexdigest() == message, name
 
 
 class TestSaved:
@@ -109,26 +109,26 @@ class TestSaved:
     def test_a_table_that_is_not_ours_is_refused(self, result: Result, tmp_path: Path) -> None:
         result.save(tmp_path)
         with h5py.File(tmp_path / "result.h5", "r+") as file:
-            told = bytes(file["model/tables"][()]).replace(b'"SheetPart"', b'"Popen"')
+            message = bytes(file["model/tables"][()]).replace(b'"SheetPart"', b'"Popen"')
             del file["model/tables"]
-            file["model/tables"] = np.bytes_(told)
+            file["model/tables"] = np.bytes_(message)
         with pytest.raises(OutputError, match="cannot read"):
             Result.load(tmp_path)
 
 
 class TestPicture:
     def test_positions_are_within_a_quantum(self, result: Result, text: str) -> None:
-        told = embedded(text)[0]["animation"]
+        record = embedded(text)[0]["animation"]
         at = frames(result)
-        shape = (len(at), told["bodies"], 3)
-        place = np.array(told["low"]) + told["step"] * numbers(told["place"], "<u2").reshape(shape)
-        rows = [result.model.bodies.name.index(name) for name in told["names"]]
+        shape = (len(at), record["bodies"], 3)
+        place = np.array(record["low"]) + record["step"] * numbers(record["place"], "<u2").reshape(shape)
+        rows = [result.model.bodies.name.index(name) for name in record["names"]]
         true = result.position[at][:, rows]
         # half a step each way, and round-off
-        assert np.abs(place - true).max() <= 0.501 * max(told["step"])
-        assert max(told["step"]) < 0.005  # mm, on a picture of 200 mm
-        turn = numbers(told["turn"], "<i2").reshape(*shape[:2], 4) / 32767
-        assert np.abs(turn[:, : told["boxes"]] - result.rotation[at, : told["boxes"]]).max() < 2e-5
+        assert np.abs(place - true).max() <= 0.501 * max(record["step"])
+        assert max(record["step"]) < 0.005  # mm, on a picture of 200 mm
+        turn = numbers(record["turn"], "<i2").reshape(*shape[:2], 4) / 32767
+        assert np.abs(turn[:, : record["boxes"]] - result.rotation[at, : record["boxes"]]).max() < 2e-5
 
     def test_rollers_turn_as_fast_as_they_are_driven(self, result: Result) -> None:
         at = np.arange(len(result.time))
@@ -219,17 +219,17 @@ class TestPicture:
     def test_colours_reach_the_peaks_of_the_summary(self, result: Result) -> None:
         at = np.arange(len(result.time))
         strain, curvature = boxes.greatest(histories(result, at), (len(at), boxes.count(result.model)))
-        told = result.summary()["sheets"]["note"]
-        assert strain.max() == pytest.approx(max(told["strain"][f"max_{w}"] for w in ("md", "cd")))
+        record = result.summary()["sheets"]["note"]
+        assert strain.max() == pytest.approx(max(record["strain"][f"max_{w}"] for w in ("md", "cd")))
         assert curvature.max() == pytest.approx(
-            max(told["curvature"][f"max_{w}_per_mm"] for w in ("md", "cd"))
+            max(record["curvature"][f"max_{w}_per_mm"] for w in ("md", "cd"))
         )
 
     def test_curves_end_where_the_summary_does(self, result: Result, text: str) -> None:
-        told, summary = embedded(text)[0], result.summary()
+        record, summary = embedded(text)[0], result.summary()
         last = {
             (panel["key"], line["name"]): float(numbers(line["y"], "<f4")[-1])
-            for panel in told["panels"]
+            for panel in record["panels"]
             for line in panel["lines"]
         }
         note = summary["sheets"]["note"]
@@ -245,7 +245,7 @@ class TestPicture:
         for name, roller in summary["rollers"].items():
             assert last["omega", name] == pytest.approx(roller["omega_rad_per_s"], rel=1e-6)
             assert last["force", name] == pytest.approx(roller["nip_force_n"], rel=1e-6)
-        keys = [panel["key"] for panel in told["panels"]]
+        keys = [panel["key"] for panel in record["panels"]]
         assert keys == [
             "displacement", "speed", "drift", "yaw", "tilt", "force", "penetration", "omega", "strain",
             "curvature",
@@ -253,9 +253,9 @@ class TestPicture:
 
     def test_a_static_run_is_shown_before_and_after(self) -> None:
         result = ran("cantilever", "sheets.note.boxes=[2,8]")
-        told = embedded(page([result]))[0]
-        assert told["animation"]["static"] and len(told["animation"]["time"]) == 2
-        (panel,) = told["panels"]
+        record = embedded(page([result]))[0]
+        assert record["animation"]["static"] and len(record["animation"]["time"]) == 2
+        (panel,) = record["panels"]
         assert {line["name"] for line in panel["lines"]} == {"before", "after"}
         drop = result.summary()["probes"]["tip"]["displacement_mm"][2]
         lowest = min(float(numbers(line["y"], "<f4").min()) for line in panel["lines"])
@@ -319,11 +319,11 @@ class TestText:
 
     def test_what_was_run_stands_in_it(self, result: Result, text: str) -> None:
         tree = html.fromstring(text)
-        told = " ".join(tree.get_element_by_id("run").itertext())
+        message = " ".join(tree.get_element_by_id("run").itertext())
         for value in (result.solver, "balance error", "numpy", "k_tx"):
-            assert value in told
-        assert str(result.steps) in told
-        assert f"{result.energy.balance_error:.5g}" in told
+            assert value in message
+        assert str(result.steps) in message
+        assert f"{result.energy.balance_error:.5g}" in message
         events = tree.get_element_by_id("events").xpath(".//tbody/tr")
         assert len(events) == len(result.events) > 8
 
@@ -352,8 +352,8 @@ class TestText:
 
     def test_lints_stand_in_it(self) -> None:
         result = moving(small_model("materials.eur10.E_md=40000 MPa"))
-        told = " ".join(html.fromstring(page([result])).get_element_by_id("lints").itertext())
-        assert "W101" in told and "check the unit" in told
+        message = " ".join(html.fromstring(page([result])).get_element_by_id("lints").itertext())
+        assert "W101" in message and "check the unit" in message
 
 
 class TestCommands:
@@ -382,8 +382,10 @@ class TestCommands:
 
     def test_runs_of_other_grids_are_told_apart_without_box_distances(self, result: Result) -> None:
         coarse = moving(small_model())
-        told = " ".join(html.fromstring(page([result, coarse])).get_element_by_id("differences").itertext())
-        assert "different boxes" in told
+        message = " ".join(
+            html.fromstring(page([result, coarse])).get_element_by_id("differences").itertext()
+        )
+        assert "different boxes" in message
 
     def test_bad_folders(self, result: Result, tmp_path: Path) -> None:
         run = CliRunner().invoke

@@ -125,14 +125,14 @@ def test_a_box_in_a_nip_has_the_colour_of_its_force(browser: Tab, tmp_path: Path
 
 def test_the_figures_have_the_numbers_of_the_summary(browser: Tab, tmp_path: Path, result: Result) -> None:
     show(browser, tmp_path, [result])
-    told = json.loads(
+    record = json.loads(
         browser.ask(
             "JSON.stringify([...document.querySelectorAll('.key[data-last]')].map("
             "(key) => [key.closest('figure').dataset.key, key.dataset.name, Number(key.dataset.last), "
             "key.textContent]))"
         )
     )
-    last = {(key, name): (value, text) for key, name, value, text in told}
+    last = {(key, name): (value, text) for key, name, value, text in record}
     result.save(tmp_path)
     summary = json.loads((tmp_path / "summary.json").read_text("utf-8"))
     for name, sheet in summary["sheets"].items():
@@ -148,7 +148,7 @@ def test_the_figures_have_the_numbers_of_the_summary(browser: Tab, tmp_path: Pat
         assert last["omega", name][0] == pytest.approx(roller["omega_rad_per_s"], rel=1e-6)
         assert last["force", name][0] == pytest.approx(roller["nip_force_n"], rel=1e-6)
     paths = browser.ask("document.querySelectorAll('figure svg path').length")
-    assert paths == len(told)
+    assert paths == len(record)
     # a line is hidden by its name
     browser.ask("document.querySelector('.key').click()")
     assert browser.ask("document.querySelectorAll('figure svg path').length") == paths - 1

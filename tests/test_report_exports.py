@@ -64,25 +64,25 @@ class TestGlb:
         assert data == glb(result)
         length, size, kind = struct.unpack_from("<III", data, 8)
         assert (data[:4], length, kind) == (b"glTF", len(data), 0x4E4F534A)
-        told, blob = json.loads(data[20 : 20 + size]), data[28 + size :]
+        record, blob = json.loads(data[20 : 20 + size]), data[28 + size :]
 
         def read(number: int) -> np.ndarray:
-            accessor = told["accessors"][number]
-            view = told["bufferViews"][accessor["bufferView"]]
+            accessor = record["accessors"][number]
+            view = record["bufferViews"][accessor["bufferView"]]
             width = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[accessor["type"]]
             found = np.frombuffer(blob, "<f4", accessor["count"] * width, view["byteOffset"])
             return found.reshape(-1, width)
 
-        (animation,) = told["animations"]
+        (animation,) = record["animations"]
         place, turn = poses(result, np.arange(len(result.time)))
         seen = set()
         for channel in animation["channels"]:
             sampler = animation["samplers"][channel["sampler"]]
-            time = read(sampler["input"])[:, 0] * told["asset"]["extras"]["ms_per_s"]
+            time = read(sampler["input"])[:, 0] * record["asset"]["extras"]["ms_per_s"]
             assert time == pytest.approx(result.time, abs=1e-5) and result.time[-1] == pytest.approx(
-                LASTS * told["asset"]["extras"]["ms_per_s"]
+                LASTS * record["asset"]["extras"]["ms_per_s"]
             )
-            name, path = told["nodes"][channel["target"]["node"]]["name"], channel["target"]["path"]
+            name, path = record["nodes"][channel["target"]["node"]]["name"], channel["target"]["path"]
             body = result.model.bodies.name.index(name)
             values = read(sampler["output"])
             if path == "translation":

@@ -58,24 +58,24 @@ def result(model: Model) -> Result:
 
 class TestSummary:
     def test_is_the_promised_object(self, result: Result) -> None:
-        told = summary(result)
-        assert set(told) == PROMISED | WORK
-        assert set(told["pairs"]) == {"possible", "kept", "touched"}
-        assert set(told["sheets"]["note"]) == {
+        record = summary(result)
+        assert set(record) == PROMISED | WORK
+        assert set(record["pairs"]) == {"possible", "kept", "touched"}
+        assert set(record["sheets"]["note"]) == {
             "travel_mm", "speed_mm_per_s", "yaw_deg", "boxes", "bushings", "strain", "curvature", "twist",
         }  # fmt: skip
-        assert set(told["probes"]["lead"]) == {"displacement_mm", "speed_mm_per_s"}
+        assert set(record["probes"]["lead"]) == {"displacement_mm", "speed_mm_per_s"}
 
     def test_values_are_in_mm_and_s(self, result: Result) -> None:
-        told = summary(result)
+        record = summary(result)
         end = result.model.run.duration
-        note = told["sheets"]["note"]
+        note = record["sheets"]["note"]
         # a product and a mean over boxes: some ulp
         assert note["travel_mm"] == pytest.approx([SPEED * end, 0, 0], abs=1e-12)
         assert note["speed_mm_per_s"] == pytest.approx([SPEED * 1000, 0, 0], abs=1e-9)
         assert (note["boxes"], note["bushings"]) == (6, 14)
-        assert told["probes"]["lead"]["displacement_mm"] == pytest.approx([SPEED * end, 0, 0], abs=1e-12)
-        assert told["rollers"]["motor_1_left"]["omega_rad_per_s"] == pytest.approx(186.7, rel=1e-12)
+        assert record["probes"]["lead"]["displacement_mm"] == pytest.approx([SPEED * end, 0, 0], abs=1e-12)
+        assert record["rollers"]["motor_1_left"]["omega_rad_per_s"] == pytest.approx(186.7, rel=1e-12)
 
     def test_a_roller_counts_sheets_only_in_its_penetration(self, result: Result) -> None:
         contacts = result.model.contacts
@@ -107,8 +107,8 @@ class TestSummary:
 
     def test_what_is_not_finite_is_null(self, result: Result) -> None:
         broken = replace(result, wall_s=math.inf, error_estimate=math.nan)
-        told = json.loads(json.dumps(summary(broken), allow_nan=False))
-        assert told["wall_s"] is None and told["error_estimate"] is None
+        record = json.loads(json.dumps(summary(broken), allow_nan=False))
+        assert record["wall_s"] is None and record["error_estimate"] is None
 
     def test_a_run_without_states_has_a_summary(self, result: Result) -> None:
         none = replace(
@@ -121,8 +121,8 @@ class TestSummary:
             spin=result.spin[:0],
             contact_force=result.contact_force[:0],
         )
-        told = summary(none)
-        assert told["status"] == "it failed" and told["sheets"]["note"]["travel_mm"] is None
+        record = summary(none)
+        assert record["status"] == "it failed" and record["sheets"]["note"]["travel_mm"] is None
 
     def test_static_results_are_relative_to_the_model(self, model: Model) -> None:
         one = moving(model, times=2, shift=-3.0)
@@ -135,9 +135,9 @@ class TestSummary:
             spin=0 * one.spin[:1],
             contact_force=one.contact_force[:1],
         )
-        told = summary(static)
-        assert told["sheets"]["note"]["travel_mm"] == pytest.approx([0, 0, -3], abs=1e-12)
-        assert told["probes"]["lead"]["displacement_mm"] == pytest.approx([0, 0, -3], abs=1e-12)
+        record = summary(static)
+        assert record["sheets"]["note"]["travel_mm"] == pytest.approx([0, 0, -3], abs=1e-12)
+        assert record["probes"]["lead"]["displacement_mm"] == pytest.approx([0, 0, -3], abs=1e-12)
 
     @pytest.mark.parametrize(("clamp", "pull", "row"), [("x_min", "x_max", -1), ("x_max", "x_min", 0)])
     def test_strain_is_elongation_over_the_flexible_length(self, clamp: str, pull: str, row: int) -> None:
@@ -196,9 +196,9 @@ class TestFiles:
         force = ended.contact_force
         force[:] = np.linspace(1.0, 2.0, len(force))[:, None]
         (plane,) = model.planes
-        told = summary(ended)["planes"][plane.name]
-        assert told["nip_force_n"] == 2.0 * len(model.contacts)
-        assert "center_mm" not in told and told["contacts"]["block"]["max_force_n"] == 0.0
+        record = summary(ended)["planes"][plane.name]
+        assert record["nip_force_n"] == 2.0 * len(model.contacts)
+        assert "center_mm" not in record and record["contacts"]["block"]["max_force_n"] == 0.0
         np.testing.assert_array_equal(series(ended)[f"{plane.name}.force_n"], force.sum(axis=1))
 
     @pytest.mark.parametrize("yaw", [0.0, 0.2, -2.5])

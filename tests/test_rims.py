@@ -150,7 +150,7 @@ def test_a_turning_rim_gives_back_what_it_stores() -> None:
 def test_a_sheet_moves_only_while_the_rubber_passes(solver: str) -> None:
     """90 deg of 15 mm; what is lost or won is creep of 1 mm/s smoothing, and where in the blend it grips."""
     result = solved(model(), solver)
-    # the rim's angle at the foot of the sheet is 270 deg less what the roller has turned
+    # the rim's angle where it is nearest to the sheet is 270 deg less what the roller has turned
     turned = np.degrees(result.model.roller("feed").turned(result.time))
     moved = way(result)
     assert np.abs(moved[turned < 115.0]).max() < 0.03  # creep of the plastic

@@ -102,10 +102,10 @@ def test_a_pressed_roller_rests_at_the_depth_of_its_force(name: str, analysis: s
     row = result.model.roller("r").body
     assert 10.0 + off - result.position[-1, row, 2] == pytest.approx(z, rel=1e-6)
     assert result.contact_force[-1, 0] == pytest.approx(K * z**1.5, rel=1e-6)
-    told = result.summary()["rollers"]["r"]
-    assert told["contacts"]["part"]["max_penetration_mm"] == pytest.approx(z, rel=1e-6)
-    assert told["nip_force_n"] == pytest.approx(K * z**1.5, rel=1e-6)
-    assert told["free_of_counterpart_at_ms"] == 0.0  # that is of rollers only
+    record = result.summary()["rollers"]["r"]
+    assert record["contacts"]["part"]["max_penetration_mm"] == pytest.approx(z, rel=1e-6)
+    assert record["nip_force_n"] == pytest.approx(K * z**1.5, rel=1e-6)
+    assert record["free_of_counterpart_at_ms"] == 0.0  # that is of rollers only
 
 
 @pytest.mark.parametrize("solver", SOLVERS)

@@ -239,8 +239,9 @@ def _held(result: Result) -> float:
 @pytest.mark.parametrize("c_r", [0.0, 0.5])
 @pytest.mark.parametrize("solver", ["lattice", "exudyn"])
 def test_rollers_that_resist_rolling_hold_a_sheet_back_by_f_n_each(solver: str, c_r: float) -> None:
-    """By 2 f N more than without: friction alone, which slips a little before and behind the foot, holds by
-    0.0027 N, at any restitution. The lever of the friction is R - z, 0.6 and 0.9 % shorter than R."""
+    """By 2 f N more than without: friction alone, which slips a little before and behind the contact line,
+    holds by 0.0027 N, at any restitution. The lever of the friction is R - z, 0.6 and 0.9 % shorter than
+    R."""
     result = solved(COAST, solver, *RESIST, *damped(c_r))
     without = solved(COAST, solver, *RESIST, *damped(c_r), "contacts.0.rolling_resistance=0")
     normal = result.contact_force[len(result.time) // 4 :, :2].mean(axis=0).sum()

@@ -117,8 +117,8 @@ def test_a_curled_and_tilted_note_runs_through_the_machine():
 def test_the_text_says_the_same(name, more):
     # fewer boxes; folds and ears are where lines are
     few = ("sheets.note.boxes=[10,10]", *more)
-    told = scene(FREE, f"sheets.note.shape={SHAPES[name]}", *few)
-    found = verify(told, lower(told), turn=not more)
+    message = scene(FREE, f"sheets.note.shape={SHAPES[name]}", *few)
+    found = verify(message, lower(message), turn=not more)
     assert found.ok, found.all_differences()[:3]
 
 
@@ -126,8 +126,8 @@ def test_the_text_says_the_same(name, more):
 @pytest.mark.parametrize("edge", ["x_min", "y_max"])
 def test_the_text_of_a_sheet_that_begins_flat(axis, edge):
     few = ("sheets.note.boxes=[3,4]", f"sheets.note.clamp.edge={edge}")
-    told = scene(HELD, f"sheets.note.shape={{start: flat, curl: {{radius: -90 mm, along: {axis}}}}}", *few)
-    found = verify(told, lower(told))
+    message = scene(HELD, f"sheets.note.shape={{start: flat, curl: {{radius: -90 mm, along: {axis}}}}}", *few)
+    found = verify(message, lower(message))
     assert found.ok, found.all_differences()[:3]
     assert "ds_note_shape.real_radius" not in (found.turned.shown_only if found.turned else ())
 
@@ -174,8 +174,8 @@ def test_what_is_refused(shape, words):
 )
 def test_the_text_has_a_point_between_frames_on_each_of_its_boxes(what, shape, at):
     few = ("sheets.note.boxes=[4,4]", f"sheets.note.shape={shape}", what % at)
-    told = scene(FREE, *few)
-    found = verify(told, lower(told))
+    message = scene(FREE, *few)
+    found = verify(message, lower(message))
     assert found.ok, found.all_differences()[:3]
 
 
@@ -187,8 +187,8 @@ def test_the_text_has_a_point_between_frames_on_each_of_its_boxes(what, shape, a
     ],
 )
 def test_a_sheet_may_turn_by_more_than_half_a_turn_in_all(shape):
-    told = scene(FREE, "sheets.note.boxes=[2,20]", f"sheets.note.shape={shape}")
-    assert verify(told, lower(told), turn=False).ok
+    message = scene(FREE, "sheets.note.boxes=[2,20]", f"sheets.note.shape={shape}")
+    assert verify(message, lower(message), turn=False).ok
 
 
 @pytest.mark.parametrize(

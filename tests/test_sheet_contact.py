@@ -16,8 +16,8 @@ from mdlgen.model import sheet_pairs
 from mdlgen.model.lower import lower
 from mdlgen.model.tables import BOX_BOX, Model
 from mdlgen.registry import chosen, emitter
-from mdlgen.results.piles import piled
 from mdlgen.results.result import Result
+from mdlgen.results.stacked import stacked
 from mdlgen.spec.load import loads
 from mdlgen.verify.verification import verify
 
@@ -365,7 +365,7 @@ def test_a_stack_at_rest_does_not_creep_or_gain_energy():
     # all that is left is the creep of smoothed friction [mm/ms]
     assert speed[late].max() < 1e-7
     assert abs(result.energy.balance_error) < 5e-3
-    together = piled(result)
+    together = stacked(result)
     assert together is not None and together[-1].all()
 
 

@@ -38,10 +38,10 @@ def refused(*pairs: tuple[str, str], sets: tuple[str, ...] = ()) -> SpecError:
     for old, new in pairs:
         assert old in text
         text = text.replace(old, new, 1)
-    with pytest.raises(SpecError) as told:
+    with pytest.raises(SpecError) as raised:
         loads(text, "s.yaml", sets)
-    assert told.value.others == ()
-    return told.value
+    assert raised.value.others == ()
+    return raised.value
 
 
 def plain(scene: Scene) -> Scene:
@@ -93,7 +93,7 @@ def test_a_mapping_is_filled_key_by_key_and_null_leaves_it_out() -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "path", "told"),
+    ("old", "new", "path", "text"),
     [
         (
             "smoothing: 20 mm/s}",
@@ -115,9 +115,9 @@ def test_a_mapping_is_filled_key_by_key_and_null_leaves_it_out() -> None:
         ("[note, support]", '[note, "motor_1*"]', "contacts.rest.between", "already has contacts.grip"),
     ],
 )
-def test_a_mistake_is_where_it_stands(old: str, new: str, path: str, told: str) -> None:
+def test_a_mistake_is_where_it_stands(old: str, new: str, path: str, text: str) -> None:
     error = refused((old, new))
-    assert ".".join(map(str, error.path)) == path and told in error.message
+    assert ".".join(map(str, error.path)) == path and text in error.message
     line = TEXT[: TEXT.index(old)].count("\n") + 1
     assert error.place is not None and error.place.line == line
 

@@ -95,11 +95,11 @@ def test_it_follows_a_value_that_is_changed() -> None:
 def test_check_and_run_say_so(tmp_path: Path) -> None:
     file = tmp_path / "fast.yaml"
     file.write_text(TEXT)
-    told = CliRunner().invoke(app, ["check", str(file)])
-    assert "smoothing 7 mm/s, from the speeds of the scene: contacts 0, 1\n" in told.stdout
-    assert "smoothing 1 mm/s: contact 2\n" in told.stdout
+    ended = CliRunner().invoke(app, ["check", str(file)])
+    assert "smoothing 7 mm/s, from the speeds of the scene: contacts 0, 1\n" in ended.stdout
+    assert "smoothing 1 mm/s: contact 2\n" in ended.stdout
     said = "contacts 0, 1: smoothing is left out and follows from the speeds of the scene, 7 mm/s; up to"
-    assert said in told.stderr and "mdlgen upgrade FILE" in told.stderr
+    assert said in ended.stderr and "mdlgen upgrade FILE" in ended.stderr
     as_json: Any = json.loads(CliRunner().invoke(app, ["check", str(file), "--json"]).stdout)
     assert as_json["smoothing"][1] == {"contact": "1", "mm_per_s": pytest.approx(7.0), "follows": True}
     ran = CliRunner().invoke(
@@ -148,8 +148,8 @@ def test_text_deck_and_script_have_the_same_value() -> None:
     for written in (mdlgen.emit(model, "motionsolve"), companion(model) or ""):
         found = {round(float(v), 9) for v in re.findall(r'normal_trans_vel"?\s*[=:] "?([0-9.]+)', written)}
         assert found == {7.0, 1.0, 3.0}
-    told = verify(scene, model)
-    assert not told.differences and told.turned is not None and told.turned.largest < 1e-9
+    message = verify(scene, model)
+    assert not message.differences and message.turned is not None and message.turned.largest < 1e-9
 
 
 def test_in_a_text_it_follows_parameters() -> None:
@@ -161,8 +161,8 @@ def test_in_a_text_it_follows_parameters() -> None:
     model = lower(scene)
     smooth = {p.data_set: p.formula for p in model.parameters if p.member == "v_n"}
     assert smooth["contact_0"] == "max(1 mm/s, min(20 mm/s, 0.01*abs(v/r)*(r)))" and not smooth["contact_2"]
-    told = verify(scene, model)
-    assert not told.differences and told.turned is not None and told.turned.largest < 1e-9
+    message = verify(scene, model)
+    assert not message.differences and message.turned is not None and message.turned.largest < 1e-9
 
 
 def test_old_scenes_of_the_repository_say_what_they_mean() -> None:

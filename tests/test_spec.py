@@ -14,12 +14,12 @@ CANTILEVER = (samples() / "cantilever.yaml").read_text("utf-8")
 
 
 def refused(text: str, *overrides: str) -> SpecError:
-    with pytest.raises(SpecError) as told:
+    with pytest.raises(SpecError) as raised:
         loads(text, "scene.yaml", overrides)
-    assert told.value.exit_code == 2
-    assert told.value.place is not None
-    assert "\n" not in str(told.value)
-    return told.value
+    assert raised.value.exit_code == 2
+    assert raised.value.place is not None
+    assert "\n" not in str(raised.value)
+    return raised.value
 
 
 @pytest.mark.parametrize(
@@ -64,9 +64,9 @@ def test_size(tmp_path: Path) -> None:
 def test_not_utf8_tells_the_line(tmp_path: Path) -> None:
     path = tmp_path / "latin.yaml"
     path.write_bytes(b"name: x\n# caf\xe9\n")
-    with pytest.raises(SpecError, match="UTF-8") as told:
+    with pytest.raises(SpecError, match="UTF-8") as raised:
         load(path)
-    assert told.value.place is not None and told.value.place.line == 2
+    assert raised.value.place is not None and raised.value.place.line == 2
 
 
 def test_missing_file_is_an_output_error(tmp_path: Path) -> None:
@@ -152,7 +152,7 @@ class TestSet:
         assert {c.restitution for c in scene.contacts} == {0.1}
 
     @pytest.mark.parametrize(
-        ("override", "told"),
+        ("override", "text"),
         [
             (
                 "sheets.nota.boxes=[4,8]",
@@ -166,9 +166,9 @@ class TestSet:
             ("sheets.x*.boxes=[4,8]", "nothing here fits 'x*'; there are: note"),
         ],
     )
-    def test_a_part_that_is_not_there(self, override: str, told: str) -> None:
+    def test_a_part_that_is_not_there(self, override: str, text: str) -> None:
         error = refused(CANTILEVER, override)
-        assert error.message.startswith(told) and error.others == ()
+        assert error.message.startswith(text) and error.others == ()
         assert error.place is not None and error.place.file == f"--set {override.partition('=')[0]}"
 
 
@@ -233,5 +233,5 @@ def test_every_sample_loads() -> None:
 
 
 def test_a_mapping_where_a_list_is_due_says_how_items_begin() -> None:
-    told = refused(f"{CANTILEVER}\nloads:\n  pull: {{sheet: note, edge: y_max, force: [0 N, 1 N, 0 N]}}\n")
-    assert "loads: expected a list, each item begun with '- ', got {'pull'" in str(told)
+    message = refused(f"{CANTILEVER}\nloads:\n  pull: {{sheet: note, edge: y_max, force: [0 N, 1 N, 0 N]}}\n")
+    assert "loads: expected a list, each item begun with '- ', got {'pull'" in str(message)

@@ -97,9 +97,9 @@ def test_it_settles_where_spring_and_preload_bear_the_weight(solver: str) -> Non
     result = solved(SCENE, solver, *sets, "run.tolerance=1e-2")
     rest = (0.6 - (BLOCK + PLATE) * G) / 0.5
     assert rest < -0.35 and way(result)[-1] == pytest.approx(rest, abs=1e-4)
-    told = result.summary()["planes"]["plate"]
-    assert told["nip_force_n"] == pytest.approx(BLOCK * G, rel=1e-3)
-    assert told["center_mm"][2] == pytest.approx(-2 + rest, abs=1e-4)
+    record = result.summary()["planes"]["plate"]
+    assert record["nip_force_n"] == pytest.approx(BLOCK * G, rel=1e-3)
+    assert record["center_mm"][2] == pytest.approx(-2 + rest, abs=1e-4)
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
@@ -274,9 +274,9 @@ def test_notes_leave_a_stack_one_by_one(stack: dict[str, Result]) -> None:
 def test_what_a_run_tells_of_it(stack: dict[str, Result]) -> None:
     result = stack["lattice"]
     plate, _ = plate_of(result.model)
-    told = result.summary()["planes"]["plate"]
-    assert told["center_mm"] == pytest.approx(result.position[-1, plate.body])
-    assert told["contacts"]["note_3"]["max_force_n"] > 0.3 and told["max_penetration_mm"] > 0.0
+    record = result.summary()["planes"]["plate"]
+    assert record["center_mm"] == pytest.approx(result.position[-1, plate.body])
+    assert record["contacts"]["note_3"]["max_force_n"] > 0.3 and record["max_penetration_mm"] > 0.0
     table = series(result)
     assert table["plate.z_mm"] == pytest.approx(result.position[:, plate.body, 2])
     row = result.model.contacts.part_b.index("plate")
@@ -358,7 +358,7 @@ def test_a_fixed_plate_is_written_as_before() -> None:
 
 
 @pytest.mark.parametrize(
-    ("override", "told"),
+    ("override", "message"),
     [
         ("planes.plate.press.direction=[0, 0, 0]", "is not a direction"),
         ("planes.plate.press.direction=x", "lies in the plate's own face"),
@@ -373,11 +373,11 @@ def test_a_fixed_plate_is_written_as_before() -> None:
         ("planes.plate.press={direction: z, stiffness: 1 N/mm}", "preload"),
     ],
 )
-def test_what_cannot_be_meant_is_told_in_one_line(override: str, told: str) -> None:
+def test_what_cannot_be_meant_is_told_in_one_line(override: str, message: str) -> None:
     with pytest.raises(SpecError) as error:
         loads(SCENE, overrides=[override])
     line = str(error.value)
-    assert told in line and "planes.plate.press" in line and "\n" not in line
+    assert message in line and "planes.plate.press" in line and "\n" not in line
 
 
 def test_the_command_line_ends_with_one_line(capsys: pytest.CaptureFixture[str], tmp_path) -> None:
@@ -386,5 +386,5 @@ def test_the_command_line_ends_with_one_line(capsys: pytest.CaptureFixture[str],
     with pytest.raises(SystemExit) as ended:
         app(["check", str(tmp_path / "scale.yaml"), "--set", wrong], prog_name="mdlgen")
     assert ended.value.code == 2
-    told = capsys.readouterr().err.strip()
-    assert "planes.plate.press.direction" in told and len(told.splitlines()) == 1
+    message = capsys.readouterr().err.strip()
+    assert "planes.plate.press.direction" in message and len(message.splitlines()) == 1

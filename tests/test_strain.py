@@ -1,4 +1,4 @@
-"""What joints bear: closed forms, the force law itself, and what is told of it."""
+"""What joints bear: closed forms, the force law itself, and what is reported of it."""
 
 from __future__ import annotations
 
@@ -59,9 +59,9 @@ def placed(model: Model, position: np.ndarray, turn: Rotation) -> Result:
 
 
 def found(result: Result) -> Strains:
-    told = strains(result)
-    assert told is not None
-    return told
+    message = strains(result)
+    assert message is not None
+    return message
 
 
 # ---------------------------------------------------------------- closed forms
@@ -72,28 +72,28 @@ def found(result: Result) -> Strains:
 def test_a_pulled_strip_has_the_strain_of_its_stress_in_every_joint(
     layout: str, clamp: str, modulus: float
 ) -> None:
-    told = solved(
+    message = solved(
         f"sheets.strip.layout={layout}",
         f'sheets.strip.clamp={{edge: {clamp}, length: "0 mm"}}',
         f"loads=[{{sheet: strip, edge: {OPPOSITE[clamp]}, stress: 1 MPa}}]",
         "sheets.strip.rotation=[20 deg, -40 deg, 130 deg]",
     )
-    along = told.joints.axis == (0 if clamp[0] == "x" else 1)
+    along = message.joints.axis == (0 if clamp[0] == "x" else 1)
     assert along.sum() == 12  # 5 x 2 and 2 hinges, or 6 and 6
     # sigma / E; the balance of the solver is good to 1e-9 of the force
-    np.testing.assert_allclose(told.stretch.value[along], 1 / modulus, rtol=1e-6)
-    np.testing.assert_allclose(told.squeeze.value[along], 1 / modulus, rtol=1e-6)
-    assert np.abs(told.stretch.value[~along]).max() < 1e-9
-    assert np.abs(told.curvature.value).max() < 1e-9 and np.abs(told.twist.value).max() < 1e-9
+    np.testing.assert_allclose(message.stretch.value[along], 1 / modulus, rtol=1e-6)
+    np.testing.assert_allclose(message.squeeze.value[along], 1 / modulus, rtol=1e-6)
+    assert np.abs(message.stretch.value[~along]).max() < 1e-9
+    assert np.abs(message.curvature.value).max() < 1e-9 and np.abs(message.twist.value).max() < 1e-9
 
 
 def test_a_strip_that_hangs_bears_the_weight_below() -> None:
     result = mdlgen.solve(lower(mdlgen.load(samples() / "verify" / "hanging.yaml")))
-    told = found(result)
-    along = told.joints.axis == 0
-    below = 100.0 - told.joints.at[along, 0]  # mm of strip
+    message = found(result)
+    along = message.joints.axis == 0
+    below = 100.0 - message.joints.at[along, 0]  # mm of strip
     # rho g l / E, with the mass of whole boxes below the joint
-    np.testing.assert_allclose(told.stretch.value[along], 1000 * 9.81 * below * 1e-3 / 100e6, rtol=1e-6)
+    np.testing.assert_allclose(message.stretch.value[along], 1000 * 9.81 * below * 1e-3 / 100e6, rtol=1e-6)
 
 
 @pytest.mark.parametrize("count", [6, 30])
@@ -101,29 +101,29 @@ def test_a_strip_that_hangs_bears_the_weight_below() -> None:
 def test_a_strip_rolled_to_a_circle_has_one_curvature(count: int, turn: str) -> None:
     """The end moment 2 pi D W / L (oracles.md) closes the strip; the sheet bends towards -z of its axes."""
     moment = 2 * math.pi * 2.0 * 20 / 60
-    told = solved(
+    message = solved(
         f"sheets.strip.boxes=[{count},2]",
         f"sheets.strip.turn={turn}",
         CLAMPED,
         f'loads=[{{sheet: strip, edge: x_max, moment: ["0 N*mm", "{moment!r} N*mm", "0 N*mm"]}}]',
     )
-    along = told.joints.axis == 0
-    np.testing.assert_allclose(told.curvature.value[along], -2 * math.pi / 60, rtol=1e-6)
-    assert np.abs(told.curvature.value[~along]).max() < 1e-9
-    assert np.abs(told.twist.value).max() < 1e-9
+    along = message.joints.axis == 0
+    np.testing.assert_allclose(message.curvature.value[along], -2 * math.pi / 60, rtol=1e-6)
+    assert np.abs(message.curvature.value[~along]).max() < 1e-9
+    assert np.abs(message.twist.value).max() < 1e-9
 
 
 @pytest.mark.parametrize("clamp", list(OPPOSITE))
 def test_a_strip_that_droops_bends_away_from_its_normal(clamp: str) -> None:
-    told = solved(
+    message = solved(
         f'sheets.strip.clamp={{edge: {clamp}, length: "0 mm"}}',
         f"loads=[{{sheet: strip, edge: {OPPOSITE[clamp]}, force: [0 N, 0 N, -0.005 N]}}]",
     )
-    along = told.joints.axis == (0 if clamp[0] == "x" else 1)
-    assert (told.curvature.value[along] < 0).all()
-    hinge = np.array([name.split("_")[1] == "c" for name in told.joints.name])
+    along = message.joints.axis == (0 if clamp[0] == "x" else 1)
+    assert (message.curvature.value[along] < 0).all()
+    hinge = np.array([name.split("_")[1] == "c" for name in message.joints.name])
     # the moment is the greatest at the clamp: M / (D W) with the arm that is left of the bent strip
-    assert np.abs(told.curvature.value[along]).argmax() in np.flatnonzero(hinge[along])
+    assert np.abs(message.curvature.value[along]).argmax() in np.flatnonzero(hinge[along])
 
 
 @pytest.mark.parametrize("layout", ["edge_to_edge", "center_to_center"])
@@ -137,8 +137,8 @@ def test_a_rigid_motion_bears_nothing(layout: str) -> None:
         state = placed(model, turn.apply(model.bodies.position.copy()) + 100 * shift, turn)
         # q and -q are one rotation
         result.position[t], result.rotation[t] = state.position[0], state.rotation[0] * random.choice([-1, 1])
-    told = found(result)
-    for peak in (told.stretch, told.squeeze, told.curvature, told.twist):
+    message = found(result)
+    for peak in (message.stretch, message.squeeze, message.curvature, message.twist):
         # round-off of positions of some 100 mm, over joints of 10 mm
         assert np.abs(peak.value).max() < 1e-13
 
@@ -146,10 +146,10 @@ def test_a_rigid_motion_bears_nothing(layout: str) -> None:
 def test_a_twisted_strip_has_its_twist() -> None:
     model = strip("sheets.strip.boxes=[6,1]")
     angle = 0.01 * model.bodies.position[:, 0]  # rad, about x
-    told = found(placed(model, model.bodies.position, Rotation.from_rotvec(np.outer(angle, [1, 0, 0]))))
+    message = found(placed(model, model.bodies.position, Rotation.from_rotvec(np.outer(angle, [1, 0, 0]))))
     # not more exact than the angle of a quaternion
-    np.testing.assert_allclose(told.twist.value, 0.01, rtol=1e-12)
-    assert np.abs(told.curvature.value).max() < 1e-15
+    np.testing.assert_allclose(message.twist.value, 0.01, rtol=1e-12)
+    assert np.abs(message.curvature.value).max() < 1e-15
 
 
 @pytest.mark.parametrize(("layout", "most"), [("edge_to_edge", 0.02), ("center_to_center", 0.0)])
@@ -159,9 +159,9 @@ def test_a_turn_in_the_plane_pulls_one_corner(layout: str, most: float) -> None:
         "sheets.strip.size=[20 mm, 20 mm]", "sheets.strip.boxes=[2,1]", f"sheets.strip.layout={layout}"
     )
     turn = Rotation.from_rotvec([[0, 0, 0], [0, 0, 2 * math.asin(0.01)]])
-    told = found(placed(model, turn.apply(model.bodies.position.copy()), turn))
-    assert told.stretch.value == pytest.approx([most], abs=1e-14)
-    assert told.squeeze.value == pytest.approx([-most], abs=1e-14)
+    message = found(placed(model, turn.apply(model.bodies.position.copy()), turn))
+    assert message.stretch.value == pytest.approx([most], abs=1e-14)
+    assert message.squeeze.value == pytest.approx([-most], abs=1e-14)
 
 
 @pytest.mark.parametrize("layout", ["edge_to_edge", "center_to_center"])
@@ -177,7 +177,7 @@ def test_it_is_what_the_force_law_measures(layout: str) -> None:
     random = np.random.default_rng(5)
     turn = Rotation.from_rotvec(random.normal(scale=0.6, size=(6, 3)))
     place = bodies.position + random.normal(scale=0.5, size=(6, 3))
-    told = found(placed(model, place, turn))
+    message = found(placed(model, place, turn))
 
     def measured(row: int, spring: int) -> float:
         ends = []
@@ -192,19 +192,19 @@ def test_it_is_what_the_force_law_measures(layout: str) -> None:
         zero = (0.0,) * 3
         return math.sqrt(2 * bushing(*ends[0], *ends[1], stiffness[:3], stiffness[3:], zero, zero)[3])
 
-    joints = told.joints
+    joints = message.joints
     for k, name in enumerate(joints.name):
         rows = [r for r, other in enumerate(bushings.name) if other == name or other[:-2] == name]
         axis = joints.axis[k]
         strain_ = [measured(r, axis) / joints.length[k] for r in rows]
-        most = max(abs(told.stretch.value[k]), abs(told.squeeze.value[k]))
+        most = max(abs(message.stretch.value[k]), abs(message.squeeze.value[k]))
         assert most == pytest.approx(max(strain_), rel=1e-9)
-        least = [abs(v) for v in (told.stretch.value[k], told.squeeze.value[k])]
+        least = [abs(v) for v in (message.stretch.value[k], message.squeeze.value[k])]
         assert sorted(least) == pytest.approx(sorted(strain_ * (2 // len(strain_))), rel=1e-9)
         bend = measured(rows[0], 4 if axis == 0 else 3) / joints.length[k]
-        assert abs(told.curvature.value[k]) == pytest.approx(bend, rel=1e-9)
+        assert abs(message.curvature.value[k]) == pytest.approx(bend, rel=1e-9)
         twist = measured(rows[0], 3 if axis == 0 else 4) / joints.length[k]
-        assert abs(told.twist.value[k]) == pytest.approx(twist, rel=1e-9)
+        assert abs(message.twist.value[k]) == pytest.approx(twist, rel=1e-9)
 
 
 # ---------------------------------------------------------------- joints and peaks
@@ -254,15 +254,15 @@ def test_peaks_have_sign_and_time_however_they_are_sought(
     result.position[:, 2, 0] += 0.2 * np.array([0, 1, 2, 3, 4, 3, 2, 1, 0, -3, 0])
     bent = Rotation.from_rotvec(np.outer([0, 0, 0, 0.1, 0, 0, -0.3, 0, 0, 0.2, 0], [0, 1, 0]))
     result.rotation[:, 0] = np.roll(bent.as_quat(), 1, axis=1)
-    told = found(result)
-    assert told.joints.name == ("strip_x_0_0", "strip_x_1_0")
-    assert (told.stretch.value[1], told.stretch.at[1]) == (pytest.approx(0.8 / 20), 4.0)
-    assert (told.squeeze.value[1], told.squeeze.at[1]) == (pytest.approx(-0.6 / 20), 9.0)
+    message = found(result)
+    assert message.joints.name == ("strip_x_0_0", "strip_x_1_0")
+    assert (message.stretch.value[1], message.stretch.at[1]) == (pytest.approx(0.8 / 20), 4.0)
+    assert (message.squeeze.value[1], message.squeeze.at[1]) == (pytest.approx(-0.6 / 20), 9.0)
     # box 0 turned by -0.3 about y: from it to box 1 the sheet turns by 0.3, away from the normal
-    assert (told.curvature.value[0], told.curvature.at[0]) == (pytest.approx(-0.3 / 20), 6.0)
+    assert (message.curvature.value[0], message.curvature.at[0]) == (pytest.approx(-0.3 / 20), 6.0)
 
 
-# ---------------------------------------------------------------- what is told
+# ---------------------------------------------------------------- what is reported
 
 
 def test_the_summary_names_the_worst_joint(tmp_path: Path) -> None:
@@ -274,20 +274,20 @@ def test_the_summary_names_the_worst_joint(tmp_path: Path) -> None:
         )
     )
     result.save(tmp_path)
-    told = json.loads((tmp_path / "summary.json").read_text())["sheets"]["strip"]
-    assert set(told["strain"]) == {"max_md", "max_cd", "min_md", "min_cd", "at_mm", "at_ms", "joint"}
-    assert set(told["curvature"]) == {"max_md_per_mm", "max_cd_per_mm", "at_mm", "at_ms", "joint"}
-    assert set(told["twist"]) == {"max_per_mm", "at_mm", "at_ms", "joint"}
+    record = json.loads((tmp_path / "summary.json").read_text())["sheets"]["strip"]
+    assert set(record["strain"]) == {"max_md", "max_cd", "min_md", "min_cd", "at_mm", "at_ms", "joint"}
+    assert set(record["curvature"]) == {"max_md_per_mm", "max_cd_per_mm", "at_mm", "at_ms", "joint"}
+    assert set(record["twist"]) == {"max_per_mm", "at_mm", "at_ms", "joint"}
     # the pull, and the bend at the clamp
-    assert told["strain"]["max_md"] == pytest.approx(0.02, rel=1e-2)
-    assert told["curvature"]["joint"].startswith("strip_c_0_") and told["curvature"]["at_mm"][0] == -30
+    assert record["strain"]["max_md"] == pytest.approx(0.02, rel=1e-2)
+    assert record["curvature"]["joint"].startswith("strip_c_0_") and record["curvature"]["at_mm"][0] == -30
     kept = store.read(tmp_path)
     joints = kept["joints/name"]
     assert len(joints) == 12 + 6 == len(kept["joints/strain_max"])
     most = int(np.argmax(kept["joints/strain_max"]))
-    assert joints[most] == told["strain"]["joint"]
-    assert kept["joints/at"][most] == pytest.approx(told["strain"]["at_mm"])
-    assert kept["joints/curvature"].min() == pytest.approx(-told["curvature"]["max_md_per_mm"])
+    assert joints[most] == record["strain"]["joint"]
+    assert kept["joints/at"][most] == pytest.approx(record["strain"]["at_mm"])
+    assert kept["joints/curvature"].min() == pytest.approx(-record["curvature"]["max_md_per_mm"])
     assert kept["joints/curvature_at"].shape == kept["joints/length"].shape == (18,)
 
 
@@ -295,14 +295,14 @@ def test_a_limit_gives_a_margin() -> None:
     result = mdlgen.solve(strip(CLAMPED, "loads=[{sheet: strip, edge: x_max, stress: 2 MPa}]"), "lattice")
     # those along y, whose kind is 1, follow no curve
     limit = np.where(result.model.bushings.kind == 1, np.nan, 0.05)
-    told = strains(result, limit)
-    assert told is not None and told.margin is not None
-    np.testing.assert_allclose(told.margin[told.joints.axis == 0], 1 - 0.02 / 0.05, rtol=1e-6)
-    assert np.isnan(told.margin[told.joints.axis == 1]).all()
-    result.__dict__["strains"] = told
+    message = strains(result, limit)
+    assert message is not None and message.margin is not None
+    np.testing.assert_allclose(message.margin[message.joints.axis == 0], 1 - 0.02 / 0.05, rtol=1e-6)
+    assert np.isnan(message.margin[message.joints.axis == 1]).all()
+    result.__dict__["strains"] = message
     bearing = result.summary()["sheets"]["strip"]["strain"]
     assert bearing["margin"] == pytest.approx(0.6, rel=1e-6)
-    assert bearing["margin_joint"] in told.joints.name
+    assert bearing["margin_joint"] in message.joints.name
     assert "margin" in store._joints(result)
     text = summary_text(result.summary())
     assert "strain up to 0.02 (strip_" in text and "60% left to the curve's end" in text
@@ -312,8 +312,8 @@ def test_a_single_box_bears_nothing_and_has_its_files(tmp_path: Path) -> None:
     model = lower(mdlgen.load(samples() / "verify" / "drop.yaml"))
     result = moving(model)
     assert result.strains is None
-    told = result.summary()["sheets"]["block"]
-    assert (told["strain"], told["curvature"], told["twist"]) == (None, None, None)
+    record = result.summary()["sheets"]["block"]
+    assert (record["strain"], record["curvature"], record["twist"]) == (None, None, None)
     result.save(tmp_path)
     assert "joints/name" not in store.read(tmp_path)
     assert strain_map(result).startswith(b"\x89PNG\r\n\x1a\n")
@@ -330,6 +330,6 @@ def test_compression_takes_of_the_margin_too() -> None:
     # a third of the stress at which the strip buckles, pi^2 D / (4 L^2 s)
     sets = (CLAMPED, "loads=[{sheet: strip, edge: x_max, stress: -0.005 MPa}]")
     result = mdlgen.solve(strip(*sets), "lattice")
-    told = strains(result, np.full(len(result.model.bushings), 1e-3))
-    assert told is not None and told.margin is not None
-    np.testing.assert_allclose(told.margin[told.joints.axis == 0], 1 - 5e-5 / 1e-3, rtol=1e-6)
+    message = strains(result, np.full(len(result.model.bushings), 1e-3))
+    assert message is not None and message.margin is not None
+    np.testing.assert_allclose(message.margin[message.joints.axis == 0], 1 - 5e-5 / 1e-3, rtol=1e-6)

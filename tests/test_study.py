@@ -15,7 +15,7 @@ from mdlgen.study.effects import main_effect, sobol
 from mdlgen.study.findings import findings, findings_text
 from mdlgen.study.link import check_links, parse_link
 from mdlgen.study.probability import caveat, probability
-from mdlgen.study.row import FAILED, OK, Row
+from mdlgen.study.row import FAILED, OK, CaseRow
 from mdlgen.study.sampling import sample
 from mdlgen.study.sweep import over, sweep
 from mdlgen.study.table import columns
@@ -75,7 +75,7 @@ class TestDistributions:
         ]
 
     @pytest.mark.parametrize(
-        ("text", "told"),
+        ("text", "message"),
         [
             ("a", "no path and values"),
             ("a=1", "is no range"),
@@ -93,10 +93,10 @@ class TestDistributions:
             ("a=lognormal(1 mm, 1 mm)", "has no unit"),
         ],
     )
-    def test_what_is_none_is_told_in_one_line(self, text: str, told: str) -> None:
+    def test_what_is_none_is_told_in_one_line(self, text: str, message: str) -> None:
         with pytest.raises(SpecError) as error:
             parse_distribution(text)
-        assert told in str(error.value) and "\n" not in str(error.value)
+        assert message in str(error.value) and "\n" not in str(error.value)
 
 
 class TestSamples:
@@ -138,11 +138,11 @@ class TestSamples:
             assert (rows[:, k] == other[:, k]).all() and (rows[:, 1 - k] == one[:, 1 - k]).all()
 
     @pytest.mark.parametrize(
-        ("kind", "count", "seed", "told"),
+        ("kind", "count", "seed", "message"),
         [("lsh", 4, 1, "did you mean 'lhs'?"), ("lhs", 0, 1, "at least"), ("lhs", 4, -1, "at least")],
     )
-    def test_what_cannot_be_drawn_is_told(self, kind: str, count: int, seed: int, told: str) -> None:
-        with pytest.raises(SpecError, match=told.replace("?", r"\?")):
+    def test_what_cannot_be_drawn_is_told(self, kind: str, count: int, seed: int, message: str) -> None:
+        with pytest.raises(SpecError, match=message.replace("?", r"\?")):
             sample(kind, count, self.TWO, seed)
 
 
@@ -274,15 +274,15 @@ def test_findings_of_a_sample() -> None:
     asked = Task("x.yaml", "", ".", measures=(("y", "y"), ("jam", "events.jam > 0")), events=("jam",))
     values = sample("random", 100, TestSamples.TWO, 1)
     rows = [
-        Row(k, (("a", repr(float(a))), ("b", repr(float(b)))), OK, "ok", {"y": a, "jam": float(a > 0.9)})
+        CaseRow(k, (("a", repr(float(a))), ("b", repr(float(b)))), OK, "ok", {"y": a, "jam": float(a > 0.9)})
         for k, (a, b) in enumerate(values.tolist())
     ]
-    rows[5] = Row(5, rows[5].values, FAILED, "it did not converge")
-    told = findings(asked, "random 100, seed 1", rows, columns(rows, ["y", "jam"]))
+    rows[5] = CaseRow(5, rows[5].values, FAILED, "it did not converge")
+    record = findings(asked, "random 100, seed 1", rows, columns(rows, ["y", "jam"]))
     hits = int((np.delete(values[:, 0], 5) > 0.9).sum())
-    assert (told["events"]["jam"]["hits"], told["events"]["jam"]["known"]) == (hits, 99)
-    assert told["effects"]["y"]["a"]["share"] > 0.9 > 0.1 > told["effects"]["y"]["b"]["share"]
-    lines = findings_text(told)
+    assert (record["events"]["jam"]["hits"], record["events"]["jam"]["known"]) == (hits, 99)
+    assert record["effects"]["y"]["a"]["share"] > 0.9 > 0.1 > record["effects"]["y"]["b"]["share"]
+    lines = findings_text(record)
     assert lines[0].startswith("probability of jam: 0.") and "1 cases without an answer" in lines[0]
     assert any(line.startswith("y, part of its variance by each value alone: a 9") for line in lines)
 

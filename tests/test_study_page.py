@@ -12,7 +12,7 @@ from lxml import html
 
 from mdlgen.study.findings import findings
 from mdlgen.study.page import page
-from mdlgen.study.row import OK, REFUSED, Row
+from mdlgen.study.row import OK, REFUSED, CaseRow
 from mdlgen.study.table import columns
 from mdlgen.study.task import Task
 
@@ -34,8 +34,8 @@ def study(folder: Path) -> str:
     for k in range(12):
         a, b = k % 4, k // 4
         values = (("contacts.0.friction", f"0.{a + 1}"), ("sheets.note.mass", f"{b + 1.0} g"))
-        rows.append(Row(k, values, OK, "ok", {"travel": float(a * b), "jam": float(a > 2)}))
-    rows[7] = Row(7, rows[7].values, REFUSED, EVIL)
+        rows.append(CaseRow(k, values, OK, "ok", {"travel": float(a * b), "jam": float(a > 2)}))
+    rows[7] = CaseRow(7, rows[7].values, REFUSED, EVIL)
     table = columns(rows, ["travel", "jam"])
     (folder / "case_3").mkdir(parents=True)
     (folder / "case_3" / "report.html").write_text("kept")
@@ -55,13 +55,13 @@ def test_no_text_becomes_markup(tmp_path: Path) -> None:
 
 
 def test_each_case_says_how_it_is_opened(tmp_path: Path) -> None:
-    told = data(study(tmp_path))
-    assert told["links"] == ["", "", "", "case_3/report.html", *[""] * 8]
-    assert told["commands"][5].startswith(
+    record = data(study(tmp_path))
+    assert record["links"] == ["", "", "", "case_3/report.html", *[""] * 8]
+    assert record["commands"][5].startswith(
         "mdlgen run 'a scene & <b>more</b>.yaml' --set 'run.duration=2 ms' --set contacts.0.friction=0.2"
     )
-    assert told["kind"][7] == "refused" and told["reason"][7] == EVIL
-    roles = {column["name"]: column["role"] for column in told["columns"]}
+    assert record["kind"][7] == "refused" and record["reason"][7] == EVIL
+    roles = {column["name"]: column["role"] for column in record["columns"]}
     assert roles["case"] == "case" and roles["sheets.note.mass"] == "variable" and roles["jam"] == "measure"
 
 

@@ -40,8 +40,8 @@ def test_the_manual_says_what_each_is_for() -> None:
     page = ROOT / "docs" / "developers" / "dependencies.md"
     table = page.read_text("utf-8").partition("| dependency |")[2].partition("\n\n")[0]
     first = re.findall(r"^\| ([^|]+) \|", table, re.M)
-    told = {name(word) for cell in first for word in re.findall(r"[\w.-]+", cell)}
-    assert not {name(needed.name) for needed in ALL} - told
+    record = {name(word) for cell in first for word in re.findall(r"[\w.-]+", cell)}
+    assert not {name(needed.name) for needed in ALL} - record
 
 
 def test_pins_are_exact() -> None:

@@ -27,7 +27,7 @@ from mdlgen.paths import samples
 from mdlgen.results.summary import summary
 from mdlgen.study import expression, journal, measure, perform, sweep, table, workers
 from mdlgen.study.case import Case
-from mdlgen.study.row import FAILED, INACCURATE, LOST, OK, REFUSED, Row, Times
+from mdlgen.study.row import FAILED, INACCURATE, LOST, OK, REFUSED, CaseRow, Times
 from mdlgen.study.task import Task, task
 from mdlgen.study.variable import grid, quantity, value_text, variable
 
@@ -43,7 +43,7 @@ class Here:
     def __init__(self, stop: int | None = None):
         self.stop, self.ran = stop, 0
 
-    def rows(self, task: Task, cases: Sequence[Case]) -> Iterator[Row]:
+    def rows(self, task: Task, cases: Sequence[Case]) -> Iterator[CaseRow]:
         for case in cases:
             if self.ran == self.stop:
                 raise KeyboardInterrupt
@@ -63,7 +63,7 @@ def wanted(
 
 def swept(
     folder: Path, asked: sweep.Sweep, resume: bool = False, stop: int | None = None
-) -> tuple[list[Row], int]:
+) -> tuple[list[CaseRow], int]:
     """The rows of a sweep in `folder`, whose table is written, and how many cases were run for it."""
     here = Here(stop)
     found, kept = sweep.opened(folder, asked, resume)
@@ -101,7 +101,7 @@ class TestVariables:
         assert list(variable(text).texts) == texts
 
     @pytest.mark.parametrize(
-        ("text", "told"),
+        ("text", "message"),
         [
             ("a.b", "no path and values"),
             ("a b=1:2:3", "no path and values"),
@@ -117,8 +117,8 @@ class TestVariables:
             ("a=[*x]", "anchors and aliases"),
         ],
     )
-    def test_what_is_neither_is_refused_in_a_line(self, text: str, told: str) -> None:
-        with pytest.raises(SpecError, match=told) as error:
+    def test_what_is_neither_is_refused_in_a_line(self, text: str, message: str) -> None:
+        with pytest.raises(SpecError, match=message) as error:
             variable(text)
         assert "--over" in str(error.value) and "\n" not in str(error.value)
 
@@ -177,12 +177,12 @@ class TestExpressions:
         assert expression.read(text, "--measure").value(NAMES.get) == value
 
     @pytest.mark.parametrize(
-        ("text", "told"),
+        ("text", "message"),
         [("1/(a - 2)", "division by zero"), ("sqrt(b.c)", "sqrt"), ("b.c**0.5", "no finite number"),
          ("(9**9**9) * a", "large|no finite|range"), ("v + 1", "is a vector"), ("norm(a)", "takes a vector")],
     )  # fmt: skip
-    def test_what_has_no_number_says_why(self, text: str, told: str) -> None:
-        with pytest.raises(ValueError, match=told):
+    def test_what_has_no_number_says_why(self, text: str, message: str) -> None:
+        with pytest.raises(ValueError, match=message):
             expression.read(text, "--measure").value(NAMES.get)
 
     @pytest.mark.parametrize(
@@ -243,7 +243,7 @@ class TestMeasures:
         assert dict(found)["v.y"] == "sheets.note.speed_mm_per_s.y"
 
     @pytest.mark.parametrize(
-        ("text", "told"),
+        ("text", "message"),
         [
             ("sheets.note.yaw_degg", "did you mean 'sheets.note.yaw_deg'?"),
             ("slip=1 - sheets.note.travl_mm.x", "did you mean 'sheets.note.travel_mm.x'?"),
@@ -255,11 +255,11 @@ class TestMeasures:
         ],
     )
     def test_what_is_not_there_is_told_with_what_is(
-        self, names: dict[str, measure.Value], text: str, told: str
+        self, names: dict[str, measure.Value], text: str, message: str
     ) -> None:
         with pytest.raises(SpecError) as error:
             measure.measures([text], names, "--measure")
-        assert told in str(error.value)
+        assert message in str(error.value)
 
     def test_events_are_counted(self) -> None:
         events = [
@@ -288,15 +288,15 @@ class TestCase:
         asked = wanted(f"{FRICTION}=0.1:0.2:2", measures=["v=norm(sheets.block.speed_mm_per_s)", "steps"])
         row = perform.perform(asked.task, asked.cases[1])
         result = mdlgen.solve(mdlgen.lower(mdlgen.load(INCLINE, [*SHORT, f"{FRICTION}=0.2"])))
-        told = result.summary()
+        record = result.summary()
         assert row.kind == OK and row.status == "ok" and row.solver == "lattice"
-        speed = told["sheets"]["block"]["speed_mm_per_s"]
+        speed = record["sheets"]["block"]["speed_mm_per_s"]
         assert row.measures["v"] == pytest.approx(sum(v * v for v in speed) ** 0.5, rel=1e-15)
-        assert row.measures["steps"] == told["steps"] and row.error_estimate == told["error_estimate"]
+        assert row.measures["steps"] == record["steps"] and row.error_estimate == record["error_estimate"]
         assert row.times.case_s > 0.0
 
     @pytest.mark.parametrize(
-        ("sets", "measured", "kind", "told"),
+        ("sets", "measured", "kind", "message"),
         [
             (["sheets.block.thickness=5 m"], "steps", REFUSED, "sheets.block.thickness: 5 m is outside"),
             ([], "1/events.jam", FAILED, "division by zero"),
@@ -305,11 +305,11 @@ class TestCase:
         ],
     )
     def test_what_goes_wrong_is_a_row_with_its_reason(
-        self, sets: list[str], measured: str, kind: str, told: str
+        self, sets: list[str], measured: str, kind: str, message: str
     ) -> None:
         asked = task(INCLINE, [*SHORT, *sets], measures=(("m", measured),), check_step=kind == INACCURATE)
         row = perform.perform(asked, Case(3, ((FRICTION, "0.2"),)))
-        assert (row.index, row.kind) == (3, kind) and told in row.status
+        assert (row.index, row.kind) == (3, kind) and message in row.status
         assert row.measured == (kind == INACCURATE) and bool(row.measures) == row.measured
 
     def test_a_failed_run_and_an_internal_error_too(self, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -327,8 +327,10 @@ class TestCase:
         assert perform.perform(asked, case).status == "internal error: ZeroDivisionError: oh"
 
     def test_a_row_comes_back_from_its_line(self) -> None:
-        row = Row(2, (("a", "1 mm"),), OK, "ok", {"m": 0.1, "n": None}, 1e-5, "lattice", Times(0.5), "here")
-        assert Row.of(json.loads(json.dumps(row.json()))) == row
+        row = CaseRow(
+            2, (("a", "1 mm"),), OK, "ok", {"m": 0.1, "n": None}, 1e-5, "lattice", Times(0.5), "here"
+        )
+        assert CaseRow.of(json.loads(json.dumps(row.json()))) == row
 
 
 def twelve() -> sweep.Sweep:
@@ -388,7 +390,7 @@ class TestSweep:
         with pytest.raises(RefusedError, match=r"holds a sweep \(12 cases\) already; --resume"):
             sweep.opened(whole, twelve(), False)
         base = twelve()
-        for other, told in (
+        for other, message in (
             (replace(base, cases=base.cases[:5]), "--over"),
             (replace(base, task=replace(base.task, sets=())), "--set"),
             (replace(base, task=replace(base.task, text=base.task.text + "\n")), "the scene"),
@@ -396,7 +398,7 @@ class TestSweep:
             (replace(base, task=replace(base.task, solver="exudyn")), "--solver"),
             (replace(base, model="0"), "a file that the scene names has changed"),
         ):
-            with pytest.raises(RefusedError, match=told):
+            with pytest.raises(RefusedError, match=message):
                 sweep.opened(whole, other, True)
 
     def test_other_versions_are_refused_by_name(self, whole: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -409,7 +411,7 @@ class TestSweep:
             journal.Journal.resume(whole)
 
     @pytest.mark.parametrize(
-        ("text", "told"),
+        ("text", "message"),
         [
             ("", "was cut off before it began"),
             ('{"mdlgen":1', "was cut off before it began"),
@@ -420,10 +422,10 @@ class TestSweep:
             ("[" * 5000 + "\n", ":1: is not a line of a study"),
         ],
     )
-    def test_a_journal_that_is_none_ends_in_a_line(self, tmp_path: Path, text: str, told: str) -> None:
+    def test_a_journal_that_is_none_ends_in_a_line(self, tmp_path: Path, text: str, message: str) -> None:
         (tmp_path / journal.NAME).write_text(text)
         code, _, err = cli("sweep", "--resume", tmp_path)
-        assert code == 3 and told in err and len(err.splitlines()) == 1
+        assert code == 3 and message in err and len(err.splitlines()) == 1
 
     def test_a_measure_may_not_have_the_name_of_a_value(self) -> None:
         with pytest.raises(SpecError, match="'name' stands twice in the table"):
@@ -438,18 +440,22 @@ class TestSweep:
         assert "files" not in rows[1].json()
 
     def test_the_summary_line_names_what_failed(self) -> None:
-        bad = [Row(k, (), REFUSED, "no such thing") for k in range(3)]
-        rows = [*bad, Row(3, (), FAILED, "did not converge"), *(Row(k, (), OK, "ok") for k in range(4, 40))]
-        assert sweep.told(rows) == (
+        bad = [CaseRow(k, (), REFUSED, "no such thing") for k in range(3)]
+        rows = [
+            *bad,
+            CaseRow(3, (), FAILED, "did not converge"),
+            *(CaseRow(k, (), OK, "ok") for k in range(4, 40)),
+        ]
+        assert sweep.summary(rows) == (
             "4 of 40 cases failed: 3 x no such thing (case 0); 1 x did not converge (case 3)"
         )
-        assert sweep.told(rows[4:]) == "36 cases, none failed"
+        assert sweep.summary(rows[4:]) == "36 cases, none failed"
 
 
 class TestTable:
     ROWS = (
-        Row(1, (("a", "2 mm"), ("b", "x")), OK, "ok", {"m": 0.1, "n": None}, 1e-5, "lattice"),
-        Row(0, (("a", "1.5 mm"), ("b", "y, z")), REFUSED, 'the "thing"'),
+        CaseRow(1, (("a", "2 mm"), ("b", "x")), OK, "ok", {"m": 0.1, "n": None}, 1e-5, "lattice"),
+        CaseRow(0, (("a", "1.5 mm"), ("b", "y, z")), REFUSED, 'the "thing"'),
     )
 
     def test_numbers_have_all_their_digits_and_gaps_are_empty(self) -> None:
@@ -492,7 +498,7 @@ class TestProcesses:
         cases = [*asked.cases[:7], Deadly(7, asked.cases[7].values)]
         alone = [perform.perform(asked.task, case) for case in asked.cases[:7]]
         with workers.Workers(2) as runner:
-            rows: list[Row] = []
+            rows: list[CaseRow] = []
             for row in runner.rows(asked.task, cases):
                 rows.append(row)
                 if len(rows) == 2:  # in mid-sweep
@@ -549,7 +555,7 @@ class TestCommand:
     OVER = ("--over", f"{FRICTION}=0.1:0.2:2")
 
     @pytest.mark.parametrize(
-        ("args", "code", "told"),
+        ("args", "code", "message"),
         [
             ([], 2, "name a scene"),
             ([INCLINE], 2, "name what is to differ"),
@@ -566,16 +572,16 @@ class TestCommand:
         ],
     )
     def test_what_cannot_be_meant_ends_in_a_line(
-        self, args: list[object], code: int, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+        self, args: list[object], code: int, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.chdir(tmp_path)
         found, out, err = cli("sweep", *args)
-        assert (found, out) == (code, "") and told in err, err
+        assert (found, out) == (code, "") and message in err, err
         assert len(err.splitlines()) == 1 and not (tmp_path / "out").exists()
 
     def test_when_all_fail_it_says_so(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-        def failed(self: workers.Workers, task: Task, cases: Sequence[Case]) -> Iterator[Row]:
-            yield from (Row(case.index, case.values, FAILED, "no") for case in cases)
+        def failed(self: workers.Workers, task: Task, cases: Sequence[Case]) -> Iterator[CaseRow]:
+            yield from (CaseRow(case.index, case.values, FAILED, "no") for case in cases)
 
         monkeypatch.setattr(workers.Workers, "rows", failed)
         code, out, err = cli("sweep", INCLINE, *self.OVER, "-o", tmp_path / "x")

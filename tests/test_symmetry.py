@@ -106,7 +106,7 @@ def test_a_half_is_the_whole(sets: tuple[str, ...]) -> None:
     ids=["free", "curl", "driven", "clutch"],
 )
 def test_a_roller_in_the_plane(sets: tuple[str, ...]) -> None:
-    """Half of it is pushed by what is on one side; what it does is told of the whole."""
+    """Half of it is pushed by what is on one side; what it does is reported of the whole."""
     start = MACHINE.index("contacts:")
     law = "stiffness: 300 N/mm^1.5, restitution: 0.4, friction: 0.8, smoothing: 10 mm/s"
     text = (

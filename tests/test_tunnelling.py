@@ -66,7 +66,7 @@ THROWN = {
 
 def scene(part, speed, height=20.0, step=None, **other):
     time = 1.4 * height / speed
-    told = {"size": "[20 mm, 20 mm]", "boxes": "[1, 1]", "rotation": FLAT, "spin": STILL, **other}
+    record = {"size": "[20 mm, 20 mm]", "boxes": "[1, 1]", "rotation": FLAT, "spin": STILL, **other}
     text = SCENE.format(
         part=PARTS.get(part, part),
         other="" if PARTS.get(part, part) else OTHER,
@@ -74,7 +74,7 @@ def scene(part, speed, height=20.0, step=None, **other):
         z=height,
         time=time,
         step="" if step is None else f", step: {step!r} ms",
-        **told,
+        **record,
     )
     return text
 
@@ -131,7 +131,7 @@ def test_nothing_passes_through(thrown, part, tmp_path):
 def test_contacts_that_are_too_soft_end_the_run(tmp_path):
     """What is too weak to hold a body lets it through at any step: the run ends with both names."""
     (tmp_path / "plate.stl").write_bytes(binary(*brick(120.0, 120.0, 0.4)))
-    for part, thrown, told in (
+    for part, thrown, message in (
         ("roller of 0.5 mm", "block", "box n_0_0 is more than half of its radius into roller t"),
         ("plate of 1 mm", "block", "box n_0_0 is more than half of its thickness into plane t"),
         ("guide, both sides", "sheet", "is more than half of its thickness into guide t"),
@@ -142,7 +142,7 @@ def test_contacts_that_are_too_soft_end_the_run(tmp_path):
         for step in (None, 0.01):
             model = lower(loads(text.replace("ms}", "ms, step: 0.01 ms}") if step else text, folder=tmp_path))
             result = mdlgen.solve(model, "lattice")
-            assert told in result.status, (part, thrown, result.status)
+            assert message in result.status, (part, thrown, result.status)
 
 
 def test_what_is_below_a_plate_or_moves_along_it_is_let_be():

@@ -27,9 +27,9 @@ def test_wrong_dimension_is_refused(value: float, unit: str, expected: str) -> N
     if parse_unit(unit).dimension == parse_unit(expected).dimension:
         parse_quantity(text, expected)
         return
-    with pytest.raises(ValueError, match="wrong unit") as told:
+    with pytest.raises(ValueError, match="wrong unit") as raised:
         parse_quantity(text, expected)
-    assert expected in str(told.value)
+    assert expected in str(raised.value)
 
 
 @given(st.one_of(FINITE, st.integers(), st.booleans(), st.none(), st.lists(st.integers())))
@@ -76,9 +76,9 @@ def test_known_values(text: str, unit: str, value: float) -> None:
     ],
 )
 def test_a_decimal_comma_is_answered(text: str, meant: str) -> None:
-    with pytest.raises(ValueError, match="has a comma") as told:
+    with pytest.raises(ValueError, match="has a comma") as raised:
         parse_quantity(text, "mm")
-    assert str(told.value) == f"{text!r} has a comma; {meant}"
+    assert str(raised.value) == f"{text!r} has a comma; {meant}"
 
 
 @pytest.mark.parametrize(

@@ -20,14 +20,14 @@ OLD = FOUR.replace(", friction: 1.0", "").replace(", friction: 0.33", "")
 
 
 def test_a_contact_without_friction_is_refused_with_what_to_write() -> None:
-    with pytest.raises(SpecError) as told:
+    with pytest.raises(SpecError) as raised:
         loads(OLD, "old.yaml")
-    errors = [told.value, *told.value.others]
+    errors = [raised.value, *raised.value.others]
     assert [".".join(map(str, e.path)) for e in errors] == [f"contacts.{k}" for k in range(6)]
     assert "the key 'friction' is missing; write like friction: 0.5, or 0 where there is none" in str(
-        told.value
+        raised.value
     )
-    assert "mdlgen upgrade" in str(told.value)
+    assert "mdlgen upgrade" in str(raised.value)
 
 
 def test_an_old_scene_is_what_it_was() -> None:

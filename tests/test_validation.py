@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from mdlgen import registry
-from mdlgen.bench.case import Case
-from mdlgen.bench.child import Task, perform
+from mdlgen.bench.case import BenchCase
+from mdlgen.bench.child import Job, perform
 from mdlgen.bench.oracles import belt, loaded, rigid, swing
 from mdlgen.bench.page import page
 from mdlgen.bench.row import OK, Outcome, rows
@@ -93,9 +93,9 @@ def test_belts() -> None:
 
 @pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize("case", QUICK, ids=lambda case: case.name)
-def test_a_quick_row(case: Case, solver: str) -> None:
+def test_a_quick_row(case: BenchCase, solver: str) -> None:
     """Each within what its table allows, for the reason that stands there."""
-    found = rows(case, solver, perform(Task(case, solver, registry.SOLVERS[solver], 1, None)))
+    found = rows(case, solver, perform(Job(case, solver, registry.SOLVERS[solver], 1, None)))
     assert found
     for row in found:
         assert row.status == OK, f"{row.quantity}: {row.reason}"

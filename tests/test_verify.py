@@ -364,7 +364,7 @@ TOUCHES = "BODY, b_note_0_0, 1, gbox_note_0_0, false, BODY, {}, 1, {}, false )"
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "told"),
+    ("old", "new", "message"),
     [
         (
             TOUCHES.format("b_counter_1_left_att", "gra_counter_1_left_att"),
@@ -380,7 +380,7 @@ TOUCHES = "BODY, b_note_0_0, 1, gbox_note_0_0, false, BODY, {}, 1, {}, false )"
         (", gra_support_att )", ", gra_support_att, b_more_att )", "*DefineSystem( def_sys_transport_4x4"),
     ],
 )
-def test_the_part_that_a_sheet_touches_counts(old: str, new: str, told: str, tmp_path: Path) -> None:
+def test_the_part_that_a_sheet_touches_counts(old: str, new: str, message: str, tmp_path: Path) -> None:
     overrides = ["sheets.note.boxes=[2,3]", "run.prune=false"]
     text = emitted(FOUR, overrides, only="sheets")
     file = tmp_path / "sheets.mdl"
@@ -389,7 +389,7 @@ def test_the_part_that_a_sheet_touches_counts(old: str, new: str, told: str, tmp
     assert old in text
     file.write_text(text.replace(old, new, 1))
     found = check(FOUR, overrides, text=file, only="sheets", turn=False)
-    assert any(told in str(d) for d in found.differences)
+    assert any(message in str(d) for d in found.differences)
 
 
 MACHINE = """*BeginMDL( host, "Host" )
@@ -459,7 +459,7 @@ CONTEXT = "*BeginContext( sys_rich )\n{}\n*EndContext()"
 
 
 @pytest.mark.parametrize(
-    ("more", "told"),
+    ("more", "message"),
     [
         ("*Set( sys_rich.b_one_0_0.mass, 5 )", "*Set( sys_rich.b_one_0_0.mass, 5 )"),
         ("*SetState( sys_rich.b_one_0_0, false )", "*SetState( sys_rich.b_one_0_0, false )"),
@@ -470,9 +470,9 @@ CONTEXT = "*BeginContext( sys_rich )\n{}\n*EndContext()"
         ("*BeginContext( sys_rich )\n*SetReal( ds_one.real_M, 5 )\n*EndContext()", "ds_one.real_M"),
     ],
 )
-def test_what_a_host_sets_in_the_sheets_counts(more: str, told: str, tmp_path: Path) -> None:
+def test_what_a_host_sets_in_the_sheets_counts(more: str, message: str, tmp_path: Path) -> None:
     found = in_host(machine(tmp_path, [of("sys_rich")], more))
-    assert any(told in str(d) for d in found.differences)
+    assert any(message in str(d) for d in found.differences)
 
 
 def test_what_stands_in_the_file_of_the_sheets_counts(tmp_path: Path) -> None:
@@ -561,7 +561,7 @@ def test_what_is_for_people_passes(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "told"),
+    ("old", "new", "message"),
     [
         ("  *StandardInclude(FILE)\n", "", "standard_include"),
         ("  *SetCurrentSolverMode(MotionSolve)\n", "", "solver"),
@@ -570,12 +570,14 @@ def test_what_is_for_people_passes(tmp_path: Path) -> None:
         ("Simopts.use_run_panel_values, false", "Simopts.use_run_panel_values, true", "use_run_panel_values"),
     ],
 )
-def test_a_statement_that_is_missing_or_changed_fails(old: str, new: str, told: str, tmp_path: Path) -> None:
+def test_a_statement_that_is_missing_or_changed_fails(
+    old: str, new: str, message: str, tmp_path: Path
+) -> None:
     text, _ = files(tmp_path)
     assert old in text.read_text()
     text.write_text(text.read_text().replace(old, new, 1))
     found = check(RICH, text=text, turn=False)
-    assert any(told in str(d) for d in found.differences), found.differences
+    assert any(message in str(d) for d in found.differences), found.differences
 
 
 def test_gravity_is_known_by_the_standard_include(tmp_path: Path) -> None:
@@ -612,7 +614,7 @@ def test_a_file_that_is_no_text_is_one_line(raw: bytes, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("pattern", "new", "told"),
+    ("pattern", "new", "message"),
     [
         (r'(<!-- MODEL.b_one_0_0 -->.*?lprf_id\s*= )"\d+"', r'\1"{b_one_0_0.cm}"', "lprf_id is b_one_0_0.cm"),
         (r'(vm_id\s*= )"1"', r'\1"{b_one_0_0.cm}"', "vm_id is b_one_0_0.cm, not Global_Frame"),
@@ -635,7 +637,7 @@ def test_a_file_that_is_no_text_is_one_line(raw: bytes, tmp_path: Path) -> None:
         (r"<H3DOutput.*?/>", "", "H3DOutput"),
     ],
 )
-def test_what_a_deck_says_beside_numbers_counts(pattern: str, new: str, told: str, tmp_path: Path) -> None:
+def test_what_a_deck_says_beside_numbers_counts(pattern: str, new: str, message: str, tmp_path: Path) -> None:
     scene = load(RICH)
     model = lower(scene)
     text = emitter("motionsolve").emit(model)
@@ -648,7 +650,7 @@ def test_what_a_deck_says_beside_numbers_counts(pattern: str, new: str, told: st
     file = tmp_path / "rich.xml"
     file.write_text(changed)
     found = verify(scene, model, deck=file, turn=False)
-    assert any(told in str(d) for d in found.differences), [str(d) for d in found.differences[:5]]
+    assert any(message in str(d) for d in found.differences), [str(d) for d in found.differences[:5]]
 
 
 # -- what is refused, and the report
@@ -669,9 +671,9 @@ def test_a_missing_body_is_told_by_name(tmp_path: Path) -> None:
     file = tmp_path / "note.mdl"
     file.write_text(text)
     found = check(spec, SMALL, text=file, turn=False)
-    told = report(found)
-    assert not told["ok"] and any("b_note_3_5: is missing" in d for d in told["differences"])
-    json.dumps(told, allow_nan=False)
+    record = report(found)
+    assert not record["ok"] and any("b_note_3_5: is missing" in d for d in record["differences"])
+    json.dumps(record, allow_nan=False)
 
 
 def test_expected_values_need_no_text(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -30,10 +30,10 @@ def scene(*pairs: tuple[str, str], sets: tuple[str, ...] = ()) -> Scene:
 
 
 def refused(*pairs: tuple[str, str], sets: tuple[str, ...] = ()) -> SpecError:
-    with pytest.raises(SpecError) as told:
+    with pytest.raises(SpecError) as raised:
         scene(*pairs, sets=sets)
-    assert told.value.others == ()
-    return told.value
+    assert raised.value.others == ()
+    return raised.value
 
 
 PLAIN = loads(FOUR)
@@ -126,16 +126,16 @@ def test_surface_speed(center: str, axis: str, direction: str, speed: float) -> 
 
 
 @pytest.mark.parametrize(
-    ("direction", "center", "told"),
+    ("direction", "center", "text"),
     [
         ("y", BELOW, "its surface moves along [1, 0, 0], not that way"),
         ("x", "[13.5 mm, -20.5 mm, -40 mm]", "no sheet that it has a contact with lies beside it"),
     ],
 )
-def test_a_surface_speed_that_is_not_clear(direction: str, center: str, told: str) -> None:
+def test_a_surface_speed_that_is_not_clear(direction: str, center: str, text: str) -> None:
     with pytest.raises(SpecError, match="motor_1_left") as error:
         speed_of(center, "y", direction)
-    assert told in error.value.message
+    assert text in error.value.message
     assert error.value.path == ("rollers", "motor_1_left", "drive", "direction")
 
 
@@ -155,7 +155,7 @@ def test_the_normal_is_that_of_the_model(angles: tuple[int, int, int]) -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "told"),
+    ("old", "new", "text"),
     [
         (RADIUS, "radius: 7.5 mm\n    diameter: 15 mm", "radius and diameter are both given"),
         (RADIUS, "diameter: 15", "expected text with a unit like '15 mm'"),
@@ -172,8 +172,8 @@ def test_the_normal_is_that_of_the_model(angles: tuple[int, int, int]) -> None:
         ("normal: z", "normal: z\n    along: [1, 1, 0]", "lie along [1, 0, 0] or [0, 1, 0]"),
     ],
 )
-def test_what_cannot_be_meant(old: str, new: str, told: str) -> None:
-    assert told in refused((old, new)).message
+def test_what_cannot_be_meant(old: str, new: str, text: str) -> None:
+    assert text in refused((old, new)).message
 
 
 def test_the_schema_knows_them() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache, partial
 
 from mdlgen.backends.motionsolve.bodies import facet_ids, graphic_id, rim_ids
-from mdlgen.backends.motionsolve.rows import Contact, Deck, Law
+from mdlgen.backends.motionsolve.rows import ContactRow, Deck, Law
 from mdlgen.backends.motionsolve.units import number, thousandfold
 from mdlgen.model.rim_facets import Side, graphics, meetings
 from mdlgen.model.tables import Model
@@ -33,7 +33,7 @@ def add_contacts(deck: Deck, model: Model) -> None:
         name = f"con_{bodies.name[a]}_{bodies.name[b]}{met.suffix}"
         label = f"{bodies.label[a]} / {bodies.label[b]}{met.suffix.replace('_', ' ')}"
         own = (rough * met.friction, met.stiffness, met.restitution(float(model.contacts.restitution[row])))
-        deck.contacts.append(Contact(name, label, id, sides[0][0], tuple(sides[1]), law(row, *own)))
+        deck.contacts.append(ContactRow(name, label, id, sides[0][0], tuple(sides[1]), law(row, *own)))
 
 
 def _law(model: Model, row: int, rough: float, stiff: float, restitution: float) -> Law:

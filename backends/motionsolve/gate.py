@@ -10,7 +10,7 @@ from mdlgen.model import naming
 from mdlgen.model.tables import Model
 
 
-class Row(Protocol):
+class Labelled(Protocol):
     """What every row of an entity has."""
 
     @property
@@ -32,7 +32,7 @@ def check(model: Model, deck: Deck) -> None:
     naming.check_unique("things in the deck", names)
 
 
-def _entities(deck: Deck) -> Iterator[Row]:
+def _entities(deck: Deck) -> Iterator[Labelled]:
     yield from deck.bodies
     yield from deck.joints
     yield from deck.motions

@@ -170,7 +170,7 @@ class Law(NamedTuple):
     friction: tuple[str, str, str, str] | None
 
 
-class Contact(NamedTuple):
+class ContactRow(NamedTuple):
     """A contact of two graphics."""
 
     name: str
@@ -227,7 +227,7 @@ class Deck:
     curved: list[CurvedSpring] = field(default_factory=list)
     loads: list[Load] = field(default_factory=list)
     clutches: list[Clutch] = field(default_factory=list)
-    contacts: list[Contact] = field(default_factory=list)
+    contacts: list[ContactRow] = field(default_factory=list)
     surfaces: list[Surface] = field(default_factory=list)
     requests: list[Request] = field(default_factory=list)
     boxes: list[Box] = field(default_factory=list)

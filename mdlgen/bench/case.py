@@ -70,7 +70,7 @@ class Reference:
 
 
 @dataclass(frozen=True)
-class Case:
+class BenchCase:
     """One row or more of the bench."""
 
     suite: str
@@ -82,6 +82,6 @@ class Case:
     limit: float = 300.0  # [s] for one run; a solver that takes longer is stopped, and that is its result
     group: str = ""  # heading of the suite's page that it stands under
 
-    def at(self, step: float | None) -> Case:
+    def at(self, step: float | None) -> BenchCase:
         """The same case at another step [ms]."""
         return replace(self, run=replace(self.run, step=step))

@@ -16,7 +16,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from mdlgen.bench.case import Case
+from mdlgen.bench.case import BenchCase
 from mdlgen.bench.row import OK, Outcome
 from mdlgen.errors import MdlgenError
 
@@ -28,10 +28,10 @@ ALONE = 60.0
 
 
 @dataclass(frozen=True)
-class Task:
+class Job:
     """What the child is asked to do."""
 
-    case: Case
+    case: BenchCase
     solver: str
     module: str  # of the solver, as the registry of the parent has it
     repeats: int
@@ -39,7 +39,7 @@ class Task:
     keep: str | None = None  # file in which to keep the states
 
 
-def perform(task: Task) -> Outcome:
+def perform(task: Job) -> Outcome:
     """Run the case `repeats` times and measure the last result."""
     from mdlgen import registry
     from mdlgen.bench.reference import keep, states

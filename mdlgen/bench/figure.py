@@ -6,7 +6,7 @@ import io
 from typing import TYPE_CHECKING, Any
 
 from mdlgen.bench.fits import EQUAL_ERROR, fits, lines
-from mdlgen.bench.row import OK, Row
+from mdlgen.bench.row import OK, BenchRow
 from mdlgen.report.figures import COLOURS, STYLE
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def figure(found: Bench) -> bytes:
     return stream.getvalue()
 
 
-def _transport(axes: Any, rows: list[Row]) -> None:
+def _transport(axes: Any, rows: list[BenchRow]) -> None:
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     for number, (label, errors, walls) in enumerate(lines(rows)):
@@ -65,8 +65,8 @@ def _transport(axes: Any, rows: list[Row]) -> None:
     _legend(axes)
 
 
-def _elastica(axes: Any, rows: list[Row]) -> None:
-    groups: dict[str, list[Row]] = {}
+def _elastica(axes: Any, rows: list[BenchRow]) -> None:
+    groups: dict[str, list[BenchRow]] = {}
     for row in rows:
         if row.status == OK and row.error and row.wall_s:
             columns = row.case.partition(" columns, ")[0]
@@ -78,8 +78,8 @@ def _elastica(axes: Any, rows: list[Row]) -> None:
     _legend(axes)
 
 
-def _closed(axes: Any, rows: list[Row]) -> None:
-    groups: dict[str, list[Row]] = {}
+def _closed(axes: Any, rows: list[BenchRow]) -> None:
+    groups: dict[str, list[BenchRow]] = {}
     for row in rows:
         if row.error and row.wall_s:
             groups.setdefault(f"{row.solver}, {row.suite}", []).append(row)
@@ -90,7 +90,7 @@ def _closed(axes: Any, rows: list[Row]) -> None:
     _legend(axes)
 
 
-def _scaling(axes: Any, rows: list[Row]) -> None:
+def _scaling(axes: Any, rows: list[BenchRow]) -> None:
     growth = fits(rows)["growth"]
     for number, solver in enumerate(dict.fromkeys(row.solver for row in rows)):
         ended = [row for row in rows if row.solver == solver and row.status == OK]
@@ -108,7 +108,7 @@ def _scaling(axes: Any, rows: list[Row]) -> None:
     _legend(axes)
 
 
-def _ladder(axes: Any, rows: list[Row]) -> None:
+def _ladder(axes: Any, rows: list[BenchRow]) -> None:
     """Error over tolerance of every rung; a rung that failed with its reason stands at the bottom, hollow."""
     for number, solver in enumerate(dict.fromkeys(row.solver for row in rows)):
         group = [row for row in rows if row.solver == solver]

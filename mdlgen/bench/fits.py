@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from mdlgen.bench.row import OK, Row
+from mdlgen.bench.row import OK, BenchRow
 from mdlgen.bench.suites.skip import BUT, EVERY
 
 # The error at which solvers are compared: 0.04 % of the travel, which lies among the errors of both of ours.
@@ -18,9 +18,9 @@ HONEST, SMALL = (0.5, 10.0), 1e-6
 Line = tuple[str, list[float], list[float]]
 
 
-def lines(rows: Iterable[Row]) -> list[Line]:
+def lines(rows: Iterable[BenchRow]) -> list[Line]:
     """(label, errors, wall times [s]) of each solver and grid of `transport`, finest step first."""
-    groups: dict[str, list[Row]] = {}
+    groups: dict[str, list[BenchRow]] = {}
     for row in rows:
         if row.suite == "transport" and row.status == OK and row.quantity.startswith("position"):
             groups.setdefault(f"{row.solver}, {row.boxes} boxes", []).append(row)
@@ -48,7 +48,7 @@ def slope(points: list[tuple[float, float]]) -> float:
     return float(np.polyfit(x, y, 1)[0])
 
 
-def fits(rows: list[Row]) -> dict[str, Any]:
+def fits(rows: list[BenchRow]) -> dict[str, Any]:
     """Plain data: `order` per case and solver, `wall_at_equal_error` per line, the `least_error` of each that
     does not come to it, `growth` per solver, what each rule `saves` per solver, and the estimates of errors
     that are not honest."""
@@ -62,7 +62,7 @@ def fits(rows: list[Row]) -> dict[str, Any]:
     }
 
 
-def _equal(rows: list[Row]) -> dict[str, dict[str, Any]]:
+def _equal(rows: list[BenchRow]) -> dict[str, dict[str, Any]]:
     """Wall time of each line at EQUAL_ERROR, and how many times that of the fastest with as many boxes."""
     found: dict[str, dict[str, Any]] = {}
     for label, errors, walls in lines(rows):
@@ -77,7 +77,7 @@ def _equal(rows: list[Row]) -> dict[str, dict[str, Any]]:
     return found
 
 
-def _short(rows: list[Row]) -> dict[str, dict[str, float]]:
+def _short(rows: list[BenchRow]) -> dict[str, dict[str, float]]:
     """The least error of each line that does not come to EQUAL_ERROR, and its wall time."""
     best = {label: min(zip(errors, walls, strict=True)) for label, errors, walls in lines(rows)}
     return {
@@ -87,7 +87,7 @@ def _short(rows: list[Row]) -> dict[str, dict[str, float]]:
     }
 
 
-def _saves(rows: list[Row]) -> dict[str, float]:
+def _saves(rows: list[BenchRow]) -> dict[str, float]:
     """Part of the wall time without a rule that it saves: 1 - with / without, per solver and rule."""
     walls = {
         (row.solver, row.case): row.wall_s
@@ -101,7 +101,7 @@ def _saves(rows: list[Row]) -> dict[str, float]:
     }
 
 
-def _off(rows: list[Row]) -> list[str]:
+def _off(rows: list[BenchRow]) -> list[str]:
     """Rows whose solver estimated its error below half of the true one, or above ten times it."""
     found = []
     for row in rows:
@@ -109,12 +109,12 @@ def _off(rows: list[Row]) -> list[str]:
             continue
         low, high = HONEST[0] * row.error, HONEST[1] * max(row.error, SMALL)
         if not low <= row.error_estimate <= high:
-            told = f"estimated {row.error_estimate:.3g}, is {row.error:.3g}"
-            found.append(f"{row.suite}, {row.solver}: {row.case}: {told}")
+            message = f"estimated {row.error_estimate:.3g}, is {row.error:.3g}"
+            found.append(f"{row.suite}, {row.solver}: {row.case}: {message}")
     return found
 
 
-def _orders(rows: list[Row]) -> dict[str, float]:
+def _orders(rows: list[BenchRow]) -> dict[str, float]:
     """Slope of log error over log step where a step was given, or over log rows in `elastica`."""
     groups: dict[str, list[tuple[float, float]]] = {}
     for row in rows:
@@ -131,7 +131,7 @@ def _orders(rows: list[Row]) -> dict[str, float]:
     return {label: slope(points) for label, points in groups.items() if len({x for x, _ in points}) > 1}
 
 
-def _growth(rows: list[Row]) -> dict[str, float]:
+def _growth(rows: list[BenchRow]) -> dict[str, float]:
     """Exponent of the wall time over the boxes, for the same time at the same step, per solver."""
     groups: dict[str, list[tuple[float, float]]] = {}
     for row in rows:

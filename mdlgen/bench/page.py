@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
-from mdlgen.bench.row import FAILED, OK, Row
+from mdlgen.bench.row import FAILED, OK, BenchRow
 from mdlgen.bench.table import number, time
 from mdlgen.errors import SpecError, printable
 
@@ -46,13 +46,13 @@ def check_page(suites: Iterable[str]) -> str:
     return names[0]
 
 
-def _page_of(suite: str) -> Callable[[list[Row]], str]:
+def _page_of(suite: str) -> Callable[[list[BenchRow]], str]:
     if suite not in PAGES:
         raise SpecError(f"the suite {suite[:40]!r} has no page; there is one of: {', '.join(PAGES)}")
     return PAGES[suite]
 
 
-def _ladder(rows: list[Row]) -> str:
+def _ladder(rows: list[BenchRow]) -> str:
     solvers = list(dict.fromkeys(row.solver for row in rows))
     parts = [LADDER, *(f"- {name}: {_counts(rows, name)}" for name in solvers), ""]
     columns = [f"{name}, {what}" for name in solvers for what in ("error", "wall")]
@@ -71,7 +71,7 @@ def _ladder(rows: list[Row]) -> str:
     return "\n".join([*parts, "", "## Reasons", "", *_reasons(rows, "None failed."), ""])
 
 
-def _validation(rows: list[Row]) -> str:
+def _validation(rows: list[BenchRow]) -> str:
     solvers = list(dict.fromkeys(row.solver for row in rows))
     parts = [VALIDATION, *(f"- {name}: {_counts(rows, name, 'row')}" for name in solvers), ""]
     columns = [f"{name}{what}" for name in solvers for what in ("", ", error", ", estimate")]
@@ -87,7 +87,7 @@ def _validation(rows: list[Row]) -> str:
     return "\n".join([*parts, "## What is not right", "", *_reasons(rows, "All rows are right."), ""])
 
 
-def _compared(rows: list[Row], quantity: str, solvers: list[str]) -> list[str]:
+def _compared(rows: list[BenchRow], quantity: str, solvers: list[str]) -> list[str]:
     """The cells of one quantity of a case."""
     shown = next((row for row in rows if row.quantity == quantity), rows[0])
     cells = [shown.case, quantity, _with_unit(shown.expected, shown.unit)]
@@ -106,46 +106,46 @@ def _with_unit(value: float | None, unit: str) -> str:
     return "" if value is None else f"{value:.6g} {unit}".strip()
 
 
-def _bases(rows: list[Row]) -> list[str]:
+def _bases(rows: list[BenchRow]) -> list[str]:
     """Where the numbers are from, and why they may be missed: once for all quantities that share it."""
-    told: dict[tuple[str, str], list[str]] = {}
+    record: dict[tuple[str, str], list[str]] = {}
     for row in rows:
-        names = told.setdefault((row.source, row.because), []) if row.source else []
+        names = record.setdefault((row.source, row.because), []) if row.source else []
         if row.quantity not in names:
             names.append(row.quantity)
     return [
-        f"- {', '.join(names)}: {source}. Allowed: {because}." for (source, because), names in told.items()
+        f"- {', '.join(names)}: {source}. Allowed: {because}." for (source, because), names in record.items()
     ]
 
 
-def _outcome(row: Row) -> list[str]:
+def _outcome(row: BenchRow) -> list[str]:
     error = number(row.error) if row.status == OK else f"**{row.status}** {number(row.error)}".strip()
     return [error, time(row.wall_s)]
 
 
-def _counts(rows: list[Row], solver: str, noun: str = "rung") -> str:
+def _counts(rows: list[BenchRow], solver: str, noun: str = "rung") -> str:
     """How many cases of a solver came to what; one of several numbers counts once, as its worst."""
     status: dict[str, str] = {}
     for row in rows:
         if row.solver == solver and status.get(row.case, OK) == OK:
             status[row.case] = row.status
     values = list(status.values())
-    told = ", ".join(f"{values.count(k)} {text}" for k, text in COUNTED.items())
-    return f"{len(values)} {noun if len(values) == 1 else noun + 's'}: {told}."
+    record = ", ".join(f"{values.count(k)} {text}" for k, text in COUNTED.items())
+    return f"{len(values)} {noun if len(values) == 1 else noun + 's'}: {record}."
 
 
 COUNTED = {OK: "right", "failed": "failed with a reason", "wrong": "wrong"}
 
 
-def _reasons(rows: list[Row], none: str) -> list[str]:
-    told = dict.fromkeys(
+def _reasons(rows: list[BenchRow], none: str) -> list[str]:
+    message = dict.fromkeys(
         f"- {row.case}, {row.solver}: {row.status}: {row.reason}" for row in rows if row.status != OK
     )
-    return [printable(line).replace("|", "/") for line in told] or [none]
+    return [printable(line).replace("|", "/") for line in message] or [none]
 
 
 def _line(cells: Iterable[str]) -> str:
     return "| " + " | ".join(cells) + " |"
 
 
-PAGES: dict[str, Callable[[list[Row]], str]] = {"stability": _ladder, "validation": _validation}
+PAGES: dict[str, Callable[[list[BenchRow]], str]] = {"stability": _ladder, "validation": _validation}

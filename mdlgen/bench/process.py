@@ -8,7 +8,7 @@ import signal
 import subprocess
 import sys
 
-from mdlgen.bench.child import Task
+from mdlgen.bench.child import Job
 from mdlgen.bench.row import Outcome
 
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
@@ -16,7 +16,7 @@ THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_
 STARTING = 30.0
 
 
-def run(task: Task) -> Outcome:
+def run(task: Job) -> Outcome:
     """The outcome of a task; a crash, a hang or an internal error is one with its reason."""
     limit = task.case.limit * max(1, task.repeats) + STARTING
     try:
@@ -33,6 +33,6 @@ def run(task: Task) -> Outcome:
     if done.returncode < 0:
         return Outcome(f"the process crashed: {signal.Signals(-done.returncode).name}")
     if done.returncode or not done.stdout:
-        told = done.stderr.decode("utf-8", "replace").strip().splitlines()
-        return Outcome(f"the process ended with code {done.returncode}: {told[-1] if told else ''}"[:300])
+        record = done.stderr.decode("utf-8", "replace").strip().splitlines()
+        return Outcome(f"the process ended with code {done.returncode}: {record[-1] if record else ''}"[:300])
     return pickle.loads(done.stdout)

@@ -6,7 +6,7 @@ import math
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from mdlgen.bench.case import Case, Finding
+from mdlgen.bench.case import BenchCase, Finding
 
 OK, FAILED, WRONG = "ok", "failed", "wrong"
 
@@ -30,7 +30,7 @@ class Outcome:
 
 
 @dataclass(frozen=True)
-class Row:
+class BenchRow:
     """`status` is ok, failed (the solver says why) or wrong (it said ok, but the error is above the
     tolerance). A row that is ok carries an error."""
 
@@ -68,7 +68,7 @@ class Row:
         return plain(asdict(self))
 
 
-def rows(case: Case, solver: str, outcome: Outcome) -> list[Row]:
+def rows(case: BenchCase, solver: str, outcome: Outcome) -> list[BenchRow]:
     """The rows of one case: one per finding, or one with the reason of a failure."""
     if outcome.status != OK:
         return [_row(case, solver, outcome, Finding("", math.nan), FAILED, outcome.status)]
@@ -83,8 +83,10 @@ def _judged(finding: Finding) -> tuple[str, str | None]:
     return OK, None
 
 
-def _row(case: Case, solver: str, outcome: Outcome, finding: Finding, status: str, reason: str | None) -> Row:
-    return Row(
+def _row(
+    case: BenchCase, solver: str, outcome: Outcome, finding: Finding, status: str, reason: str | None
+) -> BenchRow:
+    return BenchRow(
         suite=case.suite,
         case=case.name,
         solver=solver,

@@ -10,13 +10,13 @@ from typing import Any
 
 from mdlgen import paths, registry
 from mdlgen.bench import process
-from mdlgen.bench.case import Case, Reference, Run
-from mdlgen.bench.child import Task
+from mdlgen.bench.case import BenchCase, Reference, Run
+from mdlgen.bench.child import Job
 from mdlgen.bench.machine import machine, versions
 from mdlgen.bench.peers import MISSING, PEERS, installed
 from mdlgen.bench.peers import versions as peer_versions
 from mdlgen.bench.reference import file_of
-from mdlgen.bench.row import FAILED, OK, WRONG, Outcome, Row, rows
+from mdlgen.bench.row import FAILED, OK, WRONG, BenchRow, Outcome, rows
 from mdlgen.bench.suites import SUITES, cases
 from mdlgen.errors import OutputError, SpecError
 
@@ -34,15 +34,15 @@ class Bench:
     machine: dict[str, Any]
     versions: dict[str, str]
     compile_s: dict[str, float | None]  # per solver, in a new process; small where the cache holds the code
-    rows: list[Row] = field(default_factory=list)
+    rows: list[BenchRow] = field(default_factory=list)
 
     @property
-    def wrong(self) -> list[Row]:
+    def wrong(self) -> list[BenchRow]:
         """Rows whose solver said ok, but whose error is above its tolerance."""
         return [row for row in self.rows if row.status == WRONG]
 
     @property
-    def failed(self) -> list[Row]:
+    def failed(self) -> list[BenchRow]:
         """Rows that failed where a failure is no answer: the ladder's rungs may end in one, and a peer."""
         ours = [row for row in self.rows if row.suite != "stability" and row.solver not in PEERS]
         return [row for row in ours if row.status == FAILED]
@@ -69,7 +69,7 @@ def bench(
     say: Say = lambda text: None,
     peers: bool | None = None,
 ) -> Bench:
-    """Run `suites` (all where empty) with `solvers` (all that there are); `say` is told what is run.
+    """Run `suites` (all where empty) with `solvers` (all that there are); `say` is called with what is run.
 
     `peers` says whether other tools run `transport` too; None: where they are installed and no solver is
     chosen.
@@ -138,22 +138,22 @@ def write(found: Bench, folder: Path) -> None:
 def _warm(solver: str, say: Say) -> float | None:
     """Compile time [s] of a solver in a new process, before anything is measured."""
     say(f"{solver}: compiling, or loading what is compiled")
-    case = Case("warm", "compile", WARM, _nothing)
-    return process.run(Task(case, solver, registry.SOLVERS[solver], 1, None)).compiled
+    case = BenchCase("warm", "compile", WARM, _nothing)
+    return process.run(Job(case, solver, registry.SOLVERS[solver], 1, None)).compiled
 
 
 def _nothing(result: Any, reference: Any) -> list:
     return []
 
 
-def _outcome(case: Case, solver: str, references: References, repeats: int) -> Outcome:
+def _outcome(case: BenchCase, solver: str, references: References, repeats: int) -> Outcome:
     kept = None
     if case.reference is not None:
         kept, reason = references.file(case, case.reference)
         if reason is not None:
             return Outcome(f"no reference: {reason}")
     module = {**registry.SOLVERS, **PEERS}[solver]
-    task = Task(case, solver, module, repeats if case.repeats else 1, kept)
+    task = Job(case, solver, module, repeats if case.repeats else 1, kept)
     return process.run(task)
 
 
@@ -165,14 +165,14 @@ class References:
     say: Say
     failed: dict[Path, str] = field(default_factory=dict)
 
-    def file(self, case: Case, reference: Reference) -> tuple[str, str | None]:
+    def file(self, case: BenchCase, reference: Reference) -> tuple[str, str | None]:
         """Where the states are, and the reason where there are none."""
         file = file_of(reference, registry.SOLVERS[reference.solver], self.folder)
         if not file.exists() and file not in self.failed:
             self.say(f"  reference: {reference.solver} at {reference.run.step:g} ms")
             finer = replace(case, run=reference.run, measure=_nothing, reference=None, limit=REFERENCE_LIMIT)
             module = registry.SOLVERS[reference.solver]
-            outcome = process.run(Task(finer, reference.solver, module, 1, None, str(file)))
+            outcome = process.run(Job(finer, reference.solver, module, 1, None, str(file)))
             if outcome.status != OK:
                 self.failed[file] = outcome.status
         return str(file), self.failed.get(file)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from mdlgen.bench.fits import fits
-from mdlgen.bench.row import OK, Row
+from mdlgen.bench.row import OK, BenchRow
 from mdlgen.errors import printable
 
 if TYPE_CHECKING:
@@ -33,12 +33,12 @@ def markdown(found: Bench) -> str:
     return "\n\n".join(part for part in [*parts, *_together(found)] if part) + "\n"
 
 
-def _table(rows: list[Row]) -> str:
+def _table(rows: list[BenchRow]) -> str:
     lines = [HEAD, ("---",) * len(HEAD), *(_cells(row) for row in rows)]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
-def _cells(row: Row) -> tuple[str, ...]:
+def _cells(row: BenchRow) -> tuple[str, ...]:
     per_step = row.wall_s / row.steps if row.wall_s and row.steps else None
     solves = row.rounds / row.steps if row.rounds and row.steps else None
     return (
@@ -57,30 +57,30 @@ def _cells(row: Row) -> tuple[str, ...]:
     )
 
 
-def _reasons(rows: list[Row]) -> str:
-    told = [f"- {row.case}, {row.solver}: {row.status}: {row.reason}" for row in rows if row.status != OK]
-    return "\n".join(printable(line).replace("|", "/") for line in told)
+def _reasons(rows: list[BenchRow]) -> str:
+    message = [f"- {row.case}, {row.solver}: {row.status}: {row.reason}" for row in rows if row.status != OK]
+    return "\n".join(printable(line).replace("|", "/") for line in message)
 
 
 def _together(found: Bench) -> list[str]:
-    told = fits(found.rows)
+    record = fits(found.rows)
     lines = [
-        *(f"- {label}: order {order:.2f}" for label, order in told["order"].items()),
+        *(f"- {label}: order {order:.2f}" for label, order in record["order"].items()),
         *(
             f"- {label}: {time(at['wall_s'])} at an error of {at['error']:g}"
             + ("" if at["fastest"] == label else f", {at['times_fastest']:.3g} times {at['fastest']}")
-            for label, at in told["wall_at_equal_error"].items()
+            for label, at in record["wall_at_equal_error"].items()
         ),
         *(
             f"- {label}: does not come to that; the least is {at['error']:.3g}, in {time(at['wall_s'])}"
-            for label, at in told["least_error"].items()
+            for label, at in record["least_error"].items()
         ),
         *(
             f"- {solver}: wall time grows with the boxes at a fixed aspect to the power {power:.2f}"
-            for solver, power in told["growth"].items()
+            for solver, power in record["growth"].items()
         ),
-        *(f"- {rule}: saves {100 * part:.0f} % of the wall time" for rule, part in told["saves"].items()),
-        *(f"- not honest: {line}" for line in told["estimates_off"]),
+        *(f"- {rule}: saves {100 * part:.0f} % of the wall time" for rule, part in record["saves"].items()),
+        *(f"- not honest: {line}" for line in record["estimates_off"]),
     ]
     counts = {status: sum(row.status == status for row in found.rows) for status in ("ok", "failed", "wrong")}
     summed = ", ".join(f"{count} {status}" for status, count in counts.items())

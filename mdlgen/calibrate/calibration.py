@@ -66,7 +66,7 @@ def calibrate(
     differ by the value alone; what a solver damps by its steps then counts as damping of the material, so a
     last run at half the step tells how far the step moves the value (`step_error`), and its energy how much
     of the damping is numerical (`numerical`): a value of damping is too small by that part.
-    `progress(runs, most)` is told of each run.
+    `progress(runs, most)` is called after each run.
 
     Raises SpecError for an unknown value or probe, an analysis that does not go with the measurement, and a
     measurement that no value reaches or that does not depend on the value.

@@ -17,7 +17,7 @@ DIGITS = 6  # of a value that is written for people; more is below what a run re
 def report(found: Calibration) -> dict[str, Any]:
     """What `calibrate --json` prints, in mm, N, g, ms, rad."""
     sheet = found.model.sheets[found.probe.sheet]
-    told: dict[str, Any] = {
+    message: dict[str, Any] = {
         "fit": found.fit,
         "material": found.material,
         "value": found.value,
@@ -33,10 +33,10 @@ def report(found: Calibration) -> dict[str, Any]:
         "solver": found.solver,
     }
     if isinstance(found.measured, Decay):
-        told |= {"points": len(found.measured.time), "measured_max_mm": float(found.measured.drop.max())}
+        message |= {"points": len(found.measured.time), "measured_max_mm": float(found.measured.drop.max())}
     else:
-        told |= {"measured_mm": found.measured, "drop_mm": float(found.drop[0])}
-    return told
+        message |= {"measured_mm": found.measured, "drop_mm": float(found.drop[0])}
+    return message
 
 
 def report_text(found: Calibration) -> str:
@@ -106,10 +106,10 @@ def _numerical(found: Calibration) -> list[str]:
     """How much of the damping is that of the solver, which a fitted damping lacks."""
     if found.numerical is None:
         return []
-    told = f"numerical damping of the solver took {found.numerical:.2%} of what was lost"
+    message = f"numerical damping of the solver took {found.numerical:.2%} of what was lost"
     if found.fit.startswith("damping."):
-        told += "; the value is too small by that part"
-    return [told]
+        message += "; the value is too small by that part"
+    return [message]
 
 
 def _sheet(found: Calibration) -> str:

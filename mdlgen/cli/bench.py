@@ -16,14 +16,14 @@ from mdlgen.cli.shell import (
     Verbose,
     app,
     echo_json,
+    reports_errors,
     say,
-    told,
 )
 from mdlgen.errors import AccuracyError
 
 
 @app.command()
-@told
+@reports_errors
 def bench(
     suites: Annotated[
         list[str] | None,

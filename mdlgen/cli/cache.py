@@ -6,13 +6,13 @@ from typing import Annotated
 
 import typer
 
-from mdlgen.cli.shell import Quiet, Verbose, app, told
+from mdlgen.cli.shell import Quiet, Verbose, app, reports_errors
 
 UNFIT = 3
 
 
 @app.command()
-@told
+@reports_errors
 def cache(
     clear: Annotated[bool, typer.Option("--clear", help="Remove what is kept.")] = False,
     check: Annotated[

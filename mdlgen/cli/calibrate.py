@@ -18,18 +18,18 @@ from mdlgen.cli.shell import (
     Spec,
     Verbose,
     app,
-    chatter,
     count,
     echo_json,
+    reports_errors,
     say,
     scene_of,
-    told,
+    solver_output,
 )
 from mdlgen.errors import SpecError
 
 
 @app.command()
-@told
+@reports_errors
 def calibrate(
     spec: Spec,
     measured: Annotated[
@@ -94,7 +94,7 @@ def calibrate(
     value.find(fit)
     wanted = read_measured(measured)
     scene = scene_of(spec, sets, limits)
-    with count(quiet, "runs") as progress, chatter(verbose):
+    with count(quiet, "runs") as progress, solver_output(verbose):
         found = search(scene, wanted, fit, probe, solver, progress)
     if not found.ok:
         say(f"{spec}: {found.status}; nothing was written")

@@ -22,8 +22,8 @@ from mdlgen.cli.shell import (
     app,
     count,
     echo_json,
+    reports_errors,
     say,
-    told,
 )
 from mdlgen.cli.sweep import runner_of
 from mdlgen.errors import SpecError
@@ -32,7 +32,7 @@ FRAGMENT = "best.yaml"
 
 
 @app.command()
-@told
+@reports_errors
 def optimize(
     spec: Annotated[
         Path | None,

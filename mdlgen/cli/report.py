@@ -7,14 +7,14 @@ from typing import Annotated
 
 import typer
 
-from mdlgen.cli.shell import Pictures, Quiet, Verbose, app, say, told
+from mdlgen.cli.shell import Pictures, Quiet, Verbose, app, reports_errors, say
 from mdlgen.errors import OutputError, SpecError
 
 PAGE = "report.html"
 
 
 @app.command()
-@told
+@reports_errors
 def report(
     folders: Annotated[
         list[Path],
@@ -75,7 +75,7 @@ def report(
 
 
 @app.command()
-@told
+@reports_errors
 def export(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="What `mdlgen run` wrote.")],
     output: Annotated[
@@ -110,7 +110,7 @@ def export(
 
 
 @app.command()
-@told
+@reports_errors
 def view(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="What `mdlgen run` wrote.")],
     quiet: Quiet = False,

@@ -23,13 +23,13 @@ from mdlgen.cli.shell import (
     Verbose,
     app,
     beside,
-    chatter,
     echo_json,
     progress_bar,
+    reports_errors,
     say,
+    solver_output,
     source_of,
     strictly,
-    told,
 )
 from mdlgen.errors import AccuracyError, SpecError
 
@@ -46,7 +46,7 @@ LONG = 1.0
 
 
 @app.command()
-@told
+@reports_errors
 def run(
     spec: Annotated[
         Path | None, typer.Argument(metavar="SPEC", help="The scene: a YAML or JSON file.")
@@ -140,7 +140,7 @@ def run(
         say(f"{folder} holds a run that was cut off; this one takes its place (--resume {folder} goes on)")
     # a solver may talk on standard output, which is kept for results
     try:
-        with progress_bar(quiet, request.check_step) as progress, chatter(verbose):
+        with progress_bar(quiet, request.check_step) as progress, solver_output(verbose):
             asked = request.solver, progress, request.check_step, checkpointer, processors()
             result = beside(lambda: registry.solve(model, *asked))
     except KeyboardInterrupt:
@@ -196,7 +196,7 @@ def _ahead(checkpointer: Checkpointer, model: Model, drawn: bool, packages: tupl
     checkpointer.free.wait(LONG)
     before = sys.getswitchinterval()
     sys.setswitchinterval(INTERVAL)
-    # what fails here fails again where it is needed, and is told there
+    # what fails here fails again where it is needed, and is reported there
     with contextlib.suppress(Exception):
         from mdlgen.report.page import prepare
         from mdlgen.report.pictures import load_drawing

@@ -20,15 +20,15 @@ from mdlgen.cli.shell import (
     app,
     echo_json,
     model_of,
+    reports_errors,
     say,
     strictly,
-    told,
 )
 from mdlgen.errors import OutputError, SpecError, did_you_mean
 
 
 @app.command()
-@told
+@reports_errors
 def new(
     folder: Annotated[Path | None, typer.Argument(metavar="DIR", help="Where to put the scene.")] = None,
     sample: Annotated[
@@ -84,7 +84,7 @@ def new(
 
 
 @app.command()
-@told
+@reports_errors
 def check(
     spec: Spec,
     sets: Sets = None,
@@ -114,14 +114,14 @@ def check(
     else:
         for lint in found["lints"]:
             typer.echo("{code} {where}: {message}; {remedy}".format(**lint))
-    if not quiet and (told := notice(model)):
-        say(told)
+    if not quiet and (message := notice(model)):
+        say(message)
     if strict:
         strictly(model)
 
 
 @app.command()
-@told
+@reports_errors
 def explain(
     code: Annotated[
         str | None,
@@ -156,7 +156,7 @@ def explain(
 
 
 @app.command()
-@told
+@reports_errors
 def schema(
     output: Annotated[
         Path,
@@ -185,7 +185,7 @@ def schema(
 
 
 @app.command()
-@told
+@reports_errors
 def upgrade(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="The scene file, which is rewritten.")],
     check: Annotated[

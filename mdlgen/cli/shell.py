@@ -39,7 +39,7 @@ def _in_one_line() -> Iterator[None]:
 
 
 class Commands(TyperGroup):
-    """A wrong call is told in one line, as every other mistake is."""
+    """A wrong call is reported in one line, as every other mistake is."""
 
     def make_context(self, *args: Any, **more: Any) -> Any:
         with _in_one_line():
@@ -138,7 +138,7 @@ Verbose = Annotated[
 ]
 
 
-def told(command: Callable[..., None]) -> Callable[..., None]:
+def reports_errors(command: Callable[..., None]) -> Callable[..., None]:
     """Ends a command that raises with one line on standard error and the exit code of its error."""
 
     @functools.wraps(command)
@@ -266,7 +266,7 @@ ABOUT = 290
 
 
 @contextlib.contextmanager
-def chatter(verbose: bool) -> Iterator[None]:
+def solver_output(verbose: bool) -> Iterator[None]:
     import io
 
     with contextlib.redirect_stdout(sys.stderr if verbose else io.StringIO()):
@@ -289,14 +289,14 @@ def count(quiet: bool, what: str) -> Iterator[Callable[[int, int], None] | None]
 
 
 @contextlib.contextmanager
-def compiling(told: Callable[[int], None]) -> Iterator[None]:
-    """Calls `told` with how many parts of a solver have been compiled, as they are; with 0 where its program
-    is being prepared."""
+def compiling(report: Callable[[int], None]) -> Iterator[None]:
+    """Calls `report` with how many parts of a solver have been compiled, as they are; with 0 where its
+    program is being prepared."""
     import logging
 
     class Handler(logging.Handler):
         def emit(self, record: logging.LogRecord) -> None:
-            told(getattr(record, "parts", 0))
+            report(getattr(record, "parts", 0))
 
     log, handler = logging.getLogger("mdlgen.compiling"), Handler()
     before = log.level, log.propagate
@@ -338,7 +338,7 @@ def progress_bar(quiet: bool, twice: bool) -> Iterator[Callable[[float, float, i
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
-        TextColumn("{task.fields[told]}"),
+        TextColumn("{task.fields[message]}"),
         TimeRemainingColumn(),
     )
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
@@ -353,21 +353,21 @@ def progress_bar(quiet: bool, twice: bool) -> Iterator[Callable[[float, float, i
                 bar.remove_task(waiting.pop())
             if not tasks or time < last:
                 name = "half the step" if tasks else "first run" if twice else "run"
-                tasks.append(bar.add_task(name, total=end, told=""))
+                tasks.append(bar.add_task(name, total=end, message=""))
             last = time
-            told = f"{time:.2f} of {end:g} ms, step {steps}, {touching} pairs touch"
+            message = f"{time:.2f} of {end:g} ms, step {steps}, {touching} pairs touch"
             speed = bar.tasks[-1].speed
             if speed:
-                told += f", {speed:.3g} ms a second"
-            bar.update(tasks[-1], completed=time, told=told)
+                message += f", {speed:.3g} ms a second"
+            bar.update(tasks[-1], completed=time, message=message)
 
         def compiled(done: int) -> None:
             if done == 0:
-                waiting.append(bar.add_task(PREPARING, total=None, told=""))
+                waiting.append(bar.add_task(PREPARING, total=None, message=""))
                 return
             if not parts:
-                parts.append(bar.add_task(COMPILING, total=ABOUT, told=""))
-            bar.update(parts[0], completed=done, told=f"{done} parts")
+                parts.append(bar.add_task(COMPILING, total=ABOUT, message=""))
+            bar.update(parts[0], completed=done, message=f"{done} parts")
 
         with compiling(compiled):
             yield progress

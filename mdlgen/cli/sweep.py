@@ -24,8 +24,8 @@ from mdlgen.cli.shell import (
     app,
     count,
     echo_json,
+    reports_errors,
     say,
-    told,
 )
 from mdlgen.errors import OutputError, SpecError
 
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 @app.command()
-@told
+@reports_errors
 def sweep(
     spec: Annotated[
         Path | None,
@@ -192,7 +192,7 @@ def sweep(
         failed = sum(not row.measured for row in rows)
         echo_json({"cases": len(rows), "failed": failed, "files": names, "rows": [r.json() for r in rows]})
     elif not quiet:
-        typer.echo("\n".join([study.told(rows), *words]))
+        typer.echo("\n".join([study.summary(rows), *words]))
         typer.echo(f"wrote {', '.join(str(file) for file in files)}")
     if not any(row.measured for row in rows):
         say(f"{spec}: all cases failed; {files[0]} has the reasons")

@@ -14,14 +14,14 @@ if TYPE_CHECKING:
 _LINTS = ["code", "where", "what", "what to do"]
 
 
-def show(told: dict[str, Any], console: Console | None = None) -> None:
+def show(record: dict[str, Any], console: Console | None = None) -> None:
     """An overview (`report.overview`) on a terminal, with its lints last."""
     from rich.console import Console
 
     from mdlgen.report.text import lints_end, overview_parts
 
     console = console or Console()
-    parts = overview_parts(told)
+    parts = overview_parts(record)
     for k, part in enumerate(parts):
         if not part and any(not isinstance(near, str) for near in parts[k - 1 : k + 2]):
             continue  # a table has its own empty lines
@@ -32,10 +32,10 @@ def show(told: dict[str, Any], console: Console | None = None) -> None:
             )
         else:
             _table(console, part, numbers=True)
-    if told["lints"]:
-        rows = [[lint[key] for key in ("code", "where", "message", "remedy")] for lint in told["lints"]]
+    if record["lints"]:
+        rows = [[lint[key] for key in ("code", "where", "message", "remedy")] for lint in record["lints"]]
         _table(console, [_LINTS, *rows], numbers=False)
-    console.print(lints_end(told), highlight=False)
+    console.print(lints_end(record), highlight=False)
 
 
 def _table(console: Console, rows: Rows, numbers: bool) -> None:

@@ -19,15 +19,15 @@ from mdlgen.cli.shell import (
     count,
     echo_json,
     model_of,
+    reports_errors,
     say,
     scene_of,
-    told,
 )
 from mdlgen.errors import AccuracyError, OutputError, SpecError
 
 
 @app.command()
-@told
+@reports_errors
 def mdl(
     spec: Spec,
     output: Annotated[
@@ -106,7 +106,7 @@ def mdl(
 
 
 @app.command()
-@told
+@reports_errors
 def deck(
     spec: Spec,
     output: Annotated[
@@ -143,7 +143,7 @@ def deck(
 
 
 @app.command()
-@told
+@reports_errors
 def lint(
     text: Annotated[Path, typer.Argument(metavar="FILE.mdl", help="Any MotionView text.")],
     values: Annotated[
@@ -193,7 +193,7 @@ def lint(
 
 
 @app.command()
-@told
+@reports_errors
 def verify(
     spec: Spec,
     text: Annotated[

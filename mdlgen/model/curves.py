@@ -28,7 +28,7 @@ from mdlgen.spec.scene import Scene
 
 WAYS = ("md", "cd")  # of the sheet's x and y axis
 # A run that is refused beyond the last point ends at its next step; until then the joint is given at least
-# this part of the first slope, so that a state is found to be told.
+# this part of the first slope, so that a state is found to be reported.
 LEAST_RISE = 0.01
 # A text takes straight lines between points: as many as keep it within this part of the greatest stress.
 TEXT_TOLERANCE = 1e-6
@@ -196,8 +196,8 @@ def written(model: Model) -> tuple[list[Written], Ints]:
             halves = 2.0 if rows.kind[first] == CLAMP else 1.0
             of[members] = len(found)
             length, area = halves * float(curves.length[first]), float(curves.area[first])
-            axis, told = "xy"[int(curves.axis[first])], f"{name}_{joints}" if joints else name
-            found.append(Written(told, index, number, joints, axis, length, area))
+            axis, message = "xy"[int(curves.axis[first])], f"{name}_{joints}" if joints else name
+            found.append(Written(message, index, number, joints, axis, length, area))
     return found, of
 
 

@@ -123,8 +123,8 @@ def find_pairs(
             part_low, part_high = kind_of(other).bounds(other, bodies, rollers)
             box_low, box_high = extents[sheet.name]
             boxes = boxes[np.all((box_low <= part_high) & (box_high >= part_low), axis=1)]
-        if told := limits.exceeded("pairs", len(kept) + len(boxes), "pairs of bodies kept"):
-            raise SpecError(told, ("contacts", int(contacts.entry[row])))
+        if message := limits.exceeded("pairs", len(kept) + len(boxes), "pairs of bodies kept"):
+            raise SpecError(message, ("contacts", int(contacts.entry[row])))
         kept.extend((row, int(box), other.body) for box in boxes)
     table = np.array(kept, dtype=np.int64).reshape(-1, 3)
     return Pairs(
@@ -209,8 +209,8 @@ def _moving(touched: list[Part], rollers: tuple[RollerPart, ...]) -> list[Part]:
 
 
 def _drive(sheet: SheetPart, roller: RollerPart, times: Floats) -> tuple[Floats, Floats]:
-    """Path of a driven roller's surface where it faces the sheet, at some times [mm], (t, 3), and its foot on
-    the sheet."""
+    """Path of a driven roller's surface where it faces the sheet, at some times [mm], (t, 3), and its nearest
+    place on the sheet."""
     normal = sheet.rotation[:, 2]
     height = float((roller.center - sheet.center) @ normal)
     toward = -float(np.copysign(roller.reach, height)) * normal
@@ -226,9 +226,9 @@ def _turn(sheet: SheetPart, drives: list[tuple[Floats, Floats]], time: float) ->
     if np.any(off_plane != 0.0):
         return np.inf
     most = 0.0
-    for k, (path, foot) in enumerate(drives):
+    for k, (path, near) in enumerate(drives):
         for other, base in drives[:k]:
-            gap = foot - base
+            gap = near - base
             distance = float(np.linalg.norm(gap))
             if distance > 0:
                 across = np.linalg.norm(np.cross(path - other, gap / distance), axis=1).max()

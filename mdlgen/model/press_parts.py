@@ -73,10 +73,10 @@ class Face:
         gap, own = (at - self.middle) @ self.ways, wheel.axis @ self.ways
         lean = float(own[2])
         cosine = math.sqrt(1.0 - lean * lean)
-        # the foot of a place u of the axis is at gap + u own + R (lean own - normal) / cosine
-        foot = gap[:2] + wheel.radius * lean / cosine * own[:2]
+        # the nearest point of a place u of the axis is at gap + u own + R (lean own - normal) / cosine
+        near = gap[:2] + wheel.radius * lean / cosine * own[:2]
         half = 0.5 * wheel.width
-        return gap, own, cosine, *self._within(foot, own[:2], -half, half)
+        return gap, own, cosine, *self._within(near, own[:2], -half, half)
 
     def force(self, wheel: Wheel, at: Floats) -> Floats:
         """Force on the roller where its centre is at a place [N], (3,)."""

@@ -597,8 +597,10 @@ class Model(Frozen):
 
     def __repr__(self) -> str:
         kinds = ("sheets", "rollers", "planes", "guides", "bushings", "contacts")
-        told = ", ".join(f"{len(getattr(self, kind))} {kind}" for kind in kinds if len(getattr(self, kind)))
-        return f"<Model {self.name}: {len(self.bodies.name)} bodies, {told}>"
+        message = ", ".join(
+            f"{len(getattr(self, kind))} {kind}" for kind in kinds if len(getattr(self, kind))
+        )
+        return f"<Model {self.name}: {len(self.bodies.name)} bodies, {message}>"
 
     @property
     def machine(self) -> tuple[RollerPart | PlanePart | GuidePart | MeshPart, ...]:

@@ -40,7 +40,7 @@ class Head:
 
     def line(self) -> bytes:
         """The first line of the file."""
-        told: dict[str, Any] = {
+        message: dict[str, Any] = {
             "format": FORMAT,
             "digest": self.digest,
             "code": self.code,
@@ -51,7 +51,7 @@ class Head:
                 for name, variants in self.entries.items()
             },
         }
-        return json.dumps(told, separators=(",", ":"), sort_keys=True).encode("ascii") + b"\n"
+        return json.dumps(message, separators=(",", ":"), sort_keys=True).encode("ascii") + b"\n"
 
 
 def write(path: Path, head: Head, packed: bytes) -> None:
@@ -91,15 +91,15 @@ def _open(path: Path) -> tuple[Head, bytes]:
         raise Unfit(f"{path.name} cannot be read: {error.strerror}") from None
     line, _, packed = raw.partition(b"\n")
     try:
-        told = json.loads(line)
-        if told["format"] != FORMAT:
+        record = json.loads(line)
+        if record["format"] != FORMAT:
             raise Unfit(f"{path.name} is of another form")
         entries = {
             name: tuple(Variant(symbol, tuple(arguments), result) for symbol, arguments, result in variants)
-            for name, variants in told["entries"].items()
+            for name, variants in record["entries"].items()
         }
         return Head(
-            str(told["digest"]), str(told["code"]), told["versions"], entries, tuple(told["external"])
+            str(record["digest"]), str(record["code"]), record["versions"], entries, tuple(record["external"])
         ), packed
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
         raise Unfit(f"{path.name} is damaged") from None

@@ -80,9 +80,9 @@ class Kernel:
         return self.compiled(*args)
 
     def compiled(self, *args: Any) -> Any:
-        """Calls what numba compiles; what is compiled in the first call is told."""
+        """Calls what numba compiles; what is compiled in the first call is logged."""
         dispatcher = self.dispatcher
-        with _told():
+        with _logged():
             found = dispatcher(*args)
         if self._call == self.compiled:
             self._call = dispatcher  # else some arguments are the program's
@@ -213,8 +213,8 @@ def _plain(value: Any) -> Any:
 
 
 @contextmanager
-def _told() -> Iterator[None]:
-    """Logs (INFO, how many so far) each function that numba compiles inside; what is loaded is not told."""
+def _logged() -> Iterator[None]:
+    """Logs (INFO, how many so far) each function that numba compiles inside; what is loaded is not logged."""
     event = importlib.import_module("numba.core.event")
 
     class Counter(event.Listener):

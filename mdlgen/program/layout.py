@@ -2,7 +2,7 @@
 
 An array is: who owns it (2 words, 0: nobody here), how many items, their size, the address, the shape, the
 strides. A tuple, with names or without, is its items one after the other; a number is one word. A type is
-told as JSON can tell it: "f8", "i8", "b1", ["tuple", types], ["array", dtype, dimensions, order, written].
+written as JSON: "f8", "i8", "b1", ["tuple", types], ["array", dtype, dimensions, order, written].
 """
 
 from __future__ import annotations
@@ -44,10 +44,10 @@ def _of_dtype(dtype: np.dtype) -> Any:
     return dtype.str if dtype.names is None else [list(field) for field in dtype.descr]
 
 
-def _dtype(told: Any) -> np.dtype:
-    if isinstance(told, str):
-        return np.dtype(told)
-    return np.dtype([tuple(tuple(v) if isinstance(v, list) else v for v in field) for field in told])
+def _dtype(message: Any) -> np.dtype:
+    if isinstance(message, str):
+        return np.dtype(message)
+    return np.dtype([tuple(tuple(v) if isinstance(v, list) else v for v in field) for field in message])
 
 
 def words(kind: Type) -> int:
@@ -116,8 +116,8 @@ def _tuple(kind: Type, at: int) -> Write:
 
 
 def _array(kind: Type, at: int) -> Write:
-    _, told, dimensions, order, written = kind
-    dtype = _dtype(told)
+    _, message, dimensions, order, written = kind
+    dtype = _dtype(message)
     pack, at = struct.Struct(f"={5 + 2 * dimensions}q").pack_into, 8 * at
 
     def write(buffer: Any, value: Any) -> None:

@@ -38,8 +38,8 @@ def load(name: str, head: Head, bitcode: Callable[[], bytes]) -> Machine:
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
     processor, features = llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
-    told = (head.code, llvm.get_process_triple(), processor, features, llvmlite.__version__)
-    key = hashlib.sha256("\n".join((*told, platform.python_version())).encode()).hexdigest()[:24]
+    message = (head.code, llvm.get_process_triple(), processor, features, llvmlite.__version__)
+    key = hashlib.sha256("\n".join((*message, platform.python_version())).encode()).hexdigest()[:24]
     for symbol in head.external:
         if llvm.address_of_symbol(symbol) is None:
             llvm.add_symbol(symbol, _address(symbol))
@@ -74,8 +74,8 @@ def emit(machine: Any, bitcode: bytes) -> bytes:
         builder.getModulePassManager().run(module, builder)
         return machine.emit_object(module)
     except RuntimeError as error:  # bitcode of a later LLVM, for one
-        told = str(error).strip().splitlines() or ["it cannot be read"]
-        raise Unfit(f"LLVM does not take it: {told[0]}") from None
+        record = str(error).strip().splitlines() or ["it cannot be read"]
+        raise Unfit(f"LLVM does not take it: {record[0]}") from None
 
 
 def _address(symbol: str) -> int:
@@ -123,7 +123,7 @@ class Machine:
         return Call(name, variant, self._engine.get_function_address(variant.symbol))
 
 
-class Row(threading.local):
+class ArgumentWords(threading.local):
     """The words of one thread's calls, and the arguments that they were made of."""
 
     def __init__(self, size: int, arguments: int, result: int):
@@ -150,7 +150,7 @@ class Call:
             at += words(kind)
         size, self._read = reader(variant.result)
         self._count = len(self._writers)
-        self._row = Row(at, self._count, size)
+        self._row = ArgumentWords(at, self._count, size)
         self._function = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p)(address)
 
     def __call__(self, *args: Any) -> Any:

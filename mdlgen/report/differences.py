@@ -19,11 +19,11 @@ def differences(
 ) -> dict[str, Any]:
     """For the page: rows of numbers (what, one value a run, differences to the first), of parameters that
     are not the same in all runs, and the distance of each run from the first."""
-    flat = [dict(_flat({k: v for k, v in told.items() if k not in _LEFT_OUT})) for told in summaries]
-    keys = list(dict.fromkeys(key for told in flat for key in told))
+    flat = [dict(_flat({k: v for k, v in record.items() if k not in _LEFT_OUT})) for record in summaries]
+    keys = list(dict.fromkeys(key for record in flat for key in record))
     numbers = []
     for key in keys:
-        values = [told.get(key) for told in flat]
+        values = [record.get(key) for record in flat]
         if any(isinstance(value, str) for value in values):
             if len(set(values)) > 1:
                 numbers.append({"what": key, "values": values, "less": None})

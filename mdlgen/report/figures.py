@@ -11,7 +11,7 @@ from mdlgen.model.tables import CYLINDER_CYLINDER, Floats
 from mdlgen.results.compare import travel
 from mdlgen.results.result import Result
 
-# Okabe and Ito: told apart by all readers and in grey
+# Okabe and Ito: distinct for all readers and in grey
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 # Curves often coincide (left and right): a later one is thinner, so that the one below shows.
 WIDEST, THINNEST = 3.8, 1.2

@@ -48,7 +48,7 @@ class _Buffer:
         view = {"buffer": 0, "byteOffset": len(self.data), "byteLength": array.nbytes}
         self.views.append(view | ({} if target is None else {"target": target}))
         self.data += array.tobytes()
-        told: dict[str, Any] = {
+        message: dict[str, Any] = {
             "bufferView": len(self.views) - 1,
             "componentType": _INDEX if index else _FLOAT,
             "count": len(array),
@@ -56,8 +56,8 @@ class _Buffer:
         }
         if bounds:
             rows = array.reshape(len(array), -1)
-            told |= {"min": rows.min(axis=0).tolist(), "max": rows.max(axis=0).tolist()}
-        self.accessors.append(told)
+            message |= {"min": rows.min(axis=0).tolist(), "max": rows.max(axis=0).tolist()}
+        self.accessors.append(message)
         return len(self.accessors) - 1
 
 
@@ -81,8 +81,8 @@ def glb(result: Result, first: int = 0) -> bytes:
 
     def node(body: int, **more: Any) -> None:
         rows[body] = len(nodes)
-        told = {"name": called[body], "translation": place[first, body].tolist()}
-        nodes.append(told | {"rotation": turn[first, body].tolist()} | more)
+        record = {"name": called[body], "translation": place[first, body].tolist()}
+        nodes.append(record | {"rotation": turn[first, body].tolist()} | more)
 
     for body in range(boxes.count(model)):
         node(body, mesh=0, scale=model.bodies.half[body].tolist())
@@ -99,7 +99,7 @@ def glb(result: Result, first: int = 0) -> bytes:
     for body in moves:
         if body not in rows:  # nothing is drawn of a roller that is a mesh
             node(body)
-    inside = {child for told in nodes for child in told.get("children", ())}
+    inside = {child for record in nodes for child in record.get("children", ())}
     # mm to m, and z up to y up
     root = {
         "name": model.name,
@@ -108,7 +108,7 @@ def glb(result: Result, first: int = 0) -> bytes:
         "scale": [0.001] * 3,
     }
     span = float(result.time[at[-1]] - result.time[at[0]])
-    told: dict[str, Any] = {
+    record: dict[str, Any] = {
         "asset": {
             "version": "2.0",
             "generator": f"mdlgen {version()}",
@@ -122,13 +122,13 @@ def glb(result: Result, first: int = 0) -> bytes:
     }
     if span > 0.0:
         time = (result.time[at] - result.time[at[0]]) * (LASTS / span)
-        told["animations"] = [_animation(buffer, time, place, turn, {b: rows[b] for b in moves})]
-    told |= {
+        record["animations"] = [_animation(buffer, time, place, turn, {b: rows[b] for b in moves})]
+    record |= {
         "accessors": buffer.accessors,
         "bufferViews": buffer.views,
         "buffers": [{"byteLength": len(buffer.data)}],
     }
-    return _file(told, bytes(buffer.data))
+    return _file(record, bytes(buffer.data))
 
 
 def _mesh(buffer: _Buffer, name: str, points: Floats, triangles: Any, look: int) -> dict[str, Any]:
@@ -164,9 +164,9 @@ def _animation(
     return {"name": "run", "channels": channels, "samplers": samplers}
 
 
-def _file(told: dict[str, Any], data: bytes) -> bytes:
+def _file(message: dict[str, Any], data: bytes) -> bytes:
     """Both chunks, each filled up to a multiple of four."""
-    text = json.dumps(told, allow_nan=False, separators=(",", ":")).encode("ascii")
+    text = json.dumps(message, allow_nan=False, separators=(",", ":")).encode("ascii")
     text += b" " * (-len(text) % 4)
     data += b"\0" * (-len(data) % 4)
     chunks = (

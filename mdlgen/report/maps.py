@@ -76,8 +76,8 @@ def strain_map(result: Result) -> bytes:
         paper = page.add_axes((0.0, 0.0, 1.0, 1.0))
         paper.set(xlim=(0.0, page_width), ylim=(0.0, page_height))
         paper.set_axis_off()
-        told = "the most that each joint bore" if panels else "single boxes have no joints"
-        title = f"{result.model.name}: {told}"
+        message = "the most that each joint bore" if panels else "single boxes have no joints"
+        title = f"{result.model.name}: {message}"
         paper.text(_GAP, page_height - 0.3, title, fontsize=11, weight="bold")
         for number, panel in enumerate(panels):
             row, column = divmod(number, columns)
@@ -108,10 +108,10 @@ def maps(result: Result) -> list[Map]:
                     continue
                 most = int(np.argmax(np.where(mine, values, -1.0)))
                 when = "" if model.run.analysis == "static" else f" at {at[most]:.4g} ms"
-                told = f"{values[most]:.3g}{unit}{when}"
+                record = f"{values[most]:.3g}{unit}{when}"
                 if values[most] < _NOTHING:
-                    told = f"below {_NOTHING:g}{unit}"
-                name = f"{sheet.name}, {what} along {way}\n{told}"
+                    record = f"below {_NOTHING:g}{unit}"
+                name = f"{sheet.name}, {what} along {way}\n{record}"
                 found.append(Map(sheet, name, cells[mine], values[mine], cells[most].mean(axis=0)))
     return found
 

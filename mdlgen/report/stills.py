@@ -63,10 +63,10 @@ def stills(result: Result, at_ms: list[float]) -> dict[str, bytes]:
     matrix = turns(turn)
     name, unit, values, most = _colours(result, at)
     scenes = [_Scene(result, place[k], matrix[k], values[k] / (most or 1.0)) for k in range(len(at))]
-    told = f"colour: {name}, 0 to {most:.4g} {unit}"
+    message = f"colour: {name}, 0 to {most:.4g} {unit}"
     frame = [_frame([scene.points @ view.T for scene in scenes]) for view in (_SIDE, _corner())]
     return {
-        f"still_{time:g}ms.png": _draw(result, scene, frame, float(result.time[k]), told)
+        f"still_{time:g}ms.png": _draw(result, scene, frame, float(result.time[k]), message)
         for time, scene, k in zip(at_ms, scenes, at, strict=True)
     }
 
@@ -102,7 +102,7 @@ class _Scene:
         self.faces: list[Floats] = list(moved[:, FACES].reshape(-1, 4, 3))
         self.colours: list[tuple[float, ...]] = [ramp(float(v)) for v in np.repeat(share, len(FACES))]
         self.plane: list[bool] = [False] * len(self.faces)
-        # centre and normal of every box, by which what lies behind a sheet is told from what lies before it
+        # centre and normal of every box, by which what lies behind a sheet is known from what lies before it
         self.boxes = place[:count], turn[:count, :, 2]
         held = [moved.reshape(-1, 3)]
         for mesh in machine(model):
@@ -125,7 +125,9 @@ def _frame(seen: list[Floats]) -> tuple[Floats, Floats]:
     return low - margin, high + margin
 
 
-def _draw(result: Result, scene: _Scene, frame: list[tuple[Floats, Floats]], time: float, told: str) -> bytes:
+def _draw(
+    result: Result, scene: _Scene, frame: list[tuple[Floats, Floats]], time: float, message: str
+) -> bytes:
     import matplotlib
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -137,7 +139,7 @@ def _draw(result: Result, scene: _Scene, frame: list[tuple[Floats, Floats]], tim
         page = Figure(figsize=(8.0, 6.4), dpi=120)
         canvas = FigureCanvasAgg(page)
         page.suptitle(f"{result.model.name}, {time:g} ms", x=0.02, ha="left", fontsize=11, weight="bold")
-        page.text(0.98, 0.965, told, ha="right", fontsize=9)
+        page.text(0.98, 0.965, message, ha="right", fontsize=9)
         tall = [(high - low)[1] / (high - low)[0] for low, high in frame]
         share = np.clip(tall[0] / (tall[0] + tall[1]), 0.2, 0.6)
         side = page.add_axes((0.08, 0.09, 0.9, 0.84 * float(share) - 0.02))

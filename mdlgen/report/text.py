@@ -16,25 +16,25 @@ NOTHING = 1e-9  # mm, mm/s, deg, N: what is less is round-off
 Rows = list[list[str]]  # of a table, the first with what its columns are
 
 
-def overview_text(told: dict[str, Any]) -> str:
+def overview_text(record: dict[str, Any]) -> str:
     """The tables of `mdlgen check` where they are not for a terminal."""
     lines: list[str] = []
-    for part in overview_parts(told):
+    for part in overview_parts(record):
         lines += [part] if isinstance(part, str) else _table(part)
     lines.append("")
-    lines += [f"{x['code']} {x['where']}: {x['message']}; {x['remedy']}" for x in told["lints"]]
-    lines.append(lints_end(told))
+    lines += [f"{x['code']} {x['where']}: {x['message']}; {x['remedy']}" for x in record["lints"]]
+    lines.append(lints_end(record))
     return "\n".join(lines)
 
 
-def lints_end(told: dict[str, Any]) -> str:
-    return "mdlgen explain CODE says more" if told["lints"] else "no lints"
+def lints_end(record: dict[str, Any]) -> str:
+    return "mdlgen explain CODE says more" if record["lints"] else "no lints"
 
 
-def overview_parts(told: dict[str, Any]) -> list[str | Rows]:
+def overview_parts(record: dict[str, Any]) -> list[str | Rows]:
     """What `mdlgen check` tells before the lints: lines, and tables by rows."""
-    lines: list[str | Rows] = [f"scene {told['scene']}, {told['analysis']}"]
-    for name, sheet in told["sheets"].items():
+    lines: list[str | Rows] = [f"scene {record['scene']}, {record['analysis']}"]
+    for name, sheet in record["sheets"].items():
         size = " x ".join(f"{v:.5g}" for v in sheet["outline_mm"])
         lines += [
             "",
@@ -48,26 +48,26 @@ def overview_parts(told: dict[str, Any]) -> list[str | Rows]:
             *_damping(sheet["derived"]),
             *_curves(sheet["curves"]),
         ]
-    pairs = told["pairs"]
+    pairs = record["pairs"]
     lines += [
         "",
-        f"{told['boxes']} boxes, {told['bushings']} bushings, "
-        f"{told['rollers']} rollers, {told['planes']} planes"
-        + (f", {told['guides']} guides" if told["guides"] else "")
-        + (f", {len(told['meshes'])} meshes" if told["meshes"] else ""),
-        f"contact: {told['contacts']} pairs of parts; {pairs['possible']} pairs of bodies possible, "
+        f"{record['boxes']} boxes, {record['bushings']} bushings, "
+        f"{record['rollers']} rollers, {record['planes']} planes"
+        + (f", {record['guides']} guides" if record["guides"] else "")
+        + (f", {len(record['meshes'])} meshes" if record["meshes"] else ""),
+        f"contact: {record['contacts']} pairs of parts; {pairs['possible']} pairs of bodies possible, "
         f"{pairs['kept']} kept (margin {pairs['margin_mm']:g} mm)",
-        *smoothing_lines(told["smoothing"]),
+        *smoothing_lines(record["smoothing"]),
     ]
-    for name, mesh in told["meshes"].items():
+    for name, mesh in record["meshes"].items():
         size = " x ".join(f"{v:.4g}" for v in mesh["size_mm"])
         left = f" ({mesh['left_out']} without an area left out)" if mesh["left_out"] else ""
         lines.append(
             f"mesh {name}: {mesh['file']}, {mesh['triangles']} triangles{left}, {size} mm, "
             f"{mesh['volume_mm3']:.4g} mm^3, {mesh['mass_g']:.4g} g"
         )
-    if told["external_parts"]:
-        parts = ", ".join(f"{name} ({part['body']})" for name, part in told["external_parts"].items())
+    if record["external_parts"]:
+        parts = ", ".join(f"{name} ({part['body']})" for name, part in record["external_parts"].items())
         lines.append(f"external parts: {parts}; {pairs['external']} pairs of bodies with them, all kept")
     elif told["cost"] is not None:
         cost = Cost(**told["cost"])
@@ -78,7 +78,7 @@ def overview_parts(told: dict[str, Any]) -> list[str | Rows]:
 def _derived(values: dict[str, float]) -> list[str | Rows]:
     """The paper's Table 1 (the box) in a line, and Table 2 (one bushing) by axis."""
     box = [("d_x", "d"), ("d_y", "d"), ("m", "m"), ("I_x", "I"), ("I_y", "I"), ("I_z", "I")]
-    told = ", ".join(f"{n} {values[n]:.5g} {UNITS[unit]}" for n, unit in box)
+    record = ", ".join(f"{n} {values[n]:.5g} {UNITS[unit]}" for n, unit in box)
     rows = [["one bushing", "x", "y", "z", ""]]
     for symbol, axes, unit in (
         ("k", ("x", "y", "z"), "k"),
@@ -87,18 +87,18 @@ def _derived(values: dict[str, float]) -> list[str | Rows]:
         ("c_t", ("tx", "ty", "tz"), "ct"),
     ):
         rows.append([symbol, *(f"{values[f'{symbol[0]}_{a}']:.5g}" for a in axes), UNITS[unit]])
-    return [f"  box: {told}", rows, *(_plate(values) if "G" in values else [])]
+    return [f"  box: {record}", rows, *(_plate(values) if "G" in values else [])]
 
 
-def _unlike(told: dict[str, Any]) -> list[str]:
+def _unlike(record: dict[str, Any]) -> list[str]:
     """How boxes differ from the one above; nothing where all are alike and flat."""
     parts = []
     for key, name, unit in (("d_x_mm", "d_x", "mm"), ("d_y_mm", "d_y", "mm"), ("m_g", "m", "g")):
-        if key in told:
-            low, high = told[key]
+        if key in record:
+            low, high = record[key]
             parts.append(f"{name} {low:.4g} to {high:.4g} {unit}")
-    parts += [f"zone {name} on {count} boxes" for name, count in told.get("zones", {}).items()]
-    bent = told.get("bent")
+    parts += [f"zone {name} on {count} boxes" for name, count in record.get("zones", {}).items()]
+    bent = record.get("bent")
     if bent is not None:
         if "radius_mm" in bent:
             parts.append(f"curl {bent['radius_mm']:g} mm along {bent['along']}")
@@ -127,8 +127,8 @@ def _plate(values: dict[str, float]) -> list[str | Rows]:
     for symbol in "kc":
         names = ("x_shear", "y_shear", *twist, *(f"{name}_edge" for name in twist), "tz_y")
         named = [f"{symbol}_{name}" for name in names]
-        told = [f"{values[name]:.5g}" for name in named]
-        rows.append([symbol, *told[:2], UNITS[symbol], *told[2:], UNITS[f"{symbol}t"]])
+        record = [f"{values[name]:.5g}" for name in named]
+        rows.append([symbol, *record[:2], UNITS[symbol], *record[2:], UNITS[f"{symbol}t"]])
     return [f"  plate: G {values['G']:.5g} MPa, D_twist {values['D_twist']:.5g} {UNITS['D']}", rows]
 
 
@@ -166,44 +166,46 @@ def _table(rows: Sequence[Sequence[str]]) -> list[str]:
     return ["  " + "  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip() for row in rows]
 
 
-def summary_text(told: dict[str, Any]) -> str:
+def summary_text(record: dict[str, Any]) -> str:
     """What `mdlgen run` prints of a summary."""
-    pairs = told["pairs"]
-    steps = f"{told['steps']} steps of {told['step_ms']:.4g} ms" if told["step_ms"] else "static"
-    estimating = told["estimate_s"]
+    pairs = record["pairs"]
+    steps = f"{record['steps']} steps of {record['step_ms']:.4g} ms" if record["step_ms"] else "static"
+    estimating = record["estimate_s"]
     # what takes less than a millisecond is no run, but the clock between two readings
     more = f"and {estimating:.2g} s more for the estimate of the error, " if estimating > 1e-3 else ""
     lines = [
-        f"{told['scene']} ({told['solver']}): {told['status']}, {told['t_end_ms']:.6g} ms, {steps}",
-        f"solved in {told['wall_s']:.3g} s, {more}"
-        f"after {told['build_s']:.2g} s to build and {told['compile_s']:.2g} s to compile",
+        f"{record['scene']} ({record['solver']}): {record['status']}, {record['t_end_ms']:.6g} ms, {steps}",
+        f"solved in {record['wall_s']:.3g} s, {more}"
+        f"after {record['build_s']:.2g} s to build and {record['compile_s']:.2g} s to compile",
         f"pairs: {pairs['possible']} possible, {pairs['kept']} kept, {pairs['touched']} touched",
     ]
-    if told["halved"]:
+    if record["halved"]:
         lines.append("one side was solved, the other is its mirror image (run.symmetry: false solves both)")
-    for name, sheet in told["sheets"].items():
+    for name, sheet in record["sheets"].items():
         lines.append(
             f"sheet {name}: travel {_vector(sheet['travel_mm'])} mm, "
             f"speed {_vector(sheet['speed_mm_per_s'])} mm/s, yaw {_number(sheet['yaw_deg'])} deg"
         )
         if sheet["strain"] is not None:
             lines.append(f"  {_bearing(sheet)}")
-    for name, probe in told["probes"].items():
+    for name, probe in record["probes"].items():
         lines.append(f"probe {name}: displacement {_vector(probe['displacement_mm'])} mm")
-    if told.get("strain") is not None:
-        lines.append(f"strain {told['strain']:.6g}")
-    if told["rollers"]:
-        lines += _rollers(told["rollers"])
-    plates = {name: plane for name, plane in told.get("planes", {}).items() if "center_mm" in plane}
+    if record.get("strain") is not None:
+        lines.append(f"strain {record['strain']:.6g}")
+    if record["rollers"]:
+        lines += _rollers(record["rollers"])
+    plates = {name: plane for name, plane in record.get("planes", {}).items() if "center_mm" in plane}
     if plates:
         lines += _plates(plates)
-    if told["error_estimate"] is not None:
-        worst = f" ({told['error_estimate_of']})" if told["error_estimate_of"] else ""
-        lines.append(f"error estimate {told['error_estimate']:.2g}{worst}, tolerance {told['tolerance']:g}")
-    elif told["error_estimate_of"]:
-        lines.append(f"no error estimate: none for {told['error_estimate_of']}")
-    unknown = [name for name, value in told["estimates"].items() if value is None]
-    if unknown and len(unknown) < len(told["estimates"]):
+    if record["error_estimate"] is not None:
+        worst = f" ({record['error_estimate_of']})" if record["error_estimate_of"] else ""
+        lines.append(
+            f"error estimate {record['error_estimate']:.2g}{worst}, tolerance {record['tolerance']:g}"
+        )
+    elif record["error_estimate_of"]:
+        lines.append(f"no error estimate: none for {record['error_estimate_of']}")
+    unknown = [name for name, value in record["estimates"].items() if value is None]
+    if unknown and len(unknown) < len(record["estimates"]):
         more = f" and {len(unknown) - FEW} more" if len(unknown) > FEW else ""
         lines.append(f"no estimate for {', '.join(unknown[:FEW])}{more} (summary.json: estimates)")
     return "\n".join(lines)

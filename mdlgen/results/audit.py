@@ -52,8 +52,8 @@ def reason(model: Model, energy: Energy, step: float, loss: float | None = None)
     if off <= GAIN and (loss is None or off >= -loss):
         return None
     whence, most = ("came from nowhere", GAIN) if off > 0.0 else ("got lost", loss or 0.0)
-    told = f"{abs(off) * energy.scale:.3g} N mm of energy {whence}, {100 * abs(off):.3g} % of "
-    told += f"{energy.scale:.3g} N mm; allowed are {100 * most:g} %; "
+    message = f"{abs(off) * energy.scale:.3g} N mm of energy {whence}, {100 * abs(off):.3g} % of "
+    message += f"{energy.scale:.3g} N mm; allowed are {100 * most:g} %; "
     if model.run.step is not None:
-        return told + "leave out run.step, so that a step is found that keeps the energy"
-    return told + f"give a run.step of {step / FINER:.2g} ms"
+        return message + "leave out run.step, so that a step is found that keeps the energy"
+    return message + f"give a run.step of {step / FINER:.2g} ms"

@@ -14,8 +14,8 @@ import numpy as np
 
 from mdlgen.model.rotations import turns
 from mdlgen.model.tables import BOX_CYLINDER, Floats, Ints, Model, RollerPart
-from mdlgen.results.foot import Foot, feet
-from mdlgen.results.piles import piled
+from mdlgen.results.contact_line import ContactLine, contact_line
+from mdlgen.results.stacked import stacked
 from mdlgen.results.stubs import stops
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ class Stay:
     last: int
     leaves: bool  # before the end of the run
     at: Ints  # the stored states at which it touches
-    foot: Foot  # at these
+    line: ContactLine  # at these
 
 
 def events(result: Result) -> list[dict[str, Any]]:
@@ -60,7 +60,7 @@ def events(result: Result) -> list[dict[str, Any]]:
     """
     if len(result.time) < 2:
         return []
-    stays, together = _stays(result), piled(result)
+    stays, together = _stays(result), stacked(result)
     found = [event for stay in stays for event in _stay_events(result, stay, together)]
     found += _gaps(result, stays)
     found += _double_feeds(result, [*stays, *_beyond(result, stays, together)])
@@ -100,8 +100,8 @@ def _stays(result: Result) -> list[Stay]:
         sheet, roller = sheets[model.contacts.part_a[row]], model.roller(model.contacts.part_b[row])
         for first, last in intervals(time, touching, SHORT):
             at = np.flatnonzero(touching[first : last + 1]) + first
-            foot = feet(result, pairs.a[pairs.contact == row], roller, at)
-            found.append(Stay(sheet, roller, first, last, last + 1 < len(time), at, foot))
+            line = contact_line(result, pairs.a[pairs.contact == row], roller, at)
+            found.append(Stay(sheet, roller, first, last, last + 1 < len(time), at, line))
     return found
 
 
@@ -122,8 +122,8 @@ def _beyond(result: Result, stays: list[Stay], together: np.ndarray | None) -> l
             at = np.flatnonzero(lies)
             if at.size:
                 boxes = _boxes(result.model, sheet)
-                foot = feet(result, np.arange(boxes.start, boxes.stop), roller, at)
-                found.append(Stay(sheet, roller, int(at[0]), int(at[-1]), False, at, foot))
+                line = contact_line(result, np.arange(boxes.start, boxes.stop), roller, at)
+                found.append(Stay(sheet, roller, int(at[0]), int(at[-1]), False, at, line))
     return found
 
 
@@ -145,8 +145,8 @@ def intervals(time: Floats, holds: np.ndarray, short: float) -> list[tuple[int, 
 
 def _event(result: Result, kind: str, at: int, stay: Stay, **numbers: Any) -> dict[str, Any]:
     name = result.model.sheets[stay.sheet].name
-    told = {"time_ms": float(result.time[at]), "kind": kind, "sheet": name, "roller": stay.roller.name}
-    return told | numbers
+    record = {"time_ms": float(result.time[at]), "kind": kind, "sheet": name, "roller": stay.roller.name}
+    return record | numbers
 
 
 def _stay_events(result: Result, stay: Stay, together: np.ndarray | None) -> list[dict[str, Any]]:
@@ -158,11 +158,11 @@ def _stay_events(result: Result, stay: Stay, together: np.ndarray | None) -> lis
     found = [_event(result, "enter", stay.first, stay, speed_mm_per_s=speed(stay.first))]
     if stay.leaves:
         found.append(_event(result, "leave", stay.last + 1, stay, speed_mm_per_s=speed(stay.last + 1)))
-    foot = stay.foot
-    known = foot.share > 0.0
+    line = stay.line
+    known = line.share > 0.0
     if not known.any():
         return found
-    slip, surface = np.linalg.norm(foot.sheet - foot.roller, axis=1)[known], foot.roller[known]
+    slip, surface = np.linalg.norm(line.sheet - line.roller, axis=1)[known], line.roller[known]
     worst = int(np.argmax(slip))
     numbers: dict[str, Any] = {
         "mean_mm_per_s": float(slip.mean()) * PER_SECOND,
@@ -179,14 +179,14 @@ def _stay_events(result: Result, stay: Stay, together: np.ndarray | None) -> lis
 def _waits(result: Result, stay: Stay, together: np.ndarray | None) -> list[dict[str, Any]]:
     """Where a driven roller presses a sheet on another one and the sheet does not follow: a jam where that
     lasts to the end of the run, or else a wait."""
-    roller, foot = stay.roller, stay.foot
+    roller, line = stay.roller, stay.line
     if not roller.speed:
         return []
-    surface = np.linalg.norm(foot.roller, axis=1)
+    surface = np.linalg.norm(line.roller, axis=1)
     fastest = abs(roller.speed) * roller.radius
     squared = np.maximum(surface, JAM_PART * fastest) ** 2
-    along = np.einsum("tk,tk->t", foot.sheet, foot.roller) / squared
-    slow = (surface > JAM_PART * fastest) & (along < JAM_PART) & (foot.share > 0.0)
+    along = np.einsum("tk,tk->t", line.sheet, line.roller) / squared
+    slow = (surface > JAM_PART * fastest) & (along < JAM_PART) & (line.share > 0.0)
     slow &= _opposed(result, stay, together)
     held = np.zeros(len(result.time), bool)
     held[stay.at[slow]] = True
@@ -283,11 +283,11 @@ def _double_feeds(result: Result, stays: list[Stay]) -> list[dict[str, Any]]:
             if one.roller is not other.roller and not _faces(one.roller, other.roller):
                 continue
             at, mine, theirs = np.intersect1d(one.at, other.at, return_indices=True)
-            low = np.maximum(one.foot.low[mine], other.foot.low[theirs])
-            high = np.minimum(one.foot.high[mine], other.foot.high[theirs])
+            low = np.maximum(one.line.low[mine], other.line.low[theirs])
+            high = np.minimum(one.line.high[mine], other.line.high[theirs])
             key = nips[one.roller.name], min(one.sheet, other.sheet), max(one.sheet, other.sheet)
             speed = feeds.setdefault(key, (one, other, np.zeros(len(result.time))))[2]
-            go = _both_go(one.foot.sheet[mine], other.foot.sheet[theirs])
+            go = _both_go(one.line.sheet[mine], other.line.sheet[theirs])
             speed[at] = np.maximum(speed[at], np.where(high > low, go, 0.0))
     found: list[dict[str, Any]] = []
     for one, other, speed in feeds.values():

@@ -29,8 +29,8 @@ class _Named:
     name: str
 
     def __repr__(self) -> str:
-        told = ", ".join(f"{key} {_text(getattr(self, key))} {self.units[key]}" for key in self.shown)
-        return f"<{self.name}: {told}>"
+        given = ", ".join(f"{key} {_text(getattr(self, key))} {self.units[key]}" for key in self.shown)
+        return f"<{self.name}: {given}>"
 
 
 def _text(value: Any) -> str:

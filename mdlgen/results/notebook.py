@@ -11,17 +11,19 @@ if TYPE_CHECKING:
 
 def tables(result: Result) -> str:
     """HTML with what summary.json has of sheets, probes and rollers; names are escaped."""
-    told = result.summary()
-    head = f"<b>{escape(told['scene'])}</b> ({escape(told['solver'])}): {escape(told['status'])}, "
-    parts = [f"<p>{head}{told['t_end_ms']:g} ms in {told['steps']} steps</p>"]
+    record = result.summary()
+    head = f"<b>{escape(record['scene'])}</b> ({escape(record['solver'])}): {escape(record['status'])}, "
+    parts = [f"<p>{head}{record['t_end_ms']:g} ms in {record['steps']} steps</p>"]
     for kind, keys in (
         ("sheets", ("travel_mm", "speed_mm_per_s", "yaw_deg")),
         ("probes", ("displacement_mm", "speed_mm_per_s")),
         ("rollers", ("omega_rad_per_s", "nip_force_n", "max_penetration_mm")),
     ):
-        if told[kind]:
+        if record[kind]:
             cells = "".join(f"<th>{key}</th>" for key in keys)
-            rows = "".join(_row(name, [numbers[key] for key in keys]) for name, numbers in told[kind].items())
+            rows = "".join(
+                _row(name, [numbers[key] for key in keys]) for name, numbers in record[kind].items()
+            )
             parts.append(f"<table><tr><th>{kind}</th>{cells}</tr>{rows}</table>")
     return "".join(parts)
 

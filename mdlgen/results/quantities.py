@@ -107,8 +107,8 @@ def differences(result: Result, other: Result, judged: bool = False) -> dict[str
 def all_names(result: Result) -> list[str]:
     """Names of all quantities of a scene, of contacts that are not touched, too; any result of it will do."""
     contacts = zip(result.model.contacts.part_a, result.model.contacts.part_b, strict=True)
-    told = ("force", "max_force", "mean_force", "max_penetration", "mean_penetration")
-    named = [f"contacts.{a}.{b}.{name}" for a, b in contacts for name in told]
+    message = ("force", "max_force", "mean_force", "max_penetration", "mean_penetration")
+    named = [f"contacts.{a}.{b}.{name}" for a, b in contacts for name in message]
     return list(dict.fromkeys([*differences(result, result), *named]))
 
 
@@ -223,7 +223,7 @@ def _contacts(pair: Pair) -> Iterator[Difference]:
         yield Difference(f"{name}.force", over_time, scale, "N")
         greatest = max(float(statistics.max_force[row]), GRAZE * float(statistics.max_force.max()), LEAST)
         at_once = float(np.abs(one[:, row] - two[:, row]).max()) / greatest
-        for told, attribute, unit, least in (
+        for message, attribute, unit, least in (
             ("max_force", "max_force", "N", at_once),
             ("mean_force", "mean_force", "N", over_time),
             ("max_penetration", "max_depth", "mm", at_once / EXPONENT),
@@ -232,7 +232,7 @@ def _contacts(pair: Pair) -> Iterator[Difference]:
             a, b = (getattr(run.statistics, attribute) for run in (result, other))
             scale = max(float(a[row]), GRAZE * float(a.max()), LEAST)
             plain = abs(float(a[row] - b[row])) / scale
-            yield Difference(f"{name}.{told}", max(plain, least), scale, unit, plain=plain)
+            yield Difference(f"{name}.{message}", max(plain, least), scale, unit, plain=plain)
 
 
 def _peaks(pair: Pair) -> Iterator[Difference]:
@@ -247,7 +247,7 @@ def _peaks(pair: Pair) -> Iterator[Difference]:
         mine = joints.sheet == k
         ways = [(way, mine & (joints.axis == axis)) for axis, way in enumerate(("md", "cd"))]
         bend = LEAST_BEND / max(sheet.size)
-        for kind, told, attribute, unit, least, gap in (
+        for kind, message, attribute, unit, least, gap in (
             ("strain", "max_", "stretch", "", LEAST_STRAIN, most[0]),
             ("strain", "min_", "squeeze", "", LEAST_STRAIN, most[1]),
             ("curvature", "max_", "curvature", "1/mm", bend, most[2]),
@@ -257,7 +257,7 @@ def _peaks(pair: Pair) -> Iterator[Difference]:
             scale = max(float(np.abs(a[mine]).max(initial=0.0)), least)
             for way, rows in ways if kind != "twist" else [("", mine)]:
                 if rows.any():
-                    name = f"sheets.{sheet.name}.{kind}.{told}{way}"
+                    name = f"sheets.{sheet.name}.{kind}.{message}{way}"
                     plain = abs(_extreme(a[rows]) - _extreme(b[rows])) / scale
                     yield Difference(name, float(gap[rows].max()) / scale, scale, unit, plain=plain)
 

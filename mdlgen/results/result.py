@@ -94,8 +94,8 @@ class Result:
 
     def __repr__(self) -> str:
         end = self.time[-1] if len(self.time) else 0.0
-        told = f"{self.model.name}, {self.solver}, {self.status}, {end:g} ms in {len(self.time)} states"
-        return f"<Result {told}, {len(self.model.bodies.name)} bodies>"
+        message = f"{self.model.name}, {self.solver}, {self.status}, {end:g} ms in {len(self.time)} states"
+        return f"<Result {message}, {len(self.model.bodies.name)} bodies>"
 
     def _repr_html_(self) -> str:
         from mdlgen.results.notebook import tables

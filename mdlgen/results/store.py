@@ -38,9 +38,9 @@ def save(result: Result, folder: Path, also: Mapping[str, bytes] | None = None) 
     """
     if not result.ok and not result.partial:
         raise OutputError(f"{folder}: nothing written, the run failed: {result.status}")
-    told = summary(result)
+    message = summary(result)
     files: dict[Path, str | bytes] = {
-        folder / "summary.json": json.dumps(told, indent=2, allow_nan=False) + "\n",
+        folder / "summary.json": json.dumps(message, indent=2, allow_nan=False) + "\n",
         folder / "series.csv": csv(result),
         folder / "result.h5": hdf5(result),
     }
@@ -54,7 +54,7 @@ def save(result: Result, folder: Path, also: Mapping[str, bytes] | None = None) 
     except OSError as error:
         raise OutputError(f"{folder}: cannot make this folder: {error.strerror or error}") from None
     write_together(files)
-    return told
+    return message
 
 
 def hdf5(result: Result) -> bytes:
@@ -102,10 +102,10 @@ def load(folder: str | Path) -> Result:
             file: Any = opened
             if "model" not in file:
                 raise OutputError(f"{path}: holds states and no model; it is of an older mdlgen, run again")
-            told = tree.take(file) | dict(zip(TOOK, file["took"][()].tolist(), strict=True))
+            message = tree.take(file) | dict(zip(TOOK, file["took"][()].tolist(), strict=True))
             states = {name: file[name][()] for name in STATES}
             statistics = ContactStatistics(**{name: file[f"statistics/{name}"][()] for name in STATISTICS})
-            return Result(**told, **states, statistics=statistics)
+            return Result(**message, **states, statistics=statistics)
     except (OSError, KeyError, TypeError, ValueError, AttributeError) as error:
         reason = (str(error).splitlines() or [""])[0]
         raise OutputError(f"{path}: cannot read: {reason}") from None

@@ -26,7 +26,7 @@ def summary(result: Result, without: Collection[str] = ()) -> dict[str, Any]:
     """
     model = result.model
     energy = result.energy
-    told: dict[str, Any] = {
+    record: dict[str, Any] = {
         "scene": model.name,
         "solver": result.solver,
         "status": result.status,
@@ -63,13 +63,13 @@ def summary(result: Result, without: Collection[str] = ()) -> dict[str, Any]:
     }
     if "estimates" not in without:
         estimates = complete(result)
-        told["estimates"] = {name: found.value for name, found in estimates.items()}
-        told["estimate_scales"] = {
+        record["estimates"] = {name: found.value for name, found in estimates.items()}
+        record["estimate_scales"] = {
             name: {"scale": found.scale, "unit": found.unit} for name, found in estimates.items()
         }
     if model.tension is not None:
-        told["strain"] = strain(result) if len(result.time) else None
-    return plain(told)
+        record["strain"] = strain(result) if len(result.time) else None
+    return plain(record)
 
 
 def versions(result: Result) -> dict[str, str]:
@@ -113,16 +113,16 @@ def strain(result: Result) -> float:
 
 def _sheet(result: Result, index: int, bearing: bool) -> dict[str, Any]:
     sheet = result.model.sheets[index]
-    told: dict[str, Any] = {"travel_mm": None, "speed_mm_per_s": None, "yaw_deg": None}
+    record: dict[str, Any] = {"travel_mm": None, "speed_mm_per_s": None, "yaw_deg": None}
     if len(result.time):
         _, rate, yaw = result.sheet_motion(index)
-        told = {
+        record = {
             "travel_mm": travel(result, index),
             "speed_mm_per_s": rate[-1] * PER_SECOND,
             "yaw_deg": math.degrees(yaw[-1]),
         }
     return {
-        **told,
+        **record,
         "boxes": sheet.count,
         "bushings": int(np.sum(result.model.bushings.sheet == index)),
         **(_bearing(result, index) if bearing else {}),

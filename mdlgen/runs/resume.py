@@ -20,7 +20,7 @@ FOLDER, FILE = "checkpoint", "run.json"
 
 
 @dataclass(frozen=True)
-class Request:
+class RunRequest:
     """What a run was asked for."""
 
     spec: str  # the file's name, and its text
@@ -41,14 +41,16 @@ class Request:
 
 def request(
     spec: Path, sets: list[str] | None, limits: list[str] | None, solver: str, check_step: bool
-) -> Request:
+) -> RunRequest:
     """Of a command. Raises SpecError, OutputError for a file that cannot be read."""
     beside = str(spec.parent.resolve())
-    return Request(str(spec), read(spec), beside, tuple(sets or ()), tuple(limits or ()), solver, check_step)
+    return RunRequest(
+        str(spec), read(spec), beside, tuple(sets or ()), tuple(limits or ()), solver, check_step
+    )
 
 
 def checkpointer(
-    folder: Path, of: Request, model: Model, every: float, packages: tuple[str, ...]
+    folder: Path, of: RunRequest, model: Model, every: float, packages: tuple[str, ...]
 ) -> Checkpointer:
     """Writes a state of the run into `folder`, beside its results, every so many seconds; `packages` have
     the solver's code."""
@@ -75,7 +77,7 @@ def can_resume(folder: Path) -> bool:
     return (folder / FOLDER / FILE).is_file()
 
 
-def resumed(folder: Path) -> tuple[Request, dict[str, Any]]:
+def resumed(folder: Path) -> tuple[RunRequest, dict[str, Any]]:
     """What the run in `folder` was asked for, and its provenance. Raises OutputError."""
     from mdlgen.paths import read_at_most, recover
 
@@ -92,7 +94,7 @@ def resumed(folder: Path) -> tuple[Request, dict[str, Any]]:
         for name in ("sets", "limits"):
             asked[name] = tuple(str(item) for item in asked[name])
         words = {name: str(asked[name]) for name in ("spec", "text", "beside", "solver")}
-        request = replace(Request(**asked), **words, check_step=bool(asked["check_step"]))
+        request = replace(RunRequest(**asked), **words, check_step=bool(asked["check_step"]))
         return request, provenance
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         raise OutputError(f"{place / FILE}: is not what a run was asked for ({str(error)[:100]})") from None

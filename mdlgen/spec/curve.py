@@ -95,8 +95,8 @@ class Curve(Strict):
         data = {key: value for key, value in data.items() if key != "file" or value is not None}
         if ("points" in data) == ("file" in data):
             raise fail("give exactly one of points and file")
-        told = info.context or {}
-        tally = told.get("tally") or Tally()
+        given = info.context or {}
+        tally = given.get("tally") or Tally()
         points = _file_points(*beside(data["file"], info), tally) if "file" in data else data["points"]
         if isinstance(points, (list, tuple)):
             if much := tally.exceeded("points", len(points), "points of curves"):
@@ -190,8 +190,8 @@ def _rows(text: str, name: str, tally: Tally) -> list[tuple[float, str]]:
             strain = _strain(percent if "%" in percent else float(percent))
             _STRESS.read(stress)
         except ValueError as error:
-            told = getattr(error, "message", None)
-            what = told() if callable(told) else f"{percent!r} is not a strain"
+            report = getattr(error, "message", None)
+            what = report() if callable(report) else f"{percent!r} is not a strain"
             raise fail(f"{here}: {what}") from None
         rows.append((strain, stress))
         if much := tally.exceeded("points", len(rows), f"{name}: points"):

@@ -87,8 +87,8 @@ def parse(text: str, file: str, limits: Limits = DEFAULT) -> Document:
                 raise SpecError("anchors and aliases are not allowed; write the value out", place=place)
             if getattr(event, "ctag", None) or getattr(event, "tag", None):
                 raise SpecError("tags are not allowed; write the plain value", place=place)
-            if told := limits.exceeded("values", count, "values in the text"):
-                raise SpecError(told, place=place)
+            if record := limits.exceeded("values", count, "values in the text"):
+                raise SpecError(record, place=place)
             if len(stack) >= MAX_DEPTH:
                 raise SpecError(f"nested deeper than {MAX_DEPTH} levels", place=place)
             if stack and stack[-1].takes_key:

@@ -66,7 +66,7 @@ def fail(
 
 
 def fail_all(errors: list[PydanticCustomError]) -> PydanticCustomError:
-    """One error for pydantic to raise that stands for several; each is told on its own."""
+    """One error for pydantic to raise that stands for several; each is reported on its own."""
     if len(errors) == 1:
         return errors[0]
     first = dict(errors[0].context or {})

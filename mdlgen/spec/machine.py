@@ -72,10 +72,10 @@ class Drive(Strict):
         if len(given) != 1:
             raise fail("give exactly one of speed and profile, or surface_speed with direction")
         if (self.direction is None) != (self.surface_speed is None):
-            told = (
+            message = (
                 "direction goes with surface_speed" if self.direction else "surface_speed needs a direction"
             )
-            raise fail(f"{told}, as surface_speed: 450 mm/s, direction: +x")
+            raise fail(f"{message}, as surface_speed: 450 mm/s, direction: +x")
         if self.profile is None:
             return self
         if self.ramp != 0.0:

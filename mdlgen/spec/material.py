@@ -55,14 +55,14 @@ class Damping(Strict):
         forms = {"ratio": ("ratio", "ratio_ty", "rotation"), "time": ("time",), "loss": ("loss_factor", "at")}
         given = {form: [n for n in names if getattr(self, n) is not None] for form, names in forms.items()}
         if sum(map(bool, given.values())) > 1:
-            told = ", ".join(name for names in given.values() for name in names)
+            message = ", ".join(name for names in given.values() for name in names)
             raise fail(
-                f"damping by {told}: give time, or loss_factor with at, or ratio with what belongs to it"
+                f"damping by {message}: give time, or loss_factor with at, or ratio with what belongs to it"
             )
         if len(given["loss"]) == 1:
-            told, other = ("loss_factor", "at") if self.at is None else ("at", "loss_factor")
+            message, other = ("loss_factor", "at") if self.at is None else ("at", "loss_factor")
             example = "at: 40 Hz" if self.at is None else "loss_factor: 0.05"
-            raise fail(f"damping by {told} needs {other}, as {example}")
+            raise fail(f"damping by {message} needs {other}, as {example}")
         return self
 
     @property

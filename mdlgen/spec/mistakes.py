@@ -41,16 +41,16 @@ class Mistakes:
 
     def take(self, error: ValidationError) -> None:
         """All that validation found."""
-        errors = [e for told in error.errors(include_url=False) for e in _each(told)]
-        # a formula over a parameter that has a mistake: the mistake is told where it is
+        errors = [e for record in error.errors(include_url=False) for e in _each(record)]
+        # a formula over a parameter that has a mistake: the mistake is reported where it is
         errors = [e for e in errors if e["type"] != "unknown"] or errors
         split = {e["loc"][:-1] + before for e in errors if (before := _before_comma(e, self.document))}
         errors = [e for e in errors if e["loc"] not in split]
         misspelt = {e["loc"][:-1] for e in errors if e["type"] == "extra_forbidden"}
         unmade: dict[SpecPath, list[str]] = {}
-        for told in errors:
-            path = tuple(told["loc"])
-            if told["type"] == "missing":
+        for record in errors:
+            path = tuple(record["loc"])
+            if record["type"] == "missing":
                 owner = in_the_text(path[:-1], self.document.origins)
                 made = next((m for m in self.document.made if owner == m and m[0] in _NAMED), None)
                 if made is not None:
@@ -58,7 +58,7 @@ class Mistakes:
                     continue
                 if path[:-1] in misspelt and self._spelt_otherwise(path, errors):
                     continue
-            self.add(_describe(told, self.document), told["type"] == "missing")
+            self.add(_describe(record, self.document), record["type"] == "missing")
         for path, keys in unmade.items():
             self.add(self._not_there(path, keys))
         # names that dangle are looked at by the scene itself, once each value is good
@@ -67,8 +67,8 @@ class Mistakes:
             for e in errors
         )
         if not renamed and not unmade and not any(e["loc"] == () for e in errors):
-            for told in _dangling(self.document.data):
-                self.add(_describe({"type": "spec", "loc": (), "ctx": told.context}, self.document))
+            for record in _dangling(self.document.data):
+                self.add(_describe({"type": "spec", "loc": (), "ctx": record.context}, self.document))
 
     def _spelt_otherwise(self, path: SpecPath, errors: Sequence[Any]) -> bool:
         """Whether a key is missing since it is misspelt: then that is said, and this is not."""
@@ -95,10 +95,10 @@ class Mistakes:
 
     def error(self) -> SpecError:
         """The first of them; the others are its `others`, MOST in all."""
-        told: dict[str, SpecError] = {}
+        message: dict[str, SpecError] = {}
         for _, error in sorted(self.found, key=lambda item: item[0]):
-            told.setdefault(str(error), error)
-        errors = list(told.values())
+            message.setdefault(str(error), error)
+        errors = list(message.values())
         for error in errors[:MOST]:
             error.source = self.document.line(error.place)
         first, *others = errors[:MOST]

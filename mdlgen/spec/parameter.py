@@ -34,7 +34,7 @@ def computed(value: float, text: str) -> Computed:
 
 
 class Unknown(ValueError):
-    """A formula over a parameter that has a mistake itself, which is told where it stands."""
+    """A formula over a parameter that has a mistake itself, which is reported where it stands."""
 
 
 class Parameters:
@@ -46,7 +46,7 @@ class Parameters:
         self.errors: dict[str, ValueError] = {}
         for name in given:
             self._find(name, ())
-        # of a parameter that follows from a wrong one the mistake is told there
+        # of a parameter that follows from a wrong one the mistake is reported there
         self.own = {name: str(e) for name, e in self.errors.items() if not isinstance(e, Unknown)}
 
     def evaluated(self, text: str) -> Amount:
@@ -70,8 +70,8 @@ class Parameters:
 
     def _amount(self, name: Any, users: tuple[str, ...]) -> Amount:
         value = self.given[name]
-        if told := _taken(name):
-            raise ValueError(told)
+        if message := _taken(name):
+            raise ValueError(message)
         if len(users) > MOST_BEHIND:
             raise ValueError(f"{name} follows from more than {MOST_BEHIND} others, one behind the other")
         if isinstance(value, Amount):

@@ -191,8 +191,8 @@ class Scene(Strict):
 
     def __repr__(self) -> str:
         kinds = ("sheets", "rollers", "planes", "guides", "parts", "contacts", "loads", "probes", "supports")
-        told = ", ".join(f"{len(getattr(self, kind))} {kind}" for kind in kinds if getattr(self, kind))
-        return f"<Scene {self.name}: {told}>"
+        message = ", ".join(f"{len(getattr(self, kind))} {kind}" for kind in kinds if getattr(self, kind))
+        return f"<Scene {self.name}: {message}>"
 
     @model_validator(mode="wrap")
     @classmethod
@@ -228,7 +228,7 @@ class Scene(Strict):
         return self
 
     def _checks(self) -> Iterator[Callable[[], None]]:
-        """What is to be looked at one by one, so that each mistake is told."""
+        """What is to be looked at one by one, so that each mistake is reported."""
         for name in self.sheets:
             yield partial(self._check_material, name)
         for kind in ("probes", "loads", "supports"):
@@ -255,8 +255,8 @@ class Scene(Strict):
         for side in ("lower", "upper"):
             given = getattr(nip, side).get("contact")
             if isinstance(given, dict) and given.get("share", "width") != "width":
-                told = "a nip is in balance with share: width only; leave share out"
-                raise fail(told, (*path, side, "contact", "share"))
+                message = "a nip is in balance with share: width only; leave share out"
+                raise fail(message, (*path, side, "contact", "share"))
 
     def _check_material(self, name: str) -> None:
         sheet = self.sheets[name]
@@ -292,24 +292,24 @@ class Scene(Strict):
         if len(found) > MOST_PARAMETERS:
             raise fail(f"{len(found)} parameters; allowed are {MOST_PARAMETERS}")
         lower: dict[str, str] = {}
-        wrong = [fail(told, ("parameters", name)) for name, told in parameters.own.items()]
+        wrong = [fail(message, ("parameters", name)) for name, message in parameters.own.items()]
         for name in found:
             if lower.setdefault(name.lower(), name) != name:
-                told = f"the name {name!r} is used twice (also {lower[name.lower()]})"
-                wrong.append(fail(told, ("parameters", name)))
+                message = f"the name {name!r} is used twice (also {lower[name.lower()]})"
+                wrong.append(fail(message, ("parameters", name)))
         if wrong:
             raise fail_all(wrong)
         return found
 
     def _count(self) -> None:
         boxes = sum(sheet.boxes[0] * sheet.boxes[1] for sheet in self.sheets.values())
-        if told := self._limits.exceeded("boxes", boxes, "boxes of all sheets"):
-            raise fail(told, ("sheets",))
+        if message := self._limits.exceeded("boxes", boxes, "boxes of all sheets"):
+            raise fail(message, ("sheets",))
         if self.run.analysis == "transient" and self.run.print_step is not None:
             bodies = boxes + len(self.rollers) + len(self.planes) + len(self.guides)
             stored = bodies * self.run.duration / self.run.print_step
-            if told := self._limits.exceeded("states", stored, "states stored (bodies times outputs)"):
-                raise fail(told, ("run", "print_step"))
+            if message := self._limits.exceeded("states", stored, "states stored (bodies times outputs)"):
+                raise fail(message, ("run", "print_step"))
 
     def _names_unique(self) -> None:
         seen: dict[str, str] = {}
@@ -361,10 +361,10 @@ class Scene(Strict):
             patterns = [p for side in contact.between for p in ((side,) if isinstance(side, str) else side)]
             looked += len(rank) * sum(not pattern.isidentifier() for pattern in patterns)
             looked += len(patterns)
-            if told := self._limits.exceeded(
+            if message := self._limits.exceeded(
                 "contacts", looked / 100, "hundreds of names that patterns meet"
             ):
-                return [], [*errors, fail(told, path)]
+                return [], [*errors, fail(message, path)]
             try:
                 self._take_pairs(index, rank, taken)
             except PydanticCustomError as error:
@@ -388,8 +388,8 @@ class Scene(Strict):
                 other = self.contacts[taken[a, b]].name or taken[a, b]
                 raise fail(f"the pair {a} / {b} already has contacts.{other}; give it one", path)
             self._modelled(a, b, path)
-            if told := self._limits.exceeded("contacts", len(taken) + 1, "pairs of parts in contact"):
-                raise fail(told, path)
+            if message := self._limits.exceeded("contacts", len(taken) + 1, "pairs of parts in contact"):
+                raise fail(message, path)
             taken[a, b] = index
             found = True
         if not found:
@@ -418,30 +418,34 @@ class Scene(Strict):
         """Raises the error for a contact between two parts of the machine, the second no roller, that is not
         modelled."""
         kind = "guide" if b in self.guides else "mesh" if b in self.meshes else "plane"
-        told = f"contact between {a} and {b} is not modelled: "
+        message = f"contact between {a} and {b} is not modelled: "
         if a not in self.rollers:
-            raise fail(f"{told}a {kind} touches sheets and rollers only", path)
+            raise fail(f"{message}a {kind} touches sheets and rollers only", path)
         roller, sectors = self.rollers[a], self.rollers[a].rim is not None
         if b in self.meshes:
             if self.meshes[b].on is not None:
-                raise fail(f"{told}{b} is on a roller, and such a mesh touches sheets only", path)
+                raise fail(f"{message}{b} is on a roller, and such a mesh touches sheets only", path)
             if sectors:
-                raise fail(f"{told}the rim of {a} is in sectors, and a mesh meets round rollers only", path)
+                raise fail(
+                    f"{message}the rim of {a} is in sectors, and a mesh meets round rollers only", path
+                )
             return
         guide = self.guides.get(b)
         arc = guide.arc if guide is not None else None
         if arc is not None:
             if abs(abs(_cosine(roller.axis, arc.axis)) - 1.0) > 1e-9:
-                raise fail(f"{told}the roller's axis is not parallel to that of the arc", path)
+                raise fail(f"{message}the roller's axis is not parallel to that of the arc", path)
             if sectors:
-                raise fail(f"{told}the rim of {a} is in sectors, and an arc meets round rollers only", path)
+                raise fail(
+                    f"{message}the rim of {a} is in sectors, and an arc meets round rollers only", path
+                )
             return
         normal = self.planes[b].normal if guide is None else guide.normal
         steep = abs(_cosine(roller.axis, normal))
         if steep > 0.5:
             raise fail(
-                f"{told}the roller stands on its end, its axis {math.degrees(math.acos(steep)):.3g} deg off "
-                "the normal of the face; allowed: 60 deg or more",
+                f"{message}the roller stands on its end, its axis {math.degrees(math.acos(steep)):.3g} deg "
+                "off the normal of the face; allowed: 60 deg or more",
                 path,
             )
 

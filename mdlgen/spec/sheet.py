@@ -131,8 +131,8 @@ class Sheet(Strict):
         if min(n_x, n_y) < least:
             raise fail(f"boxes [{n_x}, {n_y}]: at least {least} each way with grid: {self.grid}")
         limits = (info.context or {}).get("limits", DEFAULT)
-        if told := limits.exceeded("boxes", n_x * n_y, f"boxes [{n_x}, {n_y}]"):
-            raise fail(told, within=("boxes",))
+        if message := limits.exceeded("boxes", n_x * n_y, f"boxes [{n_x}, {n_y}]"):
+            raise fail(message, within=("boxes",))
         if self.turn is not None and self.rotation is not None:
             raise fail("turn and rotation are both given; give one of them")
         if self.surface and min(n_x, n_y) < 2:

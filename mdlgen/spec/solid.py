@@ -59,8 +59,8 @@ def solid(raw: bytes, name: str, unit: str, tally: Tally) -> Solid:
     """The solid in the bytes of a file. Raises the error that says what is wrong with it."""
 
     def few(count: int, what: str) -> None:
-        if told := tally.exceeded("triangles", count, f"{name}: {what}"):
-            raise fail(told)
+        if message := tally.exceeded("triangles", count, f"{name}: {what}"):
+            raise fail(message)
 
     corners, triangles = (obj if name.lower().endswith(".obj") else stl)(raw, name, few)
     if not len(triangles):
@@ -125,17 +125,17 @@ def _bytes(name: Any, folder: Any, tally: Tally) -> bytes:
             raise fail(f"{name}: leads out of the folder of the spec")
         handle = os.open(found, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
         with os.fdopen(handle, "rb") as stream:
-            told = os.fstat(stream.fileno())
-            if not stat.S_ISREG(told.st_mode):
+            message = os.fstat(stream.fileno())
+            if not stat.S_ISREG(message.st_mode):
                 raise fail(f"{name}: is not a plain file")
-            what = f"{name}: {told.st_size} bytes, {BYTES} to a triangle"
-            if much := tally.exceeded("triangles", told.st_size, what, BYTES):
+            what = f"{name}: {message.st_size} bytes, {BYTES} to a triangle"
+            if much := tally.exceeded("triangles", message.st_size, what, BYTES):
                 raise fail(much)
-            tally.add("triangles", told.st_size, BYTES)
-            raw = stream.read(told.st_size + 1)
+            tally.add("triangles", message.st_size, BYTES)
+            raw = stream.read(message.st_size + 1)
     except (OSError, RuntimeError) as error:  # RuntimeError: a link that leads to itself
         raise fail(f"{name}: cannot read: {getattr(error, 'strerror', None) or error}"[:300]) from None
-    if len(raw) > told.st_size:
+    if len(raw) > message.st_size:
         raise fail(f"{name}: grows while it is read")
     return raw
 

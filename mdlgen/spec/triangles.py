@@ -18,7 +18,7 @@ from mdlgen.spec.fields import fail
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-# Raises the error for so many triangles, if that is too many; told as what they are counted.
+# Raises the error for so many triangles, if that is too many; named as what they are counted.
 Few = Callable[[int, str], None]
 
 MOST_LINES = 10  # of an OBJ file for each triangle that is allowed
@@ -51,7 +51,7 @@ def stl(raw: bytes, name: str, few: Few) -> tuple[Floats, Ints]:
         few(claimed, "triangles")
         kind = np.dtype([("normal", "<f4", 3), ("corners", "<f4", 9), ("attribute", "<u2")])
         table = np.frombuffer(raw, kind, claimed, _HEAD)["corners"]
-        with np.errstate(invalid="ignore"):  # what is no number is told of later
+        with np.errstate(invalid="ignore"):  # what is no number is reported later
             corners = table.astype(float).reshape(-1, 3)
     return corners, np.arange(len(corners), dtype=np.int64).reshape(-1, 3)
 

@@ -13,7 +13,7 @@ from typing import Any
 from mdlgen.errors import OutputError, RefusedError, SpecError
 from mdlgen.study.case import Case
 from mdlgen.study.perform import perform
-from mdlgen.study.row import LOST, Row
+from mdlgen.study.row import LOST, CaseRow
 from mdlgen.study.task import Task
 
 MISSING = "--scheduler needs dask.distributed, which is not installed: pip install 'mdlgen[cluster]'"
@@ -40,13 +40,13 @@ def _here() -> Versions:
     return versions()
 
 
-def checked(task: Task, case: Case, here: Versions) -> Row:
+def checked(task: Task, case: Case, here: Versions) -> CaseRow:
     """The row of a case, on a worker; one that came later with other versions gives none.
 
     Raises RuntimeError.
     """
-    if told := differences(versions(), here):
-        raise RuntimeError(f"the worker has {told}")
+    if message := differences(versions(), here):
+        raise RuntimeError(f"the worker has {message}")
     from distributed import get_worker
 
     return replace(perform(task, case), worker=str(get_worker().address))
@@ -78,13 +78,13 @@ class Cluster:
             raise RefusedError(MISSING) from None
         self.address = address
         for name in list(logging.root.manager.loggerDict):
-            if name.partition(".")[0] == "distributed":  # what goes wrong is told in one line
+            if name.partition(".")[0] == "distributed":  # what goes wrong is reported in one line
                 logging.getLogger(name).setLevel(logging.CRITICAL)
         try:
             self._client: Any = Client(address, timeout=PATIENCE, set_as_default=False)
         except (OSError, TimeoutError, ValueError) as error:
-            told = str(error).partition("\n")[0][:200]
-            raise OutputError(f"{address}: no scheduler answers there ({told})") from None
+            message = str(error).partition("\n")[0][:200]
+            raise OutputError(f"{address}: no scheduler answers there ({message})") from None
         try:
             self._check()
         except BaseException:
@@ -102,10 +102,10 @@ class Cluster:
                 raise RefusedError(f"{worker}: this worker cannot import mdlgen ({there})"[:300])
             if isinstance(there, BaseException):
                 raise OutputError(f"{worker}: does not tell its versions ({there})"[:300])
-            if told := differences(there, self._here):
-                raise RefusedError(f"{worker}: this worker has {told}; install the same on all")
+            if message := differences(there, self._here):
+                raise RefusedError(f"{worker}: this worker has {message}; install the same on all")
 
-    def rows(self, task: Task, cases: Sequence[Case]) -> Iterator[Row]:
+    def rows(self, task: Task, cases: Sequence[Case]) -> Iterator[CaseRow]:
         """The rows of the cases, as they are done. Raises OutputError where the scheduler is gone."""
         from distributed import as_completed
 
@@ -131,7 +131,7 @@ class Cluster:
             if waiting and self._client.status == "running":
                 self._client.cancel(list(waiting), force=True)
 
-    def _row(self, future: Any, case: Case) -> Row:
+    def _row(self, future: Any, case: Case) -> CaseRow:
         """Of a case that is done; lost where its workers died, or could not run it at all."""
         from distributed import CancelledError, KilledWorker
 
@@ -140,10 +140,10 @@ class Cluster:
         except CancelledError:
             raise OutputError(f"{self.address}: the scheduler is gone") from None
         except KilledWorker as error:
-            told = f"its worker died, {error.allowed_failures + 1} times"
+            message = f"its worker died, {error.allowed_failures + 1} times"
         except Exception as error:  # whatever its worker could not do is no end of the sweep
-            told = f"its worker: {type(error).__name__}: {error}"[:300]
-        return Row(case.index, case.values, LOST, told)
+            message = f"its worker: {type(error).__name__}: {error}"[:300]
+        return CaseRow(case.index, case.values, LOST, message)
 
     def close(self) -> None:
         self._client.close()

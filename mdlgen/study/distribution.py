@@ -99,56 +99,58 @@ def parse_distribution(text: str, option: str = "--over") -> Distribution | Choi
     Raises SpecError in one line for anything else.
     """
     path, rest = split(text, option, HOW)
-    told = f"{option} {text[:80]!r}"
+    message = f"{option} {text[:80]!r}"
     if rest.startswith("["):
         return Choice(path, variable(text, option).texts)
     call = _CALL.fullmatch(rest)
     if call is None:
-        return _uniform(path, _ends(rest, told), told)
+        return _uniform(path, _ends(rest, message), message)
     kind, words = call[1].lower(), call[2].split(",")
     if kind not in _FORMS:
         close = did_you_mean(kind, _FORMS) or f"; there are: {', '.join(_FORMS)}"
-        raise SpecError(f"{told}: there is no distribution {call[1][:40]!r}{close}")
+        raise SpecError(f"{message}: there is no distribution {call[1][:40]!r}{close}")
     if not 2 <= len(words) <= (2 if kind == "uniform" else 3):
-        raise SpecError(f"{told}: has {len(words)} values; write {_FORMS[kind]}")
-    return _uniform(path, words, told) if kind == "uniform" else _bell(path, kind, words, told)
+        raise SpecError(f"{message}: has {len(words)} values; write {_FORMS[kind]}")
+    return _uniform(path, words, message) if kind == "uniform" else _bell(path, kind, words, message)
 
 
-def _uniform(path: str, ends: list[str], told: str) -> Distribution:
-    low, high, unit = interval(ends[0], ends[1], told)
+def _uniform(path: str, ends: list[str], message: str) -> Distribution:
+    low, high, unit = interval(ends[0], ends[1], message)
     if not low < high:
-        raise SpecError(f"{told}: the lower end {low:g} must be below the upper end {high:g}")
+        raise SpecError(f"{message}: the lower end {low:g} must be below the upper end {high:g}")
     return Distribution(path, "uniform", unit, low, high)
 
 
-def _bell(path: str, kind: str, words: list[str], told: str) -> Distribution:
+def _bell(path: str, kind: str, words: list[str], message: str) -> Distribution:
     if kind == "normal":
-        center, spread, unit = interval(words[0], words[1], told)
+        center, spread, unit = interval(words[0], words[1], message)
     else:
-        center, _, unit = interval(words[0], words[0], told)
-        spread, _, other = interval(words[1], words[1], told)
+        center, _, unit = interval(words[0], words[0], message)
+        spread, _, other = interval(words[1], words[1], message)
         if other:
-            raise SpecError(f"{told}: a deviation of the logarithm has no unit, got {words[1].strip()[:40]}")
+            raise SpecError(
+                f"{message}: a deviation of the logarithm has no unit, got {words[1].strip()[:40]}"
+            )
         if center <= 0.0:
-            raise SpecError(f"{told}: the median must be above 0, got {words[0].strip()[:40]}")
+            raise SpecError(f"{message}: the median must be above 0, got {words[0].strip()[:40]}")
     if spread <= 0.0:
-        raise SpecError(f"{told}: the deviation must be above 0, got {words[1].strip()[:40]}")
+        raise SpecError(f"{message}: the deviation must be above 0, got {words[1].strip()[:40]}")
     low, high = -math.inf, math.inf
     if len(words) == 3:
         # through the unit of the middle, so that all are numbers in one unit
-        low, high = (interval(words[0], end, told)[1] for end in _ends(words[2], told))
+        low, high = (interval(words[0], end, message)[1] for end in _ends(words[2], message))
     found = Distribution(path, kind, unit, low, high, center, spread)
     if not low < high:
-        raise SpecError(f"{told}: the lower limit {low:g} must be below the upper limit {high:g}")
+        raise SpecError(f"{message}: the lower limit {low:g} must be below the upper limit {high:g}")
     if found._away(low) > _FARTHEST or found._away(high) < -_FARTHEST:
         raise SpecError(
-            f"{told}: the limits leave a tail alone; allowed are limits within {_FARTHEST:g} deviations"
+            f"{message}: the limits leave a tail alone; allowed are limits within {_FARTHEST:g} deviations"
         )
     return found
 
 
-def _ends(text: str, told: str) -> list[str]:
+def _ends(text: str, message: str) -> list[str]:
     ends = text.split(":")
     if len(ends) != 2 or quantity(ends[0]) is None:
-        raise SpecError(f"{told}: {text.strip()[:40]!r} is no range; {HOW}")
+        raise SpecError(f"{message}: {text.strip()[:40]!r} is no range; {HOW}")
     return ends

@@ -8,20 +8,20 @@ from typing import Any
 from mdlgen.results.summary import plain
 from mdlgen.study.effects import Indices, MainEffect, main_effect, sobol
 from mdlgen.study.probability import caveat, probability
-from mdlgen.study.row import Row
+from mdlgen.study.row import CaseRow
 from mdlgen.study.table import Column
 from mdlgen.study.task import Task
 
-# Effects are told on a terminal for so many measures; findings.json has all.
+# Effects are printed on a terminal for so many measures; findings.json has all.
 _SHOWN = 6
 
 
-def findings(task: Task, how: str, rows: Sequence[Row], columns: Sequence[Column]) -> dict[str, Any]:
+def findings(task: Task, how: str, rows: Sequence[CaseRow], columns: Sequence[Column]) -> dict[str, Any]:
     """Plain data for findings.json and the page; `columns` are the table's, `how` is the sweep's."""
     kind = how.partition(" ")[0]
     paths = [path for path, _ in rows[0].values]
     table = {column.name: column for column in columns}
-    told: dict[str, Any] = {
+    record: dict[str, Any] = {
         "cases": len(rows),
         "without_measures": sum(not row.measured for row in rows),
         "how": how,
@@ -33,11 +33,11 @@ def findings(task: Task, how: str, rows: Sequence[Row], columns: Sequence[Column
     for name in (*task.events, *names):
         measure = [float("nan") if cell is None else float(cell) for cell in table[name].cells]
         effects = {path: main_effect(places(table[path]), measure) for path in paths}
-        told["effects"][name] = {path: _effect(found) for path, found in effects.items() if found}
+        record["effects"][name] = {path: _effect(found) for path, found in effects.items() if found}
         if kind == "saltelli":
             found = sobol(measure, len(paths))
-            told["indices"][name] = dict(zip(paths, map(_indices, found), strict=True)) if found else {}
-    return plain(told)
+            record["indices"][name] = dict(zip(paths, map(_indices, found), strict=True)) if found else {}
+    return plain(record)
 
 
 def places(column: Column) -> list[float]:
@@ -67,21 +67,21 @@ def _indices(found: Indices) -> dict[str, Any]:
     return {"first": vars(found.first), "total": vars(found.total)}
 
 
-def findings_text(told: dict[str, Any]) -> list[str]:
+def findings_text(record: dict[str, Any]) -> list[str]:
     """Lines for a terminal."""
     lines = []
-    for name, event in told["events"].items():
+    for name, event in record["events"].items():
         line = f"probability of {name}: {_interval(event['part'], event)} with {_percent(event['level'])}"
         line += f", {event['hits']} of {event['known']} cases"
         if event["failed"]:
             line += f"; {event['failed']} cases without an answer could have gone either way"
         lines += [line, *([f"  {event['caveat']}"] if event["caveat"] else [])]
-    for name, variables in list(told["indices"].items())[:_SHOWN]:
+    for name, variables in list(record["indices"].items())[:_SHOWN]:
         for path, found in variables.items():
             first, total = (_interval(found[o]["value"], found[o]) for o in ("first", "total"))
             lines.append(f"{name}, part of its variance by {path}: alone {first}, with others {total}")
-    if not told["indices"]:
-        for name, variables in list(told["effects"].items())[:_SHOWN]:
+    if not record["indices"]:
+        for name, variables in list(record["effects"].items())[:_SHOWN]:
             if len(variables) > 1:
                 order = sorted(variables.items(), key=lambda item: -item[1]["share"])
                 shares = ", ".join(f"{path} {_percent(found['share'])}" for path, found in order)

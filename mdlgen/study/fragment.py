@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from mdlgen.study.optimisation import Optimisation
-from mdlgen.study.row import Row
+from mdlgen.study.row import CaseRow
 
 DIGITS = 6  # of a measure that is written for people
 
@@ -17,7 +17,7 @@ def options(overrides: Sequence[str]) -> str:
     return " ".join(f"--set {shlex.quote(item)}" for item in overrides)
 
 
-def design(found: Optimisation, best: Row) -> tuple[str, ...]:
+def design(found: Optimisation, best: CaseRow) -> tuple[str, ...]:
     """`PATH=VALUE` of each value of the scene that the best design sets, with what follows from it."""
     from mdlgen.study.case import Case
 
@@ -25,7 +25,7 @@ def design(found: Optimisation, best: Row) -> tuple[str, ...]:
     return own[len(found.task.sets) :]
 
 
-def report_text(found: Optimisation, rows: Sequence[Row], best: Row) -> str:
+def report_text(found: Optimisation, rows: Sequence[CaseRow], best: CaseRow) -> str:
     """A few lines for a terminal."""
     failed = sum(not row.measured for row in rows)
     lines = [
@@ -39,7 +39,7 @@ def report_text(found: Optimisation, rows: Sequence[Row], best: Row) -> str:
     return "\n".join(lines)
 
 
-def fragment(found: Optimisation, rows: Sequence[Row], best: Row) -> str:
+def fragment(found: Optimisation, rows: Sequence[CaseRow], best: CaseRow) -> str:
     """The piece of a scene file with the best design; items of lists, which it cannot name, as comments."""
     pieces: dict[str, Any] = {}
     items = []

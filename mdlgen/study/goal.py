@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from mdlgen.errors import SpecError
 from mdlgen.study.expression import Value, read
 from mdlgen.study.measure import check_apart, measures
-from mdlgen.study.row import Row
+from mdlgen.study.row import CaseRow
 
 OBJECTIVE, CONDITION = "objective", "condition"
 # A condition holds where it is missed by less than this part of the most that it was ever missed or met by.
@@ -43,7 +43,7 @@ class Goal:
         """Columns of the conditions in the table."""
         return tuple(f"{CONDITION}_{k}" for k in range(1, len(self.margins) + 1))
 
-    def best(self, rows: Sequence[Row]) -> Row | None:
+    def best(self, rows: Sequence[CaseRow]) -> CaseRow | None:
         """The row of the least objective among those in which all conditions hold; None where none is."""
         known = [row for row in rows if self.complete(row)]
         slack = {
@@ -53,7 +53,7 @@ class Goal:
         good = [row for row in known if all((row.measures[n] or 0.0) <= slack[n] for n in self.names)]
         return min(good, key=lambda row: (row.measures[OBJECTIVE], row.index), default=None)
 
-    def complete(self, row: Row) -> bool:
+    def complete(self, row: CaseRow) -> bool:
         """Whether the run gave every number that the goal asks for."""
         return row.measured and all(row.measures.get(n) is not None for n in (OBJECTIVE, *self.names))
 

@@ -13,7 +13,7 @@ from typing import IO, Any
 
 from mdlgen.errors import OutputError, RefusedError
 from mdlgen.paths import check_folder, read_at_most
-from mdlgen.study.row import LOST, Row
+from mdlgen.study.row import LOST, CaseRow
 
 NAME, FORMAT = "journal.jsonl", 1
 MOST_BYTES = 2_000_000_000
@@ -24,7 +24,7 @@ Asked = dict[str, Any]
 class Journal:
     """The rows of a study in `folder` by index, and what was asked for; `append` writes one more."""
 
-    def __init__(self, folder: Path, asked: Asked, rows: dict[int, Row], stream: IO[bytes]):
+    def __init__(self, folder: Path, asked: Asked, rows: dict[int, CaseRow], stream: IO[bytes]):
         self.folder, self.asked, self.rows, self._stream = folder, asked, rows, stream
 
     @classmethod
@@ -60,7 +60,7 @@ class Journal:
         stream.seek(0, os.SEEK_END)
         return found
 
-    def append(self, row: Row) -> None:
+    def append(self, row: CaseRow) -> None:
         """Writes a row, which is on the disk when this returns. Raises OutputError."""
         self._write(row.json())
         self.rows[row.index] = row
@@ -74,8 +74,8 @@ class Journal:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def _write(self, told: dict[str, Any]) -> None:
-        line = json.dumps(told, allow_nan=False, separators=(",", ":")).encode("ascii")
+    def _write(self, message: dict[str, Any]) -> None:
+        line = json.dumps(message, allow_nan=False, separators=(",", ":")).encode("ascii")
         try:
             self._stream.write(line + b"\n")
             self._stream.flush()
@@ -96,29 +96,29 @@ class Journal:
             raise OutputError(f"{self.folder}: another process is at work on the study there") from None
 
 
-def read(folder: Path) -> tuple[Asked, dict[int, Row]]:
+def read(folder: Path) -> tuple[Asked, dict[int, CaseRow]]:
     """What was asked for, and the rows by index, of a study that may still go on. Raises OutputError."""
     asked, rows, _ = _read(folder / NAME)
     return asked, rows
 
 
-def _read(path: Path) -> tuple[Asked, dict[int, Row], int]:
+def _read(path: Path) -> tuple[Asked, dict[int, CaseRow], int]:
     """As `read`, and how many bytes are whole lines; what was lost is not there, and will be run again."""
     if not path.is_file():
         raise OutputError(f"{path.parent}: holds no study to go on with; mdlgen sweep SPEC -o DIR begins one")
     data = read_at_most(path, MOST_BYTES, named=True)
     whole = data.rfind(b"\n") + 1
-    rows: dict[int, Row] = {}
+    rows: dict[int, CaseRow] = {}
     asked: Asked | None = None
     for number, line in enumerate(data[:whole].splitlines(), 1):
         try:
-            told = json.loads(line)
+            record = json.loads(line)
             if asked is None:
-                if told["mdlgen"] != FORMAT:
+                if record["mdlgen"] != FORMAT:
                     raise ValueError("of another mdlgen")
-                asked = dict(told["asked"])
+                asked = dict(record["asked"])
                 continue
-            row = Row.of(told)
+            row = CaseRow.of(record)
         except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
             raise OutputError(f"{path}:{number}: is not a line of a study ({str(error)[:80]})") from None
         if row.kind != LOST:

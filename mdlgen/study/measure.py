@@ -29,14 +29,14 @@ _PIECE = re.compile(r"[A-Za-z_]\w*(?:\.\w+)*", re.ASCII)
 _TAKEN = ("case", "status", "error_estimate")  # columns of the table
 
 
-def flat(told: Mapping[str, Any], within: str = "") -> dict[str, Value]:
+def flat(record: Mapping[str, Any], within: str = "") -> dict[str, Value]:
     """Numbers and vectors of a summary by dotted name; the parts of a vector as NAME.x, .y, .z too.
 
     `events.jam` is how many there were, `events.jam.NAME` of them with a sheet, a roller or a plate. Texts
     and times are left out.
     """
     found: dict[str, Value] = {}
-    for key, value in told.items():
+    for key, value in record.items():
         name = f"{within}{key}"
         if name in LEFT_OUT:
             continue

@@ -18,7 +18,7 @@ from mdlgen.study.goal import OBJECTIVE, Goal, goal
 from mdlgen.study.journal import Asked, Journal
 from mdlgen.study.link import check_links
 from mdlgen.study.measure import known
-from mdlgen.study.row import Row
+from mdlgen.study.row import CaseRow
 from mdlgen.study.search import Enough, Outcome
 from mdlgen.study.sweep import first_model
 from mdlgen.study.task import Task
@@ -55,9 +55,9 @@ class Optimisation:
         from mdlgen.runs.provenance import provenance
 
         now = provenance(registry.packages(self.task.solver))
-        told = {"what": WHAT, **asdict(self), **now}
-        del told["variables"]
-        return json.loads(json.dumps(told))
+        record = {"what": WHAT, **asdict(self), **now}
+        del record["variables"]
+        return json.loads(json.dumps(record))
 
     @property
     def how(self) -> str:
@@ -149,9 +149,9 @@ def _read(folder: Path, asked: Asked) -> Optimisation:
         if asked["what"] != WHAT:
             raise ValueError(f"of {asked['what']!s:.40}")
         texts = tuple(str(text) for text in asked["goal"]["conditions"])
-        told = Task.of(asked["task"])
+        message = Task.of(asked["task"])
         found = optimisation(
-            replace(told, measures=()),
+            replace(message, measures=()),
             [str(text) for text in asked["vary"]],
             goal(str(asked["goal"]["minimise"]), texts),
             (),
@@ -161,7 +161,7 @@ def _read(folder: Path, asked: Asked) -> Optimisation:
             float(asked["precision"]),
             int(asked["together"]),
         )
-        return replace(found, task=replace(found.task, measures=told.measures))
+        return replace(found, task=replace(found.task, measures=message.measures))
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise OutputError(f"{folder}: the journal there is not of a {WHAT} ({str(error)[:80]})") from None
 
@@ -186,7 +186,7 @@ class Runs:
     def __init__(self, wanted: Optimisation, journal: Journal, runner: Runner, progress: Count | None):
         self.wanted, self.journal, self.runner = wanted, journal, runner
         self.progress = progress or (lambda done, total: None)
-        self.rows: dict[tuple[tuple[str, str], ...], Row] = {}
+        self.rows: dict[tuple[tuple[str, str], ...], CaseRow] = {}
         counts = [len(v.texts) if isinstance(v, Choice) else math.inf for v in wanted.variables]
         self.designs = math.prod(counts)  # that there are
 
@@ -202,7 +202,7 @@ class Runs:
             raise Enough
         return [self._outcome(self.rows[each]) for each in asked]
 
-    def _done(self, cases: list[Case]) -> list[Row]:
+    def _done(self, cases: list[Case]) -> list[CaseRow]:
         there = self.journal.rows
         for case in cases:
             if case.index in there and there[case.index].values != case.values:
@@ -215,7 +215,7 @@ class Runs:
             self.progress(len(there), self.wanted.most)
         return [there[case.index] for case in cases]
 
-    def _outcome(self, row: Row) -> Outcome:
+    def _outcome(self, row: CaseRow) -> Outcome:
         """A run that failed is worse than all that did not, as far as they are from the best of them."""
         goal = self.wanted.goal
         if goal.complete(row):
@@ -226,7 +226,7 @@ class Runs:
         margins = tuple(max((m[k] for _, m in known), default=1.0) for k in range(len(goal.margins)))
         return Outcome(worst + max(worst - min(objectives), 1e-3 * abs(worst), 1e-9), margins)
 
-    def _numbers(self, row: Row) -> tuple[float, tuple[float, ...]]:
+    def _numbers(self, row: CaseRow) -> tuple[float, tuple[float, ...]]:
         measures = row.measures
         margins = tuple(float(measures[name] or 0.0) for name in self.wanted.goal.names)
         return float(measures[OBJECTIVE] or 0.0), margins
@@ -234,7 +234,7 @@ class Runs:
 
 def run(
     wanted: Optimisation, journal: Journal, runner: Runner, progress: Count | None = None
-) -> tuple[list[Row], Row | None]:
+) -> tuple[list[CaseRow], CaseRow | None]:
     """Searches until the best value is known to `precision`, or the runs are used up: all rows in the order
     of their runs, and the best one; None where none met the conditions. Raises OutputError."""
     runs = Runs(wanted, journal, runner, progress)

@@ -14,7 +14,7 @@ from mdlgen.study.case import Case
 from mdlgen.study.fragment import options
 from mdlgen.study.goal import OBJECTIVE
 from mdlgen.study.optimisation import Optimisation
-from mdlgen.study.row import Row
+from mdlgen.study.row import CaseRow
 from mdlgen.study.table import Column
 from mdlgen.study.table import columns as table
 from mdlgen.study.task import Task
@@ -32,10 +32,10 @@ def page(
     title: str,
     how: str,
     task: Task,
-    rows: Sequence[Row],
+    rows: Sequence[CaseRow],
     columns: Sequence[Column],
     found: dict[str, Any] | None = None,
-    best: Row | None = None,
+    best: CaseRow | None = None,
     objective: str = "",
     met: Sequence[bool] = (),
 ) -> str:
@@ -47,7 +47,7 @@ def page(
     rows = sorted(rows, key=lambda row: row.index)
     drawn = rows[:MOST_DRAWN]
     failed = [row for row in rows if not row.measured]
-    told = {
+    record = {
         "columns": [_column(column, task, len(drawn)) for column in columns if column.name not in _TOLD],
         "kind": [row.kind for row in drawn],
         "reason": ["" if row.ok else row.status for row in drawn],
@@ -57,7 +57,7 @@ def page(
         "objective": objective,
         "met": list(met[:MOST_DRAWN]),
     }
-    data = json.dumps(told, allow_nan=False, separators=(",", ":"))
+    data = json.dumps(record, allow_nan=False, separators=(",", ":"))
     place = templates() / "report"
     return (
         environment()
@@ -97,13 +97,13 @@ def _column(column: Column, task: Task, count: int) -> dict[str, Any]:
     }
 
 
-def _link(folder: Path, row: Row) -> str:
+def _link(folder: Path, row: CaseRow) -> str:
     """To the report of a case that has been kept; "" for others."""
     name = Case(row.index, row.values).name
     return f"{name}/{_REPORT}" if (folder / name / _REPORT).is_file() else ""
 
 
-def _command(folder: Path, task: Task, row: Row) -> str:
+def _command(folder: Path, task: Task, row: CaseRow) -> str:
     """What shows the run of a case: the page of one that has been kept, or the run itself."""
     case = Case(row.index, row.values)
     place = folder / case.name
@@ -118,7 +118,7 @@ def _command(folder: Path, task: Task, row: Row) -> str:
     return " ".join([*words, f"-o {shlex.quote(str(place))}"])
 
 
-def _reasons(failed: Sequence[Row]) -> list[dict[str, Any]]:
+def _reasons(failed: Sequence[CaseRow]) -> list[dict[str, Any]]:
     """Why cases have no measures, the most frequent reason first, with some of the cases."""
     groups: dict[str, list[int]] = {}
     for row in failed:
@@ -134,7 +134,7 @@ def _reasons(failed: Sequence[Row]) -> list[dict[str, Any]]:
     ]
 
 
-def write_page(folder: Path, found: Optimisation, rows: Sequence[Row], best: Row | None) -> Path:
+def write_page(folder: Path, found: Optimisation, rows: Sequence[CaseRow], best: CaseRow | None) -> Path:
     """Writes the page of an optimisation. Raises OutputError."""
     goal = found.goal
     columns = table(rows, [name for name, _ in found.task.measures])

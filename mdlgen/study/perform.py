@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from mdlgen.errors import MdlgenError, SpecError
 from mdlgen.study.case import Case
-from mdlgen.study.row import FAILED, INACCURATE, OK, REFUSED, Row, Times
+from mdlgen.study.row import FAILED, INACCURATE, OK, REFUSED, CaseRow, Times
 from mdlgen.study.task import Task
 
 if TYPE_CHECKING:
@@ -22,25 +22,25 @@ if TYPE_CHECKING:
 _ONE = Lock()
 
 
-def perform(task: Task, case: Case, begun: Callable[[], None] | None = None) -> Row:
+def perform(task: Task, case: Case, begun: Callable[[], None] | None = None) -> CaseRow:
     """The row of a case; whatever goes wrong is a row with its reason.
 
     `begun` is called once, when the solver is at work and all code is compiled.
     """
     with _ONE:
         started, cpu = time.perf_counter(), time.process_time()
-        told: dict[str, Any]
+        record: dict[str, Any]
         try:
-            told = _run(task, case, begun)
+            record = _run(task, case, begun)
         except MdlgenError as error:
-            told = {"kind": REFUSED, "status": _said(error)}
+            record = {"kind": REFUSED, "status": _said(error)}
         except MemoryError:
-            told = {"kind": FAILED, "status": "not enough memory for this case"}
+            record = {"kind": FAILED, "status": "not enough memory for this case"}
         except Exception as error:  # one bad case is no end of a study
-            told = {"kind": FAILED, "status": f"internal error: {type(error).__name__}: {error}"[:500]}
-        times: dict[str, float] = told.pop("times", {})
+            record = {"kind": FAILED, "status": f"internal error: {type(error).__name__}: {error}"[:500]}
+        times: dict[str, float] = record.pop("times", {})
         times |= {"case_s": time.perf_counter() - started, "cpu_s": time.process_time() - cpu}
-        return Row(case.index, case.values, **told, times=Times(**times))
+        return CaseRow(case.index, case.values, **record, times=Times(**times))
 
 
 def _said(error: MdlgenError) -> str:
@@ -63,25 +63,25 @@ def _run(task: Task, case: Case, begun: Callable[[], None] | None) -> dict[str, 
     with contextlib.redirect_stdout(io.StringIO()):  # a solver may talk there
         result = registry.solve(model, task.solver, progress, task.check_step)
     times = {name: getattr(result, name) for name in ("wall_s", "estimate_s", "build_s", "compile_s")}
-    told = {"solver": result.solver, "error_estimate": result.error_estimate, "times": times}
+    record = {"solver": result.solver, "error_estimate": result.error_estimate, "times": times}
     if not result.ok:
-        return {**told, "kind": FAILED, "status": result.status}
+        return {**record, "kind": FAILED, "status": result.status}
     from mdlgen.study.measure import measured
 
     try:
-        told["measures"] = measured(result, task.expressions())
+        record["measures"] = measured(result, task.expressions())
     except ValueError as error:
-        return {**told, "kind": FAILED, "status": f"measure {error}"}
+        return {**record, "kind": FAILED, "status": f"measure {error}"}
     if task.keep:
-        told["files"] = _files(task, case, result)
+        record["files"] = _files(task, case, result)
     estimate, tolerance = result.error_estimate, model.run.tolerance
     if estimate is not None and not estimate <= tolerance:
         status = (
             f"the error estimate of {result.error_estimate_of} is {estimate:.3g}, above run.tolerance "
             f"{tolerance:g}; give a smaller run.step"
         )
-        return {**told, "kind": INACCURATE, "status": status}
-    return {**told, "kind": OK, "status": "ok"}
+        return {**record, "kind": INACCURATE, "status": status}
+    return {**record, "kind": OK, "status": "ok"}
 
 
 def _files(task: Task, case: Case, result: Result) -> dict[str, bytes]:

@@ -24,7 +24,7 @@ class Times:
 
 
 @dataclass(frozen=True)
-class Row:
+class CaseRow:
     """A case with its measures, or with the reason that there are none."""
 
     index: int
@@ -50,16 +50,16 @@ class Row:
 
     def json(self) -> dict[str, Any]:
         """As the journal has it."""
-        told = asdict(self)
-        del told["files"]
-        return told
+        record = asdict(self)
+        del record["files"]
+        return record
 
     @classmethod
-    def of(cls, told: dict[str, Any]) -> Row:
+    def of(cls, record: dict[str, Any]) -> CaseRow:
         """The inverse of `json`. Raises KeyError, TypeError or ValueError for what is none."""
-        if told["kind"] not in (OK, INACCURATE, REFUSED, FAILED, LOST):
-            raise ValueError(f"{told['kind']!r} is no kind of row")
-        values = tuple((str(path), str(text)) for path, text in told["values"])
-        measures = {str(k): None if v is None else float(v) for k, v in told["measures"].items()}
-        typed = {"index": int(told["index"]), "values": values, "measures": measures}
-        return cls(**{**told, **typed, "times": Times(**told["times"])})
+        if record["kind"] not in (OK, INACCURATE, REFUSED, FAILED, LOST):
+            raise ValueError(f"{record['kind']!r} is no kind of row")
+        values = tuple((str(path), str(text)) for path, text in record["values"])
+        measures = {str(k): None if v is None else float(v) for k, v in record["measures"].items()}
+        typed = {"index": int(record["index"]), "values": values, "measures": measures}
+        return cls(**{**record, **typed, "times": Times(**record["times"])})

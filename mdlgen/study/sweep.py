@@ -14,7 +14,7 @@ from mdlgen.study import table
 from mdlgen.study.case import Case
 from mdlgen.study.journal import Asked, Journal
 from mdlgen.study.measure import check_apart, defaults, known, measures
-from mdlgen.study.row import INACCURATE, Row
+from mdlgen.study.row import INACCURATE, CaseRow
 from mdlgen.study.task import Task
 from mdlgen.study.variable import check_count, check_paths, grid, variable
 from mdlgen.study.workers import Runner
@@ -44,9 +44,9 @@ class Sweep:
         now = provenance(registry.packages(self.task.solver))
         cases = [[list(value) for value in case.values] for case in self.cases]
         task = asdict(self.task)
-        told = {"what": WHAT, "name": self.name, "task": task, "how": self.how, "cases": cases}
-        told |= {"model": self.model, **now}
-        return json.loads(json.dumps(told))
+        record = {"what": WHAT, "name": self.name, "task": task, "how": self.how, "cases": cases}
+        record |= {"model": self.model, **now}
+        return json.loads(json.dumps(record))
 
 
 def over(texts: Sequence[str], draw: tuple[str, int] | None, seed: int) -> tuple[tuple[Case, ...], str]:
@@ -170,19 +170,19 @@ def _compare(folder: Path, there: Asked, now: Asked) -> None:
     check_same(folder, there, {name: value for name, value in now.items() if name not in others})
 
 
-def run(wanted: Sweep, journal: Journal, runner: Runner, progress: Count | None = None) -> list[Row]:
+def run(wanted: Sweep, journal: Journal, runner: Runner, progress: Count | None = None) -> list[CaseRow]:
     """Runs the cases that the journal has not, and gives all rows by index. Raises OutputError."""
     todo = [case for case in wanted.cases if case.index not in journal.rows]
-    told = progress or (lambda done, total: None)
-    told(len(journal.rows), len(wanted.cases))
+    report = progress or (lambda done, total: None)
+    report(len(journal.rows), len(wanted.cases))
     for row in runner.rows(wanted.task, todo) if todo else ():
         keep(journal.folder, row)
         journal.append(row)
-        told(len(journal.rows), len(wanted.cases))
+        report(len(journal.rows), len(wanted.cases))
     return [journal.rows[case.index] for case in wanted.cases]
 
 
-def keep(folder: Path, row: Row) -> None:
+def keep(folder: Path, row: CaseRow) -> None:
     """Writes the files of a run that came with its row into `folder/case_N`. Raises OutputError."""
     if not row.files:
         return
@@ -195,7 +195,7 @@ def keep(folder: Path, row: Row) -> None:
     write_together({place / name: content for name, content in row.files.items()})
 
 
-def write(folder: Path, task: Task, rows: Sequence[Row], parquet: bool) -> list[Path]:
+def write(folder: Path, task: Task, rows: Sequence[CaseRow], parquet: bool) -> list[Path]:
     """Writes table.csv, times.csv and, where asked for, table.parquet. Raises OutputError, RefusedError."""
     found = table.columns(rows, [name for name, _ in task.measures])
     files: dict[Path, str | bytes] = {
@@ -208,7 +208,7 @@ def write(folder: Path, task: Task, rows: Sequence[Row], parquet: bool) -> list[
     return list(files)
 
 
-def write_findings(folder: Path, wanted: Sweep, rows: Sequence[Row]) -> tuple[list[Path], list[str]]:
+def write_findings(folder: Path, wanted: Sweep, rows: Sequence[CaseRow]) -> tuple[list[Path], list[str]]:
     """Writes findings.json and study.html: their names, and the findings in words. Raises OutputError."""
     from mdlgen.study.findings import findings, findings_text
     from mdlgen.study.page import NAME, page
@@ -223,13 +223,13 @@ def write_findings(folder: Path, wanted: Sweep, rows: Sequence[Row]) -> tuple[li
     return list(files), findings_text(found)
 
 
-def told(rows: Sequence[Row]) -> str:
+def summary(rows: Sequence[CaseRow]) -> str:
     """One line: how many cases failed, and of what, the most frequent reasons first."""
     failed = [row for row in rows if not row.measured]
     loose = [row for row in rows if row.kind == INACCURATE]
     line = f"{len(rows)} cases, none failed"
     if failed:
-        reasons: dict[str, list[Row]] = {}
+        reasons: dict[str, list[CaseRow]] = {}
         for row in failed:
             reasons.setdefault(row.status, []).append(row)
         most = sorted(reasons.items(), key=lambda item: -len(item[1]))

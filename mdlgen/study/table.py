@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass, fields
 
 from mdlgen.errors import RefusedError
-from mdlgen.study.row import Row, Times
+from mdlgen.study.row import CaseRow, Times
 from mdlgen.study.variable import quantity
 
 Cell = int | float | str | None
@@ -31,7 +31,7 @@ class Column:
         return f"{self.name} [{self.unit}]" if self.unit else self.name
 
 
-def columns(rows: Sequence[Row], measures: Sequence[str]) -> list[Column]:
+def columns(rows: Sequence[CaseRow], measures: Sequence[str]) -> list[Column]:
     """case; values, as numbers where all have one unit; measures; status, reason, error_estimate, solver."""
     rows = sorted(rows, key=lambda row: row.index)
     paths = [path for path, _ in rows[0].values] if rows else []
@@ -54,7 +54,7 @@ def _values(path: str, texts: Sequence[str]) -> Column:
     return Column(path, "", tuple(texts))
 
 
-def times(rows: Sequence[Row]) -> list[Column]:
+def times(rows: Sequence[CaseRow]) -> list[Column]:
     """What each case took [s], and where it was run."""
     rows = sorted(rows, key=lambda row: row.index)
     took = [asdict(row.times) for row in rows]

@@ -1,4 +1,4 @@
-"""What all cases of a study share: plain data, so that any process on any machine can be told."""
+"""What all cases of a study share: plain data, so that any process on any machine can have it."""
 
 from __future__ import annotations
 
@@ -38,13 +38,13 @@ class Task:
     @classmethod
     def of(cls, asked: Mapping[str, Any]) -> Task:
         """From a journal. Raises KeyError, TypeError or ValueError for what is none."""
-        told = dict(asked)
+        record = dict(asked)
         for name in ("sets", "limits", "events", "lets"):
-            told[name] = tuple(str(item) for item in told[name])
-        told |= {name: str(told[name]) for name in ("spec", "text", "beside", "solver")}
-        told |= {name: bool(told[name]) for name in ("check_step", "keep")}
-        told["measures"] = tuple((str(name), str(text)) for name, text in told["measures"])
-        return cls(**told)
+            record[name] = tuple(str(item) for item in record[name])
+        record |= {name: str(record[name]) for name in ("spec", "text", "beside", "solver")}
+        record |= {name: bool(record[name]) for name in ("check_step", "keep")}
+        record["measures"] = tuple((str(name), str(text)) for name, text in record["measures"])
+        return cls(**record)
 
     def scene(self, case: Case | None = None) -> Scene:
         """The Scene of a case; None: as it was written. Raises SpecError, OutputError."""

@@ -55,24 +55,24 @@ def quantity_text(number: float, unit: str = "") -> str:
     return f"{float(number)!r} {unit}".rstrip()
 
 
-def interval(low: str, high: str, told: str) -> tuple[float, float, str]:
+def interval(low: str, high: str, message: str) -> tuple[float, float, str]:
     """Two numbers in the unit of the first, and that unit ("" where there is none).
 
-    `told` begins an error, as "--over 'a=1:2 mm:3'". Raises SpecError.
+    `message` begins an error, as "--over 'a=1:2 mm:3'". Raises SpecError.
     """
     ends = quantity(low), quantity(high)
     for end, text in zip(ends, (low, high), strict=True):
         if end is None:
-            raise SpecError(f"{told}: {text.strip()[:40]!r} is not a number, or one with a unit")
+            raise SpecError(f"{message}: {text.strip()[:40]!r} is not a number, or one with a unit")
     (first, unit), (last, other) = ends  # type: ignore[misc]
     if unit != other:
         if not unit or not other:
             raise SpecError(
-                f"{told}: one end has the unit {unit or other!r}, the other none; write it at both"
+                f"{message}: one end has the unit {unit or other!r}, the other none; write it at both"
             )
         to, of = parse_unit(unit), parse_unit(other)
         if to.dimension != of.dimension:
-            raise SpecError(f"{told}: {unit!r} and {other!r} are not units of the same thing")
+            raise SpecError(f"{message}: {unit!r} and {other!r} are not units of the same thing")
         last *= of.factor / to.factor
     return first, last, unit
 
@@ -80,21 +80,21 @@ def interval(low: str, high: str, told: str) -> tuple[float, float, str]:
 def variable(text: str, option: str = "--over") -> Variable:
     """Of `PATH=START:STOP:N` or `PATH=[a, b, c]`. Raises SpecError."""
     path, rest = split(text, option)
-    told = f"{option} {text[:80]!r}"
-    texts = _list(rest, told) if rest.startswith("[") else _range(rest, told)
+    message = f"{option} {text[:80]!r}"
+    texts = _list(rest, message) if rest.startswith("[") else _range(rest, message)
     if len(set(texts)) < len(texts):
-        raise SpecError(f"{told}: a value stands twice")
+        raise SpecError(f"{message}: a value stands twice")
     return Variable(path, texts)
 
 
-def _range(rest: str, told: str) -> tuple[str, ...]:
+def _range(rest: str, message: str) -> tuple[str, ...]:
     parts = rest.split(":")
     if len(parts) != 3:
-        raise SpecError(f"{told}: is neither a range nor a list; {HOW}")
-    first, last, unit = interval(parts[0], parts[1], told)
+        raise SpecError(f"{message}: is neither a range nor a list; {HOW}")
+    first, last, unit = interval(parts[0], parts[1], message)
     if not re.fullmatch(r"\s*[0-9]{1,6}\s*", parts[2]) or not 2 <= int(parts[2]) <= MOST_CASES:
         raise SpecError(
-            f"{told}: {parts[2].strip()[:20]!r} is no count; allowed are 2 to {MOST_CASES} values"
+            f"{message}: {parts[2].strip()[:20]!r} is no count; allowed are 2 to {MOST_CASES} values"
         )
     count = int(parts[2])
     # twelve digits: what is typed as 0.1:0.5:9 holds 0.15, not 0.15000000000000002
@@ -106,15 +106,15 @@ def _range(rest: str, told: str) -> tuple[str, ...]:
     return tuple(quantity_text(number, unit) for number in numbers)
 
 
-def _list(rest: str, told: str) -> tuple[str, ...]:
+def _list(rest: str, text: str) -> tuple[str, ...]:
     from mdlgen.spec.load import parse
 
     try:
         values = parse(rest, "value").data
     except SpecError as error:
-        raise SpecError(f"{told}: {error.message}") from None
+        raise SpecError(f"{text}: {error.message}") from None
     if not isinstance(values, list) or not values:
-        raise SpecError(f"{told}: is not a list of values; {HOW}")
+        raise SpecError(f"{text}: is not a list of values; {HOW}")
     return tuple(value_text(value) for value in values)
 
 

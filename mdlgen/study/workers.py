@@ -20,7 +20,7 @@ from typing import Protocol
 from mdlgen.errors import OutputError
 from mdlgen.processors import processors
 from mdlgen.study.case import Case
-from mdlgen.study.row import LOST, REFUSED, Row
+from mdlgen.study.row import LOST, REFUSED, CaseRow
 from mdlgen.study.task import Task
 from mdlgen.study.worker import BEGUN, COMPILING, PREPARING
 
@@ -34,7 +34,7 @@ Heard = Callable[[str], None]
 class Runner(Protocol):
     """What runs cases: processes of this machine, or a cluster."""
 
-    def rows(self, task: Task, cases: Sequence[Case]) -> Iterator[Row]:
+    def rows(self, task: Task, cases: Sequence[Case]) -> Iterator[CaseRow]:
         """The rows of the cases, as they are done."""
         ...
 
@@ -42,7 +42,7 @@ class Runner(Protocol):
 
 
 class _Process:
-    """One worker; it is told the task once."""
+    """One worker; it gets the task once."""
 
     def __init__(self) -> None:
         self.log = tempfile.TemporaryFile()  # noqa: SIM115
@@ -55,7 +55,7 @@ class _Process:
         )
         self.task: Task | None = None
 
-    def ask(self, task: Task, case: Case, heard: Heard) -> Row | None:
+    def ask(self, task: Task, case: Case, heard: Heard) -> CaseRow | None:
         """The row of a case; None where the process ended before it."""
         assert self.process.stdin is not None and self.process.stdout is not None
         try:
@@ -64,11 +64,11 @@ class _Process:
                 self.task = task
             pickle.dump(case, self.process.stdin)
             self.process.stdin.flush()
-            while not isinstance(told := pickle.load(self.process.stdout), Row):
-                heard(told)
+            while not isinstance(message := pickle.load(self.process.stdout), CaseRow):
+                heard(message)
         except (EOFError, OSError, ValueError, pickle.UnpicklingError):
             return None
-        return told
+        return message
 
     def ended(self) -> str:
         """How it died."""
@@ -80,8 +80,8 @@ class _Process:
             return f"was killed by signal {-code}"
         self.log.seek(0, os.SEEK_END)
         self.log.seek(max(0, self.log.tell() - 2000))
-        told = self.log.read().decode("utf-8", "replace").strip().splitlines()
-        return f"ended with code {code}{': ' + told[-1] if told else ''}"[:300]
+        record = self.log.read().decode("utf-8", "replace").strip().splitlines()
+        return f"ended with code {code}{': ' + record[-1] if record else ''}"[:300]
 
     def kill(self) -> None:
         with contextlib.suppress(OSError):
@@ -96,7 +96,7 @@ class _Process:
 class Workers:
     """`count` processes (None: one for each processor), started when they are needed.
 
-    `heard` is told PREPARING or COMPILING once where the solver is, which one process does for all.
+    `heard` is called with PREPARING or COMPILING once where the solver is, which one process does for all.
     """
 
     def __init__(self, count: int | None = None, heard: Heard = lambda word: None):
@@ -106,13 +106,13 @@ class Workers:
         self._lock = Lock()
         self._closed = False
 
-    def rows(self, task: Task, cases: Sequence[Case]) -> Iterator[Row]:
+    def rows(self, task: Task, cases: Sequence[Case]) -> Iterator[CaseRow]:
         """The rows of the cases, as they are done; of a case that kills its process twice, what killed it.
 
         Raises OutputError where no process can be started.
         """
         todo = deque(cases)
-        done: SimpleQueue[Row | Exception] = SimpleQueue()
+        done: SimpleQueue[CaseRow | Exception] = SimpleQueue()
         compiled = Event()  # before that a second process would compile the same
         threads = [
             Thread(target=self._work, args=(slot, task, todo, done, compiled), daemon=True)
@@ -121,7 +121,7 @@ class Workers:
         for thread in threads:
             thread.start()
         for _ in cases:
-            row: Row | Exception | None = None
+            row: CaseRow | Exception | None = None
             while row is None:
                 with contextlib.suppress(Empty):
                     row = done.get(timeout=0.5)  # some systems hear an interrupt only between two waits
@@ -130,7 +130,12 @@ class Workers:
             yield row
 
     def _work(
-        self, slot: int, task: Task, todo: deque[Case], done: SimpleQueue[Row | Exception], compiled: Event
+        self,
+        slot: int,
+        task: Task,
+        todo: deque[Case],
+        done: SimpleQueue[CaseRow | Exception],
+        compiled: Event,
     ) -> None:
         if slot:
             compiled.wait()
@@ -158,7 +163,7 @@ class Workers:
         finally:
             compiled.set()
 
-    def _row(self, slot: int, task: Task, case: Case, heard: Heard) -> Row:
+    def _row(self, slot: int, task: Task, case: Case, heard: Heard) -> CaseRow:
         why = ""
         for _ in range(TRIES):
             process = self._process(slot)
@@ -169,7 +174,7 @@ class Workers:
                 break
             why = process.ended()
             self._slots[slot] = None
-        return Row(
+        return CaseRow(
             case.index, case.values, LOST, f"its process {why}, {TRIES} times", worker=f"process {slot}"
         )
 

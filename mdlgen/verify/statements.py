@@ -25,9 +25,9 @@ def unaccounted(mine: Any, given: Any, own: Own) -> Iterator[Difference]:
         if due[rest.key]:
             due[rest.key] -= 1
         elif own.has(rest):
-            told = f"{rest.statement.place()}: {_short(rest.statement)}"
+            message = f"{rest.statement.place()}: {_short(rest.statement)}"
             yield Difference(
-                "statement", "", f"{told} is not in the text that mdlgen writes; its effect is not known"
+                "statement", "", f"{message} is not in the text that mdlgen writes; its effect is not known"
             )
     for rest in mine.remainder():
         if due[rest.key]:

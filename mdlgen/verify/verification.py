@@ -24,11 +24,11 @@ from mdlgen.verify.found import (
 from mdlgen.verify.host import host_notes
 from mdlgen.verify.outcome import Turned, Verification
 from mdlgen.verify.own import Own
+from mdlgen.verify.perturb import Progress, turn_all
 from mdlgen.verify.script import DEFAULT_GRAVITY, Script
 from mdlgen.verify.statements import remarks, unaccounted
 from mdlgen.verify.subject import File, Read, Subject
 from mdlgen.verify.tables import Difference, Table, compare
-from mdlgen.verify.turning import Progress, turn_all
 from mdlgen.verify.wording import wording
 
 # Kinds that a deck has no entities for: points, vectors and data sets are the text's way to say numbers.

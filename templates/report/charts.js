@@ -41,11 +41,11 @@ function range(values, least) {
 
 // One figure of one or more runs; `seek(ms)` is called where it is clicked. Returns what moves its cursor.
 function chart(parent, runs, key, seek) {
-  const told = runs.map((run) => run.panels.find((panel) => panel.key === key)).find((panel) => panel);
+  const content = runs.map((run) => run.panels.find((panel) => panel.key === key)).find((panel) => panel);
   const figure = document.createElement("figure");
   figure.dataset.key = key;
   const caption = document.createElement("figcaption");
-  caption.textContent = `${told.title} [${told.unit}]`;
+  caption.textContent = `${content.title} [${content.unit}]`;
   figure.append(caption);
   const lines = [];
   const names = [];
@@ -58,20 +58,20 @@ function chart(parent, runs, key, seek) {
   const plot = document.createElement("div"), cursor = document.createElement("div");
   plot.className = "plot";
   cursor.className = "cursor";
-  const svg = element("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": told.title }, plot);
+  const svg = element("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": content.title }, plot);
   plot.append(cursor);
   figure.append(plot);
   const keys = document.createElement("div");
   keys.className = "keys-of";
   figure.append(keys);
-  if (told.note) {
+  if (content.note) {
     const note = document.createElement("p");
     note.className = "note";
-    note.textContent = told.note;
+    note.textContent = content.note;
     figure.append(note);
   }
   parent.append(figure);
-  const overTime = told.x_title === "time [ms]";
+  const overTime = content.x_title === "time [ms]";
   let scaleX, unscaleX, at = 0, inSight = true;
 
   function draw() {
@@ -80,9 +80,9 @@ function chart(parent, runs, key, seek) {
     const drawn = seen.length ? seen : lines;
     let [x0, x1] = overTime ? [Math.min(...drawn.map((l) => l.x[0])), Math.max(...drawn.map((l) => l.x.at(-1)))]
       : range(drawn.flatMap((l) => [...l.x]), 1e-6);
-    let [y0, y1] = range(drawn.flatMap((l) => [...l.y]), told.least);
+    let [y0, y1] = range(drawn.flatMap((l) => [...l.y]), content.least);
     const wide = WIDTH - LEFT - RIGHT, high = HEIGHT - TOP - BOTTOM;
-    if (told.equal) {
+    if (content.equal) {
       const mm = Math.max((x1 - x0) / wide, (y1 - y0) / high);
       const [cx, cy] = [(x0 + x1) / 2, (y0 + y1) / 2];
       [x0, x1, y0, y1] = [cx - mm * wide / 2, cx + mm * wide / 2, cy - mm * high / 2, cy + mm * high / 2];
@@ -98,7 +98,7 @@ function chart(parent, runs, key, seek) {
       element("line", { x1: LEFT, x2: LEFT + wide, y1: scaleY(y), y2: scaleY(y), class: "grid" }, svg);
       element("text", { x: LEFT - 5, y: scaleY(y) + 4, "text-anchor": "end" }, svg).textContent = number(y);
     }
-    element("text", { x: LEFT + wide / 2, y: HEIGHT - 6, "text-anchor": "middle" }, svg).textContent = told.x_title;
+    element("text", { x: LEFT + wide / 2, y: HEIGHT - 6, "text-anchor": "middle" }, svg).textContent = content.x_title;
     for (const line of seen) {
       let path = "";
       for (let k = 0; k < line.x.length; k += 1) path += `${k ? "L" : "M"}${scaleX(line.x[k]).toFixed(2)} ${scaleY(line.y[k]).toFixed(2)}`;

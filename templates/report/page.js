@@ -3,8 +3,8 @@
 const runs = JSON.parse(document.getElementById("data").textContent);
 const get = (id) => document.getElementById(id);
 const state = { run: 0, time: 0, playing: false, colour: 0, view: null, rate: 1, frames: 0 };
-const told = () => runs[state.run].animation;
-const end = () => told().time.at(-1), start = () => told().time[0];
+const shown = () => runs[state.run].animation;
+const end = () => shown().time.at(-1), start = () => shown().time[0];
 const movers = [];
 let stage = null;
 
@@ -15,7 +15,7 @@ for (const key of keys) movers.push(chart(panels, runs, key, (time) => seek(time
 function seek(time) {
   state.time = Math.min(Math.max(time, start()), end());
   get("time").value = end() > start() ? 1000 * (state.time - start()) / (end() - start()) : 0;
-  get("clock").textContent = told().static ? (state.time < 0.5 ? "before" : "after") : `${state.time.toFixed(2)} ms`;
+  get("clock").textContent = shown().static ? (state.time < 0.5 ? "before" : "after") : `${state.time.toFixed(2)} ms`;
   const now = performance.now();
   if (!state.playing || now - marked > MARKS) { marked = now; mark(); }
   stage?.seek(state.time);
@@ -30,7 +30,7 @@ function mark() {
 
 function step(count) {
   play(false);
-  const times = told().time;
+  const times = shown().time;
   let k = times.findIndex((t) => t >= state.time - 1e-9);
   if (k < 0) k = times.length - 1;
   seek(times[Math.min(Math.max(k + count, 0), times.length - 1)]);
@@ -60,9 +60,9 @@ function play(on) {
 }
 
 function colour(index) {
-  state.colour = (index + told().colours.length) % told().colours.length;
+  state.colour = (index + shown().colours.length) % shown().colours.length;
   get("colour").value = state.colour;
-  const { name, unit, most } = told().colours[state.colour];
+  const { name, unit, most } = shown().colours[state.colour];
   const legend = get("legend");
   legend.replaceChildren();
   const ramp = document.createElement("div"), ends = document.createElement("div"), title = document.createElement("div");
@@ -89,7 +89,7 @@ function choose(index) {
   state.run = index;
   stage?.choose(index);
   const list = get("colour");
-  list.replaceChildren(...told().colours.map((c, k) => new Option(c.name, k)));
+  list.replaceChildren(...shown().colours.map((c, k) => new Option(c.name, k)));
   colour(state.colour);
   seek(state.time);
 }
@@ -146,14 +146,14 @@ try {
   get("no-drawing").textContent = `This browser does not draw in space (WebGL): ${error.message}. The figures and tables are all here.`;
 }
 // nothing moves at rest: what bends is shown then
-if (told().static) state.colour = told().colours.findIndex((c) => c.name === "curvature");
+if (shown().static) state.colour = shown().colours.findIndex((c) => c.name === "curvature");
 choose(0);
 rate(rates.findIndex((r) => r >= (end() - start()) / 10));
 // what a link asks for, as #t=18&view=xz&colour=strain
 const asked = new URLSearchParams(location.hash.slice(1));
 view(["xz", "yz", "xy", "iso"].includes(asked.get("view")) ? asked.get("view") : "iso");
-const wanted = told().colours.findIndex((c) => c.name === asked.get("colour"));
+const wanted = shown().colours.findIndex((c) => c.name === asked.get("colour"));
 if (wanted >= 0) colour(wanted);
-seek(asked.has("t") ? Number(asked.get("t")) || 0 : told().static ? end() : start());
+seek(asked.has("t") ? Number(asked.get("t")) || 0 : shown().static ? end() : start());
 window.mdlgen = { state, seek, play, colour, view, choose, check, stage, runs };
 document.documentElement.dataset.ready = "yes";

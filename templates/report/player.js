@@ -96,16 +96,16 @@ async function player(canvas, changed) {
   }
 
   // A run, ready to be drawn.
-  function take(told) {
-    const half = unpack(told.half, Float32Array);
+  function take(animation) {
+    const half = unpack(animation.half, Float32Array);
     const run = {
-      told, half, place: unpack(told.place, Uint16Array), turn: unpack(told.turn, Int16Array),
-      colours: told.colours.map((c) => ({ ...c, values: unpack(c.values, Uint8Array) })),
+      animation, half, place: unpack(animation.place, Uint16Array), turn: unpack(animation.turn, Int16Array),
+      colours: animation.colours.map((c) => ({ ...c, values: unpack(c.values, Uint8Array) })),
       group: new THREE.Group(), parts: [], last: new THREE.Vector3(), known: false,
     };
-    run.boxes = blocks(told.boxes);
+    run.boxes = blocks(animation.boxes);
     run.group.add(run.boxes);
-    for (const mesh of told.meshes) {
+    for (const mesh of animation.meshes) {
       const shape = new THREE.BufferGeometry();
       shape.setAttribute("position", new THREE.BufferAttribute(unpack(mesh.points, Float32Array), 3));
       shape.setIndex(new THREE.BufferAttribute(unpack(mesh.triangles, Uint16Array), 1));
@@ -122,36 +122,36 @@ async function player(canvas, changed) {
 
   // Position and rotation of a body between the states k and k + 1.
   function pose(run, row, k, part) {
-    const { told, place, turn } = run;
-    const next = Math.min(k + 1, told.time.length - 1);
-    const a = k * told.bodies + row, b = next * told.bodies + row;
+    const { animation, place, turn } = run;
+    const next = Math.min(k + 1, animation.time.length - 1);
+    const a = k * animation.bodies + row, b = next * animation.bodies + row;
     for (let i = 0; i < 3; i += 1) {
-      position.setComponent(i, told.low[i] + told.step[i] * (place[3 * a + i] * (1 - part) + place[3 * b + i] * part));
+      position.setComponent(i, animation.low[i] + animation.step[i] * (place[3 * a + i] * (1 - part) + place[3 * b + i] * part));
     }
     one.set(turn[4 * a + 1], turn[4 * a + 2], turn[4 * a + 3], turn[4 * a]).normalize();
     two.set(turn[4 * b + 1], turn[4 * b + 2], turn[4 * b + 3], turn[4 * b]).normalize();
     one.slerp(two, part);
   }
 
-  function pointer(told, at) {
-    let low = 0, high = told.time.length - 1;
-    while (high - low > 1) { const middle = (low + high) >> 1; if (told.time[middle] <= at) low = middle; else high = middle; }
-    const span = told.time[high] - told.time[low];
-    return span > 0 ? [low, Math.min(Math.max((at - told.time[low]) / span, 0), 1)] : [low, 0];
+  function pointer(animation, at) {
+    let low = 0, high = animation.time.length - 1;
+    while (high - low > 1) { const middle = (low + high) >> 1; if (animation.time[middle] <= at) low = middle; else high = middle; }
+    const span = animation.time[high] - animation.time[low];
+    return span > 0 ? [low, Math.min(Math.max((at - animation.time[low]) / span, 0), 1)] : [low, 0];
   }
 
   const middle = new THREE.Vector3(), moved = new THREE.Vector3();
-  function settle() {
+  function refreshPoses() {
     if (!seen) return;
-    const { told, boxes, half } = seen;
-    const [k, part] = pointer(told, time);
+    const { animation, boxes, half } = seen;
+    const [k, part] = pointer(animation, time);
     const colour = seen.colours[seen.colour];
-    const near = part < 0.5 ? k : Math.min(k + 1, told.time.length - 1);
+    const near = part < 0.5 ? k : Math.min(k + 1, animation.time.length - 1);
     const points = boxes.geometry.attributes.position, tints = boxes.geometry.attributes.color;
     middle.set(0, 0, 0);
-    for (let row = 0; row < told.boxes; row += 1) {
+    for (let row = 0; row < animation.boxes; row += 1) {
       pose(seen, row, k, part);
-      middle.addScaledVector(position, 1 / told.boxes);
+      middle.addScaledVector(position, 1 / animation.boxes);
       for (let k = 0; k < 3; k += 1) {
         axis.set(Number(k === 0), Number(k === 1), Number(k === 2)).applyQuaternion(one);
         // both faces are lit alike, so that colours mean the same on both
@@ -163,7 +163,7 @@ async function player(canvas, changed) {
         const x = c & 1 ? 1 : -1, y = c & 2 ? 1 : -1, z = c & 4 ? 1 : -1;
         for (let i = 0; i < 3; i += 1) corners[3 * c + i] = position.getComponent(i) + x * sides[i] + y * sides[3 + i] + z * sides[6 + i];
       }
-      const value = 3 * colour.values[near * told.boxes + row];
+      const value = 3 * colour.values[near * animation.boxes + row];
       for (let face = 0, at = 72 * row; face < 6; face += 1) {
         for (let k = 0; k < 4; k += 1, at += 3) {
           const corner = 3 * FACES[face][k];
@@ -191,7 +191,7 @@ async function player(canvas, changed) {
   let wide = 0, high = 0, drawn = 0, thin = 0; // thin: half of what a sheet is thick at least [mm]
   function draw() {
     if (!wide || !high) return;
-    if (drawn !== fineness) { // the renderer makes its buffers anew each time that it is told
+    if (drawn !== fineness) { // the renderer makes its buffers anew each time that it is animation
       renderer.setPixelRatio(drawn = fineness);
       renderer.setSize(wide, high, false);
     }
@@ -199,7 +199,7 @@ async function player(canvas, changed) {
     camera.left = -size * ratio; camera.right = size * ratio; camera.top = size; camera.bottom = -size;
     const before = thin;
     thin = THIN * size / (high * Math.max(fineness, 1));
-    if (thin !== before) settle();
+    if (thin !== before) refreshPoses();
     camera.position.copy(target).addScaledVector(away, 1000);
     camera.lookAt(target);
     camera.updateProjectionMatrix();
@@ -217,10 +217,10 @@ async function player(canvas, changed) {
   function fit(sheets) {
     if (!seen) return;
     const box = new THREE.Box3();
-    const { told } = seen;
-    for (let k = 0; k < told.time.length; k += sheets ? told.time.length : Math.max(1, Math.floor(told.time.length / 8))) {
-      const at = sheets ? pointer(told, time)[0] : k;
-      for (let row = 0; row < told.boxes; row += 1) { pose(seen, row, at, 0); box.expandByPoint(position); }
+    const { animation } = seen;
+    for (let k = 0; k < animation.time.length; k += sheets ? animation.time.length : Math.max(1, Math.floor(animation.time.length / 8))) {
+      const at = sheets ? pointer(animation, time)[0] : k;
+      for (let row = 0; row < animation.boxes; row += 1) { pose(seen, row, at, 0); box.expandByPoint(position); }
     }
     if (!sheets && machine) for (const { drawn, kind } of seen.parts) if (kind !== "plane") box.expandByObject(drawn);
     box.expandByScalar(0.02 * box.getSize(moved).length());
@@ -240,7 +240,7 @@ async function player(canvas, changed) {
   const shown = {
     THREE,
     runs: [],
-    add(told) { this.runs.push(take(told)); },
+    add(animation) { this.runs.push(take(animation)); },
     choose(index) {
       if (seen) scene.remove(seen.group);
       const colour = seen ? seen.colour : 0;
@@ -248,9 +248,9 @@ async function player(canvas, changed) {
       seen.colour = Math.min(colour, seen.colours.length - 1);
       seen.known = false;
       scene.add(seen.group);
-      settle(); refresh();
+      refreshPoses(); refresh();
     },
-    colour(index) { seen.colour = index; settle(); refresh(); },
+    colour(index) { seen.colour = index; refreshPoses(); refresh(); },
     view(name) {
       away = new THREE.Vector3(...VIEWS[name][0]).normalize();
       camera.up.set(...VIEWS[name][1]);
@@ -258,8 +258,8 @@ async function player(canvas, changed) {
     },
     near() { fit(true); refresh(); },
     follow(value) { follow = value; },
-    machine(value) { machine = value; settle(); refresh(); },
-    seek(at) { time = at; settle(); refresh(); },
+    machine(value) { machine = value; refreshPoses(); refresh(); },
+    seek(at) { time = at; refreshPoses(); refresh(); },
     // While it plays, a picture that takes too long [ms] is made coarser, since without a graphics card the
     // time goes by the pixel; at rest (null) it is as fine as the screen.
     pace(took) {
@@ -271,7 +271,7 @@ async function player(canvas, changed) {
     },
     // draws at once and waits until it is done, for those who measure or take pictures: a pixel that is read
     // has been drawn, while finish() comes back at once
-    now() { settle(); draw(); const gl = renderer.getContext(); gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4)); },
+    now() { refreshPoses(); draw(); const gl = renderer.getContext(); gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4)); },
   };
 
   // orbit, move, zoom

@@ -16,7 +16,7 @@ Key = tuple[str, str, str]  # section, kind, name or number
 def elements(root: etree._Element) -> Iterator[tuple[Key, int, dict[str, str]]]:
     """Key, line and attributes of each, without its id; of a section the order of what it holds.
 
-    Two things with one name are told apart by a number.
+    Two things with one name differ by a number.
     """
     for section in children(root):
         name = str(section.tag)

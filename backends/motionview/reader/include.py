@@ -51,9 +51,9 @@ class Includes:
                 self.reasons[id(statement)] = str(reason)
                 yield statement
                 continue
-            told = path.relative_to(self.folder or folder).as_posix()
+            message = path.relative_to(self.folder or folder).as_posix()
             part = self._part(statements(inner, self.notes, part=True))
-            yield from self._expanded(part, path.parent, (*chain, told))
+            yield from self._expanded(part, path.parent, (*chain, message))
 
     def _part(self, found: Iterator[Statement]) -> Iterator[Statement]:
         for statement in found:
@@ -70,9 +70,9 @@ class Includes:
         if name is None or len(statement.args) != 1:
             raise Unread("")
         path = self._path(name[1], folder)
-        told = path.relative_to(self.folder).as_posix()
-        if told in chain:
-            message = f"{' includes '.join((*chain[chain.index(told) :], told))}"
+        text = path.relative_to(self.folder).as_posix()
+        if text in chain:
+            message = f"{' includes '.join((*chain[chain.index(text) :], text))}"
             self.notes.add("error", "cycle", statement.place(0), message)
             raise Unread("it includes itself")
         if len(chain) > MOST_DEEP:
@@ -86,7 +86,7 @@ class Includes:
         except OutputError as error:
             raise Unread(f"it cannot be read: {str(error).rpartition(': ')[2]}") from None
         self._bytes += len(raw)
-        beside = Path(self.sources[0].file).parent / told
+        beside = Path(self.sources[0].file).parent / text
         inner = Source(raw.decode("utf-8", errors="replace"), str(beside))
         self.sources.append(inner)
         return path, inner

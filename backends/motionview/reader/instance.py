@@ -50,7 +50,7 @@ def _given(expansion: Expansion, scope: Scope, name: str) -> str | None:
     world = expansion.world
     try:
         return str(getattr(world.force(lambda: world.argument(scope, name)), "name", "")) or None
-    except Trouble:  # told where the values are found
+    except Trouble:  # reported where the values are found
         return None
 
 

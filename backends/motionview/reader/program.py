@@ -87,7 +87,7 @@ class _Open(NamedTuple):
 
 
 def program(statements: Iterable[Statement], notes: Notes) -> Program:
-    """Raises nothing: what is not nested rightly is told and left out."""
+    """Raises nothing: what is not nested rightly is reported and left out."""
     made = Program()
     open_: list[_Open] = []
     definition, guard, contexts = made.model, None, ()

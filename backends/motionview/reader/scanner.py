@@ -1,4 +1,4 @@
-"""Text -> statements. What does not read is told and skipped, up to the next line with a statement."""
+"""Text -> statements. What does not read is reported and skipped, up to the next line with a statement."""
 
 from __future__ import annotations
 

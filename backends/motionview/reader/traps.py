@@ -7,7 +7,7 @@ from functools import partial
 
 from mdlgen.backends.motionview.reader.report import Notes, Trouble
 from mdlgen.backends.motionview.reader.things.bodies import Body
-from mdlgen.backends.motionview.reader.things.drives import Contact
+from mdlgen.backends.motionview.reader.things.drives import ContactThing
 from mdlgen.backends.motionview.reader.things.external import External
 from mdlgen.backends.motionview.reader.things.forces import GROUPS, Bush
 from mdlgen.backends.motionview.reader.things.graphics import CAPS, Graphic
@@ -28,7 +28,7 @@ def traps(world: World, notes: Notes) -> None:
         if rule is not None:
             try:
                 world.force(partial(rule, thing, notes))
-            except Trouble:  # told where the values were found
+            except Trouble:  # reported where the values were found
                 continue
 
 
@@ -119,7 +119,7 @@ def _is_ground(body: Thing) -> bool:
 
 
 def _contact(contact: Thing, notes: Notes) -> None:
-    assert isinstance(contact, Contact)
+    assert isinstance(contact, ContactThing)
     friction = contact.statement.arg(3).upper()
     if friction not in ("OFF", "ON", "DYNAMIC_ONLY", "USER"):
         message = f"OFF, ON, DYNAMIC_ONLY or USER is due here, not {friction or 'nothing'}"
@@ -135,5 +135,5 @@ _RULES: dict[type[Thing], Callable[[Thing, Notes], None]] = {
     Bush: _bushing,
     Body: _body,
     Graphic: _graphic,
-    Contact: _contact,
+    ContactThing: _contact,
 }

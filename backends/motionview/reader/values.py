@@ -37,7 +37,7 @@ _MORE = ("velocities", "datasets", "members", "labels", "model")
 
 
 def values(world: World, notes: Notes) -> dict[str, dict[str, Any]]:
-    """What could be evaluated; what could not is told to `notes` and left out."""
+    """What could be evaluated; what could not is reported to `notes` and left out."""
     found = values_of(world.things(), world, notes)
     begin = world.program.begin
     if begin is not None:

@@ -380,7 +380,7 @@ class World:
             for thing in self.things(kind):
                 try:
                     found.setdefault(id(thing.ask(key)), []).append(thing)
-                except Trouble:  # told where the thing itself is looked at
+                except Trouble:  # reported where the thing itself is looked at
                     continue
             self._on_bodies[kind] = found
         return self._on_bodies[kind]

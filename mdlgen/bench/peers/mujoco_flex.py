@@ -73,7 +73,7 @@ def solve(model: Model, progress: Any = None, step: float | None = None) -> Resu
             times.append(count * dt)
             centers.append(corners.centers(data.flexvert_xpos))
     wall = time.perf_counter() - began
-    warned = [mujoco.mjtWarning(kind).name for kind, told in enumerate(data.warning) if told.number]
+    warned = [mujoco.mjtWarning(kind).name for kind, message in enumerate(data.warning) if message.number]
     if warned or not np.isfinite(centers[-1]).all():
         status = f"MuJoCo warned of {', '.join(warned) or 'nothing, and its state is not finite'}"
     motion = Motion(np.array(times), np.array(centers), dt, steps, wall, built)

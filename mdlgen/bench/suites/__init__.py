@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib import import_module
 
-from mdlgen.bench.case import Case
+from mdlgen.bench.case import BenchCase
 from mdlgen.errors import SpecError, did_you_mean
 from mdlgen.registry import AUTO
 
@@ -14,7 +14,7 @@ SUITES = (
 )
 
 
-def cases(suite: str, solver: str, solvers: tuple[str, ...], quick: bool) -> list[Case]:
+def cases(suite: str, solver: str, solvers: tuple[str, ...], quick: bool) -> list[BenchCase]:
     """The cases of a suite for one solver; `solvers` are all that there are, for references.
 
     Raises SpecError for a suite that there is not.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mdlgen.bench.case import Case, Finding, Run
+from mdlgen.bench.case import BenchCase, Finding, Run
 from mdlgen.bench.oracles import chain
 from mdlgen.bench.oracles import elastica as oracle
 from mdlgen.registry import REFERENCE
@@ -17,7 +17,7 @@ LATTICE = 1.6
 STIFFNESS = ("0.242 N*mm", "0.1 N*mm", "0.5 N*mm")
 
 
-def cases(solver: str, reference: str, quick: bool) -> list[Case]:
+def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
     """10, 20 and 40 rows of 2 and of 10 columns, and two other stiffnesses."""
     grids = [(2, 10), (2, 20), (2, 40), *(() if quick else ((10, 10), (10, 20), (10, 40)))]
     if solver == REFERENCE:  # 400 boxes would take minutes
@@ -26,11 +26,11 @@ def cases(solver: str, reference: str, quick: bool) -> list[Case]:
     return made + [_case(2, 40, bending) for bending in STIFFNESS[1:]]
 
 
-def _case(columns: int, rows: int, bending: str) -> Case:
+def _case(columns: int, rows: int, bending: str) -> BenchCase:
     sets = (f"sheets.note.boxes=[{columns},{rows}]",)
     if bending != STIFFNESS[0]:
         sets = (*sets, f"materials.eur10.D_cd={bending}")
-    return Case("elastica", f"{columns} columns, {rows} rows, D {bending}", Run(SAMPLE, sets), drop)
+    return BenchCase("elastica", f"{columns} columns, {rows} rows, D {bending}", Run(SAMPLE, sets), drop)
 
 
 def drop(result: Result, _: Result | None) -> list[Finding]:

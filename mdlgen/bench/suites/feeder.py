@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mdlgen.bench.case import Case, Finding, Reference, Run
+from mdlgen.bench.case import BenchCase, Finding, Reference, Run
 from mdlgen.registry import REFERENCE
 from mdlgen.results.compare import compare
 from mdlgen.results.result import Result
@@ -32,28 +32,30 @@ GRIDS = {
 LIMIT = 1800.0  # [s]
 
 
-def cases(solver: str, reference: str, quick: bool) -> list[Case]:
+def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
     """A piece against the other solver for Exudyn; else the wait of each grid, and whole runs."""
     if solver == REFERENCE:
         sets = (*(COARSE if quick else GRIDS["e2e 200"]), f"run.duration={PIECE} ms")
         run = Run(SAMPLE, sets)
         return [
-            Case("feeder", f"its first {PIECE:g} ms", run, agrees, Reference(run, reference), limit=LIMIT)
+            BenchCase(
+                "feeder", f"its first {PIECE:g} ms", run, agrees, Reference(run, reference), limit=LIMIT
+            )
         ]
     if quick:
         sets = (*COARSE, f"run.duration={STANDS + 5.0} ms")
-        return [Case("feeder", "coarse, waits", Run(SAMPLE, sets), waits, limit=LIMIT)]
+        return [BenchCase("feeder", "coarse, waits", Run(SAMPLE, sets), waits, limit=LIMIT)]
     waiting = [
-        Case(
+        BenchCase(
             "feeder", f"{name}, waits", Run(SAMPLE, (*sets, f"run.duration={RUBBER} ms")), waits, limit=LIMIT
         )
         for name, sets in GRIDS.items()
     ]
     whole = [
-        Case("feeder", f"{name}, 600 ms", Run(SAMPLE, GRIDS[name]), itself, repeats=False, limit=LIMIT)
+        BenchCase("feeder", f"{name}, 600 ms", Run(SAMPLE, GRIDS[name]), itself, repeats=False, limit=LIMIT)
         for name in ("e2e 200", "e2e 600")
     ]
-    two = Case("feeder", "two of 80 and 40, 600 ms", Run("feeder"), itself, repeats=False, limit=LIMIT)
+    two = BenchCase("feeder", "two of 80 and 40, 600 ms", Run("feeder"), itself, repeats=False, limit=LIMIT)
     return [*waiting, *whole, two]
 
 
@@ -70,14 +72,14 @@ def waits(result: Result, _: Result | None) -> list[Finding]:
     along = result.sheet_motion(0)[0][:, 0]
     times = np.minimum([STANDS, RUBBER], result.time[-1])
     from_, to = np.interp(times, result.time, along)
-    told: dict[str, Any] = summary(result)["rollers"]
+    record: dict[str, Any] = summary(result)["rollers"]
     across, lengthways = _angles(result)
     details = {
         "advance_um": 1e3 * float(to - from_),
         "angle_x_mrad": 1e3 * lengthways,
         "angle_y_mrad": 1e3 * across,
-        "feed_max_penetration_mm": told["feed"]["max_penetration_mm"],
-        "reject_max_penetration_mm": told["reject"]["max_penetration_mm"],
+        "feed_max_penetration_mm": record["feed"]["max_penetration_mm"],
+        "reject_max_penetration_mm": record["reject"]["max_penetration_mm"],
     }
     return [Finding("advance in the wait, of 0.2 mm", abs(float(to - from_)) / STAYS, 1.0, details)]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mdlgen.bench.case import Case, Finding, Run
+from mdlgen.bench.case import BenchCase, Finding, Run
 from mdlgen.bench.momentum import energy, momentum
 from mdlgen.registry import REFERENCE
 from mdlgen.results.result import Result
@@ -32,14 +32,14 @@ LATER = 12
 ANGULAR_OF = {REFERENCE: 1e-4}
 
 
-def cases(solver: str, reference: str, quick: bool) -> list[Case]:
+def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
     """At the solver's own step and at given ones."""
     flight = FLIGHT / 10 if quick else FLIGHT
     sets = (*SCENE, f"run.duration={STRIKE + flight} ms", "sheets.note.boxes=[4,6]")
     if not quick:
         sets = sets[:-1]
-    chosen = Case("flight", "bent and spinning, step chosen", Run(SAMPLE, sets), drift)
-    forced = Case("flight", "bent and spinning, step given", chosen.run, plain_drift)
+    chosen = BenchCase("flight", "bent and spinning, step chosen", Run(SAMPLE, sets), drift)
+    forced = BenchCase("flight", "bent and spinning, step given", chosen.run, plain_drift)
     steps = STEPS.get(solver, OTHER_STEPS)
     return [chosen, *(forced.at(step) for step in (steps[:1] if quick else steps))]
 

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from mdlgen.bench.case import Case, Finding, Run
+from mdlgen.bench.case import BenchCase, Finding, Run
 from mdlgen.bench.oracles import friction as oracle
 from mdlgen.results.result import Result
 
@@ -14,7 +14,7 @@ GRAVITY = 9.81
 WANTED = 5e-3  # relative, of all closed forms here
 
 
-def cases(solver: str, reference: str, quick: bool) -> list[Case]:
+def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
     """Slopes on which it slides, slopes on which it creeps, and stopping on the level."""
     slides = [(20, 0.3), (30, 0.4)]
     creeps = [(20, 0.5, 1.0), (20, 0.5, 10.0), (10, 0.3, 1.0)]
@@ -28,7 +28,7 @@ def cases(solver: str, reference: str, quick: bool) -> list[Case]:
     ]
 
 
-def _slope(degrees: float, mu: float, smoothing: float, measure) -> Case:
+def _slope(degrees: float, mu: float, smoothing: float, measure) -> BenchCase:
     angle = math.radians(degrees)
     x, z = GRAVITY * math.sin(angle), -GRAVITY * math.cos(angle)
     sets = (
@@ -40,12 +40,12 @@ def _slope(degrees: float, mu: float, smoothing: float, measure) -> Case:
     name = f"{degrees:g} deg, mu {mu:g}: {measure.__name__}" + (
         f", smoothing {smoothing:g} mm/s" if measure is creep else ""
     )
-    return Case("friction", name, Run("verify/incline", sets), measure)
+    return BenchCase("friction", name, Run("verify/incline", sets), measure)
 
 
-def _stop(speed: float, mu: float) -> Case:
+def _stop(speed: float, mu: float) -> BenchCase:
     sets = (f"contacts.0.friction={mu}", f"sheets.block.velocity=[{speed} m/s, 0 m/s, 0 m/s]")
-    return Case("friction", f"stops from {speed:g} m/s, mu {mu:g}", Run("verify/slide", sets), stop)
+    return BenchCase("friction", f"stops from {speed:g} m/s, mu {mu:g}", Run("verify/slide", sets), stop)
 
 
 def _angle(result: Result) -> float:

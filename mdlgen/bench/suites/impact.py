@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mdlgen.bench.case import Case, Finding, Run
+from mdlgen.bench.case import BenchCase, Finding, Run
 from mdlgen.bench.oracles import impact as oracle
 from mdlgen.results.result import Result
 
@@ -16,7 +16,7 @@ HALF = 5.0  # half the block's thickness [mm]
 WANTED, DAMPED = 1e-3, 1e-2
 
 
-def cases(solver: str, reference: str, quick: bool) -> list[Case]:
+def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
     """Four restitutions and the undamped impact at three speeds."""
     speeds = SPEEDS[1:2] if quick else SPEEDS
     values = (0.5, 1.0) if quick else (*RESTITUTIONS, 1.0)
@@ -39,8 +39,8 @@ def thrown(speed: float, restitution: float, smoothing: float = 1e-3) -> Run:
     return Run(SAMPLE, sets)
 
 
-def _case(restitution: float, speed: float) -> Case:
-    return Case("impact", f"c_R = {restitution:g} at {speed:g} m/s", thrown(speed, restitution), bounce)
+def _case(restitution: float, speed: float) -> BenchCase:
+    return BenchCase("impact", f"c_R = {restitution:g} at {speed:g} m/s", thrown(speed, restitution), bounce)
 
 
 def bounce(result: Result, _: Result | None) -> list[Finding]:

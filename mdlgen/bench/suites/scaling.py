@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mdlgen.bench.case import Case, Finding, Run
+from mdlgen.bench.case import BenchCase, Finding, Run
 from mdlgen.registry import REFERENCE
 from mdlgen.results.result import Result
 
@@ -16,11 +16,11 @@ DURATION = {REFERENCE: 2.0}
 OTHER_DURATION = 50.0
 
 
-def cases(solver: str, reference: str, quick: bool) -> list[Case]:
+def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
     """72 to 800 boxes; what is compared is the wall time of the whole run."""
     duration = DURATION[REFERENCE] if quick else DURATION.get(solver, OTHER_DURATION)
     return [
-        Case(
+        BenchCase(
             "scaling",
             f"{n_x * n_y} boxes",
             Run(SAMPLE, (f"sheets.note.boxes=[{n_x},{n_y}]", f"run.duration={duration} ms"), STEP),

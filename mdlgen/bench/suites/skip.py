@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mdlgen.bench.case import Case, Finding, Measure, Reference, Run
+from mdlgen.bench.case import BenchCase, Finding, Measure, Reference, Run
 from mdlgen.registry import FAST, REFERENCE
 from mdlgen.results.compare import scale
 from mdlgen.results.result import Result
@@ -50,21 +50,21 @@ OWN: dict[str, tuple[tuple[str, str, Measure], ...]] = {
 }
 
 
-def cases(solver: str, reference: str, quick: bool) -> list[Case]:
+def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
     """The scene with every rule, and without one of them at a time."""
     duration = QUICK_DURATION if quick else DURATION.get(solver, OTHER_DURATION)
     sets = (f"run.duration={duration} ms",)
     every = Run(SAMPLE, sets, STEP)
     exact = Reference(every, solver)
     made = [
-        Case("skip", EVERY, every, unchanged, exact),
-        Case(
+        BenchCase("skip", EVERY, every, unchanged, exact),
+        BenchCase(
             "skip", BUT + "pruned contacts", Run(SAMPLE, (*sets, "run.prune=false"), STEP), unchanged, exact
         ),
-        Case("skip", BUT + "idle parts left out", Run(SAMPLE, (*sets, *IDLE), STEP), near, exact),
+        BenchCase("skip", BUT + "idle parts left out", Run(SAMPLE, (*sets, *IDLE), STEP), near, exact),
     ]
     return made + [
-        Case("skip", BUT + what, Run(SAMPLE, sets, STEP, (rule,)), measure, exact)
+        BenchCase("skip", BUT + what, Run(SAMPLE, sets, STEP, (rule,)), measure, exact)
         for rule, what, measure in OWN.get(solver, ())
     ]
 

@@ -6,7 +6,7 @@ The rungs of each kind stand in a file of their own, with their oracles.
 
 from __future__ import annotations
 
-from mdlgen.bench.case import Case
+from mdlgen.bench.case import BenchCase
 from mdlgen.bench.suites.ladder import blocks, machines, strips
 
 # One rung of each kind that a slow solver ends within a few seconds.
@@ -25,7 +25,7 @@ QUICK = (
 )
 
 
-def cases(solver: str, reference: str, quick: bool) -> list[Case]:
+def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
     """All rungs, or one of each kind."""
     rungs = [*strips.rungs(reference), *blocks.rungs(), *machines.rungs(reference)]
     return [rung for rung in rungs if rung.name in QUICK] if quick else rungs

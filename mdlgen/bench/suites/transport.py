@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mdlgen.bench.case import Case, Finding, Reference, Run
+from mdlgen.bench.case import BenchCase, Finding, Reference, Run
 from mdlgen.bench.peers import PEERS, SHEETS, PeerRun
 from mdlgen.bench.peers import STEPS as PEER_STEPS
 from mdlgen.registry import REFERENCE
@@ -24,7 +24,7 @@ GRIDS = ((10, 20), (20, 30))
 GRAZE = 0.05
 
 
-def cases(solver: str, reference: str, quick: bool) -> list[Case]:
+def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
     """Every step and the solver's own choice; the paper's finer grid at the solver's choice."""
     steps = STEPS.get(solver, OTHER_STEPS)
     made = []
@@ -34,13 +34,13 @@ def cases(solver: str, reference: str, quick: bool) -> list[Case]:
         exact = Reference(Run(SAMPLE, sets, fine if grid == GRIDS[0] else 2 * fine), reference)
         if solver in PEERS:
             run, peer_steps = PeerRun(SAMPLE, sets, quick=quick), PEER_STEPS[solver]
-            case = Case("transport", SHEETS[solver], run, peer, exact)
+            case = BenchCase("transport", SHEETS[solver], run, peer, exact)
             return [case.at(step) for step in (peer_steps[-1:] if quick else peer_steps)]
         name = f"{grid[0]} x {grid[1]} boxes"
-        chosen = Case("transport", f"{name}, step chosen", Run(SAMPLE, sets), promised, exact)
+        chosen = BenchCase("transport", f"{name}, step chosen", Run(SAMPLE, sets), promised, exact)
         made.append(chosen)
         if grid == GRIDS[0]:
-            forced = Case("transport", f"{name}, step given", chosen.run, forced_step, exact)
+            forced = BenchCase("transport", f"{name}, step given", chosen.run, forced_step, exact)
             made += [forced.at(step) for step in (steps[:2] if quick else steps)]
     # another solver's grid of 600 boxes costs minutes and adds nothing to the comparison
     return made if solver != REFERENCE else [case for case in made if "20 x 30" not in case.name]

@@ -12,7 +12,7 @@ from mdlgen.geometry.arrays import Floats
 from mdlgen.geometry.rods import Box, Rod, into_box
 from mdlgen.geometry.solids import BOX, CORNERS, Solid, bent_plate
 from mdlgen.model.frames import frame
-from mdlgen.model.parts.kind import Before, Body, Boxes, Drawn
+from mdlgen.model.parts.kind import Before, BodyRow, Boxes, Drawn
 from mdlgen.model.press_parts import Bow, Face, face_of_guide
 from mdlgen.model.rims import SAG
 from mdlgen.model.sheet_corners import each_box
@@ -44,8 +44,8 @@ class _Guides:
     def face(self, scene: Scene, name: str, at: Floats, roller: str) -> Face | Bow | None:
         return face_of_guide(_guide(name, scene.guides[name], 0), at)
 
-    def body(self, part: GuidePart, rollers: tuple[RollerPart, ...]) -> Body:
-        return Body(part.center, part.axes, part.mass, _inertia(part), True, np.zeros(3))
+    def body(self, part: GuidePart, rollers: tuple[RollerPart, ...]) -> BodyRow:
+        return BodyRow(part.center, part.axes, part.mass, _inertia(part), True, np.zeros(3))
 
     def bounds(
         self, part: GuidePart, bodies: Bodies, rollers: tuple[RollerPart, ...]

@@ -21,7 +21,7 @@ P = TypeVar("P")
 SLACK = 1.0  # mm
 
 
-class Body(NamedTuple):
+class BodyRow(NamedTuple):
     """Row of a part in Bodies, as the run begins."""
 
     position: Floats  # centre of mass [mm], (3,)
@@ -100,7 +100,7 @@ class Kind(Protocol[P]):
         pressed."""
         ...
 
-    def body(self, part: P, rollers: tuple[RollerPart, ...]) -> Body: ...
+    def body(self, part: P, rollers: tuple[RollerPart, ...]) -> BodyRow: ...
 
     def bounds(self, part: P, bodies: Bodies, rollers: tuple[RollerPart, ...]) -> tuple[Floats, Floats]:
         """Least and greatest coordinates that it may have during a run, (3,) each."""
@@ -120,7 +120,7 @@ class Kind(Protocol[P]):
 
     def depths(self, part: P, boxes: Boxes, at: Floats) -> Floats | None:
         """How deep boxes are in it, whose body is `at` (t, 3): (t, n), where they are off not above zero;
-        None where their share of a force is told by areas."""
+        None where their share of a force follows from areas."""
         ...
 
     def drawn(self, part: P, half: Floats) -> list[Drawn]: ...

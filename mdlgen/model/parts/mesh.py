@@ -11,7 +11,7 @@ from mdlgen.geometry.rods import Rod, into_triangles
 from mdlgen.geometry.solids import Solid
 from mdlgen.model.grid import rotation_matrix
 from mdlgen.model.meshes import mass_of, placed, reach
-from mdlgen.model.parts.kind import SLACK, Before, Body, Boxes, Drawn
+from mdlgen.model.parts.kind import SLACK, Before, BodyRow, Boxes, Drawn
 from mdlgen.model.press_parts import Facets, facets_of_mesh
 from mdlgen.model.tables import BOX_MESH, CYLINDER_MESH, Bodies, MeshPart, Model, RollerPart, SheetPart
 from mdlgen.spec.mesh import Mesh
@@ -36,10 +36,10 @@ class _Meshes:
     def face(self, scene: Scene, name: str, at: Floats, roller: str) -> Facets:
         return facets_of_mesh(scene.meshes[name])
 
-    def body(self, part: MeshPart, rollers: tuple[RollerPart, ...]) -> Body:
+    def body(self, part: MeshPart, rollers: tuple[RollerPart, ...]) -> BodyRow:
         position, rotation = placed(part, rollers)
         inertia = part.mass * part.gyration
-        return Body(position, rotation, part.mass, inertia, part.on < 0, np.zeros(3))
+        return BodyRow(position, rotation, part.mass, inertia, part.on < 0, np.zeros(3))
 
     def bounds(
         self, part: MeshPart, bodies: Bodies, rollers: tuple[RollerPart, ...]

@@ -11,7 +11,7 @@ from mdlgen.geometry.arrays import Floats
 from mdlgen.geometry.rods import Box, Rod, into_box
 from mdlgen.geometry.solids import BOX, CORNERS, Solid
 from mdlgen.model.frames import frame
-from mdlgen.model.parts.kind import SLACK, Before, Body, Boxes, Drawn
+from mdlgen.model.parts.kind import SLACK, Before, BodyRow, Boxes, Drawn
 from mdlgen.model.press_parts import Face, faces_of_plate
 from mdlgen.model.pressed import plate_press
 from mdlgen.model.sheet_corners import corners, corners_of_boxes
@@ -49,12 +49,12 @@ class _Planes:
             )
         return faces_of_plate(np.array(plane.center), frame(np.array(plane.normal)), plane.size, at)
 
-    def body(self, part: PlanePart, rollers: tuple[RollerPart, ...]) -> Body:
+    def body(self, part: PlanePart, rollers: tuple[RollerPart, ...]) -> BodyRow:
         a, b, c = part.size
         inertia = part.mass / 12 * np.array([b * b + c * c, a * a + c * c, a * a + b * b])
         start = part.press.start * part.press.direction if part.press else np.zeros(3)
         place, half = part.center + start, np.array(part.size) / 2
-        return Body(place, frame(part.normal), part.sliding_mass, inertia, part.press is None, half)
+        return BodyRow(place, frame(part.normal), part.sliding_mass, inertia, part.press is None, half)
 
     def bounds(
         self, part: PlanePart, bodies: Bodies, rollers: tuple[RollerPart, ...]

@@ -11,7 +11,7 @@ from mdlgen.geometry.rods import Rod
 from mdlgen.geometry.solids import BOX, CORNERS, Solid, cylinder, slice_
 from mdlgen.model import press
 from mdlgen.model.frames import frame
-from mdlgen.model.parts.kind import SLACK, Before, Body, Boxes, Drawn
+from mdlgen.model.parts.kind import SLACK, Before, BodyRow, Boxes, Drawn
 from mdlgen.model.pressed import roller_press
 from mdlgen.model.rims import lower_rim
 from mdlgen.model.tables import (
@@ -68,10 +68,10 @@ class _Rollers:
     def face(self, scene: Scene, name: str, at: Floats, roller: str) -> None:
         """None: two rollers meet along a line."""
 
-    def body(self, part: RollerPart, rollers: tuple[RollerPart, ...]) -> Body:
+    def body(self, part: RollerPart, rollers: tuple[RollerPart, ...]) -> BodyRow:
         start = part.press.start * part.press.direction if part.press else np.zeros(3)
         inertia = np.array([part.inertia_transverse, part.inertia_transverse, part.inertia_axial])
-        return Body(part.center + start, frame(part.axis), part.mass, inertia, False, np.zeros(3))
+        return BodyRow(part.center + start, frame(part.axis), part.mass, inertia, False, np.zeros(3))
 
     def bounds(
         self, part: RollerPart, bodies: Bodies, rollers: tuple[RollerPart, ...]

@@ -9,7 +9,13 @@ from mdlgen.backends.motionview.reader.things.beams import PolyBeam
 from mdlgen.backends.motionview.reader.things.bodies import Body, Ground
 from mdlgen.backends.motionview.reader.things.curves import Curve
 from mdlgen.backends.motionview.reader.things.data import BuiltInOption, Option, Table, Value
-from mdlgen.backends.motionview.reader.things.drives import Contact, Coupler, Motion, SolverVariable, Template
+from mdlgen.backends.motionview.reader.things.drives import (
+    ContactThing,
+    Coupler,
+    Motion,
+    SolverVariable,
+    Template,
+)
 from mdlgen.backends.motionview.reader.things.forces import Bush, CoilSpring, Force, Output
 from mdlgen.backends.motionview.reader.things.geometry import (
     GlobalFrame,
@@ -43,7 +49,7 @@ CLASSES: dict[str, type[Thing]] = {
     "Template": Template,
     "Graphic": Graphic,
     "Motion": Motion,
-    "Contact": Contact,
+    "Contact": ContactThing,
     "DeformableSurface": DeformableSurface,
     "Curve": Curve,
     "Coupler": Coupler,

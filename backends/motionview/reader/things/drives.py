@@ -48,7 +48,7 @@ class Motion(Thing):
         }
 
 
-class Contact(Thing):
+class ContactThing(Thing):
     """`*Contact( name, label, force, friction, BODY, b1, n, graphic, flip, ..., BODY, b2, ... )`."""
 
     kind = "Contact"

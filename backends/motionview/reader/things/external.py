@@ -40,8 +40,8 @@ class External:
         """The warning for this attachment; the same for all that asks for more than its name."""
         attachment = self.parameter.attachment
         kind = f"the {self.kind} " if self.kind else ""
-        told = f"{kind}{self.given} is external: it stands in the model that this text is made for"
-        trouble = Trouble("external", told, severity="warning")
+        message = f"{kind}{self.given} is external: it stands in the model that this text is made for"
+        trouble = Trouble("external", message, severity="warning")
         trouble.place = (attachment or self.parameter.instance).place()
         return trouble
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mdlgen.bench.case import Case, Measure, Reference, Run
+from mdlgen.bench.case import BenchCase, Measure, Reference, Run
 
 # A run at a given step promises no error; a number that is off by more than this is wrong all the same.
 FORCED = 2e-2
@@ -12,9 +12,9 @@ MOST_STEPS = 2500
 
 def rung(
     name: str, run: Run, measure: Measure, limit: float = 20.0, reference: Reference | None = None
-) -> Case:
+) -> BenchCase:
     """One rung: run once, in a process of its own, for at most `limit` seconds."""
-    return Case("stability", name, run, measure, reference, repeats=False, limit=limit)
+    return BenchCase("stability", name, run, measure, reference, repeats=False, limit=limit)
 
 
 def lasting(time: float) -> tuple[str, str]:

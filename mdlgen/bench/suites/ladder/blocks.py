@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from mdlgen.bench.case import Case, Finding, Run
+from mdlgen.bench.case import BenchCase, Finding, Run
 from mdlgen.bench.oracles import impact as oracle
 from mdlgen.bench.suites.friction import slid
 from mdlgen.bench.suites.impact import HALF, MASS, STIFFNESS, thrown
@@ -26,12 +26,12 @@ WORLD = (30.0, 40.0, 50.0)  # about x, then y, then z [deg]
 REST = 60e3  # [ms]
 
 
-def rungs() -> list[Case]:
+def rungs() -> list[BenchCase]:
     """All of them."""
     return [*_sliding(), *_bouncing(), *_overlap(), *_rest()]
 
 
-def _sliding() -> list[Case]:
+def _sliding() -> list[BenchCase]:
     steps = [
         rung(
             f"step {step * 1e-3:g} s: sliding block",
@@ -49,7 +49,7 @@ def _sliding() -> list[Case]:
     return [*steps, *ends]
 
 
-def _bouncing() -> list[Case]:
+def _bouncing() -> list[BenchCase]:
     ends = [rung(f"c_R {c:g}: impact", thrown(1.0, c, smooth), bounces) for c, smooth in RESTITUTIONS]
     elastic = thrown(1.0, 1.0)
     whole = 1.5 * oracle.impact(MASS, STIFFNESS, 1.0, 1.0, 1e-3).time
@@ -74,7 +74,7 @@ def _bouncing() -> list[Case]:
     return [*ends, *masses, *steps, _turned()]
 
 
-def _turned() -> Case:
+def _turned() -> BenchCase:
     """The drop in a world that is rotated with its gravity."""
     a, b, c = (math.radians(angle) for angle in WORLD)
     turn = rotation_matrix((a, b, c))
@@ -95,7 +95,7 @@ def _turned() -> Case:
     return rung("world rotated: dropped block", Run("verify/drop", sets), keeps_energy)
 
 
-def _overlap() -> list[Case]:
+def _overlap() -> list[BenchCase]:
     made = []
     for boxes, name in (((1, 1), "rigid note"), ((4, 6), "flexible note")):
         for part in OVERLAPS:
@@ -120,7 +120,7 @@ def _overlap() -> list[Case]:
     return made
 
 
-def _rest() -> list[Case]:
+def _rest() -> list[BenchCase]:
     """A note at rest on a plane, for a minute."""
     weight, stiffness, boxes = 0.1 * 9.81e-3, 100.0, 24
     depth = (weight / boxes / stiffness) ** (2 / 3)

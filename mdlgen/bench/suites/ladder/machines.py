@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mdlgen.bench.case import Case, Finding, Reference, Run
+from mdlgen.bench.case import BenchCase, Finding, Reference, Run
 from mdlgen.bench.suites.ladder import FORCED, STEPS, rung, within
 from mdlgen.bench.suites.transport import FINEST, OTHER_FINEST
 from mdlgen.results.compare import compare, scale
@@ -17,12 +17,12 @@ COUNTERS = ("counter_1_left", "counter_1_right", "counter_2_left", "counter_2_ri
 CARRIED, SPUN, SAME = 5e-3, 1e-2, 5e-3
 
 
-def rungs(reference: str) -> list[Case]:
+def rungs(reference: str) -> list[BenchCase]:
     """All of them; some are compared with a finer run of the solver `reference`."""
     return [*(_fast(speed) for speed in SPEEDS), *_heavy(), *_against_finer(reference)]
 
 
-def _fast(speed: float) -> Case:
+def _fast(speed: float) -> BenchCase:
     """A block on two driven rollers, which slip under it at any speed above a few rad/s."""
     roller = "axis: y, radius: 10 mm, width: 20 mm, mass: 10 g"
     drive = f"drive: {{speed: {speed!r} rad/s}}"
@@ -43,7 +43,7 @@ def _fast(speed: float) -> Case:
     return rung(f"roller at {speed:g} rad/s: block on it", Run("verify/slide", sets), carried)
 
 
-def _heavy() -> list[Case]:
+def _heavy() -> list[BenchCase]:
     """Pressed rollers up to a million times as heavy as a box; without gravity, so that the nips stay."""
     made = []
     for mass in HEAVY:
@@ -61,7 +61,7 @@ def _heavy() -> list[Case]:
     return made
 
 
-def _against_finer(reference: str) -> list[Case]:
+def _against_finer(reference: str) -> list[BenchCase]:
     fine = FINEST.get(reference, OTHER_FINEST)
     made = []
     for step in STEPS:

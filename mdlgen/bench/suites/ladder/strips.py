@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from mdlgen.bench.case import Case, Finding, Reference, Run
+from mdlgen.bench.case import BenchCase, Finding, Reference, Run
 from mdlgen.bench.oracles import chain
 from mdlgen.bench.oracles.impact import share
 from mdlgen.bench.suites.ladder import FORCED, STEPS, rung, within
@@ -27,12 +27,12 @@ WRAPPED = 2e-2
 FINE = 0.00625  # ms
 
 
-def rungs(reference: str) -> list[Case]:
+def rungs(reference: str) -> list[BenchCase]:
     """All of them; one is compared with a finer run of the solver `reference`, too."""
     return [*_steps(), *_stiffness(), *_world(), *_wrap(reference)]
 
 
-def _steps() -> list[Case]:
+def _steps() -> list[BenchCase]:
     return [
         rung(
             f"step {step * 1e-3:g} s: note in free fall",
@@ -43,7 +43,7 @@ def _steps() -> list[Case]:
     ]
 
 
-def _stiffness() -> list[Case]:
+def _stiffness() -> list[BenchCase]:
     made = []
     for factor in MEMBRANE:
         sets = (f"materials.eur10.E_md={E_MD * factor!r} MPa", f"materials.eur10.E_cd={E_CD * factor!r} MPa")
@@ -57,14 +57,14 @@ def _stiffness() -> list[Case]:
     return made
 
 
-def _both(name: str, sets: tuple[str, ...]) -> list[Case]:
+def _both(name: str, sets: tuple[str, ...]) -> list[BenchCase]:
     return [
         rung(f"{name}: static", Run("cantilever", (*STRIP, *sets)), hangs),
         rung(f"{name}: swinging", Run("cantilever", (*SWING, *sets)), swings, limit=60.0),
     ]
 
 
-def _world() -> list[Case]:
+def _world() -> list[BenchCase]:
     a, b, c = (math.radians(angle) for angle in WORLD)
     x, y, z = (rotation_matrix((a, b, c)) @ [0.0, 0.0, -9.81]).tolist()
     sets = (
@@ -77,7 +77,7 @@ def _world() -> list[Case]:
     ]
 
 
-def _wrap(reference: str) -> list[Case]:
+def _wrap(reference: str) -> list[BenchCase]:
     """A soft strip, held at its middle on top of a roller, falls round it on both sides."""
     sets = (
         "sheets.note.boxes=[2,40]",
@@ -129,7 +129,7 @@ def wraps(result: Result, reference: Result | None) -> list[Finding]:
     """Half of the strip against the exact chain over the roller, and the angle between its two ends.
 
     The chain's shape is 9e-4 from that of the model at any step, so the step's own error, which a solver's
-    estimate is of, is told against a finer run.
+    estimate is of, is compared with a finer run.
     """
     model = result.model
     sheet, roller, contacts = model.sheets[0], model.rollers[0], model.contacts

@@ -7,12 +7,12 @@ wrong is a finding.
 
 from __future__ import annotations
 
-from mdlgen.bench.case import Case
+from mdlgen.bench.case import BenchCase
 from mdlgen.bench.suites.validation import belts, bending, edges, plates, rigid, rolling, swinging
 
 GROUPS = (bending, plates, swinging, belts, rolling, rigid, edges)
 
 
-def cases(solver: str, reference: str, quick: bool) -> list[Case]:
+def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
     """All rows, or one of each kind that both solvers end within seconds."""
     return [case for group in GROUPS for case in group.cases(quick)]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mdlgen.bench.case import Case, Finding, Run
+from mdlgen.bench.case import BenchCase, Finding, Run
 from mdlgen.bench.oracles import belt
 from mdlgen.bench.suites.validation.rows import Basis, against, row
 from mdlgen.model.rotations import turns
@@ -29,13 +29,13 @@ FINER = 1
 MODULUS, THICK, GRIP, NIP, SMOOTH = 1000.0, 0.1, 1.0, 3.0, 1e-3  # [MPa], [mm], friction, [N], [mm/ms]
 
 
-def cases(quick: bool) -> list[Case]:
+def cases(quick: bool) -> list[BenchCase]:
     """All rows, or the shortest."""
     brakes = [_brake(angle, mu) for angle, mu in WRAPS]
     return brakes[:1] if quick else [*brakes, _hollow(), _web()]
 
 
-def _brake(degrees: float, mu: float) -> Case:
+def _brake(degrees: float, mu: float) -> BenchCase:
     middle, angle = RADIUS + BAND / 2, math.radians(degrees)
     # a polygon whose links touch the drum with their middles; the clamp is at a corner, on top of it
     link = 0.5 * angle / BOXES
@@ -68,7 +68,7 @@ def _brake(degrees: float, mu: float) -> Case:
     )
 
 
-def _hollow() -> Case:
+def _hollow() -> BenchCase:
     """A small block that slides through a hollow arc, from 110 deg before its lowest point on."""
     sheets = (
         "{bead: {material: solid, size: [0.6 mm, 0.6 mm], thickness: 0.4 mm, mass: 2 g, boxes: [1, 1],"
@@ -87,7 +87,7 @@ def _hollow() -> Case:
     return row("Belts and webs", f"block through a hollow, mu {RUB:g}", Run(SAMPLE, sets), follows)
 
 
-def _web() -> Case:
+def _web() -> BenchCase:
     """Two driven nips of driven rollers, the second one a little faster."""
     radius = 8.0
     sheet = (

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mdlgen.bench.case import Case, Finding, Run
+from mdlgen.bench.case import BenchCase, Finding, Run
 from mdlgen.bench.oracles import elastica, loaded
 from mdlgen.bench.suites.validation.rows import Basis, against, row
 from mdlgen.results.result import Result
@@ -34,7 +34,7 @@ CHAIN = 2e-3
 NEAR = "the same, divided by 1 - P/P_Euler, since the lattice's own critical load is 0.01 to 0.05 % off"
 
 
-def cases(quick: bool) -> list[Case]:
+def cases(quick: bool) -> list[BenchCase]:
     """All rows, or one of each kind."""
     loads = list(TABLE)[-1:] if quick else list(TABLE)
     lengths = LENGTHS[-2:-1] if quick else LENGTHS
@@ -54,13 +54,13 @@ def _force(along: float, across: float) -> str:
     return f"loads=[{{sheet: note, edge: y_max, force: [0 N, {-along * unit!r} N, {-across * unit!r} N]}}]"
 
 
-def _end_loaded(load: float) -> Case:
+def _end_loaded(load: float) -> BenchCase:
     run = Run("cantilever", (NONE, STRIP, _force(0.0, load)))
     group = "Large deflection under a load at the end"
     return row(group, f"strip with P L^2/(D W) = {load:g}", run, Deflected(load))
 
 
-def _heavy(length: float) -> Case:
+def _heavy(length: float) -> BenchCase:
     sets = (
         STRIP,
         f"sheets.note.size=[67 mm, {length!r} mm]",
@@ -69,12 +69,12 @@ def _heavy(length: float) -> Case:
     return row("The heavy elastica", f"strip of {length:g} mm", Run("cantilever", sets), hangs)
 
 
-def _column(part: float) -> Case:
+def _column(part: float) -> BenchCase:
     run = Run("cantilever", (NONE, STRIP, _force(part * math.pi**2 / 4, ASIDE)))
     return row("Columns", f"strip at {part:g} of Euler's load", run, Column(part))
 
 
-def _buckled(times: float) -> Case:
+def _buckled(times: float) -> BenchCase:
     run = Run("cantilever", (NONE, STRIP, _force(times * math.pi**2 / 4, ASIDE)))
     return row("Columns", f"strip at {times:g} times Euler's load", run, Buckled(times))
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mdlgen.bench.case import Case, Finding, Run
+from mdlgen.bench.case import BenchCase, Finding, Run
 from mdlgen.bench.oracles import impact, overhang
 from mdlgen.bench.suites.validation.rows import Basis, against, row
 from mdlgen.results.events import events
@@ -30,14 +30,14 @@ ENDS = (
 )
 
 
-def cases(quick: bool) -> list[Case]:
+def cases(quick: bool) -> list[BenchCase]:
     """All rows, or the short ones."""
     if quick:
         return [_drop(1.0, 0.5), _end(0.7, 0.3, 0.5)]
     return [*(_drop(*drop) for drop in DROPS), *(_hangs(*out) for out in OUT), *(_end(*end) for end in ENDS)]
 
 
-def _drop(height: float, restitution: float) -> Case:
+def _drop(height: float, restitution: float) -> BenchCase:
     fall = math.sqrt(2.0 * height / GRAVITY)
     note = (
         f"{{material: note, size: [67 mm, 127 mm], thickness: {THICK} mm, mass: {MASS} g, boxes: [3, 5],"
@@ -55,7 +55,7 @@ def _drop(height: float, restitution: float) -> Case:
     return row("Sheets on plates", name, Run("verify/slide", sets), Rebound(height, restitution))
 
 
-def _hangs(out: float, length: float) -> Case:
+def _hangs(out: float, length: float) -> BenchCase:
     strip = (
         f"{{material: note, size: [{length} mm, {WIDTH} mm], thickness: {THICK} mm,"
         f" mass: {AREAL * length * WIDTH!r} g, boxes: [{round(length / 5)}, 1], layout: plate,"
@@ -75,7 +75,7 @@ def _hangs(out: float, length: float) -> Case:
     return row("Sheets on plates", name, Run("verify/slide", sets), Sag(out, length))
 
 
-def _end(below: float, friction: float, radius: float) -> Case:
+def _end(below: float, friction: float, radius: float) -> BenchCase:
     note = (
         "{material: note, size: [67 mm, 60 mm], thickness: 0.1 mm, mass: 0.3216 g, boxes: [20, 6],"
         " center: [-35.5 mm, 0 mm, 0 mm], velocity: [1.4 m/s, 0 m/s, 0 m/s]}"

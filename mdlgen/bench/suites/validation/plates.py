@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mdlgen.bench.case import Case, Finding, Run
+from mdlgen.bench.case import BenchCase, Finding, Run
 from mdlgen.bench.oracles import loaded, plate
 from mdlgen.bench.suites.validation.rows import Basis, against, row
 from mdlgen.results.result import Result
@@ -19,7 +19,7 @@ DEEP, THICK, MODULUS, SHEAR, PUSH = (60.0, 20.0), 2.0, 1200.0, 380.0, 1.0
 TIMOSHENKO = "Timoshenko: P L^3/(3 E I) + 6/5 P L/(G A)"
 
 
-def cases(quick: bool) -> list[Case]:
+def cases(quick: bool) -> list[BenchCase]:
     """All rows, or the coarse ones."""
     grids = GRIDS[:1] if quick else GRIDS
     return [*(_torsion(grid) for grid in grids), _in_plane((24, 8))]
@@ -32,7 +32,7 @@ def _sheet(size: tuple[float, float], thickness: float, grid: tuple[int, int]) -
     )
 
 
-def _torsion(grid: tuple[int, int]) -> Case:
+def _torsion(grid: tuple[int, int]) -> BenchCase:
     material = (
         f"materials={{foil: {{E_md: 3000 MPa, E_cd: 2000 MPa, D_md: {ALONG} N*mm, D_cd: {ACROSS} N*mm,"
         f" D_twist: {TWIST} N*mm}}}}"
@@ -46,7 +46,7 @@ def _torsion(grid: tuple[int, int]) -> Case:
     return row("Plates", f"strip in torsion, {grid[0]} x {grid[1]} boxes", run, twists)
 
 
-def _in_plane(grid: tuple[int, int]) -> Case:
+def _in_plane(grid: tuple[int, int]) -> BenchCase:
     bending = MODULUS * THICK**3 / 12
     material = (
         f"materials={{foil: {{E_md: {MODULUS} MPa, E_cd: {MODULUS} MPa, G: {SHEAR} MPa,"

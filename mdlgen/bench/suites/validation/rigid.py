@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mdlgen.bench.case import Case, Finding, Run
+from mdlgen.bench.case import BenchCase, Finding, Run
 from mdlgen.bench.oracles import impact, rigid
 from mdlgen.bench.suites.validation.rows import Basis, against, row
 from mdlgen.model.rotations import turns
@@ -26,13 +26,13 @@ OBLIQUE = (2.3, 1.1, 0.6, 0.22)  # speed along and towards the plane [mm/ms], re
 TOP, BASE, SPEED, MU = 12.0, 34.0, 0.9, 0.35  # [g], [g], [mm/ms]
 
 
-def cases(quick: bool) -> list[Case]:
+def cases(quick: bool) -> list[BenchCase]:
     """All rows, or the short ones."""
     short = [_tumbling(), _oblique()]
     return short if quick else [_pendulum(90.0, 10.0), _pendulum(60.0, 4.0), *short, _two_blocks()]
 
 
-def _pendulum(start: float, seconds: float) -> Case:
+def _pendulum(start: float, seconds: float) -> BenchCase:
     """A bar that is hinged at one end and let go at an angle [deg] from the lowest point."""
     hinge = (
         f"[{{sheet: block, at: [{-BAR / 2!r} mm, -40 mm], fix: [x, y, z]}},"
@@ -57,13 +57,13 @@ def _pendulum(start: float, seconds: float) -> Case:
     return row("Rigid bodies", name, Run("verify/flip", sets), Swung(start))
 
 
-def _tumbling() -> Case:
+def _tumbling() -> BenchCase:
     spin = ", ".join(f"{1e3 * rate!r} rad/s" for rate in SPIN)
     sets = (f"sheets.block.spin=[{spin}]", "run.duration=400 ms", "run.print_step=0.5 ms")
     return row("Rigid bodies", "block spun about its middle axis", Run("verify/flip", sets), turns_over)
 
 
-def _oblique() -> Case:
+def _oblique() -> BenchCase:
     along, down, restitution, mu = OBLIQUE
     sets = (
         NONE,
@@ -79,7 +79,7 @@ def _oblique() -> Case:
     return row("Rigid bodies", "thin block thrown at a plane aslant", Run("verify/drop", sets), rebounds)
 
 
-def _two_blocks() -> Case:
+def _two_blocks() -> BenchCase:
     sunk = (((TOP + BASE) * GRAVITY / 1000) ** (2 / 3), (TOP * GRAVITY / 1000) ** (2 / 3))
     low = 4.0 - sunk[0]
     sheets = (

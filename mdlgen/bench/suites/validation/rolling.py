@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mdlgen.bench.case import Case, Finding, Run
+from mdlgen.bench.case import BenchCase, Finding, Run
 from mdlgen.bench.suites.validation.rows import Basis, against, row
 from mdlgen.results.result import Result
 
@@ -24,7 +24,7 @@ SLOW, FAST, APART = 0.6, 0.84, 44.0  # surface speeds [mm/ms], distance of two n
 NARROW, HARD = 1.0, 1000.0  # [mm], [N/mm^1.5]
 
 
-def cases(quick: bool) -> list[Case]:
+def cases(quick: bool) -> list[BenchCase]:
     """All rows, or one of each kind."""
     values = RESTITUTIONS[1:2] if quick else RESTITUTIONS
     made = [*(_coast(c) for c in values), *(_pull(c) for c in values), _spin_up()]
@@ -63,17 +63,17 @@ def _in_nip(restitution: float, mass: float, velocity: float, low: float, drive:
     return Run(SAMPLE, sets)
 
 
-def _coast(restitution: float) -> Case:
+def _coast(restitution: float) -> BenchCase:
     run = _in_nip(restitution, HEAVY, COASTING, 0.0, "", 25)
     return row("Nips", f"sheet that coasts through a free nip, c_R {restitution:g}", run, coasts)
 
 
-def _pull(restitution: float) -> Case:
+def _pull(restitution: float) -> BenchCase:
     run = _in_nip(restitution, HEAVY, 0.0, GRIP, ", drive: {speed: 90 rad/s}", 30)
     return row("Nips", f"sheet that a nip pulls while it slips, c_R {restitution:g}", run, pulls)
 
 
-def _spin_up() -> Case:
+def _spin_up() -> BenchCase:
     roller = f"axis: y, radius: 10 mm, width: 30 mm, mass: {ROLLER} g"
     sunk = (0.5 * BLOCK * 9.81e-3 / 80) ** (2 / 3)
     sets = (
@@ -93,7 +93,7 @@ def _spin_up() -> Case:
     return row("Nips", "free rollers that a block spins up", Run(SAMPLE, sets), spins_up)
 
 
-def _skew() -> Case:
+def _skew() -> BenchCase:
     contact = f"stiffness: {HARD} N/mm^1.5, restitution: 0.5, smoothing: 2 mm/s"
     sheet = (
         f"{{n: {{material: p, size: [64 mm, 70 mm], thickness: {THICK} mm, mass: 0.4 g, boxes: [8, 7],"

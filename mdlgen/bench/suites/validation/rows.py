@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from mdlgen.bench.case import Case, Finding, Measure, Run
+from mdlgen.bench.case import BenchCase, Finding, Measure, Run
 
 LIMIT = 120.0  # [s]
 
 
-def row(group: str, name: str, run: Run, measure: Measure, limit: float = LIMIT) -> Case:
+def row(group: str, name: str, run: Run, measure: Measure, limit: float = LIMIT) -> BenchCase:
     """One row: run once, in a process of its own."""
-    return Case("validation", name, run, measure, repeats=False, limit=limit, group=group)
+    return BenchCase("validation", name, run, measure, repeats=False, limit=limit, group=group)
 
 
 class Basis(NamedTuple):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from mdlgen.bench.case import Case, Finding, Run
+from mdlgen.bench.case import BenchCase, Finding, Run
 from mdlgen.bench.oracles.swing import fit
 from mdlgen.bench.suites.validation.rows import Basis, against, row
 from mdlgen.results.result import Result
@@ -31,12 +31,12 @@ SETS = (
 )
 
 
-def cases(quick: bool) -> list[Case]:
+def cases(quick: bool) -> list[BenchCase]:
     """Frequencies and damping on two grids, or on the coarser one."""
     return [_swing(rows) for rows in (list(LATTICE)[:1] if quick else LATTICE)]
 
 
-def _swing(rows: int) -> Case:
+def _swing(rows: int) -> BenchCase:
     run = Run("cantilever", (f"sheets.note.boxes=[1,{rows}]", *SETS))
     return row("Vibration of a cantilever", f"strip let go flat, {rows} rows", run, modes)
 

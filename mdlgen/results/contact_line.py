@@ -21,7 +21,7 @@ LEVEL = 1e-12  # an axis that is so nearly along a face's side is taken to be
 
 
 @dataclass(frozen=True)
-class Foot:
+class ContactLine:
     """The line of a roller that a sheet lies on, at some times; means over the boxes, by their part of it."""
 
     share: Floats  # length of the line that lies on boxes [mm], 0: none, (t,)
@@ -31,14 +31,14 @@ class Foot:
     high: Floats
 
 
-def feet(result: Result, boxes: Ints, roller: RollerPart, at: Ints) -> Foot:
+def contact_line(result: Result, boxes: Ints, roller: RollerPart, at: Ints) -> ContactLine:
     """Of some boxes of a sheet, at the stored states `at`."""
     few = max(1, MOST // max(1, len(boxes)))
-    parts = [_feet(result, boxes, roller, at[k : k + few]) for k in range(0, max(len(at), 1), few)]
-    return Foot(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Foot)))
+    parts = [_contact_line(result, boxes, roller, at[k : k + few]) for k in range(0, max(len(at), 1), few)]
+    return ContactLine(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(ContactLine)))
 
 
-def _feet(result: Result, boxes: Ints, roller: RollerPart, at: Ints) -> Foot:
+def _contact_line(result: Result, boxes: Ints, roller: RollerPart, at: Ints) -> ContactLine:
     half, radius, axis = result.model.bodies.half[boxes], roller.radius, roller.axis
     center = result.position[at, roller.body][:, None]  # (t, 1, 3)
     place = result.position[np.ix_(at, boxes)]  # (t, boxes, 3)
@@ -80,4 +80,4 @@ def _feet(result: Result, boxes: Ints, roller: RollerPart, at: Ints) -> Foot:
     ends = [center[..., main] + side * axis[main] for side in (begin, end)]
     low = np.where(on, np.minimum(*ends), np.inf).min(axis=1, initial=np.inf)
     high = np.where(on, np.maximum(*ends), -np.inf).max(axis=1, initial=-np.inf)
-    return Foot(share, mean(own), mean(rim), low, high)
+    return ContactLine(share, mean(own), mean(rim), low, high)

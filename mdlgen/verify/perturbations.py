@@ -42,7 +42,7 @@ _BEGINS = ("touch", "start")  # of what is pressed, computed for the scene as it
 Path = tuple[str | int, ...]
 
 
-class Knob(NamedTuple):
+class Perturbation(NamedTuple):
     """A number of a data set: where it stands, what it is turned to, and the Model that must come of it."""
 
     path: str  # in the text: ds_note.real_L_x
@@ -50,7 +50,7 @@ class Knob(NamedTuple):
     model: Callable[[], Model]
 
 
-def knobs(scene: Scene, model: Model) -> Iterator[Knob]:
+def perturbations(scene: Scene, model: Model) -> Iterator[Perturbation]:
     """All numbers of the data sets of a Model that the spec, or the Model itself, has a value for."""
     base = pinned(scene)
     sheets = {s.name for s in model.sheets}
@@ -63,11 +63,11 @@ def knobs(scene: Scene, model: Model) -> Iterator[Knob]:
         where = f"ds_{p.data_set}.real_{p.member}"
         path = _path(p, sheets)
         if p.data_set == OF_USER:
-            yield Knob(where, value * factor(p.unit), _moved(base, model, p.member, value))
+            yield Perturbation(where, value * factor(p.unit), _moved(base, model, p.member, value))
         elif path is not None:
-            yield Knob(where, value * FACTORS[p.unit], _turned(base, path, value, model))
+            yield Perturbation(where, value * FACTORS[p.unit], _turned(base, path, value, model))
         elif p.member in _BEGINS:
-            yield Knob(where, value * FACTORS[p.unit], _begun(model, p.data_set, p.member, value))
+            yield Perturbation(where, value * FACTORS[p.unit], _begun(model, p.data_set, p.member, value))
     for kind, anchors in (("probes", model.probes), ("supports", model.supports)):
         for k, item in enumerate(anchors):
             if item.edge is not None:
@@ -77,10 +77,10 @@ def knobs(scene: Scene, model: Model) -> Iterator[Knob]:
             for axis in range(2):
                 value = item.at[axis] / STEP if item.at[axis] else FROM_ZERO["mm"]
                 turned = _turned(base, (kind, key, "at", axis), value, model)
-                yield Knob(f"ds_{data_set}.real_{'xy'[axis]}", value, turned)
+                yield Perturbation(f"ds_{data_set}.real_{'xy'[axis]}", value, turned)
     for item in model.supports:
         stiffer = SUPPORT_FACTOR * STEP
-        yield Knob(f"ds_{item.name}.real_factor", stiffer, _stiffer(model, item.name))
+        yield Perturbation(f"ds_{item.name}.real_factor", stiffer, _stiffer(model, item.name))
 
 
 def _moved(scene: Scene, base: Model, name: str, value: float) -> Callable[[], Model]:

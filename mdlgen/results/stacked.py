@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from mdlgen.results.result import Result
 
 
-def piled(result: Result) -> np.ndarray | None:
+def stacked(result: Result) -> np.ndarray | None:
     """Whether two sheets touch, themselves or over others, at each stored time, (t, sheets, sheets), every
     sheet with itself; None where no two of the scene can."""
     model, sheets = result.model, {sheet.name: k for k, sheet in enumerate(result.model.sheets)}

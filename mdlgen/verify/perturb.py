@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from mdlgen.verify.found import Found, Values, contact_table, data_table, run_table
-from mdlgen.verify.knobs import Knob, knobs
 from mdlgen.verify.outcome import Turned
+from mdlgen.verify.perturbations import Perturbation, perturbations
 from mdlgen.verify.script import Script
 from mdlgen.verify.subject import Read, Subject
 from mdlgen.verify.tables import Difference, Table, compare
 
 Progress = Callable[[int, int], None]
-_MOST = 3  # differences told of one kind for one value
+_MOST = 3  # differences reported of one kind for one value
 
 
 def turn_all(
@@ -26,7 +26,7 @@ def turn_all(
     """Adds to `turned`. Of a second text of the same scene only the values of contacts need to be turned."""
     turner = _Turner(subject, text, numbers, turned)
     members = text.values["members"]
-    turns = [k for k in knobs(subject.scene, subject.model) if k.path in turner.known]
+    turns = [k for k in perturbations(subject.scene, subject.model) if k.path in turner.known]
     if contacts_only:
         turns = [k for k in turns if k.path.startswith("ds_contact_")]
     else:
@@ -35,14 +35,14 @@ def turn_all(
             if member["edit"] != "NO_EDIT" and path not in paths:
                 what = "can be edited, and nothing in the spec is it"
                 turned.differences.append(Difference("data", path, what))
-    for done, knob in enumerate(turns):
+    for done, perturbation in enumerate(turns):
         if progress is not None:
             progress(done, len(turns))
-        if members[knob.path]["edit"] == "NO_EDIT":
-            turned.shown_only.add(knob.path)
+        if members[perturbation.path]["edit"] == "NO_EDIT":
+            turned.shown_only.add(perturbation.path)
         else:
-            turned.shown_only.discard(knob.path)
-            turner.turn(knob)
+            turned.shown_only.discard(perturbation.path)
+            turner.turn(perturbation)
 
 
 class _Turner:
@@ -57,22 +57,22 @@ class _Turner:
         self.kinds = set(subject.said()) - {"gravity"} - (set() if text.has_numbers else {"contacts"})
         self.base = self._tables(text.values)
 
-    def turn(self, knob: Knob) -> None:
+    def turn(self, perturbation: Perturbation) -> None:
         """One value, in text and spec."""
-        turned, path = self.turned, knob.path
-        changed = self.text.changed(path, knob.value)
+        turned, path = self.turned, perturbation.path
+        changed = self.text.changed(path, perturbation.value)
         if changed is None:
             turned.differences.append(Difference("data", path, "is set by no statement"))
             return
         turned.values += 1
-        model = knob.model()
+        model = perturbation.model()
         tables, said = self._tables(changed), self.subject.said(model)
         for kind in self.kinds:
             compared = compare(kind, said[kind], self.base[kind].updated(tables[kind]), words=False)
             if compared.largest > turned.largest:
                 turned.largest, turned.where = compared.largest, f"{path}: {kind} {compared.where}"
             for difference in compared.differences[:_MOST]:
-                what = f"{difference.what}, with {path} changed to {knob.value:g}"
+                what = f"{difference.what}, with {path} changed to {perturbation.value:g}"
                 turned.differences.append(Difference(kind, difference.name, what))
 
     def _tables(self, values: Values) -> dict[str, Table]:
