@@ -109,9 +109,9 @@ def test_the_value_that_makes_a_run_long(sample: str, value: str, where: str) ->
 )
 def test_steps_are_as_foretold_within_a_factor_of_three(sample: str) -> None:
     model = lower(load(samples() / f"{sample}.yaml"))
-    told, result = cost(model), mdlgen.solve(model)
-    assert told is not None and result.ok
-    assert told.steps / 3 < result.steps < 3 * told.steps
+    answer, result = cost(model), mdlgen.solve(model)
+    assert answer is not None and result.ok
+    assert answer.steps / 3 < result.steps < 3 * answer.steps
 
 
 def test_a_cost_grows_with_boxes_pairs_and_duration() -> None:
@@ -145,5 +145,5 @@ def test_check_says_what_a_run_takes() -> None:
         "a run takes about 33 s, some 10000 steps, within a factor of 3"
         in CliRunner().invoke(app, ["check", file]).stdout
     )
-    told: Any = json.loads(CliRunner().invoke(app, ["check", file, "--json"]).stdout)
-    assert told["cost"]["steps"] == 12000 and 20.0 < told["cost"]["seconds"] < 60.0
+    answer: Any = json.loads(CliRunner().invoke(app, ["check", file, "--json"]).stdout)
+    assert answer["cost"]["steps"] == 12000 and 20.0 < answer["cost"]["seconds"] < 60.0

@@ -205,8 +205,8 @@ def test_a_disk_that_is_full(tmp_path: Path) -> None:
             text=True,
             check=False,
         )
-        *lints, told = done.stderr.splitlines()
-        assert (done.returncode, told) == (3, f"{file}: cannot write: File too large")
+        *lints, last = done.stderr.splitlines()
+        assert (done.returncode, last) == (3, f"{file}: cannot write: File too large")
         assert all(re.match(r"W1[0-9]{2} ", lint) for lint in lints)
     assert [p.name for p in tmp_path.rglob("*") if p.is_file()] == ["note.mdl"]
     assert (tmp_path / "note.mdl").read_text() == "old"

@@ -69,8 +69,8 @@ def overview_parts(record: dict[str, Any]) -> list[str | Rows]:
     if record["external_parts"]:
         parts = ", ".join(f"{name} ({part['body']})" for name, part in record["external_parts"].items())
         lines.append(f"external parts: {parts}; {pairs['external']} pairs of bodies with them, all kept")
-    elif told["cost"] is not None:
-        cost = Cost(**told["cost"])
+    elif record["cost"] is not None:
+        cost = Cost(**record["cost"])
         lines.append(f"a run takes {cost}{', within a factor of 3' if cost.seconds >= 1.0 else ''}")
     return lines
 
