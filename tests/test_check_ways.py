@@ -10,10 +10,10 @@ import pytest
 from typer.testing import CliRunner
 
 import mdlgen
-from mdlgen.check_cost import cost, duration
 from mdlgen.checks import Lint, lints
 from mdlgen.cli import app
 from mdlgen.explain import explain
+from mdlgen.lints.cost import cost, duration
 from mdlgen.model.lower import lower
 from mdlgen.paths import samples
 from mdlgen.spec.load import load

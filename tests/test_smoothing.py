@@ -13,9 +13,9 @@ from typer.testing import CliRunner
 
 import mdlgen
 from mdlgen.backends.motionview.script import companion
-from mdlgen.check_smoothing import notice, smoothings
 from mdlgen.cli import app
 from mdlgen.errors import SpecError
+from mdlgen.lints.smoothing import notice, smoothings
 from mdlgen.model.lower import lower
 from mdlgen.paths import samples
 from mdlgen.spec.load import loads

@@ -93,8 +93,8 @@ def run(
     Example: mdlgen run --resume out
     """
     from mdlgen import registry
-    from mdlgen.check_smoothing import notice
     from mdlgen.checks import lints
+    from mdlgen.lints.smoothing import notice
     from mdlgen.runs import resume as runs
 
     _check_single(spec, resume, bool(sets or limits or output or check_step or solver != "auto"))

@@ -98,8 +98,8 @@ def check(
 
     Example: mdlgen check samples/transport_4x4.yaml --set sheets.note.boxes=[20,30]
     """
-    from mdlgen.check_smoothing import notice
     from mdlgen.cli import tables
+    from mdlgen.lints.smoothing import notice
     from mdlgen.report.overview import overview
     from mdlgen.report.text import overview_text
 

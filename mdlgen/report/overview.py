@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from mdlgen.check_cost import cost
-from mdlgen.check_smoothing import smoothings
 from mdlgen.checks import lints
+from mdlgen.lints.cost import cost
+from mdlgen.lints.smoothing import smoothings
 from mdlgen.model.tables import MeshPart, Model, SheetPart
 
 UNITS = {

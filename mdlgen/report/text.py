@@ -6,8 +6,8 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from mdlgen.check_cost import Cost
-from mdlgen.check_smoothing import lines as smoothing_lines
+from mdlgen.lints.cost import Cost
+from mdlgen.lints.smoothing import lines as smoothing_lines
 from mdlgen.report.overview import UNITS
 
 FEW = 3  # names that are listed in a line

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from mdlgen.lint import Lint
+from mdlgen.lints.lint import Lint
 from mdlgen.model.tables import Model, SheetPart
 
 PAPER_TIME = (0.01, 1.0)  # ms: loss factors of 0.01 to 0.1 at 10 to 100 Hz, and ten times less and more

@@ -11,7 +11,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from mdlgen.lint import Lint
+from mdlgen.lints.lint import Lint
 from mdlgen.model.tables import Model
 
 START, START_OF_A_BOX = 0.1, 5e-4  # [s]

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from mdlgen.lint import Lint
+from mdlgen.lints.lint import Lint
 from mdlgen.model import press
 from mdlgen.model.parts.guide import bounds
 from mdlgen.model.parts.roller import FLAT

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from mdlgen.formulas import names
-from mdlgen.lint import Lint
+from mdlgen.lints.lint import Lint
 from mdlgen.model.parameters import OF_USER
 from mdlgen.model.tables import Model
 

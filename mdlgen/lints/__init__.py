@@ -1,0 +1,1 @@
+"""Lints over a Model, by what they are about; `mdlgen.checks` lists them."""
