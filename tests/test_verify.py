@@ -15,7 +15,8 @@ from mdlgen.paths import samples
 from mdlgen.registry import emitter
 from mdlgen.spec.load import load
 from mdlgen.verify import verification
-from mdlgen.verify.expected import expected, stations
+from mdlgen.verify.expected.motions import stations
+from mdlgen.verify.expected.whole import expected
 from mdlgen.verify.outcome import Verification
 from mdlgen.verify.report import report
 from mdlgen.verify.verification import verify

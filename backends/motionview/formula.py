@@ -13,7 +13,7 @@ from mdlgen.backends.motionview.units import factor, in_degrees, in_kg, number
 from mdlgen.errors import SpecError
 from mdlgen.expressions import Expression
 from mdlgen.formulas import formula
-from mdlgen.model.parameters import OF_USER
+from mdlgen.model.parameters.names import OF_USER
 from mdlgen.model.tables import Model
 from mdlgen.units import parse_unit
 

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from mdlgen.formulas import names
-from mdlgen.model.parameters import OF_USER
+from mdlgen.model.parameters.names import OF_USER
 from mdlgen.model.tables import Model
 
 _FRICTION = ("mu_s", "mu_d", "v_s", "v_d")

@@ -17,7 +17,7 @@ from mdlgen.backends.motionview.machine import (
 from mdlgen.backends.motionview.rows import SceneView, Value
 from mdlgen.backends.motionview.sheets import probe_view, sheet_view, support_views
 from mdlgen.backends.motionview.units import mdl_value, number, with_unit
-from mdlgen.model.parameters import OF_USER
+from mdlgen.model.parameters.names import OF_USER
 from mdlgen.model.tables import Model, Parameter
 
 

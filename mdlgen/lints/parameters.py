@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from mdlgen.formulas import names
 from mdlgen.lints.lint import Lint
-from mdlgen.model.parameters import OF_USER
+from mdlgen.model.parameters.names import OF_USER
 from mdlgen.model.tables import Model
 
 

@@ -17,7 +17,7 @@ from mdlgen.model.external import external_pairs, lower_externals
 from mdlgen.model.joints import Joints, find_joints
 from mdlgen.model.meshes import loaded
 from mdlgen.model.pairs import find_pairs
-from mdlgen.model.parameters import parameters, unfollowed
+from mdlgen.model.parameters.given import parameters, unfollowed
 from mdlgen.model.parts.kind import Before
 from mdlgen.model.parts.kinds import KINDS, kind_of
 from mdlgen.model.press_parts import Bow, Face, Facets

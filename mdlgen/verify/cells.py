@@ -9,7 +9,7 @@ import numpy as np
 from mdlgen.model.classes import JointClass, box_classes, joint_classes
 from mdlgen.model.curves import written
 from mdlgen.model.tables import Floats, Model, SheetPart
-from mdlgen.verify.expected import KG, SECOND
+from mdlgen.verify.expected.units import KG, SECOND
 
 _SIX = ("x", "y", "z", "tx", "ty", "tz")
 

@@ -13,7 +13,7 @@ from mdlgen.model.tables import Anchor, GuidePart, MeshPart, Model, RollerPart, 
 from mdlgen.units import parse_unit
 from mdlgen.verify.bend import shape
 from mdlgen.verify.cells import cells, damping_times
-from mdlgen.verify.expected import KG, SECOND, body_name
+from mdlgen.verify.expected.units import KG, SECOND, body_name
 from mdlgen.verify.tables import Part, Table, table
 
 CONTACT_NUMBERS = (

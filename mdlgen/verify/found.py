@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from mdlgen.verify.expected import shape_numbers
+from mdlgen.verify.expected.graphics import shape_numbers
 from mdlgen.verify.expected_numbers import CONTACT_NUMBERS
 from mdlgen.verify.state import Places, Unreadable, law, request
 from mdlgen.verify.tables import Table

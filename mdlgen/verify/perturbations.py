@@ -19,7 +19,7 @@ from pydantic import BaseModel
 from mdlgen.formulas import Amount
 from mdlgen.model import grid
 from mdlgen.model.lower import lower
-from mdlgen.model.parameters import FRICTION, OF_USER
+from mdlgen.model.parameters.names import FRICTION, OF_USER
 from mdlgen.model.stiffness import SUPPORT_FACTOR
 from mdlgen.model.supports import joined, support_bushings
 from mdlgen.model.tables import SUPPORT, Anchor, Bushings, Model, Parameter, Press, RollerPart

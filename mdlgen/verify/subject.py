@@ -13,7 +13,8 @@ from mdlgen.paths import read_exactly, read_text
 from mdlgen.registry import TEXT, emitter
 from mdlgen.spec.scene import Scene
 from mdlgen.verify import alone, script
-from mdlgen.verify.expected import expected, stations
+from mdlgen.verify.expected.motions import stations
+from mdlgen.verify.expected.whole import expected
 from mdlgen.verify.expected_numbers import contacts, data, gravity, run
 from mdlgen.verify.found import Values
 from mdlgen.verify.tables import Table

@@ -11,7 +11,8 @@ from mdlgen.registry import DECK, emitter
 from mdlgen.spec.scene import Scene
 from mdlgen.verify.companion import beside, chosen, of_systems, taken
 from mdlgen.verify.elements import element_differences
-from mdlgen.verify.expected import mesh_shapes, reach
+from mdlgen.verify.expected.graphics import mesh_shapes
+from mdlgen.verify.expected.markers import reach
 from mdlgen.verify.found import (
     Found,
     Values,

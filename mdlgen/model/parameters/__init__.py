@@ -1,0 +1,1 @@
+"""The named values that a user gave."""

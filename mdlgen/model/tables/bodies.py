@@ -1,0 +1,93 @@
+"""Tables of bodies, bushings and curves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mdlgen.geometry.arrays import Floats as Floats
+from mdlgen.geometry.arrays import Ints as Ints
+
+
+@dataclass(frozen=True)
+class Frozen:
+    """Makes the arrays of a frozen dataclass read-only."""
+
+    def __post_init__(self) -> None:
+        for item in fields(self):
+            value = getattr(self, item.name)
+            if isinstance(value, np.ndarray):
+                value.setflags(write=False)
+
+
+@dataclass(frozen=True)
+class Bodies(Frozen):
+    """Rigid bodies at the start."""
+
+    name: tuple[str, ...]  # identifier, unique without regard to case
+    label: tuple[str, ...]
+    position: Floats  # centre of mass [mm], (n, 3)
+    rotation: Floats  # (n, 3, 3)
+    mass: Floats  # [g], (n,)
+    inertia: Floats  # principal, body axes [g mm^2], (n, 3)
+    velocity: Floats  # [mm/ms], (n, 3)
+    spin: Floats  # angular velocity, global axes [rad/ms], (n, 3)
+    fixed: NDArray[np.bool_]  # held: clamped boxes; planes, guides and meshes that move with nothing, (n,)
+    half: Floats  # half lengths of a box, body axes; zero for rollers, guides and meshes [mm], (n, 3)
+    exposed: NDArray[np.bool_]  # side faces that no neighbour covers: x_min, x_max, y_min, y_max, (n, 4)
+    friction: Floats  # friction of its contacts in times that of the contact, (n,)
+
+
+# kinds of bushing
+JOINT_X, JOINT_Y, CLAMP, SUPPORT = 0, 1, 2, 3
+
+
+@dataclass(frozen=True)
+class Bushings(Frozen):
+    """Six springs and dampers between body `a` and body `b` at `origin`, stress-free at the start but for
+    `rest`."""
+
+    name: tuple[str, ...]
+    label: tuple[str, ...]
+    kind: Ints  # JOINT_X, JOINT_Y, CLAMP or SUPPORT, (n,)
+    sheet: Ints  # index of the sheet, (n,)
+    a: Ints  # body, or GROUND, (n,)
+    b: Ints  # body, (n,)
+    origin: Floats  # [mm], (n, 3)
+    axes: Floats  # (n, 3, 3)
+    rest: Floats  # rotation of b against a in which it is stress-free, bushing axes [rad], (n, 3)
+    k: Floats  # k_x, k_y, k_z [N/mm], k_tx, k_ty, k_tz [N mm/rad], (n, 6)
+    c: Floats  # the same order [N ms/mm], [N mm ms/rad], (n, 6)
+    node: Ints  # twice the grid coordinates of the origin from the corner of box (0, 0), (n, 2)
+    frames: Ints  # of the two sides, see Frames, (n, 2)
+
+    def __len__(self) -> int:
+        return len(self.name)
+
+
+@dataclass(frozen=True)
+class Curves(Frozen):
+    """Measured stress-strain curves, and the bushings that follow one along an axis of their own.
+
+    Curve i has the points start[i] ... start[i + 1] - 1, from (0, 0) on, and is odd: compression follows it
+    with both signs turned. Between points it is a cubic with the slopes given, beyond the last one straight.
+    The force of a bushing is `area` times the stress at its elongation over `length`.
+    """
+
+    name: tuple[str, ...]  # SHEET_md or SHEET_cd
+    start: Ints  # (curves + 1,)
+    strain: Floats  # (points,)
+    stress: Floats  # [MPa]
+    slope: Floats  # [MPa]
+    energy: Floats  # of a unit volume, up to the point [N/mm^2]
+    rise: Floats  # slope beyond the last point [MPa], (curves,)
+    linear: NDArray[np.bool_]  # whether a joint may go there; else the run ends, (curves,)
+    of: Ints  # curve of each bushing, -1: none, (bushings,)
+    axis: Ints  # axis of the bushing that follows it, 0: x, 1: y, (bushings,)
+    length: Floats  # [mm], (bushings,)
+    area: Floats  # [mm^2], (bushings,)
+
+    def __len__(self) -> int:
+        return len(self.name)

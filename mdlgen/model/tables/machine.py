@@ -1,0 +1,218 @@
+"""Parts of the machine."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mdlgen.geometry.arrays import Floats as Floats
+from mdlgen.geometry.arrays import Ints as Ints
+from mdlgen.model.tables.bodies import Frozen
+
+
+@dataclass(frozen=True)
+class Press(Frozen):
+    """Slide and spring of a pressed roller or plate; lengths along `direction` from the centre as given."""
+
+    direction: Floats  # unit vector, (3,)
+    stiffness: float  # [N/mm]
+    damping: float  # [N ms/mm]
+    damping_ratio: float
+    preload: float  # spring force at the free length [N]
+    free_length: float  # [mm]
+    carrier_mass: float  # [g]
+    touch: float  # where the spring has its free length [mm]
+    start: float  # static equilibrium at the start [mm]
+
+
+@dataclass(frozen=True)
+class OneWay:
+    """A clutch that lets a roller turn freely in one sense, against ground or the shaft that drives it."""
+
+    direction: int  # sense about the axis that is free, 1 or -1
+    torque: float  # which it takes at the creep [N mm]
+    creep: float  # [rad/ms]
+
+
+@dataclass(frozen=True)
+class ArmPart(Frozen):
+    """An arm that carries a roller, turning about an axis parallel to the roller's through the pivot."""
+
+    pivot: Floats  # [mm], (3,)
+    center: Floats  # of its mass as the run begins [mm], (3,)
+    mass: float  # without the roller [g]
+    inertia: float  # about its centre of mass, along the axis [g mm^2]
+    torque: float  # of its spring as the run begins [N mm]
+    stiffness: float  # [N mm/rad]
+    damping: float  # [N mm ms/rad]
+    sprung: bool  # whether it has a spring or damping
+
+
+@dataclass(frozen=True)
+class RimPart(Frozen):
+    """The round of a roller in sectors, the gaps between the given ones included; angles [rad] about the
+    axis from the x axis of its body, as the run begins. Each ends where the next begins, the last a whole
+    turn after the first one's beginning."""
+
+    name: tuple[str, ...]  # s0, ... those that are given; g0, ... what is behind the sector of that number
+    begin: Floats  # increasing, (n,)
+    end: Floats
+    radius: Floats  # [mm]
+    friction: Floats  # in times that of a contact
+    stiffness: Floats
+    restitution: Floats  # nan: that of a contact
+    own: tuple[bool, ...]  # whether the radius is given, and not the roller's
+    blend: float  # [rad]
+    facets: tuple[int, ...]  # boxes by which a text shows each
+
+    def __len__(self) -> int:
+        return len(self.name)
+
+
+@dataclass(frozen=True)
+class RollerPart(Frozen):
+    """A cylinder; `center` is as the user gave it, the body's position includes `press.start`."""
+
+    name: str
+    body: int
+    center: Floats  # (3,)
+    axis: Floats  # unit vector, (3,)
+    radius: float
+    width: float
+    mass: float
+    inertia_axial: float  # [g mm^2]
+    inertia_transverse: float
+    speed: float | None  # prescribed [rad/ms], of a profile the greatest in size; None: free to turn
+    ramp: float  # [ms]
+    profile: Floats | None  # corners as given: time [ms], speed [rad/ms], (n, 2); None: speed and ramp
+    one_way: OneWay | None  # with a drive: the speed is that of the shaft, which the roller may overrun
+    press: Press | None
+    carried: tuple[float, float] = (0.0, 0.0)  # mass [g] and inertia about the axis [g mm^2] of what is on it
+    rim: RimPart | None = None
+    arm: ArmPart | None = None
+
+    @property
+    def swung_inertia(self) -> float:
+        """Inertia of all that turns with its arm about the pivot [g mm^2]: a free roller does not turn."""
+        assert self.arm is not None, "asked only of a roller on an arm"
+        total = self.arm.inertia + (self.inertia_axial if self.speed is not None else 0.0)
+        for mass, at in ((self.arm.mass, self.arm.center), (self.mass, self.center)):
+            way = np.cross(self.axis, at - self.arm.pivot)
+            total += mass * float(way @ way)
+        return total
+
+    @property
+    def reach(self) -> float:
+        """The greatest radius [mm]."""
+        return self.radius if self.rim is None else float(self.rim.radius.max())
+
+    @property
+    def turns(self) -> bool:
+        """Whether its spin is unknown: a free one, or one with a clutch."""
+        return self.speed is None or self.one_way is not None
+
+    @property
+    def corners(self) -> Floats:
+        """Corners of the prescribed speed, linear between and constant beyond, (n, 2); (0, 2) without one."""
+        if self.profile is not None:
+            return self.profile
+        if self.speed is None:
+            return np.zeros((0, 2))
+        return np.array([[0.0, 0.0], [self.ramp, self.speed]][self.ramp <= 0.0 :])
+
+    def prescribed(self, time: Floats | float) -> Floats:
+        """Speed [rad/ms] at times [ms] of a driven roller."""
+        corners = self.corners
+        return np.asarray(np.interp(time, corners[:, 0], corners[:, 1]))
+
+    def turned(self, time: Floats) -> Floats:
+        """Angle [rad] by which a driven roller has turned at increasing times [ms] from 0 on."""
+        grid = np.array(sorted({0.0, *time.tolist(), *self.corners[:, 0].tolist()}))
+        speed = self.prescribed(grid)
+        angle = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(grid))])
+        return angle[np.searchsorted(grid, time)]
+
+
+@dataclass(frozen=True)
+class PlanePart(Frozen):
+    """A plate, fixed or pressed; local axes in the columns of the body's rotation, z = normal. `center` is as
+    the user gave it, the body's position includes `press.start`."""
+
+    name: str
+    body: int
+    center: Floats
+    normal: Floats
+    size: tuple[float, float, float]
+    mass: float
+    press: Press | None = None
+    edges: tuple[float, float] = (0.0, 0.0)  # radii of the edges of its upper and its lower face [mm]
+    ends: int = 0  # its free ends as a bit mask, see model.ends
+
+    @property
+    def sliding_mass(self) -> float:
+        """Mass of all that moves with it [g]."""
+        return self.mass + (0.0 if self.press is None else self.press.carrier_mass)
+
+    @property
+    def travel(self) -> Floats:
+        """How far it may go along each global axis, either way: by the length of its spring [mm], (3,)."""
+        return np.zeros(3) if self.press is None else self.press.free_length * np.abs(self.press.direction)
+
+
+@dataclass(frozen=True)
+class GuidePart(Frozen):
+    """A fixed plate, straight or bent to an arc. Of its axes z is along the width; x is along a line and y
+    its normal, and the angles of an arc turn from x to y."""
+
+    name: str
+    body: int
+    center: Floats  # middle of a line, or on the axis of an arc [mm], (3,)
+    axes: Floats  # in columns; those of its body, too, (3, 3)
+    radius: float  # of the face, or of the middle where both sides are touched; 0: a line [mm]
+    middle: float  # angle of the middle of an arc [rad]
+    half_angle: float
+    length: float  # of a line [mm]
+    width: float
+    thickness: float
+    sides: int  # that are touched: 1 left of a line or inside of an arc, 2 the other, 3 both
+    side: str
+    mass: float
+    facets: int  # boxes by which a text shows it
+    edges: tuple[float, float] = (0.0, 0.0)  # radii of the edges of its upper and its lower face [mm]
+    ends: int = 0  # its free ends as a bit mask, see model.ends
+
+
+@dataclass(frozen=True)
+class MeshPart(Frozen):
+    """A closed surface of triangles, fixed or on a roller. Its body has the axes of its inertia, and its
+    centre is the middle of its mass."""
+
+    name: str
+    body: int
+    file: str
+    scale: float  # of the file's numbers to mm
+    at: str  # nodes or centres
+    on: int  # index of the roller that it moves with, -1: fixed
+    center: Floats  # of the file's axes; with a pressed roller as given, before that slides [mm], (3,)
+    angles: tuple[float, float, float]  # about the global x, then y, then z axis [rad]
+    axes: Floats  # of the file, in columns, (3, 3)
+    corners: Floats  # file axes, counter-clockwise as seen from outside [mm], (n, 3)
+    triangles: Ints  # corners of each, (m, 3)
+    flat: int  # triangles with two corners in one place, which are left out
+    volume: float  # [mm^3]
+    middle: Floats  # of the mass, file axes [mm], (3,)
+    principal: Floats  # axes of the inertia, file axes, in columns, (3, 3)
+    gyration: Floats  # inertia about them over mass [mm^2], (3,)
+    mass: float
+    density: float | None  # that the user gave in place of the mass [g/mm^3]
+    edge_radius: float = 0.0  # that outer sides of sheets meet at its edges [mm]
+
+
+@dataclass(frozen=True)
+class ExternalPart:
+    """A body of the user's own MotionView model. It has no row in Bodies, since its mass is not known."""
+
+    name: str
+    body: str  # variable there, or a path of variables
+    graphics: tuple[str, ...]

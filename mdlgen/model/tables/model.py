@@ -1,0 +1,176 @@
+"""The Model: all tables of a scene."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from mdlgen.geometry.arrays import Floats as Floats
+from mdlgen.geometry.arrays import Ints as Ints
+from mdlgen.model.tables.bodies import Bodies, Bushings, Curves, Frozen
+from mdlgen.model.tables.contacts import Contacts, ExternalPairs, Pairs
+from mdlgen.model.tables.machine import ExternalPart, GuidePart, MeshPart, PlanePart, Press, RollerPart
+from mdlgen.model.tables.sheets import SheetPart
+
+GROUND = -1
+# A contact that goes from touching to too deep in fewer than so many steps may be held by finer ones.
+FEW_STEPS = 4
+AXES = ("x", "y", "z")
+
+
+@dataclass(frozen=True)
+class Anchor(Frozen):
+    """A material point of a sheet: the mean of points on one or more boxes."""
+
+    name: str
+    sheet: int
+    body: Ints  # (n,)
+    local: Floats  # box axes [mm], (n, 3)
+    share: Floats  # sums to 1, (n,)
+    node: Ints  # nearest grid node as in Bushings.node; for the text
+    at: tuple[float, float]  # sheet axes, from the centre [mm]
+    edge: str | None
+    formulas: tuple[str, str] = ("", "")  # of `at`, as of a Parameter
+
+
+@dataclass(frozen=True)
+class Loads(Frozen):
+    """Dead loads on bodies, global axes: a force at a point fixed in the body, and a moment."""
+
+    body: Ints  # (n,)
+    local: Floats  # (n, 3)
+    force: Floats  # [N], (n, 3)
+    moment: Floats  # [N mm], (n, 3)
+
+
+@dataclass(frozen=True)
+class Tension:
+    """A clamped sheet that is pulled at the opposite edge."""
+
+    sheet: int
+    axis: int  # of the pull, 0: x, 1: y
+    length: float  # sum of the joint lengths [mm]
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A value that the user gave, by the name under which the text is written in it."""
+
+    data_set: str  # identifier without the ds_ prefix
+    member: str  # identifier without the real_ prefix
+    label: str
+    value: float  # internal units
+    unit: str  # internal unit, as the user may write it
+    path: tuple[str | int, ...] | None  # where it stands in the spec; None: computed
+    formula: str = ""  # over the parameters of the scene, as the user wrote it; "": a number
+
+
+@dataclass(frozen=True)
+class RunSettings:
+    """How the Model is run; times in ms."""
+
+    duration: float
+    analysis: str
+    step: float | None
+    tolerance: float
+    print_step: float
+    symmetry: bool  # a scene that is its own mirror image may be halved
+
+
+@dataclass(frozen=True)
+class Model(Frozen):
+    """A scene in plain tables."""
+
+    name: str
+    gravity: Floats  # [mm/ms^2], (3,)
+    sheets: tuple[SheetPart, ...]
+    rollers: tuple[RollerPart, ...]
+    planes: tuple[PlanePart, ...]
+    guides: tuple[GuidePart, ...]
+    meshes: tuple[MeshPart, ...]
+    externals: tuple[ExternalPart, ...]  # a Model that has one is not run here
+    bodies: Bodies
+    bushings: Bushings
+    curves: Curves
+    contacts: Contacts
+    pairs: Pairs
+    external_pairs: ExternalPairs
+    loads: Loads
+    probes: tuple[Anchor, ...]
+    supports: tuple[Anchor, ...]  # named support_0, ... as the bushings that hold them
+    tension: Tension | None
+    parameters: tuple[Parameter, ...]
+    run: RunSettings
+    unfollowed: tuple[tuple[str, str], ...] = ()  # formulas of what is no Parameter: places, texts
+    following: tuple[int, ...] = ()  # entries of the contacts whose smoothing follows from the speeds
+
+    def __repr__(self) -> str:
+        kinds = ("sheets", "rollers", "planes", "guides", "bushings", "contacts")
+        message = ", ".join(
+            f"{len(getattr(self, kind))} {kind}" for kind in kinds if len(getattr(self, kind))
+        )
+        return f"<Model {self.name}: {len(self.bodies.name)} bodies, {message}>"
+
+    @property
+    def machine(self) -> tuple[RollerPart | PlanePart | GuidePart | MeshPart, ...]:
+        """All parts of the machine, as their bodies are numbered."""
+        return (*self.rollers, *self.planes, *self.guides, *self.meshes)
+
+    def roller(self, name: str) -> RollerPart:
+        return next(r for r in self.rollers if r.name == name)
+
+    @property
+    def plates(self) -> list[tuple[PlanePart, Press]]:
+        """The planes that springs press, and their presses."""
+        return [(plane, plane.press) for plane in self.planes if plane.press is not None]
+
+    @property
+    def pair_friction(self) -> Floats:
+        """Friction of each kept pair in times that of its contact, (pairs,)."""
+        return self.bodies.friction[self.pairs.a] * self.bodies.friction[self.pairs.b]
+
+    def mass_share(self, sheet: int) -> Floats:
+        """Mass of each box of a sheet over that of the sheet, (boxes,): weights of its centre of mass."""
+        part = self.sheets[sheet]
+        mass = self.bodies.mass[part.first : part.first + part.count]
+        return mass / mass.sum()
+
+    def called(self, body: int) -> str:
+        """What a roller, a plane, a guide, a mesh or a box is called in a sentence."""
+        kinds = {g.body: "guide" for g in self.guides} | {m.body: "mesh" for m in self.meshes}
+        kinds |= {r.body: "roller" for r in self.rollers}
+        kind = "box" if self.sheet_of(body) else kinds.get(body, "plane")
+        return f"{kind} {self.bodies.name[body]}"
+
+    def too_deep(self, one: int, other: int) -> str:
+        """What is said of a box or a roller that is too deep in another part."""
+        rollers = {roller.body for roller in self.rollers}
+        if {one, other} <= rollers:
+            return f"{self.called(one)} and {self.called(other)} overlap by more than the smaller radius"
+        size = "radius" if rollers & {one, other} else "thickness"
+        return f"{self.called(one)} is more than half of its {size} into {self.called(other)}"
+
+    def held_by(self, one: int, way: float) -> str:
+        """What would hold a body that is too deep in another one and comes nearer by `way` [mm] in a step: a
+        finer step only where a few of its steps are that deep."""
+        sheet = self.sheet_of(one)
+        finer = sheet is None or way > 0.5 * sheet.thickness / FEW_STEPS
+        if finer:
+            return "a stiffer contact or a smaller run.step would hold it"
+        return "a stiffer contact would hold it, a smaller run.step would not"
+
+    def bounds_of(self, body: int) -> tuple[str, str]:
+        """What the bounds of a body are, and what to do where it has left them."""
+        for plate, press in self.plates:
+            if plate.body == body:
+                return (
+                    f"the length of its spring, {press.free_length:g} mm either way",
+                    "give a stiffness, preload or free_length that hold it",
+                )
+        return (
+            "the bounds from which its contacts were chosen",
+            f"set run.prune: false, or a run.margin above {self.pairs.margin:g} mm",
+        )
+
+    def sheet_of(self, body: int) -> SheetPart | None:
+        """The sheet that a body is a box of, or None."""
+        return next((s for s in self.sheets if s.first <= body < s.first + s.count), None)

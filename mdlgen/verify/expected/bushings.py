@@ -1,0 +1,93 @@
+"""Bushings, curves and springs that a text must have."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mdlgen.model.curves import straight_points, written
+from mdlgen.model.tables import (
+    CLAMP,
+    Floats,
+    Model,
+)
+from mdlgen.verify.expected.markers import reach
+from mdlgen.verify.expected.points import spring_anchor
+from mdlgen.verify.expected.units import SECOND, body_name
+from mdlgen.verify.state import motion
+from mdlgen.verify.tables import Part, Table, table
+
+
+def bushings(model: Model) -> Table:
+    rows = model.bushings
+    stiff = rows.k[:, :3].copy()
+    bent = np.flatnonzero(model.curves.of >= 0)
+    stiff[bent, model.curves.axis[bent]] = 0.0  # a curve stands there: see curve_laws
+    arms = [(r, r.arm) for r in model.rollers if r.arm is not None and r.arm.sprung]
+    turned = [model.bodies.rotation[r.body] for r, _ in arms]
+    last, none = np.eye(3)[2], np.zeros((len(arms), 3))
+
+    def both(own: Floats, more: list[Floats]) -> Floats:
+        return np.concatenate([own, np.array(more).reshape(-1, *own.shape[1:])])
+
+    parts: dict[str, Part] = {
+        "origin": (both(rows.origin, [arm.pivot for _, arm in arms]), reach(model)),
+        "axes": (both(rows.axes, turned).transpose(0, 2, 1), 1.0),
+        "k": (both(stiff, [*none]), None),
+        "c": (both(rows.c[:, :3], [*none]) * SECOND, None),
+        "kt": (both(rows.k[:, 3:], [arm.stiffness * last for _, arm in arms]), None),
+        "ct": (both(rows.c[:, 3:], [arm.damping * last for _, arm in arms]) * SECOND, None),
+        "force": (np.zeros((len(rows) + len(arms), 3)), 1.0),
+        # on the first body, which the second one is to turn away from
+        "torque": (both(-rows.k[:, 3:] * rows.rest, [arm.torque * last for _, arm in arms]), 1.0),
+    }
+    words = [
+        (body_name(model, a), body_name(model, b))
+        for a, b in zip(rows.a.tolist(), rows.b.tolist(), strict=True)
+    ]
+    words += [(f"b_{r.name}_arm", "B_Ground") for r, _ in arms]
+    names = [f"bsh_{n}" for n in rows.name] + [f"bsh_{r.name}_arm" for r, _ in arms]
+    return table(names, parts, words)
+
+
+def curves(model: Model) -> Table:
+    """Points of the curves: elongation [mm] and force [N] of one bushing."""
+    names, points, scales = [], [np.zeros((0, 2))], [np.zeros((0, 2))]
+    for curve in written(model)[0]:
+        strain, stress = straight_points(model.curves, curve.number)
+        length, area, name = curve.length, curve.area, curve.name
+        names += [f"crv_{name}.{k}" for k in range(len(strain))]
+        points.append(np.stack([length * strain, area * stress], axis=1))
+        scales.append(np.broadcast_to(points[-1].max(axis=0), points[-1].shape))
+    return table(names, {"point": (np.concatenate(points), np.concatenate(scales))})
+
+
+def curve_laws(model: Model) -> Table:
+    """The curve of each bushing that has one, and its independent variable in the made-up state [mm]."""
+    rows, curves = model.bushings, model.curves
+    entities, follows = written(model)
+    names, values, words = [], [], []
+    for row in np.flatnonzero(curves.of >= 0).tolist():
+        way = int(curves.axis[row])
+        a, b = (motion(body_name(model, int(ends[row]))).displacement for ends in (rows.a, rows.b))
+        # the curve is that of a whole joint: half a cell has its strain at half of the elongation
+        factor = 2.0 if rows.kind[row] == CLAMP else 1.0
+        name = f"bsh_{rows.name[row]}"
+        names.append(f"{name}.k.{way}")
+        values.append(factor * float(rows.axes[row][:, way] @ (a - b)))
+        words.append((f"crv_{entities[follows[row]].name}", "LINEAR", f"{name}.i", f"{name}.j", f"{name}.j"))
+    return table(names, {"variable": (np.array(values), reach(model))}, words)
+
+
+def springs(model: Model) -> Table:
+    pressed = [(r, r.press) for r in (*model.rollers, *model.planes) if r.press is not None]
+    parts: dict[str, Part] = {
+        "p1": (np.array([model.bodies.position[r.body] for r, _ in pressed]).reshape(-1, 3), reach(model)),
+        "p2": (np.array([spring_anchor(r) for r, _ in pressed]).reshape(-1, 3), reach(model)),
+        "k": (np.array([p.stiffness for _, p in pressed]), None),
+        "c": (np.array([p.damping for _, p in pressed]) * SECOND, None),
+        "force": (np.array([p.preload for _, p in pressed]), None),
+        "length": (np.array([p.free_length for _, p in pressed]), None),
+    }
+    slides = {r.name: f"b_{r.name}_carrier" for r in model.rollers}
+    words = [(slides.get(r.name, f"b_{r.name}"), "B_Ground") for r, _ in pressed]
+    return table([f"cs_{r.name}" for r, _ in pressed], parts, words)

@@ -1,0 +1,116 @@
+"""Markers, vectors and outputs that a text must have."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from mdlgen.model.meshes import origin as mesh_origin
+from mdlgen.model.shape import ground_frames
+from mdlgen.model.tables import (
+    Floats,
+    Model,
+)
+from mdlgen.verify.expected.graphics import under
+from mdlgen.verify.expected.points import anchor_points, boxes_of
+from mdlgen.verify.expected.units import body_name
+from mdlgen.verify.state import motion
+from mdlgen.verify.tables import Part, Table, table
+
+
+def reach(model: Model) -> float:
+    """Size of the scene [mm], by which coordinates are measured."""
+    size = [max(s.size) for s in model.sheets] + [g.radius + g.length for g in model.guides]
+    return float(max(np.abs(model.bodies.position).max(initial=0.0), *size))
+
+
+def markers(model: Model) -> Table:
+    """The markers that the text itself makes; those of bodies and joints are where their owners are."""
+    names, bodies, places, axes = [], [], [], []
+
+    def add(name: str, body: str, place: Floats, frame: Floats) -> None:
+        names.append(name)
+        bodies.append((body,))
+        places.append(place)
+        axes.append(frame)
+
+    for index, sheet in enumerate(model.sheets):
+        add(f"m_{sheet.name}", "B_Ground", sheet.center, sheet.rotation.T)
+        for frame in ground_frames(model, index):
+            add(frame.name, "B_Ground", frame.origin, frame.axes.T)
+        for b in boxes_of(model, sheet) if sheet.surface else ():
+            name = model.bodies.name[b]
+            add(f"m_{name}", f"b_{name}", model.bodies.position[b], np.eye(3))
+    for guide in model.guides:
+        add(f"m_{guide.name}", "B_Ground", guide.center, guide.axes.T)
+    for mesh in model.meshes:
+        add(f"m_{mesh.name}", under(model, mesh), mesh_origin(mesh, model.rollers), mesh.axes.T)
+    for roller in model.rollers:
+        if roller.rim is not None:
+            body = roller.body
+            add(f"m_{roller.name}", "B_Ground", model.bodies.position[body], model.bodies.rotation[body].T)
+    for probe in model.probes:
+        points = anchor_points(model, probe)
+        for k, body in enumerate(probe.body.tolist()):
+            end = f"_{k}" if len(points) > 1 else ""
+            add(f"m_probe_{probe.name}{end}", body_name(model, body), points[k], np.eye(3))
+    parts: dict[str, Part] = {
+        "origin": (np.array(places).reshape(-1, 3), reach(model)),
+        "axes": (np.array(axes).reshape(-1, 9), 1.0),
+    }
+    return table(names, parts, bodies)
+
+
+def vectors(model: Model) -> Table:
+    names, directions = [], []
+
+    def add(name: str, direction: Floats) -> None:
+        names.append(name)
+        directions.append(direction)
+
+    def own(name: str, direction: Floats) -> None:
+        if not any(np.array_equal(direction, axis) for axis in np.eye(3)):
+            add(name, direction)
+
+    for roller in model.rollers:
+        own(f"v_{roller.name}_axis", roller.axis)
+        if roller.press is not None:
+            add(f"v_{roller.name}_press", roller.press.direction)
+    for plane in model.planes:
+        own(f"v_{plane.name}_normal", plane.normal)
+        if plane.press is not None:
+            add(f"v_{plane.name}_press", plane.press.direction)
+    for guide in model.guides:
+        own(f"v_{guide.name}_axis", guide.axes[:, 2])
+    return table(names, {"direction": (np.array(directions).reshape(-1, 3), 1.0)})
+
+
+def outputs(model: Model) -> Table:
+    """Six numbers of each output in the made-up state: position and velocity, of rollers and spin."""
+    names, rows = [], []
+    for probe in model.probes:
+        names.append(f"o_{probe.name}")
+        points = anchor_points(model, probe)
+        states = [motion(body_name(model, b)) for b in probe.body.tolist()]
+        rows.append(
+            [
+                *_mean(probe.share, (s.place(p) for s, p in zip(states, points, strict=True))),
+                *_mean(probe.share, (s.speed(p) for s, p in zip(states, points, strict=True))),
+            ]
+        )
+    for roller in model.rollers:
+        names.append(f"o_{roller.name}")
+        state = motion(f"b_{roller.name}")
+        rows.append([*state.place(model.bodies.position[roller.body]), *state.spin])
+    for plate, _ in model.plates:
+        names.append(f"o_{plate.name}")
+        state, at = motion(f"b_{plate.name}"), model.bodies.position[plate.body]
+        rows.append([*state.place(at), *state.speed(at)])
+    numbers = np.array(rows).reshape(-1, 6)
+    scale = np.repeat([reach(model), 1000.0], 3)
+    return table(names, {"value": (numbers, scale)})
+
+
+def _mean(share: Floats, vectors: Iterable[Floats]) -> Floats:
+    return np.einsum("n,nk->k", share, np.array(list(vectors)))

@@ -1,0 +1,42 @@
+"""What a text must say of a Model, made from its tables and from nothing else, in the units of the text.
+
+Names follow the promise of the text: `b_` body, `p_` point, `bsh_` bushing, `gbox_`, `gcyl_`, `gcad_`
+graphic, `j_` joint, `mot_` motion, `cs_` spring, `con_` contact, `m_` marker, `o_` output, `ds_` data set.
+"""
+
+from __future__ import annotations
+
+from mdlgen.model.tables import (
+    Model,
+)
+from mdlgen.verify.expected.bodies import bodies, velocities
+from mdlgen.verify.expected.bushings import bushings, curve_laws, curves, springs
+from mdlgen.verify.expected.graphics import boxes, cylinders, mesh_files, meshes, surfaces
+from mdlgen.verify.expected.joints import joints
+from mdlgen.verify.expected.markers import markers, outputs, vectors
+from mdlgen.verify.expected.motions import Times, motions
+from mdlgen.verify.expected.points import points
+from mdlgen.verify.tables import Table
+
+
+def expected(model: Model, times: Times) -> dict[str, Table]:
+    """All tables of a Model, by kind; `times` are those at which the laws of drives are looked at [s]."""
+    return {
+        "points": points(model),
+        "bodies": bodies(model),
+        "bushings": bushings(model),
+        "curves": curves(model),
+        "curve laws": curve_laws(model),
+        "springs": springs(model),
+        "boxes": boxes(model),
+        "cylinders": cylinders(model),
+        "meshes": meshes(model),
+        "mesh files": mesh_files(model),
+        "joints": joints(model),
+        "motions": motions(model, times),
+        "velocities": velocities(model),
+        "markers": markers(model),
+        "vectors": vectors(model),
+        "surfaces": surfaces(model),
+        "outputs": outputs(model),
+    }
