@@ -74,17 +74,17 @@ def test_two_at_once_find_the_same_bits(name: str, passes: list[str]) -> None:
 
 
 def test_told_is_the_finer_pass() -> None:
-    told: list[tuple[float, float]] = []
+    record: list[tuple[float, float]] = []
     thread = threading.current_thread()
 
     def progress(time: float, end: float, steps: int, touching: int) -> None:
         assert threading.current_thread() is thread
-        told.append((time, steps))
+        record.append((time, steps))
 
     model = model_of("transport_tilted")
     result = lattice.solve(model, progress, threads=2)
-    assert [time for time, _ in told] == pytest.approx(result.time[1:])
-    assert told[-1][1] == result.steps
+    assert [time for time, _ in record] == pytest.approx(result.time[1:])
+    assert record[-1][1] == result.steps
 
 
 def test_a_pass_that_failed_needs_no_other(monkeypatch: pytest.MonkeyPatch) -> None:

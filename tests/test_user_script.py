@@ -23,9 +23,9 @@ SCRIPT = Path(__file__).parent / "users" / "nip.py"
 
 def strict(folder: Path, script: Path) -> list[str]:
     """What the strict mode finds in a script."""
-    told = {"typeCheckingMode": "strict", "include": [str(script)], "extraPaths": [str(ROOT)]}
+    record = {"typeCheckingMode": "strict", "include": [str(script)], "extraPaths": [str(ROOT)]}
     config = folder / "pyrightconfig.json"
-    config.write_text(json.dumps(told))
+    config.write_text(json.dumps(record))
     command = ["basedpyright", "-p", str(config), "--outputjson"]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=300)
     found = json.loads(done.stdout)

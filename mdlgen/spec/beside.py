@@ -13,8 +13,8 @@ PYTHON = Path("<python>")
 
 def beside(name: Any, info: ValidationInfo) -> tuple[Any, Path | None]:
     """The name of a file and the folder that it is named from, None: it may not be read."""
-    told = info.context or {}
-    folder = told.get("folder") if info.context is not None else PYTHON
+    record = info.context or {}
+    folder = record.get("folder") if info.context is not None else PYTHON
     if folder != PYTHON or not isinstance(name, str) or not name.strip():
         return name, folder
     path = Path(name).absolute()

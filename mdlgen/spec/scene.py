@@ -54,7 +54,7 @@ from mdlgen.spec.source import Source, text_of, text_of_data
 from mdlgen.spec.surface import with_rates
 
 if TYPE_CHECKING:
-    from mdlgen.lint import Lint
+    from mdlgen.lints.lint import Lint
     from mdlgen.study.inline import Runs
 
 MOST_ERRORS = 100  # that are looked for in contacts: more are not shown

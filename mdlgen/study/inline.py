@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from mdlgen.errors import MdlgenError, RefusedError, SpecError
 from mdlgen.study.measure import defaults, known, measured, measures
-from mdlgen.study.row import FAILED, INACCURATE, OK, REFUSED, Row, Times
+from mdlgen.study.row import FAILED, INACCURATE, OK, REFUSED, CaseRow, Times
 from mdlgen.study.table import Column, columns
 from mdlgen.study.variable import check_count
 
@@ -25,13 +25,13 @@ if TYPE_CHECKING:
 class Runs:
     """The rows of a sweep, and the measures that each has."""
 
-    rows: tuple[Row, ...]
+    rows: tuple[CaseRow, ...]
     measures: tuple[str, ...]
 
     def __len__(self) -> int:
         return len(self.rows)
 
-    def __iter__(self) -> Iterator[Row]:
+    def __iter__(self) -> Iterator[CaseRow]:
         return iter(self.rows)
 
     def __repr__(self) -> str:
@@ -50,9 +50,9 @@ class Runs:
             import pandas
         except ImportError:
             raise RefusedError("to_pandas needs pandas; install it: pip install 'mdlgen[pandas]'") from None
-        told = self.columns
-        table = pandas.DataFrame({column.name: list(column.cells) for column in told}).set_index("case")
-        table.attrs["units"] = {column.name: column.unit for column in told if column.unit}
+        message = self.columns
+        table = pandas.DataFrame({column.name: list(column.cells) for column in message}).set_index("case")
+        table.attrs["units"] = {column.name: column.unit for column in message if column.unit}
         return table
 
 
@@ -87,34 +87,34 @@ def _row(
     case: Mapping[str, object],
     expressions: Sequence[tuple[str, Expression]],
     solver: str,
-) -> Row:
+) -> CaseRow:
     """One case; whatever is wrong with it is a row with its reason."""
     from mdlgen.model.lower import lower
 
     values = tuple((p, v if isinstance(v, str) else json.dumps(v)) for p, v in case.items())
     started = time.perf_counter()
-    told: dict[str, Any]
+    message: dict[str, Any]
     try:
-        told = _ran(lower(scene.with_(case)), expressions, solver)
+        message = _ran(lower(scene.with_(case)), expressions, solver)
     except MdlgenError as error:
-        told = {"kind": REFUSED, "status": str(error)}
-    return Row(index, values, **told, times=Times(case_s=time.perf_counter() - started))
+        message = {"kind": REFUSED, "status": str(error)}
+    return CaseRow(index, values, **message, times=Times(case_s=time.perf_counter() - started))
 
 
 def _ran(model: Model, expressions: Sequence[tuple[str, Expression]], solver: str) -> dict[str, Any]:
     from mdlgen import registry
 
     result = registry.solve(model, solver)
-    told: dict[str, Any] = {"solver": result.solver, "error_estimate": result.error_estimate}
+    record: dict[str, Any] = {"solver": result.solver, "error_estimate": result.error_estimate}
     if not result.ok:
-        return {**told, "kind": FAILED, "status": result.status}
+        return {**record, "kind": FAILED, "status": result.status}
     estimate = result.error_estimate
     good = estimate is None or estimate <= model.run.tolerance
     try:
-        told["measures"] = measured(result, expressions)
+        record["measures"] = measured(result, expressions)
     except ValueError as error:
-        return {**told, "kind": FAILED, "status": f"measure {error}"}
+        return {**record, "kind": FAILED, "status": f"measure {error}"}
     if good:
-        return {**told, "kind": OK, "status": "ok"}
+        return {**record, "kind": OK, "status": "ok"}
     status = f"the error estimate of {result.error_estimate_of} is {estimate:.3g}, above run.tolerance"
-    return {**told, "kind": INACCURATE, "status": status}
+    return {**record, "kind": INACCURATE, "status": status}

@@ -12,7 +12,7 @@ from mdlgen.spec.scene import Scene
 from mdlgen.verify.companion import beside, chosen, of_systems, taken
 from mdlgen.verify.elements import element_differences
 from mdlgen.verify.expected.graphics import mesh_shapes
-from mdlgen.verify.expected.markers import reach
+from mdlgen.verify.expected.units import reach
 from mdlgen.verify.found import (
     Found,
     Values,

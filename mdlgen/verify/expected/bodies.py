@@ -7,9 +7,8 @@ import numpy as np
 from mdlgen.model.tables import (
     Model,
 )
-from mdlgen.verify.expected.markers import reach
 from mdlgen.verify.expected.points import boxes_of
-from mdlgen.verify.expected.units import KG, SECOND
+from mdlgen.verify.expected.units import KG, SECOND, reach
 from mdlgen.verify.tables import Part, Table, table
 
 

@@ -10,9 +10,8 @@ from mdlgen.model.tables import (
     Floats,
     Model,
 )
-from mdlgen.verify.expected.markers import reach
 from mdlgen.verify.expected.points import spring_anchor
-from mdlgen.verify.expected.units import SECOND, body_name
+from mdlgen.verify.expected.units import SECOND, body_name, reach
 from mdlgen.verify.state import motion
 from mdlgen.verify.tables import Part, Table, table
 

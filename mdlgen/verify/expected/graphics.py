@@ -13,8 +13,8 @@ from mdlgen.model.tables import (
     Model,
 )
 from mdlgen.spec.solid import moments
-from mdlgen.verify.expected.markers import reach
 from mdlgen.verify.expected.points import boxes_of, rim
+from mdlgen.verify.expected.units import reach
 from mdlgen.verify.tables import Part, Table, table
 
 

@@ -9,7 +9,7 @@ from mdlgen.model.tables import (
     Model,
 )
 from mdlgen.verify.expected.graphics import under
-from mdlgen.verify.expected.markers import reach
+from mdlgen.verify.expected.units import reach
 from mdlgen.verify.tables import Part, Table, table
 
 

@@ -14,15 +14,9 @@ from mdlgen.model.tables import (
 )
 from mdlgen.verify.expected.graphics import under
 from mdlgen.verify.expected.points import anchor_points, boxes_of
-from mdlgen.verify.expected.units import body_name
+from mdlgen.verify.expected.units import body_name, reach
 from mdlgen.verify.state import motion
 from mdlgen.verify.tables import Part, Table, table
-
-
-def reach(model: Model) -> float:
-    """Size of the scene [mm], by which coordinates are measured."""
-    size = [max(s.size) for s in model.sheets] + [g.radius + g.length for g in model.guides]
-    return float(max(np.abs(model.bodies.position).max(initial=0.0), *size))
 
 
 def markers(model: Model) -> Table:

@@ -18,7 +18,7 @@ from mdlgen.model.tables import (
     RollerPart,
     SheetPart,
 )
-from mdlgen.verify.expected.markers import reach
+from mdlgen.verify.expected.units import reach
 from mdlgen.verify.tables import Table, table
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from mdlgen.model.tables import (
     GROUND,
     Model,
@@ -13,3 +15,9 @@ KG, SECOND = 1e-3, 1e-3  # of a gram, of a millisecond
 def body_name(model: Model, body: int) -> str:
     """Of a body in the text."""
     return "B_Ground" if body == GROUND else f"b_{model.bodies.name[body]}"
+
+
+def reach(model: Model) -> float:
+    """Size of the scene [mm], by which coordinates are measured."""
+    size = [max(s.size) for s in model.sheets] + [g.radius + g.length for g in model.guides]
+    return float(max(np.abs(model.bodies.position).max(initial=0.0), *size))
