@@ -1,7 +1,7 @@
 """Three scenes as a new user writes them: what was rejected is read or answered, what was hidden is said.
 
 A ticket in a channel, a sheet of A4 off a stack, a worn note. Eight spellings were refused, and three
-mistakes were told by nothing.
+mistakes were reported by nothing.
 """
 
 from __future__ import annotations

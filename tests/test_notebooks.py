@@ -29,8 +29,8 @@ def test_there_are_two() -> None:
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_a_notebook_runs(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    told = json.loads(path.read_text("utf-8"))
-    cells = [cell for cell in told["cells"] if cell["cell_type"] == "code"]
+    record = json.loads(path.read_text("utf-8"))
+    cells = [cell for cell in record["cells"] if cell["cell_type"] == "code"]
     assert not any(cell["outputs"] or cell["execution_count"] for cell in cells), "store it without outputs"
     space: dict[str, Any] = {"__name__": "__main__"}
     started = time.process_time()

@@ -100,8 +100,8 @@ class Row:
     def __str__(self) -> str:
         mark = "" if self.same else "  DIFFERS"
         mark += "  SLOWER" if self.slower else ""
-        told = f"{self.apart:.1e} of {self.allowed:.0e}, time {self.ratio:.3f}"
-        return f"{self.solver} {self.name}: {self.status}, {told}{mark}"
+        message = f"{self.apart:.1e} of {self.allowed:.0e}, time {self.ratio:.3f}"
+        return f"{self.solver} {self.name}: {self.status}, {message}{mark}"
 
 
 class Other(Exception):
@@ -126,10 +126,10 @@ class Process:
         assert self._process.stdin is not None and self._process.stdout is not None
         pickle.dump((solver, name, tuple(sets)), self._process.stdin)
         self._process.stdin.flush()
-        told, by_numba = pickle.load(self._process.stdout)
+        message, by_numba = pickle.load(self._process.stdout)
         if by_numba != self._numba:
             raise Other("the programs do not fit: python -m mdlgen.program.build --check")
-        return told
+        return message
 
     def close(self) -> None:
         """Ends the process."""
