@@ -15,10 +15,12 @@ from typing import TYPE_CHECKING
 from mdlgen.results.quantities import Difference, differences
 
 if TYPE_CHECKING:
+    from mdlgen.model.tables import Model
     from mdlgen.results.result import Result
 
-# Of the last difference: for two runs, and for what the greatest value of a run is, which may lie between.
-SAFETY, SAFETY_PEAKS = 2.0, 4.0
+# Of the last difference: for two runs that judge a trajectory; for what the tolerance does not judge, forces,
+# peaks, speeds and probes, of which two runs agree by accident more often.
+SAFETY, SAFETY_REST = 2.0, 4.0
 # What the difference before the last leaves of itself at an order of two.
 SECOND_ORDER = 0.25
 # Ratios of the difference before to the last one: of an order of one; of a third, below which they do not
@@ -32,8 +34,12 @@ MOST = 0.25
 # peaks. With contacts, whose first touch may fall into another step: of trajectories; of forces and peaks.
 # What run.tolerance judges is a trajectory, slides and arms too: a floor above 1 would fail a run by itself.
 FREE, FREE_PEAKS, TOUCHING, TOUCHING_PEAKS = 1e-6, 1e-3, 1e-2, 3.0
+# The same of trajectories where sheets that bend touch something: they flutter.
+FLUTTERING = 0.25
 # Of the root mean square over all alike of a scene: one of them may agree by accident.
 ALIKE = 0.5
+# Of what is estimated of a pair's greatest force: a mean over the time in contact changes with short touches.
+OF_GREATEST = 0.25
 
 
 @dataclass(frozen=True)
@@ -67,7 +73,7 @@ def between(runs: Sequence[Result], judged: bool = False) -> dict[str, Estimate]
         safety = 1.0 if judged and result.checks else _safety(last)
         most = MOST * (last.judged or last.scale) / last.scale
         value = rule(last.value, earlier, safety, judged, most)
-        least = result.model.run.tolerance * _floor(last, touching)
+        least = result.model.run.tolerance * _floor(last, touching, result.model)
         found[name] = Estimate(
             None if value is None else max(value, least), last.scale, last.unit, last.judged
         )
@@ -75,12 +81,13 @@ def between(runs: Sequence[Result], judged: bool = False) -> dict[str, Estimate]
 
 
 def _safety(of: Difference) -> float:
-    return SAFETY_PEAKS if of.kind in ("strain", "curvature", "twist", "contacts.max_force") else SAFETY
+    return SAFETY if of.judged is not None or of.kind == "contacts.force" else SAFETY_REST
 
 
-def _floor(of: Difference, touching: bool) -> float:
+def _floor(of: Difference, touching: bool, model: Model) -> float:
     if of.judged is not None or of.kind in ("probes.displacement", "rollers.omega"):
-        return TOUCHING if touching else FREE
+        bends = any(sheet.count > 1 for sheet in model.sheets)
+        return (FLUTTERING if bends else TOUCHING) if touching else FREE
     return TOUCHING_PEAKS if touching else FREE_PEAKS
 
 
@@ -108,14 +115,38 @@ def _pooled(estimates: dict[str, Estimate]) -> dict[str, Estimate]:
             groups.setdefault(_alike(name), []).append(found.value**2)
     least = {kind: ALIKE * (sum(squares) / len(squares)) ** 0.5 for kind, squares in groups.items()}
     return {
-        name: found if found.value is None else replace(found, value=max(found.value, least[_alike(name)]))
+        name: found
+        if found.value is None
+        else replace(found, value=max(found.value, least[_alike(name)], _related(name, found, estimates)))
         for name, found in estimates.items()
     }
 
 
 def _alike(name: str) -> str:
+    """All peaks of joints are alike; else what has the same kind of part and the same last word."""
     head, _, rest = name.partition(".")
-    return f"{head}.{rest.rpartition('.')[2]}"
+    peak = any(f".{kind}." in name for kind in ("strain", "curvature", "twist"))
+    return f"{head}.peaks" if peak else f"{head}.{rest.rpartition('.')[2]}"
+
+
+def _related(name: str, of: Estimate, estimates: dict[str, Estimate]) -> float:
+    """What other quantities leave no doubt of: a pair's means change together, with the time that it touches,
+    and follow its greatest force; a probe is carried by a sheet."""
+    if name.endswith((".mean_force", ".mean_penetration")):
+        pair = name.rpartition(".")[0]
+        means = [_value(estimates, f"{pair}.mean_{what}") for what in ("force", "penetration")]
+        return max(*means, OF_GREATEST * _value(estimates, f"{pair}.max_force"))
+    if name.startswith("probes."):
+        carried = (
+            e for key, e in estimates.items() if key.startswith("sheets.") and key.endswith(".position")
+        )
+        return min(((e.value or 0.0) * e.scale / of.scale for e in carried), default=0.0)
+    return 0.0
+
+
+def _value(estimates: dict[str, Estimate], name: str) -> float:
+    found = estimates.get(name)
+    return 0.0 if found is None or found.value is None else found.value
 
 
 def headline(estimates: Mapping[str, Estimate]) -> tuple[float | None, str | None]:
