@@ -410,6 +410,7 @@ class Scene(_Scene):
         loads: Sequence[_Load | Mapping[str, Any]] = ...,
         run: _Run | Mapping[str, Any] = ...,
         probes: Mapping[str, _Probe | Mapping[str, Any]] = ...,
+        require: Sequence[str] = ...,
         supports: Sequence[_Support | Mapping[str, Any]] = ...,
     ) -> None: ...
     def with_(self, changes: Mapping[str, Any] | None = None, **more: Any) -> Scene: ...

@@ -1,8 +1,8 @@
 """What can go wrong, one class per exit code.
 
-Exit codes: 0 done, 2 bad spec, 3 input/output, 4 solver failed, 5 accuracy check failed,
-130 interrupted. A solver that fails is not an exception but a Result with a reason; the command
-line turns it into exit code 4.
+Exit codes: 0 done, 2 bad spec, 3 input/output, 4 solver failed, 5 accuracy check failed, 6 a requirement of
+the scene missed, 130 interrupted. A solver that fails is not an exception but a Result with a reason; the
+command line turns it into exit code 4.
 """
 
 from __future__ import annotations
@@ -106,3 +106,9 @@ class AccuracyError(MdlgenError):
     """A result exists but missed the accuracy that was asked for."""
 
     exit_code = 5
+
+
+class RequirementError(MdlgenError):
+    """A run that is right does not do what its scene requires."""
+
+    exit_code = 6

@@ -97,6 +97,9 @@ def solve(
 ) -> Result:
     """Run a Model; see `mdlgen.solve`. `checkpointer` writes states, of a solver that can; `threads` are how
     many it may use, where it has use for them."""
+    from mdlgen.results.verdict import check
+
+    check(model)
     backend = solver(chosen(name, model)[0])
     options: dict[str, Any] = {}
     if checkpointer is not None and backend.capabilities.resumes:

@@ -32,7 +32,7 @@ FILES = ["result.h5", "series.csv", "summary.json"]
 PROMISED = {
     "scene", "solver", "status", "t_end_ms", "steps", "step_ms", "wall_s", "compile_s", "build_s", "pairs",
     "error_estimate", "tolerance", "energy", "events", "sheets", "rollers", "guides", "meshes", "probes",
-    "versions", "error_estimate_of", "estimates", "estimate_scales", "planes",
+    "verdict", "versions", "error_estimate_of", "estimates", "estimate_scales", "planes",
 }  # fmt: skip
 WORK = {"rounds", "estimate_s", "halved"}  # what a run and the estimate of its error took
 STRIP = """

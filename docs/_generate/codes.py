@@ -13,6 +13,7 @@ EXITS = (
     ("3", "a file that cannot be read or written"),
     ("4", "a solver failed; the reason is printed and nothing is written"),
     ("5", "an accuracy check failed: `run.tolerance` was missed, or `verify` found a difference"),
+    ("6", "a run is right, and misses what its scene requires; its results are written"),
     ("130", "interrupted by Ctrl-C"),
 )
 

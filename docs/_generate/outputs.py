@@ -45,6 +45,12 @@ SUMMARY: dict[str, tuple[str, str]] = {
     "estimate_scales.QUANTITY.scale": ("", "scale of that estimate"),
     "estimate_scales.QUANTITY.unit": ("", "unit of the scale"),
     "strain": ("", "elongation over flexible length, of a clamped strip under edge stress"),
+    "verdict.passed": ("", "whether all that `require` asks for is there; null: it asks for nothing"),
+    "verdict.requirements": (
+        "",
+        "`requirement`, `passed`, `value`, `unit`, `margin` (below zero: what is missing) of each",
+    ),
+    "verdict.events": ("", "jams, double feeds, stubs and large slips in words"),
     "versions.PACKAGE": ("", "versions of mdlgen, Python, numpy and the solver"),
     "sheets.NAME.travel_mm": ("mm", "displacement of the centre of mass, [x, y, z]"),
     "sheets.NAME.speed_mm_per_s": ("mm/s", "velocity of the centre of mass at the end, [x, y, z]"),

@@ -31,7 +31,7 @@ from mdlgen.cli.shell import (
     source_of,
     strictly,
 )
-from mdlgen.errors import AccuracyError, SpecError
+from mdlgen.errors import AccuracyError, RequirementError, SpecError
 
 if TYPE_CHECKING:
     from mdlgen.model.tables import Model
@@ -177,6 +177,11 @@ def run(
             f"{request.spec}: the error estimate of {result.error_estimate_of} is "
             f"{result.error_estimate:.3g}, above run.tolerance {model.run.tolerance:g}; the files in "
             f"{folder} hold this result; give a smaller run.step"
+        )
+    missed = [row["requirement"] for row in summary["verdict"]["requirements"] if not row["passed"]]
+    if missed:
+        raise RequirementError(
+            f"{request.spec}: {len(missed)} of {len(model.require)} requirements missed: {'; '.join(missed)}"
         )
 
 

@@ -134,6 +134,7 @@ def _lower(scene: Scene) -> Model:
         run=run,
         unfollowed=unfollowed(scene, rows),
         following=tuple(following(scene)),
+        require=scene.require,
     )
 
 

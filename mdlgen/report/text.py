@@ -9,6 +9,7 @@ from typing import Any
 from mdlgen.lints.cost import Cost
 from mdlgen.lints.smoothing import lines as smoothing_lines
 from mdlgen.report.overview import UNITS
+from mdlgen.results.verdict import outcomes_of
 
 FEW = 3  # names that are listed in a line
 NOTHING = 1e-9  # mm, mm/s, deg, N: what is less is round-off
@@ -179,6 +180,8 @@ def summary_text(record: dict[str, Any]) -> str:
         f"after {record['build_s']:.2g} s to build and {record['compile_s']:.2g} s to compile",
         f"pairs: {pairs['possible']} possible, {pairs['kept']} kept, {pairs['touched']} touched",
     ]
+    lines += [str(outcome) for outcome in outcomes_of(record)]
+    lines += record.get("verdict", {}).get("events", [])
     if record["halved"]:
         lines.append("one side was solved, the other is its mirror image (run.symmetry: false solves both)")
     for name, sheet in record["sheets"].items():

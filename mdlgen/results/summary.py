@@ -12,6 +12,7 @@ from mdlgen.model.tables import Floats, GuidePart, MeshPart, PlanePart, RollerPa
 from mdlgen.results.compare import travel
 from mdlgen.results.estimates import complete
 from mdlgen.results.result import Result
+from mdlgen.results.verdict import verdict
 from mdlgen.version import version
 
 PER_SECOND = 1000.0  # mm/ms -> mm/s, rad/ms -> rad/s
@@ -22,7 +23,7 @@ def summary(result: Result, without: Collection[str] = ()) -> dict[str, Any]:
     end.
 
     A number that is not finite, or that the run did not reach, is None. `without` names what need not be
-    worked out: "events", "bearing" (what the joints of the sheets bore), "estimates".
+    worked out: "events", "bearing" (what the joints of the sheets bore), "estimates", "verdict".
     """
     model = result.model
     energy = result.energy
@@ -67,6 +68,8 @@ def summary(result: Result, without: Collection[str] = ()) -> dict[str, Any]:
         record["estimate_scales"] = {
             name: {"scale": found.scale, "unit": found.unit} for name, found in estimates.items()
         }
+    if not {"verdict", "events", "bearing"} & set(without) and len(result.time):
+        told["verdict"] = verdict(result, plain(told))
     if model.tension is not None:
         record["strain"] = strain(result) if len(result.time) else None
     return plain(record)

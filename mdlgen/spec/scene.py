@@ -47,6 +47,7 @@ from mdlgen.spec.parameter import (
     without_formulas,
 )
 from mdlgen.spec.part import Part
+from mdlgen.spec.require import requirement
 from mdlgen.spec.run import Run
 from mdlgen.spec.sheet import Sheet
 from mdlgen.spec.shorthand import Defaults, written_out
@@ -117,6 +118,13 @@ class Scene(Strict):
     run: Run = Field(default_factory=Run, description="duration, analysis and accuracy")
     probes: dict[Name, Probe] = Field(
         default_factory=dict, description="points of sheets whose motion is recorded, by name"
+    )
+    require: tuple[str, ...] = Field(
+        default=(),
+        strict=False,
+        description="what the scene has to do, a text each: no jam, no stub at guide_1, yaw within 1 deg, "
+        "speed above 400 mm/s at 30 ms, rollers.motor.nip_force from 2.5 N to 3.5 N throughout; run judges "
+        "each, and exit code 6 says that one is missed",
     )
     supports: tuple[Support, ...] = Field(
         default=(), strict=False, description="points of sheets that are held"
@@ -242,6 +250,19 @@ class Scene(Strict):
         for name, mesh in self.meshes.items():
             if mesh.on is not None:
                 yield partial(known, mesh.on, self.rollers, "roller", ("meshes", name, "on"))
+
+        for k in range(len(self.require)):
+            yield partial(self._check_requirement, k)
+
+    def _check_requirement(self, k: int) -> None:
+        path = ("require", k)
+        try:
+            wanted = requirement(self.require[k])
+        except ValueError as error:
+            raise fail(str(error), path) from None
+        if wanted.part is not None:
+            parts = (*self.sheets, *self.rollers, *self.planes, *self.guides, *self.meshes)
+            known(wanted.part, parts, "part", path)
 
     def _check_nip(self, name: str) -> None:
         nip, path = self.nips[name], ("nips", name)

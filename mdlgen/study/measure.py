@@ -6,10 +6,8 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from mdlgen.errors import SpecError, did_you_mean
-from mdlgen.model.rotations import euler_parameters
+from mdlgen.results.begun import begun_of
 from mdlgen.results.events import KINDS
 from mdlgen.results.quantities import all_names
 from mdlgen.study.expression import Expression, Value, read
@@ -70,29 +68,9 @@ def known(model: Model) -> dict[str, Value]:
     from mdlgen.results.summary import summary
 
     parts = [p.name for p in (*model.sheets, *model.rollers, *model.planes, *model.guides)]
-    begun = _begun(model)
+    begun = begun_of(model)
     found = flat(summary(begun)) | {f"estimates.{name}": 0.0 for name in all_names(begun)}
     return found | {f"events.{kind}.{part}": 0.0 for kind in KINDS for part in parts}
-
-
-def _begun(model: Model) -> Result:
-    """A run that has its first state alone."""
-    from mdlgen.results.result import ContactStatistics, Result
-
-    bodies, rows = model.bodies, len(model.contacts.part_a)
-    turn = euler_parameters(bodies.rotation)
-    return Result(
-        model=model,
-        solver="",
-        status="ok",
-        time=np.zeros(1),
-        position=bodies.position[None],
-        rotation=turn[None],
-        velocity=bodies.velocity[None],
-        spin=bodies.spin[None],
-        contact_force=np.zeros((1, rows)),
-        statistics=ContactStatistics(*(np.zeros(rows) for _ in range(5))),
-    )
 
 
 def defaults(model: Model) -> list[str]:

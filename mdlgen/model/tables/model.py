@@ -102,6 +102,7 @@ class Model(Frozen):
     run: RunSettings
     unfollowed: tuple[tuple[str, str], ...] = ()  # formulas of what is no Parameter: places, texts
     following: tuple[int, ...] = ()  # entries of the contacts whose smoothing follows from the speeds
+    require: tuple[str, ...] = ()  # what a run is judged by, see spec.require
 
     def __repr__(self) -> str:
         kinds = ("sheets", "rollers", "planes", "guides", "bushings", "contacts")

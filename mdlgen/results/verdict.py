@@ -1,0 +1,261 @@
+"""Whether a run does what its scene requires, and what happened that a reader should know anyway."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mdlgen.errors import SpecError, did_you_mean
+from mdlgen.model.tables import Floats
+from mdlgen.spec.require import Requirement, requirement
+from mdlgen.units import parse_unit, same
+
+if TYPE_CHECKING:
+    from mdlgen.model.tables import Model
+    from mdlgen.results.result import Result
+
+# Endings of names in the summary, and the units that they stand for; the longest first.
+UNITS = {
+    "_mm_per_s": "mm/s",
+    "_rad_per_s": "rad/s",
+    "_per_mm": "1/mm",
+    "_n_mm": "N*mm",
+    "_mm": "mm",
+    "_deg": "deg",
+    "_ms": "ms",
+    "_n": "N",
+    "_w": "N*m/s",
+}
+# Events that a reader is told of whether or not they are required away.
+NOTABLE = ("jam", "double_feed", "stub")
+# A slip of more than this part of the surface's speed, over a whole stay, is told of, too.
+LARGE_SLIP = 0.2
+ROUND_OFF = 1e-9
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of one requirement. `value` and `margin` are in `unit`; a margin below zero is what is
+    missing. Of a measure that is not known the value is None, and it is missed."""
+
+    requirement: str
+    passed: bool
+    value: float | None
+    unit: str
+    margin: float | None
+    of: str | None = None  # the sheet that is worst, of a measure that every sheet has
+
+    def __str__(self) -> str:
+        verdict = "pass" if self.passed else "FAIL"
+        if self.value is None:
+            return f"{verdict}  {self.requirement}: not known"
+        if self.margin is None:
+            return f"{verdict}  {self.requirement}" + (f": {self.value:g} times" if self.value else "")
+        unit = "" if self.unit in ("", "%") else f" {self.unit}"
+        end = self.unit if self.unit == "%" else ""
+        # what is small beside its distance from the limit is round-off
+        value = 0.0 if abs(self.value) < ROUND_OFF * abs(self.margin) else self.value
+        whose = f" of {self.of}" if self.of else ""
+        unit = end + unit
+        return f"{verdict}  {self.requirement}: {value:.4g}{unit}{whose}, margin {self.margin:.3g}{unit}"
+
+
+def verdict(result: Result, told: Mapping[str, Any]) -> dict[str, Any]:
+    """What `verdict` in summary.json holds, from a summary: whether all passed (None: nothing is required),
+    each requirement with its value and margin, and notable events in words. Raises SpecError."""
+    outcomes = judge(result, told)
+    return {
+        "passed": all(o.passed for o in outcomes) if outcomes else None,
+        "requirements": [
+            {
+                "requirement": o.requirement,
+                "passed": o.passed,
+                "value": o.value,
+                "unit": o.unit,
+                "margin": o.margin,
+                **({"of": o.of} if o.of else {}),
+            }
+            for o in outcomes
+        ],
+        "events": [in_words(event) for event in told.get("events", ()) if _is_notable(event)],
+    }
+
+
+def outcomes_of(told: Mapping[str, Any]) -> list[Outcome]:
+    """The outcomes that a summary holds."""
+    return [Outcome(**row) for row in told.get("verdict", {}).get("requirements", ())]
+
+
+def _is_notable(event: Mapping[str, Any]) -> bool:
+    if event["kind"] == "slip":
+        return abs(event.get("part_of_surface_speed") or 0.0) > LARGE_SLIP
+    return event["kind"] in NOTABLE
+
+
+def in_words(event: Mapping[str, Any]) -> str:
+    """An event as a person says it."""
+    kind = str(event["kind"]).replace("_", " ")
+    where = event.get("roller") or event.get("part")
+    who = f"{event['sheet']} and {event['other']}" if "other" in event else str(event["sheet"])
+    text = f"{kind} of {who}" + (f" at {where}" if where else "")
+    if event["kind"] == "slip":
+        part = f"{100.0 * abs(event['part_of_surface_speed']):.0f} % of the surface's speed"
+        return f"{text}, {part}, most at {event['time_ms']:.4g} ms"
+    return f"{text} from {event['time_ms']:.4g} ms"
+
+
+def check(model: Model) -> None:
+    """Raises SpecError for a requirement about a measure or a time that a run of the Model has not."""
+    if model.require:
+        from mdlgen.results.begun import begun_of
+        from mdlgen.results.summary import summary
+
+        begun = begun_of(model)
+        judge(begun, summary(begun, without=("estimates", "verdict")))
+
+
+def judge(result: Result, told: Mapping[str, Any]) -> list[Outcome]:
+    """The outcome of each requirement. Raises SpecError for a measure that the run has not."""
+    found: list[Outcome] = []
+    for k, wanted in enumerate(map(requirement, result.model.require)):
+        try:
+            found.append(_event(wanted, told) if wanted.event else _limit(result, told, wanted))
+        except ValueError as error:
+            raise SpecError(f"{wanted.text!r}: {error}", ("require", k)) from None
+    return found
+
+
+def _event(wanted: Requirement, told: Mapping[str, Any]) -> Outcome:
+    count = 0
+    for event in told["events"]:
+        parts = {event.get(key) for key in ("sheet", "roller", "other", "part")}
+        count += event["kind"] == wanted.event and (wanted.part is None or wanted.part in parts)
+    return Outcome(wanted.text, count == 0, float(count), "", None)
+
+
+def _limit(result: Result, told: Mapping[str, Any], wanted: Requirement) -> Outcome:
+    assert wanted.measure is not None, "a requirement without an event has a measure"
+    each = wanted.measure.partition(".")[0] not in told
+    names = list(told["sheets"]) if each else [None]
+    rows = []
+    for name in names:
+        path = f"sheets.{name}.{wanted.measure}" if each else wanted.measure
+        values, unit = _values(result, told, path, wanted)
+        rows.append((*_worst(values, wanted), unit, name))
+    value, margin, unit, of = min(rows, key=lambda row: -math.inf if row[1] is None else row[1])
+    shown = wanted.unit or unit
+    per = 0.01 if shown == "%" else parse_unit(shown).factor if shown else 1.0
+    if value is None or margin is None:
+        return Outcome(wanted.text, False, None, shown, None, of)
+    return Outcome(
+        wanted.text, margin >= 0.0, value / per, shown, margin / per, of if len(names) > 1 else None
+    )
+
+
+def _worst(values: Floats, wanted: Requirement) -> tuple[float | None, float | None]:
+    """The value with the least margin, and that margin."""
+    if not values.size or not np.isfinite(values).all():
+        return None, None
+    margins = np.minimum(values - wanted.low, wanted.high - values)
+    at = int(margins.argmin())
+    return float(values[at]), float(margins[at])
+
+
+def _values(result: Result, told: Mapping[str, Any], path: str, wanted: Requirement) -> tuple[Floats, str]:
+    """Values of a measure in internal units at the times asked for, and the unit of the summary."""
+    value, unit = _of_summary(told, path)
+    own = parse_unit(unit) if unit else None
+    if wanted.unit not in ("", "%") or own is not None:
+        have = (0.0, 0.0, 0.0, 0.0) if own is None else own.dimension
+        if not same(have, wanted.dimension):
+            has = f"is in {unit}" if unit else "has no unit"
+            raise ValueError(
+                f"{path} {has}, the limit {f'is in {wanted.unit}' if wanted.unit else 'has no unit'}"
+            )
+    if wanted.throughout:
+        return _series(result, path), unit
+    if wanted.at is not None:
+        end = result.model.run.duration
+        if not 0.0 <= wanted.at <= end * (1.0 + 1e-9):
+            raise ValueError(f"{wanted.at:g} ms is not in the run of {end:g} ms")
+        return np.array([np.interp([wanted.at], result.time, _series(result, path))[0]]), unit
+    if value is None:
+        return np.zeros(0), unit
+    return np.array([value * (own.factor if own is not None else 1.0)]), unit
+
+
+def _of_summary(told: Mapping[str, Any], path: str) -> tuple[float | None, str]:
+    """A number of the summary by its dotted name without the unit: of a vector its length, of what joints
+    bore the greatest in size; and the unit that its name in the summary has."""
+    node: Any = told
+    unit = ""
+    for part in path.split("."):
+        if isinstance(node, (list, tuple)) and part in ("x", "y", "z") and len(node) == 3:
+            node = node["xyz".index(part)]
+            continue
+        if not isinstance(node, Mapping):
+            raise ValueError(f"{path} goes on behind a number")
+        key, unit = _key(node, part, path)
+        node = node[key]
+    if isinstance(node, Mapping):
+        peaks = {k: v for k, v in node.items() if k.startswith(("max", "min"))}
+        if not peaks:
+            raise ValueError(f"{path} is no number; it has {', '.join(map(str, node))}")
+        unit = unit or next((u for k in peaks for end, u in UNITS.items() if k.endswith(end)), "")
+        node = max((abs(v) for v in peaks.values() if v is not None), default=None)
+    if isinstance(node, (list, tuple)):
+        node = None if any(v is None for v in node) else math.hypot(*node)
+    if isinstance(node, str):
+        raise ValueError(f"{path} is a text")
+    return (None if node is None else float(node)), unit
+
+
+def _key(node: Mapping[str, Any], part: str, path: str) -> tuple[str, str]:
+    if part in node:
+        ends = next(((end, unit) for end, unit in UNITS.items() if part.endswith(end)), ("", ""))
+        return part, ends[1]
+    for end, unit in UNITS.items():
+        if f"{part}{end}" in node:
+            return f"{part}{end}", unit
+    known = [_bare(key) for key in node]
+    raise ValueError(
+        f"there is no {part!r} in {path}{did_you_mean(part, known)}; there are {', '.join(known)}"
+    )
+
+
+def _bare(key: str) -> str:
+    return next((key.removesuffix(end) for end in UNITS if key.endswith(end)), key)
+
+
+def _series(result: Result, path: str) -> Floats:
+    """A measure over the stored times, in internal units, (t,)."""
+    kind, _, rest = path.partition(".")
+    name, _, what = rest.partition(".")
+    model = result.model
+    if kind == "sheets":
+        index = next(k for k, sheet in enumerate(model.sheets) if sheet.name == name)
+        place, rate, yaw = result.sheet_motion(index)
+        sizes = {"yaw": yaw, "yaw_deg": yaw}
+        part = model.sheets[index]
+        begun = model.mass_share(index) @ model.bodies.position[part.first : part.first + part.count]
+        for key, vectors in (("travel", place - begun), ("speed", rate)):
+            sizes[key] = np.linalg.norm(vectors, axis=1)
+            sizes |= {f"{key}.{axis}": vectors[:, k] for k, axis in enumerate("xyz")}
+        if what in sizes:
+            return sizes[what]
+    parts = {part.name: part for part in model.machine}
+    if kind in ("rollers", "planes", "guides", "meshes") and name in parts:
+        if what in ("nip_force", "nip_force_n"):
+            sides = zip(model.contacts.part_a, model.contacts.part_b, strict=True)
+            return result.contact_force[:, [k for k, ends in enumerate(sides) if name in ends]].sum(axis=1)
+        if kind == "rollers" and what in ("omega", "omega_rad_per_s"):
+            roller = model.roller(name)
+            return result.spin[:, roller.body] @ roller.axis
+    raise ValueError(
+        f"{path} is known at the end alone; over time there are yaw, speed and travel of sheets, nip_force "
+        "of parts and omega of rollers"
+    )
