@@ -30,9 +30,9 @@ UNITS = {
     "_n": "N",
     "_w": "N*m/s",
 }
-# Events that a reader is told of whether or not they are required away.
+# Events that a reader is record of whether or not they are required away.
 NOTABLE = ("jam", "double_feed", "stub")
-# A slip of more than this part of the surface's speed, over a whole stay, is told of, too.
+# A slip of more than this part of the surface's speed, over a whole stay, is record of, too.
 LARGE_SLIP = 0.2
 ROUND_OFF = 1e-9
 
@@ -64,10 +64,10 @@ class Outcome:
         return f"{verdict}  {self.requirement}: {value:.4g}{unit}{whose}, margin {self.margin:.3g}{unit}"
 
 
-def verdict(result: Result, told: Mapping[str, Any]) -> dict[str, Any]:
+def verdict(result: Result, record: Mapping[str, Any]) -> dict[str, Any]:
     """What `verdict` in summary.json holds, from a summary: whether all passed (None: nothing is required),
     each requirement with its value and margin, and notable events in words. Raises SpecError."""
-    outcomes = judge(result, told)
+    outcomes = judge(result, record)
     return {
         "passed": all(o.passed for o in outcomes) if outcomes else None,
         "requirements": [
@@ -81,13 +81,13 @@ def verdict(result: Result, told: Mapping[str, Any]) -> dict[str, Any]:
             }
             for o in outcomes
         ],
-        "events": [in_words(event) for event in told.get("events", ()) if _is_notable(event)],
+        "events": [in_words(event) for event in record.get("events", ()) if _is_notable(event)],
     }
 
 
-def outcomes_of(told: Mapping[str, Any]) -> list[Outcome]:
+def outcomes_of(record: Mapping[str, Any]) -> list[Outcome]:
     """The outcomes that a summary holds."""
-    return [Outcome(**row) for row in told.get("verdict", {}).get("requirements", ())]
+    return [Outcome(**row) for row in record.get("verdict", {}).get("requirements", ())]
 
 
 def _is_notable(event: Mapping[str, Any]) -> bool:
@@ -118,33 +118,33 @@ def check(model: Model) -> None:
         judge(begun, summary(begun, without=("estimates", "verdict")))
 
 
-def judge(result: Result, told: Mapping[str, Any]) -> list[Outcome]:
+def judge(result: Result, record: Mapping[str, Any]) -> list[Outcome]:
     """The outcome of each requirement. Raises SpecError for a measure that the run has not."""
     found: list[Outcome] = []
     for k, wanted in enumerate(map(requirement, result.model.require)):
         try:
-            found.append(_event(wanted, told) if wanted.event else _limit(result, told, wanted))
+            found.append(_event(wanted, record) if wanted.event else _limit(result, record, wanted))
         except ValueError as error:
             raise SpecError(f"{wanted.text!r}: {error}", ("require", k)) from None
     return found
 
 
-def _event(wanted: Requirement, told: Mapping[str, Any]) -> Outcome:
+def _event(wanted: Requirement, record: Mapping[str, Any]) -> Outcome:
     count = 0
-    for event in told["events"]:
+    for event in record["events"]:
         parts = {event.get(key) for key in ("sheet", "roller", "other", "part")}
         count += event["kind"] == wanted.event and (wanted.part is None or wanted.part in parts)
     return Outcome(wanted.text, count == 0, float(count), "", None)
 
 
-def _limit(result: Result, told: Mapping[str, Any], wanted: Requirement) -> Outcome:
+def _limit(result: Result, record: Mapping[str, Any], wanted: Requirement) -> Outcome:
     assert wanted.measure is not None, "a requirement without an event has a measure"
-    each = wanted.measure.partition(".")[0] not in told
-    names = list(told["sheets"]) if each else [None]
+    each = wanted.measure.partition(".")[0] not in record
+    names = list(record["sheets"]) if each else [None]
     rows = []
     for name in names:
         path = f"sheets.{name}.{wanted.measure}" if each else wanted.measure
-        values, unit = _values(result, told, path, wanted)
+        values, unit = _values(result, record, path, wanted)
         rows.append((*_worst(values, wanted), unit, name))
     value, margin, unit, of = min(rows, key=lambda row: -math.inf if row[1] is None else row[1])
     shown = wanted.unit or unit
@@ -165,9 +165,9 @@ def _worst(values: Floats, wanted: Requirement) -> tuple[float | None, float | N
     return float(values[at]), float(margins[at])
 
 
-def _values(result: Result, told: Mapping[str, Any], path: str, wanted: Requirement) -> tuple[Floats, str]:
+def _values(result: Result, record: Mapping[str, Any], path: str, wanted: Requirement) -> tuple[Floats, str]:
     """Values of a measure in internal units at the times asked for, and the unit of the summary."""
-    value, unit = _of_summary(told, path)
+    value, unit = _of_summary(record, path)
     own = parse_unit(unit) if unit else None
     if wanted.unit not in ("", "%") or own is not None:
         have = (0.0, 0.0, 0.0, 0.0) if own is None else own.dimension
@@ -188,10 +188,10 @@ def _values(result: Result, told: Mapping[str, Any], path: str, wanted: Requirem
     return np.array([value * (own.factor if own is not None else 1.0)]), unit
 
 
-def _of_summary(told: Mapping[str, Any], path: str) -> tuple[float | None, str]:
+def _of_summary(record: Mapping[str, Any], path: str) -> tuple[float | None, str]:
     """A number of the summary by its dotted name without the unit: of a vector its length, of what joints
     bore the greatest in size; and the unit that its name in the summary has."""
-    node: Any = told
+    node: Any = record
     unit = ""
     for part in path.split("."):
         if isinstance(node, (list, tuple)) and part in ("x", "y", "z") and len(node) == 3:
