@@ -69,7 +69,7 @@ def summary(result: Result, without: Collection[str] = ()) -> dict[str, Any]:
             name: {"scale": found.scale, "unit": found.unit} for name, found in estimates.items()
         }
     if not {"verdict", "events", "bearing"} & set(without) and len(result.time):
-        told["verdict"] = verdict(result, plain(told))
+        record["verdict"] = verdict(result, plain(record))
     if model.tension is not None:
         record["strain"] = strain(result) if len(result.time) else None
     return plain(record)
