@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import functools
 import os
+from typing import Any
 
 import pytest
 import ran
@@ -14,6 +15,7 @@ from hypothesis import settings
 from mdlgen.program import build
 from mdlgen.program.file import Unfit
 from mdlgen.program.kernel import alone
+from mdlgen.program.ship import Program
 
 # A process makes its commands ready once; tests that call hundreds of them in one process would each time.
 typer.main.get_command = functools.cache(typer.main.get_command)
@@ -46,6 +48,25 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     plain = [i for i in items if i.path.stem in PLAIN]
     early = {id(i) for i in (*begin, *plain)}
     items[:] = [*begin, *plain, *(i for i in items if id(i) not in early)]
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Each worker takes one part of the list, and from the other's once it is at its end: tests of one file
+    share what they run. Not where numba compiles, which the order is for then."""
+    if config.getvalue("dist") != "load" or alone() or not all(map(_fits, build.programs())):
+        return None
+    from xdist.scheduler import WorkStealingScheduling
+
+    return WorkStealingScheduling(config, log)
+
+
+def _fits(program: Program) -> bool:
+    try:
+        program.head()
+    except Unfit:
+        return False
+    return True
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
