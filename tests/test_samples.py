@@ -25,8 +25,12 @@ def solved(name, solver="auto", *sets):
     return result, result.summary()
 
 
-# Exudyn takes a minute for all of it: to where the second note has left the pick roller, which lands then.
-PIECES = {("retard_pad", "exudyn"): ("run.duration=160 ms",)}
+PIECES = {
+    # Exudyn takes a minute for all of it: to where the second note has left the pick roller, which lands then
+    ("retard_pad", "exudyn"): ("run.duration=160 ms", "run.tolerance=0.01"),
+    # the Model of transport_4x4 (tests/test_nips.py), which it runs as a whole below
+    ("transport_nips", "exudyn"): ("run.duration=5 ms",),
+}
 
 
 @pytest.mark.parametrize("solver", ["auto", "exudyn"])
