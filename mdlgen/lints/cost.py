@@ -1,8 +1,8 @@
 """What a run costs, before it is run, and lints of what makes it cost so much.
 
-Fitted to the samples on one core of some 3 GHz, with all that the solver lattice runs: the coarser runs from
-which the error is estimated, too. Of the
-transient samples that take 0.4 s or more each took 0.5 to 2.5 times as long.
+Fitted to the samples on one core of some 3 GHz that did little else, with all that the solver lattice runs:
+the coarser runs from which the error is estimated, too. Transient samples that take 0.4 s or more took 0.5 to
+2.5 times as long.
 """
 
 from __future__ import annotations
