@@ -332,7 +332,8 @@ def test_samples_run_as_shipped_as_by_numba(solver: str, names: dict[str, tuple[
 def test_a_comparison_sees_what_differs() -> None:
     places = np.zeros((2, 1, 3))
     places[1] = 10.0
-    run = compare.Run("ok", 5, 1e-3, places, 1.0)
+    turns = np.zeros((2, 1, 4))
+    run = compare.Run("ok", 5, 1e-3, places, turns, 1.0)
     for name, off, same in (
         ("transport_4x4", 0.9e-8, True),
         ("transport_4x4", 1.1e-8, False),
@@ -343,7 +344,9 @@ def test_a_comparison_sees_what_differs() -> None:
         row = compare._row("lattice", name, [[run], [other]])
         assert row.same == same
         assert row.slower == (name == "transport_4x4")
-    assert not compare._row("lattice", "pick", [[run], [run._replace(steps=6)]]).same
+    for name in ("transport_4x4", "pick"):
+        assert compare._row("lattice", name, [[run], [run._replace(steps=6)]]).same == (name == "pick")
+        assert not compare._row("lattice", name, [[run], [run._replace(turns=turns + 0.1)]]).same
     failed = run._replace(status="no convergence")
     assert not compare._row("lattice", "pick", [[failed], [failed]]).same
 

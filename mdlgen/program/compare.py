@@ -1,9 +1,10 @@
 """Runs samples by the shipped programs and by what numba compiles: `python -m mdlgen.program.compare`.
 
 A process of each kind runs the same sample in turn, `--repeat` times. Printed are how far their places are
-apart at most, as a part of the travel, what is allowed, and the processor time of the shipped program over
-numba's (medians). The exit code is 1 where places differ by more, or where one of the samples in TIMED takes
-more than 5 % longer. numba compiles for minutes where it has not kept these kernels.
+apart at most, as a part of the travel, or their Euler parameters; what is allowed; and the processor time
+of the shipped program over numba's (medians). The exit code is 1 where they differ by more, or where one of
+the samples in TIMED takes more than 5 % longer. numba compiles for minutes where it has not kept these
+kernels.
 
 It stands above what it runs, so it knows that by name only.
 """
@@ -72,6 +73,7 @@ class Run(NamedTuple):
     steps: int
     estimate: float | None
     places: np.ndarray  # (t, bodies, 3) [mm]
+    turns: np.ndarray  # Euler parameters, (t, bodies, 4)
     took: float  # processor time [s]
 
 
@@ -81,9 +83,9 @@ class Row:
 
     solver: str
     name: str
-    alike: bool  # status and steps are the same
+    alike: bool  # the same status and stored times; where contacts do not rattle, as many steps
     status: str
-    apart: float  # most, as a part of the travel
+    apart: float  # most, of places as a part of the travel, and of Euler parameters
     allowed: float
     ratio: float  # time of the shipped program over numba's
 
@@ -152,9 +154,13 @@ def compared(solver: str, samples: dict[str, tuple[str, ...]], repeat: int) -> I
 
 def _row(solver: str, name: str, runs: list[list[Run]]) -> Row:
     one, two = (kind[-1] for kind in runs)
-    alike = (one.status, one.steps, one.places.shape) == (two.status, two.steps, two.places.shape)
-    travel = np.abs(one.places - one.places[0]).max() or np.abs(one.places).max()
-    apart = float(np.abs(one.places - two.places).max() / travel) if alike else float("inf")
+    alike = (one.status, one.places.shape) == (two.status, two.places.shape)
+    alike &= one.steps == two.steps or name not in CALM
+    travel = np.abs(one.places - one.places[0]).max() or np.abs(one.places).max() or 1.0
+    apart = float("inf")
+    if alike:
+        turned = np.abs(one.turns - two.turns).max()
+        apart = float(max(np.abs(one.places - two.places).max() / travel, turned))
     took = [statistics.median(run.took for run in kind) for kind in runs]
     allowed = SAME if name in CALM else one.estimate or UNKNOWN
     return Row(solver, name, alike, one.status, apart, allowed, took[0] / took[1])
@@ -175,7 +181,7 @@ def answer() -> None:
         begun = time.process_time()
         result = mdlgen.solve(model, solver)
         took = time.process_time() - begun
-        run = Run(result.status, result.steps, result.error_estimate, result.position, took)
+        run = Run(result.status, result.steps, result.error_estimate, result.position, result.rotation, took)
         pickle.dump((run, "numba" in sys.modules), stream)
         stream.flush()
 
