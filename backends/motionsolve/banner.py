@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from itertools import groupby
 
+from mdlgen.altair.edges import edge_note
 from mdlgen.backends.motionsolve.rows import Deck
 from mdlgen.backends.motionsolve.units import number
 from mdlgen.model.curves import limit
-from mdlgen.model.ends import edge_note
 from mdlgen.model.tables import SUPPORT, Model
 
 FRAME = (

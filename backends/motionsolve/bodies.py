@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from mdlgen.altair.rims import WHOLE, graphics, rim_facets
 from mdlgen.backends.motionsolve.axes import cosines
 from mdlgen.backends.motionsolve.rows import Body, Box, Cosines, Deck, Shell
 from mdlgen.backends.motionsolve.units import Triple, numbers, per_thousand, thousandfold, triples
 from mdlgen.model.meshes import origin
 from mdlgen.model.parts.guide import facets
-from mdlgen.model.rim_facets import WHOLE, graphics, rim_facets
 from mdlgen.model.shape import ground_frames
 from mdlgen.model.tables import MeshPart, Model
 

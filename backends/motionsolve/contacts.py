@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from functools import cache, partial
 
+from mdlgen.altair.rims import Side, graphics, meetings
 from mdlgen.backends.motionsolve.bodies import facet_ids, graphic_id, rim_ids
 from mdlgen.backends.motionsolve.rows import ContactRow, Deck, Law
 from mdlgen.backends.motionsolve.units import number, thousandfold
-from mdlgen.model.rim_facets import Side, graphics, meetings
 from mdlgen.model.tables import Model
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Protocol
 
+from mdlgen.altair.labels import check_allowed
 from mdlgen.backends.motionsolve.rows import Deck
 from mdlgen.model import naming
 from mdlgen.model.tables import Model
@@ -28,7 +29,7 @@ def check(model: Model, deck: Deck) -> None:
     own = [marker.name for marker in deck.markers if "." not in marker.name]
     names = [*_BUILT_IN, *own, *(row.name for row in _entities(deck))]
     labels = [marker.label for marker in deck.markers] + [row.label for row in _entities(deck)]
-    naming.check_text((model.name, *names), labels)
+    check_allowed((model.name, *names), labels)
     naming.check_unique("things in the deck", names)
 
 

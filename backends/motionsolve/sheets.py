@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from mdlgen.altair.curves import Written, straight_points, written
 from mdlgen.backends.motionsolve.axes import cosines
 from mdlgen.backends.motionsolve.bodies import body_id
 from mdlgen.backends.motionsolve.requests import add_request
@@ -16,7 +17,6 @@ from mdlgen.backends.motionsolve.rows import (
     Surface,
 )
 from mdlgen.backends.motionsolve.units import Triple, number, numbers, per_thousand, triples
-from mdlgen.model.curves import Written, straight_points, written
 from mdlgen.model.tables import CLAMP, Model
 
 _AXES = ("x", "y", "z", "tx", "ty", "tz")

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+from mdlgen.altair.rolling import refuse_rolling
+from mdlgen.altair.springs import refuse_compressed
 from mdlgen.backends.motionsolve import gate
 from mdlgen.backends.motionsolve.banner import banner
 from mdlgen.backends.motionsolve.environment import environment
 from mdlgen.backends.motionsolve.views import deck_view
 from mdlgen.errors import SpecError
 from mdlgen.model.external import refuse_externals
-from mdlgen.model.rolling import refuse_rolling
 from mdlgen.model.sheet_pairs import refuse_searched
-from mdlgen.model.springs import refuse_compressed
 from mdlgen.model.tables import Model
 
 _BUFFERED = 4096  # pieces of text that are joined at once: a large deck has millions

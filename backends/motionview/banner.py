@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 
+from mdlgen.altair.curves import TEXT_BEYOND
+from mdlgen.altair.edges import edge_note
 from mdlgen.backends.motionview import script
 from mdlgen.backends.motionview.forms import unverified
 from mdlgen.backends.motionview.rows import SceneView
 from mdlgen.backends.motionview.units import number
-from mdlgen.model.curves import TEXT_BEYOND, limit
-from mdlgen.model.ends import edge_note
+from mdlgen.model.curves import limit
 from mdlgen.model.tables import Model
 
 SHARE = (

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from mdlgen.altair.classes import BoxClass, box_classes, joint_classes
 from mdlgen.backends.motionview.rows import CellView, GridView, HingeView, Lengths, Value, ZoneView
 from mdlgen.backends.motionview.units import number
-from mdlgen.model.classes import BoxClass, box_classes, joint_classes
 from mdlgen.model.tables import SheetPart
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 
+from mdlgen.altair.labels import check_allowed
 from mdlgen.errors import SpecError
-from mdlgen.model import naming
 from mdlgen.model.tables import Model
 
 _RESERVED = (
@@ -26,7 +26,7 @@ _DEFINED = re.compile(r'^ *\*(?!Real\b)(?:\w+\( *(\w+), "|Define\w+\( *(\w+))', 
 
 def check_names(model: Model) -> None:
     """Raises SpecError where a name or label of the Model is not from the allow-lists."""
-    naming.check_text(
+    check_allowed(
         identifiers=(
             model.name,
             *(s.name for s in model.sheets),

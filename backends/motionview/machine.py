@@ -7,6 +7,7 @@ from itertools import groupby
 
 import numpy as np
 
+from mdlgen.altair.rims import DEEP, Side, graphics, meetings
 from mdlgen.backends.motionview.cells import rough_boxes
 from mdlgen.backends.motionview.rows import (
     ArmView,
@@ -21,7 +22,6 @@ from mdlgen.backends.motionview.rows import (
     Value,
 )
 from mdlgen.backends.motionview.units import number
-from mdlgen.model.rim_facets import DEEP, Side, graphics, meetings
 from mdlgen.model.tables import Floats, GuidePart, MeshPart, Model, PlanePart, RimPart, RollerPart
 
 

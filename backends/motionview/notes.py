@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from mdlgen.altair.edges import edge_note
 from mdlgen.backends.motionview import script
 from mdlgen.backends.motionview.banner import SHARE, curve_lines, share_lines, sheet_lines
 from mdlgen.backends.motionview.forms import unverified_system
 from mdlgen.backends.motionview.rows import SystemView
 from mdlgen.backends.motionview.units import number
-from mdlgen.model.ends import edge_note
 from mdlgen.model.tables import BOX_BOX, Model
 
 

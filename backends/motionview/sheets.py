@@ -6,6 +6,8 @@ from itertools import islice
 
 import numpy as np
 
+from mdlgen.altair import labels
+from mdlgen.altair.curves import straight_points, written
 from mdlgen.backends.motionview.bend import bend_view
 from mdlgen.backends.motionview.cells import Differences, differences, grid_views, zone_views
 from mdlgen.backends.motionview.formula import mdl_formula, units_of
@@ -20,8 +22,6 @@ from mdlgen.backends.motionview.rows import (
     Value,
 )
 from mdlgen.backends.motionview.units import number
-from mdlgen.model import naming
-from mdlgen.model.curves import straight_points, written
 from mdlgen.model.plate import SHEAR_RATIO
 from mdlgen.model.shape import apart
 from mdlgen.model.stiffness import SUPPORT_FACTOR
@@ -116,7 +116,7 @@ def _joints(model: Model, index: int, differ: Differences) -> tuple[list[Point],
     owners = differ.owners or ["$%s"] * len(mine)
     clamped_x = sheet.clamp is not None and sheet.clamp.edge[0] == "x"
     for row, own, kind, a, b, (x, y), (one, two) in zip(mine.tolist(), owners, *columns, strict=True):
-        point = naming.node(sheet, x, y, (one, two))
+        point = labels.node(sheet, x, y, (one, two))
         if point not in taken:
             taken[point] = _node(point, sheet, x, y, (one, two))
         bush = Bush(table.name[row], table.label[row], body[a], body[b], point)

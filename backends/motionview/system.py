@@ -7,14 +7,14 @@ from dataclasses import replace
 
 import numpy as np
 
+from mdlgen.altair.rims import WHOLE, Meeting, meetings
+from mdlgen.altair.rims import graphics as roller_graphics
 from mdlgen.backends.motionview.idle import used_by
 from mdlgen.backends.motionview.machine import contact_views, guide_graphics, pair_rows, rough_pairs
 from mdlgen.backends.motionview.rows import Attachment, Pair, SystemView, Value
 from mdlgen.backends.motionview.units import number
 from mdlgen.backends.motionview.views import given_values, scene_view
 from mdlgen.model.parameters.names import OF_USER
-from mdlgen.model.rim_facets import WHOLE, Meeting, meetings
-from mdlgen.model.rim_facets import graphics as roller_graphics
 from mdlgen.model.tables import BOX_BOX, Ints, Model
 
 

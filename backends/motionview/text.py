@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from mdlgen.altair.rolling import refuse_rolling
+from mdlgen.altair.springs import refuse_compressed
 from mdlgen.backends.motionview import gate
 from mdlgen.backends.motionview.banner import banner
 from mdlgen.backends.motionview.environment import environment
@@ -10,9 +12,7 @@ from mdlgen.backends.motionview.system import system_view
 from mdlgen.backends.motionview.views import scene_view
 from mdlgen.errors import RefusedError, SpecError
 from mdlgen.model.external import refuse_externals
-from mdlgen.model.rolling import refuse_rolling
 from mdlgen.model.sheet_pairs import refuse_searched
-from mdlgen.model.springs import refuse_compressed
 from mdlgen.model.tables import Model
 
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mdlgen.model.frames import frame
-from mdlgen.model.tables import ON_PLATES, Contacts, Floats, GuidePart, Model, PlanePart
+from mdlgen.model.tables import ON_PLATES, Contacts, Floats, GuidePart, PlanePart
 
 FLUSH = 1e-6  # mm: a face that another one continues within this has no edge there
 _STATIONS = np.linspace(-1.0, 1.0, 9) * (1.0 - 1e-9)
@@ -88,16 +88,6 @@ def with_ends(
         tuple(
             replace(g, ends=_free(s, slabs, touch)) for g, s in zip(guides, slabs[len(planes) :], strict=True)
         ),
-    )
-
-
-def edge_note(model: Model) -> tuple[str, ...]:
-    """What a text says of the edges of the plates that sheets touch."""
-    if not np.isin(model.contacts.kind, ON_PLATES).any():
-        return ()
-    return (
-        "  Planes and guides are boxes with sharp edges here, where MotionSolve finds normals of its own. In",
-        "  the local run of mdlgen their edges have a radius, and a sheet below a face stubs on its end.",
     )
 
 

@@ -1,15 +1,10 @@
-"""Identifiers and labels of the Model: short, unique without regard to case, and from an allow-list."""
+"""Identifiers of the Model: short, and unique without regard to case."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 
 from mdlgen.errors import SpecError
-from mdlgen.model.tables import SheetPart
-
-IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,199}")
-LABEL = re.compile(r"[A-Za-z0-9 _.,:;+/#()=\-]{0,200}")
 
 
 def box(sheet: str, i: int, j: int) -> str:
@@ -22,14 +17,6 @@ def bushing(sheet: str, kind: str, i: int, j: int, end: str = "") -> str:
     return f"{sheet}_{kind}_{i}_{j}{end and '_' + end}"
 
 
-def node(sheet: SheetPart, x: int, y: int, frames: tuple[int, int]) -> str:
-    """Grid point of a sheet; around a dog-ear it is at one place on the flat side, at one on the ear, and for
-    the joints between them halfway."""
-    one, two = sorted(frames) if sheet.bend is not None and sheet.bend.axis < 0 else (0, 0)
-    end = "" if two == 0 else f"_{one}" if one == two else f"_{one}_{two}"
-    return f"{sheet.name}_node_{x}_{y}{end}"
-
-
 def check_unique(kind: str, names: Iterable[str]) -> None:
     """Raises SpecError where two names of one kind meet: 'note' with box 0 and a roller 'note_0_0'."""
     seen: dict[str, str] = {}
@@ -37,13 +24,3 @@ def check_unique(kind: str, names: Iterable[str]) -> None:
         other = seen.setdefault(name.lower(), name)
         if other is not name:
             raise SpecError(f"two {kind} would be called {name!r}; rename the part of that name")
-
-
-def check_text(identifiers: Iterable[str] = (), labels: Iterable[str] = ()) -> None:
-    """Second gate before a text is written. Raises SpecError for what the allow-lists do not hold."""
-    for name in identifiers:
-        if not IDENTIFIER.fullmatch(name):
-            raise SpecError(f"{name[:80]!r} is not an identifier")
-    for label in labels:
-        if not LABEL.fullmatch(label):
-            raise SpecError(f"{label[:80]!r} holds characters that a label must not have")

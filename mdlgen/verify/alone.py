@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+from mdlgen.altair.rims import WHOLE, graphics, meetings
 from mdlgen.formulas import names
 from mdlgen.model.parameters.names import OF_USER
-from mdlgen.model.rim_facets import WHOLE, graphics, meetings
 from mdlgen.model.tables import Model
 from mdlgen.verify.tables import ANY, Table
 

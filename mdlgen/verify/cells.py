@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from mdlgen.model.classes import JointClass, box_classes, joint_classes
-from mdlgen.model.curves import written
+from mdlgen.altair.classes import JointClass, box_classes, joint_classes
+from mdlgen.altair.curves import written
 from mdlgen.model.tables import Floats, Model, SheetPart
 from mdlgen.verify.expected.units import KG, SECOND
 

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from mdlgen.model.curves import written
+from mdlgen.altair.curves import written
+from mdlgen.altair.rims import DEEP, Side, graphics, meetings
 from mdlgen.model.parts.guide import outer
-from mdlgen.model.rim_facets import DEEP, Side, graphics, meetings
 from mdlgen.model.tables import Anchor, GuidePart, MeshPart, Model, RollerPart, SheetPart
 from mdlgen.units import parse_unit
 from mdlgen.verify.bend import shape

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mdlgen.model.curves import straight_points, written
+from mdlgen.altair.curves import straight_points, written
 from mdlgen.model.tables import (
     CLAMP,
     Floats,

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from mdlgen.model import naming
+from mdlgen.altair import labels
+from mdlgen.altair.rims import rim_facets
 from mdlgen.model.meshes import origin as mesh_origin
 from mdlgen.model.parts.guide import Facet, facets
-from mdlgen.model.rim_facets import rim_facets
 from mdlgen.model.shape import apart, ground_frames
 from mdlgen.model.tables import (
     SUPPORT,
@@ -48,7 +48,7 @@ def points(model: Model) -> Table:
         rows = np.flatnonzero((model.bushings.sheet == index) & (model.bushings.kind != SUPPORT))
         joints = model.bushings
         ends = zip(joints.node[rows].tolist(), joints.frames[rows].tolist(), rows.tolist(), strict=True)
-        first = {naming.node(sheet, x, y, (one, two)): row for (x, y), (one, two), row in ends}
+        first = {labels.node(sheet, x, y, (one, two)): row for (x, y), (one, two), row in ends}
         names += [f"p_{name}" for name in first]
         places.append(joints.origin[list(first.values())])
         frames = [frame for frame in ground_frames(model, index) if frame.point]
