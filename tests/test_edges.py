@@ -14,6 +14,7 @@ from scipy.spatial.transform import Rotation
 import mdlgen
 from mdlgen.errors import SpecError
 from mdlgen.mechanics.edge import stands
+from mdlgen.mechanics.frame import Box, Frame, Law, Plate
 from mdlgen.mechanics.plate import STRAIGHT, as_guide, box_plane
 from mdlgen.mechanics.point import MOST_POINTS, OUT, POINT
 from mdlgen.model.lower import lower
@@ -26,23 +27,29 @@ from mdlgen.spec.load import load, loads
 ZERO, EYE = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 PLAIN = (0.0, 0.0, 0.0, 1.0, 1.0, 1.0)
 HALF, PLATE = (1.7, 5.0, 0.05), (100.0, 150.0, 0.5)  # a box of a sheet; a plate of 1 mm from x = 0 on
-AT, K = (100.0, 0.0, -0.5), 100.0
+K = 100.0
+TABLE = Frame((100.0, 0.0, -0.5), EYE, ZERO, ZERO)
 
 
 def pushed(place, turn=0.0, edge=(0.1, 0.1, 0.0), exposed=2, beside=0, half=HALF):
     """What a box, turned about y, gets of the plate."""
     out = np.zeros(OUT + 1 + POINT * MOST_POINTS)
     axes = tuple(Rotation.from_rotvec([0.0, turn, 0.0]).as_matrix().ravel().tolist())
-    box_plane(
-        out, place, axes, ZERO, ZERO, half, AT, EYE, PLATE, K, PLAIN, ZERO, exposed, 15, edge, beside, True
-    )
+    plate = Plate(STRAIGHT, PLATE, PLATE[2], 15, edge, beside)
+    box_plane(out, Frame(place, axes, ZERO, ZERO), Box(half, exposed), TABLE, plate, Law(K, True, *PLAIN))
     return out
+
+
+def remembered(place, edge, exposed=2, beside=0):
+    """The sides of a box that stand before ends of the plate, with what was known."""
+    plate = Plate(STRAIGHT, PLATE, PLATE[2], 15, edge, beside)
+    axes = TABLE._replace(r=as_guide(EYE))
+    return stands(Frame(place, EYE, ZERO, ZERO), Box(HALF, exposed), axes, plate)
 
 
 def before_the_end(h, edge):
     """What is remembered of a leading side whose lower corner is h below the face, 0.01 mm before the end."""
-    place = (-HALF[0] - 0.01, 0.0, HALF[2] - h)
-    return stands(place, EYE, HALF, 2, AT, as_guide(EYE), STRAIGHT, PLATE, PLATE[2], 15, edge, 0)
+    return remembered((-HALF[0] - 0.01, 0.0, HALF[2] - h), edge)
 
 
 # -- the law
@@ -82,17 +89,15 @@ def test_a_side_remembers_whether_it_came_from_above_or_from_the_end():
     stubbed, lying = pushed(inside, edge=edge, beside=beside), pushed(inside, edge=edge)
     assert stubbed[0] < 0.0 and abs(stubbed[2]) < 1e-9 * abs(stubbed[0])
     assert lying[2] > 0.0 and abs(lying[0]) < 1e-9 * lying[2]
-    kept = stands(inside, EYE, HALF, 2, AT, as_guide(EYE), STRAIGHT, PLATE, PLATE[2], 15, edge, beside)
+    kept = remembered(inside, edge, 2, beside)
     assert kept == beside
     # above the face, and below the plate, it is free
     for height in (HALF[2] + 0.001, -1.0 - HALF[2] - 0.001):
         place = (0.08 - HALF[0], 0.0, height)
-        assert (
-            stands(place, EYE, HALF, 2, AT, as_guide(EYE), STRAIGHT, PLATE, PLATE[2], 15, edge, beside) == 0
-        )
+        assert remembered(place, edge, 2, beside) == 0
         assert pushed(place, edge=edge)[12] == 0.0
     # a side that has a neighbour in its sheet catches on nothing
-    assert stands(inside, EYE, HALF, 0, AT, as_guide(EYE), STRAIGHT, PLATE, PLATE[2], 15, edge, 0) == 0
+    assert remembered(inside, edge, 0, 0) == 0
 
 
 def test_an_edge_presses_along_the_normal_of_the_face_that_slides_over_it():
@@ -129,25 +134,8 @@ def test_at_rest_friction_holds_what_lies_on_an_edge_as_far_as_it_goes():
     for mu in (0.0, 0.2, 0.4):
         out = np.zeros(OUT)
         own = (law[0], mu, mu, *law[3:])
-        box_plane(
-            out,
-            tuple(at),
-            axes,
-            ZERO,
-            ZERO,
-            HALF,
-            AT,
-            EYE,
-            PLATE,
-            K,
-            own,
-            ZERO,
-            0,
-            15,
-            (0.1, 0.1, 1.0),
-            0,
-            True,
-        )
+        plate = Plate(STRAIGHT, PLATE, PLATE[2], 15, (0.1, 0.1, 1.0), 0)
+        box_plane(out, Frame(tuple(at), axes, ZERO, ZERO), Box(HALF, 0), TABLE, plate, Law(K, True, *own))
         leans.append(math.atan2(-out[0], out[2]))
     assert leans == pytest.approx([slope, slope - math.atan(0.2), 0.0], abs=1e-6)
 

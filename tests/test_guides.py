@@ -12,7 +12,8 @@ import mdlgen
 from mdlgen.backends.lattice import solve as lattice
 from mdlgen.checks import lints
 from mdlgen.errors import SpecError
-from mdlgen.mechanics.guide import BOTH, INSIDE, OUTSIDE, box_guide
+from mdlgen.mechanics.frame import Box, Frame, Law, Plate
+from mdlgen.mechanics.guide import BOTH, INSIDE, OUTSIDE, box_guide, upper
 from mdlgen.mechanics.point import OUT
 from mdlgen.model.lower import lower
 from mdlgen.model.parts.guide import SAG, facets
@@ -52,7 +53,9 @@ def force(place, turn=0.0, shape=(0.0, 0.0, 0.0), half_b=(10.0, 20.0, 0.5), side
     out = np.zeros(OUT)
     c, s = math.cos(turn), math.sin(turn)
     axes = (c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0)
-    box_guide(out, place, axes, ZERO, ZERO, HALF, 15, ZERO, EYE, shape, half_b, side, K, shared, PLAIN)
+    plate = Plate(shape, half_b, upper(side, 2.0 * half_b[2]), 0, ZERO, 0)
+    law = Law(K, shared, *PLAIN)
+    box_guide(out, Frame(place, axes, ZERO, ZERO), Box(HALF, 15), Frame(ZERO, EYE, ZERO, ZERO), plate, law)
     return out
 
 

@@ -83,9 +83,9 @@ def test_a_plain_run_imports_what_it_uses_and_starts_no_process(tmp_path: Path) 
 def test_compiled_code_is_kept_in_one_place_whoever_imports_it_first(first: str) -> None:
     code = (
         f"import {first}\n"
-        "from mdlgen.backends.lattice.kernels import band, march\n"
+        "from mdlgen.backends.lattice.kernels import band, integrate\n"
         "from mdlgen.mechanics import plate\n"
-        "for one in (band.factor, march.run, plate.box_plane):\n"
+        "for one in (band.factor, integrate.run, plate.box_plane):\n"
         "    print(one.dispatcher._cache.cache_path.replace('\\\\', '/').split('/')[-2].rsplit('_', 1)[0])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

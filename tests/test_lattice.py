@@ -15,6 +15,7 @@ from mdlgen.bench.suites import flight
 from mdlgen.bench.suites.impact import thrown
 from mdlgen.errors import RefusedError
 from mdlgen.mechanics.bushing import bushing, bushing_pair
+from mdlgen.mechanics.frame import Frame, Motion
 from mdlgen.mechanics.vector import exp_rotation
 from mdlgen.model.lower import lower
 from mdlgen.model.tables import BOX_CYLINDER, Model
@@ -75,18 +76,26 @@ def test_a_folded_pair_of_bushings_has_the_forces_of_the_two(angle: float) -> No
     two, as_stiff = np.zeros(11), 0.0
     for sign in (1.0, -1.0):
         force, on_b, on_a, energy, power = bushing(
-            *(plain(v) for v in (xa, fa, va, wa, fa @ (ra + sign * e))),
-            *(plain(v) for v in (xb, fb, vb, wb, fb @ (rb + sign * e))),
+            Frame(*(plain(v) for v in (xa, fa, va, wa))),
+            plain(fa @ (ra + sign * e)),
+            Frame(*(plain(v) for v in (xb, fb, vb, wb))),
+            plain(fb @ (rb + sign * e)),
             *(plain(v) for v in (k, kt, c, ct)),
         )
         two += np.array([*force, *on_b, *on_a, energy, power])
         as_stiff += bushing(
-            *(plain(v) for v in (xa, fa, va, wa, fa @ (ra + sign * e))),
-            *(plain(v) for v in (xb, fb, vb, wb, fb @ (rb + sign * e))),
+            Frame(*(plain(v) for v in (xa, fa, va, wa))),
+            plain(fa @ (ra + sign * e)),
+            Frame(*(plain(v) for v in (xb, fb, vb, wb))),
+            plain(fb @ (rb + sign * e)),
             *(plain(v) for v in (k, kt, k, kt)),
         )[4]
     force, on_b, on_a, energy, power, _, _, per_time = bushing_pair(
-        *(plain(v) for v in (xa, fa, va, wa, fa @ ra, xb, fb, vb, wb, fb @ rb, e)),
+        Frame(*(plain(v) for v in (xa, fa, va, wa))),
+        plain(fa @ ra),
+        Frame(*(plain(v) for v in (xb, fb, vb, wb))),
+        plain(fb @ rb),
+        plain(e),
         *(plain(2 * v) for v in (k, kt, c, ct)),
     )
     folded = np.array([*force, *on_b, *on_a, energy, power])
@@ -174,43 +183,26 @@ def test_what_touches_after_a_step_was_near_before_it() -> None:
     state, mid, _ = step.empty(system, forces.WIDE)
     model = mdlgen.lower(load(samples() / "transport_4x4.yaml"))
     count, ahead = len(model.bodies.name), 0.25
-    (x, r), (xm, rm, um, wm, f, touched, outs, _, near) = state[:2], mid
+    x, r, motion, near = state.x, state.r, mid.motion, mid.near
     seen = 0
     for _ in range(20):
         x[:count], r[:count] = model.bodies.position, model.bodies.rotation.reshape(-1, 9)
         r[count] = np.eye(3).ravel()
-        xm[:], rm[:] = x, r
+        motion.x[:], motion.r[:] = x, r
         x[system.nodes, 2] += rng.uniform(-0.1, 0.6, len(system.nodes))
-        u = np.zeros((len(system.nodes), 6))
+        u = state.u
         u[:, :3] = rng.normal(size=(len(u), 3)) * (1.4, 0.2, 1.4)
         u[:, 3:] = rng.normal(size=(len(u), 3)) * 0.1
-        forces.place(
-            system.bodies,
-            system.nodes,
-            system.images,
-            ahead,
-            0.0,
-            u,
-            np.zeros(system.border),
-            x,
-            r,
-            xm,
-            rm,
-            um,
-            wm,
-        )
-        close = forces.near_pairs(
-            system.bodies, system.pairs, system.meshes, x, r, um, wm, step.FAR, ahead, near
-        )
+        forces.place(system.tables, ahead, 0.0, state, motion)
+        begun = Motion(x, r, motion.u, motion.w)
+        close = forces.near_pairs(system.tables, begun, step.FAR, ahead, near)
         listed = set(near[:close].tolist())
         assert close < 0.7 * len(system.pairs)
-        still = np.zeros_like(um)
-        many = entries.contacts(
-            system.bodies, system.pairs, system.meshes, xm, rm, still, f, touched, outs, near
-        )
-        sure = set(np.flatnonzero(into_rollers(system, xm, rm)).tolist())
+        still = np.zeros_like(x)
+        many = entries.contacts(system.tables, Motion(motion.x, motion.r, still, still), mid)
+        sure = set(np.flatnonzero(into_rollers(system, motion.x, motion.r)).tolist())
         assert sure and sure <= listed
-        assert set(touched[:many].tolist()) <= listed
+        assert set(mid.touched[:many].tolist()) <= listed
         seen += many
     assert seen > 500
 

@@ -14,6 +14,7 @@ from mdlgen.backends.lattice.kernels.band import empty
 from mdlgen.backends.lattice.run import start
 from mdlgen.bench.oracles import overhang
 from mdlgen.errors import RefusedError
+from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.vector import exp_rotation
 from mdlgen.model.lower import lower
 from mdlgen.model.tables import Model
@@ -120,8 +121,9 @@ def test_the_stiffness_is_the_derivative_of_the_forces(
 
     def force() -> np.ndarray:
         f, still = np.zeros((len(x), 6)), np.zeros_like(x)
-        forces.joint_forces(system.joints, system.points, x, r, still, still, f)
-        forces.other_forces(system.bodies, system.loads, system.gravity, 1.0, r, still, still, f)
+        motion = Motion(x, r, still, still)
+        forces.joint_forces(system.joints, system.points, motion, f)
+        forces.other_forces(system.tables, 1.0, motion, f)
         return f[system.nodes].ravel()
 
     exact = np.zeros_like(full)

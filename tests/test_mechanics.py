@@ -13,14 +13,16 @@ from scipy.spatial.transform import Rotation
 
 from mdlgen.mechanics.bushing import bushing
 from mdlgen.mechanics.contact import box_cylinder, cylinder_cylinder
+from mdlgen.mechanics.frame import Box, Cylinder, Frame, Law, Plate
 from mdlgen.mechanics.laws import damped, damping_share, friction_over_speed, sign_step
-from mdlgen.mechanics.plate import box_plane
+from mdlgen.mechanics.plate import STRAIGHT, box_plane
 from mdlgen.mechanics.point import OUT
 from mdlgen.mechanics.vector import exp_rotation, log_rotation, sines
 
 ZERO, EYE = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 K, R, WIDTH, HALF = 300.0, 7.5, 5.0, (3.35, 3.175, 0.05)
 PLAIN = (0.0, 0.0, 0.0, 1.0, 1.0, 1.0)  # no damping, no friction
+ROLLER = Cylinder((0.0, 1.0, 0.0), R, WIDTH)
 
 
 def roller_force(x=0.0, y=0.0, z=0.0484, yaw=0.0, shift=(0.0, 0.0), exposed=15, shared=True, law=PLAIN):
@@ -30,24 +32,8 @@ def roller_force(x=0.0, y=0.0, z=0.0484, yaw=0.0, shift=(0.0, 0.0), exposed=15, 
     center = (c * shift[0] - s * shift[1], s * shift[0] + c * shift[1], 0.0)
     rotation = (c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0)
     axle = (x, y, -HALF[2] - R + z)
-    box_cylinder(
-        out,
-        center,
-        rotation,
-        ZERO,
-        ZERO,
-        HALF,
-        exposed,
-        axle,
-        (0.0, 1.0, 0.0),
-        ZERO,
-        ZERO,
-        R,
-        WIDTH,
-        K,
-        shared,
-        law,
-    )
+    a, b = Frame(center, rotation, ZERO, ZERO), Frame(axle, EYE, ZERO, ZERO)
+    box_cylinder(out, a, Box(HALF, exposed), b, ROLLER, Law(K, shared, *law))
     return out
 
 
@@ -102,19 +88,9 @@ def test_flat_box_on_a_plane_gives_k_z_1_5_and_an_edge_half():
     def force(tilt):
         out = np.zeros(OUT)
         rotation = tuple(Rotation.from_rotvec([0.0, tilt, 0.0]).as_matrix().ravel())
-        box_plane(
-            out,
-            (0.0, 0.0, 4.99),
-            rotation,
-            ZERO,
-            ZERO,
-            (10.0, 10.0, 5.0),
-            (0.0, 0.0, -5.0),
-            EYE,
-            (50.0, 50.0, 5.0),
-            100.0,
-            PLAIN,
-        )
+        block, table = Box((10.0, 10.0, 5.0), 0), Plate(STRAIGHT, (50.0, 50.0, 5.0), 5.0, 0, ZERO, 0)
+        a, b = Frame((0.0, 0.0, 4.99), rotation, ZERO, ZERO), Frame((0.0, 0.0, -5.0), EYE, ZERO, ZERO)
+        box_plane(out, a, block, b, table, Law(100.0, True, *PLAIN))
         return out[2]
 
     assert force(0.0) == pytest.approx(100.0 * 0.01**1.5, rel=1e-9)
@@ -124,9 +100,9 @@ def test_flat_box_on_a_plane_gives_k_z_1_5_and_an_edge_half():
 
 def test_two_rollers():
     out = np.zeros(OUT)
-    cylinder_cylinder(
-        out, (0.0, 0.0, 12.28), ZERO, ZERO, 5.0, 5.0, ZERO, ZERO, ZERO, R, 5.0, (0.0, 1.0, 0.0), 30.5, PLAIN
-    )
+    a, b = Frame((0.0, 0.0, 12.28), EYE, ZERO, ZERO), Frame(ZERO, EYE, ZERO, ZERO)
+    one = Cylinder((0.0, 1.0, 0.0), 5.0, 5.0)
+    cylinder_cylinder(out, a, one, b, ROLLER, Law(30.5, True, *PLAIN))
     assert out[2] == pytest.approx(30.5 * 0.22**1.5, rel=1e-9)
     assert pytest.approx(0.222, abs=5e-4) == (3.19 / 30.5) ** (2 / 3)  # the paper's penetration
     assert out[:3] == pytest.approx(-out[6:9])
@@ -136,24 +112,10 @@ def test_forces_on_the_two_bodies_cancel_in_force_and_moment():
     law = (0.6, 1.0, 0.5, 0.01, 0.02, 0.01)
     out = np.zeros(OUT)
     a, b = (0.3, -0.2, 0.1), (1.0, 0.4, -7.4)
-    box_cylinder(
-        out,
-        a,
-        tuple(Rotation.from_rotvec([0.02, 0.05, 0.3]).as_matrix().ravel()),
-        (0.1, 0.2, -0.3),
-        (0.01, 0.02, 0.03),
-        HALF,
-        15,
-        b,
-        (0.0, 1.0, 0.0),
-        (0.0, 0.0, 0.1),
-        (0.0, 0.18, 0.0),
-        R,
-        WIDTH,
-        K,
-        True,
-        law,
-    )
+    turn = tuple(Rotation.from_rotvec([0.02, 0.05, 0.3]).as_matrix().ravel())
+    box = Frame(a, turn, (0.1, 0.2, -0.3), (0.01, 0.02, 0.03))
+    roller = Frame(b, EYE, (0.0, 0.0, 0.1), (0.0, 0.18, 0.0))
+    box_cylinder(out, box, Box(HALF, 15), roller, ROLLER, Law(K, True, *law))
     assert out[12] > 0
     assert np.allclose(out[:3] + out[6:9], 0, atol=1e-12)
     moment = out[3:6] + out[9:12] + np.cross(a, out[:3]) + np.cross(b, out[6:9])
@@ -228,7 +190,8 @@ def bushing_between(one, two, arms, k, kt, c=ZERO, ct=ZERO):
     (xa, ra, va, wa), (xb, rb, vb, wb) = one, two
     frames = [tuple(r.as_matrix().ravel()) for r in (ra, rb)]
     global_arms = [tuple(r.apply(a)) for r, a in zip((ra, rb), arms, strict=True)]
-    return bushing(xa, frames[0], va, wa, global_arms[0], xb, frames[1], vb, wb, global_arms[1], k, kt, c, ct)
+    a, b = Frame(xa, frames[0], va, wa), Frame(xb, frames[1], vb, wb)
+    return bushing(a, global_arms[0], b, global_arms[1], k, kt, c, ct)
 
 
 @pytest.mark.parametrize("seed", range(5))

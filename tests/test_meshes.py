@@ -22,8 +22,9 @@ import mdlgen
 from mdlgen.checks import lints
 from mdlgen.errors import RefusedError, SpecError
 from mdlgen.mechanics.contact import box_cylinder
+from mdlgen.mechanics.frame import Box, Cylinder, Frame, Law, Plate
 from mdlgen.mechanics.mesh import LOST, box_mesh, mesh_tables
-from mdlgen.mechanics.plate import box_plane
+from mdlgen.mechanics.plate import STRAIGHT, box_plane
 from mdlgen.mechanics.point import MOST_POINTS, OUT, POINT
 from mdlgen.mechanics.tree import closest, depth_at, plant
 from mdlgen.model.lower import lower
@@ -36,7 +37,8 @@ from mdlgen.verify.verification import verify
 
 PICK = samples() / "pick.yaml"
 ZERO, EYE = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
-K, HALF, PLAIN = 300.0, (3.35, 3.175, 0.05), (0.0, 0.0, 0.0, 1.0, 1.0, 1.0)
+K, HALF = 300.0, (3.35, 3.175, 0.05)
+LAW = Law(K, True, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0)
 
 SHAPES = """
 name: shapes
@@ -407,9 +409,10 @@ def parts(tmp_path, solid, on="", at="nodes"):
 
 
 @njit
-def _mesh(out, xa, ra, half, exposed, xb, rb, meshes, k, law):
+def _mesh(out, xa, ra, half, exposed, xb, rb, meshes, law):
     head, axis = meshes.heads[0], (0.0, 1.0, 0.0)
-    box_mesh(out, xa, ra, ZERO, ZERO, half, exposed, xb, rb, axis, ZERO, ZERO, head, meshes, k, law)
+    a, b = Frame(xa, ra, ZERO, ZERO), Frame(xb, rb, ZERO, ZERO)
+    box_mesh(out, a, Box(half, exposed), b, axis, head, meshes, law)
 
 
 def turn(axis, angle):
@@ -423,7 +426,7 @@ def press(part, place, tilt=EYE, half=HALF, exposed=0, turned=0.0):
     meshes, xb, rb = part
     out = np.zeros(OUT + 1 + POINT * MOST_POINTS)
     rb = tuple((turn("y", turned) @ rb).ravel())
-    _mesh(out, tuple(map(float, place)), tuple(np.ravel(tilt)), half, exposed, xb, rb, meshes, K, PLAIN)
+    _mesh(out, tuple(map(float, place)), tuple(np.ravel(tilt)), half, exposed, xb, rb, meshes, LAW)
     return out
 
 
@@ -446,9 +449,8 @@ def test_a_flat_box_on_a_flat_mesh_has_the_law_of_a_plane(tmp_path, at, times):
     assert press(part, (23.4, 0.0, 2.03))[12] == 0.0 and press(part, (0.0, 0.0, 2.06))[12] == 0.0
     lean = turn("x", 1e-3)
     out, plane = press(part, (0.0, 0.0, 2.04), lean), np.zeros(OUT)
-    box_plane(
-        plane, (0.0, 0.0, 2.04), tuple(lean.ravel()), ZERO, ZERO, HALF, ZERO, EYE, (20.0, 15.0, 2.0), K, PLAIN
-    )
+    a, b = Frame((0.0, 0.0, 2.04), tuple(lean.ravel()), ZERO, ZERO), Frame(ZERO, EYE, ZERO, ZERO)
+    box_plane(plane, a, Box(HALF, 0), b, Plate(STRAIGHT, (20.0, 15.0, 2.0), 2.0, 0, ZERO, 0), LAW)
     # a plane has the mean of z^1.5 in the corners of the box, which is 3 % above that over its face
     assert out[2] == pytest.approx(plane[2], rel=0.04)
 
@@ -480,7 +482,8 @@ def test_a_mesh_of_a_cylinder_on_a_roller_is_that_roller(tmp_path, place, turned
     high = 7.55 - 0.04
     axis, exact = (0.0, 1.0, 0.0), np.zeros(OUT)
     at = (*place, high)
-    box_cylinder(exact, at, EYE, ZERO, ZERO, HALF, 0, ZERO, axis, ZERO, ZERO, 7.5, 5.0, K, True, PLAIN)
+    a, b = Frame(at, EYE, ZERO, ZERO), Frame(ZERO, EYE, ZERO, ZERO)
+    box_cylinder(exact, a, Box(HALF, 0), b, Cylinder(axis, 7.5, 5.0), LAW)
     forces = []
     for solid in (cylinder(7.5, 5.0, 500), halved(*cylinder(7.5, 5.0, 500))):
         out = press(parts(tmp_path, solid, ", on: r"), at, turned=turned)

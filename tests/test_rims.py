@@ -11,6 +11,7 @@ from ran import solved
 from mdlgen.backends.lattice.arrays import build
 from mdlgen.backends.motionsolve import validate
 from mdlgen.errors import SpecError
+from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.pair import pair_force
 from mdlgen.mechanics.point import OUT
 from mdlgen.mechanics.rim import profile
@@ -130,7 +131,7 @@ def test_a_turning_rim_gives_back_what_it_stores() -> None:
         turn = np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
         r[pair["b"]] = (turn @ begin).ravel()
         out = np.zeros(OUT)
-        pair_force(system.bodies, pair, system.meshes, x, r, still, still, out)
+        pair_force(system.bodies, pair, system.meshes, Motion(x, r, still, still), out)
         energy.append(out[13])
         torque.append(out[10])
         # about the origin nothing comes from nowhere

@@ -13,6 +13,7 @@ from test_roller_plate import DOWN, MASS, RADIUS, SOLVERS, G, K, N, depth, press
 
 from mdlgen.backends.lattice.arrays import build
 from mdlgen.errors import SpecError
+from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.pair import pair_force
 from mdlgen.mechanics.point import OUT
 from mdlgen.model.lower import lower
@@ -66,7 +67,7 @@ def law(model: Model, at: np.ndarray) -> np.ndarray:
     x[:-1], r[:-1] = model.bodies.position, model.bodies.rotation.reshape(-1, 9)
     x[int(system.pairs["a"][0])] = at
     still = np.zeros((count, 3))
-    pair_force(system.bodies, system.pairs[0], system.meshes, x, r, still, still, out)
+    pair_force(system.bodies, system.pairs[0], system.meshes, Motion(x, r, still, still), out)
     return out
 
 

@@ -16,7 +16,8 @@ import mdlgen
 from mdlgen.checks import lints
 from mdlgen.errors import RefusedError, SpecError
 from mdlgen.mechanics.contact import box_cylinder
-from mdlgen.mechanics.point import MOST_POINTS, OUT, POINT, resist_rolling
+from mdlgen.mechanics.frame import Box, Cylinder, Frame, Law
+from mdlgen.mechanics.point import FORCE, MOST_POINTS, OUT, POINT, RATE, resist_rolling
 from mdlgen.model.lower import lower
 from mdlgen.results.compare import compare
 from mdlgen.results.result import Result
@@ -173,12 +174,10 @@ def test_a_slipping_nip_pulls_with_mu_n(both: bool, c_r: float) -> None:
 
 
 @njit
-def _under(out, at, shared, speed, k, law):
+def _under(out, at, speed, law):
     zero, one = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
-    box_cylinder(
-        out, (at, 0.0, 0.0), one, speed, zero, (2.0, 3.0, 0.05), 0,
-        (0.0, 0.0, 7.51), (0.0, 1.0, 0.0), zero, (0.0, 0.07, 0.0), 7.5, 4.0, k, shared, law,
-    )  # fmt: skip
+    a, b = Frame((at, 0.0, 0.0), one, speed, zero), Frame((0.0, 0.0, 7.51), one, zero, (0.0, 0.07, 0.0))
+    box_cylinder(out, a, Box((2.0, 3.0, 0.05), 0), b, Cylinder((0.0, 1.0, 0.0), 7.5, 4.0), law)
 
 
 @pytest.mark.parametrize("rate", [-0.03, -0.004, 0.0, 0.004, 0.03])
@@ -194,11 +193,11 @@ def test_all_points_of_a_nip_are_damped_by_its_one_rate(rate: float, beta: float
         total = np.zeros(OUT)
         for side in (-2.0, 2.0):
             out = np.zeros(OUT + 1 + POINT * MOST_POINTS)
-            _under(out, joint + side, True, (0.5, 0.0, rate), k, law)
+            _under(out, joint + side, (0.5, 0.0, rate), Law(k, True, *law))
             total += out[:OUT]
             points = out[OUT + 1 :].reshape(-1, POINT)[: int(out[OUT])]
-            assert (points[:, 8] >= 0.0).all()
-            np.testing.assert_allclose(points[:, 9], rate, atol=1e-12)
+            assert (points[:, FORCE] >= 0.0).all()
+            np.testing.assert_allclose(points[:, RATE], rate, atol=1e-12)
         force = k * z**1.5 * (1.0 + beta * step)
         assert total[2] == pytest.approx(-force, rel=2e-3, abs=1e-9)
         assert abs(total[0]) <= 1e-3 * force + 1e-12

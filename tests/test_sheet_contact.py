@@ -11,6 +11,7 @@ from mdlgen.bench.oracles import impact as oracle
 from mdlgen.checks import lints
 from mdlgen.errors import RefusedError
 from mdlgen.mechanics.facing import box_box
+from mdlgen.mechanics.frame import Box, Frame, Law, Motion
 from mdlgen.mechanics.point import OUT
 from mdlgen.model import sheet_pairs
 from mdlgen.model.lower import lower
@@ -109,9 +110,8 @@ def pushed(
     rotation = tuple(Rotation.from_rotvec(turn).as_matrix().ravel())
     rates = given.get("rates", (ZERO, ZERO, ZERO, ZERO))
     eye = tuple(np.eye(3).ravel())
-    box_box(
-        out, ZERO, eye, *rates[:2], half_a, free, place, rotation, *rates[2:], half_b, free, K, shared, law
-    )
+    a, b = Frame(ZERO, eye, *rates[:2]), Frame(place, rotation, *rates[2:])
+    box_box(out, a, Box(half_a, free), b, Box(half_b, free), Law(K, shared, *law))
     return out
 
 
@@ -153,22 +153,9 @@ def test_two_boxes_get_opposite_forces_at_one_point_whichever_comes_first():
         swapped, eye = np.zeros(OUT), tuple(np.eye(3).ravel())
         rotation = tuple(Rotation.from_rotvec(turn).as_matrix().ravel())
         half = (10.0, 10.0, 5.0)
-        box_box(
-            swapped,
-            tuple(place),
-            rotation,
-            *rates[2:],
-            half,
-            15,
-            ZERO,
-            eye,
-            *rates[:2],
-            half,
-            15,
-            K,
-            True,
-            law,
-        )
+        box = Box(half, 15)
+        a, b = Frame(tuple(place), rotation, *rates[2:]), Frame(ZERO, eye, *rates[:2])
+        box_box(swapped, a, box, b, box, Law(K, True, *law))
         assert swapped[:6] == pytest.approx(out[6:12], rel=1e-9, abs=1e-9 * size)
     assert touched > 50
 
@@ -385,7 +372,9 @@ def test_boxes_that_lean_have_not_crossed_where_a_centre_passes_a_plane():
         turned[1] = Rotation.from_rotvec([0.0, lean, 0.0]).as_matrix().ravel()
         assert search.look(system.pairs, system.search, places[0])
         near = np.array([system.search.first])
-        return sides.crossed(system.bodies, system.pairs, near, 1, places[0], turned, places[1], turned) >= 0
+        still = np.zeros((count, 3))
+        begins, middle = (Motion(place, turned, still, still) for place in places)
+        return sides.crossed(system.tables, near, 1, begins, middle) >= 0
 
     assert through(0.0, 0.0, 0.05, -0.05) and not through(0.0, 0.0, 0.05, 0.02)
     assert not through(70.0, 0.0, 0.05, -0.05), "beside it"

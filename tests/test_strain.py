@@ -8,6 +8,7 @@ import math
 import weakref
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from synthetic import moving, small_model
 
 import mdlgen
 from mdlgen.mechanics.bushing import bushing
+from mdlgen.mechanics.frame import Frame
 from mdlgen.model.lower import lower
 from mdlgen.model.tables import Model
 from mdlgen.paths import samples
@@ -180,17 +182,17 @@ def test_it_is_what_the_force_law_measures(layout: str) -> None:
     message = found(placed(model, place, turn))
 
     def measured(row: int, spring: int) -> float:
-        ends = []
+        ends: list[Any] = []
         for body in (bushings.a[row], bushings.b[row]):
             now = Rotation.identity() if body < 0 else turn[body]
             center = np.zeros(3) if body < 0 else bodies.position[body]
             arm = now.apply(bushings.origin[row] - center)
             frame = (now.as_matrix() @ bushings.axes[row]).ravel()
             at = center if body < 0 else place[body]
-            ends.append((tuple(at), tuple(frame), (0.0,) * 3, (0.0,) * 3, tuple(arm)))
+            ends += [Frame(tuple(at), tuple(frame), (0.0,) * 3, (0.0,) * 3), tuple(arm)]
         stiffness = tuple(float(k == spring) for k in range(6))
         zero = (0.0,) * 3
-        return math.sqrt(2 * bushing(*ends[0], *ends[1], stiffness[:3], stiffness[3:], zero, zero)[3])
+        return math.sqrt(2 * bushing(*ends, stiffness[:3], stiffness[3:], zero, zero)[3])
 
     joints = message.joints
     for k, name in enumerate(joints.name):

@@ -7,7 +7,9 @@ import math
 import numpy as np
 
 from mdlgen.backends.exudyn_local.kernels import place_all, place_body
+from mdlgen.backends.exudyn_local.state import Coordinates
 from mdlgen.mechanics.crossing import above, buried, closing, deepest, size, unseen
+from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.guide import inward
 from mdlgen.mechanics.pair import (
     BOX_BOX,
@@ -19,7 +21,7 @@ from mdlgen.mechanics.pair import (
     pair_force,
     roller_near,
 )
-from mdlgen.mechanics.point import OUT
+from mdlgen.mechanics.point import DEPTH, OUT
 from mdlgen.mechanics.vector import back, dot, mat, sub, vec
 from mdlgen.program.kernel import njit
 
@@ -81,21 +83,21 @@ def passed(bodies, pairs, meshes, before, rates, now, rates_now, t, dt):
     """The first pair that was deeper than it may be, or came to another side, in a step of dt from t, or -1;
     from the coordinates `before` at the velocities `rates` to `now`."""
     count = bodies.size
-    x, r, u, w = np.zeros((count, 3)), np.zeros((count, 9)), np.zeros((count, 3)), np.zeros((count, 3))
-    xs, rs, us, ws = np.zeros((count, 3)), np.zeros((count, 9)), np.zeros((count, 3)), np.zeros((count, 3))
+    first = Motion(np.zeros((count, 3)), np.zeros((count, 9)), np.zeros((count, 3)), np.zeros((count, 3)))
+    last = Motion(np.zeros((count, 3)), np.zeros((count, 9)), np.zeros((count, 3)), np.zeros((count, 3)))
     out, q = np.zeros(OUT), now.copy()
-    place_all(bodies, before, rates, t, x, r, u, w)
-    place_all(bodies, now, rates_now, t + dt, xs, rs, us, ws)
+    place_all(bodies, Coordinates(before, rates, t), first)
+    place_all(bodies, Coordinates(now, rates_now, t + dt), last)
     for p in range(pairs.size):
         pair = pairs[p]
-        fast = closing(bodies, pair, meshes, x, r, u, w, dt)
-        fast = max(fast, closing(bodies, pair, meshes, xs, rs, us, ws, dt))
+        fast = closing(bodies, pair, meshes, first, dt)
+        fast = max(fast, closing(bodies, pair, meshes, last, dt))
         way, band = dt * fast, unseen(bodies, pair, meshes)
-        side = above(bodies, pair, x, r)
+        side = above(bodies, pair, first.x, first.r)
         solid = pair.kind == BOX_MESH and bodies[pair.a].exposed != 0
         if way <= band and side == 0 and not solid:
             continue
-        if _apart(bodies, pair, meshes, x, r, way):
+        if _apart(bodies, pair, meshes, first.x, first.r, way):
             continue
         if way > MOST_LOOKS * band:
             return p
@@ -104,16 +106,16 @@ def passed(bodies, pairs, meshes, before, rates, now, rates_now, t, dt):
             part = k / many
             for body in (pair.a, pair.b):
                 _between(bodies[body], before, now, part, q)
-                place_body(bodies, body, q, rates_now, t + part * dt, xs, rs, us, ws)
-            beyond = above(bodies, pair, xs, rs)
+                place_body(bodies, body, Coordinates(q, rates_now, t + part * dt), last)
+            beyond = above(bodies, pair, last.x, last.r)
             if side * beyond < 0:
                 return p
             side = beyond
-            if solid and buried(bodies, pair, meshes, xs, rs):
+            if solid and buried(bodies, pair, meshes, last.x, last.r):
                 return p
             if way > band:
                 out[:] = 0.0
-                pair_force(bodies, pair, meshes, xs, rs, us, ws, out)
-                if out[15] > deepest(bodies, pair):
+                pair_force(bodies, pair, meshes, last, out)
+                if out[DEPTH] > deepest(bodies, pair):
                     return p
     return -1

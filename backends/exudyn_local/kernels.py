@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
+from mdlgen.backends.exudyn_local.state import DRIVING, ELASTIC, KINETIC, LOST, POTENTIAL, Work
 from mdlgen.backends.exudyn_local.system import System
 from mdlgen.mechanics.arm import hung, moved, speeding, torque_of, turn_of, way_of
 from mdlgen.mechanics.bushing import bushing
 from mdlgen.mechanics.curve import curve_excess, middle_and_gap
 from mdlgen.mechanics.driven import clutch, prescribed, turned
+from mdlgen.mechanics.frame import Frame, Motion
 from mdlgen.mechanics.pair import pair_force
-from mdlgen.mechanics.point import OUT
+from mdlgen.mechanics.point import DISSIPATED, FORCE_A, FORCE_B, OUT, STORED, TORQUE_A, TORQUE_B
 from mdlgen.mechanics.vector import (
     add,
     back,
@@ -23,9 +25,10 @@ from mdlgen.mechanics.vector import (
     rotate,
     scale,
     three,
+    three_from,
     vec,
 )
-from mdlgen.model.tables import Floats, Ints
+from mdlgen.model.tables import Ints
 from mdlgen.program.kernel import njit
 
 # Perturbations of the difference quotients: positions and Euler parameters, velocities [SI]. A static run
@@ -36,13 +39,12 @@ _E_CENTRAL = 1e-7
 # Either way of a time the speed of a drive is taken for its growth [s].
 _INSTANT = 1e-7
 
-# x, r, u, w, out, f: what the functions below write into
-Work = tuple[Floats, Floats, Floats, Floats, Floats, Floats]
-
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def place_body(bodies, body, q, v, t, x, r, u, w):
-    """Position, rotation, velocity and angular velocity (global) of one body."""
+def place_body(bodies, body, at, motion):
+    """Position, rotation, velocity and angular velocity (global) of one body at some Coordinates."""
+    q, v, t = at
+    x, r, u, w = motion
     ref = bodies[body].reference
     for i in range(3):
         x[body, i] = ref[i]
@@ -73,10 +75,10 @@ def place_body(bodies, body, q, v, t, x, r, u, w):
     r[body, 8] = 1 - 2 * (e1 * e1 + e2 * e2)
     k = bodies[body].slide
     if k >= 0:
-        at = moved(bodies[body], vec(x, body), q[k])
-        way = way_of(bodies[body], at)
+        place = moved(bodies[body], vec(x, body), q[k])
+        way = way_of(bodies[body], place)
         for i in range(3):
-            x[body, i] = at[i]
+            x[body, i] = place[i]
             u[body, i] += v[k] * way[i]
     spin = bodies[body].spin
     if bodies[body].rims > 0:
@@ -99,9 +101,10 @@ def place_body(bodies, body, q, v, t, x, r, u, w):
 
 
 @njit(cache=True, error_model="numpy")
-def place_all(bodies, q, v, t, x, r, u, w):
+def place_all(bodies, at, motion):
+    """The Motion of all bodies at some Coordinates."""
     for body in range(bodies.size):
-        place_body(bodies, body, q, v, t, x, r, u, w)
+        place_body(bodies, body, at, motion)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -128,23 +131,19 @@ def _spread(bodies, body, q, force, torque, f):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def _bush(bodies, bush, points, q, x, r, u, w, f):
+def _bush(tables, bush, q, motion, f):
     """One bushing; returns (stored energy, dissipated power)."""
+    bodies, points = tables.bodies, tables.points
+    x, r, u, w = motion
     a, b = bush.a, bush.b
     ma, mb = mat(r, a), mat(r, b)
     fa, fb = matmul(ma, nine(bush.fa)), matmul(mb, nine(bush.fb))
     ra, rb = rotate(ma, three(bush.ra)), rotate(mb, three(bush.rb))
     k, c = bush.k, bush.c
     force, torque_b, torque_a, energy, power = bushing(
-        vec(x, a),
-        fa,
-        vec(u, a),
-        vec(w, a),
+        Frame(vec(x, a), fa, vec(u, a), vec(w, a)),
         ra,
-        vec(x, b),
-        fb,
-        vec(u, b),
-        vec(w, b),
+        Frame(vec(x, b), fb, vec(u, b), vec(w, b)),
         rb,
         (k[0], k[1], k[2]),
         (k[3], k[4], k[5]),
@@ -163,20 +162,21 @@ def _bush(bodies, bush, points, q, x, r, u, w, f):
 
 
 @njit(cache=True, error_model="numpy")
-def _pair(bodies, pair, meshes, q, x, r, u, w, f, out):
+def _pair(tables, pair, q, motion, f, out):
     """One contact pair into `out`; returns whether it touches."""
     out[:] = 0.0
-    a, b = pair.a, pair.b
-    if not pair_force(bodies, pair, meshes, x, r, u, w, out):
+    if not pair_force(tables.bodies, pair, tables.meshes, motion, out):
         return False
-    _spread(bodies, a, q, (out[0], out[1], out[2]), (out[3], out[4], out[5]), f)
-    _spread(bodies, b, q, (out[6], out[7], out[8]), (out[9], out[10], out[11]), f)
+    _spread(tables.bodies, pair.a, q, three_from(out, FORCE_A), three_from(out, TORQUE_A), f)
+    _spread(tables.bodies, pair.b, q, three_from(out, FORCE_B), three_from(out, TORQUE_B), f)
     return True
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def _slide(bodies, gravity, body, q, v, t, f, level):
+def _slide(tables, body, at, f, level):
     """Spring, damper and weight on a slide or an arm; `level` scales the preload's rest in a static run."""
+    bodies, gravity = tables.bodies, tables.gravity
+    q, v, t = at
     k = bodies[body].slide
     p = bodies[body].press
     f[k] += p[2] - p[0] * q[k] - p[1] * v[k]
@@ -184,8 +184,8 @@ def _slide(bodies, gravity, body, q, v, t, f, level):
         f[k] += level * p[3] * dot(three(bodies[body].way), three(gravity))
         return
     ref = bodies[body].reference
-    at = moved(bodies[body], (ref[0], ref[1], ref[2]), q[k])
-    f[k] += level * bodies[body].mass * dot(way_of(bodies[body], at), three(gravity))
+    place = moved(bodies[body], (ref[0], ref[1], ref[2]), q[k])
+    f[k] += level * bodies[body].mass * dot(way_of(bodies[body], place), three(gravity))
     f[k] += torque_of(bodies[body], q[k], scale(level, three(gravity)), t, _INSTANT)
 
 
@@ -199,9 +199,13 @@ def _load(bodies, load, q, r, f, level):
 
 
 @njit(cache=True, error_model="numpy")
-def forces(bodies, bushings, points, pairs, meshes, loads, gravity, q, v, t, level, x, r, u, w, out, f):
-    """Generalised forces f; `level` scales gravity and loads. Returns the number of touching pairs."""
-    place_all(bodies, q, v, t, x, r, u, w)
+def forces(tables, at, level, work):
+    """Generalised forces into those of `work`; `level` scales gravity and loads. Returns the number of
+    touching pairs."""
+    bodies, pairs, loads, gravity = tables.bodies, tables.pairs, tables.loads, tables.gravity
+    motion, out, f = work
+    q, v, t = at
+    place_all(bodies, at, motion)
     f[:] = 0.0
     for body in range(bodies.size - 1):
         n = bodies[body].first
@@ -209,56 +213,40 @@ def forces(bodies, bushings, points, pairs, meshes, loads, gravity, q, v, t, lev
             for i in range(3):
                 f[n + i] += level * bodies[body].mass * gravity[i]
         if bodies[body].slide >= 0:
-            _slide(bodies, gravity, body, q, v, t, f, level)
+            _slide(tables, body, at, f, level)
         if bodies[body].clutch[0] != 0.0:
             f[bodies[body].spin] += clutch(bodies[body], v[bodies[body].spin], t)[0]
-    for i in range(bushings.size):
-        _bush(bodies, bushings[i], points, q, x, r, u, w, f)
+    for i in range(tables.bushings.size):
+        _bush(tables, tables.bushings[i], q, motion, f)
     touching = 0
     for i in range(pairs.size):
-        if _pair(bodies, pairs[i], meshes, q, x, r, u, w, f, out):
+        if _pair(tables, pairs[i], q, motion, f, out):
             touching += 1
     for i in range(loads.size):
-        _load(bodies, loads[i], q, r, f, level)
+        _load(bodies, loads[i], q, motion.r, f, level)
     return touching
 
 
 @njit(cache=True, error_model="numpy")
-def _element(
-    bodies,
-    bushings,
-    points,
-    pairs,
-    meshes,
-    loads,
-    gravity,
-    block_start,
-    element,
-    q,
-    v,
-    t,
-    x,
-    r,
-    u,
-    w,
-    f,
-    out,
-    level,
-):
-    """Generalised forces of one element, added to f. Returns False where a pair does not touch."""
+def _element(tables, block_start, element, at, level, work):
+    """Generalised forces of one element, added to those of `work`. Returns False where a pair does not
+    touch."""
+    bodies, pairs = tables.bodies, tables.pairs
+    motion, out, f = work
+    q, v, t = at
     blocks = block_start.size - 1
     if element < blocks:
         for i in range(block_start[element], block_start[element + 1]):
-            _bush(bodies, bushings[i], points, q, x, r, u, w, f)
+            _bush(tables, tables.bushings[i], q, motion, f)
         return True
     element -= blocks
     if element < pairs.size:
-        return _pair(bodies, pairs[element], meshes, q, x, r, u, w, f, out)
+        return _pair(tables, pairs[element], q, motion, f, out)
     element -= pairs.size
     for body in range(bodies.size - 1):
         if bodies[body].slide >= 0:
             if element == 0:
-                _slide(bodies, gravity, body, q, v, t, f, level)
+                _slide(tables, body, at, f, level)
                 return True
             element -= 1
     for body in range(bodies.size - 1):
@@ -267,7 +255,7 @@ def _element(
                 f[bodies[body].spin] += clutch(bodies[body], v[bodies[body].spin], t)[0]
                 return True
             element -= 1
-    _load(bodies, loads[element], q, r, f, level)
+    _load(bodies, tables.loads[element], q, motion.r, f, level)
     return True
 
 
@@ -286,37 +274,15 @@ def set_owners(bodies, owner):
 
 
 @njit(cache=True, error_model="numpy")
-def jacobian(
-    bodies,
-    bushings,
-    points,
-    pairs,
-    meshes,
-    loads,
-    gravity,
-    elements,
-    q,
-    v,
-    t,
-    level,
-    by_q,
-    by_v,
-    central,
-    owner,
-    x,
-    r,
-    u,
-    w,
-    out,
-    f,
-    data,
-):
-    """data = -(by_q dF/dq + by_v dF/dv) in the slots of the pattern, by difference quotients.
+def jacobian(tables, elements, at, level, by, central, owner, work, data):
+    """data = -(by[0] dF/dq + by[1] dF/dv) in the slots of the pattern, by difference quotients.
 
     One quotient per coordinate gives both parts: q and v are moved together in the ratio wanted.
     """
     block_start, dofs, dof_start, slots, slot_start = elements
-    place_all(bodies, q, v, t, x, r, u, w)
+    bodies, (motion, _out, f), (by_q, by_v) = tables.bodies, work, by
+    q, v = at.q, at.v
+    place_all(bodies, at, motion)
     data[:] = 0.0
     step = 1e30
     if by_q != 0.0:
@@ -331,27 +297,7 @@ def jacobian(
         count = end - begin
         for i in range(begin, end):
             f[dofs[i]] = 0.0
-        if not _element(
-            bodies,
-            bushings,
-            points,
-            pairs,
-            meshes,
-            loads,
-            gravity,
-            block_start,
-            element,
-            q,
-            v,
-            t,
-            x,
-            r,
-            u,
-            w,
-            f,
-            out,
-            level,
-        ):
+        if not _element(tables, block_start, element, at, level, work):
             continue
         for i in range(count):
             base[i] = f[dofs[begin + i]]
@@ -364,72 +310,36 @@ def jacobian(
             if central:
                 q[dof] -= step * by_q
                 v[dof] -= step * by_v
-                place_body(bodies, body, q, v, t, x, r, u, w)
+                place_body(bodies, body, at, motion)
                 for i in range(begin, end):
                     f[dofs[i]] = 0.0
-                _element(
-                    bodies,
-                    bushings,
-                    points,
-                    pairs,
-                    meshes,
-                    loads,
-                    gravity,
-                    block_start,
-                    element,
-                    q,
-                    v,
-                    t,
-                    x,
-                    r,
-                    u,
-                    w,
-                    f,
-                    out,
-                    level,
-                )
+                _element(tables, block_start, element, at, level, work)
                 for i in range(count):
                     base[i] = f[dofs[begin + i]]
                 q[dof], v[dof] = kept_q, kept_v
             q[dof] += step * by_q
             v[dof] += step * by_v
-            place_body(bodies, body, q, v, t, x, r, u, w)
+            place_body(bodies, body, at, motion)
             for i in range(begin, end):
                 f[dofs[i]] = 0.0
-            _element(
-                bodies,
-                bushings,
-                points,
-                pairs,
-                meshes,
-                loads,
-                gravity,
-                block_start,
-                element,
-                q,
-                v,
-                t,
-                x,
-                r,
-                u,
-                w,
-                f,
-                out,
-                level,
-            )
+            _element(tables, block_start, element, at, level, work)
             q[dof], v[dof] = kept_q, kept_v
-            place_body(bodies, body, q, v, t, x, r, u, w)
+            place_body(bodies, body, at, motion)
             for i in range(count):
                 data[slots[slot + i * count + j]] -= (f[dofs[begin + i]] - base[i]) / width
 
 
 @njit(cache=True, error_model="numpy")
-def ledger(bodies, bushings, points, pairs, meshes, loads, gravity, q, v, t, x, r, u, w, f, pair_out, totals):
-    """Energy and power at a state: totals = (kinetic, elastic, potential, dissipated power, driving power).
+def ledger(tables, at, work, pair_out, totals):
+    """Energies and powers at a state into `totals` (columns KINETIC, ELASTIC, ... of state.py).
 
-    Also leaves the result of each pair in `pair_out` (p, OUT) and the bodies' states in x, r, u, w.
+    Also leaves the result of each pair in `pair_out` (p, OUT) and the bodies' motion in `work`.
     """
-    place_all(bodies, q, v, t, x, r, u, w)
+    bodies, pairs, loads, gravity = tables.bodies, tables.pairs, tables.loads, tables.gravity
+    motion, f = work.motion, work.forces
+    x, r, u, w = motion
+    q, v, t = at
+    place_all(bodies, at, motion)
     kinetic = elastic = potential = lost = driven = 0.0
     for body in range(bodies.size - 1):
         if bodies[body].first >= 0:
@@ -457,27 +367,28 @@ def ledger(bodies, bushings, points, pairs, meshes, loads, gravity, q, v, t, x, 
             torque, _, shaft = clutch(bodies[body], spun, t)
             lost += torque * (shaft - spun)
             driven += torque * shaft
-    for i in range(bushings.size):
-        energy, power = _bush(bodies, bushings[i], points, q, x, r, u, w, f)
+    for i in range(tables.bushings.size):
+        energy, power = _bush(tables, tables.bushings[i], q, motion, f)
         elastic += energy
         lost += power
     for i in range(pairs.size):
-        if not _pair(bodies, pairs[i], meshes, q, x, r, u, w, f, pair_out[i]):
+        if not _pair(tables, pairs[i], q, motion, f, pair_out[i]):
             continue
         row = pair_out[i]
-        elastic += row[13]
-        lost += row[14]
-        for body, at in ((pairs[i].a, 0), (pairs[i].b, 6)):
+        elastic += row[STORED]
+        lost += row[DISSIPATED]
+        for body, torque_at in ((pairs[i].a, TORQUE_A), (pairs[i].b, TORQUE_B)):
             if bodies[body].first < 0 and bodies[body].spin < 0:
-                about = dot((row[at + 3], row[at + 4], row[at + 5]), three(bodies[body].axis))
+                about = dot(three_from(row, torque_at), three(bodies[body].axis))
                 driven -= about * prescribed(bodies[body], t)
     for i in range(loads.size):
         load = loads[i]
         body = load.body
         arm = rotate(mat(r, body), three(load.local))
-        at = add(vec(u, body), cross(vec(w, body), arm))
-        driven += dot(three(load.force), at) + dot(three(load.moment), vec(w, body))
-    totals[0], totals[1], totals[2], totals[3], totals[4] = kinetic, elastic, potential, lost, driven
+        rate = add(vec(u, body), cross(vec(w, body), arm))
+        driven += dot(three(load.force), rate) + dot(three(load.moment), vec(w, body))
+    totals[KINETIC], totals[ELASTIC], totals[POTENTIAL] = kinetic, elastic, potential
+    totals[LOST], totals[DRIVING] = lost, driven
 
 
 def owners(system: System) -> Ints:
@@ -488,13 +399,7 @@ def owners(system: System) -> Ints:
 
 
 def workspace(system: System) -> Work:
-    """x, r, u, w, out, f for the functions above."""
+    """What the functions above write into."""
     n = len(system.bodies)
-    return (
-        np.zeros((n, 3)),
-        np.zeros((n, 9)),
-        np.zeros((n, 3)),
-        np.zeros((n, 3)),
-        np.zeros(OUT),
-        np.zeros(max(1, system.free)),
-    )
+    motion = Motion(np.zeros((n, 3)), np.zeros((n, 9)), np.zeros((n, 3)), np.zeros((n, 3)))
+    return Work(motion, np.zeros(OUT), np.zeros(max(1, system.free)))

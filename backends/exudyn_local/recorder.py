@@ -8,7 +8,17 @@ import numpy as np
 
 from mdlgen.backends.exudyn_local import kernels
 from mdlgen.backends.exudyn_local.shipped import begin, ledger, overstretched, passed, set_limits
+from mdlgen.backends.exudyn_local.state import (
+    DRIVING,
+    ELASTIC,
+    KINETIC,
+    LOST,
+    POTENTIAL,
+    TOTALS,
+    Coordinates,
+)
 from mdlgen.backends.exudyn_local.system import MM, MS, PER_MM, System
+from mdlgen.mechanics.point import DEPTH, PRESSING
 from mdlgen.model import curves
 from mdlgen.model.meshes import carried
 from mdlgen.model.rotations import euler_parameters
@@ -32,7 +42,7 @@ class Recorder:
         self._due = np.zeros(0)  # times at which a state is stored [s]
         self._work = kernels.workspace(system)
         self._pairs = np.zeros((len(system.pairs), kernels.OUT))
-        self._totals = np.zeros(5)
+        self._totals = np.zeros(TOTALS)
         system.pairs["beside"] = 0  # a run before this one may have left its own
         self._touched = np.zeros(len(system.pairs), bool)
         rows = len(model.contacts)
@@ -87,7 +97,7 @@ class Recorder:
     @property
     def touching(self) -> int:
         """Pairs that touch at the state last observed."""
-        return int((self._pairs[:, 12] > 0).sum())
+        return int((self._pairs[:, PRESSING] > 0).sum())
 
     def store(self, q: np.ndarray, v: np.ndarray, t: float) -> None:
         """Observe and store one state outside the stepping (the start, or a static result)."""
@@ -97,33 +107,33 @@ class Recorder:
         self._before = np.array(q), np.array(v)
 
     def _observe(self, q: np.ndarray, v: np.ndarray, t: float) -> None:
-        x, r, u, w, _, f = self._work
         before = self._totals.copy()
         self._pairs[:] = 0.0
-        ledger(*self.system.tables, q, v, t, x, r, u, w, f, self._pairs, self._totals)
+        at = Coordinates(q, v, t)
+        ledger(self.system.tables, at, self._work, self._pairs, self._totals)
         step, self.time = t - self.time, t
-        self._lost += 0.5 * step * (before[3] + self._totals[3])
-        self._driven += 0.5 * step * (before[4] + self._totals[4])
-        self._through += 0.5 * step * (abs(before[4]) + abs(self._totals[4]))
-        self._most = max(self._most, self._totals[0] + self._totals[1])
+        self._lost += 0.5 * step * (before[LOST] + self._totals[LOST])
+        self._driven += 0.5 * step * (before[DRIVING] + self._totals[DRIVING])
+        self._through += 0.5 * step * (abs(before[DRIVING]) + abs(self._totals[DRIVING]))
+        self._most = max(self._most, self._totals[KINETIC] + self._totals[ELASTIC])
         if self._first is None:
             self._first = self._totals[:3].copy()
         off = self._off()
         self.gained, self.vanished = max(self.gained, off), min(self.vanished, off)
         self._contacts(step, t)
-        begin(self.system.bodies, self.system.pairs, q, v, t, x, r, u, w)
+        begin(self.system.bodies, self.system.pairs, at, self._work.motion)
 
     def _contacts(self, step: float, t: float) -> None:
         if not self._pairs.size:
             return
         rows = len(self._max_depth)
         row = self.model.pairs.contact
-        force = np.asarray(np.bincount(row, weights=self._pairs[:, 12], minlength=rows), dtype=float)
+        force = np.asarray(np.bincount(row, weights=self._pairs[:, PRESSING], minlength=rows), dtype=float)
         depth = np.zeros(rows)
-        np.maximum.at(depth, row, self._pairs[:, 15])
+        np.maximum.at(depth, row, self._pairs[:, DEPTH])
         # a graze below a twentieth of the greatest force is not counted as the nip still acting
         acting = force > GRAZE * np.maximum(self._max_force, force)
-        self._touched |= self._pairs[:, 12] > 0.0
+        self._touched |= self._pairs[:, PRESSING] > 0.0
         self._max_depth = np.maximum(self._max_depth, depth)
         self._max_force = np.maximum(self._max_force, force)
         self._sum_depth += step * depth
@@ -137,7 +147,7 @@ class Recorder:
         if self._last_stored == self.steps:
             return
         self._last_stored = self.steps
-        x, r, u, w = self._work[:4]
+        x, r, u, w = self._work.motion
         carried(self.model, x, r, u, w)
         self._stored["t"].append(t)
         self._stored["x"].append(x[:-1].copy())
@@ -150,14 +160,14 @@ class Recorder:
     def _watch(self, t: float, step: float) -> None:
         """Sets the reason of a failure where a joint is beyond its curve, a body left its bounds or went deep
         into a plate."""
-        x = self._work[0][:-1]
+        x = self._work.motion.x[:-1]
         if self.system.points.size:
-            joint, strain = overstretched(self.system.points, self.system.bushings, *self._work[:2])
+            joint, strain = overstretched(self.system.points, self.system.bushings, *self._work.motion[:2])
             if joint >= 0:
                 row = int(self.system.bushings["row"][joint])
                 time = None if self.model.run.analysis == "static" else t / MS
                 self.reason = curves.overstretched(self.model, row, float(strain), time)
-        deep = np.flatnonzero(self._pairs[:, 15] > self._deepest)
+        deep = np.flatnonzero(self._pairs[:, DEPTH] > self._deepest)
         if deep.size:
             self._too_deep(int(deep[0]), t, step)
         out = np.flatnonzero(((x < self._low) | (x > self._high)).any(axis=1))
@@ -177,7 +187,7 @@ class Recorder:
 
     def _too_deep(self, pair: int, t: float, step: float) -> None:
         one, two = (int(side[pair]) for side in (self.model.pairs.a, self.model.pairs.b))
-        rate = self._work[2]
+        rate = self._work.motion.u
         way = step / MM * float(np.linalg.norm(rate[one] - rate[two]))
         self.reason = f"{self.model.too_deep(one, two)} at {t / MS:.6g} ms; {self.model.held_by(one, way)}"
 
@@ -222,11 +232,16 @@ class Recorder:
         if self._first is None:
             return Energy()
         to_nmm = 1.0 / MM
-        passed = (self._lost, self._through, self._most, self._totals[2] - self._first[2])
+        passed = (
+            self._lost,
+            self._through,
+            self._most,
+            float(self._totals[POTENTIAL] - self._first[POTENTIAL]),
+        )
         scale = audit.scale(self.model, *(to_nmm * energy for energy in passed))
         return Energy(
-            kinetic=self._totals[0] * to_nmm,
-            elastic=self._totals[1] * to_nmm,
+            kinetic=self._totals[KINETIC] * to_nmm,
+            elastic=self._totals[ELASTIC] * to_nmm,
             dissipated=self._lost * to_nmm,
             driven=self._driven * to_nmm,
             balance_error=float(self._off() * to_nmm / scale) if self.steps else 0.0,

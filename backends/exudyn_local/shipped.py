@@ -18,10 +18,10 @@ _overstretched, _remember = curve.overstretched, pair.remember
 
 
 @njit(cache=True, error_model="numpy")
-def begin(bodies, pairs, q, v, t, x, r, u, w):
+def begin(bodies, pairs, at, motion):
     """Notes which sides of boxes stand before which ends of plates, for what begins at a state."""
-    place_all(bodies, q, v, t, x, r, u, w)
-    _remember(bodies, pairs, x, r)
+    place_all(bodies, at, motion)
+    _remember(bodies, pairs, motion)
 
 
 @njit(cache=True, error_model="numpy")

@@ -20,6 +20,7 @@ from mdlgen.backends.exudyn_local import kernels
 from mdlgen.backends.exudyn_local.recorder import Recorder
 from mdlgen.backends.exudyn_local.shipped import PROGRAM, forces, jacobian, ledger, passed
 from mdlgen.backends.exudyn_local.stability import falling
+from mdlgen.backends.exudyn_local.state import TOTALS, Coordinates, Work
 from mdlgen.backends.exudyn_local.step import choose_steps, cost, given_steps
 from mdlgen.backends.exudyn_local.system import MM, MS, Pattern, System, build
 from mdlgen.model.external import refuse_externals
@@ -146,7 +147,7 @@ def _once(
     model: Model,
     system: System,
     pattern: Pattern,
-    work: kernels.Work,
+    work: Work,
     progress: Progress | None,
     count: int,
     h: float,
@@ -199,20 +200,19 @@ def _exudyn():
     return exu
 
 
-def _compile(system: System, pattern: Pattern, work: kernels.Work) -> None:
+def _compile(system: System, pattern: Pattern, work: Work) -> None:
     """Compile (or load from the cache) every kernel before the clock of the run starts."""
-    x, r, u, w, _, f = work
-    free = system.free
+    free, tables = system.free, system.tables
     q, v = np.zeros(max(1, free)), np.zeros(max(1, free))
     data = np.zeros(len(pattern.indices))
-    owner = kernels.owners(system)
-    forces(*system.tables, q, v, 0.0, 1.0, *work)
-    jacobian(*system.tables, system.elements, q, v, 0.0, 1.0, 1.0, 1.0, False, owner, *work, data)
-    ledger(*system.tables, q, v, 0.0, x, r, u, w, f, np.zeros((len(system.pairs), kernels.OUT)), np.zeros(5))
+    at, owner = Coordinates(q, v, 0.0), kernels.owners(system)
+    forces(tables, at, 1.0, work)
+    jacobian(tables, system.elements, at, 1.0, (1.0, 1.0), False, owner, work, data)
+    ledger(tables, at, work, np.zeros((len(system.pairs), kernels.OUT)), np.zeros(TOTALS))
     passed(system.bodies, system.pairs, system.meshes, q, v, q, v, 0.0, 0.0)
 
 
-def _assemble(exu, model: Model, system: System, pattern: Pattern, work: kernels.Work) -> Assembly:
+def _assemble(exu, model: Model, system: System, pattern: Pattern, work: Work) -> Assembly:
     from exudyn.itemInterface import (
         Mass1D,
         Node1D,
@@ -265,7 +265,7 @@ def _assemble(exu, model: Model, system: System, pattern: Pattern, work: kernels
                 node = mbs.AddNode(Node1D(referenceCoordinates=[0.0], initialVelocities=[rate]))
                 mbs.AddObject(Mass1D(mass=mass, nodeNumber=node))
                 nodes.append(node)
-    f = work[-1]
+    f = work.forces
     tables = system.tables
     owner = kernels.owners(system)
     data = np.zeros(len(pattern.indices))
@@ -274,31 +274,15 @@ def _assemble(exu, model: Model, system: System, pattern: Pattern, work: kernels
     rest = np.zeros_like(q)
 
     def force(mbs, t, itemNumber, q, q_t):
-        forces(
-            *tables,
-            state.GetODE2Coordinates(copy=False),
-            rest if static else state.GetODE2Coordinates_t(copy=False),
-            t,
-            t if static else 1.0,
-            *work,
-        )
+        rates = rest if static else state.GetODE2Coordinates_t(copy=False)
+        at = Coordinates(state.GetODE2Coordinates(copy=False), rates, t)
+        forces(tables, at, t if static else 1.0, work)
         return f
 
     def tangent(mbs, t, itemNumber, q, q_t, fODE2, fODE2_t):
-        jacobian(
-            *tables,
-            system.elements,
-            np.array(q),
-            rest.copy() if static else np.array(q_t),
-            t,
-            t if static else 1.0,
-            fODE2,
-            0.0 if static else fODE2_t,
-            static,
-            owner,
-            *work,
-            data,
-        )
+        at = Coordinates(np.array(q), rest.copy() if static else np.array(q_t), t)
+        by = (fODE2, 0.0 if static else fODE2_t)
+        jacobian(tables, system.elements, at, t if static else 1.0, by, static, owner, work, data)
         if not np.isfinite(data).all():
             # a factor of it would end the whole process; a singular one is a step that did not converge
             data[:] = 0.0
@@ -384,10 +368,10 @@ def _unbalanced_energy(model: Model, result: Result, recorder: Recorder, h: floa
     return None
 
 
-def _unbalanced(system: System, q: np.ndarray, work: kernels.Work) -> str | None:
+def _unbalanced(system: System, q: np.ndarray, work: Work) -> str | None:
     """Static equilibrium by our own account: the residual against the largest force in the sheet."""
-    forces(*system.tables, q, np.zeros_like(q), 1.0, 1.0, *work)
-    residual = work[-1].copy()
+    forces(system.tables, Coordinates(q, np.zeros_like(q), 1.0), 1.0, work)
+    residual = work.forces.copy()
     for row in system.bodies:
         n = row["first"]
         if n >= 0:  # along the Euler parameters themselves a force does no work

@@ -6,6 +6,7 @@ import numpy as np
 
 from mdlgen.backends.exudyn_local import kernels
 from mdlgen.backends.exudyn_local.shipped import jacobian
+from mdlgen.backends.exudyn_local.state import Coordinates, Work
 from mdlgen.backends.exudyn_local.system import Pattern, System
 from mdlgen.model.tables import Floats
 
@@ -13,7 +14,7 @@ from mdlgen.model.tables import Floats
 SLOW = 1.0
 
 
-def falling(system: System, pattern: Pattern, q: Floats, work: kernels.Work) -> int:
+def falling(system: System, pattern: Pattern, q: Floats, work: Work) -> int:
     """Number of directions in which a balance at q falls, by the signs of the pivots of K + SLOW^2 M.
 
     K is minus the derivative of the generalised forces; Euler parameters are reduced to turns, along which
@@ -26,7 +27,8 @@ def falling(system: System, pattern: Pattern, q: Floats, work: kernels.Work) -> 
     data = np.zeros(len(pattern.indices))
     owner = kernels.owners(system)
     rest = np.zeros(max(1, free))
-    jacobian(*system.tables, system.elements, q.copy(), rest, 1.0, 1.0, 1.0, 0.0, True, owner, *work, data)
+    at = Coordinates(q.copy(), rest, 1.0)
+    jacobian(system.tables, system.elements, at, 1.0, (1.0, 0.0), True, owner, work, data)
     stiffness = csr_matrix((data, pattern.indices, pattern.indptr), shape=(free, free))
     columns, mass = _moves(system, q)
     reduced = columns.T @ stiffness @ columns

@@ -8,7 +8,9 @@ import numpy as np
 
 from mdlgen.backends.exudyn_local import kernels
 from mdlgen.backends.exudyn_local.shipped import ledger
+from mdlgen.backends.exudyn_local.state import TOTALS, Coordinates, Work
 from mdlgen.backends.exudyn_local.system import MS, System
+from mdlgen.mechanics.point import DEPTH, FORCE_A, FORCE_B, PRESSING, STORED
 from mdlgen.model.impact import approach_time, impact_time, lasting
 from mdlgen.model.tables import OF_MACHINE, Model
 
@@ -28,7 +30,7 @@ SOFT_RESTITUTION = 0.4
 STEP_COST, UNKNOWN_COST = 5e-5, 6e-6
 
 
-def choose_steps(model: Model, system: System, work: kernels.Work) -> tuple[int, float]:
+def choose_steps(model: Model, system: System, work: Work) -> tuple[int, float]:
     """(number of steps, step [s]) that the Model's tolerance asks for, so that outputs fall on steps."""
     run = model.run
     wanted = min(_from_tolerance(model), overlap_step(model, system, work))
@@ -49,7 +51,7 @@ def cost(system: System, steps: float) -> float:
     return steps * (STEP_COST + UNKNOWN_COST * system.free)
 
 
-def overlap_step(model: Model, system: System, work: kernels.Work) -> float:
+def overlap_step(model: Model, system: System, work: Work) -> float:
     """Step [ms] for boxes that contacts push away as the run begins; inf where there are none, or where
     contacts hold each other.
 
@@ -61,18 +63,17 @@ def overlap_step(model: Model, system: System, work: kernels.Work) -> float:
         return math.inf
     q = np.zeros(max(1, system.free))
     out = np.zeros((len(pairs), kernels.OUT))
-    x, r, u, w, _, f = work
-    ledger(*system.tables, q, q.copy(), 0.0, x, r, u, w, f, out, np.zeros(5))
+    ledger(system.tables, Coordinates(q, q.copy(), 0.0), work, out, np.zeros(TOTALS))
     stored, force = np.zeros(len(bodies)), np.zeros(len(bodies))
     left, stiffest = np.zeros((len(bodies), 3)), np.zeros(len(bodies))
     pressed = np.zeros(len(bodies), bool)
-    for k in np.flatnonzero(out[:, 13] > 0.0):
-        for end, at in (("a", 0), ("b", 6)):
+    for k in np.flatnonzero(out[:, STORED] > 0.0):
+        for end, at in (("a", FORCE_A), ("b", FORCE_B)):
             body = int(pairs[end][k])
-            stored[body] += out[k, 13]
-            force[body] += out[k, 12]
+            stored[body] += out[k, STORED]
+            force[body] += out[k, PRESSING]
             left[body] += out[k, at : at + 3]
-            stiffest[body] = max(stiffest[body], out[k, 13] / (0.4 * out[k, 15] ** 2.5))
+            stiffest[body] = max(stiffest[body], out[k, STORED] / (0.4 * out[k, DEPTH] ** 2.5))
             pressed[body] |= bodies["slide"][pairs["b" if end == "a" else "a"][k]] >= 0
     finer = math.sqrt(model.run.tolerance / 1e-3)
     shortest = math.inf

@@ -11,11 +11,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from mdlgen.backends.exudyn_local.state import Tables
 from mdlgen.errors import RefusedError
 from mdlgen.mechanics.arm import ARM, arm
 from mdlgen.mechanics.curve import FOLLOWS, curve_points, follow
 from mdlgen.mechanics.driven import DRIVEN, drive
 from mdlgen.mechanics.edge import ENDS
+from mdlgen.mechanics.frame import LAW, LAW_DYNAMIC, LAW_STATIC
 from mdlgen.mechanics.laws import damping_share
 from mdlgen.mechanics.mesh import Meshes, mesh_numbers, mesh_tables
 from mdlgen.mechanics.rim import RIM, rim
@@ -75,7 +77,7 @@ PAIR = np.dtype(
         ("mesh", "i8"),  # number of it
         ("beside", "i8"),  # sides of the box that stand before ends of a plate, see mechanics.edge
         ("k", "f8"),  # [N/m^1.5]
-        ("law", "f8", 7),  # as in mechanics.point, and the coefficient of rolling resistance
+        ("law", "f8", LAW),  # columns as in mechanics.frame
     ]
 )
 LOAD = np.dtype([("body", "i8"), ("local", "f8", 3), ("force", "f8", 3), ("moment", "f8", 3)])
@@ -92,7 +94,7 @@ class Elements(NamedTuple):
 
 
 class System(NamedTuple):
-    """Record arrays for compiled code; `tables` are the arguments that every kernel starts with."""
+    """Record arrays for compiled code."""
 
     bodies: np.ndarray  # BODY, (n + 1,), the last is the ground
     bushings: np.ndarray  # BUSHING, sorted by block
@@ -105,8 +107,17 @@ class System(NamedTuple):
     meshes: Meshes  # [m]
 
     @property
-    def tables(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, Meshes, np.ndarray, Floats]:
-        return self.bodies, self.bushings, self.points, self.pairs, self.meshes, self.loads, self.gravity
+    def tables(self) -> Tables:
+        """What every kernel starts with."""
+        return Tables(
+            bodies=self.bodies,
+            bushings=self.bushings,
+            points=self.points,
+            pairs=self.pairs,
+            meshes=self.meshes,
+            loads=self.loads,
+            gravity=self.gravity,
+        )
 
 
 class Pattern(NamedTuple):
@@ -254,7 +265,7 @@ def _pairs(model: Model) -> np.ndarray:
         )
     ):
         pairs["law"][:, column] = values[chosen]
-    pairs["law"][:, 1:3] *= model.pair_friction[:, None]
+    pairs["law"][:, [LAW_STATIC, LAW_DYNAMIC]] *= model.pair_friction[:, None]
     return pairs
 
 

@@ -12,11 +12,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from mdlgen.backends.lattice.kernels.state import Tables
 from mdlgen.backends.lattice.search import Search, plan
 from mdlgen.mechanics.arm import ARM, arm
 from mdlgen.mechanics.curve import FOLLOWS, curve_points, follow
 from mdlgen.mechanics.driven import DRIVEN, drive
 from mdlgen.mechanics.edge import ENDS
+from mdlgen.mechanics.frame import LAW, LAW_DYNAMIC, LAW_STATIC
 from mdlgen.mechanics.laws import damping_share
 from mdlgen.mechanics.mesh import Meshes, mesh_numbers, mesh_tables
 from mdlgen.mechanics.rim import RIM, rim
@@ -76,7 +78,7 @@ PAIR = np.dtype(
         ("mesh", "i8"),  # number of it
         ("beside", "i8"),  # sides of the box that stand before ends of a plate, see mechanics.edge
         ("k", "f8"),
-        ("law", "f8", 7),  # as in mechanics.point, and the coefficient of rolling resistance
+        ("law", "f8", LAW),  # columns as in mechanics.frame
     ]
 )
 # A body is seen in the plane normal . x = at; its axes are those of the other one seen there, times `signs`.
@@ -105,10 +107,19 @@ class System(NamedTuple):
     meshes: Meshes
 
     @property
-    def tables(self) -> tuple[Any, ...]:
+    def tables(self) -> Tables:
         """What compiled code takes first."""
-        places = (self.nodes, self.points, self.images, self.meshes)
-        return self.bodies, self.joints, self.pairs, self.loads, self.gravity, *places
+        return Tables(
+            bodies=self.bodies,
+            joints=self.joints,
+            pairs=self.pairs,
+            loads=self.loads,
+            gravity=self.gravity,
+            nodes=self.nodes,
+            points=self.points,
+            images=self.images,
+            meshes=self.meshes,
+        )
 
 
 def build(model: Model, fold: bool = True) -> System:
@@ -267,7 +278,7 @@ def _pairs(model: Model) -> tuple[np.ndarray, np.ndarray]:
     pairs = _laws(model, chosen)
     mesh, other = mesh_numbers(model)
     pairs["a"], pairs["b"], pairs["mesh"] = model.pairs.a[own], other[own], mesh[own]
-    pairs["law"][:, 1:3] *= model.pair_friction[own, None]
+    pairs["law"][:, [LAW_STATIC, LAW_DYNAMIC]] *= model.pair_friction[own, None]
     return pairs, _laws(model, np.flatnonzero(rows.kind == BOX_BOX))
 
 

@@ -16,6 +16,8 @@ from typing import NamedTuple
 import numpy as np
 
 from mdlgen.backends.lattice.arrays import JOINT, LOAD, System
+from mdlgen.backends.lattice.kernels.state import Midpoint
+from mdlgen.mechanics.frame import Motion
 from mdlgen.model.rotations import matrices, vectors
 from mdlgen.model.tables import BOX_PLANE, GROUND, Floats, Model, PlanePart, SheetPart
 
@@ -121,16 +123,16 @@ class Grip:
         self.system = system._replace(bodies=bodies, loads=np.concatenate([system.loads, loads]))
         self._loads = self.system.loads[len(system.loads) :]
 
-    def changed(self, level: float, x: Floats, r: Floats, room: tuple) -> float:
+    def changed(self, level: float, x: Floats, r: Floats, mid: Midpoint) -> float:
         """Sets the loads to what friction adds at places x (n, 3) and rotations r (n, 9), a `level` of which
-        will act. Returns by how much that changes the greatest [N]. `room`: (forces, touched, outs, near)."""
+        will act. Returns by how much that changes the greatest [N]; `mid` is room to work in."""
         from mdlgen.backends.lattice.kernels import entries
 
         still, forces = np.zeros_like(x), []
         for system in (self._with, self.system):
-            room[0][:] = 0.0
-            entries.contacts(system.bodies, system.pairs, system.meshes, x, r, still, *room)
-            forces.append(room[0][system.nodes].copy())
+            mid.forces[:] = 0.0
+            entries.contacts(system.tables, Motion(x, r, still, still), mid)
+            forces.append(mid.forces[system.nodes].copy())
         added = (forces[0] - forces[1]) / level
         change = float(np.abs(added[:, :3] - self._loads["force"]).max(initial=0.0)) * level
         self._loads["force"], self._loads["moment"] = added[:, :3], added[:, 3:]

@@ -7,13 +7,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from mdlgen.backends.lattice.kernels.state import Control, Workspace
 from mdlgen.backends.lattice.record import Recorder
 from mdlgen.errors import OutputError
 from mdlgen.runs.checkpoint import Checkpointer, State
 
 
 class Stage(NamedTuple):
-    """Where a pass is: status and time [ms] of the march, outputs that are stored, wall time so far [s]."""
+    """Where a pass is: its status and time [ms], outputs that are stored, wall time so far [s]."""
 
     status: int
     t: float
@@ -23,12 +24,14 @@ class Stage(NamedTuple):
 
 
 class Mark:
-    """Writes and reads a pass. `carried` are the state (first) and the work arrays of a step, which a pass
-    that has ended does not need; `few` are those that the march counts in."""
+    """Writes and reads a pass: the state, what it counts and is steered by, and the work arrays of a step,
+    which a pass that has ended does not need."""
 
-    def __init__(self, carried: tuple, few: tuple, recorder: Recorder):
-        self._state = dict(_leaves("state", carried[0])) | dict(_leaves("few", few))
-        self._work = dict(_leaves("work", carried[1:]))
+    def __init__(self, work: Workspace, control: Control, recorder: Recorder):
+        few = (control, work.search.place, work.tables.pairs["beside"])
+        carried = (work.mid, work.matrix, work.condensed, work.free, work.damped[1:])
+        self._state = dict(_leaves("state", work.state)) | dict(_leaves("few", few))
+        self._work = dict(_leaves("work", carried))
         self._recorder = recorder
 
     def arrays(self, stage: Stage) -> State:

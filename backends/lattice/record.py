@@ -7,6 +7,20 @@ from typing import NamedTuple
 import numpy as np
 
 from mdlgen.backends.lattice.arrays import System
+from mdlgen.backends.lattice.kernels.state import (
+    ACTS,
+    DEPTH_TIME,
+    ENDED,
+    FORCE_BEGUN,
+    FORCE_NOW,
+    FORCE_TIME,
+    MAX_DEPTH,
+    MAX_FORCE,
+    TIME,
+    Kept,
+    Midpoint,
+    State,
+)
 from mdlgen.model.meshes import carried
 from mdlgen.model.rotations import euler_parameters
 from mdlgen.model.tables import Model
@@ -31,8 +45,8 @@ class Stand(NamedTuple):
 class Recorder:
     """Stores states of a run; `kept` is what the compiled code adds up."""
 
-    def __init__(self, model: Model, system: System, tables: tuple, state: tuple, mid: tuple, kept: tuple):
-        self.model, self.system, self.tables = model, system, tables
+    def __init__(self, model: Model, system: System, state: State, mid: Midpoint, kept: Kept):
+        self.model, self.system, self.tables = model, system, system.tables
         self.state, self.mid, self.kept = state, mid, kept
         self._stored: dict[str, list[np.ndarray]] = {name: [] for name in (*STORED, "f")}
         self._times: list[float] = []
@@ -44,16 +58,9 @@ class Recorder:
         """The state at the end of a step."""
         from mdlgen.backends.lattice.kernels import observe
 
-        bodies, joints, pairs, _, gravity, nodes, points, _, meshes = self.tables
-        x, r, v, l, s, vb, _, _ = self.state
-        _, _, u, w, f, touched, outs, _, near = self.mid
         count = len(self.model.bodies.name)
-        energies = np.zeros(3)
-        force = np.zeros(len(self.model.contacts))
-        places, rates = (x, r), (v, l, s, vb)
-        work = (u, w, f, touched, outs, near)
-        sheets = (bodies, joints, points)
-        observe.ledger(*sheets, pairs, meshes, gravity, nodes, t, *places, *rates, *work, energies, force)
+        energies, force = np.zeros(3), np.zeros(len(self.model.contacts))
+        observe.ledger(self.tables, self.state, self.mid, t, energies, force)
         if self.system.mirror is not None:
             energies *= 2.0
         now = (float(energies[0]), float(energies[1]), float(energies[2]))
@@ -62,17 +69,18 @@ class Recorder:
         self._last = now
         self._most = max(self._most, now[0] + now[1])
         self._times.append(t)
-        for name, array in (("x", x), ("r", r), ("u", u), ("w", w)):
+        motion = self.mid.motion
+        for name, array in (("x", self.state.x), ("r", self.state.r), ("u", motion.u), ("w", motion.w)):
             self._stored[name].append(array[:count].copy())
         if t == 0.0:
-            self.kept[0][:, 5] = force
-        # forces in the middle of the last step, where the rule has them, until the next one tells what they
+            self.kept.rows[:, FORCE_NOW] = force
+        # forces in the middle of the last step, where the rule has them, until the next one shows what they
         # are at its end; at the start as it begins
-        self._stored["f"].append(self.kept[0][:, 5].copy())
+        self._stored["f"].append(self.kept.rows[:, FORCE_NOW].copy())
 
     def between(self) -> None:
         """The step after the last state that is stored has been taken: forces there lie between both."""
-        self._stored["f"][-1] = self.kept[0][:, 9].copy()
+        self._stored["f"][-1] = self.kept.rows[:, FORCE_BEGUN].copy()
 
     def arrays(self) -> dict[str, np.ndarray]:
         """All that it has stored, and what the compiled code added up."""
@@ -86,8 +94,8 @@ class Recorder:
             "f": np.array(self._stored["f"]).reshape(times, len(self.model.contacts)),
             "times": np.array(self._times),
             "energies": np.array([*first, *self._last, self._most]),
-            "rows": self.kept[0],
-            "marks": self.kept[1],
+            "rows": self.kept.rows,
+            "marks": self.kept.marks,
         }
 
     def restore(self, arrays: dict[str, np.ndarray]) -> None:
@@ -97,7 +105,7 @@ class Recorder:
         self._times = arrays["times"].tolist()
         first, last, (self._most,) = np.split(arrays["energies"], (3, 6))
         self._first, self._last = tuple(first.tolist()), tuple(last.tolist())
-        self.kept[0][:], self.kept[1][:] = arrays["rows"], arrays["marks"]
+        self.kept.rows[:], self.kept.marks[:] = arrays["rows"], arrays["marks"]
 
     def stand(self, work: np.ndarray) -> Stand:
         """How far it is now; it stays as it is while the run goes on."""
@@ -116,11 +124,11 @@ class Recorder:
         mirror, touched = self.system.mirror, int(marks.sum())
         if mirror is not None:
             touched = mirror.touched(self.system, marks)
-            summed = (1, 3, 5)  # forces; depths and times hold for both sides
+            summed = (MAX_FORCE, FORCE_TIME, FORCE_NOW)  # depths and times hold for both sides
             columns = enumerate(rows.T)
             rows = np.array([(mirror.sums if k in summed else mirror.largest)(c) for k, c in columns]).T
             stand = stand._replace(work=2.0 * stand.work)
-        inside = np.where(rows[:, 4] > 0, rows[:, 4], 1.0)
+        inside = np.where(rows[:, TIME] > 0, rows[:, TIME], 1.0)
         held = self._whole(stand.times)
         return Result(
             model=self.model,
@@ -133,11 +141,11 @@ class Recorder:
             spin=held["w"],
             contact_force=held["f"],
             statistics=ContactStatistics(
-                max_depth=rows[:, 0].copy(),
-                mean_depth=rows[:, 2] / inside,
-                max_force=rows[:, 1].copy(),
-                mean_force=rows[:, 3] / inside,
-                last_force_at=np.where(rows[:, 7] != 0, np.nan, rows[:, 8]),
+                max_depth=rows[:, MAX_DEPTH].copy(),
+                mean_depth=rows[:, DEPTH_TIME] / inside,
+                max_force=rows[:, MAX_FORCE].copy(),
+                mean_force=rows[:, FORCE_TIME] / inside,
+                last_force_at=np.where(rows[:, ACTS] != 0, np.nan, rows[:, ENDED]),
             ),
             touched=touched,
             energy=_balance(self.model, stand),

@@ -8,13 +8,35 @@ import time as clock
 from collections.abc import Callable
 from functools import partial
 from threading import Event, Thread
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from mdlgen.backends.lattice.arrays import System, build, partner
 from mdlgen.backends.lattice.beside import Beside, Stopped, own
 from mdlgen.backends.lattice.kernels.entries import PROGRAM
+from mdlgen.backends.lattice.kernels.state import (
+    ANEW,
+    COUNTERS,
+    FASTEST,
+    ITERATIONS,
+    ROW,
+    STEPS,
+    STRAIN,
+    THROUGH,
+    TOUCHING,
+    WORST,
+    Bounds,
+    Control,
+    History,
+    Kept,
+    Matrix,
+    Midpoint,
+    State,
+    Workspace,
+)
+from mdlgen.backends.lattice.kernels.state import MADE as MADE_OF
+from mdlgen.backends.lattice.kernels.state import MISS as MISS_OF
 from mdlgen.backends.lattice.mark import Mark, Stage
 from mdlgen.backends.lattice.mirror import halve
 from mdlgen.backends.lattice.record import Recorder, Stand
@@ -22,6 +44,7 @@ from mdlgen.backends.lattice.scope import check
 from mdlgen.backends.lattice.static import rest
 from mdlgen.backends.lattice.symmetry import find
 from mdlgen.errors import SpecError
+from mdlgen.mechanics.frame import Motion
 from mdlgen.model.curves import overstretched
 from mdlgen.model.tables import Floats, Model
 from mdlgen.model.unheld import Unheld
@@ -34,8 +57,8 @@ from mdlgen.runs.checkpoint import Checkpointer
 FIRST_STEP = 0.2
 # How often the step may be halved to meet the tolerance, from the first step on; blocks take little time.
 MOST_REFINED, MOST_REFINED_RIGID = 5, 8
-# Rounds of a step of that size stop at changes of velocity of this part of tolerance times speed: in scenes
-# with flexible sheets, whose boxes flutter much faster, and of rigid blocks, whose impacts are sharp.
+# Iterations of a step of that size stop at changes of velocity of this part of tolerance times speed: in
+# scenes with flexible sheets, whose boxes flutter much faster, and of rigid blocks, whose impacts are sharp.
 ROUND_OFF, ROUND_OFF_RIGID = 2.0, 0.02
 # Where the step of rigid blocks is chosen, velocities may miss their guess by this part of the speed at a
 # tolerance of 1e-3; else the step is halved. Sheets flutter, and miss it always.
@@ -49,7 +72,7 @@ FREE_GAIN = 1e-3
 # Two runs that end early end at the same time where it differs by less than this part of the duration.
 SAME_END = 0.01
 
-# How a halved run ends, beside those of march.
+# How a halved run ends, beside those of kernels.integrate.
 PASSED, OVERLAPPED = -1, -2
 # Steps of one run, and those that compiled code takes before it is asked again.
 MOST_STEPS, MOST_AT_ONCE = 1e9, 1000
@@ -62,7 +85,7 @@ FOLDING, FACTORS, SYMMETRY = "folding", "factors", "symmetry"
 
 
 class Watch(NamedTuple):
-    """Who follows a pass: who is told where it stands, what keeps it and by which number, and what stops it
+    """Who follows a pass: what is called as it goes, what keeps it and by which number, and what stops it
     where it goes on beside another one."""
 
     progress: Progress | None = None
@@ -71,7 +94,7 @@ class Watch(NamedTuple):
     stop: Event | None = None
 
     def beside(self, stop: Event) -> Watch:
-        """Of a pass that goes on beside another one, which is the one to be told of."""
+        """Of a pass that goes on beside another one, which is the one that reports."""
         return self._replace(progress=None, stop=stop)
 
     def leave(self) -> None:
@@ -97,7 +120,7 @@ def solve(
     keep: Checkpointer | None = None,
     threads: int = 1,
 ) -> Result:
-    """Run a Model; `progress(time, end, steps, touching)` is told where it stands (times in ms).
+    """Run a Model; `progress(time, end, steps, touching)` is called as it goes (times in ms).
 
     `step` [ms], or the Model's own, is taken as it is, and estimates come of a run at twice the step.
     Without either the step follows from the tolerance: the run is repeated at half the step until what it
@@ -107,14 +130,14 @@ def solve(
     `without` names rules that are not to be used: FOLDING of equal bushings, keeping of FACTORS over steps,
     SYMMETRY of both sides. `keep` is given states to go on from, and a run goes on from those that it has, to
     the same bits. With two `threads` or more, two passes go on at the same time, to the same bits as well;
-    told is the progress of the finer one.
+    progress is that of the finer one.
     """
     check(model)
     started = clock.perf_counter()
     system = build(model, fold=FOLDING not in without)
     compiled = clock.perf_counter()
     if model.run.analysis == "static":
-        result = rest(model, system, start(model, system))
+        result = rest(model, system, *start(model, system)[:2])
         # what a run at rest calls is compiled, or loaded, as it goes: all but its wall time
         result.build_s = compiled - started
         result.compile_s = clock.perf_counter() - compiled - result.wall_s
@@ -306,35 +329,33 @@ def _once(
 ) -> Result:
     """One run at a step, or the next smaller one that outputs fall on; `miss`, `made`: see MISS and MADE, 0
     for any; `anew`: a new factor for each step. Raises Stopped where `watch` says so."""
-    from mdlgen.backends.lattice.kernels import entries, march, step
+    from mdlgen.backends.lattice.kernels import entries, integrate
 
     run = model.run
     outputs, each, dt = _division(model, wanted)
     progress, keep, number, stop = watch
     begun = clock.perf_counter()
-    moving = _arrays(model, system)
-    tables, state, mid, _, _, _, kept, _, _, damped = moving
-    counters, work, fresh = np.zeros(step.COUNTERS), np.zeros(4), np.zeros(3)
-    before = (state[6].copy(), state[7].copy(), np.zeros(2))
-    recorder = Recorder(model, system, tables, state, mid, kept)
+    work = _arrays(model, system)
+    state = work.state
+    control = _control(work)
+    counters, energies = control.counters, control.energies
+    recorder = Recorder(model, system, state, work.mid, work.kept)
     unheld = _unheld(model, system)
     recorder.store(0.0)
     # the guess of a step is the better the finer it is: what is left of it must fall as fast
     part = (ROUND_OFF if _flexible(model) else ROUND_OFF_RIGID) * min(1.0, (dt / FIRST_STEP) ** 2)
     tolerance = part * run.tolerance
-    pace = np.array([0.0, miss, float(anew), _speed(model), made])
-    status, t, past = march.DONE, 0.0, 0.0
-    search = system.search
-    few = (fresh, counters, work, before, pace, search.place, system.pairs["beside"])
-    mark = Mark((*moving[1:6], damped[1:]), few, recorder)
+    control.pace[[MISS_OF, ANEW, FASTEST, MADE_OF]] = miss, float(anew), _speed(model), made
+    status, t, past = integrate.DONE, 0.0, 0.0
+    mark = Mark(work, control, recorder)
     stage = mark.back(keep, number) if keep is not None else None
     if stage is not None:
         status, t, past = stage.status, stage.t, stage.wall
-        entries.look(system.pairs, search, search.place.copy())
+        entries.look(system.pairs, system.search, system.search.place.copy())
 
     def show() -> None:
         if keep is not None and stop is None:  # the one beside shows a later part, or a finer one
-            keep.part = partial(_part, recorder, recorder.stand(work), dt, int(counters[step.STEPS]))
+            keep.part = partial(_part, recorder, recorder.stand(energies), dt, int(counters[STEPS]))
 
     if stage is not None:
         show()
@@ -344,21 +365,21 @@ def _once(
             if stop is not None and stop.is_set():
                 raise Stopped
             steps = np.full(min(each - taken, MOST_AT_ONCE), dt)
-            status, t = march.run(*moving, t, steps, tolerance, fresh, counters, work, before, pace)
+            status, t = integrate.run(work, t, steps, tolerance, control)
             if taken == 0:
                 recorder.between()
-            if status != march.DONE:
+            if status != integrate.DONE:
                 break
-        if status != march.DONE:
+        if status != integrate.DONE:
             break
         t = (output + 1) * run.duration / outputs
         recorder.store(t)
-        passed = system.mirror.passed(state[0], system.nodes) if system.mirror is not None else -1
+        passed = system.mirror.passed(state.x, system.nodes) if system.mirror is not None else -1
         if passed >= 0:
             status = PASSED
-            counters[step.WORST] = passed
+            counters[WORST] = passed
             break
-        if unheld.found(state[0], state[1], t) is not None:
+        if unheld.found(state.x, state.r, t) is not None:
             status = OVERLAPPED
             break
         show()
@@ -366,20 +387,25 @@ def _once(
             wall = past + clock.perf_counter() - begun
             keep.save(number, mark.arrays(Stage(status, t, output + 1, wall, False)))
         if progress is not None:
-            progress(t, run.duration, int(counters[step.STEPS]), int(counters[step.TOUCHING]))
+            progress(t, run.duration, int(counters[STEPS]), int(counters[TOUCHING]))
     wall = past + clock.perf_counter() - begun
     if keep is not None and todo and (keep.written or keep.due(number)):
         keep.save(number, mark.arrays(Stage(status, t, todo.stop, wall, True)))
-    reason = None if status == march.DONE else _reason(model, system, status, t, dt, state, counters)
-    if status in (march.LEFT, march.DEEP, march.STRETCHED):
+    reason = None if status == integrate.DONE else _reason(model, system, status, t, dt, state, counters)
+    if status in (integrate.LEFT, integrate.DEEP, integrate.STRETCHED):
         recorder.store(t)  # with which its energies balance, or do not
-    result = recorder.result("lattice", reason, work)
-    result.step, result.steps = dt, int(counters[step.STEPS])
-    result.rounds, result.wall_s = int(counters[step.ROUNDS]), wall
+    result = recorder.result("lattice", reason, energies)
+    result.step, result.steps = dt, int(counters[STEPS])
+    result.rounds, result.wall_s = int(counters[ITERATIONS]), wall
     if result.ok and not all(np.isfinite(a).all() for a in (result.position, result.velocity, result.spin)):
         result = result.failed("the state went non-finite")
     unbalanced = _unbalanced(result)
-    if unbalanced is None or status not in (march.DONE, march.LEFT, march.DEEP, march.STRETCHED):
+    if unbalanced is None or status not in (
+        integrate.DONE,
+        integrate.LEFT,
+        integrate.DEEP,
+        integrate.STRETCHED,
+    ):
         return result
     return result.failed(unbalanced if result.ok else f"{result.status}; and {unbalanced}")
 
@@ -402,111 +428,109 @@ def _part(recorder: Recorder, stand: Stand, dt: float, steps: int) -> Result:
     return result
 
 
-def start(model: Model, system: System) -> tuple:
+def start(model: Model, system: System) -> tuple[State, Midpoint, Matrix]:
     """State at the start, and the arrays of a step."""
     from mdlgen.backends.lattice.kernels import forces, step
 
     state, mid, matrix = step.empty(system, forces.WIDE)
-    x, r, v, l, _, _, u, _ = state
     bodies = model.bodies
     count = len(bodies.name)
-    x[:count], r[:count] = bodies.position, bodies.rotation.reshape(-1, 9)
-    r[count] = np.eye(3).ravel()
-    mid[0][:], mid[1][:] = x, r
+    state.x[:count], state.r[:count] = bodies.position, bodies.rotation.reshape(-1, 9)
+    state.r[count] = np.eye(3).ravel()
+    mid.motion.x[:], mid.motion.r[:] = state.x, state.r
     nodes = system.nodes
     turn, spin = bodies.rotation[nodes], bodies.spin[nodes]
-    v[:] = bodies.velocity[nodes]
+    state.v[:] = bodies.velocity[nodes]
     own = np.einsum("nji,nj->ni", turn, spin)
-    l[:] = np.einsum("nij,nj->ni", turn, bodies.inertia[nodes] * own)
-    u[:, :3], u[:, 3:] = v, spin
+    state.l[:] = np.einsum("nij,nj->ni", turn, bodies.inertia[nodes] * own)
+    state.u[:, :3], state.u[:, 3:] = state.v, spin
     for roller in model.rollers:
         if roller.one_way is not None and roller.speed is not None:  # it begins with its shaft
             at = system.bodies["spin"][roller.body]
             if at < 0:
                 continue  # left out, see mirror
-            state[5][at] = state[7][at] = roller.prescribed(0.0)
+            state.vb[at] = state.ub[at] = roller.prescribed(0.0)
     return state, mid, matrix
 
 
 def _reason(
-    model: Model, system: System, status: int, t: float, dt: float, state: tuple, counters: Floats
+    model: Model, system: System, status: int, t: float, dt: float, state: State, counters: Floats
 ) -> str:
     """Why a run ended before its end."""
-    from mdlgen.backends.lattice.kernels import march, step
+    from mdlgen.backends.lattice.kernels import integrate
 
     names = model.bodies.name
-    if status == march.STOPPED and counters[step.THROUGH] >= 0:
-        one, two = (names[int(system.pairs[end][int(counters[step.THROUGH])])] for end in "ab")
+    if status == integrate.STOPPED and counters[THROUGH] >= 0:
+        one, two = (names[int(system.pairs[end][int(counters[THROUGH])])] for end in "ab")
         return (
             f"box {one} would pass through box {two} of another sheet at {t:.6g} ms, with steps down to "
-            f"{dt / 2**march.DEEPEST:.3g} ms; a stiffer contact between the two would hold it"
+            f"{dt / 2**integrate.DEEPEST:.3g} ms; a stiffer contact between the two would hold it"
         )
-    if status == march.STOPPED:
-        body = names[int(counters[step.WORST])]
+    if status == integrate.STOPPED:
+        body = names[int(counters[WORST])]
         return (
-            f"no convergence at {t:.6g} ms with steps down to {dt / 2**march.DEEPEST:.3g} ms; "
+            f"no convergence at {t:.6g} ms with steps down to {dt / 2**integrate.DEEPEST:.3g} ms; "
             f"box {body} moved most; larger smoothing of its contacts may help"
         )
-    if status == march.DEEP:
-        pair = int(counters[step.WORST])
+    if status == integrate.DEEP:
+        pair = int(counters[WORST])
         box, plate = int(system.pairs["a"][pair]), partner(model, system.pairs[pair])
         rates = [
-            state[6][np.flatnonzero(system.nodes == int(system.pairs[end][pair])), :3].sum(0) for end in "ab"
+            state.u[np.flatnonzero(system.nodes == int(system.pairs[end][pair])), :3].sum(0) for end in "ab"
         ]
         way = dt * float(np.linalg.norm(rates[0] - rates[1]))
         return f"{model.too_deep(box, plate)} at {t:.6g} ms; {model.held_by(box, way)}"
     if status == OVERLAPPED:
-        return _unheld(model, system).found(state[0], state[1], t) or "two parts overlap"
+        return _unheld(model, system).found(state.x, state.r, t) or "two parts overlap"
     if status == PASSED:
         return (
-            f"box {names[int(counters[step.WORST])]} has passed the plane of the scene's symmetry at "
+            f"box {names[int(counters[WORST])]} has passed the plane of the scene's symmetry at "
             f"{t:.6g} ms, where it may meet what is on the other side; run.symmetry: false solves both sides"
         )
-    if status == march.CROWDED:
+    if status == integrate.CROWDED:
         room = len(system.pairs) - system.search.first
         return f"more than {room} pairs of boxes of two sheets are near each other at {t:.6g} ms"
-    if status == march.STRETCHED:
-        row = int(system.joints["row"][int(counters[step.WORST])])
-        return overstretched(model, row, float(counters[step.STRAIN]), t)
-    body = int(counters[step.WORST])
-    at = ", ".join(f"{value:.4g}" for value in state[0][body])
+    if status == integrate.STRETCHED:
+        row = int(system.joints["row"][int(counters[WORST])])
+        return overstretched(model, row, float(counters[STRAIN]), t)
+    body = int(counters[WORST])
+    at = ", ".join(f"{value:.4g}" for value in state.x[body])
     bounds, advice = model.bounds_of(body)
     return f"{model.called(body)} left {bounds} at {t:.6g} ms (it is at {at} mm); {advice}"
 
 
-def _arrays(model: Model, system: System) -> tuple[Any, Any, Any, Any, Any, Any, Any, Any, Any, Any]:
-    """What a run works on: tables, state, middle, matrix, boxes that touch, free sheets, what is kept,
-    bounds, the search, made for the start, and joints with a damping time."""
-    from mdlgen.backends.lattice.kernels import alone, damped, entries, forces, momentum
+def _arrays(model: Model, system: System) -> Workspace:
+    """What a run works on, made for the start."""
+    from mdlgen.backends.lattice.kernels import condensed, damped, entries, forces, momentum
 
-    tables = system.tables
-    kept = (np.zeros((len(model.contacts), 10)), np.zeros(system.marks, bool))
-    bounds = (model.pairs.low, model.pairs.high)
     state, mid, matrix = start(model, system)
-    entries.look(system.pairs, system.search, state[0])
+    entries.look(system.pairs, system.search, state.x)
     system.pairs["beside"] = 0
-    entries.remember(tables[0], system.pairs, state[0], state[1])
-    return (
-        tables,
-        state,
-        mid,
-        matrix,
-        alone.empty(system, forces.WIDE),
-        momentum.empty(system),
-        kept,
-        bounds,
-        system.search,
-        damped.empty(system),
+    entries.remember(system.bodies, system.pairs, Motion(state.x, state.r, mid.motion.u, mid.motion.w))
+    return Workspace(
+        tables=system.tables,
+        state=state,
+        mid=mid,
+        matrix=matrix,
+        condensed=condensed.empty(system, forces.WIDE),
+        free=momentum.empty(system),
+        kept=Kept(np.zeros((len(model.contacts), ROW)), np.zeros(system.marks, bool)),
+        bounds=Bounds(model.pairs.low, model.pairs.high),
+        search=system.search,
+        damped=damped.empty(system),
     )
+
+
+def _control(work: Workspace) -> Control:
+    """Counts and settings of a run before its first step."""
+    history = History(work.state.u.copy(), work.state.ub.copy(), np.zeros(2))
+    return Control(np.zeros(3), np.zeros(COUNTERS), np.zeros(4), history, np.zeros(5))
 
 
 def _warm(model: Model, system: System) -> None:
     """Compiles, or loads from the cache, before the clock of the run starts."""
-    from mdlgen.backends.lattice.kernels import march, step
+    from mdlgen.backends.lattice.kernels import integrate
 
-    moving = _arrays(model, system)
-    tables, state, mid, _, _, _, kept, _, _, _ = moving
-    before = (state[6].copy(), state[7].copy(), np.zeros(2))
-    counters = np.zeros(step.COUNTERS)
-    march.run(*moving, 0.0, np.zeros(0), 1.0, np.zeros(3), counters, np.zeros(4), before, np.zeros(5))
-    Recorder(model, system, tables, state, mid, kept).store(0.0)
+    work = _arrays(model, system)
+    integrate.run(work, 0.0, np.zeros(0), 1.0, _control(work))
+    Recorder(model, system, work.state, work.mid, work.kept).store(0.0)

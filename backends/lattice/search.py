@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mdlgen.mechanics.frame import LAW
 from mdlgen.model.tables import BOX_BOX, Floats, Ints, Model
 
 # Pairs that there is room for, in times those of two flat sheets on each other.
@@ -30,7 +31,7 @@ REGION = np.dtype(
         ("many_b", "i8"),
         ("shared", "i8"),
         ("k", "f8"),
-        ("law", "f8", 7),  # as of a pair
+        ("law", "f8", LAW),  # as of a pair
         ("mark", "i8"),  # of the first pair among those of all boxes
     ]
 )

@@ -9,9 +9,25 @@ import numpy as np
 
 from mdlgen.backends.lattice import lying, standing
 from mdlgen.backends.lattice.arrays import System, partner
+from mdlgen.backends.lattice.kernels.state import (
+    ACTS,
+    DEPTH_NOW,
+    DEPTH_TIME,
+    FORCE_NOW,
+    FORCE_TIME,
+    MAX_DEPTH,
+    MAX_FORCE,
+    ROW,
+    TIME,
+    Kept,
+    Midpoint,
+    State,
+)
 from mdlgen.backends.lattice.record import Recorder
+from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.mesh import LOST
 from mdlgen.mechanics.pair import DEEP_ROLLER
+from mdlgen.mechanics.point import DEPTH, PRESSING
 from mdlgen.model import curves
 from mdlgen.model.tables import BOX_GUIDE, BOX_PLANE, GROUND, ON_PARTS, Model, SheetPart
 from mdlgen.model.unheld import Unheld
@@ -19,60 +35,60 @@ from mdlgen.results.result import Result
 
 FIRST_PART = 1.0  # of the load
 LEAST_PART = 1e-4
-FEW = 30  # rounds up to which a part grows
-MANY = 2000  # rounds after which a part that fails ends the run
-# Rounds after which no other part is begun: a hard sheet bent both ways takes many that do not fail.
+FEW = 30  # iterations up to which a part grows
+MANY = 2000  # iterations after which a part that fails ends the run
+# Iterations after which no other part is begun: a hard sheet bent both ways takes many that do not fail.
 MOST = 200_000
 # Of the stiffest: holds sheets that lie on contacts only along what does not hold them.
 TETHER = 1e-9
 
 
-def rest(model: Model, system: System, moving: tuple) -> Result:
-    """The Result of a Model at rest; `moving` is (state, mid, matrix) at the start."""
+def rest(model: Model, system: System, state: State, mid: Midpoint) -> Result:
+    """The Result of a Model at rest, from its start."""
     from mdlgen.backends.lattice.kernels import entries
     from mdlgen.backends.lattice.kernels.band import PAD
 
-    state, mid, _ = moving
-    x, r, v, l, s = state[:5]
-    v[:] = 0.0
-    l[:] = 0.0
-    lists = (mid[5], mid[6], mid[8])
+    x, r, s = place = (state.x, state.r, state.s)
+    state.v[:] = 0.0
+    state.l[:] = 0.0
+    lists = (mid.touched, mid.results, mid.near)
+    still = np.zeros_like(x)
     load = _load(model, system)
     loose = _loose(model)
     found = lying.holds(model, loose, load)
     grip = lying.Grip(lying.held(model, system, found))
     tables = grip.system.tables
-    entries.remember(tables[0], system.pairs, x, r)
+    entries.remember(tables.bodies, system.pairs, Motion(x, r, still, still))
     size = (system.border, 6 * (system.reach + 1) + PAD)
     held = (TETHER if len(found) < len(loose) else 0.0, _reach(model))
 
     def balanced(level: float, load: float) -> tuple[bool, int, int, float]:
-        rounds, worst, left = 0, -1, 0.0
+        iterations, worst, left = 0, -1, 0.0
         for _ in range(lying.MOST_GRIPS):
-            done, more, worst, left = entries.equilibrium(tables, *size, level, load, *held, x, r, s, lists)
-            rounds += more
+            done, more, worst, left = entries.equilibrium(tables, size, level, load, *held, place, lists)
+            iterations += more
             if not done or not grip.acts or level == 0.0:
-                return done, rounds, worst, left
-            left = grip.changed(level, x, r, (mid[4], *lists)) / load
+                return done, iterations, worst, left
+            left = grip.changed(level, x, r, mid) / load
             if left <= lying.STEADY:
-                return True, rounds, worst, left
-        return False, rounds, worst, left
+                return True, iterations, worst, left
+        return False, iterations, worst, left
 
     def falls(level: float) -> int:
         nodes, (border, height) = len(system.nodes), size
         matrix = np.zeros((nodes, 6, height)), np.zeros((border, 6 * nodes)), np.zeros((border, border))
-        if entries.stands(tables, level, held[0], standing.SLOW, x, r, s, lists, matrix):
+        if entries.stands(tables, level, held[0], standing.SLOW, place, lists, matrix):
             return 0
         return standing.falling(*matrix)
 
-    given = [array.copy() for array in (x, r, s)]
+    given = [array.copy() for array in place]
 
     def stable(level: float) -> bool:
-        kept = [array.copy() for array in (x, r, s)]
-        for array, old in zip((x, r, s), given, strict=True):
+        kept = [array.copy() for array in place]
+        for array, old in zip(place, given, strict=True):
             array[:] = old
         found = balanced(level, load)[0] and falls(level) == 0
-        for array, old in zip((x, r, s), kept, strict=True):
+        for array, old in zip(place, kept, strict=True):
             array[:] = old
         return found
 
@@ -80,16 +96,16 @@ def rest(model: Model, system: System, moving: tuple) -> Result:
     balanced(0.0, np.inf)
     falls(0.0)
     begun = clock.perf_counter()
-    reason = _parts(model, balanced, load, (x, r, s))
-    rows = (np.zeros((len(model.contacts), 10)), np.zeros(len(system.pairs), bool))
+    reason = _parts(model, balanced, load, place)
+    kept = Kept(np.zeros((len(model.contacts), ROW)), np.zeros(len(system.pairs), bool))
     if reason is None:
-        reason = _stretched(model, system, x, r) or _touch(model, system, state, mid, rows)
-        reason = reason or lying.slides(model, found, rows[0][:, 5], load, x, r)
+        reason = _stretched(model, system, x, r) or _touch(model, system, state, mid, kept)
+        reason = reason or lying.slides(model, found, kept.rows[:, FORCE_NOW], load, x, r)
         reason = reason or _outside(model, x) or Unheld(model).found(x, r, 0.0)
     if reason is None and (ways := falls(1.0)) > 0:
         reason = standing.reason(ways, standing.begins(stable))
     wall = clock.perf_counter() - begun
-    recorder = Recorder(model, system, system.tables, state, mid, rows)
+    recorder = Recorder(model, system, state, mid, kept)
     recorder.store(0.0)
     result = recorder.result("lattice", reason, np.zeros(4))
     result.wall_s, result.steps = wall, 0
@@ -99,13 +115,13 @@ def rest(model: Model, system: System, moving: tuple) -> Result:
 def _parts(model: Model, balanced: Callable, load: float, place: tuple) -> str | None:
     """Brings the whole load into balance, in larger or smaller parts as it goes; a reason where that fails,
     and the last place in balance."""
-    level, part, rounds = 0.0, FIRST_PART, 0
+    level, part, iterations = 0.0, FIRST_PART, 0
     reason = None
-    while level < 1.0 and rounds < MOST:
+    while level < 1.0 and iterations < MOST:
         aim = min(1.0, level + part)
         kept = [array.copy() for array in place]
         found, more, worst, left = balanced(aim, load)
-        rounds += more
+        iterations += more
         if found:
             level, part, reason = aim, 2 * part if more <= FEW else part, None
             continue
@@ -113,10 +129,10 @@ def _parts(model: Model, balanced: Callable, load: float, place: tuple) -> str |
         for array, old in zip(place, kept, strict=True):
             array[:] = old
         part *= 0.25
-        if part < LEAST_PART or rounds > MANY:
+        if part < LEAST_PART or iterations > MANY:
             break
     if level < 1.0 and reason is None:
-        reason = f"no balance was found above {100 * level:.3g} % of the load in {rounds} iterations"
+        reason = f"no balance was found above {100 * level:.3g} % of the load in {iterations} iterations"
     return reason
 
 
@@ -159,29 +175,26 @@ def _reach(model: Model) -> float:
     return min([*depths, *radii], default=np.inf)
 
 
-def _touch(model: Model, system: System, state: tuple, mid: tuple, rows: tuple) -> str | None:
+def _touch(model: Model, system: System, state: State, mid: Midpoint, kept: Kept) -> str | None:
     """Contacts at rest into the rows of the Recorder; a reason where a box is too deep in a plane."""
     from mdlgen.backends.lattice.kernels import entries
 
-    x, r = state[:2]
-    f, touched, outs, near = mid[4], mid[5], mid[6], mid[8]
-    still = np.zeros_like(x)
-    count = entries.contacts(system.bodies, system.pairs, system.meshes, x, r, still, f, touched, outs, near)
-    table, marks = rows
+    still = np.zeros_like(state.x)
+    count = entries.contacts(system.tables, Motion(state.x, state.r, still, still), mid)
     for k in range(count):
-        pair, force, depth = system.pairs[touched[k]], outs[k, 12], outs[k, 15]
+        pair, force, depth = system.pairs[mid.touched[k]], mid.results[k, PRESSING], mid.results[k, DEPTH]
         plate = pair["kind"] in (BOX_GUIDE, BOX_PLANE)
         most = system.bodies["half"][pair["b"], 2] if plate else LOST
         if pair["kind"] in ON_PARTS:
             most = DEEP_ROLLER * system.bodies["size"][pair["a"], 0]
         if depth > most:
             return f"{model.too_deep(int(pair['a']), partner(model, pair))} at rest; give a stiffer contact"
-        marks[touched[k]] = True
-        row = table[pair["row"]]
-        # greatest, sums over a time of 1, now; and it acts
-        row[[1, 3, 5]] += force
-        row[[0, 2, 6]] = max(row[0], depth)
-        row[[4, 7]] = 1.0
+        kept.marks[mid.touched[k]] = True
+        row = kept.rows[pair["row"]]
+        # sums are over a time of 1
+        row[[MAX_FORCE, FORCE_TIME, FORCE_NOW]] += force
+        row[[MAX_DEPTH, DEPTH_TIME, DEPTH_NOW]] = max(row[MAX_DEPTH], depth)
+        row[[TIME, ACTS]] = 1.0
     return None
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from mdlgen.backends.lattice.arrays import System
 from mdlgen.backends.lattice.mirror import Mirror
+from mdlgen.mechanics.frame import Motion
 from mdlgen.model.rotations import matrices
 from mdlgen.model.tables import BOX_BOX, Floats, GuidePart, Ints, Model, PlanePart, RollerPart, SheetPart
 
@@ -271,7 +272,7 @@ def _joints(model: Model, system: System, mirror: Mirror) -> bool:
     x, r, u, w = _shaken(model)
     mirror.fill(x[:count], r[:count], u[:count], w[:count])
     f = np.zeros((count + 1, 6))
-    joint_forces(joints, system.points, x, r, u, w, f)
+    joint_forces(joints, system.points, Motion(x, r, u, w), f)
     force, torque = f[:count, :3], f[:count, 3:]
     most = [float(np.abs(v).max(initial=0.0)) for v in (force, torque)]
     return bool(

@@ -24,6 +24,7 @@ def momentum(result: Result) -> tuple[Floats, Floats]:
 def energy(result: Result) -> Floats:
     """Kinetic plus elastic energy of all boxes [N mm], (t,); the bushings by the law that solvers share."""
     from mdlgen.mechanics.bushing import bushing
+    from mdlgen.mechanics.frame import Frame
 
     count = sum(sheet.count for sheet in result.model.sheets)
     bodies, bushings = result.model.bodies, result.model.bushings
@@ -37,7 +38,8 @@ def energy(result: Result) -> Floats:
         k, kt = tuple(bushings.k[row, :3].tolist()), tuple(bushings.k[row, 3:].tolist())
         for t in range(len(result.time)):
             (xa, fa, ra), (xb, fb, rb) = (tuple(tuple(v[t].ravel().tolist()) for v in side) for side in sides)
-            total[t] += bushing(xa, fa, zero, zero, ra, xb, fb, zero, zero, rb, k, kt, zero, zero)[3]
+            a, b = Frame(xa, fa, zero, zero), Frame(xb, fb, zero, zero)
+            total[t] += bushing(a, ra, b, rb, k, kt, zero, zero)[3]
     return total
 
 

@@ -28,25 +28,26 @@ from mdlgen.program.kernel import FUSED, njit
 
 
 @njit(cache=True, error_model="numpy", forceinline=True, **FUSED)
-def bushing(xa, fa, va, wa, ra, xb, fb, vb, wb, rb, k, kt, c, ct):
+def bushing(a, ra, b, rb, k, kt, c, ct):
     """Force and torque that a bushing puts on body b at its centre, and the torque on body a.
 
-    Args, per body: x centre, f bushing frame (global), v and w velocity and angular velocity (global),
-    r arm from the centre to the attachment (global). k, kt, c, ct: tuples along the bushing's axes.
+    Args: a and b, Frames of the bodies' centres with the bushing's axes on each body in place of the body's;
+    ra and rb, arms from the centres to the attachments (global); k, kt, c, ct: tuples along the bushing's
+    axes.
 
     Returns (force on b, torque on b, torque on a, stored energy, dissipated power); the force on a is
     minus the force on b. Stored energy is 1/2 d.K d + 1/2 theta.K_t theta with theta the rotation vector;
     the torque is its exact gradient in theta.
     """
-    relative = transpose_matmul(fa, fb)
+    relative = transpose_matmul(a.r, b.r)
     theta = log_rotation(relative)
-    middle = matmul(fa, exp_rotation(scale(0.5, theta)))
-    gap = sub(add(xb, rb), add(xa, ra))
-    rate = sub(add(vb, cross(wb, rb)), add(va, cross(wa, ra)))
+    middle = matmul(a.r, exp_rotation(scale(0.5, theta)))
+    gap = sub(add(b.x, rb), add(a.x, ra))
+    rate = sub(add(b.v, cross(b.w, rb)), add(a.v, cross(a.w, ra)))
     # the rate of the gap as seen from the middle frame, which turns with the mean of the two
-    rate = sub(rate, cross(scale(0.5, add(wa, wb)), gap))
+    rate = sub(rate, cross(scale(0.5, add(a.w, b.w)), gap))
     d, v = back(middle, gap), back(middle, rate)
-    w = back(middle, sub(wb, wa))
+    w = back(middle, sub(b.w, a.w))
     spring = (k[0] * d[0], k[1] * d[1], k[2] * d[2])
     damper = (c[0] * v[0], c[1] * v[1], c[2] * v[2])
     twist = (kt[0] * theta[0], kt[1] * theta[1], kt[2] * theta[2])
@@ -67,7 +68,7 @@ def bushing(xa, fa, va, wa, ra, xb, fb, vb, wb, rb, k, kt, c, ct):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True, **FUSED)
-def bushing_pair(xa, fa, va, wa, ra, xb, fb, vb, wb, rb, e, k, kt, c, ct):
+def bushing_pair(a, ra, b, rb, e, k, kt, c, ct):
     """Two equal bushings side by side, at e and -e (bushing axes) from the ends of the arms ra and rb.
 
     Args and result as of `bushing`, with k, kt, c, ct the sums of both; the same forces as the two have,
@@ -75,17 +76,17 @@ def bushing_pair(xa, fa, va, wa, ra, xb, fb, vb, wb, rb, e, k, kt, c, ct):
     relative rotation. With e = 0 it is one bushing. Also returns the middle frame, the gap, and the power of
     dampers that have the stiffness for a damping, over 1 ms.
     """
-    relative = transpose_matmul(fa, fb)
+    relative = transpose_matmul(a.r, b.r)
     theta = log_rotation(relative)
     angle2 = dot(theta, theta)
     # of half the angle: its sine and its versine over it
     sine, versine = sines(0.25 * angle2)
-    middle = matmul(fa, turned(scale(0.5, theta), sine, versine))
-    gap = sub(add(xb, rb), add(xa, ra))
-    rate = sub(add(vb, cross(wb, rb)), add(va, cross(wa, ra)))
-    rate = sub(rate, cross(scale(0.5, add(wa, wb)), gap))
+    middle = matmul(a.r, turned(scale(0.5, theta), sine, versine))
+    gap = sub(add(b.x, rb), add(a.x, ra))
+    rate = sub(add(b.v, cross(b.w, rb)), add(a.v, cross(a.w, ra)))
+    rate = sub(rate, cross(scale(0.5, add(a.w, b.w)), gap))
     d, v = back(middle, gap), back(middle, rate)
-    w = back(middle, sub(wb, wa))
+    w = back(middle, sub(b.w, a.w))
     apart = scale(sine, cross(theta, e))
     arm = add(scale(1.0 - 0.25 * angle2 * versine, e), scale(0.25 * versine * dot(theta, e), theta))
     parting = cross(w, arm)

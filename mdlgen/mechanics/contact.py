@@ -18,7 +18,8 @@ import math
 
 import numpy as np
 
-from mdlgen.mechanics.point import push, push_in_nip
+from mdlgen.mechanics.frame import Sector
+from mdlgen.mechanics.point import STORED, Load, Nip, push, push_in_nip
 from mdlgen.mechanics.vector import add, back, dot, rotate, scale, sub
 from mdlgen.program.kernel import BORROWS, FUSED, OWNS, njit
 
@@ -34,35 +35,17 @@ def _stored(t, reach):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS, **FUSED)
-def _face(
-    out,
-    p,
-    r,
-    q,
-    sign,
-    free,
-    half,
-    l0,
-    al,
-    to,
-    angle,
-    xa,
-    ra,
-    va,
-    wa,
-    xb,
-    vb,
-    wb,
-    radius,
-    width,
-    k,
-    shared,
-    aside,
-    law,
-):
-    """One face of a box (normal axis q, in-plane axes p, r) against a cylinder; l0, al: its centre and axis
-    in box axes; free: edges p_min, p_max, r_min, r_max of the face without a neighbour, as a bit mask; to,
-    angle: a sector as in `box_sector`, in box axes; aside: how far beside where it lies a force acts."""
+def _face(out, face, a, half, b, roller, sector, law):
+    """One face of a box against a cylinder, whose centre, axis and sector are given in box axes.
+
+    face: (p, r, q, sign, free), its in-plane axes and its normal axis, on which side it is, and which edges
+    p_min, p_max, r_min, r_max have no neighbour, as a bit mask; roller: (centre, axis, radius, width).
+    """
+    p, r, q, sign, free = face
+    l0, al, radius, width = roller
+    to, angle, aside = sector
+    k, shared = law.k, law.shared
+    ra = a.r
     na = math.sqrt(al[p] * al[p] + al[r] * al[r])
     if na < 0.2:  # the roller stands on its end
         return
@@ -146,7 +129,7 @@ def _face(
             # from the axis to its foot: back along the face's normal, turned with the lean
             way = rotate(ra, local(p, r, q, lean * up, lean * ur, -na * sign))
             under = local(p, r, q, l0[p] + u * up, l0[r] + u * ur, sign * half[q])
-            foot = add(add(xa, rotate(ra, under)), aside)
+            line = add(add(a.x, rotate(ra, under)), aside)
             across = rotate(ra, local(p, r, q, -ur, up, 0.0))
             # the 2-point rule costs 5/12 z/R of the force, the lean of the pressure 1/3 z/R
             lost = 5.0 / 12.0 + draw * draw / 3.0
@@ -154,7 +137,7 @@ def _face(
                 # energies of two points add up to it where they have all of the nip, and else do not; the
                 # round is z/(4R) narrower than its parabola
                 part = 0.5 * weight * foundation * (1.0 + 0.25 * (radius - e) / radius)
-                out[13] += part * (_stored(right, reach) - _stored(left, reach)) * (radius - e) ** 2
+                out[STORED] += part * (_stored(right, reach) - _stored(left, reach)) * (radius - e) ** 2
             for point in range(2 if spread else 1):
                 t = nearest
                 if spread:
@@ -164,20 +147,18 @@ def _face(
                     length = 0.5 * (right - left) * (1.0 + lost * (radius - e) / radius)
                     spring = weight * foundation * length * zeta
                     energy = 0.6 * spring * zeta  # 2/5 F z: both points are 2/3 z deep
-                    out[13] -= energy
+                    out[STORED] -= energy
                     t *= draw
                 else:
                     spring = weight * zeta * math.sqrt(zeta)
                     energy = 0.4 * spring * zeta
                 distance = math.sqrt(t * t + e * e)
-                at = add(foot, scale(t, across))
+                at = add(line, scale(t, across))
                 normal = add(scale(t / distance, across), scale(e / distance, way))
                 if spread:
-                    push_in_nip(
-                        out, at, normal, foot, way, spring, depth, energy, xa, va, wa, xb, vb, wb, law
-                    )
+                    push_in_nip(out, at, normal, Nip(line, way), Load(spring, depth, energy), a, b, law)
                 else:
-                    push(out, at, normal, spring, depth, energy, xa, va, wa, xb, vb, wb, law)
+                    push(out, at, normal, Load(spring, depth, energy), a, b, law)
 
 
 @njit(cache=True, error_model="numpy")
@@ -190,58 +171,32 @@ def local(p, r, q, a, b, c):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def box_cylinder(out, xa, ra, va, wa, half, exposed, xb, axis, vb, wb, radius, width, k, shared, law):
-    """Box a (centre xa, rotation ra, half lengths) against cylinder b; exposed: 4 side faces
-    as a bit mask."""
-    zero = (0.0, 0.0, 0.0)
-    box_sector(
-        out, xa, ra, va, wa, half, exposed, xb, axis, axis, WHOLE, vb, wb, radius, width, k, shared, zero, law
-    )
+def box_cylinder(out, a, box, b, roller, law):
+    """Box a against a Cylinder b; out: see mechanics.point."""
+    nowhere = (0.0, 0.0, 0.0)
+    box_sector(out, a, box, b, roller, Sector(roller.axis, WHOLE, nowhere), law)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def box_sector(
-    out, xa, ra, va, wa, half, exposed, xb, axis, middle, angle, vb, wb, radius, width, k, shared, aside, law
-):
-    """As box_cylinder for a part of the round: within `angle` [rad] either way of the direction `middle`,
-    which is square to the axis; at most a quarter turn, or WHOLE. Forces act `aside` of where they lie.
+def box_sector(out, a, box, b, roller, sector, law):
+    """As box_cylinder for a Sector of the round.
 
-    Of a part, boxes share k by what of each the part covers, so that a box over it has k z^1.5.
+    Boxes share k by what of the sector each covers, so that a box over it has k z^1.5.
     """
-    gap = sub(xb, xa)
-    near = math.sqrt(dot(half, half)) + math.sqrt(radius * radius + 0.25 * width * width)
+    half, exposed = box
+    gap = sub(b.x, a.x)
+    near = math.sqrt(dot(half, half)) + math.sqrt(
+        roller.radius * roller.radius + 0.25 * roller.width * roller.width
+    )
     if dot(gap, gap) > near * near:
         return
-    l0, al, to = back(ra, gap), back(ra, axis), back(ra, middle)
+    l0, al = back(a.r, gap), back(a.r, roller.axis)
+    seen, width = Sector(back(a.r, sector.middle), sector.angle, sector.aside), roller.width
+    within = (l0, al, roller.radius, width)
     sign = 1.0 if l0[2] >= 0.0 else -1.0
     upright = abs(al[2]) > 0.98  # a roller that stands across the sheet meets its sides only
     if abs(l0[2]) > half[2] and not upright:
-        _face(
-            out,
-            0,
-            1,
-            2,
-            sign,
-            exposed,
-            half,
-            l0,
-            al,
-            to,
-            angle,
-            xa,
-            ra,
-            va,
-            wa,
-            xb,
-            vb,
-            wb,
-            radius,
-            width,
-            k,
-            shared,
-            aside,
-            law,
-        )
+        _face(out, (0, 1, 2, sign, exposed), a, half, b, within, seen, law)
         return
     # the axis lies within the thickness, or crosses it: the roller meets a side
     if upright:
@@ -251,61 +206,11 @@ def box_sector(
     sign = 1.0 if l0[0] >= 0.0 else -1.0
     if exposed & (2 if sign > 0 else 1) and abs(l0[0]) > half[0]:
         free = ((exposed >> 2) & 3) + 12  # y_min, y_max, and both faces
-        _face(
-            out,
-            1,
-            2,
-            0,
-            sign,
-            free,
-            half,
-            l0,
-            al,
-            to,
-            angle,
-            xa,
-            ra,
-            va,
-            wa,
-            xb,
-            vb,
-            wb,
-            radius,
-            width,
-            k,
-            shared,
-            aside,
-            law,
-        )
+        _face(out, (1, 2, 0, sign, free), a, half, b, within, seen, law)
     sign = 1.0 if l0[1] >= 0.0 else -1.0
     if exposed & (8 if sign > 0 else 4) and abs(l0[1]) > half[1]:
         free = 3 + ((exposed & 3) << 2)
-        _face(
-            out,
-            2,
-            0,
-            1,
-            sign,
-            free,
-            half,
-            l0,
-            al,
-            to,
-            angle,
-            xa,
-            ra,
-            va,
-            wa,
-            xb,
-            vb,
-            wb,
-            radius,
-            width,
-            k,
-            shared,
-            aside,
-            law,
-        )
+        _face(out, (2, 0, 1, sign, free), a, half, b, within, seen, law)
 
 
 @njit(cache=True, error_model="numpy", **OWNS)
@@ -331,14 +236,14 @@ def clip(points, count, way, limit):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def face_corners(points, xa, ra, half, facing, xb, rb):
+def face_corners(points, a, half, facing, b):
     """Corners of the face of box a that looks along -`facing` (box axes) into `points`, in the axes of b.
 
     Returns the area of the face.
     """
     q = looking(facing)
     for corner in range(4):
-        at = face_corner(corner, xa, ra, half, facing, xb, rb)
+        at = face_corner(corner, a, half, facing, b)
         for i in range(3):
             points[corner, i] = at[i]
     return 4.0 * half[(q + 1) % 3] * half[(q + 2) % 3]
@@ -353,30 +258,30 @@ def looking(facing):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def face_corner(corner, xa, ra, half, facing, xb, rb):
+def face_corner(corner, a, half, facing, b):
     """One of the four `face_corners`, in the axes of b."""
     q = looking(facing)
     p, r = (q + 1) % 3, (q + 2) % 3
     side = -half[q] if facing[q] > 0.0 else half[q]
     sp = half[p] if corner == 0 or corner == 3 else -half[p]
     sr = half[r] if corner < 2 else -half[r]
-    return back(rb, sub(add(xa, rotate(ra, local(p, r, q, sp, sr, side))), xb))
+    return back(b.r, sub(add(a.x, rotate(a.r, local(p, r, q, sp, sr, side))), b.x))
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def cylinder_cylinder(out, xa, va, wa, radius_a, width_a, xb, vb, wb, radius_b, width_b, axis, k, law):
-    """Two parallel cylinders; k is shared by the part of the narrower one's width that they meet on."""
-    gap = sub(xa, xb)
-    offset = dot(gap, axis)
-    across = sub(gap, scale(offset, axis))
+def cylinder_cylinder(out, a, one, b, two, law):
+    """Two parallel Cylinders; k is shared by the part of the narrower one's width that they meet on."""
+    gap = sub(a.x, b.x)
+    offset = dot(gap, two.axis)
+    across = sub(gap, scale(offset, two.axis))
     distance = math.sqrt(dot(across, across))
-    depth = radius_a + radius_b - distance
-    low = max(offset - 0.5 * width_a, -0.5 * width_b)
-    high = min(offset + 0.5 * width_a, 0.5 * width_b)
+    depth = one.radius + two.radius - distance
+    low = max(offset - 0.5 * one.width, -0.5 * two.width)
+    high = min(offset + 0.5 * one.width, 0.5 * two.width)
     if depth <= 0.0 or distance <= 0.0 or high <= low:
         return
-    share = (high - low) / min(width_a, width_b)
+    share = (high - low) / min(one.width, two.width)
     normal = scale(1.0 / distance, across)
-    spring = share * k * depth * math.sqrt(depth)
-    point = add(xb, add(scale(0.5 * (low + high), axis), scale(radius_b - 0.5 * depth, normal)))
-    push(out, point, normal, spring, depth, 0.4 * spring * depth, xa, va, wa, xb, vb, wb, law)
+    spring = share * law.k * depth * math.sqrt(depth)
+    point = add(b.x, add(scale(0.5 * (low + high), two.axis), scale(two.radius - 0.5 * depth, normal)))
+    push(out, point, normal, Load(spring, depth, 0.4 * spring * depth), a, b, law)

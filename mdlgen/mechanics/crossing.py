@@ -62,10 +62,11 @@ def size(body):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def closing(bodies, pair, meshes, x, r, u, w, ahead):
+def closing(bodies, pair, meshes, motion, ahead):
     """The greatest speed at which a pair may come closer along what it could cross, in the next `ahead`;
     along a plate or a roller's axis a sheet may be fast."""
     a, b, kind = pair.a, pair.b, pair.kind
+    x, r, u, w = motion
     rate, spin = sub(vec(u, b), vec(u, a)), vec(w, a)
     turning = math.sqrt(dot(spin, spin)) * size(bodies[a])
     if kind == BOX_PLANE:

@@ -1,8 +1,7 @@
 """Ends of plates: the edge of a plate is a line with a radius, its end a face between two such lines.
 
-A plate is a slab of a thickness between its two faces. Each of its free ends has a frame: `point`, the middle
-of the end on the upper face; `out`, away from the plate; `up`, the normal of the upper face; `along`, the
-direction of the edge, and half of its length. A point of a sheet is u inside of the end and h below the face.
+A plate is a slab of a thickness between its two faces. Each of its free ends is an End between two such
+lines. A point of a sheet is u inside of the end and h below the face.
 
 Two contacts belong to an end. In the one the edge presses into the broad face of a box, which slides over it
 (`line`): its normal is that of the box's face, as over a small roller, and its depth that of a cylinder of
@@ -26,9 +25,11 @@ were clear of the plate: three bits for each side, 0 or 1 + the number of the en
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from mdlgen.mechanics.contact import local
-from mdlgen.mechanics.point import push
+from mdlgen.mechanics.frame import Vector
+from mdlgen.mechanics.point import Load, push
 from mdlgen.mechanics.vector import add, back, dot, rotate, scale, sub
 from mdlgen.program.kernel import BORROWS, njit
 
@@ -43,6 +44,17 @@ FACES = 0.35  # cosine of the angle to an end at which a side may come to stand 
 # face, and 1 where friction holds what is on them (a static analysis).
 ENDS = [("ends", "i8"), ("edge", "f8", 3)]
 _GAUSS = 1.0 / math.sqrt(3.0)
+
+
+class End(NamedTuple):
+    """A free end of a plate, global: the middle of its edge on a face, the way out of the plate, the normal
+    of the face, the direction of the edge and half of its length."""
+
+    point: Vector
+    out: Vector
+    up: Vector
+    along: Vector
+    length: float
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -68,13 +80,14 @@ def held(normal, up, grip):
 
 
 @njit(cache=True, error_model="numpy")
-def end_of(i, xb, rb, shape, half_b, top):
-    """Frame of the end i of a plate: (point, out, up, along, half of its length), global.
+def end_of(i, b, plate):
+    """The End i of a plate on its upper face.
 
     Ends of a straight plate: 0 and 1 along x, 2 and 3 along z, its width; of an arc 0 where it ends and 1
-    where it begins. See mechanics.guide for the axes; `top` is the upper face's place on the normal.
+    where it begins. See mechanics.guide for the axes.
     """
-    radius, middle, angle = shape
+    radius, middle, angle = plate.shape
+    half, top = plate.half, plate.top
     sign = 1.0 if i % 2 == 0 else -1.0
     if radius > 0.0:
         at = middle + sign * angle
@@ -84,14 +97,14 @@ def end_of(i, xb, rb, shape, half_b, top):
             (-sign * s, sign * c, 0.0),
             (-c, -s, 0.0),
         )
-        along, length = (0.0, 0.0, 1.0), half_b[1]
+        along, length = (0.0, 0.0, 1.0), half[1]
     elif i < 2:
-        point, out, up = (sign * half_b[0], top, 0.0), (sign, 0.0, 0.0), (0.0, 1.0, 0.0)
-        along, length = (0.0, 0.0, 1.0), half_b[1]
+        point, out, up = (sign * half[0], top, 0.0), (sign, 0.0, 0.0), (0.0, 1.0, 0.0)
+        along, length = (0.0, 0.0, 1.0), half[1]
     else:
-        point, out, up = (0.0, top, sign * half_b[1]), (0.0, 0.0, sign), (0.0, 1.0, 0.0)
-        along, length = (1.0, 0.0, 0.0), half_b[0]
-    return add(xb, rotate(rb, point)), rotate(rb, out), rotate(rb, up), rotate(rb, along), length
+        point, out, up = (0.0, top, sign * half[1]), (0.0, 0.0, sign), (0.0, 1.0, 0.0)
+        along, length = (1.0, 0.0, 0.0), half[0]
+    return End(add(b.x, rotate(b.r, point)), rotate(b.r, out), rotate(b.r, up), rotate(b.r, along), length)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -113,42 +126,40 @@ def rounded(u, h, thick, edge):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def _station(xa, ra, half, p, sign, end):
+def _station(a, half, p, sign, end):
     """The side `sign` of axis p of a box before an end: from where to where along it (-1 to 1) it is within
-    the end's length, and its axis along."""
-    point, _out, _up, along, length = end
+    the end's length."""
     r = 1 - p
-    middle = add(xa, rotate(ra, local(p, r, 2, sign * half[p], 0.0, 0.0)))
-    way = (ra[r], ra[3 + r], ra[6 + r])
-    v, step = dot(sub(middle, point), along), half[r] * dot(way, along)
+    middle = add(a.x, rotate(a.r, local(p, r, 2, sign * half[p], 0.0, 0.0)))
+    way = (a.r[r], a.r[3 + r], a.r[6 + r])
+    v, step = dot(sub(middle, end.point), end.along), half[r] * dot(way, end.along)
     if abs(step) < 1e-9 * half[r]:
-        return (-1.0, 1.0) if abs(v) <= length else (0.0, 0.0)
-    one, two = (-length - v) / step, (length - v) / step
+        return (-1.0, 1.0) if abs(v) <= end.length else (0.0, 0.0)
+    one, two = (-end.length - v) / step, (end.length - v) / step
     return max(-1.0, min(one, two)), min(1.0, max(one, two))
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def _corner(xa, ra, half, p, sign, t, up, end):
+def _corner(a, half, p, sign, t, up, end):
     """A point of an outer side: the place t along it, on the upper or lower face; (point, u, h)."""
-    point, out, normal, _along, _length = end
     r = 1 - p
-    at = add(xa, rotate(ra, local(p, r, 2, sign * half[p], t * half[r], up * half[2])))
-    gap = sub(at, point)
-    return at, -dot(gap, out), -dot(gap, normal)
+    at = add(a.x, rotate(a.r, local(p, r, 2, sign * half[p], t * half[r], up * half[2])))
+    gap = sub(at, end.point)
+    return at, -dot(gap, end.out), -dot(gap, end.up)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def stub(out, xa, ra, va, wa, half, p, sign, end, thick, edge, xb, vb, k, shared, law):
+def stub(out, a, half, p, sign, end, plate, b, law):
     """The outer side `sign` of axis p of box a against an end of plate b, which does not turn."""
-    zero = (0.0, 0.0, 0.0)
-    first, last = _station(xa, ra, half, p, sign, end)
+    thick, edge = 2.0 * plate.half[2], plate.edge
+    first, last = _station(a, half, p, sign, end)
     if last - first <= 1e-9:
         return
-    share = 0.5 * k * (0.5 * (last - first) if shared else 1.0)
+    share = 0.5 * law.k * (0.5 * (last - first) if law.shared else 1.0)
     for place in range(2):
         t = first if place == 0 else last
-        one, u1, h1 = _corner(xa, ra, half, p, sign, t, 1.0, end)
-        two, u2, h2 = _corner(xa, ra, half, p, sign, t, -1.0, end)
+        one, u1, h1 = _corner(a, half, p, sign, t, 1.0, end)
+        two, u2, h2 = _corner(a, half, p, sign, t, -1.0, end)
         if (h1 <= 0.0 and h2 >= thick) or (h2 <= 0.0 and h1 >= thick):
             # the side is taller than the end: it meets it in the middle of the plate
             part = (0.5 * thick - h1) / (h2 - h1)
@@ -166,10 +177,10 @@ def stub(out, xa, ra, va, wa, half, p, sign, end, thick, edge, xb, vb, k, shared
                 continue
             part = depth / whole
             steep = math.sqrt(u * u + h * h)
-            normal = scale(1.0 / steep, add(scale(u, end[1]), scale(h, end[2])))
+            normal = scale(1.0 / steep, add(scale(u, end.out), scale(h, end.up)))
             spring = share * whole * math.sqrt(whole) * part ** (NORM - 1.0) * steep
             energy = 0.4 * share * whole * whole * math.sqrt(whole) * part**NORM
-            push(out, at, normal, spring, depth, energy, xa, va, wa, xb, vb, zero, law)
+            push(out, at, normal, Load(spring, depth, energy), a, b, law)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -187,22 +198,27 @@ def _passes(c, half, inner_low, inner_high, radius):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _pressed(out, xa, ra, va, wa, half, exposed, q, sign, axis, end, radius, xb, vb, k, shared, law, grip):
-    """An edge, the round about `axis` (a point of it), on the face of box a whose normal into the box is
-    `sign` times its axis q."""
-    zero = (0.0, 0.0, 0.0)
+def _pressed(out, a, box, face, edge, end, b, law, grip):
+    """An edge of an end on a face of box a.
+
+    face: (q, sign), its normal into the box is `sign` times the box's axis q; edge: (a point of the axis of
+    its round, its radius); grip: what friction holds, as in `held`.
+    """
+    half, exposed = box
+    q, sign = face
+    axis, radius = edge
     p, r = (q + 1) % 3, (q + 2) % 3
-    normal = scale(sign, (ra[q], ra[3 + q], ra[6 + q]))
-    lean = dot(normal, end[1])
+    normal = scale(sign, (a.r[q], a.r[3 + q], a.r[6 + q]))
+    lean = dot(normal, end.out)
     part = leaning(lean)
     if part <= 0.0:
         return
-    place, way = back(ra, sub(axis, xa)), back(ra, end[3])
+    place, way = back(a.r, sub(axis, a.x)), back(a.r, end.along)
     if abs(way[p]) < abs(way[r]):  # p is the axis that goes with the edge, r the one across it
         p, r = r, p
     if abs(way[p]) < 0.1:
         return
-    first, last = -end[4], end[4]
+    first, last = -end.length, end.length
     for side in range(2):
         i = p if side == 0 else r
         # of a block all sides are free, of a box of a sheet those that have no neighbour
@@ -219,7 +235,7 @@ def _pressed(out, xa, ra, va, wa, half, exposed, q, sign, axis, end, radius, xb,
     if last <= first:
         return
     whole = 2.0 * half[p] / abs(way[p])
-    share = 0.5 * part * k * (min(1.0, (last - first) / whole) if shared else 1.0)
+    share = 0.5 * part * law.k * (min(1.0, (last - first) / whole) if law.shared else 1.0)
     inner_low = r != 2 and exposed & (1 << (2 * r)) == 0
     inner_high = r != 2 and exposed & (2 << (2 * r)) == 0
     for station in range(2):
@@ -232,29 +248,16 @@ def _pressed(out, xa, ra, va, wa, half, exposed, q, sign, axis, end, radius, xb,
         if spring <= 0.0:
             continue
         # where the round would touch
-        foot = add(xa, add(rotate(ra, at), scale(-radius, normal)))
-        push(
-            out,
-            foot,
-            held(normal, end[2], grip),
-            spring,
-            depth,
-            0.4 * spring * depth,
-            xa,
-            va,
-            wa,
-            xb,
-            vb,
-            zero,
-            law,
-        )
+        point = add(a.x, add(rotate(a.r, at), scale(-radius, normal)))
+        push(out, point, held(normal, end.up, grip), Load(spring, depth, 0.4 * spring * depth), a, b, law)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def line(out, xa, ra, va, wa, half, exposed, end, thick, edge, xb, vb, k, shared, law):
+def line(out, a, box, end, plate, b, law):
     """Both edges of an end in the broad faces of box a, or in any face of a block."""
     point, away, up, along, length = end
-    gap = sub(xa, point)
+    half, edge, thick = box.half, plate.edge, 2.0 * plate.half[2]
+    gap = sub(a.x, point)
     reach = math.sqrt(dot(half, half)) + max(edge[0], edge[1])
     if abs(dot(gap, away)) > reach or abs(dot(gap, along)) > length + reach:
         return
@@ -266,13 +269,13 @@ def line(out, xa, ra, va, wa, half, exposed, end, thick, edge, xb, vb, k, shared
         normal, radius = (up, edge[0]) if lower == 0 else (scale(-1.0, up), edge[1])
         corner = point if lower == 0 else sub(point, scale(thick, up))
         axis = sub(corner, scale(radius, add(normal, away)))
-        frame = (point, away, normal, along, length)
+        seen = End(point, away, normal, along, length)
         # the plate lies on one side of the sheet's middle
-        q, sign = 2, 1.0 if back(ra, sub(inner, xa))[2] < 0.0 else -1.0
-        if exposed == 15:
+        q, sign = 2, 1.0 if back(a.r, sub(inner, a.x))[2] < 0.0 else -1.0
+        if box.exposed == 15:
             # a block: the face through which the edge is the shortest way in, of those that look at it
-            place, best = back(ra, sub(axis, xa)), 1e300
-            n, e = back(ra, normal), back(ra, away)
+            place, best = back(a.r, sub(axis, a.x)), 1e300
+            n, e = back(a.r, normal), back(a.r, away)
             q = -1
             for i in range(3):
                 way = 1.0 if n[i] + e[i] > 0.0 else -1.0
@@ -283,56 +286,39 @@ def line(out, xa, ra, va, wa, half, exposed, end, thick, edge, xb, vb, k, shared
                     best, q, sign = depth, i, way
             if q < 0:
                 continue
-        _pressed(
-            out,
-            xa,
-            ra,
-            va,
-            wa,
-            half,
-            exposed,
-            q,
-            sign,
-            axis,
-            frame,
-            radius,
-            xb,
-            vb,
-            k,
-            shared,
-            law,
-            edge[2] * law[1],
-        )
+        _pressed(out, a, box, (q, sign), (axis, radius), seen, b, law, edge[2] * law.mu_static)
 
 
 @njit(cache=True, error_model="numpy")
-def stands(xa, ra, half, exposed, xb, rb, shape, half_b, top, ends, edge, beside):
+def stands(a, box, b, plate):
     """Which outer sides of box a stand before which end of plate b, with what was known (see the module)."""
-    thick = 2.0 * half_b[2]
+    half, exposed = box
+    ends, edge, beside = plate.ends, plate.edge, plate.beside
+    thick = 2.0 * plate.half[2]
     found = 0
     for side in range(4):
         if exposed & (1 << side) == 0:
             continue
         p, sign = side // 2, 1.0 if side % 2 == 1 else -1.0
         known = (beside >> (3 * side)) & 7
-        faces = scale(sign, (ra[p], ra[3 + p], ra[6 + p]))
+        faces = scale(sign, (a.r[p], a.r[3 + p], a.r[6 + p]))
         which, most = known - 1, FACES
         if known == 0:
-            for i in range(4 if shape[0] == 0.0 else 2):
+            for i in range(4 if plate.shape[0] == 0.0 else 2):
                 if ends & (1 << i) != 0:
-                    end = end_of(i, xb, rb, shape, half_b, top)
-                    if -dot(faces, end[1]) > most:
-                        which, most = i, -dot(faces, end[1])
+                    end = end_of(i, b, plate)
+                    if -dot(faces, end.out) > most:
+                        which, most = i, -dot(faces, end.out)
         if which < 0:
             continue
-        end = end_of(which, xb, rb, shape, half_b, top)
-        first, last = _station(xa, ra, half, p, sign, end)
+        end = end_of(which, b, plate)
+        first, last = _station(a, half, p, sign, end)
         if last - first <= 1e-9:
             continue
         inside, above, below, deep, over = -1e300, 1e300, -1e300, 0.0, False
         for corner in range(4):
             t, face = first if corner % 2 == 0 else last, 1.0 if corner < 2 else -1.0
-            _at, u, h = _corner(xa, ra, half, p, sign, t, face, end)
+            _at, u, h = _corner(a, half, p, sign, t, face, end)
             inside, above, below = max(inside, u), min(above, h), max(below, h)
             depth, along, _down = rounded(u, h, thick, edge)
             if depth > deep:

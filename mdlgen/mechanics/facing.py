@@ -22,7 +22,7 @@ import math
 import numpy as np
 
 from mdlgen.mechanics.contact import clip, face_corners, local
-from mdlgen.mechanics.point import push
+from mdlgen.mechanics.point import Load, push
 from mdlgen.mechanics.vector import add, back, dot, rotate, scale, sub, transpose_matmul
 from mdlgen.program.kernel import OWNS, njit
 
@@ -57,12 +57,14 @@ def _parting(ra, half_a, exposed, rb, half_b, gap):
 
 
 @njit(cache=True, error_model="numpy")
-def _overlay(points, x, m, half, q, sign, y, n, other):
-    """The part of the face of box y that looks at face q of box x, over that face's outline: its corners into
-    `points`, in the axes of x; (number of corners, area of the smaller face, the world's normal)."""
+def _overlay(points, owner, half, q, sign, other, wide):
+    """The part of the face of box `other` (half lengths `wide`) that looks at face q of box `owner`, over
+    that face's outline: its corners into `points`, in the axes of the owner; (number of corners, area of the
+    smaller face, global normal)."""
     p, r = (q + 1) % 3, (q + 2) % 3
-    normal = rotate(m, local(p, r, q, 0.0, 0.0, sign))
-    smaller = min(4.0 * half[p] * half[r], face_corners(points, y, n, other, back(n, normal), x, m))
+    normal = rotate(owner.r, local(p, r, q, 0.0, 0.0, sign))
+    area = face_corners(points, other, wide, back(other.r, normal), owner)
+    smaller = min(4.0 * half[p] * half[r], area)
     count = 4
     for side in (1.0, -1.0):
         count = clip(points, count, local(p, r, q, side, 0.0, 0.0), half[p])
@@ -97,33 +99,36 @@ def _shares(points, count, p, r, weights):
 
 
 @njit(cache=True, error_model="numpy", **OWNS)
-def box_box(out, xa, ra, va, wa, half_a, exposed_a, xb, rb, vb, wb, half_b, exposed_b, k, shared, law):
-    """Box a (centre, rotation, velocities, half lengths, free side faces as a bit mask) against box b."""
-    gap = sub(xb, xa)
+def box_box(out, a, one_box, b, two_box, law):
+    """Box a against box b of another sheet."""
+    half_a, half_b = one_box.half, two_box.half
+    gap = sub(b.x, a.x)
     reach = math.sqrt(dot(half_a, half_a)) + math.sqrt(dot(half_b, half_b))
     if dot(gap, gap) > reach * reach:
         return
-    apart, one, sign, side_a, q_a, sign_a = _parting(ra, half_a, exposed_a, rb, half_b, gap)
+    apart, one, sign, side_a, q_a, sign_a = _parting(a.r, half_a, one_box.exposed, b.r, half_b, gap)
     if apart:
         return
-    apart, two, sign_two, side_b, q_b, sign_b = _parting(rb, half_b, exposed_b, ra, half_a, scale(-1.0, gap))
+    apart, two, sign_two, side_b, q_b, sign_b = _parting(
+        b.r, half_b, two_box.exposed, a.r, half_a, scale(-1.0, gap)
+    )
     if apart:
         return
     points = np.empty((12, 3))
-    x, m, half, y, n, other, to_a, q = xa, ra, half_a, xb, rb, half_b, -1.0, 2
+    owner, half, other, wide, to_a, q = a, half_a, b, half_b, -1.0, 2
     if two > one + _TIE * reach:
-        x, m, half, y, n, other, to_a, sign = xb, rb, half_b, xa, ra, half_a, 1.0, sign_two
-    count, smaller, normal = _overlay(points, x, m, half, q, sign, y, n, other)
+        owner, half, other, wide, to_a, sign = b, half_b, a, half_a, 1.0, sign_two
+    count, smaller, normal = _overlay(points, owner, half, q, sign, other, wide)
     side = max(side_a, side_b)
     if side > max(one, two) + _TIE * reach:
         deepest = -1.0
         for corner in range(count):
             deepest = max(deepest, half[q] - sign * points[corner, q])
         if count < 3 or deepest > -side:
-            x, m, half, y, n, other, to_a, q, sign = xa, ra, half_a, xb, rb, half_b, -1.0, q_a, sign_a
+            owner, half, other, wide, to_a, q, sign = a, half_a, b, half_b, -1.0, q_a, sign_a
             if side_b > side_a + _TIE * reach:
-                x, m, half, y, n, other, to_a, q, sign = xb, rb, half_b, xa, ra, half_a, 1.0, q_b, sign_b
-            count, smaller, normal = _overlay(points, x, m, half, q, sign, y, n, other)
+                owner, half, other, wide, to_a, q, sign = b, half_b, a, half_a, 1.0, q_b, sign_b
+            count, smaller, normal = _overlay(points, owner, half, q, sign, other, wide)
     if count < 3:
         return
     p, r = (q + 1) % 3, (q + 2) % 3
@@ -131,7 +136,7 @@ def box_box(out, xa, ra, va, wa, half_a, exposed_a, xb, rb, vb, wb, half_b, expo
     area = _shares(points, count, p, r, weights)
     if area <= 1e-12 * smaller:
         return
-    foundation = k / smaller if shared else k / area
+    foundation = law.k / smaller if law.shared else law.k / area
     for corner in range(count):
         depth = half[q] - sign * points[corner, q]
         if depth <= 0.0:
@@ -141,16 +146,10 @@ def box_box(out, xa, ra, va, wa, half_a, exposed_a, xb, rb, vb, wb, half_b, expo
         spring = foundation * weights[corner] * depth * math.sqrt(depth)
         push(
             out,
-            add(x, rotate(m, at)),
+            add(owner.x, rotate(owner.r, at)),
             scale(to_a, normal),
-            spring,
-            depth,
-            0.4 * spring * depth,
-            xa,
-            va,
-            wa,
-            xb,
-            vb,
-            wb,
+            Load(spring, depth, 0.4 * spring * depth),
+            a,
+            b,
             law,
         )

@@ -20,8 +20,9 @@ import numpy as np
 
 from mdlgen.mechanics.contact import box_sector, clip, face_corners
 from mdlgen.mechanics.edge import held, leaning
+from mdlgen.mechanics.frame import Cylinder, Sector, scaled
 from mdlgen.mechanics.plate import area_of, box_ends, box_flat, facing
-from mdlgen.mechanics.point import push
+from mdlgen.mechanics.point import Load, push
 from mdlgen.mechanics.vector import add, back, dot, rotate, scale, sub
 from mdlgen.program.kernel import OWNS, njit
 
@@ -60,88 +61,28 @@ def _beyond(i, shape):
 
 
 @njit(cache=True, error_model="numpy", **OWNS)
-def box_guide(
-    out,
-    xa,
-    ra,
-    va,
-    wa,
-    half,
-    exposed,
-    xb,
-    rb,
-    shape,
-    half_b,
-    side,
-    k,
-    shared,
-    law,
-    ends=0,
-    edge=(0.0, 0.0, 0.0),
-    beside=0,
-):
-    """Box a (centre xa, rotation ra, half lengths, exposed sides) on guide b (origin xb, axes rb).
+def box_guide(out, a, box, b, plate, law):
+    """Box a on guide b, which does not move. A box meets the face of the side that it is on.
 
-    shape: (radius, middle angle, half angle), the radius 0 for a straight guide; half_b: half of its length,
-    width and thickness; side: INSIDE, OUTSIDE or BOTH, which tells where the plate is: radius and line are
-    those of that face, and of the plate's middle for both. A box meets the face of the side that it is on.
-    What is deeper than the plate is thick does not touch. ends, edge and beside: see mechanics.edge.
+    The guide's `side` says where the plate is, see `upper`: radius and line are those of the face that may
+    be touched, and of the plate's middle for both. What is deeper than the plate is thick does not touch.
     """
     zero = (0.0, 0.0, 0.0)
+    half, half_b, shape, top, ends = box.half, plate.half, plate.shape, plate.top, plate.ends
+    ra, rb = a.r, b.r
     radius, thick = shape[0], 2.0 * half_b[2]
-    top = upper(side, thick)
     if radius == 0.0:
-        box_flat(
-            out,
-            xa,
-            ra,
-            va,
-            wa,
-            half,
-            exposed,
-            xb,
-            rb,
-            half_b,
-            top,
-            ends,
-            edge,
-            beside,
-            zero,
-            k,
-            shared,
-            shared,
-            law,
-        )
+        box_flat(out, a, box, b, plate, law.shared, law)
         return
-    at = back(rb, sub(xa, xb))
+    at = back(rb, sub(a.x, b.x))
     reach = math.sqrt(dot(half, half))
     if abs(at[2]) > half_b[1] + reach:
         return
     height = inward(at, radius)
     if height > top + reach or height < top - thick - reach:
         return
-    if beside != 0:
-        box_ends(
-            out,
-            xa,
-            ra,
-            va,
-            wa,
-            half,
-            exposed,
-            xb,
-            rb,
-            shape,
-            half_b,
-            top,
-            ends,
-            edge,
-            beside,
-            zero,
-            k,
-            shared,
-            law,
-        )
+    if plate.beside != 0:
+        box_ends(out, a, box, b, plate, law)
         return
     away = math.sqrt(at[0] * at[0] + at[1] * at[1])
     if away == 0.0:
@@ -156,68 +97,28 @@ def box_guide(
             if ends & (1 << i) != 0:
                 part -= leaning(dot(tilted, _beyond(i, shape)))
         to = rotate(rb, (math.cos(shape[1]), math.sin(shape[1]), 0.0))
-        face, width = radius - top + thick, 2.0 * half_b[1]
         if part > 0.0:
-            box_sector(
-                out,
-                xa,
-                ra,
-                va,
-                wa,
-                half,
-                exposed,
-                xb,
-                (rb[2], rb[5], rb[8]),
-                to,
-                shape[2],
-                zero,
-                zero,
-                face,
-                width,
-                part * k,
-                shared,
-                zero,
-                law,
-            )
+            bend = Cylinder((rb[2], rb[5], rb[8]), radius - top + thick, 2.0 * half_b[1])
+            own = scaled(law, part, 1.0, law.beta)
+            box_sector(out, a, box, b, bend, Sector(to, shape[2], zero), own)
     else:
-        _hollow(
-            out, xa, ra, va, wa, half, xb, rb, shape, half_b, top, ends, edge, look, tilted, k, shared, law
-        )
+        _hollow(out, a, half, b, plate, look, tilted, law)
     if ends != 0:
-        box_ends(
-            out,
-            xa,
-            ra,
-            va,
-            wa,
-            half,
-            exposed,
-            xb,
-            rb,
-            shape,
-            half_b,
-            top,
-            ends,
-            edge,
-            0,
-            zero,
-            k,
-            shared,
-            law,
-        )
+        box_ends(out, a, box, b, plate, law)
 
 
 @njit(cache=True, error_model="numpy", **OWNS)
-def _hollow(out, xa, ra, va, wa, half, xb, rb, shape, half_b, top, ends, edge, look, tilted, k, shared, law):
+def _hollow(out, a, half, b, plate, look, tilted, law):
     """The face of box a that looks at the hollow face of an arc: `look` and its normal `tilted` (into the
     box), in box and guide's axes."""
-    zero = (0.0, 0.0, 0.0)
+    shape, half_b, top, ends, edge = plate.shape, plate.half, plate.top, plate.ends, plate.edge
+    rb = b.r
     points = np.empty((12, 3))
-    area = face_corners(points, xa, ra, half, look, xb, rb)
+    area = face_corners(points, a, half, look, b)
     count = _covered(points, shape, half_b)
     if count < 3:
         return
-    share = k / count * (area_of(points, count) / area if shared else 1.0)
+    share = law.k / count * (area_of(points, count) / area if law.shared else 1.0)
     for i in range(count):
         point = (points[i, 0], points[i, 1], points[i, 2])
         depth = top - inward(point, shape[0])
@@ -241,7 +142,7 @@ def _hollow(out, xa, ra, va, wa, half, xb, rb, shape, half_b, top, ends, edge, l
         spring = weight * depth * math.sqrt(depth)
         if spring <= 0.0:
             continue
-        way = held(way, normal, edge[2] * law[1])
-        where = add(xb, rotate(rb, point))
+        way = held(way, normal, edge[2] * law.mu_static)
+        where = add(b.x, rotate(rb, point))
         energy = 0.4 * spring * depth
-        push(out, where, rotate(rb, way), spring, depth, energy, xa, va, wa, xb, zero, zero, law)
+        push(out, where, rotate(rb, way), Load(spring, depth, energy), a, b, law)

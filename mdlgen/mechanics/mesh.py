@@ -14,7 +14,7 @@ exactly),
 Both are pressures, so neither the number of triangles nor that of boxes changes what a sheet feels. A
 pressure over many triangles acts as four equal forces with its sum, its middle and its spread. Where a sheet
 ends, nothing takes over from the box at its edge: it has what is over it. On a roller these forces are one
-nip (mechanics.point). Its foot lies on a line along the axis through the middle of what presses on the box
+nip (mechanics.point). Its contact line lies along the axis through the middle of what presses on the box
 and, where that comes near another box, on the face as if the sheet went on flat.
 
 The outer sides of a sheet meet what leans against them (mechanics.mesh_side). A block of one box has
@@ -29,8 +29,9 @@ from typing import NamedTuple
 import numpy as np
 
 from mdlgen.mechanics.contact import local
-from mdlgen.mechanics.mesh_side import meet_sides, ramp
-from mdlgen.mechanics.point import push, push_in_nip
+from mdlgen.mechanics.frame import Vector
+from mdlgen.mechanics.mesh_side import Placed, meet_sides, ramp
+from mdlgen.mechanics.point import PRESSING, Load, Nip, push, push_in_nip
 from mdlgen.mechanics.tree import (
     AFTER,
     AREA,
@@ -69,6 +70,23 @@ HEAD = np.dtype(
         ("unseen", "f8"),  # how far a box may move from one state that is looked at to the next
     ]
 )
+
+
+class Face(NamedTuple):
+    """A face of a box as the mesh's file sees it: its normal and the directions of both sides; the box's
+    middle along these three, along the normal less its half length; half lengths of both sides; stiffness per
+    area, whether the pressure is linear in depth, and whether depth is looked at in the middles of triangles.
+    """
+
+    way: Vector
+    along: Vector
+    across: Vector
+    where: Vector
+    half_along: float
+    half_across: float
+    stiffness: float
+    linear: bool
+    middles: bool
 
 
 class Meshes(NamedTuple):
@@ -197,9 +215,13 @@ def _press(sums, area, u, v, depth, thick, stiff, linear):
 
 
 @njit(cache=True, error_model="numpy")
-def _press_linear(sums, area, u0, v0, z0, u1, v1, z1, u2, v2, z2, thick, stiff):
+def _press_linear(sums, area, us, vs, zs, thick, stiff):
     """Adds what a triangle does whose pressure is linear in depth: integrals of products of linear functions
-    are exact, so a face that is cut in another way has the same. Returns its force."""
+    are exact, so a face that is cut in another way has the same. us, vs, zs: places and depths of its
+    corners. Returns its force."""
+    u0, u1, u2 = us
+    v0, v1, v2 = vs
+    z0, z1, z2 = zs
     deepest = max(z0, z1, z2)
     if deepest > thick:
         third, force = area / 3.0, 0.0
@@ -235,13 +257,10 @@ def _piece(sums, points, count, scale, thick, stiff, linear, middles):
         b0, b1 = points[i + 1, 0] - points[0, 0], points[i + 1, 1] - points[0, 1]
         area = 0.5 * part * abs(a0 * b1 - a1 * b0)
         if linear and not middles:
-            force += _press_linear(
-                sums, area,
-                points[0, 0], points[0, 1], points[0, 2] * scale,
-                points[i, 0], points[i, 1], points[i, 2] * scale,
-                points[i + 1, 0], points[i + 1, 1], points[i + 1, 2] * scale,
-                thick, stiff,
-            )  # fmt: skip
+            us = (points[0, 0], points[i, 0], points[i + 1, 0])
+            vs = (points[0, 1], points[i, 1], points[i + 1, 1])
+            zs = (points[0, 2] * scale, points[i, 2] * scale, points[i + 1, 2] * scale)
+            force += _press_linear(sums, area, us, vs, zs, thick, stiff)
         else:
             whole += area
             cu += area / 3.0 * (points[0, 0] + points[i, 0] + points[i + 1, 0])
@@ -264,9 +283,9 @@ def _piece(sums, points, count, scale, thick, stiff, linear, middles):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def _element(sums, room, triangles, t, way, along, across, where, hp, hr, middles, stiff, linear):
-    """Adds what one triangle does; `where` is the box's middle along the face's normal, less its half
-    length, and along both sides of the face."""
+def _element(sums, room, triangles, t, face):
+    """Adds what one triangle does to a Face."""
+    way, along, across, where, hp, hr, stiff, linear, middles = face
     cosine = -(way[0] * triangles[t, 9] + way[1] * triangles[t, 10] + way[2] * triangles[t, 11])
     if cosine <= STEEP:
         return
@@ -294,7 +313,7 @@ def _element(sums, room, triangles, t, way, along, across, where, hp, hr, middle
             force = _press(sums, area, u, v, z * cosine, thick, stiff, linear)
         elif linear:
             z0, z1, z2 = z0 * cosine, z1 * cosine, z2 * cosine
-            force = _press_linear(sums, area, u0, v0, z0, u1, v1, z1, u2, v2, z2, thick, stiff)
+            force = _press_linear(sums, area, (u0, u1, u2), (v0, v1, v2), (z0, z1, z2), thick, stiff)
         else:
             force = _press(sums, area / 3.0, u, v, z * cosine, thick, stiff, linear)
             corner = 2.0 / 9.0 * area
@@ -311,16 +330,19 @@ def _element(sums, room, triangles, t, way, along, across, where, hp, hr, middle
 
 
 @njit(cache=True, error_model="numpy")
-def _gather(sums, room, head, meshes, middle, axes, half, q, sign, stiff):
+def _gather(sums, room, head, meshes, placed, half, q, sign, stiff):
     """Adds up what presses on the face q (on the side `sign`) of a box: force along the file's axes (0-2) and
     in all (3), moments in the face of first (4-5) and second order (6-7), energy (8), greatest depth (9), and
     what would be the force of what is too deep (10)."""
     bounds, links, triangles = meshes.bounds, meshes.links, meshes.triangles
+    middle, axes = placed.middle, placed.axes
     p, r = (q + 1) % 3, (q + 2) % 3
     way = scale(sign, (axes[q], axes[3 + q], axes[6 + q]))
     along, across = (axes[p], axes[3 + p], axes[6 + p]), (axes[r], axes[3 + r], axes[6 + r])
     where = (half[q] + dot(way, middle), dot(along, middle), dot(across, middle))
-    linear, far, middles = head.basis > 0.0, BEYOND * head.most / STEEP, head.middles != 0
+    far = BEYOND * head.most / STEEP
+    linear, middles = head.basis > 0.0, head.middles != 0
+    face = Face(way, along, across, where, half[p], half[r], stiff, linear, middles)
     n = head.first
     while n < head.end:
         facing = 0.0  # the least that a normal has along the face's
@@ -338,14 +360,12 @@ def _gather(sums, room, head, meshes, middle, axes, half, q, sign, stiff):
             n = links[n, AFTER]
             continue
         for t in range(links[n, FIRST], links[n, FIRST] + links[n, COUNT]):
-            _element(
-                sums, room, triangles, t, way, along, across, where, half[p], half[r], middles, stiff, linear
-            )
+            _element(sums, room, triangles, t, face)
         n += 1
 
 
 @njit(cache=True, error_model="numpy")
-def _nip(sums, room, head, meshes, middle, axes, half, sign, exposed, stiff):
+def _nip(sums, room, head, meshes, placed, half, sign, exposed, stiff):
     """What presses on a broad face that goes on over the sides that are not exposed: its force along the
     file's axes and its middle in the face (fx, fy, fz, u, v). `sums` has what presses on the box itself."""
     u, v = sums[0, 4] / sums[0, 3], sums[0, 5] / sums[0, 3]
@@ -363,36 +383,37 @@ def _nip(sums, room, head, meshes, middle, axes, half, sign, exposed, stiff):
     aside = (0.5 * (grown[1] - grown[0]), 0.5 * (grown[3] - grown[2]), 0.0)
     wide = (half[0] + 0.5 * (grown[0] + grown[1]), half[1] + 0.5 * (grown[2] + grown[3]), half[2])
     sums[1] = 0.0
-    _gather(sums[1], room, head, meshes, add(middle, rotate(axes, aside)), axes, wide, 2, sign, stiff)
+    moved = Placed(add(placed.middle, rotate(placed.axes, aside)), placed.axes, placed.frame)
+    _gather(sums[1], room, head, meshes, moved, wide, 2, sign, stiff)
     u, v = sums[1, 4] / sums[1, 3] + aside[0], sums[1, 5] / sums[1, 3] + aside[1]
     return sums[1, 0], sums[1, 1], sums[1, 2], u, v
 
 
 @njit(cache=True, error_model="numpy", **OWNS)
-def box_mesh(out, xa, ra, va, wa, half, exposed, xb, rb, axis, vb, wb, head, meshes, k, law):
-    """Box a (centre xa, rotation ra, half lengths, exposed sides) on a mesh that moves with body b."""
-    frame = matmul(rb, nine(head.axes))
-    place = add(xb, rotate(rb, three(head.place)))
-    middle, axes = back(frame, sub(xa, place)), transpose_matmul(frame, ra)
+def box_mesh(out, a, box, b, axis, head, meshes, law):
+    """Box a on a mesh that moves with body b; axis: of the roller, where b is one."""
+    half, exposed = box
+    ra = a.r
+    frame = matmul(b.r, nine(head.axes))
+    place = add(b.x, rotate(b.r, three(head.place)))
+    middle, axes = back(frame, sub(a.x, place)), transpose_matmul(frame, ra)
     if not overlaps(meshes.bounds, meshes.links, head.first, head.end, middle, axes, half):
         return
-    over = 1.0
+    placed, over = Placed(middle, axes, frame), 1.0
     if exposed != 0 and exposed != BLOCK:
-        over = meet_sides(
-            out, xa, ra, va, wa, half, exposed, middle, axes, frame, head, meshes, xb, vb, wb, k, law
-        )
+        over = meet_sides(out, a, box, placed, head, meshes, b, law)
     both, room = np.zeros((2, 11)), np.empty((2, 12, 3))
     sums = both[0]
-    lost, spot, out_of = 0.0, xa, (0.0, 0.0, 0.0)
+    lost, spot, out_of = 0.0, a.x, (0.0, 0.0, 0.0)
     for face in range(6 if exposed == BLOCK else 2):
         q, sign = (2 + face // 2) % 3, 1.0 if face % 2 == 0 else -1.0
         p, r = (q + 1) % 3, (q + 2) % 3
-        stiff = k / head.basis if head.basis > 0.0 else k / (4.0 * half[p] * half[r])
+        stiff = law.k / head.basis if head.basis > 0.0 else law.k / (4.0 * half[p] * half[r])
         sums[:] = 0.0
-        _gather(sums, room, head, meshes, middle, axes, half, q, sign, stiff)
+        _gather(sums, room, head, meshes, placed, half, q, sign, stiff)
         force = math.sqrt(sums[0] * sums[0] + sums[1] * sums[1] + sums[2] * sums[2])
         if sums[10] > 0.0 and (lost == 0.0 or sums[10] < lost):
-            lost, spot = sums[10], add(xa, rotate(ra, local(p, r, q, 0.0, 0.0, sign * half[q])))
+            lost, spot = sums[10], add(a.x, rotate(ra, local(p, r, q, 0.0, 0.0, sign * half[q])))
             out_of = rotate(ra, local(p, r, q, 0.0, 0.0, -sign))
         if force <= 0.0 or over <= 0.0:
             continue
@@ -400,28 +421,24 @@ def box_mesh(out, xa, ra, va, wa, half, exposed, xb, rb, axis, vb, wb, head, mes
         u, v = sums[4] / sums[3], sums[5] / sums[3]
         du = math.sqrt(max(sums[6] / sums[3] - u * u, 0.0))
         dv = math.sqrt(max(sums[7] / sums[3] - v * v, 0.0))
-        foot, way = xa, normal
+        line, way = a.x, normal
         if head.basis > 0.0:
             sides = exposed if q == 2 else BLOCK
-            fx, fy, fz, foot_u, foot_v = _nip(
-                both, room, head, meshes, middle, axes, half, sign, sides, stiff
-            )
-            foot = add(xa, rotate(ra, local(p, r, q, foot_u, foot_v, sign * half[q])))
+            fx, fy, fz, line_u, line_v = _nip(both, room, head, meshes, placed, half, sign, sides, stiff)
+            line = add(a.x, rotate(ra, local(p, r, q, line_u, line_v, sign * half[q])))
             way = rotate(frame, scale(1.0 / math.sqrt(fx * fx + fy * fy + fz * fz), (fx, fy, fz)))
         for corner in range(4):
             at_u = u + (du if corner % 2 == 0 else -du)
             at_v = v + (dv if corner < 2 else -dv)
-            point = add(xa, rotate(ra, local(p, r, q, at_u, at_v, sign * half[q])))
+            point = add(a.x, rotate(ra, local(p, r, q, at_u, at_v, sign * half[q])))
             spring, energy = 0.25 * over * force, 0.25 * over * sums[8]
             if head.basis > 0.0:
-                under = add(foot, scale(dot(sub(point, foot), axis), axis))
-                push_in_nip(
-                    out, point, normal, under, way, spring, sums[9], energy, xa, va, wa, xb, vb, wb, law
-                )
+                under = add(line, scale(dot(sub(point, line), axis), axis))
+                push_in_nip(out, point, normal, Nip(under, way), Load(spring, sums[9], energy), a, b, law)
             else:
-                push(out, point, normal, spring, sums[9], energy, xa, va, wa, xb, vb, wb, law)
-    if lost > 0.0 and out[12] == 0.0:  # what is as near to the other side is in contact there
-        push(out, spot, out_of, lost, math.inf, 0.0, xa, va, wa, xb, vb, wb, law)
+                push(out, point, normal, Load(spring, sums[9], energy), a, b, law)
+    if lost > 0.0 and out[PRESSING] == 0.0:  # what is as near to the other side is in contact there
+        push(out, spot, out_of, Load(lost, math.inf, 0.0), a, b, law)
 
 
 @njit(cache=True, error_model="numpy")

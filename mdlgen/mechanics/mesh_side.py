@@ -13,14 +13,24 @@ two faces the depth is
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
-from mdlgen.mechanics.point import push
+from mdlgen.mechanics.frame import Matrix, Vector
+from mdlgen.mechanics.point import Load, push
 from mdlgen.mechanics.tree import NORMAL, depth_at, next_at
 from mdlgen.mechanics.vector import add, dot, rotate, scale, three
 from mdlgen.program.kernel import njit
 
 LEVEL, LEANING = 0.05, 0.15  # sines of the angles between which the law begins
 UPRIGHT, STANDING = 0.7, 0.9  # sines of those between which a box is beside a plate, not over it
+
+
+class Placed(NamedTuple):
+    """A box in the axes of the mesh's file: its middle and its axes; `frame` has the file's axes, global."""
+
+    middle: Vector
+    axes: Matrix
+    frame: Matrix
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -31,9 +41,10 @@ def ramp(x, low, high):
 
 
 @njit(cache=True, error_model="numpy")
-def meet_sides(out, xa, ra, va, wa, half, exposed, middle, axes, frame, head, meshes, xb, vb, wb, k, law):
-    """The outer sides of box a, whose middle and axes are given in the file's, against the mesh; returns the
-    part of the law of broad faces that is left."""
+def meet_sides(out, a, box, placed, head, meshes, b, law):
+    """The outer sides of box a against the mesh; returns the part of the law of broad faces that is left."""
+    half, exposed = box
+    middle, axes, frame = placed
     bounds, links, triangles = meshes.bounds, meshes.links, meshes.triangles
     over = 1.0
     for side in range(4):
@@ -61,9 +72,9 @@ def meet_sides(out, xa, ra, va, wa, half, exposed, middle, axes, frame, head, me
                     normal = scale(1.0 / math.sqrt(dot(normal, normal)), normal)
             lean = -dot(away, normal)
             over = min(over, 1.0 - ramp(lean, UPRIGHT, STANDING))
-            spring = 0.5 * ramp(lean, LEVEL, LEANING) * k * depth * math.sqrt(depth)
+            spring = 0.5 * ramp(lean, LEVEL, LEANING) * law.k * depth * math.sqrt(depth)
             if spring > 0.0:
-                point, energy = add(xa, rotate(ra, (x, y, 0.0))), 0.4 * spring * depth
+                point, energy = add(a.x, rotate(a.r, (x, y, 0.0))), 0.4 * spring * depth
                 way = rotate(frame, normal)
-                push(out, point, way, spring, depth, energy, xa, va, wa, xb, vb, wb, law)
+                push(out, point, way, Load(spring, depth, energy), a, b, law)
     return over

@@ -7,10 +7,21 @@ import math
 from mdlgen.mechanics.contact import box_cylinder, cylinder_cylinder
 from mdlgen.mechanics.edge import stands
 from mdlgen.mechanics.facing import box_box
+from mdlgen.mechanics.frame import (
+    LAW_ROLLING,
+    Frame,
+    Plate,
+    box_of,
+    cylinder_of,
+    frame_of,
+    held_frame,
+    law_of,
+    plate_frame,
+)
 from mdlgen.mechanics.guide import box_guide, upper
 from mdlgen.mechanics.mesh import box_mesh
 from mdlgen.mechanics.plate import STRAIGHT, as_guide, box_plane
-from mdlgen.mechanics.point import resist_rolling
+from mdlgen.mechanics.point import PRESSING, resist_rolling
 from mdlgen.mechanics.rim import box_rim, rim_rim
 from mdlgen.mechanics.roller_mesh import roller_mesh, roller_mesh_near
 from mdlgen.mechanics.roller_plate import guide_near, plate_near, roller_guide, roller_plane
@@ -22,6 +33,21 @@ BOX_CYLINDER, BOX_PLANE, CYLINDER_CYLINDER, BOX_GUIDE, BOX_BOX, BOX_MESH = 0, 1,
 CYLINDER_PLANE, CYLINDER_GUIDE, CYLINDER_MESH = 7, 8, 9
 # How deep a roller may be in a plate, in times its radius: its axis is soon behind the face.
 DEEP_ROLLER = 0.5
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def plane_of(body, beside):
+    """Plate of a plane's record, in the axes of a guide."""
+    half = three(body.half)
+    return Plate(STRAIGHT, half, half[2], body.ends, three(body.edge), beside)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def guide_of(body, beside):
+    """Plate of a guide's record."""
+    half = three(body.half)
+    top = upper(body.side, 2.0 * half[2])
+    return Plate(three(body.arc), half, top, body.ends, three(body.edge), beside)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -76,225 +102,50 @@ def _rolling(bodies, pair, meshes, xa, xb, rb):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def pair_force(bodies, pair, meshes, x, r, u, w, out):
-    """One contact pair into `out`, which must be zero (OUT numbers, and the count of points if it has one).
+def pair_force(bodies, pair, meshes, motion, out):
+    """One contact pair into `out`, which must be zero (see mechanics.point for its columns).
 
     `bodies` are records with half, exposed, axis, size (radius, width), arc, side, ENDS and RIM, `pair` one
-    with kind, a, b, k, shared, law, mesh and beside, `meshes` a mechanics.mesh.Meshes; x, r, u, w places,
-    rotations and velocities of all bodies. Returns whether it touches.
+    with kind, a, b, k, shared, law, mesh and beside, `meshes` a mechanics.mesh.Meshes, `motion` the Motion of
+    all bodies. Returns whether it touches.
     """
-    a, b = pair.a, pair.b
-    row = pair.law
-    law = (row[0], row[1], row[2], row[3], row[4], row[5])
-    if pair.kind == CYLINDER_CYLINDER and bodies[a].rims + bodies[b].rims > 0:
-        rim_rim(
-            out,
-            bodies[a],
-            vec(x, a),
-            mat(r, a),
-            vec(u, a),
-            vec(w, a),
-            bodies[b],
-            vec(x, b),
-            mat(r, b),
-            vec(u, b),
-            vec(w, b),
-            pair.k,
-            law,
-        )
-    elif pair.kind == CYLINDER_CYLINDER:
-        cylinder_cylinder(
-            out,
-            vec(x, a),
-            vec(u, a),
-            vec(w, a),
-            bodies[a].size[0],
-            bodies[a].size[1],
-            vec(x, b),
-            vec(u, b),
-            vec(w, b),
-            bodies[b].size[0],
-            bodies[b].size[1],
-            three(bodies[b].axis),
-            pair.k,
-            law,
-        )
-    elif pair.kind == BOX_PLANE:
-        box_plane(
-            out,
-            vec(x, a),
-            mat(r, a),
-            vec(u, a),
-            vec(w, a),
-            three(bodies[a].half),
-            vec(x, b),
-            mat(r, b),
-            three(bodies[b].half),
-            pair.k,
-            law,
-            vec(u, b),
-            bodies[a].exposed,
-            bodies[b].ends,
-            three(bodies[b].edge),
-            pair.beside,
-            pair.shared != 0,
-        )
-    elif pair.kind == BOX_GUIDE:
-        box_guide(
-            out,
-            vec(x, a),
-            mat(r, a),
-            vec(u, a),
-            vec(w, a),
-            three(bodies[a].half),
-            bodies[a].exposed,
-            vec(x, b),
-            mat(r, b),
-            three(bodies[b].arc),
-            three(bodies[b].half),
-            bodies[b].side,
-            pair.k,
-            pair.shared != 0,
-            law,
-            bodies[b].ends,
-            three(bodies[b].edge),
-            pair.beside,
-        )
-    elif pair.kind == CYLINDER_PLANE:
-        roller_plane(
-            out,
-            bodies[a],
-            vec(x, a),
-            mat(r, a),
-            vec(u, a),
-            vec(w, a),
-            vec(x, b),
-            mat(r, b),
-            vec(u, b),
-            three(bodies[b].half),
-            pair.k,
-            law,
-        )
-    elif pair.kind == CYLINDER_GUIDE:
-        roller_guide(
-            out,
-            bodies[a],
-            vec(x, a),
-            mat(r, a),
-            vec(u, a),
-            vec(w, a),
-            vec(x, b),
-            mat(r, b),
-            three(bodies[b].arc),
-            three(bodies[b].half),
-            bodies[b].side,
-            pair.k,
-            law,
-        )
-    elif pair.kind == CYLINDER_MESH:
-        roller_mesh(
-            out,
-            bodies[a],
-            vec(x, a),
-            vec(u, a),
-            vec(w, a),
-            vec(x, b),
-            mat(r, b),
-            vec(u, b),
-            vec(w, b),
-            meshes.heads[pair.mesh],
-            meshes,
-            pair.k,
-            law,
-        )
-    elif pair.kind == BOX_BOX:
-        box_box(
-            out,
-            vec(x, a),
-            mat(r, a),
-            vec(u, a),
-            vec(w, a),
-            three(bodies[a].half),
-            bodies[a].exposed,
-            vec(x, b),
-            mat(r, b),
-            vec(u, b),
-            vec(w, b),
-            three(bodies[b].half),
-            bodies[b].exposed,
-            pair.k,
-            pair.shared != 0,
-            law,
-        )
-    elif pair.kind == BOX_MESH:
-        box_mesh(
-            out,
-            vec(x, a),
-            mat(r, a),
-            vec(u, a),
-            vec(w, a),
-            three(bodies[a].half),
-            bodies[a].exposed,
-            vec(x, b),
-            mat(r, b),
-            three(bodies[b].axis),
-            vec(u, b),
-            vec(w, b),
-            meshes.heads[pair.mesh],
-            meshes,
-            pair.k,
-            law,
-        )
-    elif bodies[b].rims > 0:
-        box_rim(
-            out,
-            vec(x, a),
-            mat(r, a),
-            vec(u, a),
-            vec(w, a),
-            three(bodies[a].half),
-            bodies[a].exposed,
-            bodies[b],
-            vec(x, b),
-            mat(r, b),
-            three(bodies[b].axis),
-            vec(u, b),
-            vec(w, b),
-            bodies[b].size[1],
-            pair.k,
-            pair.shared != 0,
-            law,
-        )
+    one, two, kind = bodies[pair.a], bodies[pair.b], pair.kind
+    a, b = frame_of(motion, pair.a), frame_of(motion, pair.b)
+    law = law_of(pair)
+    if kind == CYLINDER_CYLINDER and one.rims + two.rims > 0:
+        rim_rim(out, a, one, b, two, law)
+    elif kind == CYLINDER_CYLINDER:
+        cylinder_cylinder(out, a, cylinder_of(one), b, cylinder_of(two), law)
+    elif kind == BOX_PLANE:
+        box_plane(out, a, box_of(one), plate_frame(motion, pair.b), plane_of(two, pair.beside), law)
+    elif kind == BOX_GUIDE:
+        box_guide(out, a, box_of(one), held_frame(motion, pair.b), guide_of(two, pair.beside), law)
+    elif kind == CYLINDER_PLANE:
+        roller_plane(out, one, a, plate_frame(motion, pair.b), three(two.half), law)
+    elif kind == CYLINDER_GUIDE:
+        held = held_frame(motion, pair.b)
+        roller_guide(out, one, a, held, three(two.arc), three(two.half), two.side, law)
+    elif kind == CYLINDER_MESH:
+        roller_mesh(out, one, a, b, meshes.heads[pair.mesh], meshes, law)
+    elif kind == BOX_BOX:
+        box_box(out, a, box_of(one), b, box_of(two), law)
+    elif kind == BOX_MESH:
+        box_mesh(out, a, box_of(one), b, three(two.axis), meshes.heads[pair.mesh], meshes, law)
+    elif two.rims > 0:
+        box_rim(out, a, box_of(one), b, two, law)
     else:
-        box_cylinder(
-            out,
-            vec(x, a),
-            mat(r, a),
-            vec(u, a),
-            vec(w, a),
-            three(bodies[a].half),
-            bodies[a].exposed,
-            vec(x, b),
-            three(bodies[b].axis),
-            vec(u, b),
-            vec(w, b),
-            bodies[b].size[0],
-            bodies[b].size[1],
-            pair.k,
-            pair.shared != 0,
-            law,
-        )
-    if row[6] > 0.0 and out[12] > 0.0:
-        axis, curved = _rolling(bodies, pair, meshes, vec(x, a), vec(x, b), mat(r, b))
+        box_cylinder(out, a, box_of(one), b, cylinder_of(two), law)
+    if pair.law[LAW_ROLLING] > 0.0 and out[PRESSING] > 0.0:
+        axis, curved = _rolling(bodies, pair, meshes, a.x, b.x, b.r)
         if curved > 0.0:
-            resist_rolling(out, vec(w, a), vec(w, b), axis, 1.0 / curved, row[6], row[5])
-    return out[12] != 0.0
+            resist_rolling(out, a.w, b.w, axis, 1.0 / curved, pair.law[LAW_ROLLING], law.smoothing)
+    return out[PRESSING] != 0.0
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def remember(bodies, pairs, x, r):
+def remember(bodies, pairs, motion):
     """Notes for all pairs of a box and a plate which outer sides of the box stand before which end of the
-    plate, at places and rotations that a step, or a run, begins with (see mechanics.edge)."""
+    plate, at the places that a step, or a run, begins with (see mechanics.edge)."""
     for p in range(pairs.size):
         kind = pairs[p].kind
         if kind < 0:  # from here on there is room only
@@ -305,31 +156,17 @@ def remember(bodies, pairs, x, r):
         exposed, ends = bodies[a].exposed, bodies[b].ends
         if exposed == 0 or ends == 0:
             continue
-        shape, frame, top = STRAIGHT, mat(r, b), bodies[b].half[2]
-        size = three(bodies[b].half)
+        one, two = held_frame(motion, a), held_frame(motion, b)
+        plate = guide_of(bodies[b], pairs[p].beside)
         if kind == BOX_PLANE:
-            frame = as_guide(frame)
-        else:
-            shape, top = three(bodies[b].arc), upper(bodies[b].side, 2.0 * top)
-        if shape[0] == 0.0:
-            at, half = back(frame, sub(vec(x, a), vec(x, b))), three(bodies[a].half)
+            two = Frame(two.x, as_guide(two.r), two.v, two.w)
+            plate = plane_of(bodies[b], pairs[p].beside)
+        if plate.shape[0] == 0.0:
+            at, half, size = back(two.r, sub(one.x, two.x)), three(bodies[a].half), plate.half
             reach = math.sqrt(dot(half, half))
-            if at[1] > top + reach or at[1] < top - 2.0 * size[2] - reach:
+            if at[1] > plate.top + reach or at[1] < plate.top - 2.0 * size[2] - reach:
                 pairs[p].beside = 0  # clear of the plate
                 continue
             if pairs[p].beside == 0 and abs(at[0]) + reach < size[0] and abs(at[2]) + reach < size[1]:
                 continue  # inside of all ends
-        pairs[p].beside = stands(
-            vec(x, a),
-            mat(r, a),
-            three(bodies[a].half),
-            exposed,
-            vec(x, b),
-            frame,
-            shape,
-            size,
-            top,
-            ends,
-            three(bodies[b].edge),
-            pairs[p].beside,
-        )
+        pairs[p].beside = stands(one, box_of(bodies[a]), two, plate)

@@ -14,7 +14,8 @@ import numpy as np
 
 from mdlgen.mechanics.contact import clip, face_corner, face_corners, looking
 from mdlgen.mechanics.edge import end_of, held, leaning, line, stub
-from mdlgen.mechanics.point import push
+from mdlgen.mechanics.frame import Frame
+from mdlgen.mechanics.point import Load, push
 from mdlgen.mechanics.vector import add, back, cross, dot, rotate, scale, sub, vec
 from mdlgen.program.kernel import BORROWS, OWNS, njit
 
@@ -46,39 +47,30 @@ def facing(facing, ra):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def box_ends(
-    out, xa, ra, va, wa, half, exposed, xb, rb, shape, half_b, top, ends, edge, beside, vb, k, shared, law
-):
+def box_ends(out, a, box, b, plate, law):
     """The edges of a plate's free ends in the faces of a box, or its sides that stand before them."""
-    thick = 2.0 * half_b[2]
-    if beside != 0:
+    if plate.beside != 0:
         for side in range(4):
-            known = (beside >> (3 * side)) & 7
+            known = (plate.beside >> (3 * side)) & 7
             if known > 0:
-                end = end_of(known - 1, xb, rb, shape, half_b, top)
                 sign = 1.0 if side % 2 == 1 else -1.0
-                stub(out, xa, ra, va, wa, half, side // 2, sign, end, thick, edge, xb, vb, k, shared, law)
+                stub(out, a, box.half, side // 2, sign, end_of(known - 1, b, plate), plate, b, law)
         return
-    for i in range(4 if shape[0] == 0.0 else 2):
-        if ends & (1 << i) != 0:
-            end = end_of(i, xb, rb, shape, half_b, top)
-            line(out, xa, ra, va, wa, half, exposed, end, thick, edge, xb, vb, k, shared, law)
+    for i in range(4 if plate.shape[0] == 0.0 else 2):
+        if plate.ends & (1 << i) != 0:
+            line(out, a, box, end_of(i, b, plate), plate, b, law)
 
 
 @njit(cache=True, error_model="numpy", **OWNS)
-def box_flat(
-    out, xa, ra, va, wa, half, exposed, xb, rb, half_b, top, ends, edge, beside, vb, k, covered, shared, law
-):
-    """Box a (centre xa, rotation ra, half lengths, exposed sides) on a flat plate b (origin xb, axes rb as of
-    a guide), which does not turn and moves at vb.
+def box_flat(out, a, box, b, plate, covered, law):
+    """Box a on a flat plate b, whose axes are those of a guide.
 
-    half_b: half of its length, width and thickness; top: where its upper face is on its normal; ends: those
-    that are free, as a bit mask; edge: radius of the edges, and 1 where friction holds what is on them (a
-    static analysis); covered: whether k goes with the part of the face that the plate covers; shared: whether
-    that holds for its edges.
+    covered: whether k goes with the part of the box's face that the plate covers.
     """
-    zero = (0.0, 0.0, 0.0)
-    at = back(rb, sub(xa, xb))
+    half, half_b, top = box.half, plate.half, plate.top
+    ends, edge = plate.ends, plate.edge
+    ra, rb = a.r, b.r
+    at = back(rb, sub(a.x, b.x))
     reach, thick = math.sqrt(dot(half, half)), 2.0 * half_b[2]
     bottom = top - thick
     if abs(at[0]) > half_b[0] + reach or abs(at[2]) > half_b[1] + reach:
@@ -87,28 +79,8 @@ def box_flat(
         return
     blunt = 2.0 * max(edge[0], edge[1])
     inside = abs(at[0]) + reach <= half_b[0] - blunt and abs(at[2]) + reach <= half_b[1] - blunt
-    if beside != 0 and not inside:
-        box_ends(
-            out,
-            xa,
-            ra,
-            va,
-            wa,
-            half,
-            exposed,
-            xb,
-            rb,
-            STRAIGHT,
-            half_b,
-            top,
-            ends,
-            edge,
-            beside,
-            vb,
-            k,
-            shared,
-            law,
-        )
+    if plate.beside != 0 and not inside:
+        box_ends(out, a, box, b, plate, law)
         return
     # on which side of the sheet's middle the plate is
     upright = back(rb, (ra[2], ra[5], ra[8]))
@@ -124,23 +96,23 @@ def box_flat(
     look = back(ra, rotate(rb, normal))
     if inside:
         for corner in range(4):
-            at = face_corner(corner, xa, ra, half, look, xb, rb)
+            at = face_corner(corner, a, half, look, b)
             depth = sign * (top - at[1]) if sign > 0.0 else at[1] - bottom
             if depth <= 0.0 or depth > thick:
                 continue
-            spring = 0.25 * k * depth * math.sqrt(depth)
+            spring = 0.25 * law.k * depth * math.sqrt(depth)
             energy, way = 0.4 * spring * depth, rotate(rb, normal)
-            push(out, add(xb, rotate(rb, at)), way, spring, depth, energy, xa, va, wa, xb, vb, zero, law)
+            push(out, add(b.x, rotate(rb, at)), way, Load(spring, depth, energy), a, b, law)
         return
     points = np.empty((12, 3))
-    area = face_corners(points, xa, ra, half, look, xb, rb)
+    area = face_corners(points, a, half, look, b)
     count = 4
     for axis in range(2):
         way = (1.0, 0.0, 0.0) if axis == 0 else (0.0, 0.0, 1.0)
         count = clip(points, count, way, half_b[axis])
         count = clip(points, count, scale(-1.0, way), half_b[axis])
     if count >= 3:
-        share = k / count
+        share = law.k / count
         if covered:
             share *= area_of(points, count) / area
         inward = back(rb, facing(look, ra))
@@ -154,48 +126,14 @@ def box_flat(
             if ends != 0:
                 weight, way = _near_end(points[i], half_b, ends, radius, inward, normal, share)
                 depth *= sign * way[1]
-                way = held(way, normal, edge[2] * law[1])
+                way = held(way, normal, edge[2] * law.mu_static)
             spring = weight * depth * math.sqrt(depth)
             if spring <= 0.0:
                 continue
-            point = add(xb, rotate(rb, (points[i, 0], points[i, 1], points[i, 2])))
-            push(
-                out,
-                point,
-                rotate(rb, way),
-                spring,
-                depth,
-                0.4 * spring * depth,
-                xa,
-                va,
-                wa,
-                xb,
-                vb,
-                zero,
-                law,
-            )
+            point = add(b.x, rotate(rb, (points[i, 0], points[i, 1], points[i, 2])))
+            push(out, point, rotate(rb, way), Load(spring, depth, 0.4 * spring * depth), a, b, law)
     if ends != 0:
-        box_ends(
-            out,
-            xa,
-            ra,
-            va,
-            wa,
-            half,
-            exposed,
-            xb,
-            rb,
-            STRAIGHT,
-            half_b,
-            top,
-            ends,
-            edge,
-            0,
-            vb,
-            k,
-            shared,
-            law,
-        )
+        box_ends(out, a, box, b, plate, law)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -241,45 +179,6 @@ def _near_end(point, half_b, ends, radius, inward, normal, share):
 
 
 @njit(cache=True, error_model="numpy")
-def box_plane(
-    out,
-    xa,
-    ra,
-    va,
-    wa,
-    half,
-    xb,
-    rb,
-    half_b,
-    k,
-    law,
-    vb=(0.0, 0.0, 0.0),
-    exposed=0,
-    ends=0,
-    edge=(0.0, 0.0, 0.0),
-    beside=0,
-    shared=True,
-):
-    """Box a on plane b: half_b are half lengths along its axes, of which z is its normal; see `box_flat`."""
-    size = (half_b[0], half_b[1], half_b[2])
-    box_flat(
-        out,
-        xa,
-        ra,
-        va,
-        wa,
-        half,
-        exposed,
-        xb,
-        as_guide(rb),
-        size,
-        half_b[2],
-        ends,
-        edge,
-        beside,
-        vb,
-        k,
-        False,
-        shared,
-        law,
-    )
+def box_plane(out, a, box, b, plate, law):
+    """Box a on plane b, whose frame has the plane's own axes, z its normal; see `box_flat`."""
+    box_flat(out, a, box, Frame(b.x, as_guide(b.r), b.v, b.w), plate, False, law)

@@ -1,101 +1,125 @@
 """The force of one contact point, and what a pair adds up of its points.
 
-Each law adds to `out`: force and torque on the first body (0-5), on the second (6-11), normal force (12),
-stored energy (13), dissipated power (14), and keeps the greatest depth (15). An `out` that is longer also
-gets the number of contact points (16) and for each of them, in POINT numbers: the point, the normal, the
-elastic force and its growth with depth, the normal force, the rate that damps it, the slip velocity, the
-share of damping and both coefficients of friction, what it is (ALONE, OF_NIP or COUPLE), and, of a
-nip, the place whose rate damps it and the normal there. Of a COUPLE they are: the couple at a high speed (6),
-its radius (7), the rolling speed (9) and its axis (17-19). A solver makes its tangent from them.
+Each law adds to `out`, whose columns are named below: forces and torques on both bodies, the normal force,
+stored energy and dissipated power; it keeps the greatest depth. An `out` that is longer also gets the number
+of contact points and the numbers of each, from which a solver makes its tangent. A point is ALONE, OF_NIP, or
+a COUPLE, whose numbers are others.
 
 What damps is the rate of one penetration (Eq. 11). Under a roller the force of one nip stands at points
-before and behind the foot of its axis. Their own rates are those of rolling: the sheet comes in at one and
+before and behind its contact line. Their own rates are those of rolling: the sheet comes in at one and
 goes out at the other, while the nip is as deep as it was. So all points of a nip are damped by the rate at
-which the depth at its foot grows, also where the foot lies on the next box, and a nip that rolls or slides at
-a constant depth loses nothing. A free edge that is met has one point, and its own rate.
+which the depth at its contact line grows, also where that lies on the next box, and a nip that rolls or
+slides at a constant depth loses nothing. A free edge that is met has one point, and its own rate.
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
+from mdlgen.mechanics.frame import Vector
 from mdlgen.mechanics.laws import damped, friction_over_speed, sign_step
 from mdlgen.mechanics.vector import add, cross, dot, scale, sub
 from mdlgen.program.kernel import BORROWS, FUSED, njit
 
+# Columns of what a pair adds up: force and torque on the first body and on the second, three each; the force
+# along normals, stored energy, dissipated power, the greatest depth. A longer one has how many points follow.
+FORCE_A, TORQUE_A, FORCE_B, TORQUE_B = 0, 3, 6, 9
+PRESSING, STORED, DISSIPATED, DEPTH = 12, 13, 14, 15
 OUT = 16
+POINTS = 16
+# Of each point, from OUT + 1 on: the place, the normal to the first body, the elastic force and its growth
+# with depth, the normal force, the rate that damps it, the slip velocity, the share of damping, both
+# coefficients of friction, and what it is.
+AT, NORMAL, SPRING, GROWTH, FORCE, RATE, SLIP, BETA, MU_STATIC, MU_DYNAMIC = 0, 3, 6, 7, 8, 9, 10, 13, 14, 15
+KIND = 16
+ALONE, OF_NIP, COUPLE = 0.0, 1.0, 2.0
+# Of one OF_NIP also the place on the contact line whose rate damps it, and the normal there.
+LINE, WAY = 17, 20
+# Of a COUPLE: that at a high speed, its radius, the rolling speed and its axis.
+MOST_COUPLE, RADIUS, ROLLING, AXIS = 6, 7, 9, 17
 POINT = 23
 MOST_POINTS = 25  # of one pair: three parts of a face, two stations, two points; twice for a corner; a couple
-ALONE, OF_NIP, COUPLE = 0.0, 1.0, 2.0
+
+
+class Load(NamedTuple):
+    """The elastic force of a point [N], its depth [mm] and the energy that it stores."""
+
+    force: float
+    depth: float
+    energy: float
+
+
+class Nip(NamedTuple):
+    """A place on a nip's contact line, and the normal there, to the first body."""
+
+    line: Vector
+    way: Vector
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def closing(point, normal, xa, va, wa, xb, vb, wb):
+def closing(point, normal, a, b):
     """How fast two bodies close at a point along a normal that points to the first."""
-    slip = sub(add(va, cross(wa, sub(point, xa))), add(vb, cross(wb, sub(point, xb))))
+    slip = sub(add(a.v, cross(a.w, sub(point, a.x))), add(b.v, cross(b.w, sub(point, b.x))))
     return -dot(slip, normal)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def push(out, point, normal, spring, depth, energy, xa, va, wa, xb, vb, wb, law):
-    """Adds the force of one contact point; `normal` points to the first body, `spring` is its elastic force.
-
-    law: (beta, mu_static, mu_dynamic, stiction velocity, friction velocity, smoothing velocity).
-    """
-    rate = closing(point, normal, xa, va, wa, xb, vb, wb)
-    at = _push(out, point, normal, rate, spring, depth, energy, xa, va, wa, xb, vb, wb, law)
+def push(out, point, normal, load, a, b, law):
+    """Adds the force of one contact point of bodies a and b (Frames); `normal` points to a."""
+    at = _push(out, point, normal, closing(point, normal, a, b), load, a, b, law)
     if at > 0:
-        out[at + 16] = ALONE
+        out[at + KIND] = ALONE
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def push_in_nip(out, point, normal, foot, way, spring, depth, energy, xa, va, wa, xb, vb, wb, law):
-    """As `push` for one of several points of a nip, whose depth grows as its `foot` closes along `way`."""
-    rate = closing(foot, way, xa, va, wa, xb, vb, wb)
-    at = _push(out, point, normal, rate, spring, depth, energy, xa, va, wa, xb, vb, wb, law)
+def push_in_nip(out, point, normal, nip, load, a, b, law):
+    """As `push` for one of several points of a nip, whose depth grows as its contact line closes."""
+    at = _push(out, point, normal, closing(nip.line, nip.way, a, b), load, a, b, law)
     if at > 0:
-        out[at + 16] = OF_NIP
+        out[at + KIND] = OF_NIP
         for i in range(3):
-            out[at + 17 + i] = foot[i]
-            out[at + 20 + i] = way[i]
+            out[at + LINE + i] = nip.line[i]
+            out[at + WAY + i] = nip.way[i]
 
 
 @njit(cache=True, error_model="numpy", **BORROWS, **FUSED)
-def _push(out, point, normal, rate, spring, depth, energy, xa, va, wa, xb, vb, wb, law):
+def _push(out, point, normal, rate, load, a, b, law):
     """Adds the force of a point that is damped by a rate; returns where it stands in `out`, 0: nowhere."""
-    ra, rb = sub(point, xa), sub(point, xb)
-    slip = sub(add(va, cross(wa, ra)), add(vb, cross(wb, rb)))
+    spring, depth, energy = load
+    ra, rb = sub(point, a.x), sub(point, b.x)
+    slip = sub(add(a.v, cross(a.w, ra)), add(b.v, cross(b.w, rb)))
     own = -dot(slip, normal)
     slip = add(slip, scale(own, normal))
     speed = math.sqrt(dot(slip, slip))
-    force = damped(spring, rate, law[0], law[5])
-    drag = force * friction_over_speed(speed, law[1], law[2], law[3], law[4])
+    force = damped(spring, rate, law.beta, law.smoothing)
+    drag = force * friction_over_speed(speed, law.mu_static, law.mu_dynamic, law.stiction, law.sliding)
     f = sub(scale(force, normal), scale(drag, slip))
     ta, tb = cross(ra, f), cross(rb, f)
     for i in range(3):
-        out[i] += f[i]
-        out[3 + i] += ta[i]
-        out[6 + i] -= f[i]
-        out[9 + i] -= tb[i]
-    out[12] += force
-    out[13] += energy
+        out[FORCE_A + i] += f[i]
+        out[TORQUE_A + i] += ta[i]
+        out[FORCE_B + i] -= f[i]
+        out[TORQUE_B + i] -= tb[i]
+    out[PRESSING] += force
+    out[STORED] += energy
     # what its own way takes off it: over all points of a nip that is not below zero
-    out[14] += (force - spring) * own + drag * speed * speed
-    out[15] = max(out[15], depth)
-    if out.size <= OUT or out[OUT] >= MOST_POINTS:
+    out[DISSIPATED] += (force - spring) * own + drag * speed * speed
+    out[DEPTH] = max(out[DEPTH], depth)
+    if out.size <= OUT or out[POINTS] >= MOST_POINTS:
         return 0
-    at = OUT + 1 + POINT * int(out[OUT])
-    out[OUT] += 1.0
+    at = OUT + 1 + POINT * int(out[POINTS])
+    out[POINTS] += 1.0
     for i in range(3):
-        out[at + i] = point[i]
-        out[at + 3 + i] = normal[i]
-        out[at + 10 + i] = slip[i]
-        out[at + 13 + i] = law[i]
-    out[at + 6] = spring
+        out[at + AT + i] = point[i]
+        out[at + NORMAL + i] = normal[i]
+        out[at + SLIP + i] = slip[i]
+    out[at + BETA], out[at + MU_STATIC], out[at + MU_DYNAMIC] = law.beta, law.mu_static, law.mu_dynamic
+    out[at + SPRING] = spring
     # F z^1.5 has stored 2/5 F z, an elastic foundation 3/5 F z: this is 3/2 F/z, and F/z
-    out[at + 7] = 0.6 * spring * spring / energy if energy > 0.0 else 0.0
-    out[at + 8] = force
-    out[at + 9] = rate
+    out[at + GROWTH] = 0.6 * spring * spring / energy if energy > 0.0 else 0.0
+    out[at + FORCE] = force
+    out[at + RATE] = rate
     return at
 
 
@@ -104,18 +128,18 @@ def resist_rolling(out, wa, wb, axis, radius, f, v_s):
     """Adds the couple that resists the turning of two bodies against each other about an axis: f N R, N their
     normal force, over its sign's speed v_s of the rolling speed omega R."""
     rate = dot(sub(wa, wb), axis) * radius
-    most = f * out[12] * radius
+    most = f * out[PRESSING] * radius
     couple = most * sign_step(rate, v_s)
     for i in range(3):
-        out[3 + i] -= couple * axis[i]
-        out[9 + i] += couple * axis[i]
-    out[14] += couple * rate / radius
-    if out.size <= OUT or out[OUT] >= MOST_POINTS:
+        out[TORQUE_A + i] -= couple * axis[i]
+        out[TORQUE_B + i] += couple * axis[i]
+    out[DISSIPATED] += couple * rate / radius
+    if out.size <= OUT or out[POINTS] >= MOST_POINTS:
         return
-    at = OUT + 1 + POINT * int(out[OUT])
-    out[OUT] += 1.0
+    at = OUT + 1 + POINT * int(out[POINTS])
+    out[POINTS] += 1.0
     for i in range(POINT):
         out[at + i] = 0.0
-    out[at + 6], out[at + 7], out[at + 9], out[at + 16] = most, radius, rate, COUPLE
+    out[at + MOST_COUPLE], out[at + RADIUS], out[at + ROLLING], out[at + KIND] = most, radius, rate, COUPLE
     for i in range(3):
-        out[at + 17 + i] = axis[i]
+        out[at + AXIS + i] = axis[i]

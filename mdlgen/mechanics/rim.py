@@ -1,9 +1,9 @@
 """Contact with rollers whose rim is in sectors, each with its own radius, friction, stiffness, restitution.
 
-With phi the angle of the rim at the foot of a flat face, the elastic energy is that of a roller of radius
+With phi the angle of the rim that looks at a flat face, the elastic energy is that of a roller of radius
 h(phi) and stiffness k(phi), h being the support function (see model.rims). So the force acts where a real rim
-touches: h'(phi) beside the foot, at the edge of a sector where it is one that touches; and the roller
-bears the torque that a stiffness growing with phi makes. What the sectors store, they give back.
+touches: h'(phi) beside the point below the axis, at the edge of a sector where it is one that touches; and
+the roller bears the torque that a stiffness growing with phi makes. What the sectors store, they give back.
 
 A body record has `rims`, how many pieces its rim has (0: it is round); `blend`, half of the angle over which
 one goes over into the next; and `rim`, of each piece PIECE numbers: angle where it begins, radius, angle of
@@ -18,7 +18,9 @@ import math
 import numpy as np
 
 from mdlgen.mechanics.contact import WHOLE, box_sector, cylinder_cylinder
+from mdlgen.mechanics.frame import Cylinder, Sector, scaled
 from mdlgen.mechanics.laws import damping_share
+from mdlgen.mechanics.point import DEPTH, FORCE_A, FORCE_B, STORED, TORQUE_A, TORQUE_B
 from mdlgen.mechanics.vector import back, cross, dot, rotate, scale, sub, three
 from mdlgen.model.rims import MOST_PIECES, pieces
 from mdlgen.model.tables import RollerPart
@@ -122,39 +124,20 @@ def _facing(l0, al, half, exposed):
 
 
 @njit(cache=True, error_model="numpy")
-def box_rim(out, xa, ra, va, wa, half, exposed, body, xb, rb, axis, vb, wb, width, k, shared, law):
-    """As `contact.box_cylinder` for a roller b whose record `body` has a rim, and whose rotation is rb."""
-    l0, al = back(ra, sub(xb, xa)), back(ra, axis)
-    face = rotate(ra, _facing(l0, al, half, exposed))
-    h, lever, stiff, rough, growth, damping = profile(body, _angle(rb, face), law[0])
-    own = (damping, rough * law[1], rough * law[2], law[3], law[4], law[5])
+def box_rim(out, a, box, b, body, law):
+    """As `contact.box_cylinder` for a roller b whose record `body` has a rim."""
+    axis = three(body.axis)
+    l0, al = back(a.r, sub(b.x, a.x)), back(a.r, axis)
+    face = rotate(a.r, _facing(l0, al, box.half, box.exposed))
+    h, lever, stiff, rough, growth, damping = profile(body, _angle(b.r, face), law.beta)
     aside = scale(lever, cross(axis, face))
-    box_sector(
-        out,
-        xa,
-        ra,
-        va,
-        wa,
-        half,
-        exposed,
-        xb,
-        axis,
-        axis,
-        WHOLE,
-        vb,
-        wb,
-        h,
-        width,
-        stiff * k,
-        shared,
-        aside,
-        own,
-    )
+    roller, own = Cylinder(axis, h, body.size[1]), scaled(law, stiff, rough, damping)
+    box_sector(out, a, box, b, roller, Sector(axis, WHOLE, aside), own)
     # a stiffness that grows with the angle turns the roller on, and the box back
-    torque = out[13] * growth / stiff
+    torque = out[STORED] * growth / stiff
     for i in range(3):
-        out[3 + i] -= torque * axis[i]
-        out[9 + i] += torque * axis[i]
+        out[TORQUE_A + i] -= torque * axis[i]
+        out[TORQUE_B + i] += torque * axis[i]
 
 
 @njit(cache=True, error_model="numpy")
@@ -166,33 +149,33 @@ def _towards(body, r, way, beta):
 
 
 @njit(cache=True, error_model="numpy")
-def rim_rim(out, one, xa, ra, va, wa, two, xb, rb, vb, wb, k, law):
+def rim_rim(out, a, one, b, two, law):
     """As `contact.cylinder_cylinder` for two rollers with records `one` and `two`, of which one has a rim.
 
     An edge counts as against a flat face, so it comes a little earlier than it would on the other's round.
     """
     axis, other = three(one.axis), three(two.axis)
-    gap = sub(xb, xa)
+    gap = sub(b.x, a.x)
     across = sub(gap, scale(dot(gap, axis), axis))
     distance = math.sqrt(dot(across, across))
     if distance <= 0.0:
         return
     way = scale(1.0 / distance, across)
-    h1, lever1, stiff1, rough1, growth1, beta1 = _towards(one, ra, way, law[0])
-    h2, lever2, stiff2, rough2, growth2, beta2 = _towards(two, rb, scale(-1.0, way), law[0])
-    rough, stiff = rough1 * rough2, stiff1 * stiff2
-    own = (beta1 if one.rims > 0 else beta2, rough * law[1], rough * law[2], law[3], law[4], law[5])
-    cylinder_cylinder(out, xa, va, wa, h1, one.size[1], xb, vb, wb, h2, two.size[1], other, stiff * k, own)
-    if out[15] <= 0.0:
+    h1, lever1, stiff1, rough1, growth1, beta1 = _towards(one, a.r, way, law.beta)
+    h2, lever2, stiff2, rough2, growth2, beta2 = _towards(two, b.r, scale(-1.0, way), law.beta)
+    own = scaled(law, stiff1 * stiff2, rough1 * rough2, beta1 if one.rims > 0 else beta2)
+    rollers = Cylinder(axis, h1, one.size[1]), Cylinder(other, h2, two.size[1])
+    cylinder_cylinder(out, a, rollers[0], b, rollers[1], own)
+    if out[DEPTH] <= 0.0:
         return
     # the energy is 2/5 F z; it changes with the angles of both, which change with the line between the axes
-    spring = 2.5 * out[13] / out[15]
-    torque1 = spring * lever1 + out[13] * growth1 / stiff1
-    torque2 = spring * lever2 + out[13] * growth2 / stiff2
+    spring = 2.5 * out[STORED] / out[DEPTH]
+    torque1 = spring * lever1 + out[STORED] * growth1 / stiff1
+    torque2 = spring * lever2 + out[STORED] * growth2 / stiff2
     swing = (torque1 + torque2 * dot(axis, other)) / distance
     aside = scale(swing, cross(axis, way))
     for i in range(3):
-        out[i] += aside[i]
-        out[6 + i] -= aside[i]
-        out[3 + i] += torque1 * axis[i]
-        out[9 + i] += torque2 * other[i]
+        out[FORCE_A + i] += aside[i]
+        out[FORCE_B + i] -= aside[i]
+        out[TORQUE_A + i] += torque1 * axis[i]
+        out[TORQUE_B + i] += torque2 * other[i]

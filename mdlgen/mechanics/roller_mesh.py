@@ -20,7 +20,7 @@ import math
 
 import numpy as np
 
-from mdlgen.mechanics.point import push
+from mdlgen.mechanics.point import Load, push
 from mdlgen.mechanics.tree import AFTER, COUNT, FIRST, HIGH, LOW, NORMAL, overlaps, span
 from mdlgen.mechanics.vector import add, back, cross, dot, matmul, nine, rotate, scale, sub, three
 from mdlgen.program.kernel import OWNS, njit
@@ -140,11 +140,11 @@ def _join(pieces, found, radius):
 
 
 @njit(cache=True, error_model="numpy", **OWNS)
-def roller_mesh(out, body, xa, va, wa, xb, rb, vb, wb, head, meshes, k, law):
-    """Roller a (a record with its axis and size; centre and velocities) on a mesh that moves with body b."""
-    frame = matmul(rb, nine(head.axes))
-    place = add(xb, rotate(rb, three(head.place)))
-    axis, center = back(frame, three(body.axis)), back(frame, sub(xa, place))
+def roller_mesh(out, body, a, b, head, meshes, law):
+    """Roller a (a record with its axis and size) on a mesh that moves with body b."""
+    frame = matmul(b.r, nine(head.axes))
+    place = add(b.x, rotate(b.r, three(head.place)))
+    axis, center = back(frame, three(body.axis)), back(frame, sub(a.x, place))
     one, two = _frame(axis)
     radius, width = body.size[0], body.size[1]
     pieces, sums = np.empty((MOST_PIECES + 1, _PIECE)), np.empty(6)
@@ -171,11 +171,11 @@ def roller_mesh(out, body, xa, va, wa, xb, rb, vb, wb, head, meshes, k, law):
             if steep <= 0.0:
                 continue
             way = rotate(frame, add(scale(gx / steep, one), scale(gy / steep, two)))
-            stiff = k / SLICES
+            stiff = law.k / SLICES
             spring = stiff * depth * math.sqrt(depth) * steep
-            point = add(xa, add(scale(u, three(body.axis)), scale(radius, way)))
+            point = add(a.x, add(scale(u, three(body.axis)), scale(radius, way)))
             energy = 0.4 * stiff * depth * depth * math.sqrt(depth)
-            push(out, point, scale(-1.0, way), spring, depth, energy, xa, va, wa, xb, vb, wb, law)
+            push(out, point, scale(-1.0, way), Load(spring, depth, energy), a, b, law)
 
 
 @njit(cache=True, error_model="numpy")

@@ -6,11 +6,11 @@ that the roller's lowest line has there: exact for a roller that is parallel to 
 angle touches with the end of its width that is deeper, by the same k per width:
 F = k/w times the integral of z^1.5 along it.
 
-Where the roller's foot is beyond an edge of the plate the edge is touched, a sharp line: z is the radius less
-the distance of the axis from it, and the force points from it to the axis. So a roller that rolls off a plate
-turns round its edge. Friction acts at the roller's own round, at its radius: a roller that rolls at omega
-moves at omega R. The depth of a point changes with the velocity of the axis alone, so that rolling is free of
-damping.
+Where the roller's lowest line is beyond an edge of the plate the edge is touched, a sharp line: z is the
+radius less the distance of the axis from it, and the force points from it to the axis. So a roller that rolls
+off a plate turns round its edge. Friction acts at the roller's own round, at its radius: a roller that rolls
+at omega moves at omega R. The depth of a point changes with the velocity of the axis alone, so that rolling
+is free of damping.
 
 A plane is a solid plate for a roller: either face and all edges are touched, by which side of it the axis is
 on; of a guide the sides that its `side` names. A roller whose axis is inside the plate stands in a hole of
@@ -21,9 +21,11 @@ hollow, R + r - distance on the round.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
-from mdlgen.mechanics.guide import BOTH, INSIDE, inward
-from mdlgen.mechanics.point import push
+from mdlgen.mechanics.frame import Vector, scaled
+from mdlgen.mechanics.guide import BOTH, INSIDE, OUTSIDE, inward
+from mdlgen.mechanics.point import FORCE_A, FORCE_B, TORQUE_A, Load, push
 from mdlgen.mechanics.rim import profile
 from mdlgen.mechanics.vector import add, back, cross, dot, rotate, scale, sub, three
 from mdlgen.program.kernel import BORROWS, OWNS, njit
@@ -33,39 +35,62 @@ STEEPEST = 0.5
 _GAUSS = 1.0 / math.sqrt(3.0)
 
 
-@njit(cache=True, error_model="numpy")
-def touch(out, body, xa, ra, va, wa, at, way, gap, normal, turns, weight, xb, vb, k, law):
-    """Adds one point of a roller (a record with its axis, size and RIM; place, rotation, velocities).
+class Spot(NamedTuple):
+    """Where a roller is touched.
 
-    at: the point of its axis; way: unit vector from there, square to the axis, to where it touches; gap: how
+    at: a point of its axis; way: unit vector from there, square to the axis, to where it touches; gap: how
     far along `normal`, which points to the roller, what it touches is from the axis, so that the depth is
-    that of its radius less the gap; turns: by which angle `way` turns as the axis moves by a unit
-    along axis x way; weight: its part of k; xb, vb: the other body, which does not turn.
+    that of its radius less the gap; turns: by which angle `way` turns as the axis moves by a unit along
+    axis x way.
     """
-    zero = (0.0, 0.0, 0.0)
+
+    at: Vector
+    way: Vector
+    gap: float
+    normal: Vector
+    turns: float
+
+
+class Face(NamedTuple):
+    """A flat face: its middle, two unit vectors in it and the outward normal, its half lengths, the thickness
+    of the plate, and whether the face on the other side is touched, too."""
+
+    middle: Vector
+    ways: tuple[Vector, Vector, Vector]
+    half: tuple[float, float]
+    thick: float
+    both: bool
+
+
+@njit(cache=True, error_model="numpy")
+def touch(out, body, a, spot, weight, b, law):
+    """Adds one point of a roller a (a record with its axis, size and RIM) on b, which does not turn.
+
+    weight: the point's part of k.
+    """
+    at, way, gap, normal, turns = spot
     upright = -dot(way, normal)  # 1 but for a roller that leans
     axis = three(body.axis)
-    radius, lever, stiff, rough, growth, damping = body.size[0], 0.0, 1.0, 1.0, 0.0, law[0]
+    radius, lever, stiff, rough, growth, damping = body.size[0], 0.0, 1.0, 1.0, 0.0, law.beta
     if body.rims > 0:
-        own = back(ra, way)
-        radius, lever, stiff, rough, growth, damping = profile(body, math.atan2(own[1], own[0]), law[0])
+        own = back(a.r, way)
+        radius, lever, stiff, rough, growth, damping = profile(body, math.atan2(own[1], own[0]), law.beta)
     depth = radius * upright - gap
     if depth <= 0.0:
         return
-    spring = weight * k * stiff * depth * math.sqrt(depth)
+    spring = weight * law.k * stiff * depth * math.sqrt(depth)
     energy = 0.4 * spring * depth
-    mine = (damping, rough * law[1], rough * law[2], law[3], law[4], law[5])
     aside = cross(axis, way)
     point = add(at, add(scale(radius, way), scale(lever, aside)))
-    push(out, point, normal, spring, depth, energy, xa, va, wa, xb, vb, zero, mine)
+    push(out, point, normal, Load(spring, depth, energy), a, b, scaled(law, stiff, rough, damping))
     if body.rims > 0:
         # the energy changes with the angle of the rim: a stiffness that grows with it turns the roller on
         torque = energy * growth / stiff
         swing = -turns * (torque + spring * lever)
         for i in range(3):
-            out[i] += swing * aside[i]
-            out[6 + i] -= swing * aside[i]
-            out[3 + i] += torque * axis[i]
+            out[FORCE_A + i] += swing * aside[i]
+            out[FORCE_B + i] -= swing * aside[i]
+            out[TORQUE_A + i] += torque * axis[i]
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -78,16 +103,16 @@ def _inside(at, step, half, low, high):
 
 
 @njit(cache=True, error_model="numpy", **OWNS)
-def roller_plate(out, body, xa, ra, va, wa, xb, vb, middle, ways, half, thick, both, k, law):
-    """Roller a against a flat plate b: middle of its face, `ways` three unit vectors (two in the face, the
-    outward normal), half lengths of the face, thickness; both: either face is touched."""
+def roller_plate(out, body, a, b, face, law):
+    """Roller a against a Face of a flat plate b."""
     axis = three(body.axis)
     radius, width = body.size[0], body.size[1]
-    gap = sub(xa, middle)
+    middle, ways, half, thick, both = face
+    gap = sub(a.x, middle)
     p, r, n = ways
-    height, lean, normal, face = dot(gap, n), dot(axis, n), n, 1.0
+    height, lean, normal, other = dot(gap, n), dot(axis, n), n, False
     if both and height < -0.5 * thick:  # on the other side: the plate as seen from there
-        height, lean, normal, face = -thick - height, -lean, scale(-1.0, n), -1.0
+        height, lean, normal, other = -thick - height, -lean, scale(-1.0, n), True
     cosine = math.sqrt(max(0.0, 1.0 - lean * lean))
     if height - 0.5 * width * abs(lean) > radius or abs(lean) > STEEPEST:
         return
@@ -97,10 +122,10 @@ def roller_plate(out, body, xa, ra, va, wa, xb, vb, middle, ways, half, thick, b
     along, across = cp * up + cr * ur, cr * up - cp * ur
     if abs(across) > math.sqrt(half[0] * half[0] + half[1] * half[1]) + radius:
         return
-    foot = radius * lean  # how far along s the lowest line is from below the axis
+    shift = radius * lean  # how far along s the lowest line is from below the axis
     reach = abs(up) * half[0] + abs(ur) * half[1]
-    begin = max(along + foot - 0.5 * width * cosine, -reach)
-    end = min(along + foot + 0.5 * width * cosine, reach)
+    begin = max(along + shift - 0.5 * width * cosine, -reach)
+    end = min(along + shift + 0.5 * width * cosine, reach)
     low, high = _inside(-across * ur, up, half[0], begin, end)
     low, high = _inside(across * up, ur, half[1], low, high)
     whole = high > low  # some of the lowest line is over the plate
@@ -109,7 +134,7 @@ def roller_plate(out, body, xa, ra, va, wa, xb, vb, middle, ways, half, thick, b
         # where the line is below the face
         first, last = low, high
         if abs(lean) > 1e-12:
-            level = along + foot + (radius * cosine - height) / lean * cosine
+            level = along + shift + (radius * cosine - height) / lean * cosine
             first, last = (first, min(last, level)) if lean > 0.0 else (max(first, level), last)
         if body.rims > 0:  # the round is not as wide everywhere
             first, last = low, high
@@ -117,12 +142,12 @@ def roller_plate(out, body, xa, ra, va, wa, xb, vb, middle, ways, half, thick, b
             if last - first <= 1e-12 * width:
                 break
             s = 0.5 * (first + last) + (station - 0.5) * _GAUSS * (last - first)
-            u = (s - along - foot) / cosine
+            u = (s - along - shift) / cosine
             over = height + u * lean
             if over > 0.0:
                 weight = 0.5 * (last - first) / (cosine * width)
-                at = add(xa, scale(u, axis))
-                touch(out, body, xa, ra, va, wa, at, down, over, normal, 0.0, weight, xb, vb, k, law)
+                at = add(a.x, scale(u, axis))
+                touch(out, body, a, Spot(at, down, over, normal, 0.0), weight, b, law)
     # what of the width is beside the plate, and may touch an edge
     for part in range(2):
         first = begin if part == 0 else high
@@ -142,9 +167,9 @@ def roller_plate(out, body, xa, ra, va, wa, xb, vb, middle, ways, half, thick, b
             # from the middle of the face, as it is seen
             place = add(middle, add(scale(s * up - t * ur, p), scale(s * ur + t * up, r)))
             place = add(place, scale(deep, normal))
-            if face < 0.0:
+            if other:
                 place = sub(place, scale(thick, n))
-            to = sub(place, xa)
+            to = sub(place, a.x)
             u = dot(to, axis)
             if abs(u) > 0.5 * width:
                 continue
@@ -154,41 +179,38 @@ def roller_plate(out, body, xa, ra, va, wa, xb, vb, middle, ways, half, thick, b
                 continue
             weight = 0.5 * (last - first) / (cosine * width)
             way = scale(1.0 / away, to)
-            at, turned = add(xa, scale(u, axis)), -1.0 / away
-            touch(
-                out, body, xa, ra, va, wa, at, way, away, scale(-1.0, way), turned, weight, xb, vb, k, law
-            )  # fmt: skip
+            at, turned = add(a.x, scale(u, axis)), -1.0 / away
+            touch(out, body, a, Spot(at, way, away, scale(-1.0, way), turned), weight, b, law)
 
 
 @njit(cache=True, error_model="numpy")
-def _end(out, body, xa, ra, va, wa, at, share, xb, rb, own, angle, near, far, k, law):
-    """A roller against an end of an arc: a line from the radius `near` to `far` at an angle; own: the axis of
-    the roller as the guide has it, at: the middle of the width that meets it."""
+def _end(out, body, a, at, share, b, own, line, law):
+    """A roller against an end of an arc: a line at an angle, from one radius to another; own: the axis of the
+    roller as the guide has it, at: the middle of the width that meets it."""
+    angle, near, far = line
     ray = (math.cos(angle), math.sin(angle))
     along = min(max(own[0] * ray[0] + own[1] * ray[1], near), far)
     x, y = along * ray[0] - own[0], along * ray[1] - own[1]
     away = math.sqrt(x * x + y * y)
     if away <= 0.0 or away >= body.size[0]:
         return
-    way = rotate(rb, (x / away, y / away, 0.0))
-    zero = (0.0, 0.0, 0.0)
-    touch(
-        out, body, xa, ra, va, wa, at, way, away, scale(-1.0, way), -1.0 / away, share, xb, zero, k, law
-    )  # fmt: skip
+    way = rotate(b.r, (x / away, y / away, 0.0))
+    touch(out, body, a, Spot(at, way, away, scale(-1.0, way), -1.0 / away), share, b, law)
 
 
 @njit(cache=True, error_model="numpy")
-def roller_arc(out, body, xa, ra, va, wa, xb, rb, shape, half, side, k, law):
+def roller_arc(out, body, a, b, shape, half, side, law):
     """Roller a against a guide b that is an arc, of a parallel axis; the rest as in mechanics.guide."""
     radius, middle, angle = shape
-    own, width, thick = back(rb, sub(xa, xb)), body.size[1], 2.0 * half[2]
+    rb = b.r
+    own, width, thick = back(rb, sub(a.x, b.x)), body.size[1], 2.0 * half[2]
     low, high = max(own[2] - 0.5 * width, -half[1]), min(own[2] + 0.5 * width, half[1])
     if high <= low:
         return
     share = (high - low) / width
     axis = three(body.axis)
     sense = 1.0 if axis[0] * rb[2] + axis[1] * rb[5] + axis[2] * rb[8] > 0.0 else -1.0
-    at = add(xa, scale(sense * (0.5 * (low + high) - own[2]), axis))
+    at = add(a.x, scale(sense * (0.5 * (low + high) - own[2]), axis))
     distance = math.sqrt(own[0] * own[0] + own[1] * own[1])
     outer = radius + (thick if side == INSIDE else 0.5 * thick if side == BOTH else 0.0)
     inner = outer - thick
@@ -196,9 +218,7 @@ def roller_arc(out, body, xa, ra, va, wa, xb, rb, shape, half, side, k, law):
     turn -= 2.0 * math.pi * math.floor(turn / (2.0 * math.pi) + 0.5)
     if abs(turn) > angle:
         for end in (-1.0, 1.0):
-            _end(
-                out, body, xa, ra, va, wa, at, share, xb, rb, own, middle + end * angle, inner, outer, k, law
-            )
+            _end(out, body, a, at, share, b, own, (middle + end * angle, inner, outer), law)
         return
     if distance == 0.0:
         return
@@ -208,11 +228,8 @@ def roller_arc(out, body, xa, ra, va, wa, xb, rb, shape, half, side, k, law):
     away = rotate(rb, (own[0] / distance, own[1] / distance, 0.0))
     gap = inner - distance if hollow else distance - outer
     way = away if hollow else scale(-1.0, away)
-    zero = (0.0, 0.0, 0.0)
     turned = 1.0 / distance if hollow else -1.0 / distance
-    touch(
-        out, body, xa, ra, va, wa, at, way, gap, scale(-1.0, way), turned, share, xb, zero, k, law
-    )  # fmt: skip
+    touch(out, body, a, Spot(at, way, gap, scale(-1.0, way), turned), share, b, law)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -246,28 +263,25 @@ def guide_near(body, at, rb, other, more):
 
 
 @njit(cache=True, error_model="numpy")
-def roller_plane(out, body, xa, ra, va, wa, xb, rb, vb, half, k, law):
-    """Roller a against plane b, of half lengths `half` along the axes rb; it moves at vb."""
+def roller_plane(out, body, a, b, half, law):
+    """Roller a against plane b, of half lengths `half` along its axes, which does not turn."""
+    rb = b.r
     n = (rb[2], rb[5], rb[8])
     ways = ((rb[0], rb[3], rb[6]), (rb[1], rb[4], rb[7]), n)
-    face = add(xb, scale(half[2], n))
-    roller_plate(
-        out, body, xa, ra, va, wa, xb, vb, face, ways, (half[0], half[1]), 2.0 * half[2], True, k, law
-    )  # fmt: skip
+    face = Face(add(b.x, scale(half[2], n)), ways, (half[0], half[1]), 2.0 * half[2], True)
+    roller_plate(out, body, a, b, face, law)
 
 
 @njit(cache=True, error_model="numpy")
-def roller_guide(out, body, xa, ra, va, wa, xb, rb, shape, half, side, k, law):
-    """Roller a against guide b; shape, half and side as in mechanics.guide.box_guide."""
+def roller_guide(out, body, a, b, shape, half, side, law):
+    """Roller a against guide b, which does not move; side: INSIDE, OUTSIDE or BOTH; the rest as in Plate."""
     if shape[0] > 0.0:
-        roller_arc(out, body, xa, ra, va, wa, xb, rb, shape, half, side, k, law)
+        roller_arc(out, body, a, b, shape, half, side, law)
         return
-    sign = 1.0 if side != 2 else -1.0
+    rb = b.r
+    sign = 1.0 if side != OUTSIDE else -1.0
     n = scale(sign, (rb[1], rb[4], rb[7]))
     ways = ((rb[0], rb[3], rb[6]), (rb[2], rb[5], rb[8]), n)
-    zero = (0.0, 0.0, 0.0)
     both = side == BOTH
-    face = add(xb, scale(half[2], n)) if both else xb
-    roller_plate(
-        out, body, xa, ra, va, wa, xb, zero, face, ways, (half[0], half[1]), 2.0 * half[2], both, k, law
-    )  # fmt: skip
+    middle = add(b.x, scale(half[2], n)) if both else b.x
+    roller_plate(out, body, a, b, Face(middle, ways, (half[0], half[1]), 2.0 * half[2], both), law)

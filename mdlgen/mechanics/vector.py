@@ -61,6 +61,12 @@ def three(a):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True, **FUSED)
+def three_from(a, first):
+    """Three numbers of an array."""
+    return (a[first], a[first + 1], a[first + 2])
+
+
+@njit(cache=True, error_model="numpy", forceinline=True, **FUSED)
 def nine(a):
     """The first nine."""
     return (a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8])

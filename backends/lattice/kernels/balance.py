@@ -3,8 +3,8 @@
 At rest a contact has its elastic force only. Rollers that can turn keep their angle: nothing turns them.
 
 A step turns the boxes as Newton's method says, and places them as a chain does (see chain.follow). Where not
-all joints can have the gaps that it says, the excess is balanced in the next round, but does not stiffen it:
-the stiffness is that of the forces which the last step was to make. Steps end where the force along them
+all joints can have the gaps that it says, the excess is balanced in the next iteration, but does not stiffen
+it: the stiffness is that of the forces which the last step was to make. Steps end where the force along them
 changes its sign.
 """
 
@@ -13,19 +13,20 @@ from __future__ import annotations
 import numpy as np
 
 from mdlgen.backends.lattice.kernels.band import factor
-from mdlgen.backends.lattice.kernels.border import eliminate, solve_bordered
+from mdlgen.backends.lattice.kernels.bordered import eliminate, solve_bordered
 from mdlgen.backends.lattice.kernels.chain import follow, link, opening
 from mdlgen.backends.lattice.kernels.dense import copy
 from mdlgen.backends.lattice.kernels.forces import joint_forces, near_pairs, other_forces, pair_forces
 from mdlgen.backends.lattice.kernels.stiffness import contacts_into, rollers_into, sheets_into
+from mdlgen.mechanics.frame import Motion
 from mdlgen.program.kernel import njit
 
-MOST_ROUNDS = 100
+MOST_ITERATIONS = 100
 MOST_TRIES = 12  # of the length of one step
 MOST_TURN = 0.3  # rad: what a step may turn one box against the next
-REST = 1e-9  # residual that ends the rounds, relative to the load
+REST = 1e-9  # residual that ends the iterations, relative to the load
 GOOD = 1e-6  # residual that is good enough where it falls no more
-STILL = 1e-8  # rad, and parts of a box: a step that ends the rounds where round-off hides the residual
+STILL = 1e-8  # rad, and parts of a box: a step that ends the iterations where round-off hides the residual
 # Parts of the stiffest that are added to the diagonal where the matrix is not positive.
 LEAST_SHIFT, FIRST_SHIFT, MOST_SHIFT = 1e-12, 1e-10, 1e6
 # Of the entries of a stiffness: what round-off makes of its sums, times their number.
@@ -35,19 +36,20 @@ _LOST = 1e30  # N, and parts of a box: what a run does not come back from
 
 
 @njit(cache=True, error_model="numpy")
-def _residual(system, level, place, lists, blank, rest):
+def _residual(tables, level, place, lists, blank, rest):
     """Forces on the free boxes and on slides into `rest`. Returns the largest [N], with torques over half a
     box, its body, and how many contacts touch."""
-    bodies, joints, pairs, loads, gravity, nodes, points, _images, meshes = system
+    bodies, gravity, nodes = tables.bodies, tables.gravity, tables.nodes
     x, r, s = place
-    touched, outs, near = lists
+    touched, results, near = lists
     still, f = blank
     on_boxes, on_slides = rest
+    motion = Motion(x, r, still, still)
     f[:] = 0.0
-    joint_forces(joints, points, x, r, still, still, f)
-    close = near_pairs(bodies, pairs, meshes, x, r, still, still, 0.0, 0.0, near)
-    count, _, _ = pair_forces(bodies, pairs, meshes, near, close, x, r, still, still, f, touched, outs)
-    other_forces(bodies, loads, gravity, level, r, still, still, f)
+    joint_forces(tables.joints, tables.points, motion, f)
+    close = near_pairs(tables, motion, 0.0, 0.0, near)
+    count, _, _ = pair_forces(tables, near, close, motion, f, touched, results)
+    other_forces(tables, level, motion, f)
     worst, at = 0.0, -1
     for n in range(nodes.size):
         b = nodes[n]
@@ -134,25 +136,34 @@ def _along(rest, step):
 
 
 @njit(cache=True, error_model="numpy")
-def equilibrium(system, border, height, level, load, least, reach, x, r, s, lists):
-    """Moves x, r and the slides s to balance at a part of weights and loads; springs press fully.
+def equilibrium(tables, size, level, load, least, reach, place, lists):
+    """Moves a place (x, r, slides s) to balance at a part of weights and loads; springs press fully.
 
+    size: (border, height of the band); lists: room for touching pairs, what they do, and near pairs.
     `load` [N] is what residuals are measured by, `least` how much of the stiffest is always added to the
     diagonal (for sheets that nothing but contacts holds), `reach` [mm] the longest step. Returns (whether
-    balance was found, rounds, the body that is pushed most, and by how much of the load).
+    balance was found, iterations, the body that is pushed most, and by how much of the load).
     """
-    bodies, joints, pairs, loads, _, nodes, points, _images, meshes = system
-    many, size = nodes.size, 6 * nodes.size
+    bodies, joints, loads, nodes, points = (
+        tables.bodies,
+        tables.joints,
+        tables.loads,
+        tables.nodes,
+        tables.points,
+    )
+    border, height = size
+    x, r, s = place
+    many, unknowns = nodes.size, 6 * nodes.size
     a, links, band = np.zeros((many, 6, height)), np.zeros((many, 6, height)), np.zeros((many, 6, height))
-    b, d = np.zeros((border, size)), np.zeros((border, border))
+    b, d = np.zeros((border, unknowns)), np.zeros((border, border))
     matrix, plain = (a, b, d, np.zeros(b.shape), np.zeros(d.shape)), (band, np.zeros(d.shape))
-    rest, step = (np.zeros(size), np.zeros(border)), (np.zeros(size), np.zeros(border))
-    place, before = (x, r, s), (x.copy(), r.copy(), s.copy())
+    rest, step = (np.zeros(unknowns), np.zeros(border)), (np.zeros(unknowns), np.zeros(border))
+    before = (x.copy(), r.copy(), s.copy())
     still = np.zeros(x.shape)
     blank = (still, np.zeros((x.shape[0], 6)))
-    gaps, room = np.zeros((joints.size, 3)), np.zeros(size)
+    gaps, room = np.zeros((joints.size, 3)), np.zeros(unknowns)
     link(bodies, joints, x.shape[0] - 1, links)
-    follow(bodies, joints, nodes, links, 0.0, step, before, place, room, gaps)
+    follow(tables, links, 0.0, step, before, place, room, gaps)
     hard = 0.0
     for j in range(joints.size):
         hard = max(hard, joints[j].k[0], joints[j].k[1], joints[j].k[2])
@@ -162,35 +173,35 @@ def equilibrium(system, border, height, level, load, least, reach, x, r, s, list
         for i in range(3):
             far = max(far, abs(x[k, i]))
     noise = 16.0 * _EPS * hard * far
-    worst, at, count = _residual(system, level, place, lists, blank, rest)
+    worst, at, count = _residual(tables, level, place, lists, blank, rest)
     best, since, shift = worst, 0, least
-    for rounds in range(MOST_ROUNDS):
+    for iteration in range(MOST_ITERATIONS):
         if worst <= REST * load:
-            return True, rounds, at, worst / load
+            return True, iteration, at, worst / load
         if not worst < _LOST:
-            return False, rounds, at, worst / load
+            return False, iteration, at, worst / load
         sheets_into(bodies, joints, points, loads, level, gaps, x, r, a)
         rollers_into(bodies, b, d)
-        contacts_into(bodies, pairs, meshes, lists[0], count, x, r, still, a, b, d)
+        contacts_into(tables, lists[0], count, Motion(x, r, still, still), a, b, d)
         shift = _newton(matrix, plain, shift, load, rest, step)
         if shift < 0.0:
-            return False, rounds, at, worst / load
+            return False, iteration, at, worst / load
         part, moved = _longest(bodies, joints, nodes, step, reach)
         if not moved < _LOST:
-            return False, rounds, at, worst / load
+            return False, iteration, at, worst / load
         copy(before[0], x)
         copy(before[1], r)
         copy(before[2], s)
         falls = _along(rest, step)
         for _ in range(MOST_TRIES):
-            follow(bodies, joints, nodes, links, part, step, before, place, room, gaps)
-            worst, at, count = _residual(system, level, place, lists, blank, rest)
+            follow(tables, links, part, step, before, place, room, gaps)
+            worst, at, count = _residual(tables, level, place, lists, blank, rest)
             still_falls = _along(rest, step)
             if part * moved < 1e-6 or still_falls > -0.5 * falls:
                 break
             part *= min(0.7, max(0.1, falls / (falls - still_falls)))
         if shift <= least and part * moved <= STILL and worst <= noise:
-            return True, rounds + 1, at, worst / load
+            return True, iteration + 1, at, worst / load
         shift *= 0.1
         shift = max(shift if shift >= LEAST_SHIFT else 0.0, least)
         if worst < 0.5 * best:
@@ -198,18 +209,25 @@ def equilibrium(system, border, height, level, load, least, reach, x, r, s, list
         else:
             since += 1
             if since >= 3 and worst <= GOOD * load:
-                return True, rounds + 1, at, worst / load
-    return worst <= GOOD * load, MOST_ROUNDS, at, worst / load
+                return True, iteration + 1, at, worst / load
+    return worst <= GOOD * load, MOST_ITERATIONS, at, worst / load
 
 
 @njit(cache=True, error_model="numpy")
-def stands(system, level, least, slow, x, r, s, lists, matrix):
+def stands(tables, level, least, slow, place, lists, matrix):
     """Whether a balance stands: whether the stiffness of what may move is positive, with `slow`^2 [1/ms^2]
     times its inertia and with what round-off makes of it; `least` as of `equilibrium`.
 
     That stiffness is left in `matrix`, which is zero before: its band, its border and its corner.
     """
-    bodies, joints, pairs, loads, _, nodes, points, _images, meshes = system
+    bodies, joints, loads, nodes, points = (
+        tables.bodies,
+        tables.joints,
+        tables.loads,
+        tables.nodes,
+        tables.points,
+    )
+    x, r, _slides = place
     a, b, d = matrix
     many, size = nodes.size, 6 * nodes.size
     still, f = np.zeros(x.shape), np.zeros((x.shape[0], 6))
@@ -219,10 +237,10 @@ def stands(system, level, least, slow, x, r, s, lists, matrix):
         gap = opening(joints[j], one, x, r)
         gaps[j, 0], gaps[j, 1], gaps[j, 2] = gap
     rest = (np.zeros(size), np.zeros(d.shape[0]))
-    _, _, count = _residual(system, level, (x, r, s), lists, (still, f), rest)
+    _, _, count = _residual(tables, level, place, lists, (still, f), rest)
     sheets_into(bodies, joints, points, loads, level, gaps, x, r, a)
     rollers_into(bodies, b, d)
-    contacts_into(bodies, pairs, meshes, lists[0], count, x, r, still, a, b, d)
+    contacts_into(tables, lists[0], count, Motion(x, r, still, still), a, b, d)
     ease = twist = 0.0
     for n in range(many):
         for i in range(3):

@@ -79,12 +79,13 @@ def opening(joint, one, x, r):
 
 
 @njit(cache=True, error_model="numpy")
-def follow(bodies, joints, nodes, links, part, step, before, place, y, gaps):
+def follow(tables, links, part, step, before, place, y, gaps):
     """The place (x, r, s) after a part of a step (of boxes, of slides) from the one before.
 
     Boxes turn by it, and stand where the gaps of their joints (joints, 3) [mm] are what it makes of them,
     turned with the boxes; in the mean, where not all can be. `y` is room to work in.
     """
+    bodies, joints, nodes = tables.bodies, tables.joints, tables.nodes
     moves, x0, r0 = step[0], before[0], before[1]
     x, r = place[0], place[1]
     _go(bodies, nodes, part, step, before, place)

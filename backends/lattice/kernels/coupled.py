@@ -3,8 +3,8 @@
 Such boxes stand far apart in the band, wherever the sheets slide. So the band holds what a contact does to
 each of its boxes alone, and the blocks that couple the two are a list. Both together are positive, and the
 band with its border is most of it: the method of conjugate gradients with that as preconditioner solves the
-whole in a few rounds, each of which costs a solve with the band. Mostly it can do with half as many (see
-two_sets).
+whole in a few iterations, each of which costs a solve with the band. Mostly it can do with half as many (see
+two_colour).
 """
 
 from __future__ import annotations
@@ -13,16 +13,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mdlgen.backends.lattice.kernels.border import solve_bordered
+from mdlgen.backends.lattice.kernels.bordered import solve_bordered
 from mdlgen.backends.lattice.kernels.dense import copy
-from mdlgen.backends.lattice.kernels.two_sets import Sets, sets, solve_sets
+from mdlgen.backends.lattice.kernels.two_colour import Colouring, colouring, solve_coloured
 from mdlgen.mechanics.vector import mat, matmul, nine, transpose_matmul
 from mdlgen.program.kernel import njit
 
-MOST_ROUNDS = 200
-# What may be left of the square of the residual, measured with the preconditioner: a round of Newton's method
-# leaves more itself where contacts open and close, so less costs rounds here and saves none there. The method
-# goes on after it, and loses no momentum to it (see momentum.keep).
+MOST_ITERATIONS = 200
+# What may be left of the square of the residual, measured with the preconditioner: an iteration of Newton's
+# method leaves more itself where contacts open and close, so less costs iterations here and saves none there.
+# The method goes on after it, and loses no momentum to it (see momentum.keep).
 LEFT = 1e-3
 
 
@@ -33,7 +33,7 @@ class Couplings(NamedTuple):
     ends: np.ndarray  # nodes, (pairs, 2)
     blocks: np.ndarray  # rows of the first, columns of the second, column by column, (pairs, 6, 6)
     room: np.ndarray  # vectors of all unknowns, (5, 6 nodes + border)
-    sets: Sets  # of the sheets
+    colouring: Colouring  # of the sheets
 
 
 def couplings(pairs: int, label: np.ndarray, border: int) -> Couplings:
@@ -44,7 +44,7 @@ def couplings(pairs: int, label: np.ndarray, border: int) -> Couplings:
         np.zeros((pairs, 2), np.int64),
         np.zeros((pairs, 6, 6)),
         np.zeros((5, 6 * nodes + border)),
-        sets(label, border),
+        colouring(label, border),
     )
 
 
@@ -94,9 +94,8 @@ def solve_coupled(a, b, y, corner, couplings, res, resb):
     if couplings.many[0] == 0:
         solve_bordered(a, b, y, corner, res, resb)
         return
-    if couplings.sets.dealt[0] == 1:
-        listed = (couplings.ends, couplings.blocks, couplings.many[0])
-        solve_sets(a, b, y, couplings.sets, *listed, couplings.room, res, resb, MOST_ROUNDS, LEFT)
+    if couplings.colouring.found[0] == 1:
+        solve_coloured(a, b, y, couplings, res, resb, MOST_ITERATIONS, LEFT)
         return
     many = res.size
     r, z, p, own, q = couplings.room
@@ -110,7 +109,7 @@ def solve_coupled(a, b, y, corner, couplings, res, resb):
     resb[:] = 0.0
     left = _dot(r, z)
     first = left
-    for _ in range(MOST_ROUNDS):
+    for _ in range(MOST_ITERATIONS):
         if not left > LEFT * first:
             break
         copy(q, own)

@@ -19,22 +19,23 @@ import numpy as np
 from mdlgen.backends.lattice.kernels.band import empty as no_band
 from mdlgen.backends.lattice.kernels.band import factor, solve
 from mdlgen.backends.lattice.kernels.momentum import keep
+from mdlgen.backends.lattice.kernels.state import Damped
 from mdlgen.backends.lattice.kernels.tangent import in_box_axes, joints_into, masses
 from mdlgen.mechanics.vector import back, mat, rotate
 from mdlgen.program.kernel import BORROWS, njit
 
 # Steps for which a factor is good: a sheet bends little in so many.
 LASTS = 50
+MADE_FOR, AGE = 0, 1  # of Damped.made
 
 
-def empty(system) -> tuple:
-    """Joints with a damping time (their dampers alone), a factor, the step and the age of it, and velocities
-    to take off (nodes, 6)."""
+def empty(system) -> Damped:
+    """Joints with a damping time, their dampers alone."""
     joints = system.joints[system.joints["time"] > 0.0].copy()
     joints["k"] = 0.0
     joints["first"] = -1
     nodes = len(system.nodes) if len(joints) else 0
-    return joints, no_band(nodes, system.reach if nodes else 0), np.zeros(2), np.zeros((nodes, 6))
+    return Damped(joints, no_band(nodes, system.reach if nodes else 0), np.zeros(2), np.zeros((nodes, 6)))
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -56,23 +57,23 @@ def _turned(nodes, r, x, inward):
 
 
 @njit(cache=True, error_model="numpy")
-def overshoot(system, damped, state, mid, free, before, ahead, dt):
-    """Sets the velocities to take off, damped[3], of a step that is solved and not carried on yet. `before`
+def overshoot(work, before, ahead, dt):
+    """Sets the velocities to take off, Damped.off, of a step that is solved and not carried on yet. `before`
     (nodes, 6) are the velocities in the middle of the step before, `ahead` is dt/(dt + dt')."""
-    bodies, _, pairs, _, _, nodes, points, images, _ = system
-    joints, band, made, off = damped
-    x, r, v, l, s, vb, u, ub = state
-    xm, rm, touched = mid[0], mid[1], mid[5]
-    if made[0] != dt or made[1] >= LASTS:
+    bodies, nodes = work.tables.bodies, work.tables.nodes
+    joints, band, made, off = work.damped
+    x, v, l, u = work.state.x, work.state.v, work.state.l, work.state.u
+    xm, rm = work.mid.motion.x, work.mid.motion.r
+    if made[MADE_FOR] != dt or made[AGE] >= LASTS:
         masses(bodies, nodes, rm, band)
-        joints_into(bodies, joints, points, images, 0.5 * dt, 0.0, xm, rm, band)
+        joints_into(work.tables, joints, 0.5 * dt, 0.0, xm, rm, band)
         in_box_axes(nodes, rm, band, np.zeros((0, 6 * nodes.size)))
-        made[0], made[1] = dt, 0.0
+        made[MADE_FOR], made[AGE] = dt, 0.0
         if not factor(band):  # never: masses are positive, dampers not negative
-            made[0] = 0.0
+            made[MADE_FOR] = 0.0
             off[:] = 0.0
             return
-    made[1] += 1.0
+    made[AGE] += 1.0
     push = np.empty(6 * nodes.size)
     for n in range(nodes.size):
         b = nodes[n]
@@ -93,12 +94,12 @@ def overshoot(system, damped, state, mid, free, before, ahead, dt):
     _turned(nodes, rm, push, False)
     # the factor is of an earlier shape, which has other rigid motions; and it is at the end of the step that
     # these velocities are taken off
-    free[3][:] = 0.0
+    work.free.residual[:] = 0.0
     end = xm.copy()
     for n in range(nodes.size):
         for i in range(3):
             end[nodes[n], i] = x[nodes[n], i] + dt * u[n, i]
-    keep(bodies, pairs, nodes, touched, 0, free, end, rm, push)
+    keep(work.tables, work.mid.touched, 0, work.free, end, rm, push)
     for n in range(nodes.size):
         for i in range(6):
             off[n, i] = push[6 * n + i]

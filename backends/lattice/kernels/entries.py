@@ -9,7 +9,7 @@ from pathlib import Path
 
 from mdlgen.backends.lattice.kernels import forces, search
 from mdlgen.backends.lattice.kernels.balance import equilibrium, stands
-from mdlgen.backends.lattice.kernels.march import run
+from mdlgen.backends.lattice.kernels.integrate import run
 from mdlgen.backends.lattice.kernels.observe import ledger
 from mdlgen.mechanics import curve, pair
 from mdlgen.mechanics.tree import set_thickness
@@ -27,9 +27,9 @@ def look(pairs, search, x):
 
 
 @njit(cache=True, error_model="numpy")
-def remember(bodies, pairs, x, r):
+def remember(bodies, pairs, motion):
     """See mechanics.pair.remember."""
-    _remember(bodies, pairs, x, r)
+    _remember(bodies, pairs, motion)
 
 
 @njit(cache=True, error_model="numpy")
@@ -39,16 +39,17 @@ def overstretched(points, joints, x, r):
 
 
 @njit(cache=True, error_model="numpy")
-def joint_forces(joints, points, x, r, u, w, f):
+def joint_forces(joints, points, motion, f):
     """See forces.joint_forces, without numerical damping; returns the stored energy."""
-    return _joint_forces(joints, points, x, r, u, w, f, 0.0)[0]
+    return _joint_forces(joints, points, motion, f, 0.0)[0]
 
 
 @njit(cache=True, error_model="numpy")
-def contacts(bodies, pairs, meshes, x, r, still, f, touched, outs, near):
-    """Contacts of bodies at rest: `touched` and `outs` as forces.pair_forces has them; returns how many."""
-    close = _near_pairs(bodies, pairs, meshes, x, r, still, still, 0.0, 0.0, near)
-    return _pair_forces(bodies, pairs, meshes, near, close, x, r, still, still, f, touched, outs)[0]
+def contacts(tables, motion, mid):
+    """Contacts of bodies at rest: forces, touching pairs and what they do into those of a Midpoint; returns
+    how many touch."""
+    close = _near_pairs(tables, motion, 0.0, 0.0, mid.near)
+    return _pair_forces(tables, mid.near, close, motion, mid.forces, mid.touched, mid.results)[0]
 
 
 PROGRAM = Program(

@@ -9,6 +9,7 @@ from mdlgen.mechanics.arm import moved, way_of
 from mdlgen.mechanics.bushing import bushing_pair
 from mdlgen.mechanics.curve import curve_excess
 from mdlgen.mechanics.driven import clutch, prescribed, turned
+from mdlgen.mechanics.frame import Frame
 from mdlgen.mechanics.guide import inward
 from mdlgen.mechanics.mesh import mesh_near
 from mdlgen.mechanics.pair import (
@@ -21,7 +22,7 @@ from mdlgen.mechanics.pair import (
     pair_force,
     roller_near,
 )
-from mdlgen.mechanics.point import MOST_POINTS, OUT, POINT
+from mdlgen.mechanics.point import DISSIPATED, FORCE_A, FORCE_B, MOST_POINTS, OUT, POINT, POINTS, STORED
 from mdlgen.mechanics.vector import (
     add,
     back,
@@ -44,8 +45,9 @@ WIDE = OUT + 1 + POINT * MOST_POINTS
 
 
 @njit(cache=True, error_model="numpy", forceinline=True, **FUSED)
-def place_box(b, h, rate, spin, x, r, xm, rm, um, wm):
-    """One free box after h at a velocity and an angular velocity."""
+def place_box(b, h, rate, spin, x, r, motion):
+    """One free box after h at a velocity and an angular velocity from places x and rotations r."""
+    xm, rm, um, wm = motion
     m = matmul(exp_rotation(scale(h, spin)), mat(r, b))
     for i in range(9):
         rm[b, i] = m[i]
@@ -68,9 +70,10 @@ def turn_roller(body, b, h, t, turning, r, rm):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True, **FUSED)
-def place_roller(body, b, h, t, rate, turning, x, r, xm, rm, um, wm):
+def place_roller(body, b, h, t, rate, turning, x, r, motion):
     """One roller after h at the rates of its slide and its spin, where it has them; t: that time. One that is
     round need not turn. A pressed plate has a slide alone."""
+    xm, rm, um, wm = motion
     if body.swings == 2:
         turning = rate
     if body.rims > 0 or body.carries != 0:
@@ -89,20 +92,21 @@ def place_roller(body, b, h, t, rate, turning, x, r, xm, rm, um, wm):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS, **FUSED)
-def place(bodies, nodes, images, h, t, u, ub, x, r, xm, rm, um, wm):
-    """The state after h at the velocities u (nodes, 6) and ub (border,), from positions x and rotations
-    r: xm, rm, and the velocities of all bodies um, wm."""
+def place(tables, h, t, state, motion):
+    """The Motion of all bodies after h at the velocities state.u and state.ub, at the time t."""
+    bodies, nodes, images = tables.bodies, tables.nodes, tables.images
+    x, r, u, ub = state.x, state.r, state.u, state.ub
     for n in range(nodes.size):
-        place_box(nodes[n], h, (u[n, 0], u[n, 1], u[n, 2]), (u[n, 3], u[n, 4], u[n, 5]), x, r, xm, rm, um, wm)
+        place_box(nodes[n], h, (u[n, 0], u[n, 1], u[n, 2]), (u[n, 3], u[n, 4], u[n, 5]), x, r, motion)
     for b in range(bodies.size - 1):
         body = bodies[b]
         if body.slide < 0 and body.axis[0] == 0.0 and body.axis[1] == 0.0 and body.axis[2] == 0.0:
             continue  # neither a roller nor a pressed plate
         rate = ub[body.slide] if body.slide >= 0 else 0.0
         turning = ub[body.spin] if body.spin >= 0 else 0.0
-        place_roller(body, b, h, t, rate, turning, x, r, xm, rm, um, wm)
-    reflect(images, xm, rm)
-    reflect_rates(images, um, wm)
+        place_roller(body, b, h, t, rate, turning, x, r, motion)
+    reflect(images, motion.x, motion.r)
+    reflect_rates(images, motion.u, motion.w)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -113,12 +117,13 @@ def _add(f, b, force, torque):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS, **FUSED)
-def joint_forces(joints, points, x, r, u, w, f, lag=0.0):
+def joint_forces(joints, points, motion, f, lag=0.0):
     """Adds the forces of all joints to f (bodies, 6), with `lag` [ms] times the stiffness on top of the
     damping, less the damping time that a joint has itself. `points` are those of the curves that some follow.
     Returns (stored energy, dissipated power, the part of it that is due to `lag`), of a joint that ends at an
     image only the half."""
     stored = lost = numerical = 0.0
+    x, r, u, w = motion
     last = x.shape[0] - 1
     for j in range(joints.size):
         joint = joints[j]
@@ -133,15 +138,9 @@ def joint_forces(joints, points, x, r, u, w, f, lag=0.0):
         more = max(lag - joint.time, 0.0)
         ra, rb = rotate(ma, three(joint.ra)), rotate(mb, three(joint.rb))
         force, torque_b, torque_a, energy, power, middle, gap, per_time = bushing_pair(
-            vec(x, a),
-            fa,
-            vec(u, a),
-            vec(w, a),
+            Frame(vec(x, a), fa, vec(u, a), vec(w, a)),
             ra,
-            vec(x, b),
-            fb,
-            vec(u, b),
-            vec(w, b),
+            Frame(vec(x, b), fb, vec(u, b), vec(w, b)),
             rb,
             three(joint.e),
             (k[0], k[1], k[2]),
@@ -182,9 +181,11 @@ def _facing(bodies, pair, x, r, gap, reach, reached):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def near_pairs(bodies, pairs, meshes, x, r, u, w, margin, ahead, near):
+def near_pairs(tables, motion, margin, ahead, near):
     """Lists pairs in `near` that are closer than `margin` [mm] and what they move against each other in
     `ahead` [ms]; returns how many."""
+    bodies, pairs, meshes = tables.bodies, tables.pairs, tables.meshes
+    x, r, u, w = motion
     count = 0
     for p in range(pairs.size):
         if pairs[p].kind < 0:  # from here on there is room only
@@ -255,58 +256,60 @@ def near_pairs(bodies, pairs, meshes, x, r, u, w, margin, ahead, near):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _touches(bodies, pair, meshes, x, r, u, w, f, out):
+def _onto(f, pair, out):
+    """Adds what a pair does to the forces on its bodies."""
+    for i in range(6):
+        f[pair.a, i] += out[FORCE_A + i]
+        f[pair.b, i] += out[FORCE_B + i]
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _touches(tables, pair, motion, f, out):
     """What one pair does into `out`, and onto f. Returns whether it touches."""
     for i in range(OUT + 1):
         out[i] = 0.0
-    if not pair_force(bodies, pair, meshes, x, r, u, w, out):
+    if not pair_force(tables.bodies, pair, tables.meshes, motion, out):
         return False
-    for i in range(6):
-        f[pair.a, i] += out[i]
-        f[pair.b, i] += out[6 + i]
+    _onto(f, pair, out)
     return True
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def pair_forces(bodies, pairs, meshes, near, close, x, r, u, w, f, touched, outs):
+def pair_forces(tables, near, close, motion, f, touched, results):
     """Adds the forces of the pairs near[:close] to f. Those that touch are listed in `touched`, each with its
-    row of outs (pairs, WIDE). Returns (how many, stored energy, dissipated power)."""
+    row of results (pairs, WIDE). Returns (how many, stored energy, dissipated power)."""
     count = 0
     stored = lost = 0.0
     for at in range(close):
-        out = outs[count]
-        if _touches(bodies, pairs[near[at]], meshes, x, r, u, w, f, out):
-            stored += out[13]
-            lost += out[14]
+        out = results[count]
+        if _touches(tables, tables.pairs[near[at]], motion, f, out):
+            stored += out[STORED]
+            lost += out[DISSIPATED]
             touched[count] = near[at]
             count += 1
     return count, stored, lost
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def pair_forces_again(bodies, pairs, meshes, near, close, known, x, r, u, w, f, touched, outs):
+def pair_forces_again(tables, near, close, known, motion, f, touched, results):
     """As pair_forces where some pairs are `known`: (those that touch, what they do, how many, whether a pair
     is among those looked at)."""
     had, done, many, seen = known
     count = 0
     stored = lost = 0.0
     for k in range(many):
-        pair = pairs[had[k]]
-        a, b = pair.a, pair.b
-        for i in range(OUT + 1 + POINT * int(done[k, OUT])):
-            outs[count, i] = done[k, i]
-        for i in range(6):
-            f[a, i] += done[k, i]
-            f[b, i] += done[k, 6 + i]
-        stored += done[k, 13]
-        lost += done[k, 14]
+        for i in range(OUT + 1 + POINT * int(done[k, POINTS])):
+            results[count, i] = done[k, i]
+        _onto(f, tables.pairs[had[k]], done[k])
+        stored += done[k, STORED]
+        lost += done[k, DISSIPATED]
         touched[count] = had[k]
         count += 1
     for at in range(close):
-        out = outs[count]
-        if not seen[near[at]] and _touches(bodies, pairs[near[at]], meshes, x, r, u, w, f, out):
-            stored += out[13]
-            lost += out[14]
+        out = results[count]
+        if not seen[near[at]] and _touches(tables, tables.pairs[near[at]], motion, f, out):
+            stored += out[STORED]
+            lost += out[DISSIPATED]
             touched[count] = near[at]
             count += 1
     return count, stored, lost
@@ -323,8 +326,10 @@ def clutch_torques(bodies, t, ub, f):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def other_forces(bodies, loads, gravity, level, r, u, w, f):
+def other_forces(tables, level, motion, f):
     """Adds weights and loads, both times `level`. Returns the power of the loads."""
+    bodies, loads, gravity = tables.bodies, tables.loads, tables.gravity
+    r, u, w = motion.r, motion.u, motion.w
     power = 0.0
     for b in range(bodies.size - 1):
         if bodies[b].node >= 0:

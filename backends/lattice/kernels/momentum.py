@@ -1,4 +1,4 @@
-"""Momentum of what is free, kept in each round.
+"""Momentum of what is free, kept in each Newton iteration.
 
 The forces inside a sheet have no sum and no moment, whatever its state; so the linear and the angular
 momentum of a change of velocities are those of the residual that it is to cure. A factor of an earlier state
@@ -10,14 +10,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from mdlgen.backends.lattice.kernels.state import Free
 from mdlgen.mechanics.pair import BOX_BOX
 from mdlgen.mechanics.vector import add, back, cross, dot, mat, rotate, scale, sub, vec
 from mdlgen.program.kernel import njit
 
 
-def empty(system) -> tuple:
-    """What free sheets need: the sheet of each node, whether a sheet hangs on nothing, whether it touches
-    something now, a residual, and which sheet it is one with now."""
+def empty(system) -> Free:
+    """What free sheets need."""
     bodies, joints, nodes = system.bodies, system.joints, system.nodes
     label = system.sheets
     ends = [np.where(joints[end] >= 0, bodies["node"][joints[end]], -1) for end in "ab"]
@@ -26,7 +26,7 @@ def empty(system) -> tuple:
         held = (one >= 0) & (two < 0)
         loose[label[one[held]]] = False
     parts = len(loose)
-    return (
+    return Free(
         label.astype(np.int64),
         loose,
         np.zeros(parts, np.bool_),
@@ -88,10 +88,11 @@ def _tie(bodies, pairs, touched, count, free):
 
 
 @njit(cache=True, error_model="numpy")
-def keep(bodies, pairs, nodes, touched, count, free, x, r, change):
+def keep(tables, touched, count, free, x, r, change):
     """Takes off `change` (6 nodes,), global axes, what it has of momentum beside the residual's; x and r are
     places and rotations of the residual."""
     label, loose, busy, residual, one_with = free
+    bodies, pairs, nodes = tables.bodies, tables.pairs, tables.nodes
     _tie(bodies, pairs, touched, count, free)
     for part in range(loose.size):
         if busy[part] or one_with[part] != part:

@@ -5,37 +5,19 @@ from __future__ import annotations
 from mdlgen.backends.lattice.kernels.forces import joint_forces, near_pairs, pair_forces
 from mdlgen.mechanics.arm import hung, way_of
 from mdlgen.mechanics.driven import prescribed
+from mdlgen.mechanics.frame import Motion
+from mdlgen.mechanics.point import PRESSING
 from mdlgen.mechanics.vector import back, dot, mat, rotate, three, vec
 from mdlgen.program.kernel import njit
 
 
 @njit(cache=True, error_model="numpy")
-def ledger(
-    bodies,
-    joints,
-    points,
-    pairs,
-    meshes,
-    gravity,
-    nodes,
-    t,
-    x,
-    r,
-    v,
-    l,
-    s,
-    vb,
-    u,
-    w,
-    f,
-    touched,
-    outs,
-    near,
-    energies,
-    force,
-):
-    """Velocities of all bodies into u and w; kinetic, elastic and potential energy; total normal force for
-    each row of the contacts."""
+def ledger(tables, state, mid, t, energies, force):
+    """Velocities of all bodies at the end of a step, at time t, into those of the midpoint's motion; kinetic,
+    elastic and potential energy; total normal force for each row of the contacts."""
+    bodies, gravity, nodes = tables.bodies, tables.gravity, tables.nodes
+    x, r, v, l, s, vb = state.x, state.r, state.v, state.l, state.s, state.vb
+    u, w, f = mid.motion.u, mid.motion.w, mid.forces
     u[:] = 0.0
     w[:] = 0.0
     f[:] = 0.0
@@ -75,9 +57,10 @@ def ledger(
             rate += vb[slide]
         for i in range(3):
             w[b, i] += rate * bodies[b].axis[i]
-    stored, _, _ = joint_forces(joints, points, x, r, u, w, f)
-    close = near_pairs(bodies, pairs, meshes, x, r, u, w, 0.0, 0.0, near)
-    count, pressed, _ = pair_forces(bodies, pairs, meshes, near, close, x, r, u, w, f, touched, outs)
+    motion = Motion(x, r, u, w)
+    stored, _, _ = joint_forces(tables.joints, tables.points, motion, f)
+    close = near_pairs(tables, motion, 0.0, 0.0, mid.near)
+    count, pressed, _ = pair_forces(tables, mid.near, close, motion, f, mid.touched, mid.results)
     for k in range(count):
-        force[pairs[touched[k]].row] += outs[k, 12]
+        force[tables.pairs[mid.touched[k]].row] += mid.results[k, PRESSING]
     energies[0], energies[1], energies[2] = kinetic, elastic + stored + pressed, potential

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from mdlgen.mechanics.frame import LAW, LAW_DYNAMIC, LAW_STATIC
 from mdlgen.model.tables import BOX_BOX
 from mdlgen.program.kernel import njit
 
@@ -66,8 +67,8 @@ def look(pairs, search, x):
 def _fill(pair, region, a, b, rough):
     pair.kind, pair.a, pair.b = BOX_BOX, a, b
     pair.row, pair.shared, pair.k = region.row, region.shared, region.k
-    for i in range(7):
-        pair.law[i] = region.law[i] * (rough if i == 1 or i == 2 else 1.0)
+    for i in range(LAW):
+        pair.law[i] = region.law[i] * (rough if i in (LAW_STATIC, LAW_DYNAMIC) else 1.0)
     pair.mark = region.mark + (a - region.a) * region.many_b + (b - region.b)
 
 

@@ -1,8 +1,8 @@
 """Sheets stay on the sides of each other that they are on.
 
 The law of two boxes knows where they are, not where they came from: once the middle of a thin sheet is behind
-that of the other, it is pushed out at the far side. Newton's method could go there in one round, where faces
-that only just touch have no stiffness yet; and a step could end there.
+that of the other, it is pushed out at the far side. Newton's method could go there in one iteration, where
+faces that only just touch have no stiffness yet; and a step could end there.
 """
 
 from __future__ import annotations
@@ -11,14 +11,15 @@ from mdlgen.mechanics.pair import BOX_BOX
 from mdlgen.mechanics.vector import back, mat, sub, transpose_matmul, vec
 from mdlgen.program.kernel import njit
 
-# What two boxes may come closer in one round, in half thicknesses of the thinner one.
+# What two boxes may come closer in one iteration, in half thicknesses of the thinner one.
 CLOSER = 0.5
 
 
 @njit(cache=True, error_model="numpy")
-def part_of_change(bodies, pairs, near, close, r, h, change):
+def part_of_change(tables, near, close, r, h, change):
     """The part of a change of velocities (6 nodes,), taken off, that moves no box of the pairs near[:close]
-    further to another sheet in h than it may in one round; at most 1."""
+    further to another sheet in h than it may in one iteration; at most 1."""
+    bodies, pairs = tables.bodies, tables.pairs
     worst = 0.0
     for at in range(close):
         pair = pairs[near[at]]
@@ -60,15 +61,16 @@ def _height(bodies, pair, x, r):
 
 
 @njit(cache=True, error_model="numpy")
-def crossed(bodies, pairs, near, close, x, r, xm, rm):
-    """The pair of near[:close] of which a step takes a box through one of another sheet, or -1: from x, r
-    over the middle xm, rm as far again."""
+def crossed(tables, near, close, state, motion):
+    """The pair of near[:close] of which a step takes a box through one of another sheet, or -1: from
+    `state` over the middle as far again."""
+    bodies, pairs = tables.bodies, tables.pairs
     for at in range(close):
         pair = pairs[near[at]]
         if pair.kind != BOX_BOX:
             continue
-        begin, _ = _height(bodies, pair, x, r)
-        middle, over = _height(bodies, pair, xm, rm)
+        begin, _ = _height(bodies, pair, state.x, state.r)
+        middle, over = _height(bodies, pair, motion.x, motion.r)
         if over and begin * (2.0 * middle - begin) <= 0.0:
             return near[at]
     return -1

@@ -4,7 +4,21 @@ from __future__ import annotations
 
 import math
 
-from mdlgen.mechanics.point import ALONE
+from mdlgen.mechanics.frame import LAW_SLIDING, LAW_SMOOTHING, LAW_STICTION
+from mdlgen.mechanics.point import (
+    ALONE,
+    BETA,
+    FORCE,
+    GROWTH,
+    KIND,
+    MOST_COUPLE,
+    MU_DYNAMIC,
+    MU_STATIC,
+    RADIUS,
+    RATE,
+    ROLLING,
+    SPRING,
+)
 from mdlgen.program.kernel import BORROWS, njit
 
 # Damping and friction grow steeply at small speeds and hardly at all at large ones. A step along the tangent
@@ -65,38 +79,40 @@ def steepness(y, v_s, chord):
 @njit(cache=True, error_model="numpy", **BORROWS)
 def couple_growth(out, at, h, law, chord):
     """What the couple of rolling resistance loses as the relative angular velocity grows, times h."""
-    return h * out[at + 6] * out[at + 7] * steepness(out[at + 9] / law[5], law[5], chord)
+    v_n = law[LAW_SMOOTHING]
+    return h * out[at + MOST_COUPLE] * out[at + RADIUS] * steepness(out[at + ROLLING] / v_n, v_n, chord)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def core(out, at, n, slip, h, law, chord, whole):
     """What the force of one contact point loses as the relative velocity grows, times h: a 3 x 3 matrix for
-    the velocity at the point, and, where a nip damps it (0 else), what its normal force loses as the foot
-    closes, with its friction per slip velocity for 1 of that force.
+    the velocity at the point, and, where a nip damps it (0 else), what its normal force loses as the contact
+    line closes, with its friction per slip velocity for 1 of that force.
 
     `whole`: with the growth of friction with the normal force, which is not symmetric.
     """
-    spring, growth, force, rate = out[at + 6], out[at + 7], out[at + 8], out[at + 9]
+    spring, growth, force, rate = out[at + SPRING], out[at + GROWTH], out[at + FORCE], out[at + RATE]
+    v_s, v_d, v_n = law[LAW_STICTION], law[LAW_SLIDING], law[LAW_SMOOTHING]
     # a rim may have its own
-    beta, mu_static, mu_dynamic = out[at + 13], out[at + 14], out[at + 15]
-    y = rate / law[5]
+    beta, mu_static, mu_dynamic = out[at + BETA], out[at + MU_STATIC], out[at + MU_DYNAMIC]
+    y = rate / v_n
     sign = 0.5 * y * (3.0 - y * y) if abs(y) < 1.0 else math.copysign(1.0, y)
-    damping = h * spring * beta * steepness(y, law[5], chord)
+    damping = h * spring * beta * steepness(y, v_n, chord)
     normal = h * h * growth * (1.0 + beta * sign)
-    if out[at + 16] == ALONE:
+    if out[at + KIND] == ALONE:
         normal += damping
         damping = 0.0
     speed = math.sqrt(slip[0] * slip[0] + slip[1] * slip[1] + slip[2] * slip[2])
     secant = tangent = 0.0
     if force > 0.0 and (mu_static > 0.0 or mu_dynamic > 0.0):
-        if speed < law[3]:
-            z = speed / law[3]
-            secant = 0.5 * mu_static * (3.0 - z * z) / law[3]
-            tangent = 1.5 * mu_static * (1.0 - z * z) / law[3]
+        if speed < v_s:
+            z = speed / v_s
+            secant = 0.5 * mu_static * (3.0 - z * z) / v_s
+            tangent = 1.5 * mu_static * (1.0 - z * z) / v_s
         else:
             mu = mu_dynamic
-            if speed < law[4]:
-                z = (speed - law[3]) / (law[4] - law[3])
+            if speed < v_d:
+                z = (speed - v_s) / (v_d - v_s)
                 mu = mu_static + (mu_dynamic - mu_static) * z * z * (3.0 - 2.0 * z)
             secant = mu / speed
         secant, tangent = h * force * secant, h * force * max(tangent, chord * secant)

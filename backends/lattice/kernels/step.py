@@ -16,19 +16,22 @@ import math
 
 import numpy as np
 
-from mdlgen.backends.lattice.kernels.alone import (
+from mdlgen.backends.lattice.kernels.band import empty as no_band
+from mdlgen.backends.lattice.kernels.band import factor, solve
+from mdlgen.backends.lattice.kernels.bordered import eliminate
+from mdlgen.backends.lattice.kernels.condensed import (
     APART,
     INSIDE,
     PLANES,
+    TOUCHED,
+    UP_TO_DATE,
     choose,
     columns,
     forget,
     release,
     unsee,
 )
-from mdlgen.backends.lattice.kernels.band import empty as no_band
-from mdlgen.backends.lattice.kernels.band import factor, solve
-from mdlgen.backends.lattice.kernels.border import eliminate
+from mdlgen.backends.lattice.kernels.contact_solve import solve_contacts
 from mdlgen.backends.lattice.kernels.coupled import couplings, couplings_in_box_axes, solve_coupled
 from mdlgen.backends.lattice.kernels.dense import copy
 from mdlgen.backends.lattice.kernels.forces import (
@@ -44,6 +47,23 @@ from mdlgen.backends.lattice.kernels.forces import (
 from mdlgen.backends.lattice.kernels.image import reflect
 from mdlgen.backends.lattice.kernels.momentum import keep
 from mdlgen.backends.lattice.kernels.sides import crossed, part_of_change
+from mdlgen.backends.lattice.kernels.state import (
+    CLOSE,
+    FACTORS,
+    ITERATIONS,
+    LOST,
+    MADE_FOR,
+    NUMERICAL,
+    POWER,
+    STALE,
+    THROUGH,
+    TOUCHING,
+    WHERE,
+    WORST,
+    Matrix,
+    Midpoint,
+    State,
+)
 from mdlgen.backends.lattice.kernels.tangent import (
     contacts_into,
     in_box_axes,
@@ -51,34 +71,35 @@ from mdlgen.backends.lattice.kernels.tangent import (
     masses,
     rollers_into,
 )
-from mdlgen.backends.lattice.kernels.touching import settle
-from mdlgen.backends.lattice.kernels.two_sets import deal
+from mdlgen.backends.lattice.kernels.two_colour import colour
 from mdlgen.mechanics.arm import moved, torque_of, turn_of, way_of
 from mdlgen.mechanics.driven import clutch, prescribed
+from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.vector import back, dot, exp_rotation, mat, matmul, rotate, three, vec
 from mdlgen.program.kernel import BORROWS, njit
 
-# Rounds of one step before it is given up.
-MOST_ROUNDS = 40
+# Newton iterations of one step before it is given up.
+MOST_ITERATIONS = 40
 FAR = 0.05  # mm: pairs that are closer than this, and what moves in a step, are looked at in it
-# A new factor, and columns for each box that touches, cost as much as this many rounds: it is made where more
-# of them are still to come at the rate of the last two.
+# A new factor, and columns for each box that touches, cost as much as this many iterations: it is made where
+# more of them are still to come at the rate of the last two.
 WORTH = 3.0
 FREE = 1e-5
-# The boxes that touch are settled to this many times the step's own limit in a round.
+# Contacts are solved for to this many times the step's own limit in an iteration.
 ROUGH = 100.0
 # Damping of joints, as a part of h for 1 ms of a step, and at most.
 DAMPED, MOST_DAMPED = 1.0, 0.3
 # How much of the chord a factor takes (see slopes.core): little converges fast, much does not cross to the
-# other side of what is flat; the latter is taken twice where a round moved more than the one before.
+# other side of what is flat; the latter is taken twice where an iteration moved more than the one before.
 LITTLE, MUCH = 0.05, 0.7
-# Counters of a run.
-STEPS, ROUNDS, FACTORS, TOUCHING, WORST, STRAIN, THROUGH, CLOSE, COUNTERS = 0, 1, 2, 3, 4, 5, 6, 7, 8
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _residual(bodies, nodes, gravity, t, h, u, ub, v, l, vb, s, xm, rm, f, res, resb):
+def _residual(tables, t, h, state, mid, res, resb):
     """Residual of the step's equations into res (6 nodes,) and resb (border,); t is in the middle."""
+    bodies, nodes, gravity = tables.bodies, tables.nodes, tables.gravity
+    v, l, s, vb, u, ub = state.v, state.l, state.s, state.vb, state.u, state.ub
+    xm, rm, f = mid.motion.x, mid.motion.r, mid.forces
     for n in range(nodes.size):
         b = nodes[n]
         m = mat(rm, b)
@@ -126,148 +147,159 @@ def _turn(nodes, r, res, inward):
 
 
 @njit(cache=True, error_model="numpy")
-def midpoint(system, state, mid, matrix, alone, free, t, dt, tolerance, fresh, counters):
-    """Solves for the velocities at the middle of a step. Returns whether it converged.
+def _contact_forces(work, close, known):
+    """Adds the forces of contacts to those of the midpoint, where `known` from what the contact solve last
+    evaluated. Returns (how many pairs touch, dissipated power)."""
+    mid, condensed = work.mid, work.condensed
+    if known:
+        again = (condensed.touched, condensed.results, condensed.looked[TOUCHED], condensed.seen)
+        count, _stored, rubbed = pair_forces_again(
+            work.tables, mid.near, close, again, mid.motion, mid.forces, mid.touched, mid.results
+        )
+    else:
+        count, _stored, rubbed = pair_forces(
+            work.tables, mid.near, close, mid.motion, mid.forces, mid.touched, mid.results
+        )
+    return count, rubbed
 
-    `fresh` (3,): the step that the factor was made for (0: none), whether it should be made anew, and where
-    contacts stand (see alone.APART). counters[THROUGH] is the pair of two sheets that a step would take
-    through each other, or -1; counters[CLOSE] is how many pairs are near.
-    """
-    bodies, joints, pairs, loads, gravity, nodes, points, images, meshes = system
-    x, r, v, l, s, vb, u, ub = state
-    xm, rm, um, wm, f, touched, outs, totals, near = mid
-    a, b, d, y, corner, res, resb, direction, index, couplings = matrix
-    most = alone.chosen.size
+
+@njit(cache=True, error_model="numpy")
+def _make_factor(work, t, h, lag, where, count, chord):
+    """The tangent of a step in box axes, factored. Returns False where it is not regular."""
+    tables, matrix, ub = work.tables, work.matrix, work.state.ub
+    motion = work.mid.motion
+    a, b, d = matrix.band, matrix.border, matrix.corner
+    masses(tables.bodies, tables.nodes, motion.r, a)
+    joints_into(tables, tables.joints, h, lag, motion.x, motion.r, a)
+    rollers_into(tables.bodies, h, t, ub, b, d)
+    if where != APART:
+        contacts_into(tables, h, work.mid, count, chord, where == PLANES, matrix)
+        couplings_in_box_axes(tables.nodes, motion.r, matrix.couplings)
+    in_box_axes(tables.nodes, motion.r, a, b)
+    forget(work.condensed)
+    if not factor(a) or (where == INSIDE and not eliminate(a, b, d, matrix.eliminated, matrix.schur)):
+        return False
+    if where == INSIDE:
+        colour(matrix.couplings, b, d, matrix.eliminated)
+    return True
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _change(tables, state, motion, res, resb, counters):
+    """Takes a change off the velocities. Returns the greatest [mm/ms], of turning times a box's size."""
+    bodies, nodes, u, ub = tables.bodies, tables.nodes, state.u, state.ub
+    change = 0.0
+    for n in range(nodes.size):
+        size = bodies[nodes[n]].half[0] + bodies[nodes[n]].half[1]
+        for i in range(6):
+            step = res[6 * n + i]
+            u[n, i] -= step
+            moved = abs(step) if i < 3 else size * abs(step)
+            if moved > change:
+                change = moved
+                counters[WORST] = nodes[n]
+    for i in range(ub.size):
+        ub[i] -= resb[i]
+        change = max(change, abs(resb[i]))
+    for k in range(bodies.size - 1):
+        if bodies[k].swings > 0:
+            way = way_of(bodies[k], vec(motion.x, k))
+            change = max(change, math.sqrt(dot(way, way)) * abs(resb[bodies[k].slide]))
+    return change
+
+
+@njit(cache=True, error_model="numpy")
+def midpoint(work, t, dt, tolerance, control):
+    """Solves for the velocities at the middle of a step. Returns whether it converged."""
+    tables, state, mid, matrix, condensed = work.tables, work.state, work.mid, work.matrix, work.condensed
+    bodies, pairs, nodes = tables.bodies, tables.pairs, tables.nodes
+    factored, counters = control.factored, control.counters
+    a, res, resb = matrix.band, matrix.res, matrix.resb
+    most = condensed.chosen.size
     h = 0.5 * dt
     lag = min(DAMPED * dt, MOST_DAMPED) * h
     before = 1e300
     careful = 0
     counters[THROUGH] = -1.0
-    close, where, m = 0, int(fresh[2]), 0
+    close, where, m = 0, int(factored[WHERE]), 0
     margin, moved = FAR, 0.0
-    for rounds in range(MOST_ROUNDS):
-        place(bodies, nodes, images, h, t + h, u, ub, x, r, xm, rm, um, wm)
-        if rounds == 0 or margin < dt * moved:
+    for iteration in range(MOST_ITERATIONS):
+        place(tables, h, t + h, state, mid.motion)
+        if iteration == 0 or margin < dt * moved:
             # what the guess did not know of may move further than it said
             margin = FAR + 2.0 * dt * moved
-            close = near_pairs(bodies, pairs, meshes, x, r, um, wm, margin, dt, near)
-            unsee(alone)
-        f[:] = 0.0
-        _stored, lost, numerical = joint_forces(joints, points, xm, rm, um, wm, f, lag)
-        if rounds > 0 and where == APART and alone.state[1] == 1:
-            again = (alone.touched, alone.outs, alone.state[0], alone.seen)
-            count, _pressed, rubbed = pair_forces_again(
-                bodies, pairs, meshes, near, close, again, xm, rm, um, wm, f, touched, outs
-            )
-        else:
-            count, _pressed, rubbed = pair_forces(
-                bodies, pairs, meshes, near, close, xm, rm, um, wm, f, touched, outs
-            )
-        power = other_forces(bodies, loads, gravity, 1.0, rm, um, wm, f)
-        _weights(bodies, gravity, f)
-        clutch_torques(bodies, t + h, ub, f)
-        _residual(bodies, nodes, gravity, t + h, h, u, ub, v, l, vb, s, xm, rm, f, res, resb)
-        if rounds == 0:
+            close = near_pairs(tables, mid.motion, margin, dt, mid.near)
+            unsee(condensed)
+        mid.forces[:] = 0.0
+        _stored, lost, numerical = joint_forces(tables.joints, tables.points, mid.motion, mid.forces, lag)
+        known = iteration > 0 and where == APART and condensed.looked[UP_TO_DATE] == 1
+        count, rubbed = _contact_forces(work, close, known)
+        power = other_forces(tables, 1.0, mid.motion, mid.forces)
+        _weights(bodies, tables.gravity, mid.forces)
+        clutch_torques(bodies, t + h, state.ub, mid.forces)
+        _residual(tables, t + h, h, state, mid, res, resb)
+        if iteration == 0:
             for fewer in range(where):
-                m = choose(bodies, pairs, touched, count, fewer, alone, 0, most // 2)
+                m = choose(bodies, pairs, mid.touched, count, fewer, condensed, 0, most // 2)
                 if m >= 0:
                     where = fewer
                     break
                 m = 0
-        m = choose(bodies, pairs, touched, count, where, alone, m, most)
+        m = choose(bodies, pairs, mid.touched, count, where, condensed, m, most)
         while m < 0:
             where += 1
-            m = choose(bodies, pairs, touched, count, where, alone, 0, most)
-        if fresh[0] != dt or fresh[1] != 0.0 or fresh[2] != where:
+            m = choose(bodies, pairs, mid.touched, count, where, condensed, 0, most)
+        if factored[MADE_FOR] != dt or factored[STALE] != 0.0 or factored[WHERE] != where:
             counters[FACTORS] += 1
-            masses(bodies, nodes, rm, a)
-            joints_into(bodies, joints, points, images, h, lag, xm, rm, a)
-            rollers_into(bodies, h, t + h, ub, b, d)
+            chord = MUCH if careful > 0 else LITTLE
             if where != APART:
-                chord = MUCH if careful > 0 else LITTLE
                 careful -= 1
-                planes = where == PLANES
-                room = (direction, index, couplings)
-                contacts_into(bodies, pairs, h, xm, touched, outs, count, chord, planes, a, b, d, *room)
-                couplings_in_box_axes(nodes, rm, couplings)
-            in_box_axes(nodes, rm, a, b)
-            forget(alone)
-            if not factor(a) or (where == INSIDE and not eliminate(a, b, d, y, corner)):
-                fresh[0] = 0.0
-                release(alone, m)
-                return False
-            if where == INSIDE:
-                deal(couplings.sets, couplings.ends, couplings.many[0], b, d, y)
-            fresh[0], fresh[1], fresh[2] = dt, 0.0, where
-        counters[ROUNDS] += 1
-        # what is free converges fast, and keeps its angular momentum as well as the rounds end
+            if not _make_factor(work, t + h, h, lag, where, count, chord):
+                break
+            factored[MADE_FOR], factored[STALE], factored[WHERE] = dt, 0.0, where
+        counters[ITERATIONS] += 1
+        # what is free converges fast, and keeps its angular momentum as well as the iterations end
         limit = tolerance if count > 0 else FREE * tolerance
-        copy(free[3], res)
+        copy(work.free.residual, res)
         # the axes of the boxes as they stand now: half a step before, what is stiff in a box points elsewhere
-        copy(alone.axes, rm)
-        _turn(nodes, alone.axes, res, True)
+        copy(condensed.axes, mid.motion.r)
+        _turn(nodes, condensed.axes, res, True)
         if where == INSIDE:
-            solve_coupled(a, b, y, corner, couplings, res, resb)
+            solve_coupled(a, matrix.border, matrix.eliminated, matrix.schur, matrix.couplings, res, resb)
         else:
             solve(a, res)
-            columns(a, alone, m)
-            places, moving = (x, r, u, ub), (xm, rm, um, wm)
-            known, rest = (touched, outs, count), (res, resb)
-            limits = (ROUGH * limit, 0.3 * limit)
-            if not settle(
-                system, alone, m, where, h, t + h, places, moving, near[:close], known, rest, limits
-            ):
-                fresh[0] = 0.0
-                release(alone, m)
-                return False
-        _turn(nodes, alone.axes, res, False)
-        keep(bodies, pairs, nodes, touched, count, free, xm, rm, res)
-        change, part = 0.0, part_of_change(bodies, pairs, near, close, rm, h, res)
+            columns(a, condensed, m)
+            if not solve_contacts(work, m, where, h, t + h, (close, count), (ROUGH * limit, 0.3 * limit)):
+                break
+        _turn(nodes, condensed.axes, res, False)
+        keep(tables, mid.touched, count, work.free, mid.motion.x, mid.motion.r, res)
+        part = part_of_change(tables, mid.near, close, mid.motion.r, h, res)
         if part < 1.0:
             res *= part
             resb *= part
-        for n in range(nodes.size):
-            size = bodies[nodes[n]].half[0] + bodies[nodes[n]].half[1]
-            for i in range(6):
-                step = res[6 * n + i]
-                u[n, i] -= step
-                moved = abs(step) if i < 3 else size * abs(step)
-                if moved > change:
-                    change = moved
-                    counters[WORST] = nodes[n]
-        for i in range(ub.size):
-            ub[i] -= resb[i]
-            change = max(change, abs(resb[i]))
-        for k in range(bodies.size - 1):
-            if bodies[k].swings > 0:
-                way = way_of(bodies[k], vec(xm, k))
-                change = max(change, math.sqrt(dot(way, way)) * abs(resb[bodies[k].slide]))
+        change = _change(tables, state, mid.motion, res, resb, counters)
         if not change < 1e30:
-            fresh[0] = 0.0
-            release(alone, m)
-            return False
+            break
         rate = change / before
         falls = before < 1e299 and rate < 0.5
         moved += change
         if dt * moved <= margin and (change <= limit or (falls and change * rate / (1.0 - rate) <= limit)):
-            # forces change much with what the last round changed: friction, over its smoothing speed
-            place(bodies, nodes, images, h, t + h, u, ub, x, r, xm, rm, um, wm)
-            f[:] = 0.0
-            count, _pressed, rubbed = pair_forces(
-                bodies, pairs, meshes, near, close, xm, rm, um, wm, f, touched, outs
-            )
-            totals[0], totals[1], totals[2] = lost + rubbed, power, numerical
+            # forces change much with what the last iteration changed: friction, over its smoothing speed
+            place(tables, h, t + h, state, mid.motion)
+            mid.forces[:] = 0.0
+            count, rubbed = _contact_forces(work, close, False)
+            mid.totals[LOST], mid.totals[POWER], mid.totals[NUMERICAL] = lost + rubbed, power, numerical
             counters[TOUCHING], counters[CLOSE] = count, close
-            release(alone, m)
-            counters[THROUGH] = crossed(bodies, pairs, near, close, x, r, xm, rm)
+            release(condensed, m)
+            counters[THROUGH] = crossed(tables, mid.near, close, state, mid.motion)
             return counters[THROUGH] < 0.0
         if before < 1e299 and (rate >= 1.0 or math.log(limit / change) < (WORTH + m) * math.log(rate)):
-            fresh[1] = 1.0
+            factored[STALE] = 1.0
         if before < 1e299 and rate > 0.9:
             careful = 2
         before = change
-    fresh[0] = 0.0
-    release(alone, m)
+    factored[MADE_FOR] = 0.0
+    release(condensed, m)
     return False
 
 
@@ -288,9 +320,9 @@ def spun(body, u, v, t, dt):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def carry(system, state, mid, t, dt):
+def carry(tables, state, t, dt):
     """From the middle to the end of a step."""
-    bodies, joints, pairs, loads, gravity, nodes, points, images, meshes = system
+    bodies, nodes, images = tables.bodies, tables.nodes, tables.images
     x, r, v, l, s, vb, u, ub = state
     for n in range(nodes.size):
         b = nodes[n]
@@ -321,40 +353,41 @@ def carry(system, state, mid, t, dt):
             vb[spin_at] = spun(bodies[k], ub[spin_at], vb[spin_at], t, dt)
 
 
-def empty(system, wide: int):
-    """State, middle and matrix of a System, all zero: (state, mid, matrix)."""
+def empty(system, wide: int) -> tuple[State, Midpoint, Matrix]:
+    """State, midpoint and matrix of a System, all zero; `wide` numbers hold what a pair does."""
     bodies, nodes, border = len(system.bodies), len(system.nodes), system.border
-    state = (
-        np.zeros((bodies, 3)),
-        np.zeros((bodies, 9)),
-        np.zeros((nodes, 3)),
-        np.zeros((nodes, 3)),
-        np.zeros(border),
-        np.zeros(border),
-        np.zeros((nodes, 6)),
-        np.zeros(border),
+    state = State(
+        x=np.zeros((bodies, 3)),
+        r=np.zeros((bodies, 9)),
+        v=np.zeros((nodes, 3)),
+        l=np.zeros((nodes, 3)),
+        s=np.zeros(border),
+        vb=np.zeros(border),
+        u=np.zeros((nodes, 6)),
+        ub=np.zeros(border),
     )
-    mid = (
-        np.zeros((bodies, 3)),
-        np.zeros((bodies, 9)),
-        np.zeros((bodies, 3)),
-        np.zeros((bodies, 3)),
-        np.zeros((bodies, 6)),
-        np.zeros(len(system.pairs), np.int64),
-        np.zeros((max(1, len(system.pairs)), wide)),
-        np.zeros(3),
-        np.zeros(len(system.pairs), np.int64),
+    places, rates = (
+        (np.zeros((bodies, 3)), np.zeros((bodies, 9))),
+        (np.zeros((bodies, 3)), np.zeros((bodies, 3))),
     )
-    matrix = (
-        no_band(nodes, system.reach),
-        np.zeros((border, 6 * nodes)),
-        np.zeros((border, border)),
-        np.zeros((border, 6 * nodes)),
-        np.zeros((border, border)),
-        np.zeros(6 * nodes),
-        np.zeros(border),
-        np.zeros((4, 3)),
-        np.zeros(4, np.int64),
-        couplings(len(system.pairs) - system.search.first, system.sheets, border),
+    mid = Midpoint(
+        motion=Motion(*places, *rates),
+        forces=np.zeros((bodies, 6)),
+        touched=np.zeros(len(system.pairs), np.int64),
+        results=np.zeros((max(1, len(system.pairs)), wide)),
+        totals=np.zeros(3),
+        near=np.zeros(len(system.pairs), np.int64),
+    )
+    matrix = Matrix(
+        band=no_band(nodes, system.reach),
+        border=np.zeros((border, 6 * nodes)),
+        corner=np.zeros((border, border)),
+        eliminated=np.zeros((border, 6 * nodes)),
+        schur=np.zeros((border, border)),
+        res=np.zeros(6 * nodes),
+        resb=np.zeros(border),
+        direction=np.zeros((4, 3)),
+        unknowns=np.zeros(4, np.int64),
+        couplings=couplings(len(system.pairs) - system.search.first, system.sheets, border),
     )
     return state, mid, matrix

@@ -8,14 +8,33 @@ import math
 import numpy as np
 
 from mdlgen.backends.lattice.kernels.forces import place_box, place_roller
+from mdlgen.backends.lattice.kernels.state import FORCE_NOW
 from mdlgen.mechanics.arm import turn_of, way_of
 from mdlgen.mechanics.crossing import above, buried, closing, deepest, unseen
+from mdlgen.mechanics.frame import LAW_SMOOTHING, Frame, Motion
 from mdlgen.mechanics.laws import sign_step
 from mdlgen.mechanics.mesh import BLOCK
 from mdlgen.mechanics.pair import BOX_CYLINDER, BOX_MESH, BOX_PLANE, pair_force
-from mdlgen.mechanics.point import COUPLE, OF_NIP, OUT, POINT
+from mdlgen.mechanics.point import (
+    AT,
+    BETA,
+    COUPLE,
+    DEPTH,
+    GROWTH,
+    KIND,
+    LINE,
+    NORMAL,
+    OF_NIP,
+    OUT,
+    POINT,
+    POINTS,
+    RATE,
+    SPRING,
+    STORED,
+    WAY,
+)
 from mdlgen.mechanics.point import closing as closing_at
-from mdlgen.mechanics.vector import add, dot, scale, sub, three, vec
+from mdlgen.mechanics.vector import add, dot, mat, scale, sub, three, three_from, vec
 from mdlgen.program.kernel import BORROWS, njit
 
 # Pairs that would have to be looked at more often in a step want a smaller one.
@@ -25,14 +44,14 @@ LITTLE = 1e-3
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def _place(system, state, b, h, t, xs, rs, us, ws):
+def _place(tables, state, b, h, t, motion):
     """One body after h of a step from t, whose velocities are those of its middle."""
-    bodies = system[0]
-    x, r, u, ub = state[0], state[1], state[6], state[7]
-    body = bodies[b]
+    x, r, u, ub = state.x, state.r, state.u, state.ub
+    xs, rs, us, ws = motion
+    body = tables.bodies[b]
     n = body.node
     if n >= 0:
-        place_box(b, h, (u[n, 0], u[n, 1], u[n, 2]), (u[n, 3], u[n, 4], u[n, 5]), x, r, xs, rs, us, ws)
+        place_box(b, h, (u[n, 0], u[n, 1], u[n, 2]), (u[n, 3], u[n, 4], u[n, 5]), x, r, motion)
         return
     for i in range(3):
         xs[b, i], us[b, i], ws[b, i] = x[b, i], 0.0, 0.0
@@ -42,14 +61,14 @@ def _place(system, state, b, h, t, xs, rs, us, ws):
         return
     rate = ub[body.slide] if body.slide >= 0 else 0.0
     turning = ub[body.spin] if body.spin >= 0 else 0.0
-    place_roller(body, b, h, t + h, rate, turning, x, r, xs, rs, us, ws)
+    place_roller(body, b, h, t + h, rate, turning, x, r, motion)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def _hits(bodies, pair, acted):
+def _hits(bodies, pair, rows):
     """Whether a pair's contacts are impacts: under a roller the boxes of a sheet take turns, and together
-    store what the one before did, but where none of them touched it. `acted`: see swept."""
-    return pair.kind != BOX_CYLINDER or bodies[pair.a].exposed == BLOCK or acted[pair.row] == 0.0
+    store what the one before did, but where none of them touched it. rows: of Kept, after the step before."""
+    return pair.kind != BOX_CYLINDER or bodies[pair.a].exposed == BLOCK or rows[pair.row, FORCE_NOW] == 0.0
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -66,20 +85,20 @@ def _clear(bodies, pair, x, r, way):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _changed(body, b, state, mid, before):
+def _changed(body, b, state, mid, slower):
     """By how much the velocity and the angular velocity of one body have changed from the middle of the step
-    before to the middle of this one; `before`: velocities there, of nodes and of the border."""
+    before to the middle of this one; slower: (u, ub) there, and which part of the way is in this step."""
     n = body.node
     if n >= 0:
-        u, kept = state[6], before[0]
+        u, kept = state.u, slower[0]
         rate = (u[n, 0] - kept[n, 0], u[n, 1] - kept[n, 1], u[n, 2] - kept[n, 2])
         return rate, (u[n, 3] - kept[n, 3], u[n, 4] - kept[n, 4], u[n, 5] - kept[n, 5])
     rate = spin = (0.0, 0.0, 0.0)
     if body.slide >= 0:
-        faster = state[7][body.slide] - before[1][body.slide]
-        rate, spin = scale(faster, way_of(body, vec(mid[0], b))), scale(faster, turn_of(body))
+        faster = state.ub[body.slide] - slower[1][body.slide]
+        rate, spin = scale(faster, way_of(body, vec(mid.motion.x, b))), scale(faster, turn_of(body))
     if body.spin >= 0:
-        spin = add(spin, scale(state[7][body.spin] - before[1][body.spin], three(body.axis)))
+        spin = add(spin, scale(state.ub[body.spin] - slower[1][body.spin], three(body.axis)))
     return rate, spin
 
 
@@ -96,71 +115,71 @@ def _turning_back(rate, faster, beta, smoothing):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _made(bodies, pairs, state, mid, count, dt, before, acted, rows):
+def _made(work, count, dt, slower, rows):
     """Adds to `rows` (contacts,) the energy that contacts store in a step beyond the work done on them;
-    returns what their damping should have taken and did not.
+    returns what their damping should have taken and did not. `slower`: see _changed.
 
     The rule takes the force in the middle of a step over all of it. The depth of each point at both ends
     follows from its rate; it has stored 2/5 F z (of z^1.5; other laws are near enough).
     """
-    touched, outs = mid[5], mid[6]
+    bodies, pairs, state, mid = work.tables.bodies, work.tables.pairs, work.state, work.mid
+    touched, results, x = mid.touched, mid.results, mid.motion.x
     kept = 0.0
     for k in range(count):
         pair = pairs[touched[k]]
-        if not _hits(bodies, pair, acted):
+        if not _hits(bodies, pair, work.kept.rows):
             continue
         row, law = pair.row, pair.law
-        one, spin_one = _changed(bodies[pair.a], pair.a, state, mid, before)
-        two, spin_two = _changed(bodies[pair.b], pair.b, state, mid, before)
-        for i in range(int(outs[k, OUT])):
+        one, spin_one = _changed(bodies[pair.a], pair.a, state, mid, slower)
+        two, spin_two = _changed(bodies[pair.b], pair.b, state, mid, slower)
+        still = mat(mid.motion.r, pair.a)
+        a, b = Frame(vec(x, pair.a), still, one, spin_one), Frame(vec(x, pair.b), still, two, spin_two)
+        for i in range(int(results[k, POINTS])):
             at = OUT + 1 + POINT * i
-            force, growth, moved = outs[k, at + 6], outs[k, at + 7], 0.5 * dt * outs[k, at + 9]
-            if growth <= 0.0 or outs[k, at + 16] == COUPLE:
+            point, kind = results[k, at:], results[k, at + KIND]
+            force, growth, moved = point[SPRING], point[GROWTH], 0.5 * dt * point[RATE]
+            if growth <= 0.0 or kind == COUPLE:
                 continue
             depth, energy = 1.5 * force / growth, 0.6 * force * force / growth
             part = moved / depth
             if abs(part) > 0.02:
                 ends = max(1.0 + part, 0.0) ** 2.5 - max(1.0 - part, 0.0) ** 2.5
                 rows[row] += energy * ends - 2.0 * force * moved
-            foot = at + 17 if outs[k, at + 16] == OF_NIP else at
-            place = (outs[k, foot], outs[k, foot + 1], outs[k, foot + 2])
-            way = at + 20 if outs[k, at + 16] == OF_NIP else at + 3
-            normal = (outs[k, way], outs[k, way + 1], outs[k, way + 2])
-            faster = closing_at(
-                place, normal, vec(mid[0], pair.a), one, spin_one, vec(mid[0], pair.b), two, spin_two
-            )
-            missed = _turning_back(outs[k, at + 9], before[2] * faster, outs[k, at + 13], law[5])
+            place = three_from(point, LINE if kind == OF_NIP else AT)
+            normal = three_from(point, WAY if kind == OF_NIP else NORMAL)
+            faster = closing_at(place, normal, a, b)
+            missed = _turning_back(point[RATE], slower[2] * faster, point[BETA], law[LAW_SMOOTHING])
             kept += force * dt * missed
     return kept
 
 
 @njit(cache=True, error_model="numpy")
-def swept(system, state, mid, counts, t, dt, allowed, before, acted, rows):
+def swept(work, counts, t, dt, allowed, slower, rows):
     """What the near pairs do in a step from t, beyond what is known of its middle: (the first that comes
     deeper than it may, or to another side, or -1; the energy that contacts make or lose in it, where
-    `allowed` is above zero). `counts`: how many pairs touch in the middle, how many are near; `acted`
-    (contacts,): 0 for a row of the contacts without a force in the step before.
+    `allowed` is above zero). `counts`: how many pairs touch in the middle, how many are near.
 
     The states between are looked at as often as a pair could cross unseen, by the law of the contact: none
     for pairs that are slow for what they could cross, which is nearly all of them.
     """
-    bodies, pairs, meshes = system[0], system[2], system[8]
-    x, r = state[0], state[1]
-    um, wm, touched, near = mid[2], mid[3], mid[5], mid[8]
+    tables, state, mid = work.tables, work.state, work.mid
+    bodies, pairs, meshes = tables.bodies, tables.pairs, tables.meshes
+    x, r, touched, near = state.x, state.r, mid.touched, mid.near
     count, close = counts
     made = False
-    xs, rs, us, ws, out = x, r, um, wm, um[0]
+    between, out = mid.motion, mid.motion.u[0]
     rows[:] = 0.0
     total = 0.0
     if allowed > 0.0:
-        total = _made(bodies, pairs, state, mid, count, dt, before, acted, rows)
+        total = _made(work, count, dt, slower, rows)
     known = 0
     for at in range(close):
         pair = pairs[near[at]]
         touches = known < count and touched[known] == near[at]
         if touches:
             known += 1
-        fast = closing(bodies, pair, meshes, x, r, um, wm, dt)
+        began = Motion(x, r, mid.motion.u, mid.motion.w)
+        fast = closing(bodies, pair, meshes, began, dt)
         way, band = dt * fast, unseen(bodies, pair, meshes)
         side = above(bodies, pair, x, r)
         solid = pair.kind == BOX_MESH and bodies[pair.a].exposed != 0
@@ -168,7 +187,7 @@ def swept(system, state, mid, counts, t, dt, allowed, before, acted, rows):
         if allowed > 0.0 and not touches:
             half = 0.5 * way
             enters = 0.4 * pair.k * half * half * math.sqrt(half) > LITTLE * allowed
-            enters = enters and _hits(bodies, pair, acted)
+            enters = enters and _hits(bodies, pair, work.kept.rows)
             enters = enters and not _clear(bodies, pair, x, r, way)
         if way <= band and side == 0 and not solid and not enters:
             continue
@@ -176,26 +195,26 @@ def swept(system, state, mid, counts, t, dt, allowed, before, acted, rows):
             return near[at], 0.0
         if not made:
             made = True
-            xs, rs = np.empty_like(x), np.empty_like(r)
-            us, ws, out = np.empty_like(um), np.empty_like(wm), np.zeros(OUT)
+            rates = np.empty_like(x), np.empty_like(x)
+            between, out = Motion(np.empty_like(x), np.empty_like(r), rates[0], rates[1]), np.zeros(OUT)
         many = max(1, math.ceil(way / band))
         for k in range(1, many + 1):
             h = dt * k / many
-            _place(system, state, pair.a, h, t, xs, rs, us, ws)
-            _place(system, state, pair.b, h, t, xs, rs, us, ws)
-            now = above(bodies, pair, xs, rs)
+            _place(tables, state, pair.a, h, t, between)
+            _place(tables, state, pair.b, h, t, between)
+            now = above(bodies, pair, between.x, between.r)
             if side * now < 0:
                 return near[at], 0.0
             side = now
-            if solid and buried(bodies, pair, meshes, xs, rs):
+            if solid and buried(bodies, pair, meshes, between.x, between.r):
                 return near[at], 0.0
             if way > band or enters:
                 out[:] = 0.0
-                pair_force(bodies, pair, meshes, xs, rs, us, ws, out)
-                if out[15] > deepest(bodies, pair):
+                pair_force(bodies, pair, meshes, between, out)
+                if out[DEPTH] > deepest(bodies, pair):
                     return near[at], 0.0
                 if enters and k == many:
-                    rows[pair.row] += out[13]
+                    rows[pair.row] += out[STORED]
     for row in range(rows.size):
         total += abs(rows[row])
     return -1, total

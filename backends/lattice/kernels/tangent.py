@@ -2,7 +2,7 @@
 
 It is the derivative of the step's equations but for small parts: the turning of forces (geometric stiffness)
 and the growth of friction with the normal force, which is not symmetric. Newton's method takes a few more
-rounds for them, and the matrix stays positive.
+iterations for them, and the matrix stays positive.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from mdlgen.mechanics.arm import turn_of, way_of
 from mdlgen.mechanics.curve import curve_spring
 from mdlgen.mechanics.driven import clutch
 from mdlgen.mechanics.pair import on_fixed_plate
-from mdlgen.mechanics.point import COUPLE, OUT, POINT
+from mdlgen.mechanics.point import AT, AXIS, COUPLE, KIND, LINE, NORMAL, OUT, POINT, POINTS, SLIP, WAY
 from mdlgen.mechanics.vector import (
     add,
     back,
@@ -28,6 +28,7 @@ from mdlgen.mechanics.vector import (
     scale,
     sub,
     three,
+    three_from,
     transpose_matmul,
     vec,
 )
@@ -101,9 +102,10 @@ def masses(bodies, nodes, r, a):
 
 
 @njit(cache=True, error_model="numpy")
-def joints_into(bodies, joints, points, images, h, lag, x, r, a):
+def joints_into(tables, joints, h, lag, x, r, a):
     """Adds h (C + lag K) + h^2 K of all joints, where K of a joint that follows a curve is its slope now, and
     `lag` is less the damping time that a joint has itself."""
+    bodies, points, images = tables.bodies, tables.points, tables.images
     last = x.shape[0] - 1
     for i in range(joints.size):
         joint = joints[i]
@@ -174,8 +176,10 @@ def _columns(body, arm, x, sign, direction, index, count):
 
 
 @njit(cache=True, error_model="numpy")
-def _point_into(bodies, pair, x, where, t, coupled, a, b, d, direction, index, couplings):
+def _point_into(bodies, pair, x, where, t, coupled, matrix):
     """Adds a matrix of the velocity at one contact point to band, border and corner, and to the couplings."""
+    a, b, d = matrix.band, matrix.border, matrix.corner
+    direction, index = matrix.direction, matrix.unknowns
     zero = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     node, other = bodies[pair.a].node, bodies[pair.b].node
     arm = sub(where, vec(x, pair.a))
@@ -188,7 +192,7 @@ def _point_into(bodies, pair, x, where, t, coupled, a, b, d, direction, index, c
     if other >= 0:
         _blocks(a, other, 0, 1.0, t, far, far, zero)
     if node >= 0 and other >= 0:
-        _blocks(couplings.blocks, coupled, 0, -1.0, t, arm, far, zero)
+        _blocks(matrix.couplings.blocks, coupled, 0, -1.0, t, arm, far, zero)
     moving = _columns(bodies[pair.b], far, vec(x, pair.b), -1.0, direction, index, moving)
     for i in range(moving):
         v = rotate(t, (direction[i, 0], direction[i, 1], direction[i, 2]))
@@ -204,10 +208,10 @@ def _point_into(bodies, pair, x, where, t, coupled, a, b, d, direction, index, c
 
 
 @njit(cache=True, error_model="numpy")
-def _couple_into(bodies, pair, out, at, slope, a, b, d):
+def _couple_into(bodies, pair, axis, slope, matrix):
     """Adds the couple of rolling resistance of a box, or a roller, against a roller or a part that does not
     turn."""
-    axis = (out[at + 17], out[at + 18], out[at + 19])
+    a, b, d = matrix.band, matrix.border, matrix.corner
     node = bodies[pair.a].node
     if node >= 0:
         for c in range(3):
@@ -239,14 +243,13 @@ def _turning(bodies, pair, which, axis):
 
 
 @njit(cache=True, error_model="numpy")
-def contacts_into(
-    bodies, pairs, h, x, touched, outs, count, chord, planes, a, b, d, direction, index, couplings
-):
-    """Adds the contacts that touch, or only those with fixed plates: to the band a, to the border b (border,
-    6 nodes) and its corner d; what couples boxes of two sheets goes to the couplings."""
+def contacts_into(tables, h, mid, count, chord, planes, matrix):
+    """Adds the contacts that touch, or only those with fixed plates (`planes`), to band, border and corner;
+    what couples boxes of two sheets goes to the couplings."""
+    bodies, pairs, x, couplings = tables.bodies, tables.pairs, mid.motion.x, matrix.couplings
     couplings.many[0] = 0
     for k in range(count):
-        pair, out = pairs[touched[k]], outs[k]
+        pair, out = pairs[mid.touched[k]], mid.results[k]
         if planes and not on_fixed_plate(pair, bodies[pair.b]):
             continue
         node, other = bodies[pair.a].node, bodies[pair.b].node
@@ -255,22 +258,22 @@ def contacts_into(
             couplings.ends[coupled, 0], couplings.ends[coupled, 1] = node, other
             couplings.blocks[coupled] = 0.0
             couplings.many[0] += 1
-        for point in range(int(out[OUT])):
+        for point in range(int(out[POINTS])):
             at = OUT + 1 + POINT * point
-            if out[at + 16] == COUPLE:
-                _couple_into(bodies, pair, out, at, couple_growth(out, at, h, pair.law, chord), a, b, d)
+            if out[at + KIND] == COUPLE:
+                slope = couple_growth(out, at, h, pair.law, chord)
+                _couple_into(bodies, pair, three_from(out, at + AXIS), slope, matrix)
                 continue
-            where = (out[at], out[at + 1], out[at + 2])
-            normal = (out[at + 3], out[at + 4], out[at + 5])
-            slip = (out[at + 10], out[at + 11], out[at + 12])
+            where, normal = three_from(out, at + AT), three_from(out, at + NORMAL)
+            slip = three_from(out, at + SLIP)
             t, damping, _ = core(out, at, normal, slip, h, pair.law, chord, False)
-            _point_into(bodies, pair, x, where, t, coupled, a, b, d, direction, index, couplings)
+            _point_into(bodies, pair, x, where, t, coupled, matrix)
             if damping == 0.0:
                 continue
-            # the points of a nip together damp as one at its foot would
-            foot, way = (out[at + 17], out[at + 18], out[at + 19]), (out[at + 20], out[at + 21], out[at + 22])
+            # the points of a nip together damp as one on its contact line would
+            way = three_from(out, at + WAY)
             t = outer(scale(damping, way), way)
-            _point_into(bodies, pair, x, foot, t, coupled, a, b, d, direction, index, couplings)
+            _point_into(bodies, pair, x, three_from(out, at + LINE), t, coupled, matrix)
 
 
 @njit(cache=True, error_model="numpy")

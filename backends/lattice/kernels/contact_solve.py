@@ -1,4 +1,4 @@
-"""The boxes that touch something, apart from the sheet they belong to.
+"""The contact solve: the condensed system of the boxes that touch something and of the rollers.
 
 A contact changes with every step, the lattice hardly does. So the matrix that is factored holds masses and
 bushings only, in axes that turn with each box, and its factor lasts. What impulses p of contacts do to the
@@ -16,31 +16,31 @@ from __future__ import annotations
 
 import math
 
-from mdlgen.backends.lattice.kernels.alone import PLANES, unsee
+from mdlgen.backends.lattice.kernels.condensed import ACTIVE, MINE, PLANES, REUSE, TOUCHED, UP_TO_DATE, unsee
 from mdlgen.backends.lattice.kernels.dense import lu
 from mdlgen.backends.lattice.kernels.forces import pair_forces, place_box, place_roller
-from mdlgen.backends.lattice.kernels.growth import activate, clutches, gradient, newton, newton_matrix
+from mdlgen.backends.lattice.kernels.jacobian import activate, clutches, gradient, newton, newton_matrix
 from mdlgen.mechanics.arm import turn_of, way_of
 from mdlgen.mechanics.driven import clutch
 from mdlgen.mechanics.pair import BOX_BOX, on_fixed_plate
-from mdlgen.mechanics.point import OUT, POINT
+from mdlgen.mechanics.point import FORCE_A, FORCE_B, OUT, POINT, POINTS
 from mdlgen.mechanics.vector import back, dot, mat, rotate, vec
 from mdlgen.program.kernel import BORROWS, njit
 
-MOST_ROUNDS = 40
+MOST_ITERATIONS = 40
 MOST_HALVED = 4
 # How much of the chord a derivative takes (see slopes.core): little first, much where that went astray.
 LITTLE, MUCH = 0.0, 0.7
-# Factors are used again where a round left less than this of the squares.
+# Factors are used again where an iteration left less than this of the squares.
 GOOD = 0.04
-# A round that moves less than this times what is strictly wanted is not looked at again here.
+# An iteration that moves less than this times what is strictly wanted is not looked at again here.
 NEAR = 10.0
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _mine(bodies, pairs, near, where, alone):
+def _mine(bodies, pairs, near, where, condensed):
     """Lists the near pairs of the chosen boxes and those between rollers."""
-    unsee(alone)
+    unsee(condensed)
     count = 0
     for k in range(near.size):
         pair = pairs[near[k]]
@@ -48,48 +48,47 @@ def _mine(bodies, pairs, near, where, alone):
             continue
         node = bodies[pair.a].node
         inside = where == PLANES and on_fixed_plate(pair, bodies[pair.b])
-        if node < 0 or (alone.place_of[node] >= 0 and not inside):
-            alone.mine[count] = near[k]
-            alone.seen[near[k]] = True
+        if node < 0 or (condensed.place_of[node] >= 0 and not inside):
+            condensed.mine[count] = near[k]
+            condensed.seen[near[k]] = True
             count += 1
-    alone.state[2] = count
+    condensed.looked[MINE] = count
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _take(pairs, nodes, alone, m, known):
-    """Takes over what its pairs do from where they are `known`: (those that touch, what they do, how many);
-    returns how many of these touch."""
-    touched, outs, many = known
-    forces, count = alone.forces, 0
+def _take(tables, mid, many, condensed, m):
+    """Takes over what its pairs do, of the `many` that touch at the midpoint; returns how many touch."""
+    pairs, nodes, touched = tables.pairs, tables.nodes, mid.touched
+    forces, count = condensed.forces, 0
     for i in range(m):
-        forces[nodes[alone.chosen[i]]] = 0.0
-    for b in alone.rollers:
+        forces[nodes[condensed.chosen[i]]] = 0.0
+    for b in condensed.rollers:
         forces[b] = 0.0
     for k in range(many):
-        pair, out = pairs[touched[k]], outs[k]
-        if alone.seen[touched[k]]:
-            alone.touched[count] = touched[k]
-            for i in range(OUT + 1 + POINT * int(out[OUT])):
-                alone.outs[count, i] = out[i]
+        pair, out = pairs[touched[k]], mid.results[k]
+        if condensed.seen[touched[k]]:
+            condensed.touched[count] = touched[k]
+            for i in range(OUT + 1 + POINT * int(out[POINTS])):
+                condensed.results[count, i] = out[i]
             for i in range(6):
-                forces[pair.a, i] += out[i]
-                forces[pair.b, i] += out[6 + i]
+                forces[pair.a, i] += out[FORCE_A + i]
+                forces[pair.b, i] += out[FORCE_B + i]
             count += 1
     return count
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _impulses(bodies, nodes, xm, h, t, ub, alone, m, p):
+def _impulses(tables, xm, h, t, ub, condensed, m, p):
     """Forces times h, in box axes and along the freedoms of rollers at xm, into p; of clutches at t and the
     rates ub + z."""
-    f = alone.forces
+    bodies, nodes, f = tables.bodies, tables.nodes, condensed.forces
     for i in range(m):
-        b = nodes[alone.chosen[i]]
-        axes = mat(alone.axes, b)
+        b = nodes[condensed.chosen[i]]
+        axes = mat(condensed.axes, b)
         force, torque = back(axes, (f[b, 0], f[b, 1], f[b, 2])), back(axes, (f[b, 3], f[b, 4], f[b, 5]))
         for c in range(3):
             p[6 * i + c], p[6 * i + 3 + c] = h * force[c], h * torque[c]
-    for b in alone.rollers:
+    for b in condensed.rollers:
         slide, spin = bodies[b].slide, bodies[b].spin
         if slide >= 0:
             along = dot(vec(f, b), way_of(bodies[b], vec(xm, b)))
@@ -98,21 +97,22 @@ def _impulses(bodies, nodes, xm, h, t, ub, alone, m, p):
         if spin >= 0:
             axis = bodies[b].axis
             about = f[b, 3] * axis[0] + f[b, 4] * axis[1] + f[b, 5] * axis[2]
-            p[6 * m + spin] = h * (about + clutch(bodies[b], ub[spin] + alone.z[6 * m + spin], t)[0])
+            p[6 * m + spin] = h * (about + clutch(bodies[b], ub[spin] + condensed.z[6 * m + spin], t)[0])
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _begin(bodies, nodes, x, h, ub, alone, m, res, resb):
+def _begin(tables, x, h, ub, condensed, m, res, resb):
     """Sets z to zero, z0 to what the residual changes, and the measures of both, with rollers at x."""
-    z, z0, own, measure = alone.z, alone.z0, alone.own, alone.measure
+    bodies, nodes = tables.bodies, tables.nodes
+    z, z0, own, measure = condensed.z, condensed.z0, condensed.own, condensed.measure
     for i in range(m):
-        n = alone.chosen[i]
+        n = condensed.chosen[i]
         size = bodies[nodes[n]].half[0] + bodies[nodes[n]].half[1]
         for c in range(6):
             z[6 * i + c] = 0.0
             z0[6 * i + c] = -res[6 * n + c]
             measure[6 * i + c] = 1.0 if c < 3 else size
-    for b in alone.rollers:
+    for b in condensed.rollers:
         slide, spin, p = bodies[b].slide, bodies[b].spin, bodies[b].press
         if slide >= 0:
             own[slide] = 1.0 / (p[3] + h * p[1] + h * h * p[0])
@@ -127,24 +127,24 @@ def _begin(bodies, nodes, x, h, ub, alone, m, res, resb):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _evaluate(bodies, pairs, meshes, nodes, h, t, state, mid, alone, m):
+def _evaluate(tables, h, t, state, motion, condensed, m):
     """Contact forces on the chosen boxes and the rollers, with their velocities changed by z; returns how
     many pairs touch."""
-    x, r, u, ub = state
-    xm, rm, um, wm = mid
-    forces, z = alone.forces, alone.z
+    bodies, nodes = tables.bodies, tables.nodes
+    x, r, u, ub = state.x, state.r, state.u, state.ub
+    forces, z = condensed.forces, condensed.z
     for i in range(m):
-        n = alone.chosen[i]
+        n = condensed.chosen[i]
         b = nodes[n]
         for c in range(6):
             forces[b, c] = 0.0
-        axes = mat(alone.axes, b)
+        axes = mat(condensed.axes, b)
         v = rotate(axes, (z[6 * i], z[6 * i + 1], z[6 * i + 2]))
         w = rotate(axes, (z[6 * i + 3], z[6 * i + 4], z[6 * i + 5]))
         rate = (u[n, 0] + v[0], u[n, 1] + v[1], u[n, 2] + v[2])
         spin = (u[n, 3] + w[0], u[n, 4] + w[1], u[n, 5] + w[2])
-        place_box(b, h, rate, spin, x, r, xm, rm, um, wm)
-    for b in alone.rollers:
+        place_box(b, h, rate, spin, x, r, motion)
+    for b in condensed.rollers:
         for c in range(6):
             forces[b, c] = 0.0
         rate = turning = 0.0
@@ -152,97 +152,102 @@ def _evaluate(bodies, pairs, meshes, nodes, h, t, state, mid, alone, m):
             rate = ub[bodies[b].slide] + z[6 * m + bodies[b].slide]
         if bodies[b].spin >= 0:
             turning = ub[bodies[b].spin] + z[6 * m + bodies[b].spin]
-        place_roller(bodies[b], b, h, t, rate, turning, x, r, xm, rm, um, wm)
+        place_roller(bodies[b], b, h, t, rate, turning, x, r, motion)
     count, _stored, _lost = pair_forces(
-        bodies, pairs, meshes, alone.mine, alone.state[2], xm, rm, um, wm, forces, alone.touched, alone.outs
+        tables,
+        condensed.mine,
+        condensed.looked[MINE],
+        motion,
+        forces,
+        condensed.touched,
+        condensed.results,
     )
     return count
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, **BORROWS)
-def _gap(alone, m, many):
+def _gap(condensed, m, many):
     """What is left of the system's equations, into `gap`; returns its square, in velocities."""
-    w, p, p0, push = alone.w, alone.p, alone.p0, alone.push
+    w, p, p0, push = condensed.w, condensed.p, condensed.p0, condensed.push
     boxes = 6 * m
     for i in range(many):
         push[i] = p[i] - p0[i]
     total = 0.0
     for i in range(many):
-        v = alone.z[i] - alone.z0[i]
+        v = condensed.z[i] - condensed.z0[i]
         if i < boxes:
             row = w[i]
             for j in range(boxes):
                 v -= row[j] * push[j]
         else:
-            v -= alone.own[i - boxes] * push[i]
-        alone.gap[i] = v
-        total += (alone.measure[i] * v) ** 2
+            v -= condensed.own[i - boxes] * push[i]
+        condensed.gap[i] = v
+        total += (condensed.measure[i] * v) ** 2
     return total
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False, **BORROWS)
-def _apply(alone, m, res, resb):
+def _apply(condensed, m, res, resb):
     """Completes what is to be taken off by what the contacts add to it."""
-    used, p0 = alone.used, alone.p0
+    used, p0 = condensed.used, condensed.p0
     for j in range(m):
-        cols, k = alone.cols[alone.slot_of[alone.chosen[j]]], 6 * j
+        cols, k = condensed.cols[condensed.slot_of[condensed.chosen[j]]], 6 * j
         a0, a1, a2 = used[k] - p0[k], used[k + 1] - p0[k + 1], used[k + 2] - p0[k + 2]
         a3, a4, a5 = used[k + 3] - p0[k + 3], used[k + 4] - p0[k + 4], used[k + 5] - p0[k + 5]
         c0, c1, c2, c3, c4, c5 = cols[0], cols[1], cols[2], cols[3], cols[4], cols[5]
         for l in range(res.size):
             res[l] -= a0 * c0[l] + a1 * c1[l] + a2 * c2[l] + a3 * c3[l] + a4 * c4[l] + a5 * c5[l]
     for i in range(resb.size):
-        resb[i] = -alone.z[6 * m + i]
+        resb[i] = -condensed.z[6 * m + i]
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def settle(system, alone, m, where, h, t, state, mid, near, known, rest, limits):
+def solve_contacts(work, m, where, h, t, seen, limits):
     """Solves for the velocities of the m chosen boxes and of the rollers. Returns whether it converged: what
-    is left is below limits[0], or a round moved them by less than limits[1].
+    is left is below limits[0], or an iteration moved them by less than limits[1].
 
-    `state` (x, r, u, ub) is where a step begins, `mid` (x, r, velocities, angular velocities) the state after
-    h, at time t; `near` lists the pairs to look at, `known` is what they do there: (those that touch, outs,
-    how many). `rest` is what the lattice alone would lose of its velocities, in box axes (6 nodes,), and the
+    The midpoint is that after h, at time t; `seen`: how many pairs are near there, and how many touch. The
+    matrix's `res` is what the lattice alone would lose of its velocities, in box axes, and `resb` the
     rollers' residual; both become what is to be taken off.
     """
-    bodies, _joints, pairs, _loads, _gravity, nodes, _points, _images, meshes = system
-    x, _r, _u, ub = state
-    res, resb = rest
+    tables, state, mid, condensed = work.tables, work.state, work.mid, work.condensed
+    bodies, pairs, ub, xm = tables.bodies, tables.pairs, state.ub, mid.motion.x
+    res, resb = work.matrix.res, work.matrix.resb
     limit, strict = limits
-    z, step, p, used = alone.z, alone.step, alone.p, alone.used
+    z, step, p, used = condensed.z, condensed.step, condensed.p, condensed.used
     boxes = 6 * m
     many = boxes + ub.size
     if many == 0:
         return True
-    _mine(bodies, pairs, near, where, alone)
-    _begin(bodies, nodes, x, h, ub, alone, m, res, resb)
-    count = _take(pairs, nodes, alone, m, known)
-    _impulses(bodies, nodes, mid[0], h, t, ub, alone, m, alone.p0)
+    _mine(bodies, pairs, mid.near[: seen[0]], where, condensed)
+    _begin(tables, state.x, h, ub, condensed, m, res, resb)
+    count = _take(tables, mid, seen[1], condensed, m)
+    _impulses(tables, xm, h, t, ub, condensed, m, condensed.p0)
     for i in range(many):
-        p[i] = used[i] = alone.p0[i]
-    merit = _gap(alone, m, many)
+        p[i] = used[i] = condensed.p0[i]
+    merit = _gap(condensed, m, many)
     if merit <= 1e-2 * strict * strict:
-        _apply(alone, m, res, resb)
+        _apply(condensed, m, res, resb)
         return True
     chord = LITTLE
-    for _ in range(MOST_ROUNDS):
-        same = activate(bodies, pairs, count, alone)
-        acting = alone.kept[1]
+    for _ in range(MOST_ITERATIONS):
+        same = activate(bodies, pairs, count, condensed)
+        acting = condensed.kept[ACTIVE]
         short = 6 * acting + ub.size
-        if not (same and alone.kept[0] == 1):
-            gradient(bodies, pairs, h, mid, count, alone, acting, short, chord)
-            clutches(bodies, h, t, ub, alone, m, acting)
-            newton_matrix(alone, acting, short)
-            if not lu(alone.jac, alone.swaps, short):
+        if not (same and condensed.kept[REUSE] == 1):
+            gradient(tables, h, mid.motion, count, condensed, acting, short, chord)
+            clutches(bodies, h, t, ub, condensed, m, acting)
+            newton_matrix(condensed, acting, short)
+            if not lu(condensed.jac, condensed.swaps, short):
                 return False
-        alone.kept[0] = 1
-        newton(alone, m, acting, short)
+        condensed.kept[REUSE] = 1
+        newton(condensed, m, acting, short)
         # impulses as this step takes them, linear: with them the sheet moves as the chosen boxes do
         for i in range(boxes):
-            used[i] = p[i] - alone.push[i]
+            used[i] = p[i] - condensed.push[i]
         change = 0.0
         for i in range(many):
-            change = max(change, abs(alone.measure[i] * step[i]))
+            change = max(change, abs(condensed.measure[i] * step[i]))
             z[i] += step[i]
         if not change < 1e30:
             return False
@@ -251,9 +256,9 @@ def settle(system, alone, m, where, h, t, state, mid, near, known, rest, limits)
         for halved in range(MOST_HALVED + 1):
             if done:
                 break
-            count = _evaluate(bodies, pairs, meshes, nodes, h, t, state, mid, alone, m)
-            _impulses(bodies, nodes, mid[0], h, t, ub, alone, m, p)
-            merit = _gap(alone, m, many)
+            count = _evaluate(tables, h, t, state, mid.motion, condensed, m)
+            _impulses(tables, xm, h, t, ub, condensed, m, p)
+            merit = _gap(condensed, m, many)
             if merit <= before * (1.0 - 0.1 * part) or merit <= strict * strict or halved == MOST_HALVED:
                 break
             part *= 0.5
@@ -261,9 +266,9 @@ def settle(system, alone, m, where, h, t, state, mid, near, known, rest, limits)
                 z[i] -= part * step[i]
         chord = MUCH if part < 0.2 else LITTLE
         if merit > GOOD * before:
-            alone.kept[0] = 0
+            condensed.kept[REUSE] = 0
         if done or (part == 1.0 and merit <= limit * limit):
-            _apply(alone, m, res, resb)
-            alone.state[0], alone.state[1] = count, 0 if done else 1
+            _apply(condensed, m, res, resb)
+            condensed.looked[TOUCHED], condensed.looked[UP_TO_DATE] = count, 0 if done else 1
             return True
     return False

@@ -1,4 +1,4 @@
-"""What is kept of the boxes that touch something: which they are, and their compliance."""
+"""Arrays of the condensed contact system: the active boxes, which touch something, and their compliance."""
 
 from __future__ import annotations
 
@@ -18,8 +18,13 @@ FEWEST = 48
 # Memory for columns of the inverse [bytes].
 COLUMNS = 64e6
 
+# Of Condensed.kept: whether factors may be used again; how many boxes are active; how many stand in W.
+REUSE, ACTIVE, STANDING = 0, 1, 2
+# Of Condensed.looked: how many pairs touch; whether that is where the boxes end; how many `mine` lists.
+TOUCHED, UP_TO_DATE, MINE = 0, 1, 2
 
-class Alone(NamedTuple):
+
+class Condensed(NamedTuple):
     """Arrays for the boxes that touch, made once for a run."""
 
     slot_of: np.ndarray  # (nodes,) where a node's columns are kept, -1: nowhere
@@ -30,7 +35,7 @@ class Alone(NamedTuple):
     chosen: np.ndarray  # nodes, by place
     active: np.ndarray  # places of those that touch now, by rank
     rank: np.ndarray  # by place, -1: does not touch
-    kept: np.ndarray  # (3,) whether factors may be used again, how many are active, how many stand in W
+    kept: np.ndarray  # (3,) REUSE, ACTIVE, STANDING
     stood: np.ndarray  # nodes that stand in W, by place
     rollers: np.ndarray  # bodies that turn or slide, pressed plates too
     growth: np.ndarray  # of impulses with the velocities of active boxes and rollers
@@ -53,22 +58,22 @@ class Alone(NamedTuple):
     axes: np.ndarray  # (bodies, 9) of the boxes, in which the matrix stands
     mine: np.ndarray  # near pairs of the chosen
     seen: np.ndarray  # (pairs,) whether a pair is one of them
-    state: np.ndarray  # (3,) how many pairs touch, whether that is where the boxes end, how many are mine
+    looked: np.ndarray  # (3,) TOUCHED, UP_TO_DATE, MINE
     touched: np.ndarray  # those that touch
-    outs: np.ndarray  # and what they do
+    results: np.ndarray  # and what they do
     pair: np.ndarray  # (6, 6) growth of one pair's forces
     direction: np.ndarray  # (4, 6) how the unknowns of a pair's rollers move them
     which: np.ndarray  # (4,) and which they are
 
 
-def empty(system, wide: int) -> Alone:
+def empty(system, wide: int) -> Condensed:
     """Arrays for a System; `wide` numbers hold what a pair does."""
     nodes, border, pairs = len(system.nodes), system.border, len(system.pairs)
     slots = int(min(nodes, max(8, COLUMNS / (288 * max(nodes, 1)))))
     # above this a factor of the whole matrix is cheaper than one of this system
     most = int(min(slots, max(FEWEST, (1.5 * nodes * system.reach**2) ** (1 / 3))))
     size = 6 * most + border
-    return Alone(
+    return Condensed(
         slot_of=np.full(nodes, -1, np.int64),
         owner=np.full(slots, -1, np.int64),
         following=np.zeros(1, np.int64),
@@ -100,9 +105,9 @@ def empty(system, wide: int) -> Alone:
         axes=np.zeros((len(system.bodies), 9)),
         mine=np.zeros(pairs, np.int64),
         seen=np.zeros(pairs, np.bool_),
-        state=np.zeros(3, np.int64),
+        looked=np.zeros(3, np.int64),
         touched=np.zeros(pairs, np.int64),
-        outs=np.zeros((max(1, pairs), wide)),
+        results=np.zeros((max(1, pairs), wide)),
         pair=np.zeros((6, 6)),
         direction=np.zeros((4, 6)),
         which=np.zeros(4, np.int64),
@@ -110,24 +115,24 @@ def empty(system, wide: int) -> Alone:
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def forget(alone):
+def forget(condensed):
     """Drops the columns of a matrix that is no more."""
-    alone.slot_of[:] = -1
-    alone.owner[:] = -1
-    alone.kept[0] = alone.kept[2] = 0
+    condensed.slot_of[:] = -1
+    condensed.owner[:] = -1
+    condensed.kept[REUSE] = condensed.kept[STANDING] = 0
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def release(alone, m):
+def release(condensed, m):
     """Unmarks the m chosen boxes."""
     for i in range(m):
-        alone.place_of[alone.chosen[i]] = -1
-        alone.rank[i] = -1
-    alone.kept[0] = alone.kept[1] = 0
+        condensed.place_of[condensed.chosen[i]] = -1
+        condensed.rank[i] = -1
+    condensed.kept[REUSE] = condensed.kept[ACTIVE] = 0
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def choose(bodies, pairs, touched, count, where, alone, m, most):
+def choose(bodies, pairs, touched, count, where, condensed, m, most):
     """Adds boxes that touch to the m chosen ones; returns how many they are, -1: more than `most`,
     or boxes of two sheets touch each other: they stand in the matrix."""
     if where == INSIDE:
@@ -137,37 +142,43 @@ def choose(bodies, pairs, touched, count, where, alone, m, most):
         if where == PLANES and on_fixed_plate(pair, bodies[pair.b]):
             continue
         if pair.kind == BOX_BOX:
-            release(alone, m)
+            release(condensed, m)
             return -1
         node = bodies[pair.a].node
-        if node >= 0 and alone.place_of[node] < 0:
+        if node >= 0 and condensed.place_of[node] < 0:
             if m >= most:
-                release(alone, m)
+                release(condensed, m)
                 return -1
-            alone.place_of[node] = m
-            alone.chosen[m] = node
+            condensed.place_of[node] = m
+            condensed.chosen[m] = node
             m += 1
     return m
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def columns(a, alone, m):
+def columns(a, condensed, m):
     """Makes the columns of the inverse for the chosen boxes that have none, and W where it is not of them."""
-    slot_of, owner, cols, chosen, w = alone.slot_of, alone.owner, alone.cols, alone.chosen, alone.w
-    stood, known = alone.stood, 0
-    while known < min(m, alone.kept[2]) and stood[known] == chosen[known]:
+    slot_of, owner, cols, chosen, w = (
+        condensed.slot_of,
+        condensed.owner,
+        condensed.cols,
+        condensed.chosen,
+        condensed.w,
+    )
+    stood, known = condensed.stood, 0
+    while known < min(m, condensed.kept[STANDING]) and stood[known] == chosen[known]:
         known += 1
     for i in range(known, m):
         n = chosen[i]
         stood[i] = n
         if slot_of[n] >= 0:
             continue
-        s = alone.following[0]
-        while owner[s] >= 0 and alone.place_of[owner[s]] >= 0:
+        s = condensed.following[0]
+        while owner[s] >= 0 and condensed.place_of[owner[s]] >= 0:
             s = (s + 1) % owner.size
         if owner[s] >= 0:
             slot_of[owner[s]] = -1
-        alone.following[0] = (s + 1) % owner.size
+        condensed.following[0] = (s + 1) % owner.size
         owner[s], slot_of[n] = n, s
         cols[s] = 0.0
         for p in range(6):
@@ -180,12 +191,12 @@ def columns(a, alone, m):
             for q in range(6):
                 for p in range(6):
                     w[6 * i + p, 6 * j + q] = cols[s, q, base + p]
-    alone.kept[2] = m
+    condensed.kept[STANDING] = m
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def unsee(alone):
+def unsee(condensed):
     """Forgets which pairs were looked at."""
-    for k in range(alone.state[2]):
-        alone.seen[alone.mine[k]] = False
-    alone.state[1] = alone.state[2] = 0
+    for k in range(condensed.looked[MINE]):
+        condensed.seen[condensed.mine[k]] = False
+    condensed.looked[UP_TO_DATE] = condensed.looked[MINE] = 0

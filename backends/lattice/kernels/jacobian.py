@@ -2,33 +2,33 @@
 
 from __future__ import annotations
 
+from mdlgen.backends.lattice.kernels.condensed import ACTIVE
 from mdlgen.backends.lattice.kernels.dense import lu_solve_transposed
 from mdlgen.backends.lattice.kernels.slopes import core, couple_growth, hat_left, hat_right, outer
 from mdlgen.mechanics.arm import turn_of, way_of
 from mdlgen.mechanics.driven import clutch
-from mdlgen.mechanics.point import COUPLE, OUT, POINT
-from mdlgen.mechanics.vector import add, back, cross, mat, scale, sub, three, vec
+from mdlgen.mechanics.point import AT, AXIS, COUPLE, KIND, LINE, NORMAL, OUT, POINT, POINTS, SLIP, WAY
+from mdlgen.mechanics.vector import add, back, cross, mat, scale, sub, three, three_from, vec
 from mdlgen.program.kernel import BORROWS, njit
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def activate(bodies, pairs, count, alone):
-    """Lists the chosen boxes that touch now, kept[1] in number. Returns whether they are those of the last
-    time."""
-    active, rank, kept = alone.active, alone.rank, alone.kept
+def activate(bodies, pairs, count, condensed):
+    """Lists the active boxes, which touch something now. Returns whether they are those of the last time."""
+    active, rank, kept = condensed.active, condensed.rank, condensed.kept
     found, same = 0, True
-    for i in range(kept[1]):
+    for i in range(kept[ACTIVE]):
         rank[active[i]] = -1
     for k in range(count):
-        node = bodies[pairs[alone.touched[k]].a].node
-        if node >= 0 and rank[alone.place_of[node]] < 0:
-            place = alone.place_of[node]
-            same = same and found < kept[1] and active[found] == place
+        node = bodies[pairs[condensed.touched[k]].a].node
+        if node >= 0 and rank[condensed.place_of[node]] < 0:
+            place = condensed.place_of[node]
+            same = same and found < kept[ACTIVE] and active[found] == place
             active[found] = place
             rank[place] = found
             found += 1
-    same = same and found == kept[1]
-    kept[1] = found
+    same = same and found == kept[ACTIVE]
+    kept[ACTIVE] = found
     return same
 
 
@@ -62,9 +62,9 @@ def _rollers(body, x, arm, axes, sign, first, direction, index, found):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _point_growth(growth, t, arm, foot):
-    """Adds what a force at an arm loses as the velocity at a foot grows: t, in the axes of the box."""
-    right = hat_right(t, foot)
+def _point_growth(growth, t, arm):
+    """Adds what a force at an arm loses as the velocity there grows: t, in the axes of the box."""
+    right = hat_right(t, arm)
     _put(growth, 0, 0, 1.0, t)
     _put(growth, 0, 3, -1.0, right)
     _put(growth, 3, 0, 1.0, hat_left(arm, t))
@@ -83,55 +83,54 @@ def _add_outer(growth, force, torque, way, turn):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _pair_growth(pair, out, axes, h, mid, chord, growth):
+def _pair_growth(pair, out, axes, h, motion, chord, growth):
     """What the points of one pair do together: a 6 x 6 matrix of the motion of one body against the other,
-    seen from the centre of the first, in the axes of the box. `mid`: places, rotations, velocities, angular
-    velocities."""
-    x, _r, u, w = mid
+    seen from the centre of the first, in the axes of the box."""
+    x, u, w = motion.x, motion.u, motion.w
     for i in range(6):
         for j in range(6):
             growth[i, j] = 0.0
-    for point in range(int(out[OUT])):
+    for point in range(int(out[POINTS])):
         at = OUT + 1 + POINT * point
-        if out[at + 16] == COUPLE:
-            axis = back(axes, (out[at + 17], out[at + 18], out[at + 19]))
+        if out[at + KIND] == COUPLE:
+            axis = back(axes, three_from(out, at + AXIS))
             _put(growth, 3, 3, couple_growth(out, at, h, pair.law, chord), outer(axis, axis))
             continue
-        normal = back(axes, (out[at + 3], out[at + 4], out[at + 5]))
-        slip = back(axes, (out[at + 10], out[at + 11], out[at + 12]))
+        normal = back(axes, three_from(out, at + NORMAL))
+        slip = back(axes, three_from(out, at + SLIP))
         t, damping, phi = core(out, at, normal, slip, h, pair.law, chord, True)
-        arm = back(axes, sub((out[at], out[at + 1], out[at + 2]), vec(x, pair.a)))
-        _point_growth(growth, t, arm, arm)
+        arm = back(axes, sub(three_from(out, at + AT), vec(x, pair.a)))
+        _point_growth(growth, t, arm)
         if damping != 0.0:
-            foot = back(axes, sub((out[at + 17], out[at + 18], out[at + 19]), vec(x, pair.a)))
-            way = back(axes, (out[at + 20], out[at + 21], out[at + 22]))
+            line = back(axes, sub(three_from(out, at + LINE), vec(x, pair.a)))
+            way = back(axes, three_from(out, at + WAY))
             force = scale(damping, sub(normal, scale(phi, slip)))
             # as the face turns so does the way along which a passing sheet closes; a roller's own turning
-            # is across it wherever the foot is
+            # is across it wherever the line is
             passing = sub(
-                add(back(axes, vec(u, pair.a)), cross(back(axes, vec(w, pair.a)), foot)),
+                add(back(axes, vec(u, pair.a)), cross(back(axes, vec(w, pair.a)), line)),
                 back(axes, vec(u, pair.b)),
             )
-            turn = add(cross(foot, way), scale(h, cross(way, passing)))
+            turn = add(cross(line, way), scale(h, cross(way, passing)))
             _add_outer(growth, force, cross(arm, force), way, turn)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def gradient(bodies, pairs, h, mid, count, alone, acting, many, chord):
+def gradient(tables, h, motion, count, condensed, acting, many, chord):
     """Growth of the contact impulses with the velocities of the boxes that touch and of the rollers."""
-    x = mid[0]
-    growth, one, direction, index = alone.growth, alone.pair, alone.direction, alone.which
+    bodies, pairs, x = tables.bodies, tables.pairs, motion.x
+    growth, one, direction, index = condensed.growth, condensed.pair, condensed.direction, condensed.which
     for i in range(many):
         for j in range(many):
             growth[i, j] = 0.0
     for k in range(count):
-        pair, out = pairs[alone.touched[k]], alone.outs[k]
+        pair, out = pairs[condensed.touched[k]], condensed.results[k]
         node = bodies[pair.a].node
-        axes = mat(alone.axes, pair.a)
-        _pair_growth(pair, out, axes, h, mid, chord, one)
+        axes = mat(condensed.axes, pair.a)
+        _pair_growth(pair, out, axes, h, motion, chord, one)
         moving, first = 0, 0
         if node >= 0:
-            first = 6 * alone.rank[alone.place_of[node]]
+            first = 6 * condensed.rank[condensed.place_of[node]]
             for i in range(6):
                 for j in range(6):
                     growth[first + i, first + j] += one[i, j]
@@ -159,20 +158,27 @@ def gradient(bodies, pairs, h, mid, count, alone, acting, many, chord):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def clutches(bodies, h, t, ub, alone, m, acting):
+def clutches(bodies, h, t, ub, condensed, m, acting):
     """Adds what the impulses of clutches lose as their rollers turn faster."""
-    for b in alone.rollers:
+    for b in condensed.rollers:
         spin = bodies[b].spin
         if spin >= 0:
             at = 6 * acting + spin
-            alone.growth[at, at] += h * clutch(bodies[b], ub[spin] + alone.z[6 * m + spin], t)[1]
+            condensed.growth[at, at] += h * clutch(bodies[b], ub[spin] + condensed.z[6 * m + spin], t)[1]
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False, **BORROWS)
-def newton_matrix(alone, acting, many):
+def newton_matrix(condensed, acting, many):
     """1 + W growth of the boxes that touch and of the rollers, transposed: what a column is made of are rows
     of W, which is symmetric."""
-    growth, w, part, jac, active, own = alone.growth, alone.w, alone.part, alone.jac, alone.active, alone.own
+    growth, w, part, jac, active, own = (
+        condensed.growth,
+        condensed.w,
+        condensed.part,
+        condensed.jac,
+        condensed.active,
+        condensed.own,
+    )
     boxes = 6 * acting
     for j in range(acting):
         for k in range(acting):
@@ -199,18 +205,18 @@ def newton_matrix(alone, acting, many):
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, **BORROWS)
-def newton(alone, m, acting, many):
+def newton(condensed, m, acting, many):
     """A step of Newton's method, of all chosen boxes and the rollers, with the factored matrix; `push` is
     what it takes off the impulses on the boxes."""
-    growth, w, active, gap = alone.growth, alone.w, alone.active, alone.gap
-    short, push, step = alone.short, alone.push, alone.step
+    growth, w, active, gap = condensed.growth, condensed.w, condensed.active, condensed.gap
+    short, push, step = condensed.short, condensed.push, condensed.step
     boxes = 6 * acting
     for j in range(acting):
         for c in range(6):
             short[6 * j + c] = -gap[6 * active[j] + c]
     for i in range(boxes, many):
         short[i] = -gap[6 * m + i - boxes]
-    lu_solve_transposed(alone.jac, alone.swaps, short, many)
+    lu_solve_transposed(condensed.jac, condensed.swaps, short, many)
     push[: 6 * m] = 0.0
     for i in range(boxes):
         row, v = growth[i], 0.0

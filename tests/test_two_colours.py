@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mdlgen.backends.lattice.kernels import coupled, two_sets
+from mdlgen.backends.lattice.kernels import coupled, two_colour
 from mdlgen.backends.lattice.kernels.band import PAD, factor
-from mdlgen.backends.lattice.kernels.border import eliminate
+from mdlgen.backends.lattice.kernels.bordered import eliminate
 
 NODES, BORDER = 4, 2  # of a sheet; unknowns of rollers
 
@@ -52,29 +52,28 @@ def equations(touch: list[tuple[int, int]], seed: int) -> tuple:
     corner, y = np.zeros((BORDER, BORDER)), np.zeros((BORDER, size))
     d = whole[size:, size:].copy()
     assert factor(band) and eliminate(band, across, d, y, corner)
-    two_sets.deal(made.sets, made.ends, made.many[0], across, d, y)
+    two_colour.colour(made, across, d, y)
     return whole, (band, across, y, corner), made
 
 
 @pytest.mark.parametrize("seed", range(4))
 def test_every_other_sheet_is_solved_with_the_rest_eliminated(seed: int) -> None:
     whole, (band, across, y, _), made = equations([(0, 1), (1, 2)], seed)
-    assert made.sets.dealt[0] == 1 and made.sets.of.tolist() == [0, 1, 0]
+    assert made.colouring.found[0] == 1 and made.colouring.of.tolist() == [0, 1, 0]
     right = np.random.default_rng(seed + 10).normal(size=len(whole))
     res, rollers = right[:-BORDER].copy(), right[-BORDER:].copy()
-    listed = (made.ends, made.blocks, made.many[0])
-    two_sets.solve_sets(band, across, y, made.sets, *listed, made.room, res, rollers, 200, 1e-26)
+    two_colour.solve_coloured(band, across, y, made, res, rollers, 200, 1e-26)
     wanted = np.linalg.solve(whole, right)
     assert np.abs(np.concatenate([res, rollers]) - wanted).max() < 1e-9 * np.abs(wanted).max()
 
 
 def test_sheets_that_all_touch_each_other_are_solved_at_once() -> None:
     whole, (band, across, y, corner), made = equations([(0, 1), (1, 2), (2, 0)], 1)
-    assert made.sets.dealt[0] == 0
+    assert made.colouring.found[0] == 0
     right = np.random.default_rng(5).normal(size=len(whole))
     res, rollers = right[:-BORDER].copy(), right[-BORDER:].copy()
     coupled.solve_coupled(band, across, y, corner, made, res, rollers)
-    # as far as a round of Newton's method needs it
+    # as far as an iteration of Newton's method needs it
     left = whole @ np.concatenate([res, rollers]) - right
     before = right @ np.linalg.solve(whole, right)
     assert left @ np.linalg.solve(whole, left) < 0.1 * before

@@ -9,23 +9,48 @@ import numpy as np
 from mdlgen.backends.lattice.kernels.damped import overshoot, take_off
 from mdlgen.backends.lattice.kernels.dense import copy
 from mdlgen.backends.lattice.kernels.search import look, strayed
-from mdlgen.backends.lattice.kernels.step import (
+from mdlgen.backends.lattice.kernels.state import (
+    ACTS,
+    ANEW,
+    BETWEEN,
     CLOSE,
-    ROUNDS,
+    DAMPED_NUMERICALLY,
+    DEPTH_NOW,
+    DEPTH_TIME,
+    DISSIPATED,
+    DRIVEN,
+    ENDED,
+    FASTEST,
+    FORCE_BEGUN,
+    FORCE_NOW,
+    FORCE_TIME,
+    ITERATIONS,
+    LAST_STEP,
+    LEVEL,
+    LOST,
+    MADE,
+    MAX_DEPTH,
+    MAX_FORCE,
+    MISS,
+    NUMERICAL,
+    POWER,
+    STALE,
     STEPS,
     STRAIN,
+    THROUGH_DRIVES,
+    TIME,
     TOUCHING,
     WORST,
-    carry,
-    midpoint,
-    spun,
 )
+from mdlgen.backends.lattice.kernels.step import carry, midpoint, spun
 from mdlgen.backends.lattice.kernels.swept import swept
 from mdlgen.mechanics.arm import speeding
 from mdlgen.mechanics.crossing import deepest
 from mdlgen.mechanics.curve import overstretched
 from mdlgen.mechanics.driven import clutch, prescribed
+from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.pair import remember
+from mdlgen.mechanics.point import DEPTH, PRESSING
 from mdlgen.program.kernel import BORROWS, njit
 
 DONE, STOPPED, LEFT, DEEP, STRETCHED, CROWDED = 0, 1, 2, 3, 4, 5
@@ -33,9 +58,10 @@ DONE, STOPPED, LEFT, DEEP, STRETCHED, CROWDED = 0, 1, 2, 3, 4, 5
 DEEPEST = 14
 # How often at most for accuracy, and how much more than wanted a step may miss before it is taken again.
 FINEST, AGAIN = 12, 4.0
-# Steps that take more rounds than the one are halved, and doubled again where they take less than the other.
+# Steps that take more iterations than the one are halved, and doubled again where they take less than the
+# other.
 HARD, EASY = 8, 5
-# What a round changes is not asked to be less than this part of the speed: it is near round-off.
+# What an iteration changes is not asked to be less than this part of the speed: it is near round-off.
 LEAST = 1e-9
 # Two rollers with a sheet between them clear each other by a few micrometres and may graze: a force below
 # this part of the greatest is not counted as the nip still acting.
@@ -43,44 +69,37 @@ GRAZE = 0.05
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _deep(bodies, pairs, mid, count):
+def _deep(tables, mid, count):
     """The pair that is deeper than it may be in the middle of a step, or -1."""
-    touched, outs = mid[5], mid[6]
     for k in range(count):
-        if outs[k, 15] > deepest(bodies, pairs[touched[k]]):
-            return touched[k]
+        if mid.results[k, DEPTH] > deepest(tables.bodies, tables.pairs[mid.touched[k]]):
+            return mid.touched[k]
     return -1
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _watch(pairs, mid, count, t, dt, kept):
-    """Adds what contacts did in a step to `kept`.
-
-    kept: per row of the contacts (rows, 10) greatest depth, greatest force, sums over time of depth and
-    force, time in contact, force and depth now, whether it acts, when it last ended to, force where the first
-    step of a run began; and marks of pairs.
-    """
-    xm, rm, um, wm, f, touched, outs, totals, near = mid
+    """Adds what contacts did in a step from t to a Kept."""
     rows, marks = kept
     for row in range(rows.shape[0]):
-        rows[row, 5] = rows[row, 6] = 0.0
+        rows[row, FORCE_NOW] = rows[row, DEPTH_NOW] = 0.0
     for k in range(count):
-        pair = pairs[touched[k]]
+        pair = pairs[mid.touched[k]]
         marks[pair.mark] = True
-        rows[pair.row, 5] += outs[k, 12]
-        rows[pair.row, 6] = max(rows[pair.row, 6], outs[k, 15])
+        rows[pair.row, FORCE_NOW] += mid.results[k, PRESSING]
+        rows[pair.row, DEPTH_NOW] = max(rows[pair.row, DEPTH_NOW], mid.results[k, DEPTH])
     for row in range(rows.shape[0]):
-        force, depth = rows[row, 5], rows[row, 6]
-        acts = force > GRAZE * max(rows[row, 1], force)
-        if rows[row, 7] != 0.0 and not acts:
-            rows[row, 8] = t + dt
-        rows[row, 7] = 1.0 if acts else 0.0
+        force, depth = rows[row, FORCE_NOW], rows[row, DEPTH_NOW]
+        acts = force > GRAZE * max(rows[row, MAX_FORCE], force)
+        if rows[row, ACTS] != 0.0 and not acts:
+            rows[row, ENDED] = t + dt
+        rows[row, ACTS] = 1.0 if acts else 0.0
         if force > 0.0:
-            rows[row, 0] = max(rows[row, 0], depth)
-            rows[row, 1] = max(rows[row, 1], force)
-            rows[row, 2] += dt * depth
-            rows[row, 3] += dt * force
-            rows[row, 4] += dt
+            rows[row, MAX_DEPTH] = max(rows[row, MAX_DEPTH], depth)
+            rows[row, MAX_FORCE] = max(rows[row, MAX_FORCE], force)
+            rows[row, DEPTH_TIME] += dt * depth
+            rows[row, FORCE_TIME] += dt * force
+            rows[row, TIME] += dt
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -88,7 +107,7 @@ def _begun(rows, part):
     """The force of each row of the contacts where a step begins, a `part` of the way from the middle of the
     step before, whose force stands in the last column, to that of this step."""
     for row in range(rows.shape[0]):
-        rows[row, 9] += part * (rows[row, 5] - rows[row, 9])
+        rows[row, FORCE_BEGUN] += part * (rows[row, FORCE_NOW] - rows[row, FORCE_BEGUN])
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -116,12 +135,11 @@ def _missed(bodies, nodes, u, guess):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _account(system, mid, ub, vb, t, dt, work):
+def _account(bodies, mid, state, t, dt, energies):
     """Adds what a step dissipated, what drives and loads put in, how much that moved either way, and what
     the numerical damping of joints had of what was dissipated."""
-    bodies = system[0]
-    totals, f = mid[7], mid[4]
-    lost, driving = totals[0], totals[1]
+    f, ub, vb = mid.forces, state.ub, state.vb
+    lost, driving = mid.totals[LOST], mid.totals[POWER]
     for b in range(bodies.size - 1):
         if bodies[b].clutch[0] != 0.0:
             spin, before = ub[bodies[b].spin], vb[bodies[b].spin]
@@ -138,94 +156,71 @@ def _account(system, mid, ub, vb, t, dt, work):
                 driving -= speeding(bodies[b], t + 0.5 * dt, 0.5 * dt) * ub[bodies[b].slide]
         if bodies[b].slide >= 0:
             lost += bodies[b].press[1] * ub[bodies[b].slide] ** 2
-    work[0] += dt * lost
-    work[1] += dt * driving
-    work[2] += dt * abs(driving)
-    work[3] += dt * totals[2]
+    energies[DISSIPATED] += dt * lost
+    energies[DRIVEN] += dt * driving
+    energies[THROUGH_DRIVES] += dt * abs(driving)
+    energies[DAMPED_NUMERICALLY] += dt * mid.totals[NUMERICAL]
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def run(
-    system,
-    state,
-    mid,
-    matrix,
-    alone,
-    free,
-    kept,
-    bounds,
-    search,
-    damped,
-    t,
-    steps,
-    tolerance,
-    fresh,
-    counters,
-    work,
-    before,
-    pace,
-):
+def run(work, t, steps, tolerance, control):
     """Takes the steps `steps` (n,) [ms] from time t. Returns (status, time reached).
 
     A step is halved, up to DEEPEST times, where it does not converge, or where the velocities miss their
-    guess by more than pace[1] (0: any will do); pace[0] is how often it is halved now. With pace[2] each step
-    has a factor of its own. `tolerance` and pace[1] are parts of pace[3], the greatest speed so far [mm/ms].
-    Nor may contacts make or lose more in one step than pace[4] (0: any) of the energy that passes through the
-    run: the kinetic energy at that speed, what drives moved either way, what was dissipated.
-
-    `work` (4,) adds up energies [N mm]. counters[WORST] names the body, pair or joint of a failure, and
-    counters[STRAIN] the strain of a joint beyond its curve. `before` holds
-    what a guess is made from: the velocities of the step before the last, the size of the last step, and the
-    time from the middle of the one to the middle of the other (0: there is none).
+    guess by more than pace[MISS]. `tolerance` and that are parts of the greatest speed so far. Nor may
+    contacts make or lose more in one step than pace[MADE] of the energy that passes through the run: the
+    kinetic energy at that speed, what drives moved either way, what was dissipated. See state.Control.
     """
-    bodies, joints, pairs, loads, gravity, nodes, points, images, meshes = system
-    x, r, v, l, s, vb, u, ub = state
+    tables, state, mid, rows = work.tables, work.state, work.mid, work.kept.rows
+    bodies, pairs, nodes, search = tables.bodies, tables.pairs, tables.nodes, work.search
+    x, r, u, ub = state.x, state.r, state.u, state.ub
+    counters, energies, pace = control.counters, control.energies, control.pace
+    last_u, last_b, spans = control.history
     keep_u, keep_b, guess = u.copy(), ub.copy(), u.copy()
-    last_u, last_b, spans = before
-    mass, rows, begun = 0.0, np.zeros(kept[0].shape[0]), t
-    for row in range(rows.size):
-        kept[0][row, 9] = kept[0][row, 5]
+    mass, stored, begun = 0.0, np.zeros(rows.shape[0]), t
+    for row in range(rows.shape[0]):
+        rows[row, FORCE_BEGUN] = rows[row, FORCE_NOW]
     for n in range(nodes.size):
         mass += bodies[nodes[n]].mass
     for whole in steps:
         done = 0
         while done < 1 << DEEPEST:
-            level = int(pace[0])
+            level = int(pace[LEVEL])
             size = 1 << (DEEPEST - level)
             dt = whole / (1 << level)
             copy(keep_u, u)
             copy(keep_b, ub)
-            if spans[1] > 0.0:
-                ahead = 0.5 * (dt + spans[0]) / spans[1]
+            if spans[BETWEEN] > 0.0:
+                ahead = 0.5 * (dt + spans[LAST_STEP]) / spans[BETWEEN]
                 for n in range(u.shape[0]):
                     for i in range(6):
                         u[n, i] += ahead * (u[n, i] - last_u[n, i])
                 for i in range(ub.size):
                     ub[i] += ahead * (ub[i] - last_b[i])
             copy(guess, u)
-            if pace[2] != 0.0:
-                fresh[1] = 1.0
+            if pace[ANEW] != 0.0:
+                control.factored[STALE] = 1.0
             if search.regions.size > 0 and strayed(bodies, search, x, u, dt) and not look(pairs, search, x):
                 return CROWDED, t
-            rounds = counters[ROUNDS]
+            iterations = counters[ITERATIONS]
             # a halved step's guess is the better, and what it may leave must fall as fast; where sheets lie
-            # on each other rounds do not come as far
+            # on each other iterations do not come as far
             least = LEAST if search.regions.size == 0 else tolerance
-            limit = pace[3] * max(tolerance * 0.25**level, least)
-            solved = midpoint(system, state, mid, matrix, alone, free, t, dt, limit, fresh, counters)
+            limit = pace[FASTEST] * max(tolerance * 0.25**level, least)
+            solved = midpoint(work, t, dt, limit, control)
             missed, fast = _missed(bodies, nodes, u, guess) if solved else (0.0, 0.0)
-            most = pace[1] * max(fast, pace[3]) if pace[1] > 0.0 else 1e300
+            most = pace[MISS] * max(fast, pace[FASTEST]) if pace[MISS] > 0.0 else 1e300
             if solved and search.regions.size > 0:
                 solved = not strayed(bodies, search, x, u, dt)
-            deep = _deep(bodies, pairs, mid, int(counters[TOUCHING])) if solved else -1
-            through = max(work[2], abs(work[0]), 0.5 * mass * max(fast, pace[3]) ** 2)
-            made, allowed = 0.0, pace[4] * through
+            deep = _deep(tables, mid, int(counters[TOUCHING])) if solved else -1
+            moving = 0.5 * mass * max(fast, pace[FASTEST]) ** 2
+            through = max(energies[THROUGH_DRIVES], abs(energies[DISSIPATED]), moving)
+            made, allowed = 0.0, pace[MADE] * through
             if solved and deep < 0:
                 counts = int(counters[TOUCHING]), int(counters[CLOSE])
                 # of the way from the middle of the step before, what is in this step
-                inside = dt / (dt + spans[0]) if spans[0] > 0.0 else 0.0
-                slower = keep_u, keep_b, inside
-                deep, made = swept(system, state, mid, counts, t, dt, allowed, slower, kept[0][:, 5], rows)
+                inside = dt / (dt + spans[LAST_STEP]) if spans[LAST_STEP] > 0.0 else 0.0
+                deep, made = swept(work, counts, t, dt, allowed, (keep_u, keep_b, inside), stored)
             coarse = missed > AGAIN * most or made > AGAIN * allowed
             if not solved or ((coarse or deep >= 0) and level < FINEST):
                 copy(u, keep_u)
@@ -234,42 +229,43 @@ def run(
                     return STOPPED, t
                 # what is made of energy goes with the step to the power of 5/2, or 3
                 halvings = math.ceil(math.log2(made / allowed) / 2.5) if made > AGAIN * allowed else 1
-                pace[0] = min(level + max(1, halvings), DEEPEST if level >= FINEST else FINEST)
+                pace[LEVEL] = min(level + max(1, halvings), DEEPEST if level >= FINEST else FINEST)
                 if not solved:
-                    spans[1] = 0.0
+                    spans[BETWEEN] = 0.0
                 continue
-            if damped[0].size > 0:
-                course = dt / (dt + spans[0]) if spans[0] > 0.0 else 0.0
-                overshoot(system, damped, state, mid, free, keep_u, course, dt)
+            if work.damped.joints.size > 0:
+                course = dt / (dt + spans[LAST_STEP]) if spans[LAST_STEP] > 0.0 else 0.0
+                overshoot(work, keep_u, course, dt)
             copy(last_u, keep_u)
             copy(last_b, keep_b)
-            _account(system, mid, ub, vb, t, dt, work)
-            _watch(pairs, mid, int(counters[TOUCHING]), t, dt, kept)
+            _account(bodies, mid, state, t, dt, energies)
+            _watch(pairs, mid, int(counters[TOUCHING]), t, dt, work.kept)
             if t == begun:
-                _begun(kept[0], spans[0] / (spans[0] + dt))
+                _begun(rows, spans[LAST_STEP] / (spans[LAST_STEP] + dt))
             # between the middles of the two steps
-            spans[1] = 0.5 * (spans[0] + dt)
-            spans[0] = dt
-            carry(system, state, mid, t, dt)
-            if damped[0].size > 0:
-                work[0] += take_off(bodies, nodes, damped[3], mid[1], r, v, l)
-            remember(bodies, pairs, x, r)
+            spans[BETWEEN] = 0.5 * (spans[LAST_STEP] + dt)
+            spans[LAST_STEP] = dt
+            carry(tables, state, t, dt)
+            if work.damped.joints.size > 0:
+                gone = take_off(bodies, nodes, work.damped.off, mid.motion.r, r, state.v, state.l)
+                energies[DISSIPATED] += gone
+            remember(bodies, pairs, Motion(x, r, mid.motion.u, mid.motion.w))
             counters[STEPS] += 1
             done += size
-            pace[3] = max(pace[3], fast)
+            pace[FASTEST] = max(pace[FASTEST], fast)
             t += dt
-            rounds = counters[ROUNDS] - rounds
+            iterations = counters[ITERATIONS] - iterations
             quiet = missed <= most / 6.0 and made <= allowed / 10.0
-            if (missed > most or made > allowed or rounds > HARD) and level < FINEST:
-                pace[0] = level + 1
-            elif level > 0 and quiet and rounds < EASY and done % (2 * size) == 0:
-                pace[0] = level - 1
-            outside = _outside(x, bounds[0], bounds[1])
+            if (missed > most or made > allowed or iterations > HARD) and level < FINEST:
+                pace[LEVEL] = level + 1
+            elif level > 0 and quiet and iterations < EASY and done % (2 * size) == 0:
+                pace[LEVEL] = level - 1
+            outside = _outside(x, work.bounds.low, work.bounds.high)
             if deep >= 0 or outside >= 0:
                 counters[WORST] = outside if outside >= 0 else deep
                 return (LEFT if outside >= 0 else DEEP), t
-            if points.size > 0:
-                stretched, strain = overstretched(points, joints, x, r)
+            if tables.points.size > 0:
+                stretched, strain = overstretched(tables.points, tables.joints, x, r)
                 if stretched >= 0:
                     counters[WORST], counters[STRAIN] = stretched, strain
                     return STRETCHED, t

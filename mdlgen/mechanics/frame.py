@@ -1,0 +1,156 @@
+"""What a force law is given: where two bodies are and how they move, their shapes, and the law's numbers.
+
+Named tuples of numbers and tuples: compiled code passes them by value.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from mdlgen.mechanics.vector import mat, three, vec
+from mdlgen.program.kernel import njit
+
+Vector = tuple[float, float, float]
+Matrix = tuple[float, ...]  # nine, row by row
+Floats = Any  # an array of float64; laws do not ask which
+
+
+# Columns of the law of a pair record: numbers as of Law, and the coefficient of rolling resistance.
+LAW_BETA, LAW_STATIC, LAW_DYNAMIC, LAW_STICTION, LAW_SLIDING, LAW_SMOOTHING, LAW_ROLLING, LAW = range(8)
+
+
+class Motion(NamedTuple):
+    """All bodies at one state: places (n, 3) [mm], rotations (n, 9), velocities (n, 3) [mm/ms] and angular
+    velocities (n, 3) [rad/ms], global."""
+
+    x: Floats
+    r: Floats
+    u: Floats
+    w: Floats
+
+
+class Frame(NamedTuple):
+    """One body: centre, rotation (body to global), velocity and angular velocity, global."""
+
+    x: Vector
+    r: Matrix
+    v: Vector
+    w: Vector
+
+
+class Box(NamedTuple):
+    """Half lengths along a box's axes, and which of its sides x_min, x_max, y_min, y_max have no neighbour in
+    the sheet, as a bit mask."""
+
+    half: Vector
+    exposed: int
+
+
+class Cylinder(NamedTuple):
+    """Unit vector along the axis (global), radius and width."""
+
+    axis: Vector
+    radius: float
+    width: float
+
+
+class Sector(NamedTuple):
+    """The part of a cylinder's round within `angle` [rad] either way of `middle`, a unit vector square to the
+    axis; at most a quarter turn, or contact.WHOLE. Forces act `aside` of where they lie."""
+
+    middle: Vector
+    angle: float
+    aside: Vector
+
+
+class Plate(NamedTuple):
+    """A plane or a guide, in its own axes as mechanics.guide has them.
+
+    shape: (radius, middle angle, half angle) of an arc, the radius 0 for a flat plate; half: half of its
+    length, width and thickness; top: where its upper face is on its normal; ends: those that are free, as a
+    bit mask; edge: radii of the edges of its upper and its lower face, and 1 where friction holds what is on
+    them (a static analysis); beside: sides of the box that stand before its ends (see mechanics.edge).
+    """
+
+    shape: Vector
+    half: Vector
+    top: float
+    ends: int
+    edge: Vector
+    beside: int
+
+
+class Law(NamedTuple):
+    """Numbers of a contact: stiffness k (Eq. 10), whether boxes share it (`share: width`), the share of
+    damping beta (Eq. 11), coefficients of friction (Eq. 12), the speeds at which friction has its static and
+    its dynamic one, and that at which damping is whole."""
+
+    k: float
+    shared: bool
+    beta: float
+    mu_static: float
+    mu_dynamic: float
+    stiction: float
+    sliding: float
+    smoothing: float
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def frame_of(motion, k):
+    """Frame of body k."""
+    return Frame(vec(motion.x, k), mat(motion.r, k), vec(motion.u, k), vec(motion.w, k))
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def held_frame(motion, k):
+    """Frame of body k, which does not move."""
+    return Frame(vec(motion.x, k), mat(motion.r, k), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def plate_frame(motion, k):
+    """Frame of body k, which may move but does not turn."""
+    return Frame(vec(motion.x, k), mat(motion.r, k), vec(motion.u, k), (0.0, 0.0, 0.0))
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def box_of(body):
+    """Box of a body record."""
+    return Box(three(body.half), body.exposed)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def cylinder_of(body):
+    """Cylinder of a body record."""
+    return Cylinder(three(body.axis), body.size[0], body.size[1])
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def law_of(pair):
+    """Law of a pair record."""
+    row = pair.law
+    return Law(
+        pair.k,
+        pair.shared != 0,
+        row[LAW_BETA],
+        row[LAW_STATIC],
+        row[LAW_DYNAMIC],
+        row[LAW_STICTION],
+        row[LAW_SLIDING],
+        row[LAW_SMOOTHING],
+    )
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def scaled(law, stiffness, friction, beta):
+    """A law of so many times the stiffness and friction, and another share of damping."""
+    return Law(
+        stiffness * law.k,
+        law.shared,
+        beta,
+        friction * law.mu_static,
+        friction * law.mu_dynamic,
+        law.stiction,
+        law.sliding,
+        law.smoothing,
+    )
