@@ -6,7 +6,19 @@ import numpy as np
 
 from mdlgen.backends.exudyn_local.state import DRIVING, ELASTIC, KINETIC, LOST, POTENTIAL, Work
 from mdlgen.backends.exudyn_local.system import System
-from mdlgen.mechanics.arm import hung, moved, speeding, torque_of, turn_of, way_of
+from mdlgen.mechanics.arm import (
+    AXIAL,
+    DAMPING,
+    FORCE_0,
+    INERTIA,
+    STIFFNESS,
+    hung,
+    moved,
+    speeding,
+    torque_of,
+    turn_of,
+    way_of,
+)
 from mdlgen.mechanics.bushing import bushing
 from mdlgen.mechanics.curve import curve_excess, middle_and_gap
 from mdlgen.mechanics.driven import clutch, prescribed, turned
@@ -179,9 +191,9 @@ def _slide(tables, body, at, f, level):
     q, v, t = at
     k = bodies[body].slide
     p = bodies[body].press
-    f[k] += p[2] - p[0] * q[k] - p[1] * v[k]
+    f[k] += p[FORCE_0] - p[STIFFNESS] * q[k] - p[DAMPING] * v[k]
     if bodies[body].swings == 0:
-        f[k] += level * p[3] * dot(three(bodies[body].way), three(gravity))
+        f[k] += level * p[INERTIA] * dot(three(bodies[body].way), three(gravity))
         return
     ref = bodies[body].reference
     place = moved(bodies[body], (ref[0], ref[1], ref[2]), q[k])
@@ -351,19 +363,19 @@ def ledger(tables, at, work, pair_out, totals):
         k = bodies[body].slide
         if k >= 0:
             p = bodies[body].press
-            kinetic += 0.5 * p[3] * v[k] * v[k]
-            potential -= p[2] * q[k]
+            kinetic += 0.5 * p[INERTIA] * v[k] * v[k]
+            potential -= p[FORCE_0] * q[k]
             if bodies[body].swings > 0:
                 potential += hung(bodies[body], q[k], three(gravity))
                 potential -= bodies[body].mass * dot(three(gravity), vec(x, body))
                 driven -= speeding(bodies[body], t, _INSTANT) * v[k]
             else:
-                potential -= p[3] * dot(three(gravity), three(bodies[body].way)) * q[k]
-            elastic += 0.5 * p[0] * q[k] * q[k]
-            lost += p[1] * v[k] * v[k]
+                potential -= p[INERTIA] * dot(three(gravity), three(bodies[body].way)) * q[k]
+            elastic += 0.5 * p[STIFFNESS] * q[k] * q[k]
+            lost += p[DAMPING] * v[k] * v[k]
         if bodies[body].spin >= 0:
             spun = v[bodies[body].spin]
-            kinetic += 0.5 * bodies[body].press[4] * spun**2
+            kinetic += 0.5 * bodies[body].press[AXIAL] * spun**2
             torque, _, shaft = clutch(bodies[body], spun, t)
             lost += torque * (shaft - spun)
             driven += torque * shaft

@@ -173,8 +173,8 @@ class Recorder:
         out = np.flatnonzero(((x < self._low) | (x > self._high)).any(axis=1))
         if out.size:
             at = ", ".join(f"{value:.4g}" for value in x[out[0]] * PER_MM)
-            told, (bounds, advice) = self.model.called(int(out[0])), self.model.bounds_of(int(out[0]))
-            self.reason = f"{told} left {bounds} at {t / MS:.6g} ms (it is at {at} mm); {advice}"
+            name, (bounds, advice) = self.model.called(int(out[0])), self.model.bounds_of(int(out[0]))
+            self.reason = f"{name} left {bounds} at {t / MS:.6g} ms (it is at {at} mm); {advice}"
 
     def _between(self, q: np.ndarray, v: np.ndarray, t: float, step: float) -> None:
         """Sets the reason where a pair has passed since the last step."""

@@ -23,6 +23,7 @@ from mdlgen.backends.exudyn_local.stability import falling
 from mdlgen.backends.exudyn_local.state import TOTALS, Coordinates, Work
 from mdlgen.backends.exudyn_local.step import choose_steps, cost, given_steps
 from mdlgen.backends.exudyn_local.system import MM, MS, Pattern, System, build
+from mdlgen.mechanics.arm import AXIAL, INERTIA
 from mdlgen.model.external import refuse_externals
 from mdlgen.model.sheet_pairs import refuse_searched
 from mdlgen.model.tables import Model
@@ -64,7 +65,7 @@ class Assembly:
 
 @PROGRAM.releases
 def solve(model: Model, progress: Progress | None = None, step: float | None = None) -> Result:
-    """Run a Model; `progress(time, end, steps, touching)` is told where it stands (times in ms).
+    """Run a Model; `progress(time, end, steps, touching)` is called as it goes (times in ms).
 
     `step` [ms], or the Model's own, is taken as it is. Without either the step follows from the tolerance and
     the shortest impact in the scene, and is halved until what the tolerance judges is estimated to be within
@@ -179,8 +180,8 @@ def _once(
     if reason is None and static:
         reason = _unbalanced(system, q, work)
     if reason is None and static and (ways := falling(system, pattern, q, work)) > 0:
-        told = "one direction" if ways == 1 else f"{ways} directions"
-        reason = f"{UNSTABLE}: it falls in {told}; a small load aside leads to one that stands"
+        which = "one direction" if ways == 1 else f"{ways} directions"
+        reason = f"{UNSTABLE}: it falls in {which}; a small load aside leads to one that stands"
     result = recorder.result("exudyn", reason)
     if result.ok and not static:
         unbalanced = _unbalanced_energy(model, result, recorder, h)
@@ -258,7 +259,7 @@ def _assemble(exu, model: Model, system: System, pattern: Pattern, work: Work) -
             mbs.AddObject(ObjectRigidBody(mass=row["mass"], inertia=inertia, nodeNumber=node))
             nodes.append(node)
             continue
-        for coordinate, mass in ((row["slide"], row["press"][3]), (row["spin"], row["press"][4])):
+        for coordinate, mass in ((row["slide"], row["press"][INERTIA]), (row["spin"], row["press"][AXIAL])):
             if coordinate >= 0:
                 rate = starts.get(coordinate, 0.0)
                 v[coordinate] = rate
@@ -346,8 +347,8 @@ def _run(exu, assembly: Assembly, model: Model, count: int, h: float, touching: 
     except Exception as error:  # Exudyn raises its own kinds for a Newton that does not converge
         if isinstance(error, KeyboardInterrupt):
             raise
-        told = [line.strip() for line in str(error).splitlines() if line.strip()]
-        return f"Exudyn did not converge: {told[0] if told else type(error).__name__}"[:300]
+        lines = [line.strip() for line in str(error).splitlines() if line.strip()]
+        return f"Exudyn did not converge: {lines[0] if lines else type(error).__name__}"[:300]
     return None if done else "Exudyn stopped before the end"
 
 

@@ -8,6 +8,7 @@ from mdlgen.backends.exudyn_local import kernels
 from mdlgen.backends.exudyn_local.shipped import jacobian
 from mdlgen.backends.exudyn_local.state import Coordinates, Work
 from mdlgen.backends.exudyn_local.system import Pattern, System
+from mdlgen.mechanics.arm import AXIAL, INERTIA
 from mdlgen.model.tables import Floats
 
 # A balance that is left so slowly that it grows e-fold in a second stands still [rad/s].
@@ -74,7 +75,7 @@ def _moves(system: System, q: Floats):
             turn = 0.5 * np.array([[-e1, e0, e3, -e2], [-e2, -e3, e0, e1], [-e3, e2, -e1, e0]])
             for axis in range(3):  # about the box's own axes
                 column([(n + 3 + i, float(turn[axis, i])) for i in range(4)], float(body["inertia"][axis]))
-        for name, inertia in (("slide", body["press"][3]), ("spin", body["press"][4])):
+        for name, inertia in (("slide", body["press"][INERTIA]), ("spin", body["press"][AXIAL])):
             if body[name] >= 0:
                 column([(int(body[name]), 1.0)], float(inertia))
     shape = (system.free, len(mass))

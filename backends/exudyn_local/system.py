@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from mdlgen.backends.exudyn_local.state import Tables
 from mdlgen.errors import RefusedError
-from mdlgen.mechanics.arm import ARM, arm
+from mdlgen.mechanics.arm import ARM, AXIAL, PRESS, arm
 from mdlgen.mechanics.curve import FOLLOWS, curve_points, follow
 from mdlgen.mechanics.driven import DRIVEN, drive
 from mdlgen.mechanics.edge import ENDS
@@ -43,7 +43,7 @@ BODY = np.dtype(
         *ENDS,
         ("axis", "f8", 3),  # of a roller
         ("way", "f8", 3),  # direction of a slide
-        ("press", "f8", 5),  # k [N/m], c [N s/m], force at the start [N], sliding mass [kg], axial inertia
+        ("press", "f8", PRESS),  # columns as in mechanics.arm
         *DRIVEN,
         ("size", "f8", 2),  # radius, of a rim the greatest, and width of a roller [m]
         ("first", "i8"),  # first of a box's 7 coordinates, -1: not free
@@ -182,13 +182,13 @@ def _bodies(model: Model, moving: bool) -> tuple[np.ndarray, int]:
         row = bodies[roller.body]
         row["axis"], row["size"] = roller.axis, (roller.reach * MM, roller.width * MM)
         rim(row, roller, MM)
-        row["press"][4] = (roller.inertia_axial + roller.carried[1]) * G * MM**2
+        row["press"][AXIAL] = (roller.inertia_axial + roller.carried[1]) * G * MM**2
         if roller.press is not None:
             spring = roller.press
             row["way"] = spring.direction
             force = spring.preload - spring.stiffness * (spring.start - spring.touch)
             mass = (roller.mass + roller.carried[0] + spring.carrier_mass) * G
-            row["press"][:4] = (spring.stiffness * PER_MM, spring.damping * MS * PER_MM, force, mass)
+            row["press"][:AXIAL] = (spring.stiffness * PER_MM, spring.damping * MS * PER_MM, force, mass)
             row["slide"], free = free, free + 1
         if roller.arm is not None:
             arm(row, roller, MM, G, MS)
@@ -202,7 +202,7 @@ def _bodies(model: Model, moving: bool) -> tuple[np.ndarray, int]:
         row["way"] = spring.direction
         force = spring.preload - spring.stiffness * (spring.start - spring.touch)
         mass = plate.sliding_mass * G
-        row["press"][:4] = (spring.stiffness * PER_MM, spring.damping * MS * PER_MM, force, mass)
+        row["press"][:AXIAL] = (spring.stiffness * PER_MM, spring.damping * MS * PER_MM, force, mass)
         row["slide"], free = free, free + 1
     for mesh in model.meshes:
         if mesh.on >= 0:

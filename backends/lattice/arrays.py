@@ -14,7 +14,7 @@ import numpy as np
 
 from mdlgen.backends.lattice.kernels.state import Tables
 from mdlgen.backends.lattice.search import Search, plan
-from mdlgen.mechanics.arm import ARM, arm
+from mdlgen.mechanics.arm import ARM, AXIAL, PRESS, arm
 from mdlgen.mechanics.curve import FOLLOWS, curve_points, follow
 from mdlgen.mechanics.driven import DRIVEN, drive
 from mdlgen.mechanics.edge import ENDS
@@ -42,7 +42,7 @@ BODY = np.dtype(
         ("exposed", "i8"),
         ("axis", "f8", 3),
         ("way", "f8", 3),  # direction of a slide
-        ("press", "f8", 5),  # k, c, force at the start, sliding mass, axial inertia; of an arm mechanics.arm
+        ("press", "f8", PRESS),  # columns as in mechanics.arm
         *DRIVEN,
         ("size", "f8", 2),  # radius, of a rim the greatest, and width
         ("carries", "i8"),  # 1: a roller with a mesh on it, whose turn is followed
@@ -171,13 +171,13 @@ def _bodies(model: Model) -> tuple[np.ndarray, Ints, int]:
     for roller in model.rollers:
         row = bodies[roller.body]
         row["axis"], row["size"] = roller.axis, (roller.reach, roller.width)
-        row["press"][4] = roller.inertia_axial + roller.carried[1]
+        row["press"][AXIAL] = roller.inertia_axial + roller.carried[1]
         if roller.press is not None:
             spring = roller.press
             row["way"] = spring.direction
             force = spring.preload - spring.stiffness * (spring.start - spring.touch)
             mass = roller.mass + roller.carried[0] + spring.carrier_mass
-            row["press"][:4] = (spring.stiffness, spring.damping, force, mass)
+            row["press"][:AXIAL] = (spring.stiffness, spring.damping, force, mass)
             row["slide"], border = border, border + 1
         if roller.arm is not None:
             row["slide"], border = border, border + 1
@@ -200,7 +200,7 @@ def _bodies(model: Model) -> tuple[np.ndarray, Ints, int]:
         row = bodies[plate.body]
         row["way"] = spring.direction
         force = spring.preload - spring.stiffness * (spring.start - spring.touch)
-        row["press"][:4] = (spring.stiffness, spring.damping, force, plate.sliding_mass)
+        row["press"][:AXIAL] = (spring.stiffness, spring.damping, force, plate.sliding_mass)
         row["slide"], border = border, border + 1
     return bodies, np.array(nodes, dtype=np.int64), border
 

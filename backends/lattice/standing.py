@@ -16,7 +16,7 @@ PARTS = 10  # halvings between a load at which a balance stands and one at which
 
 def falling(band: Floats, border: Floats, corner: Floats) -> int:
     """Number of directions in which a balance falls that does not stand, by the signs of the pivots of what
-    the kernel `stands` leaves; 1 where they cannot be told."""
+    the kernel `stands` leaves; 1 where they are not known."""
     from scipy.sparse.linalg import splu
 
     try:
@@ -49,9 +49,9 @@ def whole(band: Floats, border: Floats, corner: Floats) -> Any:
 
 def reason(ways: int, begins: float) -> str:
     """Why a balance that falls in so many directions is no result; it does above a part of the load."""
-    told = "one direction" if ways == 1 else f"{ways} directions"
+    which = "one direction" if ways == 1 else f"{ways} directions"
     return (
-        f"the balance is unstable: it falls in {told}, above {100 * begins:.3g} % of the load; "
+        f"the balance is unstable: it falls in {which}, above {100 * begins:.3g} % of the load; "
         "a small load aside leads to one that stands"
     )
 

@@ -24,6 +24,7 @@ from mdlgen.backends.lattice.kernels.state import (
     State,
 )
 from mdlgen.backends.lattice.record import Recorder
+from mdlgen.mechanics.arm import FORCE_0
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.mesh import LOST
 from mdlgen.mechanics.pair import DEEP_ROLLER
@@ -152,7 +153,7 @@ def _load(model: Model, system: System) -> float:
     length = max(max(s.size) for s in model.sheets)
     forces = [float(np.linalg.norm(row["force"])) for row in system.loads]
     moments = [float(np.linalg.norm(row["moment"])) / length for row in system.loads]
-    springs = float(np.abs(system.bodies["press"][:, 2]).max())
+    springs = float(np.abs(system.bodies["press"][:, FORCE_0]).max())
     return max(weight, *forces, *moments, 0.0) or max(springs, 1e-12)
 
 

@@ -131,11 +131,11 @@ def _alike(mirror: Mirror, model: Model, one: Part, two: Part) -> bool:
         own: dict[str, Any] = {"normal": mirror.seen(one.normal)}
         if one.press is not None:
             own["press"] = replace(one.press, direction=mirror.seen(one.press.direction))
-        return bool(np.abs(square - np.eye(3)).max() < SAME) and _told(one, own) == _told(two, {})
+        return bool(np.abs(square - np.eye(3)).max() < SAME) and _values_of(one, own) == _values_of(two, {})
     assert isinstance(one, GuidePart), "there are no other parts"
     # the outline of a guide lies in the mirror, its width goes across
     flat = np.abs(one.axes[:, :2].T @ mirror.normal).max() < SAME
-    return bool(flat) and _told(one, {}) == _told(two, {})
+    return bool(flat) and _values_of(one, {}) == _values_of(two, {})
 
 
 def _roller(part: RollerPart, way: float, mirror: Mirror | None) -> tuple[Any, ...]:
@@ -152,16 +152,16 @@ def _roller(part: RollerPart, way: float, mirror: Mirror | None) -> tuple[Any, .
         "speed": part.speed if part.speed is None else way * part.speed,
         "profile": part.profile if part.profile is None else part.profile * (1.0, way),
         "one_way": clutch,
-        "press": press and _told(press, {}),
-        "arm": arm and (_rounded(arm.center), *_told(replace(arm, torque=way * arm.torque), {})),
+        "press": press and _values_of(press, {}),
+        "arm": arm and (_rounded(arm.center), *_values_of(replace(arm, torque=way * arm.torque), {})),
     }
-    return _told(part, own)
+    return _values_of(part, own)
 
 
 _PLACE = ("name", "body", "center")
 
 
-def _told(part: Any, instead: dict[str, Any]) -> tuple[Any, ...]:
+def _values_of(part: Any, instead: dict[str, Any]) -> tuple[Any, ...]:
     """All fields of a part but its name and its place, rounded to be compared."""
     values = (instead.get(f.name, getattr(part, f.name)) for f in fields(part) if f.name not in _PLACE)
     return tuple(_rounded(v) for v in values)
@@ -174,7 +174,7 @@ def _rounded(value: Any) -> Any:
         most = float(np.nanmax(np.abs(value), initial=0.0)) or 1.0
         return (_rounded(most), *(_rounded(v) for v in (np.round(value / most, 9) + 0.0).ravel().tolist()))
     if is_dataclass(value):
-        return _told(value, {})
+        return _values_of(value, {})
     if isinstance(value, (list, tuple)):
         return tuple(_rounded(v) for v in value)
     if isinstance(value, float):
@@ -199,10 +199,10 @@ def _contacts(model: Model, mirror: Mirror) -> Mirror | None:
     columns = [getattr(table, f.name) for f in fields(table) if f.name not in _NO_LAW]
     laws = list(zip(*(c.tolist() if isinstance(c, np.ndarray) else c for c in columns), strict=True))
     rows = {(*pair, law): row for row, (pair, law) in enumerate(zip(ends, laws, strict=True))}
-    told = np.array(
+    row_of_image = np.array(
         [rows.get((seen.get(a, a), seen.get(b, b), laws[row]), -1) for row, (a, b) in enumerate(ends)]
     )
-    if (told < 0).any():
+    if (row_of_image < 0).any():
         return None
     own = image == np.arange(len(image))
     sheets = bool((table.kind == BOX_BOX).any())
@@ -216,9 +216,9 @@ def _contacts(model: Model, mirror: Mirror) -> Mirror | None:
         return None
     itself = np.arange(len(ends))
     far = np.array([any(mirror.gone[place[n]] for n in pair if n in place) for pair in ends])
-    times = np.where(told == itself, 2.0, 1.0)
+    times = np.where(row_of_image == itself, 2.0, 1.0)
     apart = sheets or bool(across.any())
-    return replace(mirror, rows=np.where(far, told, itself), times=times, apart=apart)
+    return replace(mirror, rows=np.where(far, row_of_image, itself), times=times, apart=apart)
 
 
 def _off(mirror: Mirror, part: Part) -> float:

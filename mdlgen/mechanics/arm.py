@@ -4,8 +4,8 @@ The unknown of such a roller's slide is the angle of its arm. A free roller's sp
 a driven one's drive is against the arm, with which the roller turns. A body record has `swings`, 1 where it
 is on an arm and 2 where it is also driven (0: its slide, if any, is straight); `pivot`, a point of the arm's
 axis; `turn`, that axis; and `hang`, the arm's own mass times the way from the pivot to its centre of mass, as
-the run begins. Its `press` is: torsional stiffness and damping, torque at the angle 0, and the inertia of all
-that turns about the pivot.
+the run begins. Its `press` has torsional stiffness and damping, the torque at the angle 0, and the
+inertia of all that turns about the pivot.
 """
 
 from __future__ import annotations
@@ -17,6 +17,9 @@ from mdlgen.mechanics.vector import add, cross, dot, exp_rotation, rotate, scale
 from mdlgen.model.tables import RollerPart
 from mdlgen.program.kernel import njit
 
+# Columns of a body record's `press`: stiffness and damping of a slide or an arm, its force or torque at the
+# start, the mass or the inertia that it moves, and the roller's inertia about its own axis.
+STIFFNESS, DAMPING, FORCE_0, INERTIA, AXIAL, PRESS = 0, 1, 2, 3, 4, 5
 ARM = [("swings", "i8"), ("pivot", "f8", 3), ("turn", "f8", 3), ("hang", "f8", 3)]
 
 
@@ -30,7 +33,12 @@ def arm(row: np.void, roller: RollerPart, length: float = 1.0, mass: float = 1.0
     row["pivot"], row["turn"] = part.pivot * length, roller.axis
     row["hang"] = part.mass * mass * (part.center - part.pivot) * length
     inertia = roller.swung_inertia * mass * length**2
-    row["press"][:4] = (part.stiffness * length, part.damping * length * time, part.torque * length, inertia)
+    row["press"][:AXIAL] = (
+        part.stiffness * length,
+        part.damping * length * time,
+        part.torque * length,
+        inertia,
+    )
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -76,4 +84,4 @@ def speeding(body, t, h):
     """Torque that speeds a driven roller up, on average from t - h to t + h."""
     if body.swings != 2:
         return 0.0
-    return body.press[4] * (prescribed(body, t + h) - prescribed(body, t - h)) / (2.0 * h)
+    return body.press[AXIAL] * (prescribed(body, t + h) - prescribed(body, t - h)) / (2.0 * h)

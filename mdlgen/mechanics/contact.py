@@ -7,9 +7,9 @@ one roller (`share: width`), they also share k across it: each takes its part of
 has the same law. A pressure K zeta per area, zeta the depth of each point, under a roller of radius R and
 width w pressed z deep into a flat face, gives F = K w 4/3 sqrt(2R) z^1.5; with K = 3 k/(4 w sqrt(2 R)) that
 is k z^1.5 again. So a roller that passes from box to box feels one sheet. Beyond a free edge nothing takes
-over: there the box keeps the whole, about the foot of the roller as if the sheet went on, and as an edge
-comes to the foot the pressure draws in to it, since force, moment and damping of both sides of that place
-must be the same. `share: pair` gives every box the full k, as MotionSolve does.
+over: there the box keeps the whole, about the contact line of the roller as if the sheet went on, and as an
+edge comes to that line the pressure draws in to it, since force, moment and damping of both sides of that
+place must be the same. `share: pair` gives every box the full k, as MotionSolve does.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def _face(out, face, a, half, b, roller, sector, law):
         return
     steep_low, steep_high, basis = -1e30, 1e30, width
     if angle < WHOLE:
-        # directions from the axis to points of the face, against that to its foot; 1.5 rad is far from it
+        # directions from the axis to points of the face, against that to the contact line; 1.5 rad is far
         middle = math.atan2(to[r] * up - to[p] * ur, lean * (to[p] * up + to[r] * ur) - na * sign * to[q])
         low_angle, high_angle = max(middle - angle, -1.5), min(middle + angle, 1.5)
         if high_angle <= low_angle:
@@ -120,13 +120,13 @@ def _face(out, face, a, half, b, roller, sector, law):
             reach = math.sqrt(radius * radius - e * e)
             left = -reach if open_first else max(first, -reach)
             right = reach if open_last else min(last, reach)
-            # what lies beyond a free edge draws in to the foot as the edge comes to it
+            # what lies beyond a free edge draws in to the contact line as the edge comes to it
             draw = 1.0
             if spread and open_first:
                 draw = min(draw, -first / reach)
             if spread and open_last:
                 draw = min(draw, last / reach)
-            # from the axis to its foot: back along the face's normal, turned with the lean
+            # from the axis to the contact line: back along the face's normal, turned with the lean
             way = rotate(ra, local(p, r, q, lean * up, lean * ur, -na * sign))
             under = local(p, r, q, l0[p] + u * up, l0[r] + u * ur, sign * half[q])
             line = add(add(a.x, rotate(ra, under)), aside)

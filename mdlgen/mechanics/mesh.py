@@ -41,8 +41,8 @@ from mdlgen.mechanics.tree import (
     MOST,
     THICK,
     WIDTH,
+    build_tree,
     overlaps,
-    plant,
     span,
 )
 from mdlgen.mechanics.vector import add, back, dot, matmul, nine, rotate, scale, sub, three, transpose_matmul
@@ -102,18 +102,18 @@ def mesh_tables(model: Model, mm: float = 1.0) -> Meshes:
     """The meshes of a Model for compiled code; `mm` is a millimetre in the solver's unit."""
     heads = np.zeros(len(model.meshes), HEAD)
     bounds, links, triangles = [np.zeros((0, 12))], [np.zeros((0, 3), np.int64)], [np.zeros((0, WIDTH))]
-    planted: dict[tuple[str, float], tuple[int, int, float]] = {}
+    built: dict[tuple[str, float], tuple[int, int, float]] = {}
     for head, mesh in zip(heads, model.meshes, strict=True):
-        if (mesh.file, mesh.scale) not in planted:
-            box, link, table = plant(mesh.corners * mm, mesh.triangles, DEEPEST * mm)
+        if (mesh.file, mesh.scale) not in built:
+            box, link, table = build_tree(mesh.corners * mm, mesh.triangles, DEEPEST * mm)
             before, shift = sum(map(len, links)), sum(map(len, triangles))
             link[:, FIRST] += shift
             link[:, AFTER] += before
-            planted[mesh.file, mesh.scale] = before, before + len(link), _unseen(table)
+            built[mesh.file, mesh.scale] = before, before + len(link), _unseen(table)
             bounds.append(box)
             links.append(link)
             triangles.append(table)
-        head["first"], head["end"], head["unseen"] = planted[mesh.file, mesh.scale]
+        head["first"], head["end"], head["unseen"] = built[mesh.file, mesh.scale]
         body = mesh.body
         if mesh.on >= 0:
             roller = model.rollers[mesh.on]

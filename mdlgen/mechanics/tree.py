@@ -24,7 +24,7 @@ FIRST, COUNT, AFTER = 0, 1, 2
 NORMAL, THICK, AREA, WIDTH = 9, 12, 13, 14
 
 
-def plant(corners: Floats, triangles: Ints, most: float) -> tuple[Floats, Ints, Floats]:
+def build_tree(corners: Floats, triangles: Ints, most: float) -> tuple[Floats, Ints, Floats]:
     """Bounds (nodes, 12) and links (nodes, 3) of the tree, and its triangles (m, WIDTH), of a closed surface;
     triangles without an area are left out.
 

@@ -18,6 +18,7 @@ from mdlgen.backends.lattice.kernels.chain import follow, link, opening
 from mdlgen.backends.lattice.kernels.dense import copy
 from mdlgen.backends.lattice.kernels.forces import joint_forces, near_pairs, other_forces, pair_forces
 from mdlgen.backends.lattice.kernels.stiffness import contacts_into, rollers_into, sheets_into
+from mdlgen.mechanics.arm import FORCE_0, INERTIA, STIFFNESS
 from mdlgen.mechanics.frame import Motion
 from mdlgen.program.kernel import njit
 
@@ -65,8 +66,8 @@ def _residual(tables, level, place, lists, blank, rest):
             continue
         p, force = bodies[b].press, 0.0
         for i in range(3):
-            force += bodies[b].way[i] * (f[b, i] + level * p[3] * gravity[i])
-        on_slides[k] = force + p[2] - p[0] * s[k]
+            force += bodies[b].way[i] * (f[b, i] + level * p[INERTIA] * gravity[i])
+        on_slides[k] = force + p[FORCE_0] - p[STIFFNESS] * s[k]
         if not abs(on_slides[k]) <= worst:
             worst, at = abs(on_slides[k]), b
     return worst, at, count

@@ -20,7 +20,7 @@ from mdlgen.backends.lattice.kernels.condensed import ACTIVE, MINE, PLANES, REUS
 from mdlgen.backends.lattice.kernels.dense import lu
 from mdlgen.backends.lattice.kernels.forces import pair_forces, place_box, place_roller
 from mdlgen.backends.lattice.kernels.jacobian import activate, clutches, gradient, newton, newton_matrix
-from mdlgen.mechanics.arm import turn_of, way_of
+from mdlgen.mechanics.arm import AXIAL, DAMPING, INERTIA, STIFFNESS, turn_of, way_of
 from mdlgen.mechanics.driven import clutch
 from mdlgen.mechanics.pair import BOX_BOX, on_fixed_plate
 from mdlgen.mechanics.point import FORCE_A, FORCE_B, OUT, POINT, POINTS
@@ -115,11 +115,11 @@ def _begin(tables, x, h, ub, condensed, m, res, resb):
     for b in condensed.rollers:
         slide, spin, p = bodies[b].slide, bodies[b].spin, bodies[b].press
         if slide >= 0:
-            own[slide] = 1.0 / (p[3] + h * p[1] + h * h * p[0])
+            own[slide] = 1.0 / (p[INERTIA] + h * p[DAMPING] + h * h * p[STIFFNESS])
             way = way_of(bodies[b], vec(x, b))
             measure[6 * m + slide] = math.sqrt(dot(way, way))
         if spin >= 0:
-            own[spin] = 1.0 / p[4]
+            own[spin] = 1.0 / p[AXIAL]
             measure[6 * m + spin] = bodies[b].size[0]
     for i in range(ub.size):
         z[6 * m + i] = 0.0

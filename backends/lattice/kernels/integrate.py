@@ -44,7 +44,7 @@ from mdlgen.backends.lattice.kernels.state import (
 )
 from mdlgen.backends.lattice.kernels.step import carry, midpoint, spun
 from mdlgen.backends.lattice.kernels.swept import swept
-from mdlgen.mechanics.arm import speeding
+from mdlgen.mechanics.arm import AXIAL, DAMPING, speeding
 from mdlgen.mechanics.crossing import deepest
 from mdlgen.mechanics.curve import overstretched
 from mdlgen.mechanics.driven import clutch, prescribed
@@ -147,7 +147,7 @@ def _account(bodies, mid, state, t, dt, energies):
             lost += torque * (shaft - spin)
             driving += torque * shaft
             ahead, after = 2.0 * spin - before, spun(bodies[b], spin, before, t, dt)
-            lost += 0.5 * bodies[b].press[4] * (ahead * ahead - after * after) / dt
+            lost += 0.5 * bodies[b].press[AXIAL] * (ahead * ahead - after * after) / dt
         elif bodies[b].corners > 0:
             rate = prescribed(bodies[b], t + 0.5 * dt)
             axis = bodies[b].axis
@@ -155,7 +155,7 @@ def _account(bodies, mid, state, t, dt, energies):
             if bodies[b].swings == 2:
                 driving -= speeding(bodies[b], t + 0.5 * dt, 0.5 * dt) * ub[bodies[b].slide]
         if bodies[b].slide >= 0:
-            lost += bodies[b].press[1] * ub[bodies[b].slide] ** 2
+            lost += bodies[b].press[DAMPING] * ub[bodies[b].slide] ** 2
     energies[DISSIPATED] += dt * lost
     energies[DRIVEN] += dt * driving
     energies[THROUGH_DRIVES] += dt * abs(driving)

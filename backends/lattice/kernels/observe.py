@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from mdlgen.backends.lattice.kernels.forces import joint_forces, near_pairs, pair_forces
-from mdlgen.mechanics.arm import hung, way_of
+from mdlgen.mechanics.arm import AXIAL, FORCE_0, INERTIA, STIFFNESS, hung, way_of
 from mdlgen.mechanics.driven import prescribed
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.point import PRESSING
@@ -38,19 +38,19 @@ def ledger(tables, state, mid, t, energies, force):
         rate = 0.0
         if slide >= 0:
             way = way_of(bodies[b], vec(x, b))
-            kinetic += 0.5 * p[3] * vb[slide] * vb[slide]
-            elastic += 0.5 * p[0] * s[slide] * s[slide]
-            potential -= p[2] * s[slide]
+            kinetic += 0.5 * p[INERTIA] * vb[slide] * vb[slide]
+            elastic += 0.5 * p[STIFFNESS] * s[slide] * s[slide]
+            potential -= p[FORCE_0] * s[slide]
             if bodies[b].swings > 0:
                 potential += hung(bodies[b], s[slide], three(gravity))
                 potential -= bodies[b].mass * dot(vec(x, b), three(gravity))
             else:
-                potential -= p[3] * dot(way, three(gravity)) * s[slide]
+                potential -= p[INERTIA] * dot(way, three(gravity)) * s[slide]
             for i in range(3):
                 u[b, i] = vb[slide] * way[i]
         if spin_at >= 0:
             rate = vb[spin_at]
-            kinetic += 0.5 * p[4] * rate * rate
+            kinetic += 0.5 * p[AXIAL] * rate * rate
         else:
             rate = prescribed(bodies[b], t)
         if bodies[b].swings == 2:

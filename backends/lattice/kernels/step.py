@@ -72,7 +72,17 @@ from mdlgen.backends.lattice.kernels.tangent import (
     rollers_into,
 )
 from mdlgen.backends.lattice.kernels.two_colour import colour
-from mdlgen.mechanics.arm import moved, torque_of, turn_of, way_of
+from mdlgen.mechanics.arm import (
+    AXIAL,
+    DAMPING,
+    FORCE_0,
+    INERTIA,
+    STIFFNESS,
+    moved,
+    torque_of,
+    turn_of,
+    way_of,
+)
 from mdlgen.mechanics.driven import clutch, prescribed
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.vector import back, dot, exp_rotation, mat, matmul, rotate, three, vec
@@ -117,12 +127,12 @@ def _residual(tables, t, h, state, mid, res, resb):
             if bodies[k].swings > 0:
                 along += dot((f[k, 3], f[k, 4], f[k, 5]), turn_of(bodies[k]))
                 along += torque_of(bodies[k], s[slide] + h * ub[slide], three(gravity), t, h)
-            spring = p[2] - p[0] * (s[slide] + h * ub[slide]) - p[1] * ub[slide]
-            resb[slide] = p[3] * (ub[slide] - vb[slide]) - h * (along + spring)
+            spring = p[FORCE_0] - p[STIFFNESS] * (s[slide] + h * ub[slide]) - p[DAMPING] * ub[slide]
+            resb[slide] = p[INERTIA] * (ub[slide] - vb[slide]) - h * (along + spring)
         if spin_at >= 0:
             axis = bodies[k].axis
             about = f[k, 3] * axis[0] + f[k, 4] * axis[1] + f[k, 5] * axis[2]
-            resb[spin_at] = p[4] * (ub[spin_at] - vb[spin_at]) - h * about
+            resb[spin_at] = p[AXIAL] * (ub[spin_at] - vb[spin_at]) - h * about
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -130,7 +140,7 @@ def _weights(bodies, gravity, f):
     """Weight of what slides, and of rollers on arms, on top of the forces on them."""
     for k in range(bodies.size - 1):
         if bodies[k].slide >= 0:
-            mass = bodies[k].press[3] if bodies[k].swings == 0 else bodies[k].mass
+            mass = bodies[k].press[INERTIA] if bodies[k].swings == 0 else bodies[k].mass
             for i in range(3):
                 f[k, i] += mass * gravity[i]
 
@@ -312,7 +322,7 @@ def spun(body, u, v, t, dt):
     the measure of how much stiffer than the roller's inertia the clutch is.
     """
     h = 0.5 * dt
-    stiff = h * clutch(body, u, t + h)[1] / body.press[4]
+    stiff = h * clutch(body, u, t + h)[1] / body.press[AXIAL]
     if stiff == 0.0:
         return 2.0 * u - v
     added = u - prescribed(body, t + h) - v + prescribed(body, t)

@@ -10,6 +10,7 @@ import math
 import numpy as np
 
 from mdlgen.backends.lattice.kernels.dense import copy
+from mdlgen.mechanics.arm import STIFFNESS
 from mdlgen.mechanics.curve import curve_spring
 from mdlgen.mechanics.pair import pair_force
 from mdlgen.mechanics.point import OUT
@@ -193,7 +194,7 @@ def rollers_into(bodies, b, d):
     for k in range(bodies.size - 1):
         slide, spin = bodies[k].slide, bodies[k].spin
         if slide >= 0:
-            d[slide, slide] = bodies[k].press[0]
+            d[slide, slide] = bodies[k].press[STIFFNESS]
         if spin >= 0:
             d[spin, spin] = 1.0
 

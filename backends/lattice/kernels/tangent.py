@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from mdlgen.backends.lattice.kernels.band import PAD
 from mdlgen.backends.lattice.kernels.slopes import core, couple_growth, hat_left, hat_right, outer
-from mdlgen.mechanics.arm import turn_of, way_of
+from mdlgen.mechanics.arm import AXIAL, DAMPING, INERTIA, STIFFNESS, turn_of, way_of
 from mdlgen.mechanics.curve import curve_spring
 from mdlgen.mechanics.driven import clutch
 from mdlgen.mechanics.pair import on_fixed_plate
@@ -284,9 +284,9 @@ def rollers_into(bodies, h, t, ub, b, d):
     for k in range(bodies.size - 1):
         p = bodies[k].press
         if bodies[k].slide >= 0:
-            d[bodies[k].slide, bodies[k].slide] = p[3] + h * p[1] + h * h * p[0]
+            d[bodies[k].slide, bodies[k].slide] = p[INERTIA] + h * p[DAMPING] + h * h * p[STIFFNESS]
         if bodies[k].spin >= 0:
-            d[bodies[k].spin, bodies[k].spin] = p[4] + h * clutch(bodies[k], ub[bodies[k].spin], t)[1]
+            d[bodies[k].spin, bodies[k].spin] = p[AXIAL] + h * clutch(bodies[k], ub[bodies[k].spin], t)[1]
 
 
 @njit(cache=True, error_model="numpy")
