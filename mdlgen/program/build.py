@@ -206,9 +206,9 @@ def write(program: Program, types: Types) -> int:
 
 def _watcher(found: dict[str, tuple[Any, Kernel]], kernel: Kernel, typeof: Any) -> Any:
     def watch(args: tuple[Any, ...]) -> None:
-        message = json.dumps([described(arg) for arg in args])
-        if message not in found:
-            found[message] = tuple(typeof(arg) for arg in args), kernel
+        types_of = json.dumps([described(arg) for arg in args])
+        if types_of not in found:
+            found[types_of] = tuple(typeof(arg) for arg in args), kernel
 
     return watch
 
@@ -221,11 +221,11 @@ def link(types: Types) -> tuple[Any, dict[str, tuple[Variant, ...]]]:
     entries: dict[str, tuple[Variant, ...]] = {}
     for name, variants in types.items():
         made: list[Variant] = []
-        for message, (signature, kernel) in variants.items():
+        for types_of, (signature, kernel) in variants.items():
             symbol = f"{name}_{len(made)}"
             overload = kernel.dispatcher.overloads[signature]
             inner = overload.fndesc.llvm_func_name
-            arguments = json.loads(message)
+            arguments = json.loads(types_of)
             text = _stripped(kernel.dispatcher.inspect_llvm(signature), inner)
             module = llvm.parse_assembly(text + _wrapper(text, inner, symbol, sum(map(words, arguments))))
             module.triple, module.data_layout = whole.triple, whole.data_layout
