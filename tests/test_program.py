@@ -337,16 +337,18 @@ def test_a_comparison_sees_what_differs() -> None:
     for name, off, same in (
         ("transport_4x4", 0.9e-8, True),
         ("transport_4x4", 1.1e-8, False),
-        ("pick", 0.9e-2, True),
-        ("pick", 1.1e-2, False),
+        ("pick", 1.9e-2, True),  # twice the estimate of 1e-3 of 10 mm
+        ("pick", 2.1e-2, False),
     ):
         other = run._replace(places=places + off, took=0.9)
-        row = compare._row("lattice", name, [[run], [other]])
+        row = compare._row("lattice", name, [[run] * 5, [other] * 5])
         assert row.same == same
         assert row.slower == (name == "transport_4x4")
+        assert not compare._row("lattice", name, [[run], [other]]).slower
     for name in ("transport_4x4", "pick"):
         assert compare._row("lattice", name, [[run], [run._replace(steps=6)]]).same == (name == "pick")
-        assert not compare._row("lattice", name, [[run], [run._replace(turns=turns + 0.1)]]).same
+    turned = run._replace(turns=turns + 2e-9)
+    assert not compare._row("lattice", "transport_4x4", [[run], [turned]]).same
     failed = run._replace(status="no convergence")
     assert not compare._row("lattice", "pick", [[failed], [failed]]).same
 
