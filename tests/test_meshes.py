@@ -26,7 +26,7 @@ from mdlgen.mechanics.frame import Box, Cylinder, Frame, Law, Plate
 from mdlgen.mechanics.mesh import LOST, box_mesh, mesh_tables
 from mdlgen.mechanics.plate import STRAIGHT, box_plane
 from mdlgen.mechanics.point import MOST_POINTS, OUT, POINT
-from mdlgen.mechanics.tree import closest, depth_at, plant
+from mdlgen.mechanics.tree import build_tree, closest, depth_at
 from mdlgen.model.lower import lower
 from mdlgen.paths import samples
 from mdlgen.registry import emitter
@@ -367,7 +367,7 @@ def test_a_mesh_that_unbalances_a_free_roller_is_refused_by_name(folder):
 
 def test_the_nearest_triangle_is_that_of_a_search_through_all():
     corners, triangles = halved(*halved(*flats(7.5, 5.0, 24, 5.0)))
-    bounds, links, table = plant(corners, triangles, 1.0)
+    bounds, links, table = build_tree(corners, triangles, 1.0)
     assert links[0, 2] == len(links) and links[:, 1].sum() == len(table) == len(triangles)
     random = np.random.default_rng(5)
     for _ in range(200):
