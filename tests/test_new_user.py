@@ -142,9 +142,9 @@ contacts:
 
 
 def test_all_mistakes_at_once_by_place_each_with_what_is_allowed_and_a_corrected_example() -> None:
-    with pytest.raises(SpecError) as told:
+    with pytest.raises(SpecError) as raised:
         loads(WRONG, "bad.yaml")
-    errors = [told.value, *told.value.others]
+    errors = [raised.value, *raised.value.others]
     assert [str(error).removeprefix("bad.yaml:") for error in errors] == [
         "2:36: materials.p.E_cd: 2 has no unit; expected text with a unit like '2 MPa'",
         "4:22: sheets.note_1.material: there is no material 'q'; there are: p",

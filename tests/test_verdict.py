@@ -77,8 +77,8 @@ def test_a_measure_is_judged_at_a_time_or_throughout() -> None:
 
 def test_an_event_is_required_away_anywhere_or_at_a_part() -> None:
     result = required("no jam", "no stub at t")
-    told = summary(result)
-    assert told["verdict"]["passed"] is True and told["verdict"]["events"] == []
+    record = summary(result)
+    assert record["verdict"]["passed"] is True and record["verdict"]["events"] == []
     event = {"kind": "jam", "sheet": "b", "roller": "r", "time_ms": 32.0, "duration_ms": 9.0}
     slip = {
         "kind": "slip",
@@ -87,7 +87,7 @@ def test_an_event_is_required_away_anywhere_or_at_a_part() -> None:
         "time_ms": 3.0,
         "part_of_surface_speed": -0.4,
     }
-    jammed = {**told, "events": [event, slip, {**slip, "part_of_surface_speed": 0.01}]}
+    jammed = {**record, "events": [event, slip, {**slip, "part_of_surface_speed": 0.01}]}
     from mdlgen.results.verdict import verdict
 
     found = verdict(result, jammed)
@@ -151,8 +151,8 @@ def test_a_missed_requirement_ends_with_6_and_writes_its_results(tmp_path: Path)
     assert done.exit_code == 6
     assert "FAIL  travel.x above 1 m" in done.output and "pass  no jam" in done.output
     assert "1 of 2 requirements missed: travel.x above 1 m" in done.output
-    told = json.loads((tmp_path / "out" / "summary.json").read_text())
-    assert told["verdict"]["passed"] is False and told["status"] == "ok"
+    record = json.loads((tmp_path / "out" / "summary.json").read_text())
+    assert record["verdict"]["passed"] is False and record["status"] == "ok"
     assert "FAIL" in (tmp_path / "out" / "report.html").read_text()
     loaded = Result.load(tmp_path / "out")
     assert [o.passed for o in outcomes_of(loaded.summary())] == [False, True]

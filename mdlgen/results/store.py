@@ -21,7 +21,7 @@ from mdlgen.results.summary import summary, versions
 UNITS = "mm, N, g, ms, rad"
 STATES = ("time", "position", "rotation", "velocity", "spin", "contact_force")
 # of a Result, beside its states: what the tables of the file hold
-TOLD = (
+STORED = (
     "model", "solver", "status", "touched", "energy", "step", "steps", "rounds", "halved", "error_estimate",
     "error_estimate_of", "estimates", "versions", "source",
 )  # fmt: skip
@@ -76,7 +76,7 @@ def hdf5(result: Result) -> bytes:
             put(f"statistics/{name}", np.asarray(getattr(result.statistics, name), dtype=float))
         for name, data in _joints(result).items():
             put(f"joints/{name}", data)
-        tree.put(file, {name: getattr(result, name) for name in TOLD} | {"versions": versions(result)})
+        tree.put(file, {name: getattr(result, name) for name in STORED} | {"versions": versions(result)})
         put("took", np.array([getattr(result, name) for name in TOOK]))
         put("bodies", _names(model.bodies.name))
         put("contacts", _names(_rows(result)))

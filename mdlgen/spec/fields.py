@@ -49,7 +49,7 @@ class Strict(BaseModel):
 Model = TypeVar("Model", bound=BaseModel)
 
 
-def settled(owner: Model, **values: Any) -> Model:
+def with_values(owner: Model, **values: Any) -> Model:
     """The same, frozen, object with other values, for a validator that runs after its fields are read: a
     constructor does not hear of another object that is returned."""
     vars(owner).update(values)

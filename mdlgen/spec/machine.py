@@ -25,7 +25,7 @@ from mdlgen.spec.fields import (
     one_of,
     quantity,
     reading,
-    settled,
+    with_values,
 )
 from mdlgen.spec.guide import check_edge
 from mdlgen.spec.rim import Rim
@@ -197,7 +197,7 @@ class Roller(Strict):
     @model_validator(mode="after")
     def _plain(self) -> Roller:
         """The same with its radius alone."""
-        return self if self.diameter is None else settled(self, diameter=None)
+        return self if self.diameter is None else with_values(self, diameter=None)
 
     @model_validator(mode="after")
     def _arm(self) -> Roller:
@@ -272,7 +272,7 @@ class Plane(Strict):
             shown = " or ".join(f"[{', '.join(f'{c:.4g}' for c in side)}]" for side in (first, second))
             raise fail(f"the sides of this plate lie along {shown}; give one of them", within=("along",))
         a, b, thickness = self.size
-        return settled(self, along=None, size=(a, b, thickness) if one > two else (b, a, thickness))
+        return with_values(self, along=None, size=(a, b, thickness) if one > two else (b, a, thickness))
 
     @property
     def sides(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:

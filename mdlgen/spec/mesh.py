@@ -18,7 +18,7 @@ from mdlgen.spec.fields import (
     fail,
     origin,
     quantity,
-    settled,
+    with_values,
 )
 from mdlgen.spec.limits import Tally
 from mdlgen.spec.solid import Solid, read_solid
@@ -73,7 +73,7 @@ class Mesh(Strict):
         name, folder = beside(self.file, info)
         self._from = Source(folder=folder)
         self._solid = read_solid(name, folder, self.units, tally)
-        return settled(self, file=name)
+        return with_values(self, file=name)
 
     @field_serializer("file")
     def _anywhere(self, file: str) -> str:

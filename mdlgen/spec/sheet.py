@@ -26,7 +26,7 @@ from mdlgen.spec.fields import (
     origin,
     quantity,
     reading,
-    settled,
+    with_values,
 )
 from mdlgen.spec.grading import Graded, Grading
 from mdlgen.spec.limits import DEFAULT
@@ -122,7 +122,7 @@ class Sheet(Strict):
         """The same with its mass alone."""
         if self.grammage is None and self.density is None:
             return self
-        return settled(self, grammage=None, density=None)
+        return with_values(self, grammage=None, density=None)
 
     @model_validator(mode="after")
     def _counts(self, info: ValidationInfo) -> Sheet:

@@ -1,18 +1,18 @@
 // The figures of a study: a response curve, a map, parallel coordinates, and the case that is chosen.
 
-const told = JSON.parse(document.getElementById("data").textContent);
+const content = JSON.parse(document.getElementById("data").textContent);
 const get = (id) => document.getElementById(id);
 const BAD = "#b13c00", NONE = "#b9c0c7";
 // viridis, at equal steps
 const RAMP = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]];
-const count = told.kind.length;
+const count = content.kind.length;
 const rows = [...Array(count).keys()];
-const columns = told.columns.map(scaled);
+const columns = content.columns.map(scaled);
 const variables = columns.filter((column) => column.role === "variable");
 const measures = columns.filter((column) => column.role === "measure");
 const order = columns.find((column) => column.role === "case");
-const measured = (row) => told.kind[row] === "ok" || told.kind[row] === "inaccurate";
-const state = { measure: 0, along: 0, across: Math.min(1, variables.length - 1), chosen: told.best ?? 0 };
+const measured = (row) => content.kind[row] === "ok" || content.kind[row] === "inaccurate";
+const state = { measure: 0, along: 0, across: Math.min(1, variables.length - 1), chosen: content.best ?? 0 };
 
 // A column with the place of each cell: itself, or of texts which one it is.
 function scaled(column) {
@@ -41,7 +41,7 @@ function colour(column, row) {
 function say(shape, row) {
   const lines = [`case ${order.cells[row]}`, ...variables.map((v) => `${v.name}: ${text(v, row)} ${v.unit}`)];
   if (measured(row)) lines.push(`${measures[state.measure].name}: ${text(measures[state.measure], row)}`);
-  if (told.reason[row]) lines.push(told.reason[row]);
+  if (content.reason[row]) lines.push(content.reason[row]);
   element("title", {}, shape).textContent = lines.join("\n");
   shape.dataset.row = row;
   shape.addEventListener("click", () => choose(row));
@@ -90,7 +90,7 @@ function response() {
   let steps = [];
   if (x.role === "case") {
     let least = Infinity;
-    const better = seen.filter((row) => told.met[row] && y.name === told.objective);
+    const better = seen.filter((row) => content.met[row] && y.name === content.objective);
     for (const row of better) { least = Math.min(least, y.at[row]); steps.push([x.at[row], least]); }
   } else if (variables.length === 1) steps = seen.map((row) => [x.at[row], y.at[row]]).sort((a, b) => a[0] - b[0]);
   else if (2 * x.levels.length <= seen.length) {
@@ -224,15 +224,15 @@ function choose(row) {
     cell.textContent = value;
     if (kind) cell.className = kind;
   };
-  line("status", told.reason[row] ? `${told.kind[row]}: ${told.reason[row]}` : told.kind[row], measured(row) ? "good" : "bad");
+  line("status", content.reason[row] ? `${content.kind[row]}: ${content.reason[row]}` : content.kind[row], measured(row) ? "good" : "bad");
   for (const column of columns) if (column.role !== "case") line(title(column), text(column, row));
-  const open = document.createElement(told.links[row] ? "p" : "pre");
-  if (told.links[row]) {
+  const open = document.createElement(content.links[row] ? "p" : "pre");
+  if (content.links[row]) {
     const link = document.createElement("a");
-    link.href = told.links[row];
+    link.href = content.links[row];
     link.textContent = `Open the report of case ${order.cells[row]}`;
     open.append(link);
-  } else open.textContent = told.commands[row];
+  } else open.textContent = content.commands[row];
   get("case").replaceChildren(table, open);
   mark();
 }
@@ -249,7 +249,7 @@ function options(id, all, chosen) {
 }
 
 options("measure", measures, Math.max(0, measures.findIndex((measure) => measure.event)));
-options("along", [...variables, order], told.objective ? variables.length : 0);
+options("along", [...variables, order], content.objective ? variables.length : 0);
 options("across", variables, state.across);
 get("across-label").hidden = variables.length < 2;
 get("before").addEventListener("click", () => choose(state.chosen - 1));
