@@ -133,8 +133,8 @@ SCENE = {
                   "mass": "9 g"},
     },
     "contacts": [
-        {"between": ["note", "low"], "stiffness": "300 N/mm^1.5", "friction": 0.5},
-        {"between": ["note", "up"], "stiffness": "300 N/mm^1.5", "friction": 0},
+        {"between": ["note", "low"], "stiffness": "300 N/mm^1.5", "friction": 0.5, "smoothing": "1 mm/s"},
+        {"between": ["note", "up"], "stiffness": "300 N/mm^1.5", "friction": 0, "smoothing": "1 mm/s"},
     ],
     "loads": [{"sheet": "note", "at": ["9 mm", "0 mm"], "force": ["0 N", "0.5 N", "0 N"]}],
     "supports": [{"sheet": "note", "at": ["-9 mm", "0 mm"], "fix": ["z"]}],

@@ -34,7 +34,7 @@ PROMISED = {
     "error_estimate", "tolerance", "energy", "events", "sheets", "rollers", "guides", "meshes", "probes",
     "verdict", "versions", "error_estimate_of", "estimates", "estimate_scales", "planes",
 }  # fmt: skip
-WORK = {"rounds", "estimate_s", "halved"}  # what a run and the estimate of its error took
+WORK = {"iterations", "rounds", "estimate_s", "halved"}  # what a run and the estimate of its error took
 STRIP = """
 name: pull
 materials: {m: {E_md: 1 GPa, E_cd: 1 GPa, k_tx: 1 N*mm/rad, k_ty: 1 N*mm/rad}}

@@ -77,7 +77,7 @@ class Result:
     energy: Energy = field(default_factory=Energy)
     step: float = 0.0  # [ms]
     steps: int = 0
-    rounds: int | None = None  # linear solves, where the solver counts them
+    rounds: int | None = None  # an older name of `iterations`, which files keep
     wall_s: float = 0.0
     estimate_s: float = 0.0  # of runs at other steps, from which the error is estimated
     build_s: float = 0.0
@@ -101,6 +101,11 @@ class Result:
         from mdlgen.results.notebook import tables
 
         return tables(self)
+
+    @property
+    def iterations(self) -> int | None:
+        """Newton iterations of all steps, where the solver counts them."""
+        return self.rounds
 
     @property
     def ok(self) -> bool:

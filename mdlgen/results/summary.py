@@ -34,7 +34,8 @@ def summary(result: Result, without: Collection[str] = ()) -> dict[str, Any]:
         "t_end_ms": result.time[-1] if len(result.time) else 0.0,
         "steps": result.steps,
         "step_ms": result.step,
-        "rounds": result.rounds,
+        "iterations": result.iterations,
+        "rounds": result.iterations,  # as it was called before
         "wall_s": result.wall_s,
         "estimate_s": result.estimate_s,
         "compile_s": result.compile_s,

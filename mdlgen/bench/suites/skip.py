@@ -16,7 +16,8 @@ DURATION = {REFERENCE: 5.0}
 OTHER_DURATION, QUICK_DURATION = 50.0, 1.0
 # Leaving out these changes nothing but the order of sums.
 EXACT = 1e-6
-# These change where the rounds of a step end, which is within what a run promises at its default tolerance.
+# These change where the iterations of a step end, which is within what a run promises at its default
+# tolerance.
 NEAR = 1e-3
 EVERY, BUT = "every rule", "every rule but "
 # A second note, clamped at an edge, and a driven and a free roller, above the machine and free of contact. A
@@ -36,7 +37,7 @@ def unchanged(result: Result, reference: Result | None) -> list[Finding]:
 
 
 def near(result: Result, reference: Result | None) -> list[Finding]:
-    """Difference of a run that may end its rounds elsewhere."""
+    """Difference of a run that may end its iterations elsewhere."""
     return [_difference(result, reference, NEAR)]
 
 
