@@ -156,7 +156,7 @@ def _turn(nodes, r, res, inward):
             res[k], res[k + 1], res[k + 2] = part
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **BORROWS)
 def _contact_forces(work, close, known):
     """Adds the forces of contacts to those of the midpoint, where `known` from what the contact solve last
     evaluated. Returns (how many pairs touch, dissipated power)."""
