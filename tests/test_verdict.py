@@ -46,7 +46,7 @@ def test_limits_are_judged_with_their_margins_in_the_units_of_the_limit() -> Non
     slow = 0.5 * 9.81e-3
     x, v = 0.5 * 80 - 0.5 * slow * 80**2, 0.5 - slow * 80
     found = rows(
-        required(
+        result := required(
             "travel.x above 2 cm",
             "travel below 2 cm",
             "sheets.b.speed from 50 mm/s to 0.2 m/s",
@@ -55,6 +55,8 @@ def test_limits_are_judged_with_their_margins_in_the_units_of_the_limit() -> Non
         )
     )
     assert [passed for passed, _, _ in found] == [True, False, True, True, True]
+    assert [(o.passed, o.value, o.margin) for o in result.verdict] == found
+    assert str(result.verdict[1]).startswith("FAIL  travel below 2 cm: 2.4")
     values = [x / 10, x / 10, v * 1e3, v * 1e3]
     assert [value for _, value, _ in found[:4]] == pytest.approx(values, rel=2e-3)
     margins = [x / 10 - 2, 2 - x / 10, v * 1e3 - 50, 10 - abs(v * 1e3 - 110)]
@@ -156,3 +158,15 @@ def test_a_missed_requirement_ends_with_6_and_writes_its_results(tmp_path: Path)
     assert "FAIL" in (tmp_path / "out" / "report.html").read_text()
     loaded = Result.load(tmp_path / "out")
     assert [o.passed for o in outcomes_of(loaded.summary())] == [False, True]
+
+
+def test_a_sweep_counts_the_cases_that_pass(tmp_path: Path) -> None:
+    scene = tmp_path / "slide.yaml"
+    scene.write_text(SLIDE + "require: [travel.x above 2 cm]\n")
+    over = ["--over", "contacts.0.friction=[0.3, 0.5, 0.9]", "--measure", "verdict.passed"]
+    done = CliRunner().invoke(app, ["sweep", str(scene), "-o", str(tmp_path / "out"), *over])
+    assert done.exit_code == 0, done.output
+    table = (tmp_path / "out" / "table.csv").read_text().splitlines()
+    column = table[0].split(",").index("verdict.passed")
+    # mu g t^2/2 is 9.4, 15.7 and 14.2 mm (it stops after 56.6 ms) of 40 mm
+    assert [float(row.split(",")[column]) for row in table[1:]] == [1.0, 1.0, 0.0]

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from mdlgen.results.estimates import Estimate
     from mdlgen.results.named import ProbeResult, RollerResult, SheetResult
     from mdlgen.results.strain import Strains
+    from mdlgen.results.verdict import Outcome
 
 
 PARTIAL = "partial:"
@@ -142,6 +143,15 @@ class Result:
         from mdlgen.results.summary import summary
 
         return summary(self)
+
+    @property
+    def verdict(self) -> list[Outcome]:
+        """What became of each requirement of the scene: `passed`, `value`, `margin`, `unit`; `str` of one is
+        the line that `mdlgen run` prints."""
+        from mdlgen.results.summary import plain, summary
+        from mdlgen.results.verdict import judge
+
+        return judge(self, plain(summary(self, without=("estimates", "verdict"))))
 
     def report(self, path: str | Path) -> Path:
         """Write the page of this run, report.html, to a file; its path. Raises OutputError."""

@@ -149,9 +149,12 @@ def numbers(result: Result, expressions: Iterable[Expression]) -> dict[str, Valu
 
     words = [name.split(".") for expression in expressions for name in expression.names]
     without = []
-    if not any(word[0] == "events" for word in words):
+    judged = any(word[0] == "verdict" for word in words)  # of events, and of what joints bore, too
+    if not judged:
+        without.append("verdict")
+    if not judged and not any(word[0] == "events" for word in words):
         without.append("events")
-    if not any(word[0] == "sheets" and word[2:3] and word[2] in BEARING for word in words):
+    if not judged and not any(word[0] == "sheets" and word[2:3] and word[2] in BEARING for word in words):
         without.append("bearing")
     if not any(word[0] == "estimates" for word in words):
         without.append("estimates")
