@@ -260,14 +260,14 @@ def _refined(model: Model, system: System, watch: Callable[[], Watch], together:
         runs.insert(0, result)
     result = runs[0]
     if result.ok:
-        told = f"{result.error_estimate_of} does not come closer as steps are halved"
+        why = f"{result.error_estimate_of} does not come closer as steps are halved"
         if not result.coarser:
-            told = "a run at twice the step failed"
+            why = "a run at twice the step failed"
         elif result.error_estimate is not None:
-            told = f"the estimate of {result.error_estimate_of} is {result.error_estimate:.3g}"
+            why = f"the estimate of {result.error_estimate_of} is {result.error_estimate:.3g}"
         result = result.failed(
             f"the tolerance of {model.run.tolerance:.3g} was not reached at a step of {result.step:.3g} ms: "
-            f"{told}; a larger run.tolerance or a run.step of your own ends the search"
+            f"{why}; a larger run.tolerance or a run.step of your own ends the search"
         )
     return result
 
