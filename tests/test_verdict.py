@@ -98,9 +98,8 @@ def test_an_event_is_required_away_anywhere_or_at_a_part() -> None:
         "jam of b at r from 32 ms",
         "slip of b at r, 40 % of the surface's speed, most at 3 ms",
     ]
-    assert in_words({"kind": "double_feed", "sheet": "a", "other": "b", "roller": "r", "time_ms": 1.5}) == (
-        "double feed of a and b at r from 1.5 ms"
-    )
+    both = {"kind": "double_feed", "sheet": "a", "other": "b", "roller": "r", "time_ms": 1.5, "way_mm": 2.345}
+    assert in_words(both) == "double feed of a and b at r from 1.5 ms, the slower one goes 2.35 mm"
 
 
 def test_a_measure_that_is_not_known_is_missed() -> None:

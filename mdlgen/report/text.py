@@ -12,6 +12,7 @@ from mdlgen.report.overview import UNITS
 from mdlgen.results.verdict import outcomes_of
 
 FEW = 3  # names that are listed in a line
+MOST_EVENTS = 5  # that a reader should know of, in words
 NOTHING = 1e-9  # mm, mm/s, deg, N: what is less is round-off
 
 Rows = list[list[str]]  # of a table, the first with what its columns are
@@ -181,7 +182,10 @@ def summary_text(record: dict[str, Any]) -> str:
         f"pairs: {pairs['possible']} possible, {pairs['kept']} kept, {pairs['touched']} touched",
     ]
     lines += [str(outcome) for outcome in outcomes_of(record)]
-    lines += record.get("verdict", {}).get("events", [])
+    happened = record.get("verdict", {}).get("events", [])
+    lines += happened[:MOST_EVENTS]
+    if len(happened) > MOST_EVENTS:
+        lines.append(f"and {len(happened) - MOST_EVENTS} more events (summary.json: verdict.events)")
     if record["halved"]:
         lines.append("one side was solved, the other is its mirror image (run.symmetry: false solves both)")
     for name, sheet in record["sheets"].items():

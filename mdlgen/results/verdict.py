@@ -30,9 +30,10 @@ UNITS = {
     "_n": "N",
     "_w": "N*m/s",
 }
-# Events that a reader is record of whether or not they are required away.
+# Events that a reader sees whether or not they are required away.
 NOTABLE = ("jam", "double_feed", "stub")
-# A slip of more than this part of the surface's speed, over a whole stay, is record of, too.
+# A slip of more than this part of the surface's speed, over a whole stay, is named, too; one of more than all
+# of it is that of a roller which holds back.
 LARGE_SLIP = 0.2
 ROUND_OFF = 1e-9
 
@@ -92,7 +93,7 @@ def outcomes_of(record: Mapping[str, Any]) -> list[Outcome]:
 
 def _is_notable(event: Mapping[str, Any]) -> bool:
     if event["kind"] == "slip":
-        return abs(event.get("part_of_surface_speed") or 0.0) > LARGE_SLIP
+        return LARGE_SLIP < abs(event.get("part_of_surface_speed") or 0.0) <= 1.0
     return event["kind"] in NOTABLE
 
 
@@ -105,7 +106,10 @@ def in_words(event: Mapping[str, Any]) -> str:
     if event["kind"] == "slip":
         part = f"{100.0 * abs(event['part_of_surface_speed']):.0f} % of the surface's speed"
         return f"{text}, {part}, most at {event['time_ms']:.4g} ms"
-    return f"{text} from {event['time_ms']:.4g} ms"
+    text += f" from {event['time_ms']:.4g} ms"
+    if "way_mm" in event:
+        text += f", the slower one goes {event['way_mm']:.3g} mm"
+    return text
 
 
 def check(model: Model) -> None:
