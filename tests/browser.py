@@ -63,7 +63,9 @@ class Tab:
         elif method == "Runtime.consoleAPICalled" and what["type"] in ("error", "warning", "assert"):
             self.complaints.append(" ".join(str(a.get("value", a.get("description"))) for a in what["args"]))
         elif method == "Log.entryAdded" and what["entry"]["level"] in ("error", "warning"):
-            self.complaints.append(what["entry"]["text"])
+            text = what["entry"]["text"]
+            if "GL Driver Message (OpenGL, Performance" not in text:  # software GL says that it is slow
+                self.complaints.append(text)
         elif method == "Network.requestWillBeSent":
             self.requests.append(what["request"]["url"])
 

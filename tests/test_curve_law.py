@@ -7,6 +7,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.interpolate import Akima1DInterpolator, CubicSpline, PchipInterpolator, make_interp_spline
 
+from mdlgen.altair.curves import straight_points
 from mdlgen.mechanics.curve import FOLLOWS, curve_points, curve_spring, follow
 from mdlgen.model import curves as law
 from mdlgen.model.lower import lower
@@ -162,7 +163,7 @@ def test_a_tension_strip_has_the_moduli_of_its_formula() -> None:
 def test_straight_points_are_the_curve_whatever_is_between(number: int, beyond: str) -> None:
     """Lines, Akima's, natural cubic and quintic splines: all within 1e-6 of the greatest stress."""
     curves = made(beyond=beyond).curves
-    x, y = law.straight_points(curves, number)
+    x, y = straight_points(curves, number)
     known, end = mirrored(curves, number), law.limit(curves, number)
     assert (np.diff(x) > 0).all() and (np.diff(y) >= 0).all()
     strain = np.linspace(-end, end, 200_001)

@@ -325,7 +325,8 @@ run: {duration: 60 ms, margin: 30 mm}
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_a_picked_note_is_not_braked_by_its_roller(solver: str) -> None:
     """It leaves at the roller's speed less the slip, and then slides on its own weight alone."""
-    result = solved(PICK, solver)
+    # its speed, which no tolerance judges, is 1 % off at twice this step
+    result = solved(PICK, solver, *(("run.step=0.0375 ms",) if solver == "lattice" else ()))
     leaves = next(event for event in result.events if event["kind"] == "leave")
     assert leaves["speed_mm_per_s"] == pytest.approx(990, rel=0.01)
     sheet = result.summary()["sheets"]["n"]

@@ -11,9 +11,9 @@ from mdlgen.results.result import Result
 from mdlgen.spec.load import loads
 
 SPEED, RAMP = 0.3, 5.0  # of the feeding roller's surface along x [mm/ms], and when it is reached [ms]
-SMOOTHING = 1e-3  # of friction, the default [mm/ms]
+SMOOTHING = 1e-3  # of friction [mm/ms]
 SHEET = "material: paper, size: [40 mm, 30 mm], thickness: 0.1 mm, mass: 0.1 g, boxes: [4, 3]"
-LAW = "restitution: 0.2"
+LAW = "restitution: 0.2, smoothing: 1 mm/s"
 # the upper of two notes lies under the feeding roller
 HEAD = f"""
 name: feeding
