@@ -38,7 +38,7 @@ def differences(
 
 
 def shown(value: Any) -> str:
-    """A number as a reader wants it: five figures, fewer of round-off; a dash for what is not known.
+    """A number as a reader wants it: five figures, 0 for round-off; a dash for what is not known.
 
     In a vector a component that is round-off of the others is 0.
     """
@@ -50,12 +50,15 @@ def shown(value: Any) -> str:
         numbers = [v for v in value if isinstance(v, (int, float))]
         small = ROUND_OFF * max((abs(v) for v in numbers), default=0.0)
         return "(" + ", ".join("0" if v in numbers and abs(v) < small else shown(v) for v in value) + ")"
-    return f"{value:.5g}" if abs(value) > ROUND_OFF else f"{value:.1g}"
+    return f"{value:.5g}" if abs(value) > ROUND_OFF else "0"
 
 
 def percent(value: float | None) -> str:
-    """A ratio in percent."""
-    return shown(None if value is None else 100.0 * value) + " %"
+    """A ratio in percent, of which a small one says how small it is."""
+    if value is None:
+        return "– %"
+    value *= 100.0
+    return f"{value:.3g} %" if abs(value) > ROUND_OFF else f"{value:.1g} %"
 
 
 def _flat(value: Any, path: str = "") -> list[tuple[str, Any]]:
