@@ -142,10 +142,16 @@ def test_the_schema_knows_them() -> None:
 
 
 def test_the_json_schema_knows_the_short_forms() -> None:
-    models = json_schema()["$defs"]
+    schema = json_schema()
+    models = schema["$defs"]
     number, text, both = models["Contact"]["properties"]["friction"]["anyOf"]
     assert (number["type"], text["type"], both) == ("number", "string", {"$ref": "#/$defs/Friction"})
     # of a nip the preload follows from its force
     press = models["Nip"]["properties"]["upper"]["properties"]["press"]["anyOf"][0]
-    assert "preload" in press["properties"] and "preload" not in press["required"]
-    assert "preload" in models["Press"]["required"]
+    assert "preload" in press["properties"] and not {"preload", "direction"} & set(press["required"])
+    assert {"preload", "direction"} <= set(models["Press"]["required"])
+    # what defaults may give is required where there are none
+    assert models["Contact"]["required"] == ["between"] and models["Roller"]["required"] == ["center"]
+    (contacts, rollers) = (rule["else"]["properties"] for rule in schema["allOf"])
+    assert contacts["contacts"]["then"]["items"]["required"] == ["stiffness", "friction"]
+    assert rollers["rollers"]["else"]["additionalProperties"]["required"] == ["axis", "width", "mass"]

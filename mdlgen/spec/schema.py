@@ -35,16 +35,46 @@ def json_schema() -> dict[str, Any]:
         "properties": defaults["contacts"]["properties"],
     }
     press = schema["$defs"]["Press"]
-    followed = {**press, "required": [name for name in press["required"] if name != "preload"]}
+    followed = {
+        **press,
+        "required": [name for name in press["required"] if name not in ("preload", "direction")],
+    }
     side = {"name": {"type": "string"}, "contact": contact, **rollers}
-    side["press"] = {"anyOf": [followed, {"type": "null"}]}  # of a nip the preload follows from its force
+    side["press"] = {"anyOf": [followed, {"type": "null"}]}  # of a nip both follow from its force and place
     nip = schema["$defs"]["Nip"]["properties"]
     for name in ("lower", "upper"):
         nip[name] |= {"additionalProperties": False, "properties": side}
     nip["contact"]["anyOf"][0] |= contact
     refs = {name: {"$ref": f"#/$defs/Nip/properties/{name}"} for name in OF_NIPS}
     defaults["nips"] |= {"additionalProperties": False, "properties": refs}
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        **schema,
+        "allOf": [
+            _unless_default(schema, "contacts", "Contact"),
+            _unless_default(schema, "rollers", "Roller"),
+        ],
+    }
+
+
+def _unless_default(schema: dict[str, Any], kind: str, model: str) -> dict[str, Any]:
+    """Takes from a model what it requires and `defaults` may give, and requires it where there are none."""
+    part = schema["$defs"][model]
+    given = {"between", "center"}  # of each one alone
+    each = {"required": [name for name in part["required"] if name not in given]}
+    part["required"] = [name for name in part["required"] if name in given]
+    return {
+        "if": {"required": ["defaults"], "properties": {"defaults": {"required": [kind]}}},
+        "else": {
+            "properties": {
+                kind: {
+                    "if": {"type": "array"},
+                    "then": {"items": each},
+                    "else": {"additionalProperties": each},
+                }
+            }
+        },
+    }
 
 
 def model_at(path: tuple[str | int, ...]) -> type[BaseModel] | None:
