@@ -8,8 +8,9 @@ scale, there is no estimate. The factors come from a study of random scenes (`te
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 from mdlgen.results.quantities import Difference, differences
@@ -114,10 +115,14 @@ def _pooled(estimates: dict[str, Estimate]) -> dict[str, Estimate]:
         if found.value is not None:
             groups.setdefault(_alike(name), []).append(found.value**2)
     least = {kind: ALIKE * (sum(squares) / len(squares)) ** 0.5 for kind, squares in groups.items()}
+    pooled = _raised(estimates, lambda name: least[_alike(name)])
+    return _raised(pooled, partial(_related, pooled))
+
+
+def _raised(estimates: dict[str, Estimate], least: Callable[[str], float]) -> dict[str, Estimate]:
+    """None is below what is the least of it by its name."""
     return {
-        name: found
-        if found.value is None
-        else replace(found, value=max(found.value, least[_alike(name)], _related(name, found, estimates)))
+        name: found if found.value is None else replace(found, value=max(found.value, least(name)))
         for name, found in estimates.items()
     }
 
@@ -129,7 +134,7 @@ def _alike(name: str) -> str:
     return f"{head}.peaks" if peak else f"{head}.{rest.rpartition('.')[2]}"
 
 
-def _related(name: str, of: Estimate, estimates: dict[str, Estimate]) -> float:
+def _related(estimates: dict[str, Estimate], name: str) -> float:
     """What other quantities leave no doubt of: a pair's means change together, with the time that it touches,
     and follow its greatest force; a probe is carried by a sheet."""
     if name.endswith((".mean_force", ".mean_penetration")):
@@ -140,7 +145,8 @@ def _related(name: str, of: Estimate, estimates: dict[str, Estimate]) -> float:
         carried = (
             e for key, e in estimates.items() if key.startswith("sheets.") and key.endswith(".position")
         )
-        return min(((e.value or 0.0) * e.scale / of.scale for e in carried), default=0.0)
+        scale = estimates[name].scale
+        return min(((e.value or 0.0) * e.scale / scale for e in carried), default=0.0)
     return 0.0
 
 
