@@ -66,6 +66,7 @@ MISS = 1e-3
 # Energy that contacts may make or lose in one step by its length alone, as a part of what passes through the
 # run, at a tolerance of 1e-3; else the step is halved.
 MADE = 5e-5
+LOOSEST = 1e-2  # tolerance that a step is solved to, at most
 # What a scene without contacts may gain, as a part of the tolerance; its step is halved until it does not.
 FREE_GAIN = 1e-3
 
@@ -175,7 +176,7 @@ def _given(
     together: bool,
 ) -> Result:
     """A run at a step that is given, `compared` with one at twice that step."""
-    made = MADE * model.run.tolerance / 1e-3
+    made = MADE * _accuracy(model) / 1e-3
     h = _division(model, wanted).step
 
     def again(times: int, on: System, seen: Watch) -> Result:
@@ -226,7 +227,7 @@ def _refined(model: Model, system: System, watch: Callable[[], Watch], together:
     A run that ends early has its reason from the physics of the scene or from its step: it is reported where
     the next finer run ends at the same time, and its energies balance.
     """
-    flexible, part = _flexible(model), model.run.tolerance / 1e-3
+    flexible, part = _flexible(model), _accuracy(model) / 1e-3
 
     def once(h: float, halved: int, seen: Watch, on: System = system) -> Result:
         fine = part * 0.25**halved
@@ -270,6 +271,11 @@ def _refined(model: Model, system: System, watch: Callable[[], Watch], together:
             f"{why}; a larger run.tolerance or a run.step of your own ends the search"
         )
     return result
+
+
+def _accuracy(model: Model) -> float:
+    """What a step is solved to: a larger tolerance is for what differs from run to run however exact."""
+    return min(model.run.tolerance, LOOSEST)
 
 
 def first_step(model: Model) -> float:
@@ -344,7 +350,7 @@ def _once(
     recorder.store(0.0)
     # the guess of a step is the better the finer it is: what is left of it must fall as fast
     part = (ROUND_OFF if _flexible(model) else ROUND_OFF_RIGID) * min(1.0, (dt / FIRST_STEP) ** 2)
-    tolerance = part * run.tolerance
+    tolerance = part * _accuracy(model)
     control.pace[[MISS_OF, ANEW, FASTEST, MADE_OF]] = miss, float(anew), _speed(model), made
     status, t, past = integrate.DONE, 0.0, 0.0
     mark = Mark(work, control, recorder)
