@@ -110,6 +110,24 @@ def test_a_sheet_coasts_under_one_roller_over_a_plane(plane: int, c_r: float) ->
     assert abs(loss(solved(text, "lattice", f"contacts.1.restitution={c_r}"))) < 1e-3
 
 
+LIGHT = pytest.mark.xfail(
+    strict=True, reason="a light sheet flutters in a damped nip and is braked, see the test"
+)
+
+
+@pytest.mark.parametrize(
+    "mass, c_r",
+    [("10 g", 0.35), ("1 g", 1.0), *(pytest.param(mass, 0.35, marks=LIGHT) for mass in ("1 g", "0.3 g"))],
+)
+def test_a_light_sheet_coasts(mass: str, c_r: float) -> None:
+    """Without friction nothing brakes it. Of a heavy sheet below 0.1 % of the speed is lost; a light one
+    exchanges some 0.4 % with the shaking of its boxes, undamped. Damped, one of 1 g loses 3.5 % in 20 ms and
+    one of 0.3 g 12 %: the rate of a nip has the tilt of the box times its speed, and damping acts along the
+    face that tilts. At a smoothing of 100 mm/s it is 0.5 %."""
+    result = solved(COAST.replace("mass: 100 g", f"mass: {mass}"), "lattice", f"contacts.0.restitution={c_r}")
+    assert abs(loss(result)) < (1e-3 if mass == "10 g" else 5e-3)
+
+
 @pytest.mark.parametrize("c_r", [0.0, 0.5])
 def test_a_sheet_coasts_over_a_mesh_on_a_roller(tmp_path: Path, c_r: float) -> None:
     """The lower roller is a round mesh of 500 sides; its friction is that of the sheet's inertia alone."""
