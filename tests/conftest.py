@@ -25,13 +25,8 @@ settings.load_profile("mdlgen")
 
 # The first test of each compiles nearly all that there is.
 COMPILING = ("test_lattice", "test_lattice_static", "test_exudyn")
-# These need nothing compiled.
-PLAIN = (
-    *("test_check_json", "test_checks", "test_companion", "test_curve_spec", "test_curve_text", "test_deck"),
-    *("test_external", "test_goldens", "test_include", "test_lint", "test_model"),
-    *("test_motionview", "test_names", "test_packaging", "test_reader", "test_rotations", "test_spec"),
-    *("test_supply", "test_text_properties", "test_units", "test_verify"),
-)
+# Folders whose tests need nothing compiled, or little.
+PLAIN = ("spec", "model", "text", "deck")
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -45,7 +40,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """What compiles comes first, on one worker; then what needs nothing compiled, for the other one."""
     first = [next((i for i in items if i.path.stem == name), None) for name in COMPILING]
     begin = [i for i in first if i is not None]
-    plain = [i for i in items if i.path.stem in PLAIN]
+    plain = [i for i in items if i.path.parent.name in PLAIN]
     early = {id(i) for i in (*begin, *plain)}
     items[:] = [*begin, *plain, *(i for i in items if id(i) not in early)]
 

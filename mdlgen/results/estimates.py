@@ -3,7 +3,8 @@
 The difference of two runs is the error of the coarser one where errors fall with the step; in contact they
 often do with its first power only. So the estimate is the difference times a safety factor. A third run shows
 how errors fall: where differences do not, they say little, and where they grow, or are a large part of the
-scale, there is no estimate. The factors come from a study of random scenes (`tests/test_estimates_study.py`).
+scale, there is no estimate. The factors come from a study of random scenes
+(`tests/results/test_estimates_study.py`).
 """
 
 from __future__ import annotations

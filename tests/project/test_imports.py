@@ -1,0 +1,112 @@
+"""What an import costs, and which room may import which."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from places import ROOT
+
+from mdlgen.backends.lattice.kernels.entries import PROGRAM
+from mdlgen.cli import COMMANDS
+from mdlgen.paths import samples
+
+HEAVY = ("exudyn", "numba", "scipy", "matplotlib", "h5py", "rich")
+
+
+def modules(code: str) -> set[str]:
+    """Modules that are there after `code` ran in a new process."""
+    script = f"import sys\n{code}\nprint('\\n'.join(list(sys.modules)), file=sys.stderr)"
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return set(done.stderr.split())
+
+
+def loaded(code: str) -> set[str]:
+    """As `modules`, top-level ones."""
+    return {name.split(".")[0] for name in modules(code)}
+
+
+def test_importing_the_package_is_cheap() -> None:
+    found = loaded("import mdlgen; mdlgen.load; mdlgen.solve; mdlgen.__all__")
+    assert not found & {*HEAVY, "numpy", "pydantic", "ruamel", "typer", "jinja2"}
+
+
+@pytest.mark.parametrize("command", ["mdl", "check"])
+def test_what_does_not_run_imports_no_solver(command: str) -> None:
+    args = ["mdlgen", command, str(samples() / "transport_4x4.yaml")]
+    args += ["-o", "-", "-q"] if command == "mdl" else ["--json"]
+    found = loaded(
+        f"import contextlib, io\nfrom mdlgen.cli import main\nsys.argv = {args!r}\n"
+        "with contextlib.suppress(SystemExit), contextlib.redirect_stdout(io.StringIO()):\n    main()"
+    )
+    assert "numpy" in found
+    assert not found & set(HEAVY)
+    assert ("jinja2" in found) == (command == "mdl")
+
+
+# No process is started, but for the one that importing h5py asks for the name of the processor.
+WATCH = """
+def imported(event, args):
+    started = event in ("subprocess.Popen", "os.system", "os.fork", "os.posix_spawn")
+    assert not started or list(args[1]) == ["uname", "-p"], (event, args)
+sys.addaudithook(imported)
+"""
+
+
+def test_a_plain_run_imports_what_it_uses_and_starts_no_process(tmp_path: Path) -> None:
+    if PROGRAM.why_not() is not None:
+        pytest.skip("numba compiles, since the program does not fit")
+    args = ["mdlgen", "run", str(samples() / "transport_4x4.yaml"), "-o", str(tmp_path / "out"), "-q"]
+    args += ["--set", "run.duration=1 ms", "--set", "run.step=0.1 ms"]
+    found = modules(
+        f"import contextlib\nfrom mdlgen.cli import main\nsys.argv = {args!r}\n{WATCH}"
+        "with contextlib.suppress(SystemExit):\n    main()"
+    )
+    assert (tmp_path / "out" / "report.html").exists()
+    assert {"mdlgen.report.page", "h5py", "jinja2", "llvmlite"} <= found
+    # what draws, compiles, or looks at meshes
+    not_used = {"exudyn", "numba", "scipy", "matplotlib", "rich", "lxml"}
+    not_used |= {"asyncio", "multiprocessing", "concurrent.futures", "numpy.testing", "unittest"}
+    not_used |= {"numpy.random", "numpy.fft", "numpy.polynomial"}
+    # what is another command's
+    rooms = {"bench", "calibrate", "study", "verify", "spec.schema"}
+    rooms |= {"backends.exudyn_local", "backends.motionview", "backends.motionsolve"}
+    rooms |= {f"cli.{name}" for name in set(COMMANDS.values()) - {"run"}}
+    assert found & (not_used | {f"mdlgen.{room}" for room in rooms}) == set()
+
+
+@pytest.mark.parametrize("first", ["mdlgen.mechanics.contact", "mdlgen.backends.lattice.kernels.band"])
+def test_compiled_code_is_kept_in_one_place_whoever_imports_it_first(first: str) -> None:
+    code = (
+        f"import {first}\n"
+        "from mdlgen.backends.lattice.kernels import band, integrate\n"
+        "from mdlgen.mechanics import plate\n"
+        "for one in (band.factor, integrate.run, plate.box_plane):\n"
+        "    print(one.dispatcher._cache.cache_path.replace('\\\\', '/').split('/')[-2].rsplit('_', 1)[0])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == [
+        "mdlgen.backends.lattice.kernels",
+        "mdlgen.backends.lattice.kernels",
+        "mdlgen.mechanics",
+    ]
+
+
+def test_rooms_import_only_lower_rooms() -> None:
+    tool = Path(sys.executable).with_name("lint-imports")
+    if not tool.exists():
+        pytest.skip("import-linter is not installed")
+    environment = {**os.environ, "PYTHONIOENCODING": "utf-8"}
+    done = subprocess.run(
+        [tool, "--no-cache"],
+        cwd=ROOT,
+        capture_output=True,
+        encoding="utf-8",
+        env=environment,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout
