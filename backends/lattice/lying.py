@@ -15,9 +15,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mdlgen.backends.lattice.arrays import JOINT, LOAD, System
+from mdlgen.backends.lattice.arrays import JOINT, System
 from mdlgen.backends.lattice.kernels.state import Midpoint
 from mdlgen.mechanics.frame import Motion
+from mdlgen.mechanics.records import LOAD
 from mdlgen.model.rotations import matrices, vectors
 from mdlgen.model.tables import BOX_PLANE, GROUND, Floats, Model, PlanePart, SheetPart
 

@@ -1,0 +1,160 @@
+"""A Model's bodies, bushings, pairs and loads as records, in a solver's units and in its layout of records.
+
+Rows of bodies are those of the Model; one more, the last, is the ground, which -1 names.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from mdlgen.mechanics.arm import AXIAL, arm
+from mdlgen.mechanics.curve import follow
+from mdlgen.mechanics.driven import drive
+from mdlgen.mechanics.frame import LAW_DYNAMIC, LAW_STATIC
+from mdlgen.mechanics.laws import damping_share
+from mdlgen.mechanics.mesh import mesh_numbers
+from mdlgen.mechanics.records import LOAD
+from mdlgen.mechanics.rim import rim
+from mdlgen.model.rotations import matrices
+from mdlgen.model.tables import GROUND, Floats, Ints, Model, Press
+
+
+class Units(NamedTuple):
+    """What a Model's units are in a solver's, where a newton stays one; the Model's own by default."""
+
+    mm: float = 1.0
+    per_mm: float = 1.0
+    g: float = 1.0
+    ms: float = 1.0
+    hertz: float = 1.0  # 1 N/mm^1.5
+    mpa: float = 1.0
+
+    @property
+    def speed(self) -> float:
+        """1 mm/ms."""
+        return self.mm / self.ms
+
+
+OWN = Units()
+
+
+def pack_bodies(model: Model, layout: np.dtype, units: Units = OWN, driven: bool = True) -> np.ndarray:
+    """Records of all bodies, with no unknowns; `driven`: rollers follow their drives."""
+    mm, g = units.mm, units.g
+    table = model.bodies
+    count = len(table.name)
+    bodies = np.zeros(count + 1, layout)
+    bodies["mass"][:count] = table.mass * g
+    bodies["inertia"][:count] = table.inertia * g * mm**2
+    bodies["half"][:count] = table.half * mm
+    bodies["exposed"][:count] = table.exposed @ np.array([1, 2, 4, 8])
+    bodies["size"] = 1.0
+    for roller in model.rollers:
+        row = bodies[roller.body]
+        row["axis"], row["size"] = roller.axis, (roller.reach * mm, roller.width * mm)
+        row["press"][AXIAL] = (roller.inertia_axial + roller.carried[1]) * g * mm**2
+        if roller.press is not None:
+            _press(row, roller.press, roller.mass + roller.carried[0] + roller.press.carrier_mass, units)
+        if driven:
+            drive(row, roller, units.ms, mm)
+        rim(row, roller, mm)
+        arm(row, roller, mm, g, units.ms)
+    for plate, spring in model.plates:
+        _press(bodies[plate.body], spring, plate.sliding_mass, units)
+    for guide in model.guides:
+        row = bodies[guide.body]
+        row["half"] = [0.5 * mm * size for size in (guide.length, guide.width, guide.thickness)]
+        row["arc"], row["side"] = (guide.radius * mm, guide.middle, guide.half_angle), guide.sides
+    grip = 1.0 if model.run.analysis == "static" else 0.0
+    for part in (*model.planes, *model.guides):
+        bodies["ends"][part.body] = part.ends
+        bodies["edge"][part.body] = (*(mm * r for r in part.edges), grip)
+    for mesh in model.meshes:
+        if mesh.on >= 0:
+            bodies["carries"][model.rollers[mesh.on].body] = 1
+    return bodies
+
+
+def _press(row: np.void, spring: Press, mass: float, units: Units) -> None:
+    """Of what slides on a spring: its way, and the spring's numbers."""
+    row["way"] = spring.direction
+    force = spring.preload - spring.stiffness * (spring.start - spring.touch)
+    stiffness, damping = spring.stiffness * units.per_mm, spring.damping * units.ms * units.per_mm
+    row["press"][:AXIAL] = (stiffness, damping, force, mass * units.g)
+
+
+def number(model: Model, bodies: np.ndarray, first: int, turning: bool = True) -> int:
+    """Numbers the unknowns of rollers and plates from `first` on in the fields `slide` and `spin` (-1: none),
+    and returns the next number; `turning`: free rollers have one."""
+    bodies["slide"] = bodies["spin"] = -1
+    for roller in model.rollers:
+        row = bodies[roller.body]
+        if roller.press is not None or roller.arm is not None:
+            row["slide"], first = first, first + 1
+        if turning and roller.turns:
+            row["spin"], first = first, first + 1
+    for plate, _ in model.plates:
+        bodies["slide"][plate.body], first = first, first + 1
+    return first
+
+
+def pack_bushings(model: Model, layout: np.dtype, order: Ints, units: Units = OWN) -> np.ndarray:
+    """Records of the bushings `order`."""
+    table = model.bushings
+    bushings = np.zeros(len(order), layout)
+    position = np.concatenate([model.bodies.position, np.zeros((1, 3))])
+    rotation = np.concatenate([model.bodies.rotation, np.eye(3)[None]])
+    axes, origin = table.axes[order], table.origin[order]
+    # at rest the frame on b has turned onto the one on a
+    frames = {"a": axes, "b": axes @ matrices(-table.rest[order])}
+    for end in "ab":
+        body = getattr(table, end)[order]
+        bushings[end] = body
+        bushings["r" + end] = np.einsum("nji,nj->ni", rotation[body], origin - position[body]) * units.mm
+        bushings["f" + end] = np.einsum("nji,njk->nik", rotation[body], frames[end]).reshape(-1, 9)
+    scale = np.array([units.per_mm] * 3 + [units.mm] * 3)
+    bushings["k"] = table.k[order] * scale
+    bushings["c"] = table.c[order] * scale * units.ms
+    follow(bushings, model.curves, order, units.mm, units.mpa)
+    return bushings
+
+
+def pack_pairs(model: Model, layout: np.dtype, chosen: Ints, units: Units = OWN) -> np.ndarray:
+    """Records of the kept pairs `chosen`, with the friction of their own."""
+    pairs = pack_laws(model, layout, model.pairs.contact[chosen], units)
+    mesh, other = mesh_numbers(model)
+    pairs["a"], pairs["b"], pairs["mesh"] = model.pairs.a[chosen], other[chosen], mesh[chosen]
+    pairs["law"][:, [LAW_STATIC, LAW_DYNAMIC]] *= model.pair_friction[chosen, None]
+    return pairs
+
+
+def pack_laws(model: Model, layout: np.dtype, chosen: Ints, units: Units = OWN) -> np.ndarray:
+    """A pair of no bodies for each of the contacts `chosen`."""
+    rows = model.contacts
+    pairs = np.zeros(len(chosen), layout)
+    pairs["kind"] = rows.kind[chosen]
+    pairs["shared"] = np.array([share == "width" for share in rows.share], dtype=int)[chosen]
+    pairs["k"] = rows.stiffness[chosen] * units.hertz
+    beta = damping_share.py_func(rows.restitution)  # compiled code is for a solver alone to load
+    speeds = (v * units.speed for v in (rows.stiction_velocity, rows.friction_velocity, rows.smoothing))
+    for column, values in enumerate((beta, rows.mu_static, rows.mu_dynamic, *speeds, rows.rolling)):
+        pairs["law"][:, column] = values[chosen]
+    return pairs
+
+
+def pack_loads(model: Model, units: Units = OWN) -> np.ndarray:
+    """Records of the loads."""
+    loads = np.zeros(len(model.loads.body), LOAD)
+    loads["body"], loads["local"] = model.loads.body, model.loads.local * units.mm
+    loads["force"], loads["moment"] = model.loads.force, model.loads.moment * units.mm
+    return loads
+
+
+def gravity(model: Model, units: Units = OWN) -> Floats:
+    """(3,)"""
+    return model.gravity * units.mm / units.ms**2
+
+
+assert GROUND == -1, "the ground is the last row of the bodies"

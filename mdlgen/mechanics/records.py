@@ -1,0 +1,57 @@
+"""Fields of the records that the force laws read: of a body, a joint, a pair of bodies, a load.
+
+A solver's record has these, by name, and beside them what it numbers its unknowns by.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mdlgen.mechanics.arm import ARM, PRESS
+from mdlgen.mechanics.curve import FOLLOWS
+from mdlgen.mechanics.driven import DRIVEN
+from mdlgen.mechanics.edge import ENDS
+from mdlgen.mechanics.frame import LAW
+from mdlgen.mechanics.rim import RIM
+
+# Of a body: its shape.
+SHAPE = [
+    ("mass", "f8"),
+    ("inertia", "f8", 3),
+    ("half", "f8", 3),  # of a box; of a guide: half of its length, width and thickness
+    ("arc", "f8", 3),  # of a guide: radius (0: straight), middle angle, half angle
+    ("side", "i8"),  # of a guide, that may be touched: as in mechanics.guide
+    *ENDS,
+]
+EXPOSED = ("exposed", "i8")  # of a box: its side faces without a neighbour, as a bit mask
+# How a roller or a plate moves.
+MOVED = [
+    ("axis", "f8", 3),
+    ("way", "f8", 3),  # direction of a slide
+    ("press", "f8", PRESS),  # columns as in mechanics.arm
+    *DRIVEN,
+    ("size", "f8", 2),  # radius, of a rim the greatest, and width
+]
+ROLLER = [
+    ("carries", "i8"),  # 1: a roller with a mesh on it, whose turn is followed
+    *RIM,
+    *ARM,
+]
+
+# Of a joint: its bodies, and arms in body axes.
+ENDS_OF_JOINT = [("a", "i8"), ("b", "i8"), ("ra", "f8", 3), ("rb", "f8", 3)]
+FRAMES = [("fa", "f8", 9), ("fb", "f8", 9)]  # in body axes
+CONSTANTS = [("k", "f8", 6), ("c", "f8", 6)]
+CURVE = FOLLOWS
+
+# Of a pair: its bodies, its law.
+BODIES = [("kind", "i8"), ("a", "i8"), ("b", "i8")]
+CONTACT = [
+    ("shared", "i8"),
+    ("mesh", "i8"),  # number of it
+    ("beside", "i8"),  # sides of the box that stand before ends of a plate, see mechanics.edge
+    ("k", "f8"),
+    ("law", "f8", LAW),  # columns as in mechanics.frame
+]
+
+LOAD = np.dtype([("body", "i8"), ("local", "f8", 3), ("force", "f8", 3), ("moment", "f8", 3)])
