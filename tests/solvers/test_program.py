@@ -7,11 +7,13 @@ import json
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from synthetic import moving, small_model
 
 from mdlgen import paths
 from mdlgen.backends.lattice.kernels.entries import PROGRAM
@@ -19,6 +21,7 @@ from mdlgen.paths import samples
 from mdlgen.program import build, compare, file, layout, native
 from mdlgen.program.file import Unfit
 from mdlgen.program.layout import Misfit
+from mdlgen.results.estimates import between
 
 KERNELS = '''
 from pathlib import Path
@@ -323,33 +326,54 @@ def test_every_sample_is_compared() -> None:
     ("solver", "names"), [("lattice", compare.CALM | compare.RATTLING), ("exudyn", compare.EXUDYN)]
 )
 def test_samples_run_as_shipped_as_by_numba(solver: str, names: dict[str, tuple[str, ...]]) -> None:
-    """Places agree to 1e-9 of the travel, where contacts rattle to the error estimate."""
+    """Places agree to 1e-9 of the travel; where contacts rattle, all with an estimate to that."""
     rows = list(compare.compared(solver, names, 1))
     assert [row.name for row in rows] == list(names)
     assert [str(row) for row in rows if not row.same] == []
 
 
 def test_a_comparison_sees_what_differs() -> None:
-    places = np.zeros((2, 1, 3))
-    places[1] = 10.0
-    turns = np.zeros((2, 1, 4))
-    run = compare.Run("ok", 5, 1e-3, places, turns, 1.0)
+    model = small_model()
+    estimates = between([moving(model)])
+    travel = estimates["sheets.note.position"].scale
+    boxes = slice(model.sheets[0].first, model.sheets[0].first + model.sheets[0].count)
+    force = next(name for name in estimates if name.endswith("support.max_force"))
+
+    def run(off: float = 0.0, took: float = 1.0, **more: Any) -> compare.Run:
+        result = replace(moving(model), **more)
+        result.position[:, boxes, 2] += off
+        result.estimates = {
+            name: replace(found, value=1e-3 if name in ("sheets.note.position", force) else None)
+            for name, found in estimates.items()
+        }
+        return compare.Run(result, took)
+
     for name, off, same in (
-        ("transport_4x4", 0.9e-8, True),
-        ("transport_4x4", 1.1e-8, False),
-        ("pick", 1.9e-2, True),  # twice the estimate of 1e-3 of 10 mm
-        ("pick", 2.1e-2, False),
+        ("transport_4x4", 0.9e-9, True),
+        ("transport_4x4", 1.1e-9, False),
+        ("pick", 1.9e-3, True),  # less than twice the estimate
+        ("pick", 2.1e-3, False),
     ):
-        other = run._replace(places=places + off, took=0.9)
-        row = compare._row("lattice", name, [[run] * 5, [other] * 5])
-        assert row.same == same
+        row = compare._row("lattice", name, [[run()] * 5, [run(off * travel, 0.9)] * 5])
+        assert row.same == same, row
         assert row.slower == (name == "transport_4x4")
-        assert not compare._row("lattice", name, [[run], [other]]).slower
+        assert not compare._row("lattice", name, [[run()], [run(off * travel, 0.9)]]).slower
     for name in ("transport_4x4", "pick"):
-        assert compare._row("lattice", name, [[run], [run._replace(steps=6)]]).same == (name == "pick")
-    turned = run._replace(turns=turns + 2e-9)
-    assert not compare._row("lattice", "transport_4x4", [[run], [turned]]).same
-    failed = run._replace(status="no convergence")
+        assert compare._row("lattice", name, [[run()], [run(steps=6)]]).same == (name == "pick")
+    turned = moving(model).rotation + 2e-9
+    assert not compare._row("lattice", "transport_4x4", [[run()], [run(rotation=turned)]]).same
+    # of what run.tolerance does not judge, each that has an estimate
+    for part, same in ((1.9e-3, True), (2.1e-3, False)):
+        statistics = moving(model).statistics
+        statistics.max_force[-1] += part * estimates[force].scale
+        row = compare._row("lattice", "pick", [[run()], [run(statistics=statistics)]])
+        assert (row.same, row.of) == (same, force)
+    slid = moving(model)
+    roller = next(each for each in model.rollers if each.press is not None)
+    slid.position[:, roller.body] += roller.press.direction * 2.1e-4 * travel
+    row = compare._row("lattice", "pick", [[run()], [run(position=slid.position)]])
+    assert (row.same, row.of) == (False, f"rollers.{roller.name}.slide")  # judged, without an estimate
+    failed = run(status="no convergence")
     assert not compare._row("lattice", "pick", [[failed], [failed]]).same
 
 
@@ -361,7 +385,8 @@ def test_a_process_runs_a_sample_by_the_code_that_it_is_asked_for() -> None:
         run = process.run("lattice", "transport_4x4", ("run.duration=1 ms", "run.step=0.1 ms"))
     finally:
         process.close()
-    assert (run.status, run.steps) == ("ok", 10) and run.took > 0.0 and len(run.places) > 2
+    assert (run.result.status, run.result.steps) == ("ok", 10)
+    assert run.took > 0.0 and len(run.result.position) > 2
 
 
 def test_types_are_told_and_checked() -> None:
