@@ -97,7 +97,7 @@ def solve(
 ) -> Result:
     """Run a Model; see `mdlgen.solve`. `checkpointer` writes states, of a solver that can; `threads` are how
     many it may use, where it has use for them."""
-    from mdlgen.results.verdict import check
+    from mdlgen.results.required import check
 
     check(model)
     backend = solver(chosen(name, model)[0])

@@ -40,7 +40,7 @@ from mdlgen.mechanics.records import (
 from mdlgen.model.tables import BOX_BOX, BOX_MESH, CYLINDER_MESH, SUPPORT, Floats, Ints, Model
 
 if TYPE_CHECKING:
-    from mdlgen.backends.lattice.mirror import Mirror
+    from mdlgen.backends.lattice.symmetry.mirror import Mirror
 
 BODY = np.dtype(
     [

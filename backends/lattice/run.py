@@ -38,11 +38,11 @@ from mdlgen.backends.lattice.kernels.state import (
 from mdlgen.backends.lattice.kernels.state import MADE as MADE_OF
 from mdlgen.backends.lattice.kernels.state import MISS as MISS_OF
 from mdlgen.backends.lattice.mark import Mark, Stage
-from mdlgen.backends.lattice.mirror import halve
 from mdlgen.backends.lattice.record import Recorder, Stand
 from mdlgen.backends.lattice.scope import check
-from mdlgen.backends.lattice.static import rest
-from mdlgen.backends.lattice.symmetry import find
+from mdlgen.backends.lattice.statics.rest import rest
+from mdlgen.backends.lattice.symmetry.find import find
+from mdlgen.backends.lattice.symmetry.mirror import halve
 from mdlgen.errors import SpecError
 from mdlgen.mechanics.frame import Motion
 from mdlgen.model.curves import overstretched

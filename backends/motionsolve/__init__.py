@@ -14,15 +14,15 @@ __all__ = ["BACKEND", "check", "emit", "read", "validate"]
 
 
 def emit(model: Model) -> str:
-    """The deck; see `mdlgen.backends.motionsolve.text.emit`."""
-    from mdlgen.backends.motionsolve import text
+    """The deck; see `mdlgen.backends.motionsolve.writer.text.emit`."""
+    from mdlgen.backends.motionsolve.writer import text
 
     return text.emit(model)
 
 
 def check(model: Model) -> None:
     """Raises RefusedError by name for what the deck cannot represent."""
-    from mdlgen.backends.motionsolve import text
+    from mdlgen.backends.motionsolve.writer import text
 
     text.check(model)
 
@@ -35,8 +35,8 @@ def read(text: str, file: str = "<deck>") -> Reading:
 
 
 def validate(text: str, file: str = "<deck>") -> list[str]:
-    """What is wrong in a deck, one line each; see `mdlgen.backends.motionsolve.schema.validate`."""
-    from mdlgen.backends.motionsolve import schema
+    """What is wrong in a deck, one line each; see `mdlgen.backends.motionsolve.reader.schema.validate`."""
+    from mdlgen.backends.motionsolve.reader import schema
 
     return schema.validate(text, file)
 

@@ -15,29 +15,29 @@ __all__ = ["BACKEND", "check", "companion", "companion_reasons", "emit", "read"]
 
 
 def emit(model: Model, *, set_contact: bool = False, only: str | None = None) -> str:
-    """The .mdl text, whole or of the sheets only; see `mdlgen.backends.motionview.text.emit`."""
-    from mdlgen.backends.motionview import text
+    """The .mdl text, whole or of the sheets only; see `mdlgen.backends.motionview.writer.text.emit`."""
+    from mdlgen.backends.motionview.writer import text
 
     return text.emit(model, set_contact=set_contact, only=only)
 
 
 def check(model: Model) -> None:
     """Raises RefusedError by name for what the text cannot represent."""
-    from mdlgen.backends.motionview import text
+    from mdlgen.backends.motionview.writer import text
 
     text.check(model)
 
 
 def companion(model: Model, *, set_contact: bool = False, only: str | None = None) -> str | None:
     """The Python script to run in MotionView after the text is loaded, or None."""
-    from mdlgen.backends.motionview import script
+    from mdlgen.backends.motionview.writer import script
 
     return script.companion(model, set_contact=set_contact, only=only)
 
 
 def companion_reasons(model: Model, set_contact: bool = False, only: str | None = None) -> list[str]:
     """Why the script is needed, one line each; empty where it is not."""
-    from mdlgen.backends.motionview import script
+    from mdlgen.backends.motionview.writer import script
 
     return script.reasons(model, set_contact, only)
 

@@ -14,7 +14,7 @@ import numpy as np
 from PIL import Image
 
 import mdlgen
-from mdlgen.report.stills import stills
+from mdlgen.report.figures.stills import stills
 from mdlgen.results.result import Result
 
 ROOT = Path(__file__).resolve().parent.parent.parent

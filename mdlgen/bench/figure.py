@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from mdlgen.bench.fits import EQUAL_ERROR, fits, lines
 from mdlgen.bench.row import OK, BenchRow
-from mdlgen.report.figures import COLOURS, STYLE
+from mdlgen.report.figures.figure import COLOURS, STYLE
 
 if TYPE_CHECKING:
     from mdlgen.bench.run import Bench

@@ -142,12 +142,12 @@ def optimize(
     """
     from mdlgen import paths, registry
     from mdlgen.cli.texts import mdl
-    from mdlgen.study import optimisation as study
-    from mdlgen.study.fragment import design, fragment, report_text
-    from mdlgen.study.goal import goal
-    from mdlgen.study.page import write_page
-    from mdlgen.study.sweep import write
-    from mdlgen.study.task import task
+    from mdlgen.study.design.task import task
+    from mdlgen.study.optimise import optimisation as study
+    from mdlgen.study.optimise.goal import goal
+    from mdlgen.study.output.files import write
+    from mdlgen.study.output.fragment import design, fragment, report_text
+    from mdlgen.study.output.page import write_page
 
     output, text, notices = _places(output, text, folder)
     if spec is None:

@@ -50,10 +50,10 @@ def report(
     Example: mdlgen report out/transport_4x4 --stills 0,18,30,50ms
     """
     from mdlgen import paths
-    from mdlgen.report.page import page
-    from mdlgen.report.pictures import pictures_of
-    from mdlgen.report.stills import stills, times
-    from mdlgen.results.store import load
+    from mdlgen.report.figures.pictures import pictures_of
+    from mdlgen.report.figures.stills import stills, times
+    from mdlgen.report.html.page import page
+    from mdlgen.results.io.store import load
 
     wanted = None if at is None else times(at)
     if wanted is not None and len(folders) > 1:
@@ -97,9 +97,9 @@ def export(
     Example: mdlgen export out/transport_4x4 -o note.vtkhdf
     """
     from mdlgen import paths
-    from mdlgen.report.gltf import glb
-    from mdlgen.report.vtkhdf import vtkhdf
-    from mdlgen.results.store import load
+    from mdlgen.report.export.gltf import glb
+    from mdlgen.report.export.vtkhdf import vtkhdf
+    from mdlgen.results.io.store import load
 
     writers = {".glb": glb, ".vtkhdf": vtkhdf}
     if output.suffix.lower() not in writers:
@@ -125,8 +125,8 @@ def view(
     import webbrowser
 
     from mdlgen import paths
-    from mdlgen.report.page import page
-    from mdlgen.results.store import load
+    from mdlgen.report.html.page import page
+    from mdlgen.results.io.store import load
 
     target, states = folder / PAGE, folder / "result.h5"
     try:

@@ -111,7 +111,7 @@ def run(
         strictly(model)
     from mdlgen.paths import check_folder
     from mdlgen.processors import processors
-    from mdlgen.report.pictures import are_drawn, pictures_of
+    from mdlgen.report.figures.pictures import are_drawn, pictures_of
     from mdlgen.runs.checkpoint import Checkpointer
 
     folder = resume or output or Path("out") / model.name
@@ -157,9 +157,9 @@ def run(
                 folder.rmdir()
         say(f"{request.spec}: the run failed: {result.status}; nothing was written into {folder}")
         raise typer.Exit(SOLVER_FAILED)
-    from mdlgen.report.page import page
+    from mdlgen.report.html.page import page
     from mdlgen.report.text import summary_text
-    from mdlgen.results.store import save
+    from mdlgen.results.io.store import save
 
     result.source = source_of(request.text, request.sets)
     also = pictures_of(result) if drawn else {}
@@ -203,8 +203,8 @@ def _ahead(checkpointer: Checkpointer, model: Model, drawn: bool, packages: tupl
     sys.setswitchinterval(INTERVAL)
     # what fails here fails again where it is needed, and is reported there
     with contextlib.suppress(Exception):
-        from mdlgen.report.page import prepare
-        from mdlgen.report.pictures import load_drawing
+        from mdlgen.report.figures.pictures import load_drawing
+        from mdlgen.report.html.page import prepare
         from mdlgen.report.text import summary_text  # noqa: F401
 
         prepare(model)
@@ -217,7 +217,7 @@ def _ahead(checkpointer: Checkpointer, model: Model, drawn: bool, packages: tupl
 
 
 def _save_part(checkpointer: Checkpointer, folder: Path) -> None:
-    from mdlgen.results.store import save
+    from mdlgen.results.io.store import save
 
     if checkpointer.part is None:
         say("there is no part to checkpointer yet")

@@ -30,7 +30,7 @@ from mdlgen.cli.shell import (
 from mdlgen.errors import OutputError, SpecError
 
 if TYPE_CHECKING:
-    from mdlgen.study.workers import Runner
+    from mdlgen.study.execution.workers import Runner
 
 
 @app.command()
@@ -137,8 +137,8 @@ def sweep(
     """
     from mdlgen import registry
     from mdlgen.study import sweep as study
-    from mdlgen.study.table import check_parquet, installed
-    from mdlgen.study.task import task
+    from mdlgen.study.analysis.table import check_parquet, installed
+    from mdlgen.study.design.task import task
 
     if spec is None:
         raise SpecError(
@@ -184,8 +184,10 @@ def sweep(
                 done = f"{len(journal.rows)} of {len(wanted.cases)} cases are done"
                 say(f"{done}; mdlgen sweep --resume {folder} goes on")
                 raise
-    files = study.write(folder, wanted.task, rows, installed() if parquet is None else parquet)
-    more, words = study.write_findings(folder, wanted, rows)
+    from mdlgen.study.output.files import write, write_findings
+
+    files = write(folder, wanted.task, rows, installed() if parquet is None else parquet)
+    more, words = write_findings(folder, wanted, rows)
     files += more
     if as_json:
         names = [str(file) for file in files]
@@ -202,10 +204,10 @@ def sweep(
 def runner_of(scheduler: str | None, workers: int | None, quiet: bool) -> Runner:
     """A cluster where one is named, else processes of this machine."""
     if scheduler is not None:
-        from mdlgen.study.cluster import Cluster
+        from mdlgen.study.execution.cluster import Cluster
 
         return Cluster(scheduler)
-    from mdlgen.study.workers import COMPILING as COMPILES
-    from mdlgen.study.workers import Workers
+    from mdlgen.study.execution.workers import COMPILING as COMPILES
+    from mdlgen.study.execution.workers import Workers
 
     return Workers(workers, lambda word: None if quiet else say(COMPILING if word == COMPILES else PREPARING))

@@ -10,6 +10,7 @@ import numpy as np
 from mdlgen.errors import SpecError
 from mdlgen.model import grid, naming
 from mdlgen.model.anchors import anchor, find_tension, lower_loads
+from mdlgen.model.before import Before
 from mdlgen.model.cells import Cells, cells, zone_parts
 from mdlgen.model.curves import lower_curves
 from mdlgen.model.ends import with_ends
@@ -18,7 +19,6 @@ from mdlgen.model.joints import Joints, find_joints
 from mdlgen.model.meshes import loaded
 from mdlgen.model.pairs import find_pairs
 from mdlgen.model.parameters.given import parameters, unfollowed
-from mdlgen.model.parts.kind import Before
 from mdlgen.model.parts.kinds import KINDS, kind_of
 from mdlgen.model.press_parts import Bow, Face, Facets
 from mdlgen.model.rotations import matrices

@@ -6,8 +6,8 @@ import numpy as np
 
 from mdlgen.errors import SpecError
 from mdlgen.model import meshes, press
+from mdlgen.model.before import Before
 from mdlgen.model.frames import frame
-from mdlgen.model.parts.kind import Before
 from mdlgen.model.press_parts import (
     Face,
     Wheel,

@@ -15,8 +15,8 @@ from mdlgen.model.tables import Floats, Model
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from mdlgen.report.plots import Plot
-    from mdlgen.report.shown import Shown
+    from mdlgen.report.figures.plots import Plot
+    from mdlgen.report.html.shown import Shown
     from mdlgen.results.estimates import Estimate
     from mdlgen.results.named import ProbeResult, RollerResult, SheetResult
     from mdlgen.results.strain import Strains
@@ -127,14 +127,14 @@ class Result:
 
     def save(self, folder: str | Path) -> None:
         """Write summary.json, series.csv and result.h5 into `folder`. Raises OutputError."""
-        from mdlgen.results.store import save
+        from mdlgen.results.io.store import save
 
         save(self, Path(folder))
 
     @classmethod
     def load(cls, folder: str | Path) -> Result:
         """The result that `save` or `mdlgen run` wrote into `folder`. Raises OutputError."""
-        from mdlgen.results.store import load
+        from mdlgen.results.io.store import load
 
         return load(folder)
 
@@ -156,7 +156,7 @@ class Result:
     def report(self, path: str | Path) -> Path:
         """Write the page of this run, report.html, to a file; its path. Raises OutputError."""
         from mdlgen.paths import write_atomic
-        from mdlgen.report.page import page
+        from mdlgen.report.html.page import page
 
         file = Path(path)
         write_atomic(file, page([self]).encode("utf-8"))
@@ -164,15 +164,15 @@ class Result:
 
     def show(self, height: int = 720) -> Shown:
         """The page of this run, for a notebook; `height` in pixels."""
-        from mdlgen.report.page import page
-        from mdlgen.report.shown import Shown
+        from mdlgen.report.html.page import page
+        from mdlgen.report.html.shown import Shown
 
         return Shown(page([self]), height)
 
     def plot(self, what: str = "travel") -> Plot:
         """One quantity over time: travel, speed, yaw, roller_speed, nip_force or probes. A notebook shows it,
         `save(path)` writes it as PNG, and `figure` is matplotlib's. Raises SpecError for another one."""
-        from mdlgen.report.plots import plot
+        from mdlgen.report.figures.plots import plot
 
         return plot(self, what)
 
@@ -201,7 +201,7 @@ class Result:
         """What series.csv holds, as a pandas.DataFrame over `time_ms`; units stand in the names of the
         columns. Needs the extra `pandas`.
         """
-        from mdlgen.results.labelled import frame
+        from mdlgen.results.io.labelled import frame
 
         return frame(self)
 
@@ -209,7 +209,7 @@ class Result:
         """The states as an xarray.Dataset over `time` [ms], `body` and `contact`, by their names, in the
         Model's units, which stand in `attrs`. Needs the extra `xarray`.
         """
-        from mdlgen.results.labelled import dataset
+        from mdlgen.results.io.labelled import dataset
 
         return dataset(self)
 

@@ -15,7 +15,6 @@ from mdlgen.spec.require import Requirement, requirement
 from mdlgen.units import parse_unit, same
 
 if TYPE_CHECKING:
-    from mdlgen.model.tables import Model
     from mdlgen.results.result import Result
 
 # Endings of names in the summary, and the units that they stand for; the longest first.
@@ -110,16 +109,6 @@ def in_words(event: Mapping[str, Any]) -> str:
     if "way_mm" in event:
         text += f", the slower one goes {event['way_mm']:.3g} mm"
     return text
-
-
-def check(model: Model) -> None:
-    """Raises SpecError for a requirement about a measure or a time that a run of the Model has not."""
-    if model.require:
-        from mdlgen.results.begun import begun_of
-        from mdlgen.results.summary import summary
-
-        begun = begun_of(model)
-        judge(begun, summary(begun, without=("estimates", "verdict")))
 
 
 def judge(result: Result, record: Mapping[str, Any]) -> list[Outcome]:

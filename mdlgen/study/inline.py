@@ -10,15 +10,15 @@ from itertools import product
 from typing import TYPE_CHECKING, Any
 
 from mdlgen.errors import MdlgenError, RefusedError, SpecError
-from mdlgen.study.measure import defaults, known, measured, measures
-from mdlgen.study.row import FAILED, INACCURATE, OK, REFUSED, CaseRow, Times
-from mdlgen.study.table import Column, columns
-from mdlgen.study.variable import check_count
+from mdlgen.study.analysis.table import Column, columns
+from mdlgen.study.design.measure import defaults, known, measured, measures
+from mdlgen.study.design.variable import check_count
+from mdlgen.study.execution.row import FAILED, INACCURATE, OK, REFUSED, CaseRow, Times
 
 if TYPE_CHECKING:
     from mdlgen.model.tables import Model
     from mdlgen.spec.scene import Scene
-    from mdlgen.study.expression import Expression
+    from mdlgen.study.design.expression import Expression
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ def sweep(
     """See `Scene.sweep`."""
     from mdlgen import registry
     from mdlgen.model.lower import lower
-    from mdlgen.study.expression import read
+    from mdlgen.study.design.expression import read
 
     if isinstance(measure, str):
         raise SpecError(f"measures are a list of texts; write [{measure[:80]!r}]")

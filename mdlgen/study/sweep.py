@@ -10,14 +10,13 @@ from pathlib import Path
 from mdlgen.errors import MdlgenError, OutputError, RefusedError, SpecError
 from mdlgen.model.tables import Model
 from mdlgen.paths import check_folder, write_together
-from mdlgen.study import table
-from mdlgen.study.case import Case
-from mdlgen.study.journal import Asked, Journal
-from mdlgen.study.measure import check_apart, defaults, known, measures
-from mdlgen.study.row import INACCURATE, CaseRow
-from mdlgen.study.task import Task
-from mdlgen.study.variable import check_count, check_paths, grid, variable
-from mdlgen.study.workers import Runner
+from mdlgen.study.design.case import Case
+from mdlgen.study.design.measure import check_apart, defaults, known, measures
+from mdlgen.study.design.task import Task
+from mdlgen.study.design.variable import check_count, check_paths, grid, variable
+from mdlgen.study.execution.journal import Asked, Journal
+from mdlgen.study.execution.row import INACCURATE, CaseRow
+from mdlgen.study.execution.workers import Runner
 
 WHAT = "sweep"
 # How many cases are tried for one that can be read, from which the names of its numbers are known.
@@ -56,8 +55,8 @@ def over(texts: Sequence[str], draw: tuple[str, int] | None, seed: int) -> tuple
         raise SpecError("name what is to differ: --over PATH=START:STOP:N, or PATH=[a, b, c]")
     if draw is None:
         return grid([variable(text) for text in texts]), "grid"
-    from mdlgen.study.distribution import parse_distribution
-    from mdlgen.study.sampling import sample
+    from mdlgen.study.design.distribution import parse_distribution
+    from mdlgen.study.design.sampling import sample
 
     kind, count = draw
     drawn = [parse_distribution(text) for text in texts]
@@ -81,7 +80,7 @@ def sweep(
     Raises SpecError for a measure that there is not, and where not one of the cases can be read.
     """
     from mdlgen.runs.provenance import digest
-    from mdlgen.study.link import check_links
+    from mdlgen.study.design.link import check_links
 
     check_links(task.lets, [path for path, _ in cases[0].values])
     model = first_model(task, cases)
@@ -193,34 +192,6 @@ def keep(folder: Path, row: CaseRow) -> None:
     except OSError as error:
         raise OutputError(f"{place}: cannot make this folder: {error.strerror or error}") from None
     write_together({place / name: content for name, content in row.files.items()})
-
-
-def write(folder: Path, task: Task, rows: Sequence[CaseRow], parquet: bool) -> list[Path]:
-    """Writes table.csv, times.csv and, where asked for, table.parquet. Raises OutputError, RefusedError."""
-    found = table.columns(rows, [name for name, _ in task.measures])
-    files: dict[Path, str | bytes] = {
-        folder / "table.csv": table.csv_text(found),
-        folder / "times.csv": table.csv_text(table.times(rows)),
-    }
-    if parquet:
-        files[folder / "table.parquet"] = table.parquet(found)
-    write_together(files)
-    return list(files)
-
-
-def write_findings(folder: Path, wanted: Sweep, rows: Sequence[CaseRow]) -> tuple[list[Path], list[str]]:
-    """Writes findings.json and study.html: their names, and the findings in words. Raises OutputError."""
-    from mdlgen.study.findings import findings, findings_text
-    from mdlgen.study.page import NAME, page
-
-    columns = table.columns(rows, [name for name, _ in wanted.task.measures])
-    found = findings(wanted.task, wanted.how, rows, columns)
-    files: dict[Path, str | bytes] = {
-        folder / "findings.json": json.dumps(found, indent=2, allow_nan=False) + "\n",
-        folder / NAME: page(folder, wanted.name, wanted.how, wanted.task, rows, columns, found),
-    }
-    write_together(files)
-    return list(files), findings_text(found)
 
 
 def summary(rows: Sequence[CaseRow]) -> str:

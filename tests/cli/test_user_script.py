@@ -14,7 +14,7 @@ from places import ROOT
 import mdlgen
 from mdlgen.errors import SpecError
 from mdlgen.paths import samples
-from mdlgen.report.plots import QUANTITIES
+from mdlgen.report.figures.plots import QUANTITIES
 from mdlgen.results.result import Result
 from mdlgen.spec.load import loads
 

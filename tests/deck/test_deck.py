@@ -19,9 +19,9 @@ from places import GOLDEN, REAL
 
 import mdlgen
 from mdlgen.backends import motionsolve
-from mdlgen.backends.motionsolve.axes import along
-from mdlgen.backends.motionsolve.environment import comment
-from mdlgen.backends.motionsolve.schema import schema
+from mdlgen.backends.motionsolve.reader.schema import schema
+from mdlgen.backends.motionsolve.writer.axes import along
+from mdlgen.backends.motionsolve.writer.environment import comment
 from mdlgen.cli import app
 from mdlgen.errors import MdlgenError, RefusedError, SpecError
 from mdlgen.model.tables import Model
@@ -408,7 +408,7 @@ def test_names_that_would_meet_are_refused() -> None:
 
 def test_what_is_pasted_is_escaped_and_cannot_end_a_comment() -> None:
     assert "--" not in comment("a --> b")
-    from mdlgen.backends.motionsolve.environment import environment
+    from mdlgen.backends.motionsolve.writer.environment import environment
 
     assert environment().from_string("{{ x }}").render(x='"<&>') == "&#34;&lt;&amp;&gt;"
 

@@ -14,7 +14,7 @@ from tempfile import TemporaryDirectory
 from browser import Tab, tab
 from synthetic import moving, small_model
 
-from mdlgen.report.page import page
+from mdlgen.report.html.page import page
 
 # Moved, drawn, and a pixel read back, since only that tells that it is done: 30 pictures at other times each,
 # after 10 to get warm. Of these the fastest quarter, since what else a machine does only adds.

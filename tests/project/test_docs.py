@@ -20,7 +20,7 @@ from typer.testing import CliRunner
 
 from mdlgen.cli import app
 from mdlgen.paths import samples
-from mdlgen.results.series import series
+from mdlgen.results.io.series import series
 
 DOCS = ROOT / "docs"
 PAGES = [ROOT / "README.md", *sorted(p for p in DOCS.rglob("*.md") if "_build" not in p.parts)]

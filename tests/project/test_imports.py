@@ -67,7 +67,7 @@ def test_a_plain_run_imports_what_it_uses_and_starts_no_process(tmp_path: Path) 
         "with contextlib.suppress(SystemExit):\n    main()"
     )
     assert (tmp_path / "out" / "report.html").exists()
-    assert {"mdlgen.report.page", "h5py", "jinja2", "llvmlite"} <= found
+    assert {"mdlgen.report.html.page", "h5py", "jinja2", "llvmlite"} <= found
     # what draws, compiles, or looks at meshes
     not_used = {"exudyn", "numba", "scipy", "matplotlib", "rich", "lxml"}
     not_used |= {"asyncio", "multiprocessing", "concurrent.futures", "numpy.testing", "unittest"}

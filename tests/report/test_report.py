@@ -29,11 +29,11 @@ from mdlgen.model.tables import BOX_CYLINDER
 from mdlgen.paths import samples, templates
 from mdlgen.report import boxes
 from mdlgen.report.animation import FRAMES, MOST, frames
-from mdlgen.report.maps import maps
+from mdlgen.report.figures.maps import maps
+from mdlgen.report.html.page import page
 from mdlgen.report.meshes import machine
 from mdlgen.report.motion import names, poses
-from mdlgen.report.page import page
-from mdlgen.results import store, tree
+from mdlgen.results.io import store, tree
 from mdlgen.results.result import Result
 from mdlgen.results.strain import histories
 

@@ -17,7 +17,7 @@ from ran import ran, transport
 from synthetic import moving, small_model
 
 from mdlgen.report.boxes import contact
-from mdlgen.report.page import page
+from mdlgen.report.html.page import page
 from mdlgen.results.result import Result
 
 pytestmark = pytest.mark.skipif(

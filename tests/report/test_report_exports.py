@@ -17,11 +17,11 @@ from typer.testing import CliRunner
 from mdlgen.cli import app
 from mdlgen.errors import SpecError
 from mdlgen.model.tables import Model
-from mdlgen.report.gltf import LASTS, glb
+from mdlgen.report.export.gltf import LASTS, glb
+from mdlgen.report.export.vtkhdf import vtkhdf
+from mdlgen.report.figures.stills import stills, times
 from mdlgen.report.meshes import machine
 from mdlgen.report.motion import names, poses
-from mdlgen.report.stills import stills, times
-from mdlgen.report.vtkhdf import vtkhdf
 from mdlgen.results.result import Result
 
 # z up to y up, mm to m

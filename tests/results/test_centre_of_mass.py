@@ -10,7 +10,7 @@ import pytest
 import mdlgen
 from mdlgen.model.tables import Model
 from mdlgen.results.compare import compare, travel
-from mdlgen.results.series import series
+from mdlgen.results.io.series import series
 
 SPIN = 0.5  # rad/ms
 GRADED = {"grading": {"x": [1, 1, 1, 3, 5, 8]}}

@@ -20,11 +20,11 @@ from mdlgen.errors import OutputError, SpecError
 from mdlgen.model.lower import lower
 from mdlgen.model.tables import Model
 from mdlgen.paths import samples
-from mdlgen.report.figures import figure
-from mdlgen.results import store
+from mdlgen.report.figures.figure import figure
 from mdlgen.results.compare import compare, scale
+from mdlgen.results.io import store
+from mdlgen.results.io.series import series
 from mdlgen.results.result import Result
-from mdlgen.results.series import series
 from mdlgen.results.summary import summary
 from mdlgen.spec.load import loads
 

@@ -21,9 +21,10 @@ from mdlgen.mechanics.frame import Frame
 from mdlgen.model.lower import lower
 from mdlgen.model.tables import Model
 from mdlgen.paths import samples
-from mdlgen.report.maps import strain_map
+from mdlgen.report.figures.maps import strain_map
 from mdlgen.report.text import summary_text
-from mdlgen.results import store, strain
+from mdlgen.results import strain
+from mdlgen.results.io import store
 from mdlgen.results.result import Result
 from mdlgen.results.strain import Strains, sheet_joints, strains
 from mdlgen.spec.load import loads

@@ -19,7 +19,7 @@ import mdlgen
 from mdlgen import paths
 from mdlgen.errors import OutputError
 from mdlgen.paths import NOTE, STALE, TEMPORARY, recover, samples, write_together
-from mdlgen.results.store import save
+from mdlgen.results.io.store import save
 
 SAMPLE = samples() / "transport_4x4.yaml"
 OLD = {"a.txt": b"old a", "b.txt": b"old b"}

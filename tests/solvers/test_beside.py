@@ -16,8 +16,8 @@ from mdlgen.backends.lattice.kernels.entries import PROGRAM
 from mdlgen.errors import OutputError
 from mdlgen.model.tables import Model
 from mdlgen.paths import samples
+from mdlgen.results.io.store import hdf5
 from mdlgen.results.result import Result
-from mdlgen.results.store import hdf5
 from mdlgen.runs.checkpoint import Checkpointer
 from mdlgen.spec.load import loads
 

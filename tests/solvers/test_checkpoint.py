@@ -27,8 +27,8 @@ from mdlgen.backends.lattice.kernels import entries
 from mdlgen.errors import OutputError
 from mdlgen.model.tables import Model
 from mdlgen.paths import samples
+from mdlgen.results.io.store import hdf5, read
 from mdlgen.results.result import Result
-from mdlgen.results.store import hdf5, read
 from mdlgen.runs.checkpoint import Checkpointer, State
 from mdlgen.runs.provenance import digest
 from mdlgen.spec.load import loads

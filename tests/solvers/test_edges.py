@@ -19,7 +19,7 @@ from mdlgen.mechanics.plate import STRAIGHT, as_guide, box_plane
 from mdlgen.mechanics.point import MOST_POINTS, OUT, POINT
 from mdlgen.model.lower import lower
 from mdlgen.paths import samples
-from mdlgen.report.page import page
+from mdlgen.report.html.page import page
 from mdlgen.results.events import events
 from mdlgen.results.result import Result
 from mdlgen.spec.load import load, loads

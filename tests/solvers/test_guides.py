@@ -19,7 +19,7 @@ from mdlgen.model.lower import lower
 from mdlgen.model.parts.guide import SAG, facets
 from mdlgen.paths import samples
 from mdlgen.registry import emitter
-from mdlgen.results.series import series
+from mdlgen.results.io.series import series
 from mdlgen.spec.load import load, loads
 from mdlgen.verify.verification import verify
 

@@ -17,10 +17,10 @@ from mdlgen.model.lower import lower
 from mdlgen.model.tables import Model, PlanePart, Press
 from mdlgen.paths import samples
 from mdlgen.registry import emitter
-from mdlgen.report.curves import panels
+from mdlgen.report.html.curves import panels
 from mdlgen.report.meshes import moving
+from mdlgen.results.io.series import series
 from mdlgen.results.result import Result
-from mdlgen.results.series import series
 from mdlgen.spec.load import load, loads
 from mdlgen.verify.verification import verify
 

@@ -175,7 +175,7 @@ def test_rollers_on_arms_and_rims_in_the_plane() -> None:
 )
 def test_arms_that_are_not_alike(sets: tuple[str, ...]) -> None:
     from mdlgen.backends.lattice.arrays import build
-    from mdlgen.backends.lattice.symmetry import find
+    from mdlgen.backends.lattice.symmetry.find import find
 
     model = mdlgen.lower(mdlgen.load(samples() / "feeder_one.yaml", [*ARMS, *sets]))
     assert find(model, build(model)) is None
@@ -199,7 +199,7 @@ def test_arms_that_are_not_alike(sets: tuple[str, ...]) -> None:
 )
 def test_what_is_not_symmetric_is_solved_whole(sets: tuple[str, ...]) -> None:
     from mdlgen.backends.lattice.arrays import build
-    from mdlgen.backends.lattice.symmetry import find
+    from mdlgen.backends.lattice.symmetry.find import find
 
     model = mdlgen.lower(mdlgen.loads(MACHINE))
     assert find(model, build(model)) is not None

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mdlgen.backends.lattice import symmetry
 from mdlgen.backends.lattice.arrays import build
+from mdlgen.backends.lattice.symmetry import find as symmetry
 from mdlgen.checks import lints
 from mdlgen.errors import SpecError
 from mdlgen.model.lower import lower

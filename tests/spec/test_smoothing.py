@@ -12,7 +12,7 @@ import pytest
 from typer.testing import CliRunner
 
 import mdlgen
-from mdlgen.backends.motionview.script import companion
+from mdlgen.backends.motionview.writer.script import companion
 from mdlgen.cli import app
 from mdlgen.errors import SpecError
 from mdlgen.lints.smoothing import notice, smoothings

@@ -16,13 +16,13 @@ import mdlgen
 from mdlgen.cli import app
 from mdlgen.errors import RefusedError, SpecError
 from mdlgen.paths import samples
-from mdlgen.study import optimisation
-from mdlgen.study.case import Case
-from mdlgen.study.fragment import fragment
-from mdlgen.study.goal import goal
-from mdlgen.study.optimisation import Optimisation
-from mdlgen.study.row import FAILED, OK, CaseRow
-from mdlgen.study.task import Task, task
+from mdlgen.study.design.case import Case
+from mdlgen.study.design.task import Task, task
+from mdlgen.study.execution.row import FAILED, OK, CaseRow
+from mdlgen.study.optimise import optimisation
+from mdlgen.study.optimise.goal import goal
+from mdlgen.study.optimise.optimisation import Optimisation
+from mdlgen.study.output.fragment import fragment
 
 INCLINE = samples() / "verify" / "incline.yaml"
 FRICTION, MASS = "contacts.0.friction", "sheets.block.mass"

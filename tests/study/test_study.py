@@ -10,16 +10,16 @@ from scipy import stats
 
 from mdlgen.errors import SpecError
 from mdlgen.paths import samples
-from mdlgen.study.distribution import Choice, Distribution, parse_distribution
-from mdlgen.study.effects import main_effect, sobol
-from mdlgen.study.findings import findings, findings_text
-from mdlgen.study.link import check_links, parse_link
-from mdlgen.study.probability import caveat, probability
-from mdlgen.study.row import FAILED, OK, CaseRow
-from mdlgen.study.sampling import sample
+from mdlgen.study.analysis.effects import main_effect, sobol
+from mdlgen.study.analysis.findings import findings, findings_text
+from mdlgen.study.analysis.probability import caveat, probability
+from mdlgen.study.analysis.table import columns
+from mdlgen.study.design.distribution import Choice, Distribution, parse_distribution
+from mdlgen.study.design.link import check_links, parse_link
+from mdlgen.study.design.sampling import sample
+from mdlgen.study.design.task import Task, task
+from mdlgen.study.execution.row import FAILED, OK, CaseRow
 from mdlgen.study.sweep import over, sweep
-from mdlgen.study.table import columns
-from mdlgen.study.task import Task, task
 
 INCLINE = samples() / "verify" / "incline.yaml"
 MIDDLE = np.linspace(0.001, 0.999, 999)

@@ -10,11 +10,11 @@ import pytest
 from browser import found, tab
 from lxml import html
 
-from mdlgen.study.findings import findings
-from mdlgen.study.page import page
-from mdlgen.study.row import OK, REFUSED, CaseRow
-from mdlgen.study.table import columns
-from mdlgen.study.task import Task
+from mdlgen.study.analysis.findings import findings
+from mdlgen.study.analysis.table import columns
+from mdlgen.study.design.task import Task
+from mdlgen.study.execution.row import OK, REFUSED, CaseRow
+from mdlgen.study.output.page import page
 
 EVIL = "</script><script>alert(1)</script>"
 HERE = "a scene & <b>more</b>.yaml"

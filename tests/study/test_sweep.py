@@ -25,11 +25,15 @@ from mdlgen.cli import app
 from mdlgen.errors import OutputError, RefusedError, SpecError
 from mdlgen.paths import samples
 from mdlgen.results.summary import summary
-from mdlgen.study import expression, journal, measure, perform, sweep, table, workers
-from mdlgen.study.case import Case
-from mdlgen.study.row import FAILED, INACCURATE, LOST, OK, REFUSED, CaseRow, Times
-from mdlgen.study.task import Task, task
-from mdlgen.study.variable import grid, quantity, value_text, variable
+from mdlgen.study import sweep
+from mdlgen.study.analysis import table
+from mdlgen.study.design import expression, measure
+from mdlgen.study.design.case import Case
+from mdlgen.study.design.task import Task, task
+from mdlgen.study.design.variable import grid, quantity, value_text, variable
+from mdlgen.study.execution import journal, perform, workers
+from mdlgen.study.execution.row import FAILED, INACCURATE, LOST, OK, REFUSED, CaseRow, Times
+from mdlgen.study.output.files import write
 
 INCLINE = samples() / "verify" / "incline.yaml"
 FOUR = samples() / "transport_4x4.yaml"
@@ -69,7 +73,7 @@ def swept(
     found, kept = sweep.opened(folder, asked, resume)
     with kept:
         rows = sweep.run(found, kept, here)
-    sweep.write(folder, found.task, rows, parquet=False)
+    write(folder, found.task, rows, parquet=False)
     return rows, here.ran
 
 

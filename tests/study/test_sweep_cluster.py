@@ -19,9 +19,11 @@ from typer.testing import CliRunner
 from mdlgen.cli import app
 from mdlgen.errors import RefusedError
 from mdlgen.paths import samples
-from mdlgen.study import journal, perform, sweep, table
-from mdlgen.study.case import Case
-from mdlgen.study.task import task
+from mdlgen.study import sweep
+from mdlgen.study.analysis import table
+from mdlgen.study.design.case import Case
+from mdlgen.study.design.task import task
+from mdlgen.study.execution import journal, perform
 
 pytest.importorskip("distributed")
 
@@ -101,7 +103,7 @@ def test_the_table_is_the_same_to_the_last_bit(cluster: Local, expected: str, tm
 def test_a_worker_with_other_versions_is_refused_by_name(
     cluster: Local, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from mdlgen.study import cluster as room
+    from mdlgen.study.execution import cluster as room
 
     monkeypatch.setattr(room, "_here", lambda: {**room.versions(), "numpy": "1.0"})
     done = CliRunner().invoke(app, arguments(tmp_path / "x", "--scheduler", cluster.address))
@@ -110,7 +112,7 @@ def test_a_worker_with_other_versions_is_refused_by_name(
 
 
 def test_a_worker_that_comes_later_is_looked_at_too() -> None:
-    from mdlgen.study import cluster as room
+    from mdlgen.study.execution import cluster as room
 
     assert room.differences(room.versions(), room.versions()) == ""
     with pytest.raises(RuntimeError, match=r"other code of the solver; numba .*, here 0.1"):
@@ -120,7 +122,7 @@ def test_a_worker_that_comes_later_is_looked_at_too() -> None:
 def test_a_worker_killed_in_mid_sweep_costs_its_case_alone(
     cluster: Local, asked: sweep.Sweep, expected: str
 ) -> None:
-    from mdlgen.study.cluster import Cluster
+    from mdlgen.study.execution.cluster import Cluster
 
     rows = []
     with closing(Cluster(cluster.address)) as runner:
@@ -132,7 +134,7 @@ def test_a_worker_killed_in_mid_sweep_costs_its_case_alone(
 
 
 def test_no_scheduler_and_no_dask_end_in_a_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from mdlgen.study import cluster as room
+    from mdlgen.study.execution import cluster as room
 
     monkeypatch.setattr(room, "PATIENCE", 0.5)
     done = CliRunner().invoke(app, arguments(tmp_path / "x", "--scheduler", "tcp://127.0.0.1:9"))

@@ -14,9 +14,9 @@ from base import BASE
 from places import GOLDEN
 
 import mdlgen.backends.motionview as motionview
-from mdlgen.backends.motionview.banner import banner
-from mdlgen.backends.motionview.environment import environment
-from mdlgen.backends.motionview.views import scene_view
+from mdlgen.backends.motionview.writer.banner import banner
+from mdlgen.backends.motionview.writer.environment import environment
+from mdlgen.backends.motionview.writer.views import scene_view
 from mdlgen.model.lower import lower
 from mdlgen.model.tables import Model
 from mdlgen.paths import samples, templates

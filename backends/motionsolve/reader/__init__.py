@@ -5,8 +5,8 @@ from __future__ import annotations
 from functools import cached_property
 from typing import Any
 
-from mdlgen.backends.motionsolve.parse import root
 from mdlgen.backends.motionsolve.reader.elements import Key, elements
+from mdlgen.backends.motionsolve.reader.parse import root
 from mdlgen.backends.motionsolve.reader.values import values
 
 __all__ = ["Reading", "read"]

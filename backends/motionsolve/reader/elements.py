@@ -7,8 +7,8 @@ from collections.abc import Iterator
 
 import lxml.etree as etree
 
-from mdlgen.backends.motionsolve.parse import children, line, name_of
-from mdlgen.backends.motionsolve.references import USES
+from mdlgen.backends.motionsolve.reader.parse import children, line, name_of
+from mdlgen.backends.motionsolve.reader.references import USES
 
 Key = tuple[str, str, str]  # section, kind, name or number
 

@@ -6,7 +6,7 @@ import math
 
 import lxml.etree as etree
 
-from mdlgen.backends.motionsolve.parse import line, name_of, trouble
+from mdlgen.backends.motionsolve.reader.parse import line, name_of, trouble
 from mdlgen.errors import SpecError
 
 Vector = tuple[float, float, float]

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 import lxml.etree as etree
 
-from mdlgen.backends.motionsolve.parse import children
 from mdlgen.backends.motionsolve.reader.entity import Entity
+from mdlgen.backends.motionsolve.reader.parse import children
 
 
 class Index:

@@ -12,11 +12,11 @@ from typing import Any
 
 import lxml.etree as etree
 
-from mdlgen.backends.motionsolve.parse import children, line, trouble
 from mdlgen.backends.motionsolve.reader import records
 from mdlgen.backends.motionsolve.reader.entity import Entity
 from mdlgen.backends.motionsolve.reader.index import Index
 from mdlgen.backends.motionsolve.reader.markers import markers
+from mdlgen.backends.motionsolve.reader.parse import children, line, trouble
 
 _Record = Callable[[records.Deck, Entity], dict[str, Any] | None]
 

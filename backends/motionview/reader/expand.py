@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from functools import lru_cache
 from typing import NamedTuple
 
+from mdlgen.backends.motionview.reader import things
 from mdlgen.backends.motionview.reader.pair import Unmade
 from mdlgen.backends.motionview.reader.program import Definition, Guard, Item, Program
 from mdlgen.backends.motionview.reader.report import Notes
@@ -40,7 +41,7 @@ class Expansion:
     def __init__(self, program: Program, notes: Notes):
         self.program = program
         self.notes = notes
-        self.world = World(program, notes)
+        self.world = World(program, notes, things)
         self.standard = Scope(self.world, None, "", None)  # what the standard include makes
         self.sets: list[tuple[Statement, Scope, Guard | None, int]] = []
         self.lost: list[Lost] = []

@@ -1,15 +1,12 @@
-"""The evaluator: every value is found when it is asked for, kept, and never twice at work.
-
-A chain of points, each from the one before, may be as long as the file. So `demand` goes only so deep;
-then it stops, finds the deepest value first, and starts again with that one known.
-"""
+"""The evaluator: all scopes of a model, and the values of expressions, names and things in them."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, Protocol
 
+from mdlgen.backends.motionview.reader.demand import MOST_CALLS, Deeper, Demand
 from mdlgen.backends.motionview.reader.expression import Compiled, compiled, literal, solver_parts
 from mdlgen.backends.motionview.reader.functions import FUNCTIONS
 from mdlgen.backends.motionview.reader.operators import shown, truth
@@ -25,104 +22,42 @@ if TYPE_CHECKING:
 Vector = tuple[float, float, float]
 Frame = tuple[Vector, tuple[Vector, Vector, Vector]]  # origin, and the axes as columns of rows
 
-MOST_CALLS = 300  # calls in calls before the evaluator starts again from below
 _PART = r"([^{}\[\],\"`]+)"
 _PLACE_IN_AXES = re.compile(rf"(loc_rel_to\(\s*\{{{_PART},{_PART},{_PART}\}}\s*,\s*([\w.]+)\s*\))\[[012]\]")
 _COORDINATES = ("[0]", "[1]", "[2]")
-_AT_WORK = object()
 _MISSING = object()
 
 
-class _Deeper(Exception):
-    def __init__(self, thing: Any, key: str):
-        super().__init__(key)
-        self.thing = thing
-        self.key = key
+class Makers(Protocol):
+    """What makes things of declarations; see `things`."""
+
+    def made(self, world: World, declaration: Declaration) -> Any:
+        """The Thing, or the Pair of two, that a declaration makes."""
+        ...
+
+    def system_of(self, world: World, scope: Scope) -> Any:
+        """The System that a scope is."""
+        ...
+
+    def members(self, found: Any) -> list[Thing]:
+        """The one, or the two of a pair."""
+        ...
 
 
-class World:
+class World(Demand):
     """All scopes of a model, and the values of all that is in them."""
 
-    def __init__(self, program: Program, notes: Notes):
+    def __init__(self, program: Program, notes: Notes, makers: Makers):
+        super().__init__()
         self.program = program
         self.notes = notes
         self.root = Scope(self, None, "", program.model)
         self.scopes: list[Scope] = [self.root]
         self.built_ins: dict[str, Any] = {}
-        self.calls = 0
-        self._waiting: set[tuple[int, str]] = set()  # values that wait for deeper ones
-        self._begun: tuple[int, str] = (0, "")  # the one of them that is looked at now
-        self._inside = False  # of force
         self._compiled: dict[str, Compiled | Trouble] = {}
         self._at: tuple[Statement, int] | None = None
         self._on_bodies: dict[str, dict[int, list[Thing]]] = {}  # graphics and joints by their body
-        from mdlgen.backends.motionview.reader import things  # which needs this module
-
-        self._makers = things
-
-    # -- values that are kept
-
-    def demand(self, thing: Any, key: str) -> Any:
-        """A property of a thing. Raises Trouble, always the same one for the same reason."""
-        memo = thing.memo
-        value = memo.get(key, _MISSING)
-        if value is not _MISSING:
-            if value is _AT_WORK:
-                raise Trouble("cycle", f"{thing} needs its own {key} to find its {key}")
-            if value.__class__ is Trouble:
-                raise value.with_traceback(None)  # else it grows with each that depends on it
-            return value
-        if self._waiting and (id(thing), key) in self._waiting and (id(thing), key) != self._begun:
-            raise Trouble("cycle", f"{thing} needs its own {key} to find its {key}")
-        if self.calls > MOST_CALLS:
-            raise _Deeper(thing, key)
-        memo[key] = _AT_WORK
-        self.calls += 6
-        try:
-            value = thing.compute(key)
-        except Trouble as trouble:
-            memo[key] = trouble.with_traceback(None)
-            raise
-        except BaseException:
-            del memo[key]
-            raise
-        finally:
-            self.calls -= 6
-        memo[key] = value
-        return value
-
-    def force(self, find: Callable[[], Any]) -> Any:
-        """Runs `find` to its end, however long the chain below it is."""
-        self.calls = 0
-        self._inside = True
-        try:
-            return find()
-        except _Deeper:
-            return self._forced(find)
-        finally:
-            self._inside = False
-
-    def _forced(self, find: Callable[[], Any]) -> Any:
-        tasks: list[tuple[Callable[[], Any], int, str]] = [(find, 0, "")]
-        self._waiting = set()
-        while True:
-            run, thing, key = tasks[-1]
-            self.calls = 0
-            self._begun = (thing, key)
-            try:
-                value = run()
-            except _Deeper as deeper:
-                self._waiting.add((id(deeper.thing), deeper.key))
-                tasks.append((_later(self, deeper), id(deeper.thing), deeper.key))
-                continue
-            except Trouble:
-                if len(tasks) == 1:
-                    raise
-                value = None
-            tasks.pop()
-            if not tasks:
-                return value
-            self._waiting.discard((thing, key))
+        self._makers = makers
 
     # -- expressions
 
@@ -282,7 +217,7 @@ class World:
                 f"this condition has no value and counts as false: {trouble.message}",
             )
             return False
-        except _Deeper:
+        except Deeper:
             del scope.conditions[id(statement)]
             raise
 
@@ -403,7 +338,3 @@ class World:
         if hasattr(beam, "at"):
             return beam.at(point)
         raise Trouble("evaluate", f"{shown(beam)} has no bodies at points", shift)
-
-
-def _later(world: World, deeper: _Deeper) -> Callable[[], Any]:
-    return lambda: world.demand(deeper.thing, deeper.key)

@@ -11,8 +11,9 @@ from typing import NamedTuple, Protocol, TypeVar
 from mdlgen.geometry.arrays import Floats
 from mdlgen.geometry.rods import Rod
 from mdlgen.geometry.solids import Solid
+from mdlgen.model.before import Before
 from mdlgen.model.press_parts import Bow, Face, Facets
-from mdlgen.model.tables import Bodies, Contacts, Model, RollerPart, SheetPart
+from mdlgen.model.tables import Bodies, Model, RollerPart, SheetPart
 from mdlgen.spec.scene import Scene
 
 P = TypeVar("P")
@@ -30,16 +31,6 @@ class BodyRow(NamedTuple):
     inertia: Floats  # principal, body axes [g mm^2], (3,)
     fixed: bool
     half: Floats  # half lengths of a block, else zero [mm], (3,)
-
-
-class Before(NamedTuple):
-    """What is lowered before a part is."""
-
-    sheets: tuple[SheetPart, ...]
-    contacts: Contacts
-    rollers: tuple[RollerPart, ...]
-    # the face of a part, by name, that a pressed roller at a place, by name, meets; None: none
-    face: Callable[[str, Floats, str], Face | Bow | Facets | None]
 
 
 class Boxes(NamedTuple):

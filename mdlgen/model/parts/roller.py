@@ -10,8 +10,9 @@ from mdlgen.geometry.arrays import Floats
 from mdlgen.geometry.rods import Rod
 from mdlgen.geometry.solids import BOX, CORNERS, Solid, cylinder, slice_
 from mdlgen.model import press
+from mdlgen.model.before import Before
 from mdlgen.model.frames import frame
-from mdlgen.model.parts.kind import SLACK, Before, BodyRow, Boxes, Drawn
+from mdlgen.model.parts.kind import SLACK, BodyRow, Boxes, Drawn
 from mdlgen.model.pressed import roller_press
 from mdlgen.model.rims import lower_rim
 from mdlgen.model.tables import (

@@ -1,0 +1,1 @@
+"""Scenes that are their own mirror image, solved by one half."""

@@ -1,0 +1,35 @@
+"""Whether a deck is one: elements and attributes by the schema, ids by kind."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import lxml.etree as etree
+
+from mdlgen.backends.motionsolve.reader.parse import root
+from mdlgen.backends.motionsolve.reader.references import dangling
+from mdlgen.errors import SpecError, printable
+from mdlgen.paths import templates
+
+
+@lru_cache(maxsize=1)
+def schema() -> etree.RelaxNG:
+    """Our schema of what a deck holds."""
+    return etree.RelaxNG(etree.parse(str(templates() / "motionsolve" / "deck.rng")))
+
+
+def validate(text: str, file: str = "<deck>") -> list[str]:
+    """What is wrong in a deck, as lines `file:line: what`; empty where nothing is.
+
+    Looks at elements, attributes and their values by the schema, that no id of a kind is taken twice and
+    none that is used is missing.
+    """
+    try:
+        found = root(text, file)
+    except SpecError as error:
+        return [str(error)]
+    checker = schema()
+    checker.validate(found)
+    problems = [f"{file}:{entry.line}: {entry.message}" for entry in checker.error_log]
+    problems += [f"{file}:{line}: {message}" for line, message in dangling(found)]
+    return [printable(problem) for problem in problems]

@@ -1,0 +1,1 @@
+"""The Model as an XML deck."""

@@ -1,0 +1,52 @@
+"""Rows of the contacts: one for each pair of bodies that is kept."""
+
+from __future__ import annotations
+
+from functools import cache, partial
+
+from mdlgen.altair.rims import Side, graphics, meetings
+from mdlgen.backends.motionsolve.writer.bodies import facet_ids, graphic_id, rim_ids
+from mdlgen.backends.motionsolve.writer.rows import ContactRow, Deck, Law
+from mdlgen.backends.motionsolve.writer.units import number, thousandfold
+from mdlgen.model.tables import Model
+
+
+def add_contacts(deck: Deck, model: Model) -> None:
+    """All kept pairs, and all sectors of a rim in them; the numbers of an entry stand in each."""
+    bodies, pairs = model.bodies, model.pairs
+    law = cache(partial(_law, model))
+    columns = (c.tolist() for c in (pairs.contact, pairs.a, pairs.b, model.pair_friction))
+    rows = list(zip(*columns, strict=True))
+    facets = {guide.body: ids for guide, ids in zip(model.guides, facet_ids(model), strict=True)}
+    rims, rollers = rim_ids(model), {r.body: r for r in model.rollers if r.rim is not None}
+
+    def of(body: int, side: Side) -> tuple[int, ...]:
+        if body in rollers:
+            return tuple(rims[name] for name in graphics(rollers[body], side))
+        return facets.get(body, (graphic_id(body),))
+
+    for id, met in enumerate(meetings(model), 1):
+        row, a, b, rough = rows[met.pair]
+        sides = [list(of(a, met.a)), list(of(b, met.b))]
+        if len(sides[0]) > 1:  # a statement has one graphic on its first side, as the text has it
+            sides.reverse()
+        name = f"con_{bodies.name[a]}_{bodies.name[b]}{met.suffix}"
+        label = f"{bodies.label[a]} / {bodies.label[b]}{met.suffix.replace('_', ' ')}"
+        own = (rough * met.friction, met.stiffness, met.restitution(float(model.contacts.restitution[row])))
+        deck.contacts.append(ContactRow(name, label, id, sides[0][0], tuple(sides[1]), law(row, *own)))
+
+
+def _law(model: Model, row: int, rough: float, stiff: float, restitution: float) -> Law:
+    """Numbers of a contact, with friction `rough` and stiffness `stiff` times its own."""
+    table = model.contacts
+    friction = None
+    if rough * max(table.mu_static[row], table.mu_dynamic[row]) > 0:
+        speeds = table.stiction_velocity[row], table.friction_velocity[row]
+        friction = (
+            number(table.mu_static[row] * rough),
+            number(table.mu_dynamic[row] * rough),
+            thousandfold(speeds[0]),
+            thousandfold(speeds[1]),
+        )
+    stiffness = number(table.stiffness[row] * stiff)
+    return Law(stiffness, number(restitution), thousandfold(table.smoothing[row]), friction)

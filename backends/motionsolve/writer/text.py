@@ -1,0 +1,40 @@
+"""Model -> the XML deck."""
+
+from __future__ import annotations
+
+from mdlgen.altair.rolling import refuse_rolling
+from mdlgen.altair.springs import refuse_compressed
+from mdlgen.backends.motionsolve.writer import gate
+from mdlgen.backends.motionsolve.writer.banner import banner
+from mdlgen.backends.motionsolve.writer.environment import environment
+from mdlgen.backends.motionsolve.writer.views import deck_view
+from mdlgen.errors import SpecError
+from mdlgen.model.external import refuse_externals
+from mdlgen.model.sheet_pairs import refuse_searched
+from mdlgen.model.tables import Model
+
+_BUFFERED = 4096  # pieces of text that are joined at once: a large deck has millions
+
+
+def check(model: Model) -> None:
+    """Raises RefusedError by name for what the deck cannot represent."""
+    refuse_externals(model, "MotionSolve deck")
+    refuse_searched(model, "MotionSolve deck")
+    refuse_compressed(model, "MotionSolve deck")
+    refuse_rolling(model, "MotionSolve deck")
+
+
+def emit(model: Model) -> str:
+    """The whole deck, ASCII with LF line ends; the same Model always gives the same text.
+
+    Raises RefusedError (see `check`), and SpecError where two names would meet in the deck.
+    """
+    check(model)
+    deck = deck_view(model)
+    gate.check(model, deck)
+    stream = environment().get_template("deck.xml.j2").stream(deck=deck, banner=banner(model, deck))
+    stream.enable_buffering(_BUFFERED)
+    text = "".join(stream)
+    if not text.isascii() or "\r" in text:
+        raise SpecError("the deck would hold characters other than ASCII")
+    return text

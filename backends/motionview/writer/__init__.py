@@ -1,0 +1,1 @@
+"""The Model as MDL text, and the script that goes with it."""

@@ -1,0 +1,111 @@
+"""The notes above the text: units, contacts, what to check. MotionView ignores all before BeginMDL."""
+
+from __future__ import annotations
+
+import math
+
+from mdlgen.altair.curves import TEXT_BEYOND
+from mdlgen.altair.edges import edge_note
+from mdlgen.backends.motionview.writer import script
+from mdlgen.backends.motionview.writer.forms import unverified
+from mdlgen.backends.motionview.writer.rows import SceneView
+from mdlgen.backends.motionview.writer.units import number
+from mdlgen.model.curves import limit
+from mdlgen.model.tables import Model
+
+SHARE = (
+    "  MotionSolve gives every pair the full stiffness. In the local run of mdlgen, share width lets",
+    "  the boxes under one part share it by the width that each covers; share pair gives it to each too.",
+)
+
+
+FRAME = (
+    "Bushings : MotionSolve has displacement and force in the axes of marker J; the local run of mdlgen has",
+    "  the frame halfway between the two bodies. Both agree where the angle between these is small.",
+)
+
+
+def banner(model: Model, scene: SceneView) -> list[str]:
+    """The lines of the header, without slashes."""
+    gravity = ", ".join(number(g) for g in script.gravity(model))
+    reasons = script.reasons(model, scene.set_contact)
+    lines = [
+        f"{model.name}: MotionView model, written by mdlgen",
+        "",
+        "Units : mm, N, kg, s, rad; angles in data sets in degrees",
+        f"Gravity : {gravity} mm/s2",
+    ]
+    lines += sheet_lines(model, scene)
+    lines += curve_lines(model)
+    lines += _contacts(model, scene)
+    if reasons:
+        lines += ["", "Companion script : run it once in the Python window after loading, because of"]
+        lines += [f"  {reason}" for reason in reasons]
+    lines += ["", "Not yet read by a real MotionView; look at these first if it complains :"]
+    return lines + [f"  {form}" for form in unverified(scene)]
+
+
+def sheet_lines(model: Model, scene: SceneView) -> list[str]:
+    """One line for each sheet, and in which frame its bushings act."""
+    lines = []
+    for sheet, part in zip(scene.sheets, model.sheets, strict=True):
+        joints = sum(len(group.bushes) for group in sheet.joints)
+        lines.append(
+            f"Sheet : {sheet.name}, {part.n_x} x {part.n_y} boxes, {part.layout}, {part.grid} grid, "
+            f"{joints} bushings; its values are in ds_{sheet.name}"
+        )
+    return [*lines, *(FRAME if len(model.bushings) else ())]
+
+
+def curve_lines(model: Model) -> list[str]:
+    """What a text does with measured curves."""
+    curves = model.curves
+    if not len(curves):
+        return []
+    lines = [
+        "Curves : straight lines, within 1e-6 of the greatest force of the monotone cubics of the local run"
+    ]
+    for index, name in enumerate(curves.name):
+        end = f"crv_{name} : measured to a strain of {number(limit(curves, index))}; "
+        if curves.linear[index]:
+            lines += [f"  {end}straight on to {number(TEXT_BEYOND)} times that"]
+        else:
+            lines += [f"  {end}the local run ends there,", "  MotionSolve does not : look at the elongations"]
+    return lines
+
+
+def share_lines(scene: SceneView) -> list[str]:
+    """One line for each entry of the contacts."""
+    found = []
+    for contact in scene.contacts:
+        parts = contact.label.partition(": ")[2]
+        found.append(f"  ds_{contact.data_set} : share {contact.share}, {parts}")
+    return found
+
+
+def _contacts(model: Model, scene: SceneView) -> list[str]:
+    if not scene.contacts:
+        return []
+    pairs = model.pairs
+    lines = [
+        f"Contacts : {pairs.possible} pairs possible, {len(pairs)} kept: those that can meet in the run, "
+        f"with a margin of {number(pairs.margin)} mm",
+        *SHARE,
+        *edge_note(model),
+    ]
+    if len(pairs) < pairs.possible:
+        lines += [
+            "  Pairs are kept for the sheets where they start : to move or turn one beyond the margin,",
+            "  write the text anew, or write it with prune: false in the run, which keeps every pair.",
+        ]
+    for kind, parts in (("rollers", scene.rollers), ("plates", scene.planes)):
+        if any(part.pressed for part in parts):
+            lines.append(f"  Pressed {kind} start in equilibrium with the sheets as written, at real_start.")
+    for roller in (part for part in model.rollers if part.rim is not None):
+        assert roller.rim is not None
+        lines += [
+            f"  Rim of {roller.name} : each sector is shown by boxes, and has a contact of its own.",
+            f"  The local run goes from one to the next over {number(math.degrees(roller.rim.blend))} deg; "
+            "MotionSolve has both there.",
+        ]
+    return lines + share_lines(scene)

@@ -1,0 +1,102 @@
+"""The companion: a Python script for MotionView that sets what MDL has no known form for."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from mdlgen.backends.motionview.writer.environment import environment
+from mdlgen.backends.motionview.writer.system import kept_contacts, system_view
+from mdlgen.backends.motionview.writer.units import mdl_value, number
+from mdlgen.backends.motionview.writer.views import scene_view
+from mdlgen.model.tables import Ints, Model
+
+# What MotionView takes where a text says nothing [mm/s^2], [mm/s].
+DEFAULT_GRAVITY = (0.0, 0.0, -9810.0)
+DEFAULT_SMOOTHING = 1.0
+
+
+class Numbers(NamedTuple):
+    """The numbers of one entry of the contacts, and the contact statements that get them."""
+
+    label: str
+    numbers: list[tuple[str, str]]  # (property of mview.Contact, number)
+    names: list[str]
+
+
+def gravity(model: Model) -> tuple[float, float, float]:
+    """Gravity [mm/s^2]."""
+    x, y, z = (mdl_value(float(g), "mm/ms^2") + 0.0 for g in model.gravity)
+    return x, y, z
+
+
+def reasons(model: Model, set_contact: bool = False, only: str | None = None) -> list[str]:
+    """Why the script is needed, one line each; for the sheets alone gravity is not its business."""
+    found, rows = [], _written(model, only)
+    if only is None and gravity(model) != DEFAULT_GRAVITY:
+        shown = ", ".join(number(g) for g in gravity(model))
+        found.append(f"gravity is ({shown}) mm/s2 and MDL has no documented statement for it")
+    if len(rows) and not set_contact:
+        found.append("the contact numbers: the argument order of SetContact is not certain")
+    elif len(rows) and _smoothing_differs(model, rows):
+        found.append("normal_trans_vel of the contacts: SetContact has no documented place for it")
+    return found
+
+
+def companion(model: Model, *, set_contact: bool = False, only: str | None = None) -> str | None:
+    """The script, or None where the text says everything."""
+    why = reasons(model, set_contact, only)
+    if not why:
+        return None
+    own_gravity = gravity(model) if only is None else DEFAULT_GRAVITY
+    template = environment().get_template("companion.py.j2")
+    return template.render(
+        name=model.name,
+        reasons=why,
+        gravity=[number(g) for g in own_gravity] if own_gravity != DEFAULT_GRAVITY else None,
+        system=None if only is None else system_view(model, set_contact).variable,
+        contacts=_numbers(model, set_contact, only),
+    )
+
+
+def _written(model: Model, only: str | None) -> Ints:
+    """Row of the contacts of each pair that has a statement in the text."""
+    return model.pairs.contact if only is None else kept_contacts(model)
+
+
+def _smoothing_differs(model: Model, rows: Ints) -> bool:
+    used = np.unique(rows)
+    return any(mdl_value(float(v), "mm/ms") != DEFAULT_SMOOTHING for v in model.contacts.smoothing[used])
+
+
+def _numbers(model: Model, set_contact: bool, only: str | None) -> list[Numbers]:
+    rows = _written(model, only)
+    if not len(rows) or (set_contact and not _smoothing_differs(model, rows)):
+        return []
+    scene = scene_view(model, set_contact) if only is None else system_view(model, set_contact).scene
+    names: dict[str, dict[tuple[bool, float, float, float | None], list[str]]] = {}
+    for pair in scene.pairs:
+        alike = names.setdefault(pair.data_set, {})
+        key = (pair.friction == "ON", pair.rougher, pair.stiffer, pair.restitution)
+        alike.setdefault(key, []).append(pair.name)
+    found = []
+    for contact in scene.contacts:
+        given = {value.member: value.number for value in contact.given}
+        for (rubs, rougher, stiffer, restitution), pairs in names.get(contact.data_set, {}).items():
+            label = contact.label if rougher == 1.0 else f"{contact.label}, friction times {number(rougher)}"
+            label += "" if stiffer == 1.0 else f", stiffness times {number(stiffer)}"
+            table = [("normal_trans_vel", given["v_n"])]
+            if not set_contact:
+                penalty = given["k"] if stiffer == 1.0 else number(float(given["k"]) * stiffer)
+                bounce = given["c_R"] if restitution is None else number(restitution)
+                table = [("penalty", penalty), ("rest_coeff", bounce), *table]
+                if rubs:
+                    table += [
+                        ("mu_static", number(float(given["mu_s"]) * rougher)),
+                        ("mu_dynamic", number(float(given["mu_d"]) * rougher)),
+                        ("stiction_trans_vel", given["v_s"]),
+                        ("friction_trans_vel", given["v_d"]),
+                    ]
+            found.append(Numbers(label, table, pairs))
+    return found

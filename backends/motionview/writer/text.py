@@ -1,0 +1,80 @@
+"""Model -> .mdl text."""
+
+from __future__ import annotations
+
+from mdlgen.altair.rolling import refuse_rolling
+from mdlgen.altair.springs import refuse_compressed
+from mdlgen.backends.motionview.writer import gate
+from mdlgen.backends.motionview.writer.banner import banner
+from mdlgen.backends.motionview.writer.environment import environment
+from mdlgen.backends.motionview.writer.notes import notes
+from mdlgen.backends.motionview.writer.system import system_view
+from mdlgen.backends.motionview.writer.views import scene_view
+from mdlgen.errors import RefusedError, SpecError
+from mdlgen.model.external import refuse_externals
+from mdlgen.model.sheet_pairs import refuse_searched
+from mdlgen.model.tables import Model
+
+
+def check(model: Model) -> None:
+    """Raises RefusedError by name for what the text cannot represent."""
+    refuse_externals(model, "MotionView text of the whole scene")
+    check_sheets(model)
+    refuse_compressed(model, "MotionView text")
+    refuse_rolling(model, "MotionView text")
+    for roller in model.rollers:
+        if roller.one_way is not None:
+            raise RefusedError(
+                f"MotionView text: roller {roller.name} has a one_way clutch, a torque by formula, and "
+                "no force statement with a certain meaning is documented; run it locally, write a deck, "
+                "or leave one_way out",
+                ("rollers", roller.name, "one_way"),
+            )
+
+
+def check_sheets(model: Model) -> None:
+    """Raises RefusedError by name for what the text of the sheets cannot represent."""
+    refuse_searched(model, "MotionView text")
+    if len(model.loads.body):
+        raise RefusedError(
+            "MotionView text: loads are not written, because no force statement with a certain meaning is "
+            "documented; run this scene locally, or leave the loads out and add them in MotionView",
+            ("loads",),
+        )
+
+
+def emit(model: Model, *, set_contact: bool = False, only: str | None = None) -> str:
+    """The .mdl text, ASCII with LF line ends; the same Model always gives the same text.
+
+    `set_contact` also writes the contact numbers with SetContact, whose argument order is documented but
+    not seen in a file; without it they are set by the companion script. `only="sheets"` gives the sheets
+    alone, as a system definition to bring into another model.
+
+    Raises RefusedError (see `check`), and SpecError where two names would meet in the text.
+    """
+    if only is not None:
+        check_only(only)
+        return _sheets(model, set_contact)
+    check(model)
+    gate.check_names(model)
+    scene = scene_view(model, set_contact)
+    text = environment().get_template("model.mdl.j2").render(scene=scene, banner=banner(model, scene))
+    gate.check_text(text)
+    return text
+
+
+def check_only(word: str) -> None:
+    """Raises SpecError for a part of the text that cannot stand alone."""
+    if word != "sheets":
+        raise SpecError(f"{word[:80]!r} cannot be written alone; there is: sheets")
+
+
+def _sheets(model: Model, set_contact: bool) -> str:
+    check_sheets(model)
+    gate.check_names(model)
+    system = system_view(model, set_contact)
+    gate.check_free(system.variable)
+    template = environment().get_template("system.mdl.j2")
+    text = template.render(system=system, scene=system.scene, banner=notes(model, system))
+    gate.check_text(text)
+    return text

@@ -1,0 +1,144 @@
+"""report.html: one or more runs in a page that stands alone, read from file:// as well as from a mail."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mdlgen.checks import lints
+from mdlgen.model.once import Once
+from mdlgen.paths import templates
+from mdlgen.report import boxes
+from mdlgen.report.animation import animation, frames, packed
+from mdlgen.report.figures.maps import Map, maps
+from mdlgen.report.html.curves import Panel, panels
+from mdlgen.report.html.differences import differences, percent, shown
+from mdlgen.results.result import Result
+from mdlgen.results.strain import histories, sheet_joints
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+    from mdlgen.model.tables import Model
+
+_LIBRARY = ("three.core.min.js", "three.module.min.js")
+_STEPS = 18  # of colour in a map: .c0 to .c18 in style.css
+_SCRIPTS = ("charts.js", "player.js", "page.js")
+
+
+def page(results: Sequence[Result], names: Sequence[str] = ()) -> str:
+    """The page of one run, or of several side by side; `names` are what they are called, else A, B, ...
+
+    The same results give the same text. Every name and text of a scene is escaped.
+    """
+    names = list(names) or [chr(ord("A") + k) for k in range(len(results))]
+    runs = [_run(result, name) for result, name in zip(results, names, strict=True)]
+    drawn = json.dumps([run.pop("drawn") for run in runs], allow_nan=False, separators=(",", ":"))
+    folder = templates() / "report"
+    return (
+        environment()
+        .get_template("page.html.j2")
+        .render(
+            title=" / ".join(dict.fromkeys(run["summary"]["scene"] for run in runs)),
+            runs=runs,
+            differences=differences(results, names, [run["summary"] for run in runs])
+            if len(runs) > 1
+            else None,
+            # inside a script element nothing may look like markup
+            data=drawn.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026"),
+            style=(folder / "style.css").read_text("utf-8"),
+            library={name: (folder / "third_party" / name).read_text("utf-8") for name in _LIBRARY},
+            licence=(folder / "third_party" / "LICENSE").read_text("utf-8"),
+            scripts=[(folder / name).read_text("utf-8") for name in _SCRIPTS],
+        )
+    )
+
+
+def prepare(model: Model) -> None:
+    """Loads what the page and the files beside it are made with, and works out what does not wait for the
+    run."""
+    import h5py  # noqa: F401
+
+    from mdlgen.results import events  # noqa: F401
+    from mdlgen.results.io import store  # noqa: F401
+
+    environment().get_template("page.html.j2")
+    sheet_joints(model)
+    _lints(model)
+
+
+_lints = Once(lints)
+
+
+@lru_cache(maxsize=1)
+def environment() -> Environment:
+    from mdlgen import templating
+
+    made = templating.environment("report", autoescape=True)
+    made.filters |= {"shown": shown, "percent": percent}
+    return made
+
+
+def _run(result: Result, name: str) -> dict[str, Any]:
+    """What the template and the scripts take of a run."""
+    at = frames(result)
+    joints = histories(result, at)
+    force, deep = boxes.contact(result, at)
+    strain, curvature = boxes.greatest(joints, force.shape)
+    colours = {
+        "speed": ("mm/s", boxes.speed(result, at)),
+        "strain": ("", strain),
+        "curvature": ("1/mm", curvature),
+        "contact": ("N", force),
+    }
+    summary = result.summary()
+    return {
+        "name": name,
+        "summary": summary,
+        "model": {
+            "gravity": [float(v) * 1000.0 for v in result.model.gravity],
+            "analysis": result.model.run.analysis,
+            "boxes": sum(sheet.count for sheet in result.model.sheets),
+            "bushings": len(result.model.bushings),
+            "parts": {
+                kind: len(getattr(result.model, kind))
+                for kind in ("sheets", "rollers", "planes", "guides", "contacts", "probes")
+            },
+        },
+        "parameters": [asdict(parameter) for parameter in result.model.parameters],
+        "source": result.source,
+        "maps": [_map(found) for found in maps(result)],
+        "lints": [asdict(lint) for lint in _lints(result.model)],
+        "drawn": {
+            "name": name,
+            "scene": summary["scene"],
+            "animation": animation(result, at, colours),
+            "panels": [_panel(panel) for panel in panels(result, at, deep, joints)],
+        },
+    }
+
+
+def _map(found: Map) -> dict[str, Any]:
+    """A map as the template draws it [mm], y downwards; the colours are steps of its style."""
+    return {
+        "title": found.title.split("\n"),
+        "size": found.sheet.outline,
+        "ring": (found.place * (1, -1)).tolist() if found.parts.any() else None,
+        "cells": [
+            (" ".join(f"{x:.3f},{-y:.3f}" for x, y in cell), round(_STEPS * part))
+            for cell, part in zip(found.cells.tolist(), found.parts.tolist(), strict=True)
+        ],
+    }
+
+
+def _panel(panel: Panel) -> dict[str, Any]:
+    lines = [
+        {"name": line.name, "x": packed(line.x, "f4"), "y": packed(np.nan_to_num(line.y), "f4")}
+        for line in panel.lines
+    ]
+    return {**vars(panel), "lines": lines}

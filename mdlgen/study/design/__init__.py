@@ -1,0 +1,1 @@
+"""What a study asks: values that differ, cases, and what is measured of each."""
