@@ -1,21 +1,22 @@
-"""A pass of a run that goes on beside another one: in a thread of its own, on tables of its own."""
+"""Passes of a run that go on beside another one: in a thread of their own, on tables of their own."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from copy import deepcopy
 from threading import Event, Thread
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 from mdlgen.backends.lattice.arrays import System
-from mdlgen.results.result import Result
+
+T = TypeVar("T")
 
 
 class Stopped(Exception):
     """What such a pass would find is not needed any more."""
 
 
-class Beside:
+class Beside(Generic[T]):
     """Does `work` while the body of a `with` statement is run. Compiled code of a program holds no lock of
     Python's, so the two keep two processors busy.
 
@@ -23,21 +24,21 @@ class Beside:
     `then` is called when it has ended.
     """
 
-    def __init__(self, work: Callable[[Event], Result], then: Callable[[], None]):
+    def __init__(self, work: Callable[[Event], T], then: Callable[[], None]):
         self._then = then
         self._stop = Event()
-        self._found: list[Result] = []
+        self._found: list[T] = []
         self._failed: list[BaseException] = []
         self._thread = Thread(target=self._do, args=(work,), daemon=True)
 
-    def _do(self, work: Callable[[Event], Result]) -> None:
+    def _do(self, work: Callable[[Event], T]) -> None:
         try:
             self._found.append(work(self._stop))
         except BaseException as error:
             self._failed.append(error)
         self._then()
 
-    def __enter__(self) -> Beside:
+    def __enter__(self) -> Beside[T]:
         self._thread.start()
         return self
 
@@ -45,7 +46,7 @@ class Beside:
         self._stop.set()
         self._thread.join()
 
-    def result(self) -> Result:
+    def result(self) -> T:
         """What it found, once it has. Raises what it raised."""
         self._thread.join()
         if self._failed:

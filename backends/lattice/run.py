@@ -3,6 +3,7 @@ the difference is within the tolerance."""
 
 from __future__ import annotations
 
+import contextlib
 import math
 import time as clock
 from collections.abc import Callable
@@ -81,22 +82,27 @@ MOST_STEPS, MOST_AT_ONCE = 1e9, 1000
 Progress = Callable[[float, float, int, int], None]
 
 
+# Numbers by which states of passes are kept: first those of the first step, halved so many times, or of the
+# step that is given, doubled so many times; then of twice the first step; of a check at a step of its own.
+DOUBLED, CHECK = MOST_REFINED_RIGID + 1, MOST_REFINED_RIGID + 2
+
 # Rules that leave out what a run does not need, each of which a run can do without.
 FOLDING, FACTORS, SYMMETRY = "folding", "factors", "symmetry"
 
 
 class Watch(NamedTuple):
     """Who follows a pass: what is called as it goes, what keeps it and by which number, and what stops it
-    where it goes on beside another one."""
+    where it goes on at the same time as another one; one of the two is hidden."""
 
     progress: Progress | None = None
     keep: Checkpointer | None = None
     number: int = 0
     stop: Event | None = None
+    hidden: bool = False
 
     def beside(self, stop: Event) -> Watch:
         """Of a pass that goes on beside another one, which is the one that reports."""
-        return self._replace(progress=None, stop=stop)
+        return self._replace(progress=None, stop=stop, hidden=True)
 
     def leave(self) -> None:
         """Such a pass has ended, and leaves a processor free."""
@@ -107,9 +113,11 @@ class Watch(NamedTuple):
 UNSEEN = Watch()
 
 
-def _watch(progress: Progress | None, keep: Checkpointer | None) -> Watch:
-    """Of the next pass."""
-    return Watch(progress, keep, keep.begin() if keep is not None else 0)
+def _watch(progress: Progress | None, keep: Checkpointer | None, number: int) -> Watch:
+    """Of the pass of that number."""
+    if keep is not None:
+        keep.begin(number)
+    return Watch(progress, keep, number)
 
 
 @PROGRAM.releases
@@ -156,11 +164,12 @@ def solve(
     if keep is not None and not (together and threads == 2):
         keep.free.set()
     if wanted is None:
-        result = _refined(model, system, watch, together)
+        result = Search(model, system, watch).result(together)
     else:
         compared = step is None and model.run.duration / wanted >= 4
         anew = FACTORS in without
-        result = _given(model, system, wanted, watch, anew, compared, together)
+        number = 0 if step is None else CHECK
+        result = _given(model, system, wanted, watch, number, anew, compared, together)
     result.estimate_s = clock.perf_counter() - begun - result.wall_s
     result.build_s, result.compile_s = build_s, compile_s
     return result
@@ -170,30 +179,31 @@ def _given(
     model: Model,
     system: System,
     wanted: float,
-    watch: Callable[[], Watch],
+    watch: Callable[[int], Watch],
+    number: int,
     anew: bool,
     compared: bool,
     together: bool,
 ) -> Result:
-    """A run at a step that is given, `compared` with one at twice that step."""
+    """A run of that number at a step that is given, `compared` with one at twice that step."""
     made = MADE * _accuracy(model) / 1e-3
     h = _division(model, wanted).step
 
     def again(times: int, on: System, seen: Watch) -> Result:
         return _once(model, on, times * h, seen, made=times * times * made)
 
-    first = partial(_once, model, system, wanted, watch(), made=made, anew=anew)
+    first = partial(_once, model, system, wanted, watch(number), made=made, anew=anew)
     if not compared:
         return first()
     if not together:
         result = first()
-        return _compared(result, [], lambda n: again(n, system, watch())) if result.ok else result
-    seen, beside = watch(), own(system)
+        return _compared(result, [], lambda n: again(n, system, watch(n // 2))) if result.ok else result
+    seen, beside = watch(1), own(system)
     with Beside(lambda stop: again(2, beside, seen.beside(stop)), seen.leave) as coarse:
         result = first()
         if not result.ok:
             return result
-        return _compared(result, [], lambda n: coarse.result() if n == 2 else again(n, system, watch()))
+        return _compared(result, [], lambda n: coarse.result() if n == 2 else again(n, system, watch(2)))
 
 
 def _compared(result: Result, before: list[Result], again: Callable[[int], Result]) -> Result:
@@ -221,56 +231,116 @@ def _ended(run: Result) -> bool:
     return finite and bool(run.time[-1] >= run.model.run.duration * (1.0 - 1e-9))
 
 
-def _refined(model: Model, system: System, watch: Callable[[], Watch], together: bool) -> Result:
+class Search:
     """Halves the step until estimates are within the tolerance; fails where they never are.
 
     A run that ends early has its reason from the physics of the scene or from its step: it is reported where
     the next finer run ends at the same time, and its energies balance.
     """
-    flexible, part = _flexible(model), _accuracy(model) / 1e-3
 
-    def once(h: float, halved: int, seen: Watch, on: System = system) -> Result:
-        fine = part * 0.25**halved
-        return _once(model, on, h, seen, 0.0 if flexible else MISS * fine, MADE * fine)
+    def __init__(self, model: Model, system: System, watch: Callable[[int], Watch]):
+        self._model, self._system, self._watch = model, system, watch
+        self._flexible = _flexible(model)
+        self._runs: list[Result] = []  # the last one first
 
-    h = first_step(model)
-    pair: list[Result] = []  # the first two, which are needed whatever they find
-    if together:
-        seen, beside = watch(), own(system)
-        with Beside(lambda stop: once(h, 0, seen.beside(stop), beside), seen.leave) as coarse:
-            pair.append(once(0.5 * _division(model, h).step, 1, watch()))
-            runs = [coarse.result()]
-    else:
-        runs = [once(h, 0, watch())]
-    for k in range(1, 1 + (MOST_REFINED if flexible else MOST_REFINED_RIGID)):
-        if together and k > 1:  # what estimates need of the runs before, while compiled code is at work
-            Thread(target=lambda bent: [run.strains for run in bent], args=(runs[:2],), daemon=True).start()
-        result = pair.pop() if pair else once(0.5 * runs[0].step, k, watch())
-        if result.ok and runs[0].ok:
-            result = _compared(
-                result, runs[:2], lambda n, k=k, h=result.step: once(n * h, k - n // 2, watch())
-            )
-            near = result.error_estimate is not None and result.error_estimate <= model.run.tolerance
+    def result(self, together: bool) -> Result:
+        """The last run; `together`: two passes at the same time, where both are needed or likely to be."""
+        ready: list[Result] = []
+        if not together:
+            self._runs.append(self._once(first_step(self._model), 0, self._watch(0)))
+        elif self._flexible:
+            finer = self._three()
+            if finer is None:
+                return self._runs[0]
+            ready.append(finer)
+        else:
+            ready.append(self._two())
+        for k in range(len(self._runs), 1 + (MOST_REFINED if self._flexible else MOST_REFINED_RIGID)):
+            if (
+                together and not ready
+            ):  # what estimates need of the runs before, while compiled code is at work
+                Thread(target=_strains, args=(self._runs[:2],), daemon=True).start()
+            run = ready.pop() if ready else self._once(0.5 * self._runs[0].step, k, self._watch(k))
+            if self._ends(run, k, self._watch(DOUBLED)):
+                return self._runs[0]
+        return self._failed()
+
+    def _once(self, h: float, halved: int, seen: Watch, on: System | None = None) -> Result:
+        fine = _accuracy(self._model) / 1e-3 * 0.25**halved
+        miss = 0.0 if self._flexible else MISS * fine
+        return _once(self._model, self._system if on is None else on, h, seen, miss, MADE * fine)
+
+    def _ends(self, run: Result, k: int, seen: Watch, on: System | None = None) -> bool:
+        """Whether the search ends with the run at the first step halved `k` times, which becomes the last
+        one."""
+        before, model = self._runs[:2], self._model
+        enough = False
+        if run.ok and before[0].ok:
+            h = run.step
+            run = _compared(run, before, lambda n: self._once(n * h, k - n // 2, seen, on))
+            near = run.error_estimate is not None and run.error_estimate <= model.run.tolerance
             free = not len(model.pairs)
-            if near and not (free and result.energy.balance_error > FREE_GAIN * model.run.tolerance):
-                return result
-        ends = result.time[-1], runs[0].time[-1]
-        same = abs(ends[0] - ends[1]) <= SAME_END * model.run.duration
-        if not _ended(result) and same and _unbalanced(result) is None:
+            enough = near and not (free and run.energy.balance_error > FREE_GAIN * model.run.tolerance)
+        same = abs(run.time[-1] - before[0].time[-1]) <= SAME_END * model.run.duration
+        self._runs.insert(0, run)
+        return enough or (not _ended(run) and same and _unbalanced(run) is None)
+
+    def _two(self) -> Result:
+        """The second pass beside the first one: rigid blocks seldom need a third."""
+        h = first_step(self._model)
+        seen, beside = self._watch(0), own(self._system)
+        with Beside(lambda stop: self._once(h, 0, seen.beside(stop), beside), seen.leave) as coarse:
+            second = self._once(0.5 * _division(self._model, h).step, 1, self._watch(1))
+            self._runs.append(coarse.result())
+            return second
+
+    def _three(self) -> Result | None:
+        """The third pass, which most scenes with flexible sheets need, beside the first two, which take as
+        long; None where the search ends with these."""
+        model, h, enough = self._model, first_step(self._model), Event()
+        seen, beside = [self._watch(number) for number in (0, 1, 2, DOUBLED)], own(self._system)
+
+        def two(stop: Event) -> bool:
+            hidden = [each.beside(stop) for each in seen]
+            ends = True
+            try:
+                self._runs.append(self._once(h, 0, hidden[0], beside))
+                seen[0].leave()
+                second = self._once(0.5 * self._runs[0].step, 1, hidden[1], beside)
+                ends = self._ends(second, 1, hidden[3], beside)
+                if not ends:
+                    _strains(self._runs)
+                return ends
+            finally:
+                if ends:
+                    enough.set()
+
+        second = _division(model, 0.5 * _division(model, h).step)
+        with Beside(two, seen[0].leave) as coarser:
+            third = None
+            with contextlib.suppress(Stopped):
+                third = self._once(0.5 * second.step, 2, seen[2]._replace(stop=enough))
+            return None if coarser.result() else third
+
+    def _failed(self) -> Result:
+        result = self._runs[0]
+        if not result.ok:
             return result
-        runs.insert(0, result)
-    result = runs[0]
-    if result.ok:
         why = f"{result.error_estimate_of} does not come closer as steps are halved"
         if not result.coarser:
             why = "a run at twice the step failed"
         elif result.error_estimate is not None:
             why = f"the estimate of {result.error_estimate_of} is {result.error_estimate:.3g}"
-        result = result.failed(
-            f"the tolerance of {model.run.tolerance:.3g} was not reached at a step of {result.step:.3g} ms: "
-            f"{why}; a larger run.tolerance or a run.step of your own ends the search"
+        return result.failed(
+            f"the tolerance of {self._model.run.tolerance:.3g} was not reached at a step of "
+            f"{result.step:.3g} ms: {why}; a larger run.tolerance or a run.step of your own ends the search"
         )
-    return result
+
+
+def _strains(runs: list[Result]) -> None:
+    """Works out what estimates need of runs, which keep it."""
+    for run in runs:
+        _ = run.strains
 
 
 def _accuracy(model: Model) -> float:
@@ -339,7 +409,7 @@ def _once(
 
     run = model.run
     outputs, each, dt = _division(model, wanted)
-    progress, keep, number, stop = watch
+    progress, keep, number, stop, hidden = watch
     begun = clock.perf_counter()
     work = _arrays(model, system)
     state = work.state
@@ -360,7 +430,7 @@ def _once(
         entries.look(system.pairs, system.search, system.search.place.copy())
 
     def show() -> None:
-        if keep is not None and stop is None:  # the one beside shows a later part, or a finer one
+        if keep is not None and not hidden:  # the one beside shows a later part, or a finer one
             keep.part = partial(_part, recorder, recorder.stand(energies), dt, int(counters[STEPS]))
 
     if stage is not None:

@@ -24,7 +24,7 @@ State = dict[str, np.ndarray]
 
 
 class Checkpointer:
-    """Counts the passes of a run, and writes and reads their states in `folder` (None: nothing is written).
+    """Writes and reads states of the passes of a run in `folder` (None: nothing is written).
 
     `every` is the time between two states that are written [s]; with the first one stand the files that
     `provenance` gives (name -> text; run.json), None where the folder has them. `part` is a way to the result
@@ -43,14 +43,11 @@ class Checkpointer:
         self.lock = Lock()
         self.free = Event()
         self.written = folder is not None and provenance is None
-        self._pass = -1
         self._last: dict[int, float] = {}  # when each pass was written, or what there was when it began
 
-    def begin(self) -> int:
-        """The number of the pass that begins."""
-        self._pass += 1
-        self._last[self._pass] = max(self._last.values(), default=time.monotonic())
-        return self._pass
+    def begin(self, number: int) -> None:
+        """A pass of that number begins: the same one in each run of a scene, however many go on at a time."""
+        self._last[number] = max(self._last.values(), default=time.monotonic())
 
     def due(self, number: int) -> bool:
         """Whether it is time to write the state of a pass."""
