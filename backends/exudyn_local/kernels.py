@@ -24,7 +24,18 @@ from mdlgen.mechanics.curve import curve_excess, middle_and_gap
 from mdlgen.mechanics.driven import clutch, prescribed, turned
 from mdlgen.mechanics.frame import Frame, Motion
 from mdlgen.mechanics.pair import pair_force
-from mdlgen.mechanics.point import DISSIPATED, FORCE_A, FORCE_B, OUT, STORED, TORQUE_A, TORQUE_B
+from mdlgen.mechanics.point import (
+    DISSIPATED,
+    FORCE_A,
+    FORCE_B,
+    MOST_POINTS,
+    OUT,
+    POINT,
+    STORED,
+    TORQUE_A,
+    TORQUE_B,
+)
+from mdlgen.mechanics.turning import TURNING, turning
 from mdlgen.mechanics.vector import (
     add,
     back,
@@ -43,6 +54,8 @@ from mdlgen.mechanics.vector import (
 from mdlgen.model.tables import Ints
 from mdlgen.program.kernel import njit
 
+# What is seen of a pair at a state: what it does, and what it turns; and with its points.
+SEEN, WIDE = OUT + TURNING, OUT + 1 + POINT * MOST_POINTS
 # Perturbations of the difference quotients: positions and Euler parameters, velocities [SI]. A static run
 # takes central quotients: a joint bends 1e5 times easier than it stretches, and a one-sided quotient of the
 # stretching part would hide the bending; in a transient run the mass stands in between.
@@ -345,7 +358,7 @@ def jacobian(tables, elements, at, level, by, central, owner, work, data):
 def ledger(tables, at, work, pair_out, totals):
     """Energies and powers at a state into `totals` (columns KINETIC, ELASTIC, ... of state.py).
 
-    Also leaves the result of each pair in `pair_out` (p, OUT) and the bodies' motion in `work`.
+    Also leaves the result of each pair in `pair_out` (p, SEEN) and the bodies' motion in `work`.
     """
     bodies, pairs, loads, gravity = tables.bodies, tables.pairs, tables.loads, tables.gravity
     motion, f = work.motion, work.forces
@@ -383,10 +396,14 @@ def ledger(tables, at, work, pair_out, totals):
         energy, power = _bush(tables, tables.bushings[i], q, motion, f)
         elastic += energy
         lost += power
+    whole = np.zeros(WIDE)
     for i in range(pairs.size):
-        if not _pair(tables, pairs[i], q, motion, f, pair_out[i]):
+        if not _pair(tables, pairs[i], q, motion, f, whole):
             continue
         row = pair_out[i]
+        for k in range(OUT):
+            row[k] = whole[k]
+        turning(bodies, pairs[i], whole, pair_out, i, OUT)
         elastic += row[STORED]
         lost += row[DISSIPATED]
         for body, torque_at in ((pairs[i].a, TORQUE_A), (pairs[i].b, TORQUE_B)):

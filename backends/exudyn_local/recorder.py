@@ -18,7 +18,8 @@ from mdlgen.backends.exudyn_local.state import (
     Coordinates,
 )
 from mdlgen.backends.exudyn_local.system import MM, MS, PER_MM, System
-from mdlgen.mechanics.point import DEPTH, PRESSING
+from mdlgen.mechanics.point import DEPTH, OUT, PRESSING
+from mdlgen.mechanics.turning import ABOUT_A, ABOUT_B, ALONG, LIMIT, TURNING
 from mdlgen.model import curves
 from mdlgen.model.meshes import carried
 from mdlgen.model.rotations import euler_parameters
@@ -41,7 +42,7 @@ class Recorder:
         self.reason: str | None = None
         self._due = np.zeros(0)  # times at which a state is stored [s]
         self._work = kernels.workspace(system)
-        self._pairs = np.zeros((len(system.pairs), kernels.OUT))
+        self._pairs = np.zeros((len(system.pairs), kernels.SEEN))
         self._totals = np.zeros(TOTALS)
         system.pairs["beside"] = 0  # a run before this one may have left its own
         self._touched = np.zeros(len(system.pairs), bool)
@@ -51,7 +52,8 @@ class Recorder:
         self._in_contact, self._last = np.zeros(rows), np.zeros(rows)
         self._acting = np.zeros(rows, bool)
         self._force = np.zeros(rows)  # of the state last observed; a failed static run observes none [N]
-        self._stored: dict[str, list] = {name: [] for name in ("t", "x", "e", "u", "w", "f")}
+        self._turning = np.zeros((rows, TURNING))  # of that state [N m, N]
+        self._stored: dict[str, list] = {name: [] for name in ("t", "x", "e", "u", "w", "f", "turning")}
         self._first: np.ndarray | None = None
         self._lost = self._driven = 0.0
         self._through = self._most = 0.0
@@ -142,6 +144,8 @@ class Recorder:
         self._last = np.where(self._acting & ~acting, t, self._last)
         self._acting = acting
         self._force = force
+        self._turning = np.zeros((rows, TURNING))
+        np.add.at(self._turning, row, self._pairs[:, OUT:])
 
     def _store(self, t: float) -> None:
         if self._last_stored == self.steps:
@@ -155,6 +159,7 @@ class Recorder:
         self._stored["u"].append(u[:-1].copy())
         self._stored["w"].append(w[:-1].copy())
         self._stored["f"].append(self._force.copy())
+        self._stored["turning"].append(self._turning)
         self.reason = self.reason or self._unheld.found(x[:-1] / MM, r[:-1], t / MS)
 
     def _watch(self, t: float, step: float) -> None:
@@ -202,6 +207,7 @@ class Recorder:
 
         contact_time = np.where(self._in_contact > 0, self._in_contact, 1.0)
         static = self.steps == 0
+        turning = array("turning", rows, TURNING)
         return Result(
             model=self.model,
             solver=solver,
@@ -212,6 +218,8 @@ class Recorder:
             velocity=array("u", count, 3) * MS / MM,
             spin=array("w", count, 3) * MS,
             contact_force=array("f", rows),
+            contact_torque=turning[..., [ABOUT_A, ABOUT_B]] / MM,
+            contact_friction=turning[..., [ALONG, LIMIT]],
             statistics=ContactStatistics(
                 max_depth=self._max_depth / MM,
                 mean_depth=(self._max_depth if static else self._sum_depth / contact_time) / MM,

@@ -209,7 +209,7 @@ def _compile(system: System, pattern: Pattern, work: Work) -> None:
     at, owner = Coordinates(q, v, 0.0), kernels.owners(system)
     forces(tables, at, 1.0, work)
     jacobian(tables, system.elements, at, 1.0, (1.0, 1.0), False, owner, work, data)
-    ledger(tables, at, work, np.zeros((len(system.pairs), kernels.OUT)), np.zeros(TOTALS))
+    ledger(tables, at, work, np.zeros((len(system.pairs), kernels.SEEN)), np.zeros(TOTALS))
     passed(system.bodies, system.pairs, system.meshes, q, v, q, v, 0.0, 0.0)
 
 

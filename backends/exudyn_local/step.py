@@ -62,7 +62,7 @@ def overlap_step(model: Model, system: System, work: Work) -> float:
     if not len(pairs):
         return math.inf
     q = np.zeros(max(1, system.free))
-    out = np.zeros((len(pairs), kernels.OUT))
+    out = np.zeros((len(pairs), kernels.SEEN))
     ledger(system.tables, Coordinates(q, q.copy(), 0.0), work, out, np.zeros(TOTALS))
     stored, force = np.zeros(len(bodies)), np.zeros(len(bodies))
     left, stiffest = np.zeros((len(bodies), 3)), np.zeros(len(bodies))

@@ -17,10 +17,13 @@ from mdlgen.backends.lattice.kernels.state import (
     MAX_DEPTH,
     MAX_FORCE,
     TIME,
+    TURNING_BEGUN,
+    TURNING_NOW,
     Kept,
     Midpoint,
     State,
 )
+from mdlgen.mechanics.turning import ABOUT_A, ABOUT_B, ALONG, LIMIT, TURNING
 from mdlgen.model.meshes import carried
 from mdlgen.model.rotations import euler_parameters
 from mdlgen.model.tables import Model
@@ -29,6 +32,8 @@ from mdlgen.results.result import ContactStatistics, Energy, Result
 from mdlgen.version import of
 
 STORED = {"x": 3, "r": 9, "u": 3, "w": 3}
+NOW = [FORCE_NOW, *range(TURNING_NOW, TURNING_NOW + TURNING)]  # of the rows of contacts
+BEGUN = [FORCE_BEGUN, *range(TURNING_BEGUN, TURNING_BEGUN + TURNING)]
 TOGETHER = 20_000  # bodies, times states, whose rotations are looked at together
 
 
@@ -59,8 +64,8 @@ class Recorder:
         from mdlgen.backends.lattice.kernels import observe
 
         count = len(self.model.bodies.name)
-        energies, force = np.zeros(3), np.zeros(len(self.model.contacts))
-        observe.ledger(self.tables, self.state, self.mid, t, energies, force)
+        energies, rows = np.zeros(3), np.zeros_like(self.kept.rows)
+        observe.ledger(self.tables, self.state, self.mid, t, energies, rows)
         if self.system.mirror is not None:
             energies *= 2.0
         now = (float(energies[0]), float(energies[1]), float(energies[2]))
@@ -73,14 +78,14 @@ class Recorder:
         for name, array in (("x", self.state.x), ("r", self.state.r), ("u", motion.u), ("w", motion.w)):
             self._stored[name].append(array[:count].copy())
         if t == 0.0:
-            self.kept.rows[:, FORCE_NOW] = force
+            self.kept.rows[:, NOW] = rows[:, NOW]
         # forces in the middle of the last step, where the rule has them, until the next one shows what they
         # are at its end; at the start as it begins
-        self._stored["f"].append(self.kept.rows[:, FORCE_NOW].copy())
+        self._stored["f"].append(self.kept.rows[:, NOW])
 
     def between(self) -> None:
         """The step after the last state that is stored has been taken: forces there lie between both."""
-        self._stored["f"][-1] = self.kept.rows[:, FORCE_BEGUN].copy()
+        self._stored["f"][-1] = self.kept.rows[:, BEGUN]
 
     def arrays(self) -> dict[str, np.ndarray]:
         """All that it has stored, and what the compiled code added up."""
@@ -91,7 +96,7 @@ class Recorder:
         first = self._first or (0.0, 0.0, 0.0)
         return {
             **found,
-            "f": np.array(self._stored["f"]).reshape(times, len(self.model.contacts)),
+            "f": np.array(self._stored["f"]).reshape(times, len(self.model.contacts), len(NOW)),
             "times": np.array(self._times),
             "energies": np.array([*first, *self._last, self._most]),
             "rows": self.kept.rows,
@@ -139,7 +144,9 @@ class Recorder:
             rotation=held["e"],
             velocity=held["u"],
             spin=held["w"],
-            contact_force=held["f"],
+            contact_force=held["f"][..., 0],
+            contact_torque=held["f"][..., [1 + ABOUT_A, 1 + ABOUT_B]],
+            contact_friction=held["f"][..., [1 + ALONG, 1 + LIMIT]],
             statistics=ContactStatistics(
                 max_depth=rows[:, MAX_DEPTH].copy(),
                 mean_depth=rows[:, DEPTH_TIME] / inside,
@@ -168,7 +175,7 @@ class Recorder:
             if finite:
                 held["e"][at : at + few] = euler_parameters(some[1].reshape(*some[1].shape[:2], 3, 3))
         if mirror is not None:
-            held["f"] = mirror.sums(held["f"])
+            held["f"] = mirror.acts(held["f"])
         return held | {"e": _without_jumps(held["e"]) if finite else held["e"]}
 
 

@@ -84,6 +84,28 @@ SUMMARY: dict[str, tuple[str, str]] = {
         }.items()
     },
     "rollers.NAME.omega_rad_per_s": ("rad/s", "speed about the roller's axis at the end"),
+    **{
+        f"rollers.NAME.{key}": words
+        for key, words in {
+            "torque_n_mm": ("N mm", "torque of its drive about its axis at the end; 0 of a free roller"),
+            "max_torque_n_mm": ("N mm", "that which is greatest in size of the stored times"),
+            "mean_torque_n_mm": ("N mm", "its mean over the run"),
+            "power_w": ("W", "power that its drive gives at the end"),
+            "max_power_w": ("W", "that which is greatest in size of the stored times"),
+            "mean_power_w": ("W", "its mean over the run"),
+            "contact_torque_n_mm": ("N mm", "torque of its contacts about its axis at the end"),
+            "max_contact_torque_n_mm": ("N mm", "that which is greatest in size of the stored times"),
+            "mean_contact_torque_n_mm": ("N mm", "its mean over the run"),
+            "traction.OTHER.tangential_n": (
+                "N",
+                "mean friction along its surface, without sign, at the stored times at which the two touch; "
+                "null if they never do",
+            ),
+            "traction.OTHER.limit_n": ("N", "mean of the most that it can be, mu_static N, at these times"),
+            "traction.OTHER.reserve": ("", "part of the grip that is left: 1 - tangential_n / limit_n"),
+            "traction.OTHER.least_reserve": ("", "the least that is left at any stored time"),
+        }.items()
+    },
     "rollers.NAME.free_of_counterpart_at_ms": (
         "ms",
         "time at which the force between it and other rollers ended, for the last time: a sheet came between "
@@ -125,6 +147,10 @@ SERIES: dict[str, tuple[str, str]] = {
     "NAME.vz_mm_per_s": ("mm/s", "the same along z"),
     "NAME.yaw_deg": ("deg", "turn of a sheet about its normal, as `yaw_deg` of the summary"),
     "NAME.omega_rad_per_s": ("rad/s", "speed of a roller about its axis"),
+    "NAME.torque_n_mm": ("N mm", "torque that the drive of a roller gives about its axis"),
+    "NAME.power_w": ("W", "power that it gives"),
+    "NAME.contact_torque_n_mm": ("N mm", "torque of contacts on a roller about its axis"),
+    "NAME.OTHER.tangential_n": ("N", "friction along a roller's surface, as it turns, by another part"),
     "NAME.force_n": ("N", "sum of the normal forces on a roller, plane, guide or mesh"),
 }
 STATES: dict[str, tuple[str, str, str]] = {
@@ -134,6 +160,12 @@ STATES: dict[str, tuple[str, str, str]] = {
     "velocity": ("(t, body, 3)", "mm/ms", "velocities of the centres of mass"),
     "spin": ("(t, body, 3)", "rad/ms", "angular velocities, global axes"),
     "contact_force": ("(t, contact)", "N", "normal force of each pair of parts"),
+    "contact_torque": ("(t, contact, 2)", "N mm", "torque on both parts of each pair about their axes"),
+    "contact_friction": (
+        "(t, contact, 2)",
+        "N",
+        "friction along the roller's surface, and the most that it can be; without a roller its size",
+    ),
     "bodies": ("(body,)", "", "names of bodies: boxes `note_4_7` (column 4, row 7), then the machine"),
     "contacts": ("(contact,)", "", "pairs of parts, `a / b`"),
     "statistics/max_depth": ("(contact,)", "mm", "greatest depth"),

@@ -242,7 +242,20 @@ def _rollers(rollers: dict[str, Any]) -> list[str]:
         rows.append(
             [name, *(_number(roller[key]) for key in keys), "acts" if free is None else f"{free:.4g}"]
         )
-    return _table(rows)
+    return [*_table(rows), *_drives(rollers)]
+
+
+def _drives(rollers: dict[str, Any]) -> list[str]:
+    """What drives give, and the grip that is left on sheets and rollers."""
+    rows = [["drive", "torque N mm: mean", "peak", "power W: mean", "peak", "grip left"]]
+    for name, roller in rollers.items():
+        if not roller.get("max_torque_n_mm"):
+            continue
+        keys = ("mean_torque_n_mm", "max_torque_n_mm", "mean_power_w", "max_power_w")
+        held = {other: grip["reserve"] for other, grip in roller["traction"].items()}
+        left = ", ".join(f"{other} {part:.0%}" for other, part in held.items() if part is not None)
+        rows.append([name, *(_number(roller[key]) for key in keys), left or "-"])
+    return _table(rows) if len(rows) > 1 else []
 
 
 def _plates(plates: dict[str, Any]) -> list[str]:

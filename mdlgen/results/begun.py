@@ -23,5 +23,7 @@ def begun_of(model: Model) -> Result:
         velocity=bodies.velocity[None],
         spin=bodies.spin[None],
         contact_force=np.zeros((1, rows)),
+        contact_torque=np.zeros((1, rows, 2)),
+        contact_friction=np.zeros((1, rows, 2)),
         statistics=ContactStatistics(*(np.zeros(rows) for _ in range(5))),
     )

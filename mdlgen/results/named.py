@@ -13,6 +13,7 @@ import numpy as np
 from mdlgen.model.tables import Floats
 from mdlgen.results.compare import travel
 from mdlgen.results.summary import PER_SECOND, part_rows
+from mdlgen.results.torques import contact_torque, drive_power, drive_torque, grips
 
 if TYPE_CHECKING:
     from mdlgen.results.result import Result
@@ -73,14 +74,28 @@ class RollerResult(_Named):
         "time": "ms",
         "rate": "rad/s",
         "force": "N",
+        "torque": "N*mm",
+        "power": "W",
+        "drive_torque": "N*mm",
+        "drive_power": "W",
+        "contact_torque": "N*mm",
+        "tangential": "N",
+        "traction": "1",
     }
-    shown: ClassVar[tuple[str, ...]] = ("speed", "center", "nip_force")
+    shown: ClassVar[tuple[str, ...]] = ("speed", "center", "nip_force", "torque", "power")
     speed: float  # [rad/s], about its axis
     center: Floats  # [mm], (3,)
     nip_force: float  # [N], sum of the normal forces on it
+    torque: float  # [N mm], that its drive gives about its axis, 0 of a free one
+    power: float  # [W], that its drive gives
     time: Floats  # of what follows [ms], (t,)
     rate: Floats  # speed about its axis [rad/s], (t,)
     force: Floats  # sum of the normal forces [N], (t,)
+    drive_torque: Floats  # that its drive gives about its axis [N mm], (t,)
+    drive_power: Floats  # [W], (t,)
+    contact_torque: Floats  # that contacts exert on it about its axis [N mm], (t,)
+    tangential: Mapping[str, Floats]  # friction along its surface by the other part, as it turns [N], (t,)
+    traction: Mapping[str, Floats]  # |T| / (mu N) of each, nan where it does not act, (t,)
 
 
 @dataclass(frozen=True, repr=False, eq=False, kw_only=True)
@@ -126,6 +141,12 @@ def rollers(result: Result) -> Mapping[str, RollerResult]:
     for roller in result.model.rollers if len(result.time) else ():
         rate = result.spin[:, roller.body] @ roller.axis * PER_SECOND
         force = result.contact_force[:, list(part_rows(result, roller))].sum(axis=1)
+        unknown = np.full(len(result.time), np.nan)  # of a file of an older version
+        torque, power, contacts = (
+            unknown if values is None else values
+            for values in (f(result, roller) for f in (drive_torque, drive_power, contact_torque))
+        )
+        held = {grip.other: grip for grip in grips(result, roller)}
         found[roller.name] = RollerResult(
             name=roller.name,
             speed=float(rate[-1]),
@@ -134,6 +155,13 @@ def rollers(result: Result) -> Mapping[str, RollerResult]:
             time=result.time,
             rate=rate,
             force=force,
+            torque=float(torque[-1]),
+            power=float(power[-1]),
+            drive_torque=torque,
+            drive_power=power,
+            contact_torque=contacts,
+            tangential=MappingProxyType({other: grip.along for other, grip in held.items()}),
+            traction=MappingProxyType({other: grip.used for other, grip in held.items()}),
         )
     return MappingProxyType(found)
 

@@ -74,6 +74,12 @@ class Result:
     spin: Floats  # global axes [rad/ms], (t, bodies, 3)
     contact_force: Floats  # total normal force per contact row [N], (t, rows)
     statistics: ContactStatistics
+    # of each contact row, of both parts: torque on it about its axis [N mm], 0 where it is no roller,
+    # (t, rows, 2); None: of an older file, or another program
+    contact_torque: Floats | None = None
+    # friction along the surface of its roller as that turns, without one its size, and the most that it can
+    # be, mu_static times the normal force [N], (t, rows, 2)
+    contact_friction: Floats | None = None
     touched: int = 0  # pairs that touched at any step
     energy: Energy = field(default_factory=Energy)
     step: float = 0.0  # [ms]
@@ -170,7 +176,8 @@ class Result:
         return Shown(page([self]), height)
 
     def plot(self, what: str = "travel") -> Plot:
-        """One quantity over time: travel, speed, yaw, roller_speed, nip_force or probes. A notebook shows it,
+        """One quantity over time: travel, speed, yaw, roller_speed, nip_force, torque,
+        power, contact_torque or probes. A notebook shows it,
         `save(path)` writes it as PNG, and `figure` is matplotlib's. Raises SpecError for another one."""
         from mdlgen.report.figures.plots import plot
 

@@ -12,6 +12,15 @@ from mdlgen.model.tables import Floats, GuidePart, MeshPart, PlanePart, RollerPa
 from mdlgen.results.compare import travel
 from mdlgen.results.estimates import complete
 from mdlgen.results.result import Result
+from mdlgen.results.torques import (
+    Grip,
+    contact_torque,
+    drive_power,
+    drive_torque,
+    grips,
+    over_time,
+    peak,
+)
 from mdlgen.results.verdict import verdict
 from mdlgen.version import version
 
@@ -225,6 +234,39 @@ def _roller(result: Result, roller: RollerPart) -> dict[str, Any]:
         **_pressing(result, roller),
         # nan, a contact that still acts, wins: the roller is not free then
         "free_of_counterpart_at_ms": np.max(result.statistics.last_force_at[on_rollers], initial=0.0),
+        **_turning(result, roller),
+    }
+
+
+def _turning(result: Result, roller: RollerPart) -> dict[str, Any]:
+    """What its drive and its contacts turn a roller with, and how much of their grip is used: at the end,
+    and over the stored times the greatest in size and the mean."""
+    record: dict[str, Any] = {}
+    for name, unit, values in (
+        ("torque", "n_mm", drive_torque(result, roller)),
+        ("power", "w", drive_power(result, roller)),
+        ("contact_torque", "n_mm", contact_torque(result, roller)),
+    ):
+        numbers = (None, None, None)
+        if values is not None and len(values):
+            numbers = (float(values[-1]), peak(values), over_time(result, values))
+        record |= {f"{of}{name}_{unit}": v for of, v in zip(("", "max_", "mean_"), numbers, strict=True)}
+    return {**record, "traction": {grip.other: _traction(grip) for grip in grips(result, roller)}}
+
+
+def _traction(grip: Grip) -> dict[str, float]:
+    """Of one contact over the stored times at which it acts; nan where it never does, which JSON has as
+    null."""
+    used = grip.used
+    acts = np.isfinite(used)
+    if not acts.any():
+        return dict.fromkeys(("tangential_n", "limit_n", "reserve", "least_reserve"), math.nan)
+    along, limit = float(np.abs(grip.along[acts]).mean()), float(grip.limit[acts].mean())
+    return {
+        "tangential_n": along,
+        "limit_n": limit,
+        "reserve": 1.0 - along / limit,
+        "least_reserve": 1.0 - float(used[acts].max()),
     }
 
 

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mdlgen.errors import SpecError, did_you_mean
-from mdlgen.model.tables import Floats
+from mdlgen.model.tables import Floats, RollerPart
+from mdlgen.results.torques import contact_torque, drive_power, drive_torque, grips
 from mdlgen.spec.require import Requirement, requirement
 from mdlgen.units import parse_unit, same
 
@@ -27,7 +28,7 @@ UNITS = {
     "_deg": "deg",
     "_ms": "ms",
     "_n": "N",
-    "_w": "N*m/s",
+    "_w": "W",
 }
 # Events that a reader sees whether or not they are required away.
 NOTABLE = ("jam", "double_feed", "stub")
@@ -248,7 +249,24 @@ def _series(result: Result, path: str) -> Floats:
         if kind == "rollers" and what in ("omega", "omega_rad_per_s"):
             roller = model.roller(name)
             return result.spin[:, roller.body] @ roller.axis
+        if kind == "rollers" and (found := _turning(result, model.roller(name), what)) is not None:
+            return found
     raise ValueError(
         f"{path} is known at the end alone; over time there are yaw, speed and travel of sheets, nip_force "
-        "of parts and omega of rollers"
+        "of parts, and omega, torque, power, contact_torque and traction.OTHER.reserve of rollers"
     )
+
+
+def _turning(result: Result, roller: RollerPart, what: str) -> Floats | None:
+    """What turns a roller over the stored times, (t,); of a grip that does not act, all is left."""
+    for name, unit, found in (
+        ("torque", "n_mm", drive_torque),
+        ("power", "w", drive_power),
+        ("contact_torque", "n_mm", contact_torque),
+    ):
+        if what in (name, f"{name}_{unit}"):
+            return found(result, roller)
+    for grip in grips(result, roller):
+        if what == f"traction.{grip.other}.reserve":
+            return 1.0 - np.nan_to_num(grip.used)
+    return None

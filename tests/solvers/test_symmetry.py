@@ -55,7 +55,9 @@ def assert_same(
 ) -> None:
     assert half.halved and not whole.halved
     assert compare(half, whole).relative < most
-    for name in ("position", "rotation", "velocity", "spin", "contact_force"):
+    states = ["position", "rotation", "velocity", "spin"]
+    states += ["contact_force", "contact_torque", "contact_friction"]
+    for name in states:
         one, two = getattr(half, name), getattr(whole, name)
         assert np.abs(one - two).max() <= most * max(1.0, np.abs(two).max()), name
     for name in ("max_depth", "mean_depth", "max_force", "mean_force", "last_force_at"):

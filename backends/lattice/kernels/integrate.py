@@ -40,6 +40,8 @@ from mdlgen.backends.lattice.kernels.state import (
     THROUGH_DRIVES,
     TIME,
     TOUCHING,
+    TURNING_BEGUN,
+    TURNING_NOW,
     WORST,
 )
 from mdlgen.backends.lattice.kernels.step import carry, midpoint, spun
@@ -51,6 +53,7 @@ from mdlgen.mechanics.driven import clutch, prescribed
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.pair import remember
 from mdlgen.mechanics.point import DEPTH, PRESSING
+from mdlgen.mechanics.turning import TURNING, turning
 from mdlgen.program.kernel import BORROWS, njit
 
 DONE, STOPPED, LEFT, DEEP, STRETCHED, CROWDED = 0, 1, 2, 3, 4, 5
@@ -78,16 +81,19 @@ def _deep(tables, mid, count):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _watch(pairs, mid, count, t, dt, kept):
+def _watch(tables, mid, count, t, dt, kept):
     """Adds what contacts did in a step from t to a Kept."""
     rows, marks = kept
     for row in range(rows.shape[0]):
         rows[row, FORCE_NOW] = rows[row, DEPTH_NOW] = 0.0
+        for i in range(TURNING):
+            rows[row, TURNING_NOW + i] = 0.0
     for k in range(count):
-        pair = pairs[mid.touched[k]]
+        pair = tables.pairs[mid.touched[k]]
         marks[pair.mark] = True
         rows[pair.row, FORCE_NOW] += mid.results[k, PRESSING]
         rows[pair.row, DEPTH_NOW] = max(rows[pair.row, DEPTH_NOW], mid.results[k, DEPTH])
+        turning(tables.bodies, pair, mid.results[k], rows, pair.row, TURNING_NOW)
     for row in range(rows.shape[0]):
         force, depth = rows[row, FORCE_NOW], rows[row, DEPTH_NOW]
         acts = force > GRAZE * max(rows[row, MAX_FORCE], force)
@@ -104,10 +110,13 @@ def _watch(pairs, mid, count, t, dt, kept):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _begun(rows, part):
-    """The force of each row of the contacts where a step begins, a `part` of the way from the middle of the
-    step before, whose force stands in the last column, to that of this step."""
+    """What each row of the contacts does where a step begins, a `part` of the way from the middle of the
+    step before, which stands in the columns of what begins, to that of this step."""
     for row in range(rows.shape[0]):
         rows[row, FORCE_BEGUN] += part * (rows[row, FORCE_NOW] - rows[row, FORCE_BEGUN])
+        for i in range(TURNING):
+            begun = rows[row, TURNING_BEGUN + i]
+            rows[row, TURNING_BEGUN + i] += part * (rows[row, TURNING_NOW + i] - begun)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -180,6 +189,8 @@ def run(work, t, steps, tolerance, control):
     mass, stored, begun = 0.0, np.zeros(rows.shape[0]), t
     for row in range(rows.shape[0]):
         rows[row, FORCE_BEGUN] = rows[row, FORCE_NOW]
+        for i in range(TURNING):
+            rows[row, TURNING_BEGUN + i] = rows[row, TURNING_NOW + i]
     for n in range(nodes.size):
         mass += bodies[nodes[n]].mass
     for whole in steps:
@@ -239,7 +250,7 @@ def run(work, t, steps, tolerance, control):
             copy(last_u, keep_u)
             copy(last_b, keep_b)
             _account(bodies, mid, state, t, dt, energies)
-            _watch(pairs, mid, int(counters[TOUCHING]), t, dt, work.kept)
+            _watch(tables, mid, int(counters[TOUCHING]), t, dt, work.kept)
             if t == begun:
                 _begun(rows, spans[LAST_STEP] / (spans[LAST_STEP] + dt))
             # between the middles of the two steps

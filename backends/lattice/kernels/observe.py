@@ -1,20 +1,23 @@
-"""Energies and contact forces of a state, outside the stepping."""
+"""Energies and contacts of a state, outside the stepping."""
 
 from __future__ import annotations
 
 from mdlgen.backends.lattice.kernels.forces import joint_forces, near_pairs, pair_forces
+from mdlgen.backends.lattice.kernels.state import FORCE_NOW, TURNING_NOW
 from mdlgen.mechanics.arm import AXIAL, FORCE_0, INERTIA, STIFFNESS, hung, way_of
 from mdlgen.mechanics.driven import prescribed
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.point import PRESSING
+from mdlgen.mechanics.turning import turning
 from mdlgen.mechanics.vector import back, dot, mat, rotate, three, vec
 from mdlgen.program.kernel import njit
 
 
 @njit(cache=True, error_model="numpy")
-def ledger(tables, state, mid, t, energies, force):
+def ledger(tables, state, mid, t, energies, rows):
     """Velocities of all bodies at the end of a step, at time t, into those of the midpoint's motion; kinetic,
-    elastic and potential energy; total normal force for each row of the contacts."""
+    elastic and potential energy; adds to each row of the contacts its normal force, FORCE_NOW, and what it
+    turns, TURNING_NOW."""
     bodies, gravity, nodes = tables.bodies, tables.gravity, tables.nodes
     x, r, v, l, s, vb = state.x, state.r, state.v, state.l, state.s, state.vb
     u, w, f = mid.motion.u, mid.motion.w, mid.forces
@@ -62,5 +65,7 @@ def ledger(tables, state, mid, t, energies, force):
     close = near_pairs(tables, motion, 0.0, 0.0, mid.near)
     count, pressed, _ = pair_forces(tables, mid.near, close, motion, f, mid.touched, mid.results)
     for k in range(count):
-        force[tables.pairs[mid.touched[k]].row] += mid.results[k, PRESSING]
+        pair = tables.pairs[mid.touched[k]]
+        rows[pair.row, FORCE_NOW] += mid.results[k, PRESSING]
+        turning(tables.bodies, pair, mid.results[k], rows, pair.row, TURNING_NOW)
     energies[0], energies[1], energies[2] = kinetic, elastic + stored + pressed, potential

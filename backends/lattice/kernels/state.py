@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mdlgen.mechanics.frame import Motion
+from mdlgen.mechanics.turning import TURNING
 
 Floats = np.ndarray
 Ints = np.ndarray
@@ -91,9 +92,11 @@ class Kept(NamedTuple):
 
 
 # Of Kept.rows: greatest depth and force; sums over time of both; time in contact; force and depth in the last
-# step; whether it acts; when it last ended to; force where the first step of a call of `integrate.run` began.
+# step; whether it acts; when it last ended to; force where the first step of a call of `integrate.run` began;
+# what mechanics.turning has of the last step, and where that first step began.
 MAX_DEPTH, MAX_FORCE, DEPTH_TIME, FORCE_TIME, TIME = 0, 1, 2, 3, 4
-FORCE_NOW, DEPTH_NOW, ACTS, ENDED, FORCE_BEGUN, ROW = 5, 6, 7, 8, 9, 10
+FORCE_NOW, DEPTH_NOW, ACTS, ENDED, FORCE_BEGUN, TURNING_NOW, TURNING_BEGUN = 5, 6, 7, 8, 9, 10, 10 + TURNING
+ROW = TURNING_BEGUN + TURNING
 
 
 class Bounds(NamedTuple):

@@ -57,7 +57,7 @@ def _plane(model: Model, normal: Floats, at: float) -> Mirror | None:
     itself = np.arange(count)
     boxes = itself < sum(s.count for s in model.sheets)
     signs, none = np.ones((count, 3)), np.zeros(count, bool)
-    blank = Mirror(normal, at, itself, signs, none, boxes, itself[:0], np.zeros(0), False)
+    blank = Mirror(normal, at, itself, signs, none, boxes, itself[:0], np.zeros(0), np.zeros((0, 3)), False)
     image = np.full(count, -1)
     for sheet in model.sheets:
         image[sheet.first : sheet.first + sheet.count] = _grid(blank, sheet)
@@ -218,7 +218,21 @@ def _contacts(model: Model, mirror: Mirror) -> Mirror | None:
     far = np.array([any(mirror.gone[place[n]] for n in pair if n in place) for pair in ends])
     times = np.where(row_of_image == itself, 2.0, 1.0)
     apart = sheets or bool(across.any())
-    return replace(mirror, rows=np.where(far, row_of_image, itself), times=times, apart=apart)
+    senses = np.array([_senses(mirror, model, *pair) for pair in ends]).reshape(-1, 3)
+    return replace(mirror, rows=np.where(far, row_of_image, itself), times=times, senses=senses, apart=apart)
+
+
+def _senses(mirror: Mirror, model: Model, one: str, two: str) -> tuple[float, float, float]:
+    """Whether the image of a part of each row turns as that turns about its axis, 1, or the other way, -1;
+    and the image of the roller along whose surface friction counts."""
+    rollers = {roller.body: roller for roller in model.rollers}
+    axes = {roller.name: roller.axis for roller in model.rollers}
+    image = {roller.name: rollers[int(mirror.image[roller.body])].axis for roller in model.rollers}
+
+    def way(name: str) -> float:
+        return -float(np.sign(mirror.seen(axes[name]) @ image[name])) if name in axes else 1.0
+
+    return way(one), way(two), way(two) if two in axes else way(one)
 
 
 def _off(mirror: Mirror, part: Part) -> float:

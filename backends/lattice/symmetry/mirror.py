@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mdlgen.backends.lattice.arrays import IMAGE, System, reach
+from mdlgen.mechanics.turning import ABOUT_A, ALONG
 from mdlgen.model.tables import Floats, Ints
 
 
@@ -30,6 +31,7 @@ class Mirror:
     boxes: NDArray[np.bool_]  # bodies that are boxes of sheets
     rows: Ints  # row of the contacts that tells of each row: itself, or its image
     times: Floats  # 2 for a row that is its own image, else 1
+    senses: Floats  # of what a row turns about the axes of its parts, and along: 1, or -1, (rows, 3)
     apart: bool  # pairs of a box on one side and a part, or a sheet's box, on the other are left out
 
     def seen(self, vectors: Floats) -> Floats:
@@ -59,6 +61,15 @@ class Mirror:
     def sums(self, rows: Floats) -> Floats:
         """What adds up over the pairs of each row of the contacts, (..., rows), of both sides."""
         return self.largest(rows * self.times)
+
+    def acts(self, rows: Floats) -> Floats:
+        """What rows of contacts do, (..., rows, 5), of both sides: normal force, then the columns of
+        mechanics.turning. What turns against its image in one and the same row cancels out."""
+        told = rows[..., self.rows, :] * self.times[self.rows, None]
+        image = (self.rows != np.arange(len(self.rows)))[:, None]
+        own = np.where(self.times[:, None] > 1.0, 0.5 + 0.5 * self.senses, 1.0)
+        told[..., 1 + ABOUT_A : 2 + ALONG] *= np.where(image, self.senses, own)
+        return told
 
     def largest(self, rows: Floats) -> Floats:
         """What holds for a row of the contacts, (..., rows), holds for its image."""

@@ -52,6 +52,15 @@ def _rollers(what: str) -> Callable[[Result], Lines]:
     return lambda result: {name: getattr(roller, what) for name, roller in result.rollers.items()}
 
 
+def _driven(what: str) -> Callable[[Result], Lines]:
+    def lines(result: Result) -> Lines:
+        driven = [roller.name for roller in result.model.rollers if roller.speed is not None]
+        found = result.rollers
+        return {name: getattr(found[name], what) for name in driven if name in found}
+
+    return lines
+
+
 def _probes(result: Result) -> Lines:
     return _since_start({name: probe.position for name, probe in result.probes.items()})
 
@@ -63,6 +72,9 @@ QUANTITIES: dict[str, tuple[str, str, Callable[[Result], Lines]]] = {
     "yaw": ("turn of the sheet about its normal", "deg", _sheets("turn")),
     "roller_speed": ("speed of rollers about their axes", "rad/s", _rollers("rate")),
     "nip_force": ("normal force on rollers", "N", _rollers("force")),
+    "torque": ("torque of drives", "N mm", _driven("drive_torque")),
+    "power": ("power of drives", "W", _driven("drive_power")),
+    "contact_torque": ("torque of contacts on rollers", "N mm", _rollers("contact_torque")),
     "probes": ("displacement of probes", "mm", _probes),
 }
 

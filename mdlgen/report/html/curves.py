@@ -12,6 +12,7 @@ from mdlgen.results.compare import travel
 from mdlgen.results.result import Result
 from mdlgen.results.strain import SheetJoints
 from mdlgen.results.summary import PER_SECOND, part_rows
+from mdlgen.results.torques import drive_power, drive_torque, grips
 
 POINTS = 4000  # of a line; more are not seen
 
@@ -129,7 +130,27 @@ def _rollers(result: Result, at: Ints, deep: Floats) -> list[Panel]:
     for roller in result.model.rollers:
         omega = result.spin[:, roller.body] @ roller.axis * PER_SECOND
         spin.lines.append(Line(roller.name, result.time[thin], omega[thin]))
-    return [force, depth, place, spin]
+    return [force, depth, place, spin, *_drives(result, thin)]
+
+
+def _drives(result: Result, thin: Ints) -> list[Panel]:
+    """What each drive gives, and how much of the grip of sheets on each roller is used."""
+    torque = Panel("torque", "Torque of each drive", "N mm")
+    torque.note = "about the roller's axis: what contacts and its inertia take"
+    power = Panel("power", "Power of each drive", "W")
+    traction = Panel("traction", "Used part of the grip of sheets on each roller", "%")
+    traction.note = "friction along the surface over the most that it can be, mu times the normal force"
+    sheets = {sheet.name for sheet in result.model.sheets}
+    for roller in result.model.rollers:
+        for panel, found in ((torque, drive_torque), (power, drive_power)):
+            values = found(result, roller) if roller.speed is not None else None
+            if values is not None:
+                panel.lines.append(Line(roller.name, result.time[thin], values[thin]))
+        for grip in grips(result, roller):
+            if grip.other in sheets and np.isfinite(grip.used).any():
+                name = roller.name if len(sheets) == 1 else f"{roller.name} {grip.other}"
+                traction.lines.append(Line(name, result.time[thin], 100.0 * np.nan_to_num(grip.used[thin])))
+    return [torque, power, traction]
 
 
 def _bearing(result: Result, at: Ints, joints: tuple[SheetJoints, Floats, Floats] | None) -> list[Panel]:

@@ -13,6 +13,8 @@ _UNITS = {
     "velocity": "mm/ms",
     "spin": "rad/ms",
     "contact_force": "N",
+    "contact_torque": "N*mm",
+    "contact_friction": "N",
 }
 
 
@@ -29,7 +31,10 @@ def dataset(result: Result) -> Any:
         "velocity": ("time", "body", "axis"),
         "spin": ("time", "body", "axis"),
         "contact_force": ("time", "contact"),
+        "contact_torque": ("time", "contact", "part"),
+        "contact_friction": ("time", "contact", "friction"),
     }
+    axes = {name: dims for name, dims in axes.items() if getattr(result, name) is not None}
     return xarray.Dataset(
         {name: (dims, getattr(result, name), {"units": _UNITS[name]}) for name, dims in axes.items()},
         coords={
@@ -37,6 +42,8 @@ def dataset(result: Result) -> Any:
             "body": list(result.model.bodies.name),
             "axis": ["x", "y", "z"],
             "parameter": ["w", "x", "y", "z"],
+            "part": ["a", "b"],
+            "friction": ["along", "limit"],
             "contact": [f"{a} / {b}" for a, b in zip(contacts.part_a, contacts.part_b, strict=True)],
         },
         attrs={"scene": result.model.name, "solver": result.solver, "status": result.status},
@@ -58,5 +65,13 @@ def frame(result: Result) -> Any:
 
 def unit_of(column: str) -> str:
     """The unit that stands at the end of the name of a column."""
-    endings = (("_mm_per_s", "mm/s"), ("_rad_per_s", "rad/s"), ("_mm", "mm"), ("_deg", "deg"), ("_n", "N"))
+    endings = (
+        ("_mm_per_s", "mm/s"),
+        ("_rad_per_s", "rad/s"),
+        ("_n_mm", "N*mm"),
+        ("_mm", "mm"),
+        ("_deg", "deg"),
+        ("_n", "N"),
+        ("_w", "W"),
+    )
     return next((unit for ending, unit in endings if column.endswith(ending)), "1")

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from mdlgen.model.tables import Floats
+from mdlgen.model.tables import Floats, RollerPart
 from mdlgen.results.result import Result
 from mdlgen.results.summary import PER_SECOND, part_rows
+from mdlgen.results.torques import contact_torque, drive_power, drive_torque, grips
 
 
 def series(result: Result) -> dict[str, Floats]:
     """Column name -> values at the stored times: sheets (centre of mass), probes, rollers, pressed plates,
-    then what does not move: planes, guides and meshes."""
+    with their torques, then what does not move: planes, guides and meshes."""
     table: dict[str, Floats] = {"time_ms": result.time}
     for index, sheet in enumerate(result.model.sheets):
         place, rate, yaw = result.sheet_motion(index)
@@ -24,6 +25,7 @@ def series(result: Result) -> dict[str, Floats]:
         table[f"{roller.name}.z_mm"] = result.position[:, roller.body, 2]
         table[f"{roller.name}.omega_rad_per_s"] = result.spin[:, roller.body] @ roller.axis * PER_SECOND
         table[f"{roller.name}.force_n"] = result.contact_force[:, rows].sum(axis=1)
+        table |= _turning(result, roller)
     for plate, _ in result.model.plates:
         rows = list(part_rows(result, plate))
         table[f"{plate.name}.z_mm"] = result.position[:, plate.body, 2]
@@ -37,6 +39,15 @@ def series(result: Result) -> dict[str, Floats]:
 def _motion(name: str, place: Floats, rate: Floats) -> dict[str, Floats]:
     table = {f"{name}.{axis}_mm": place[:, k] for k, axis in enumerate("xyz")}
     return table | {f"{name}.v{axis}_mm_per_s": rate[:, k] * PER_SECOND for k, axis in enumerate("xyz")}
+
+
+def _turning(result: Result, roller: RollerPart) -> dict[str, Floats]:
+    """Torque and power of its drive, where it has one, and what its contacts turn it with."""
+    found = {"contact_torque_n_mm": contact_torque(result, roller)}
+    if roller.speed is not None:
+        found = {"torque_n_mm": drive_torque(result, roller), "power_w": drive_power(result, roller), **found}
+    known = {f"{roller.name}.{name}": values for name, values in found.items() if values is not None}
+    return known | {f"{roller.name}.{grip.other}.tangential_n": grip.along for grip in grips(result, roller)}
 
 
 def csv(result: Result) -> str:

@@ -20,6 +20,7 @@ from mdlgen.results.summary import summary, versions
 
 UNITS = "mm, N, g, ms, rad"
 STATES = ("time", "position", "rotation", "velocity", "spin", "contact_force")
+TURNS = ("contact_torque", "contact_friction")  # which files of older versions do not have
 # of a Result, beside its states: what the tables of the file hold
 STORED = (
     "model", "solver", "status", "touched", "energy", "step", "steps", "rounds", "halved", "error_estimate",
@@ -72,6 +73,9 @@ def hdf5(result: Result) -> bytes:
         put = tree.Writer(file).put
         for name in STATES:
             put(name, getattr(result, name))
+        for name in TURNS:
+            if getattr(result, name) is not None:
+                put(name, getattr(result, name))
         for name in STATISTICS:
             put(f"statistics/{name}", np.asarray(getattr(result.statistics, name), dtype=float))
         for name, data in _joints(result).items():
@@ -103,7 +107,7 @@ def load(folder: str | Path) -> Result:
             if "model" not in file:
                 raise OutputError(f"{path}: holds states and no model; it is of an older mdlgen, run again")
             message = tree.take(file) | dict(zip(TOOK, file["took"][()].tolist(), strict=True))
-            states = {name: file[name][()] for name in STATES}
+            states = {name: file[name][()] for name in (*STATES, *TURNS) if name not in TURNS or name in file}
             statistics = ContactStatistics(**{name: file[f"statistics/{name}"][()] for name in STATISTICS})
             return Result(**message, **states, statistics=statistics)
     except (OSError, KeyError, TypeError, ValueError, AttributeError) as error:

@@ -1,0 +1,56 @@
+"""What a contact pair does about the axes of its rollers, and its friction along their surfaces.
+
+The friction of a pair is that of all its points; the couple of rolling resistance turns, and is no friction.
+"""
+
+from __future__ import annotations
+
+import math
+
+from mdlgen.mechanics.frame import law_of
+from mdlgen.mechanics.laws import friction_over_speed
+from mdlgen.mechanics.point import (
+    COUPLE,
+    FORCE,
+    KIND,
+    MU_DYNAMIC,
+    MU_STATIC,
+    NORMAL,
+    OUT,
+    POINT,
+    POINTS,
+    SLIP,
+    TORQUE_A,
+    TORQUE_B,
+)
+from mdlgen.mechanics.vector import cross, dot, three, three_from
+from mdlgen.program.kernel import BORROWS, njit
+
+# Columns of what a pair adds: its torque on the first body about the axis of that, on the second about its
+# own; friction along the surface of a roller, as that turns about its axis; the most that friction can be.
+ABOUT_A, ABOUT_B, ALONG, LIMIT, TURNING = 0, 1, 2, 3, 4
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def turning(bodies, pair, out, rows, row, first):
+    """Adds what a pair turns to the TURNING columns of a row of `rows`, from `first` on; `out` is what
+    pair_force left, with its contact points.
+
+    A body that is no roller has no axis, and no torque about it. Of two rollers the surface is that of the
+    second; without any, friction counts by its size.
+    """
+    one, two = three(bodies[pair.a].axis), three(bodies[pair.b].axis)
+    rows[row, first + ABOUT_A] += dot(three_from(out, TORQUE_A), one)
+    rows[row, first + ABOUT_B] += dot(three_from(out, TORQUE_B), two)
+    axis, law = two if dot(two, two) > 0.0 else one, law_of(pair)
+    rolls = dot(axis, axis) > 0.0
+    for k in range(int(out[POINTS])):
+        at = OUT + 1 + POINT * k
+        if out[at + KIND] == COUPLE:
+            continue
+        slip, normal = three_from(out, at + SLIP), three_from(out, at + NORMAL)
+        speed, static = math.sqrt(dot(slip, slip)), out[at + MU_STATIC]
+        grip = friction_over_speed(speed, static, out[at + MU_DYNAMIC], law.stiction, law.sliding)
+        along = dot(slip, cross(axis, normal)) if rolls else speed
+        rows[row, first + ALONG] += out[at + FORCE] * grip * along
+        rows[row, first + LIMIT] += out[at + FORCE] * static

@@ -1,0 +1,135 @@
+"""Torques of rollers, what drives give them, and how much of the grip of their contacts is used.
+
+Signs are those of a turn about the roller's axis as it is given. What contacts do to a roller is the sum over
+its contacts, and those of meshes on it, of friction and rolling resistance. A drive gives what is left of
+the roller's inertia times its angular acceleration: M = I dw/dt - contacts, and M times the speed of its
+shaft as power. A roller that is free has no drive; one with a clutch is driven through that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mdlgen.model.tables import Floats, RollerPart
+
+if TYPE_CHECKING:
+    from mdlgen.results.result import Result
+
+# A contact grips, and has a reserve, where what friction can be is more than this part of its greatest.
+GRAZE = 0.05
+SAME_TIME = 1e-9  # of the run: what a time is known to
+
+
+@dataclass(frozen=True)
+class Grip:
+    """Friction of one contact over the stored times."""
+
+    other: str  # the other part
+    along: Floats  # along the roller's surface, as it turns [N], (t,)
+    limit: Floats  # the most that it can be, mu_static times the normal force [N], (t,)
+
+    @property
+    def used(self) -> Floats:
+        """Part of the grip that is used, |T| / (mu N), (t,); nan where the contact does not act."""
+        acts = self.limit > GRAZE * self.limit.max(initial=0.0)
+        return np.where(acts, np.abs(self.along) / np.where(acts, self.limit, 1.0), np.nan)
+
+
+def rows_of(result: Result, roller: RollerPart) -> Iterator[tuple[int, int, str]]:
+    """Contact rows of a roller and of meshes on it: row, which side of it is the roller, the other part."""
+    contacts, model = result.model.contacts, result.model
+    mine = {roller.name, *(m.name for m in model.meshes if m.on >= 0 and model.rollers[m.on] is roller)}
+    for row, ends in enumerate(zip(contacts.part_a, contacts.part_b, strict=True)):
+        for side in (0, 1):
+            if ends[side] in mine:
+                yield row, side, ends[1 - side]
+
+
+def contact_torque(result: Result, roller: RollerPart) -> Floats | None:
+    """What contacts turn a roller with about its axis [N mm], (t,); None where a result does not have it."""
+    if result.contact_torque is None:
+        return None
+    total = np.zeros(len(result.time))
+    for row, side, _ in rows_of(result, roller):
+        total += result.contact_torque[:, row, side]
+    return total
+
+
+def drive_torque(result: Result, roller: RollerPart) -> Floats | None:
+    """What its drive turns a roller with about its axis [N mm], (t,), 0 of a free one."""
+    if roller.speed is None:
+        return np.zeros(len(result.time))
+    if roller.one_way is not None:
+        return _clutch(result, roller)
+    contacts = contact_torque(result, roller)
+    if contacts is None:
+        return None
+    return (roller.inertia_axial + roller.carried[1]) * _acceleration(result, roller) - contacts
+
+
+def drive_power(result: Result, roller: RollerPart) -> Floats | None:
+    """What its drive gives a roller [W], (t,): its torque times the speed of its shaft, in N mm/ms."""
+    torque = drive_torque(result, roller)
+    if torque is None or roller.speed is None:
+        return torque
+    return torque * roller.prescribed(result.time)
+
+
+def grips(result: Result, roller: RollerPart) -> list[Grip]:
+    """Friction of each of its contacts; none where a result does not have it."""
+    if result.contact_friction is None:
+        return []
+    axes = {part.name: part.axis for part in result.model.rollers}
+    found = []
+    for row, side, other in rows_of(result, roller):
+        along, limit = result.contact_friction[:, row, 0], result.contact_friction[:, row, 1]
+        # of two rollers the second one counts; friction turns both alike about one axis
+        turned = side == 0 and other in axes and float(roller.axis @ axes[other]) < 0.0
+        found.append(Grip(other, -along if turned else along, limit))
+    return found
+
+
+def over_time(result: Result, values: Floats) -> float:
+    """Mean of values at the stored times over the run; of one state alone that value."""
+    time = result.time
+    if len(time) < 2 or time[-1] <= time[0]:
+        return float(values[-1]) if len(values) else 0.0
+    return float(0.5 * (values[1:] + values[:-1]) @ np.diff(time) / (time[-1] - time[0]))
+
+
+def peak(values: Floats) -> float:
+    """The value that is greatest in size, with its sign."""
+    return float(values[np.abs(values).argmax()]) if len(values) else 0.0
+
+
+def _acceleration(result: Result, roller: RollerPart) -> Floats:
+    """Angular acceleration about its axis of a driven roller [rad/ms^2], (t,).
+
+    At a corner of the drive lattice has contacts between those before and after it, exudyn those before; and
+    so the acceleration is.
+    """
+    time, corners = result.time, roller.corners
+    slopes = np.diff(corners[:, 1]) / np.diff(corners[:, 0])
+    inner = np.concatenate([[0.0], slopes, [0.0]])
+    near = SAME_TIME * max(result.model.run.duration, float(time[-1])) if len(time) else 0.0
+    after = inner[np.searchsorted(corners[:, 0], time + near)]
+    before = inner[np.searchsorted(corners[:, 0], time - near)]
+    between = 0.5 * (before + after) if result.solver == "lattice" else before
+    found = np.where(time > 0.0, between, after)
+    if roller.arm is not None and len(time) > 1:  # the drive turns against the arm
+        swung = result.spin[:, roller.body] @ roller.axis - roller.prescribed(time)
+        found = found + np.gradient(swung, time)
+    return found
+
+
+def _clutch(result: Result, roller: RollerPart) -> Floats:
+    """What the shaft turns a roller with through its clutch, as mechanics.driven.clutch has it."""
+    way = roller.one_way
+    assert way is not None, "asked only of a roller with a clutch"
+    behind = roller.prescribed(result.time) - result.spin[:, roller.body] @ roller.axis
+    s = np.maximum(way.direction * behind / way.creep, 0.0)
+    return way.direction * 2.0 * way.torque * s * s / (1.0 + s)
