@@ -88,11 +88,14 @@ def load(path: str | Path, overrides: Iterable[str] = ()) -> Scene:
     return loader.load(path, overrides)
 
 
-def loads(text: str, overrides: Iterable[str] = ()) -> Scene:
-    """The scene of a YAML or JSON text; as `load`. Raises SpecError."""
+def loads(text: str, overrides: Iterable[str] = (), folder: str | Path | None = None) -> Scene:
+    """The scene of a YAML or JSON text; as `load`. Files that it names are looked for in `folder`, without one
+    not at all. Raises SpecError."""
+    from pathlib import Path
+
     from mdlgen.spec import load as loader
 
-    return loader.loads(text, overrides=overrides)
+    return loader.loads(text, overrides=overrides, folder=None if folder is None else Path(folder))
 
 
 def lower(scene: Scene) -> Model:

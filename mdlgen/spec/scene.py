@@ -9,6 +9,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
 from functools import partial
 from itertools import product
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pydantic import (
@@ -24,7 +25,7 @@ from pydantic_core import PydanticCustomError
 from mdlgen.errors import did_you_mean
 from mdlgen.formulas import Amount
 from mdlgen.spec.action import Load, OnSheet, Probe, Support
-from mdlgen.spec.beside import PYTHON
+from mdlgen.spec.beside import PYTHON, holding, named_from
 from mdlgen.spec.contact import Contact
 from mdlgen.spec.document import Document
 from mdlgen.spec.fields import Acceleration, Name, Strict, default, fail, fail_all
@@ -158,8 +159,7 @@ class Scene(Strict):
         from mdlgen.spec.load import meant
 
         overrides = [f"{path}={json.dumps(value)}" for path, value in {**(changes or {}), **more}.items()]
-        folder = self._source.folder if self._source.document is not None else PYTHON
-        return meant(self._document(), overrides, folder, self._limits)
+        return meant(self._document(), overrides, self._folder_of_names(), self._limits)
 
     def check(self) -> list[Lint]:
         """What `mdlgen check` finds: allowed, but probably not meant. Each has `code`, `where`, `message`
@@ -182,13 +182,29 @@ class Scene(Strict):
 
         return sweep(self, over, measure, solver)
 
-    def to_yaml(self) -> str:
+    def to_yaml(self, folder: str | Path | None = None) -> str:
         """The scene as the text of a file. One that came from a file has its comments, formulas and
-        shorthand; another one has each value in the unit of its key."""
-        document = self._source.document
-        if document is not None:
-            return text_of(document)
-        return text_of_data(self.model_dump(mode="json", exclude_defaults=True))
+        shorthand; another one has each value in the unit of its key.
+
+        `folder` is where the text is to stand: files of meshes and curves are named from there. Where it is
+        left out that is `folder` of the scene; `loads(text, folder=..)` reads the same scene again. Raises
+        SpecError for a file that is not in that folder or below.
+        """
+        own, document = self._folder_of_names(), self._document()
+        base = Path(folder) if folder is not None else self.folder if own == PYTHON else None
+        if base is not None:
+            named_from(base, document.data, own)
+        return text_of(document) if document.text else text_of_data(document.data)
+
+    @property
+    def folder(self) -> Path | None:
+        """That from which `to_yaml` names the files of meshes and curves: of the scene's file, or, of a
+        scene made in Python, the nearest one in which or below which they all are; None: it names none."""
+        own = self._folder_of_names()
+        return own if own != PYTHON else holding(self._document().data)
+
+    def _folder_of_names(self) -> Path | None:
+        return self._source.folder if self._source.document is not None else PYTHON
 
     def _document(self) -> Document:
         """What the scene was read from, to be changed; or the like of one that was made in Python."""

@@ -42,8 +42,30 @@ def test_what_is_dumped_is_the_same_scene(sample: Path) -> None:
         assert again.meshes[name].model_copy(update={"file": mesh.file}) == mesh
         assert mesh.file.endswith(again.meshes[name].file)
     # to the last bit, through a text of a file, too
-    if not scene.meshes:
-        same(again, loads(again.to_yaml()))
+    same(again, mdlgen.loads(again.to_yaml(), folder=again.folder))
+
+
+def test_a_text_names_files_from_the_folder_that_it_is_written_into(tmp_path: Path) -> None:
+    (tmp_path / "parts").mkdir()
+    for name in ("lobe.obj", "ramp.stl"):
+        (tmp_path / "parts" / name).write_bytes((samples() / "meshes" / name).read_bytes())
+    (tmp_path / "paper.csv").write_text("0, 0 MPa\n0.01, 30 MPa\n")
+    text = (samples() / "pick.yaml").read_text("utf-8").replace("meshes/", "parts/")
+    given = mdlgen.loads(text, ['materials.paper.curve_md={"file": "paper.csv"}'], folder=tmp_path)
+    assert given.folder == tmp_path and "paper.csv" in given.to_yaml() and "# " in given.to_yaml()
+    # a scene of Python names its files from the nearest folder that has them all
+    made = Scene.model_validate(given.model_dump()).with_({"run.duration": "5 ms"})
+    assert made.folder == tmp_path / "parts"
+    for scene in (given, made):
+        for folder in (scene.folder, tmp_path, tmp_path.parent):
+            again = mdlgen.loads(scene.to_yaml(folder), folder=folder)
+            same(again, scene, (*SHORT, "meshes", "materials"))
+            curves = [one.materials["paper"].curve_md for one in (again, scene)]
+            assert curves[0] is not None and curves[1] is not None and curves[0].points == curves[1].points
+            assert mdlgen.lower(again).meshes[0].volume == mdlgen.lower(scene).meshes[0].volume
+    with pytest.raises(SpecError, match="lobe.obj is not in .* or below"):
+        made.to_yaml(tmp_path / "elsewhere")
+    assert mdlgen.Scene.model_validate(load(NIPS).model_dump()).folder is None
 
 
 def test_files_are_found_from_where_a_scene_is_changed(
@@ -63,7 +85,7 @@ def test_files_are_found_from_where_a_scene_is_changed(
     assert again.curve_md.points == made.curve_cd.points == ((0.0, 0.0), (0.01, 30.0))
     # a text of a stranger still names files of its own folder only
     with pytest.raises(SpecError, match="is not a file in the folder of the spec or below"):
-        loads(scene.to_yaml())
+        loads(scene.to_yaml().replace("lobe.obj", str(tmp_path / "lobe.obj")), folder=tmp_path)
 
 
 @pytest.mark.parametrize("unit", ["mm", "rad/s", "m/s^2", "deg", "N*mm/rad", "g", "ms", "um"])
