@@ -89,8 +89,8 @@ def load(path: str | Path, overrides: Iterable[str] = ()) -> Scene:
 
 
 def loads(text: str, overrides: Iterable[str] = (), folder: str | Path | None = None) -> Scene:
-    """The scene of a YAML or JSON text; as `load`. Files that it names are looked for in `folder`, without one
-    not at all. Raises SpecError."""
+    """The scene of a YAML or JSON text; as `load`. Files that it names are looked for in `folder`,
+    without one not at all. Raises SpecError."""
     from pathlib import Path
 
     from mdlgen.spec import load as loader

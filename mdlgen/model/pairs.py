@@ -12,6 +12,7 @@ far as all that moves it goes. One that meets a pressed plate may be carried by 
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -69,6 +70,7 @@ def find_pairs(
     kept: list[tuple[int, int, int]] = []
     searched: list[int] = []
     if prune:
+        drives: dict[str, _Drives] = {}
         groups = linked([s.name for s in sheets], contacts)
         for sheet in sheets:
             group = groups[sheet.name]
@@ -83,7 +85,10 @@ def find_pairs(
             ]
             boxes = slice(sheet.first, sheet.first + sheet.count)
             others = [by_name[name] for name in group if name != sheet.name]
-            least, most, reach = _swept(gravity, sheet, touched, others, bodies, run)
+            found = drives.get(group[0])  # sheets of one group have the same
+            if found is None:
+                found = drives[group[0]] = _drives(touched, run)
+            least, most, reach = _swept(gravity, sheet, touched, found, others, bodies, run)
             low[boxes], high[boxes] = least - margin, most + margin
             extents[sheet.name] = (low[boxes] - reach - SLACK, high[boxes] + reach + SLACK)
     if prune:
@@ -139,10 +144,31 @@ def find_pairs(
     )
 
 
+class _Drives(NamedTuple):
+    """What driven rollers may do to a sheet."""
+
+    ends: list[Floats]  # how far the way of each goes either way along each axis [mm], (3,)
+    twist: float  # angle by which their differences may turn it in its plane [rad]
+
+
+def _drives(touched: list[tuple[SheetPart, Part]], run: RunSettings) -> _Drives:
+    """Of the driven rollers among the parts that a sheet, or one that it is linked with, touches."""
+    if run.analysis == "static":
+        return _Drives([], 0.0)
+    driven = [(own, part) for own, part in touched if isinstance(part, RollerPart) and part.speed]
+    corners = [part.corners[:, 0] for _, part in driven]
+    stations = np.concatenate([np.linspace(0.0, run.duration, _STATIONS), *corners]).clip(0.0, run.duration)
+    times = np.array(sorted(set(stations.tolist())))
+    found = [_drive(own, part, times) for own, part in driven]
+    ends = [end for path, _ in found for end in (path.min(0), path.max(0))]
+    return _Drives(ends, _twist([path for path, _ in found], [near for _, near in found]))
+
+
 def _swept(
     gravity: Floats,
     sheet: SheetPart,
     touched: list[tuple[SheetPart, Part]],
+    drives: _Drives,
     others: list[SheetPart],
     bodies: Bodies,
     run: RunSettings,
@@ -165,19 +191,14 @@ def _swept(
     thrown = [2.0 * (other.velocity - sheet.velocity) * time for other in others]
     plates = {part.name: part.travel for _, part in touched if isinstance(part, PlanePart)}
     lift = sum(plates.values(), np.zeros(3))
-    driven = [(own, part) for own, part in touched if isinstance(part, RollerPart) and part.speed]
-    corners = [part.corners[:, 0] for _, part in driven]
-    stations = np.concatenate([np.linspace(0.0, time, _STATIONS), *corners]).clip(0.0, time)
-    times = np.array(sorted(set(stations.tolist())))
-    drives = [_drive(own, part, times) for own, part in driven]
-    moves = np.array([fall, shift, *(end for path, _ in drives for end in (path.min(0), path.max(0)))])
+    moves = np.array([fall, shift, *drives.ends])
     if any(kind_of(part).leads for _, part in touched):
         paths = np.linalg.norm(moves, axis=1)
         way = float(paths[:2].sum() + paths[2:].max(initial=0.0) + sum(map(np.linalg.norm, thrown)))
         way += float(np.linalg.norm(lift))
         if sheet.count > 1:
             way += 0.5 * float(size.max())
-        turned = _turn(sheet, drives, time) * diagonal
+        turned = _turn(sheet, drives.twist, time) * diagonal
         reach = np.full(3, float(np.linalg.norm(bodies.half[boxes], axis=1).max()))
         return centers - way - min(turned, diagonal), centers + way + min(turned, diagonal), reach
     # velocity and fall act together with one drive at a time
@@ -191,7 +212,7 @@ def _swept(
         normal = np.abs(sheet.rotation[:, 2]) * 0.5 * float(size.max())
         least, most = least - normal, most + normal
     arms = centers - sheet.center
-    turn = _turn(sheet, drives, time)
+    turn = _turn(sheet, drives.twist, time)
     around, extent = _turned(sheet, arms, turn, bodies.half[boxes].max(axis=0))
     if sheet.bend is not None:  # boxes stand at angles of their own
         extent = np.full(3, float(np.linalg.norm(bodies.half[boxes], axis=1).max()))
@@ -219,21 +240,28 @@ def _drive(sheet: SheetPart, roller: RollerPart, times: Floats) -> tuple[Floats,
     return np.outer(roller.turned(times), way), roller.center - height * normal
 
 
-def _turn(sheet: SheetPart, drives: list[tuple[Floats, Floats]], time: float) -> float:
-    """Angle by which the sheet may turn in its plane [rad]: differing drives over their distance."""
+def _turn(sheet: SheetPart, twist: float, time: float) -> float:
+    """Angle by which the sheet may turn in its plane [rad]: its spin, and what drives twist it by."""
     turn = abs(float(sheet.spin @ sheet.rotation[:, 2])) * time
     off_plane = sheet.spin - sheet.rotation[:, 2] * (sheet.spin @ sheet.rotation[:, 2])
-    if np.any(off_plane != 0.0):
-        return np.inf
-    most = 0.0
-    for k, (path, near) in enumerate(drives):
-        for other, base in drives[:k]:
-            gap = near - base
-            distance = float(np.linalg.norm(gap))
-            if distance > 0:
-                across = np.linalg.norm(np.cross(path - other, gap / distance), axis=1).max()
-                most = max(most, float(across) / distance)
-    return turn + most
+    return np.inf if np.any(off_plane != 0.0) else turn + twist
+
+
+def _twist(paths: list[Floats], places: list[Floats]) -> float:
+    """Angle by which drives may turn a sheet [rad]: what two differ by across their distance, over that."""
+    most, every, near = 0.0, np.array(paths), np.array(places)
+    for k in range(1, len(paths)):
+        gaps = near[k] - near[:k]
+        far = np.linalg.norm(gaps, axis=1)
+        apart = np.flatnonzero(far > 0.0)
+        way = every[k] - every[apart]
+        along = (gaps[apart] / far[apart, None])[:, None]
+        across = np.stack([
+            way[..., i - 2] * along[..., i - 1] - way[..., i - 1] * along[..., i - 2] for i in range(3)
+        ])  # fmt: skip
+        size = np.sqrt((across**2).sum(axis=0)).max(axis=1)
+        most = max(most, float((size / far[apart]).max(initial=0.0)))
+    return most
 
 
 def _turned(

@@ -27,8 +27,8 @@ def beside(name: Any, info: ValidationInfo) -> tuple[Any, Path | None]:
 
 
 def named_from(base: Path, data: Any, folder: Path | None) -> None:
-    """Names the files of plain data, which are named from `folder`, from another one. Raises SpecError for one
-    that is not in it or below."""
+    """Names the files of plain data, which are named from `folder`, from another one. Raises SpecError for
+    one that is not in it or below."""
     base = Path(os.path.normpath(base.absolute()))
     for path, holder in _holders(data):
         file = _whole(holder["file"], folder)

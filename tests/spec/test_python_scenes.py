@@ -63,7 +63,7 @@ def test_a_text_names_files_from_the_folder_that_it_is_written_into(tmp_path: Pa
             curves = [one.materials["paper"].curve_md for one in (again, scene)]
             assert curves[0] is not None and curves[1] is not None and curves[0].points == curves[1].points
             assert mdlgen.lower(again).meshes[0].volume == mdlgen.lower(scene).meshes[0].volume
-    with pytest.raises(SpecError, match="lobe.obj is not in .* or below"):
+    with pytest.raises(SpecError, match=r"lobe\.obj is not in .* or below"):
         made.to_yaml(tmp_path / "elsewhere")
     assert mdlgen.Scene.model_validate(load(NIPS).model_dump()).folder is None
 
