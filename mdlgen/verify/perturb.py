@@ -52,9 +52,11 @@ class _Turner:
         self.subject = subject
         self.text = text
         self.turned = turned
-        self.numbers = {name: numbers.numbers(name) for name in text.values["contacts"]}
+        self.script = numbers
         self.known = set(subject.said()["data"].names) & set(text.values["members"])
-        self.kinds = set(subject.said()) - {"gravity"} - (set() if text.has_numbers else {"contacts"})
+        self.kinds = set(subject.said()) - {"gravity"}
+        if not text.has_numbers and not numbers.follows:
+            self.kinds.discard("contacts")
         self.base = self._tables(text.values)
 
     def turn(self, perturbation: Perturbation) -> None:
@@ -78,6 +80,14 @@ class _Turner:
     def _tables(self, values: Values) -> dict[str, Table]:
         tables = Found(self.subject.times, self.text.values["markers"]).tables(values)
         tables["data"] = data_table(values)
-        tables["contacts"] = contact_table(values, self.numbers)
+        contacts = values.get("contacts", {})
+        if self.script.follows:  # contacts of the text change with values that no statement of theirs has
+            sets, contacts = dict(self.text.values["datasets"]), self.text.values["contacts"] | contacts
+            for holder, members in values.get("datasets", {}).items():
+                sets[holder] = {**sets.get(holder, {}), **members}
+            numbers = {name: self.script.numbers(name, sets) for name in contacts}
+        else:
+            numbers = {name: self.script.numbers(name) for name in contacts}
+        tables["contacts"] = contact_table({**values, "contacts": contacts}, numbers)
         tables["run"] = run_table(values)
         return tables

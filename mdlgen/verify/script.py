@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import math
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from mdlgen.errors import Place, SpecError
@@ -23,17 +24,41 @@ PROPERTIES = {
 _DATA = ("GRAVITY", "CONTACTS", "SYSTEM")
 
 
+class Followed(NamedTuple):
+    """A number that is so many times a value of the model."""
+
+    written: float
+    path: str  # of the value: ds_contact_2.real_k
+    times: float
+
+
 class Script(NamedTuple):
     """What a script sets: gravity [mm/s^2] (None: not set), and numbers by contact."""
 
     gravity: tuple[float, float, float] | None
-    contacts: dict[str, dict[str, float]]
+    contacts: dict[str, dict[str, float | Followed]]
     rest: str  # its statements without the data, in a normal form
     system: str | None = None  # path of the system in the model that the contacts are in
 
-    def numbers(self, contact: str) -> dict[str, float]:
-        """Numbers of one contact, with what MotionView takes where nothing is said."""
-        return {"normal_trans_vel": DEFAULT_SMOOTHING, **self.contacts.get(contact, {})}
+    def numbers(self, contact: str, model: Mapping[str, Mapping[str, Any]] | None = None) -> dict[str, float]:
+        """Numbers of one contact, with what MotionView takes where nothing is said; of what follows values of
+        the model, as those are in its data sets, nan where they are not. Without them as written."""
+        found = {"normal_trans_vel": DEFAULT_SMOOTHING}
+        for column, given in self.contacts.get(contact, {}).items():
+            if isinstance(given, Followed):
+                holder, _, member = given.path.partition(".")
+                now = given.written if model is None else math.nan
+                if model is not None and member in model.get(holder, {}):
+                    now = given.times * float(model[holder][member])
+                found[column] = now
+            else:
+                found[column] = given
+        return found
+
+    @property
+    def follows(self) -> bool:
+        """Whether some number follows a value of the model."""
+        return any(isinstance(v, Followed) for numbers in self.contacts.values() for v in numbers.values())
 
 
 NONE = Script(None, {}, "")
@@ -95,8 +120,8 @@ def _gravity(value: Any) -> tuple[float, float, float] | None:
     return x, y, z
 
 
-def _contacts(value: Any) -> dict[str, dict[str, float]]:
-    found: dict[str, dict[str, float]] = {}
+def _contacts(value: Any) -> dict[str, dict[str, float | Followed]]:
+    found: dict[str, dict[str, float | Followed]] = {}
     if not isinstance(value, list):
         raise ValueError("CONTACTS is a list")
     for item in value:
@@ -108,12 +133,20 @@ def _contacts(value: Any) -> dict[str, dict[str, float]]:
             raise ValueError(
                 f"CONTACTS: {unknown[0]!r} is no property" if unknown else "CONTACTS: names are due"
             )
-        numbers = {PROPERTIES[k]: _number(v) for k, v in given.items()}
+        numbers = {PROPERTIES[k]: _given(v) for k, v in given.items()}
         for name in names:
             if name in found:
                 raise ValueError(f"CONTACTS: {name} is there twice")
             found[name] = numbers
     return found
+
+
+def _given(value: Any) -> float | Followed:
+    if not isinstance(value, tuple):
+        return _number(value)
+    if len(value) != 3 or not isinstance(value[1], str) or value[1].count(".") != 1:
+        raise ValueError(f"{value!r} is not (number, value of the model, times)"[:200])
+    return Followed(_number(value[0]), value[1], _number(value[2]))
 
 
 def _number(value: Any) -> float:

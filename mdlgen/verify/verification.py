@@ -136,11 +136,15 @@ def _text(
 ) -> None:
     tables = Found(subject.times).tables(values)
     tables["data"] = data_table(values)
-    tables["contacts"] = contact_table(values, {n: numbers.numbers(n) for n in values["contacts"]})
+    names = values["contacts"]
+    tables["contacts"] = contact_table(values, {n: numbers.numbers(n) for n in names})
     tables["run"] = run_table(values)
     tables["gravity"] = gravity_table(numbers.gravity or _default_gravity(values))
     for kind, table in said.items():
         found.add("text", compare(kind, table, tables[kind]), within)
+    if numbers.follows:
+        followed = contact_table(values, {n: numbers.numbers(n, values["datasets"]) for n in names})
+        found.add("text", compare("contacts", said["contacts"], followed), within)
     for name in sorted(set(numbers.contacts) - set(values["contacts"])):
         found.differs("script", name, "is no contact of the text")
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from collections.abc import Mapping
 from dataclasses import replace
 
 import pytest
@@ -39,15 +40,21 @@ def test_static_analysis_writes_a_static_command():
     assert 'analysis_type  = "Transient"' in motionview.emit(model_of("transport_4x4.yaml", SMALL))
 
 
-def _run_script(script: str) -> tuple[dict, dict]:
-    """Runs a companion with a stand-in for MotionView; (gravity, numbers by contact)."""
+def _run_script(script: str, values: Mapping[str, float] | None = None) -> tuple[dict, dict]:
+    """Runs a companion with a stand-in for MotionView that has `values`; (gravity, numbers by contact)."""
     tree = ast.parse(script)
     tree.body = [n for n in tree.body if not isinstance(n, ast.ImportFrom)]
     children: dict[str, dict] = {}
+    there = values or {}
 
     class Entity:
         def __init__(self, name):
             self.name = name
+
+        def __getattr__(self, member):
+            if f"{self.name}.{member}" not in there:
+                raise AttributeError(member)
+            return type("Real", (), {"value": there[f"{self.name}.{member}"]})
 
         def setValues(self, **numbers):
             children.setdefault(self.name, {}).update(numbers)
@@ -124,3 +131,16 @@ def test_banner_stands_before_the_block_and_holds_no_statement():
     assert lines[0] == "/" * 70 and "*" not in head and "//" not in block
     assert all("//" not in line for line in lines if line != "/" * 70)
     assert "share width" in head and "Companion script" in head
+
+
+def test_numbers_that_follow_parameters_are_those_of_the_model_as_it_is():
+    model = model_of("transport_nips.yaml", SMALL)
+    script = motionview.companion(model) or ""
+    _, written = _run_script(script)
+    _, turned = _run_script(script, {"ds_contact_2.real_k": 250.0})
+    name = next(k for k in written if "note" in k and "motor_1_left" in k)
+    assert written[name]["penalty"] == 300.0  # the model does not give it
+    assert turned[name] == {**written[name], "penalty": 250.0}
+    assert all(turned[k] == written[k] for k in written if "motor_1_left" not in k)
+    # a scene without parameters has numbers alone
+    assert "def now" not in (motionview.companion(model_of("transport_4x4.yaml", SMALL)) or "def now")

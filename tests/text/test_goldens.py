@@ -261,6 +261,7 @@ PARTS: dict[str, dict[str, tuple[str, ...]]] = {
         "contacts": CONTACTS,
         "gravity and contacts": (TILTED_GRAVITY, *CONTACTS),
         "contacts of a system": PART,
+        "contacts that follow": (*CONTACTS, "parameters.k=250 N/mm^1.5", "contacts.0.stiffness=k"),
     },
 }
 # What the sections of a template are about; the others are about the scene as a whole.

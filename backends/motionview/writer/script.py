@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mdlgen.backends.motionview.writer.environment import environment
+from mdlgen.backends.motionview.writer.rows import Value
 from mdlgen.backends.motionview.writer.system import kept_contacts, system_view
 from mdlgen.backends.motionview.writer.units import mdl_value, number
 from mdlgen.backends.motionview.writer.views import scene_view
@@ -21,7 +22,7 @@ class Numbers(NamedTuple):
     """The numbers of one entry of the contacts, and the contact statements that get them."""
 
     label: str
-    numbers: list[tuple[str, str]]  # (property of mview.Contact, number)
+    numbers: list[tuple[str, str]]  # (property of mview.Contact, number, or how it follows: see `_said`)
     names: list[str]
 
 
@@ -51,12 +52,14 @@ def companion(model: Model, *, set_contact: bool = False, only: str | None = Non
         return None
     own_gravity = gravity(model) if only is None else DEFAULT_GRAVITY
     template = environment().get_template("companion.py.j2")
+    contacts = _numbers(model, set_contact, only)
     return template.render(
         name=model.name,
         reasons=why,
         gravity=[number(g) for g in own_gravity] if own_gravity != DEFAULT_GRAVITY else None,
         system=None if only is None else system_view(model, set_contact).variable,
-        contacts=_numbers(model, set_contact, only),
+        contacts=contacts,
+        follows=follows(contacts),
     )
 
 
@@ -82,21 +85,36 @@ def _numbers(model: Model, set_contact: bool, only: str | None) -> list[Numbers]
         alike.setdefault(key, []).append(pair.name)
     found = []
     for contact in scene.contacts:
-        given = {value.member: value.number for value in contact.given}
+        given = {value.member: value for value in contact.given}
+
+        def said(member: str, times: float = 1.0, given=given, holder=f"ds_{contact.data_set}") -> str:
+            return _said(given[member], holder, times)
+
         for (rubs, rougher, stiffer, restitution), pairs in names.get(contact.data_set, {}).items():
             label = contact.label if rougher == 1.0 else f"{contact.label}, friction times {number(rougher)}"
             label += "" if stiffer == 1.0 else f", stiffness times {number(stiffer)}"
-            table = [("normal_trans_vel", given["v_n"])]
+            table = [("normal_trans_vel", said("v_n"))]
             if not set_contact:
-                penalty = given["k"] if stiffer == 1.0 else number(float(given["k"]) * stiffer)
-                bounce = given["c_R"] if restitution is None else number(restitution)
-                table = [("penalty", penalty), ("rest_coeff", bounce), *table]
+                bounce = said("c_R") if restitution is None else number(restitution)
+                table = [("penalty", said("k", stiffer)), ("rest_coeff", bounce), *table]
                 if rubs:
                     table += [
-                        ("mu_static", number(float(given["mu_s"]) * rougher)),
-                        ("mu_dynamic", number(float(given["mu_d"]) * rougher)),
-                        ("stiction_trans_vel", given["v_s"]),
-                        ("friction_trans_vel", given["v_d"]),
+                        ("mu_static", said("mu_s", rougher)),
+                        ("mu_dynamic", said("mu_d", rougher)),
+                        ("stiction_trans_vel", said("v_s")),
+                        ("friction_trans_vel", said("v_d")),
                     ]
             found.append(Numbers(label, table, pairs))
     return found
+
+
+def _said(value: Value, holder: str, times: float) -> str:
+    """A number of a contact in the script: as it is written; with the value of the model that it is so many
+    times, where that follows the parameters of the scene."""
+    written = value.number if times == 1.0 else number(float(value.number) * times)
+    return f'({written}, "{holder}.real_{value.member}", {number(times)})' if value.formula else written
+
+
+def follows(contacts: list[Numbers]) -> bool:
+    """Whether some number follows a value of the model."""
+    return any(text.startswith("(") for contact in contacts for _, text in contact.numbers)

@@ -29,14 +29,13 @@ def parameters(
 def unfollowed(scene: Scene, rows: tuple[Parameter, ...]) -> tuple[tuple[str, str], ...]:
     """Formulas of values that no row has, and that so are numbers in a text: where they stand, and texts.
 
-    Gravity, loads and frictions are not among them: a script sets them, or a text is refused; of nips the
-    rollers are there.
+    Loads are not among them: with them a text is refused; of nips the rollers are there.
     """
     had = {row.path for row in rows} | {_source(scene, row)[0] for row in rows if row.formula}
     return tuple(
         (".".join(map(str, path)), formula)
         for path, formula in sorted(scene.formulas.items(), key=lambda item: str(item[0]))
-        if path not in had and path[0] not in ("gravity", "loads", "nips") and path[2:3] != ("at",)
+        if path not in had and path[0] not in ("loads", "nips") and path[2:3] != ("at",)
     )
 
 
