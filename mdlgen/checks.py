@@ -9,11 +9,17 @@ from collections.abc import Callable, Iterator
 
 from mdlgen.lints import contacts, cost, damping, idle, missing, parameters, sheets, start, ways
 from mdlgen.lints.lint import Lint
+from mdlgen.model.once import Once
 from mdlgen.model.tables import Model
 
 
 def lints(model: Model) -> list[Lint]:
     """All findings, sorted by code and place."""
+    return list(_found(model))
+
+
+@Once
+def _found(model: Model) -> list[Lint]:
     found = {lint for check in CHECKS for lint in check(model)}
     return sorted(found, key=lambda lint: (lint.code, lint.where, lint.message))
 

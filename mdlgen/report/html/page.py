@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mdlgen.checks import lints
-from mdlgen.model.once import Once
 from mdlgen.paths import templates
 from mdlgen.report import boxes
 from mdlgen.report.animation import animation, frames, packed
@@ -69,10 +68,7 @@ def prepare(model: Model) -> None:
 
     environment().get_template("page.html.j2")
     sheet_joints(model)
-    _lints(model)
-
-
-_lints = Once(lints)
+    lints(model)
 
 
 @lru_cache(maxsize=1)
@@ -113,7 +109,7 @@ def _run(result: Result, name: str) -> dict[str, Any]:
         "parameters": [asdict(parameter) for parameter in result.model.parameters],
         "source": result.source,
         "maps": [_map(found) for found in maps(result)],
-        "lints": [asdict(lint) for lint in _lints(result.model)],
+        "lints": [asdict(lint) for lint in lints(result.model)],
         "drawn": {
             "name": name,
             "scene": summary["scene"],
