@@ -1,16 +1,14 @@
-"""The field types of the spec: quantities, vectors, names, and the strict base model."""
+"""The field types of the spec: quantities, vectors, names."""
 
 from __future__ import annotations
 
 import math
 import re
 from collections.abc import Callable
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any
 
 from pydantic import (
-    BaseModel,
     BeforeValidator,
-    ConfigDict,
     GetCoreSchemaHandler,
     WithJsonSchema,
     WrapValidator,
@@ -18,6 +16,7 @@ from pydantic import (
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from mdlgen.spec.parameter import Computed, Unknown, amount, computed
+from mdlgen.spec.strict import fail
 from mdlgen.units import check_unit, exact_quantity, parse_quantity, parse_unit
 
 # What a quantity may be in the unit of its field, but for 0: products of some of them are still numbers.
@@ -30,49 +29,6 @@ RESERVED = frozenset(
         *("if", "else", "elseif", "endif", "none", "run", "name"),
     )
 )
-
-
-class Strict(BaseModel):
-    """Extra keys forbidden, no coercion, finite numbers only, frozen after validation."""
-
-    model_config = ConfigDict(
-        extra="forbid",
-        strict=True,
-        allow_inf_nan=False,
-        frozen=True,
-        validate_default=True,
-        serialize_by_alias=True,
-        defer_build=True,
-    )
-
-
-Model = TypeVar("Model", bound=BaseModel)
-
-
-def with_values(owner: Model, **values: Any) -> Model:
-    """The same, frozen, object with other values, for a validator that runs after its fields are read: a
-    constructor does not hear of another object that is returned."""
-    vars(owner).update(values)
-    owner.model_fields_set.update(values)
-    return owner
-
-
-def fail(
-    message: str, path: tuple[str | int, ...] | None = None, within: tuple[str | int, ...] = ()
-) -> PydanticCustomError:
-    """An error for pydantic to raise. Where it is not about the field itself, `path` is from the scene's
-    root, `within` from the field."""
-    return PydanticCustomError("spec", "{text}", {"text": message, "path": path, "within": within})
-
-
-def fail_all(errors: list[PydanticCustomError]) -> PydanticCustomError:
-    """One error for pydantic to raise that stands for several; each is reported on its own."""
-    if len(errors) == 1:
-        return errors[0]
-    first = dict(errors[0].context or {})
-    return PydanticCustomError(
-        "spec", "{text}", {**first, "several": [dict(e.context or {}) for e in errors]}
-    )
 
 
 class quantity:

@@ -7,7 +7,8 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Field, model_validator
 
-from mdlgen.spec.fields import Length, PositiveLength, Strict, fail
+from mdlgen.spec.fields import Length, PositiveLength
+from mdlgen.spec.strict import Strict, fail
 
 MOST_UNLIKE = 1e3  # the largest relative length over the smallest one
 _STATIONS = 4001  # where the density of lines is looked at

@@ -7,17 +7,8 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
-from mdlgen.spec.fields import (
-    Angle,
-    Direction,
-    LengthOrZero,
-    Mass,
-    Position,
-    PositiveLength,
-    Strict,
-    default,
-    fail,
-)
+from mdlgen.spec.fields import Angle, Direction, LengthOrZero, Mass, Position, PositiveLength, default
+from mdlgen.spec.strict import Strict, fail
 
 # Edges of sheet metal guides are sharp, 0.02 mm as cut to 0.1 mm where the burr is taken off. The blunt end
 # of that is the default: by what a soft contact lets a sheet into one plate it must not stub on the next.

@@ -16,20 +16,18 @@ from mdlgen.spec.fields import (
     Ratio,
     Size3,
     Stiffness,
-    Strict,
     TimeOrZero,
     Torsion,
     combined,
     default,
-    fail,
     one_of,
     quantity,
     reading,
-    with_values,
 )
 from mdlgen.spec.guide import check_edge
 from mdlgen.spec.rim import Rim
 from mdlgen.spec.rows import Mirror, Repeat
+from mdlgen.spec.strict import Strict, fail, with_values
 
 # A solver keeps them beside each body, and a text writes them into one expression.
 MOST_CORNERS = 16

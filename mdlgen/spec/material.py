@@ -8,7 +8,8 @@ from typing import Literal
 from pydantic import Field, model_validator
 
 from mdlgen.spec.curve import Curve
-from mdlgen.spec.fields import Frequency, LossFactors, Modulus, Plate, Ratio, Strict, Times, Torsion, fail
+from mdlgen.spec.fields import Frequency, LossFactors, Modulus, Plate, Ratio, Times, Torsion
+from mdlgen.spec.strict import Strict, fail
 
 RATIO = 0.12  # the paper's zeta (Table 2)
 

@@ -7,22 +7,11 @@ from typing import Annotated, Literal
 from pydantic import Field, PrivateAttr, ValidationInfo, field_serializer, model_validator
 
 from mdlgen.spec.beside import beside
-from mdlgen.spec.fields import (
-    Angles,
-    LengthOrZero,
-    Mass,
-    Name,
-    Position,
-    Strict,
-    default,
-    fail,
-    origin,
-    quantity,
-    with_values,
-)
+from mdlgen.spec.fields import Angles, LengthOrZero, Mass, Name, Position, default, origin, quantity
 from mdlgen.spec.limits import Tally
 from mdlgen.spec.solid import Solid, read_solid
 from mdlgen.spec.source import Source
+from mdlgen.spec.strict import Strict, fail, with_values
 
 Density = Annotated[float, quantity("g/mm^3", 0.0, open_low=True)]
 

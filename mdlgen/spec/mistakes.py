@@ -12,8 +12,8 @@ from pydantic import ValidationError
 from pydantic_core import PydanticCustomError
 
 from mdlgen.errors import SpecError, did_you_mean
+from mdlgen.spec.between import known, matching
 from mdlgen.spec.document import Document, SpecPath
-from mdlgen.spec.scene import known, matching
 from mdlgen.spec.shorthand import in_the_text, written_out
 
 MOST = 20

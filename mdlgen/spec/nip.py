@@ -9,8 +9,9 @@ from typing import Annotated, Any
 from pydantic import Field
 from pydantic_core import PydanticCustomError
 
-from mdlgen.spec.fields import Direction, Name, Position, Strict, of_text, quantity, read_direction
+from mdlgen.spec.fields import Direction, Name, Position, of_text, quantity, read_direction
 from mdlgen.spec.rows import ZERO, Mirror, Repeat
+from mdlgen.spec.strict import Strict
 
 Path = tuple[str | int, ...]
 Fill = Callable[[Any, str], Any]

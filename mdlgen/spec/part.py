@@ -7,7 +7,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, WithJsonSchema
 
-from mdlgen.spec.fields import IDENTIFIER, Strict, fail
+from mdlgen.spec.fields import IDENTIFIER
+from mdlgen.spec.strict import Strict, fail
 
 # Variable names of MDL, as deep as systems in systems are written in practice.
 _PATH = re.compile(rf"{IDENTIFIER.pattern}(?:\.{IDENTIFIER.pattern}){{0,9}}")

@@ -3,12 +3,8 @@
 from __future__ import annotations
 
 import json
-import math
-import re
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from fnmatch import fnmatchcase
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
-from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,13 +18,13 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError
 
-from mdlgen.errors import did_you_mean
 from mdlgen.formulas import Amount
 from mdlgen.spec.action import Load, OnSheet, Probe, Support
 from mdlgen.spec.beside import PYTHON, holding, named_from
+from mdlgen.spec.between import find_pairs, known
 from mdlgen.spec.contact import Contact
 from mdlgen.spec.document import Document
-from mdlgen.spec.fields import Acceleration, Name, Strict, default, fail, fail_all
+from mdlgen.spec.fields import Acceleration, Name, default
 from mdlgen.spec.guide import Guide
 from mdlgen.spec.limits import DEFAULT, Limits
 from mdlgen.spec.machine import Plane, Roller
@@ -53,13 +49,12 @@ from mdlgen.spec.run import Run
 from mdlgen.spec.sheet import Sheet
 from mdlgen.spec.shorthand import Defaults, written_out
 from mdlgen.spec.source import Source, text_of, text_of_data
+from mdlgen.spec.strict import Strict, fail, fail_all
 from mdlgen.spec.surface import with_rates
 
 if TYPE_CHECKING:
     from mdlgen.lints.lint import Lint
     from mdlgen.study.inline import Runs
-
-MOST_ERRORS = 100  # that are looked for in contacts: more are not shown
 
 
 def _list_or_names(schema: dict[str, Any]) -> None:
@@ -242,7 +237,7 @@ class Scene(Strict):
                 check()
             except PydanticCustomError as error:
                 errors.append(error)
-        pairs, wrong = self._find_pairs()
+        pairs, wrong = find_pairs(self)
         if errors or wrong:
             raise fail_all([*errors, *wrong])
         with_rates(self, pairs)
@@ -381,147 +376,7 @@ class Scene(Strict):
 
         Raises the error for a part that does not exist, a pair given twice, or one that is not modelled.
         """
-        pairs, errors = self._find_pairs()
+        pairs, errors = find_pairs(self)
         if errors:
             raise fail_all(errors)
         return pairs
-
-    def _find_pairs(self) -> tuple[list[tuple[int, str, str]], list[PydanticCustomError]]:
-        """The pairs, and what is wrong with each contact that has none or may not have them."""
-        machine = [*self.rollers, *self.planes, *self.guides, *self.meshes, *self.parts]
-        rank = {n: i for i, n in enumerate([*self.sheets, *machine])}
-        taken: dict[tuple[str, str], int] = {}
-        errors: list[PydanticCustomError] = []
-        looked = 0
-        for index, contact in enumerate(self.contacts):
-            path = ("contacts", index, "between")
-            patterns = [p for side in contact.between for p in ((side,) if isinstance(side, str) else side)]
-            looked += len(rank) * sum(not pattern.isidentifier() for pattern in patterns)
-            looked += len(patterns)
-            if message := self._limits.exceeded(
-                "contacts", looked / 100, "hundreds of names that patterns meet"
-            ):
-                return [], [*errors, fail(message, path)]
-            try:
-                self._take_pairs(index, rank, taken)
-            except PydanticCustomError as error:
-                errors.append(error)
-            if len(errors) > MOST_ERRORS:
-                break
-        return [(index, *pair) for pair, index in taken.items()], errors
-
-    def _take_pairs(self, index: int, rank: dict[str, int], taken: dict[tuple[str, str], int]) -> None:
-        """Adds the pairs of one contact to those that are taken."""
-        path = ("contacts", index, "between")
-        sides = [_side(p, rank, (*path, i)) for i, p in enumerate(self.contacts[index].between)]
-        found = False
-        for one, two in product(*sides):
-            if one == two:
-                continue
-            a, b = sorted((one, two), key=rank.__getitem__)
-            if (a, b) in taken:
-                if taken[a, b] == index:
-                    continue
-                other = self.contacts[taken[a, b]].name or taken[a, b]
-                raise fail(f"the pair {a} / {b} already has contacts.{other}; give it one", path)
-            self._modelled(a, b, path)
-            if message := self._limits.exceeded("contacts", len(taken) + 1, "pairs of parts in contact"):
-                raise fail(message, path)
-            taken[a, b] = index
-            found = True
-        if not found:
-            raise fail("between names one part only; a contact needs two", path)
-
-    def _modelled(self, a: str, b: str, path: tuple[str | int, ...]) -> None:
-        if a in self.sheets:
-            if b in self.meshes:
-                self._meshed(b, path)
-            return
-        if b in self.parts:
-            raise fail(
-                f"contact between {a} and {b} is not modelled: both are of the machine; give it where {b} is",
-                path,
-            )
-        if b not in self.rollers:
-            self._on_part(a, b, path)
-            return
-        one, two = self.rollers[a].axis, self.rollers[b].axis
-        if abs(abs(sum(p * q for p, q in zip(one, two, strict=True))) - 1.0) > 1e-9:
-            raise fail(f"the rollers {a} and {b} are in contact but their axes are not parallel", path)
-        if self.rollers[a].rim is not None and self.rollers[b].rim is not None:
-            raise fail(f"contact between {a} and {b} is not modelled: both have a rim of sectors", path)
-
-    def _on_part(self, a: str, b: str, path: tuple[str | int, ...]) -> None:
-        """Raises the error for a contact between two parts of the machine, the second no roller, that is not
-        modelled."""
-        kind = "guide" if b in self.guides else "mesh" if b in self.meshes else "plane"
-        message = f"contact between {a} and {b} is not modelled: "
-        if a not in self.rollers:
-            raise fail(f"{message}a {kind} touches sheets and rollers only", path)
-        roller, sectors = self.rollers[a], self.rollers[a].rim is not None
-        if b in self.meshes:
-            if self.meshes[b].on is not None:
-                raise fail(f"{message}{b} is on a roller, and such a mesh touches sheets only", path)
-            if sectors:
-                raise fail(
-                    f"{message}the rim of {a} is in sectors, and a mesh meets round rollers only", path
-                )
-            return
-        guide = self.guides.get(b)
-        arc = guide.arc if guide is not None else None
-        if arc is not None:
-            if abs(abs(_cosine(roller.axis, arc.axis)) - 1.0) > 1e-9:
-                raise fail(f"{message}the roller's axis is not parallel to that of the arc", path)
-            if sectors:
-                raise fail(
-                    f"{message}the rim of {a} is in sectors, and an arc meets round rollers only", path
-                )
-            return
-        normal = self.planes[b].normal if guide is None else guide.normal
-        steep = abs(_cosine(roller.axis, normal))
-        if steep > 0.5:
-            raise fail(
-                f"{message}the roller stands on its end, its axis {math.degrees(math.acos(steep)):.3g} deg "
-                "off the normal of the face; allowed: 60 deg or more",
-                path,
-            )
-
-    def _meshed(self, name: str, path: tuple[str | int, ...]) -> None:
-        if self.contacts[int(path[1])].share == "pair":
-            raise fail(
-                f"share: pair is not modelled with the mesh {name}: boxes share it by the area they cover",
-                (*path[:-1], "share"),
-            )
-
-
-def known(name: str, table: Collection[str], kind: str, path: tuple[str | int, ...]) -> None:
-    """Raises the error for a name that is not in a table."""
-    if name not in table:
-        close = did_you_mean(name, table)
-        raise fail(f"there is no {kind} {name!r}{close or ';'} there are: {', '.join(table) or 'none'}", path)
-
-
-def _cosine(one: tuple[float, float, float], two: tuple[float, float, float]) -> float:
-    return max(-1.0, min(1.0, sum(p * q for p, q in zip(one, two, strict=True))))
-
-
-def _side(side: str | tuple[str, ...], parts: Collection[str], path: tuple[str | int, ...]) -> list[str]:
-    """The parts of one side of a contact, each once."""
-    if isinstance(side, str):
-        return matching(side, parts, path)
-    found = [name for k, pattern in enumerate(side) for name in matching(pattern, parts, (*path, k))]
-    return list(dict.fromkeys(found))
-
-
-def matching(pattern: str, parts: Collection[str], path: tuple[str | int, ...]) -> list[str]:
-    """The parts that a name or a pattern means; raises the error where there is none."""
-    if not re.fullmatch(r"[A-Za-z0-9_*?]{1,64}", pattern):
-        raise fail(f"{pattern[:80]!r} is not a name or a pattern of letters, digits, _, * and ?", path)
-    if pattern.isidentifier():
-        found = [pattern] if pattern in parts else []
-    else:
-        found = [name for name in parts if fnmatchcase(name, pattern)]
-    if not found:
-        close = did_you_mean(pattern, parts)
-        raise fail(f"there is no part {pattern!r}{close or ';'} there are: {', '.join(parts)}", path)
-    return found

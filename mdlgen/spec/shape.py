@@ -7,7 +7,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from mdlgen.spec.fields import Angle, Length, Size2, Strict, fail
+from mdlgen.spec.fields import Angle, Length, Size2
+from mdlgen.spec.strict import Strict, fail
 
 Direction = Literal["x", "y"]
 

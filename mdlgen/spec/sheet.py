@@ -17,20 +17,18 @@ from mdlgen.spec.fields import (
     Position,
     Size2,
     Spin,
-    Strict,
     Velocity,
     combined,
     default,
-    fail,
     one_of,
     origin,
     quantity,
     reading,
-    with_values,
 )
 from mdlgen.spec.grading import Graded, Grading
 from mdlgen.spec.limits import DEFAULT
 from mdlgen.spec.shape import Shape
+from mdlgen.spec.strict import Strict, fail, with_values
 from mdlgen.spec.zone import Zone
 
 MAX_ZONES = 100

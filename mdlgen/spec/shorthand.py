@@ -9,10 +9,10 @@ from pydantic import Field, model_validator
 from mdlgen.errors import did_you_mean
 from mdlgen.spec import nip
 from mdlgen.spec.contact import Contact
-from mdlgen.spec.fields import Strict, fail
 from mdlgen.spec.machine import Roller
 from mdlgen.spec.nip import Nip
 from mdlgen.spec.rows import expanded
+from mdlgen.spec.strict import Strict, fail
 
 Path = tuple[str | int, ...]
 # Of two words for one value a part's own counts, not the default's other one.

@@ -19,8 +19,8 @@ from typing import Any
 
 import numpy as np
 
-from mdlgen.spec.fields import fail
 from mdlgen.spec.limits import Tally
+from mdlgen.spec.strict import fail
 from mdlgen.spec.triangles import Floats, Ints, obj, stl
 
 BYTES = 250  # of a file for each triangle that is allowed

@@ -6,8 +6,9 @@ import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from mdlgen.spec.fields import combined, fail
+from mdlgen.spec.fields import combined
 from mdlgen.spec.sheet import Sheet
+from mdlgen.spec.strict import fail
 
 if TYPE_CHECKING:
     from mdlgen.spec.scene import Scene

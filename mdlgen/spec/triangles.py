@@ -14,7 +14,7 @@ from itertools import chain
 import numpy as np
 from numpy.typing import NDArray
 
-from mdlgen.spec.fields import fail
+from mdlgen.spec.strict import fail
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

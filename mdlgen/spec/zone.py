@@ -6,7 +6,8 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from mdlgen.spec.fields import Length, Strict, fail, quantity
+from mdlgen.spec.fields import Length, quantity
+from mdlgen.spec.strict import Strict, fail
 
 
 def _two(value: Any) -> Any:

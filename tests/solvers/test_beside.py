@@ -47,13 +47,13 @@ def shipped() -> None:
 def passes(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """Names of the threads in which passes are run, as they begin."""
     seen: list[str] = []
-    once = lattice._once
+    once = lattice.one_pass
 
     def watched(*args: Any, **named: Any) -> Result:
         seen.append(threading.current_thread().name)
         return once(*args, **named)
 
-    monkeypatch.setattr(lattice, "_once", watched)
+    monkeypatch.setattr(lattice, "one_pass", watched)
     return seen
 
 
@@ -96,7 +96,7 @@ def test_told_is_the_finer_pass(name: str) -> None:
 
 def test_a_pass_that_failed_needs_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
     """The coarser one stops soon, and what it would find is dropped."""
-    once, ended = lattice._once, []
+    once, ended = lattice.one_pass, []
 
     def watched(*args: Any, **named: Any) -> Result:
         if not args[3].hidden:
@@ -108,13 +108,13 @@ def test_a_pass_that_failed_needs_no_other(monkeypatch: pytest.MonkeyPatch) -> N
             ended.append("stopped")
             raise
 
-    monkeypatch.setattr(lattice, "_once", watched)
+    monkeypatch.setattr(lattice, "one_pass", watched)
     assert lattice.solve(model_of("transport_tilted"), threads=2).status == "no end"
     assert ended == ["stopped"]
 
 
 def test_a_third_pass_stops_where_two_are_enough(monkeypatch: pytest.MonkeyPatch) -> None:
-    once, ended = lattice._once, []
+    once, ended = lattice.one_pass, []
 
     def watched(*args: Any, **named: Any) -> Result:
         if args[3].hidden:
@@ -126,7 +126,7 @@ def test_a_third_pass_stops_where_two_are_enough(monkeypatch: pytest.MonkeyPatch
             ended.append("stopped")
             raise
 
-    monkeypatch.setattr(lattice, "_once", watched)
+    monkeypatch.setattr(lattice, "one_pass", watched)
     result = lattice.solve(model_of("transport_4x4"), threads=2)
     assert result.ok and result.step == 0.1
     assert ended == ["stopped"]
@@ -135,14 +135,14 @@ def test_a_third_pass_stops_where_two_are_enough(monkeypatch: pytest.MonkeyPatch
 @pytest.mark.parametrize("name", ["transport_4x4", "verify/flip", "transport_tilted"])
 @pytest.mark.parametrize("coarser", [False, True])
 def test_an_error_in_either_is_raised(name: str, coarser: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    once = lattice._once
+    once = lattice.one_pass
 
     def failing(*args: Any, **named: Any) -> Result:
         if args[3].hidden == coarser:
             raise OutputError("the disk is full")
         return once(*args, **named)
 
-    monkeypatch.setattr(lattice, "_once", failing)
+    monkeypatch.setattr(lattice, "one_pass", failing)
     before = threading.active_count()
     with pytest.raises(OutputError, match="the disk is full"):
         lattice.solve(model_of(name), threads=2)
@@ -153,14 +153,14 @@ def test_an_error_in_either_is_raised(name: str, coarser: bool, monkeypatch: pyt
 def test_a_processor_is_free_where_no_pass_takes_it(
     threads: int, at_the_start: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    keep, seen, once = Checkpointer(), [], lattice._once
+    keep, seen, once = Checkpointer(), [], lattice.one_pass
 
     def watched(*args: Any, **named: Any) -> Result:
         if args[3].hidden or threads == 1:
             seen.append(keep.free.is_set())
         return once(*args, **named)
 
-    monkeypatch.setattr(lattice, "_once", watched)
+    monkeypatch.setattr(lattice, "one_pass", watched)
     assert not keep.free.is_set()
     lattice.solve(model_of("transport_tilted"), keep=keep, threads=threads)
     assert seen[0] is at_the_start

@@ -164,7 +164,7 @@ def test_pairs_that_are_searched_change_in_a_run() -> None:
     """Else going on with two sheets would show nothing."""
     model = scene("stack")
     system = lattice.build(model, fold=True)
-    assert lattice._once(model, system, 0.1).ok
+    assert lattice.one_pass(model, system, 0.1).ok
     at_the_end = system.pairs[["a", "b"]].copy()
     entries.look(system.pairs, system.search, model.bodies.position)
     assert (system.pairs[["a", "b"]] != at_the_end).any()
@@ -193,7 +193,7 @@ def test_what_a_run_reads_does_not_change_in_it() -> None:
     model = scene("transport_4x4")
     system = lattice.build(model, fold=True)
     before = digest(list(system.tables))
-    assert lattice._once(model, system, 0.05).ok
+    assert lattice.one_pass(model, system, 0.05).ok
     assert digest(list(system.tables)) == before
 
 

@@ -10,8 +10,8 @@ import pytest
 import mdlgen
 from mdlgen.backends.lattice.arrays import build
 from mdlgen.backends.lattice.kernels.band import empty
-from mdlgen.backends.lattice.run import start
 from mdlgen.backends.lattice.statics import rest as static
+from mdlgen.backends.lattice.work import start
 from mdlgen.bench.oracles import overhang
 from mdlgen.errors import RefusedError
 from mdlgen.mechanics.frame import Motion

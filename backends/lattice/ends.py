@@ -1,0 +1,79 @@
+"""Why a run ended before its end, or is no result."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mdlgen.backends.lattice.arrays import System, partner
+from mdlgen.backends.lattice.kernels.state import (
+    STRAIN,
+    THROUGH,
+    WORST,
+    State,
+)
+from mdlgen.backends.lattice.work import flexible
+from mdlgen.model.curves import overstretched
+from mdlgen.model.tables import Floats, Model
+from mdlgen.model.unheld import Unheld
+from mdlgen.results import audit
+from mdlgen.results.result import Result
+
+# How a halved run ends, beside those of kernels.integrate.
+PASSED, OVERLAPPED = -1, -2
+
+
+def reason_of(
+    model: Model, system: System, status: int, t: float, dt: float, state: State, counters: Floats
+) -> str:
+    """Why a run ended before its end."""
+    from mdlgen.backends.lattice.kernels import integrate
+
+    names = model.bodies.name
+    if status == integrate.STOPPED and counters[THROUGH] >= 0:
+        one, two = (names[int(system.pairs[end][int(counters[THROUGH])])] for end in "ab")
+        return (
+            f"box {one} would pass through box {two} of another sheet at {t:.6g} ms, with steps down to "
+            f"{dt / 2**integrate.DEEPEST:.3g} ms; a stiffer contact between the two would hold it"
+        )
+    if status == integrate.STOPPED:
+        body = names[int(counters[WORST])]
+        return (
+            f"no convergence at {t:.6g} ms with steps down to {dt / 2**integrate.DEEPEST:.3g} ms; "
+            f"box {body} moved most; larger smoothing of its contacts may help"
+        )
+    if status == integrate.DEEP:
+        pair = int(counters[WORST])
+        box, plate = int(system.pairs["a"][pair]), partner(model, system.pairs[pair])
+        rates = [
+            state.u[np.flatnonzero(system.nodes == int(system.pairs[end][pair])), :3].sum(0) for end in "ab"
+        ]
+        way = dt * float(np.linalg.norm(rates[0] - rates[1]))
+        return f"{model.too_deep(box, plate)} at {t:.6g} ms; {model.held_by(box, way)}"
+    if status == OVERLAPPED:
+        return unheld(model, system).found(state.x, state.r, t) or "two parts overlap"
+    if status == PASSED:
+        return (
+            f"box {names[int(counters[WORST])]} has passed the plane of the scene's symmetry at "
+            f"{t:.6g} ms, where it may meet what is on the other side; run.symmetry: false solves both sides"
+        )
+    if status == integrate.CROWDED:
+        room = len(system.pairs) - system.search.first
+        return f"more than {room} pairs of boxes of two sheets are near each other at {t:.6g} ms"
+    if status == integrate.STRETCHED:
+        row = int(system.joints["row"][int(counters[WORST])])
+        return overstretched(model, row, float(counters[STRAIN]), t)
+    body = int(counters[WORST])
+    at = ", ".join(f"{value:.4g}" for value in state.x[body])
+    bounds, advice = model.bounds_of(body)
+    return f"{model.called(body)} left {bounds} at {t:.6g} ms (it is at {at} mm); {advice}"
+
+
+def unheld(model: Model, system: System) -> Unheld:
+    """What looks for overlaps that no contact hinders, where one side is solved on that side."""
+    return Unheld(model, None if system.mirror is None else ~system.mirror.gone)
+
+
+def unbalanced(run: Result) -> str | None:
+    """Why a run's energies make it no result."""
+    loss = audit.LOSS if flexible(run.model) else audit.LOSS_RIGID
+    return audit.reason(run.model, run.energy, run.step, loss)

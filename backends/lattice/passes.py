@@ -1,0 +1,207 @@
+"""One pass of a run: all of its time at one step."""
+
+from __future__ import annotations
+
+import math
+import time as clock
+from collections.abc import Callable
+from functools import partial
+from threading import Event
+from typing import NamedTuple
+
+import numpy as np
+
+from mdlgen.backends.lattice.arrays import System
+from mdlgen.backends.lattice.beside import Stopped
+from mdlgen.backends.lattice.ends import OVERLAPPED, PASSED, reason_of, unbalanced, unheld
+from mdlgen.backends.lattice.kernels.state import (
+    ANEW,
+    FASTEST,
+    ITERATIONS,
+    STEPS,
+    TOUCHING,
+    WORST,
+)
+from mdlgen.backends.lattice.kernels.state import MADE as MADE_OF
+from mdlgen.backends.lattice.kernels.state import MISS as MISS_OF
+from mdlgen.backends.lattice.mark import Mark, Stage
+from mdlgen.backends.lattice.record import Recorder, Stand
+from mdlgen.backends.lattice.work import arrays, control, flexible
+from mdlgen.errors import SpecError
+from mdlgen.model.tables import Model
+from mdlgen.results.result import Result
+from mdlgen.runs.checkpoint import Checkpointer
+
+# Longest first step at a tolerance of 1e-3 [ms]; it goes with the root of the tolerance.
+FIRST_STEP = 0.2
+# Iterations of a step of that size stop at changes of velocity of this part of tolerance times speed: in
+# scenes with flexible sheets, whose boxes flutter much faster, and of rigid blocks, whose impacts are sharp.
+ROUND_OFF, ROUND_OFF_RIGID = 2.0, 0.02
+LOOSEST = 1e-2  # tolerance that a step is solved to, at most
+# Steps of one run, and those that compiled code takes before it is asked again.
+MOST_STEPS, MOST_AT_ONCE = 1e9, 1000
+
+Progress = Callable[[float, float, int, int], None]
+
+
+class Watch(NamedTuple):
+    """Who follows a pass: what is called as it goes, what keeps it and by which number, and what stops it
+    where it goes on at the same time as another one; one of the two is hidden."""
+
+    progress: Progress | None = None
+    keep: Checkpointer | None = None
+    number: int = 0
+    stop: Event | None = None
+    hidden: bool = False
+
+    def beside(self, stop: Event) -> Watch:
+        """Of a pass that goes on beside another one, which is the one that reports."""
+        return self._replace(progress=None, stop=stop, hidden=True)
+
+    def leave(self) -> None:
+        """Such a pass has ended, and leaves a processor free."""
+        if self.keep is not None:
+            self.keep.free.set()
+
+
+UNSEEN = Watch()
+
+
+class Division(NamedTuple):
+    """How a run is divided: stored times after the start, steps between two of them, and the step [ms]."""
+
+    outputs: int
+    each: int
+    step: float
+
+
+def division(model: Model, wanted: float) -> Division:
+    """Into steps of at most `wanted` [ms] that outputs fall on, or longer ones where outputs are left out.
+    Raises SpecError for too many."""
+    run = model.run
+    outputs = max(1, round(run.duration / run.print_step))
+    each = max(1, math.ceil(run.duration / outputs / wanted - 1e-9))
+    dt = run.duration / outputs / each
+    if wanted > run.duration / outputs:  # steps longer than the time between outputs
+        each, outputs = 1, max(1, math.ceil(run.duration / wanted - 1e-9))
+        dt = run.duration / outputs
+    if run.duration / dt > MOST_STEPS:
+        raise SpecError(
+            f"this run would take {run.duration / dt:.3g} steps of {dt:.3g} ms; allowed are {MOST_STEPS:g}: "
+            "give a shorter run.duration, or a larger run.tolerance or run.step",
+            ("run",),
+        )
+    return Division(outputs, each, dt)
+
+
+def accuracy(model: Model) -> float:
+    """What a step is solved to: a larger tolerance is for what differs from run to run however exact."""
+    return min(model.run.tolerance, LOOSEST)
+
+
+def speed(model: Model) -> float:
+    """What velocities are measured by at first [mm/ms]: drives, initial velocities, a tenth of a sheet in the
+    run."""
+    drives = [abs(r.speed) * r.radius for r in model.rollers if r.speed is not None]
+    starts = [float(np.linalg.norm(s.velocity)) for s in model.sheets]
+    own = [max(s.size) / 10 / model.run.duration for s in model.sheets]
+    return max(*drives, *starts, *own, 0.0)
+
+
+def one_pass(
+    model: Model,
+    system: System,
+    wanted: float,
+    watch: Watch = UNSEEN,
+    miss: float = 0.0,
+    made: float = 0.0,
+    anew: bool = False,
+) -> Result:
+    """One run at a step, or the next smaller one that outputs fall on; `miss`, `made`: see run.MISS and
+    run.MADE, 0 for any; `anew`: a new factor for each step. Raises Stopped where `watch` says so."""
+    from mdlgen.backends.lattice.kernels import entries, integrate
+
+    run = model.run
+    outputs, each, dt = division(model, wanted)
+    progress, keep, number, stop, hidden = watch
+    begun = clock.perf_counter()
+    work = arrays(model, system)
+    state = work.state
+    steering = control(work)
+    counters, energies = steering.counters, steering.energies
+    recorder = Recorder(model, system, state, work.mid, work.kept)
+    overlaps = unheld(model, system)
+    recorder.store(0.0)
+    # the guess of a step is the better the finer it is: what is left of it must fall as fast
+    part = (ROUND_OFF if flexible(model) else ROUND_OFF_RIGID) * min(1.0, (dt / FIRST_STEP) ** 2)
+    tolerance = part * accuracy(model)
+    steering.pace[[MISS_OF, ANEW, FASTEST, MADE_OF]] = miss, float(anew), speed(model), made
+    status, t, past = integrate.DONE, 0.0, 0.0
+    mark = Mark(work, steering, recorder)
+    stage = mark.back(keep, number) if keep is not None else None
+    if stage is not None:
+        status, t, past = stage.status, stage.t, stage.wall
+        entries.look(system.pairs, system.search, system.search.place.copy())
+
+    def show() -> None:
+        if keep is not None and not hidden:  # the one beside shows a later part, or a finer one
+            keep.part = partial(_part, recorder, recorder.stand(energies), dt, int(counters[STEPS]))
+
+    if stage is not None:
+        show()
+    todo = range(stage.outputs if stage else 0, 0 if stage and stage.ended else outputs)
+    for output in todo:
+        for taken in range(0, each, MOST_AT_ONCE):
+            if stop is not None and stop.is_set():
+                raise Stopped
+            steps = np.full(min(each - taken, MOST_AT_ONCE), dt)
+            status, t = integrate.run(work, t, steps, tolerance, steering)
+            if taken == 0:
+                recorder.between()
+            if status != integrate.DONE:
+                break
+        if status != integrate.DONE:
+            break
+        t = (output + 1) * run.duration / outputs
+        recorder.store(t)
+        passed = system.mirror.passed(state.x, system.nodes) if system.mirror is not None else -1
+        if passed >= 0:
+            status = PASSED
+            counters[WORST] = passed
+            break
+        if overlaps.found(state.x, state.r, t) is not None:
+            status = OVERLAPPED
+            break
+        show()
+        if keep is not None and keep.due(number) and output + 1 < outputs:
+            wall = past + clock.perf_counter() - begun
+            keep.save(number, mark.arrays(Stage(status, t, output + 1, wall, False)))
+        if progress is not None:
+            progress(t, run.duration, int(counters[STEPS]), int(counters[TOUCHING]))
+    wall = past + clock.perf_counter() - begun
+    if keep is not None and todo and (keep.written or keep.due(number)):
+        keep.save(number, mark.arrays(Stage(status, t, todo.stop, wall, True)))
+    reason = None if status == integrate.DONE else reason_of(model, system, status, t, dt, state, counters)
+    if status in (integrate.LEFT, integrate.DEEP, integrate.STRETCHED):
+        recorder.store(t)  # with which its energies balance, or do not
+    result = recorder.result("lattice", reason, energies)
+    result.step, result.steps = dt, int(counters[STEPS])
+    result.rounds, result.wall_s = int(counters[ITERATIONS]), wall
+    if result.ok and not all(np.isfinite(a).all() for a in (result.position, result.velocity, result.spin)):
+        result = result.failed("the state went non-finite")
+    wrong = unbalanced(result)
+    if wrong is None or status not in (
+        integrate.DONE,
+        integrate.LEFT,
+        integrate.DEEP,
+        integrate.STRETCHED,
+    ):
+        return result
+    return result.failed(wrong if result.ok else f"{result.status}; and {wrong}")
+
+
+def _part(recorder: Recorder, stand: Stand, dt: float, steps: int) -> Result:
+    """The result up to where a run stood."""
+    result = recorder.result_at(stand, "lattice", None)
+    result.step, result.steps = dt, steps
+    return result

@@ -1,0 +1,89 @@
+"""What a run works on, made for its start."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mdlgen.backends.lattice.arrays import System
+from mdlgen.backends.lattice.kernels.state import (
+    COUNTERS,
+    ROW,
+    Bounds,
+    Control,
+    History,
+    Kept,
+    Matrix,
+    Midpoint,
+    State,
+    Workspace,
+)
+from mdlgen.backends.lattice.record import Recorder
+from mdlgen.mechanics.frame import Motion
+from mdlgen.model.tables import Model
+
+
+def start(model: Model, system: System) -> tuple[State, Midpoint, Matrix]:
+    """State at the start, and the arrays of a step."""
+    from mdlgen.backends.lattice.kernels import forces, step
+
+    state, mid, matrix = step.empty(system, forces.WIDE)
+    bodies = model.bodies
+    count = len(bodies.name)
+    state.x[:count], state.r[:count] = bodies.position, bodies.rotation.reshape(-1, 9)
+    state.r[count] = np.eye(3).ravel()
+    mid.motion.x[:], mid.motion.r[:] = state.x, state.r
+    nodes = system.nodes
+    turn, spin = bodies.rotation[nodes], bodies.spin[nodes]
+    state.v[:] = bodies.velocity[nodes]
+    own = np.einsum("nji,nj->ni", turn, spin)
+    state.l[:] = np.einsum("nij,nj->ni", turn, bodies.inertia[nodes] * own)
+    state.u[:, :3], state.u[:, 3:] = state.v, spin
+    for roller in model.rollers:
+        if roller.one_way is not None and roller.speed is not None:  # it begins with its shaft
+            at = system.bodies["spin"][roller.body]
+            if at < 0:
+                continue  # left out, see mirror
+            state.vb[at] = state.ub[at] = roller.prescribed(0.0)
+    return state, mid, matrix
+
+
+def arrays(model: Model, system: System) -> Workspace:
+    """What a run works on, made for the start."""
+    from mdlgen.backends.lattice.kernels import condensed, damped, entries, forces, momentum
+
+    state, mid, matrix = start(model, system)
+    entries.look(system.pairs, system.search, state.x)
+    system.pairs["beside"] = 0
+    entries.remember(system.bodies, system.pairs, Motion(state.x, state.r, mid.motion.u, mid.motion.w))
+    return Workspace(
+        tables=system.tables,
+        state=state,
+        mid=mid,
+        matrix=matrix,
+        condensed=condensed.empty(system, forces.WIDE),
+        free=momentum.empty(system),
+        kept=Kept(np.zeros((len(model.contacts), ROW)), np.zeros(system.marks, bool)),
+        bounds=Bounds(model.pairs.low, model.pairs.high),
+        search=system.search,
+        damped=damped.empty(system),
+    )
+
+
+def control(work: Workspace) -> Control:
+    """Counts and settings of a run before its first step."""
+    history = History(work.state.u.copy(), work.state.ub.copy(), np.zeros(2))
+    return Control(np.zeros(3), np.zeros(COUNTERS), np.zeros(4), history, np.zeros(5))
+
+
+def warm(model: Model, system: System) -> None:
+    """Compiles, or loads from the cache, before the clock of the run starts."""
+    from mdlgen.backends.lattice.kernels import integrate
+
+    work = arrays(model, system)
+    integrate.run(work, 0.0, np.zeros(0), 1.0, control(work))
+    Recorder(model, system, work.state, work.mid, work.kept).store(0.0)
+
+
+def flexible(model: Model) -> bool:
+    """Whether a sheet has more than one box."""
+    return any(sheet.count > 1 for sheet in model.sheets)
