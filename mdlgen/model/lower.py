@@ -97,7 +97,7 @@ def _lower(scene: Scene) -> Model:
     naming.check_unique("bushings", bushings.name)
     pressed = (*rollers, *planes)
     starts = {part.name: (part.press.touch, part.press.start) for part in pressed if part.press is not None}
-    rows = parameters(scene, starts, run)
+    rows = parameters(scene, starts, run, sheets, contacts)
     return Model(
         name=scene.name,
         gravity=gravity,

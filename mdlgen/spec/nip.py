@@ -187,9 +187,8 @@ class _Written:
                               ((press, "N/mm"), (meeting, "N/mm^1.5")))  # fmt: skip
             if stiffness is None or own is None:
                 return None
-            found += f" - {stiffness}*({between})"
-            if of_text(between, "mm") < 0.0:  # they meet through the sheet
-                found += f" + {own}*(-({between}))^1.5"
+            # they may meet through the sheet
+            found += f" - {stiffness}*({between}) + {own}*max(0 mm, -({between}))^1.5"
         return found + self._weight(side, press, down)
 
     def _between(self) -> str | None:

@@ -81,7 +81,10 @@ def data(model: Model) -> Table:
             for n in found
         ]
     )
-    scale = np.maximum.reduce([np.abs(numbers), np.array(angles), places]) if found else numbers
+    # starts that follow are sums of places of parts, some mm each
+    sums = {f"ds_{p.data_set}.real_{p.member}" for p in model.parameters if p.follows and p.unit == "mm"}
+    terms = np.array([10.0 if n in sums else 0.0 for n in found])
+    scale = np.maximum.reduce([np.abs(numbers), np.array(angles), places, terms]) if found else numbers
     return table(found, {"value": (numbers, scale[:, None])})
 
 

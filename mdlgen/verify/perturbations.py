@@ -20,6 +20,7 @@ from mdlgen.formulas import Amount
 from mdlgen.model import grid
 from mdlgen.model.lower import lower
 from mdlgen.model.parameters.names import FRICTION, OF_USER
+from mdlgen.model.parameters.starts import FOLLOWING, found, held
 from mdlgen.model.stiffness import SUPPORT_FACTOR
 from mdlgen.model.supports import joined, support_bushings
 from mdlgen.model.tables import SUPPORT, Anchor, Bushings, Model, Parameter, Press, RollerPart
@@ -103,7 +104,7 @@ def _moved(scene: Scene, base: Model, name: str, value: float) -> Callable[[], M
                         changed = _with(changed, path, parameters.evaluated(text).value)
         for sheet in sheets:
             changed = _along(changed, scene, sheet)
-        return as_written(changed, base)
+        return as_written(changed, base, scene)
 
     return model
 
@@ -201,7 +202,7 @@ def _turned(scene: Scene, path: Path, value: float, base: Model) -> Callable[[],
         changed = _with(scene, path, value)
         if path[0] == "sheets" and path[2] in ("size", "grading"):
             changed = _along(changed, scene, str(path[1]))
-        return as_written(changed, base)
+        return as_written(changed, base, scene)
 
     return model
 
@@ -279,9 +280,9 @@ def _stiffer(model: Model, support: str) -> Callable[[], Model]:
     return turned
 
 
-def as_written(scene: Scene, base: Model) -> Model:
-    """The Model of a scene with what a text keeps as it was written for `base`."""
-    made = _placed(lower(scene), _presses(base))
+def as_written(scene: Scene, base: Model, before: Scene) -> Model:
+    """The Model of a scene with what a text keeps as it was written for `base`, that of `before`."""
+    made = _begins(lower(scene), scene, base, before)
     probes = tuple(_held(new, old, made) for new, old in zip(made.probes, base.probes, strict=True))
     supports = tuple(_held(new, old, made) for new, old in zip(made.supports, base.supports, strict=True))
     shown = zip(made.guides, base.guides, strict=True)
@@ -293,6 +294,23 @@ def as_written(scene: Scene, base: Model) -> Model:
         return made
     held = support_bushings(scene.supports, supports, made.sheets, made.bodies)
     return replace(made, bushings=joined([_rows(made.bushings, made.bushings.kind != SUPPORT), *held]))
+
+
+def _begins(made: Model, scene: Scene, base: Model, before: Scene) -> Model:
+    """With rollers that begin where the text has it: as it was written, or as it follows for those that are
+    held by the contact that held them then."""
+    presses, numbers = _presses(base), {}
+    for name in {p.data_set for p in base.parameters if p.follows}:
+        was = presses[name]
+        what = held(before, name, base.sheets, base.contacts, (was.touch, was.start))
+        assert what is not None, "so it has formulas"
+        numbers[name] = found(scene, what)
+        presses[name] = replace(was, **{k: v for k, v in numbers[name].items() if k in _BEGINS})
+    rows = [p for p in made.parameters if p.data_set not in presses or p.member not in FOLLOWING]
+    for p in base.parameters:
+        if p.data_set in presses and p.member in FOLLOWING:
+            rows.append(replace(p, value=numbers[p.data_set][p.member]) if p.follows else p)
+    return _placed(replace(made, parameters=tuple(rows)), presses)
 
 
 def _shown(new: RollerPart, old: RollerPart) -> RollerPart:

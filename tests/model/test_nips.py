@@ -123,8 +123,53 @@ def test_the_text_has_force_and_speed_as_values_that_move_what_follows() -> None
         assert values[f"ds_motor_{row}"]["real_z"] == pytest.approx(-7.55 + depth, rel=1e-14)
         assert values[f"ds_motor_{row}"]["real_omega"] == pytest.approx(373.4, rel=1e-14)
         assert values[f"ds_counter_{row}"]["real_z"] == pytest.approx(5.05 - depth, rel=1e-14)
-        gained = 0.319 * (0.1 - 2 * depth) + 1.001 * 0.39e-3 * 9.81
+        # at 4 N the two rollers meet through the note
+        gained = 0.319 * (0.1 - 2 * depth) - 30.5 * (2 * depth - 0.1) ** 1.5 + 1.001 * 0.39e-3 * 9.81
         assert values[f"ds_counter_{row}"]["real_f"] == pytest.approx(4.0 - gained, rel=1e-13)
+    # rollers begin where they balance, with the note between them and without: as of a scene of that force
+    heavier = lower(load(FILE, ["parameters.nip_force=4 N", "parameters.speed=2800.5 mm/s"]))
+    for roller in heavier.rollers:
+        if roller.press is not None:
+            begins = values[f"ds_{roller.name}"]
+            assert begins["real_touch"] == pytest.approx(roller.press.touch, abs=1e-14)
+            assert begins["real_start"] == pytest.approx(roller.press.start, abs=1e-14)
+            before = model.roller(roller.name).press
+            assert before is not None and abs(roller.press.touch - before.touch) > 1e-3
+    point = emitter("motionview").read(pressed).values["points"]["p_counter_2_left"]
+    assert point[2] == pytest.approx(
+        heavier.bodies.position[heavier.roller("counter_2_left").body, 2], abs=1e-13
+    )
+
+
+FORCE, TWO = "parameters: {force: 1 N}\n", "nips.entry.force=force"
+STIFF = "nips.entry.upper.press.stiffness=3 N/mm"
+
+
+@pytest.mark.parametrize(
+    ("sets", "follows"),
+    [
+        # a nip places its rollers in balance whatever its force is
+        ((), {"touch"}),
+        (("nips.entry.normal=-z",), {"touch"}),
+        # the two meet through a sheet of 10 um
+        (("sheets.note.thickness=10 um",), {"touch"}),
+        (("nips.entry.contact=null",), set()),
+        # a roller that is pressed elsewhere, by the other one or by the sheet
+        (("sheets.note.center=[0 mm, 90 mm, 0 mm]",), {"touch", "push", "root", "start"}),
+        (("rollers.entry_upper.center=[0 mm, 0 mm, 5.3 mm]",), {"touch", "push", "root", "start"}),
+        (("rollers.entry_upper.center=[0 mm, 0 mm, 5.05 mm]", STIFF), {"touch", "push", "root", "start"}),
+        # by both
+        (("rollers.entry_upper.center=[0 mm, 0 mm, 5.3 mm]", "sheets.note.thickness=10 um"), set()),
+    ],
+)
+def test_a_start_follows_where_one_contact_holds_the_roller(sets: tuple[str, ...], follows: set[str]) -> None:
+    scene = loads(ONE + FORCE, "s", [TWO, *sets])
+    model = lower(scene)
+    assert {p.member for p in model.parameters if p.follows} == follows
+    found = verify(scene, model)
+    assert [str(d) for d in found.all_differences()] == []
+    # where nothing is a formula it is a number, as it is written
+    assert not any(p.follows for p in lower(load(FOUR)).parameters)
 
 
 @pytest.mark.parametrize(

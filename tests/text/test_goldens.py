@@ -193,6 +193,12 @@ TILTED_GRAVITY = 'gravity=["1 m/s^2","0 m/s^2","-9.5 m/s^2"]'
 WORDY = (*CONTACTS, "rollers.under.press={direction: z, stiffness: 0.3 N/mm, preload: 3 N}", TILTED_GRAVITY)
 
 # For each template: what its sections show, and the scene that shows it.
+FOLLOWING = (
+    "parameters.force=3 N",
+    'rollers={"upper": {"center": ["0 mm", "0 mm", "5 mm"], "axis": "y", "radius": "5 mm", "width": "8 mm", '
+    '"mass": "0.5 g", "press": {"direction": "-z", "stiffness": "0.3 N/mm", "preload": "force"}}}',
+    'contacts=[{"between": ["note", "upper"], "stiffness": "300 N/mm^1.5", "friction": 0}]',
+)
 PARTS: dict[str, dict[str, tuple[str, ...]]] = {
     "model.mdl.j2": {"one of each": ONE_OF_EACH, "parameters": (*NAMED, *BLOCK)},
     "parameters.mdl.j2": {"values, formulas, one that nothing uses": NAMED},
@@ -253,6 +259,7 @@ PARTS: dict[str, dict[str, tuple[str, ...]]] = {
     "contacts.mdl.j2": {
         "a zone with its own friction": (*CONTACTS, *UNLIKE, "sheets.note.zones.stripe.friction=2"),
         "with and without friction": CONTACTS,
+        "a start that follows": FOLLOWING,
         "none": PLAIN,
     },
     "probe.mdl.j2": {"on one, two and four boxes, on edges": PROBES},

@@ -14,6 +14,7 @@ from mdlgen.errors import SpecError
 from mdlgen.expressions import Expression
 from mdlgen.formulas import formula
 from mdlgen.model.parameters.names import OF_USER
+from mdlgen.model.parameters.starts import reference
 from mdlgen.model.tables import Model
 from mdlgen.units import parse_unit
 
@@ -32,12 +33,24 @@ def units_of(model: Model) -> dict[str, str]:
     return {p.member: p.unit for p in model.parameters if p.data_set == OF_USER}
 
 
-def mdl_formula(text: str, unit: str, units: Mapping[str, str]) -> str:
-    """A formula in MDL, for a value of an internal unit. Raises SpecError where it grows too long."""
+def rows_of(model: Model) -> dict[str, tuple[str, str]]:
+    """Internal unit and MDL of each value that a start follows, by the name that its formula has it by."""
+    return {
+        reference(p.data_set, p.member): (p.unit, f"ds_{p.data_set}.real_{p.member}.value")
+        for p in model.parameters
+        if p.data_set != OF_USER
+    }
+
+
+def mdl_formula(
+    text: str, unit: str, units: Mapping[str, str], rows: Mapping[str, tuple[str, str]] | None = None
+) -> str:
+    """A formula in MDL, for a value of an internal unit; `units` are those of the user's parameters, `rows`
+    other values that it may name. Raises SpecError where it grows too long."""
     expression = formula(text)
     if expression.plain and (name := expression.names[0]) in units and units[name] == unit:
         return _reference(name)
-    said = _Writer(expression, units).said(expression.tree)
+    said = _Writer(expression, units, rows or {}).said(expression.tree)
     dimension = parse_unit(unit).dimension
     if in_degrees(dimension):
         return f"{_held(said, _PRODUCT)}*180/PI"
@@ -56,8 +69,9 @@ def _held(said: tuple[str, int], least: int) -> str:
 class _Writer:
     """One formula."""
 
-    def __init__(self, expression: Expression, units: Mapping[str, str]):
-        self.expression, self.units = expression, units
+    def __init__(self, expression: Expression, units: Mapping[str, str], rows: Mapping[str, tuple[str, str]]):
+        self.expression = expression
+        self.known = {name: (unit, _reference(name)) for name, unit in units.items()} | dict(rows)
 
     def said(self, node: ast.expr) -> tuple[str, int]:
         """The text of a part, and how tightly it holds together."""
@@ -103,9 +117,10 @@ class _Writer:
             unit = parse_unit(quantity[1])
             return number(float(f"{quantity[0] * unit.factor * factor(unit.dimension):.15g}")), _VALUE
         name = self.expression.named(node)
-        if name not in self.units:
+        if name not in self.known:
             return "PI", _VALUE
-        dimension = parse_unit(self.units[name]).dimension
+        unit, said = self.known[name]
+        dimension = parse_unit(unit).dimension
         if in_degrees(dimension):
-            return f"{_reference(name)}*PI/180", _PRODUCT
-        return (f"{_reference(name)}/1000", _PRODUCT) if in_kg(dimension) else (_reference(name), _VALUE)
+            return f"{said}*PI/180", _PRODUCT
+        return (f"{said}/1000", _PRODUCT) if in_kg(dimension) else (said, _VALUE)

@@ -17,6 +17,7 @@ class Value(NamedTuple):
     number: str
     edit: str  # EDIT or NO_EDIT
     formula: str = ""  # that gives the number
+    late: bool = False  # set behind all data sets, since it names values of others
 
     @property
     def said(self) -> str:

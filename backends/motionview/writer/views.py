@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from mdlgen.backends.motionview.writer.formula import mdl_formula, units_of
+from mdlgen.backends.motionview.writer.formula import mdl_formula, rows_of, units_of
 from mdlgen.backends.motionview.writer.idle import idle_values
 from mdlgen.backends.motionview.writer.machine import (
     contact_views,
@@ -45,17 +45,22 @@ def scene_view(model: Model, set_contact: bool) -> SceneView:
 def given_values(model: Model, set_contact: bool, kept: Sequence[int]) -> dict[str, list[Value]]:
     """Members by data set, in the order of the parameters; `kept` as in `idle_values`."""
     idle = idle_values(model, set_contact, kept)
-    units = units_of(model)
+    units, rows = units_of(model), rows_of(model)
     tables: dict[str, list[Value]] = {}
     for p in model.parameters:
-        tables.setdefault(p.data_set, []).append(_value(p, idle.get((p.data_set, p.member)), units))
+        tables.setdefault(p.data_set, []).append(_value(p, idle.get((p.data_set, p.member)), units, rows))
     return tables
 
 
-def _value(parameter: Parameter, idle: str | None, units: Mapping[str, str]) -> Value:
+def _value(
+    parameter: Parameter, idle: str | None, units: Mapping[str, str], rows: Mapping[str, tuple[str, str]]
+) -> Value:
     label = with_unit(parameter.label, parameter.unit)
     text = number(mdl_value(parameter.value, parameter.unit))
     formula = mdl_formula(parameter.formula, parameter.unit, units) if parameter.formula else ""
+    if parameter.follows:
+        follows = mdl_formula(parameter.follows, parameter.unit, {}, rows)
+        return Value(parameter.member, f"{label}; it follows", text, "NO_EDIT", follows, late=True)
     if idle:
         return Value(parameter.member, f"{label}; {idle}", text, "NO_EDIT", formula)
     return Value(parameter.member, label, text, "EDIT", formula)

@@ -9,19 +9,27 @@ from mdlgen.formulas import is_formula
 from mdlgen.model.parameters.machine import center_rows, guide_rows, mesh_rows, plate_press_rows, roller_rows
 from mdlgen.model.parameters.names import FRICTION, NAMED_AXES, OF_USER, in_text, unit
 from mdlgen.model.parameters.sheets import grading_rows, shape_rows, sheet_rows, zones_rows
-from mdlgen.model.tables import Parameter, RunSettings
+from mdlgen.model.parameters.starts import followed, held
+from mdlgen.model.tables import Contacts, Parameter, RunSettings, SheetPart
 from mdlgen.spec.scene import Scene
 from mdlgen.spec.smoothing import formulas as smoothing_formulas
 from mdlgen.spec.smoothing import speeds
 
 
 def parameters(
-    scene: Scene, starts: dict[str, tuple[float, float]], run: RunSettings
+    scene: Scene,
+    starts: dict[str, tuple[float, float]],
+    run: RunSettings,
+    sheets: tuple[SheetPart, ...],
+    contacts: Contacts,
 ) -> tuple[Parameter, ...]:
     """All parameters of a scene; `starts` gives (touch, start) of each pressed roller and plate [mm]."""
     rows = _given(scene, starts, run)
     if not scene.formulas and not scene.parameters:
         return tuple(rows)
+    for name in sorted(set(starts) & set(scene.rollers)):
+        what = held(scene, name, sheets, contacts, starts[name])
+        rows = rows if what is None else followed(scene, what, rows)
     formulas = {**scene.formulas, **smoothing_formulas(scene)}
     return (*_own(scene), *(_with_formula(scene, formulas, row) for row in rows))
 

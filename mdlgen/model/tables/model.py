@@ -62,6 +62,7 @@ class Parameter:
     unit: str  # internal unit, as the user may write it
     path: tuple[str | int, ...] | None  # where it stands in the spec; None: computed
     formula: str = ""  # over the parameters of the scene, as the user wrote it; "": a number
+    follows: str = ""  # a formula over other rows, see parameters.starts; "": it does not
 
 
 @dataclass(frozen=True)
