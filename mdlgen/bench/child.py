@@ -66,7 +66,7 @@ def perform(task: Job) -> Outcome:
         findings=findings,
         step=last.step or None,
         steps=last.steps,
-        rounds=last.rounds,
+        iterations=last.iterations,
         wall=statistics.median(result.wall_s for result in results),
         estimating=statistics.median(result.estimate_s for result in results),
         compiled=results[0].compile_s,

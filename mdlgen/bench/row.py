@@ -26,7 +26,7 @@ class Outcome:
     repeats: int = 0
     estimate: float | None = None  # the solver's own, relative to max(travel, sheet length / 10)
     estimating: float | None = None  # what the runs for it took beside the wall time, median [s]
-    rounds: int | None = None  # linear solves, where the solver counts them
+    iterations: int | None = None  # of Newton, a linear solve each, where the solver counts them
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class BenchRow:
     quantity: str
     error_estimate: float | None
     steps: int | None
-    rounds: int | None
+    iterations: int | None
     estimate_s: float | None
     compile_s: float | None
     build_s: float | None
@@ -62,10 +62,10 @@ class BenchRow:
     because: str = ""
 
     def json(self) -> dict[str, Any]:
-        """Plain data; numbers that are not finite are left out."""
+        """Plain data; numbers that are not finite are left out. `rounds` is an older name of `iterations`."""
         from mdlgen.results.summary import plain
 
-        return plain(asdict(self))
+        return plain({**asdict(self), "rounds": self.iterations})
 
 
 def rows(case: BenchCase, solver: str, outcome: Outcome) -> list[BenchRow]:
@@ -99,7 +99,7 @@ def _row(
         quantity=finding.quantity,
         error_estimate=outcome.estimate,
         steps=outcome.steps,
-        rounds=outcome.rounds,
+        iterations=outcome.iterations,
         estimate_s=outcome.estimating,
         compile_s=outcome.compiled,
         build_s=outcome.built,

@@ -40,7 +40,7 @@ def _table(rows: list[BenchRow]) -> str:
 
 def _cells(row: BenchRow) -> tuple[str, ...]:
     per_step = row.wall_s / row.steps if row.wall_s and row.steps else None
-    solves = row.rounds / row.steps if row.rounds and row.steps else None
+    solves = row.iterations / row.steps if row.iterations and row.steps else None
     return (
         row.case,
         row.solver,

@@ -75,7 +75,7 @@ def test_two_at_once_find_the_same_bits(name: str, passes: list[str]) -> None:
     assert len(passes) == 2 * count + (name == "transport_4x4") and len(set(passes[count:])) == 2
     assert count == {"three": 3, "four": 4}.get(name.partition(", ")[2], 2)
     assert bits(hdf5(two)) == bits(hdf5(one))
-    assert (two.steps, two.rounds, two.touched) == (one.steps, one.rounds, one.touched)
+    assert (two.steps, two.iterations, two.touched) == (one.steps, one.iterations, one.touched)
     assert two.energy == one.energy
 
 

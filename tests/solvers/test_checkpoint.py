@@ -122,7 +122,7 @@ def test_passes_are_known_by_their_steps(threads: tuple[int, int], tmp_path: Pat
         raise AssertionError("it does not come to its end")
     assert cut > 2
     assert bits(hdf5(result)) == bits(hdf5(whole))
-    assert (result.steps, result.rounds, result.energy) == (whole.steps, whole.rounds, whole.energy)
+    assert (result.steps, result.iterations, result.energy) == (whole.steps, whole.iterations, whole.energy)
 
 
 def goes_on(name: str, tmp_path: Path, threads: int) -> None:
@@ -144,7 +144,7 @@ def goes_on(name: str, tmp_path: Path, threads: int) -> None:
             starts_like(whole, keep)
     assert cuts >= (3 if threads == 1 else 1)  # the other pass goes on meanwhile
     assert bits(hdf5(result)) == bits(hdf5(whole))
-    assert (result.steps, result.rounds, result.touched) == (whole.steps, whole.rounds, whole.touched)
+    assert (result.steps, result.iterations, result.touched) == (whole.steps, whole.iterations, whole.touched)
     assert (result.energy, result.error_estimate) == (whole.energy, whole.error_estimate)
 
 

@@ -255,12 +255,12 @@ def test_momentum_is_kept_in_free_flight() -> None:
     assert start * 0.5 < result.energy.kinetic + result.energy.elastic <= start * (1 + 1e-6)
 
 
-def test_what_spins_takes_no_more_rounds_than_what_rests() -> None:
+def test_what_spins_takes_no_more_iterations_than_what_rests() -> None:
     """A strip of short, stiff boxes: in axes that are half a step behind, stiff directions would be taken for
     soft ones."""
     result = run(model("verify/flip", "sheets.block.boxes=[400, 1]", "run.duration=0.5 ms"), 0.1)
     assert result.ok, result.status
-    assert result.steps == 5 and result.rounds <= 3 * result.steps
+    assert result.steps == 5 and result.iterations <= 3 * result.steps
     _, angular = momentum(result)
     assert np.abs(angular - angular[0]).max() < 1e-9 * np.abs(angular[0]).max()
 

@@ -177,7 +177,7 @@ def test_an_end_moment_closes_the_strip() -> None:
 
 
 def test_a_box_sinks_into_a_plane_by_its_weight() -> None:
-    """From above it and from within; (m g/k)^(2/3), to the residual that ends the rounds."""
+    """From above it and from within; (m g/k)^(2/3), to the residual that ends the iterations."""
     for height in ("5.01 mm", "4.9 mm", "8 mm"):
         made = model("verify/drop", STATIC, f"sheets.block.center=[0 mm, 0 mm, {height}]")
         result = run(made)
@@ -361,7 +361,7 @@ def test_a_sheet_that_falls_says_so() -> None:
 
 
 def test_small_parts_that_all_balance_end_too(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Parts that take many rounds do not grow; the cap is on all of their rounds."""
+    """Parts that take many iterations do not grow; the cap is on all of them."""
     monkeypatch.setattr(static, "FIRST_PART", 0.01)
     monkeypatch.setattr(static, "MOST", 10 * static.FEW)
     made = model("cantilever", "sheets.note.boxes=[1,2]")

@@ -395,6 +395,6 @@ def test_corners_under_the_nips_part_by_twist_alone() -> None:
     assert np.abs(plate.step - plate.twist).max() < 2 * np.abs(e2e.step - e2e.twist).max()
     assert plate.step.max() > 10 * e2e.widest()  # the sheet does twist, which edge_to_edge does not
     assert stiff.widest() < 2 * e2e.widest()
-    rounds = {name: result.rounds or 0 for name, result in results.items()}
-    assert 0 < rounds["stiff"] < 1.2 * rounds["e2e"]
-    assert rounds["plate"] < 1.6 * rounds["e2e"]
+    iterations = {name: result.iterations or 0 for name, result in results.items()}
+    assert 0 < iterations["stiff"] < 1.2 * iterations["e2e"]
+    assert iterations["plate"] < 1.6 * iterations["e2e"]

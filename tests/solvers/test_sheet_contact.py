@@ -238,7 +238,7 @@ def test_blocks_that_meet_off_centre_keep_their_angular_momentum():
     assert np.abs(result.spin[-1, :2]).max() > 1e-3
     linear, angular = momenta(result)
     assert np.abs(linear - linear[0]).max() < 1e-11 * np.abs(linear[0]).max()
-    # as well as the rounds of a step end: its rotation is that of the last but one
+    # as well as the iterations of a step end: its rotation is that of the last but one
     assert np.abs(angular - angular[0]).max() < 1e-7 * np.abs(angular[0]).max()
 
 

@@ -65,11 +65,11 @@ class Mirror:
     def acts(self, rows: Floats) -> Floats:
         """What rows of contacts do, (..., rows, 5), of both sides: normal force, then the columns of
         mechanics.turning. What turns against its image in one and the same row cancels out."""
-        told = rows[..., self.rows, :] * self.times[self.rows, None]
+        whole = rows[..., self.rows, :] * self.times[self.rows, None]
         image = (self.rows != np.arange(len(self.rows)))[:, None]
         own = np.where(self.times[:, None] > 1.0, 0.5 + 0.5 * self.senses, 1.0)
-        told[..., 1 + ABOUT_A : 2 + ALONG] *= np.where(image, self.senses, own)
-        return told
+        whole[..., 1 + ABOUT_A : 2 + ALONG] *= np.where(image, self.senses, own)
+        return whole
 
     def largest(self, rows: Floats) -> Floats:
         """What holds for a row of the contacts, (..., rows), holds for its image."""

@@ -102,5 +102,5 @@ def itself(result: Result, _: Result | None) -> list[Finding]:
     """The run's own estimate of its error, and where the note is."""
     lead = float(result.sheet_motion(0)[0][-1, 0])
     error = float("nan") if result.error_estimate is None else result.error_estimate
-    details = {"steps": float(result.steps or 0), "rounds": float(result.rounds or 0), "x_mm": lead}
+    details = {"steps": float(result.steps or 0), "iterations": float(result.iterations or 0), "x_mm": lead}
     return [Finding("own estimate of the position, of the travel", error, AGREE, details)]
