@@ -8,6 +8,8 @@ from typing import Any
 
 from mdlgen.errors import Place, SpecError, did_you_mean
 from mdlgen.spec.document import Document, SpecPath, parse
+from mdlgen.spec.nip import names_of
+from mdlgen.spec.rows import expanded
 
 # With --set, giving one of these takes the other away, so that an alternative can be tried.
 _ALTERNATIVES = (
@@ -28,6 +30,7 @@ _ALTERNATIVES = (
     {"time", "at"},
     *({old, new} for old in ("ratio", "ratio_ty", "rotation") for new in ("time", "loss_factor", "at")),
 )
+_PATTERN = re.compile(r"[*?]")
 MOST_PLACES = 10_000  # that one pattern may meet
 
 
@@ -55,9 +58,13 @@ def _met(data: Any, words: list[str], here: Place) -> list[SpecPath]:
     for word in words:
         step: list[tuple[SpecPath, Any]] = []
         for path, node in found:
+            if path == ("rollers",) and _PATTERN.search(word):
+                node = {**dict.fromkeys(_of_nips(data)), **(node if isinstance(node, dict) else {})}
             step += [((*path, key), inner) for key, inner in _inside(node, word, path, here)]
         if not step:
-            known = dict.fromkeys(str(key) for _, node in found for key in node)
+            known = dict.fromkeys(str(key) for _, node in found for key in node or ())
+            if found[0][0] == ("rollers",):
+                known |= dict.fromkeys(_of_nips(data))
             raise SpecError(
                 f"nothing here fits {word!r}{did_you_mean(word, known) or ';'} "
                 f"there are: {', '.join(known)[:200] or 'none'}",
@@ -70,9 +77,16 @@ def _met(data: Any, words: list[str], here: Place) -> list[SpecPath]:
     return [path for path, _ in found]
 
 
+def _of_nips(data: Any) -> list[str]:
+    """The names of the rollers that nips make."""
+    nips = expanded({"nips": data.get("nips")} if isinstance(data, dict) else {}, {}).get("nips")
+    found = [names_of(name, nip) for name, nip in nips.items()] if isinstance(nips, dict) else []
+    return [name for names in found for name in names]
+
+
 def _inside(node: Any, word: str, path: SpecPath, here: Place) -> list[tuple[str | int, Any]]:
     """(key, value) of what a word means in a mapping or a list."""
-    pattern = "*" in word or "?" in word
+    pattern = _PATTERN.search(word) is not None
     if node is None:
         node = {}
     if isinstance(node, list):

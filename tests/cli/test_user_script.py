@@ -105,7 +105,7 @@ def test_each_value_has_its_unit(channel: Result) -> None:
         assert set(part.units) == values and set(part.shown) <= values
     table = pytest.importorskip("pandas") and channel.to_pandas()
     assert set(table.attrs["units"]) == {"time_ms", *table.columns}
-    assert set(table.attrs["units"].values()) == {"ms", "mm", "mm/s", "deg", "rad/s", "N"}
+    assert set(table.attrs["units"].values()) == {"ms", "mm", "mm/s", "deg", "rad/s", "N", "N*mm", "W"}
     states = pytest.importorskip("xarray") and channel.to_xarray()
     assert all(states[name].attrs["units"] for name in (*states.data_vars, "time"))
 

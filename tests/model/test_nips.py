@@ -221,6 +221,15 @@ def test_what_stands_under_rollers_counts() -> None:
     assert drive is not None and drive.speed == 0.007
 
 
+def test_a_pattern_meets_the_rollers_of_nips() -> None:
+    scene = load(FILE, ["rollers.motor_*.radius=8 mm", "rollers.counter_?_left.width=4 mm"])
+    assert {roller.radius for name, roller in scene.rollers.items() if "motor" in name} == {8.0}
+    widths = {name: roller.width for name, roller in scene.rollers.items() if "counter" in name}
+    assert widths == {name: 4.0 if name.endswith("left") else 5.0 for name in widths} and len(widths) == 4
+    with pytest.raises(SpecError, match="nothing here fits 'moter_\\*'; there are: motor_1_left"):
+        load(FILE, ["rollers.moter_*.radius=8 mm"])
+
+
 def test_rows_and_mirror_images() -> None:
     text = SHEET + """rollers:
   "idler_*_*":
