@@ -58,8 +58,9 @@ def calibrate(
     solver: str = "auto",
     progress: Count | None = None,
 ) -> Calibration:
-    """Find the value `fit` (see `value.FITS`) of the probed sheet's material with which the probe moves as
-    measured: a static drop along gravity [mm], or a Decay.
+    """Find the value `fit` with which the probe moves as measured, of the probed sheet's material (see
+    `value.FITS`) or a parameter of the scene (`parameters.NAME`): a static drop along gravity [mm],
+    or a Decay.
 
     The logarithm of the value is sought, by Brent's method for one drop and by least squares for a curve, in
     at most 15 runs. All runs for a curve take the step that the first one was given or chose, so that they
@@ -71,7 +72,7 @@ def calibrate(
     Raises SpecError for an unknown value or probe, an analysis that does not go with the measurement, and a
     measurement that no value reaches or that does not depend on the value.
     """
-    known = values.find(fit)
+    known = values.find(fit, scene)
     model = lower(scene)
     index = _probe(model, probe)
     _check(model, measured, fit)
@@ -80,7 +81,7 @@ def calibrate(
     sheet = model.sheets[model.probes[index].sheet]
     material = scene.sheets[sheet.name].material
     values.check(fit, scene.materials[material])
-    begin = values.start(fit, scene.materials[material], sheet)
+    begin = values.start(fit, scene, scene.materials[material], sheet)
     times = measured.time if isinstance(measured, Decay) else None
     runs = Runs(scene, material, fit, index, solver, times, progress)
     search = Search(runs, math.log(begin), known.greatest)

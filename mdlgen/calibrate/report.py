@@ -8,7 +8,7 @@ import numpy as np
 
 from mdlgen.calibrate.calibration import Calibration
 from mdlgen.calibrate.measured import Decay
-from mdlgen.calibrate.value import FITS
+from mdlgen.calibrate.value import FITS, of_scene
 from mdlgen.model.tables import CLAMP
 
 DIGITS = 6  # of a value that is written for people; more is below what a run resolves
@@ -43,34 +43,38 @@ def report_text(found: Calibration) -> str:
     """A few lines for a terminal."""
     change = _size(found.sensitivity) / 100.0
     lines = [
-        f"{found.fit} of {found.material}: {quantity(found)}",
+        f"{found.fit}{'' if of_scene(found.fit) else f' of {found.material}'}: {quantity(found)}",
         f"probe {found.probe.name}: {_agreement(found)}",
         f"sensitivity: 1 % more {found.fit} changes the drop by {change:.3g} mm"
         + (" (root of the mean square)" if len(found.drop) > 1 else ""),
         *_step_error(found),
         *_numerical(found),
         f"{found.runs} runs ({found.solver}); {_sheet(found)}",
-        f'as an option: --set materials.{found.material}.{found.fit}="{quantity(found)}"',
+        f'as an option: --set {_path(found)}="{quantity(found)}"',
     ]
     return "\n".join(lines)
 
 
 def fragment(found: Calibration) -> str:
     """The piece of a scene file that gives the material this value, with how it was found."""
-    *outer, name = found.fit.split(".")
-    instead = FITS[found.fit].instead
+    outer = [] if of_scene(found.fit) else ["materials", found.material]
+    outer += found.fit.split(".")[:-1]
+    name = found.fit.split(".")[-1]
+    instead = None if of_scene(found.fit) else FITS[found.fit].instead
     lines = [
         f"# Found by mdlgen calibrate with the scene {found.model.name}: probe {found.probe.name},",
         f"# {_agreement(found)};",
         f"# {found.runs} runs ({found.solver}); {_sheet(found)}.",
         *([f"# It takes the place of {instead}."] if instead else []),
-        "materials:",
-        f"  {found.material}:",
-        *(f"    {word}:" for word in outer),
-        f"{'  ' * (2 + len(outer))}{name}: {quantity(found)}",
-        *([f"      at: {_frequency(found):.{DIGITS}g} Hz"] if name == "loss_factor" else []),
+        *(f"{'  ' * depth}{word}:" for depth, word in enumerate(outer)),
+        f"{'  ' * len(outer)}{name}: {quantity(found)}",
+        *([f"      at: {_frequency(found):.{DIGITS}g} Hz"] if found.fit == "damping.loss_factor" else []),
     ]
     return "\n".join(lines) + "\n"
+
+
+def _path(found: Calibration) -> str:
+    return found.fit if of_scene(found.fit) else f"materials.{found.material}.{found.fit}"
 
 
 def _frequency(found: Calibration) -> float:

@@ -6,6 +6,8 @@ import math
 from typing import NamedTuple
 
 from mdlgen.errors import SpecError
+from mdlgen.formulas import is_formula
+from mdlgen.model.parameters.names import unit
 from mdlgen.model.tables import SheetPart
 from mdlgen.report.overview import bending
 from mdlgen.spec.material import Damping, Material
@@ -36,10 +38,32 @@ FITS = {
 }
 
 
-def find(name: str) -> Fit:
-    """The value of that name. Raises SpecError for one that cannot be found from a drop."""
+_OF_SCENE = "parameters."  # in front of a parameter that the user named
+
+
+def of_scene(name: str) -> bool:
+    """Whether a value is a parameter of the scene, not a value of a material."""
+    return name.startswith(_OF_SCENE)
+
+
+def find(name: str, scene: Scene | None = None) -> Fit:
+    """The value of that name, of a material or a parameter of the scene. Raises SpecError for one that cannot
+    be found from a drop."""
+    if of_scene(name):
+        own = name.removeprefix(_OF_SCENE)
+        if scene is None:
+            return Fit("")
+        if own not in scene.amounts:
+            there = ", ".join(scene.amounts) or "none"
+            raise SpecError(f"--fit: there is no parameter {own[:40]!r} in the scene; there are: {there}")
+        given = scene.parameters[own]
+        if isinstance(given, str) and is_formula(given, scene.parameters):
+            raise SpecError(f"--fit: the parameter {own} is a formula; fit what it follows from")
+        shown = unit(scene.amounts[own].dimension)
+        return Fit("" if shown == "1" else shown)
     if name not in FITS:
-        raise SpecError(f"--fit: {name[:40]!r} is not a value that is fitted; there are: {', '.join(FITS)}")
+        named = ", ".join([*FITS, f"{_OF_SCENE}NAME"])
+        raise SpecError(f"--fit: {name[:40]!r} is not a value that is fitted; there are: {named}")
     return FITS[name]
 
 
@@ -52,10 +76,12 @@ def check(name: str, material: Material) -> None:
         )
 
 
-def start(name: str, material: Material, sheet: SheetPart) -> float:
+def start(name: str, scene: Scene, material: Material, sheet: SheetPart) -> float:
     """The scene's own value, in whichever form it is given there; above zero. Of two, MD and CD, the mean."""
     damping = material.damping
-    if name == "damping.ratio":
+    if of_scene(name):
+        value = scene.amounts[name.removeprefix(_OF_SCENE)].value
+    elif name == "damping.ratio":
         value = damping.zetas[0]
     elif name == "damping.ratio_ty":
         value = damping.zetas[1]
@@ -70,7 +96,9 @@ def start(name: str, material: Material, sheet: SheetPart) -> float:
 
 def with_value(scene: Scene, material: str, name: str, value: float) -> Scene:
     """The scene with that value of a material; the other form of the same bending, or of the damping, is
-    taken away."""
+    taken away. Of a parameter all follows."""
+    if of_scene(name):
+        return scene.with_({name: f"{value!r} {find(name, scene).unit}".rstrip()})
     old = scene.materials[material]
     if name.startswith("damping."):
         own = name.removeprefix("damping.")

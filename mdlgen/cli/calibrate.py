@@ -48,7 +48,7 @@ def calibrate(
             metavar="NAME",
             help="The value to find, of the probed sheet's material: k_tx, k_ty, D_cd, D_md, damping.ratio, "
             "damping.ratio_ty, damping.time, damping.loss_factor. k_tx takes the place of D_cd, k_ty that of "
-            "D_md, and one form of damping that of the others.",
+            "D_md, and one form of damping that of the others. Or a parameter of the scene, parameters.NAME.",
             autocompletion=completion.fits,
         ),
     ],

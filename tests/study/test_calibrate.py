@@ -16,6 +16,7 @@ from mdlgen import registry
 from mdlgen.backend import Backend
 from mdlgen.calibrate.calibration import calibrate
 from mdlgen.calibrate.measured import Decay, read_measured
+from mdlgen.calibrate.report import fragment, quantity, report_text
 from mdlgen.calibrate.search import MAX_RUNS
 from mdlgen.calibrate.value import FITS, Fit
 from mdlgen.cli import app, shell
@@ -393,3 +394,20 @@ def test_a_failed_run_ends_with_its_reason(cli: Run, tmp_path: Path, monkeypatch
 def test_help_has_an_example(cli: Run) -> None:
     ended = cli("--help", sets=[])
     assert ended.code == 0 and "Example: mdlgen calibrate" in " ".join(ended.out.split())
+
+
+def test_a_parameter_of_the_scene_is_found() -> None:
+    """That the stiffness follows from, as the stiffness itself is."""
+    text = CANTILEVER.read_text("utf-8").replace("materials:", "parameters: {stiff: 0.2 N*mm}\nmaterials:", 1)
+    scene = mdlgen.loads(text, [*NARROW, "materials.eur10.D_cd=1.5*stiff"])
+    own = calibrate(mdlgen.load(CANTILEVER, NARROW), 60.0, "D_cd")
+    found = calibrate(scene, 60.0, "parameters.stiff")
+    assert found.ok and found.unit == "N*mm"
+    assert found.value == pytest.approx(own.value / 1.5, rel=1e-6)
+    assert fragment(found).endswith(f"parameters:\n  stiff: {quantity(found)}\n")
+    assert f'--set parameters.stiff="{quantity(found)}"' in report_text(found)
+    with pytest.raises(SpecError, match="there is no parameter 'stif' in the scene; there are: stiff"):
+        calibrate(scene, 60.0, "parameters.stif")
+    twice = scene.with_({"parameters.twice": "2*stiff"})
+    with pytest.raises(SpecError, match="the parameter twice is a formula; fit what it follows from"):
+        calibrate(twice, 60.0, "parameters.twice")
