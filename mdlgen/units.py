@@ -184,11 +184,22 @@ def is_unit(name: str) -> bool:
     return name in _NAMES
 
 
+def _internal(dimension: Sequence[float]) -> str:
+    """The unit of a dimension that has the factor 1."""
+    powers = [(name, power) for name, power in zip(("mm", "g", "ms", "rad"), dimension, strict=True) if power]
+    over = [name if power == 1.0 else f"{name}^{power:g}" for name, power in powers if power > 0.0]
+    under = [name if power == -1.0 else f"{name}^{-power:g}" for name, power in powers if power < 0.0]
+    return "/".join(["*".join(over) or "1", *under])
+
+
 def exact_quantity(value: float, unit: str) -> str:
-    """The shortest text that `parse_quantity` reads as exactly this value, where there is one."""
-    factor = parse_unit(unit).factor
+    """The shortest text that `parse_quantity` reads as exactly this value; in the internal unit of its kind
+    where no number of `unit` is it."""
+    factor, dimension = parse_unit(unit)
     near = value / factor
     tries = [float(f"{near:.15g}"), near, math.nextafter(near, math.inf), math.nextafter(near, -math.inf)]
-    found = next((number for number in tries if number * factor == value), near)
+    found = next((number for number in tries if number * factor == value), None)
+    if found is None:
+        found, unit = value, _internal(dimension)
     shown = repr(int(found)) if found.is_integer() and abs(found) < 1e15 else repr(found)
     return f"{shown} {unit}"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import math
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -87,3 +88,17 @@ def test_a_decimal_comma_is_answered(text: str, meant: str) -> None:
 def test_nonsense_is_refused(text: str) -> None:
     with pytest.raises(ValueError):
         parse_quantity(text, "mm")
+
+
+@pytest.mark.parametrize("unit", ["rad/s", "mm/s", "m/s^2", "deg", "Hz", "N*mm/rad", "kg", "um", "N/mm^1.5"])
+def test_any_value_has_a_text_that_is_exactly_it(unit: str) -> None:
+    """No number of rad/s is 0.09333333333333334 rad/ms to the last bit."""
+    generator = np.random.default_rng(1)
+    values = [
+        0.09333333333333334,
+        *generator.uniform(-3.0, 3.0, 500),
+        *np.exp(generator.uniform(-40.0, 40.0, 500)),
+    ]
+    texts = [exact_quantity(float(value), unit) for value in values]
+    assert [parse_quantity(text, unit) for text in texts] == values
+    assert exact_quantity(0.09333333333333334, "rad/s") == "0.09333333333333334 rad/ms"
