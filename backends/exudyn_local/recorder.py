@@ -37,6 +37,7 @@ class Recorder:
 
     def __init__(self, model: Model, system: System, progress: Callable | None):
         self.model, self.system, self.progress = model, system, progress
+        self._tables = system.tables  # the same at each step, so that compiled code looks at them once
         self.steps = 0
         self.time = 0.0  # [s]
         self.reason: str | None = None
@@ -112,7 +113,7 @@ class Recorder:
         before = self._totals.copy()
         self._pairs[:] = 0.0
         at = Coordinates(q, v, t)
-        ledger(self.system.tables, at, self._work, self._pairs, self._totals)
+        ledger(self._tables, at, self._work, self._pairs, self._totals)
         step, self.time = t - self.time, t
         self._lost += 0.5 * step * (before[LOST] + self._totals[LOST])
         self._driven += 0.5 * step * (before[DRIVING] + self._totals[DRIVING])
@@ -129,6 +130,10 @@ class Recorder:
         if not self._pairs.size:
             return
         rows = len(self._max_depth)
+        if not self._acting.any() and not self._pairs.any():  # a body that flies: nothing of this changes
+            self._force = np.zeros(rows)
+            self._turning = np.zeros((rows, TURNING))
+            return
         row = self.model.pairs.contact
         force = np.asarray(np.bincount(row, weights=self._pairs[:, PRESSING], minlength=rows), dtype=float)
         depth = np.zeros(rows)

@@ -7,6 +7,7 @@ written as JSON: "f8", "i8", "b1", ["tuple", types], ["array", dtype, dimensions
 
 from __future__ import annotations
 
+import ctypes
 import struct
 from collections.abc import Callable
 from typing import Any
@@ -118,6 +119,8 @@ def _tuple(kind: Type, at: int) -> Write:
 def _array(kind: Type, at: int) -> Write:
     _, message, dimensions, order, written = kind
     dtype = _dtype(message)
+    addressof: Any = ctypes.addressof
+    first: Any = ctypes.c_char.from_buffer
     pack, at = struct.Struct(f"={5 + 2 * dimensions}q").pack_into, 8 * at
 
     def write(buffer: Any, value: Any) -> None:
@@ -128,7 +131,10 @@ def _array(kind: Type, at: int) -> Write:
             raise Misfit(f"an array of {value.dtype} for one of {dtype}")
         if (order == "C" and not flags.c_contiguous) or (order == "F" and not flags.f_contiguous):
             raise Misfit("an array whose items stand in another order")
-        data = value.ctypes.data
+        if flags.c_contiguous and flags.writeable and value.size:
+            data = addressof(first(value))  # in a fifth of the time
+        else:
+            data = value.ctypes.data
         pack(buffer, at, 0, 0, value.size, value.itemsize, data, *value.shape, *value.strides)
 
     return write
