@@ -17,12 +17,14 @@ from mdlgen.spec.strict import fail
 if TYPE_CHECKING:
     from mdlgen.spec.scene import Scene
 
+# Tables of parts of the machine, in the order of their bodies.
+MACHINE = ("rollers", "planes", "guides", "meshes")
 MOST_ERRORS = 100  # that are looked for in contacts: more are not shown
 
 
 def find_pairs(scene: Scene) -> tuple[list[tuple[int, str, str]], list[PydanticCustomError]]:
     """The pairs, and what is wrong with each contact that has none or may not have them."""
-    machine = [*scene.rollers, *scene.planes, *scene.guides, *scene.meshes, *scene.parts]
+    machine = [name for kind in (*MACHINE, "parts") for name in getattr(scene, kind)]
     rank = {n: i for i, n in enumerate([*scene.sheets, *machine])}
     taken: dict[tuple[str, str], int] = {}
     errors: list[PydanticCustomError] = []

@@ -12,14 +12,14 @@ from pydantic import ValidationError
 from pydantic_core import PydanticCustomError
 
 from mdlgen.errors import SpecError, did_you_mean
-from mdlgen.spec.between import known, matching
+from mdlgen.spec.between import MACHINE, known, matching
 from mdlgen.spec.document import Document, SpecPath
 from mdlgen.spec.shorthand import in_the_text, written_out
 
 MOST = 20
 # Tables of parts by name: what --set makes anew here is more often a name that is misspelt.
 _MOST_LOOKS = 1000  # at names beside other mistakes
-_PARTS = ("sheets", "rollers", "planes", "guides", "meshes", "parts")
+_PARTS = ("sheets", *MACHINE, "parts")
 _TABLES = ("parameters", "materials", *_PARTS, "nips", "probes")
 _NAMED = ("contacts", *_TABLES)
 # What stands behind a decimal comma: digits, perhaps with a unit.

@@ -21,7 +21,7 @@ from pydantic_core import PydanticCustomError
 from mdlgen.formulas import Amount
 from mdlgen.spec.action import Load, OnSheet, Probe, Support
 from mdlgen.spec.beside import PYTHON, holding, named_from
-from mdlgen.spec.between import find_pairs, known
+from mdlgen.spec.between import MACHINE, find_pairs, known
 from mdlgen.spec.contact import Contact
 from mdlgen.spec.document import Document
 from mdlgen.spec.fields import Acceleration, Name, default
@@ -272,7 +272,7 @@ class Scene(Strict):
         except ValueError as error:
             raise fail(str(error), path) from None
         if wanted.part is not None:
-            parts = (*self.sheets, *self.rollers, *self.planes, *self.guides, *self.meshes)
+            parts = [name for kind in ("sheets", *MACHINE) for name in getattr(self, kind)]
             known(wanted.part, parts, "part", path)
 
     def _check_nip(self, name: str) -> None:
@@ -345,7 +345,7 @@ class Scene(Strict):
 
     def _names_unique(self) -> None:
         seen: dict[str, str] = {}
-        for kind in ("sheets", "rollers", "planes", "guides", "meshes", "parts", "probes"):
+        for kind in ("sheets", *MACHINE, "parts", "probes"):
             for name in getattr(self, kind):
                 other = seen.setdefault(name.lower(), f"{kind}.{name}")
                 if other != f"{kind}.{name}":

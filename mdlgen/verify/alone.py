@@ -35,7 +35,7 @@ def of_sheets(said: dict[str, Table], model: Model, own_machine: bool) -> dict[s
 def _machine(model: Model) -> set[str]:
     """Names of the text that belong to the machine."""
     names = {"ds_run"}
-    for part in (*model.rollers, *model.planes, *model.guides, *model.meshes):
+    for part in model.machine:
         n = part.name
         names |= {f"{kind}_{n}" for kind in ("p", "b", "gbox", "gcyl", "j", "o", "ds")}
         names |= {f"p_{n}_anchor", f"b_{n}_carrier", f"j_{n}_slide"}
@@ -76,8 +76,7 @@ def _unused(model: Model) -> set[str]:
 
 def _any_machine(table: Table, model: Model) -> tuple[tuple[str, ...], ...]:
     """The words of contacts with the parts that this scene has a shape of left open."""
-    machine = (*model.rollers, *model.planes, *model.guides, *model.meshes)
-    ours = {f"b_{part.name}" for part in machine}
+    ours = {f"b_{part.name}" for part in model.machine}
     return tuple((*w[:3], ANY, w[4], *(ANY for _ in w[5:])) if w[3] in ours else w for w in table.words)
 
 

@@ -16,9 +16,12 @@ from hypothesis import strategies as st
 
 from mdlgen.backends.motionview import emit
 from mdlgen.backends.motionview.reader import read
-from mdlgen.errors import SpecError
+from mdlgen.errors import RefusedError, SpecError
 from mdlgen.model.lower import lower
-from mdlgen.spec.load import loads
+from mdlgen.model.tables import PlanePart
+from mdlgen.paths import samples
+from mdlgen.registry import emitter
+from mdlgen.spec.load import load, loads
 
 Spec = dict[str, Any]
 
@@ -565,3 +568,16 @@ def test_no_name_changes_the_statements(place: tuple[str, str], name: str) -> No
     except SpecError:
         return
     assert found == counts_of(PLAIN)
+
+
+@pytest.mark.parametrize("name", ["motionview", "motionsolve"])
+def test_a_part_of_a_kind_without_words_is_refused_by_name(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from mdlgen.altair import parts
+
+    model = lower(load(samples() / "verify" / "incline.yaml"))
+    assert model.planes
+    monkeypatch.setattr(parts, "WRITTEN", tuple(kind for kind in parts.WRITTEN if kind is not PlanePart))
+    with pytest.raises(RefusedError, match=rf"{model.planes[0].name} is a plane, which is not written yet"):
+        emitter(name).emit(model)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from mdlgen.altair.parts import refuse_unwritten
 from mdlgen.altair.rolling import refuse_rolling
 from mdlgen.altair.springs import refuse_compressed
 from mdlgen.backends.motionsolve.writer import gate
@@ -20,6 +21,7 @@ def check(model: Model) -> None:
     """Raises RefusedError by name for what the deck cannot represent."""
     refuse_externals(model, "MotionSolve deck")
     refuse_searched(model, "MotionSolve deck")
+    refuse_unwritten(model, "MotionSolve deck")
     refuse_compressed(model, "MotionSolve deck")
     refuse_rolling(model, "MotionSolve deck")
 

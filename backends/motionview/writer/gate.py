@@ -30,10 +30,7 @@ def check_names(model: Model) -> None:
         identifiers=(
             model.name,
             *(s.name for s in model.sheets),
-            *(r.name for r in model.rollers),
-            *(p.name for p in model.planes),
-            *(g.name for g in model.guides),
-            *(m.name for m in model.meshes),
+            *(part.name for part in model.machine),
             *(p.name for p in model.probes),
             *(p.data_set for p in model.parameters),
             *(p.member for p in model.parameters),

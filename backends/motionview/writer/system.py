@@ -51,7 +51,7 @@ def system_view(model: Model, set_contact: bool) -> SystemView:
 
 def _used(model: Model, given: dict[str, list[Value]], contacts: Sequence[int]) -> list[Value]:
     """The user's parameters that something of the sheets follows from."""
-    machine = {p.name for p in (*model.rollers, *model.planes, *model.guides, *model.meshes)} | {"run"}
+    machine = {p.name for p in model.machine} | {"run"}
     written = {f"contact_{int(model.contacts.entry[row])}" for row in contacts}
     of_sheets = (
         p.formula

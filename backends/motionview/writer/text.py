@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from mdlgen.altair.parts import refuse_unwritten
 from mdlgen.altair.rolling import refuse_rolling
 from mdlgen.altair.springs import refuse_compressed
 from mdlgen.backends.motionview.writer import gate
@@ -35,6 +36,7 @@ def check(model: Model) -> None:
 def check_sheets(model: Model) -> None:
     """Raises RefusedError by name for what the text of the sheets cannot represent."""
     refuse_searched(model, "MotionView text")
+    refuse_unwritten(model, "MotionView text")
     if len(model.loads.body):
         raise RefusedError(
             "MotionView text: loads are not written, because no force statement with a certain meaning is "
