@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 from decks import FOUR, SHORT_SPRING, SMALL, model_of, run, small_deck
+from golden import compare
 from places import GOLDEN
 
 from mdlgen.backends import motionsolve
@@ -83,16 +83,4 @@ def test_the_time_grows_no_faster_than_the_deck() -> None:
 def test_golden() -> None:
     text, path = small_deck(), GOLDEN / "deck_small.xml"
     assert motionsolve.validate(text) == []
-    if os.environ.get("MDLGEN_ACCEPT"):
-        path.write_bytes(text.encode("ascii"))
-    expected = path.read_bytes().decode("ascii") if path.exists() else ""
-    if text != expected:
-        pairs = zip(text.splitlines(), expected.splitlines(), strict=False)
-        line, (new, old) = next(((k, p) for k, p in enumerate(pairs, 1) if p[0] != p[1]), (0, ("", "")))
-        pytest.fail(
-            f"{path.name} differs from the deck, first in line {line}:\n"
-            f"  golden: {old[:200]}\n  deck:   {new[:200]}\n"
-            "If the new deck is right, accept it with\n"
-            "  MDLGEN_ACCEPT=1 python -m pytest tests/deck/test_deck.py -k golden",
-            pytrace=False,
-        )
+    compare(text, path)

@@ -6,8 +6,8 @@ import threading
 from typing import Any
 
 import pytest
+from machines import MACHINE
 from same import bits
-from test_symmetry import MACHINE
 
 import mdlgen
 from mdlgen.backends.lattice import run as lattice

@@ -15,10 +15,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from machines import MACHINE, OVERRUN
 from nip import FORTH_AND_BACK
 from same import bits
-from test_one_way import OVERRUN
-from test_symmetry import MACHINE
 
 import mdlgen
 import mdlgen.errors

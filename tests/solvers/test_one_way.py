@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 import pytest
+from machines import OVERRUN, WAY
 from nip import FORTH_AND_BACK
 from ran import solved
 
@@ -21,14 +22,7 @@ from mdlgen.results.result import Result
 from mdlgen.spec.load import loads
 
 CREEP, TORQUE = 1e-4, 40.0  # rad/ms, N mm: more than friction, 0.8 of some 3 N, and inertia can bring up
-WAY = "{direction: %d, torque: 40 N*mm, creep: 0.1 rad/s}"
 BACKSTOP = f"rollers.idler.one_way={WAY % -1}"
-# the idler is driven, first slower than the motor's shaft, then faster, then slower again
-OVERRUN = (
-    "rollers.motor.drive={speed: 50 rad/s, ramp: 2 ms}",
-    f"rollers.motor.one_way={WAY % 1}",
-    "rollers.idler.drive={profile: [[0 ms, 0 rad/s], [10 ms, -100 rad/s], [15 ms, -30 rad/s]]}",
-)
 SOLVERS = ("lattice", "exudyn")
 
 

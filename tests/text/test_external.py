@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 import json
-import os
 import subprocess
 import sys
 from collections import Counter
@@ -14,6 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
+from golden import compare
 from places import GOLDEN
 
 import mdlgen
@@ -500,10 +500,4 @@ GOLDENS = {
 
 @pytest.mark.parametrize("name", sorted(GOLDENS))
 def test_golden(name: str) -> None:
-    text, path = sheets_of(GOLDENS[name]()), SYSTEMS / name
-    if os.environ.get("MDLGEN_ACCEPT"):
-        path.write_bytes(text.encode("ascii"))
-    assert text == path.read_bytes().decode("ascii"), (
-        "if the new text is right, accept it with\n"
-        "  MDLGEN_ACCEPT=1 python -m pytest tests/text/test_external.py"
-    )
+    compare(sheets_of(GOLDENS[name]()), SYSTEMS / name)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 import sys
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import Any
 
 import pytest
 from base import BASE
+from golden import compare
 from places import GOLDEN
 
 import mdlgen.backends.motionview as motionview
@@ -314,23 +314,6 @@ def part_text(template: str) -> str:
     mark = "#" if template.startswith("companion") else "//"
     sections = PARTS[template].items()
     return "\n".join(f"{mark} ==== {title}\n{rendered(template, small_model(*o))}" for title, o in sections)
-
-
-def compare(text: str, path: Path) -> None:
-    """Fails where the file holds another text, and says how to accept the new one."""
-    if os.environ.get("MDLGEN_ACCEPT"):
-        path.write_bytes(text.encode("ascii"))
-    expected = path.read_bytes().decode("ascii") if path.exists() else ""
-    if text != expected:
-        pairs = zip(text.splitlines(), expected.splitlines(), strict=False)
-        line, (new, old) = next(((k, p) for k, p in enumerate(pairs, 1) if p[0] != p[1]), (0, ("", "")))
-        pytest.fail(
-            f"{path.name} differs from the text, first in line {line}:\n"
-            f"  golden: {old[:200]}\n  text:   {new[:200]}\n"
-            "If the new text is right, accept it with\n"
-            "  MDLGEN_ACCEPT=1 python -m pytest tests/text/test_goldens.py",
-            pytrace=False,
-        )
 
 
 WHOLE = {
