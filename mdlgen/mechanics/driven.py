@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from mdlgen.model.limits import MOST_CORNERS
 from mdlgen.model.tables import RollerPart
 from mdlgen.program.kernel import njit
-from mdlgen.spec.machine import MOST_CORNERS
 
 DRIVEN = [("corners", "i8"), ("drive", "f8", 2 * MOST_CORNERS), ("clutch", "f8", 3)]
 

@@ -65,7 +65,7 @@ def on_fixed_plate(pair, other):
 @njit(cache=True, error_model="numpy", forceinline=True)
 def on_part(pair):
     """Whether a roller meets a plane, a guide or a mesh."""
-    return pair.kind >= CYLINDER_PLANE
+    return pair.kind == CYLINDER_PLANE or pair.kind == CYLINDER_GUIDE or pair.kind == CYLINDER_MESH
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)

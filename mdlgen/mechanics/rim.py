@@ -22,10 +22,9 @@ from mdlgen.mechanics.frame import Cylinder, Sector, scaled
 from mdlgen.mechanics.laws import damping_share
 from mdlgen.mechanics.point import DEPTH, FORCE_A, FORCE_B, STORED, TORQUE_A, TORQUE_B
 from mdlgen.mechanics.vector import back, cross, dot, rotate, scale, sub, three
-from mdlgen.model.rims import MOST_PIECES, pieces
+from mdlgen.model.rims import MOST_PIECES, TURN, pieces
 from mdlgen.model.tables import RollerPart
 from mdlgen.program.kernel import njit
-from mdlgen.spec.rim import TURN
 
 PIECE = 6
 RIM = [("rims", "i8"), ("blend", "f8"), ("rim", "f8", PIECE * MOST_PIECES)]

@@ -1,0 +1,3 @@
+"""Limits of a scene that records of a solver have room for."""
+
+from mdlgen.spec.machine import MOST_CORNERS as MOST_CORNERS
