@@ -9,8 +9,9 @@ import numpy as np
 
 from mdlgen.altair.rims import WHOLE, Meeting, meetings
 from mdlgen.altair.rims import graphics as roller_graphics
+from mdlgen.backends.motionview.writer.contacts import contact_views, pair_rows, rough_pairs
+from mdlgen.backends.motionview.writer.guides import guide_graphics
 from mdlgen.backends.motionview.writer.idle import used_by
-from mdlgen.backends.motionview.writer.machine import contact_views, guide_graphics, pair_rows, rough_pairs
 from mdlgen.backends.motionview.writer.rows import Attachment, Pair, SystemView, Value
 from mdlgen.backends.motionview.writer.units import number
 from mdlgen.backends.motionview.writer.views import given_values, scene_view

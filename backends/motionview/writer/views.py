@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from mdlgen.backends.motionview.writer.contacts import contact_views, pair_rows
 from mdlgen.backends.motionview.writer.formula import mdl_formula, rows_of, units_of
+from mdlgen.backends.motionview.writer.guides import guide_view
 from mdlgen.backends.motionview.writer.idle import idle_values
-from mdlgen.backends.motionview.writer.machine import (
-    contact_views,
-    guide_view,
-    mesh_view,
-    pair_rows,
-    plane_view,
-    roller_view,
-)
+from mdlgen.backends.motionview.writer.meshes import mesh_view
+from mdlgen.backends.motionview.writer.planes import plane_view
+from mdlgen.backends.motionview.writer.rollers import roller_view
 from mdlgen.backends.motionview.writer.rows import SceneView, Value
 from mdlgen.backends.motionview.writer.sheets import probe_view, sheet_view, support_views
 from mdlgen.backends.motionview.writer.units import mdl_value, number, with_unit
