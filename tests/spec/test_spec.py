@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -207,6 +208,10 @@ class TestAllAtOnce:
     def test_a_missing_key_says_how_it_is_written(self) -> None:
         text = CANTILEVER.replace("thickness: 0.1 mm", "", 1)
         assert "the key 'thickness' is missing; write like thickness: 1 mm" in refused(text).message
+
+    def test_a_wrong_item_of_a_list_says_how_the_list_is_written(self) -> None:
+        error = refused(re.sub(r"boxes: \[\d+", "boxes: [2.5", CANTILEVER, count=1))
+        assert error.message.endswith("got 2.5; write like boxes: [10, 10]")
 
     def test_a_comma_between_two_values_is_answered(self) -> None:
         text = (samples() / "verify" / "drop.yaml").read_text("utf-8")
