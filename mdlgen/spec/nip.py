@@ -9,6 +9,7 @@ from typing import Annotated, Any
 from pydantic import Field
 from pydantic_core import PydanticCustomError
 
+from mdlgen.spec.alternatives import others
 from mdlgen.spec.fields import Direction, Name, Position, of_text, quantity, read_direction
 from mdlgen.spec.rows import ZERO, Mirror, Repeat
 from mdlgen.spec.strict import Strict
@@ -89,9 +90,11 @@ def written(data: dict[str, Any], origins: dict[Path, Path], fill: Fill) -> None
 
 
 def merged(one: Any, other: Any) -> Any:
-    """A mapping with what another one says in its place, key by key."""
+    """A mapping with what another one says in its place, key by key; what says the same otherwise goes."""
     if not isinstance(one, dict) or not isinstance(other, dict):
         return other
+    gone = {old for key in other for old in others(key)} - set(other)
+    one = {key: value for key, value in one.items() if key not in gone}
     return {**one, **{key: merged(one[key], v) if key in one else v for key, v in other.items()}}
 
 

@@ -3,33 +3,16 @@
 from __future__ import annotations
 
 import re
+from copy import deepcopy
 from fnmatch import fnmatchcase
 from typing import Any
 
 from mdlgen.errors import Place, SpecError, did_you_mean
+from mdlgen.spec.alternatives import others
 from mdlgen.spec.document import Document, SpecPath, parse
 from mdlgen.spec.nip import names_of
-from mdlgen.spec.rows import expanded
+from mdlgen.spec.rows import KINDS, expanded
 
-# With --set, giving one of these takes the other away, so that an alternative can be tried.
-_ALTERNATIVES = (
-    {"k_tx", "D_cd"},
-    {"k_ty", "D_md"},
-    {"E_md", "curve_md"},
-    {"E_cd", "curve_cd"},
-    {"points", "file"},
-    {"turn", "rotation"},
-    {"radius", "diameter"},
-    {"speed", "profile"},
-    {"ramp", "profile"},
-    *({old, new} for old in ("speed", "profile") for new in ("surface_speed", "direction")),
-    {"at", "edge"},
-    {"force", "moment", "stress"},
-    {"mass", "density", "grammage"},
-    {"time", "loss_factor"},
-    {"time", "at"},
-    *({old, new} for old in ("ratio", "ratio_ty", "rotation") for new in ("time", "loss_factor", "at")),
-)
 _PATTERN = re.compile(r"[*?]")
 MOST_PLACES = 10_000  # that one pattern may meet
 
@@ -48,8 +31,31 @@ def set_value(document: Document, override: str) -> None:
             f"{override[:80]!r} is not PATH=VALUE; write like sheets.note.boxes=[20,30]", place=here
         )
     value = parse(value_text, file)
+    _write_out(document, words)
     for path in _met(document.data, words, here):
         _put(document, path, value.copy(), here)
+
+
+def _write_out(document: Document, words: list[str]) -> None:
+    """Puts what a `repeat` or a `mirror` makes in the place of its entry, where the words mean a part that it
+    makes and not the entry itself. The scene stays the same."""
+    if len(words) < 2 or not isinstance(document.data, dict):
+        return
+    kind, word = words[:2]
+    table = document.data.get(kind)
+    if kind not in KINDS or not isinstance(table, dict):
+        return
+    entries: dict[Any, Any] = {}
+    for name, entry in table.items():
+        made = expanded({kind: {name: entry}}, {})[kind]
+        if fnmatchcase(str(name), word) or not any(fnmatchcase(str(own), word) for own in made):
+            entries[name] = entry
+            continue
+        entries.update(deepcopy(made))
+        for known in (document.places, document.keys):
+            for path, place in [(p, at) for p, at in known.items() if p[:2] == (kind, name)]:
+                known.update({(kind, own, *path[2:]): place for own in made})
+    document.data[kind] = entries
 
 
 def _met(data: Any, words: list[str], here: Place) -> list[SpecPath]:
@@ -112,10 +118,8 @@ def _put(document: Document, path: SpecPath, value: Document, here: Place) -> No
         node = node[key]
     last = path[-1]
     if isinstance(node, dict):
-        for group in _ALTERNATIVES:
-            if last in group:
-                for other in group - {last}:
-                    node.pop(other, None)
+        for other in others(last):
+            node.pop(other, None)
     node[last] = value.data
     for table, source in ((document.places, value.places), (document.keys, value.keys)):
         for known in [p for p in table if p[: len(path)] == path]:

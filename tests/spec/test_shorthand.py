@@ -155,3 +155,53 @@ def test_the_json_schema_knows_the_short_forms() -> None:
     (contacts, rollers) = (rule["else"]["properties"] for rule in schema["allOf"])
     assert contacts["contacts"]["then"]["items"]["required"] == ["stiffness", "friction"]
     assert rollers["rollers"]["else"]["additionalProperties"]["required"] == ["axis", "width", "mass"]
+
+
+ROW = """
+name: row
+gravity: [0 m/s^2, 0 m/s^2, 0 m/s^2]
+materials: {p: {E_md: 2000 MPa, E_cd: 2000 MPa, D_md: 0.3 N*mm, D_cd: 0.3 N*mm}}
+sheets: {n: {material: p, size: [80 mm, 50 mm], thickness: 0.1 mm, mass: 1 g, boxes: [4, 3]}}
+rollers:
+  "m*_l": {center: [-20 mm, 0 mm, -5.1 mm], axis: y, diameter: 10 mm, width: 8 mm, mass: 10 g,
+    repeat: {count: 3, step: [15 mm, 0 mm, 0 mm]}}
+nips:
+  grip: {at: [30 mm, 0 mm, 0 mm], force: 2 N,
+    lower: {name: low, diameter: 12 mm, width: 8 mm, mass: 9 g,
+      drive: {surface_speed: 0.4 m/s, direction: +x}, contact: {stiffness: 300 N/mm^1.5, friction: 1}},
+    upper: {name: top, diameter: 8 mm, width: 8 mm, mass: 4 g,
+      contact: {stiffness: 300 N/mm^1.5, friction: 1}}}
+contacts: [{between: [n, "m*"], stiffness: 300 N/mm^1.5, friction: 0.5}]
+run: {duration: 1 ms}
+"""
+
+
+def test_a_roller_of_a_row_takes_a_value_of_its_own() -> None:
+    scene = loads(ROW, "row", ("rollers.m2_l.radius=4 mm", "rollers.m2_l.mass=7 g"))
+    assert {name: roller.radius for name, roller in scene.rollers.items() if name.startswith("m")} == {
+        "m1_l": 5.0,
+        "m2_l": 4.0,
+        "m3_l": 5.0,
+    }
+    assert [scene.rollers[f"m{k}_l"].mass for k in (1, 2, 3)] == [10.0, 7.0, 10.0]
+    assert scene.rollers["m3_l"].center[0] == 10.0
+
+
+def test_patterns_meet_the_rollers_that_a_row_makes() -> None:
+    scene = loads(ROW, "row", ("rollers.m?_l.width=6 mm",))
+    assert [scene.rollers[f"m{k}_l"].width for k in (1, 2, 3)] == [6.0, 6.0, 6.0]
+    assert [loads(ROW, "row", ("rollers.m*.width=5 mm",)).rollers[f"m{k}_l"].width for k in (1, 2, 3)] == [
+        5.0
+    ] * 3
+
+
+def test_a_mistake_in_a_value_of_one_is_reported_at_it() -> None:
+    with pytest.raises(SpecError, match=r"rollers\.m2_l\.radius"):
+        loads(ROW, "row", ("rollers.m2_l.radius=4 N",))
+
+
+def test_what_says_the_same_otherwise_goes_in_nips_too() -> None:
+    """The drive's surface_speed and direction, and the diameter."""
+    scene = loads(ROW, "row", ("rollers.low.drive.speed=60 rad/s", "rollers.low.radius=7 mm"))
+    assert scene.rollers["low"].drive.speed == pytest.approx(0.06)
+    assert scene.rollers["low"].radius == 7.0
