@@ -241,8 +241,12 @@ def _example(path: SpecPath) -> str:
     """How the value of a key may look, as the end of a message; "" where that is not known."""
     from mdlgen.spec.schema import example, model_at
 
-    while len(path) > 1 and isinstance(path[-1], int):  # of an item, the whole list
-        path = path[:-1]
-    model = model_at(path[:-1])
-    shown = example(model, str(path[-1])) if model and path else ""
-    return f"; write like {path[-1]}: {shown}" if shown else ""
+    end = len(path)
+    while end > 1 and isinstance(path[end - 1], int):  # of an item, the whole list
+        end -= 1
+    if end == 0:
+        return ""
+    key = str(path[end - 1])
+    model = model_at(path[: end - 1])
+    shown = example(model, key) if model else ""
+    return f"; write like {key}: {shown}" if shown else ""
