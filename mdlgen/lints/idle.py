@@ -8,6 +8,7 @@ import numpy as np
 
 from mdlgen.lints.contacts import nips
 from mdlgen.lints.lint import Lint
+from mdlgen.model.parts.kinds import kind_of
 from mdlgen.model.sheet_corners import corners
 from mdlgen.model.tables import (
     BOX_GUIDE,
@@ -79,7 +80,7 @@ def idle_drive(model: Model) -> Iterator[Lint]:
 def untouched(model: Model) -> Iterator[Lint]:
     parts = {*model.contacts.part_a, *model.contacts.part_b}
     parts |= {model.rollers[m.on].name for m in model.meshes if m.on >= 0 and m.name in parts}
-    if not (model.rollers or model.planes or model.guides or model.meshes or model.externals):
+    if not (model.machine or model.externals):
         return
     for sheet in model.sheets:
         if sheet.name not in parts:
@@ -91,11 +92,8 @@ def untouched(model: Model) -> Iterator[Lint]:
                 "friction: 0.5}",
             )
     machine = (
-        *(("rollers", r) for r in model.rollers),
-        *(("planes", p) for p in model.planes),
-        *(("guides", g) for g in model.guides),
-        *(("meshes", m) for m in model.meshes),
-        *(("parts", e) for e in model.externals),
+        *((kind_of(part).table, part) for part in model.machine),
+        *(("parts", external) for external in model.externals),
     )
     for kind, part in machine:
         if part.name not in parts:
