@@ -13,6 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from damped import AREA, CANTILEVER, LENGTH, WIDTH, damped, decrement, model, strip
 from scipy.linalg import eigh
 
 import mdlgen
@@ -22,24 +23,13 @@ from mdlgen.errors import SpecError
 from mdlgen.model.lower import lower
 from mdlgen.model.stiffness import damping_times
 from mdlgen.model.tables import CLAMP, JOINT_X, JOINT_Y, SUPPORT, Model
-from mdlgen.paths import samples
 from mdlgen.results.result import Result
 from mdlgen.spec.load import load
 from mdlgen.spec.schema import json_schema
 from mdlgen.verify.verification import verify
 
-CANTILEVER = samples() / "cantilever.yaml"
 LAYOUTS = ("edge_to_edge", "center_to_center", "plate")
-E_MD, AREA = 3530.0, 0.72 / (67.0 * 127.0)  # [MPa], mass per area [g/mm^2]
-LENGTH, WIDTH = 34.0, 12.0
-
-
-def model(*overrides: str) -> Model:
-    return lower(load(CANTILEVER, overrides))
-
-
-def damped(text: str) -> str:
-    return f"materials.eur10.damping={text}"
+E_MD = 3530.0  # [MPa]
 
 
 # ---------------------------------------------------------------- what a scene may say
@@ -249,19 +239,6 @@ def test_no_lint_of_a_paper() -> None:
 # ---------------------------------------------------------------- decay
 
 
-def strip(rows: int, damping: str, *more: str, layout: str = "edge_to_edge") -> Model:
-    """A strip along CD, held at y_min, without gravity."""
-    return model(
-        f"sheets.note.size=[{WIDTH} mm, {LENGTH} mm]",
-        f"sheets.note.mass={AREA * WIDTH * LENGTH!r} g",
-        f"sheets.note.boxes=[1,{rows}]",
-        f"sheets.note.layout={layout}",
-        "gravity=[0 m/s^2, 0 m/s^2, 0 m/s^2]",
-        damped(damping),
-        *more,
-    )
-
-
 def beam() -> float:
     """Angular frequency of the lowest mode of the clamped beam [rad/ms]: 1.875104^2/L^2 sqrt(D/rho A)."""
     return 1.875104068711961**2 / LENGTH**2 * math.sqrt(0.242 / AREA)
@@ -281,24 +258,6 @@ def swinging(m: Model) -> tuple[Model, np.ndarray]:
     velocity, spin = m.bodies.velocity.copy(), m.bodies.spin.copy()
     velocity[: chain.count, 2], spin[: chain.count, 0] = -scale * down, -scale * slope
     return replace(m, bodies=replace(m.bodies, velocity=velocity, spin=spin)), -down
-
-
-def decrement(result: Result, wave: np.ndarray) -> tuple[float, float]:
-    """Damping ratio and angular frequency [rad/ms] of a decaying wave, from its peaks (logarithmic decrement
-    from each to the next of the other sign, in the mean)."""
-    time = result.time
-    at = [k for k in range(1, len(wave) - 1) if abs(wave[k]) >= max(abs(wave[k - 1]), abs(wave[k + 1]))]
-    peaks, when = [], []
-    for k in at:  # the parabola through three points
-        a, b, c = np.abs(wave[k - 1 : k + 2])
-        off = 0.5 * (a - c) / (a - 2 * b + c)
-        peaks.append(b - 0.25 * (a - c) * off)
-        when.append(time[k] + off * (time[1] - time[0]))
-    assert len(peaks) >= 4
-    falls = math.log(peaks[0] / peaks[-1]) / (len(peaks) - 1)
-    half = (when[-1] - when[0]) / (len(peaks) - 1)
-    zeta = falls / math.hypot(math.pi, falls)
-    return zeta, math.pi / half / math.sqrt(1.0 - zeta**2)
 
 
 def bent(rows: int, layout: str, solver: str, damping: str, step: float = 0.05) -> tuple[float, float]:

@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
+from damped import AREA, LENGTH, WIDTH, decrement, strip
 from scipy.optimize import brentq
-from test_damping import AREA, LENGTH, WIDTH, decrement, strip
 
 import mdlgen
 from mdlgen.model.tables import Model

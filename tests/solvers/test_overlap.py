@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from roller_scenes import ARC, LINE, PICK, PLANE, SOLVERS, scene
 from solids import binary, brick
-from test_roller_plate import ARC, LINE, PICK, PLANE, SOLVERS, scene
 
 import mdlgen
 from mdlgen.checks import lints

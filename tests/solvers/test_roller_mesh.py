@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from ran import solved
+from roller_scenes import DOWN, MASS, RADIUS, SOLVERS, G, K, N, depth, press, scene, spun
 from solids import binary, brick, cylinder, halved, prism
-from test_roller_plate import DOWN, MASS, RADIUS, SOLVERS, G, K, N, depth, press, scene, spun
 
 from mdlgen.backends.lattice.arrays import build
 from mdlgen.errors import SpecError
