@@ -200,7 +200,7 @@ def test_a_disk_that_is_full(tmp_path: Path) -> None:
         done = subprocess.run(
             [sys.executable, "-B", "-m", "mdlgen", *args, str(SAMPLE)],
             cwd=tmp_path,
-            preexec_fn=limited(20_000),
+            preexec_fn=limited(60_000),
             capture_output=True,
             text=True,
             check=False,
