@@ -48,6 +48,13 @@ def holding(data: Any) -> Path | None:
         return None
 
 
+def with_whole_names(data: Any) -> None:
+    """Names the files of plain data made in Python in full: they are found from wherever it is changed."""
+    for _, holder in _holders(data):
+        if holder["file"].strip():
+            holder["file"] = str(_whole(holder["file"], PYTHON))
+
+
 def _whole(name: str, folder: Path | None) -> Path:
     base = Path() if folder is None or folder == PYTHON else folder
     return Path(os.path.normpath((base / name).absolute()))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Annotated, Any
 
 from pydantic import (
@@ -21,6 +22,7 @@ from mdlgen.units import check_unit, exact_quantity, parse_quantity, parse_unit
 
 # What a quantity may be in the unit of its field, but for 0: products of some of them are still numbers.
 SMALLEST, LARGEST = 1e-20, 1e20
+UNIT = 4e-16  # how far the length of a unit vector is from 1, in round-off
 IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,62}")
 RESERVED = frozenset(
     (
@@ -226,7 +228,11 @@ def combined(value: float, template: str, *parts: tuple[Any, str]) -> float:
     is one. Each part is what was given, and its unit; {0}, {1} stand for them in `template`."""
     if any(isinstance(part, Computed) or amount(part) is not None for part, _ in parts):
         texts = [_as_text(part, unit) for part, unit in parts]
-        return computed(value, template.format(*(f"({text})" for text in texts)))
+        text = template.format(*(f"({text})" for text in texts))
+        with suppress(ValueError):  # of a part with a mistake: its own field reports it
+            found = amount(text)
+            value = value if found is None else found.value  # to the last bit
+        return computed(value, text)
     return following(value)
 
 
@@ -315,6 +321,8 @@ def read_direction(value: Any) -> tuple[float, float, float]:
     if isinstance(value, (list, tuple)) and len(value) == 3 and all(_is_number(v) for v in value):
         length = math.hypot(*value)
         if 1e-100 < length < 1e100:
+            if abs(length - 1.0) < UNIT:  # as written from one that was read
+                length = 1.0
             x, y, z = (float(v) / length + 0.0 for v in value)
             return x, y, z
     raise fail(f"{value!r} is not a direction; allowed: x, y, z, -x, -y, -z or a non-zero vector"[:200])

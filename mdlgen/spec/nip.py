@@ -67,6 +67,7 @@ def written(data: dict[str, Any], origins: dict[Path, Path], fill: Fill) -> None
         return
     rollers = dict(data["rollers"]) if isinstance(data.get("rollers"), dict) else {}
     contacts = list(data["contacts"]) if isinstance(data.get("contacts"), (list, tuple)) else []
+    filled: dict[str, Any] = {}
     for name, nip in nips.items():
         if not isinstance(nip, dict) or not all(isinstance(nip.get(side), dict) for side in SIDES):
             continue
@@ -86,7 +87,8 @@ def written(data: dict[str, Any], origins: dict[Path, Path], fill: Fill) -> None
         for path, contact in made.contacts(names_of(name, nip)):
             origins["contacts", len(contacts)] = path
             contacts.append(contact)
-    data["rollers"], data["contacts"] = rollers, contacts
+        filled[name] = made.filled()
+    data["rollers"], data["contacts"], data["nips"] = rollers, contacts, nips | filled
 
 
 def merged(one: Any, other: Any) -> Any:
@@ -108,7 +110,7 @@ class _Written:
         given = data.get("sheets")
         sheets = given if isinstance(given, dict) else {}
         only = next(iter(sheets)) if len(sheets) == 1 else None
-        self.sheet = nip.get("sheet", only)
+        self.sheet = only if nip.get("sheet") is None else nip["sheet"]
         sheet = sheets.get(self.sheet) if isinstance(self.sheet, str) else None
         thickness = sheet.get("thickness") if isinstance(sheet, dict) else None
         self.thickness = _good(thickness, "mm")
@@ -131,6 +133,16 @@ class _Written:
                 between = {"between": [self.sheet, own], "name": f"{self.name}_{side}"}
                 found.append(((*base, side, "contact"), {**given, **between}))
         return found
+
+    def filled(self) -> dict[str, Any]:
+        """The nip with its defaults, and with what stands under rollers."""
+        sides = {
+            side: {**self.sides[side], **({"contact": way} if isinstance(way, dict) else {})}
+            for side, way in self.ways.items()
+        }
+        between = self.nip.get("contact")
+        met = {"contact": self.fill(between, "contacts")} if isinstance(between, dict) else {}
+        return {**self.nip, **sides, **met}
 
     def roller(self, side: str) -> dict[str, Any]:
         """A roller without its nip's own keys, in its place, its press with the preload."""

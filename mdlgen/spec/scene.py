@@ -12,8 +12,11 @@ from pydantic import (
     Field,
     ModelWrapValidatorHandler,
     PrivateAttr,
+    SerializationInfo,
+    SerializerFunctionWrapHandler,
     ValidationInfo,
     field_validator,
+    model_serializer,
     model_validator,
 )
 from pydantic_core import PydanticCustomError
@@ -24,6 +27,7 @@ from mdlgen.spec.beside import PYTHON, holding, named_from
 from mdlgen.spec.between import MACHINE, find_pairs, known
 from mdlgen.spec.contact import Contact
 from mdlgen.spec.document import Document
+from mdlgen.spec.dump import in_plain_data, said
 from mdlgen.spec.fields import Acceleration, Name, default
 from mdlgen.spec.guide import Guide
 from mdlgen.spec.limits import DEFAULT, Limits
@@ -77,7 +81,6 @@ class Scene(Strict):
     )
     parameters: dict[Name, ParameterValue] = Field(
         default_factory=dict,
-        exclude=True,  # of what is dumped: values are numbers there
         description="named values; every quantity may be a formula over them, as -radius - gap/2",
     )
     materials: dict[Name, Material] = Field(
@@ -87,7 +90,6 @@ class Scene(Strict):
     rollers: dict[Name, Roller] = Field(default_factory=dict, description="rollers by name")
     nips: dict[Name, Nip] = Field(
         default_factory=dict,
-        exclude=True,  # of what is dumped: the rollers and contacts are there
         description="pairs of rollers that grip a sheet, placed in balance with their contacts, by name",
     )
     planes: dict[Name, Plane] = Field(default_factory=dict, description="flat plates by name")
@@ -108,7 +110,7 @@ class Scene(Strict):
         json_schema_extra=_list_or_names,
     )
     defaults: Defaults | None = Field(
-        default=None, exclude=True, description="values of keys that contacts and rollers leave out"
+        default=None, description="values of keys that contacts and rollers leave out"
     )
     loads: tuple[Load, ...] = Field(default=(), strict=False, description="forces and moments on sheets")
     run: Run = Field(default_factory=Run, description="duration, analysis and accuracy")
@@ -129,6 +131,7 @@ class Scene(Strict):
     _source: Source = PrivateAttr(default_factory=Source)
     _amounts: dict[str, Amount] = PrivateAttr(default_factory=dict)
     _formulas: dict[tuple[str | int, ...], str] = PrivateAttr(default_factory=dict)
+    _contacts_of_nips: int = PrivateAttr(default=0)
 
     @property
     def amounts(self) -> dict[str, Amount]:
@@ -139,6 +142,11 @@ class Scene(Strict):
     def formulas(self) -> dict[tuple[str | int, ...], str]:
         """The values that are formulas: where each stands, and its text."""
         return self._formulas
+
+    @property
+    def contacts_of_nips(self) -> int:
+        """How many of the contacts, the last ones, are made by nips."""
+        return self._contacts_of_nips
 
     @property
     def limits(self) -> Limits:
@@ -199,14 +207,12 @@ class Scene(Strict):
         return own if own != PYTHON else holding(self._document().data)
 
     def _folder_of_names(self) -> Path | None:
-        return self._source.folder if self._source.document is not None else PYTHON
+        return self._source.folder
 
     def _document(self) -> Document:
-        """What the scene was read from, to be changed; or the like of one that was made in Python."""
-        document = self._source.document
-        if document is not None:
-            return document.copy()
-        return Document(self.model_dump(mode="json", exclude_defaults=True), {}, {}, self.name)
+        """What the scene was read from, or made of in Python, to be changed."""
+        assert self._source.document is not None, "set as the scene is validated"
+        return self._source.document.copy()
 
     def __repr__(self) -> str:
         kinds = ("sheets", "rollers", "planes", "guides", "parts", "contacts", "loads", "probes", "supports")
@@ -219,12 +225,25 @@ class Scene(Strict):
         """The scene of what is written out, whose formulas are over its parameters."""
         if not isinstance(value, dict):
             return handler(value)
+        context = info.context or {}
+        made = "origins" not in context  # in Python: load has the document of its text
+        value = in_plain_data(value) if made else value
         given = value.get("parameters")
         parameters = Parameters(given) if isinstance(given, dict) else NO_PARAMETERS
+        origins = context.get("origins", {})
         with of_scene(parameters):
-            scene = handler(written_out(value, (info.context or {}).get("origins", {})))
+            scene = handler(written_out(value, origins))
         scene._amounts = parameters.amounts
+        scene._contacts_of_nips = sum(
+            key[0] == "contacts" and len(key) == 2 and path[0] == "nips" for key, path in origins.items()
+        )
+        if made:
+            scene._source = Source(Document(value, {}, {}, scene.name), PYTHON)
         return scene
+
+    @model_serializer(mode="wrap")
+    def _said(self, handler: SerializerFunctionWrapHandler, info: SerializationInfo) -> dict[str, Any]:
+        return said(self, handler(self), info)
 
     @model_validator(mode="after")
     def _references(self, info: ValidationInfo) -> Scene:

@@ -6,9 +6,11 @@ import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+from pydantic_core import PydanticCustomError
+
 from mdlgen.spec.fields import combined
 from mdlgen.spec.sheet import Sheet
-from mdlgen.spec.strict import fail
+from mdlgen.spec.strict import fail, fail_all
 
 if TYPE_CHECKING:
     from mdlgen.spec.scene import Scene
@@ -21,13 +23,17 @@ SQUARE = 0.5  # cosine below which a direction is not the one the surface moves 
 
 
 def with_rates(scene: Scene, pairs: Iterable[tuple[int, str, str]]) -> None:
-    """Gives each drive by surface_speed its angular speed. Raises the error where its sense is not clear."""
-    pairs = list(pairs)
+    """Gives each drive by surface_speed its angular speed. Raises the error where a sense is not clear."""
+    pairs, errors = list(pairs), []
     for name, roller in scene.rollers.items():
         drive = roller.drive
         if drive is None or drive.surface_speed is None:
             continue
-        sense = _sense(scene, name, pairs)
+        try:
+            sense = _sense(scene, name, pairs)
+        except PydanticCustomError as error:
+            errors.append(error)
+            continue
         rate = combined(
             sense * drive.surface_speed / roller.radius,
             "-{0}/{1}" if sense < 0.0 else "{0}/{1}",
@@ -36,12 +42,19 @@ def with_rates(scene: Scene, pairs: Iterable[tuple[int, str, str]]) -> None:
         )
         plain = drive.model_copy(update={"speed": rate, "surface_speed": None, "direction": None})
         scene.rollers[name] = roller.model_copy(update={"drive": plain})
+    if errors:
+        raise fail_all(errors)
 
 
 def _sense(scene: Scene, name: str, pairs: list[tuple[int, str, str]]) -> float:
     """1 or -1: about the roller's axis, right-hand rule."""
     roller, path = scene.rollers[name], ("rollers", name, "drive", "direction")
     assert roller.drive is not None and roller.drive.direction is not None, "with a surface speed"
+    assert roller.drive.surface_speed is not None
+    speed = f"{1e3 * roller.drive.surface_speed / roller.radius:.4g}"
+    by_speed = (
+        f"give speed in place of surface_speed and direction, as speed: {speed} rad/s or -{speed} rad/s"
+    )
     met = [a if b == name else b for _, a, b in pairs if name in (a, b)]
     faces = [
         _to_sheet(scene.sheets[other], roller.center, roller.radius) for other in met if other in scene.sheets
@@ -57,18 +70,38 @@ def _sense(scene: Scene, name: str, pairs: list[tuple[int, str, str]]) -> float:
             if faces
             else "it meets no sheet"
         )
-        raise fail(f"which way {name} turns is not clear: {why}; give speed, as speed: 60 rad/s", path)
+        raise fail(f"which way {name} turns is not clear: {why}; {by_speed}", path)
     senses = set()
     for way, face in zip(ways, found, strict=True):
         along = _dot(way, roller.drive.direction) / math.hypot(*face)
         if abs(along) < SQUARE:
-            length = math.hypot(*way) or 1.0
-            shown = ", ".join(f"{c / length:.3g}" for c in way)
-            raise fail(f"where {name} faces the sheet its surface moves along [{shown}], not that way", path)
+            raise fail(_allowed(name, way, along, by_speed), path)
         senses.add(math.copysign(1.0, along))
     if len(senses) > 1:
-        raise fail(f"{name} faces sheets on both sides, which move opposite ways; give speed", path)
+        raise fail(f"{name} faces sheets on both sides, which move opposite ways; {by_speed}", path)
     return senses.pop()
+
+
+def _allowed(name: str, way: Vector, along: float, by_speed: str) -> str:
+    """Which directions a surface may have that moves along `way`, the nearer one as the example."""
+    length = math.hypot(*way)
+    if length < 1e-9:
+        return f"{name} faces the sheet with its end, where its surface moves no way; {by_speed}"
+    nearer, other = (
+        _as_given([sign * c / length for c in way]) for sign in ((-1, 1) if along < 0 else (1, -1))
+    )
+    return (
+        f"where {name} faces the sheet its surface moves along {nearer} or {other}, not that way; "
+        f"write like direction: {nearer}"
+    )
+
+
+def _as_given(way: list[float]) -> str:
+    """A unit vector as a scene has it."""
+    for axis, part in zip("xyz", way, strict=True):
+        if abs(part) > 1.0 - 1e-9:
+            return axis if part > 0.0 else f"-{axis}"
+    return f"[{', '.join(f'{round(c, 4) + 0.0:g}' for c in way)}]"
 
 
 def _to_sheet(sheet: Sheet, center: Vector, radius: float) -> Vector | None:

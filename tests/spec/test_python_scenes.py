@@ -17,8 +17,26 @@ from mdlgen.units import exact_quantity, parse_quantity
 
 SAMPLES = sorted(samples().rglob("*.yaml"))
 NIPS = samples() / "transport_nips.yaml"
-# what a scene is said by, and no part of what is dumped
-SHORT = ("parameters", "nips", "defaults")
+RICH = Path(__file__).parents[1] / "helpers" / "rich.yaml"
+# Formulas in all kinds of places, of words that others follow from, and at values that are defaults.
+MORE = [
+    "parameters.w=8 %",
+    "parameters.heavy=84.61 g/m^2",
+    "sheets.note.grammage=heavy*1.01",
+    "gravity=[0 m/s^2, 0 m/s^2, -9.81 m/s^2 + w*(0 m/s^2)]",
+    "run.duration=radius/speed*9.3",
+    "contacts.rest.friction=3*w",
+    "contacts.rest.restitution=0.5 + 0*w",
+    "nips.nip_*_*.force=nip_force*1.1",
+    "nips.nip_*_*.lower.drive={surface_speed: speed, direction: +x, ramp: 5 ms}",
+    "nips.nip_*_*.lower.diameter=2*radius",
+    "rollers.counter_1_left.mass=0.4 g*(1 + w)",
+    "rollers.free={center: [0 mm, 20 mm, -radius - 1 mm], axis: [1, 2, 0], diameter: 2*radius/3, mass: 1 g}",
+    "defaults.rollers.press={direction: -z, stiffness: 1 N/mm, preload: 1 N}",
+    "rollers.free.press=null",
+    "nips.nip_*_*.lower.press=null",
+    "probes.p={sheet: note, at: [radius, 2 mm]}",
+]
 
 
 def same(one: Scene, other: Scene, without: tuple[str, ...] = ()) -> None:
@@ -32,17 +50,96 @@ def test_a_scene_is_written_as_it_was_read(sample: Path) -> None:
     assert load(sample).to_yaml() == sample.read_text("utf-8")
 
 
-@pytest.mark.parametrize("sample", SAMPLES, ids=lambda p: p.stem)
+@pytest.mark.parametrize("sample", [*SAMPLES, RICH], ids=lambda p: p.stem)
 def test_what_is_dumped_is_the_same_scene(sample: Path) -> None:
     scene = load(sample)
     again = Scene.model_validate(scene.model_dump())
-    same(scene, again, (*SHORT, "meshes"))
+    same(scene, again, ("meshes",))
+    assert (again.formulas, again.amounts) == (scene.formulas, scene.amounts)
     for name, mesh in scene.meshes.items():
         # it is named from its own folder, and found from anywhere
         assert again.meshes[name].model_copy(update={"file": mesh.file}) == mesh
         assert mesh.file.endswith(again.meshes[name].file)
     # to the last bit, through a text of a file, too
     same(again, mdlgen.loads(again.to_yaml(), folder=again.folder))
+
+
+@pytest.mark.parametrize("how", [{}, {"mode": "json"}, {"exclude_defaults": True}, {"exclude_none": True}])
+@pytest.mark.parametrize("more", [[], MORE], ids=["plain", "more"])
+def test_a_dump_has_parameters_formulas_and_nips(more: list[str], how: dict[str, Any]) -> None:
+    scene = load(NIPS, more)
+    dumped = scene.model_dump(**how)
+    assert dumped["parameters"]["speed"] == "1400.25 mm/s" and len(scene.formulas) > 40
+    assert not any(name.startswith(("motor_", "counter_")) for name in dumped["rollers"] or {})
+    again = Scene.model_validate(dumped)
+    # defaults are in the parts; an entry that is left out would be filled in from them
+    same(again, scene, ("defaults",) if {"exclude_defaults", "exclude_none"} & set(how) else ())
+    assert (again.formulas, again.amounts) == (scene.formulas, scene.amounts)
+    same(loads(again.to_yaml()), again)
+    change = {"parameters.speed": "900 mm/s", "parameters.nip_force": "4 N", "nips.nip_1_left.at.2": "1 mm"}
+    same(again.with_(change), scene.with_(change), ("defaults",))
+    assert again.with_(change).rollers != again.rollers
+
+
+def test_parts_of_a_dump() -> None:
+    scene = load(NIPS)
+    assert Scene.model_validate_json(scene.model_dump_json()) == scene
+    assert sorted(scene.model_dump(include={"name", "rollers"})) == ["name", "rollers"]
+    assert "run" not in scene.model_dump(exclude={"run"})
+    # a part that is added to it is added to the scene
+    dumped = scene.model_dump()
+    dumped["rollers"]["free"] = mdlgen.Roller(
+        center=["0 mm", "0 mm", "-20 mm"], axis="y", radius="5 mm", width="5 mm", mass="1 g"
+    )
+    assert set(Scene.model_validate(dumped).rollers) == {*scene.rollers, "free"}
+
+
+def test_shorthand_in_python() -> None:
+    """Parameters, defaults, nips, rows and contacts by name do what they do in a file."""
+    side = {"radius": "r", "mass": "1 g", "contact": {"stiffness": "300 N/mm^1.5"}}
+    given: dict[str, Any] = {
+        "name": "short",
+        "parameters": {"r": "7 mm", "v": "600 mm/s"},
+        "materials": {"p": mdlgen.Material(E_md="3.5 GPa", E_cd="1.1 GPa")},
+        "sheets": {
+            "note": mdlgen.Sheet(
+                material="p", size=["60 mm", "40 mm"], thickness="0.1 mm", grammage="80 g/m^2", boxes=[6, 4]
+            )
+        },
+        "defaults": {"rollers": {"width": "8 mm"}, "contacts": {"friction": 0.5}},
+        "nips": {
+            "entry": mdlgen.Nip(
+                at=["0 mm", "0 mm", "0 mm"],
+                force="3 N",
+                lower={**side, "drive": {"speed": "v/r"}},
+                upper=side,
+            )
+        },
+        "rollers": {
+            "free_*": mdlgen.Roller(
+                center=["10 mm", "0 mm", "-9 mm"],
+                axis="y",
+                radius="5 mm",
+                width="5 mm",
+                mass="1 g",
+                repeat=mdlgen.Repeat(count=2, step=["20 mm", "0 mm", "0 mm"]),
+            )
+        },
+        "contacts": {
+            "slide": mdlgen.Contact(between=["note", "free_*"], stiffness="100 N/mm^1.5", friction=0.1)
+        },
+    }
+    scene = Scene(**given)
+    assert set(scene.rollers) == {"entry_lower", "entry_upper", "free_1", "free_2"}
+    assert [c.name for c in scene.contacts] == ["slide", "entry_lower", "entry_upper"]
+    assert scene.rollers["entry_lower"].width == 8.0
+    for made in (scene, loads(scene.to_yaml()), Scene.model_validate(scene.model_dump())):
+        same(made, scene)
+        drive = made.with_({"parameters.v": "900 mm/s"}).rollers["entry_lower"].drive
+        assert drive is not None and drive.speed == pytest.approx(0.9 / 7.0, rel=1e-15)
+    rough = scene.with_({"defaults.contacts.friction": 0.7, "rollers.free_2.mass": "2 g"})
+    assert [c.friction.static for c in rough.contacts] == [0.1, 0.7, 0.7]
+    assert [rough.rollers[f"free_{k}"].mass for k in (1, 2)] == [1.0, 2.0]
 
 
 def test_a_text_names_files_from_the_folder_that_it_is_written_into(tmp_path: Path) -> None:
@@ -59,7 +156,7 @@ def test_a_text_names_files_from_the_folder_that_it_is_written_into(tmp_path: Pa
     for scene in (given, made):
         for folder in (scene.folder, tmp_path, tmp_path.parent):
             again = mdlgen.loads(scene.to_yaml(folder), folder=folder)
-            same(again, scene, (*SHORT, "meshes", "materials"))
+            same(again, scene, ("meshes", "materials"))
             curves = [one.materials["paper"].curve_md for one in (again, scene)]
             assert curves[0] is not None and curves[1] is not None and curves[0].points == curves[1].points
             assert mdlgen.lower(again).meshes[0].volume == mdlgen.lower(scene).meshes[0].volume

@@ -128,8 +128,14 @@ def test_surface_speed(center: str, axis: str, direction: str, speed: float) -> 
 @pytest.mark.parametrize(
     ("direction", "center", "text"),
     [
-        ("y", BELOW, "its surface moves along [1, 0, 0], not that way"),
-        ("x", "[13.5 mm, -20.5 mm, -40 mm]", "no sheet that it has a contact with lies beside it"),
+        ("y", BELOW, "its surface moves along x or -x, not that way; write like direction: x"),
+        ("[-1, 3, 0]", BELOW, "its surface moves along -x or x, not that way; write like direction: -x"),
+        (
+            "x",
+            "[13.5 mm, -20.5 mm, -40 mm]",
+            "no sheet that it has a contact with lies beside it at the start; give speed in place of "
+            "surface_speed and direction, as speed: 200 rad/s or -200 rad/s",
+        ),
     ],
 )
 def test_a_surface_speed_that_is_not_clear(direction: str, center: str, text: str) -> None:
@@ -137,6 +143,19 @@ def test_a_surface_speed_that_is_not_clear(direction: str, center: str, text: st
         speed_of(center, "y", direction)
     assert text in error.value.message
     assert error.value.path == ("rollers", "motor_1_left", "drive", "direction")
+
+
+def test_each_direction_that_a_surface_has_not_is_reported() -> None:
+    text = FOUR.replace(SPEED, "drive: {surface_speed: 1.5 m/s, direction: y}")
+    with pytest.raises(SpecError) as error:
+        loads(text)
+    found = [error.value, *error.value.others]
+    assert len(found) == 4 and all("write like direction: x" in e.message for e in found)
+    # about an axis aslant, and about the normal of the sheet
+    with pytest.raises(SpecError, match=r"along \[0.7071, -0.7071, 0\] or \[-0.7071, 0.7071, 0\]"):
+        speed_of(BELOW, "[1, 1, 0]", "[1, 1, 0]")
+    with pytest.raises(SpecError, match="motor_1_left faces the sheet with its end"):
+        speed_of(BELOW, "z", "x")
 
 
 def test_a_sheet_that_comes_later_passes_between_the_rollers_of_a_nip() -> None:

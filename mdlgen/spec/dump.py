@@ -1,0 +1,72 @@
+"""A scene made in Python as plain data, and what it is dumped as: with its formulas and its nips, so that
+the dump reads as the same scene."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from pydantic import BaseModel, SerializationInfo
+
+from mdlgen.spec.beside import with_whole_names
+from mdlgen.spec.nip import names_of
+
+if TYPE_CHECKING:
+    from mdlgen.spec.scene import Scene
+
+
+def said(scene: Scene, data: dict[str, Any], info: SerializationInfo) -> dict[str, Any]:
+    """The fields of a scene with formulas as their texts, and without the rollers and contacts that its nips
+    make again."""
+    of_nips = {roller for name, nip in scene.nips.items() for roller in names_of(name, vars(nip))}
+    kept = len(scene.contacts) - scene.contacts_of_nips
+    if of_nips and "rollers" in data:
+        data["rollers"] = {name: part for name, part in data["rollers"].items() if name not in of_nips}
+    if scene.contacts_of_nips and "contacts" in data:
+        data["contacts"] = data["contacts"][:kept]
+    if info.exclude_defaults or info.exclude_none or info.exclude_unset:
+        # what is left out here would be filled in with them; the nips have them already
+        data.pop("defaults", None)
+    for path, formula in scene.formulas.items():
+        if path[:1] == ("rollers",) and path[1] in of_nips:
+            continue
+        if path[:1] == ("contacts",) and int(path[1]) >= kept:
+            continue
+        if _put(data, path, formula, info.exclude_defaults) or not info.exclude_defaults:
+            continue
+        data[str(path[0])] = scene.model_dump(mode=info.mode)[str(path[0])]
+    return data
+
+
+def in_plain_data(given: dict[str, Any]) -> dict[str, Any]:
+    """What a scene is made of in Python as a file would have it: parts as mappings."""
+    data = _plain(given)
+    with_whole_names(data)
+    return data
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, BaseModel):
+        return value.model_dump(mode="json", exclude_unset=True)
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
+    return [_plain(item) for item in value] if isinstance(value, (list, tuple)) else value
+
+
+def _put(data: Any, path: tuple[Any, ...], formula: str, new: bool) -> bool:
+    """Puts a formula in the place of its value, which may be missing where `new`; whether it could be."""
+    node: Any = data
+    owner: Any = None
+    for depth, key in enumerate(path):
+        if isinstance(node, tuple):  # to be written into
+            node = owner[path[depth - 1]] = list(node)
+        if depth == len(path) - 1:
+            break
+        owner = node
+        try:
+            node = node[key]
+        except (KeyError, IndexError, TypeError):
+            return False
+    if isinstance(node, dict) and not new and path[-1] not in node:
+        return False
+    node[path[-1]] = formula
+    return True
