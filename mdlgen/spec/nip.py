@@ -140,6 +140,10 @@ class _Written:
             side: {**self.sides[side], **({"contact": way} if isinstance(way, dict) else {})}
             for side, way in self.ways.items()
         }
+        for side, made in sides.items():  # of the defaults: the nip's own follows from its force
+            press, own = made.get("press"), self.nip[side].get("press")
+            if isinstance(press, dict) and "preload" not in (own if isinstance(own, dict) else ()):
+                made["press"] = {key: value for key, value in press.items() if key != "preload"}
         between = self.nip.get("contact")
         met = {"contact": self.fill(between, "contacts")} if isinstance(between, dict) else {}
         return {**self.nip, **sides, **met}

@@ -55,6 +55,7 @@ from mdlgen.spec.shorthand import Defaults, written_out
 from mdlgen.spec.source import Source, text_of, text_of_data
 from mdlgen.spec.strict import Strict, fail, fail_all
 from mdlgen.spec.surface import with_rates
+from mdlgen.units import exact_quantity
 
 if TYPE_CHECKING:
     from mdlgen.lints.lint import Lint
@@ -303,7 +304,14 @@ class Scene(Strict):
         rollers = names_of(name, {"lower": nip.lower, "upper": nip.upper})
         if all(self.rollers[roller].press is not None for roller in rollers):
             raise fail("both rollers have a press; give one of them a fixed axis", (*path, "upper", "press"))
-        for side in ("lower", "upper"):
+        for side, roller in zip(("lower", "upper"), rollers, strict=True):
+            press = getattr(nip, side).get("press")
+            if isinstance(press, dict) and "preload" in press:
+                message = (
+                    f"the preload of {roller} follows from the force of nip {name}; leave it out, "
+                    f"and give that, as force: {exact_quantity(nip.force, 'N')}"
+                )
+                raise fail(message, (*path, side, "press", "preload"))
             given = getattr(nip, side).get("contact")
             if isinstance(given, dict) and given.get("share", "width") != "width":
                 message = "a nip is in balance with share: width only; leave share out"

@@ -51,7 +51,7 @@ def _write_out(document: Document, words: list[str]) -> None:
         if fnmatchcase(str(name), word) or not any(fnmatchcase(str(own), word) for own in made):
             entries[name] = entry
             continue
-        entries.update(deepcopy(made))
+        entries.update({own: deepcopy(item) for own, item in made.items()})  # none shares a mapping
         for known in (document.places, document.keys):
             for path, place in [(p, at) for p, at in known.items() if p[:2] == (kind, name)]:
                 known.update({(kind, own, *path[2:]): place for own in made})

@@ -97,6 +97,36 @@ def test_the_sample_is_transport_4x4_in_at_most_45_lines() -> None:
     assert max(same.values()) < 1e-13
 
 
+def test_one_part_of_a_row_is_set_alone() -> None:
+    """Also in a mapping within it, which the entry of the row has once."""
+    scene = load(
+        FILE, ["nips.nip_2_left.lower.drive.ramp=1 ms", "nips.nip_1_right.upper.press.stiffness=2 N/mm"]
+    )
+    ramps = {name: r.drive.ramp for name, r in scene.rollers.items() if r.drive is not None}
+    assert ramps == {"motor_1_left": 5.0, "motor_1_right": 5.0, "motor_2_left": 1.0, "motor_2_right": 5.0}
+    stiff = [name for name, r in scene.rollers.items() if r.press is not None and r.press.stiffness == 2.0]
+    assert stiff == ["counter_1_right"]
+
+
+def test_a_preload_beside_a_force_is_answered() -> None:
+    """It follows from the force, and would be passed over."""
+    for path in ("nips.nip_1_left.upper.press.preload", "rollers.counter_1_left.press.preload"):
+        with pytest.raises(SpecError) as error:
+            load(FILE, [f"{path}=1 N"])
+        assert "the preload of counter_1_left follows from the force of nip" in error.value.message
+        assert "give that, as force: 3.194847641 N" in error.value.message and error.value.others == ()
+    # of defaults, it is that of other rollers
+    spring = "{press: {direction: -z, stiffness: 2 N/mm, preload: 1 N}}"
+    scene = loads(ONE + f"defaults: {{rollers: {spring}}}\n", "s", ["nips.entry.lower.press=null"])
+    press = scene.rollers["entry_upper"].press
+    assert press is not None and press.stiffness == 0.3 and 2.9 < press.preload < 3.0
+
+
+def test_a_nip_of_no_sheet_is_of_the_only_one() -> None:
+    scene = loads(ONE, "s", ["nips.entry.sheet=null"])
+    assert scene.rollers == loads(ONE).rollers and len(scene.contacts) == 3
+
+
 def test_it_runs_as_transport_4x4_does_with_names_of_its_own() -> None:
     nips, four = load(FILE), load(FOUR)
     assert set(nips.rollers) == set(four.rollers)
