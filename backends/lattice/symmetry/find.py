@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 import math
-from dataclasses import fields, is_dataclass, replace
-from typing import Any
+from dataclasses import fields, replace
 
 import numpy as np
 
 from mdlgen.backends.lattice.arrays import System
 from mdlgen.backends.lattice.symmetry.mirror import Mirror
+from mdlgen.backends.lattice.symmetry.parts import SAME, off, same, seen_as
 from mdlgen.mechanics.frame import Motion
 from mdlgen.model.rotations import matrices
-from mdlgen.model.tables import BOX_BOX, Floats, GuidePart, Ints, Model, PlanePart, RollerPart, SheetPart
+from mdlgen.model.tables import BOX_BOX, Floats, Ints, Model, SheetPart
 
-# How well both sides must agree, relative to the largest number that is compared, and forces that sum up.
-SAME, SAME_FORCE = 1e-9, 1e-7
+# How well both sides must agree in forces that sum up, relative to the largest one.
+SAME_FORCE = 1e-7
 # Motion for the comparison of forces: mm, rad, mm/ms, rad/ms.
 MOVED, TURNED = 1e-3, 1e-2
-
-Part = RollerPart | PlanePart | GuidePart
 
 
 def find(model: Model, system: System) -> Mirror | None:
@@ -40,17 +38,6 @@ def find(model: Model, system: System) -> Mirror | None:
     return None
 
 
-def _same(a: Any, b: Any) -> bool:
-    """Equal but for round-off."""
-    if isinstance(a, (float, np.ndarray)) and isinstance(b, (float, np.ndarray)):
-        a, b = np.asarray(a), np.asarray(b)
-        if a.shape != b.shape:
-            return False
-        most = max(np.abs(a).max(initial=0.0), np.abs(b).max(initial=0.0))
-        return bool(np.abs(a - b).max(initial=0.0) <= SAME * most)
-    return bool(a == b)
-
-
 def _plane(model: Model, normal: Floats, at: float) -> Mirror | None:
     """The Mirror of a plane in which all bodies have images; their contacts and joints may differ."""
     table, count = model.bodies, len(model.bodies.name)
@@ -61,9 +48,9 @@ def _plane(model: Model, normal: Floats, at: float) -> Mirror | None:
     image = np.full(count, -1)
     for sheet in model.sheets:
         image[sheet.first : sheet.first + sheet.count] = _grid(blank, sheet)
-    parts: tuple[Part, ...] = (*model.rollers, *model.planes, *model.guides)
-    for part in parts:
-        image[part.body] = next((o.body for o in parts if _alike(blank, model, part, o)), -1)
+    machine = model.machine
+    for part in machine:
+        image[part.body] = next((o.body for o in machine if seen_as(blank, model, part, o)), -1)
     if (image < 0).any() or (image[image] != itself).any():
         return None
     # the size of the scene is what places are compared by
@@ -78,14 +65,14 @@ def _plane(model: Model, normal: Floats, at: float) -> Mirror | None:
         return None
     gone = (image != itself) & ((table.position @ normal) - at > 0.0)
     mirror = replace(blank, image=image, signs=np.sign(signs), gone=gone)
-    same = (
-        _same(blank.seen(table.velocity), table.velocity[image])
-        and _same(-blank.seen(table.spin), table.spin[image])
-        and all(_same(v, v[image]) for v in (table.mass, table.inertia, table.half, table.friction))
+    alike = (
+        same(blank.seen(table.velocity), table.velocity[image])
+        and same(-blank.seen(table.spin), table.spin[image])
+        and all(same(v, v[image]) for v in (table.mass, table.inertia, table.half, table.friction))
         and bool((table.fixed == table.fixed[image]).all())
         and _sides(mirror, model)
     )
-    return mirror if same else None
+    return mirror if alike else None
 
 
 def _grid(mirror: Mirror, sheet: SheetPart) -> Ints:
@@ -111,77 +98,6 @@ def _sides(mirror: Mirror, model: Model) -> bool:
     return True
 
 
-def _alike(mirror: Mirror, model: Model, one: Part, two: Part) -> bool:
-    """Whether one part of the machine is seen as the other one."""
-    if type(one) is not type(two):
-        return False
-    size = max(1.0, float(np.abs(one.center).max()))
-    if np.abs(mirror.places(one.center) - two.center).max() > SAME * size:
-        return False
-    if isinstance(one, RollerPart) and isinstance(two, RollerPart):
-        way = -float(mirror.seen(one.axis) @ two.axis)  # a turn is seen the other way round
-        # an arm in the plane is not cut, and angles that are counted the other way are not compared
-        whole = (one.arm is None or one is not two) and (one.rim is None or way > 0.0)
-        if abs(abs(way) - 1.0) > SAME or not whole:
-            return False
-        return _roller(one, float(np.sign(way)), mirror) == _roller(two, 1.0, None)
-    if isinstance(one, PlanePart):
-        frames = [model.bodies.rotation[part.body] for part in (one, two)]
-        square = np.abs(mirror.axes(frames[0][None])[0].T @ frames[1])
-        own: dict[str, Any] = {"normal": mirror.seen(one.normal)}
-        if one.press is not None:
-            own["press"] = replace(one.press, direction=mirror.seen(one.press.direction))
-        return bool(np.abs(square - np.eye(3)).max() < SAME) and _values_of(one, own) == _values_of(two, {})
-    assert isinstance(one, GuidePart), "there are no other parts"
-    # the outline of a guide lies in the mirror, its width goes across
-    flat = np.abs(one.axes[:, :2].T @ mirror.normal).max() < SAME
-    return bool(flat) and _values_of(one, {}) == _values_of(two, {})
-
-
-def _roller(part: RollerPart, way: float, mirror: Mirror | None) -> tuple[Any, ...]:
-    """What a roller does, in the sense of an axis that is turned by `way`."""
-    clutch = part.one_way and replace(part.one_way, direction=int(way * part.one_way.direction))
-    press = part.press
-    if press is not None and mirror is not None:
-        press = replace(press, direction=mirror.seen(press.direction))
-    arm = part.arm
-    if arm is not None and mirror is not None:
-        arm = replace(arm, pivot=mirror.places(arm.pivot), center=mirror.places(arm.center))
-    own = {
-        "axis": 0.0,
-        "speed": part.speed if part.speed is None else way * part.speed,
-        "profile": part.profile if part.profile is None else part.profile * (1.0, way),
-        "one_way": clutch,
-        "press": press and _values_of(press, {}),
-        "arm": arm and (_rounded(arm.center), *_values_of(replace(arm, torque=way * arm.torque), {})),
-    }
-    return _values_of(part, own)
-
-
-_PLACE = ("name", "body", "center")
-
-
-def _values_of(part: Any, instead: dict[str, Any]) -> tuple[Any, ...]:
-    """All fields of a part but its name and its place, rounded to be compared."""
-    values = (instead.get(f.name, getattr(part, f.name)) for f in fields(part) if f.name not in _PLACE)
-    return tuple(_rounded(v) for v in values)
-
-
-def _rounded(value: Any) -> Any:
-    """A value that is equal to others but for round-off; what is not a number, as a sector has that goes by
-    its roller, is equal too."""
-    if isinstance(value, np.ndarray):
-        most = float(np.nanmax(np.abs(value), initial=0.0)) or 1.0
-        return (_rounded(most), *(_rounded(v) for v in (np.round(value / most, 9) + 0.0).ravel().tolist()))
-    if is_dataclass(value):
-        return _values_of(value, {})
-    if isinstance(value, (list, tuple)):
-        return tuple(_rounded(v) for v in value)
-    if isinstance(value, float):
-        return None if math.isnan(value) else float(f"{value:.9e}") + 0.0
-    return value
-
-
 # columns of Contacts that say which contact it is, not how it acts
 _NO_LAW = ("entry", "part_a", "part_b", "name")
 
@@ -191,9 +107,8 @@ def _contacts(model: Model, mirror: Mirror) -> Mirror | None:
     a part on the other side. Boxes of two sheets meet on one side or on the other, as both are cut between
     boxes."""
     table, image = model.contacts, mirror.image
-    parts = (*model.rollers, *model.planes, *model.guides)
-    place = {part.name: part.body for part in parts}
-    names = {part.body: part.name for part in parts}
+    place = {part.name: part.body for part in model.machine}
+    names = {part.body: part.name for part in model.machine}
     seen = {name: names[int(image[body])] for name, body in place.items()}
     ends = list(zip(table.part_a, table.part_b, strict=True))
     columns = [getattr(table, f.name) for f in fields(table) if f.name not in _NO_LAW]
@@ -211,7 +126,7 @@ def _contacts(model: Model, mirror: Mirror) -> Mirror | None:
     across = (mirror.gone[a] != mirror.gone[b]) & ~own[a] & ~own[b]
     # a part that keeps off the plane is out of reach of the boxes on the other side, which a run watches
     clear = max(sheet.thickness for sheet in model.sheets)
-    reached = {part.body for part in parts if not _off(mirror, part) > clear}
+    reached = {part.body for part in model.machine if not off(mirror, part) > clear}
     if not reached.isdisjoint([*a[across].tolist(), *b[across].tolist()]):
         return None
     itself = np.arange(len(ends))
@@ -235,15 +150,6 @@ def _senses(mirror: Mirror, model: Model, one: str, two: str) -> tuple[float, fl
     return way(one), way(two), way(two) if two in axes else way(one)
 
 
-def _off(mirror: Mirror, part: Part) -> float:
-    """How far a part keeps off the plane [mm]."""
-    away = abs(float(mirror.normal @ part.center) - mirror.at)
-    if isinstance(part, RollerPart):
-        along = min(1.0, abs(float(mirror.normal @ part.axis)))
-        return away - 0.5 * part.width * along - part.radius * math.sqrt(1.0 - along * along)
-    return away - 0.5 * part.width if isinstance(part, GuidePart) else -math.inf
-
-
 def _loads(model: Model, mirror: Mirror) -> bool:
     """Whether what is loaded is seen as loaded alike, wherever it turns."""
     table, count = model.loads, len(mirror.image)
@@ -254,9 +160,9 @@ def _loads(model: Model, mirror: Mirror) -> bool:
     turned = mirror.signs[:, :, None] * mirror.seen(lever)
     image = mirror.image
     return (
-        _same(mirror.seen(force), force[image])
-        and _same(-mirror.seen(moment), moment[image])
-        and _same(turned[mirror.boxes], lever[image][mirror.boxes])
+        same(mirror.seen(force), force[image])
+        and same(-mirror.seen(moment), moment[image])
+        and same(turned[mirror.boxes], lever[image][mirror.boxes])
     )
 
 
@@ -276,7 +182,7 @@ def _joints(model: Model, system: System, mirror: Mirror) -> bool:
         for a, b in (ends, (seen[ends[0]], seen[ends[1]]))
     ]
     ordered = [table[np.lexsort(np.round(table.T[::-1], 9))] for table in tables]
-    if not all(_same(one, two) for one, two in zip(ordered[0].T, ordered[1].T, strict=True)):
+    if not all(same(one, two) for one, two in zip(ordered[0].T, ordered[1].T, strict=True)):
         return False
     gone = np.append(mirror.gone, False)
     held = np.append(model.bodies.fixed, True)
