@@ -9,7 +9,10 @@ import re
 
 from markdown import NOTE, table
 
+from mdlgen.model.parts.kinds import KINDS
+
 CONTACT = "contacts.OTHER"
+PARTS = [kind.table for kind in KINDS]
 # key, with capitals for names of the scene's -> (unit, meaning)
 SUMMARY: dict[str, tuple[str, str]] = {
     "scene": ("", "name of the scene"),
@@ -120,13 +123,10 @@ SUMMARY: dict[str, tuple[str, str]] = {
             "mean_penetration_mm": ("mm", "mean depth in sheets over the time in contact"),
         }.items()
     },
-    **{
-        f"{part}.NAME.nip_force_n": ("N", "sum of the normal forces on it at the end")
-        for part in ("rollers", "planes", "guides", "meshes")
-    },
+    **{f"{part}.NAME.nip_force_n": ("N", "sum of the normal forces on it at the end") for part in PARTS},
     **{
         f"{part}.NAME.{CONTACT}.{key}": words
-        for part in ("rollers", "planes", "guides", "meshes")
+        for part in PARTS
         for key, words in {
             "max_penetration_mm": ("mm", "greatest depth of the pair"),
             "mean_penetration_mm": ("mm", "mean depth over the time in contact"),

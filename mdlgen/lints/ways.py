@@ -1,4 +1,4 @@
-"""Lints of what parts do to a sheet: rollers that turn the wrong way or touch nothing, and soft contacts."""
+"""Lints of rollers that turn the wrong way or touch nothing."""
 
 from __future__ import annotations
 
@@ -8,11 +8,10 @@ import numpy as np
 
 from mdlgen.lints.lint import Lint
 from mdlgen.model import press
-from mdlgen.model.parts.guide import bounds
+from mdlgen.model.parts.kinds import kind_of
 from mdlgen.model.parts.roller import FLAT
 from mdlgen.model.tables import (
     BOX_CYLINDER,
-    BOX_PLANE,
     CYLINDER_CYLINDER,
     EXTERNAL,
     Floats,
@@ -24,8 +23,6 @@ from mdlgen.model.tables import (
 RETARDS = 0.6  # a roller that is slower than this part of the others' speed may hold a sheet back on purpose
 OPPOSITE = -0.5  # cosine between the ways of two surfaces, or of a surface and a sheet
 NEAR = 3.0  # a roller is at a sheet if its surface is within so many thicknesses of its face
-
-NARROW = 2.0  # a plane that is so many times as tall as wide, and a sheet so many times as wide as it
 
 Driven = list[tuple[RollerPart, Floats]]
 
@@ -45,8 +42,8 @@ def against(model: Model) -> Iterator[Lint]:
                 yield Lint(
                     "W123",
                     f"rollers.{roller.name}.drive",
-                    f"its surface moves {sheet.name} along {_shown(way)}, and that of {first.name} along "
-                    f"{_shown(lead)}",
+                    f"its surface moves {sheet.name} along {shown(way)}, and that of {first.name} along "
+                    f"{shown(lead)}",
                     "turn one of them the other way",
                 )
 
@@ -60,8 +57,8 @@ def away(model: Model) -> Iterator[Lint]:
                 yield Lint(
                     "W124",
                     f"rollers.{roller.name}.drive",
-                    f"its surface moves {sheet.name} along {_shown(way)}, and that comes along "
-                    f"{_shown(sheet.velocity)}",
+                    f"its surface moves {sheet.name} along {shown(way)}, and that comes along "
+                    f"{shown(sheet.velocity)}",
                     "turn it the other way",
                 )
         if not fast or any(_opposite(way, fast[0][1]) for _, way in fast):
@@ -72,7 +69,7 @@ def away(model: Model) -> Iterator[Lint]:
             yield Lint(
                 "W124",
                 f"rollers.{roller.name}.drive",
-                f"its surface moves {sheet.name} along {_shown(way)}, away from {', '.join(behind[:3])}; "
+                f"its surface moves {sheet.name} along {shown(way)}, away from {', '.join(behind[:3])}; "
                 "nothing that it has a contact with lies ahead",
                 "turn it the other way",
             )
@@ -107,52 +104,6 @@ def _near(model: Model, row: int) -> bool:
     along = abs(float(way @ one.axis))
     nip = one.reach + two.reach + 0.5 * min(one.radius, two.radius)
     return across < nip and along < 0.5 * (one.width + two.width)
-
-
-def sinks(model: Model) -> Iterator[Lint]:
-    """Sheets that lie on a plane so soft that their weight alone pushes them through it."""
-    sheets, planes = {s.name: s for s in model.sheets}, {p.name: p for p in model.planes}
-    table = model.contacts
-    for row in np.flatnonzero(table.kind == BOX_PLANE).tolist():
-        sheet, plane = sheets[table.part_a[row]], planes[table.part_b[row]]
-        boxes = slice(sheet.first, sheet.first + sheet.count)
-        weight = float(model.bodies.mass[boxes].sum()) * max(0.0, -float(model.gravity @ plane.normal))  # N
-        each = weight / sheet.count
-        depth = (each / float(table.stiffness[row])) ** (2 / 3)
-        if depth > sheet.thickness:
-            yield Lint(
-                "W133",
-                f"contacts.{table.called(row)}.stiffness",
-                f"its weight of {weight:.3g} N pushes {sheet.name} {depth:.3g} mm into {plane.name}, more "
-                f"than its thickness of {sheet.thickness:g} mm",
-                f"give {each / (0.1 * sheet.thickness) ** 1.5:.2g} N/mm^1.5 or more: a tenth of that",
-            )
-
-
-def crosswise(model: Model) -> Iterator[Lint]:
-    """Planes that stand in a sheet's way, as a stop does, on their narrow side: tall, and not wide."""
-    sheets, planes = {s.name: s for s in model.sheets}, {p.name: p for p in model.planes}
-    table = model.contacts
-    named: set[str] = set()
-    for row in np.flatnonzero(table.kind == BOX_PLANE).tolist():
-        sheet, plane = sheets[table.part_a[row]], planes[table.part_b[row]]
-        normal = sheet.rotation[:, 2]
-        if abs(float(plane.normal @ normal)) > FLAT or plane.name in named:
-            continue
-        sides = model.bodies.rotation[plane.body].T
-        across = np.cross(normal, plane.normal)
-        wide, tall = (float(np.abs(sides[:2] @ way) @ np.array(plane.size[:2])) for way in (across, normal))
-        width = float(np.abs(sheet.rotation[:, :2].T @ across) @ np.array(sheet.outline))
-        if tall > NARROW * wide and wide < width / NARROW:
-            named.add(plane.name)
-            yield Lint(
-                "W135",
-                f"planes.{plane.name}.size",
-                f"it stands in the way of {sheet.name}, {tall:.3g} mm tall and {wide:.3g} mm wide; that is "
-                f"{width:.3g} mm wide there",
-                "swap the two lengths, or name the side that the first one lies along: along: "
-                f"{_shown(across).lstrip('+-')}",
-            )
 
 
 def _driven(model: Model, sheet: SheetPart, begin: bool = False) -> Driven:
@@ -194,34 +145,19 @@ def _left_behind(model: Model, sheet: SheetPart, way: Floats) -> list[str]:
     half = np.array([*sheet.outline, sheet.thickness]) / 2
     edge = float(np.abs(sheet.rotation.T @ way) @ half)
     behind = []
-    for name, end in _ends(model, way):
-        ahead = end - float(sheet.center @ way)
-        if name in names and ahead > edge:
+    for part in model.machine:
+        if part.name not in names:
+            continue
+        ahead = kind_of(part).reach(part, model.bodies, way) - float(sheet.center @ way)
+        if ahead > edge:
             return []
-        if name in names and ahead < -edge:
-            behind.append(name)
+        if ahead < -edge:
+            behind.append(part.name)
     # bodies of the user's own model may lie anywhere
     unknown = any(
         kind == EXTERNAL and a == sheet.name for kind, a in zip(table.kind, table.part_a, strict=True)
     )
     return [] if unknown else behind
-
-
-def _ends(model: Model, way: Floats) -> Iterator[tuple[str, float]]:
-    """How far each part of the machine reaches along a unit vector, by name [mm]."""
-    for roller in model.rollers:
-        across = roller.reach * _size(np.cross(roller.axis, way))
-        along = 0.5 * roller.width * abs(float(roller.axis @ way))
-        yield roller.name, float(model.bodies.position[roller.body] @ way) + across + along
-    for plane in model.planes:
-        half = np.array(plane.size) / 2
-        reach = float(np.abs(model.bodies.rotation[plane.body].T @ way) @ half)
-        yield plane.name, float(model.bodies.position[plane.body] @ way) + reach
-    for guide in model.guides:
-        low, high = bounds(guide)
-        yield guide.name, float(np.where(way > 0, high, low) @ way)
-    for mesh in model.meshes:
-        yield mesh.name, float(((mesh.center + mesh.corners @ mesh.axes.T) @ way).max())
 
 
 def _size(way: Floats) -> float:
@@ -232,7 +168,7 @@ def _opposite(one: Floats, other: Floats) -> bool:
     return float(one @ other) < OPPOSITE * _size(one) * _size(other)
 
 
-def _shown(way: Floats) -> str:
+def shown(way: Floats) -> str:
     """A direction: an axis where it is nearly one, else a vector."""
     unit = way / _size(way)
     axis = int(np.argmax(np.abs(unit)))

@@ -66,7 +66,7 @@ def approach_time(model: Model, row: int) -> float:
 
 def _parts(model: Model, row: int):
     """The two parts of a row of the contacts."""
-    parts = (*model.rollers, *model.planes, *model.guides, *model.meshes, *model.sheets)
+    parts = (*model.machine, *model.sheets)
     sheets = (*model.sheets, *model.rollers)
     names = model.contacts.part_a[row], model.contacts.part_b[row]
     first = next(p for p in sheets if p.name == names[0])

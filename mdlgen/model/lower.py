@@ -33,18 +33,14 @@ from mdlgen.model.tables import (
     Clamp,
     Contacts,
     Floats,
-    GuidePart,
-    MeshPart,
+    MachinePart,
     Model,
-    PlanePart,
     RollerPart,
     RunSettings,
     SheetPart,
 )
 from mdlgen.spec.scene import Scene
 from mdlgen.spec.smoothing import following, speeds
-
-Part = RollerPart | PlanePart | GuidePart | MeshPart
 
 
 def lower(scene: Scene) -> Model:
@@ -253,7 +249,7 @@ def _bodies(
     sheets: tuple[SheetPart, ...],
     boxes: list[Cells],
     rollers: tuple[RollerPart, ...],
-    machine: tuple[Part, ...],
+    machine: tuple[MachinePart, ...],
 ) -> Bodies:
     names, labels, tables = [], [], []
     for sheet, box in zip(sheets, boxes, strict=True):

@@ -21,6 +21,7 @@ from mdlgen.model.tables import (
     MeshPart,
     Model,
     PlanePart,
+    Press,
     RollerPart,
 )
 
@@ -36,6 +37,10 @@ class Pair(NamedTuple):
     roller: RollerPart
     part: Part
     start: float
+
+
+def _press(part: Part) -> Press | None:
+    return kind_of(part).press(part)
 
 
 def rod(roller: RollerPart, center: Floats) -> Rod:
@@ -60,18 +65,17 @@ class Overlaps:
 
     def _candidates(self) -> Iterator[tuple[RollerPart, Part]]:
         model = self._model
-        parts: tuple[Part, ...] = (*model.planes, *model.guides, *(m for m in model.meshes if m.on < 0))
+        parts = [p for p in model.machine if not isinstance(p, RollerPart) and kind_of(p).carrier(p) < 0]
         for roller in model.rollers:
             moves = roller.press is not None or roller.arm is not None
             for part in parts:
-                slides = isinstance(part, PlanePart) and part.press is not None
-                if (moves or slides) and (roller.name, part.name) not in self._met:
+                if (moves or _press(part) is not None) and (roller.name, part.name) not in self._met:
                     yield roller, part
 
     def _given(self, roller: RollerPart, part: Part) -> float:
         """Overlap where both are given: a spring may have moved one into the other before the run."""
         by = np.zeros(3)
-        if isinstance(part, PlanePart):
+        if _press(part) is not None:
             by = part.center - self._model.bodies.position[part.body]
         return self.depth(roller, part, roller.center, by)
 
@@ -157,9 +161,9 @@ class Overlaps:
             most = min(np.pi, roller.radius / length)
             for turn in matrices(np.outer(np.linspace(-most, most, _STEPS), roller.axis)):
                 yield roller.arm.pivot + turn @ arm, still
-        if isinstance(part, PlanePart) and part.press is not None:
-            spring = part.press
-            force = spring.preload + part.sliding_mass * float(weight @ spring.direction)
+        spring = _press(part)
+        if spring is not None:
+            force = spring.preload + float(model.bodies.mass[part.body]) * float(weight @ spring.direction)
             far = spring.free_length
             if spring.stiffness > 0.0:
                 far = min(far, force / spring.stiffness)

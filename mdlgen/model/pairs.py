@@ -29,7 +29,7 @@ from mdlgen.model.tables import (
     Bodies,
     Contacts,
     Floats,
-    GuidePart,
+    MachinePart,
     MeshPart,
     Pairs,
     PlanePart,
@@ -39,8 +39,6 @@ from mdlgen.model.tables import (
 )
 from mdlgen.spec.limits import DEFAULT, Limits
 
-Part = RollerPart | PlanePart | GuidePart | MeshPart
-
 _TURN_STEPS = 33
 _STATIONS = 65  # times in a run at which the ways of two drives are compared
 
@@ -48,7 +46,7 @@ _STATIONS = 65  # times in a run at which the ways of two drives are compared
 def find_pairs(
     gravity: Floats,
     sheets: tuple[SheetPart, ...],
-    machine: tuple[Part, ...],
+    machine: tuple[MachinePart, ...],
     bodies: Bodies,
     contacts: Contacts,
     run: RunSettings,
@@ -151,7 +149,7 @@ class _Drives(NamedTuple):
     twist: float  # angle by which their differences may turn it in its plane [rad]
 
 
-def _drives(touched: list[tuple[SheetPart, Part]], run: RunSettings) -> _Drives:
+def _drives(touched: list[tuple[SheetPart, MachinePart]], run: RunSettings) -> _Drives:
     """Of the driven rollers among the parts that a sheet, or one that it is linked with, touches."""
     if run.analysis == "static":
         return _Drives([], 0.0)
@@ -167,7 +165,7 @@ def _drives(touched: list[tuple[SheetPart, Part]], run: RunSettings) -> _Drives:
 def _swept(
     gravity: Floats,
     sheet: SheetPart,
-    touched: list[tuple[SheetPart, Part]],
+    touched: list[tuple[SheetPart, MachinePart]],
     drives: _Drives,
     others: list[SheetPart],
     bodies: Bodies,
@@ -219,7 +217,7 @@ def _swept(
     return sheet.center + around[0] + least, sheet.center + around[1] + most, extent
 
 
-def _moving(touched: list[Part], rollers: tuple[RollerPart, ...]) -> list[Part]:
+def _moving(touched: list[MachinePart], rollers: tuple[RollerPart, ...]) -> list[MachinePart]:
     """The parts that a sheet touches; of meshes on rollers these rollers, as large as what is on them."""
     return [
         replace(rollers[p.on], radius=meshes.reach(p, rollers[p.on]))

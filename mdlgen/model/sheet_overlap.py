@@ -13,14 +13,12 @@ from numpy.typing import NDArray
 
 from mdlgen.model.fold import overlaps
 from mdlgen.model.overlap import HAIR
-from mdlgen.model.parts.guide import bounds, depths
+from mdlgen.model.parts.kinds import kind_of
 from mdlgen.model.tables import (
     Floats,
-    GuidePart,
     Ints,
+    MachinePart,
     Model,
-    PlanePart,
-    RollerPart,
     SheetPart,
 )
 
@@ -32,7 +30,6 @@ ON_SHEET, ON_PART = 0.5, 0.75
 _PLACES = np.array([[i, j] for i in (-1.0, 0.0, 1.0) for j in (-1.0, 0.0, 1.0)])
 _AT_ONCE = 256  # boxes of a sheet that are compared with all of another
 
-Part = RollerPart | PlanePart | GuidePart
 Extent = tuple[Floats, Floats]  # low and high corner [mm], (3,) each
 
 
@@ -66,15 +63,14 @@ class SheetOverlaps:
         self._watched = [
             (sheet, part)
             for sheet, part in self._parts
-            if not self._inside(sheet, part, model.bodies.position, rotation, 0.0, HAIR)
+            if self._inside(sheet, part, model.bodies.position, rotation, 0.0, HAIR) == 0.0
         ]
 
-    def _with_parts(self, met: set[frozenset[str]]) -> Iterator[tuple[int, Part]]:
+    def _with_parts(self, met: set[frozenset[str]]) -> Iterator[tuple[int, MachinePart]]:
         model = self._model
         carrying = {model.rollers[m.on].name for m in model.meshes if m.on >= 0}
-        parts: tuple[Part, ...] = (*model.rollers, *model.planes, *model.guides)
         for k, sheet in enumerate(model.sheets):
-            for part in parts:
+            for part in model.machine:
                 if part.name not in carrying and frozenset((sheet.name, part.name)) not in met:
                     yield k, part
 
@@ -100,7 +96,7 @@ class SheetOverlaps:
                 return self._reason(f"sheet {self._name(sheet)}", other, deep, time)
         return None
 
-    def begin(self) -> tuple[list[tuple[SheetPart, SheetPart]], list[tuple[SheetPart, Part]]]:
+    def begin(self) -> tuple[list[tuple[SheetPart, SheetPart]], list[tuple[SheetPart, MachinePart]]]:
         """The pairs that lie on each other, or in each other, where they are given."""
         model = self._model
         position, rotation = model.bodies.position, model.bodies.rotation.reshape(-1, 9)
@@ -207,28 +203,26 @@ class SheetOverlaps:
         turns = np.abs(rotation[boxes].reshape(-1, 3, 3))
         return np.einsum("nij,nj->ni", turns, self._model.bodies.half[boxes])
 
-    def _apart_from(self, part: Part, extent: Extent, position: Floats, more: float = 0.0) -> bool:
+    def _apart_from(self, part: MachinePart, extent: Extent, position: Floats, more: float = 0.0) -> bool:
         if part.name not in self._reach:
             self._reach[part.name] = self._part_extent(part)
         low, high = self._reach[part.name]
         return _gap(extent, (low + position[part.body], high + position[part.body])) > more
 
-    def _part_extent(self, part: Part) -> Extent:
+    def _part_extent(self, part: MachinePart) -> Extent:
         """Bounds of a part about the place of its body."""
-        if isinstance(part, GuidePart):
-            at = self._model.bodies.position[part.body]
-            low, high = bounds(part)
-            return low - at, high - at
-        if isinstance(part, PlanePart):
-            reach = np.abs(self._model.bodies.rotation[part.body]) @ (np.array(part.size) / 2)
-        else:
-            reach = np.abs(part.axis) * part.width / 2 + part.reach * np.sqrt(np.maximum(0, 1 - part.axis**2))
-        return -reach, reach
+        kind, bodies = kind_of(part), self._model.bodies
+        low, high = (
+            sign * np.array([kind.reach(part, bodies, sign * axis) for axis in np.eye(3)])
+            for sign in (-1.0, 1.0)
+        )
+        return low - bodies.position[part.body], high - bodies.position[part.body]
 
     def _inside(
-        self, sheet: int, part: Part, position: Floats, rotation: Floats, off: float, least: float
-    ) -> float:
-        """How deep places of a sheet, `off` its middle by so much, are in a part; 0 below `least` [mm]."""
+        self, sheet: int, part: MachinePart, position: Floats, rotation: Floats, off: float, least: float
+    ) -> float | None:
+        """How deep places of a sheet, `off` its middle by so much, are in a part; 0 below `least` [mm], None
+        where that is not computed."""
         boxes = self._boxes[sheet]
         if not len(boxes):
             return 0.0
@@ -238,17 +232,10 @@ class SheetOverlaps:
         own[:, :, 2] = off
         at = position[boxes]
         points = at[:, None] + np.einsum("nij,nkj->nki", turns, own)
-        if isinstance(part, GuidePart):
-            deep = depths(part, points, at[:, None])
-        elif isinstance(part, PlanePart):
-            arms = (points - position[part.body]) @ self._model.bodies.rotation[part.body]
-            deep = (np.array(part.size) / 2 - np.abs(arms)).min(axis=2)
-        else:
-            arms = points - position[part.body]
-            along = arms @ part.axis
-            radius = part.radius if part.rim is None else float(part.rim.radius.min())
-            away = np.linalg.norm(arms - along[..., None] * part.axis, axis=2)
-            deep = np.minimum(radius - away, part.width / 2 - np.abs(along))
+        stands = position[part.body], self._model.bodies.rotation[part.body]
+        deep = kind_of(part).inside(part, points, at[:, None], *stands)
+        if deep is None:
+            return None
         worst = float(deep.max())
         return worst if worst > least else 0.0
 

@@ -9,9 +9,14 @@ import numpy as np
 from mdlgen.geometry.solids import Solid, bar, cylinder, join
 from mdlgen.model.parts.kinds import kind_of
 from mdlgen.model.parts.roller import PROUD
-from mdlgen.model.tables import Floats, GuidePart, Ints, MeshPart, Model, PlanePart, RollerPart
+from mdlgen.model.tables import (
+    Floats,
+    Ints,
+    MachinePart,
+    Model,
+    RollerPart,
+)
 
-Part = RollerPart | PlanePart | GuidePart | MeshPart
 CHEEK = 0.4, 0.12  # breadth and thickness of an arm beside its roller, in times the roller's radius
 
 
@@ -43,7 +48,7 @@ def machine(model: Model) -> list[Mesh]:
     return found
 
 
-def _drawn(model: Model, part: Part) -> list[Mesh]:
+def _drawn(model: Model, part: MachinePart) -> list[Mesh]:
     shown = kind_of(part).drawn(part, model.bodies.half[part.body])
     return [Mesh(each.name, each.kind, part.body, *each.solid) for each in shown]
 
@@ -58,8 +63,8 @@ def moving(model: Model) -> list[int]:
     from the last body."""
     boxes = range(sum(sheet.count for sheet in model.sheets))
     arms = range(len(model.bodies.name), len(model.bodies.name) + len(on_arms(model)))
-    machine = (*model.rollers, *(plate for plate, _ in model.plates))
-    return [*boxes, *(part.body for part in machine), *(m.body for m in model.meshes if m.on >= 0), *arms]
+    fixed = model.bodies.fixed
+    return [*boxes, *(part.body for part in model.machine if not fixed[part.body]), *arms]
 
 
 def _arm(roller: RollerPart) -> Solid:

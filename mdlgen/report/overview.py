@@ -10,6 +10,7 @@ import numpy as np
 from mdlgen.checks import lints
 from mdlgen.lints.cost import cost
 from mdlgen.lints.smoothing import smoothings
+from mdlgen.model.parts.kinds import KINDS
 from mdlgen.model.tables import MeshPart, Model, SheetPart
 
 UNITS = {
@@ -24,10 +25,7 @@ def overview(model: Model) -> dict[str, Any]:
         "scene": model.name,
         "analysis": model.run.analysis,
         "sheets": {s.name: _sheet(model, k) for k, s in enumerate(model.sheets)},
-        "rollers": len(model.rollers),
-        "planes": len(model.planes),
-        "guides": len(model.guides),
-        "meshes": {m.name: _mesh(m) for m in model.meshes},
+        **{kind.table: _parts(getattr(model, kind.table), kind.part) for kind in KINDS},
         "external_parts": {e.name: {"body": e.body, "graphics": list(e.graphics)} for e in model.externals},
         "contacts": len(model.contacts),
         "probes": len(model.probes),
@@ -55,6 +53,14 @@ def _mesh(mesh: MeshPart) -> dict[str, Any]:
         "mass_g": mesh.mass,
         "inertia_g_mm2": (mesh.mass * mesh.gyration).tolist(),
     }
+
+
+# of kinds of which more than the number is shown
+_SHOWN = {MeshPart: _mesh}
+
+
+def _parts(parts: tuple[Any, ...], kind: type) -> int | dict[str, Any]:
+    return {part.name: _SHOWN[kind](part) for part in parts} if kind in _SHOWN else len(parts)
 
 
 def _sheet(model: Model, index: int) -> dict[str, Any]:

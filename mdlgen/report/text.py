@@ -8,11 +8,13 @@ from typing import Any
 
 from mdlgen.lints.cost import Cost
 from mdlgen.lints.smoothing import lines as smoothing_lines
+from mdlgen.model.parts.kinds import KINDS
 from mdlgen.report.overview import UNITS
 from mdlgen.results.verdict import outcomes_of
 
 FEW = 3  # names that are listed in a line
 MOST_EVENTS = 5  # that a reader should know of, in words
+_ALWAYS = ("rollers", "planes")  # that are counted where there are none, too
 NOTHING = 1e-9  # mm, mm/s, deg, N: what is less is round-off
 
 Rows = list[list[str]]  # of a table, the first with what its columns are
@@ -53,10 +55,7 @@ def overview_parts(record: dict[str, Any]) -> list[str | Rows]:
     pairs = record["pairs"]
     lines += [
         "",
-        f"{record['boxes']} boxes, {record['bushings']} bushings, "
-        f"{record['rollers']} rollers, {record['planes']} planes"
-        + (f", {record['guides']} guides" if record["guides"] else "")
-        + (f", {len(record['meshes'])} meshes" if record["meshes"] else ""),
+        ", ".join([f"{record[name]} {name}" for name in ("boxes", "bushings")] + _counts(record)),
         f"contact: {record['contacts']} pairs of parts; {pairs['possible']} pairs of bodies possible, "
         f"{pairs['kept']} kept (margin {pairs['margin_mm']:g} mm)",
         *smoothing_lines(record["smoothing"]),
@@ -75,6 +74,16 @@ def overview_parts(record: dict[str, Any]) -> list[str | Rows]:
         cost = Cost(**record["cost"])
         lines.append(f"a run takes {cost}{', within a factor of 3' if cost.seconds >= 1.0 else ''}")
     return lines
+
+
+def _counts(record: dict[str, Any]) -> list[str]:
+    """How many parts of each kind there are; of most kinds where there are some."""
+    found = []
+    for kind in KINDS:
+        parts = record[kind.table]
+        if parts or kind.table in _ALWAYS:
+            found.append(f"{len(parts) if isinstance(parts, dict) else parts} {kind.table}")
+    return found
 
 
 def _derived(values: dict[str, float]) -> list[str | Rows]:

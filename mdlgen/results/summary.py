@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from typing import Any
 
 import numpy as np
 
-from mdlgen.model.tables import Floats, GuidePart, MeshPart, PlanePart, RollerPart
+from mdlgen.model.parts.kinds import KINDS
+from mdlgen.model.tables import Floats, MachinePart, PlanePart, RollerPart
 from mdlgen.results.compare import travel
 from mdlgen.results.estimates import complete
 from mdlgen.results.result import Result
@@ -65,10 +66,7 @@ def summary(result: Result, without: Collection[str] = ()) -> dict[str, Any]:
         },
         **({} if "events" in without else {"events": result.events}),
         "sheets": {s.name: _sheet(result, k, "bearing" not in without) for k, s in enumerate(model.sheets)},
-        "rollers": {r.name: _roller(result, r) for r in model.rollers},
-        "planes": {p.name: _plane(result, p) for p in model.planes},
-        "guides": {g.name: _touched(result, g) for g in model.guides},
-        "meshes": {m.name: _touched(result, m) for m in model.meshes},
+        **{k.table: {p.name: _part(result, p) for p in getattr(model, k.table)} for k in KINDS},
         "probes": {p.name: _probe(result, k) for k, p in enumerate(model.probes)},
         "versions": versions(result),
     }
@@ -175,7 +173,7 @@ def _bearing(result: Result, index: int) -> dict[str, Any]:
     }
 
 
-def part_rows(result: Result, part: RollerPart | PlanePart | GuidePart | MeshPart) -> dict[int, str]:
+def part_rows(result: Result, part: MachinePart) -> dict[int, str]:
     """Rows of contacts of a part of the machine, with the name of the other part."""
     contacts = result.model.contacts
     sides = zip(contacts.part_a, contacts.part_b, strict=True)
@@ -196,7 +194,7 @@ def _contacts(result: Result, rows: dict[int, str]) -> dict[str, dict[str, float
     }
 
 
-def _touched(result: Result, part: RollerPart | PlanePart | GuidePart | MeshPart) -> dict[str, Any]:
+def _touched(result: Result, part: MachinePart) -> dict[str, Any]:
     """The sum of normal forces on a part at the end, and its contacts."""
     rows = part_rows(result, part)
     force = float(result.contact_force[-1, list(rows)].sum()) if len(result.time) else None
@@ -268,6 +266,14 @@ def _traction(grip: Grip) -> dict[str, float]:
         "reserve": 1.0 - along / limit,
         "least_reserve": 1.0 - float(used[acts].max()),
     }
+
+
+# of kinds of which there is more to say than of every part
+_MORE: dict[type, Callable[[Result, Any], dict[str, Any]]] = {RollerPart: _roller, PlanePart: _plane}
+
+
+def _part(result: Result, part: MachinePart) -> dict[str, Any]:
+    return _MORE.get(type(part), _touched)(result, part)
 
 
 def _mean(depth: Floats, rows: list[int], result: Result) -> float:

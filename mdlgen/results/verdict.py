@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mdlgen.errors import SpecError, did_you_mean
+from mdlgen.model.parts.kinds import KINDS
 from mdlgen.model.tables import Floats, RollerPart
 from mdlgen.results.torques import contact_torque, drive_power, drive_torque, grips
 from mdlgen.spec.require import Requirement, requirement
@@ -242,7 +243,7 @@ def _series(result: Result, path: str) -> Floats:
         if what in sizes:
             return sizes[what]
     parts = {part.name: part for part in model.machine}
-    if kind in ("rollers", "planes", "guides", "meshes") and name in parts:
+    if kind in {each.table for each in KINDS} and name in parts:
         if what in ("nip_force", "nip_force_n"):
             sides = zip(model.contacts.part_a, model.contacts.part_b, strict=True)
             return result.contact_force[:, [k for k, ends in enumerate(sides) if name in ends]].sum(axis=1)

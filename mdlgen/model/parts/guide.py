@@ -33,7 +33,7 @@ class Facet(NamedTuple):
 
 
 class _Guides:
-    name, table, part = "guide", "guides", GuidePart
+    name, table, part = GuidePart.kind, "guides", GuidePart
     with_sheet, with_roller = BOX_GUIDE, CYLINDER_GUIDE
     leads = True
 
@@ -53,9 +53,24 @@ class _Guides:
     ) -> tuple[Floats, Floats]:
         return bounds(part)
 
+    def reach(self, part: GuidePart, bodies: Bodies, way: Floats) -> float:
+        low, high = bounds(part)
+        return float(np.where(way > 0, high, low) @ way)
+
+    def press(self, part: GuidePart) -> None:
+        """None: it is fixed."""
+
+    def carrier(self, part: GuidePart) -> int:
+        return -1
+
     def overlap(self, part: GuidePart, position: Floats, rotation: Floats) -> Callable[[Rod], float]:
         blocks = [Box(f.center, f.rotation, np.array(f.lengths) / 2) for f in facets(part)]
         return lambda rod: max(into_box(rod, block) for block in blocks)
+
+    def inside(
+        self, part: GuidePart, points: Floats, centers: Floats, position: Floats, rotation: Floats
+    ) -> Floats:
+        return depths(part, points, centers)
 
     def depth_at_start(self, model: Model, sheet: SheetPart, part: GuidePart) -> float:
         return max(float(depths(part, points, at).max()) for at, points in each_box(model, sheet))

@@ -13,7 +13,7 @@ from mdlgen.geometry.rods import Rod
 from mdlgen.geometry.solids import Solid
 from mdlgen.model.before import Before
 from mdlgen.model.press_parts import Bow, Face, Facets
-from mdlgen.model.tables import Bodies, Model, RollerPart, SheetPart
+from mdlgen.model.tables import Bodies, Model, Press, RollerPart, SheetPart
 from mdlgen.spec.scene import Scene
 
 P = TypeVar("P")
@@ -97,8 +97,27 @@ class Kind(Protocol[P]):
         """Least and greatest coordinates that it may have during a run, (3,) each."""
         ...
 
+    def reach(self, part: P, bodies: Bodies, way: Floats) -> float:
+        """How far it reaches along a unit vector as the run begins: the greatest coordinate [mm]."""
+        ...
+
+    def press(self, part: P) -> Press | None:
+        """The spring that presses it along a slide; None: none does."""
+        ...
+
+    def carrier(self, part: P) -> int:
+        """Index of the roller that it moves with; -1: none."""
+        ...
+
     def overlap(self, part: P, position: Floats, rotation: Floats) -> Callable[[Rod], float]:
         """How deep a rod is in the part, whose body stands at a place; below zero by how far it is off."""
+        ...
+
+    def inside(
+        self, part: P, points: Floats, centers: Floats, position: Floats, rotation: Floats
+    ) -> Floats | None:
+        """How deep points (..., 3) of bodies with these centres are in the part, whose body stands at a
+        place: (...), where they are off not above zero; None where it is not computed."""
         ...
 
     def depth_at_start(self, model: Model, sheet: SheetPart, part: P) -> float:

@@ -23,7 +23,7 @@ PIECE = 20000  # triangles of a part of a mesh that is drawn: a page counts corn
 
 
 class _Meshes:
-    name, table, part = "mesh", "meshes", MeshPart
+    name, table, part = MeshPart.kind, "meshes", MeshPart
     with_sheet, with_roller = BOX_MESH, CYLINDER_MESH
     leads = True
 
@@ -51,9 +51,23 @@ class _Meshes:
         more = np.zeros(3) if press is None else rollers[part.on].radius * np.abs(press.direction) + SLACK
         return low - more, high + more
 
+    def reach(self, part: MeshPart, bodies: Bodies, way: Floats) -> float:
+        return float(((part.center + part.corners @ part.axes.T) @ way).max())
+
+    def press(self, part: MeshPart) -> None:
+        """None: one on a pressed roller moves with that."""
+
+    def carrier(self, part: MeshPart) -> int:
+        return part.on
+
     def overlap(self, part: MeshPart, position: Floats, rotation: Floats) -> Callable[[Rod], float]:
         triangles = (part.center + part.corners @ part.axes.T)[part.triangles]
         return lambda rod: into_triangles(rod, triangles)
+
+    def inside(
+        self, part: MeshPart, points: Floats, centers: Floats, position: Floats, rotation: Floats
+    ) -> None:
+        """None: not computed."""
 
     def depth_at_start(self, model: Model, sheet: SheetPart, part: MeshPart) -> float:
         """Not computed: see `model.sheet_overlap`."""

@@ -16,13 +16,22 @@ from mdlgen.model.parts.kind import SLACK, BodyRow, Boxes, Drawn
 from mdlgen.model.press_parts import Face, faces_of_plate
 from mdlgen.model.pressed import plate_press
 from mdlgen.model.sheet_corners import corners, corners_of_boxes
-from mdlgen.model.tables import BOX_PLANE, CYLINDER_PLANE, Bodies, Model, PlanePart, RollerPart, SheetPart
+from mdlgen.model.tables import (
+    BOX_PLANE,
+    CYLINDER_PLANE,
+    Bodies,
+    Model,
+    PlanePart,
+    Press,
+    RollerPart,
+    SheetPart,
+)
 from mdlgen.spec.guide import edge_radii
 from mdlgen.spec.scene import Scene
 
 
 class _Planes:
-    name, table, part = "plane", "planes", PlanePart
+    name, table, part = PlanePart.kind, "planes", PlanePart
     with_sheet, with_roller = BOX_PLANE, CYLINDER_PLANE
     leads = False
 
@@ -67,9 +76,25 @@ class _Planes:
             center, extent = part.center, extent + part.travel + SLACK
         return center - extent, center + extent
 
+    def reach(self, part: PlanePart, bodies: Bodies, way: Floats) -> float:
+        extent = float(np.abs(bodies.rotation[part.body].T @ way) @ (np.array(part.size) / 2))
+        return float(bodies.position[part.body] @ way) + extent
+
+    def press(self, part: PlanePart) -> Press | None:
+        return part.press
+
+    def carrier(self, part: PlanePart) -> int:
+        return -1
+
     def overlap(self, part: PlanePart, position: Floats, rotation: Floats) -> Callable[[Rod], float]:
         block = Box(position, rotation, np.array(part.size) / 2)
         return lambda rod: into_box(rod, block)
+
+    def inside(
+        self, part: PlanePart, points: Floats, centers: Floats, position: Floats, rotation: Floats
+    ) -> Floats:
+        arms = (points - position) @ rotation
+        return (np.array(part.size) / 2 - np.abs(arms)).min(axis=-1)
 
     def depth_at_start(self, model: Model, sheet: SheetPart, part: PlanePart) -> float:
         face = model.bodies.position[part.body] + part.normal * part.size[2] / 2

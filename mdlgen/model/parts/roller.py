@@ -22,6 +22,7 @@ from mdlgen.model.tables import (
     Bodies,
     Model,
     OneWay,
+    Press,
     RollerPart,
     SheetPart,
 )
@@ -34,7 +35,7 @@ PROUD = 0.01  # how far the mark stands out, in times the radius
 
 
 class _Rollers:
-    name, table, part = "roller", "rollers", RollerPart
+    name, table, part = RollerPart.kind, "rollers", RollerPart
     with_sheet, with_roller = BOX_CYLINDER, CYLINDER_CYLINDER
     leads = False
 
@@ -86,8 +87,29 @@ class _Rollers:
             extent = extent + swing(part) + SLACK
         return center - extent, center + extent
 
+    def reach(self, part: RollerPart, bodies: Bodies, way: Floats) -> float:
+        across = part.reach * float(np.linalg.norm(np.cross(part.axis, way)))
+        along = 0.5 * part.width * abs(float(part.axis @ way))
+        return float(bodies.position[part.body] @ way) + across + along
+
+    def press(self, part: RollerPart) -> Press | None:
+        return part.press
+
+    def carrier(self, part: RollerPart) -> int:
+        return -1
+
     def overlap(self, part: RollerPart, position: Floats, rotation: Floats) -> Callable[[Rod], float]:
         raise NotImplementedError("two rollers overlap in their contact")
+
+    def inside(
+        self, part: RollerPart, points: Floats, centers: Floats, position: Floats, rotation: Floats
+    ) -> Floats:
+        """Of a rim the least radius counts, wherever that stands."""
+        arms = points - position
+        along = arms @ part.axis
+        radius = part.radius if part.rim is None else float(part.rim.radius.min())
+        away = np.linalg.norm(arms - along[..., None] * part.axis, axis=-1)
+        return np.minimum(radius - away, part.width / 2 - np.abs(along))
 
     def depth_at_start(self, model: Model, sheet: SheetPart, part: RollerPart) -> float:
         normal, center = sheet.rotation[:, 2], model.bodies.position[part.body]

@@ -34,6 +34,7 @@ from mdlgen.model.tables.contacts import Pairs as Pairs
 from mdlgen.model.tables.machine import ArmPart as ArmPart
 from mdlgen.model.tables.machine import ExternalPart as ExternalPart
 from mdlgen.model.tables.machine import GuidePart as GuidePart
+from mdlgen.model.tables.machine import MachinePart as MachinePart
 from mdlgen.model.tables.machine import MeshPart as MeshPart
 from mdlgen.model.tables.machine import OneWay as OneWay
 from mdlgen.model.tables.machine import PlanePart as PlanePart

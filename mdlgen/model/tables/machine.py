@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -74,6 +75,7 @@ class RimPart(Frozen):
 class RollerPart(Frozen):
     """A cylinder; `center` is as the user gave it, the body's position includes `press.start`."""
 
+    kind: ClassVar[str] = "roller"  # what one is called in a sentence
     name: str
     body: int
     center: Floats  # (3,)
@@ -139,6 +141,7 @@ class PlanePart(Frozen):
     """A plate, fixed or pressed; local axes in the columns of the body's rotation, z = normal. `center` is as
     the user gave it, the body's position includes `press.start`."""
 
+    kind: ClassVar[str] = "plane"
     name: str
     body: int
     center: Floats
@@ -165,6 +168,7 @@ class GuidePart(Frozen):
     """A fixed plate, straight or bent to an arc. Of its axes z is along the width; x is along a line and y
     its normal, and the angles of an arc turn from x to y."""
 
+    kind: ClassVar[str] = "guide"
     name: str
     body: int
     center: Floats  # middle of a line, or on the axis of an arc [mm], (3,)
@@ -188,6 +192,7 @@ class MeshPart(Frozen):
     """A closed surface of triangles, fixed or on a roller. Its body has the axes of its inertia, and its
     centre is the middle of its mass."""
 
+    kind: ClassVar[str] = "mesh"
     name: str
     body: int
     file: str
@@ -207,6 +212,10 @@ class MeshPart(Frozen):
     mass: float
     density: float | None  # that the user gave in place of the mass [g/mm^3]
     edge_radius: float = 0.0  # that outer sides of sheets meet at its edges [mm]
+
+
+# a part of the machine that has a body, of any kind
+MachinePart = RollerPart | PlanePart | GuidePart | MeshPart
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,15 @@ from mdlgen.geometry.arrays import Floats as Floats
 from mdlgen.geometry.arrays import Ints as Ints
 from mdlgen.model.tables.bodies import Bodies, Bushings, Curves, Frozen
 from mdlgen.model.tables.contacts import Contacts, ExternalPairs, Pairs
-from mdlgen.model.tables.machine import ExternalPart, GuidePart, MeshPart, PlanePart, Press, RollerPart
+from mdlgen.model.tables.machine import (
+    ExternalPart,
+    GuidePart,
+    MachinePart,
+    MeshPart,
+    PlanePart,
+    Press,
+    RollerPart,
+)
 from mdlgen.model.tables.sheets import SheetPart
 
 GROUND = -1
@@ -113,7 +121,7 @@ class Model(Frozen):
         return f"<Model {self.name}: {len(self.bodies.name)} bodies, {message}>"
 
     @property
-    def machine(self) -> tuple[RollerPart | PlanePart | GuidePart | MeshPart, ...]:
+    def machine(self) -> tuple[MachinePart, ...]:
         """All parts of the machine, as their bodies are numbered."""
         return (*self.rollers, *self.planes, *self.guides, *self.meshes)
 
@@ -137,10 +145,8 @@ class Model(Frozen):
         return mass / mass.sum()
 
     def called(self, body: int) -> str:
-        """What a roller, a plane, a guide, a mesh or a box is called in a sentence."""
-        kinds = {g.body: "guide" for g in self.guides} | {m.body: "mesh" for m in self.meshes}
-        kinds |= {r.body: "roller" for r in self.rollers}
-        kind = "box" if self.sheet_of(body) else kinds.get(body, "plane")
+        """What a part of the machine or a box is called in a sentence."""
+        kind = next((part.kind for part in self.machine if part.body == body), "box")
         return f"{kind} {self.bodies.name[body]}"
 
     def too_deep(self, one: int, other: int) -> str:

@@ -30,8 +30,10 @@ def series(result: Result) -> dict[str, Floats]:
         rows = list(part_rows(result, plate))
         table[f"{plate.name}.z_mm"] = result.position[:, plate.body, 2]
         table[f"{plate.name}.force_n"] = result.contact_force[:, rows].sum(axis=1)
-    fixed = [plane for plane in result.model.planes if plane.press is None]
-    for part in (*fixed, *result.model.guides, *result.model.meshes):
+    pressed = {plate.name for plate, _ in result.model.plates}
+    for part in result.model.machine:
+        if isinstance(part, RollerPart) or part.name in pressed:
+            continue
         table[f"{part.name}.force_n"] = result.contact_force[:, list(part_rows(result, part))].sum(axis=1)
     return table
 

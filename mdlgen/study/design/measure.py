@@ -67,7 +67,7 @@ def known(model: Model) -> dict[str, Value]:
     """Every name that a run of this Model has; of the values only which are vectors means anything."""
     from mdlgen.results.summary import summary
 
-    parts = [p.name for p in (*model.sheets, *model.rollers, *model.planes, *model.guides)]
+    parts = [p.name for p in (*model.sheets, *model.machine)]
     begun = begun_of(model)
     found = flat(summary(begun)) | {f"estimates.{name}": 0.0 for name in all_names(begun)}
     return found | {f"events.{kind}.{part}": 0.0 for kind in KINDS for part in parts}
