@@ -5,7 +5,9 @@ from __future__ import annotations
 from functools import cache, partial
 
 from mdlgen.altair.rims import Side, graphics, meetings
-from mdlgen.backends.motionsolve.writer.bodies import facet_ids, graphic_id, rim_ids
+from mdlgen.backends.motionsolve.writer.ids import graphic_id
+from mdlgen.backends.motionsolve.writer.machine import facet_ids
+from mdlgen.backends.motionsolve.writer.parts import written
 from mdlgen.backends.motionsolve.writer.rows import ContactRow, Deck, Law
 from mdlgen.backends.motionsolve.writer.units import number, thousandfold
 from mdlgen.model.tables import Model
@@ -17,13 +19,12 @@ def add_contacts(deck: Deck, model: Model) -> None:
     law = cache(partial(_law, model))
     columns = (c.tolist() for c in (pairs.contact, pairs.a, pairs.b, model.pair_friction))
     rows = list(zip(*columns, strict=True))
-    facets = {guide.body: ids for guide, ids in zip(model.guides, facet_ids(model), strict=True)}
-    rims, rollers = rim_ids(model), {r.body: r for r in model.rollers if r.rim is not None}
+    ids, rollers = facet_ids(model), {r.body: r for r in model.rollers if r.rim is not None}
+    boxes = {part.body: [box.name for box in kind.shown(model, part)] for kind, part in written(model)}
 
     def of(body: int, side: Side) -> tuple[int, ...]:
-        if body in rollers:
-            return tuple(rims[name] for name in graphics(rollers[body], side))
-        return facets.get(body, (graphic_id(body),))
+        names = graphics(rollers[body], side) if body in rollers else boxes.get(body)
+        return tuple(ids[name] for name in names) if names else (graphic_id(body),)
 
     for id, met in enumerate(meetings(model), 1):
         row, a, b, rough = rows[met.pair]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mdlgen.backends.motionsolve.writer.bodies import GLOBAL_FRAME
+from mdlgen.backends.motionsolve.writer.ids import GLOBAL_FRAME
 from mdlgen.backends.motionsolve.writer.rows import Deck
 
 

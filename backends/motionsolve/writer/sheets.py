@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from mdlgen.altair.curves import Written, straight_points, written
 from mdlgen.backends.motionsolve.writer.axes import cosines
-from mdlgen.backends.motionsolve.writer.bodies import body_id
+from mdlgen.backends.motionsolve.writer.ids import body_id
 from mdlgen.backends.motionsolve.writer.requests import add_request
 from mdlgen.backends.motionsolve.writer.rows import (
     Bushing,

@@ -8,6 +8,7 @@ from mdlgen.altair.springs import refuse_compressed
 from mdlgen.backends.motionsolve.writer import gate
 from mdlgen.backends.motionsolve.writer.banner import banner
 from mdlgen.backends.motionsolve.writer.environment import environment
+from mdlgen.backends.motionsolve.writer.parts import WRITTEN
 from mdlgen.backends.motionsolve.writer.views import deck_view
 from mdlgen.errors import SpecError
 from mdlgen.model.external import refuse_externals
@@ -21,7 +22,7 @@ def check(model: Model) -> None:
     """Raises RefusedError by name for what the deck cannot represent."""
     refuse_externals(model, "MotionSolve deck")
     refuse_searched(model, "MotionSolve deck")
-    refuse_unwritten(model, "MotionSolve deck")
+    refuse_unwritten(model, WRITTEN, "MotionSolve deck")
     refuse_compressed(model, "MotionSolve deck")
     refuse_rolling(model, "MotionSolve deck")
 

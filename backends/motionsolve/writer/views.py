@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from mdlgen.backends.motionsolve.writer.bodies import add_bodies, add_frames
 from mdlgen.backends.motionsolve.writer.contacts import add_contacts
-from mdlgen.backends.motionsolve.writer.machine import add_plates, add_rollers
+from mdlgen.backends.motionsolve.writer.machine import add_machine
 from mdlgen.backends.motionsolve.writer.rows import Deck, Run
 from mdlgen.backends.motionsolve.writer.sheets import add_bushings, add_loads, add_probes, add_surfaces
 from mdlgen.backends.motionsolve.writer.units import acceleration, number, per_thousand
@@ -22,8 +22,7 @@ def deck_view(model: Model) -> Deck:
     deck = Deck((x, y, z), _run(model))
     add_frames(deck, model)
     add_bodies(deck, model)
-    add_rollers(deck, model)
-    add_plates(deck, model)
+    add_machine(deck, model)
     add_bushings(deck, model)
     add_surfaces(deck, model)
     add_probes(deck, model)

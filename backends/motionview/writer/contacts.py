@@ -9,7 +9,7 @@ import numpy as np
 
 from mdlgen.altair.rims import Side, graphics, meetings
 from mdlgen.backends.motionview.writer.cells import rough_boxes
-from mdlgen.backends.motionview.writer.guides import guide_graphics
+from mdlgen.backends.motionview.writer.parts import graphics_of
 from mdlgen.backends.motionview.writer.rows import ContactView, Pair, Value
 from mdlgen.model.tables import Model, RollerPart
 
@@ -31,10 +31,8 @@ def pair_rows(model: Model) -> list[Pair]:
     """One row for each pair of bodies that is kept, and for each sector of a rim in it."""
     bodies, table = model.bodies, model.contacts
     shown = [[f"gbox_{name}"] for name in bodies.name]
-    for guide in model.guides:
-        shown[guide.body] = guide_graphics(guide)
-    for mesh in model.meshes:
-        shown[mesh.body] = [f"gcad_{mesh.name}"]
+    for part in model.machine:
+        shown[part.body] = graphics_of(part)
     rollers = {roller.body: roller for roller in model.rollers}
     rubs = [s > 0 or d > 0 for s, d in zip(table.mu_static, table.mu_dynamic, strict=True)]
     rough, rougher = rough_pairs(model), model.pair_friction.tolist()

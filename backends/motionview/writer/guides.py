@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from mdlgen.backends.motionview.writer.axes import axis_of, zx_vector
 from mdlgen.backends.motionview.writer.rows import GuideView, Value
-from mdlgen.model.tables import GuidePart
+from mdlgen.model.tables import GuidePart, Model
 
 
-def guide_view(guide: GuidePart, given: list[Value]) -> GuideView:
+def guide_view(model: Model, guide: GuidePart, given: list[Value]) -> GuideView:
     """One guide; the number of its boxes is fixed in a text."""
     straight = guide.radius == 0.0
     if straight:

@@ -32,3 +32,8 @@ def mesh_view(model: Model, mesh: MeshPart, given: list[Value]) -> MeshView:
         z=components(mesh.principal[:, 2]),
         x=components(mesh.principal[:, 0]),
     )
+
+
+def mesh_graphics(mesh: MeshPart) -> list[str]:
+    """Name of the triangles that show a mesh."""
+    return [f"gcad_{mesh.name}"]

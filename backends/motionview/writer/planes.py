@@ -21,3 +21,8 @@ def plane_view(model: Model, plane: PlanePart, given: list[Value]) -> PlaneView:
         press=components(press.direction if press is not None else np.zeros(3)),
         mass="($M+$M_c)" if any(value.member == "M_c" for value in given) else "$M",
     )
+
+
+def plane_graphics(plane: PlanePart) -> list[str]:
+    """Name of the box that shows a plane."""
+    return [f"gbox_{plane.name}"]

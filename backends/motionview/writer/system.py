@@ -7,15 +7,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from mdlgen.altair.rims import WHOLE, Meeting, meetings
-from mdlgen.altair.rims import graphics as roller_graphics
+from mdlgen.altair.rims import Meeting, meetings
 from mdlgen.backends.motionview.writer.contacts import contact_views, pair_rows, rough_pairs
-from mdlgen.backends.motionview.writer.guides import guide_graphics
 from mdlgen.backends.motionview.writer.idle import used_by
+from mdlgen.backends.motionview.writer.parts import graphics_of
 from mdlgen.backends.motionview.writer.rows import Attachment, Pair, SystemView, Value
 from mdlgen.backends.motionview.writer.units import number
 from mdlgen.backends.motionview.writer.views import given_values, scene_view
 from mdlgen.model.parameters.names import OF_USER
+from mdlgen.model.parts.kinds import KINDS
 from mdlgen.model.tables import BOX_BOX, Ints, Model
 
 
@@ -34,10 +34,7 @@ def system_view(model: Model, set_contact: bool) -> SystemView:
     scene = replace(
         scene_view(model, set_contact),
         parameters=_used(model, given, of_sheets),
-        rollers=[],
-        planes=[],
-        guides=[],
-        meshes=[],
+        **{kind.table: [] for kind in KINDS},
         contacts=contact_views(model, given, of_sheets),
         pairs=sheet_pairs(model),
     )
@@ -73,10 +70,7 @@ def attachments(model: Model) -> list[Attachment]:
     table = model.contacts
     met = {table.part_b[row] for row in np.flatnonzero(~table.of_machine)}
     parts = [
-        *((r.name, f"b_{r.name}", tuple(roller_graphics(r, WHOLE))) for r in model.rollers),
-        *((p.name, f"b_{p.name}", (f"gbox_{p.name}",)) for p in model.planes),
-        *((g.name, f"b_{g.name}", tuple(guide_graphics(g))) for g in model.guides),
-        *((m.name, f"b_{m.name}", (f"gcad_{m.name}",)) for m in model.meshes),
+        *((part.name, f"b_{part.name}", tuple(graphics_of(part))) for part in model.machine),
         *((e.name, e.body, e.graphics) for e in model.externals),
     ]
     made = []
@@ -95,14 +89,14 @@ def sheet_pairs(model: Model) -> list[Pair]:
     """One row for each pair of a box and a part of the machine, or a box of another sheet, by contact."""
     table, bodies, pairs = model.contacts, model.bodies, model.external_pairs
     rows = []
-    shown = {r.name: roller_graphics(r, WHOLE) for r in model.rollers}
+    shown = {part.name: graphics_of(part) for part in model.machine}
     for met, pair in zip(meetings(model), pair_rows(model), strict=True):
         row = int(model.pairs.contact[met.pair])
         if table.kind[row] == BOX_BOX:
             rows.append((row, pair))
         elif not table.of_machine[row]:
             name = table.part_b[row]
-            every = shown.get(name, pair.graphics_2)
+            every = shown[name]
             own = dict(zip(every, _graphics(name, len(every)), strict=True))
             inside = [own[graphic] for graphic in pair.graphics_2]
             rows.append((row, _by_number(pair, met)._replace(body_2=_body(name), graphics_2=inside)))

@@ -9,6 +9,7 @@ from mdlgen.backends.motionview.writer import gate
 from mdlgen.backends.motionview.writer.banner import banner
 from mdlgen.backends.motionview.writer.environment import environment
 from mdlgen.backends.motionview.writer.notes import notes
+from mdlgen.backends.motionview.writer.parts import WRITTEN
 from mdlgen.backends.motionview.writer.system import system_view
 from mdlgen.backends.motionview.writer.views import scene_view
 from mdlgen.errors import RefusedError, SpecError
@@ -36,7 +37,7 @@ def check(model: Model) -> None:
 def check_sheets(model: Model) -> None:
     """Raises RefusedError by name for what the text of the sheets cannot represent."""
     refuse_searched(model, "MotionView text")
-    refuse_unwritten(model, "MotionView text")
+    refuse_unwritten(model, WRITTEN, "MotionView text")
     if len(model.loads.body):
         raise RefusedError(
             "MotionView text: loads are not written, because no force statement with a certain meaning is "

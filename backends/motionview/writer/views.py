@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 from mdlgen.backends.motionview.writer.contacts import contact_views, pair_rows
 from mdlgen.backends.motionview.writer.formula import mdl_formula, rows_of, units_of
-from mdlgen.backends.motionview.writer.guides import guide_view
 from mdlgen.backends.motionview.writer.idle import idle_values
-from mdlgen.backends.motionview.writer.meshes import mesh_view
-from mdlgen.backends.motionview.writer.planes import plane_view
-from mdlgen.backends.motionview.writer.rollers import roller_view
+from mdlgen.backends.motionview.writer.parts import WRITTEN
 from mdlgen.backends.motionview.writer.rows import SceneView, Value
 from mdlgen.backends.motionview.writer.sheets import probe_view, sheet_view, support_views
 from mdlgen.backends.motionview.writer.units import mdl_value, number, with_unit
 from mdlgen.model.parameters.names import OF_USER
-from mdlgen.model.tables import Model, Parameter
+from mdlgen.model.parts.kinds import KINDS
+from mdlgen.model.tables import MachinePart, Model, Parameter
 
 
 def scene_view(model: Model, set_contact: bool) -> SceneView:
@@ -28,15 +27,16 @@ def scene_view(model: Model, set_contact: bool) -> SceneView:
         run=given["run"],
         sheets=[sheet_view(model, k, given) for k in range(len(model.sheets))],
         supports=support_views(model),
-        rollers=[roller_view(model, r, given[r.name]) for r in model.rollers],
-        planes=[plane_view(model, p, given[p.name]) for p in model.planes],
-        guides=[guide_view(g, given[g.name]) for g in model.guides],
-        meshes=[mesh_view(model, m, given[m.name]) for m in model.meshes],
+        **{kind.table: _views(model, getattr(model, kind.table), given) for kind in KINDS},
         contacts=contact_views(model, given, range(len(model.contacts))),
         pairs=pair_rows(model),
         probes=[probe_view(model, probe) for probe in model.probes],
         set_contact=set_contact,
     )
+
+
+def _views(model: Model, parts: tuple[MachinePart, ...], given: Mapping[str, list[Value]]) -> list[Any]:
+    return [WRITTEN[type(part)].view(model, part, given[part.name]) for part in parts]
 
 
 def given_values(model: Model, set_contact: bool, kept: Sequence[int]) -> dict[str, list[Value]]:

@@ -1,0 +1,149 @@
+"""Rows of rollers: axles, carriers, arms, drives, clutches, cylinders, rims and what is recorded."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from mdlgen.altair.rims import rim_facets
+from mdlgen.backends.motionsolve.writer.axes import cosines
+from mdlgen.backends.motionsolve.writer.body import add_body
+from mdlgen.backends.motionsolve.writer.facets import Shown
+from mdlgen.backends.motionsolve.writer.ids import GROUND_ID, body_id, graphic_id
+from mdlgen.backends.motionsolve.writer.joints import add_slide, join
+from mdlgen.backends.motionsolve.writer.requests import add_request
+from mdlgen.backends.motionsolve.writer.rows import (
+    Bushing,
+    BushingGroup,
+    Clutch,
+    Cylinder,
+    Deck,
+    Joint,
+    Motion,
+)
+from mdlgen.backends.motionsolve.writer.units import number, per_thousand, thousandfold, triples
+from mdlgen.model.tables import ArmPart, Floats, Model, OneWay, Press, RollerPart
+
+_CONVERT = ((0, per_thousand), (1, thousandfold))  # the columns of a profile
+
+
+def add_frame(deck: Deck, model: Model, roller: RollerPart) -> None:
+    """The axes of a rim, on ground."""
+    if roller.rim is not None:
+        (at,) = triples(model.bodies.position[roller.body][None])
+        axes = cosines(model.bodies.rotation[roller.body])
+        deck.marker(f"m_{roller.name}", f"Axes of {roller.name}", GROUND_ID, at, axes)
+
+
+def shown(model: Model, roller: RollerPart) -> list[Shown]:
+    """The boxes that show a rim."""
+    made, table = [], model.bodies
+    for part, facet in rim_facets(roller, table.position[roller.body], table.rotation[roller.body]):
+        pieces = part.removeprefix(f"{roller.name}_").split("_")
+        made.append(Shown(f"gbox_{part}", f"{roller.name}, {pieces[0]}, part {pieces[1]}", facet))
+    return made
+
+
+def add_roller(deck: Deck, model: Model, roller: RollerPart) -> None:
+    """Axle, drive, cylinder and what is recorded; a carrier, or an arm, follows the bodies of the Model."""
+    place = model.bodies.position[roller.body]
+    on = GROUND_ID
+    if roller.press is not None:
+        on = body_id(len(deck.bodies))
+        _add_press(deck, roller, roller.press, place, on)
+    if roller.arm is not None:
+        on = body_id(len(deck.bodies))
+        _add_arm(deck, model, roller, roller.arm, on)
+    body = body_id(roller.body)
+    axle = join(deck, f"j_{roller.name}", f"Axle of {roller.name}", "REVOLUTE", body, on, place, roller.axis)
+    if roller.one_way is not None:
+        _add_clutch(deck, model, roller, roller.one_way, deck.joints[-1])
+    elif roller.speed is not None:
+        name, label = f"mot_{roller.name}", f"Drive of {roller.name}"
+        deck.motions.append(Motion(name, label, len(deck.motions) + 1, law(roller), axle))
+    _add_cylinder(deck, model, roller, place)
+    markers = [deck.bodies[roller.body].cm]
+    add_request(
+        deck, f"o_{roller.name}", f"Roller {roller.name}: position, spin", "DX DY DZ WX WY WZ", markers
+    )
+
+
+def law(roller: RollerPart) -> str:
+    """Angular velocity [rad/s] of a driven roller over time, in the form that the text has: a ramp, or the
+    sum of what each piece of a profile adds."""
+    if roller.profile is None:
+        assert roller.speed is not None, "asked only of a driven roller"
+        full = thousandfold(roller.speed)
+        return f"{full}*(1-MAX(0,1-TIME/{per_thousand(roller.ramp)}))" if roller.ramp > 0.0 else full
+    times, speeds = ([convert(v) for v in roller.profile[:, k].tolist()] for k, convert in _CONVERT)
+    parts = [speeds[0]]
+    for (t, w), (t_end, w_end) in pairwise(zip(times, speeds, strict=True)):
+        parts.append(f"({w_end}-({w}))*MAX(0,1-MAX(0,({t_end}-TIME)/({t_end}-{t})))")
+    return "+".join(parts)
+
+
+def _add_clutch(deck: Deck, model: Model, roller: RollerPart, way: OneWay, axle: Joint) -> None:
+    """The torque of a clutch, 2 torque s^2 / (1 + s) of the relative speed s against the free sense."""
+    shaft = f"({law(roller)})" if roller.speed is not None else "0"
+    sense = way.direction
+    s = f"MAX(0,{sense}*({shaft}-WZ({axle.i},{axle.j},{axle.j}))/{thousandfold(way.creep)})"
+    deck.clutches.append(
+        Clutch(
+            name=f"frc_{roller.name}_clutch",
+            label=f"Clutch of {roller.name}",
+            id=len(model.loads.body) + len(deck.clutches) + 1,
+            i=axle.i,
+            j=axle.j,
+            torque=f"{number(2 * sense * way.torque)}*{s}*{s}/(1+{s})",
+        )
+    )
+
+
+def _add_press(deck: Deck, roller: RollerPart, press: Press, place: Floats, carrier: int) -> None:
+    """The carrier of a pressed roller, on its slide."""
+    name = f"b_{roller.name}_carrier"
+    inertia = [0.4 * press.carrier_mass * roller.radius**2] * 3  # a ball, as the text has it
+    (at,) = triples(place[None])
+    add_body(deck, name, f"Carrier of {roller.name}", carrier, at, None, press.carrier_mass, inertia)
+    add_slide(deck, roller, press, place, carrier)
+
+
+def _add_arm(deck: Deck, model: Model, roller: RollerPart, arm: ArmPart, id: int) -> None:
+    """The arm of a roller, its pivot, and its torsional spring as a bushing to ground."""
+    pivot, center = triples(np.stack([arm.pivot, arm.center]))
+    name = f"b_{roller.name}_arm"
+    add_body(deck, name, f"Arm of {roller.name}", id, center, None, arm.mass, [arm.inertia] * 3)
+    joint, label = f"j_{roller.name}_pivot", f"Pivot of {roller.name}"
+    join(deck, joint, label, "REVOLUTE", id, GROUND_ID, arm.pivot, roller.axis)
+    if not arm.sprung:
+        return
+    bush, label = f"bsh_{roller.name}_arm", f"Spring of the arm of {roller.name}"
+    axes = cosines(model.bodies.rotation[roller.body])
+    i = deck.marker(f"{bush}.i", f"{label}-Marker I", id, pivot, axes)
+    j = deck.marker(f"{bush}.j", f"{label}-Marker J", GROUND_ID, pivot, axes)
+    zero = number(0.0)
+    values = [(axis, zero, zero, zero) for axis in ("x", "y", "z", "tx", "ty")]
+    values.append(("tz", number(arm.stiffness), per_thousand(arm.damping), number(arm.torque)))
+    number_of = len(model.bushings) + len(deck.bushing_groups) + 1  # those of the sheets come later
+    deck.bushing_groups.append(BushingGroup(tuple(values), [Bushing(bush, label, number_of, i, j)]))
+
+
+def _add_cylinder(deck: Deck, model: Model, roller: RollerPart, place: Floats) -> None:
+    """The graphic, whose marker stands where the cylinder starts, with Z along it (seen)."""
+    name, label = f"gcyl_{roller.name}", model.bodies.label[roller.body]
+    (start,) = triples((place - roller.width / 2 * roller.axis)[None])
+    axes = cosines(model.bodies.rotation[roller.body])
+    marker = deck.marker(
+        f"{name}_center_marker", f"{label} - Center Marker", body_id(roller.body), start, axes
+    )
+    deck.cylinders.append(
+        Cylinder(
+            name=name,
+            label=label,
+            id=graphic_id(roller.body),
+            marker=marker,
+            radius=number(roller.radius),
+            length=number(roller.width),
+        )
+    )
