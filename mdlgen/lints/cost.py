@@ -1,9 +1,11 @@
 """What a run costs, before it is run, and lints of what makes it cost so much.
 
-Fitted to the samples on one core of some 3 GHz, with all that the solver lattice runs: the coarser runs from
-which the error is estimated, too. Of 13 transient samples that take 0.25 s or more, processor time was 0.5 to
-1.8 times what is said here, and 3.1 and 3.2 times in `channel` and `spring_plate`, whose steps take more
-iterations. Where two processors run two passes at a time, a run takes about two thirds of it.
+Counted are boxes, pairs of bodies by what they are of, and steps. Fitted to the samples and to some of them
+on other grids and at other tolerances, on one core of some 3 GHz, with all that the solver lattice runs: the
+coarser runs from which the error is estimated, too. Of 19 transient samples processor time was 0.54 to 1.8
+times what is said here, of `snatch`, 17 ms, twice. On other grids and at other tolerances it was 0.2 to 5
+times: the step is halved until the estimate is within the tolerance, and how often is not known ahead. Where
+two processors run two passes at a time, a run takes about two thirds of it.
 """
 
 from __future__ import annotations
@@ -13,15 +15,21 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from mdlgen.lints.lint import Lint
-from mdlgen.model.tables import Model
+from mdlgen.model.tables import BOX_BOX, BOX_GUIDE, BOX_MESH, Model
 
-START, START_OF_A_BOX = 0.1, 5e-4  # [s]
-STEP, STEP_OF_A_BOX, STEP_OF_A_PAIR = 10e-6, 0.8e-6, 0.6e-6  # [s]
-MANY_BOXES = 2000.0  # with so many a step takes twice what it does by their number alone
-STATIC_BOX = 2e-3  # [s], of a static run
-# The step that a run begins with at a tolerance of 1e-3 [ms]; it goes with the root of the tolerance. It is
-# halved until the estimate is within the tolerance: for sheets in contact mostly to a sixth.
-FIRST_STEP, PARTS_AT_LEAST, HALVED, HALVED_IN_CONTACT = 0.2, 20, 2.0, 6.0
+START = 4e-3  # [s]
+PASSES = 1.8  # what the coarser runs add to the last one
+# Of one step [s]; BAND for each box and the square of the boxes on the shorter side of its sheet, which is
+# what a factor of its joints takes.
+STEP, BOX, BAND = 6e-6, 0.03e-6, 2.1e-9
+PAIR, CURVED, LAID = 0.26e-6, 1.06e-6, 1.2e-6  # with a roller or a plane, a guide or a mesh, another sheet
+MOST_LAID = 4  # of such pairs a box touches so many at a time
+STATIC_BOX, STATIC_BAND = 4e-5, 1e-7  # [s], of a static run
+# The step of blocks, or without contacts, at a tolerance of 1e-3 [ms]; it goes with the tolerance's root.
+FIRST_STEP, PARTS_AT_LEAST, HALVED = 0.2, 20, 2.0
+# Of sheets in contact it is finer the faster they are for the smoothing of friction, at 100 times that by
+# FINER; and goes with the tolerance below 1e-3.
+FINER, FASTER, BY_SPEED, BY_TOLERANCE = 5.9, 100.0, 0.21, 1.27
 LONG, MANY_TIMES = 60.0, 4.0  # [s]: below, nothing is said
 USUAL_TOLERANCE, USUAL_OUTPUTS, USUAL_DURATION, USUAL_BOXES = 1e-3, 200, 1000.0, 500
 
@@ -48,19 +56,28 @@ class _Size:
     tolerance: float
     step: float | None
     boxes: int
-    pairs: int
+    band: float  # boxes, each times the square of those on the shorter side of its sheet
+    plain: int  # pairs
+    curved: int
+    laid: int
     contact: bool  # of sheets of more than one box
+    speed: float  # the greatest, in times the least smoothing
 
     def cost(self) -> Cost:
         """Of a transient run."""
-        step = self.step
-        if step is None:
-            first = min(FIRST_STEP * math.sqrt(self.tolerance / 1e-3), self.duration / PARTS_AT_LEAST)
-            step = first / (HALVED_IN_CONTACT if self.contact else HALVED)
-        steps = max(self.duration / step, self.outputs, 1.0)
-        each = STEP + STEP_OF_A_BOX * self.boxes + STEP_OF_A_PAIR * self.pairs
-        many = 1.0 + self.boxes / MANY_BOXES
-        return Cost(START + START_OF_A_BOX * self.boxes + steps * each * many, math.ceil(steps))
+        steps = max(self.duration / (self.step or self._step()), self.outputs, 1.0)
+        laid = min(self.laid, MOST_LAID * self.boxes)
+        each = STEP + BOX * self.boxes + BAND * self.band
+        each += PAIR * self.plain + CURVED * self.curved + LAID * laid
+        return Cost(START + PASSES * steps * each, math.ceil(steps))
+
+    def _step(self) -> float:
+        """What the search for one comes to, about."""
+        strict = self.tolerance / 1e-3
+        if not self.contact:
+            return min(FIRST_STEP * math.sqrt(strict), self.duration / PARTS_AT_LEAST) / HALVED
+        first = min(FIRST_STEP * min(strict, 1.0) ** BY_TOLERANCE, self.duration / PARTS_AT_LEAST)
+        return first / max(1.0, FINER * (max(self.speed, 1.0) / FASTER) ** BY_SPEED)
 
 
 def cost(model: Model) -> Cost | None:
@@ -68,22 +85,39 @@ def cost(model: Model) -> Cost | None:
     if model.run.analysis == "static":
         if len(model.pairs):
             return None
-        return Cost(START + STATIC_BOX * sum(sheet.count for sheet in model.sheets), 0)
+        boxes, band = _boxes(model)
+        return Cost(START + STATIC_BOX * boxes + STATIC_BAND * band, 0)
     return _size(model).cost()
+
+
+def _boxes(model: Model) -> tuple[int, float]:
+    """Boxes, and what their factors take."""
+    sheets = model.sheets
+    return sum(s.count for s in sheets), float(sum(s.count * min(s.n_x, s.n_y) ** 2 for s in sheets))
 
 
 def _size(model: Model) -> _Size:
     run, counts = model.run, {sheet.name: sheet.count for sheet in model.sheets}
     searched = (int(row) for row in model.pairs.searched)
     beside = sum(counts[model.contacts.part_a[row]] + counts[model.contacts.part_b[row]] for row in searched)
+    kinds = model.contacts.kind[model.pairs.contact].tolist()
+    curved, laid = kinds.count(BOX_GUIDE) + kinds.count(BOX_MESH), kinds.count(BOX_BOX)
+    boxes, band = _boxes(model)
+    speeds = [abs(roller.speed or 0.0) * roller.radius for roller in model.rollers]
+    speeds += [math.hypot(*sheet.velocity.tolist()) for sheet in model.sheets]
+    smoothing = model.contacts.smoothing.min() if len(model.contacts) else 1.0
     return _Size(
         duration=run.duration,
         outputs=run.duration / run.print_step,
         tolerance=run.tolerance,
         step=run.step,
-        boxes=sum(counts.values()),
-        pairs=len(model.pairs) + beside,
-        contact=len(model.pairs) > 0 and max(counts.values()) > 1,
+        boxes=boxes,
+        band=band,
+        plain=len(kinds) - curved - laid,
+        curved=curved,
+        laid=laid + beside,
+        contact=len(model.pairs) + beside > 0 and max(counts.values()) > 1,
+        speed=max(speeds) / float(smoothing),
     )
 
 
@@ -104,7 +138,9 @@ def costly(model: Model) -> Iterator[Lint]:
     largest = max(model.sheets, key=lambda sheet: sheet.count)
     if largest.count > USUAL_BOXES:
         boxes = size.boxes - largest.count + USUAL_BOXES
-        fewer = replace(size, boxes=boxes, pairs=math.ceil(size.pairs * boxes / size.boxes))
+        part = boxes / size.boxes
+        pairs = {name: math.ceil(getattr(size, name) * part) for name in ("plain", "curved", "laid")}
+        fewer = replace(size, boxes=boxes, band=size.band * part**2, **pairs)
         others.append((fewer, f"sheets.{largest.name}.boxes", f"{USUAL_BOXES} boxes"))
     best, where, instead = min(others, key=lambda other: other[0].cost().seconds)
     if best.cost().seconds * MANY_TIMES <= whole:

@@ -72,7 +72,7 @@ def overview_parts(record: dict[str, Any]) -> list[str | Rows]:
         lines.append(f"external parts: {parts}; {pairs['external']} pairs of bodies with them, all kept")
     elif record["cost"] is not None:
         cost = Cost(**record["cost"])
-        lines.append(f"a run takes {cost}{', within a factor of 3' if cost.seconds >= 1.0 else ''}")
+        lines.append(f"a run takes {cost}{', mostly within a factor of 2' if cost.seconds >= 1.0 else ''}")
     return lines
 
 

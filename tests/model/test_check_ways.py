@@ -107,11 +107,43 @@ def test_the_value_that_makes_a_run_long(sample: str, value: str, where: str) ->
 @pytest.mark.parametrize(
     "sample", ["transport_4x4", "channel", "pick", "stack", "feeder_window", "verify/slide"]
 )
-def test_steps_are_as_foretold_within_a_factor_of_three(sample: str) -> None:
+def test_steps_are_as_foretold_within_a_factor_of_two(sample: str) -> None:
     model = lower(load(samples() / f"{sample}.yaml"))
     answer, result = cost(model), mdlgen.solve(model)
     assert answer is not None and result.ok
-    assert answer.steps / 3 < result.steps < 3 * answer.steps
+    assert answer.steps / 2 < result.steps < 2 * answer.steps
+
+
+# Processor time of mdlgen.solve(model, "lattice") on one core of some 3 GHz [s], the least of three.
+TOOK = {
+    "channel": 0.381,
+    "feeder": 10.2,
+    "feeder_one": 14.8,
+    "feeder_window": 0.151,
+    "guide_joint": 0.354,
+    "peel": 0.525,
+    "pick": 0.176,
+    "retard_pad": 3.14,
+    "spring_plate": 0.840,
+    "stack": 0.068,
+    "tilt_correction": 1.90,
+    "transport_4x2": 0.653,
+    "transport_4x4": 0.421,
+    "transport_nips": 0.411,
+    "transport_tilted": 1.76,
+    "verify/drop": 0.162,
+    "verify/flip": 0.041,
+    "verify/incline": 0.038,
+    "verify/slide": 0.042,
+}
+
+
+@pytest.mark.parametrize("sample", TOOK)
+def test_the_time_is_as_foretold_within_a_factor_of_two(sample: str) -> None:
+    """As it was measured once: a test that measures fails on a busy machine."""
+    answer = cost(lower(load(samples() / f"{sample}.yaml")))
+    assert answer is not None
+    assert TOOK[sample] / 2 < answer.seconds < 2 * TOOK[sample]
 
 
 def test_a_cost_grows_with_boxes_pairs_and_duration() -> None:
@@ -120,7 +152,7 @@ def test_a_cost_grows_with_boxes_pairs_and_duration() -> None:
     longer = cost(replace(model, run=replace(model.run, duration=10 * model.run.duration)))
     finer = cost(lower(load(samples() / "transport_4x4.yaml", ["sheets.note.boxes=[20,40]"])))
     assert base and longer and finer
-    assert 5 * base.seconds < longer.seconds < 11 * base.seconds and longer.steps == 10 * base.steps
+    assert 5 * base.seconds < longer.seconds < 11 * base.seconds and abs(longer.steps - 10 * base.steps) <= 10
     assert finer.seconds > 3.5 * base.seconds and finer.steps == base.steps
 
 
@@ -142,8 +174,8 @@ def test_a_time_in_words(seconds: float, said: str) -> None:
 def test_check_says_what_a_run_takes() -> None:
     file = str(samples() / "feeder.yaml")
     assert (
-        "a run takes about 33 s, some 10000 steps, within a factor of 3"
+        "a run takes about 18 s, some 10000 steps, mostly within a factor of 2"
         in CliRunner().invoke(app, ["check", file]).stdout
     )
     answer: Any = json.loads(CliRunner().invoke(app, ["check", file, "--json"]).stdout)
-    assert answer["cost"]["steps"] == 12000 and 20.0 < answer["cost"]["seconds"] < 60.0
+    assert answer["cost"]["steps"] == 12000 and 10.0 < answer["cost"]["seconds"] < 30.0
