@@ -9,12 +9,16 @@ from mdlgen.errors import RefusedError, SpecError
 from mdlgen.model.tables import Model
 from mdlgen.registry import DECK, emitter
 from mdlgen.spec.scene import Scene
-from mdlgen.verify.companion import beside, chosen, of_systems, taken
-from mdlgen.verify.elements import element_differences
 from mdlgen.verify.expected.graphics import mesh_shapes
 from mdlgen.verify.expected.units import reach
-from mdlgen.verify.found import (
-    Found,
+from mdlgen.verify.inputs.companion import beside, chosen, of_systems, taken
+from mdlgen.verify.inputs.scope import Scope
+from mdlgen.verify.inputs.subject import File, Read, Subject
+from mdlgen.verify.outcome import Turned, Verification
+from mdlgen.verify.perturb.perturb import Progress, turn_all
+from mdlgen.verify.readback.script import DEFAULT_GRAVITY, Script
+from mdlgen.verify.readback.values import (
+    ReadBack,
     Values,
     contact_table,
     data_table,
@@ -22,15 +26,11 @@ from mdlgen.verify.found import (
     marker_table,
     run_table,
 )
-from mdlgen.verify.host import host_notes
-from mdlgen.verify.outcome import Turned, Verification
-from mdlgen.verify.own import Own
-from mdlgen.verify.perturb import Progress, turn_all
-from mdlgen.verify.script import DEFAULT_GRAVITY, Script
-from mdlgen.verify.statements import remarks, unaccounted
-from mdlgen.verify.subject import File, Read, Subject
 from mdlgen.verify.tables import Difference, Table, compare
-from mdlgen.verify.wording import wording
+from mdlgen.verify.text.elements import element_differences
+from mdlgen.verify.text.host_model import host_notes
+from mdlgen.verify.text.statements import remarks, unaccounted
+from mdlgen.verify.text.wording import wording
 
 # Kinds that a deck has no entities for: points, vectors and data sets are the text's way to say numbers.
 _NOT_IN_DECK = ("points", "vectors", "data", "mesh files")
@@ -106,11 +106,11 @@ def _given(
     our = subject.own(one.has_numbers)
     names = frozenset(our.reading.program.definitions) if subject.only else None
     in_host = subject.only is not None and one.reading.program.begin is not None
-    own = Own(one.reading, names, tuple(r.prefix for r in reads) if subject.only else ())
+    scope = Scope(one.reading, names, tuple(r.prefix for r in reads) if subject.only else ())
     _ = one.values
-    remarks(one.reading, own, found)
-    found.differences += unaccounted(our.reading, one.reading, own)
-    given, looked = (File.read(companion), []) if companion is not None else beside(text, own)
+    remarks(one.reading, scope, found)
+    found.differences += unaccounted(our.reading, one.reading, scope)
+    given, looked = (File.read(companion), []) if companion is not None else beside(text, scope)
     if given is None:
         taken(mine, looked, found)
     numbers = chosen(mine, given, found)
@@ -134,7 +134,7 @@ def _text(
     found: Verification,
     within: str,
 ) -> None:
-    tables = Found(subject.times).tables(values)
+    tables = ReadBack(subject.times).tables(values)
     tables["data"] = data_table(values)
     names = values["contacts"]
     tables["contacts"] = contact_table(values, {n: numbers.numbers(n) for n in names})
@@ -183,7 +183,7 @@ def _deck(
     if own is not None:
         mine = backend.read(own, "<deck>")
         found.differences += element_differences(mine, reading, file)
-    tables = Found(subject.times).tables(values)
+    tables = ReadBack(subject.times).tables(values)
     tables["contacts"] = contact_table(values, {})
     tables["run"] = run_table(values)
     tables["gravity"] = gravity_table(values["gravity"])

@@ -12,7 +12,7 @@ from mdlgen.model.tables import (
 )
 from mdlgen.verify.expected.points import spring_anchor
 from mdlgen.verify.expected.units import SECOND, body_name, reach
-from mdlgen.verify.state import motion
+from mdlgen.verify.solver_expressions import motion
 from mdlgen.verify.tables import Part, Table, table
 
 

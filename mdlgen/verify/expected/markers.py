@@ -15,7 +15,7 @@ from mdlgen.model.tables import (
 from mdlgen.verify.expected.graphics import under
 from mdlgen.verify.expected.points import anchor_points, boxes_of
 from mdlgen.verify.expected.units import body_name, reach
-from mdlgen.verify.state import motion
+from mdlgen.verify.solver_expressions import motion
 from mdlgen.verify.tables import Part, Table, table
 
 

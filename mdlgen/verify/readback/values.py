@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from mdlgen.verify.expected.contacts import CONTACT_NUMBERS
 from mdlgen.verify.expected.graphics import shape_numbers
-from mdlgen.verify.expected_numbers import CONTACT_NUMBERS
-from mdlgen.verify.state import Places, Unreadable, law, request
+from mdlgen.verify.solver_expressions import Places, Unreadable, law, request
 from mdlgen.verify.tables import Table
 
 Values = Mapping[str, Mapping[str, Any]]
@@ -22,7 +22,7 @@ _MARKER = re.compile(r"[A-Za-z_][\w.]*(?=\s*[,)])")
 _ATTRIBUTE = re.compile(r'\b(\w+)\s*=\s*"([^"]*)"')
 
 
-class Found:
+class ReadBack:
     """Tables of some values; `stations` are the times [s] at which the laws of drives are looked at."""
 
     def __init__(self, stations: Mapping[str, tuple[float, ...]], markers: Mapping[str, Any] | None = None):

@@ -1,4 +1,4 @@
-"""Data sets, contacts, gravity and run settings that a text with its script must have of a Model."""
+"""Data sets that a text must have of a Model."""
 
 from __future__ import annotations
 
@@ -7,24 +7,15 @@ import math
 import numpy as np
 
 from mdlgen.altair.curves import written
-from mdlgen.altair.rims import DEEP, Side, graphics, meetings
+from mdlgen.altair.rims import DEEP
 from mdlgen.model.parts.guide import outer
 from mdlgen.model.tables import Anchor, GuidePart, MeshPart, Model, RollerPart, SheetPart
 from mdlgen.units import parse_unit
-from mdlgen.verify.bend import shape
-from mdlgen.verify.cells import cells, damping_times
-from mdlgen.verify.expected.units import KG, SECOND, body_name
-from mdlgen.verify.tables import Part, Table, table
+from mdlgen.verify.expected.bent_sheets import shape
+from mdlgen.verify.expected.cells import cells, damping_times
+from mdlgen.verify.expected.units import KG, SECOND
+from mdlgen.verify.tables import Table, table
 
-CONTACT_NUMBERS = (
-    "penalty",
-    "restitution",
-    "mu_static",
-    "mu_dynamic",
-    "stiction_velocity",
-    "friction_velocity",
-    "normal_trans_vel",
-)
 # From the Model's unit to that of the text.
 FACTORS = {
     **dict.fromkeys(("mm", "N", "1", "MPa", "N/mm", "N*mm", "N*mm/rad", "N/mm^1.5"), 1.0),
@@ -194,70 +185,3 @@ def _twist(model: Model, sheet: SheetPart, found: dict[str, float]) -> dict[str,
         heavy = found["m"] if sheet.rotation_damping == "paper" else found[f"J_{name[1]}"]
         twist[f"c_{name}_twist"] = 2 * given[zeta] * math.sqrt(k * heavy * SECOND)
     return twist
-
-
-def contacts(model: Model) -> Table:
-    """One row for each pair of bodies that may touch, and each sector of a rim in it; without friction its
-    four numbers are 0."""
-    rows, pairs, outside, bodies = model.contacts, model.pairs, model.external_pairs, model.bodies
-    met = list(meetings(model))
-    inside = np.array([m.pair for m in met], dtype=int)
-    of = np.concatenate([pairs.contact[inside], outside.contact])
-    own = np.array([(m.friction, m.stiffness) for m in met]).reshape(-1, 2)
-    rough = np.concatenate([model.pair_friction[inside] * own[:, 0], bodies.friction[outside.box]])
-    stiff = np.concatenate([own[:, 1], np.ones(len(outside))])
-    restitution = rows.restitution[of]
-    restitution[: len(met)] = [m.restitution(c) for m, c in zip(met, restitution, strict=False)]
-    rubs = ((rows.mu_static[of] > 0) | (rows.mu_dynamic[of] > 0)) & (rough > 0)
-    numbers = np.stack(
-        [
-            rows.stiffness[of] * stiff,
-            restitution,
-            *(np.where(rubs, v * rough, 0.0) for v in (rows.mu_static[of], rows.mu_dynamic[of])),
-            *(
-                np.where(rubs, v / SECOND, 0.0)
-                for v in (rows.stiction_velocity[of], rows.friction_velocity[of])
-            ),
-            rows.smoothing[of] / SECOND,
-        ],
-        axis=1,
-    )
-    rollers = {r.body: r for r in model.rollers}
-    guides = {g.body: [f"gbox_{g.name}_{k}" for k in range(g.facets)] for g in model.guides}
-    guides |= {m.body: [f"gcad_{m.name}"] for m in model.meshes}
-
-    def shown(body: int, side: Side) -> list[str]:
-        if body in rollers:
-            return graphics(rollers[body], side)
-        return guides.get(body, [f"gbox_{bodies.name[body]}"])
-
-    names, words = [], []
-    for m in met:
-        a, b = int(pairs.a[m.pair]), int(pairs.b[m.pair])
-        names.append(f"con_{bodies.name[a]}_{bodies.name[b]}{m.suffix}")
-        ends = [(body_name(model, a), shown(a, m.a)), (body_name(model, b), shown(b, m.b))]
-        if len(ends[0][1]) > 1:  # the first side of a statement has one graphic
-            ends.reverse()
-        words.append((ends[0][0], ends[1][0], *ends[0][1], *ends[1][1]))
-    for a, part in zip(outside.box.tolist(), outside.part.tolist(), strict=True):
-        other = model.externals[part]
-        names.append(f"con_{bodies.name[a]}_{other.name}")
-        given = [v.removeprefix("MODEL.") for v in (other.body, *other.graphics)]
-        words.append((body_name(model, a), given[0], f"gbox_{bodies.name[a]}", *given[1:]))
-    said = [("POISSON", "ON" if on else "OFF", *row) for on, row in zip(rubs.tolist(), words, strict=True)]
-    parts: dict[str, Part] = {n: (numbers[:, k], None) for k, n in enumerate(CONTACT_NUMBERS)}
-    return table(names, parts, said)
-
-
-def run(model: Model) -> Table:
-    """Analysis and times [s]; a static run has none."""
-    static = model.run.analysis == "static"
-    times = (0.0, 0.0) if static else (model.run.duration * SECOND, model.run.print_step * SECOND)
-    parts: dict[str, Part] = {"end": (np.array(times[:1]), None), "print": (np.array(times[1:]), None)}
-    return table(["run"], parts, [("Static" if static else "Transient",)])
-
-
-def gravity(model: Model) -> Table:
-    """Gravity [mm/s^2]."""
-    g = model.gravity / SECOND**2
-    return table(["gravity"], {"g": (g[None], np.abs(g).max(initial=1.0))})

@@ -12,11 +12,15 @@ from mdlgen.model.tables import Model
 from mdlgen.paths import read_exactly, read_text
 from mdlgen.registry import TEXT, emitter
 from mdlgen.spec.scene import Scene
-from mdlgen.verify import alone, script
+from mdlgen.verify.expected.contacts import contacts
+from mdlgen.verify.expected.data import data
 from mdlgen.verify.expected.motions import stations
+from mdlgen.verify.expected.run import gravity, run
+from mdlgen.verify.expected.sheets_only import of_sheets
 from mdlgen.verify.expected.whole import expected
-from mdlgen.verify.expected_numbers import contacts, data, gravity, run
-from mdlgen.verify.found import Values
+from mdlgen.verify.inputs.systems import definition, inside
+from mdlgen.verify.readback import script
+from mdlgen.verify.readback.values import Values
 from mdlgen.verify.tables import Table
 
 
@@ -42,7 +46,7 @@ class Read:
 
     @cached_property
     def values(self) -> dict[str, Any]:
-        return alone.inside(self.reading.values, self.prefix)
+        return inside(self.reading.values, self.prefix)
 
     @property
     def has_numbers(self) -> bool:
@@ -54,7 +58,7 @@ class Read:
         # of a contact without numbers there is nothing that a value could change
         without = () if self.has_numbers else ("Contact",)
         values = self.reading.changed(self.prefix + path, repr(number), without)
-        return None if values is None else alone.inside(values, self.prefix)
+        return None if values is None else inside(values, self.prefix)
 
 
 class Subject:
@@ -76,7 +80,7 @@ class Subject:
         model = model or self.model
         said = expected(model, self.times) | {"data": data(model), "contacts": contacts(model)}
         said |= {"run": run(model), "gravity": gravity(model)}
-        return alone.of_sheets(said, model, self.text is not None) if self.only else said
+        return of_sheets(said, model, self.text is not None) if self.only else said
 
     def reads(self, set_contact: bool) -> list[Read]:
         """The text that was given, or mdlgen's own; a host has one for each system of the sheets."""
@@ -96,10 +100,10 @@ class Subject:
                 raise SpecError(finding.message, place=finding.place)
         if not self.only:
             return [Read(reading, "")]
-        definition = alone.definition(self.model)
-        instances = reading.instances(definition)
+        wanted = definition(self.model)
+        instances = reading.instances(wanted)
         if not instances:
-            what = f"no instance of {definition}, the sheets of {self.model.name}"
+            what = f"no instance of {wanted}, the sheets of {self.model.name}"
             raise SpecError(f"{file}: this text has {what}")
         return [Read(reading, instance) for instance in instances]
 

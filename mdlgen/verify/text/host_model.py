@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from mdlgen.verify.subject import Read
+from mdlgen.verify.inputs.subject import Read
 
 _MOST = 5
 

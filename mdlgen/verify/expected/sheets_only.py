@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 from mdlgen.altair.rims import WHOLE, graphics, meetings
 from mdlgen.formulas import names
@@ -12,11 +11,6 @@ from mdlgen.model.tables import Model
 from mdlgen.verify.tables import ANY, Table
 
 MACHINE_KINDS = ("springs", "cylinders", "motions", "vectors", "run", "gravity")
-
-
-def definition(model: Model) -> str:
-    """Name of the system definition that holds the sheets of a scene."""
-    return f"def_sys_{model.name}"
 
 
 def of_sheets(said: dict[str, Table], model: Model, own_machine: bool) -> dict[str, Table]:
@@ -78,27 +72,3 @@ def _any_machine(table: Table, model: Model) -> tuple[tuple[str, ...], ...]:
     """The words of contacts with the parts that this scene has a shape of left open."""
     ours = {f"b_{part.name}" for part in model.machine}
     return tuple((*w[:3], ANY, w[4], *(ANY for _ in w[5:])) if w[3] in ours else w for w in table.words)
-
-
-def inside(values: dict[str, Any], prefix: str) -> dict[str, Any]:
-    """The values of what stands in one system, with the names that they have in it."""
-    if not prefix:
-        return values
-    return {
-        kind: {
-            name.removeprefix(prefix): _without(record, prefix)
-            for name, record in records.items()
-            if name.startswith(prefix)
-        }
-        for kind, records in values.items()
-    }
-
-
-def _without(value: Any, prefix: str) -> Any:
-    if isinstance(value, str):
-        return value.replace(prefix, "")
-    if isinstance(value, dict):
-        return {key: _without(v, prefix) for key, v in value.items()}
-    if isinstance(value, (tuple, list)) and value and not isinstance(value[0], float):
-        return tuple(_without(v, prefix) for v in value)
-    return value

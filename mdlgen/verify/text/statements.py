@@ -6,8 +6,8 @@ from collections import Counter
 from collections.abc import Iterator
 from typing import Any
 
+from mdlgen.verify.inputs.scope import Scope
 from mdlgen.verify.outcome import Verification
-from mdlgen.verify.own import Own
 from mdlgen.verify.tables import Difference
 
 _SHOWN = 120  # characters of a statement in a message
@@ -18,13 +18,13 @@ _HARMLESS = ("ascii", "unused", "comment", "attachment")
 _MOST_NOTES = 5
 
 
-def unaccounted(mine: Any, given: Any, own: Own) -> Iterator[Difference]:
+def unaccounted(mine: Any, given: Any, scope: Scope) -> Iterator[Difference]:
     """What a given text has more, or less, than the text `mine` that mdlgen writes."""
     due = Counter(rest.key for rest in mine.remainder())
     for rest in given.remainder():
         if due[rest.key]:
             due[rest.key] -= 1
-        elif own.has(rest):
+        elif scope.has(rest):
             message = f"{rest.statement.place()}: {_short(rest.statement)}"
             yield Difference(
                 "statement", "", f"{message} is not in the text that mdlgen writes; its effect is not known"
@@ -35,13 +35,13 @@ def unaccounted(mine: Any, given: Any, own: Own) -> Iterator[Difference]:
             yield Difference("statement", "", f"{_short(rest.statement)} is missing")
 
 
-def remarks(given: Any, own: Own, found: Verification) -> None:
+def remarks(given: Any, scope: Scope, found: Verification) -> None:
     """What lint says of a given text: of the sheets it counts, of a host only an error does."""
     notes = []
     for finding in given.report.findings:
-        mine = own.holds(finding.place)
-        alone = own.definitions is not None
-        if mine and (finding.code in _TOLD_HERE or (alone and finding.code == "external")):
+        mine = scope.holds(finding.place)
+        sheets_only = scope.definitions is not None
+        if mine and (finding.code in _TOLD_HERE or (sheets_only and finding.code == "external")):
             continue
         if finding.severity == "error" or (mine and finding.code not in _HARMLESS):
             found.differs("lint", "", str(finding))

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from mdlgen.verify.found import Found, Values, contact_table, data_table, run_table
+from mdlgen.verify.inputs.subject import Read, Subject
 from mdlgen.verify.outcome import Turned
-from mdlgen.verify.perturbations import Perturbation, perturbations
-from mdlgen.verify.script import Script
-from mdlgen.verify.subject import Read, Subject
+from mdlgen.verify.perturb.perturbations import Perturbation, perturbations
+from mdlgen.verify.readback.script import Script
+from mdlgen.verify.readback.values import ReadBack, Values, contact_table, data_table, run_table
 from mdlgen.verify.tables import Difference, Table, compare
 
 Progress = Callable[[int, int], None]
@@ -78,7 +78,7 @@ class _Turner:
                 turned.differences.append(Difference(kind, difference.name, what))
 
     def _tables(self, values: Values) -> dict[str, Table]:
-        tables = Found(self.subject.times, self.text.values["markers"]).tables(values)
+        tables = ReadBack(self.subject.times, self.text.values["markers"]).tables(values)
         tables["data"] = data_table(values)
         contacts = values.get("contacts", {})
         if self.script.follows:  # contacts of the text change with values that no statement of theirs has

@@ -30,7 +30,7 @@ from mdlgen.spec.rim import TURN
 from mdlgen.spec.scene import Scene
 from mdlgen.spec.sheet import Sheet
 from mdlgen.spec.smoothing import speeds
-from mdlgen.verify.expected_numbers import FACTORS, factor
+from mdlgen.verify.expected.data import FACTORS, factor
 
 STEP = 1.0625  # a value is turned to this many times itself, exactly
 # A stiffness is turned far: k_z and k_tz follow the larger of two, and must follow the other one too.

@@ -7,7 +7,7 @@ from typing import Any
 from mdlgen.errors import Place
 
 
-class Own:
+class Scope:
     """`definitions` are the names of those that make the sheets; None where the whole text is the scene."""
 
     def __init__(self, reading: Any, definitions: frozenset[str] | None, instances: tuple[str, ...] = ()):

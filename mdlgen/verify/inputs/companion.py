@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from mdlgen.verify import script
+from mdlgen.verify.inputs.scope import Scope
+from mdlgen.verify.inputs.subject import File, Read
 from mdlgen.verify.outcome import Verification
-from mdlgen.verify.own import Own
-from mdlgen.verify.subject import File, Read
+from mdlgen.verify.readback import script
 
 
-def beside(text: Path, own: Own) -> tuple[File | None, list[Path]]:
+def beside(text: Path, scope: Scope) -> tuple[File | None, list[Path]]:
     """The script beside a text, or beside the file of its sheets; and what was looked for."""
-    looked = [_script_of(text), *(_script_of(Path(file)) for file in sorted(own.files))]
+    looked = [_script_of(text), *(_script_of(Path(file)) for file in sorted(scope.files))]
     looked = list(dict.fromkeys(looked))
     return next((File.read(path) for path in looked if path.is_file()), None), looked
 

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from mdlgen.verify.found import Values
+from mdlgen.verify.readback.values import Values
 from mdlgen.verify.tables import Difference
 
 _NUMBER = re.compile(r"[-+]?\d+\.?\d*(?:[eE][-+]?\d+)?")

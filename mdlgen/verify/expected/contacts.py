@@ -1,0 +1,73 @@
+"""Contacts that a text with its script must have."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mdlgen.altair.rims import Side, graphics, meetings
+from mdlgen.model.tables import Model
+from mdlgen.verify.expected.units import SECOND, body_name
+from mdlgen.verify.tables import Part, Table, table
+
+CONTACT_NUMBERS = (
+    "penalty",
+    "restitution",
+    "mu_static",
+    "mu_dynamic",
+    "stiction_velocity",
+    "friction_velocity",
+    "normal_trans_vel",
+)
+
+
+def contacts(model: Model) -> Table:
+    """One row for each pair of bodies that may touch, and each sector of a rim in it; without friction its
+    four numbers are 0."""
+    rows, pairs, outside, bodies = model.contacts, model.pairs, model.external_pairs, model.bodies
+    met = list(meetings(model))
+    inside = np.array([m.pair for m in met], dtype=int)
+    of = np.concatenate([pairs.contact[inside], outside.contact])
+    own = np.array([(m.friction, m.stiffness) for m in met]).reshape(-1, 2)
+    rough = np.concatenate([model.pair_friction[inside] * own[:, 0], bodies.friction[outside.box]])
+    stiff = np.concatenate([own[:, 1], np.ones(len(outside))])
+    restitution = rows.restitution[of]
+    restitution[: len(met)] = [m.restitution(c) for m, c in zip(met, restitution, strict=False)]
+    rubs = ((rows.mu_static[of] > 0) | (rows.mu_dynamic[of] > 0)) & (rough > 0)
+    numbers = np.stack(
+        [
+            rows.stiffness[of] * stiff,
+            restitution,
+            *(np.where(rubs, v * rough, 0.0) for v in (rows.mu_static[of], rows.mu_dynamic[of])),
+            *(
+                np.where(rubs, v / SECOND, 0.0)
+                for v in (rows.stiction_velocity[of], rows.friction_velocity[of])
+            ),
+            rows.smoothing[of] / SECOND,
+        ],
+        axis=1,
+    )
+    rollers = {r.body: r for r in model.rollers}
+    guides = {g.body: [f"gbox_{g.name}_{k}" for k in range(g.facets)] for g in model.guides}
+    guides |= {m.body: [f"gcad_{m.name}"] for m in model.meshes}
+
+    def shown(body: int, side: Side) -> list[str]:
+        if body in rollers:
+            return graphics(rollers[body], side)
+        return guides.get(body, [f"gbox_{bodies.name[body]}"])
+
+    names, words = [], []
+    for m in met:
+        a, b = int(pairs.a[m.pair]), int(pairs.b[m.pair])
+        names.append(f"con_{bodies.name[a]}_{bodies.name[b]}{m.suffix}")
+        ends = [(body_name(model, a), shown(a, m.a)), (body_name(model, b), shown(b, m.b))]
+        if len(ends[0][1]) > 1:  # the first side of a statement has one graphic
+            ends.reverse()
+        words.append((ends[0][0], ends[1][0], *ends[0][1], *ends[1][1]))
+    for a, part in zip(outside.box.tolist(), outside.part.tolist(), strict=True):
+        other = model.externals[part]
+        names.append(f"con_{bodies.name[a]}_{other.name}")
+        given = [v.removeprefix("MODEL.") for v in (other.body, *other.graphics)]
+        words.append((body_name(model, a), given[0], f"gbox_{bodies.name[a]}", *given[1:]))
+    said = [("POISSON", "ON" if on else "OFF", *row) for on, row in zip(rubs.tolist(), words, strict=True)]
+    parts: dict[str, Part] = {n: (numbers[:, k], None) for k, n in enumerate(CONTACT_NUMBERS)}
+    return table(names, parts, said)
