@@ -9,7 +9,7 @@ from mdlgen.errors import RefusedError, SpecError
 from mdlgen.model.tables import Model
 from mdlgen.registry import DECK, emitter
 from mdlgen.spec.scene import Scene
-from mdlgen.verify.expected.graphics import mesh_shapes
+from mdlgen.verify.expected.parts.mesh import mesh_shapes
 from mdlgen.verify.expected.units import reach
 from mdlgen.verify.inputs.companion import beside, chosen, of_systems, taken
 from mdlgen.verify.inputs.scope import Scope

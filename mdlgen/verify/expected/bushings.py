@@ -10,7 +10,7 @@ from mdlgen.model.tables import (
     Floats,
     Model,
 )
-from mdlgen.verify.expected.points import spring_anchor
+from mdlgen.verify.expected.parts.kinds import kind_of
 from mdlgen.verify.expected.units import SECOND, body_name, reach
 from mdlgen.verify.solver_expressions import motion
 from mdlgen.verify.tables import Part, Table, table
@@ -21,30 +21,29 @@ def bushings(model: Model) -> Table:
     stiff = rows.k[:, :3].copy()
     bent = np.flatnonzero(model.curves.of >= 0)
     stiff[bent, model.curves.axis[bent]] = 0.0  # a curve stands there: see curve_laws
-    arms = [(r, r.arm) for r in model.rollers if r.arm is not None and r.arm.sprung]
-    turned = [model.bodies.rotation[r.body] for r, _ in arms]
+    arms = [bushing for part in model.machine for bushing in kind_of(part).bushings(model, part)]
     last, none = np.eye(3)[2], np.zeros((len(arms), 3))
 
     def both(own: Floats, more: list[Floats]) -> Floats:
         return np.concatenate([own, np.array(more).reshape(-1, *own.shape[1:])])
 
     parts: dict[str, Part] = {
-        "origin": (both(rows.origin, [arm.pivot for _, arm in arms]), reach(model)),
-        "axes": (both(rows.axes, turned).transpose(0, 2, 1), 1.0),
+        "origin": (both(rows.origin, [arm.origin for arm in arms]), reach(model)),
+        "axes": (both(rows.axes, [arm.rotation for arm in arms]).transpose(0, 2, 1), 1.0),
         "k": (both(stiff, [*none]), None),
         "c": (both(rows.c[:, :3], [*none]) * SECOND, None),
-        "kt": (both(rows.k[:, 3:], [arm.stiffness * last for _, arm in arms]), None),
-        "ct": (both(rows.c[:, 3:], [arm.damping * last for _, arm in arms]) * SECOND, None),
+        "kt": (both(rows.k[:, 3:], [arm.stiffness * last for arm in arms]), None),
+        "ct": (both(rows.c[:, 3:], [arm.damping * last for arm in arms]) * SECOND, None),
         "force": (np.zeros((len(rows) + len(arms), 3)), 1.0),
         # on the first body, which the second one is to turn away from
-        "torque": (both(-rows.k[:, 3:] * rows.rest, [arm.torque * last for _, arm in arms]), 1.0),
+        "torque": (both(-rows.k[:, 3:] * rows.rest, [arm.torque * last for arm in arms]), 1.0),
     }
     words = [
         (body_name(model, a), body_name(model, b))
         for a, b in zip(rows.a.tolist(), rows.b.tolist(), strict=True)
     ]
-    words += [(f"b_{r.name}_arm", "B_Ground") for r, _ in arms]
-    names = [f"bsh_{n}" for n in rows.name] + [f"bsh_{r.name}_arm" for r, _ in arms]
+    words += [(arm.body, "B_Ground") for arm in arms]
+    names = [f"bsh_{n}" for n in rows.name] + [arm.name for arm in arms]
     return table(names, parts, words)
 
 
@@ -78,15 +77,14 @@ def curve_laws(model: Model) -> Table:
 
 
 def springs(model: Model) -> Table:
-    pressed = [(r, r.press) for r in (*model.rollers, *model.planes) if r.press is not None]
+    found = [spring for part in model.machine for spring in kind_of(part).springs(model, part)]
+    presses = [spring.press for spring in found]
     parts: dict[str, Part] = {
-        "p1": (np.array([model.bodies.position[r.body] for r, _ in pressed]).reshape(-1, 3), reach(model)),
-        "p2": (np.array([spring_anchor(r) for r, _ in pressed]).reshape(-1, 3), reach(model)),
-        "k": (np.array([p.stiffness for _, p in pressed]), None),
-        "c": (np.array([p.damping for _, p in pressed]) * SECOND, None),
-        "force": (np.array([p.preload for _, p in pressed]), None),
-        "length": (np.array([p.free_length for _, p in pressed]), None),
+        "p1": (np.array([spring.place for spring in found]).reshape(-1, 3), reach(model)),
+        "p2": (np.array([spring.anchor for spring in found]).reshape(-1, 3), reach(model)),
+        "k": (np.array([press.stiffness for press in presses]), None),
+        "c": (np.array([press.damping for press in presses]) * SECOND, None),
+        "force": (np.array([press.preload for press in presses]), None),
+        "length": (np.array([press.free_length for press in presses]), None),
     }
-    slides = {r.name: f"b_{r.name}_carrier" for r in model.rollers}
-    words = [(slides.get(r.name, f"b_{r.name}"), "B_Ground") for r, _ in pressed]
-    return table([f"cs_{r.name}" for r, _ in pressed], parts, words)
+    return table([spring.name for spring in found], parts, [(spring.body, "B_Ground") for spring in found])

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from mdlgen.altair.rims import Side, graphics, meetings
+from mdlgen.altair.rims import Side, meetings
 from mdlgen.model.tables import Model
+from mdlgen.verify.expected.parts.kinds import kind_of
 from mdlgen.verify.expected.units import SECOND, body_name
 from mdlgen.verify.tables import Part, Table, table
 
@@ -46,14 +47,11 @@ def contacts(model: Model) -> Table:
         ],
         axis=1,
     )
-    rollers = {r.body: r for r in model.rollers}
-    guides = {g.body: [f"gbox_{g.name}_{k}" for k in range(g.facets)] for g in model.guides}
-    guides |= {m.body: [f"gcad_{m.name}"] for m in model.meshes}
+    machine = {part.body: part for part in model.machine}
 
     def shown(body: int, side: Side) -> list[str]:
-        if body in rollers:
-            return graphics(rollers[body], side)
-        return guides.get(body, [f"gbox_{bodies.name[body]}"])
+        part = machine.get(body)
+        return [f"gbox_{bodies.name[body]}"] if part is None else kind_of(part).graphics(part, side)
 
     names, words = [], []
     for m in met:

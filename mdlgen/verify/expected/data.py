@@ -7,12 +7,11 @@ import math
 import numpy as np
 
 from mdlgen.altair.curves import written
-from mdlgen.altair.rims import DEEP
-from mdlgen.model.parts.guide import outer
-from mdlgen.model.tables import Anchor, GuidePart, MeshPart, Model, RollerPart, SheetPart
+from mdlgen.model.tables import Anchor, Model, SheetPart
 from mdlgen.units import parse_unit
 from mdlgen.verify.expected.bent_sheets import shape
 from mdlgen.verify.expected.cells import cells, damping_times
+from mdlgen.verify.expected.parts.kinds import kind_of
 from mdlgen.verify.expected.units import KG, SECOND
 from mdlgen.verify.tables import Table, table
 
@@ -51,14 +50,9 @@ def data(model: Model) -> Table:
             found.setdefault(f"ds_{sheet.name}.real_{member}", value)
         found |= {k: v for k, v in cells(model, index).items() if k not in found}
         found |= shape(sheet)
-    for guide in model.guides:
-        found |= {f"ds_{guide.name}.real_{member}": value for member, value in _guide(guide).items()}
-    for mesh in model.meshes:
-        found |= {f"ds_{mesh.name}.real_{member}": value for member, value in _mesh(mesh).items()}
-    for roller in model.rollers:
-        found |= {f"ds_{roller.name}.real_{member}": value for member, value in _rim(roller).items()}
-        if roller.arm is not None:
-            found.setdefault(f"ds_{roller.name}.real_I_a", roller.arm.inertia * KG)
+    for part in model.machine:
+        for member, value in kind_of(part).data(model, part).items():
+            found.setdefault(f"ds_{part.name}.real_{member}", value)
     for support in model.supports:
         found[f"ds_{support.name}.real_factor"] = _factor(model, support)
         found |= _place(support.name, support.at, support.edge)
@@ -77,34 +71,6 @@ def data(model: Model) -> Table:
     terms = np.array([10.0 if n in sums else 0.0 for n in found])
     scale = np.maximum.reduce([np.abs(numbers), np.array(angles), places, terms]) if found else numbers
     return table(found, {"value": (numbers, scale[:, None])})
-
-
-def _guide(guide: GuidePart) -> dict[str, float]:
-    """What a text computes of a guide."""
-    if guide.radius == 0.0:
-        return {"L": guide.length}
-    turn = 2 * guide.half_angle / guide.facets
-    chord = 2 * outer(guide) * math.tan(turn / 2)
-    return {"n": float(guide.facets), "turn": turn, "R_o": outer(guide), "chord": chord}
-
-
-def _mesh(mesh: MeshPart) -> dict[str, float]:
-    """What a text has from a mesh's file."""
-    found = {"scale": mesh.scale}
-    found |= {f"c_{a}": float(v) for a, v in zip("xyz", mesh.middle, strict=True)}
-    found |= {f"j_{a}": float(v) for a, v in zip("xyz", mesh.gyration, strict=True)}
-    return found | ({} if mesh.density is None else {"V": mesh.volume})
-
-
-def _rim(roller: RollerPart) -> dict[str, float]:
-    """What a text computes of a rim."""
-    rim, found = roller.rim, {}
-    for k, name in enumerate(rim.name if rim is not None else ()):
-        assert rim is not None
-        radius, turn = float(rim.radius[k]), float(rim.end[k] - rim.begin[k]) / rim.facets[k]
-        found |= {f"{name}_n": float(rim.facets[k]), f"{name}_turn": turn}
-        found |= {f"{name}_deep": DEEP * radius, f"{name}_chord": 2 * radius * math.tan(turn / 2)}
-    return found
 
 
 def _factor(model: Model, support: Anchor) -> float:

@@ -6,13 +6,12 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from mdlgen.model.meshes import origin as mesh_origin
 from mdlgen.model.shape import ground_frames
 from mdlgen.model.tables import (
     Floats,
     Model,
 )
-from mdlgen.verify.expected.graphics import under
+from mdlgen.verify.expected.parts.kinds import kind_of
 from mdlgen.verify.expected.points import anchor_points, boxes_of
 from mdlgen.verify.expected.units import body_name, reach
 from mdlgen.verify.solver_expressions import motion
@@ -36,14 +35,9 @@ def markers(model: Model) -> Table:
         for b in boxes_of(model, sheet) if sheet.surface else ():
             name = model.bodies.name[b]
             add(f"m_{name}", f"b_{name}", model.bodies.position[b], np.eye(3))
-    for guide in model.guides:
-        add(f"m_{guide.name}", "B_Ground", guide.center, guide.axes.T)
-    for mesh in model.meshes:
-        add(f"m_{mesh.name}", under(model, mesh), mesh_origin(mesh, model.rollers), mesh.axes.T)
-    for roller in model.rollers:
-        if roller.rim is not None:
-            body = roller.body
-            add(f"m_{roller.name}", "B_Ground", model.bodies.position[body], model.bodies.rotation[body].T)
+    for part in model.machine:
+        for marker in kind_of(part).markers(model, part):
+            add(marker.name, marker.body, marker.origin, marker.rotation.T)
     for probe in model.probes:
         points = anchor_points(model, probe)
         for k, body in enumerate(probe.body.tolist()):
@@ -57,27 +51,9 @@ def markers(model: Model) -> Table:
 
 
 def vectors(model: Model) -> Table:
-    names, directions = [], []
-
-    def add(name: str, direction: Floats) -> None:
-        names.append(name)
-        directions.append(direction)
-
-    def own(name: str, direction: Floats) -> None:
-        if not any(np.array_equal(direction, axis) for axis in np.eye(3)):
-            add(name, direction)
-
-    for roller in model.rollers:
-        own(f"v_{roller.name}_axis", roller.axis)
-        if roller.press is not None:
-            add(f"v_{roller.name}_press", roller.press.direction)
-    for plane in model.planes:
-        own(f"v_{plane.name}_normal", plane.normal)
-        if plane.press is not None:
-            add(f"v_{plane.name}_press", plane.press.direction)
-    for guide in model.guides:
-        own(f"v_{guide.name}_axis", guide.axes[:, 2])
-    return table(names, {"direction": (np.array(directions).reshape(-1, 3), 1.0)})
+    found = [vector for part in model.machine for vector in kind_of(part).vectors(model, part)]
+    directions = np.array([direction for _, direction in found]).reshape(-1, 3)
+    return table([name for name, _ in found], {"direction": (directions, 1.0)})
 
 
 def outputs(model: Model) -> Table:
@@ -93,14 +69,10 @@ def outputs(model: Model) -> Table:
                 *_mean(probe.share, (s.speed(p) for s, p in zip(states, points, strict=True))),
             ]
         )
-    for roller in model.rollers:
-        names.append(f"o_{roller.name}")
-        state = motion(f"b_{roller.name}")
-        rows.append([*state.place(model.bodies.position[roller.body]), *state.spin])
-    for plate, _ in model.plates:
-        names.append(f"o_{plate.name}")
-        state, at = motion(f"b_{plate.name}"), model.bodies.position[plate.body]
-        rows.append([*state.place(at), *state.speed(at)])
+    for part in model.machine:
+        for name, values in kind_of(part).outputs(model, part):
+            names.append(name)
+            rows.append([*values])
     numbers = np.array(rows).reshape(-1, 6)
     scale = np.repeat([reach(model), 1000.0], 3)
     return table(names, {"value": (numbers, scale)})

@@ -5,19 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from mdlgen.altair import labels
-from mdlgen.altair.rims import rim_facets
-from mdlgen.model.meshes import origin as mesh_origin
-from mdlgen.model.parts.guide import Facet, facets
 from mdlgen.model.shape import apart, ground_frames
 from mdlgen.model.tables import (
     SUPPORT,
     Anchor,
     Floats,
     Model,
-    PlanePart,
-    RollerPart,
     SheetPart,
 )
+from mdlgen.verify.expected.parts.kinds import kind_of
 from mdlgen.verify.expected.units import reach
 from mdlgen.verify.tables import Table, table
 
@@ -30,12 +26,6 @@ def anchor_points(model: Model, anchor: Anchor) -> Floats:
     """The point of an anchor on each of its boxes [mm], (n, 3)."""
     bodies = model.bodies
     return bodies.position[anchor.body] + np.einsum("nij,nj->ni", bodies.rotation[anchor.body], anchor.local)
-
-
-def spring_anchor(part: RollerPart | PlanePart) -> Floats:
-    press = part.press
-    assert press is not None
-    return part.center + press.direction * (press.touch - press.free_length)
 
 
 def points(model: Model) -> Table:
@@ -61,33 +51,8 @@ def points(model: Model) -> Table:
         split = apart(model, anchor)
         names += [f"p_{name}_{k}" for k in range(len(found))] if split else [f"p_{name}"]
         places.append(found if split else found[:1])
-    for roller in model.rollers:
-        names.append(f"p_{roller.name}")
-        places.append(model.bodies.position[roller.body][None])
-        for name, facet in rim(model, roller):
-            names.append(f"p_{name}")
-            places.append(facet.center[None])
-        if roller.press is not None:
-            names.append(f"p_{roller.name}_anchor")
-            places.append(spring_anchor(roller)[None])
-        if roller.arm is not None:
-            names += [f"p_{roller.name}_pivot", f"p_{roller.name}_arm"]
-            places += [roller.arm.pivot[None], roller.arm.center[None]]
-    for plane in model.planes:
-        names.append(f"p_{plane.name}")
-        places.append(model.bodies.position[plane.body][None])
-        if plane.press is not None:
-            names.append(f"p_{plane.name}_anchor")
-            places.append(spring_anchor(plane)[None])
-    for guide in model.guides:
-        names += [f"p_{guide.name}", *(f"p_{guide.name}_{k}" for k in range(guide.facets))]
-        places += [guide.center[None], *(facet.center[None] for facet in facets(guide))]
-    for mesh in model.meshes:
-        names += [f"p_{mesh.name}", f"p_{mesh.name}_cm"]
-        places += [mesh_origin(mesh, model.rollers)[None], model.bodies.position[mesh.body][None]]
+    for part in model.machine:
+        for name, place in kind_of(part).points(model, part):
+            names.append(name)
+            places.append(place[None])
     return table(names, {"at": (np.concatenate(places), reach(model))})
-
-
-def rim(model: Model, roller: RollerPart) -> list[tuple[str, Facet]]:
-    body = roller.body
-    return rim_facets(roller, model.bodies.position[body], model.bodies.rotation[body])

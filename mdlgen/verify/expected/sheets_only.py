@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from mdlgen.altair.rims import WHOLE, graphics, meetings
+from mdlgen.altair.rims import meetings
 from mdlgen.formulas import names
 from mdlgen.model.parameters.names import OF_USER
 from mdlgen.model.tables import Model
+from mdlgen.verify.expected.parts.kinds import kind_of
 from mdlgen.verify.tables import ANY, Table
 
 MACHINE_KINDS = ("springs", "cylinders", "motions", "vectors", "run", "gravity")
@@ -30,18 +31,7 @@ def _machine(model: Model) -> set[str]:
     """Names of the text that belong to the machine."""
     names = {"ds_run"}
     for part in model.machine:
-        n = part.name
-        names |= {f"{kind}_{n}" for kind in ("p", "b", "gbox", "gcyl", "j", "o", "ds")}
-        names |= {f"p_{n}_anchor", f"b_{n}_carrier", f"j_{n}_slide"}
-        names |= {f"p_{n}_pivot", f"p_{n}_arm", f"b_{n}_arm", f"j_{n}_pivot", f"bsh_{n}_arm"}
-    for guide in model.guides:
-        names.add(f"m_{guide.name}")
-        names |= {f"{kind}_{guide.name}_{k}" for kind in ("p", "gbox") for k in range(guide.facets)}
-    for mesh in model.meshes:
-        names |= {f"m_{mesh.name}", f"gcad_{mesh.name}", f"p_{mesh.name}_cm"}
-    for roller in (r for r in model.rollers if r.rim is not None):
-        shown = [name.removeprefix("gbox_") for name in graphics(roller, WHOLE)]
-        names |= {f"m_{roller.name}", *(f"{kind}_{name}" for name in shown for kind in ("p", "gbox"))}
+        names |= kind_of(part).names(part)
     table = model.contacts
     of, bodies = model.pairs.contact, model.bodies.name
     for met in meetings(model):

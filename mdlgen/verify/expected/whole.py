@@ -11,10 +11,12 @@ from mdlgen.model.tables import (
 )
 from mdlgen.verify.expected.bodies import bodies, velocities
 from mdlgen.verify.expected.bushings import bushings, curve_laws, curves, springs
-from mdlgen.verify.expected.graphics import boxes, cylinders, mesh_files, meshes, surfaces
+from mdlgen.verify.expected.graphics import boxes, surfaces
 from mdlgen.verify.expected.joints import joints
 from mdlgen.verify.expected.markers import markers, outputs, vectors
 from mdlgen.verify.expected.motions import Times, motions
+from mdlgen.verify.expected.parts.mesh import mesh_files, meshes
+from mdlgen.verify.expected.parts.roller import cylinders
 from mdlgen.verify.expected.points import points
 from mdlgen.verify.tables import Table
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from mdlgen.verify.expected.contacts import CONTACT_NUMBERS
-from mdlgen.verify.expected.graphics import shape_numbers
+from mdlgen.verify.expected.parts.mesh import shape_numbers
 from mdlgen.verify.solver_expressions import Places, Unreadable, law, request
 from mdlgen.verify.tables import Table
 

@@ -1,0 +1,134 @@
+"""What a text must say of a part of the machine, by entity. Lengths in mm, places and axes global.
+
+A new kind is a file beside this one, and a line in `kinds.py`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Generic, NamedTuple, TypeVar
+
+import numpy as np
+
+from mdlgen.altair.rims import Side
+from mdlgen.model.tables import Floats, MachinePart, Model, Press
+
+P = TypeVar("P", bound=MachinePart)
+
+
+class Body(NamedTuple):
+    """A body that the Model has no row for."""
+
+    name: str
+    mass: float  # [g]
+    inertia: tuple[float, float, float]  # about its middle [g mm^2]
+    place: Floats
+
+
+class Joint(NamedTuple):
+    """A joint between two bodies."""
+
+    name: str
+    type: str
+    one: str
+    two: str
+    origin: Floats
+    axis: Floats
+
+
+class Box(NamedTuple):
+    """A box that is shown."""
+
+    name: str
+    body: str
+    center: Floats
+    rotation: Floats  # axes in columns
+    lengths: Floats | tuple[float, float, float]
+
+
+class Marker(NamedTuple):
+    """A marker that the text itself makes."""
+
+    name: str
+    body: str
+    origin: Floats
+    rotation: Floats  # axes in columns
+
+
+class Spring(NamedTuple):
+    """The spring of what is pressed, from where that stands to its anchor on ground."""
+
+    name: str
+    body: str
+    press: Press
+    place: Floats
+    anchor: Floats
+
+
+class Bushing(NamedTuple):
+    """A torsional spring about z between a body and ground."""
+
+    name: str
+    body: str
+    origin: Floats
+    rotation: Floats  # axes in columns
+    stiffness: float  # [N mm/rad]
+    damping: float  # [N mm ms/rad]
+    torque: float  # [N mm]
+
+
+class Kind(Generic[P]):
+    """One kind of part: of what it does not say there is nothing."""
+
+    def bodies(self, model: Model, part: P) -> Iterable[Body]:
+        return ()
+
+    def points(self, model: Model, part: P) -> Iterable[tuple[str, Floats]]:
+        return ()
+
+    def joints(self, model: Model, part: P) -> Iterable[Joint]:
+        """But for the fixed joints of bodies that do not move."""
+        return ()
+
+    def boxes(self, model: Model, part: P) -> Iterable[Box]:
+        return ()
+
+    def markers(self, model: Model, part: P) -> Iterable[Marker]:
+        return ()
+
+    def vectors(self, model: Model, part: P) -> Iterable[tuple[str, Floats]]:
+        return ()
+
+    def outputs(self, model: Model, part: P) -> Iterable[tuple[str, Iterable[float]]]:
+        """Six numbers each, in the made-up state."""
+        return ()
+
+    def springs(self, model: Model, part: P) -> Iterable[Spring]:
+        return ()
+
+    def bushings(self, model: Model, part: P) -> Iterable[Bushing]:
+        return ()
+
+    def data(self, model: Model, part: P) -> dict[str, float]:
+        """What the text computes, by member of the part's data set."""
+        return {}
+
+    def graphics(self, part: P, side: Side) -> list[str]:
+        """Names of what a contact with one side of it acts on."""
+        raise NotImplementedError
+
+    def names(self, part: P) -> set[str]:
+        """What in a text is named after it, contacts aside."""
+        return {f"{kind}_{part.name}" for kind in ("p", "b", "gbox", "gcyl", "j", "o", "ds")}
+
+
+def own_vector(name: str, direction: Floats) -> Iterable[tuple[str, Floats]]:
+    """A direction as a vector of its own; along a global axis there is one already."""
+    there = any(np.array_equal(direction, axis) for axis in np.eye(3))
+    return () if there else ((name, direction),)
+
+
+def spring_of(model: Model, part: MachinePart, press: Press, body: str) -> Spring:
+    """The spring of a part that stands where its body does."""
+    anchor = part.center + press.direction * (press.touch - press.free_length)
+    return Spring(f"cs_{part.name}", body, press, model.bodies.position[part.body], anchor)
