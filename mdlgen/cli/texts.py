@@ -221,7 +221,7 @@ def verify(
             autocompletion=completion.sheets_only,
         ),
     ] = None,
-    turn: Annotated[
+    perturb: Annotated[
         bool,
         typer.Option(
             "--perturb/--no-perturb",
@@ -249,8 +249,8 @@ def verify(
 
     scene = scene_of(spec, sets, limits)
     files = {"text": text, "companion": script, "deck": deck}
-    with count(quiet, "values turned") as progress:
-        found = compare(scene, lower(scene), **files, only=only, turn=turn, progress=progress)
+    with count(quiet, "values changed") as progress:
+        found = compare(scene, lower(scene), **files, only=only, perturb=perturb, progress=progress)
     if as_json:
         echo_json(report(found))
     elif not quiet:

@@ -8,8 +8,8 @@ from mdlgen.verify.tables import Compared, Difference
 
 
 @dataclass
-class Turned:
-    """What came of turning each value, in the text and in the spec."""
+class Perturbed:
+    """What came of changing each value, in the text and in the spec."""
 
     values: int = 0
     largest: float = 0.0
@@ -20,11 +20,11 @@ class Turned:
 
 @dataclass
 class Verification:
-    """What was compared: kinds by source (`text`, `deck`), what differs, and what came of turning values."""
+    """What was compared: kinds by source (`text`, `deck`), what differs, and what came of changing values."""
 
     kinds: dict[str, dict[str, Compared]] = field(default_factory=dict)
     differences: list[Difference] = field(default_factory=list)
-    turned: Turned | None = None
+    perturbed: Perturbed | None = None
     notes: list[str] = field(default_factory=list)
     script: str | None = None  # the file that was read; None for the one that mdlgen writes, or none
 
@@ -33,8 +33,8 @@ class Verification:
         return not self.all_differences()
 
     def all_differences(self) -> list[Difference]:
-        """Of the values as they are, then of those turned."""
-        return [*self.differences, *(self.turned.differences if self.turned else [])]
+        """Of the values as they are, then of those perturbed."""
+        return [*self.differences, *(self.perturbed.differences if self.perturbed else [])]
 
     def add(self, source: str, compared: Compared, within: str = "") -> None:
         """One kind of one source; of two texts, or of several systems, the larger difference is kept.

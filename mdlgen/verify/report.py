@@ -11,7 +11,7 @@ MOST_SHOWN = 20
 
 
 def report(found: Verification) -> dict[str, Any]:
-    """As plain values: the largest relative differences, what differs, what came of turning values."""
+    """As plain values: the largest relative differences, what differs, what came of changing values."""
     result: dict[str, Any] = {
         "ok": found.ok,
         "limit": LIMIT,
@@ -23,12 +23,12 @@ def report(found: Verification) -> dict[str, Any]:
         "notes": found.notes,
         "script": found.script,
     }
-    if found.turned is not None:
+    if found.perturbed is not None:
         result["turned"] = {
-            "values": found.turned.values,
-            "largest": _finite(found.turned.largest),
-            "where": found.turned.where,
-            "shown_only": sorted(found.turned.shown_only),
+            "values": found.perturbed.values,
+            "largest": _finite(found.perturbed.largest),
+            "where": found.perturbed.where,
+            "shown_only": sorted(found.perturbed.shown_only),
         }
     return result
 
@@ -55,15 +55,15 @@ def report_text(found: Verification) -> str:
         cells = [found.kinds[source].get(kind) for source in sources]
         shown = "".join(f"{c.largest:11.1e}" if c else f"{'-':>11}" for c in cells)
         lines.append(f"{kind:12}{compared.entities:8}{shown}  {compared.where}".rstrip())
-    turned = found.turned
-    if turned is not None:
+    perturbed = found.perturbed
+    if perturbed is not None:
         lines.append(
-            f"{turned.values} values of data sets changed, each in the text and in the scene: "
-            f"largest difference {turned.largest:.1e}"
+            f"{perturbed.values} values of data sets changed, each in the text and in the scene: "
+            f"largest difference {perturbed.largest:.1e}"
         )
-        if turned.shown_only:
-            count = len(turned.shown_only)
-            lines.append(f"{count} values are shown only (NO_EDIT): {_some(turned.shown_only)}")
+        if perturbed.shown_only:
+            count = len(perturbed.shown_only)
+            lines.append(f"{count} values are shown only (NO_EDIT): {_some(perturbed.shown_only)}")
     lines += found.notes
     differences = found.all_differences()
     lines += [str(d) for d in differences[:MOST_SHOWN]]

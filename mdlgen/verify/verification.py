@@ -1,4 +1,4 @@
-"""A text, its script and its deck against the Model: read back, compared, turned value by value."""
+"""A text, its script and its deck against the Model: read back, compared, and each value changed."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from mdlgen.verify.expected.units import reach
 from mdlgen.verify.inputs.companion import beside, chosen, of_systems, taken
 from mdlgen.verify.inputs.scope import Scope
 from mdlgen.verify.inputs.subject import File, Read, Subject
-from mdlgen.verify.outcome import Turned, Verification
-from mdlgen.verify.perturb.perturb import Progress, turn_all
+from mdlgen.verify.outcome import Perturbed, Verification
+from mdlgen.verify.perturb.perturb import Progress, perturb_all
 from mdlgen.verify.readback.script import DEFAULT_GRAVITY, Script
 from mdlgen.verify.readback.values import (
     ReadBack,
@@ -45,15 +45,15 @@ def verify(
     companion: Path | None = None,
     deck: Path | None = None,
     only: str | None = None,
-    turn: bool = True,
+    perturb: bool = True,
     progress: Progress | None = None,
 ) -> Verification:
     """Compares text, script and deck with the Model of a scene.
 
     Without `text` the texts that mdlgen writes are taken: with the contact numbers in the script, and with
     them in the text. `companion` is looked for beside `text` where it is left out. `only="sheets"` is for
-    the sheets alone, in a host model or by themselves; so is a scene with external parts. `turn` also turns
-    each value of the data sets.
+    the sheets alone, in a host model or by themselves; so is a scene with external parts. `perturb` also
+    changes each value of the data sets.
 
     Raises OutputError for a file that cannot be read, SpecError for one that is none of its kind,
     RefusedError for a scene that has no text.
@@ -77,11 +77,11 @@ def verify(
             numbers = _given(subject, text, companion, reads, mine, found)
         for read in reads:
             _text(said, subject, read.values, numbers, found, read.prefix if len(reads) > 1 else "")
-        if turn and not found.differences:
-            contacts_only = found.turned is not None
-            found.turned = found.turned or Turned()
+        if perturb and not found.differences:
+            contacts_only = found.perturbed is not None
+            found.perturbed = found.perturbed or Perturbed()
             for read in reads:
-                turn_all(subject, read, numbers, found.turned, contacts_only, progress)
+                perturb_all(subject, read, numbers, found.perturbed, contacts_only, progress)
     assert first is not None
     if subject.only and deck is None:
         found.notes.append("no deck: it is of a whole machine")

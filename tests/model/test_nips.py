@@ -143,7 +143,7 @@ def test_the_text_has_force_and_speed_as_values_that_move_what_follows() -> None
     model = lower(scene)
     found = verify(scene, model)
     assert [str(d) for d in found.all_differences()] == []
-    assert found.turned is not None and found.turned.largest < 1e-12
+    assert found.perturbed is not None and found.perturbed.largest < 1e-12
     text = emitter("motionview").emit(model)
     assert "*SetReal( ds_parameters.real_nip_force, 3.194847641 )" in text
     pressed = text.replace("real_nip_force, 3.194847641", "real_nip_force, 4.0").replace("1400.25", "2800.5")

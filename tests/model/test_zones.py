@@ -175,7 +175,7 @@ def test_the_text_says_the_same():
     )
     found = verify(scene, lower(scene))
     assert found.ok, found.differences
-    assert found.turned is not None and found.turned.values > 150
+    assert found.perturbed is not None and found.perturbed.values > 150
 
 
 @pytest.mark.parametrize(

@@ -255,8 +255,8 @@ def test_text_deck_and_model_have_one_arm(tmp_path: Path, overrides: tuple[str, 
     found = verify(made, lower(made))
     assert [str(d) for d in found.all_differences()] == []
     assert all(c.largest <= 1e-12 for kinds in found.kinds.values() for c in kinds.values())
-    assert found.turned is not None and found.turned.largest <= 1e-12
-    assert not [name for name in found.turned.shown_only if name.startswith("ds_skim.real_a_")]
+    assert found.perturbed is not None and found.perturbed.largest <= 1e-12
+    assert not [name for name in found.perturbed.shown_only if name.startswith("ds_skim.real_a_")]
     assert validate(emitter("motionsolve").emit(lower(made))) == []
 
 

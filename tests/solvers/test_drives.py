@@ -99,8 +99,8 @@ def test_text_deck_and_model_have_one_law(tmp_path: Path, corners: int) -> None:
     found = verify(made, lower(made))
     assert [str(d) for d in found.all_differences()] == []
     assert all(c.largest <= 1e-12 for kinds in found.kinds.values() for c in kinds.values())
-    assert found.turned is not None and found.turned.largest <= 1e-12
-    assert not [name for name in found.turned.shown_only if name.startswith("ds_motor")]
+    assert found.perturbed is not None and found.perturbed.largest <= 1e-12
+    assert not [name for name in found.perturbed.shown_only if name.startswith("ds_motor")]
 
 
 @pytest.mark.parametrize(

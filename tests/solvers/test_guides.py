@@ -285,7 +285,7 @@ def test_guides_are_the_same_in_text_script_deck_and_model():
     found = verify(scene, model)
     assert [str(d) for d in found.all_differences()] == []
     turned = {p.data_set for p in model.parameters if p.data_set in scene.guides}
-    assert turned == set(scene.guides) and found.turned is not None and found.turned.largest <= 1e-12
+    assert turned == set(scene.guides) and found.perturbed is not None and found.perturbed.largest <= 1e-12
     alone = verify(scene, model, only="sheets")
     assert [str(d) for d in alone.all_differences()] == []
 

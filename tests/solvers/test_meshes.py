@@ -148,7 +148,7 @@ def test_meshes_are_the_same_in_text_script_deck_and_model(folder):
     found = verify(scene, model)
     assert [str(d) for d in found.all_differences()] == []
     turned = {p.data_set for p in model.parameters if p.data_set in scene.meshes}
-    assert turned == set(scene.meshes) and found.turned is not None and found.turned.largest <= 1e-12
+    assert turned == set(scene.meshes) and found.perturbed is not None and found.perturbed.largest <= 1e-12
     assert [str(d) for d in verify(scene, model, only="sheets").all_differences()] == []
     assert not emitter("motionview").read(emitter("motionview").emit(model), "own").notes.findings()
     assert not emitter("motionsolve").validate(emitter("motionsolve").emit(model), "deck")

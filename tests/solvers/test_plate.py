@@ -347,7 +347,7 @@ def test_the_text_says_the_same_where_boxes_differ(given: tuple[str, ...]) -> No
     scene = load(samples() / "cantilever.yaml", [PLATE, *sets, *given])
     found = verify(scene, lower(scene))
     assert found.ok, found.differences
-    assert found.turned is not None and found.turned.values >= 19
+    assert found.perturbed is not None and found.perturbed.values >= 19
 
 
 @pytest.mark.parametrize("layout", ["edge_to_edge", "center_to_center"])

@@ -233,7 +233,7 @@ def test_text_deck_and_model_have_one_rim(tmp_path: Path, overrides: tuple[str, 
     found = verify(made, lower(made))
     assert [str(d) for d in found.all_differences()] == []
     assert all(c.largest <= 1e-12 for kinds in found.kinds.values() for c in kinds.values())
-    assert found.turned is not None and found.turned.largest <= 1e-12
+    assert found.perturbed is not None and found.perturbed.largest <= 1e-12
     assert validate(emitter("motionsolve").emit(lower(made))) == []
 
 

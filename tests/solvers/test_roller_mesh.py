@@ -188,7 +188,7 @@ def test_text_and_deck_say_the_contact(tmp_path: Path) -> None:
     text = emitter("motionview").emit(model)
     assert '*Contact( con_r_part, "Roller r / Mesh part", POISSON' in text
     assert "1, gcyl_r, false" in text and "1, gcad_part, false" in text
-    assert verify(spec, model, turn=False).ok
+    assert verify(spec, model, perturb=False).ok
 
 
 def test_what_is_not_modelled_is_refused(tmp_path: Path) -> None:

@@ -290,7 +290,7 @@ def test_text_and_deck_say_the_contact(name: str, tmp_path: Path) -> None:
     assert model.contacts.kind.tolist() == [kind]
     text = emitter("motionview").emit(model)
     assert '*Contact( con_r_part, "Roller r / ' in text and "b_r, 1, gcyl_r" in text
-    assert verify(loads(scene(PARTS[name], press())), model, turn=False).ok
+    assert verify(loads(scene(PARTS[name], press())), model, perturb=False).ok
     assert 'label               = "Roller r / ' in emitter("motionsolve").emit(model)
     inside = emitter("motionview").emit(model, only="sheets")
     assert "con_r_part" not in inside and "r / part" in inside

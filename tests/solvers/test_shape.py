@@ -129,7 +129,7 @@ def test_the_text_of_a_sheet_that_begins_flat(axis, edge):
     message = scene(HELD, f"sheets.note.shape={{start: flat, curl: {{radius: -90 mm, along: {axis}}}}}", *few)
     found = verify(message, lower(message))
     assert found.ok, found.all_differences()[:3]
-    assert "ds_note_shape.real_radius" not in (found.turned.shown_only if found.turned else ())
+    assert "ds_note_shape.real_radius" not in (found.perturbed.shown_only if found.perturbed else ())
 
 
 @pytest.mark.parametrize(
@@ -188,7 +188,7 @@ def test_the_text_has_a_point_between_frames_on_each_of_its_boxes(what, shape, a
 )
 def test_a_sheet_may_turn_by_more_than_half_a_turn_in_all(shape):
     message = scene(FREE, "sheets.note.boxes=[2,20]", f"sheets.note.shape={shape}")
-    assert verify(message, lower(message), turn=False).ok
+    assert verify(message, lower(message), perturb=False).ok
 
 
 @pytest.mark.parametrize(

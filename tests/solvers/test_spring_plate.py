@@ -340,7 +340,7 @@ def test_text_deck_and_model_say_the_same(sets: tuple[str, ...]) -> None:
     for kinds in found.kinds.values():
         assert all(c.largest <= 1e-12 for c in kinds.values())
         assert kinds["springs"].entities == kinds["joints"].entities == kinds["outputs"].entities == 1
-    assert found.turned is not None and found.turned.largest <= 1e-12
+    assert found.perturbed is not None and found.perturbed.largest <= 1e-12
     text = emitter("motionview").emit(model)
     assert "*TransJoint( j_plate_slide, " in text and "*CoilSpring( cs_plate, " in text
     assert "FixedJoint" not in text and "Pressed plates start in equilibrium" in text

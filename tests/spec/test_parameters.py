@@ -124,8 +124,8 @@ def test_a_text_has_the_formulas_and_follows_each_parameter(seed: int) -> None:
     found = verify(given, lower(given))
     assert [str(d) for d in found.all_differences()] == []
     # text and Model compute in other units, and so round apart
-    assert found.turned is not None and found.turned.largest < 1e-12
-    assert found.turned.values >= len(given.parameters) + 40
+    assert found.perturbed is not None and found.perturbed.largest < 1e-12
+    assert found.perturbed.values >= len(given.parameters) + 40
 
 
 SHORT = FOUR.replace("speed: 186.7 rad/s", "speed: v/r").replace("radius: 7.5 mm", "radius: r")

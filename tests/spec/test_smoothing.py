@@ -149,7 +149,7 @@ def test_text_deck_and_script_have_the_same_value() -> None:
         found = {round(float(v), 9) for v in re.findall(r'normal_trans_vel"?\s*[=:] "?([0-9.]+)', written)}
         assert found == {7.0, 1.0, 3.0}
     message = verify(scene, model)
-    assert not message.differences and message.turned is not None and message.turned.largest < 1e-9
+    assert not message.differences and message.perturbed is not None and message.perturbed.largest < 1e-9
 
 
 def test_in_a_text_it_follows_parameters() -> None:
@@ -162,7 +162,7 @@ def test_in_a_text_it_follows_parameters() -> None:
     smooth = {p.data_set: p.formula for p in model.parameters if p.member == "v_n"}
     assert smooth["contact_0"] == "max(1 mm/s, min(20 mm/s, 0.01*abs(v/r)*(r)))" and not smooth["contact_2"]
     message = verify(scene, model)
-    assert not message.differences and message.turned is not None and message.turned.largest < 1e-9
+    assert not message.differences and message.perturbed is not None and message.perturbed.largest < 1e-9
 
 
 def test_old_scenes_of_the_repository_say_what_they_mean() -> None:

@@ -51,7 +51,7 @@ def test_text_and_deck_are_the_same_as_the_model(layout: str, edge: str) -> None
     for kinds in found.kinds.values():
         assert kinds["curves"].entities > 2000 and kinds["curve laws"].entities > 0
         assert all(c.largest <= 1e-12 for c in kinds.values())
-    assert found.turned is not None and found.turned.values >= 15 and found.turned.largest <= 1e-12
+    assert found.perturbed is not None and found.perturbed.values >= 15 and found.perturbed.largest <= 1e-12
 
 
 def test_the_sheets_alone_have_their_curves() -> None:
@@ -136,9 +136,9 @@ def test_a_slip_in_the_text_is_found(tmp_path: Path, slip: str) -> None:
     file = tmp_path / "snatch.mdl"
     text = mdlgen.emit(model_of(), "motionview")
     file.write_text(text)
-    assert not verified(text=file, turn=False).all_differences()
+    assert not verified(text=file, perturb=False).all_differences()
     file.write_text(SLIPS[slip](text))
-    assert verified(text=file, turn=False).all_differences()
+    assert verified(text=file, perturb=False).all_differences()
 
 
 DECK_SLIPS = {
@@ -163,9 +163,9 @@ def test_a_slip_in_the_deck_is_found(tmp_path: Path, slip: str) -> None:
     file = tmp_path / "snatch.xml"
     text = mdlgen.emit(model_of(), "motionsolve")
     file.write_text(text)
-    assert not verified(deck=file, turn=False).all_differences()
+    assert not verified(deck=file, perturb=False).all_differences()
     file.write_text(DECK_SLIPS[slip](text))
-    assert verified(deck=file, turn=False).all_differences()
+    assert verified(deck=file, perturb=False).all_differences()
 
 
 BUSH = "LIN, 1, " * 11 + "0, 0, 0, 0, 0, 0"

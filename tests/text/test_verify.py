@@ -40,7 +40,9 @@ def test_every_sample_is_the_same_in_text_script_deck_and_model(sample: Path) ->
         assert all(c.largest <= 1e-12 for c in kinds.values())
     # 14 values at least: a sheet alone, its bending per width, no hinge in the plane
     least = 14
-    assert found.turned is not None and found.turned.values >= least and found.turned.largest <= 1e-12
+    assert (
+        found.perturbed is not None and found.perturbed.values >= least and found.perturbed.largest <= 1e-12
+    )
 
 
 def test_the_rich_scene_has_every_kind_and_every_value_turned() -> None:
@@ -48,9 +50,9 @@ def test_the_rich_scene_has_every_kind_and_every_value_turned() -> None:
     assert [str(d) for d in found.all_differences()] == []
     untested = {kind for kind, c in found.kinds["text"].items() if not c.entities}
     assert untested == {"meshes", "mesh files"}, "those are in the sample pick"
-    assert found.turned is not None and found.turned.values == 95
+    assert found.perturbed is not None and found.perturbed.values == 95
     # what is only shown is set by the script, or off
-    assert all(n.startswith("ds_contact_") or n == "ds_side.real_ramp" for n in found.turned.shown_only)
+    assert all(n.startswith("ds_contact_") or n == "ds_side.real_ramp" for n in found.perturbed.shown_only)
 
 
 def rest(reading) -> list[tuple[str, ...]]:
@@ -87,7 +89,8 @@ def test_a_change_of_any_number_name_or_sign_is_caught(seed: int, tmp_path: Path
         file.write_text(change.text)
         try:
             caught = (
-                not verify(scene, model, text=file, turn=False).ok or not verify(scene, model, text=file).ok
+                not verify(scene, model, text=file, perturb=False).ok
+                or not verify(scene, model, text=file).ok
             )
         except MdlgenError:
             caught = True
@@ -104,7 +107,7 @@ def test_a_statement_that_is_left_out_is_caught(only: str | None, tmp_path: Path
     for change in omissions(text, 3, "*DefineSystem" if only else "*BeginMDL"):
         file.write_text(change.text)
         try:
-            caught = not check(RICH, text=file, turn=False, only=only).ok
+            caught = not check(RICH, text=file, perturb=False, only=only).ok
             caught = caught or not check(RICH, text=file, only=only).ok
         except MdlgenError:
             caught = True
@@ -134,7 +137,7 @@ def test_a_formula_that_became_a_number_is_caught(old: str, new: str, tmp_path: 
     assert old in text
     file = tmp_path / "rich.mdl"
     file.write_text(text.replace(old, new, 1))
-    found = check(RICH, text=file, turn=True)
+    found = check(RICH, text=file, perturb=True)
     assert not found.ok
     if found.differences:  # a wrong value at once is caught without turning; only these two are
         assert old in ("ds_high.real_R.value^2", "ds_floor.real_L_z.value^2)/12, ds_floor")
@@ -181,7 +184,7 @@ def test_a_missing_body_is_told_by_name(tmp_path: Path) -> None:
     text = emitted(spec, ["sheets.note.boxes=[4,5]"])
     file = tmp_path / "note.mdl"
     file.write_text(text)
-    found = check(spec, SMALL, text=file, turn=False)
+    found = check(spec, SMALL, text=file, perturb=False)
     record = report(found)
     assert not record["ok"] and any("b_note_3_5: is missing" in d for d in record["differences"])
     json.dumps(record, allow_nan=False)

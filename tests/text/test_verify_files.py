@@ -34,11 +34,11 @@ from mdlgen.verify.verification import verify
 )
 def test_a_changed_script_is_caught(old: str, new: str, tmp_path: Path) -> None:
     text, script = files(tmp_path)
-    assert check(RICH, text=text, turn=False).ok
+    assert check(RICH, text=text, perturb=False).ok
     assert old in script.read_text()
     script.write_text(script.read_text().replace(old, new, 1))
     try:
-        assert not check(RICH, text=text, turn=False).ok
+        assert not check(RICH, text=text, perturb=False).ok
     except SpecError as error:
         assert error.place is not None
 
@@ -47,10 +47,10 @@ def test_a_script_is_read_and_never_run(tmp_path: Path) -> None:
     text, script = files(tmp_path)
     target = tmp_path / "ran"
     script.write_text(script.read_text() + f"\nopen({str(target)!r}, 'w')\n")
-    assert not check(RICH, text=text, turn=False).ok
+    assert not check(RICH, text=text, perturb=False).ok
     script.write_text(f"CONTACTS = open({str(target)!r}, 'w')\n")
     with pytest.raises(SpecError, match="plain numbers"):
-        check(RICH, text=text, turn=False)
+        check(RICH, text=text, perturb=False)
     assert not target.exists()
 
 
@@ -60,7 +60,7 @@ def test_a_change_of_any_number_of_a_deck_is_caught(tmp_path: Path) -> None:
     text = emitter("motionsolve").emit(model)
     file = tmp_path / "rich.xml"
     file.write_text(text)
-    assert verify(scene, model, deck=file, turn=False).ok
+    assert verify(scene, model, deck=file, perturb=False).ok
     tried = 0
     for change in mutations(text, 5, 450, "<Reference_Marker"):
         in_entity = any(f"{name}=" in change.where.replace(" ", "") for name in ENTITY_NUMBERS)
@@ -72,7 +72,7 @@ def test_a_change_of_any_number_of_a_deck_is_caught(tmp_path: Path) -> None:
             continue  # a cylinder is the same round its axis
         file.write_text(change.text)
         try:
-            ok = verify(scene, model, deck=file, turn=False).ok
+            ok = verify(scene, model, deck=file, perturb=False).ok
         except SpecError:
             ok = False
         assert not ok, f"{change.old} -> {change.new} in {change.where}"
@@ -169,5 +169,5 @@ def test_what_a_deck_says_beside_numbers_counts(pattern: str, new: str, message:
     assert count == 1
     file = tmp_path / "rich.xml"
     file.write_text(changed)
-    found = verify(scene, model, deck=file, turn=False)
+    found = verify(scene, model, deck=file, perturb=False)
     assert any(message in str(d) for d in found.differences), [str(d) for d in found.differences[:5]]

@@ -38,7 +38,7 @@ def host(folder: Path, sheets: str) -> Path:
 def test_sheets_alone_are_the_same_and_parametric() -> None:
     found = check(RICH, only="sheets")
     assert [str(d) for d in found.all_differences()] == []
-    assert found.turned is not None and found.turned.values > 50
+    assert found.perturbed is not None and found.perturbed.values > 50
     assert "motions" not in found.kinds["text"] and found.kinds["text"]["contacts"].entities == 12
 
 
@@ -48,7 +48,7 @@ def test_sheets_in_a_model_of_the_user(tmp_path: Path) -> None:
     assert [str(d) for d in found.all_differences()] == []
     changed = sheets.replace("LIN, ds_two.real_k_x.value", "LIN, 1.0*ds_two.real_k_y.value", 1)
     assert changed != sheets
-    assert not check(RICH, text=host(tmp_path, changed), only="sheets", turn=False).ok
+    assert not check(RICH, text=host(tmp_path, changed), only="sheets", perturb=False).ok
 
 
 def test_a_model_without_the_sheets_is_refused(tmp_path: Path) -> None:
@@ -86,10 +86,10 @@ def test_the_part_that_a_sheet_touches_counts(old: str, new: str, message: str, 
     text = emitted(FOUR, overrides, only="sheets")
     file = tmp_path / "sheets.mdl"
     file.write_text(text)
-    assert check(FOUR, overrides, text=file, only="sheets", turn=False).ok
+    assert check(FOUR, overrides, text=file, only="sheets", perturb=False).ok
     assert old in text
     file.write_text(text.replace(old, new, 1))
-    found = check(FOUR, overrides, text=file, only="sheets", turn=False)
+    found = check(FOUR, overrides, text=file, only="sheets", perturb=False)
     assert any(message in str(d) for d in found.differences)
 
 
@@ -117,7 +117,7 @@ def machine(folder: Path, systems: list[str], *more: str) -> Path:
 
 
 def in_host(file: Path, **options) -> Verification:
-    return check(RICH, text=file, only="sheets", turn=False, **options)
+    return check(RICH, text=file, only="sheets", perturb=False, **options)
 
 
 def of(name: str, given: str = GIVEN) -> str:

@@ -37,7 +37,7 @@ from mdlgen.verify.report import report
 def test_a_statement_that_is_not_accounted_for_fails(more: str, tmp_path: Path) -> None:
     text, _ = files(tmp_path)
     text.write_text(text.read_text().replace("*EndMDL()", f"{more}\n*EndMDL()"))
-    found = check(RICH, text=text, turn=False)
+    found = check(RICH, text=text, perturb=False)
     named = more.partition("(")[0]
     assert any(named in str(d) and "rich.mdl:" in str(d) for d in found.differences), found.differences
 
@@ -46,7 +46,7 @@ def test_what_is_for_people_passes(tmp_path: Path) -> None:
     text, _ = files(tmp_path)
     more = '*SetNote( b_one_0_0, "mine" )\n*Set( b_one_0_0.usecm, true )\n*SetEntityId( b_one_0_0, 7 )\n'
     text.write_bytes(text.read_text().replace("*EndMDL()", f"{more}*EndMDL()").replace("\n", "\r\n").encode())
-    found = check(RICH, text=text, turn=False)
+    found = check(RICH, text=text, perturb=False)
     assert found.ok and any("CR LF" in n for n in found.notes)
 
 
@@ -66,7 +66,7 @@ def test_a_statement_that_is_missing_or_changed_fails(
     text, _ = files(tmp_path)
     assert old in text.read_text()
     text.write_text(text.read_text().replace(old, new, 1))
-    found = check(RICH, text=text, turn=False)
+    found = check(RICH, text=text, perturb=False)
     assert any(message in str(d) for d in found.differences), found.differences
 
 
@@ -75,16 +75,16 @@ def test_gravity_is_known_by_the_standard_include(tmp_path: Path) -> None:
     spec = samples() / "transport_4x4.yaml"
     text = emitted(spec, SMALL)
     file.write_text(text.replace("  *StandardInclude(FILE)\n", ""))
-    found = check(spec, SMALL, text=file, turn=False)
+    found = check(spec, SMALL, text=file, perturb=False)
     assert any(d.kind == "gravity" for d in found.differences)
 
 
 def test_a_script_that_is_not_there_is_told(tmp_path: Path) -> None:
     text, script = files(tmp_path)
-    found = check(RICH, text=text, turn=False)
+    found = check(RICH, text=text, perturb=False)
     assert found.script == str(script) and not found.notes
     script.unlink()
-    found = check(RICH, text=text, turn=False)
+    found = check(RICH, text=text, perturb=False)
     assert found.ok and found.notes == [
         f"there is no {script}: the script that mdlgen writes is taken in its place"
     ]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from mdlgen.verify.inputs.subject import Read, Subject
-from mdlgen.verify.outcome import Turned
+from mdlgen.verify.outcome import Perturbed
 from mdlgen.verify.perturb.perturbations import Perturbation, perturbations
 from mdlgen.verify.readback.script import Script
 from mdlgen.verify.readback.values import ReadBack, Values, contact_table, data_table, run_table
@@ -15,43 +15,43 @@ Progress = Callable[[int, int], None]
 _MOST = 3  # differences reported of one kind for one value
 
 
-def turn_all(
+def perturb_all(
     subject: Subject,
     text: Read,
     numbers: Script,
-    turned: Turned,
+    perturbed: Perturbed,
     contacts_only: bool,
     progress: Progress | None,
 ) -> None:
-    """Adds to `turned`. Of a second text of the same scene only the values of contacts need to be turned."""
-    turner = _Turner(subject, text, numbers, turned)
+    """Adds to `perturbed`. Of a second text of the same scene only the values of contacts need it."""
+    perturber = _Perturber(subject, text, numbers, perturbed)
     members = text.values["members"]
-    turns = [k for k in perturbations(subject.scene, subject.model) if k.path in turner.known]
+    chosen = [k for k in perturbations(subject.scene, subject.model) if k.path in perturber.known]
     if contacts_only:
-        turns = [k for k in turns if k.path.startswith("ds_contact_")]
+        chosen = [k for k in chosen if k.path.startswith("ds_contact_")]
     else:
-        paths = {k.path for k in turns}
+        paths = {k.path for k in chosen}
         for path, member in members.items():
             if member["edit"] != "NO_EDIT" and path not in paths:
                 what = "can be edited, and nothing in the spec is it"
-                turned.differences.append(Difference("data", path, what))
-    for done, perturbation in enumerate(turns):
+                perturbed.differences.append(Difference("data", path, what))
+    for done, perturbation in enumerate(chosen):
         if progress is not None:
-            progress(done, len(turns))
+            progress(done, len(chosen))
         if members[perturbation.path]["edit"] == "NO_EDIT":
-            turned.shown_only.add(perturbation.path)
+            perturbed.shown_only.add(perturbation.path)
         else:
-            turned.shown_only.discard(perturbation.path)
-            turner.turn(perturbation)
+            perturbed.shown_only.discard(perturbation.path)
+            perturber.perturb(perturbation)
 
 
-class _Turner:
+class _Perturber:
     """Turns values of one text."""
 
-    def __init__(self, subject: Subject, text: Read, numbers: Script, turned: Turned):
+    def __init__(self, subject: Subject, text: Read, numbers: Script, perturbed: Perturbed):
         self.subject = subject
         self.text = text
-        self.turned = turned
+        self.perturbed = perturbed
         self.script = numbers
         self.known = set(subject.said()["data"].names) & set(text.values["members"])
         self.kinds = set(subject.said()) - {"gravity"}
@@ -59,23 +59,23 @@ class _Turner:
             self.kinds.discard("contacts")
         self.base = self._tables(text.values)
 
-    def turn(self, perturbation: Perturbation) -> None:
+    def perturb(self, perturbation: Perturbation) -> None:
         """One value, in text and spec."""
-        turned, path = self.turned, perturbation.path
+        perturbed, path = self.perturbed, perturbation.path
         changed = self.text.changed(path, perturbation.value)
         if changed is None:
-            turned.differences.append(Difference("data", path, "is set by no statement"))
+            perturbed.differences.append(Difference("data", path, "is set by no statement"))
             return
-        turned.values += 1
+        perturbed.values += 1
         model = perturbation.model()
         tables, said = self._tables(changed), self.subject.said(model)
         for kind in self.kinds:
             compared = compare(kind, said[kind], self.base[kind].updated(tables[kind]), words=False)
-            if compared.largest > turned.largest:
-                turned.largest, turned.where = compared.largest, f"{path}: {kind} {compared.where}"
+            if compared.largest > perturbed.largest:
+                perturbed.largest, perturbed.where = compared.largest, f"{path}: {kind} {compared.where}"
             for difference in compared.differences[:_MOST]:
                 what = f"{difference.what}, with {path} changed to {perturbation.value:g}"
-                turned.differences.append(Difference(kind, difference.name, what))
+                perturbed.differences.append(Difference(kind, difference.name, what))
 
     def _tables(self, values: Values) -> dict[str, Table]:
         tables = ReadBack(self.subject.times, self.text.values["markers"]).tables(values)
