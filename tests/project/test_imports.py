@@ -97,16 +97,44 @@ def test_compiled_code_is_kept_in_one_place_whoever_imports_it_first(first: str)
 
 
 def test_rooms_import_only_lower_rooms() -> None:
+    done = linted(ROOT / "pyproject.toml")
+    assert done.returncode == 0, done.stdout
+
+
+# what a Scene names for a type alone, besides what pyproject.toml allows it
+FOR_A_TYPE = '    "mdlgen.spec.scene -> mdlgen.lints.lint",\n'
+
+
+def strict(text: str) -> str:
+    """The contracts of pyproject.toml but that of siblings, with names for types counted."""
+    head, *contracts = text[text.index("[tool.importlinter]") :].split("[[tool.importlinter.contracts]]")
+    kept = [contract for contract in contracts if 'type = "acyclic_siblings"' not in contract]
+    assert len(kept) == len(contracts) - 1 and "exclude_type_checking_imports = true" in head
+    layers = kept[0].replace("ignore_imports = [\n", f"ignore_imports = [\n{FOR_A_TYPE}")
+    head = head.replace("exclude_type_checking_imports = true", "exclude_type_checking_imports = false")
+    return "[[tool.importlinter.contracts]]".join([head, layers, *kept[1:]])
+
+
+def test_names_for_types_follow_the_layers_too(tmp_path: Path) -> None:
+    file = tmp_path / "strict.toml"
+    text = strict((ROOT / "pyproject.toml").read_text("utf-8"))
+    file.write_text(text, "utf-8")
+    done = linted(file)
+    assert done.returncode == 0 and "4 kept, 0 broken" in done.stdout, done.stdout
+    file.write_text(text.replace(FOR_A_TYPE, ""), "utf-8")
+    assert linted(file).returncode != 0
+
+
+def linted(config: Path) -> subprocess.CompletedProcess[str]:
     tool = Path(sys.executable).with_name("lint-imports")
     if not tool.exists():
         pytest.skip("import-linter is not installed")
     environment = {**os.environ, "PYTHONIOENCODING": "utf-8"}
-    done = subprocess.run(
-        [tool, "--no-cache"],
+    return subprocess.run(
+        [tool, "--no-cache", "--config", config],
         cwd=ROOT,
         capture_output=True,
         encoding="utf-8",
         env=environment,
         check=False,
     )
-    assert done.returncode == 0, done.stdout
