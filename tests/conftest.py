@@ -17,6 +17,8 @@ from mdlgen.program.file import Unfit
 from mdlgen.program.kernel import alone
 from mdlgen.program.ship import Program
 
+pytest.register_assert_rewrite("motionview_cases")  # so that a failing check of a helper shows its values
+
 # A process makes its commands ready once; tests that call hundreds of them in one process would each time.
 typer.main.get_command = functools.cache(typer.main.get_command)
 
