@@ -19,6 +19,7 @@ __all__ = ["app", "main"]
 COMMANDS = {
     "new": "scene",
     "check": "scene",
+    "preview": "preview",
     "mdl": "texts",
     "deck": "texts",
     "verify": "texts",

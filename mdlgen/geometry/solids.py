@@ -52,6 +52,22 @@ def cylinder(radius: float, low: float, high: float) -> Solid:
     return prism(arc(radius, 0.0, 2.0 * np.pi)[:-1], low, high)
 
 
+def arrow(length: float, breadth: float) -> Solid:
+    """From the origin along z to its tip; `breadth` is that of the head."""
+    head = min(1.5 * breadth, 0.6 * length)
+    ring = arc(breadth / 2, 0.0, 2.0 * np.pi)[:-1]
+    n = len(ring)
+    k = np.arange(n)
+    after = np.roll(k, -1)
+    points = np.vstack(
+        [np.column_stack([ring, np.full(n, length - head)]), [[0, 0, length], [0, 0, length - head]]]
+    )
+    cone = np.concatenate(
+        [np.stack([k, after, np.full(n, n)], axis=1), np.stack([after, k, np.full(n, n + 1)], axis=1)]
+    )
+    return join(cylinder(0.2 * breadth, 0.0, length - head), Solid(points, cone))
+
+
 def slice_(radius: float, begin: float, end: float, half: float) -> Solid:
     """The part of a cylinder between two angles [rad], from its axis."""
     outline = np.concatenate([[[0.0, 0.0]], arc(radius, begin, end)])

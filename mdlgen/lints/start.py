@@ -23,7 +23,7 @@ def interference(model: Model) -> Iterator[Lint]:
         if number == BOX_BOX:
             two = (sheets[one], sheets[other])
             thin, thick = two if two[0].thickness <= two[1].thickness else two[::-1]
-            depth = _overlap(*two)
+            depth = overlap(*two)
             if deep(depth, thin):
                 yield _deep_start(model, row, f"sheets.{thick.name}.center", thick.name, depth, thin)
         elif number in WITH_SHEET:
@@ -44,7 +44,7 @@ def _deep_start(model: Model, row: int, where: str, part: str, depth: float, she
     )
 
 
-def _overlap(one: SheetPart, two: SheetPart) -> float:
+def overlap(one: SheetPart, two: SheetPart) -> float:
     """How deep two flat sheets are in each other at the start [mm]; 0 where they are not parallel."""
     normal = one.rotation[:, 2]
     if abs(float(normal @ two.rotation[:, 2])) < 1 - FLAT**2:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from base64 import b64encode
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,7 +11,9 @@ from mdlgen.model.tables import Floats, Ints, Model
 from mdlgen.report import boxes
 from mdlgen.report.meshes import machine, moving
 from mdlgen.report.motion import names, poses, start
-from mdlgen.results.result import Result
+
+if TYPE_CHECKING:
+    from mdlgen.results.result import Result
 
 # Boxes times states of a page, 600 boxes at 501 states; more states than FRAMES are not seen one by one.
 MOST, FRAMES = 600 * 501, 1000
@@ -51,11 +53,25 @@ def animation(result: Result, at: Ints, colours: dict[str, tuple[str, Floats]]) 
         place, turn = np.concatenate([before[0], place]), np.concatenate([before[1], turn])
         time = np.array([0.0, 1.0])
         colours = {k: (u, np.concatenate([np.zeros_like(v), v])) for k, (u, v) in colours.items()}
+    packed_colours = [colour(name, unit, values) for name, (unit, values) in colours.items()]
+    return {**_states(model, moves, time, place, turn, packed_colours), "static": len(at) == 1}
+
+
+def at_the_start(model: Model, colours: list[dict[str, Any]]) -> dict[str, Any]:
+    """As `animation` of a scene that is not run, with `colours` as `colour` makes them: the one state that it
+    begins in."""
+    moves = np.array(moving(model), dtype=np.int64)
+    place, turn = (whole[None, moves] for whole in start(model))
+    return {**_states(model, moves, np.zeros(1), place, turn, colours), "static": True}
+
+
+def _states(
+    model: Model, moves: Ints, time: Floats, place: Floats, turn: Floats, colours: list[dict[str, Any]]
+) -> dict[str, Any]:
     low, high = place.min(axis=(0, 1)), place.max(axis=(0, 1))
     step = np.where(high > low, (high - low) / (2 * WHOLE + 1), 1.0)
     return {
         "time": [float(t) for t in time],
-        "static": len(at) == 1,
         "boxes": boxes.count(model),
         "bodies": len(moves),
         "half": packed(model.bodies.half[: boxes.count(model)], "f4"),
@@ -63,14 +79,15 @@ def animation(result: Result, at: Ints, colours: dict[str, tuple[str, Floats]]) 
         "step": step.tolist(),
         "place": packed(np.round((place - low) / step), "u2"),
         "turn": packed(np.round(turn * WHOLE), "i2"),
-        "colours": [_colour(name, unit, values) for name, (unit, values) in colours.items()],
+        "colours": colours,
         "meshes": _meshes(model, moves),
         "names": [names(model)[body] for body in moves],
     }
 
 
-def _colour(name: str, unit: str, values: Floats) -> dict[str, Any]:
-    most = float(values.max(initial=0.0))
+def colour(name: str, unit: str, values: Floats, most: float | None = None) -> dict[str, Any]:
+    """Values of boxes (t, boxes) as parts of the greatest, or of `most`."""
+    most = float(values.max(initial=0.0)) if most is None else most
     share = np.clip(values / most, 0.0, 1.0) if most > 0.0 else np.zeros_like(values)
     return {"name": name, "unit": unit, "most": most, "values": packed(np.round(255 * share), "u1")}
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from mdlgen.model.parts.kind import Boxes
@@ -15,10 +17,10 @@ from mdlgen.model.tables import (
     Ints,
     Model,
 )
-from mdlgen.report import shares
-from mdlgen.report.shares import EXPONENT
-from mdlgen.results.result import Result
-from mdlgen.results.strain import SheetJoints
+
+if TYPE_CHECKING:
+    from mdlgen.results.result import Result
+    from mdlgen.results.strain import SheetJoints
 
 PER_SECOND = 1000.0
 
@@ -58,6 +60,10 @@ def contact(result: Result, at: Ints) -> tuple[Floats, Floats]:
     penetrations to the power 1.5 are, with meshes and other sheets over the area that each covers
     (report.shares). A force between two sheets is on the boxes of both.
     """
+    from mdlgen.report import (
+        shares,  # the laws of contact take time to load, and most pages need none of them
+    )
+
     model = result.model
     sheets = {sheet.name: sheet for sheet in model.sheets}
     machine = {part.body: part for part in model.machine}
@@ -89,7 +95,7 @@ def contact(result: Result, at: Ints) -> tuple[Floats, Floats]:
             continue
         deep = np.maximum(deep, 0.0)
         deepest[pressed, row] = deep.max(axis=1)
-        weight = deep**EXPONENT
+        weight = deep**shares.EXPONENT
         total = weight.sum(axis=1, keepdims=True)
         part = weight / np.where(total > 0.0, total, 1.0)
         found[np.ix_(pressed, boxes)] += part * result.contact_force[at[pressed], row][:, None]

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from mdlgen.model.rotations import euler_parameters, matrices
 from mdlgen.model.tables import Floats, Ints, Model
 from mdlgen.report.meshes import on_arms
-from mdlgen.results.result import Result
+
+if TYPE_CHECKING:
+    from mdlgen.results.result import Result
 
 
 def poses(result: Result, at: Ints) -> tuple[Floats, Floats]:

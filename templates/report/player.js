@@ -4,7 +4,9 @@ const VIRIDIS = ["#440154", "#482878", "#3e4989", "#31688e", "#26828e", "#1f9e89
 const KINDS = {
   roller: { color: 0xaab4bf }, sector: { color: 0x56616b }, mark: { color: 0xd55e00 }, arm: { color: 0xa98f63 }, mesh: { color: 0x7d93a8 },
   plane: { color: 0xc8ccd2, opacity: 0.35 }, guide: { color: 0x7d93a8, opacity: 0.45 },
+  drive: { color: 0x0072b2 }, press: { color: 0x009e73 }, motion: { color: 0xcc79a7 }, load: { color: 0xe69f00 },
 };
+const ARROWS = ["drive", "press", "motion", "load"];
 // Lit once a corner and not once a pixel, which is what costs without a graphics card.
 const LAMP = [-0.3, -0.5, 0.81]; // from above, and a little from the left and the front
 const VERTEX = `
@@ -59,7 +61,7 @@ async function player(canvas, changed) {
   ground();
   const camera = new THREE.OrthographicCamera(-1, 1, 1, -1, -1e5, 1e5);
   const target = new THREE.Vector3();
-  let away = new THREE.Vector3(0, -1, 0), size = 100, follow = false, machine = true, seen = null, time = 0;
+  let away = new THREE.Vector3(0, -1, 0), size = 100, follow = false, machine = true, arrows = true, seen = null, time = 0;
 
   const part = (colour, i) => parseInt(colour.slice(1 + 2 * i, 3 + 2 * i), 16) / 255;
   const ramp = new Float32Array(256 * 3);
@@ -111,11 +113,14 @@ async function player(canvas, changed) {
       shape.setIndex(new THREE.BufferAttribute(unpack(mesh.triangles, Uint16Array), 1));
       const flat = shape.toNonIndexed();
       flat.computeVertexNormals();
-      const drawn = new THREE.Mesh(flat, paint(KINDS[mesh.kind]));
+      // an arrow is not hidden by what it is about
+      const over = ARROWS.includes(mesh.kind);
+      const drawn = new THREE.Mesh(flat, paint(KINDS[mesh.kind], over ? { depthTest: false, transparent: true } : {}));
+      drawn.renderOrder = Number(over);
       drawn.position.fromArray(mesh.place);
       drawn.quaternion.set(mesh.turn[1], mesh.turn[2], mesh.turn[3], mesh.turn[0]);
       run.group.add(drawn);
-      run.parts.push({ drawn, row: mesh.row, kind: mesh.kind });
+      run.parts.push({ drawn, row: mesh.row, kind: mesh.kind, mesh });
     }
     return run;
   }
@@ -176,8 +181,8 @@ async function player(canvas, changed) {
     }
     points.needsUpdate = true;
     tints.needsUpdate = true;
-    for (const { drawn, row } of seen.parts) {
-      drawn.visible = machine;
+    for (const { drawn, row, kind } of seen.parts) {
+      drawn.visible = ARROWS.includes(kind) ? arrows : machine;
       if (row < 0) continue;
       pose(seen, row, k, part);
       drawn.position.copy(position);
@@ -204,6 +209,7 @@ async function player(canvas, changed) {
     camera.lookAt(target);
     camera.updateProjectionMatrix();
     renderer.render(scene, camera);
+    shown.drew?.();
   }
 
   let waiting = false;
@@ -259,6 +265,24 @@ async function player(canvas, changed) {
     near() { fit(true); refresh(); },
     follow(value) { follow = value; },
     machine(value) { machine = value; refreshPoses(); refresh(); },
+    arrows(value) { arrows = value; refreshPoses(); refresh(); },
+    // Where a point [mm] is on the canvas [px].
+    project(point) {
+      moved.fromArray(point).project(camera);
+      return [(moved.x + 1) * wide / 2, (1 - moved.y) * high / 2];
+    },
+    // A direction as it is seen: to the right and upward, and toward the eye.
+    seenAlong(way) { moved.fromArray(way).transformDirection(camera.matrixWorldInverse); return [moved.x, moved.y, moved.z]; },
+    pixelsPerMm() { return high / (2 * size); },
+    // What is under a point of the canvas [px]: a mesh, or a box by its number; planes only where nothing else is.
+    pick(x, y) {
+      const ray = new THREE.Raycaster();
+      const at = new THREE.Vector3(2 * x / wide - 1, 1 - 2 * y / high, 0).unproject(camera);
+      ray.set(at.addScaledVector(away, 1e5), moved.copy(away).negate().clone());
+      const hits = ray.intersectObjects([seen.boxes, ...seen.parts.filter((part) => part.drawn.visible).map((part) => part.drawn)], false);
+      const found = hits.map((hit) => hit.object === seen.boxes ? { box: Math.floor(hit.faceIndex / 12) } : { mesh: seen.parts.find((part) => part.drawn === hit.object).mesh });
+      return found.find((one) => one.mesh?.kind !== "plane") ?? found[0] ?? null;
+    },
     seek(at) { time = at; refreshPoses(); refresh(); },
     // While it plays, a picture that takes too long [ms] is made coarser, since without a graphics card the
     // time goes by the pixel; at rest (null) it is as fine as the screen.

@@ -122,7 +122,7 @@ def test_a_page_runs_as_printed(page: Path, tmp_path: Path, monkeypatch: pytest.
 def test_the_commands_of_the_readme_print_what_it_says(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The table of five commands: the first code of a row is a command, what it prints follows."""
+    """The table of six commands: the first code of a row is a command, what it prints follows."""
     page = ROOT / "README.md"
     (scene,) = (content for language, _, content in blocks(page) if language == "yaml")
     monkeypatch.chdir(tmp_path)
@@ -130,7 +130,7 @@ def test_the_commands_of_the_readme_print_what_it_says(
     opened: list[str] = []
     monkeypatch.setattr("webbrowser.open", lambda url: opened.append(url) or True)
     rows = re.findall(r"^\| `mdlgen (.*?)` \| (.*) \|$", page.read_text("utf-8"), re.MULTILINE)
-    assert len(rows) == 5
+    assert len(rows) == 6
     for line, says in rows:
         done = CliRunner().invoke(app, shlex.split(line))
         assert done.exit_code == 0, f"{line}\n{done.output}"
@@ -139,7 +139,8 @@ def test_the_commands_of_the_readme_print_what_it_says(
                 assert CliRunner().invoke(app, shlex.split(inline)[1:]).exit_code == 0, inline
             else:
                 check_printed(inline, done.output, line)
-    assert opened == [(tmp_path / "out" / "one_nip" / "report.html").as_uri()]
+    pages = [tmp_path / "out" / "one_nip" / name for name in ("preview.html", "report.html")]
+    assert opened == [page.as_uri() for page in pages]
 
 
 # Commands in examples that need what a test has not at hand; each is run by another file of tests.

@@ -35,17 +35,18 @@ def test_importing_the_package_is_cheap() -> None:
     assert not found & {*HEAVY, "numpy", "pydantic", "ruamel", "typer", "jinja2"}
 
 
-@pytest.mark.parametrize("command", ["mdl", "check"])
-def test_what_does_not_run_imports_no_solver(command: str) -> None:
+@pytest.mark.parametrize("command", ["mdl", "check", "preview"])
+def test_what_does_not_run_imports_no_solver(command: str, tmp_path: Path) -> None:
     args = ["mdlgen", command, str(samples() / "transport_4x4.yaml")]
-    args += ["-o", "-", "-q"] if command == "mdl" else ["--json"]
+    page = ["-o", str(tmp_path / "start.html"), "-q"]
+    args += {"mdl": ["-o", "-", "-q"], "check": ["--json"], "preview": page}[command]
     found = loaded(
         f"import contextlib, io\nfrom mdlgen.cli import main\nsys.argv = {args!r}\n"
         "with contextlib.suppress(SystemExit), contextlib.redirect_stdout(io.StringIO()):\n    main()"
     )
     assert "numpy" in found
     assert not found & set(HEAVY)
-    assert ("jinja2" in found) == (command == "mdl")
+    assert ("jinja2" in found) == (command != "check")
 
 
 # No process is started, but for the one that importing h5py asks for the name of the processor.

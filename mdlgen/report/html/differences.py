@@ -9,7 +9,6 @@ from mdlgen.errors import SpecError
 from mdlgen.results.compare import compare
 from mdlgen.results.result import Result
 
-ROUND_OFF = 1e-9  # a number below it has no figures to speak of
 # of summary.json: a list of events or of names is no number to compare
 _LEFT_OUT = ("events", "versions", "estimates", "estimate_scales")
 
@@ -35,30 +34,6 @@ def differences(
         "parameters": _parameters(results),
         "distances": [_distance(results[0], other) for other in results[1:]],
     }
-
-
-def shown(value: Any) -> str:
-    """A number as a reader wants it: five figures, 0 for round-off; a dash for what is not known.
-
-    In a vector a component that is round-off of the others is 0.
-    """
-    if value is None:
-        return "–"
-    if isinstance(value, (bool, str)):
-        return str(value)
-    if isinstance(value, (list, tuple)):
-        numbers = [v for v in value if isinstance(v, (int, float))]
-        small = ROUND_OFF * max((abs(v) for v in numbers), default=0.0)
-        return "(" + ", ".join("0" if v in numbers and abs(v) < small else shown(v) for v in value) + ")"
-    return f"{value:.5g}" if abs(value) > ROUND_OFF else "0"
-
-
-def percent(value: float | None) -> str:
-    """A ratio in percent, of which a small one says how small it is."""
-    if value is None:
-        return "– %"
-    value *= 100.0
-    return f"{value:.3g} %" if abs(value) > ROUND_OFF else f"{value:.1g} %"
 
 
 def _flat(value: Any, path: str = "") -> list[tuple[str, Any]]:

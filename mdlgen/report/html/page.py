@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import asdict
-from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,16 +15,14 @@ from mdlgen.report import boxes
 from mdlgen.report.animation import animation, frames, packed
 from mdlgen.report.figures.maps import Map, maps
 from mdlgen.report.html.curves import Panel, panels
-from mdlgen.report.html.differences import differences, percent, shown
+from mdlgen.report.html.differences import differences
+from mdlgen.report.html.environment import environment, library
 from mdlgen.results.result import Result
 from mdlgen.results.strain import histories, sheet_joints
 
 if TYPE_CHECKING:
-    from jinja2 import Environment
-
     from mdlgen.model.tables import Model
 
-_LIBRARY = ("three.core.min.js", "three.module.min.js")
 _STEPS = 18  # of colour in a map: .c0 to .c18 in style.css
 _SCRIPTS = ("charts.js", "player.js", "page.js")
 
@@ -51,7 +48,7 @@ def page(results: Sequence[Result], names: Sequence[str] = ()) -> str:
             # inside a script element nothing may look like markup
             data=drawn.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026"),
             style=(folder / "style.css").read_text("utf-8"),
-            library={name: (folder / "third_party" / name).read_text("utf-8") for name in _LIBRARY},
+            library=library(),
             licence=(folder / "third_party" / "LICENSE").read_text("utf-8"),
             scripts=[(folder / name).read_text("utf-8") for name in _SCRIPTS],
         )
@@ -69,15 +66,6 @@ def prepare(model: Model) -> None:
     environment().get_template("page.html.j2")
     sheet_joints(model)
     lints(model)
-
-
-@lru_cache(maxsize=1)
-def environment() -> Environment:
-    from mdlgen import templating
-
-    made = templating.environment("report", autoescape=True)
-    made.filters |= {"shown": shown, "percent": percent}
-    return made
 
 
 def _run(result: Result, name: str) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from mdlgen.paths import templates, write_atomic
-from mdlgen.report.html.page import environment
+from mdlgen.report.html.environment import environment
 from mdlgen.study.analysis.table import Column
 from mdlgen.study.analysis.table import columns as table
 from mdlgen.study.design.case import Case

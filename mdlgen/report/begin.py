@@ -1,0 +1,292 @@
+"""What the parts of a scene are as it begins, in words, and how deep those in contact are in each other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from mdlgen.checks import lints
+from mdlgen.lints.lint import Lint
+from mdlgen.lints.start import overlap
+from mdlgen.model.overlap import rod
+from mdlgen.model.parts.kind import Boxes
+from mdlgen.model.parts.kinds import WITH_SHEET, kind_of
+from mdlgen.model.tables import (
+    BOX_BOX,
+    BOX_CYLINDER,
+    BOX_MESH,
+    CYLINDER_CYLINDER,
+    EXTERNAL,
+    Anchor,
+    Floats,
+    GuidePart,
+    Ints,
+    MeshPart,
+    Model,
+    PlanePart,
+    RollerPart,
+    SheetPart,
+)
+from mdlgen.report.arrows import extent
+
+PER_SECOND = 1000.0
+ROUND_OFF = 1e-9  # of places [mm]
+
+
+@dataclass(frozen=True)
+class Met:
+    """One row of contacts as a run begins."""
+
+    name: str  # what a user calls the contact
+    one: str
+    other: str
+    deep: float | None  # [mm], below zero by how far two rounds are apart; None: not computed
+    stiffness: float  # [N/mm^1.5]
+    friction: tuple[float, float]  # static and dynamic
+    restitution: float
+    pairs: int | None  # of bodies, that are kept; None: searched for as the run goes
+
+    @property
+    def says(self) -> str:
+        """How deep, in words."""
+        if self.deep is None:
+            return "depth not computed"
+        if 0.0 < abs(self.deep) < ROUND_OFF:
+            return "just touching"
+        if self.deep > 0.0:
+            return f"{self.deep:.3g} mm deep"
+        return f"{-self.deep:.3g} mm apart" if self.deep < 0.0 else "apart"
+
+
+@dataclass(frozen=True)
+class Known:
+    """One part: what a label, a table and the box under the pointer show."""
+
+    name: str
+    kind: str
+    at: tuple[float, float, float]  # where its name stands [mm]
+    facts: tuple[str, ...]
+    lints: tuple[Lint, ...]
+
+
+def met(model: Model) -> list[Met]:
+    """All contacts of a Model, in its order."""
+    table, found = model.contacts, []
+    for row, kind in enumerate(table.kind.tolist()):
+        kept = int(np.count_nonzero(model.pairs.contact == row))
+        found.append(
+            Met(
+                name=table.called(row),
+                one=table.part_a[row],
+                other=table.part_b[row],
+                deep=None if kind == EXTERNAL else _deep(model, row, kind),
+                stiffness=float(table.stiffness[row]),
+                friction=(float(table.mu_static[row]), float(table.mu_dynamic[row])),
+                restitution=float(table.restitution[row]),
+                pairs=None if row in model.pairs.searched else kept,
+            )
+        )
+    return found
+
+
+def _deep(model: Model, row: int, kind: int) -> float | None:
+    """How deep the two parts of a contact are in each other [mm]."""
+    sheets = {sheet.name: sheet for sheet in model.sheets}
+    one, name = model.contacts.part_a[row], model.contacts.part_b[row]
+    if kind == BOX_BOX:
+        return max(0.0, overlap(sheets[one], sheets[name]))
+    if kind == BOX_MESH:
+        return None
+    part = next(p for p in model.machine if p.name == name)
+    if kind == BOX_CYLINDER:
+        mine = model.pairs.a[model.pairs.contact == row]
+        depths = _boxes_in(model, mine, part)
+        return float(depths.max()) if len(depths) else 0.0
+    if kind in WITH_SHEET:
+        return max(0.0, kind_of(part).depth_at_start(model, sheets[one], part))
+    first, position = model.roller(one), model.bodies.position
+    if kind == CYLINDER_CYLINDER:
+        assert isinstance(part, RollerPart)
+        if first.rim is not None or part.rim is not None:
+            return None
+        gap = position[part.body] - position[first.body]
+        across = gap - first.axis * float(gap @ first.axis)
+        return first.radius + part.radius - float(np.linalg.norm(across))
+    shape = rod(first, position[first.body])
+    into = kind_of(part).overlap(part, position[part.body], model.bodies.rotation[part.body])
+    return max(0.0, into(shape))
+
+
+def _boxes_in(model: Model, boxes: Ints, part: object) -> Floats:
+    """How deep boxes are in a roller [mm], (n,); below zero by how far they are off."""
+    assert isinstance(part, RollerPart)
+    bodies = model.bodies
+    shown = Boxes(bodies.position[boxes][None], bodies.rotation[boxes][None], bodies.half[boxes])
+    found = WITH_SHEET[BOX_CYLINDER].depths(part, shown, bodies.position[part.body][None])
+    assert found is not None, "only those of meshes follow from areas"
+    return found[0]
+
+
+def depths(model: Model) -> Floats:
+    """How deep each box of the sheets is in a roller as the run begins [mm], (boxes,)."""
+    found = np.zeros(sum(sheet.count for sheet in model.sheets))
+    parts = {part.name: part for part in model.machine}
+    for row in np.flatnonzero(model.contacts.kind == BOX_CYLINDER).tolist():
+        mine = model.pairs.a[model.pairs.contact == row]
+        if len(mine):
+            deep = _boxes_in(model, mine, parts[model.contacts.part_b[row]])
+            found[mine] = np.maximum(found[mine], deep)
+    return found
+
+
+def known(model: Model) -> list[Known]:
+    """Sheets, parts of the machine and probes, each with the lints that are about it."""
+    about = _about(model)
+    found = []
+    for name, kind, at, facts in _told(model):
+        x, y, z = at.tolist()
+        found.append(Known(name, kind, (x, y, z), tuple(facts), about.get(name, ())))
+    return found
+
+
+def of_no_part(model: Model) -> list[Lint]:
+    """The lints that are about no part."""
+    about = {lint for found in _about(model).values() for lint in found}
+    return [lint for lint in lints(model) if lint not in about]
+
+
+def _about(model: Model) -> dict[str, tuple[Lint, ...]]:
+    """Lints by the parts that they are about: of a contact both of its parts."""
+    found: dict[str, list[Lint]] = {}
+    names = {part.name for part in (*model.sheets, *model.machine, *model.probes)}
+    table = model.contacts
+    for lint in lints(model):
+        kind, _, rest = lint.where.partition(".")
+        name = rest.partition(".")[0]
+        if kind == "contacts":
+            rows = [row for row in range(len(table)) if table.called(row) == name]
+            parts = dict.fromkeys(p for row in rows for p in (table.part_a[row], table.part_b[row]))
+        elif kind == "materials":
+            parts = {}
+        else:
+            parts = {name: None} if name in names else {}
+        for part in parts:
+            found.setdefault(part, []).append(lint)
+    return {name: tuple(some) for name, some in found.items()}
+
+
+def _told(model: Model) -> Iterator[tuple[str, str, Floats, list[str]]]:
+    """Name, kind, place of the name and facts of each part."""
+    bodies = model.bodies
+    for sheet in model.sheets:
+        mine = slice(sheet.first, sheet.first + sheet.count)
+        yield sheet.name, "sheet", bodies.position[mine].mean(axis=0), _of_sheet(model, sheet)
+    for part in model.machine:
+        at = bodies.position[part.body]
+        if isinstance(part, RollerPart):
+            yield part.name, "roller", at, _of_roller(part)
+        elif isinstance(part, PlanePart):
+            # at a corner of its face, or what is nearest to that of where other parts are: in the middle are
+            # the sheets
+            corner = at + bodies.rotation[part.body] @ (bodies.half[part.body] * [-1.0, -1.0, 1.0])
+            near = np.clip(corner, *extent(model))
+            near = near + part.normal * float((corner - near) @ part.normal)
+            yield part.name, "plane", near, _of_plane(part)
+        elif isinstance(part, GuidePart):
+            yield part.name, "guide", _middle(part), _of_guide(part)
+        else:
+            yield part.name, "mesh", at, _of_mesh(model, part)
+    for probe in model.probes:
+        yield probe.name, "probe", _place(model, probe), [f"a point of {model.sheets[probe.sheet].name}"]
+
+
+def _place(model: Model, anchor: Anchor) -> Floats:
+    turned = np.einsum("nij,nj->ni", model.bodies.rotation[anchor.body], anchor.local)
+    return anchor.share @ (model.bodies.position[anchor.body] + turned)
+
+
+def _middle(guide: GuidePart) -> Floats:
+    """Of a guide's face."""
+    if guide.radius == 0.0:
+        return guide.center
+    way = np.array([np.cos(guide.middle), np.sin(guide.middle), 0.0])
+    return guide.center + guide.radius * guide.axes @ way
+
+
+def _of_sheet(model: Model, sheet: SheetPart) -> list[str]:
+    mine = slice(sheet.first, sheet.first + sheet.count)
+    x, y = sheet.outline
+    mass = float(model.bodies.mass[mine].sum())
+    facts = [
+        f"{x:.4g} x {y:.4g} mm, {sheet.thickness:.4g} mm thick, {mass:.4g} g",
+        f"{sheet.n_x} x {sheet.n_y} boxes, {sheet.layout}",
+    ]
+    for zone in sheet.zones:
+        facts.append(f"zone {zone.name}: {int(np.count_nonzero(zone.share))} boxes")
+    if sheet.bend is not None:
+        facts.append(f"not flat at rest, begins {sheet.bend.start}")
+    speed, spin = float(np.linalg.norm(sheet.velocity)), float(np.linalg.norm(sheet.spin))
+    if speed > 0.0:
+        facts.append(f"begins with {PER_SECOND * speed:.4g} mm/s")
+    if spin > 0.0:
+        facts.append(f"begins with a spin of {PER_SECOND * spin:.4g} rad/s")
+    if sheet.clamp is not None:
+        facts.append(f"clamped at {sheet.clamp.edge}")
+    return facts
+
+
+def _of_roller(roller: RollerPart) -> list[str]:
+    facts = [f"radius {roller.radius:.4g} mm, width {roller.width:.4g} mm, {roller.mass:.4g} g"]
+    if roller.speed is None:
+        facts.append("turns freely")
+    elif roller.profile is not None:
+        facts.append(f"driven by a profile, {PER_SECOND * roller.speed:.4g} rad/s at most")
+    else:
+        surface = PER_SECOND * abs(roller.speed) * roller.radius
+        ramp = f", ramp {roller.ramp:.4g} ms" if roller.ramp else ""
+        facts.append(f"driven at {PER_SECOND * roller.speed:.4g} rad/s, surface {surface:.4g} mm/s{ramp}")
+    if roller.one_way is not None:
+        facts.append(f"clutch, free in the sense {roller.one_way.direction:+d}")
+    if roller.press is not None:
+        spring = roller.press
+        facts.append(
+            f"pressed along {_shown(spring.direction)} by {spring.preload:.4g} N where it touches, "
+            f"{spring.stiffness:.4g} N/mm"
+        )
+    if roller.arm is not None:
+        facts.append(f"on an arm of {roller.arm.mass:.4g} g, spring torque {roller.arm.torque:.4g} N mm")
+    if roller.rim is not None:
+        facts.append(f"rim of {len(roller.rim)} sectors")
+    return facts
+
+
+def _of_plane(plane: PlanePart) -> list[str]:
+    facts = [" x ".join(f"{s:.4g}" for s in plane.size) + f" mm, face towards {_shown(plane.normal)}"]
+    if plane.press is None:
+        return [*facts, "fixed"]
+    spring = plane.press
+    force = f"pressed along {_shown(spring.direction)} by {spring.preload:.4g} N, {spring.stiffness:.4g} N/mm"
+    return [*facts, f"{force}, {plane.sliding_mass:.4g} g"]
+
+
+def _of_guide(guide: GuidePart) -> list[str]:
+    if guide.radius == 0.0:
+        form = f"straight, {guide.length:.4g} mm long"
+    else:
+        form = f"arc of radius {guide.radius:.4g} mm over {np.degrees(2 * guide.half_angle):.4g} deg"
+    return [f"{form}, {guide.width:.4g} mm wide", f"touched on the side: {guide.side}"]
+
+
+def _of_mesh(model: Model, mesh: MeshPart) -> list[str]:
+    where = "fixed" if mesh.on < 0 else f"turns with {model.rollers[mesh.on].name}"
+    return [f"{mesh.file}, {len(mesh.triangles)} triangles", where]
+
+
+def _shown(way: Floats) -> str:
+    """A direction as a scene has it."""
+    for axis, part in zip("xyz", way.tolist(), strict=True):
+        if abs(part) > 1.0 - 1e-9:
+            return axis if part > 0.0 else f"-{axis}"
+    return "[" + ", ".join(f"{round(part, 3) + 0.0:g}" for part in way.tolist()) + "]"
