@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import partial
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,9 +21,10 @@ from pydantic import (
 from pydantic_core import PydanticCustomError
 
 from mdlgen.formulas import Amount
-from mdlgen.spec.action import Load, OnSheet, Probe, Support
+from mdlgen.spec.action import Load, Probe, Support
 from mdlgen.spec.beside import PYTHON, holding, named_from
-from mdlgen.spec.between import MACHINE, find_pairs, known
+from mdlgen.spec.between import find_pairs
+from mdlgen.spec.consistency import check_counts, check_names, checks
 from mdlgen.spec.contact import Contact
 from mdlgen.spec.document import Document
 from mdlgen.spec.dump import in_plain_data, said
@@ -34,7 +34,7 @@ from mdlgen.spec.limits import DEFAULT, Limits
 from mdlgen.spec.machine import Plane, Roller
 from mdlgen.spec.material import Material
 from mdlgen.spec.mesh import Mesh
-from mdlgen.spec.nip import Nip, names_of
+from mdlgen.spec.nip import Nip
 from mdlgen.spec.parameter import (
     MOST as MOST_PARAMETERS,
 )
@@ -48,14 +48,12 @@ from mdlgen.spec.parameter import (
     without_formulas,
 )
 from mdlgen.spec.part import Part
-from mdlgen.spec.require import requirement
 from mdlgen.spec.run import Run
 from mdlgen.spec.sheet import Sheet
 from mdlgen.spec.shorthand import Defaults, written_out
 from mdlgen.spec.source import Source, text_of, text_of_data
 from mdlgen.spec.strict import Strict, fail, fail_all
 from mdlgen.spec.surface import with_rates
-from mdlgen.units import exact_quantity
 
 if TYPE_CHECKING:
     from mdlgen.lints.lint import Lint
@@ -249,10 +247,10 @@ class Scene(Strict):
     @model_validator(mode="after")
     def _references(self, info: ValidationInfo) -> Scene:
         self._limits = (info.context or {}).get("limits", DEFAULT)
-        self._count()
-        self._names_unique()
+        check_counts(self)
+        check_names(self)
         errors: list[PydanticCustomError] = []
-        for check in self._checks():
+        for check in checks(self):
             try:
                 check()
             except PydanticCustomError as error:
@@ -265,82 +263,6 @@ class Scene(Strict):
         for name in type(self).model_fields if self._formulas else ():
             vars(self)[name] = without_formulas(getattr(self, name))
         return self
-
-    def _checks(self) -> Iterator[Callable[[], None]]:
-        """What is to be looked at one by one, so that each mistake is reported."""
-        for name in self.sheets:
-            yield partial(self._check_material, name)
-        for kind in ("probes", "loads", "supports"):
-            items = getattr(self, kind)
-            for key, item in items.items() if isinstance(items, dict) else enumerate(items):
-                yield partial(self._on_sheet, item, (kind, key))
-        for name in self.rollers:
-            yield partial(self._check_clutch, name)
-        for name in self.nips:
-            yield partial(self._check_nip, name)
-        for name, mesh in self.meshes.items():
-            if mesh.on is not None:
-                yield partial(known, mesh.on, self.rollers, "roller", ("meshes", name, "on"))
-
-        for k in range(len(self.require)):
-            yield partial(self._check_requirement, k)
-
-    def _check_requirement(self, k: int) -> None:
-        path = ("require", k)
-        try:
-            wanted = requirement(self.require[k])
-        except ValueError as error:
-            raise fail(str(error), path) from None
-        if wanted.part is not None:
-            parts = [name for kind in ("sheets", *MACHINE) for name in getattr(self, kind)]
-            known(wanted.part, parts, "part", path)
-
-    def _check_nip(self, name: str) -> None:
-        nip, path = self.nips[name], ("nips", name)
-        if nip.sheet is not None:
-            known(nip.sheet, self.sheets, "sheet", (*path, "sheet"))
-        elif len(self.sheets) > 1:
-            raise fail(f"which sheet is between them? give sheet, as sheet: {next(iter(self.sheets))}", path)
-        rollers = names_of(name, {"lower": nip.lower, "upper": nip.upper})
-        if all(self.rollers[roller].press is not None for roller in rollers):
-            raise fail("both rollers have a press; give one of them a fixed axis", (*path, "upper", "press"))
-        for side, roller in zip(("lower", "upper"), rollers, strict=True):
-            press = getattr(nip, side).get("press")
-            if isinstance(press, dict) and "preload" in press:
-                message = (
-                    f"the preload of {roller} follows from the force of nip {name}; leave it out, "
-                    f"and give that, as force: {exact_quantity(nip.force, 'N')}"
-                )
-                raise fail(message, (*path, side, "press", "preload"))
-            given = getattr(nip, side).get("contact")
-            if isinstance(given, dict) and given.get("share", "width") != "width":
-                message = "a nip is in balance with share: width only; leave share out"
-                raise fail(message, (*path, side, "contact", "share"))
-
-    def _check_material(self, name: str) -> None:
-        sheet = self.sheets[name]
-        known(sheet.material, self.materials, "material", ("sheets", name, "material"))
-        material = self.materials[sheet.material]
-        if material.D_twist is not None and sheet.layout == "edge_to_edge":
-            raise fail(
-                f"sheet {name}: D_twist acts with layouts plate and center_to_center only: in "
-                "edge_to_edge the two corner bushings lock the twist; leave D_twist out or "
-                "change the layout",
-                ("materials", sheet.material, "D_twist"),
-            )
-        if material.G is not None and sheet.layout != "plate":
-            raise fail(
-                f"sheet {name}: G acts with layout plate only: in {sheet.layout} shear goes with the "
-                "membrane stiffness across the joint; leave G out or change the layout",
-                ("materials", sheet.material, "G"),
-            )
-
-    def _check_clutch(self, name: str) -> None:
-        if self.rollers[name].one_way is not None and self.run.analysis == "static":
-            raise fail(
-                f"roller {name}: one_way acts by speed, and a static analysis has none; leave it out",
-                ("rollers", name, "one_way"),
-            )
 
     @field_validator("parameters", mode="wrap")
     @classmethod
@@ -359,44 +281,6 @@ class Scene(Strict):
         if wrong:
             raise fail_all(wrong)
         return found
-
-    def _count(self) -> None:
-        boxes = sum(sheet.boxes[0] * sheet.boxes[1] for sheet in self.sheets.values())
-        if message := self._limits.exceeded("boxes", boxes, "boxes of all sheets"):
-            raise fail(message, ("sheets",))
-        if self.run.analysis == "transient" and self.run.print_step is not None:
-            bodies = boxes + len(self.rollers) + len(self.planes) + len(self.guides)
-            stored = bodies * self.run.duration / self.run.print_step
-            if message := self._limits.exceeded("states", stored, "states stored (bodies times outputs)"):
-                raise fail(message, ("run", "print_step"))
-
-    def _names_unique(self) -> None:
-        seen: dict[str, str] = {}
-        for kind in ("sheets", *MACHINE, "parts", "probes"):
-            for name in getattr(self, kind):
-                other = seen.setdefault(name.lower(), f"{kind}.{name}")
-                if other != f"{kind}.{name}":
-                    raise fail(f"the name {name!r} is used twice (also {other})", (kind, name))
-        for name, sheet in self.sheets.items():
-            for made, path in sheet.made_names(name):
-                other = seen.setdefault(made.lower(), ".".join(map(str, path)))
-                if other != ".".join(map(str, path)):
-                    raise fail(
-                        f"the name {made!r}, which is made from it, is taken by {other}; rename one", path
-                    )
-
-    def _on_sheet(self, item: OnSheet, path: tuple[str | int, ...]) -> None:
-        known(item.sheet, self.sheets, "sheet", (*path, "sheet"))
-        if item.at is None:
-            return
-        sheet = self.sheets[item.sheet]
-        for value, lines, axis in zip(item.at, sheet.lines, "xy", strict=True):
-            half = lines[-1]
-            if abs(value) > half * (1 + 1e-9):
-                raise fail(
-                    f"at: {axis} = {value:g} mm is off the sheet; allowed -{half:g} to {half:g} mm",
-                    (*path, "at"),
-                )
 
     def contact_pairs(self) -> list[tuple[int, str, str]]:
         """(index of the contact, part a, part b) for every pair of parts, sheets and rollers first.

@@ -1,0 +1,137 @@
+"""What of a scene must go together: names that are used, names that are free, counts within the limits."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import TYPE_CHECKING
+
+from mdlgen.spec.action import OnSheet
+from mdlgen.spec.between import MACHINE, known
+from mdlgen.spec.nip import names_of
+from mdlgen.spec.require import requirement
+from mdlgen.spec.strict import fail
+from mdlgen.units import exact_quantity
+
+if TYPE_CHECKING:
+    from mdlgen.spec.scene import Scene
+
+
+def checks(scene: Scene) -> Iterator[Callable[[], None]]:
+    """What is to be looked at one by one, so that each mistake is reported."""
+    for name in scene.sheets:
+        yield partial(_check_material, scene, name)
+    for kind in ("probes", "loads", "supports"):
+        items = getattr(scene, kind)
+        for key, item in items.items() if isinstance(items, dict) else enumerate(items):
+            yield partial(_on_sheet, scene, item, (kind, key))
+    for name in scene.rollers:
+        yield partial(_check_clutch, scene, name)
+    for name in scene.nips:
+        yield partial(_check_nip, scene, name)
+    for name, mesh in scene.meshes.items():
+        if mesh.on is not None:
+            yield partial(known, mesh.on, scene.rollers, "roller", ("meshes", name, "on"))
+
+    for k in range(len(scene.require)):
+        yield partial(_check_requirement, scene, k)
+
+
+def _check_requirement(scene: Scene, k: int) -> None:
+    path = ("require", k)
+    try:
+        wanted = requirement(scene.require[k])
+    except ValueError as error:
+        raise fail(str(error), path) from None
+    if wanted.part is not None:
+        parts = [name for kind in ("sheets", *MACHINE) for name in getattr(scene, kind)]
+        known(wanted.part, parts, "part", path)
+
+
+def _check_nip(scene: Scene, name: str) -> None:
+    nip, path = scene.nips[name], ("nips", name)
+    if nip.sheet is not None:
+        known(nip.sheet, scene.sheets, "sheet", (*path, "sheet"))
+    elif len(scene.sheets) > 1:
+        raise fail(f"which sheet is between them? give sheet, as sheet: {next(iter(scene.sheets))}", path)
+    rollers = names_of(name, {"lower": nip.lower, "upper": nip.upper})
+    if all(scene.rollers[roller].press is not None for roller in rollers):
+        raise fail("both rollers have a press; give one of them a fixed axis", (*path, "upper", "press"))
+    for side, roller in zip(("lower", "upper"), rollers, strict=True):
+        press = getattr(nip, side).get("press")
+        if isinstance(press, dict) and "preload" in press:
+            message = (
+                f"the preload of {roller} follows from the force of nip {name}; leave it out, "
+                f"and give that, as force: {exact_quantity(nip.force, 'N')}"
+            )
+            raise fail(message, (*path, side, "press", "preload"))
+        given = getattr(nip, side).get("contact")
+        if isinstance(given, dict) and given.get("share", "width") != "width":
+            message = "a nip is in balance with share: width only; leave share out"
+            raise fail(message, (*path, side, "contact", "share"))
+
+
+def _check_material(scene: Scene, name: str) -> None:
+    sheet = scene.sheets[name]
+    known(sheet.material, scene.materials, "material", ("sheets", name, "material"))
+    material = scene.materials[sheet.material]
+    if material.D_twist is not None and sheet.layout == "edge_to_edge":
+        raise fail(
+            f"sheet {name}: D_twist acts with layouts plate and center_to_center only: in "
+            "edge_to_edge the two corner bushings lock the twist; leave D_twist out or "
+            "change the layout",
+            ("materials", sheet.material, "D_twist"),
+        )
+    if material.G is not None and sheet.layout != "plate":
+        raise fail(
+            f"sheet {name}: G acts with layout plate only: in {sheet.layout} shear goes with the "
+            "membrane stiffness across the joint; leave G out or change the layout",
+            ("materials", sheet.material, "G"),
+        )
+
+
+def _check_clutch(scene: Scene, name: str) -> None:
+    if scene.rollers[name].one_way is not None and scene.run.analysis == "static":
+        raise fail(
+            f"roller {name}: one_way acts by speed, and a static analysis has none; leave it out",
+            ("rollers", name, "one_way"),
+        )
+
+
+def check_counts(scene: Scene) -> None:
+    boxes = sum(sheet.boxes[0] * sheet.boxes[1] for sheet in scene.sheets.values())
+    if message := scene.limits.exceeded("boxes", boxes, "boxes of all sheets"):
+        raise fail(message, ("sheets",))
+    if scene.run.analysis == "transient" and scene.run.print_step is not None:
+        bodies = boxes + sum(len(getattr(scene, kind)) for kind in MACHINE)
+        stored = bodies * scene.run.duration / scene.run.print_step
+        if message := scene.limits.exceeded("states", stored, "states stored (bodies times outputs)"):
+            raise fail(message, ("run", "print_step"))
+
+
+def check_names(scene: Scene) -> None:
+    seen: dict[str, str] = {}
+    for kind in ("sheets", *MACHINE, "parts", "probes"):
+        for name in getattr(scene, kind):
+            other = seen.setdefault(name.lower(), f"{kind}.{name}")
+            if other != f"{kind}.{name}":
+                raise fail(f"the name {name!r} is used twice (also {other})", (kind, name))
+    for name, sheet in scene.sheets.items():
+        for made, path in sheet.made_names(name):
+            other = seen.setdefault(made.lower(), ".".join(map(str, path)))
+            if other != ".".join(map(str, path)):
+                raise fail(f"the name {made!r}, which is made from it, is taken by {other}; rename one", path)
+
+
+def _on_sheet(scene: Scene, item: OnSheet, path: tuple[str | int, ...]) -> None:
+    known(item.sheet, scene.sheets, "sheet", (*path, "sheet"))
+    if item.at is None:
+        return
+    sheet = scene.sheets[item.sheet]
+    for value, lines, axis in zip(item.at, sheet.lines, "xy", strict=True):
+        half = lines[-1]
+        if abs(value) > half * (1 + 1e-9):
+            raise fail(
+                f"at: {axis} = {value:g} mm is off the sheet; allowed -{half:g} to {half:g} mm",
+                (*path, "at"),
+            )
