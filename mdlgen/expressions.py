@@ -252,12 +252,12 @@ def read(text: str, grammar: Grammar) -> Expression:
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         raise Refused("is not an expression") from None
     found = Expression(text.strip(), tuple(names), tuple(quantities), grammar, tree)
-    if message := _told(tree, grammar, 0):
+    if message := _refusal(tree, grammar, 0):
         raise Refused(message)
     return found
 
 
-def _told(node: ast.AST, grammar: Grammar, depth: int) -> str:
+def _refusal(node: ast.AST, grammar: Grammar, depth: int) -> str:
     """What is not allowed in a tree; empty where all is."""
     if depth > grammar.depth:
         return f"is nested deeper than {grammar.depth}"
@@ -293,4 +293,4 @@ def _told(node: ast.AST, grammar: Grammar, depth: int) -> str:
             inner = list(args)
         case _:
             return f"{type(getattr(node, 'op', node)).__name__} is not allowed"
-    return next((message for part in inner if (message := _told(part, grammar, depth + 1))), "")
+    return next((message for part in inner if (message := _refusal(part, grammar, depth + 1))), "")

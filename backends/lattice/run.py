@@ -162,7 +162,7 @@ def _compared(result: Result, before: list[Result], again: Callable[[int], Resul
 
 
 def _ended(run: Result) -> bool:
-    """Whether a run came to its end; one whose energies do not balance still tells how errors fall."""
+    """Whether a run came to its end; one whose energies do not balance still shows how errors fall."""
     finite = all(np.isfinite(a).all() for a in (run.position, run.velocity, run.spin))
     return finite and bool(run.time[-1] >= run.model.run.duration * (1.0 - 1e-9))
 

@@ -65,7 +65,7 @@ def calibrate(
     The logarithm of the value is sought, by Brent's method for one drop and by least squares for a curve, in
     at most 15 runs. All runs for a curve take the step that the first one was given or chose, so that they
     differ by the value alone; what a solver damps by its steps then counts as damping of the material, so a
-    last run at half the step tells how far the step moves the value (`step_error`), and its energy how much
+    last run at half the step shows how far the step moves the value (`step_error`), and its energy how much
     of the damping is numerical (`numerical`): a value of damping is too small by that part.
     `progress(runs, most)` is called after each run.
 

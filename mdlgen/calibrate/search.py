@@ -28,7 +28,7 @@ _PRECISION = 1e-6
 _CURVE_PRECISION = 1e-4
 # What a derivative is taken over, in the logarithm: far above the noise of a run, and near enough.
 _NEAR = 0.02
-# A drop that changes by less than this part of itself per unit of the logarithm does not tell the value.
+# A drop that changes by less than this part of itself per unit of the logarithm does not show the value.
 _DEAF = 1e-6
 # A curve missed by more than this part of its greatest drop is not met: least squares may end beside it.
 _MET = 0.2
@@ -133,7 +133,7 @@ class Search:
         return float(found.root)
 
     def _bracket(self, miss: Callable[[float], float], drop: float) -> tuple[float, float]:
-        """Two values with the drop between them, each step by what the last two tell of the next."""
+        """Two values with the drop between them, each step by what the last two say of the next."""
         at, off = self.begin, miss(self.begin)
         if off == 0.0:
             return at, at

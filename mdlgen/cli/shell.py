@@ -29,8 +29,8 @@ def _in_one_line() -> Iterator[None]:
     try:
         yield
     except Exception as error:
-        tell, context = getattr(error, "format_message", None), getattr(error, "ctx", None)
-        text = tell() if tell else ""
+        message, context = getattr(error, "format_message", None), getattr(error, "ctx", None)
+        text = message() if message else ""
         if context is None or not text or "\n" in text:  # no wrong call, or the whole help
             raise
         path = context.command_path

@@ -1,4 +1,4 @@
-"""What a command tells as tables on a terminal."""
+"""What a command prints as tables on a terminal."""
 
 from __future__ import annotations
 

@@ -66,7 +66,7 @@ def roller_press(scene: Scene, name: str, before: Before) -> Press:
                 faces.append(face.touch(wheel, direction))
                 forces.append(onto(face, wheel))
         else:
-            # a mesh on the roller counts as the roller's own round here: the run settles the rest
+            # a mesh on the roller counts as the roller's own round here: the run finds the rest
             sheet = next(s for s in sheets if s.name == other)
             shared = contacts.share[row] == "width"
             forces.append(press.sheet_contact(sheet, axis, own_radius, roller.width, stiffness, shared))

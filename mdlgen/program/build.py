@@ -1,4 +1,4 @@
-"""Makes the shipped programs: `python -m mdlgen.program.build`; with `--check` it tells whether they fit.
+"""Makes the shipped programs: `python -m mdlgen.program.build`; with `--check` it says whether they fit.
 
 Each entry is compiled by numba in a process of its own, for the types that it has in some small scenes, and
 not optimised. What numba gives of it (`inspect_llvm`) is linked into one module for all entries, of which
@@ -103,7 +103,7 @@ out:
 def main() -> None:
     """Entry point."""
     parser = argparse.ArgumentParser(prog="python -m mdlgen.program.build", description=__doc__)
-    parser.add_argument("--check", action="store_true", help="tell whether the programs fit; make none")
+    parser.add_argument("--check", action="store_true", help="say whether the programs fit; make none")
     wanted = parser.parse_args()
     if wanted.check:
         sys.exit(_check())
@@ -241,7 +241,7 @@ def link(types: Types) -> tuple[Any, dict[str, tuple[Variant, ...]]]:
 
 
 def _result(kind: Any) -> Any:
-    """numba's type of a result as layout tells it."""
+    """numba's type of a result as layout has it."""
     types = importlib.import_module("numba").types
     plain = {types.none: "none", types.float64: "f8", types.int64: "i8", types.boolean: "b1"}
     if isinstance(kind, types.BaseTuple):
@@ -303,7 +303,7 @@ def shrink(whole: Any, target: Any) -> list[str]:
     tuning.loop_unrolling, tuning.inlining_threshold = False, SMALL
     builder = llvm.create_pass_builder(target, tuning)
     builder.getModulePassManager().run(whole, builder)
-    # names inside tell nobody anything, and are half of the file
+    # names inside say nothing to anybody, and are half of the file
     manager = llvm.create_new_module_pass_manager()
     manager.add_strip_symbols_pass()
     manager.run(whole, builder)

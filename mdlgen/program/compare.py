@@ -69,7 +69,7 @@ EXUDYN = {
 }
 SAME, UNKNOWN = 1e-9, 1e-4  # parts of the travel; where contacts rattle, and it has no estimate
 TIMED, SLOWER = ("transport_4x4", "feeder_one"), 1.05
-ENOUGH = 5  # runs of which a median tells 5 %
+ENOUGH = 5  # runs of which a median shows 5 %
 
 
 class Run(NamedTuple):

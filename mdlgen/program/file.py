@@ -1,4 +1,4 @@
-"""A file NAME.program: one line of JSON that tells what it is, and LLVM bitcode, compressed."""
+"""A file NAME.program: one line of JSON that says what it is, and LLVM bitcode, compressed."""
 
 from __future__ import annotations
 

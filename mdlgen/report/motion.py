@@ -18,7 +18,7 @@ def poses(result: Result, at: Ints) -> tuple[Floats, Floats]:
     """Centres [mm], (t, bodies, 3), and Euler parameters, scalar first, (t, bodies, 4), of all bodies at the
     stored states `at`; after the bodies come arms.
 
-    A solver need not tell how far a roller has turned, since nothing depends on it: here it is the
+    A solver need not give how far a roller has turned, since nothing depends on it: here it is the
     integral of its speed over the stored states.
     """
     place, turn = result.position[at], result.rotation[at].copy()
@@ -39,7 +39,7 @@ def start(model: Model) -> tuple[Floats, Floats]:
 
 
 def names(model: Model) -> list[str]:
-    """What is called what `poses` tells the place of."""
+    """Names of what `poses` gives the place of."""
     return [*model.bodies.name, *(f"{roller.name}_arm" for roller in on_arms(model))]
 
 

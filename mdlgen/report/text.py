@@ -36,7 +36,7 @@ def lints_end(record: dict[str, Any]) -> str:
 
 
 def overview_parts(record: dict[str, Any]) -> list[str | Rows]:
-    """What `mdlgen check` tells before the lints: lines, and tables by rows."""
+    """What `mdlgen check` prints before the lints: lines, and tables by rows."""
     lines: list[str | Rows] = [f"scene {record['scene']}, {record['analysis']}"]
     for name, sheet in record["sheets"].items():
         size = " x ".join(f"{v:.5g}" for v in sheet["outline_mm"])

@@ -84,7 +84,7 @@ def summary(result: Result, without: Collection[str] = ()) -> dict[str, Any]:
 
 
 def versions(result: Result) -> dict[str, str]:
-    """Of what made the result: those that a saved one tells, else those that are installed."""
+    """Of what made the result: those that a saved one has, else those that are installed."""
     return {"mdlgen": version(), "numpy": np.__version__, **result.versions}
 
 

@@ -12,7 +12,7 @@ from pydantic import ValidationInfo
 
 from mdlgen.errors import SpecError
 
-# In place of a folder: what is made in Python names its own files, of which no stranger's text tells.
+# In place of a folder: what is made in Python names its own files, which no stranger's text can name.
 PYTHON = Path("<python>")
 
 

@@ -76,7 +76,7 @@ class quantity:
         or range expected."""
         if isinstance(text, (Default, Computed)):
             return text
-        value = _told_of(lambda: of_text(text, self.unit))
+        value = _or_error(lambda: of_text(text, self.unit))
         size = abs(value) / parse_unit(self.unit).factor
         if value != 0.0 and not SMALLEST <= size <= LARGEST:
             raise fail(
@@ -148,7 +148,7 @@ class ratio:
 
     def read(self, value: Any) -> float:
         """The plain number, a Computed where it is a formula; raises the error that names the range."""
-        number = of_percent(_told_of(lambda: of_formula(value, "1")))
+        number = of_percent(_or_error(lambda: of_formula(value, "1")))
         allowed = f"allowed: {self.low:g} to {self.high:g}, as {(self.low + min(self.high, 1.0)) / 2:g}"
         if not _is_number(number):
             comma = isinstance(value, str) and re.fullmatch(r"[0-9]+,[0-9]+( *%)?", value)
@@ -190,7 +190,7 @@ def of_text(text: Any, unit: str) -> float:
     return found if isinstance(found, Computed) else parse_quantity(found, unit)
 
 
-def _told_of(read: Callable[[], Any]) -> Any:
+def _or_error(read: Callable[[], Any]) -> Any:
     """What is read, with its mistakes as errors for pydantic."""
     try:
         return read()
@@ -263,7 +263,7 @@ def numbers(low: float, high: float) -> tuple[WrapValidator, WithJsonSchema]:
     """One plain number, or a list of two, MD and CD, from `low` to `high`."""
 
     def read(value: Any) -> float:
-        value = of_percent(_told_of(lambda: of_formula(value, "1")))
+        value = of_percent(_or_error(lambda: of_formula(value, "1")))
         if not _is_number(value):
             raise fail(f"{value!r} is not a number; allowed are {low:g} to {high:g}"[:200])
         if not low <= value <= high:

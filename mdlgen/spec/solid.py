@@ -3,7 +3,7 @@
 A file is refused before it is read where it is too large or no plain file, before it is taken apart where it
 does not have the size that its header claims or has more triangles than are allowed; then where a number is
 not finite, a triangle has no neighbour on a side (the surface is not watertight) or is turned against it, and
-where the size is not that of a part of a paper machine, which tells of a wrong unit. Corners that are exactly
+where the size is not that of a part of a paper machine, the sign of a wrong unit. Corners that are exactly
 the same are one, those of no triangle are left out, and so are triangles with two corners in one place.
 """
 

@@ -123,7 +123,7 @@ def test_order_and_equal_error():
     assert wall_at(1e-3, [1e-3], [1.0]) is None
 
 
-def test_no_wall_time_is_told_at_an_error_that_was_not_reached():
+def test_no_wall_time_is_reported_at_an_error_that_was_not_reached():
     case = BenchCase("transport", "10 x 20 boxes, by hand", Run("transport_4x4"), drop)
     made = []
     for step, error in ((0.1, 2.38e-3), (0.05, 2.35e-3)):

@@ -126,7 +126,7 @@ def test_a_real_process_says_the_same(tmp_path: Path) -> None:
     assert files(tmp_path) == ["bad.yaml"]
 
 
-def test_set_is_told_by_its_option(mdl: Run) -> None:
+def test_set_is_reported_by_its_option(mdl: Run) -> None:
     ended = mdl("check", FOUR, "--set", "sheets.note.mass=0.72")
     assert ended.code == 2
     assert ended.err.startswith("--set sheets.note.mass:1:1: sheets.note.mass: 0.72 has no unit")
@@ -146,7 +146,7 @@ def test_a_missing_file(mdl: Run) -> None:
         (("run", "x.yaml", "--checkpoint", "soon"), "mdlgen run: Invalid value for '--checkpoint': "),
     ],
 )
-def test_a_wrong_call_is_told_in_one_line(mdl: Run, call: tuple[str, ...], message: str) -> None:
+def test_a_wrong_call_is_reported_in_one_line(mdl: Run, call: tuple[str, ...], message: str) -> None:
     ended = mdl(*call)
     assert ended.code == 2 and ended.out == ""
     assert ended.err.startswith(message) and len(ended.err.splitlines()) == 1
@@ -452,7 +452,7 @@ def test_an_interrupt_ends_with_130_and_writes_nothing(tmp_path: Path) -> None:
     assert files(tmp_path) == []
 
 
-def test_compiling_is_told_once_and_loading_is_not(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_compiling_is_reported_once_loading_is_not(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """On no terminal one line, from the first part that is compiled on."""
     import logging
 

@@ -107,7 +107,7 @@ def test_the_value_that_makes_a_run_long(sample: str, value: str, where: str) ->
 @pytest.mark.parametrize(
     "sample", ["transport_4x4", "channel", "pick", "stack", "feeder_window", "verify/slide"]
 )
-def test_steps_are_as_foretold_within_a_factor_of_two(sample: str) -> None:
+def test_steps_are_as_predicted_within_a_factor_of_two(sample: str) -> None:
     model = lower(load(samples() / f"{sample}.yaml"))
     answer, result = cost(model), mdlgen.solve(model)
     assert answer is not None and result.ok
@@ -139,7 +139,7 @@ TOOK = {
 
 
 @pytest.mark.parametrize("sample", TOOK)
-def test_the_time_is_as_foretold_within_a_factor_of_two(sample: str) -> None:
+def test_the_time_is_as_predicted_within_a_factor_of_two(sample: str) -> None:
     """As it was measured once: a test that measures fails on a busy machine."""
     answer = cost(lower(load(samples() / f"{sample}.yaml")))
     assert answer is not None

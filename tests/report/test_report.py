@@ -343,7 +343,7 @@ class TestText:
         section = html.fromstring(page([block])).get_element_by_id("map")
         assert not section.xpath(".//svg") and "have no joints" in "".join(section.itertext())
 
-    def test_an_estimate_above_its_tolerance_is_told_at_the_head(self, result: Result, text: str) -> None:
+    def test_an_estimate_above_its_tolerance_is_reported_at_the_head(self, result: Result, text: str) -> None:
         assert not html.fromstring(text).xpath("//header//b[@class='bad']")
         assert result.error_estimate is not None
         strict = replace(result.model, run=replace(result.model.run, tolerance=result.error_estimate / 2))
@@ -380,7 +380,7 @@ class TestCommands:
         ]  # fmt: skip
         assert [run["name"] for run in embedded(target.read_text("utf-8"))] == ["a", "b"]
 
-    def test_runs_of_other_grids_are_told_apart_without_box_distances(self, result: Result) -> None:
+    def test_runs_of_other_grids_are_distinguished_without_box_distances(self, result: Result) -> None:
         coarse = moving(small_model())
         message = " ".join(
             html.fromstring(page([result, coarse])).get_element_by_id("differences").itertext()

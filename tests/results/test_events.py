@@ -146,7 +146,7 @@ def test_a_jam_lasts_longer_than_a_stated_time_and_is_of_a_roller_that_turns() -
     assert not of(found, "jam")  # it went on
 
 
-def test_the_gap_between_two_sheets_is_told_where_the_second_enters() -> None:
+def test_the_gap_between_two_sheets_is_reported_where_the_second_enters() -> None:
     """Two of 40 mm, 45 mm apart; both in nips that run at 750 mm/s."""
     second = f"sheets.b={{{SHEET}, center: [-45 mm, 0 mm, 0 mm], velocity: [0.75 m/s, 0 m/s, 0 m/s]}}"
     first = "sheets.a.velocity=[0.75 m/s, 0 m/s, 0 m/s]"

@@ -293,7 +293,7 @@ def test_another_arm_in_the_text_is_caught(tmp_path: Path, old: str, new: str) -
         ("rollers.skim.arm.torque=5 N", "arm.torque", "N*mm"),
     ],
 )
-def test_a_bad_arm_is_told_in_one_line(override: str, where: str, message: str) -> None:
+def test_a_bad_arm_is_reported_in_one_line(override: str, where: str, message: str) -> None:
     with pytest.raises(SpecError) as error:
         skimmer(override)
     assert where in str(error.value) and message in str(error.value) and "\n" not in str(error.value)

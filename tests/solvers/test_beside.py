@@ -80,7 +80,7 @@ def test_two_at_once_find_the_same_bits(name: str, passes: list[str]) -> None:
 
 
 @pytest.mark.parametrize("name", ["transport_tilted", "transport_4x4, three"])
-def test_told_is_the_finer_pass(name: str) -> None:
+def test_reported_is_the_finer_pass(name: str) -> None:
     record: list[tuple[float, float]] = []
     thread = threading.current_thread()
 

@@ -344,7 +344,7 @@ def test_a_run_that_fails_leaves_nothing_to_go_on_with(tmp_path: Path) -> None:
     sets += ["--set", "contacts.0.stiffness=1e-3 N/mm^1.5", "--set", "run.duration=140 ms"]
     process = command(tmp_path, drop, *sets, "-o", "d", "--checkpoint", "0")
     lint, reason = process.communicate()[1].splitlines()
-    assert lint.startswith("W133 contacts.0.stiffness")  # it was foretold
+    assert lint.startswith("W133 contacts.0.stiffness")  # a lint said so
     assert process.returncode == 4 and "the run failed" in reason
     assert not (tmp_path / "d").exists()
 

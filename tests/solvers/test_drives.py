@@ -139,7 +139,7 @@ def test_another_law_in_the_text_is_caught(tmp_path: Path, old: str, new: str) -
         ("{profile: [[0 ms, 0 mm/s]]}", "profile.0.1", "rad/s"),
     ],
 )  # fmt: skip
-def test_a_bad_profile_is_told_in_one_line(tmp_path: Path, drive: str, where: str, message: str) -> None:
+def test_a_bad_profile_is_reported_in_one_line(tmp_path: Path, drive: str, where: str, message: str) -> None:
     with pytest.raises(SpecError) as error:
         scene(tmp_path, f"rollers.motor.drive={drive}")
     assert where in str(error.value) and message in str(error.value) and "\n" not in str(error.value)
@@ -158,6 +158,6 @@ def test_setting_one_law_removes_the_other(tmp_path: Path) -> None:
         ("W117", "one_way.direction", "rollers.motor.one_way={direction: -1, torque: 1 N*mm}"),
     ],
 )
-def test_what_looks_wrong_in_a_drive_is_told(tmp_path: Path, code: str, where: str, override: str) -> None:
+def test_an_odd_drive_is_reported(tmp_path: Path, code: str, where: str, override: str) -> None:
     said = [lint for lint in lints(lower(scene(tmp_path, override))) if lint.code == code]
     assert [lint.where for lint in said] == [f"rollers.motor.{where}"]

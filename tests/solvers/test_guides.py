@@ -327,7 +327,7 @@ def test_a_changed_facet_is_seen(tmp_path):
 # -- what is refused, and what is reported
 
 
-def test_a_sheet_that_begins_in_a_guide_is_told():
+def test_a_sheet_that_begins_in_a_guide_is_reported():
     """The channel's note is clear of it; one that is too low by 0.55 mm is 0.1 mm in the floor."""
     assert [lint.code for lint in lints(lower(load(CHANNEL)))] == []
     low = lower(load(CHANNEL, ["sheets.note.center.2=-0.55 mm", "contacts.0.between=[note, guide_lower]"]))

@@ -350,7 +350,7 @@ def test_a_strip_swings_as_the_reference_solver_has_it() -> None:
     assert compare(slow, fast).relative < 1e-3
 
 
-def test_a_fixed_step_is_taken_and_its_error_told() -> None:
+def test_a_fixed_step_is_taken_and_its_error_reported() -> None:
     scene = ["sheets.note.boxes=[2,3]", "run.duration=4 ms", "run.step=50 us"]
     result = run(model("transport_4x4", *scene))
     assert result.step == pytest.approx(0.05) and result.steps >= 80  # one that does not converge is halved

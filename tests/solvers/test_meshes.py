@@ -176,7 +176,7 @@ def test_a_changed_mesh_is_seen_in_text_and_deck(folder, tmp_path):
     assert verify(scene, model, deck=changed).all_differences()
 
 
-def test_a_mesh_without_a_contact_is_told(folder):
+def test_a_mesh_without_a_contact_is_reported(folder):
     model = lower(scene_of(folder, ('"t*"', "two")))
     assert ("W111", "meshes.three") in {(lint.code, lint.where) for lint in lints(model)}
     # a roller is there for what it turns

@@ -159,7 +159,7 @@ def test_what_has_no_form_for_a_clutch_refuses_it_by_name() -> None:
         "{direction: 1, torque: 1 N}",
     ],
 )
-def test_a_bad_clutch_is_told_in_one_line(given: str) -> None:
+def test_a_bad_clutch_is_reported_in_one_line(given: str) -> None:
     with pytest.raises(SpecError) as error:
         model(f"rollers.idler.one_way={given}")
     assert "rollers.idler.one_way" in str(error.value) and "\n" not in str(error.value)

@@ -389,7 +389,7 @@ def test_a_process_runs_a_sample_by_the_code_that_it_is_asked_for() -> None:
     assert run.took > 0.0 and len(run.result.position) > 2
 
 
-def test_types_are_told_and_checked() -> None:
+def test_types_are_reported_and_checked() -> None:
     kind = layout.described((np.zeros((2, 3)), 1.5, 2, True))
     assert kind == ["tuple", [["array", "<f8", 2, "C", True], "f8", "i8", "b1"]]
     assert layout.words(kind) == 9 + 3
@@ -415,7 +415,7 @@ def test_types_are_told_and_checked() -> None:
             write(buffer, wrong)
 
 
-def test_a_file_that_is_none_is_told(tmp_path: Path) -> None:
+def test_a_file_that_is_none_is_reported(tmp_path: Path) -> None:
     for raw in (b"", b"{}\n", b'{"format": 1}\n', b"[1]\n", b'{"format": 2}\nx', b"\xff\xfe\n"):
         (tmp_path / "a.program").write_bytes(raw)
         with pytest.raises(Unfit, match=r"damaged|another form"):

@@ -278,7 +278,7 @@ def test_another_rim_in_the_text_is_caught(tmp_path: Path, old: str, new: str) -
         (f"{[{'from': f'{40 * k} deg', 'to': f'{40 * k + 9} deg'} for k in range(9)]}", "rim", "9 sectors"),
     ],
 )  # fmt: skip
-def test_a_bad_rim_is_told_in_one_line(sectors: str, where: str, message: str) -> None:
+def test_a_bad_rim_is_reported_in_one_line(sectors: str, where: str, message: str) -> None:
     with pytest.raises(SpecError) as error:
         loads(FEED, "rims", (f"rollers.feed.rim.sectors={sectors}",))
     assert where in str(error.value) and message in str(error.value) and "\n" not in str(error.value)

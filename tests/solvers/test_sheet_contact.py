@@ -441,7 +441,7 @@ def test_more_pairs_than_a_text_can_hold_are_refused_by_name(backend, monkeypatc
         emitter(backend).emit(made)
 
 
-def test_sheets_that_start_in_each_other_are_told():
+def test_sheets_that_start_in_each_other_are_reported():
     scene = stack(2, "[2, 3]").replace("center: [0 mm, 0 mm, 0.15 mm]", "center: [0 mm, 0 mm, 0.09 mm]")
     assert [lint.code for lint in lints(lower(loads(scene)))] == ["W112"]
     assert [lint.code for lint in lints(lower(loads(stack(2, "[2, 3]"))))] == []

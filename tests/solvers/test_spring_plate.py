@@ -373,7 +373,7 @@ def test_a_fixed_plate_is_written_as_before() -> None:
         ("planes.plate.press={direction: z, stiffness: 1 N/mm}", "preload"),
     ],
 )
-def test_what_cannot_be_meant_is_told_in_one_line(override: str, message: str) -> None:
+def test_what_cannot_be_meant_is_reported_in_one_line(override: str, message: str) -> None:
     with pytest.raises(SpecError) as error:
         loads(SCENE, overrides=[override])
     line = str(error.value)

@@ -208,7 +208,7 @@ run: {duration: 3 ms, step: 0.01 ms, print_step: 0.1 ms, prune: false}
 """
 
 
-def test_a_sheet_that_rolls_over_the_plane_is_told() -> None:
+def test_a_sheet_that_rolls_over_the_plane_is_reported() -> None:
     """Its halves would not see the roller of the other side, nor each other; solved whole it meets itself."""
     model = mdlgen.lower(mdlgen.loads(ROLLED))
     result = mdlgen.solve(model, "lattice")

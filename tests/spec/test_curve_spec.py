@@ -155,7 +155,7 @@ def test_a_file_is_read_in_all_its_forms(tmp_path: Path, text: str) -> None:
         ("#" * (BYTES * DEFAULT.points + 1), "--limit points=10001 raises"),
     ],
 )
-def test_a_file_that_is_none_is_told_with_its_line(tmp_path: Path, text: str, words: str) -> None:
+def test_a_file_that_is_none_is_reported_with_its_line(tmp_path: Path, text: str, words: str) -> None:
     with pytest.raises(SpecError) as raised:
         from_file(tmp_path, text)
     assert words in raised.value.message and "\n" not in str(raised.value)

@@ -171,7 +171,7 @@ def test_a_broken_obj_is_refused_with_its_line(folder, line, message):
         scene_of(folder, ("small.obj", "bad.obj"))
 
 
-def test_a_wrong_unit_is_told(folder):
+def test_a_wrong_unit_is_reported(folder):
     for unit, hint in (("m", "did you mean units: mm"), ("in", None)):
         change = ("wedge.stl,", f"wedge.stl, units: {unit},")
         if hint is None:

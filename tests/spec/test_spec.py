@@ -201,7 +201,7 @@ class TestAllAtOnce:
         assert [e.path for e in (first, *first.others[:-1])] == [(f"key_{k}",) for k in range(20)]
         assert str(first.others[-1]) == "10 more errors; mend these first"
 
-    def test_one_mistake_is_told_once(self) -> None:
+    def test_one_mistake_is_reported_once(self) -> None:
         for old, new in (("thickness:", "thicknes:"), ("  note:", "  notes:"), ("boxes: [", "boxes: [1, ")):
             assert refused(CANTILEVER.replace(old, new, 1)).others == (), new
 

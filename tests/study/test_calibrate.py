@@ -289,7 +289,7 @@ def test_the_fragment_is_a_piece_of_a_scene(cli: Run, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("target", ["missing/found.yaml", "."])
-def test_a_bad_place_is_told(cli: Run, target: str) -> None:
+def test_a_bad_place_is_reported(cli: Run, target: str) -> None:
     ended = cli("--measured", "60.76 mm", "--fit", "k_tx", "-o", target)
     assert ended.code == 3 and len(ended.err.splitlines()) == 1
 

@@ -189,7 +189,7 @@ class TestMeasures:
             ("status=steps", "stands twice"),
         ],
     )
-    def test_what_is_not_there_is_told_with_what_is(
+    def test_what_is_not_there_is_reported_with_what_is(
         self, names: dict[str, measure.Value], text: str, message: str
     ) -> None:
         with pytest.raises(SpecError) as error:

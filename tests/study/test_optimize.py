@@ -153,7 +153,7 @@ class TestMethods:
             ({"vary": ["sheets.block.mas=1 g:2 g"]}, "did you mean 'mass'"),
         ],
     )
-    def test_what_cannot_be_meant_is_told(self, options: dict, message: str) -> None:
+    def test_what_cannot_be_meant_is_reported(self, options: dict, message: str) -> None:
         with pytest.raises(SpecError) as error:
             asked(X, *options.pop("vary"), **options)
         assert message in str(error.value)

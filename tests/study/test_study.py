@@ -93,7 +93,7 @@ class TestDistributions:
             ("a=lognormal(1 mm, 1 mm)", "has no unit"),
         ],
     )
-    def test_what_is_none_is_told_in_one_line(self, text: str, message: str) -> None:
+    def test_what_is_none_is_reported_in_one_line(self, text: str, message: str) -> None:
         with pytest.raises(SpecError) as error:
             parse_distribution(text)
         assert message in str(error.value) and "\n" not in str(error.value)
@@ -141,7 +141,7 @@ class TestSamples:
         ("kind", "count", "seed", "message"),
         [("lsh", 4, 1, "did you mean 'lhs'?"), ("lhs", 0, 1, "at least"), ("lhs", 4, -1, "at least")],
     )
-    def test_what_cannot_be_drawn_is_told(self, kind: str, count: int, seed: int, message: str) -> None:
+    def test_what_cannot_be_drawn_is_reported(self, kind: str, count: int, seed: int, message: str) -> None:
         with pytest.raises(SpecError, match=message.replace("?", r"\?")):
             sample(kind, count, self.TWO, seed)
 
@@ -246,7 +246,7 @@ class TestLinks:
         assert parse_link(text).text(value) == follows
 
     @pytest.mark.parametrize("text", ["p", "p=3", "p=a*b", "p=186 rad/s", "p=__import__('os')", "p=a + b"])
-    def test_what_is_no_multiple_of_a_name_is_told(self, text: str) -> None:
+    def test_what_is_no_multiple_of_a_name_is_reported(self, text: str) -> None:
         with pytest.raises(SpecError, match="--let"):
             parse_link(text)
 

@@ -162,7 +162,7 @@ def test_a_model_without_the_standard_include() -> None:
     assert lint("*DefineSystem( d )\n*EndDefine()\n").findings == ()  # a part of a model has it there
 
 
-def test_line_ends_and_marks_of_a_file_are_told() -> None:
+def test_line_ends_and_marks_of_a_file_are_reported() -> None:
     text = text_of(*HEAD)
     for changed, words in (
         (text.replace("\n", "\r\n"), "LF, not CR LF"),

@@ -59,7 +59,7 @@ def test_a_chain_may_be_as_long_as_the_file(back: bool) -> None:
     assert max(p[0] for p in found.values()) == 4999
 
 
-def test_a_circle_is_told_once_however_long() -> None:
+def test_a_circle_is_reported_once_however_long() -> None:
     ring = (f'*Point( p{k}, "p" )\n*SetPoint( p{k}, p{(k + 1) % 3000}.x, 0, 0 )' for k in range(3000))
     (error,) = lint(model(*ring)).errors
     assert error.code == "cycle"

@@ -103,7 +103,7 @@ def test_the_place_of_an_error_is_that_of_its_word() -> None:
     assert (error.place.line, error.place.column) == (4, 14)
 
 
-def test_one_reason_is_told_once() -> None:
+def test_one_reason_is_reported_once() -> None:
     text = model(
         '*Point( p, "p" )',
         '*Point( q, "q" )',
@@ -128,7 +128,7 @@ def test_text_before_and_after_the_model_is_ignored() -> None:
     assert values(text)["points"] == {"p": (1, 2, 3)}
 
 
-def test_unknown_statements_are_kept_and_told() -> None:
+def test_unknown_statements_are_kept_and_reported() -> None:
     text = model('*Gizmo( gz, "Gizmo", 3 )', '*Output( o, "o", EXPR, `F({gz.id})`, `0`, `0`, `0`, `0`, `0` )')
     report = lint(text, "t.mdl")
     assert [f.code for f in report.findings] == ["unknown"]

@@ -179,7 +179,7 @@ def test_a_scene_that_has_no_text_is_refused_by_name(tmp_path: Path) -> None:
         )
 
 
-def test_a_missing_body_is_told_by_name(tmp_path: Path) -> None:
+def test_a_missing_body_is_reported_by_name(tmp_path: Path) -> None:
     spec = samples() / "transport_4x4.yaml"
     text = emitted(spec, ["sheets.note.boxes=[4,5]"])
     file = tmp_path / "note.mdl"

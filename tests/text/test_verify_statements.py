@@ -79,7 +79,7 @@ def test_gravity_is_known_by_the_standard_include(tmp_path: Path) -> None:
     assert any(d.kind == "gravity" for d in found.differences)
 
 
-def test_a_script_that_is_not_there_is_told(tmp_path: Path) -> None:
+def test_a_script_that_is_not_there_is_reported(tmp_path: Path) -> None:
     text, script = files(tmp_path)
     found = check(RICH, text=text, perturb=False)
     assert found.script == str(script) and not found.notes

@@ -29,7 +29,7 @@ class Mirror:
     signs: Floats  # axes of an image are those of the body seen, times these, (bodies, 3)
     gone: NDArray[np.bool_]  # bodies that are left out, (bodies,)
     boxes: NDArray[np.bool_]  # bodies that are boxes of sheets
-    rows: Ints  # row of the contacts that tells of each row: itself, or its image
+    rows: Ints  # row of the contacts that stands for each row: itself, or its image
     times: Floats  # 2 for a row that is its own image, else 1
     senses: Floats  # of what a row turns about the axes of its parts, and along: 1, or -1, (rows, 3)
     apart: bool  # pairs of a box on one side and a part, or a sheet's box, on the other are left out

@@ -72,7 +72,7 @@ class Expansion:
             self._declared()
         self._contexts(contexts)
         for statement, scope, guard, rank in self.sets:
-            self._settle(statement, scope, guard, rank)
+            self._set(statement, scope, guard, rank)
         return self.world
 
     # -- statements
@@ -200,7 +200,7 @@ class Expansion:
 
     # -- settings
 
-    def _settle(self, statement: Statement, scope: Scope, guard: Guard | None, rank: int) -> None:
+    def _set(self, statement: Statement, scope: Scope, guard: Guard | None, rank: int) -> None:
         target = statement.arg(0)
         if not _PATH.match(target):
             return

@@ -172,13 +172,13 @@ def _references(reading: Reading) -> None:
 
 
 def _externals(reading: Reading) -> set[tuple[int, int]]:
-    """Tells the attachments that stand elsewhere; gives the arguments (statement, index) that name them."""
+    """Reports the attachments that stand elsewhere; gives the arguments (statement, index) that name them."""
     found = set()
     for scope in reading.world.scopes:
         for parameter in scope.parameters.values():
             if parameter.external and reading.world.alive(scope):
                 trouble = External(parameter, parameter.external).trouble()
-                reading.notes.tell(trouble, parameter.instance.place())
+                reading.notes.add_trouble(trouble, parameter.instance.place())
                 found.add((id(parameter.instance), parameter.at))
     return found
 
@@ -204,7 +204,7 @@ def _argument(reading: Reading, statement: Statement, index: int, scope: Scope) 
     try:
         reading.world.force(lambda: reading.world.value(statement, index, scope))
     except Trouble as trouble:
-        reading.notes.tell(trouble, statement.place(index))
+        reading.notes.add_trouble(trouble, statement.place(index))
     except RecursionError:
         reading.notes.add("error", "evaluate", statement.place(index), "this depends on too many others")
 

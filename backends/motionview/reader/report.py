@@ -62,7 +62,7 @@ class Notes:
         finding = Finding(severity, code, place, " ".join(message.split()))
         self._found.setdefault((code, place, finding.message), finding)
 
-    def tell(self, trouble: Trouble, place: Place) -> None:
+    def add_trouble(self, trouble: Trouble, place: Place) -> None:
         """A trouble as a finding; `place` where it does not know its own."""
         self.add(trouble.severity, trouble.code, trouble.place or place, trouble.message)
 

@@ -95,7 +95,7 @@ def _unclosed(source: Source, at: int) -> str:
 
 
 def _stray(source: Source, notes: Notes, at: int) -> int:
-    """Tells text that is no statement; gives where the next one starts, -1 at the end."""
+    """Reports text that is no statement; gives where the next one starts, -1 at the end."""
     text = source.text
     space = _SPACE.match(text, at)
     at = space.end() if space else at

@@ -101,7 +101,7 @@ class _Collector:
         try:
             return self.world.force(find)
         except Trouble as trouble:
-            self.notes.tell(trouble, thing.statement.place())
+            self.notes.add_trouble(trouble, thing.statement.place())
         except RecursionError:
             message = f"{thing} depends on too many others in one expression"
             self.notes.add("error", "evaluate", thing.statement.place(), message)

@@ -81,7 +81,7 @@ class Motion:
     build_s: float
 
     def result(self, model: Model, solver: str, status: str) -> Result:
-        """As a Result in which only the positions of the boxes move: peers tell no more."""
+        """As a Result in which only the positions of the boxes move: peers give no more."""
         times, bodies = len(self.time), len(model.bodies.name)
         position = np.repeat(model.bodies.position[None], times, axis=0)
         position[:, : self.position.shape[1]] = self.position

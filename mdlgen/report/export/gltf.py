@@ -34,7 +34,7 @@ _LOOKS = {
 
 
 class _Buffer:
-    """The binary part of a file, and what tells how to read it."""
+    """The binary part of a file, and what says how to read it."""
 
     def __init__(self) -> None:
         self.data = bytearray()
@@ -65,7 +65,7 @@ def glb(result: Result, first: int = 0) -> bytes:
     """The file of a run, in metres, y up, as glTF wants it; its nodes stand where the bodies are at the state
     `first` of those that are shown, and are named as the bodies (an arm as its roller, with `_arm`).
 
-    The animation takes LASTS seconds; `asset.extras.ms_per_s` tells how many ms a second shows. The same
+    The animation takes LASTS seconds; `asset.extras.ms_per_s` says how many ms a second shows. The same
     result gives the same bytes.
     """
     model, buffer = result.model, _Buffer()

@@ -1,4 +1,4 @@
-"""How often something happens under scatter, and how well the number of cases tells."""
+"""How often something happens under scatter, and how sure that is after so many cases."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The table of a study: a row for each case, by index. Its bits do not tell where and when cases were run."""
+"""The table of a study: a row for each case, by index. Its bits do not depend on where and when cases ran."""
 
 from __future__ import annotations
 

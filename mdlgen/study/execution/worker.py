@@ -1,7 +1,7 @@
 """The process in which cases of a study are run, one after the other.
 
 A Task or a Case comes pickled on standard input; for each Case a Row goes pickled to standard output, and
-before it the words that tell of compiling. Whatever a solver prints goes to standard error.
+before it the words about compiling. Whatever a solver prints goes to standard error.
 """
 
 from __future__ import annotations

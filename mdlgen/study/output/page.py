@@ -20,10 +20,10 @@ from mdlgen.study.optimise.optimisation import Optimisation
 from mdlgen.study.output.fragment import options
 
 NAME = "study.html"
-# More lines than these no browser draws at ease, and no reader tells apart.
+# More lines than these no browser draws at ease, and no reader can distinguish.
 MOST_DRAWN = 5000
 _SCRIPTS = ("charts.js", "study.js")
-_TOLD = ("status", "reason", "solver")  # columns that the page has in other places
+_ELSEWHERE = ("status", "reason", "solver")  # columns that the page has in other places
 _REPORT, _STATES = "report.html", "result.h5"
 
 
@@ -48,7 +48,7 @@ def page(
     drawn = rows[:MOST_DRAWN]
     failed = [row for row in rows if not row.measured]
     record = {
-        "columns": [_column(column, task, len(drawn)) for column in columns if column.name not in _TOLD],
+        "columns": [_column(column, task, len(drawn)) for column in columns if column.name not in _ELSEWHERE],
         "kind": [row.kind for row in drawn],
         "reason": ["" if row.ok else row.status for row in drawn],
         "links": [_link(folder, row) for row in drawn],

@@ -11,8 +11,8 @@ from mdlgen.verify.outcome import Verification
 from mdlgen.verify.tables import Difference
 
 _SHOWN = 120  # characters of a statement in a message
-# Findings of lint about statements that `unaccounted` tells itself.
-_TOLD_HERE = ("unknown", "include", "unread", "standard")
+# Findings of lint about statements that `unaccounted` reports itself.
+_REPORTED_HERE = ("unknown", "include", "unread", "standard")
 # Findings that change nothing of what the text says.
 _HARMLESS = ("ascii", "unused", "comment", "attachment")
 _MOST_NOTES = 5
@@ -41,7 +41,7 @@ def remarks(given: Any, scope: Scope, found: Verification) -> None:
     for finding in given.report.findings:
         mine = scope.holds(finding.place)
         sheets_only = scope.definitions is not None
-        if mine and (finding.code in _TOLD_HERE or (sheets_only and finding.code == "external")):
+        if mine and (finding.code in _REPORTED_HERE or (sheets_only and finding.code == "external")):
             continue
         if finding.severity == "error" or (mine and finding.code not in _HARMLESS):
             found.differs("lint", "", str(finding))
