@@ -34,6 +34,7 @@ def overview(model: Model) -> dict[str, Any]:
         "pairs": {
             "possible": model.pairs.possible,
             "kept": len(model.pairs),
+            "searched": len(model.pairs.searched),
             "margin_mm": model.pairs.margin,
             "external": len(model.external_pairs),
         },

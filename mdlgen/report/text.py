@@ -11,11 +11,13 @@ from mdlgen.lints.smoothing import lines as smoothing_lines
 from mdlgen.model.parts.kinds import KINDS
 from mdlgen.report.overview import UNITS
 from mdlgen.results.verdict import outcomes_of
+from mdlgen.results.wording import number, numbers
+
+FIGURES = 4
 
 FEW = 3  # names that are listed in a line
 MOST_EVENTS = 5  # that a reader should know of, in words
 _ALWAYS = ("rollers", "planes")  # that are counted where there are none, too
-NOTHING = 1e-9  # mm, mm/s, deg, N: what is less is round-off
 
 Rows = list[list[str]]  # of a table, the first with what its columns are
 
@@ -57,7 +59,7 @@ def overview_parts(record: dict[str, Any]) -> list[str | Rows]:
         "",
         ", ".join([f"{record[name]} {name}" for name in ("boxes", "bushings")] + _counts(record)),
         f"contact: {record['contacts']} pairs of parts; {pairs['possible']} pairs of bodies possible, "
-        f"{pairs['kept']} kept (margin {pairs['margin_mm']:g} mm)",
+        f"{pairs['kept']} kept{_searched(pairs)} (margin {pairs['margin_mm']:g} mm)",
         *smoothing_lines(record["smoothing"]),
     ]
     for name, mesh in record["meshes"].items():
@@ -177,6 +179,13 @@ def _table(rows: Sequence[Sequence[str]]) -> list[str]:
     return ["  " + "  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip() for row in rows]
 
 
+def _searched(pairs: dict[str, Any]) -> str:
+    """What is not among those kept."""
+    count = pairs.get("searched", 0)
+    many = "s" * (count > 1)
+    return f" and those of sheets in {count} contact{many}, found as it runs" if count else ""
+
+
 def summary_text(record: dict[str, Any]) -> str:
     """What `mdlgen run` prints of a summary."""
     pairs = record["pairs"]
@@ -188,7 +197,8 @@ def summary_text(record: dict[str, Any]) -> str:
         f"{record['scene']} ({record['solver']}): {record['status']}, {record['t_end_ms']:.6g} ms, {steps}",
         f"solved in {record['wall_s']:.3g} s, {more}"
         f"after {record['build_s']:.2g} s to build and {record['compile_s']:.2g} s to compile",
-        f"pairs: {pairs['possible']} possible, {pairs['kept']} kept, {pairs['touched']} touched",
+        f"pairs: {pairs['possible']} possible, {pairs['kept']} kept{_searched(pairs)}, "
+        f"{pairs['touched']} touched",
     ]
     lines += [str(outcome) for outcome in outcomes_of(record)]
     happened = record.get("verdict", {}).get("events", [])
@@ -277,10 +287,8 @@ def _plates(plates: dict[str, Any]) -> list[str]:
 
 
 def _number(value: float | None) -> str:
-    if value is None:
-        return "-"
-    return f"{value:.4g}" if abs(value) >= NOTHING else "0"
+    return "-" if value is None else number(value, FIGURES)
 
 
 def _vector(values: Sequence[float | None] | None) -> str:
-    return "-" if values is None else f"({', '.join(map(_number, values))})"
+    return "-" if values is None else f"({', '.join(numbers(values, FIGURES, '-'))})"

@@ -14,6 +14,7 @@ from mdlgen.model.tables import Floats
 from mdlgen.results.compare import travel
 from mdlgen.results.summary import PER_SECOND, part_rows
 from mdlgen.results.torques import contact_torque, drive_power, drive_torque, grips
+from mdlgen.results.wording import number, numbers
 
 if TYPE_CHECKING:
     from mdlgen.results.result import Result
@@ -36,8 +37,8 @@ class _Named:
 
 def _text(value: Any) -> str:
     if isinstance(value, np.ndarray):
-        return f"[{', '.join(f'{v + 0.0:.{_SHOWN}g}' for v in value)}]"
-    return f"{value:.{_SHOWN}g}"
+        return f"[{', '.join(numbers(value.tolist(), _SHOWN, '-'))}]"
+    return number(value, _SHOWN)
 
 
 @dataclass(frozen=True, repr=False, eq=False, kw_only=True)

@@ -5,8 +5,12 @@ from __future__ import annotations
 from html import escape
 from typing import TYPE_CHECKING, Any
 
+from mdlgen.results.wording import number, numbers
+
 if TYPE_CHECKING:
     from mdlgen.results.result import Result
+
+FIGURES = 5
 
 
 def tables(result: Result) -> str:
@@ -35,5 +39,5 @@ def _row(name: str, values: list[Any]) -> str:
 
 def _shown(value: Any) -> str:
     if isinstance(value, list):
-        return ", ".join(map(_shown, value))
-    return "-" if value is None else f"{value:.5g}"
+        return ", ".join(numbers(value, FIGURES, "-"))
+    return "-" if value is None else number(value, FIGURES)

@@ -50,7 +50,12 @@ def summary(result: Result, without: Collection[str] = ()) -> dict[str, Any]:
         "estimate_s": result.estimate_s,
         "compile_s": result.compile_s,
         "build_s": result.build_s,
-        "pairs": {"possible": model.pairs.possible, "kept": len(model.pairs), "touched": result.touched},
+        "pairs": {
+            "possible": model.pairs.possible,
+            "kept": len(model.pairs),
+            "searched": len(model.pairs.searched),
+            "touched": result.touched,
+        },
         "halved": result.halved,
         "error_estimate": result.error_estimate,
         "error_estimate_of": result.error_estimate_of,

@@ -21,11 +21,15 @@ from mdlgen.model.lower import lower
 from mdlgen.model.tables import Model
 from mdlgen.paths import samples
 from mdlgen.report.figures.figure import figure
+from mdlgen.report.html.page import page
+from mdlgen.report.overview import overview
+from mdlgen.report.text import overview_text, summary_text
 from mdlgen.results.compare import compare, scale
 from mdlgen.results.io import store
 from mdlgen.results.io.series import series
 from mdlgen.results.result import Result
 from mdlgen.results.summary import summary
+from mdlgen.results.wording import number, numbers
 from mdlgen.spec.load import loads
 
 FILES = ["result.h5", "series.csv", "summary.json"]
@@ -56,11 +60,35 @@ def result(model: Model) -> Result:
     return moving(model)
 
 
+def test_round_off_is_shown_as_0(result: Result) -> None:
+    assert numbers([382.3, -3e-8, None], 4, "-") == ["382.3", "0", "-"] and number(3e-19, 4) == "0"
+    assert numbers([3e-8, -3e-8], 4, "-") == ["3e-08", "-3e-08"]  # of their own size
+    turned = replace(result, position=result.position + 1e-14 * np.random.default_rng(1).random((3,)))
+    assert "yaw 0 deg" in repr(turned.sheets["note"]) and ", 0, 0] mm" in repr(turned.sheets["note"])
+    assert "e-1" not in turned._repr_html_()
+
+
+def test_pairs_that_are_found_as_it_runs_are_said() -> None:
+    """More may touch than are kept."""
+    text = (samples() / "feeder.yaml").read_text("utf-8")
+    boxes = ["sheets.note_1.boxes=[24,16]", "sheets.note_2.boxes=[24,16]", "run.duration=20 ms"]
+    found = lower(loads(text, "s", boxes))
+    assert len(found.pairs.searched) == 1
+    ended = replace(moving(found), touched=10**6)
+    assert summary(ended)["pairs"]["searched"] == 1
+    said = f"{len(found.pairs)} kept and those of sheets in 1 contact, found as it runs, 1000000 touched"
+    assert said in summary_text(summary(ended))
+    assert "found as it runs (margin" in overview_text(overview(found))
+    assert "found as it ran, 1000000 touched" in page([ended])
+    plain = moving(small_model())
+    assert "found as it r" not in summary_text(summary(plain)) + page([plain])
+
+
 class TestSummary:
     def test_is_the_promised_object(self, result: Result) -> None:
         record = summary(result)
         assert set(record) == PROMISED | WORK
-        assert set(record["pairs"]) == {"possible", "kept", "touched"}
+        assert set(record["pairs"]) == {"possible", "kept", "searched", "touched"}
         assert set(record["sheets"]["note"]) == {
             "travel_mm", "speed_mm_per_s", "yaw_deg", "boxes", "bushings", "strain", "curvature", "twist",
         }  # fmt: skip
@@ -187,6 +215,29 @@ class TestFiles:
         assert float(last["time_ms"]) == result.time[-1]
         assert float(last["note.x_mm"]) == pytest.approx(SPEED * result.time[-1], rel=1e-12)
         assert float(last["note.vx_mm_per_s"]) == pytest.approx(1400, rel=1e-12)
+
+    def test_series_has_the_ways_that_parts_move_along(self) -> None:
+        slid = small_model(
+            "rollers.counter_1_left.press.direction=-x",
+            "rollers.counter_2_left.press.direction=[0, -1, -1]",
+            'contacts.0.between=[motor_1_left, motor_2_left]',
+            'contacts.2.between=[motor_1_right, motor_2_right]',
+        )  # fmt: skip
+        names = list(series(moving(slid)))
+        places = [
+            name for name in names if name.startswith("counter_") and name.endswith(("x_mm", "y_mm", "z_mm"))
+        ]
+        assert places == [
+            *("counter_1_left.x_mm", "counter_1_left.z_mm"),
+            "counter_1_right.z_mm",
+            *("counter_2_left.y_mm", "counter_2_left.z_mm"),
+            "counter_2_right.z_mm",
+        ]
+        swung = moving(lower(loads((samples() / "feeder.yaml").read_text("utf-8"))))
+        table = series(swung)
+        assert "skimmer_left.x_mm" in table and "skimmer_left.y_mm" not in table  # about y
+        body = swung.model.roller("skimmer_left").body
+        np.testing.assert_array_equal(table["skimmer_left.x_mm"], swung.position[:, body, 0])
 
     def test_forces_on_fixed_parts(self, result: Result) -> None:
         """Planes that do not move have the sum of their contacts, at the end and over time."""

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from mdlgen.model.tables import Floats, RollerPart
+from mdlgen.model.tables import Floats, PlanePart, RollerPart
 from mdlgen.results.result import Result
 from mdlgen.results.summary import PER_SECOND, part_rows
 from mdlgen.results.torques import contact_torque, drive_power, drive_torque, grips
+
+SLIGHT = 1e-9  # part of a slide along an axis that is round-off
 
 
 def series(result: Result) -> dict[str, Floats]:
@@ -22,13 +24,13 @@ def series(result: Result) -> dict[str, Floats]:
         table |= _motion(probe.name, *result.anchor_motion(index))
     for roller in result.model.rollers:
         rows = list(part_rows(result, roller))
-        table[f"{roller.name}.z_mm"] = result.position[:, roller.body, 2]
+        table |= _places(result, roller)
         table[f"{roller.name}.omega_rad_per_s"] = result.spin[:, roller.body] @ roller.axis * PER_SECOND
         table[f"{roller.name}.force_n"] = result.contact_force[:, rows].sum(axis=1)
         table |= _turning(result, roller)
     for plate, _ in result.model.plates:
         rows = list(part_rows(result, plate))
-        table[f"{plate.name}.z_mm"] = result.position[:, plate.body, 2]
+        table |= _places(result, plate)
         table[f"{plate.name}.force_n"] = result.contact_force[:, rows].sum(axis=1)
     pressed = {plate.name for plate, _ in result.model.plates}
     for part in result.model.machine:
@@ -36,6 +38,19 @@ def series(result: Result) -> dict[str, Floats]:
             continue
         table[f"{part.name}.force_n"] = result.contact_force[:, list(part_rows(result, part))].sum(axis=1)
     return table
+
+
+def _places(result: Result, part: RollerPart | PlanePart) -> dict[str, Floats]:
+    """z of its centre, and x and y where it may move along them: on its slide, or round its arm's pivot."""
+    moves = np.zeros(3) if part.press is None else np.abs(part.press.direction)
+    if isinstance(part, RollerPart) and part.arm is not None:
+        moves = 1.0 - np.abs(part.axis)
+    places = result.position[:, part.body]
+    return {
+        f"{part.name}.{axis}_mm": places[:, k]
+        for k, axis in enumerate("xyz")
+        if axis == "z" or moves[k] > SLIGHT
+    }
 
 
 def _motion(name: str, place: Floats, rate: Floats) -> dict[str, Floats]:
