@@ -22,9 +22,9 @@ from mdlgen.mechanics.point import DEPTH, OUT, PRESSING
 from mdlgen.mechanics.turning import ABOUT_A, ABOUT_B, ALONG, LIMIT, TURNING
 from mdlgen.model import curves
 from mdlgen.model.meshes import carried
+from mdlgen.model.overlaps.unheld import Unheld
 from mdlgen.model.rotations import euler_parameters
 from mdlgen.model.tables import Model
-from mdlgen.model.unheld import Unheld
 from mdlgen.results import audit
 from mdlgen.results.result import ContactStatistics, Energy, Result
 

@@ -13,8 +13,8 @@ from mdlgen.backends.lattice.kernels.state import (
 )
 from mdlgen.backends.lattice.work import flexible
 from mdlgen.model.curves import overstretched
+from mdlgen.model.overlaps.unheld import Unheld
 from mdlgen.model.tables import Floats, Model
-from mdlgen.model.unheld import Unheld
 from mdlgen.results import audit
 from mdlgen.results.result import Result
 

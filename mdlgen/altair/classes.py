@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mdlgen.model.joints import Joints, find_joints
+from mdlgen.model.lowering.joints import Joints, find_joints
 from mdlgen.model.shape import joint_creases
 from mdlgen.model.tables import CLAMP, JOINT_X, Ints, SheetPart
 

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from mdlgen.lints.lint import Lint
-from mdlgen.model import press
 from mdlgen.model.parts.roller import FLAT
+from mdlgen.model.press import balance
 from mdlgen.model.rolling import rolls
 from mdlgen.model.sheet_pairs import linked
 from mdlgen.model.tables import (
@@ -157,7 +157,7 @@ def deep(depth: float, sheet: SheetPart) -> bool:
 
 def _boxes_under(sheet: SheetPart, roller: RollerPart) -> float:
     """How many boxes of a sheet, flat where it starts, a roller stands on."""
-    shares = press.covered_shares(sheet, roller.center, roller.axis, roller.width, False)
+    shares = balance.covered_shares(sheet, roller.center, roller.axis, roller.width, False)
     return sum(share for share, _ in shares)
 
 

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from mdlgen.lints.lint import Lint
-from mdlgen.model.overlap import Overlaps
-from mdlgen.model.sheet_overlap import SheetOverlaps
+from mdlgen.model.overlaps.parts import Overlaps
+from mdlgen.model.overlaps.sheets import SheetOverlaps
 from mdlgen.model.tables import (
     Model,
 )

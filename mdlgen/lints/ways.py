@@ -7,9 +7,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from mdlgen.lints.lint import Lint
-from mdlgen.model import press
 from mdlgen.model.parts.kinds import kind_of
 from mdlgen.model.parts.roller import FLAT
+from mdlgen.model.press import balance
 from mdlgen.model.tables import (
     BOX_CYLINDER,
     CYLINDER_CYLINDER,
@@ -119,7 +119,7 @@ def _driven(model: Model, sheet: SheetPart, begin: bool = False) -> Driven:
         center = model.bodies.position[roller.body]
         height = float((sheet.center - center) @ normal)
         gap = abs(height) - roller.reach - sheet.thickness / 2
-        on = not begin or press.covered_shares(sheet, center, roller.axis, roller.width, True)
+        on = not begin or balance.covered_shares(sheet, center, roller.axis, roller.width, True)
         if abs(float(roller.axis @ normal)) < FLAT and on and abs(gap) < NEAR * sheet.thickness:
             found.append(
                 (roller, np.cross(roller.speed * roller.axis, np.sign(height) * roller.radius * normal))

@@ -9,22 +9,22 @@ import numpy as np
 
 from mdlgen.errors import SpecError
 from mdlgen.model import grid, naming
-from mdlgen.model.anchors import anchor, find_tension, lower_loads
-from mdlgen.model.before import Before
-from mdlgen.model.cells import Cells, cells, zone_parts
 from mdlgen.model.curves import lower_curves
 from mdlgen.model.ends import with_ends
 from mdlgen.model.external import external_pairs, lower_externals
-from mdlgen.model.joints import Joints, find_joints
+from mdlgen.model.lowering.anchors import anchor, find_tension, lower_loads
+from mdlgen.model.lowering.cells import Cells, cells, zone_parts
+from mdlgen.model.lowering.joints import Joints, find_joints
+from mdlgen.model.lowering.pairs import find_pairs
+from mdlgen.model.lowering.stiffness import between, coefficients, derived, extent
+from mdlgen.model.lowering.supports import joined, support_bushings
 from mdlgen.model.meshes import loaded
-from mdlgen.model.pairs import find_pairs
 from mdlgen.model.parameters.given import parameters, unfollowed
 from mdlgen.model.parts.kinds import KINDS, kind_of
-from mdlgen.model.press_parts import Bow, Face, Facets
+from mdlgen.model.press.before import Before
+from mdlgen.model.press.faces import Bow, Face, Facets
 from mdlgen.model.rotations import matrices
 from mdlgen.model.shape import bend, box_rotations, joint_creases, joint_frames, joint_turns, placed
-from mdlgen.model.stiffness import between, coefficients, derived, extent
-from mdlgen.model.supports import joined, support_bushings
 from mdlgen.model.tables import (
     BOX_BOX,
     EXTERNAL,

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mdlgen.model.joints import Joints
+from mdlgen.model.lowering.joints import Joints
 from mdlgen.model.rotations import matrices, vectors
 from mdlgen.model.tables import (
     CLAMP,

@@ -10,7 +10,7 @@ import numpy as np
 from mdlgen.checks import lints
 from mdlgen.lints.lint import Lint
 from mdlgen.lints.start import overlap
-from mdlgen.model.overlap import rod
+from mdlgen.model.overlaps.parts import rod
 from mdlgen.model.parts.kind import Boxes
 from mdlgen.model.parts.kinds import WITH_SHEET, kind_of
 from mdlgen.model.tables import (

@@ -21,7 +21,7 @@ from mdlgen.bench.oracles.chain import chain_of
 from mdlgen.checks import lints
 from mdlgen.errors import SpecError
 from mdlgen.model.lower import lower
-from mdlgen.model.stiffness import damping_times
+from mdlgen.model.lowering.stiffness import damping_times
 from mdlgen.model.tables import CLAMP, JOINT_X, JOINT_Y, SUPPORT, Model
 from mdlgen.results.result import Result
 from mdlgen.spec.load import load

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import mdlgen
-from mdlgen.model.fold import Folds, overlaps
 from mdlgen.model.lower import lower
+from mdlgen.model.overlaps.fold import Folds, overlaps
 from mdlgen.model.rotations import matrices
 from mdlgen.spec.load import loads
 

@@ -14,7 +14,7 @@ import mdlgen
 from mdlgen.checks import lints
 from mdlgen.geometry.rods import Box, Rod, into_box, into_triangles
 from mdlgen.model.lower import lower
-from mdlgen.model.overlap import HAIR, Overlaps
+from mdlgen.model.overlaps.parts import HAIR, Overlaps
 from mdlgen.spec.load import load, loads
 
 ROD = Rod(np.zeros(3), np.array([0.0, 1.0, 0.0]), 10.0, 8.0)

@@ -14,7 +14,7 @@ from mdlgen.bench.oracles import plate
 from mdlgen.bench.oracles.elastica import drop as elastica
 from mdlgen.errors import SpecError
 from mdlgen.model.lower import lower
-from mdlgen.model.plate import SHEAR_RATIO
+from mdlgen.model.lowering.plate import SHEAR_RATIO
 from mdlgen.model.tables import CLAMP, JOINT_X, JOINT_Y, Model
 from mdlgen.paths import samples
 from mdlgen.results.result import Result

@@ -11,8 +11,8 @@ import mdlgen
 from mdlgen.checks import lints
 from mdlgen.cli import app
 from mdlgen.model.lower import lower
-from mdlgen.model.overlap import HAIR
-from mdlgen.model.sheet_overlap import SheetOverlaps
+from mdlgen.model.overlaps.parts import HAIR
+from mdlgen.model.overlaps.sheets import SheetOverlaps
 from mdlgen.model.tables import Model
 from mdlgen.spec.load import loads
 

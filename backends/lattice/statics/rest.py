@@ -30,8 +30,8 @@ from mdlgen.mechanics.mesh import LOST
 from mdlgen.mechanics.pair import DEEP_ROLLER
 from mdlgen.mechanics.point import DEPTH, PRESSING
 from mdlgen.model import curves
+from mdlgen.model.overlaps.unheld import Unheld
 from mdlgen.model.tables import BOX_GUIDE, BOX_PLANE, GROUND, ON_PARTS, Model, SheetPart
-from mdlgen.model.unheld import Unheld
 from mdlgen.results.result import Result
 
 FIRST_PART = 1.0  # of the load

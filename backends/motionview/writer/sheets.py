@@ -22,9 +22,9 @@ from mdlgen.backends.motionview.writer.rows import (
     Value,
 )
 from mdlgen.backends.motionview.writer.units import number
-from mdlgen.model.plate import SHEAR_RATIO
+from mdlgen.model.lowering.plate import SHEAR_RATIO
+from mdlgen.model.lowering.stiffness import SUPPORT_FACTOR
 from mdlgen.model.shape import apart
-from mdlgen.model.stiffness import SUPPORT_FACTOR
 from mdlgen.model.tables import AXES, CLAMP, GROUND, JOINT_X, SUPPORT, Anchor, Model, SheetPart
 
 

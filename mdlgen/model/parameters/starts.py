@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mdlgen.model import press
+from mdlgen.model.press import balance
 from mdlgen.model.tables import BOX_CYLINDER, CYLINDER_CYLINDER, Contacts, Floats, Parameter, SheetPart
 from mdlgen.spec.nip import names_of
 from mdlgen.spec.scene import Scene
@@ -92,7 +92,7 @@ def _of_roller(scene: Scene, name: str, other: str) -> float | None:
         return None
     if abs(float(np.dot(roller.axis, roller.press.direction))) > _STRAIGHT:
         return None
-    cylinder = press.Cylinder(np.array(partner.center), partner.radius, partner.width, 1.0)
+    cylinder = balance.Cylinder(np.array(partner.center), partner.radius, partner.width, 1.0)
     return cylinder.share(np.array(roller.center), axis, roller.width)
 
 
@@ -103,7 +103,7 @@ def _of_sheet(scene: Scene, name: str, sheet: SheetPart, shared: bool) -> float 
     ways, axis = np.array(roller.press.direction), np.array(roller.axis)
     square = abs(abs(float(sheet.rotation[:, 2] @ ways)) - 1.0) < _STRAIGHT
     ahead = float(np.subtract(sheet.center, roller.center) @ ways) > 0.0
-    shares = press.covered_shares(sheet, np.array(roller.center), axis, roller.width, shared)
+    shares = balance.covered_shares(sheet, np.array(roller.center), axis, roller.width, shared)
     if not shares:
         return 0.0
     plain = len(shares) == 1 and shares[0][1] == sheet.thickness

@@ -11,10 +11,10 @@ import numpy as np
 from mdlgen.geometry.arrays import Floats
 from mdlgen.geometry.rods import Box, Rod, into_box
 from mdlgen.geometry.solids import BOX, CORNERS, Solid, bent_plate
-from mdlgen.model.before import Before
 from mdlgen.model.frames import frame
 from mdlgen.model.parts.kind import BodyRow, Boxes, Drawn
-from mdlgen.model.press_parts import Bow, Face, face_of_guide
+from mdlgen.model.press.before import Before
+from mdlgen.model.press.faces import Bow, Face, face_of_guide
 from mdlgen.model.rims import SAG
 from mdlgen.model.sheet_corners import each_box
 from mdlgen.model.tables import BOX_GUIDE, CYLINDER_GUIDE, Bodies, GuidePart, Model, RollerPart, SheetPart

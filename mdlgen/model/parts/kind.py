@@ -11,8 +11,8 @@ from typing import NamedTuple, Protocol, TypeVar
 from mdlgen.geometry.arrays import Floats
 from mdlgen.geometry.rods import Rod
 from mdlgen.geometry.solids import Solid
-from mdlgen.model.before import Before
-from mdlgen.model.press_parts import Bow, Face, Facets
+from mdlgen.model.press.before import Before
+from mdlgen.model.press.faces import Bow, Face, Facets
 from mdlgen.model.tables import Bodies, Model, Press, RollerPart, SheetPart
 from mdlgen.spec.scene import Scene
 

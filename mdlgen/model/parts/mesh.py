@@ -9,11 +9,11 @@ import numpy as np
 from mdlgen.geometry.arrays import Floats
 from mdlgen.geometry.rods import Rod, into_triangles
 from mdlgen.geometry.solids import Solid
-from mdlgen.model.before import Before
 from mdlgen.model.grid import rotation_matrix
 from mdlgen.model.meshes import mass_of, placed, reach
 from mdlgen.model.parts.kind import SLACK, BodyRow, Boxes, Drawn
-from mdlgen.model.press_parts import Facets, facets_of_mesh
+from mdlgen.model.press.before import Before
+from mdlgen.model.press.faces import Facets, facets_of_mesh
 from mdlgen.model.tables import BOX_MESH, CYLINDER_MESH, Bodies, MeshPart, Model, RollerPart, SheetPart
 from mdlgen.spec.mesh import Mesh
 from mdlgen.spec.scene import Scene
@@ -70,7 +70,7 @@ class _Meshes:
         """None: not computed."""
 
     def depth_at_start(self, model: Model, sheet: SheetPart, part: MeshPart) -> float:
-        """Not computed: see `model.sheet_overlap`."""
+        """Not computed: see `model.overlaps.sheets`."""
         return 0.0
 
     def place(self, part: MeshPart) -> str:

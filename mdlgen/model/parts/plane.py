@@ -10,11 +10,11 @@ from mdlgen.errors import SpecError
 from mdlgen.geometry.arrays import Floats
 from mdlgen.geometry.rods import Box, Rod, into_box
 from mdlgen.geometry.solids import BOX, CORNERS, Solid
-from mdlgen.model.before import Before
 from mdlgen.model.frames import frame
 from mdlgen.model.parts.kind import SLACK, BodyRow, Boxes, Drawn
-from mdlgen.model.press_parts import Face, faces_of_plate
-from mdlgen.model.pressed import plate_press
+from mdlgen.model.press.before import Before
+from mdlgen.model.press.faces import Face, faces_of_plate
+from mdlgen.model.press.springs import plate_press
 from mdlgen.model.sheet_corners import corners, corners_of_boxes
 from mdlgen.model.tables import (
     BOX_PLANE,

@@ -9,11 +9,11 @@ import numpy as np
 from mdlgen.geometry.arrays import Floats
 from mdlgen.geometry.rods import Rod
 from mdlgen.geometry.solids import BOX, CORNERS, Solid, cylinder, slice_
-from mdlgen.model import press
-from mdlgen.model.before import Before
 from mdlgen.model.frames import frame
 from mdlgen.model.parts.kind import SLACK, BodyRow, Boxes, Drawn
-from mdlgen.model.pressed import roller_press
+from mdlgen.model.press import balance
+from mdlgen.model.press.before import Before
+from mdlgen.model.press.springs import roller_press
 from mdlgen.model.rims import lower_rim
 from mdlgen.model.tables import (
     BOX_CYLINDER,
@@ -115,7 +115,7 @@ class _Rollers:
         normal, center = sheet.rotation[:, 2], model.bodies.position[part.body]
         if abs(float(part.axis @ normal)) > FLAT or sheet.count == 1:
             return 0.0
-        if not press.covered_shares(sheet, center, part.axis, part.width, True):
+        if not balance.covered_shares(sheet, center, part.axis, part.width, True):
             return 0.0
         return part.radius + sheet.thickness / 2 - abs(float((center - sheet.center) @ normal))
 

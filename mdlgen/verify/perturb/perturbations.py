@@ -15,8 +15,8 @@ from typing import NamedTuple
 import numpy as np
 
 from mdlgen.formulas import Amount
+from mdlgen.model.lowering.stiffness import SUPPORT_FACTOR
 from mdlgen.model.parameters.names import OF_USER
-from mdlgen.model.stiffness import SUPPORT_FACTOR
 from mdlgen.model.tables import SUPPORT, Model, Parameter
 from mdlgen.spec.parameter import Parameters
 from mdlgen.spec.rim import TURN

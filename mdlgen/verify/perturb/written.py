@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from mdlgen.model import grid
 from mdlgen.model.lower import lower
+from mdlgen.model.lowering.supports import joined, support_bushings
 from mdlgen.model.parameters.starts import FOLLOWING, found, held
-from mdlgen.model.supports import joined, support_bushings
 from mdlgen.model.tables import SUPPORT, Anchor, Bushings, Model, Press, RollerPart
 from mdlgen.spec.scene import Scene
 

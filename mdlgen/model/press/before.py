@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from mdlgen.geometry.arrays import Floats
-from mdlgen.model.press_parts import Bow, Face, Facets
+from mdlgen.model.press.faces import Bow, Face, Facets
 from mdlgen.model.tables import Contacts, RollerPart, SheetPart
 
 

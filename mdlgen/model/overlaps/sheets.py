@@ -11,8 +11,8 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from mdlgen.model.fold import overlaps
-from mdlgen.model.overlap import HAIR
+from mdlgen.model.overlaps.fold import overlaps
+from mdlgen.model.overlaps.parts import HAIR
 from mdlgen.model.parts.kinds import kind_of
 from mdlgen.model.tables import (
     Floats,

@@ -7,7 +7,7 @@ from dataclasses import fields
 
 import numpy as np
 
-from mdlgen.model.stiffness import SUPPORT_FACTOR
+from mdlgen.model.lowering.stiffness import SUPPORT_FACTOR
 from mdlgen.model.tables import GROUND, SUPPORT, Anchor, Bodies, Bushings, SheetPart
 from mdlgen.spec.action import Support
 

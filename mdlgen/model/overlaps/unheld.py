@@ -6,9 +6,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from mdlgen.model.fold import Folds
-from mdlgen.model.overlap import Overlaps
-from mdlgen.model.sheet_overlap import SheetOverlaps
+from mdlgen.model.overlaps.fold import Folds
+from mdlgen.model.overlaps.parts import Overlaps
+from mdlgen.model.overlaps.sheets import SheetOverlaps
 from mdlgen.model.tables import Floats, Model
 
 

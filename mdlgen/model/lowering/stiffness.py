@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mdlgen.model import plate
-from mdlgen.model.cells import Cells
+from mdlgen.model.lowering import plate
+from mdlgen.model.lowering.cells import Cells
 from mdlgen.model.tables import Floats, Ints
 from mdlgen.spec.material import Material
 from mdlgen.spec.sheet import Sheet

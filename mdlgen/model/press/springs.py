@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from mdlgen.errors import SpecError
-from mdlgen.model import meshes, press
-from mdlgen.model.before import Before
+from mdlgen.model import meshes
 from mdlgen.model.frames import frame
-from mdlgen.model.press_parts import (
+from mdlgen.model.press import balance
+from mdlgen.model.press.before import Before
+from mdlgen.model.press.faces import (
     Face,
     Wheel,
     faces_of_plate,
@@ -54,9 +55,9 @@ def roller_press(scene: Scene, name: str, before: Before) -> Press:
                     ("rollers", name, "press"),
                 )
             radius, factor = _profile(partner, center - np.array(partner.center))
-            cylinder = press.Cylinder(np.array(partner.center), radius, partner.width, stiffness * factor)
+            cylinder = balance.Cylinder(np.array(partner.center), radius, partner.width, stiffness * factor)
             others.append(cylinder)
-            forces.append(press.cylinder_contact(cylinder, axis, own_radius, roller.width))
+            forces.append(balance.cylinder_contact(cylinder, axis, own_radius, roller.width))
         elif contacts.kind[row] in ON_PARTS:
             face = before.face(other, center, name)
             if face is not None:
@@ -69,15 +70,15 @@ def roller_press(scene: Scene, name: str, before: Before) -> Press:
             # a mesh on the roller counts as the roller's own round here: the run finds the rest
             sheet = next(s for s in sheets if s.name == other)
             shared = contacts.share[row] == "width"
-            forces.append(press.sheet_contact(sheet, axis, own_radius, roller.width, stiffness, shared))
-    touch = press.touch_offset(center, axis, direction, own_radius, roller.width, others, faces)
+            forces.append(balance.sheet_contact(sheet, axis, own_radius, roller.width, stiffness, shared))
+    touch = balance.touch_offset(center, axis, direction, own_radius, roller.width, others, faces)
     heavy = mass + sum(meshes.mass_of(mesh) for mesh in scene.meshes.values() if mesh.on == name)
     weight = heavy * float(np.array(scene.gravity) @ direction)
 
     def spring(offset: float) -> float:
         return spec.preload - spec.stiffness * (offset - touch) + weight
 
-    start = press.equilibrium(center, direction, spring, forces, own_radius, touch)
+    start = balance.equilibrium(center, direction, spring, forces, own_radius, touch)
     return _slide(spec, mass, carrier, touch, start)
 
 
@@ -117,7 +118,7 @@ def plate_press(scene: Scene, name: str, before: Before) -> Press:
     for row in mine:
         one, k = contacts.part_a[row], float(contacts.stiffness[row])
         if one in of:
-            forces.append(press.plate_contact(of[one], axes, plane.size, center, k))
+            forces.append(balance.plate_contact(of[one], axes, plane.size, center, k))
             continue
         roller = scene.rollers[one]
         face = faces_of_plate(center, axes, plane.size, np.array(roller.center))
@@ -128,7 +129,7 @@ def plate_press(scene: Scene, name: str, before: Before) -> Press:
         return spec.preload - spec.stiffness * offset + weight
 
     far = spec.free_length  # a spring does not become shorter than that
-    start, left = press.plate_balance(center, direction, spring, forces, far)
+    start, left = balance.plate_balance(center, direction, spring, forces, far)
     if left != 0.0:
         way = "with" if left > 0.0 else "against"
         raise SpecError(

@@ -8,7 +8,7 @@ import numpy as np
 
 from mdlgen.model import naming
 from mdlgen.model.grid import clamped_boxes
-from mdlgen.model.plate import tributary
+from mdlgen.model.lowering.plate import tributary
 from mdlgen.model.tables import CLAMP, GROUND, JOINT_X, JOINT_Y, Clamp, Floats, Ints, SheetPart
 
 _LETTER = {JOINT_X: "x", JOINT_Y: "y", CLAMP: "c"}

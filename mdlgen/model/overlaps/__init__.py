@@ -1,0 +1,1 @@
+"""Bodies that no contact holds apart: whether they come to overlap."""
