@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-MACHINE = """
+from papers import on_paper
+
+MACHINE = on_paper("""
 name: machine
 materials:
-  paper: {E_md: 3530 MPa, E_cd: 1113 MPa, k_tx: 0.15 N*mm/rad, k_ty: 0.185 N*mm/rad, k_tz: 5 N*mm/rad}
+  paper: HINGED_PAPER
 sheets:
   note: {material: paper, size: [40 mm, 48 mm], thickness: 0.1 mm, mass: 0.3 g, boxes: [6, 10],
     center: [0 mm, 3 mm, 0 mm], velocity: [200 mm/s, 0 mm/s, 0 mm/s]}
@@ -26,7 +28,7 @@ contacts:
   - {between: [motor_left, idler_left], stiffness: 300 N/mm^1.5, friction: 0.5}
   - {between: [motor_right, idler_right], stiffness: 300 N/mm^1.5, friction: 0.5}
 run: {duration: 3 ms, step: 0.02 ms, tolerance: 1e-6, print_step: 0.5 ms}
-"""
+""")
 # the idler is driven, first slower than the motor's shaft, then faster, then slower again
 WAY = "{direction: %d, torque: 40 N*mm, creep: 0.1 rad/s}"
 OVERRUN = (

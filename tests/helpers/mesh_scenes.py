@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from papers import on_paper
 from solids import ascii_stl, binary, cylinder, obj, prism
 
 from mdlgen.spec.load import loads
 
-SHAPES = """
+SHAPES = on_paper("""
 name: shapes
-materials: {m: {E_md: 3530 MPa, E_cd: 1113 MPa, D_md: 0.4 N*mm, D_cd: 0.24 N*mm}}
+materials: {m: PLATE_PAPER}
 sheets: {note: {material: m, size: [40 mm, 40 mm], thickness: 0.1 mm, mass: 0.3 g, boxes: [2, 2]}}
 rollers:
   r: {center: [0 mm, 0 mm, -8 mm], axis: y, radius: 7.5 mm, width: 5 mm, mass: 1 g, drive: {speed: 100 rad/s}}
@@ -26,7 +27,7 @@ contacts:
 - {between: [note, "t*"], stiffness: 30 N/mm^1.5, friction: 0}
 - {between: [note, one], stiffness: 30 N/mm^1.5, friction: 0.2}
 run: {duration: 1 ms}
-"""
+""")
 WEDGE = prism([(0, -1), (30, -1), (30, 3), (0, 0)], 30)
 
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-FORTH_AND_BACK = """
+from papers import on_paper
+
+FORTH_AND_BACK = on_paper("""
 name: nip
 materials:
-  paper: {E_md: 3530 MPa, E_cd: 1113 MPa, k_tx: 0.15 N*mm/rad, k_ty: 0.185 N*mm/rad, k_tz: 5 N*mm/rad}
+  paper: HINGED_PAPER
 sheets:
   note: {material: paper, size: [67 mm, 30 mm], thickness: 0.1 mm, mass: 0.17 g, boxes: [6, 3]}
 rollers:
@@ -15,4 +17,4 @@ rollers:
     press: {direction: -z, stiffness: 0.3 N/mm, preload: 3 N}}
 contacts: [{between: [note, "*r"], stiffness: 300 N/mm^1.5, friction: 0.8, smoothing: 10 mm/s}]
 run: {duration: 20 ms, print_step: 0.1 ms}
-"""
+""")

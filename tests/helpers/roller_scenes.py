@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from papers import on_paper
+
 SOLVERS = ["lattice", "exudyn"]
 G = 9.81e-3  # mm/ms^2
 K, N, SPRING, MASS, RADIUS = 40.0, 3.0, 0.5, 12.0, 10.0
@@ -31,9 +33,9 @@ ARC = (
     "guides: {{part: {{width: 60 mm, arc: {{center: [0 mm, 0 mm, {z} mm], axis: y, radius: 30 mm, "
     "from: {begin} deg, to: {end} deg, side: {side}}}}}}}"
 )
-PICK = """
+PICK = on_paper("""
 name: pick
-materials: {p: {E_md: 3530 MPa, E_cd: 1113 MPa, D_md: 0.40 N*mm, D_cd: 0.24 N*mm}}
+materials: {p: PLATE_PAPER}
 sheets: {n: {material: p, size: [60 mm, 40 mm], thickness: 0.1 mm, mass: 0.19 g, boxes: [12, 4],
   layout: plate, center: [0 mm, 0 mm, 0.05 mm]}}
 rollers: {pick: {center: [0 mm, 0 mm, 10.1 mm], axis: y, radius: 10 mm, width: 20 mm, mass: 10 g,
@@ -44,7 +46,7 @@ contacts:
   - {between: [n, table], stiffness: 300 N/mm^1.5, friction: 0.2, smoothing: 5 mm/s}
   - {between: [pick, table], stiffness: 300 N/mm^1.5, friction: 0.2, smoothing: 5 mm/s}
 run: {duration: 60 ms, margin: 30 mm}
-"""
+""")
 
 
 def scene(parts: str, more: str = "", gravity: str = NONE, center: str = "", axis: str = "y") -> str:

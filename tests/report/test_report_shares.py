@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from papers import on_paper
 from ran import ran
 from solids import binary, brick, cylinder
 from synthetic import moving
@@ -19,9 +20,10 @@ from mdlgen.results.result import Result
 from mdlgen.spec.load import loads
 
 ON_ROLLER = ", on: r, mass: 1 g"
-TWO = """
+TWO = on_paper(
+    """
 name: two
-materials: {{m: {{E_md: 3530 MPa, E_cd: 1113 MPa, D_md: 0.4 N*mm, D_cd: 0.24 N*mm}}}}
+materials: {{m: PLATE_PAPER}}
 sheets:
   low: {{material: m, size: [60 mm, 40 mm], thickness: 0.1 mm, mass: 0.3 g, boxes: {low}}}
   top:
@@ -29,10 +31,13 @@ sheets:
      turn: {turn}}}
 contacts: [{{between: [low, top], stiffness: 100 N/mm^1.5, friction: 0}}]
 run: {{duration: 1 ms}}
-"""
-ON = """
+""",
+    template=True,
+)
+ON = on_paper(
+    """
 name: on
-materials: {{m: {{E_md: 3530 MPa, E_cd: 1113 MPa, D_md: 0.4 N*mm, D_cd: 0.24 N*mm}}}}
+materials: {{m: PLATE_PAPER}}
 sheets:
   note: {{material: m, size: [60 mm, 40 mm], thickness: 0.1 mm, mass: 0.3 g, boxes: [6, 4], center: {at}}}
 rollers:
@@ -43,7 +48,9 @@ meshes:
   part: {{file: part.stl, center: {place}{more}}}
 contacts: [{{between: [note, {other}], stiffness: 100 N/mm^1.5, friction: 0}}]
 run: {{duration: 1 ms}}
-"""
+""",
+    template=True,
+)
 
 
 def pressed(

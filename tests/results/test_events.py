@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import ran
+from papers import HINGED_PAPER
 
 import mdlgen
 from mdlgen.model.lower import lower
@@ -19,14 +20,13 @@ from mdlgen.spec.load import load, loads
 
 Event = dict[str, Any]
 
-PAPER = "{E_md: 3530 MPa, E_cd: 1113 MPa, k_tx: 0.15 N*mm/rad, k_ty: 0.185 N*mm/rad, k_tz: 5 N*mm/rad}"
 SHEET = "material: paper, size: [40 mm, 30 mm], thickness: 0.1 mm, mass: 0.1 g, boxes: [4, 3]"
 # one nip; the motor's surface runs at 750 mm/s
 NIP = f"""
 name: nip
 gravity: [0 m/s^2, 0 m/s^2, 0 m/s^2]
 materials:
-  paper: {PAPER}
+  paper: {HINGED_PAPER}
 sheets:
   a: {{{SHEET}, center: [0 mm, 0 mm, 0 mm]}}
 rollers:

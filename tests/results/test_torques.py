@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from nip import FORTH_AND_BACK
+from papers import on_paper
 from ran import solved
 from solids import binary, cylinder
 
@@ -23,10 +24,10 @@ from mdlgen.spec.load import loads
 SOLVERS = ("lattice", "exudyn")
 # A motor and a pressed roller in contact, far from a block that only has to be there. Without gravity the
 # force is the preload at the touching place, less what the spring gives on 0.2 mm.
-PAIR = """
+PAIR = on_paper("""
 name: pair
 gravity: [0 m/s^2, 0 m/s^2, 0 m/s^2]
-materials: {p: {E_md: 3530 MPa, E_cd: 1113 MPa, D_md: 0.40 N*mm, D_cd: 0.24 N*mm}}
+materials: {p: PLATE_PAPER}
 sheets: {block: {material: p, size: [10 mm, 10 mm], thickness: 0.1 mm, mass: 1 g, boxes: [1, 1],
   center: [0 mm, 0 mm, 200 mm]}}
 rollers:
@@ -36,7 +37,7 @@ rollers:
     press: {direction: -z, stiffness: 0.001 N/mm, preload: 3 N, damping_ratio: 0.5}}
 contacts: [{between: [motor, top], stiffness: 3000 N/mm^1.5, friction: 0.4, smoothing: 5 mm/s}]
 run: {duration: 20 ms, print_step: 0.05 ms}
-"""
+""")
 ALPHA, INERTIA, R, R_TOP, PRELOAD, MU = 0.01, 8000.0, 20.0, 10.0, 3.0, 0.4  # rad/ms^2, g mm^2, mm, N
 DEPTH = (PRELOAD / 3000.0) ** (2 / 3)  # 0.01 mm: arms to the contact point are half of it shorter
 

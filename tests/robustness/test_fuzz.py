@@ -24,6 +24,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
+from papers import on_paper
 from scenes import SCENES, TEXTS, paths
 from solids import ascii_stl, binary, brick, cylinder, obj
 
@@ -229,15 +230,18 @@ def mesh_bytes(draw: st.DrawFn) -> tuple[str, bytes]:
 
 
 MESH = st.one_of(bent(), mesh_bytes(), st.tuples(st.sampled_from(sorted(FORMS)), st.binary()))
-MESHED = """
+MESHED = on_paper(
+    """
 name: meshed
-materials: {{m: {{E_md: 3530 MPa, E_cd: 1113 MPa, D_md: 0.4 N*mm, D_cd: 0.24 N*mm}}}}
+materials: {{m: PLATE_PAPER}}
 sheets: {{note: {{material: m, size: [40 mm, 40 mm], thickness: 0.1 mm, mass: 0.3 g, boxes: [2, 2]}}}}
 rollers:
   r: {{center: [0 mm, 0 mm, -8 mm], axis: y, radius: 7 mm, width: 5 mm, mass: 1 g, drive: {{speed: 9 rad/s}}}}
 meshes: {{part: {{file: {file}, units: {units}, center: [0 mm, 0 mm, -5.04 mm]{on}}}}}
 contacts: [{{between: [note, part], stiffness: 30 N/mm^1.5, friction: 0.2}}]
-"""
+""",
+    template=True,
+)
 
 
 def command(*args: str) -> tuple[int, str]:

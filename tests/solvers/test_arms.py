@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from papers import on_paper
 from ran import solved
 
 import mdlgen
@@ -21,10 +22,10 @@ from mdlgen.spec.load import load, loads
 from mdlgen.verify.verification import verify
 
 # about y a positive torque presses the roller, which is at +x from the pivot, down on the note
-SKIMMER = """
+SKIMMER = on_paper("""
 name: skimmer
 materials:
-  paper: {E_md: 3530 MPa, E_cd: 1113 MPa, k_tx: 0.15 N*mm/rad, k_ty: 0.185 N*mm/rad, k_tz: 5 N*mm/rad}
+  paper: HINGED_PAPER
 sheets:
   note: {material: paper, size: [67 mm, 30 mm], thickness: 0.1 mm, mass: 0.17 g, boxes: [7, 3]}
 rollers:
@@ -37,12 +38,12 @@ contacts:
   - {between: [note, motor], stiffness: 300 N/mm^1.5, friction: 0.8, smoothing: 10 mm/s}
   - {between: [note, skim], stiffness: 300 N/mm^1.5, friction: 0.3, smoothing: 10 mm/s}
 run: {duration: 40 ms, print_step: 0.25 ms}
-"""
+""")
 # a roller alone on a swinging arm; the sheet takes no part
-SWING = """
+SWING = on_paper("""
 name: swing
 materials:
-  paper: {E_md: 3530 MPa, E_cd: 1113 MPa, k_tx: 0.15 N*mm/rad, k_ty: 0.185 N*mm/rad, k_tz: 5 N*mm/rad}
+  paper: HINGED_PAPER
 sheets:
   note: {material: paper, size: [20 mm, 20 mm], thickness: 0.1 mm, mass: 0.1 g, boxes: [1, 2],
     center: [900 mm, 0 mm, 0 mm], clamp: {edge: y_min, length: 0 mm}}
@@ -50,7 +51,7 @@ rollers:
   bob: {center: [4 mm, 3 mm, -60 mm], axis: y, radius: 20 mm, width: 20 mm, mass: 10 g,
     arm: {pivot: [0 mm, 0 mm, 0 mm], mass: 20 g}}
 run: {duration: 1200 ms, print_step: 1 ms, prune: false}
-"""
+""")
 SOLVERS = ("lattice", "exudyn")
 G = 9.81e-3  # mm/ms^2
 HELD = ("rollers.motor.drive.speed=0 rad/s", "sheets.note.clamp={edge: x_min, length: 0 mm}")

@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 import ran
+from papers import on_paper
 
 from mdlgen.backends.exudyn_local import solve
 from mdlgen.cli import app
@@ -130,15 +131,15 @@ def test_a_block_that_sticks_creeps_as_the_regularisation_says():
     assert result.sheet_motion(0)[1][-1, 0] == pytest.approx(0.536876e-3, rel=0.005)
 
 
-FREE = """
+FREE = on_paper("""
 name: free
 gravity: [0 m/s^2, 0 m/s^2, 0 m/s^2]
-materials: {s: {E_md: 3530 MPa, E_cd: 1113 MPa, k_tx: 0.15 N*mm/rad, k_ty: 0.185 N*mm/rad, k_tz: 5 N*mm/rad}}
+materials: {s: HINGED_PAPER}
 sheets:
   note: {material: s, size: [40 mm, 60 mm], thickness: 0.1 mm, mass: 0.2 g, boxes: [3, 5],
          spin: [20 rad/s, 30 rad/s, 200 rad/s], velocity: [1 m/s, 0 m/s, 0 m/s]}
 run: {duration: 30 ms}
-"""
+""")
 
 
 def momentum(result):

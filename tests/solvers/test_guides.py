@@ -7,6 +7,7 @@ import re
 
 import numpy as np
 import pytest
+from papers import on_paper
 
 import mdlgen
 from mdlgen.backends.lattice import solve as lattice
@@ -253,9 +254,9 @@ def test_a_run_ends_where_a_guide_does_not_hold_a_box(solver):
 
 # -- text and deck
 
-SHAPES = """
+SHAPES = on_paper("""
 name: shapes
-materials: {m: {E_md: 3530 MPa, E_cd: 1113 MPa, D_md: 0.4 N*mm, D_cd: 0.24 N*mm}}
+materials: {m: PLATE_PAPER}
 sheets: {note: {material: m, size: [4 mm, 4 mm], thickness: 0.1 mm, mass: 3 mg, boxes: [2, 1], layout: plate}}
 guides:
   l: {line: {from: [-5 mm, 0 mm, -1 mm], to: [5 mm, 1 mm, 2 mm], axis: [0.3, -3, 0], side: left}, width: 9 mm}
@@ -272,7 +273,7 @@ guides:
     width: 9 mm
 contacts: [{between: [note, "?"], stiffness: 30 N/mm^1.5, friction: 0.2}]
 run: {duration: 1 ms}
-"""
+""")
 
 
 def shapes():

@@ -7,6 +7,7 @@ from itertools import product
 
 import numpy as np
 import pytest
+from papers import on_paper
 
 import mdlgen
 from mdlgen.backends.lattice.arrays import System, build
@@ -25,16 +26,16 @@ from mdlgen.results.compare import compare, travel
 from mdlgen.results.result import Result
 from mdlgen.spec.load import load, loads
 
-SHEET = """
+SHEET = on_paper("""
 name: flight
 gravity: [0 m/s^2, 0 m/s^2, 0 m/s^2]
 materials:
-  paper: {E_md: 3530 MPa, E_cd: 1113 MPa, k_tx: 0.15 N*mm/rad, k_ty: 0.185 N*mm/rad, k_tz: 5 N*mm/rad}
+  paper: HINGED_PAPER
 sheets:
   note: {material: paper, size: [67 mm, 127 mm], thickness: 0.1 mm, mass: 0.72 g, boxes: [4, 6],
          velocity: [1 m/s, 0.3 m/s, -0.2 m/s], spin: [30 rad/s, -20 rad/s, 50 rad/s]}
 run: {duration: 20 ms, print_step: 1 ms}
-"""
+""")
 
 
 def model(name: str, *overrides: str) -> Model:

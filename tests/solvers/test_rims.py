@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from papers import on_paper
 from ran import solved
 
 from mdlgen.backends.lattice.arrays import build
@@ -26,11 +27,11 @@ from mdlgen.spec.load import load, loads
 from mdlgen.verify.verification import verify
 
 # 90 deg of rubber: it grips where its friction is above 0.5, which is in the middle of the blend
-FEED = """
+FEED = on_paper("""
 name: feed
 gravity: [0 m/s^2, 0 m/s^2, 0 m/s^2]
 materials:
-  paper: {E_md: 3530 MPa, E_cd: 1113 MPa, k_tx: 0.15 N*mm/rad, k_ty: 0.185 N*mm/rad, k_tz: 5 N*mm/rad}
+  paper: HINGED_PAPER
 sheets:
   note: {material: paper, size: [100 mm, 30 mm], thickness: 0.1 mm, mass: 0.17 g, boxes: [12, 2],
     center: [20 mm, 0 mm, 0 mm]}
@@ -43,7 +44,7 @@ contacts:
   - {between: [note, feed], stiffness: 300 N/mm^1.5, friction: 0.2, smoothing: 1 mm/s}
   - {between: [note, hold], stiffness: 300 N/mm^1.5, friction: 0.5, smoothing: 1 mm/s}
 run: {duration: 60 ms, print_step: 0.25 ms}
-"""
+""")
 TOOTH = (
     "rollers.feed.rim.sectors=[{from: 180 deg, to: 220 deg, radius: 15.3 mm, stiffness: 0.5}]",
     "rollers.feed.drive.speed=30 rad/s",

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import ran
 from numba import njit
+from papers import on_paper
 from solids import binary, cylinder
 
 import mdlgen
@@ -25,10 +26,10 @@ from mdlgen.results.result import Result
 from mdlgen.spec.load import load, loads
 
 # a sheet of 100 g at 0.5 m/s between rollers that press with 3 N
-COAST = """
+COAST = on_paper("""
 name: coast
 gravity: [0 m/s^2, 0 m/s^2, 0 m/s^2]
-materials: {p: {E_md: 3530 MPa, E_cd: 1113 MPa, D_md: 0.40 N*mm, D_cd: 0.24 N*mm}}
+materials: {p: PLATE_PAPER}
 sheets: {n: {material: p, size: [100 mm, 60 mm], thickness: 0.1 mm, mass: 100 g, boxes: [20, 6],
   layout: plate, velocity: [0.5 m/s, 0 m/s, 0 m/s]}}
 rollers:
@@ -39,7 +40,7 @@ contacts:
   - {between: [n, "???"], stiffness: 300 N/mm^1.5, restitution: 0.5, friction: 0, smoothing: 5 mm/s}
   - {between: [low, top], stiffness: 30 N/mm^1.5, friction: 0}
 run: {duration: 20 ms, margin: 30 mm}
-"""
+""")
 PLANE = """
 planes: {bed: {center: [0 mm, 0 mm, -5.0517 mm], normal: z, size: [227 mm, 300 mm, 10 mm], mass: 681 g}}
 """

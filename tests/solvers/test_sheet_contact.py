@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from papers import HINGED_PAPER, on_paper
 from scipy.spatial.transform import Rotation
 
 import mdlgen
@@ -68,7 +69,7 @@ def stack(notes: int, boxes: str) -> str:
     return f"""
 name: stack
 materials:
-  paper: {{E_md: 3530 MPa, E_cd: 1113 MPa, k_tx: 0.15 N*mm/rad, k_ty: 0.185 N*mm/rad, k_tz: 5 N*mm/rad}}
+  paper: {HINGED_PAPER}
 sheets:
 {sheets}
 planes:
@@ -292,10 +293,11 @@ def test_a_stack_of_notes_comes_to_rest_and_stays(solver):
 
 def test_a_sheet_slides_over_a_free_one_as_a_block_does():
     made = lower(
-        loads("""
+        loads(
+            on_paper("""
 name: pulled
 materials:
-  paper: {E_md: 3530 MPa, E_cd: 1113 MPa, k_tx: 0.15 N*mm/rad, k_ty: 0.185 N*mm/rad, k_tz: 5 N*mm/rad}
+  paper: HINGED_PAPER
 sheets:
   low: {material: paper, size: [67 mm, 60 mm], thickness: 0.1 mm, mass: 0.36 g, boxes: [10, 9],
         center: [0 mm, 0 mm, 0.05 mm]}
@@ -308,6 +310,7 @@ contacts:
   - {between: [low, floor], stiffness: 100 N/mm^1.5, restitution: 0.2, friction: 0}
 run: {duration: 100 ms, print_step: 2 ms, step: 0.05 ms}
 """)
+        )
     )
     # the boxes of both are of different sizes, and pass over each other by more than one
     result = ran(made, "lattice")
@@ -401,7 +404,7 @@ def test_two_clamped_notes_rest_on_each_other():
         loads(f"""
 name: two
 materials:
-  soft: {{E_md: 3530 MPa, E_cd: 1113 MPa, k_tx: 0.15 N*mm/rad, k_ty: 0.185 N*mm/rad, k_tz: 5 N*mm/rad}}
+  soft: {HINGED_PAPER}
   hard: {{E_md: 3530 MPa, E_cd: 1113 MPa, k_tx: 1 N*mm/rad, k_ty: 1 N*mm/rad, k_tz: 5 N*mm/rad}}
 sheets:
   low: {{material: hard, {sheet}}}

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from papers import HINGED_PAPER
+
 import mdlgen
 from mdlgen.model.lower import lower
 from mdlgen.results.events import events
@@ -18,7 +20,7 @@ LAW = "restitution: 0.2, smoothing: 1 mm/s"
 HEAD = f"""
 name: feeding
 materials:
-  paper: {{E_md: 3530 MPa, E_cd: 1113 MPa, k_tx: 0.15 N*mm/rad, k_ty: 0.185 N*mm/rad, k_tz: 5 N*mm/rad}}
+  paper: {HINGED_PAPER}
 sheets:
   low: {{{SHEET}, center: [0 mm, 0 mm, 0.05 mm]}}
   top: {{{SHEET}, center: [0 mm, 0 mm, 0.15 mm]}}

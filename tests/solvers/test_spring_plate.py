@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import ran
+from papers import on_paper
 
 import mdlgen
 from mdlgen.checks import lints
@@ -201,10 +202,10 @@ def test_a_plate_that_its_spring_does_not_hold_is_refused_by_name(free_length: s
 
 # -- at rest
 
-CLAMPED = """
+CLAMPED = on_paper("""
 name: bent
 gravity: [0 m/s^2, 0 m/s^2, -9.81 m/s^2]
-materials: {paper: {E_md: 3530 MPa, E_cd: 1113 MPa, D_md: 0.4 N*mm, D_cd: 0.24 N*mm}}
+materials: {paper: PLATE_PAPER}
 sheets:
   strip: {material: paper, size: [40 mm, 10 mm], thickness: 0.1 mm, mass: 50 mg, boxes: [8, 1],
     clamp: {edge: x_min}}
@@ -213,7 +214,7 @@ planes:
     press: {direction: z, stiffness: 0.01 N/mm, preload: 25 mN}}
 contacts: [{between: [strip, plate], stiffness: 10 N/mm^1.5, friction: 0}]
 run: {analysis: static}
-"""
+""")
 
 
 def test_statics_of_both_solvers() -> None:
