@@ -43,6 +43,7 @@ class Document:
         self.data, self.places, self.keys, self.file, self.text = data, places, keys, file, text
         self.origins: dict[SpecPath, SpecPath] = {}  # where what is copied or moved stands in the text
         self.made: set[SpecPath] = set()  # mappings that --set made on its way
+        self.new_parameters: list[str] = []  # that --set added
 
     def place(self, path: SpecPath, prefer_key: bool = False) -> Place:
         """Place of `path`, or of the nearest enclosing value that stands in the text."""

@@ -314,7 +314,11 @@ def read_direction(value: Any) -> tuple[float, float, float]:
     if isinstance(value, str):
         match = re.fullmatch(r"([-+]?)([xyz])", value)
         if not match:
-            raise fail(f"{value!r} is not a direction; allowed: x, y, z, -x, -y, -z or a vector [1, 0, 0]")
+            word = value.strip().lower()
+            meant = f"; did you mean {word}?" if re.fullmatch(r"[-+]?[xyz]", word) else ""
+            raise fail(
+                f"{value!r} is not a direction; allowed: x, y, z, -x, -y, -z or a vector [1, 0, 0]{meant}"
+            )
         sign = -1.0 if match[1] == "-" else 1.0
         x, y, z = (sign * (c == match[2]) + 0.0 for c in "xyz")
         return x, y, z

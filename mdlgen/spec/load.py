@@ -75,6 +75,7 @@ def meant(
     except ValidationError as error:
         mistakes.take(error)
         raise mistakes.error() from None
+    mistakes.unused(scene)
     if mistakes.found:
         raise mistakes.error()
     scene._source = Source(document, folder)

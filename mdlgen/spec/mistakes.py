@@ -6,15 +6,21 @@ import difflib
 import re
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pydantic import ValidationError
 from pydantic_core import PydanticCustomError
 
+from mdlgen import formulas
 from mdlgen.errors import SpecError, did_you_mean
+from mdlgen.spec.alternatives import others
 from mdlgen.spec.between import MACHINE, known, matching
 from mdlgen.spec.document import Document, SpecPath
+from mdlgen.spec.setting import OF_NIPS, of_nips
 from mdlgen.spec.shorthand import in_the_text, written_out
+
+if TYPE_CHECKING:
+    from mdlgen.spec.scene import Scene
 
 MOST = 20
 # Tables of parts by name: what --set makes anew here is more often a name that is misspelt.
@@ -59,6 +65,8 @@ class Mistakes:
                 if path[:-1] in misspelt and self._spelt_otherwise(path, errors):
                     continue
             self.add(_describe(record, self.document), record["type"] == "missing")
+        # of a part that is not there, nothing else
+        self.found = [item for item in self.found if item[1].path[:2] not in unmade]
         for path, keys in unmade.items():
             self.add(self._not_there(path, keys))
         # names that dangle are looked at by the scene itself, once each value is good
@@ -78,12 +86,14 @@ class Mistakes:
         known = _allowed_keys(path[:-1])
         if len(given) > MOST:
             return True
-        return any(difflib.get_close_matches(key, known, n=1) == [path[-1]] for key in given)
+        meant = {path[-1], *others(path[-1])}  # mass, and grammage in its place
+        return any(set(difflib.get_close_matches(key, known, n=1)) & meant for key in given)
 
     def _not_there(self, path: SpecPath, missing: list[str]) -> SpecError:
         """A part that --set would make without what it needs."""
         table, name = str(path[0]), str(path[1])
         there = [key for key in self.document.data[table] if (table, key) not in self.document.made]
+        there += of_nips(self.document.data, table) if (table,) in OF_NIPS else []
         text = (
             f"there is no {name!r} in {table}{did_you_mean(name, there) or ';'} "
             f"there are: {', '.join(map(str, there))[:200] or 'none'}; "
@@ -92,6 +102,25 @@ class Mistakes:
         keys = self.document.keys
         place = next((keys[p] for p in keys if p[:2] == path), self.document.place(path))
         return SpecError(text, path, place)
+
+    def unused(self, scene: Scene) -> None:
+        """Parameters that --set made and that nothing follows from: names that are misspelt."""
+        new = [name for name in self.document.new_parameters if name in scene.parameters]
+        if not new:
+            return
+        used = {name for text in scene.formulas.values() for name in formulas.names(text)}
+        for value in scene.parameters.values():
+            if isinstance(value, str) and formulas.is_formula(value, scene.parameters):
+                used |= set(formulas.names(value))
+        there = [name for name in scene.parameters if name not in new]
+        for name in new:
+            if name not in used:
+                path = ("parameters", name)
+                message = (
+                    f"there is no {name!r} in parameters{did_you_mean(name, there) or ';'} there are: "
+                    f"{', '.join(there)[:200] or 'none'}; nothing follows from a new one"
+                )
+                self.add(SpecError(message, path, self.document.place(path, prefer_key=True)))
 
     def error(self) -> SpecError:
         """The first of them; the others are its `others`, MOST in all."""

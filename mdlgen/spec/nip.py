@@ -59,6 +59,34 @@ def names_of(name: str, nip: Any) -> list[str]:
     ]
 
 
+def contacts_of(name: str) -> dict[str, Path]:
+    """Names of the contacts of a nip, and where each stands in it."""
+    return {name: ("contact",), **{f"{name}_{side}": (side, "contact") for side in SIDES}}
+
+
+def take_contacts(data: dict[str, Any], origins: dict[Path, Path]) -> None:
+    """Puts what stands under the contacts of nips, by their names, into the nips, where it counts:
+    --set contacts.entry_lower.friction=.. A contact that says between what it is, is one of its own."""
+    contacts, nips = data.get("contacts"), data.get("nips")
+    if not isinstance(contacts, dict) or not isinstance(nips, dict):
+        return
+    contacts, nips = dict(contacts), dict(nips)
+    for name, nip in nips.items():
+        for called, (*side, last) in contacts_of(name).items():
+            given = contacts.get(called)
+            owner = nips[name].get(side[0]) if side and isinstance(nips[name], dict) else nips[name]
+            if not isinstance(given, dict) or "between" in given or not isinstance(owner, dict):
+                continue
+            if not side and not isinstance(nip.get(last), dict):
+                continue  # the two rollers have none
+            owner = {**owner, last: merged(owner.get(last, {}), given)}
+            nips[name] = {**nips[name], side[0]: owner} if side else owner
+            for key in given:
+                origins["nips", name, *side, last, key] = ("contacts", called, key)
+            del contacts[called]
+    data["contacts"], data["nips"] = contacts, nips
+
+
 def written(data: dict[str, Any], origins: dict[Path, Path], fill: Fill) -> None:
     """Adds the rollers and contacts of nips to `data`, whose contacts are a list; `fill` gives a part its
     defaults. A nip that is not of the right form is left for validation."""

@@ -10,10 +10,11 @@ from typing import Any
 from mdlgen.errors import Place, SpecError, did_you_mean
 from mdlgen.spec.alternatives import others
 from mdlgen.spec.document import Document, SpecPath, parse
-from mdlgen.spec.nip import names_of
+from mdlgen.spec.nip import contacts_of, names_of
 from mdlgen.spec.rows import KINDS, expanded
 
 _PATTERN = re.compile(r"[*?]")
+OF_NIPS = (("rollers",), ("contacts",))  # tables that nips add to
 MOST_PLACES = 10_000  # that one pattern may meet
 
 
@@ -64,13 +65,13 @@ def _met(data: Any, words: list[str], here: Place) -> list[SpecPath]:
     for word in words:
         step: list[tuple[SpecPath, Any]] = []
         for path, node in found:
-            if path == ("rollers",) and _PATTERN.search(word):
-                node = {**dict.fromkeys(_of_nips(data)), **(node if isinstance(node, dict) else {})}
+            if path in OF_NIPS and _PATTERN.search(word) and not isinstance(node, list):
+                node = {**dict.fromkeys(of_nips(data, path[0])), **(node or {})}
             step += [((*path, key), inner) for key, inner in _inside(node, word, path, here)]
         if not step:
             known = dict.fromkeys(str(key) for _, node in found for key in node or ())
-            if found[0][0] == ("rollers",):
-                known |= dict.fromkeys(_of_nips(data))
+            if found[0][0] in OF_NIPS:
+                known |= dict.fromkeys(of_nips(data, found[0][0][0]))
             raise SpecError(
                 f"nothing here fits {word!r}{did_you_mean(word, known) or ';'} "
                 f"there are: {', '.join(known)[:200] or 'none'}",
@@ -83,11 +84,18 @@ def _met(data: Any, words: list[str], here: Place) -> list[SpecPath]:
     return [path for path, _ in found]
 
 
-def _of_nips(data: Any) -> list[str]:
-    """The names of the rollers that nips make."""
-    nips = expanded({"nips": data.get("nips")} if isinstance(data, dict) else {}, {}).get("nips")
-    found = [names_of(name, nip) for name, nip in nips.items()] if isinstance(nips, dict) else []
-    return [name for names in found for name in names]
+def of_nips(data: Any, kind: str) -> list[str]:
+    """The names of the rollers, or of the contacts, that nips make."""
+    given = expanded({"nips": data.get("nips")} if isinstance(data, dict) else {}, {}).get("nips")
+    nips = given if isinstance(given, dict) else {}
+    if kind == "rollers":
+        return [roller for name, nip in nips.items() for roller in names_of(name, nip)]
+    return [
+        called
+        for name, nip in nips.items()
+        for called, (first, *_) in contacts_of(name).items()
+        if isinstance(nip, dict) and isinstance(nip.get(first), dict)
+    ]
 
 
 def _inside(node: Any, word: str, path: SpecPath, here: Place) -> list[tuple[str | int, Any]]:
@@ -117,6 +125,8 @@ def _put(document: Document, path: SpecPath, value: Document, here: Place) -> No
             document.made.add(path[: depth + 1])
         node = node[key]
     last = path[-1]
+    if len(path) == 2 and path[0] == "parameters" and last not in node:
+        document.new_parameters.append(str(last))
     if isinstance(node, dict):
         for other in others(last):
             node.pop(other, None)

@@ -70,6 +70,7 @@ def written_out(data: Any, origins: dict[Path, Path]) -> Any:
             name: _deep(item, defaults["nips"], ("nips", name), ("defaults", "nips"), origins)
             for name, item in data["nips"].items()
         }
+    nip.take_contacts(data, origins)
     contacts = data.get("contacts")
     if isinstance(contacts, dict):
         data["contacts"] = []

@@ -18,6 +18,7 @@ from mdlgen.model.tables import Model
 from mdlgen.paths import samples
 from mdlgen.registry import emitter
 from mdlgen.spec.load import load, loads
+from mdlgen.spec.scene import Scene
 from mdlgen.spec.schema import json_schema
 from mdlgen.spec.shorthand import OF_NIPS
 from mdlgen.verify.verification import verify
@@ -258,6 +259,47 @@ def test_a_pattern_meets_the_rollers_of_nips() -> None:
     assert widths == {name: 4.0 if name.endswith("left") else 5.0 for name in widths} and len(widths) == 4
     with pytest.raises(SpecError, match="nothing here fits 'moter_\\*'; there are: motor_1_left"):
         load(FILE, ["rollers.moter_*.radius=8 mm"])
+
+
+def test_what_stands_under_contacts_counts() -> None:
+    """By the names that check and lints have for them, and patterns."""
+    sets = ["contacts.entry_lower.stiffness=100 N/mm^1.5", "contacts.entry.restitution=0.2"]
+    scene = loads(ONE, "s", [*sets, "contacts.entry_*.friction={static: 0.3, dynamic: 0.2}"])
+    assert [(c.name, c.stiffness, c.friction.dynamic, c.restitution) for c in scene.contacts] == [
+        ("entry", 30.0, 1.0, 0.2),
+        ("entry_lower", 100.0, 0.2, 0.5),
+        ("entry_upper", 200.0, 0.2, 0.5),
+    ]
+    # the roller stands deeper in the sheet on a softer contact
+    depth = (3.0 / 100.0) ** (2 / 3)
+    assert scene.rollers["entry_lower"].center[2] == pytest.approx(-7.55 + depth, rel=1e-14)
+    assert loads(scene.to_yaml()) == scene and Scene.model_validate(scene.model_dump()) == scene
+    own = "contacts: {rub: {between: [note, entry_other], stiffness: 9 N/mm^1.5, friction: 0}}\n"
+    place = "center: [0 mm, 0 mm, 9 mm], axis: y, radius: 3 mm, width: 3 mm, mass: 1 g"
+    other = f"rollers: {{entry_other: {{{place}}}}}\n"
+    both = loads(ONE + own + other, "s", ["contacts.*.restitution=0.3"])
+    assert [c.name for c in both.contacts] == ["rub", "entry", "entry_lower", "entry_upper"]
+    assert {c.restitution for c in both.contacts} == {0.3}
+
+
+@pytest.mark.parametrize(
+    ("set_", "text"),
+    [
+        (
+            "contacts.0.friction=0.3",
+            "there is no '0' in contacts; there are: entry, entry_lower, entry_upper",
+        ),
+        ("contacts.entri.friction=0.3", "did you mean 'entry'?"),
+        ("contacts.entry_lower.friction=rough", "contacts.entry_lower.friction: 'rough'"),
+        ("contacts.entry_lower.stifness=1 N", "unknown key 'stifness'; did you mean 'stiffness'?"),
+        ("contacts.x_*.friction=0", "nothing here fits 'x_*'; there are: entry, entry_lower, entry_upper"),
+        ("rollers.motr.radius=3 mm", "there is no 'motr' in rollers; there are: entry_lower, entry_upper"),
+    ],
+)
+def test_a_set_of_what_a_nip_has_not(set_: str, text: str) -> None:
+    with pytest.raises(SpecError) as error:
+        loads(ONE, "s", [set_])
+    assert text in str(error.value) and error.value.others == ()
 
 
 def test_rows_and_mirror_images() -> None:

@@ -283,6 +283,22 @@ def test_a_long_chain_of_parameters_is_refused_before_it_is_followed() -> None:
     assert "follows from more than 50 others" in error.message
 
 
+def test_a_parameter_that_is_set_is_one_that_there_is() -> None:
+    """A new one alone changes nothing: its name is misspelt."""
+    text = FOUR + "parameters: {speed: 1400 mm/s, r: 7.5 mm}\n"
+    drive = "rollers.motor_1_left.drive.speed=speed/r"
+    with pytest.raises(SpecError) as error:
+        loads(text, "s", [drive, "parameters.sped=900 mm/s"])
+    message = "parameters.sped: there is no 'sped' in parameters; did you mean 'speed'? there are: speed, r;"
+    assert message in str(error.value) and error.value.others == ()
+    with pytest.raises(SpecError, match="there are: none"):
+        loads(FOUR, "s", ["parameters.wide=6 mm"])
+    used = ["parameters.wide=6 mm", "parameters.half=wide/2", "rollers.counter_1_left.width=half"]
+    assert loads(FOUR, "s", used).rollers["counter_1_left"].width == 3.0
+    # one of the text that nothing follows from is a lint
+    assert loads(text, "s", ["parameters.speed=900 mm/s"]).amounts["speed"].value == 0.9
+
+
 def test_formulas_beside_other_words_for_a_value() -> None:
     """A value that is worked out from another one follows it, too."""
     text = FOUR.replace("mass: 0.72 g", "grammage: heavy").replace("radius: 5 mm", "diameter: wide")

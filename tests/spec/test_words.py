@@ -145,6 +145,12 @@ def test_a_surface_speed_that_is_not_clear(direction: str, center: str, text: st
     assert error.value.path == ("rollers", "motor_1_left", "drive", "direction")
 
 
+def test_a_word_that_is_misspelt_is_all_that_is_missing() -> None:
+    assert "did you mean 'grammage'?" in refused(("mass: 0.72 g", "gramage: 84 g/m^2")).message
+    axis = refused(("    axis: y ", "    axis: Y "))
+    assert "'Y' is not a direction" in axis.message and axis.message.endswith("; did you mean y?")
+
+
 def test_each_direction_that_a_surface_has_not_is_reported() -> None:
     text = FOUR.replace(SPEED, "drive: {surface_speed: 1.5 m/s, direction: y}")
     with pytest.raises(SpecError) as error:
