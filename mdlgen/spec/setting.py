@@ -84,7 +84,7 @@ def _met(data: Any, words: list[str], here: Place) -> list[SpecPath]:
     return [path for path, _ in found]
 
 
-def of_nips(data: Any, kind: str) -> list[str]:
+def of_nips(data: Any, kind: str | int) -> list[str]:
     """The names of the rollers, or of the contacts, that nips make."""
     given = expanded({"nips": data.get("nips")} if isinstance(data, dict) else {}, {}).get("nips")
     nips = given if isinstance(given, dict) else {}

@@ -408,6 +408,6 @@ def test_a_parameter_of_the_scene_is_found() -> None:
     assert f'--set parameters.stiff="{quantity(found)}"' in report_text(found)
     with pytest.raises(SpecError, match="there is no parameter 'stif' in the scene; there are: stiff"):
         calibrate(scene, 60.0, "parameters.stif")
-    twice = scene.with_({"parameters.twice": "2*stiff"})
+    twice = scene.with_({"parameters.twice": "2*stiff", "materials.eur10.D_cd": "0.75*twice"})
     with pytest.raises(SpecError, match="the parameter twice is a formula; fit what it follows from"):
         calibrate(twice, 60.0, "parameters.twice")
