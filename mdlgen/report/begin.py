@@ -75,7 +75,8 @@ def met(model: Model) -> list[Met]:
     """All contacts of a Model, in its order."""
     table, found = model.contacts, []
     for row, kind in enumerate(table.kind.tolist()):
-        kept = int(np.count_nonzero(model.pairs.contact == row))
+        listed = model.external_pairs if kind == EXTERNAL else model.pairs
+        kept = int(np.count_nonzero(listed.contact == row))
         found.append(
             Met(
                 name=table.called(row),

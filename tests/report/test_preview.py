@@ -69,6 +69,17 @@ def test_how_deep_sheets_and_plates_are() -> None:
     assert rim.deep is None
 
 
+def test_a_body_of_the_users_own_model_is_named_without_a_depth() -> None:
+    scene = model(
+        "transport_4x4",
+        "parts.feed={external: true, body: b_feed, graphics: [gra_feed]}",
+        "contacts.6.between=[note, feed]",
+    )
+    (row,) = [row for row in met(scene) if row.other == "feed"]
+    assert (row.deep, row.says, row.pairs) == (None, "depth not computed", 200)
+    assert "<td>feed</td>" in preview(scene) and still(scene).startswith(b"\x89PNG")
+
+
 def test_how_deep_boxes_are() -> None:
     deep = depths(model("transport_4x4"))
     assert deep.shape == (200,) and deep.max() == pytest.approx(0.0484, abs=1e-4)
