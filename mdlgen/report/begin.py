@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,19 +18,13 @@ from mdlgen.model.tables import (
     BOX_MESH,
     CYLINDER_CYLINDER,
     EXTERNAL,
-    Anchor,
     Floats,
-    GuidePart,
     Ints,
-    MeshPart,
     Model,
-    PlanePart,
     RollerPart,
-    SheetPart,
 )
-from mdlgen.report.arrows import extent
+from mdlgen.report.facts import facts
 
-PER_SECOND = 1000.0
 ROUND_OFF = 1e-9  # of places [mm]
 
 
@@ -146,9 +139,9 @@ def known(model: Model) -> list[Known]:
     """Sheets, parts of the machine and probes, each with the lints that are about it."""
     about = _about(model)
     found = []
-    for name, kind, at, facts in _told(model):
+    for name, kind, at, said in facts(model):
         x, y, z = at.tolist()
-        found.append(Known(name, kind, (x, y, z), tuple(facts), about.get(name, ())))
+        found.append(Known(name, kind, (x, y, z), tuple(said), about.get(name, ())))
     return found
 
 
@@ -176,118 +169,3 @@ def _about(model: Model) -> dict[str, tuple[Lint, ...]]:
         for part in parts:
             found.setdefault(part, []).append(lint)
     return {name: tuple(some) for name, some in found.items()}
-
-
-def _told(model: Model) -> Iterator[tuple[str, str, Floats, list[str]]]:
-    """Name, kind, place of the name and facts of each part."""
-    bodies = model.bodies
-    for sheet in model.sheets:
-        mine = slice(sheet.first, sheet.first + sheet.count)
-        yield sheet.name, "sheet", bodies.position[mine].mean(axis=0), _of_sheet(model, sheet)
-    for part in model.machine:
-        at = bodies.position[part.body]
-        if isinstance(part, RollerPart):
-            yield part.name, "roller", at, _of_roller(part)
-        elif isinstance(part, PlanePart):
-            # at a corner of its face, or what is nearest to that of where other parts are: in the middle are
-            # the sheets
-            corner = at + bodies.rotation[part.body] @ (bodies.half[part.body] * [-1.0, -1.0, 1.0])
-            near = np.clip(corner, *extent(model))
-            near = near + part.normal * float((corner - near) @ part.normal)
-            yield part.name, "plane", near, _of_plane(part)
-        elif isinstance(part, GuidePart):
-            yield part.name, "guide", _middle(part), _of_guide(part)
-        else:
-            yield part.name, "mesh", at, _of_mesh(model, part)
-    for probe in model.probes:
-        yield probe.name, "probe", _place(model, probe), [f"a point of {model.sheets[probe.sheet].name}"]
-
-
-def _place(model: Model, anchor: Anchor) -> Floats:
-    turned = np.einsum("nij,nj->ni", model.bodies.rotation[anchor.body], anchor.local)
-    return anchor.share @ (model.bodies.position[anchor.body] + turned)
-
-
-def _middle(guide: GuidePart) -> Floats:
-    """Of a guide's face."""
-    if guide.radius == 0.0:
-        return guide.center
-    way = np.array([np.cos(guide.middle), np.sin(guide.middle), 0.0])
-    return guide.center + guide.radius * guide.axes @ way
-
-
-def _of_sheet(model: Model, sheet: SheetPart) -> list[str]:
-    mine = slice(sheet.first, sheet.first + sheet.count)
-    x, y = sheet.outline
-    mass = float(model.bodies.mass[mine].sum())
-    facts = [
-        f"{x:.4g} x {y:.4g} mm, {sheet.thickness:.4g} mm thick, {mass:.4g} g",
-        f"{sheet.n_x} x {sheet.n_y} boxes, {sheet.layout}",
-    ]
-    for zone in sheet.zones:
-        facts.append(f"zone {zone.name}: {int(np.count_nonzero(zone.share))} boxes")
-    if sheet.bend is not None:
-        facts.append(f"not flat at rest, begins {sheet.bend.start}")
-    speed, spin = float(np.linalg.norm(sheet.velocity)), float(np.linalg.norm(sheet.spin))
-    if speed > 0.0:
-        facts.append(f"begins with {PER_SECOND * speed:.4g} mm/s")
-    if spin > 0.0:
-        facts.append(f"begins with a spin of {PER_SECOND * spin:.4g} rad/s")
-    if sheet.clamp is not None:
-        facts.append(f"clamped at {sheet.clamp.edge}")
-    return facts
-
-
-def _of_roller(roller: RollerPart) -> list[str]:
-    facts = [f"radius {roller.radius:.4g} mm, width {roller.width:.4g} mm, {roller.mass:.4g} g"]
-    if roller.speed is None:
-        facts.append("turns freely")
-    elif roller.profile is not None:
-        facts.append(f"driven by a profile, {PER_SECOND * roller.speed:.4g} rad/s at most")
-    else:
-        surface = PER_SECOND * abs(roller.speed) * roller.radius
-        ramp = f", ramp {roller.ramp:.4g} ms" if roller.ramp else ""
-        facts.append(f"driven at {PER_SECOND * roller.speed:.4g} rad/s, surface {surface:.4g} mm/s{ramp}")
-    if roller.one_way is not None:
-        facts.append(f"clutch, free in the sense {roller.one_way.direction:+d}")
-    if roller.press is not None:
-        spring = roller.press
-        facts.append(
-            f"pressed along {_shown(spring.direction)} by {spring.preload:.4g} N where it touches, "
-            f"{spring.stiffness:.4g} N/mm"
-        )
-    if roller.arm is not None:
-        facts.append(f"on an arm of {roller.arm.mass:.4g} g, spring torque {roller.arm.torque:.4g} N mm")
-    if roller.rim is not None:
-        facts.append(f"rim of {len(roller.rim)} sectors")
-    return facts
-
-
-def _of_plane(plane: PlanePart) -> list[str]:
-    facts = [" x ".join(f"{s:.4g}" for s in plane.size) + f" mm, face towards {_shown(plane.normal)}"]
-    if plane.press is None:
-        return [*facts, "fixed"]
-    spring = plane.press
-    force = f"pressed along {_shown(spring.direction)} by {spring.preload:.4g} N, {spring.stiffness:.4g} N/mm"
-    return [*facts, f"{force}, {plane.sliding_mass:.4g} g"]
-
-
-def _of_guide(guide: GuidePart) -> list[str]:
-    if guide.radius == 0.0:
-        form = f"straight, {guide.length:.4g} mm long"
-    else:
-        form = f"arc of radius {guide.radius:.4g} mm over {np.degrees(2 * guide.half_angle):.4g} deg"
-    return [f"{form}, {guide.width:.4g} mm wide", f"touched on the side: {guide.side}"]
-
-
-def _of_mesh(model: Model, mesh: MeshPart) -> list[str]:
-    where = "fixed" if mesh.on < 0 else f"turns with {model.rollers[mesh.on].name}"
-    return [f"{mesh.file}, {len(mesh.triangles)} triangles", where]
-
-
-def _shown(way: Floats) -> str:
-    """A direction as a scene has it."""
-    for axis, part in zip("xyz", way.tolist(), strict=True):
-        if abs(part) > 1.0 - 1e-9:
-            return axis if part > 0.0 else f"-{axis}"
-    return "[" + ", ".join(f"{round(part, 3) + 0.0:g}" for part in way.tolist()) + "]"

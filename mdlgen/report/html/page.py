@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mdlgen.checks import lints
+from mdlgen.model.parts.kinds import KINDS
 from mdlgen.paths import templates
 from mdlgen.report import boxes
 from mdlgen.report.animation import animation, frames, packed
@@ -91,7 +92,7 @@ def _run(result: Result, name: str) -> dict[str, Any]:
             "bushings": len(result.model.bushings),
             "parts": {
                 kind: len(getattr(result.model, kind))
-                for kind in ("sheets", "rollers", "planes", "guides", "contacts", "probes")
+                for kind in ("sheets", *(each.table for each in KINDS), "contacts", "probes")
             },
         },
         "parameters": [asdict(parameter) for parameter in result.model.parameters],
