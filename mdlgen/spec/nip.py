@@ -11,8 +11,10 @@ from pydantic_core import PydanticCustomError
 
 from mdlgen.spec.alternatives import others
 from mdlgen.spec.fields import Direction, Name, Position, of_text, quantity, read_direction
+from mdlgen.spec.parameter import Computed
 from mdlgen.spec.rows import ZERO, Mirror, Repeat
 from mdlgen.spec.strict import Strict
+from mdlgen.units import exact_quantity
 
 Path = tuple[str | int, ...]
 Fill = Callable[[Any, str], Any]
@@ -262,12 +264,13 @@ class _Written:
 
 
 def _good(text: Any, unit: str) -> str | None:
-    """A text as a part of a formula; None where it is no value of such a unit: its own field reports it."""
+    """A value as a part of a formula, in the unit of its key where it is a number; None where it is no value
+    of such a unit: its own field reports it."""
     try:
-        of_text(text, unit)
+        value = of_text(text, unit)
     except ValueError:
         return None
-    return _part(text)
+    return _part(text if isinstance(value, Computed) else exact_quantity(value, unit))
 
 
 def _part(text: str) -> str:

@@ -36,6 +36,10 @@ MORE = [
     "rollers.free.press=null",
     "nips.nip_*_*.lower.press=null",
     "probes.p={sheet: note, at: [radius, 2 mm]}",
+    # values in other units, and without a space
+    "sheets.note.thickness=100um",
+    "nips.nip_*_*.upper.mass=0.00039kg",
+    "nips.nip_*_*.upper.press.stiffness=319 N/m",
 ]
 
 
