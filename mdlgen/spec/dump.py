@@ -38,10 +38,23 @@ def said(scene: Scene, data: dict[str, Any], info: SerializationInfo) -> dict[st
 
 
 def in_plain_data(given: dict[str, Any]) -> dict[str, Any]:
-    """What a scene is made of in Python as a file would have it: parts as mappings."""
+    """What a scene is made of in Python as a file would have it: parts as mappings, without what is null and
+    tables without entries."""
     data = _plain(given)
     with_whole_names(data)
-    return data
+    # null leaves out a default, or what a nip has
+    meant = set(data) if data.get("defaults") else {"nips", "rollers", "contacts"} if data.get("nips") else ()
+    return {
+        kind: table if kind in meant else _without_nulls(table)
+        for kind, table in data.items()
+        if table is not None and (kind == "sheets" or not isinstance(table, (dict, list)) or table)
+    }
+
+
+def _without_nulls(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _without_nulls(item) for key, item in value.items() if item is not None}
+    return [_without_nulls(item) for item in value] if isinstance(value, list) else value
 
 
 def _plain(value: Any) -> Any:

@@ -40,8 +40,19 @@ def text_of(document: Document) -> str:
 
 
 def text_of_data(data: Any) -> str:
-    """Plain data as a text."""
-    return _dumped(_writer(), data)
+    """Plain data as a text; a list of plain values, as a place, is on one line."""
+    return _dumped(_writer(), _on_lines(data))
+
+
+def _on_lines(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _on_lines(item) for key, item in value.items()}
+    if not isinstance(value, list):
+        return value
+    made = CommentedSeq(_on_lines(item) for item in value)
+    if not any(isinstance(item, (dict, list)) for item in value):
+        made.fa.set_flow_style()
+    return made
 
 
 def _writer() -> YAML:

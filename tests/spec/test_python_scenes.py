@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ import pytest
 import mdlgen
 from mdlgen.errors import SpecError
 from mdlgen.paths import samples
+from mdlgen.spec.document import parse
 from mdlgen.spec.load import load, loads
 from mdlgen.spec.scene import Scene
 from mdlgen.units import exact_quantity, parse_quantity
@@ -96,6 +98,25 @@ def test_parts_of_a_dump() -> None:
         center=["0 mm", "0 mm", "-20 mm"], axis="y", radius="5 mm", width="5 mm", mass="1 g"
     )
     assert set(Scene.model_validate(dumped).rollers) == {*scene.rollers, "free"}
+
+
+def values(data: Any) -> Iterator[Any]:
+    inner = data.values() if isinstance(data, dict) else data if isinstance(data, list) else None
+    if inner is None:
+        yield data
+    for item in inner or ():
+        yield from values(item)
+
+
+def test_the_text_of_a_dump_has_no_nulls() -> None:
+    scene = Scene.model_validate(load(samples() / "feeder.yaml").model_dump())
+    text = scene.to_yaml()
+    assert None not in set(values(parse(text, "s").data)) and loads(text) == scene
+    assert "    center: [0 mm, 0 mm, -15.05 mm]\n" in text
+    # but where one leaves out a default, or what a nip has
+    left = load(NIPS, MORE)
+    text = Scene.model_validate(left.model_dump()).to_yaml()
+    assert loads(text) == left and left.rollers["free"].press is None
 
 
 def test_shorthand_in_python() -> None:
