@@ -1,7 +1,7 @@
 """Makes the pictures of the manual: `python docs/_generate/pictures.py [NAME ...]`.
 
-One PNG for each sample, and `note`, the animation of README.md. All of them are drawn by mdlgen itself from
-a run; the drawings of geometry, *.svg, are made by hand.
+One PNG for each sample, `note`, the animation of README.md, and `start`, a scene before it is run. All of
+them are drawn by mdlgen itself; the drawings of geometry, *.svg, are made by hand.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import numpy as np
 from PIL import Image
 
 import mdlgen
+from mdlgen.report.figures.start import still
 from mdlgen.report.figures.stills import stills
 from mdlgen.results.result import Result
 
@@ -84,15 +85,25 @@ def note() -> None:
     print(f"{path.relative_to(ROOT)}: {path.stat().st_size // 1000} kB, {len(frames)} pictures")
 
 
+def start() -> None:
+    """A still of transport_4x4 as it begins, as mdlgen preview draws it."""
+    content = still(mdlgen.lower(mdlgen.load(ROOT / "samples" / "transport_4x4.yaml")))
+    path = TARGET / "start.png"
+    image = Image.open(io.BytesIO(content)).convert("RGB")
+    image.quantize(2 * COLOURS, dither=Image.Dither.NONE).save(path, optimize=True)
+    print(f"{path.relative_to(ROOT)}: {path.stat().st_size // 1000} kB")
+
+
 def main() -> None:
     names = sys.argv[1:]
     if not names:
         sys.path.insert(0, str(Path(__file__).resolve().parent))
         from gallery import names as every
 
-        names = ["note", *every()]
+        names = ["note", "start", *every()]
     for name in names:
-        note() if name == "note" else sample(name)
+        own = {"note": note, "start": start}.get(name)
+        own() if own else sample(name)
 
 
 if __name__ == "__main__":

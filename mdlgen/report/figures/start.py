@@ -20,6 +20,7 @@ from mdlgen.report.sheets import parts_of_sheets
 _TONES = (("x", "#d55e00"), ("y", "#009e73"), ("z", "#0072b2"))
 _WARNS, _PLAIN = "#b13c00", "#1b1e22"
 _BAR = 0.15  # greatest length of the scale, in times the breadth of a panel
+_ORIGIN = (34.0, 38.0)  # of the axes, from the lower left corner [points]
 _JOINT = 0.95  # of a box's lengths, so that the grid is seen
 _LETTER, _LINE = 4.2, 8.5  # breadth of a letter of a name and height of its line [points]
 
@@ -46,12 +47,11 @@ def _over(model: Model, parts: list[Known], panel: Any, view: Floats, shown: Fra
     size = float(np.linalg.norm(model.gravity))
     if size > 0.0:
         ways.append(("g", 0.8 * model.gravity / size, _PLAIN))
-    origin = (34.0, 38.0)  # [points] from the lower left corner
     for name, way, tone in ways:
         x, y, _ = (view @ way).tolist()
         if math.hypot(x, y) < 0.2:
             continue
-        tip = (origin[0] + 22.0 * x, origin[1] + 22.0 * y)
+        tip = (_ORIGIN[0] + 22.0 * x, _ORIGIN[1] + 22.0 * y)
         style = {
             "arrowstyle": "->",
             "color": tone,
@@ -60,8 +60,8 @@ def _over(model: Model, parts: list[Known], panel: Any, view: Floats, shown: Fra
             "shrinkB": 0,
         }
         corner = "axes points"
-        panel.annotate("", tip, origin, xycoords=corner, textcoords=corner, arrowprops=style)
-        at = (origin[0] + 29.0 * x, origin[1] + 29.0 * y)
+        panel.annotate("", tip, _ORIGIN, xycoords=corner, textcoords=corner, arrowprops=style)
+        at = (_ORIGIN[0] + 29.0 * x, _ORIGIN[1] + 29.0 * y)
         panel.annotate(name, at, xycoords=corner, color=tone, fontsize=8, ha="center", va="center")
     low, high = shown
     length = _round(_BAR * float(high[0] - low[0]))
@@ -84,7 +84,8 @@ def _names(parts: list[Known], panel: Any, view: Floats, shown: Frame) -> None:
     low, high = shown
     box = panel.get_window_extent()
     scale = 72.0 / panel.figure.dpi * min(box.width / (high[0] - low[0]), box.height / (high[1] - low[1]))
-    taken: list[tuple[float, float, float, float]] = []
+    left, foot = (scale * value for value in low.tolist())
+    taken = [(left, foot, left + 2 * _ORIGIN[0], foot + 2 * _ORIGIN[1])]  # the axes
     for part in sorted(parts, key=lambda p: (not p.lints, p.kind == "probe")):
         x, y, _ = (view @ np.array(part.at)).tolist()
         text = f"{part.name} !" if part.lints else part.name
