@@ -401,6 +401,7 @@ class Scene(_Scene):
         materials: Mapping[str, _Material | Mapping[str, Any]] = ...,
         rollers: Mapping[str, _Roller | Mapping[str, Any]] = ...,
         nips: Mapping[str, _Nip | Mapping[str, Any]] = ...,
+        piles: Mapping[str, Mapping[str, Any]] = ...,
         planes: Mapping[str, _Plane | Mapping[str, Any]] = ...,
         guides: Mapping[str, _Guide | Mapping[str, Any]] = ...,
         meshes: Mapping[str, _Mesh | Mapping[str, Any]] = ...,

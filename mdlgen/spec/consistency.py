@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 from mdlgen.spec.action import OnSheet
 from mdlgen.spec.between import MACHINE, known
-from mdlgen.spec.nip import names_of
+from mdlgen.spec.nip import names_of as rollers_of
+from mdlgen.spec.pile import names_of as sheets_of
 from mdlgen.spec.require import requirement
 from mdlgen.spec.strict import fail
 from mdlgen.units import exact_quantity
@@ -29,6 +30,8 @@ def checks(scene: Scene) -> Iterator[Callable[[], None]]:
         yield partial(_check_clutch, scene, name)
     for name in scene.nips:
         yield partial(_check_nip, scene, name)
+    for name in scene.piles:
+        yield partial(_check_pile, scene, name)
     for name, mesh in scene.meshes.items():
         if mesh.on is not None:
             yield partial(known, mesh.on, scene.rollers, "roller", ("meshes", name, "on"))
@@ -54,7 +57,7 @@ def _check_nip(scene: Scene, name: str) -> None:
         known(nip.sheet, scene.sheets, "sheet", (*path, "sheet"))
     elif len(scene.sheets) > 1:
         raise fail(f"which sheet is between them? give sheet, as sheet: {next(iter(scene.sheets))}", path)
-    rollers = names_of(name, {"lower": nip.lower, "upper": nip.upper})
+    rollers = rollers_of(name, {"lower": nip.lower, "upper": nip.upper})
     if all(scene.rollers[roller].press is not None for roller in rollers):
         raise fail("both rollers have a press; give one of them a fixed axis", (*path, "upper", "press"))
     for side, roller in zip(("lower", "upper"), rollers, strict=True):
@@ -69,6 +72,20 @@ def _check_nip(scene: Scene, name: str) -> None:
         if isinstance(given, dict) and given.get("share", "width") != "width":
             message = "a nip is in balance with share: width only; leave share out"
             raise fail(message, (*path, side, "contact", "share"))
+
+
+def _check_pile(scene: Scene, name: str) -> None:
+    pile, path = scene.piles[name], ("piles", name)
+    lowest = sheets_of(name, {"count": 1})[0]
+    if lowest not in scene.sheets:
+        known(pile.of, scene.sheets, "sheet", (*path, "of"))
+    if scene.sheets[lowest].clamp is not None:
+        message = f"sheet {pile.of} is clamped: leave clamp out, or all sheets of the pile would be"
+        raise fail(message, ("sheets", lowest, "clamp"))
+    for key in ("between", "name"):
+        if key in pile.contact:
+            message = f"leave {key} out: the contacts of a pile are of each sheet and the next one"
+            raise fail(message, (*path, "contact", key))
 
 
 def _check_material(scene: Scene, name: str) -> None:

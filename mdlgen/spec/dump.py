@@ -1,4 +1,4 @@
-"""A scene made in Python as plain data, and what it is dumped as: with its formulas and its nips, so that
+"""A scene made in Python as plain data, and what it is dumped as: with its formulas, nips and piles, so that
 the dump reads as the same scene."""
 
 from __future__ import annotations
@@ -9,25 +9,30 @@ from pydantic import BaseModel, SerializationInfo
 
 from mdlgen.spec.beside import with_whole_names
 from mdlgen.spec.nip import names_of
+from mdlgen.spec.pile import names_of as sheets_of
 
 if TYPE_CHECKING:
     from mdlgen.spec.scene import Scene
 
 
 def said(scene: Scene, data: dict[str, Any], info: SerializationInfo) -> dict[str, Any]:
-    """The fields of a scene with formulas as their texts, and without the rollers and contacts that its nips
-    make again."""
+    """The fields of a scene with formulas as their texts, and without the parts and contacts that its nips
+    and piles make again."""
     of_nips = {roller for name, nip in scene.nips.items() for roller in names_of(name, vars(nip))}
-    kept = len(scene.contacts) - scene.contacts_of_nips
+    kept = len(scene.contacts) - scene.contacts_made
+    piled = {sheet for name, pile in scene.piles.items() for sheet in sheets_of(name, vars(pile))}
     if of_nips and "rollers" in data:
         data["rollers"] = {name: part for name, part in data["rollers"].items() if name not in of_nips}
-    if scene.contacts_of_nips and "contacts" in data:
+    if piled and "sheets" in data:
+        own = {name: sheet for name, sheet in data["sheets"].items() if name not in piled}
+        data["sheets"] = {**scene.piled, **own}
+    if scene.contacts_made and "contacts" in data:
         data["contacts"] = data["contacts"][:kept]
     if info.exclude_defaults or info.exclude_none or info.exclude_unset:
         # what is left out here would be filled in with them; the nips have them already
         data.pop("defaults", None)
     for path, formula in scene.formulas.items():
-        if path[:1] == ("rollers",) and path[1] in of_nips:
+        if path[1:2] and path[1] in {"rollers": of_nips, "sheets": piled}.get(str(path[0]), ()):
             continue
         if path[:1] == ("contacts",) and int(path[1]) >= kept:
             continue

@@ -16,7 +16,7 @@ from mdlgen.errors import SpecError, did_you_mean
 from mdlgen.spec.alternatives import others
 from mdlgen.spec.between import MACHINE, known, matching
 from mdlgen.spec.document import Document, SpecPath
-from mdlgen.spec.setting import OF_NIPS, of_nips
+from mdlgen.spec.setting import MADE, made
 from mdlgen.spec.shorthand import in_the_text, written_out
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ MOST = 20
 # Tables of parts by name: what --set makes anew here is more often a name that is misspelt.
 _MOST_LOOKS = 1000  # at names beside other mistakes
 _PARTS = ("sheets", *MACHINE, "parts")
-_TABLES = ("parameters", "materials", *_PARTS, "nips", "probes")
+_TABLES = ("parameters", "materials", *_PARTS, "nips", "piles", "probes")
 _NAMED = ("contacts", *_TABLES)
 # What stands behind a decimal comma: digits, perhaps with a unit.
 _REST = re.compile(r"[0-9]+(?: *[A-Za-z%][\w/*^.%]*)?")
@@ -93,7 +93,7 @@ class Mistakes:
         """A part that --set would make without what it needs."""
         table, name = str(path[0]), str(path[1])
         there = [key for key in self.document.data[table] if (table, key) not in self.document.made]
-        there += of_nips(self.document.data, table) if (table,) in OF_NIPS else []
+        there += made(self.document.data, table) if (table,) in MADE else []
         text = (
             f"there is no {name!r} in {table}{did_you_mean(name, there) or ';'} "
             f"there are: {', '.join(map(str, there))[:200] or 'none'}; "

@@ -48,6 +48,7 @@ from mdlgen.spec.parameter import (
     without_formulas,
 )
 from mdlgen.spec.part import Part
+from mdlgen.spec.pile import Pile
 from mdlgen.spec.run import Run
 from mdlgen.spec.sheet import Sheet
 from mdlgen.spec.shorthand import Defaults, written_out
@@ -91,6 +92,9 @@ class Scene(Strict):
         default_factory=dict,
         description="pairs of rollers that grip a sheet, placed in balance with their contacts, by name",
     )
+    piles: dict[Name, Pile] = Field(
+        default_factory=dict, description="sheets that lie on each other, with their contacts, by name"
+    )
     planes: dict[Name, Plane] = Field(default_factory=dict, description="flat plates by name")
     guides: dict[Name, Guide] = Field(
         default_factory=dict, description="fixed plates that lead sheets, straight or bent to an arc, by name"
@@ -130,7 +134,8 @@ class Scene(Strict):
     _source: Source = PrivateAttr(default_factory=Source)
     _amounts: dict[str, Amount] = PrivateAttr(default_factory=dict)
     _formulas: dict[tuple[str | int, ...], str] = PrivateAttr(default_factory=dict)
-    _contacts_of_nips: int = PrivateAttr(default=0)
+    _contacts_made: int = PrivateAttr(default=0)
+    _piled: dict[str, Any] = PrivateAttr(default_factory=dict)
 
     @property
     def amounts(self) -> dict[str, Amount]:
@@ -143,9 +148,14 @@ class Scene(Strict):
         return self._formulas
 
     @property
-    def contacts_of_nips(self) -> int:
-        """How many of the contacts, the last ones, are made by nips."""
-        return self._contacts_of_nips
+    def contacts_made(self) -> int:
+        """How many of the contacts, the last ones, are made by nips and piles."""
+        return self._contacts_made
+
+    @property
+    def piled(self) -> dict[str, Any]:
+        """The sheets that piles are of, as they are written: no sheet has their names any more."""
+        return self._piled
 
     @property
     def limits(self) -> Limits:
@@ -233,9 +243,14 @@ class Scene(Strict):
         with of_scene(parameters):
             scene = handler(written_out(value, origins))
         scene._amounts = parameters.amounts
-        scene._contacts_of_nips = sum(
-            key[0] == "contacts" and len(key) == 2 and path[0] == "nips" for key, path in origins.items()
+        scene._contacts_made = sum(
+            key[0] == "contacts" and len(key) == 2 and path[0] in ("nips", "piles")
+            for key, path in origins.items()
         )
+        sheets = value.get("sheets")
+        if isinstance(sheets, dict):
+            of = {pile.of for pile in scene.piles.values()}
+            scene._piled = {name: sheet for name, sheet in sheets.items() if name in of}
         if made:
             scene._source = Source(Document(value, {}, {}, scene.name), PYTHON)
         return scene

@@ -45,6 +45,7 @@ def json_schema() -> dict[str, Any]:
     for name in ("lower", "upper"):
         nip[name] |= {"additionalProperties": False, "properties": side}
     nip["contact"]["anyOf"][0] |= contact
+    schema["$defs"]["Pile"]["properties"]["contact"] |= contact
     refs = {name: {"$ref": f"#/$defs/Nip/properties/{name}"} for name in OF_NIPS}
     defaults["nips"] |= {"additionalProperties": False, "properties": refs}
     return {

@@ -10,11 +10,13 @@ from typing import Any
 from mdlgen.errors import Place, SpecError, did_you_mean
 from mdlgen.spec.alternatives import others
 from mdlgen.spec.document import Document, SpecPath, parse
-from mdlgen.spec.nip import contacts_of, names_of
+from mdlgen.spec.nip import contacts_of
+from mdlgen.spec.nip import names_of as rollers_of
+from mdlgen.spec.pile import names_of as sheets_of
 from mdlgen.spec.rows import KINDS, expanded
 
 _PATTERN = re.compile(r"[*?]")
-OF_NIPS = (("rollers",), ("contacts",))  # tables that nips add to
+MADE = (("rollers",), ("contacts",), ("sheets",))  # tables that nips and piles add to
 MOST_PLACES = 10_000  # that one pattern may meet
 
 
@@ -65,13 +67,13 @@ def _met(data: Any, words: list[str], here: Place) -> list[SpecPath]:
     for word in words:
         step: list[tuple[SpecPath, Any]] = []
         for path, node in found:
-            if path in OF_NIPS and _PATTERN.search(word) and not isinstance(node, list):
-                node = {**dict.fromkeys(of_nips(data, path[0])), **(node or {})}
+            if path in MADE and _PATTERN.search(word) and not isinstance(node, list):
+                node = {**dict.fromkeys(made(data, path[0])), **(node or {})}
             step += [((*path, key), inner) for key, inner in _inside(node, word, path, here)]
         if not step:
             known = dict.fromkeys(str(key) for _, node in found for key in node or ())
-            if found[0][0] in OF_NIPS:
-                known |= dict.fromkeys(of_nips(data, found[0][0][0]))
+            if found[0][0] in MADE:
+                known |= dict.fromkeys(made(data, found[0][0][0]))
             raise SpecError(
                 f"nothing here fits {word!r}{did_you_mean(word, known) or ';'} "
                 f"there are: {', '.join(known)[:200] or 'none'}",
@@ -84,12 +86,16 @@ def _met(data: Any, words: list[str], here: Place) -> list[SpecPath]:
     return [path for path, _ in found]
 
 
-def of_nips(data: Any, kind: str | int) -> list[str]:
-    """The names of the rollers, or of the contacts, that nips make."""
+def made(data: Any, kind: str | int) -> list[str]:
+    """The names of the rollers, or of the contacts, that nips make, or of the sheets of piles."""
+    if kind == "sheets":
+        given = data.get("piles") if isinstance(data, dict) else None
+        piles = given if isinstance(given, dict) else {}
+        return [sheet for name, pile in piles.items() for sheet in sheets_of(name, pile)]
     given = expanded({"nips": data.get("nips")} if isinstance(data, dict) else {}, {}).get("nips")
     nips = given if isinstance(given, dict) else {}
     if kind == "rollers":
-        return [roller for name, nip in nips.items() for roller in names_of(name, nip)]
+        return [roller for name, nip in nips.items() for roller in rollers_of(name, nip)]
     return [
         called
         for name, nip in nips.items()

@@ -1,4 +1,4 @@
-"""What a scene says once, or by name, written out: rows of parts, nips, contacts by name, and defaults."""
+"""What a scene says once, or by name, written out: rows of parts, nips, piles, contacts by name, defaults."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import Field, model_validator
 
 from mdlgen.errors import did_you_mean
-from mdlgen.spec import nip
+from mdlgen.spec import nip, pile
 from mdlgen.spec.contact import Contact
 from mdlgen.spec.machine import Roller
 from mdlgen.spec.nip import Nip
@@ -85,6 +85,7 @@ def written_out(data: Any, origins: dict[Path, Path]) -> Any:
         return _filled(item, own, names, (kind,), {}) if isinstance(own, dict) else item
 
     nip.written(data, origins, fill)
+    pile.written(data, origins, fill)
     of_contacts, of_rollers = defaults.get("contacts"), defaults.get("rollers")
     if isinstance(of_contacts, dict) and isinstance(data.get("contacts"), (list, tuple)):
         data["contacts"] = [

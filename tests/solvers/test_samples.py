@@ -32,6 +32,7 @@ PIECES = {
     ("verify/drop", "exudyn"): ("run.duration=300 ms",),
     ("verify/incline", "exudyn"): ("run.duration=200 ms",),
     ("verify/slide", "exudyn"): ("run.duration=200 ms",),
+    ("pile", "exudyn"): ("run.duration=1 ms",),
     # the Model of transport_4x4 (tests/model/test_nips.py), which it runs as a whole below
     ("transport_nips", "exudyn"): ("run.duration=5 ms",),
 }
