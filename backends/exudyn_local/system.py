@@ -28,6 +28,7 @@ from mdlgen.mechanics.records import (
     ROLLER,
     SHAPE,
 )
+from mdlgen.mechanics.solved import refuse_unsolved
 from mdlgen.model.meshes import check_balance
 from mdlgen.model.rotations import euler_parameters
 from mdlgen.model.tables import Floats, Ints, Model
@@ -98,6 +99,7 @@ class Pattern(NamedTuple):
 
 def check(model: Model) -> None:
     """Raises RefusedError for what this backend cannot represent."""
+    refuse_unsolved(model, "exudyn")
     check_balance(model)
     for roller in model.rollers:
         if roller.arm is not None and model.run.analysis == "static":

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mdlgen.errors import RefusedError
+from mdlgen.mechanics.solved import refuse_unsolved
 from mdlgen.model.external import refuse_externals
 from mdlgen.model.meshes import check_balance
 from mdlgen.model.tables import BOX_BOX, Model
@@ -11,6 +12,7 @@ from mdlgen.model.tables import BOX_BOX, Model
 def check(model: Model) -> None:
     """Raises RefusedError by name for what it cannot."""
     refuse_externals(model, "lattice")
+    refuse_unsolved(model, "lattice")
     check_balance(model)
     if model.run.analysis == "static" and any(roller.speed for roller in model.rollers):
         # a driven roller rubs on what it touches, and the friction of rest is none

@@ -73,12 +73,12 @@ def _lower(scene: Scene) -> Model:
     first = sum(s.count for s in sheets)
     contacts = _contacts(scene)
     parts = _machine(scene, sheets, contacts, first)
-    rollers, meshes = parts["rollers"], parts["meshes"]
     planes, guides = with_ends(parts["planes"], parts["guides"], contacts)
-    rollers = loaded(rollers, meshes)
+    rollers = loaded(parts["rollers"], parts["meshes"])
+    parts |= {"rollers": rollers, "planes": planes, "guides": guides}
     externals = lower_externals(scene)
     gravity = np.array(scene.gravity)
-    machine = (*rollers, *planes, *guides, *meshes)
+    machine = tuple(part for kind in KINDS for part in parts[kind.table])
     bodies = _bodies(sheets, boxes, rollers, machine)
     supports = tuple(
         anchor(f"support_{k}", item, sheets, _formulas(scene, "supports", k))
@@ -98,10 +98,7 @@ def _lower(scene: Scene) -> Model:
         name=scene.name,
         gravity=gravity,
         sheets=sheets,
-        rollers=rollers,
-        planes=planes,
-        guides=guides,
-        meshes=meshes,
+        **parts,
         externals=externals,
         bodies=bodies,
         bushings=bushings,

@@ -12,6 +12,8 @@ from mdlgen.model.tables import PlanePart
 from mdlgen.paths import samples
 from mdlgen.registry import emitter
 from mdlgen.spec.load import load
+from mdlgen.verify.expected.parts.kinds import KINDS
+from mdlgen.verify.verification import verify
 
 
 @pytest.mark.parametrize("name", ["motionview", "motionsolve"])
@@ -24,3 +26,11 @@ def test_a_part_of_a_kind_without_words_is_refused_by_name(
     monkeypatch.delitem(parts.WRITTEN, PlanePart)
     with pytest.raises(RefusedError, match=rf"{model.planes[0].name} is a plane, which is not written yet"):
         emitter(name).emit(model)
+
+
+def test_verify_refuses_a_part_of_a_kind_of_which_it_expects_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = load(samples() / "verify" / "incline.yaml")
+    model = lower(scene)
+    monkeypatch.delitem(KINDS, PlanePart)
+    with pytest.raises(RefusedError, match=rf"verify: {model.planes[0].name} is a plane"):
+        verify(scene, model)

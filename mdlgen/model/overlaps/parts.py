@@ -17,10 +17,8 @@ from mdlgen.model.parts.kinds import kind_of
 from mdlgen.model.rotations import matrices
 from mdlgen.model.tables import (
     Floats,
-    GuidePart,
-    MeshPart,
+    MachinePart,
     Model,
-    PlanePart,
     Press,
     RollerPart,
 )
@@ -28,18 +26,16 @@ from mdlgen.model.tables import (
 HAIR = 0.05  # mm: less is the depth of the contacts through a sheet between the two
 _STEPS = 33  # places along a slide that are looked at
 
-Part = PlanePart | GuidePart | MeshPart
-
 
 class Pair(NamedTuple):
     """A roller and a part without a contact, and how much they overlap where they are given."""
 
     roller: RollerPart
-    part: Part
+    part: MachinePart
     start: float
 
 
-def _press(part: Part) -> Press | None:
+def _press(part: MachinePart) -> Press | None:
     return kind_of(part).press(part)
 
 
@@ -63,7 +59,7 @@ class Overlaps:
         self._places = np.zeros((len(self._watched), 3))
         self._apart = np.zeros(len(self._watched))
 
-    def _candidates(self) -> Iterator[tuple[RollerPart, Part]]:
+    def _candidates(self) -> Iterator[tuple[RollerPart, MachinePart]]:
         model = self._model
         parts = [p for p in model.machine if not isinstance(p, RollerPart) and kind_of(p).carrier(p) < 0]
         for roller in model.rollers:
@@ -72,7 +68,7 @@ class Overlaps:
                 if (moves or _press(part) is not None) and (roller.name, part.name) not in self._met:
                     yield roller, part
 
-    def _given(self, roller: RollerPart, part: Part) -> float:
+    def _given(self, roller: RollerPart, part: MachinePart) -> float:
         """Overlap where both are given: a spring may have moved one into the other before the run."""
         by = np.zeros(3)
         if _press(part) is not None:
@@ -80,13 +76,13 @@ class Overlaps:
         return self.depth(roller, part, roller.center, by)
 
     def depth(
-        self, roller: RollerPart, part: Part, at: Floats | None = None, by: Floats | None = None
+        self, roller: RollerPart, part: MachinePart, at: Floats | None = None, by: Floats | None = None
     ) -> float:
         """How far a roller with its centre `at` overlaps a part that has moved `by`; as they begin [mm]."""
         return max(0.0, self._into(roller, part, at, by))
 
     def _into(
-        self, roller: RollerPart, part: Part, at: Floats | None = None, by: Floats | None = None
+        self, roller: RollerPart, part: MachinePart, at: Floats | None = None, by: Floats | None = None
     ) -> float:
         """As `depth`; below zero by how far they are apart at least."""
         position = self._model.bodies.position

@@ -1,0 +1,37 @@
+"""Which contacts the solvers have a law for."""
+
+from __future__ import annotations
+
+from mdlgen.errors import RefusedError
+from mdlgen.model.tables import (
+    BOX_BOX,
+    BOX_CYLINDER,
+    BOX_GUIDE,
+    BOX_MESH,
+    BOX_PLANE,
+    CYLINDER_CYLINDER,
+    CYLINDER_GUIDE,
+    CYLINDER_MESH,
+    CYLINDER_PLANE,
+    EXTERNAL,
+    Model,
+)
+
+# those of mechanics.pair, which takes any other kind for a box and a cylinder
+WITH_LAW: frozenset[int] = frozenset(
+    (
+        *(BOX_BOX, BOX_CYLINDER, BOX_GUIDE, BOX_MESH, BOX_PLANE),
+        *(CYLINDER_CYLINDER, CYLINDER_GUIDE, CYLINDER_MESH, CYLINDER_PLANE),
+    )
+)
+
+
+def refuse_unsolved(model: Model, who: str) -> None:
+    """Raises RefusedError by name for a contact of a kind that has no law."""
+    table = model.contacts
+    for row, kind in enumerate(table.kind.tolist()):
+        if kind not in WITH_LAW and kind != EXTERNAL:
+            raise RefusedError(
+                f"{who}: there is no law yet for the contact of {table.part_a[row]} and {table.part_b[row]}",
+                ("contacts", int(table.entry[row])),
+            )
