@@ -20,19 +20,19 @@ def said(scene: Scene, data: dict[str, Any], info: SerializationInfo) -> dict[st
     and piles make again."""
     of_nips = {roller for name, nip in scene.nips.items() for roller in names_of(name, vars(nip))}
     kept = len(scene.contacts) - scene.contacts_made
-    piled = {sheet for name, pile in scene.piles.items() for sheet in sheets_of(name, vars(pile))}
+    of_piles = {sheet for name, pile in scene.piles.items() for sheet in sheets_of(name, vars(pile))}
     if of_nips and "rollers" in data:
         data["rollers"] = {name: part for name, part in data["rollers"].items() if name not in of_nips}
-    if piled and "sheets" in data:
-        own = {name: sheet for name, sheet in data["sheets"].items() if name not in piled}
-        data["sheets"] = {**scene.piled, **own}
+    if of_piles and "sheets" in data:
+        own = {name: sheet for name, sheet in data["sheets"].items() if name not in of_piles}
+        data["sheets"] = {**scene.sheets_of_piles, **own}
     if scene.contacts_made and "contacts" in data:
         data["contacts"] = data["contacts"][:kept]
     if info.exclude_defaults or info.exclude_none or info.exclude_unset:
         # what is left out here would be filled in with them; the nips have them already
         data.pop("defaults", None)
     for path, formula in scene.formulas.items():
-        if path[1:2] and path[1] in {"rollers": of_nips, "sheets": piled}.get(str(path[0]), ()):
+        if path[1:2] and path[1] in {"rollers": of_nips, "sheets": of_piles}.get(str(path[0]), ()):
             continue
         if path[:1] == ("contacts",) and int(path[1]) >= kept:
             continue

@@ -135,7 +135,7 @@ class Scene(Strict):
     _amounts: dict[str, Amount] = PrivateAttr(default_factory=dict)
     _formulas: dict[tuple[str | int, ...], str] = PrivateAttr(default_factory=dict)
     _contacts_made: int = PrivateAttr(default=0)
-    _piled: dict[str, Any] = PrivateAttr(default_factory=dict)
+    _sheets_of_piles: dict[str, Any] = PrivateAttr(default_factory=dict)
 
     @property
     def amounts(self) -> dict[str, Amount]:
@@ -153,9 +153,9 @@ class Scene(Strict):
         return self._contacts_made
 
     @property
-    def piled(self) -> dict[str, Any]:
+    def sheets_of_piles(self) -> dict[str, Any]:
         """The sheets that piles are of, as they are written: no sheet has their names any more."""
-        return self._piled
+        return self._sheets_of_piles
 
     @property
     def limits(self) -> Limits:
@@ -250,7 +250,7 @@ class Scene(Strict):
         sheets = value.get("sheets")
         if isinstance(sheets, dict):
             of = {pile.of for pile in scene.piles.values()}
-            scene._piled = {name: sheet for name, sheet in sheets.items() if name in of}
+            scene._sheets_of_piles = {name: sheet for name, sheet in sheets.items() if name in of}
         if made:
             scene._source = Source(Document(value, {}, {}, scene.name), PYTHON)
         return scene

@@ -42,11 +42,11 @@ def show(browser: Tab, folder: Path, model: Model, fragment: str = "") -> Path:
     browser.complaints.clear()
     browser.requests.clear()
     browser.open(path, fragment)
-    settled(browser)
+    wait_until_drawn(browser)
     return path
 
 
-def settled(browser: Tab) -> None:
+def wait_until_drawn(browser: Tab) -> None:
     """What was asked for is drawn."""
     browser.ask("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
@@ -79,7 +79,7 @@ def over(browser: Tab, name: str, off: tuple[float, float, float] = (0.0, 0.0, 0
     )
     x, y = json.loads(place)
     browser.call("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y)
-    settled(browser)
+    wait_until_drawn(browser)
     return browser.ask(
         "document.getElementById('tip').hidden ? '' : document.getElementById('tip').innerText"
     )
@@ -123,7 +123,7 @@ def test_what_is_under_the_pointer(browser: Tab, tmp_path: Path) -> None:
     assert "counter_2_left (roller)" in said and "pressed along -z by 3.19 N" in said
     assert "contact with motor_2_left: 0.219 mm deep" in said
     browser.ask("mdlgen.view('xy')")
-    settled(browser)
+    wait_until_drawn(browser)
     browser.ask("document.getElementById('machine').click()")
     said = over(browser, "note", (3.3, 3.2, 0.0))  # in a box, not between four
     assert "note (sheet)" in said and "zone worn: 50 boxes" in said
@@ -146,7 +146,7 @@ def test_warnings_are_at_their_parts(browser: Tab, tmp_path: Path) -> None:
     assert "3 warnings" in browser.ask("document.querySelector('header').innerText")
     # a row of the table finds its part
     browser.call("Input.dispatchMouseEvent", type="mouseMoved", x=5, y=5)
-    settled(browser)
+    wait_until_drawn(browser)
     browser.ask("document.querySelector('#lints [data-part=low]').click()")
     assert browser.ask("document.querySelector('#labels .chosen').dataset.part") == "low"
     assert browser.ask("document.querySelector('#labels .mate') !== null")

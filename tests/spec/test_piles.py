@@ -125,7 +125,7 @@ def test_a_pile_at_rest_carries_itself() -> None:
         ("contacts.0.between=[note, floor]", "there is no part 'note'"),
     ],
 )
-def test_a_mistake_is_told_once_where_it_is(value: str, said: str) -> None:
+def test_a_mistake_is_reported_once_where_it_is(value: str, said: str) -> None:
     with pytest.raises(SpecError) as error:
         pile(value)
     text = str(error.value)

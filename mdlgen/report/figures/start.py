@@ -66,11 +66,11 @@ def _over(model: Model, parts: list[Known], panel: Any, view: Floats, shown: Fra
     low, high = shown
     length = _round(_BAR * float(high[0] - low[0]))
     left = high[0] - length - 0.03 * (high[0] - low[0])
-    foot = low[1] + 0.03 * (high[1] - low[1])
-    panel.plot([left, left + length], [foot, foot], color=_PLAIN, linewidth=2, solid_capstyle="butt")
+    bottom = low[1] + 0.03 * (high[1] - low[1])
+    panel.plot([left, left + length], [bottom, bottom], color=_PLAIN, linewidth=2, solid_capstyle="butt")
     panel.annotate(
         f"{length:g} mm",
-        (left + length / 2, foot),
+        (left + length / 2, bottom),
         (0, 3),
         textcoords="offset points",
         fontsize=8,
@@ -84,13 +84,13 @@ def _names(parts: list[Known], panel: Any, view: Floats, shown: Frame) -> None:
     low, high = shown
     box = panel.get_window_extent()
     scale = 72.0 / panel.figure.dpi * min(box.width / (high[0] - low[0]), box.height / (high[1] - low[1]))
-    left, foot = (scale * value for value in low.tolist())
-    taken = [(left, foot, left + 2 * _ORIGIN[0], foot + 2 * _ORIGIN[1])]  # the axes
+    left, bottom = (scale * value for value in low.tolist())
+    taken = [(left, bottom, left + 2 * _ORIGIN[0], bottom + 2 * _ORIGIN[1])]  # the axes
     for part in sorted(parts, key=lambda p: (not p.lints, p.kind == "probe")):
         x, y, _ = (view @ np.array(part.at)).tolist()
         text = f"{part.name} !" if part.lints else part.name
-        left, foot = scale * x + 4.0, scale * y - _LINE / 2
-        own = (left, foot, left + _LETTER * len(text), foot + _LINE)
+        left, bottom = scale * x + 4.0, scale * y - _LINE / 2
+        own = (left, bottom, left + _LETTER * len(text), bottom + _LINE)
         inside = low[0] <= x <= high[0] and low[1] <= y <= high[1]
         if not inside or any(
             own[0] < t[2] and t[0] < own[2] and own[1] < t[3] and t[1] < own[3] for t in taken
