@@ -134,7 +134,7 @@ SCENE = {
     "W128": (
         "Each value of a data set in MotionView text that is a formula here is one there, too, and follows "
         "its parameters. Some values have no place in a data set: lines of clamps and zones, sizes of "
-        "dog-ears, steps of a run. They stand in the text as numbers."
+        "dog-ears. They stand in the text as numbers."
     ),
     "W129": (
         "Contacts name this roller, and in this run it can touch nothing: within the bounds in which all "

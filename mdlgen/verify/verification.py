@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
 from mdlgen.errors import RefusedError, SpecError
@@ -16,15 +15,17 @@ from mdlgen.verify.inputs.scope import Scope
 from mdlgen.verify.inputs.subject import File, Read, Subject
 from mdlgen.verify.outcome import Perturbed, Verification
 from mdlgen.verify.perturb.perturb import Progress, perturb_all
-from mdlgen.verify.readback.script import DEFAULT_GRAVITY, Script
+from mdlgen.verify.readback.script import Script
 from mdlgen.verify.readback.values import (
     ReadBack,
     Values,
     contact_table,
     data_table,
+    gravity_of,
     gravity_table,
     marker_table,
     run_table,
+    units_table,
 )
 from mdlgen.verify.tables import Difference, Table, compare
 from mdlgen.verify.text.elements import element_differences
@@ -139,7 +140,8 @@ def _text(
     names = values["contacts"]
     tables["contacts"] = contact_table(values, {n: numbers.numbers(n) for n in names})
     tables["run"] = run_table(values)
-    tables["gravity"] = gravity_table(numbers.gravity or _default_gravity(values))
+    tables["gravity"] = gravity_table(gravity_of(values))
+    tables["units"] = units_table(values)
     for kind, table in said.items():
         found.add("text", compare(kind, table, tables[kind]), within)
     if numbers.follows:
@@ -147,12 +149,6 @@ def _text(
         found.add("text", compare("contacts", said["contacts"], followed), within)
     for name in sorted(set(numbers.contacts) - set(values["contacts"])):
         found.differs("script", name, "is no contact of the text")
-
-
-def _default_gravity(values: Values) -> tuple[float, float, float]:
-    """Of the standard include; without it nothing is known of gravity."""
-    has = any(record["standard_include"] for record in values["model"].values())
-    return DEFAULT_GRAVITY if has else (math.nan, math.nan, math.nan)
 
 
 def _deck(
@@ -187,6 +183,7 @@ def _deck(
     tables["contacts"] = contact_table(values, {})
     tables["run"] = run_table(values)
     tables["gravity"] = gravity_table(values["gravity"])
+    tables["units"] = units_table(values)
     for kind, table in said.items():
         if kind not in _NOT_IN_DECK:
             found.add("deck", compare(kind, table, tables[kind]))

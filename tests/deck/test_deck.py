@@ -170,8 +170,11 @@ def test_the_numbers_that_the_text_leaves_to_its_script(case: tuple[Model, str])
 def test_the_run(case: tuple[Model, str]) -> None:
     model, deck = case
     run = motionsolve.read(deck).values["run"]
+    step = (model.run.step or min(0.01, model.run.print_step)) / 1e3
+    assert_same([run["h_max"], run["h_min"], run["tol"]], [step, min(1e-6, step / 100), 1e-3], "steps")
     if model.run.analysis == "static":
-        assert run == {"analysis": "Static", "end": 0.0, "print": 0.0}
+        assert (run["analysis"], run["end"], run["print"]) == ("Static", 0.0, 0.0)
+        assert run["method"] == ("MKEAM" if len(model.pairs) else "FIM_D")
     else:
         assert run["analysis"] == "Transient"
         assert_same([run["end"], run["print"]], [model.run.duration / 1e3, model.run.print_step / 1e3], "run")

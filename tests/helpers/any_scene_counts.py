@@ -76,7 +76,8 @@ def possible_pairs(scene: Spec) -> int:
 
 def expected_members(scene: Spec) -> int:
     """Numbers in all data sets: what the user gave, and what a sheet's formulas make of it."""
-    total = 7 * len(scene["planes"]) + 7 * len(scene["contacts"]) + 2  # of the run
+    total = 7 * len(scene["planes"]) + 7 * len(scene["contacts"])
+    total += 7 + (scene["run"]["analysis"] == "transient")  # of the run
     springs = [plane["press"] for plane in scene["planes"].values() if "press" in plane]
     total += sum(5 + ("carrier_mass" in press) for press in springs)
     for name, sheet in scene["sheets"].items():
@@ -134,6 +135,7 @@ def expected_counts(scene: Spec, pairs: int) -> Counter[str]:
             "StandardInclude": 1,
             "SetCurrentSolverMode": 1,
             "SetBoolean": 1,
+            **{"BeginContext": 1, "EndContext": 1, "SetOption": 5},  # gravity and units
             "Template": 1,
             "DefineTemplate": 1,
             "DefineDataSet": sets,

@@ -36,12 +36,51 @@ def test_a_spring_shorter_than_its_compression_is_refused_by_name():
 
 
 def test_static_analysis_writes_a_static_command():
-    assert 'analysis_type  = "Static"' in motionview.emit(model_of("cantilever.yaml"))
-    assert 'analysis_type  = "Transient"' in motionview.emit(model_of("transport_4x4.yaml", SMALL))
+    at_rest, *_ = _commands(model_of("cantilever.yaml"))
+    assert (at_rest["command"], at_rest["method"], at_rest["max_imbalance"]) == (
+        "Param_Static",
+        "FIM_D",
+        "0.0001",
+    )
+    assert [c["command"] for c in _commands(model_of("cantilever.yaml"))] == [
+        "Param_Static",
+        "Simulate",
+        "Stop",
+    ]
+    touching = _commands(model_of("transport_4x4.yaml", SMALL, "run.analysis=static"))
+    assert touching[0]["method"] == "MKEAM" and "max_imbalance" not in touching[0]
 
 
-def _run_script(script: str, values: Mapping[str, float] | None = None) -> tuple[dict, dict]:
-    """Runs a companion with a stand-in for MotionView that has `values`; (gravity, numbers by contact)."""
+def test_a_text_has_the_steps_and_times_of_its_run():
+    steps, simulate, _ = _commands(model_of("transport_4x4.yaml", SMALL))
+    assert (steps["command"], steps["integrator_type"], steps["integr_tol"]) == (
+        "Param_Transient",
+        "DSTIFF",
+        "0.001",
+    )
+    assert (steps["h_max"], steps["h_min"]) == ("1e-05", "1e-07")  # the paper's 10 us
+    assert (simulate["end_time"], simulate["print_interval"]) == ("0.05", "0.00025")
+    fine = _commands(
+        model_of("transport_4x4.yaml", SMALL, 'run.step="0.7 us"', 'run.duration="10.123456789 ms"')
+    )
+    assert float(fine[0]["h_max"]) == pytest.approx(7e-7, rel=1e-14)
+    assert fine[1]["end_time"] == "0.010123456789"  # by itself Templex prints six digits
+
+
+def _commands(model):
+    return Text(motionview.emit(model)).values["commands"]["tmplt_run"]
+
+
+def test_a_text_has_gravity_and_units():
+    standard = Text(motionview.emit(model_of("verify/incline.yaml"))).values["standard"]
+    assert standard["gravity"] == {"op_gravity": "On", "igrav": 3355.2176, "jgrav": 0.0, "kgrav": -9218.3846}
+    assert list(standard["units"].values()) == ["NEWTON", "MILLIMETER", "KILOGRAM", "SECOND"]
+    still = Text(motionview.emit(model_of("cantilever.yaml", 'gravity=["0 m/s^2","0 m/s^2","0 m/s^2"]')))
+    assert still.values["standard"]["gravity"]["kgrav"] == 0.0
+
+
+def _run_script(script: str, values: Mapping[str, float] | None = None) -> dict:
+    """Runs a companion with a stand-in for MotionView that has `values`; numbers by contact."""
     tree = ast.parse(script)
     tree.body = [n for n in tree.body if not isinstance(n, ast.ImportFrom)]
     children: dict[str, dict] = {}
@@ -59,19 +98,14 @@ def _run_script(script: str, values: Mapping[str, float] | None = None) -> tuple
         def setValues(self, **numbers):
             children.setdefault(self.name, {}).update(numbers)
 
-    class Gravity:
-        pass
-
     class Root:
-        gravity = Gravity()
-
         def __getattr__(self, name):
             return Entity(name)
 
     root = Root()
     space = {"mview": type("mview", (), {"getModel": staticmethod(lambda: root)}), "print": lambda *a: None}
     exec(compile(tree, "companion", "exec"), space)
-    return vars(Root.gravity), children
+    return children
 
 
 def test_companion_sets_every_contact():
@@ -80,8 +114,7 @@ def test_companion_sets_every_contact():
     script = motionview.companion(model)
     assert script is not None and script.isascii()
     assert len(motionview.companion_reasons(model)) == 1
-    gravity, numbers = _run_script(script)
-    assert not gravity
+    numbers = _run_script(script)
     smoothing = model.contacts.smoothing[-1] * 1000
     text = Text(motionview.emit(model))
     assert set(numbers) == set(text.values["contacts"])
@@ -101,13 +134,8 @@ def test_companion_is_left_out_where_it_is_not_needed():
     assert motionview.companion(contacts, set_contact=True) is None
     smooth = model_of("transport_4x4.yaml", SMALL, *default, 'contacts.0.smoothing="0.1 mm/s"')
     assert any("normal_trans_vel" in r for r in motionview.companion_reasons(smooth, set_contact=True))
-    _, numbers = _run_script(motionview.companion(smooth, set_contact=True) or "")
+    numbers = _run_script(motionview.companion(smooth, set_contact=True) or "")
     assert numbers["con_motor_1_left_counter_1_left"] == {"normal_trans_vel": 0.1}
-
-
-def test_companion_sets_gravity():
-    gravity, _ = _run_script(motionview.companion(model_of("verify/incline.yaml")) or "")
-    assert gravity == {"x": 3355.2176, "y": 0.0, "z": -9218.3846}
 
 
 def test_set_contact_writes_the_numbers_in_the_documented_order():
@@ -136,8 +164,8 @@ def test_banner_stands_before_the_block_and_holds_no_statement():
 def test_numbers_that_follow_parameters_are_those_of_the_model_as_it_is():
     model = model_of("transport_nips.yaml", SMALL)
     script = motionview.companion(model) or ""
-    _, written = _run_script(script)
-    _, turned = _run_script(script, {"ds_contact_2.real_k": 250.0})
+    written = _run_script(script)
+    turned = _run_script(script, {"ds_contact_2.real_k": 250.0})
     name = next(k for k in written if "note" in k and "motor_1_left" in k)
     assert written[name]["penalty"] == 300.0  # the model does not give it
     assert turned[name] == {**written[name], "penalty": 250.0}

@@ -104,7 +104,7 @@ def test_no_point_of_a_sheet_is_a_bare_coordinate(case):
 
 def test_parameters_stand_in_their_data_sets(case):
     model, text = case
-    factor = {"g": 1e3, "ms": 1e3, "mm/ms": 1e-3, "rad/ms": 1e-3, "rad": math.pi / 180}
+    factor = {"g": 1e3, "ms": 1e3, "mm/ms": 1e-3, "mm/ms^2": 1e-6, "rad/ms": 1e-3, "rad": math.pi / 180}
     given = text.settings("SetReal")
     for p in model.parameters:
         # as a plain number, so that a user can edit it

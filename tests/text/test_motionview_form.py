@@ -26,6 +26,7 @@ def case(request) -> tuple[Model, Text]:
 
 ARITY = {  # measured over real files or documented: see the MDL reference
     "BeginMDL": 2, "EndMDL": 0, "StandardInclude": 1, "SetCurrentSolverMode": 1, "SetBoolean": 2,
+    "SetOption": 2, "BeginContext": 1, "EndContext": 0,
     "DefineDataSet": 1, "Real": 3, "EndDefine": 0, "DataSet": 3, "SetReal": 2,
     "Point": 2, "Vector": 2, "SetVector": 4, "SetPoint": 4, "Marker": 4,
     "Body": 7, "SetBodyInertia": 8, "SetBodyIC": 7, "SetBodyICFlag": 7,
@@ -50,6 +51,7 @@ def test_argument_counts(case):
 
 
 GLOBALS = {"B_Ground", "V_Global_X", "V_Global_Y", "V_Global_Z", "Global_Frame", "DS_MotionSolve_Simopts"}
+STANDARD = {"ds_gravity": ("igrav", "jgrav", "kgrav"), "ds_units": ()}  # of the standard include
 REACHED = {"Point", "Marker", "Vector", "DefineDataSet", "DefineTemplate"}  # of no use unless referred to
 WORDS = re.compile(r"(?<![\w.])(?:def_)?(?:p|b|m|v|j|bsh|gbox|gcyl|con|mot|cs|ds|tmplt|o|defsur)_\w+")
 
@@ -62,17 +64,20 @@ def test_every_name_used_is_defined_and_every_name_defined_is_used(case):
             if not arg.startswith('"'):
                 used.update(re.findall(WORDS, arg))
                 used.update(w for w in re.findall(r"\b[A-Z]\w*_\w+", arg) if w in GLOBALS)
-    undefined = set(used) - set(text.entity) - GLOBALS
+    undefined = set(used) - set(text.entity) - GLOBALS - set(STANDARD)
     assert not undefined
     idle = [n for n, (kind, _) in text.entity.items() if kind in REACHED and not used[n]]
     assert not idle
     lowered = Counter(n.lower() for n in text.entity)
     assert max(lowered.values()) == 1
-    for target in text.settings("SetReal"):
+    targets = set(text.settings("SetReal"))
+    standard = {f"{holder}.{member}" for holder, members in STANDARD.items() for member in members}
+    assert standard <= targets
+    for target in targets - standard:
         data_set, member = target.split(".")
         assert member in text.members[text.entity[data_set][1][1]]
     sets = {n: args[1] for n, args in text.of_kind("DataSet").items()}
-    assert {f"{n}.{m}" for n, d in sets.items() for m in text.members[d]} == set(text.settings("SetReal"))
+    assert {f"{n}.{m}" for n, d in sets.items() for m in text.members[d]} == targets - standard
 
 
 def test_surface_lists_its_markers_row_by_row():

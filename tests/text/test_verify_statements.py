@@ -57,6 +57,16 @@ def test_what_is_for_people_passes(tmp_path: Path) -> None:
         ("  *SetCurrentSolverMode(MotionSolve)\n", "", "solver"),
         ("real_turn.value != 0 )", "real_turn.value > 0 )", "*if( ds_two.real_turn.value != 0 ) is missing"),
         ("real_turn.value != 0 )", "real_turn.value != 10 )", "*if( ds_two.real_turn.value != 10 )"),
+        ('op_length, "MILLIMETER"', 'op_length, "METER"', "METER, not MILLIMETER"),
+        ('op_gravity, "On"', 'op_gravity, "Off"', "gravity"),
+        ("  *BeginContext( model.sys_misc )\n", "", "*EndContext closes no"),
+        ("  {format, %.15g}\n", "  {format, %.3f}\n", "h_max is 0, not 1e-05"),
+        ('max_order           = "5"', 'max_order           = "6"', "max_order is 6, not 5"),
+        (
+            "<Stop/>",
+            "",
+            "commands tmplt_run: are Param_Transient Simulate, not Param_Transient Simulate Stop",
+        ),
         ("Simopts.use_run_panel_values, false", "Simopts.use_run_panel_values, true", "use_run_panel_values"),
     ],
 )

@@ -65,7 +65,8 @@ def values(root: etree._Element, file: str) -> dict[str, Any]:
         if entity.has("v_ic_x"):
             found["velocities"][entity.name] = records.velocity(entity)
     found["gravity"] = _gravity(index)
-    found["run"] = _run(sections["Command"], file)
+    found["run"] = _steps(index) | _run(sections["Command"], file)
+    found["standard"] = {"units": _units(index)}
     return found
 
 
@@ -77,6 +78,25 @@ def _put(listed: dict[str, Any], entity: Entity, value: Any) -> None:
 def _gravity(index: Index) -> list[float]:
     force = index.single.get("Force_Gravity")
     return list(force.vector("grav_x", "grav_y", "grav_z")) if force is not None else [0.0, 0.0, 0.0]
+
+
+def _steps(index: Index) -> dict[str, Any]:
+    """Steps [s] and error of the integrator, and how a state of rest is found."""
+    found: dict[str, Any] = {}
+    if (transient := index.single.get("Param_Transient")) is not None:
+        found["integrator"] = transient.word("integrator_type")
+        for own, name in (("tol", "integr_tol"), ("h_max", "h_max"), ("h_min", "h_min")):
+            found[own] = transient.number(name)
+    if (static := index.single.get("Param_Static")) is not None:
+        found["method"] = static.word("method")
+    return found
+
+
+def _units(index: Index) -> dict[str, str]:
+    """As the data set of units of a text has them."""
+    given = index.single.get("Param_Unit")
+    names = ("force", "length", "mass", "time")
+    return {} if given is None else {f"op_{name}": given.word(f"{name}_unit") for name in names}
 
 
 def _run(command: etree._Element, file: str) -> dict[str, Any]:

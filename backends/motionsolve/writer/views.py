@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+from mdlgen.altair.statics import static_method
 from mdlgen.backends.motionsolve.writer.bodies import add_bodies, add_frames
 from mdlgen.backends.motionsolve.writer.contacts import add_contacts
 from mdlgen.backends.motionsolve.writer.machine import add_machine
 from mdlgen.backends.motionsolve.writer.rows import Deck, Run
 from mdlgen.backends.motionsolve.writer.sheets import add_bushings, add_loads, add_probes, add_surfaces
 from mdlgen.backends.motionsolve.writer.units import acceleration, number, per_thousand
+from mdlgen.model.parameters.run import longest_step
 from mdlgen.model.tables import Model
 
-# The longest step where nothing else is said: the paper's, in the Model's unit [ms].
-_PAPER_STEP = 0.01
 # The smallest step that MotionView writes [s]; a smaller largest step needs a smaller one.
 _H_MIN, _STEPS = 1e-6, 100.0
 
@@ -32,14 +32,13 @@ def deck_view(model: Model) -> Deck:
 
 
 def _run(model: Model) -> Run:
-    """Of the force imbalance methods none takes contacts (documented), so MKEAM solves those."""
     run = model.run
-    h_max = per_thousand(run.step if run.step is not None else min(_PAPER_STEP, run.print_step))
+    h_max = per_thousand(longest_step(run))
     return Run(
         static=run.analysis == "static",
-        method="MKEAM" if len(model.pairs) else "FIM_D",
+        method=static_method(model),
         end=per_thousand(run.duration),
         print=per_thousand(run.print_step),
         h_max=h_max,
-        h_min=number(min(_H_MIN, float(h_max) / _STEPS)),
+        h_min=number(min(_H_MIN, float(f"{float(h_max) / _STEPS:.15g}"))),
     )

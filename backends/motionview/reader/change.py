@@ -19,6 +19,7 @@ from mdlgen.backends.motionview.reader.things import members
 from mdlgen.backends.motionview.reader.values import values_of
 
 _PATH = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*")
+_BRACES = re.compile(r"\{([^{}]*)\}")
 _SETTERS = ("setreal", "setinteger", "setval")
 # Words by which a thing depends on more than its statements name.
 _FAR = ("inertia_props_from_graphic", "eval(", "@")
@@ -107,6 +108,8 @@ class Changes:
         for declaration in slot.declarations:
             named |= self._in_statement(declaration.statement, slot.scope)
             named |= self._in_guard(declaration.guard, slot.scope)
+            if declaration.kind == "Template":
+                named |= self._in_template(declaration.statement, slot.scope)
         for settings in (slot.settings or {}).values():
             for setting in settings:
                 named |= self._in_statement(setting.statement, setting.scope)
@@ -118,6 +121,14 @@ class Changes:
         for argument in statement.args[1:]:
             if argument and argument[0] != '"':
                 named |= self._in_text(argument, scope)
+        return named
+
+    def _in_template(self, statement: Statement, scope: Scope) -> set[Slot]:
+        definition = self.expansion.program.definitions.get(statement.arg(3))
+        named: set[Slot] = set()
+        if definition is not None and definition.statement is not None:
+            for text in set(_BRACES.findall(definition.statement.body)):
+                named |= self._in_text(text, scope)
         return named
 
     def _in_guard(self, guard: Guard | None, scope: Scope) -> set[Slot]:

@@ -12,6 +12,7 @@ from mdlgen.backends.motionview.reader.pair import Unmade
 from mdlgen.backends.motionview.reader.program import Definition, Guard, Item, Program
 from mdlgen.backends.motionview.reader.report import Notes
 from mdlgen.backends.motionview.reader.scope import Declaration, Parameter, Scope, Setting, Slot
+from mdlgen.backends.motionview.reader.standard import AT_MODEL, HOLDER, standard
 from mdlgen.backends.motionview.reader.statement import Statement
 from mdlgen.backends.motionview.reader.things import BUILT_INS, CLASSES
 from mdlgen.backends.motionview.reader.world import World
@@ -43,6 +44,8 @@ class Expansion:
         self.notes = notes
         self.world = World(program, notes, things)
         self.standard = Scope(self.world, None, "", None)  # what the standard include makes
+        self.standard.standard = True
+        self._standard: dict[str, Definition] = {}
         self.sets: list[tuple[Statement, Scope, Guard | None, int]] = []
         self.lost: list[Lost] = []
         self.standing: list[tuple[Statement, Scope, Guard | None]] = []  # all that stands in a living scope
@@ -50,10 +53,11 @@ class Expansion:
 
     def run(self) -> World:
         """Raises SpecError for a text whose definitions multiply beyond all use."""
-        self._built_ins()
+        made = self._built_ins()
         most = MOST_STATEMENTS + MOST_TIMES * len(self.program.statements)
         tasks = [(self.world.root, self.program.model)]
         tasks += [(self._alone(definition), definition) for definition in self.program.alone()]
+        tasks += made
         contexts: list[Item] = []
         while tasks:
             scope, definition = tasks.pop()
@@ -106,7 +110,10 @@ class Expansion:
         self, declaration: Declaration, scope: Scope, inner: list[tuple[Scope, Definition]]
     ) -> None:
         statement, name = declaration.statement, declaration.slot.name
-        definition = self.program.definitions.get(statement.arg(2))
+        wanted = statement.arg(2)
+        definition = self.program.definitions.get(wanted)
+        if definition is None and scope.standard:
+            definition = self._standard.get(wanted)
         if definition is None or definition.kind != declaration.kind.lower():
             if declaration.kind != "Graphic":
                 self._undefined(declaration)
@@ -120,6 +127,7 @@ class Expansion:
                 return
             above = above.parent
         child = Scope(self.world, scope, name, definition)
+        child.standard = scope.standard
         child.declaration = declaration
         declaration.child = child
         self.world.scopes.append(child)
@@ -210,6 +218,8 @@ class Expansion:
                 self.lost.append(Lost(statement, scope, self._why_unknown(scope, target)))
             return
         slot, rest = found
+        if rest and slot.declarations[:1] and slot.declarations[0].child is not None and slot.scope.standard:
+            return  # of the standard include, and not known
         side = ""
         if rest:
             for word in ("l", "r"):
@@ -235,6 +245,8 @@ class Expansion:
             if own is not None:  # as nearly all
                 return own, []
         words = [w.strip().replace(" ", "") for w in path.split(".") if w.strip()]
+        if words and words[0].lower() in AT_MODEL and words[0] not in self.world.root.slots:
+            words = [HOLDER, words[0].lower(), *words[1:]]
         at: Scope | None = scope
         while words and words[0].lower() in _RELATIVE and at is not None:
             low = words.pop(0).lower()
@@ -249,7 +261,8 @@ class Expansion:
             at = at.parent
         if slot is None and at is None:
             slot = self.standard.slots.get(words[0])
-            return (slot, words[1:]) if slot is not None else None
+            if slot is None:
+                return None
         if slot is None:
             assert at is not None
             parameter = at.parameters[words[0]]
@@ -281,7 +294,7 @@ class Expansion:
 
     def _why_unknown(self, scope: Scope, target: str) -> str:
         first = target.split(".")[0].strip()
-        if first.lower() == "model":
+        if first.lower() == "model" or scope.standard:
             return "the standard include"
         around: Scope | None = scope
         while around is not None and first not in around.parameters:
@@ -295,13 +308,15 @@ class Expansion:
 
     # -- what the standard include makes
 
-    def _built_ins(self) -> None:
+    def _built_ins(self) -> list[tuple[Scope, Definition]]:
+        """Makes them; gives the systems among them that are still to be filled."""
         world = self.world
         begin = self.program.begin
         if begin is None and self.program.statements:  # a part of a model, which has these all the same
             begin = Statement(self.program.statements[0].source, "BeginMDL", ("",), 0, 0)
+        inner: list[tuple[Scope, Definition]] = []
         if begin is None:
-            return
+            return inner
         holder = self.standard
         for name, made_by in BUILT_INS.items():
             declaration = Declaration(holder.slot(name), begin, name, False, None)
@@ -309,9 +324,22 @@ class Expansion:
             world.built_ins[name] = declaration.members
         for name in STANDARD:
             world.built_ins[name] = Unmade(name, "the standard include")
+        if self.program.begin is not None and any(s.key == "standardinclude" for s in self.program.includes):
+            self._standard_systems(inner)
         world.built_ins["SolverMode"] = self.program.mode
         if begin.arg(0):
             world.built_ins.setdefault(begin.arg(0), world.system(world.root))
+        return inner
+
+    def _standard_systems(self, inner: list[tuple[Scope, Definition]]) -> None:
+        """Gravity and units: what a text may set of the standard include."""
+        made = standard()
+        self._standard = made.definitions
+        for item in made.model.items:
+            self._place(item.statement, None, self.standard, 0, inner)
+        for scope, _ in inner:
+            scope.parent = self.world.root
+            self.world.built_ins[HOLDER] = self.world.system(scope)
 
 
 # The usual spelling of statements, which are not case sensitive.

@@ -233,7 +233,7 @@ def _unused(reading: Reading) -> None:
                 words |= {word for arg in item.statement.args for word in _WORD.findall(arg)}
     world = reading.world
     for scope in world.scopes:
-        if not world.alive(scope):
+        if scope.standard or not world.alive(scope):
             continue
         for slot in scope.slots.values():
             if slot.used or slot.name in words:

@@ -85,6 +85,7 @@ class Scope:
         self.values: dict[str, Any] = {}  # by expression text
         self.shared: dict[Any, Any] = {}  # by the arguments that many statements have in common
         self.conditions: dict[int, bool] = {}
+        self.standard = False  # made by the standard include, which holds more than is known here
 
     def slot(self, name: str) -> Slot:
         """The slot of a name, made where it is new."""

@@ -35,7 +35,7 @@ ACTED: dict[str, Parts] = {
     "setcurve": {"Curve": _ITSELF},
     "setcoupler": {"Coupler": _ITSELF},
     "setpolybeamprops": {"PolyBeam": _ITSELF},
-    "setoption": {"Option": _ITSELF, "Op_Compliant": _ITSELF},
+    "setoption": dict.fromkeys(("Option", "StandardOption", "Op_Compliant"), _ITSELF),
     "set": {"Body": ("inertia_props_from_graphic",), "Table": ("numrecs",)},
     "setreal": _VALUES,
     "setinteger": _VALUES,

@@ -6,10 +6,12 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from mdlgen.backends.motionview.reader.report import Notes, Trouble
+from mdlgen.backends.motionview.reader.standard import PREFIX
 from mdlgen.backends.motionview.reader.things.beams import PolyBeam
 from mdlgen.backends.motionview.reader.things.bodies import Body
 from mdlgen.backends.motionview.reader.things.data import Option, Table, Value
 from mdlgen.backends.motionview.reader.things.systems import DataSet
+from mdlgen.backends.motionview.reader.things.templates import Template
 from mdlgen.backends.motionview.reader.things.thing import Thing
 from mdlgen.backends.motionview.reader.world import World
 
@@ -33,7 +35,7 @@ LISTS = {
 
 
 # Labels of what has no record of its own; the model itself, with what it sets of the standard include.
-_MORE = ("velocities", "datasets", "members", "labels", "model")
+_MORE = ("velocities", "datasets", "members", "labels", "model", "commands", "standard")
 
 
 def values(world: World, notes: Notes) -> dict[str, dict[str, Any]]:
@@ -74,6 +76,8 @@ class _Collector:
         """One thing, with the markers that MotionView makes for it."""
         if isinstance(thing, (Value, Option, Table)):
             self._value(thing)
+        elif isinstance(thing, DataSet) and thing.scope.standard:
+            self.found["standard"].setdefault(thing.name.removeprefix(PREFIX), {})
         elif isinstance(thing, DataSet):
             self.found["datasets"].setdefault(thing.name, {})
             self._put("labels", thing, lambda: thing.ask("label"))
@@ -91,6 +95,8 @@ class _Collector:
             else:
                 self._entry(LISTS[thing.kind], thing)
             self._markers(thing)
+            if isinstance(thing, Template):
+                self._put("commands", thing, lambda: thing.ask("commands"))
             if isinstance(thing, Body):
                 self._put("velocities", thing, lambda: thing.ask("velocity"))
         elif thing.kind == "Force":
@@ -121,6 +127,11 @@ class _Collector:
 
     def _value(self, thing: Value | Option | Table) -> None:
         holder, _, name = thing.name.rpartition(".")
+        if thing.scope.standard:
+            value = self.attempt(thing, lambda: thing.ask("value"))
+            if value is not None:
+                self.found["standard"].setdefault(holder.removeprefix(PREFIX), {})[name] = value
+            return
         into = self.found["datasets"].setdefault(holder or "MODEL", {})
         edit = thing.statement.args[-1].upper()
         self._put("members", thing, lambda: {"label": thing.ask("label"), "edit": edit})

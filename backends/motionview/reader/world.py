@@ -14,6 +14,7 @@ from mdlgen.backends.motionview.reader.pair import Pair, Unmade
 from mdlgen.backends.motionview.reader.program import Guard, Program
 from mdlgen.backends.motionview.reader.report import Notes, Trouble
 from mdlgen.backends.motionview.reader.scope import Declaration, Scope, Setting, Slot
+from mdlgen.backends.motionview.reader.standard import AT_MODEL, HOLDER
 from mdlgen.backends.motionview.reader.statement import Statement
 
 if TYPE_CHECKING:
@@ -243,7 +244,10 @@ class World(Demand):
 
     def built_in(self, name: str) -> Any:
         """What the standard include makes."""
-        return self.built_ins.get(name)
+        found = self.built_ins.get(name)
+        if found is None and name.lower() in AT_MODEL and (holder := self.built_ins.get(HOLDER)) is not None:
+            return holder.inner.member(name.lower()) if hasattr(holder, "inner") else holder
+        return found
 
     def settings(self, slot: Slot, kind: str, part: str = "") -> list[Setting]:
         """The Set statements that hold for a part of a slot, the one that counts last."""

@@ -9,7 +9,7 @@ from mdlgen.altair.edges import edge_note
 from mdlgen.backends.motionview.writer import script
 from mdlgen.backends.motionview.writer.forms import unverified
 from mdlgen.backends.motionview.writer.rows import SceneView
-from mdlgen.backends.motionview.writer.units import number
+from mdlgen.backends.motionview.writer.units import mdl_value, number
 from mdlgen.model.curves import limit
 from mdlgen.model.tables import Model
 
@@ -27,13 +27,13 @@ FRAME = (
 
 def banner(model: Model, scene: SceneView) -> list[str]:
     """The lines of the header, without slashes."""
-    gravity = ", ".join(number(g) for g in script.gravity(model))
+    gravity = ", ".join(number(mdl_value(g, "mm/ms^2")) for g in model.gravity.tolist())
     reasons = script.reasons(model, scene.set_contact)
     lines = [
         f"{model.name}: MotionView model, written by mdlgen",
         "",
         "Units : mm, N, kg, s, rad; angles in data sets in degrees",
-        f"Gravity : {gravity} mm/s2",
+        f"Gravity : {gravity} mm/s2, set in ds_run, as the times and the longest step of the solver",
     ]
     lines += sheet_lines(model, scene)
     lines += curve_lines(model)

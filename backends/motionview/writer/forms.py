@@ -7,8 +7,11 @@ from mdlgen.backends.motionview.writer.rows import SceneView, SystemView
 _BUSH = "SetOrientation of a Bush by two axes (seen by one axis, and by two for pairs of bushings)"
 
 
-def unverified(scene: SceneView) -> list[str]:
-    """One line for each form in this text that is documented only, or concluded from a similar one."""
+def unverified(scene: SceneView, whole: bool = True) -> list[str]:
+    """One line for each form in this text that is documented only, or concluded from a similar one.
+
+    `whole`: of a model, with gravity and run settings.
+    """
     curved = any(s.curves for s in scene.sheets)
     joined = [s for s in scene.sheets if s.joints]
     aligned = ", ".join(s.name for s in scene.sheets if not s.turned)
@@ -22,6 +25,21 @@ def unverified(scene: SceneView) -> list[str]:
             bool(scene.meshes),
             "CADGraphic (documented; that it takes STL and OBJ files is not, nor the empty list of "
             "components : where it does not, turn the file to .g or .h3d with mvg and write FILE)",
+        ),
+        (
+            whole,
+            "ds_gravity and ds_units in model.sys_misc (documented together, not seen in a file; another "
+            "page has DS_Gravity and DS_Units at the model)",
+        ),
+        (
+            whole,
+            "in the run template {format, %.15g}, without which Templex prints six digits, and "
+            f"Param_{'Static' if scene.static else 'Transient'} (documented as a command; seen in the model)",
+        ),
+        (
+            whole,
+            "DS_MotionSolve_Simopts set at the model (seen inside a system) : should the run not end at "
+            "real_end, switch the values of the Run panel off there",
         ),
         (True, "SetOrientation of a marker by DXDYDZ with formulas (seen with numbers only)"),
         (any(s.turned for s in joined) or any(r.arm and r.arm.sprung for r in scene.rollers), _BUSH),
@@ -83,4 +101,4 @@ def unverified_system(system: SystemView) -> list[str]:
             "Attachment of type Graphic, and its use in Contact (the type is documented, not seen in a file)",
         ),
     )
-    return [line for needed, line in rows if needed] + unverified(system.scene)
+    return [line for needed, line in rows if needed] + unverified(system.scene, whole=False)

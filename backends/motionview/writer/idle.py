@@ -44,7 +44,7 @@ def idle_values(model: Model, set_contact: bool, kept: Sequence[int]) -> dict[tu
             found[roller.name, "ramp"] = "the text has no ramp"
     found |= _rims(model, set_contact, kept)
     if model.run.analysis == "static":
-        found |= {("run", member): "the run is static" for member in ("end", "print")}
+        found |= {("run", member): "the run is static" for member in ("end", "print", "h_max", "tol")}
     return found
 
 

@@ -339,6 +339,9 @@ class SceneView:
 
     name: str
     static: bool
+    static_settings: list[
+        tuple[str, str]
+    ]  # attributes of the command that says how to find the state of rest
     parameters: list[Value]
     run: list[Value]
     sheets: list[SheetView]

@@ -13,8 +13,7 @@ from mdlgen.backends.motionview.writer.units import mdl_value, number
 from mdlgen.backends.motionview.writer.views import scene_view
 from mdlgen.model.tables import Ints, Model
 
-# What MotionView takes where a text says nothing [mm/s^2], [mm/s].
-DEFAULT_GRAVITY = (0.0, 0.0, -9810.0)
+# What MotionView takes where a text says nothing [mm/s].
 DEFAULT_SMOOTHING = 1.0
 
 
@@ -26,18 +25,9 @@ class Numbers(NamedTuple):
     names: list[str]
 
 
-def gravity(model: Model) -> tuple[float, float, float]:
-    """Gravity [mm/s^2]."""
-    x, y, z = (mdl_value(float(g), "mm/ms^2") + 0.0 for g in model.gravity)
-    return x, y, z
-
-
 def reasons(model: Model, set_contact: bool = False, only: str | None = None) -> list[str]:
-    """Why the script is needed, one line each; for the sheets alone gravity is not its business."""
+    """Why the script is needed, one line each."""
     found, rows = [], _written(model, only)
-    if only is None and gravity(model) != DEFAULT_GRAVITY:
-        shown = ", ".join(number(g) for g in gravity(model))
-        found.append(f"gravity is ({shown}) mm/s2 and MDL has no documented statement for it")
     if len(rows) and not set_contact:
         found.append("the contact numbers: the argument order of SetContact is not certain")
     elif len(rows) and _smoothing_differs(model, rows):
@@ -50,13 +40,11 @@ def companion(model: Model, *, set_contact: bool = False, only: str | None = Non
     why = reasons(model, set_contact, only)
     if not why:
         return None
-    own_gravity = gravity(model) if only is None else DEFAULT_GRAVITY
     template = environment().get_template("companion.py.j2")
     contacts = _numbers(model, set_contact, only)
     return template.render(
         name=model.name,
         reasons=why,
-        gravity=[number(g) for g in own_gravity] if own_gravity != DEFAULT_GRAVITY else None,
         system=None if only is None else system_view(model, set_contact).variable,
         contacts=contacts,
         follows=follows(contacts),

@@ -46,7 +46,7 @@ def mdl_value(value: float, unit: str) -> float:
 
 
 # What a label names as the unit where the label has none yet.
-SHOWN = {"mm": "mm", "g": "kg", "ms": "s", "mm/ms": "mm/s", "N/mm": "N/mm"}
+SHOWN = {"mm": "mm", "g": "kg", "ms": "s", "mm/ms": "mm/s", "mm/ms^2": "mm/s2", "N/mm": "N/mm"}
 
 
 def with_unit(label: str, unit: str) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from mdlgen.altair.statics import static_settings
 from mdlgen.backends.motionview.writer.contacts import contact_views, pair_rows
 from mdlgen.backends.motionview.writer.formula import mdl_formula, rows_of, units_of
 from mdlgen.backends.motionview.writer.idle import idle_values
@@ -24,6 +25,7 @@ def scene_view(model: Model, set_contact: bool) -> SceneView:
         name=model.name,
         parameters=given.get(OF_USER, []),
         static=model.run.analysis == "static",
+        static_settings=static_settings(model),
         run=given["run"],
         sheets=[sheet_view(model, k, given) for k in range(len(model.sheets))],
         supports=support_views(model),

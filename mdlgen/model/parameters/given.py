@@ -8,6 +8,7 @@ from dataclasses import replace
 from mdlgen.formulas import is_formula
 from mdlgen.model.parameters.machine import center_rows, guide_rows, mesh_rows, plate_press_rows, roller_rows
 from mdlgen.model.parameters.names import FRICTION, NAMED_AXES, OF_USER, in_text, unit
+from mdlgen.model.parameters.run import run_rows, step_source
 from mdlgen.model.parameters.sheets import grading_rows, shape_rows, sheet_rows, zones_rows
 from mdlgen.model.parameters.starts import followed, held
 from mdlgen.model.tables import Contacts, Parameter, RunSettings, SheetPart
@@ -88,6 +89,8 @@ def _source(scene: Scene, row: Parameter) -> tuple[tuple[str | int, ...], str]:
         return (*path[:2], "mass"), "({})/1000"
     if path[-2:] == ("damping", "ratio_ty"):
         return (*path[:-1], "ratio"), "{}"
+    if path == ("run", "step"):
+        return step_source(scene)
     if path == ("run", "print_step"):
         return ("run", "duration"), "({})/200"
     return (), "{}"
@@ -130,6 +133,4 @@ def _given(scene: Scene, starts: dict[str, tuple[float, float]], run: RunSetting
             ("v_n", "Smoothing velocity of the damping", smooth, "mm/ms", "smoothing"),
         ):
             rows.append(Parameter(group, member, label, value, shown, (*base, path) if path else None))
-    rows.append(Parameter("run", "end", "End time", run.duration, "ms", ("run", "duration")))
-    rows.append(Parameter("run", "print", "Print interval", run.print_step, "ms", ("run", "print_step")))
-    return rows
+    return [*rows, *run_rows(scene, run)]

@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from mdlgen.model.parameters.run import RUN
 from mdlgen.model.press import balance
 from mdlgen.model.tables import BOX_CYLINDER, CYLINDER_CYLINDER, Contacts, Floats, Parameter, SheetPart
 from mdlgen.spec.nip import names_of
@@ -174,6 +175,17 @@ def followed(scene: Scene, what: Held, rows: list[Parameter]) -> list[Parameter]
     return made
 
 
+def _pull(ways: tuple[float, float, float]) -> str:
+    """Gravity along a direction."""
+    terms = [
+        f" {'-' if way < 0.0 else '+'} "
+        f"{'' if abs(way) == 1.0 else repr(abs(way)) + '*'}{reference(RUN, f'g_{axis}')}"
+        for axis, way in zip("xyz", ways, strict=True)
+        if way != 0.0
+    ]
+    return "".join(terms).removeprefix(" + ").strip()
+
+
 def reference(data_set: str, member: str) -> str:
     """The name by which a formula has a value of a text."""
     return f"ds_{data_set}__{member}"
@@ -210,8 +222,7 @@ def _texts(scene: Scene, what: Held) -> dict[str, str]:
         c = f"({along(what.by)} - {own('R')} - {reference(what.by, 'R')})"
     stiff = reference(f"contact_{what.entry}", "k")
     stiff = stiff if what.share == 1.0 else f"{what.share!r}*{stiff}"
-    pull = 1e6 * float(np.array(scene.gravity) @ np.array(spec.direction))
-    weight = f" + ({own('M')} + {own('M_c')})*({pull!r} mm/s^2)" if pull else ""
+    weight = f" + ({own('M')} + {own('M_c')})*({_pull(spec.direction)})"
     least = f"5*{own('k')}^3/(27*({stiff})^2)"
     push = f"{own('f')}{weight}" + ("" if c == own("touch") else f" - {own('k')}*({c} - {own('touch')})")
     a, g = f"({own('k')}/(3*{stiff}))", f"({own('push')}/(2*{stiff}))"

@@ -25,6 +25,7 @@ FACTORS = {
     "ms": SECOND,
     "1/ms": 1 / SECOND,
     "mm/ms": 1 / SECOND,
+    "mm/ms^2": 1 / SECOND**2,
     "rad/ms": 1 / SECOND,
     "rad": 180 / math.pi,
 }
@@ -58,6 +59,8 @@ def data(model: Model) -> Table:
         found |= _place(support.name, support.at, support.edge)
     for probe in model.probes:
         found |= _place(f"probe_{probe.name}", probe.at, probe.edge)
+    if model.run.analysis != "static":
+        found["ds_run.real_h_min"] = min(1e-6, found["ds_run.real_h_max"] / 100)
     angles = [math.degrees(1.0) if ".real_turn" in n or ".real_r_" in n else 0.0 for n in found]
     numbers = np.array(list(found.values()))
     places = np.array(

@@ -15,7 +15,7 @@ from mdlgen.spec.scene import Scene
 from mdlgen.verify.expected.contacts import contacts
 from mdlgen.verify.expected.data import data
 from mdlgen.verify.expected.motions import stations
-from mdlgen.verify.expected.run import gravity, run
+from mdlgen.verify.expected.run import gravity, run, units
 from mdlgen.verify.expected.sheets_only import of_sheets
 from mdlgen.verify.expected.whole import expected
 from mdlgen.verify.inputs.systems import definition, inside
@@ -79,7 +79,7 @@ class Subject:
         """What must be said of a Model."""
         model = model or self.model
         said = expected(model, self.times) | {"data": data(model), "contacts": contacts(model)}
-        said |= {"run": run(model), "gravity": gravity(model)}
+        said |= {"run": run(model), "gravity": gravity(model), "units": units()}
         return of_sheets(said, model, self.text is not None) if self.only else said
 
     def reads(self, set_contact: bool) -> list[Read]:

@@ -8,7 +8,15 @@ from mdlgen.verify.inputs.subject import Read, Subject
 from mdlgen.verify.outcome import Perturbed
 from mdlgen.verify.perturb.perturbations import Perturbation, perturbations
 from mdlgen.verify.readback.script import Script
-from mdlgen.verify.readback.values import ReadBack, Values, contact_table, data_table, run_table
+from mdlgen.verify.readback.values import (
+    ReadBack,
+    Values,
+    contact_table,
+    data_table,
+    gravity_of,
+    gravity_table,
+    run_table,
+)
 from mdlgen.verify.tables import Difference, Table, compare
 
 Progress = Callable[[int, int], None]
@@ -54,7 +62,7 @@ class _Perturber:
         self.perturbed = perturbed
         self.script = numbers
         self.known = set(subject.said()["data"].names) & set(text.values["members"])
-        self.kinds = set(subject.said()) - {"gravity"}
+        self.kinds = set(subject.said()) - {"units"}
         if not text.has_numbers and not numbers.follows:
             self.kinds.discard("contacts")
         self.base = self._tables(text.values)
@@ -90,4 +98,8 @@ class _Perturber:
             numbers = {name: self.script.numbers(name) for name in contacts}
         tables["contacts"] = contact_table({**values, "contacts": contacts}, numbers)
         tables["run"] = run_table(values)
+        standard = self.text.values["standard"]
+        if "gravity" in standard:
+            now = standard["gravity"] | values.get("standard", {}).get("gravity", {})
+            tables["gravity"] = gravity_table(gravity_of({"standard": {"gravity": now}}))
         return tables

@@ -17,6 +17,7 @@ import numpy as np
 from mdlgen.formulas import Amount
 from mdlgen.model.lowering.stiffness import SUPPORT_FACTOR
 from mdlgen.model.parameters.names import OF_USER
+from mdlgen.model.parameters.run import RUN
 from mdlgen.model.tables import SUPPORT, Model, Parameter
 from mdlgen.spec.parameter import Parameters
 from mdlgen.spec.rim import TURN
@@ -30,6 +31,7 @@ STEP = 1.0625  # a value is changed to this many times itself, exactly
 FAR: dict[str, float] = {"MPa": 17.0, "N*mm": 17.0, "N*mm/rad": 17.0}
 # and 0 to this, in internal units
 FROM_ZERO = {"mm": 0.5, "rad": 0.125, "rad/ms": 0.03125, "mm/ms": 0.25, "N": 0.5, "ms": 0.25, "1": 0.0625}
+FROM_ZERO |= {"mm/ms^2": 2.0**-9}
 
 
 class Perturbation(NamedTuple):
@@ -56,6 +58,8 @@ def perturbations(scene: Scene, model: Model) -> Iterator[Perturbation]:
             yield Perturbation(where, value * factor(p.unit), _moved(base, model, p.member, value))
         elif path is not None:
             yield Perturbation(where, value * FACTORS[p.unit], _perturbed(base, path, value, model))
+        elif p.data_set == RUN:
+            yield Perturbation(where, value * FACTORS[p.unit], _set(model, p, value))
         elif p.member in BEGINS:
             yield Perturbation(where, value * FACTORS[p.unit], _begun(model, p.data_set, p.member, value))
     for kind, anchors in (("probes", model.probes), ("supports", model.supports)):
@@ -71,6 +75,12 @@ def perturbations(scene: Scene, model: Model) -> Iterator[Perturbation]:
     for item in model.supports:
         stiffer = SUPPORT_FACTOR * STEP
         yield Perturbation(f"ds_{item.name}.real_factor", stiffer, _stiffer(model, item.name))
+
+
+def _set(model: Model, parameter: Parameter, value: float) -> Callable[[], Model]:
+    """A value that no spec has, and that nothing follows from but what is written."""
+    rows = tuple(replace(p, value=value) if p == parameter else p for p in model.parameters)
+    return lambda: replace(model, parameters=rows)
 
 
 def _moved(scene: Scene, base: Model, name: str, value: float) -> Callable[[], Model]:

@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import BaseModel
 
 from mdlgen.model.parameters.names import FRICTION
+from mdlgen.model.parameters.run import PAPER_STEP
 from mdlgen.model.tables import Parameter
 from mdlgen.spec.grading import Graded, Grading
 from mdlgen.spec.scene import Scene
@@ -45,6 +46,8 @@ def pinned(scene: Scene) -> Scene:
     run = scene.run
     if run.print_step is None:
         run = run.model_copy(update={"print_step": run.duration / 200})
+    if run.step is None:
+        run = run.model_copy(update={"step": min(PAPER_STEP, run.print_step or PAPER_STEP)})
     return scene.model_copy(
         update={
             "materials": materials,

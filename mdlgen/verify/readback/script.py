@@ -9,7 +9,6 @@ from typing import Any, NamedTuple
 
 from mdlgen.errors import Place, SpecError
 
-DEFAULT_GRAVITY = (0.0, 0.0, -9810.0)  # what MotionView takes where nothing says another [mm/s^2]
 DEFAULT_SMOOTHING = 1.0  # of a contact that nothing gives one [mm/s]
 # Property of the script -> column of the contacts.
 PROPERTIES = {
@@ -21,7 +20,7 @@ PROPERTIES = {
     "friction_trans_vel": "friction_velocity",
     "normal_trans_vel": "normal_trans_vel",
 }
-_DATA = ("GRAVITY", "CONTACTS", "SYSTEM")
+_DATA = ("CONTACTS", "SYSTEM")
 
 
 class Followed(NamedTuple):
@@ -33,9 +32,8 @@ class Followed(NamedTuple):
 
 
 class Script(NamedTuple):
-    """What a script sets: gravity [mm/s^2] (None: not set), and numbers by contact."""
+    """What a script sets: numbers by contact."""
 
-    gravity: tuple[float, float, float] | None
     contacts: dict[str, dict[str, float | Followed]]
     rest: str  # its statements without the data, in a normal form
     system: str | None = None  # path of the system in the model that the contacts are in
@@ -61,7 +59,7 @@ class Script(NamedTuple):
         return any(isinstance(v, Followed) for numbers in self.contacts.values() for v in numbers.values())
 
 
-NONE = Script(None, {}, "")
+NONE = Script({}, "")
 
 
 def read(text: str, file: str = "<script>") -> Script:
@@ -83,13 +81,13 @@ def read(text: str, file: str = "<script>") -> Script:
             raise _wrong(f"{name} is given twice", statement, file)
         data[name] = _literal(statement, file)
     try:
-        gravity, contacts = _gravity(data.get("GRAVITY")), _contacts(data.get("CONTACTS", []))
+        contacts = _contacts(data.get("CONTACTS", []))
     except ValueError as error:
         raise _wrong(str(error), tree.body[0], file) from None
     system = data.get("SYSTEM")
     if not isinstance(system, str | None):
         raise _wrong("SYSTEM is a text", tree.body[0], file)
-    return Script(gravity, contacts, ast.dump(ast.Module(_without_notes(rest), [])), system)
+    return Script(contacts, ast.dump(ast.Module(_without_notes(rest), [])), system)
 
 
 def _name(statement: ast.stmt) -> str:
@@ -109,15 +107,6 @@ def _literal(statement: ast.Assign, file: str) -> Any:
 def _wrong(message: str, node: ast.AST, file: str) -> SpecError:
     place = Place(file, getattr(node, "lineno", 1), getattr(node, "col_offset", 0) + 1)
     return SpecError(message, place=place)
-
-
-def _gravity(value: Any) -> tuple[float, float, float] | None:
-    if value is None:
-        return None
-    if not isinstance(value, tuple) or len(value) != 3:
-        raise ValueError("GRAVITY has three numbers")
-    x, y, z = (_number(v) for v in value)
-    return x, y, z
 
 
 def _contacts(value: Any) -> dict[str, dict[str, float | Followed]]:

@@ -11,6 +11,7 @@ import numpy as np
 
 from mdlgen.verify.expected.contacts import CONTACT_NUMBERS
 from mdlgen.verify.expected.parts.mesh import shape_numbers
+from mdlgen.verify.expected.run import RUN_NUMBERS
 from mdlgen.verify.solver_expressions import Places, Unreadable, law, request
 from mdlgen.verify.tables import Table
 
@@ -19,7 +20,17 @@ Row = tuple[list[Any], tuple[str, ...]]  # numbers, words
 
 _NAN = float("nan")
 _MARKER = re.compile(r"[A-Za-z_][\w.]*(?=\s*[,)])")
-_ATTRIBUTE = re.compile(r'\b(\w+)\s*=\s*"([^"]*)"')
+# Of the commands that say how a model is run: attribute -> what it is here.
+_RUN_ATTRIBUTES = {
+    "Simulate": {"analysis_type": "analysis", "end_time": "end", "print_interval": "print"},
+    "Param_Transient": {
+        "integrator_type": "integrator",
+        "integr_tol": "tol",
+        "h_max": "h_max",
+        "h_min": "h_min",
+    },
+    "Param_Static": {"method": "method"},
+}
 
 
 class ReadBack:
@@ -228,23 +239,39 @@ def contact_table(values: Values, numbers: Mapping[str, Mapping[str, float]]) ->
 
 
 def run_table(values: Values) -> Table:
-    """Analysis and times of a deck, or of the solver commands that a text's template writes."""
+    """Analysis, times and steps of a deck, or of the solver commands that a text's template writes."""
     settings: dict[str, Any] = {}
     if "run" in values:
         settings = dict(values["run"])
     elif not values.get("templates"):
-        return _table({}, lambda n, r: ([], ()), 2)
+        return _table({}, lambda n, r: ([], ()), len(RUN_NUMBERS))
     else:
-        for record in values["templates"].values():
-            said = dict(_ATTRIBUTE.findall(record["text"] or ""))
-            settings = {
-                "analysis": said.get("analysis_type"),
-                "end": said.get("end_time"),
-                "print": said.get("print_interval", 0.0),
-            }
-    words = (str(settings.get("analysis")),)
-    times = [_float(settings.get(k)) for k in ("end", "print")]
-    return _table({"run": None}, lambda n, r: (times, words), 2)
+        for command in (c for commands in values["commands"].values() for c in commands):
+            named = _RUN_ATTRIBUTES.get(command["command"], {})
+            settings |= {own: command[name] for name, own in named.items() if name in command}
+    static = settings.get("analysis") == "Static"
+    words = (str(settings.get("analysis")), str(settings.get("method" if static else "integrator")))
+    missing = "0" if static else None
+    numbers = [_float(settings.get(name, missing)) for name in RUN_NUMBERS]
+    if static:  # takes no steps
+        numbers[1:] = [0.0] * (len(RUN_NUMBERS) - 1)
+    return _table({"run": None}, lambda n, r: (numbers, words), len(RUN_NUMBERS))
+
+
+def gravity_of(values: Values) -> tuple[float, float, float]:
+    """Gravity of a text [mm/s^2]; nan where nothing says it."""
+    given = values.get("standard", {}).get("gravity", {})
+    if given.get("op_gravity", "On") == "Off":
+        return 0.0, 0.0, 0.0
+    x, y, z = (_float(given.get(name)) for name in ("igrav", "jgrav", "kgrav"))
+    return x, y, z
+
+
+def units_table(values: Values) -> Table:
+    """Units of a deck, or of a text."""
+    given = values.get("standard", {}).get("units", {})
+    words = tuple(str(given.get(f"op_{name}")) for name in ("force", "length", "mass", "time"))
+    return _table({"units": None}, lambda n, r: ([], words), 0)
 
 
 def gravity_table(gravity: Any) -> Table:

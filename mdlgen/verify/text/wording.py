@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
 from mdlgen.verify.readback.values import Values
-from mdlgen.verify.tables import Difference
+from mdlgen.verify.tables import LIMIT, Difference
 
 _NUMBER = re.compile(r"[-+]?\d+\.?\d*(?:[eE][-+]?\d+)?")
 # Fields whose numbers stand in a text of their own; they are compared as numbers elsewhere.
@@ -17,6 +18,9 @@ _SOLVER_TEXT = {"value", "variable", "expressions", "text"}
 def wording(own: Values, given: Values, leave: frozenset[str] = frozenset()) -> Iterator[Difference]:
     """What differs but for numbers; `leave` are fields of contacts that may be anything."""
     for kind, records in own.items():
+        if kind == "commands":
+            yield from _commands(records, given[kind])
+            continue
         for name, record in records.items():
             if name not in given[kind]:
                 yield Difference(kind, name, "is missing")
@@ -29,6 +33,30 @@ def wording(own: Values, given: Values, leave: frozenset[str] = frozenset()) -> 
         for name in given[kind]:
             if name not in records:
                 yield Difference(kind, name, "is not in the text that mdlgen writes")
+
+
+def _commands(own: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Difference]:
+    """What a template writes otherwise, to the numbers."""
+    for name in {**own, **given}:
+        mine, theirs = own.get(name, ()), given.get(name, ())
+        words = tuple(c["command"] for c in mine), tuple(c["command"] for c in theirs)
+        if words[0] != words[1]:
+            what = f"are {' '.join(words[1])[:200]}, not {' '.join(words[0])[:200]}"
+            yield Difference("commands", name, what)
+            continue
+        for k, (one, other) in enumerate(zip(mine, theirs, strict=True)):
+            for attribute in {**one, **other}:
+                want, have = one.get(attribute), other.get(attribute)
+                if want != have and not _same_number(want, have):
+                    what = f"{attribute} is {have or 'nothing'}, not {want or 'nothing'}"
+                    yield Difference("commands", f"{name}, {one['command']} {k + 1}", what)
+
+
+def _same_number(one: str | None, other: str | None) -> bool:
+    try:
+        return math.isclose(float(one or ""), float(other or ""), rel_tol=LIMIT, abs_tol=0.0)
+    except ValueError:
+        return False
 
 
 def _leaves(mine: Any, theirs: Any, where: str) -> Iterator[tuple[str, Any, Any]]:

@@ -8,13 +8,12 @@ from mdlgen.backends.motionview.reader.pair import Pair
 from mdlgen.backends.motionview.reader.things.beams import PolyBeam
 from mdlgen.backends.motionview.reader.things.bodies import Body, Ground
 from mdlgen.backends.motionview.reader.things.curves import Curve
-from mdlgen.backends.motionview.reader.things.data import BuiltInOption, Option, Table, Value
+from mdlgen.backends.motionview.reader.things.data import BuiltInOption, Option, StandardOption, Table, Value
 from mdlgen.backends.motionview.reader.things.drives import (
     ContactThing,
     Coupler,
     Motion,
     SolverVariable,
-    Template,
 )
 from mdlgen.backends.motionview.reader.things.forces import Bush, CoilSpring, Force, Output
 from mdlgen.backends.motionview.reader.things.geometry import (
@@ -29,6 +28,7 @@ from mdlgen.backends.motionview.reader.things.graphics import Graphic
 from mdlgen.backends.motionview.reader.things.joints import JOINTS, Joint
 from mdlgen.backends.motionview.reader.things.surfaces import DeformableSurface
 from mdlgen.backends.motionview.reader.things.systems import DataSet, System
+from mdlgen.backends.motionview.reader.things.templates import Template
 from mdlgen.backends.motionview.reader.things.thing import Thing
 
 if TYPE_CHECKING:
@@ -61,6 +61,7 @@ CLASSES: dict[str, type[Thing]] = {
     "Boolean": Value,
     "Filename": Value,
     "Option": Option,
+    "StandardOption": StandardOption,
     "Table": Table,
     **dict.fromkeys(JOINTS, Joint),
 }

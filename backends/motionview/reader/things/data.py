@@ -74,6 +74,15 @@ class Option(Thing):
         return index + 1.0
 
 
+class StandardOption(Option):
+    """An option of the standard include, `*StandardOption( name, label, text, EDIT )`, choices unknown."""
+
+    def p_value(self) -> Any:
+        """As it was set, else the text of its statement."""
+        found = self.settings("setoption")
+        return self.world.value(found[-1].statement, 1, found[-1].scope) if found else self.given(2)
+
+
 class BuiltInOption(Thing):
     """Op_Compliant of the standard include: Yes, as in the exports that do not set it."""
 

@@ -1,19 +1,15 @@
-"""Motions, contacts, couplers, solver variables and templates."""
+"""Motions, contacts, couplers and solver variables."""
 
 from __future__ import annotations
 
-import re
 from typing import Any
 
-from mdlgen.backends.motionview.reader.report import Trouble
 from mdlgen.backends.motionview.reader.things.thing import Thing
 
 _FORCES = {
     "POISSON": ("penalty", "restitution"),
     "IMPACT": ("stiffness", "exponent", "damping", "dmax"),
 }
-_BRACES = re.compile(r"\{([^{}]*)\}")
-_VALUE = re.compile(r"\s*[A-Za-z_]\w*(?:\.\w+)+\s*")
 _FRICTION = ("mu_static", "mu_dynamic", "stiction_velocity", "friction_velocity")
 
 
@@ -124,38 +120,3 @@ class SolverVariable(Thing):
     def p_varval(self) -> str:
         """The solver function that reads it."""
         return f"VARVAL({self.name})"
-
-
-class Template(Thing):
-    """`*Template( name, label, use, definition, ... )`: text with a language of its own, not run here."""
-
-    kind = "Template"
-
-    def p_text(self) -> str:
-        """What the template writes: not known."""
-        raise Trouble("template", f"{self} is not run, so its text is not known", severity="warning")
-
-    def p_pasted(self) -> str | None:
-        """Its text where that holds nothing but values to paste; None where it has commands of its own."""
-        definition = self.world.program.definitions.get(self.statement.arg(3))
-        if definition is None or definition.statement is None:
-            return None
-        body = definition.statement.body
-        inside = [m[1].strip() for m in _BRACES.finditer(body)]
-        if "{" in _BRACES.sub("", body) or not all(_VALUE.fullmatch(part) for part in inside):
-            return None
-        given = dict(zip(definition.parameters, self.statement.args[4:], strict=False))
-
-        def value(match: re.Match[str]) -> str:
-            first, dot, rest = match[1].strip().partition(".")
-            return self.world.pasted(f"{{{given.get(first, first)}{dot}{rest}}}", self.scope)
-
-        return _BRACES.sub(value, body)
-
-    def record(self) -> dict[str, Any]:
-        return {
-            "label": self.ask("label"),
-            "use": self.statement.arg(2).upper(),
-            "arguments": self.statement.args[3:],
-            "text": self.ask("pasted"),
-        }

@@ -61,6 +61,8 @@ class System(Thing):
             return built_in
         if self.inner.parent is None and name.startswith("mat_"):
             return Unmade(name, "the standard include")
+        if self.inner.standard:
+            return Unmade(f"{self.name}.{name}", "the standard include")
         raise Trouble("dangling", f"{self} has no {name}", shift)
 
     def _argument(self, name: str) -> Any:

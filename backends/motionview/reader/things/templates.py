@@ -1,0 +1,99 @@
+"""Templates: text that MotionView evaluates as Templex and writes into a deck or its commands."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from mdlgen.backends.motionview.reader.operators import shown
+from mdlgen.backends.motionview.reader.report import Trouble
+from mdlgen.backends.motionview.reader.things.thing import Thing
+
+USUAL = "%g"
+"""How a number is printed where nothing else is said: an exported deck has 11111.1 for 40/3.6e-3."""
+
+_BRACES = re.compile(r"\{([^{}]*)\}")
+_NAMES = re.compile(r"(?<![\w.])[A-Za-z_]\w*")
+_PRINT = re.compile(r"(.*?),\s*(%[-+ #0]*\d*(?:\.\d+)?[idfeEgGs])\s*", re.S)
+_OWN = re.compile(
+    r"\s*(?:for|if|elseif|while)\s*\(|\s*(?:else|endif|endloop|endwhile)\s*\Z|'|.*(?<![=!<>])=(?!=)", re.S
+)
+_COMMENT = re.compile(r"<!--.*?-->", re.S)
+_COMMAND = re.compile(r"<(\w+)\b([^<>]*?)/?>", re.S)
+_ATTRIBUTE = re.compile(r'\b(\w+)\s*=\s*"([^"]*)"')
+
+
+class Template(Thing):
+    """`*Template( name, label, use, definition, ... )`: text with a language of its own.
+
+    Evaluated are `{value}`, `{value, %.15g}` and the statement `{format, %.15g}`; not loops, conditions and
+    variables.
+    """
+
+    kind = "Template"
+
+    def p_text(self) -> str:
+        """What the template writes."""
+        found = self.ask("pasted")
+        if found is None:
+            message = f"{self} has statements of its own, which are not run: its text is not known"
+            raise Trouble("template", message, severity="warning")
+        return found
+
+    def p_body(self) -> str | None:
+        """As it stands in its definition."""
+        definition = self.world.program.definitions.get(self.statement.arg(3))
+        return None if definition is None or definition.statement is None else definition.statement.body
+
+    def p_pasted(self) -> str | None:
+        """Its text where that holds nothing but values to paste; None where it has statements of its own."""
+        body = self.ask("body")
+        if body is None or "{" in (plain := _BRACES.sub("", body)) or "}" in plain:
+            return None
+        if any(_OWN.match(m[1]) for m in _BRACES.finditer(body)):
+            return None
+        definition = self.world.program.definitions[self.statement.arg(3)]
+        given = dict(zip(definition.parameters, self.statement.args[4:], strict=False))
+        renamed = {name: actual for name, actual in given.items() if name != actual}
+        out, at, usual = [], 0, USUAL
+        for match in _BRACES.finditer(body):
+            out.append(body[at : match.start()])
+            at = match.end()
+            text, form = match[1].strip(), usual
+            if (own := _PRINT.fullmatch(text)) is not None:
+                text, form = own[1].strip(), own[2]
+                if text == "format":
+                    usual = form
+                    continue
+            if renamed:
+                text = _NAMES.sub(lambda name: renamed.get(name[0], name[0]), text)
+            out.append(self._printed(text, form))
+        return "".join([*out, body[at:]])
+
+    def _printed(self, text: str, form: str) -> str:
+        """A value as it is printed."""
+        scope = self.scope
+        value = scope.values.get(text)  # many commands have the same
+        if value is None:
+            value = scope.values[text] = self.world.compiled(text).run(scope)
+        if not isinstance(value, float):
+            return shown(value)
+        if form[-1] in "id":
+            return form % int(value)
+        return form % value if form[-1] != "s" else shown(value)
+
+    def p_commands(self) -> tuple[dict[str, str], ...] | None:
+        """The elements that it writes, each with its attributes; None where its text is not known."""
+        pasted = self.ask("pasted")
+        if pasted is None:
+            return None
+        text = _COMMENT.sub("", pasted)
+        return tuple({"command": m[1], **dict(_ATTRIBUTE.findall(m[2]))} for m in _COMMAND.finditer(text))
+
+    def record(self) -> dict[str, Any]:
+        return {
+            "label": self.ask("label"),
+            "use": self.statement.arg(2).upper(),
+            "arguments": self.statement.args[3:],
+            "text": self.ask("pasted"),
+        }
