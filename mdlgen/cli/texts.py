@@ -54,21 +54,29 @@ def mdl(
     set_contact: Annotated[
         bool,
         typer.Option(
-            "--set-contact", help="Write contact numbers with SetContact; their order is unverified."
+            "--set-contact",
+            help="Write contact numbers with SetContact, whose order is unverified, not in solver commands.",
+        ),
+    ] = False,
+    script: Annotated[
+        bool,
+        typer.Option(
+            "--script",
+            help="Also write FILE_mview.py: contact numbers, and forces at nodes, for the model itself.",
         ),
     ] = False,
     companion: Annotated[
         Path | None,
         typer.Option(
-            "--companion", metavar="FILE", help="The script for MotionView: FILE_mview.py if left out."
+            "--companion", metavar="FILE", help="Where to write that script: FILE_mview.py if left out."
         ),
     ] = None,
     quiet: Quiet = False,
     verbose: Verbose = False,
 ) -> None:
-    """Write the scene as MotionView text, with its script.
+    """Write the scene as MotionView text.
 
-    The script, FILE_mview.py, sets what the text cannot say. It is written where it is needed.
+    It runs as loaded. A script, FILE_mview.py, is written where it is asked for, and with --only sheets.
 
     Example: mdlgen mdl samples/transport_4x4.yaml -o note.mdl
 
@@ -79,14 +87,16 @@ def mdl(
     model = model_of(spec, sets, limits)
     backend = registry.emitter(registry.TEXT)
     text = backend.emit(model, set_contact=set_contact, only=only)
-    script = backend.companion(model, set_contact=set_contact, only=only)
+    reasons = backend.companion_reasons(model, set_contact, only)
+    wanted = bool(reasons) or script or companion is not None
+    program = backend.companion(model, set_contact=set_contact, only=only) if wanted else None
     to_stdout = output is not None and str(output) == "-"
     own_name = Path(f"{model.name}_{only}.mdl" if only else f"{model.name}.mdl")
     target = own_name if output is None or to_stdout else output
     beside = companion or target.with_name(f"{target.stem}_mview.py")
     files: dict[Path, str | bytes] = {} if to_stdout else {target: text}
-    if script is not None and (companion is not None or not to_stdout):
-        files[beside] = script
+    if program is not None and (companion is not None or not to_stdout):
+        files[beside] = program
     if len({p.resolve() for p in (target, beside)}) == 1:
         raise OutputError(f"{beside}: is named for both the text and the script")
     paths.write_together(files)
@@ -94,14 +104,14 @@ def mdl(
         typer.echo(text, nl=False)
     elif not quiet:
         say(f"wrote {target}")
-    if script is not None and not quiet:
+    if program is not None and not quiet:
         state = (
             f"wrote {beside}" if beside in files else "a script is needed too (--companion FILE writes it)"
         )
-        say(f"{state}; run it in MotionView after the text, since MDL leaves out:")
-        for reason in backend.companion_reasons(model, set_contact, only):
+        say(f"{state}; run it in MotionView after the text" + (", since MDL leaves out:" if reasons else ""))
+        for reason in reasons:
             say(f"  {reason}")
-    elif script is None and not to_stdout and beside.exists() and not quiet:
+    elif program is None and not to_stdout and beside.exists() and not quiet:
         say(f"{beside} is not needed for this text, and may be of an older one")
 
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 from mdlgen.errors import RefusedError, SpecError
+from mdlgen.model.parameters.names import OF_USER
 from mdlgen.model.tables import Model
 from mdlgen.registry import DECK, emitter
 from mdlgen.spec.scene import Scene
@@ -15,7 +17,7 @@ from mdlgen.verify.inputs.scope import Scope
 from mdlgen.verify.inputs.subject import File, Read, Subject
 from mdlgen.verify.outcome import Perturbed, Verification
 from mdlgen.verify.perturb.perturb import Progress, perturb_all
-from mdlgen.verify.readback.script import Script
+from mdlgen.verify.readback.script import NONE, Script
 from mdlgen.verify.readback.values import (
     ReadBack,
     Values,
@@ -24,6 +26,7 @@ from mdlgen.verify.readback.values import (
     gravity_of,
     gravity_table,
     marker_table,
+    master_table,
     run_table,
     units_table,
 )
@@ -51,10 +54,10 @@ def verify(
 ) -> Verification:
     """Compares text, script and deck with the Model of a scene.
 
-    Without `text` the texts that mdlgen writes are taken: with the contact numbers in the script, and with
-    them in the text. `companion` is looked for beside `text` where it is left out. `only="sheets"` is for
-    the sheets alone, in a host model or by themselves; so is a scene with external parts. `perturb` also
-    changes each value of the data sets.
+    Without `text` the texts that mdlgen writes are taken: with the contact numbers in solver commands, in the
+    script, and in statements of the text. `companion` is looked for beside `text` where it is left out.
+    `only="sheets"` is for the sheets alone, in a host model or by themselves; so is a scene with external
+    parts. `perturb` also changes each value of the data sets.
 
     Raises OutputError for a file that cannot be read, SpecError for one that is none of its kind,
     RefusedError for a scene that has no text.
@@ -64,31 +67,55 @@ def verify(
     subject = Subject(scene, model, only is not None, File.read(text, exactly=True))
     found = Verification()
     said = subject.said()
-    both = text is None and "contacts" in said and said["contacts"].names
     first: Read | None = None
-    for set_contact in (False, True) if both else (False,):
-        reads = subject.reads(set_contact)
-        one = reads[0]
-        first = first or one
-        numbers = mine = subject.script(one.has_numbers)
-        if text is None:
-            _lint(subject, one, found)
-            numbers = chosen(mine, File.read(companion), found)
-        else:
-            numbers = _given(subject, text, companion, reads, mine, found)
+    for reads, numbers, of in _passes(subject, companion, bool(said["contacts"].names), found):
+        first = first or reads[0]
         for read in reads:
-            _text(said, subject, read.values, numbers, found, read.prefix if len(reads) > 1 else "")
-        if perturb and not found.differences:
-            contacts_only = found.perturbed is not None
+            _text(said, subject, read, numbers, found, read.prefix if len(reads) > 1 else "")
+        if perturb and not found.differences and of is not None:
             found.perturbed = found.perturbed or Perturbed()
             for read in reads:
-                perturb_all(subject, read, numbers, found.perturbed, contacts_only, progress)
+                perturb_all(subject, read, numbers, found.perturbed, of, progress)
     assert first is not None
     if subject.only and deck is None:
         found.notes.append("no deck: it is of a whole machine")
     else:
         _deck(said, subject, first.values, File.read(deck), found)
     return found
+
+
+def _passes(
+    subject: Subject, companion: Path | None, contacts: bool, found: Verification
+) -> Iterator[tuple[list[Read], Script, str | None]]:
+    """Every way in which contacts may have their numbers: texts, their script, and what names of values to
+    change begin with (empty: all, None: nothing more to change).
+
+    The numbers of solver commands need no script, and count in place of one.
+    """
+    if subject.text is not None:
+        reads = subject.reads(set_contact=False)
+        script = _given(subject, subject.text.path, companion, reads, found)
+        if reads[0].commanded:
+            yield reads, NONE, ""
+            if found.script is None:
+                return
+        yield [read.without_commands() for read in reads], script, _of_script(script, reads)
+        return
+    for set_contact in (False, True) if contacts else (False,):
+        reads = subject.reads(set_contact)
+        _lint(subject, reads[0], found)
+        script = chosen(subject.script(set_contact), File.read(companion), found)
+        if reads[0].commanded:
+            yield reads, NONE, ""
+        of = "ds_contact_" if set_contact else _of_script(script, reads)
+        yield [read.without_commands() for read in reads], script, of
+
+
+def _of_script(script: Script, reads: list[Read]) -> str | None:
+    """What to change where the script gives the numbers: after the commands only what its numbers follow."""
+    if not reads[0].commanded:
+        return ""
+    return f"ds_{OF_USER}." if script.follows else None
 
 
 def _lint(subject: Subject, read: Read, found: Verification) -> None:
@@ -100,10 +127,11 @@ def _lint(subject: Subject, read: Read, found: Verification) -> None:
 
 
 def _given(
-    subject: Subject, text: Path, companion: Path | None, reads: list[Read], mine: Script, found: Verification
+    subject: Subject, text: Path, companion: Path | None, reads: list[Read], found: Verification
 ) -> Script:
     """What a given text has that no value shows, its wording, and its script."""
     one = reads[0]
+    mine = subject.script(one.has_numbers)
     our = subject.own(one.has_numbers)
     names = frozenset(our.reading.program.definitions) if subject.only else None
     in_host = subject.only is not None and one.reading.program.begin is not None
@@ -112,7 +140,7 @@ def _given(
     remarks(one.reading, scope, found)
     found.differences += unaccounted(our.reading, one.reading, scope)
     given, looked = (File.read(companion), []) if companion is not None else beside(text, scope)
-    if given is None:
+    if given is None and not one.commanded:
         taken(mine, looked, found)
     numbers = chosen(mine, given, found)
     if in_host:
@@ -128,27 +156,28 @@ def _given(
 
 
 def _text(
-    said: dict[str, Table],
-    subject: Subject,
-    values: Values,
-    numbers: Script,
-    found: Verification,
-    within: str,
+    said: dict[str, Table], subject: Subject, read: Read, numbers: Script, found: Verification, within: str
 ) -> None:
+    values = read.values
     tables = ReadBack(subject.times).tables(values)
     tables["data"] = data_table(values)
-    names = values["contacts"]
-    tables["contacts"] = contact_table(values, {n: numbers.numbers(n) for n in names})
+    names, commands = values["contacts"], read.commanded
+    own = {name: numbers.numbers(name) | commands.get(name, {}) for name in names}
+    tables["contacts"] = contact_table(values, own)
     tables["run"] = run_table(values)
     tables["gravity"] = gravity_table(gravity_of(values))
     tables["units"] = units_table(values)
+    tables["masters"] = master_table(values)
     for kind, table in said.items():
-        found.add("text", compare(kind, table, tables[kind]), within)
+        if kind != "masters" or commands:  # no statement of a text says it
+            found.add("text", compare(kind, table, tables[kind]), within)
     if numbers.follows:
         followed = contact_table(values, {n: numbers.numbers(n, values["datasets"]) for n in names})
         found.add("text", compare("contacts", said["contacts"], followed), within)
     for name in sorted(set(numbers.contacts) - set(values["contacts"])):
         found.differs("script", name, "is no contact of the text")
+    for name in sorted(set(commands) - set(values["contacts"])):
+        found.differs("commands", name, "is no contact of the text")
 
 
 def _deck(
@@ -184,6 +213,7 @@ def _deck(
     tables["run"] = run_table(values)
     tables["gravity"] = gravity_table(values["gravity"])
     tables["units"] = units_table(values)
+    tables["masters"] = master_table(values)
     for kind, table in said.items():
         if kind not in _NOT_IN_DECK:
             found.add("deck", compare(kind, table, tables[kind]))

@@ -28,11 +28,8 @@ FOUR = "transport_4x4.yaml"
 SHORT_SPRING = 'rollers.counter_1_left.press.free_length="0.003 mm"'
 CASES: dict[str, tuple[str, ...]] = {
     **{
-        path.relative_to(samples()).with_suffix("").as_posix(): (
-            path.relative_to(samples()).as_posix(),
-            "loads=[]",
-        )
-        for path in sorted(samples().rglob("*.yaml"))  # a text with loads is refused
+        path.relative_to(samples()).with_suffix("").as_posix(): (path.relative_to(samples()).as_posix(),)
+        for path in sorted(samples().rglob("*.yaml"))
     },
     "surface": (FOUR, SMALL, "sheets.note.surface=true"),
     "turned": (FOUR, SMALL, 'sheets.note.turn="10 deg"', 'sheets.note.center=["1 mm","-2 mm","0 mm"]'),

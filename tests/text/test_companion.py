@@ -15,14 +15,6 @@ from mdlgen.errors import RefusedError
 SMALL = "sheets.note.boxes=[3,4]"
 
 
-def test_loads_are_refused_by_name():
-    model = model_of("cantilever.yaml", 'loads=[{"sheet":"note","edge":"y_max","force":["0 N","1 N","0 N"]}]')
-    with pytest.raises(RefusedError, match="loads"):
-        motionview.check(model)
-    with pytest.raises(RefusedError):
-        motionview.emit(model)
-
-
 def test_a_spring_shorter_than_its_compression_is_refused_by_name():
     model = model_of("transport_4x4.yaml", SMALL)
     roller = next(r for r in model.rollers if r.press is not None)
@@ -68,7 +60,8 @@ def test_a_text_has_the_steps_and_times_of_its_run():
 
 
 def _commands(model):
-    return Text(motionview.emit(model)).values["commands"]["tmplt_run"]
+    commands = Text(motionview.emit(model)).values["commands"]["tmplt_run"]
+    return [command for command in commands if command["command"] != "Force_Contact"]
 
 
 def test_a_text_has_gravity_and_units():
@@ -79,8 +72,9 @@ def test_a_text_has_gravity_and_units():
     assert still.values["standard"]["gravity"]["kgrav"] == 0.0
 
 
-def _run_script(script: str, values: Mapping[str, float] | None = None) -> dict:
-    """Runs a companion with a stand-in for MotionView that has `values`; numbers by contact."""
+def _run_script(script: str, values: Mapping[str, float] | None = None, by_name: bool = False) -> dict:
+    """Runs a companion with a stand-in for MotionView that has `values`; numbers by contact. `by_name`: a
+    version that finds children with getChild, and has no attributes for them."""
     tree = ast.parse(script)
     tree.body = [n for n in tree.body if not isinstance(n, ast.ImportFrom)]
     children: dict[str, dict] = {}
@@ -95,14 +89,21 @@ def _run_script(script: str, values: Mapping[str, float] | None = None) -> dict:
                 raise AttributeError(member)
             return type("Real", (), {"value": there[f"{self.name}.{member}"]})
 
-        def setValues(self, **numbers):
+        def setValues(self, force_loc, **numbers):
+            assert force_loc == "NODE"
             children.setdefault(self.name, {}).update(numbers)
 
     class Root:
         def __getattr__(self, name):
+            if by_name:
+                raise AttributeError(name)
             return Entity(name)
 
-    root = Root()
+    class Finding(Root):
+        def getChild(self, name):
+            return Entity(name)
+
+    root = Finding() if by_name else Root()
     space = {"mview": type("mview", (), {"getModel": staticmethod(lambda: root)}), "print": lambda *a: None}
     exec(compile(tree, "companion", "exec"), space)
     return children
@@ -113,8 +114,9 @@ def test_companion_sets_every_contact():
     model = model_of("transport_4x4.yaml", SMALL, smooth, rough)
     script = motionview.companion(model)
     assert script is not None and script.isascii()
-    assert len(motionview.companion_reasons(model)) == 1
+    assert motionview.companion_reasons(model) == []  # the solver commands say it
     numbers = _run_script(script)
+    assert _run_script(script, by_name=True) == numbers
     smoothing = model.contacts.smoothing[-1] * 1000
     text = Text(motionview.emit(model))
     assert set(numbers) == set(text.values["contacts"])
@@ -138,6 +140,28 @@ def test_companion_is_left_out_where_it_is_not_needed():
     assert numbers["con_motor_1_left_counter_1_left"] == {"normal_trans_vel": 0.1}
 
 
+def test_solver_commands_give_every_contact_its_numbers_and_its_master():
+    zone = {
+        "sheets.note.boxes": "[4,6]",
+        "sheets.note.zones": "{tape: {x: [-33.5 mm, 0 mm], y: [-63.5 mm, 63.5 mm], friction: 0.5}}",
+    }
+    model = model_of("transport_4x4.yaml", *(f"{k}={v}" for k, v in zone.items()), "contacts.6.friction=0")
+    text = Text(motionview.emit(model))
+    commands = [c for c in text.values["commands"]["tmplt_run"] if c["command"] == "Force_Contact"]
+    assert {c["id"] for c in commands} == set(text.values["contacts"]) and len(commands) == len(model.pairs)
+    by_id = {c["id"]: c for c in commands}
+    for name, command in by_id.items():
+        assert ("mu_static" in command) == (text.values["contacts"][name]["friction"] == "ON")
+    assert by_id["con_motor_1_left_counter_1_left"]["penalty"] == "30.5"
+    assert "master_surface" not in by_id["con_motor_1_left_counter_1_left"]
+    assert {c["master_surface"] for n, c in by_id.items() if "note" in n and "support" not in n} == {"J"}
+    assert {c["mu_static"] for n, c in by_id.items() if "note" in n and "motor" in n} == {"1", "0.5"}
+    assert not any(
+        c["command"] == "Force_Contact"
+        for c in Text(motionview.emit(model, set_contact=True)).values["commands"]["tmplt_run"]
+    )
+
+
 def test_set_contact_writes_the_numbers_in_the_documented_order():
     overrides = ("contacts.6.friction=0", 'contacts.0.smoothing="2 mm/s"')
     model = model_of("transport_4x4.yaml", SMALL, *overrides)
@@ -158,7 +182,7 @@ def test_banner_stands_before_the_block_and_holds_no_statement():
     lines = head.splitlines()
     assert lines[0] == "/" * 70 and "*" not in head and "//" not in block
     assert all("//" not in line for line in lines if line != "/" * 70)
-    assert "share width" in head and "Companion script" in head
+    assert "share width" in head and "Companion script" not in head and "by keyword" in head
 
 
 def test_numbers_that_follow_parameters_are_those_of_the_model_as_it_is():

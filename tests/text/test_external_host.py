@@ -147,7 +147,7 @@ def test_the_script_reaches_into_the_system() -> None:
     assert set(numbers) == set(contacts)
     assert numbers["sys_feed.con_note_0_0_guide"]["penalty"] == 300.0
     smooth = {"penalty": 100.0, "rest_coeff": 0.5, "normal_trans_vel": 1.0}
-    assert numbers["sys_feed.con_note_0_0_motor"] == smooth
+    assert numbers["sys_feed.con_note_0_0_motor"] == smooth | {"force_loc": "NODE"}
     moved = run_script(script, "sys_paper.sys_mine")
     assert "sys_paper.sys_mine.con_note_2_3_feed" in moved and len(moved) == len(numbers)
     assert motionview.companion(model, set_contact=True, only="sheets") is None

@@ -167,6 +167,18 @@ CLAMPED_BENT = ("sheets.note.clamp={edge: y_min, length: 0 mm}", *PUSHED_Y)
 EAR = {"corner": ["x_max", "y_min"], "size": ["30 mm", "20 mm"], "angle": "60 deg"}
 EARED = ("sheets.note.boxes=[3,3]", _put("sheets.note.shape", {"dog_ears": [EAR]}), *PROBES[1:])
 PLAIN: tuple[str, ...] = ()
+LOADS = (
+    _put(
+        "loads",
+        [
+            {"sheet": "note", "edge": "x_max", "force": ["1 N", "0 N", "-2 N"]},
+            {"sheet": "note", "edge": "y_min", "moment": ["3 N*mm", "0 N*mm", "0 N*mm"]},
+            {"sheet": "note", "edge": "x_min", "stress": "2 MPa"},
+            {"sheet": "note", "at": ["0 mm", "-7 mm"], "force": ["0 N", "0 N", "-1 N"]},
+        ],
+    ),
+    "sheets.note.boxes=[2,2]",
+)
 ONE_OF_EACH = (
     _put("rollers", {"under": ROLLER}),
     _put("planes", {"level": PLANE}),
@@ -175,6 +187,7 @@ ONE_OF_EACH = (
     _put("contacts", [{"between": ["note", "under"], "stiffness": "300 N/mm^1.5", "friction": 0.9}]),
     _put("probes", {"lead": {"sheet": "note", "edge": "x_max"}}),
     _put("supports", [{"sheet": "note", "at": ["-30 mm", "0 mm"], "fix": ["z"]}]),
+    _put("loads", [{"sheet": "note", "edge": "x_max", "stress": "1 MPa"}]),
 )
 PART = (
     _put("parts", {"feed": {"external": True, "body": "b_feed", "graphics": ["gra_feed", "gra_more"]}}),
@@ -252,6 +265,10 @@ PARTS: dict[str, dict[str, tuple[str, ...]]] = {
         "a block": BLOCK,
     },
     "support.mdl.j2": {"in a box, on an edge between two": SUPPORTS},
+    "load.mdl.j2": {
+        "on edges and at points": LOADS,
+        "on an edge with lengths of its own": (*UNLIKE, *LOADS[:1]),
+    },
     "roller.mdl.j2": {"each kind": (ROLLERS,)},
     "plane.mdl.j2": {"level, with a normal of its own": (PLANES,), "pressed": (PLATES_ON_SPRINGS,)},
     "guide.mdl.j2": {"straight and bent": (GUIDES,)},
@@ -263,10 +280,14 @@ PARTS: dict[str, dict[str, tuple[str, ...]]] = {
         "none": PLAIN,
     },
     "probe.mdl.j2": {"on one, two and four boxes, on edges": PROBES},
-    "run.mdl.j2": {"transient": PLAIN, "static": ("run.analysis=static",)},
+    "run.mdl.j2": {
+        "transient": PLAIN,
+        "static": ("run.analysis=static",),
+        "contacts, with and without friction": CONTACTS,
+        "a zone with its own friction": (*CONTACTS, *UNLIKE, "sheets.note.zones.stripe.friction=2"),
+    },
     "companion.py.j2": {
         "contacts": CONTACTS,
-        "gravity and contacts": (TILTED_GRAVITY, *CONTACTS),
         "contacts of a system": PART,
         "contacts that follow": (*CONTACTS, "parameters.k=250 N/mm^1.5", "contacts.0.stiffness=k"),
     },
@@ -276,6 +297,7 @@ LOOPED = {
     "sheet_data.mdl.j2": "sheets",
     "sheet.mdl.j2": "sheets",
     "support.mdl.j2": "supports",
+    "load.mdl.j2": "loads",
     "roller.mdl.j2": "rollers",
     "plane.mdl.j2": "planes",
     "guide.mdl.j2": "guides",
@@ -283,7 +305,9 @@ LOOPED = {
     "probe.mdl.j2": "probes",
 }
 # Their text stands in the goldens of those that take them in.
-WITHIN = ("bend.mdl.j2", "cells.mdl.j2", "law.mdl.j2", "lengths.mdl.j2", "macros.mdl.j2", "notes.mdl.j2")
+WITHIN = tuple(
+    f"{name}.mdl.j2" for name in ("bend", "cells", "contact_commands", "law", "lengths", "macros", "notes")
+)
 WITH_SET_CONTACT = ("contacts.mdl.j2",)
 
 

@@ -28,7 +28,6 @@ def test_golden_texts_read_clean(file: Path) -> None:
 )
 def test_sample_texts_read_clean(sample: Path) -> None:
     overrides = ["sheets.note.boxes=[2,3]"] if str(sample).startswith("transport") else []
-    overrides.append("loads=[]")  # a text with loads is refused
     lowered = mdlgen.lower(mdlgen.load(samples() / sample, overrides=overrides))
     reading = read(mdlgen.emit(lowered, "motionview"), sample.name)
     found = reading.values

@@ -25,7 +25,7 @@ from mdlgen.verify.verification import verify
         ('"mu_dynamic": 0.3', '"mu_static": 0.3'),
         ('"con_two_0_1_low",', ""),
         ('"con_two_0_1_low",', '"con_two_0_1_slow",'),
-        (".setValues(**numbers)", ".setValues()"),
+        (", **numbers)", ")"),
         ("import mview", "import mview as os"),
     ],
 )

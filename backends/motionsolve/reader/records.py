@@ -229,6 +229,8 @@ def contact(deck: Deck, entity: Entity) -> dict[str, Any]:
         "restitution": entity.number("restitution_coef"),
         "normal_trans_vel": entity.number("normal_trans_vel"),
     }
+    if entity.has("master_surface"):
+        found["master"] = entity.word("master_surface")
     if friction != "OFF":
         found["mu_static"] = entity.number("mu_static", 0.0)
         found["mu_dynamic"] = entity.number("mu_dynamic")

@@ -26,15 +26,25 @@ def add_contacts(deck: Deck, model: Model) -> None:
         names = graphics(rollers[body], side) if body in rollers else boxes.get(body)
         return tuple(ids[name] for name in names) if names else (graphic_id(body),)
 
+    every = {r.body: r for r in model.rollers}
+
+    def is_round(body: int, side: Side) -> bool:
+        return body in every and graphics(every[body], side)[0].startswith("gcyl_")
+
     for id, met in enumerate(meetings(model), 1):
         row, a, b, rough = rows[met.pair]
         sides = [list(of(a, met.a)), list(of(b, met.b))]
+        cylinders = [is_round(a, met.a), is_round(b, met.b)]
         if len(sides[0]) > 1:  # a statement has one graphic on its first side, as the text has it
             sides.reverse()
+            cylinders.reverse()
         name = f"con_{bodies.name[a]}_{bodies.name[b]}{met.suffix}"
         label = f"{bodies.label[a]} / {bodies.label[b]}{met.suffix.replace('_', ' ')}"
         own = (rough * met.friction, met.stiffness, met.restitution(float(model.contacts.restitution[row])))
-        deck.contacts.append(ContactRow(name, label, id, sides[0][0], tuple(sides[1]), law(row, *own)))
+        master = "" if cylinders[0] == cylinders[1] else "IJ"[cylinders.index(True)]
+        deck.contacts.append(
+            ContactRow(name, label, id, sides[0][0], tuple(sides[1]), law(row, *own), master)
+        )
 
 
 def _law(model: Model, row: int, rough: float, stiff: float, restitution: float) -> Law:

@@ -179,6 +179,7 @@ class ContactRow(NamedTuple):
     i: int
     j: tuple[int, ...]
     law: Law
+    master: str  # I or J; empty: the solver chooses
 
 
 class Surface(NamedTuple):

@@ -11,7 +11,7 @@ from mdlgen.backends.motionview.reader.statement import Statement
 from mdlgen.backends.motionview.reader.things import CLASSES
 
 # Things that have a record, or that make bodies that have one; a system shows by what is in it.
-_SHOWN = set(CLASSES) - {"ActionReactionForce", "ActionOnlyForce", "Coupler", "SolverVariable"} | {"DataSet"}
+_SHOWN = set(CLASSES) - {"ActionReactionForce", "Coupler", "SolverVariable"} | {"DataSet"}
 # Blocks and heads that show by what is in them, or in the record of the model.
 _FRAMES = {
     *("beginmdl", "endmdl", "enddefine", "begincontext", "endcontext", "definedataset", "definetemplate"),

@@ -31,6 +31,7 @@ ACTED: dict[str, Parts] = {
     "setbush": {"Bush": _ITSELF, **_BUSHES},
     "setcoilspring": {"CoilSpring": _ITSELF},
     "setmotion": {"Motion": _ITSELF},
+    "setforce": {"ActionOnlyForce": _ITSELF},
     "setcontact": {"Contact": _ITSELF},
     "setcurve": {"Curve": _ITSELF},
     "setcoupler": {"Coupler": _ITSELF},

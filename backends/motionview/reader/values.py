@@ -35,7 +35,7 @@ LISTS = {
 
 
 # Labels of what has no record of its own; the model itself, with what it sets of the standard include.
-_MORE = ("velocities", "datasets", "members", "labels", "model", "commands", "standard")
+_MORE = ("velocities", "datasets", "members", "labels", "model", "commands", "standard", "forces")
 
 
 def values(world: World, notes: Notes) -> dict[str, dict[str, Any]]:
@@ -100,6 +100,8 @@ class _Collector:
             if isinstance(thing, Body):
                 self._put("velocities", thing, lambda: thing.ask("velocity"))
         elif thing.kind == "Force":
+            if thing.declaration.kind == "ActionOnlyForce":
+                self._entry("forces", thing)
             self._markers(thing)
 
     def attempt(self, thing: Thing, find: Callable[[], Any]) -> Any:

@@ -19,6 +19,13 @@ SHARE = (
 )
 
 
+COMMANDED = (
+    "  Solver commands of tmplt_run give their numbers by keyword, from the data sets, and make a cylinder",
+    "  the master surface (paper, 3.1). Panels of contacts show other numbers, which these commands replace.",
+    "  That forces act at nodes, as in the paper, no command says : choose it in the panels, or run the",
+    "  script that mdlgen mdl --script writes.",
+)
+
 FRAME = (
     "Bushings : MotionSolve has displacement and force in the axes of marker J; the local run of mdlgen has",
     "  the frame halfway between the two bodies. Both agree where the angle between these is small.",
@@ -90,6 +97,7 @@ def _contacts(model: Model, scene: SceneView) -> list[str]:
     lines = [
         f"Contacts : {pairs.possible} pairs possible, {len(pairs)} kept: those that can meet in the run, "
         f"with a margin of {number(pairs.margin)} mm",
+        *(COMMANDED if scene.laws else ()),
         *SHARE,
         *edge_note(model),
     ]

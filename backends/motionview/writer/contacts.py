@@ -69,9 +69,16 @@ def pair_rows(model: Model) -> list[Pair]:
                 met.stiffness,
                 "".join(f[2] for f in factors),
                 None if not any(f[2] for f in factors) else met.restitution(0.0),
+                _master(one_graphic, two_graphics),
             )
         )
     return made
+
+
+def _master(one: list[str], two: list[str]) -> str:
+    """The side with a cylinder where the other has none: its mesh is the finer one (paper, 3.1)."""
+    first, second = (any(name.startswith("gcyl_") for name in side) for side in (one, two))
+    return "" if first == second else "I" if first else "J"
 
 
 def _sector_values(roller: RollerPart, side: Side) -> tuple[str, str, str]:

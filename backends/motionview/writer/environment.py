@@ -13,6 +13,7 @@ from textwrap import dedent
 from jinja2 import Environment
 
 from mdlgen import templating
+from mdlgen.altair.refinement import GRAPHICS
 from mdlgen.backends.motionview.writer.units import number
 
 _DEFINITION = re.compile(r"^ *\*DefineDataSet\(.*?^ *\*EndDefine\(\)\n", re.M | re.S)
@@ -58,4 +59,5 @@ def environment() -> Environment:
     made.filters["own_definitions"] = own_definitions
     made.filters["without_definitions"] = without_definitions
     made.filters["definitions"] = definitions
+    made.globals.update(GRAPHICS)
     return made

@@ -74,7 +74,18 @@ def unverified(scene: SceneView, whole: bool = True) -> list[str]:
             or any(r.arm and r.arm.sprung for r in scene.rollers),
             "preload torques of SetBush (documented; that they act on the first body is concluded)",
         ),
+        (
+            bool(scene.loads),
+            "ActionOnlyForce with TRANS, and SetForce with LIN three times (documented; seen with ROT, and "
+            "with two LIN and an EXPR) : that components are along the reference marker",
+        ),
         (bool(scene.pairs), "Contact (documented, not seen in a file)"),
+        (
+            bool(scene.laws),
+            "the Force_Contact commands of the run template (documented by keyword) : idstring of a contact, "
+            "as of a motion or a force in a file; should the solver's log refuse them, write the text with "
+            "--set-contact, or run the companion script and delete them",
+        ),
         (
             bool(scene.pairs) and scene.set_contact,
             "SetContact (argument order documented; the word for compute_force_at is not known and left out)",

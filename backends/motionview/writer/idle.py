@@ -13,14 +13,19 @@ from mdlgen.formulas import names
 from mdlgen.model.parameters.names import OF_USER
 from mdlgen.model.tables import Model
 
+# What gives contacts their numbers.
+COMMAND, STATEMENT, SCRIPT = "solver commands", "SetContact", "the companion script"
 _FRICTION = ("mu_s", "mu_d", "v_s", "v_d")
 _DAMPING = ("zeta", "zeta_ty", "tau", "tau_md", "tau_cd", "eta", "eta_md", "eta_cd", "f")
 _STIFFNESS = ("E_md", "E_cd", "k_tx", "k_ty", "k_tz", "D_md", "D_cd", "D_twist", "G", *_DAMPING)
 
 
-def idle_values(model: Model, set_contact: bool, kept: Sequence[int]) -> dict[tuple[str, str], str]:
-    """Reason by (data set, member); `kept` are the contacts (rows) that have statements in the text."""
-    found = _contacts(model, set_contact, kept) | _unused(model)
+def idle_values(model: Model, numbers_by: str, kept: Sequence[int]) -> dict[tuple[str, str], str]:
+    """Reason by (data set, member).
+
+    `numbers_by` is what gives contacts their numbers, `kept` are contacts (rows) that stand in the text.
+    """
+    found = _contacts(model, numbers_by, kept) | _unused(model)
     for p in model.parameters:
         if p.member in ("E_md", "E_cd") and p.path is None:
             found[p.data_set, p.member] = "the first slope of its curve"
@@ -34,7 +39,7 @@ def idle_values(model: Model, set_contact: bool, kept: Sequence[int]) -> dict[tu
         mine = np.array([part == sheet.name for part in model.contacts.part_a], dtype=bool)
         if not set(np.flatnonzero(rubs & mine).tolist()) & set(kept):
             why = "nothing that it may touch has friction"
-        elif not set_contact:
+        elif numbers_by == SCRIPT:
             why = "the companion script sets it"
         else:
             continue
@@ -42,7 +47,7 @@ def idle_values(model: Model, set_contact: bool, kept: Sequence[int]) -> dict[tu
     for roller in model.rollers:
         if roller.speed is not None and roller.profile is None and roller.ramp <= 0.0:
             found[roller.name, "ramp"] = "the text has no ramp"
-    found |= _rims(model, set_contact, kept)
+    found |= _rims(model, numbers_by, kept)
     if model.run.analysis == "static":
         found |= {("run", member): "the run is static" for member in ("end", "print", "h_max", "tol")}
     return found
@@ -70,7 +75,7 @@ def used_by(model: Model, texts: Iterable[str]) -> set[str]:
     return used
 
 
-def _rims(model: Model, set_contact: bool, kept: Sequence[int]) -> dict[tuple[str, str], str]:
+def _rims(model: Model, numbers_by: str, kept: Sequence[int]) -> dict[tuple[str, str], str]:
     """What sectors of rims have that no statement uses."""
     table, found = model.contacts, {}
     for roller in model.rollers:
@@ -80,7 +85,7 @@ def _rims(model: Model, set_contact: bool, kept: Sequence[int]) -> dict[tuple[st
         rubs = any(table.mu_static[row] > 0 or table.mu_dynamic[row] > 0 for row in mine)
         for name in roller.rim.name:
             for member in ("friction", "stiffness", "restitution"):
-                reason = "" if set_contact else "the companion script sets it"
+                reason = "the companion script sets it" if numbers_by == SCRIPT else ""
                 if not mine:
                     reason = "no pair can meet"
                 elif member == "friction" and not rubs:
@@ -90,7 +95,7 @@ def _rims(model: Model, set_contact: bool, kept: Sequence[int]) -> dict[tuple[st
     return found
 
 
-def _contacts(model: Model, set_contact: bool, rows: Sequence[int]) -> dict[tuple[str, str], str]:
+def _contacts(model: Model, numbers_by: str, rows: Sequence[int]) -> dict[tuple[str, str], str]:
     table, found = model.contacts, {}
     kept = {int(table.entry[row]) for row in set(rows)}
     rubs = {int(e) for e in table.entry[(table.mu_static > 0) | (table.mu_dynamic > 0)]}
@@ -100,7 +105,7 @@ def _contacts(model: Model, set_contact: bool, rows: Sequence[int]) -> dict[tupl
                 reason = "no pair can meet"
             elif member in _FRICTION and entry not in rubs:
                 reason = "friction is off"
-            elif not set_contact or member == "v_n":
+            elif numbers_by == SCRIPT or (numbers_by == STATEMENT and member == "v_n"):
                 reason = "the companion script sets it"
             else:
                 continue

@@ -305,6 +305,16 @@ class Pair(NamedTuple):
     stiffer: float = 1.0
     bouncy: str = ""  # reference to a restitution in place of the contact's
     restitution: float | None = None
+    master: str = ""  # I or J: the side whose mesh is the finer one; empty: the solver chooses
+
+
+class LawView(NamedTuple):
+    """Contacts with the same numbers, as solver commands give them."""
+
+    label: str
+    master: str
+    numbers: list[tuple[str, str, str]]  # variable of the template, attribute of the command, formula
+    contacts: list[str]
 
 
 @dataclass(frozen=True)
@@ -333,6 +343,29 @@ class SupportView:
     bushes: list[Bush]
 
 
+class LoadPart(NamedTuple):
+    """What of a load acts on one box: where, and its three components."""
+
+    name: str
+    label: str
+    body: str
+    x: str
+    y: str
+    frame: str  # marker that its box lies in, without m_
+    components: list[str]
+
+
+class LoadView(NamedTuple):
+    """One entry of the spec's list of loads."""
+
+    name: str
+    label: str
+    sheet: str
+    given: list[Value]
+    moment: bool
+    parts: list[LoadPart]
+
+
 @dataclass(frozen=True)
 class SceneView:
     """Everything that the main template loops over."""
@@ -346,12 +379,14 @@ class SceneView:
     run: list[Value]
     sheets: list[SheetView]
     supports: list[SupportView]
+    loads: list[LoadView]
     rollers: list[RollerView]
     planes: list[PlaneView]
     guides: list[GuideView]
     meshes: list[MeshView]
     contacts: list[ContactView]
     pairs: list[Pair]
+    laws: list[LawView]  # of contacts whose numbers stand in solver commands
     probes: list[ProbeView]
     set_contact: bool
 

@@ -13,6 +13,9 @@ from mdlgen.backends.motionview.writer.units import mdl_value, number
 from mdlgen.backends.motionview.writer.views import scene_view
 from mdlgen.model.tables import Ints, Model
 
+OPTIONAL = (
+    "the numbers of its contacts, which the solver commands of the text give at the start of a run anyway"
+)
 # What MotionView takes where a text says nothing [mm/s].
 DEFAULT_SMOOTHING = 1.0
 
@@ -26,25 +29,24 @@ class Numbers(NamedTuple):
 
 
 def reasons(model: Model, set_contact: bool = False, only: str | None = None) -> list[str]:
-    """Why the script is needed, one line each."""
+    """Why the script is needed, one line each: the solver commands of a whole text say what it does."""
     found, rows = [], _written(model, only)
-    if len(rows) and not set_contact:
+    if len(rows) and only is not None and not set_contact:
         found.append("the contact numbers: the argument order of SetContact is not certain")
-    elif len(rows) and _smoothing_differs(model, rows):
+    elif len(rows) and set_contact and _smoothing_differs(model, rows):
         found.append("normal_trans_vel of the contacts: SetContact has no documented place for it")
     return found
 
 
 def companion(model: Model, *, set_contact: bool = False, only: str | None = None) -> str | None:
-    """The script, or None where the text says everything."""
-    why = reasons(model, set_contact, only)
-    if not why:
+    """The script, needed or not; None where there is nothing that it could set."""
+    contacts = _numbers(model, set_contact, only)
+    if not contacts:
         return None
     template = environment().get_template("companion.py.j2")
-    contacts = _numbers(model, set_contact, only)
     return template.render(
         name=model.name,
-        reasons=why,
+        reasons=reasons(model, set_contact, only) or [OPTIONAL],
         system=None if only is None else system_view(model, set_contact).variable,
         contacts=contacts,
         follows=follows(contacts),

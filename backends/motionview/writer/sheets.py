@@ -211,11 +211,11 @@ def _points(model: Model, anchor: Anchor, name: str) -> list[tuple[str, str]]:
     """(point, frame) of an anchor; one for each of its boxes where they lie in several frames."""
     sheet, bodies = model.sheets[anchor.sheet], anchor.body.tolist()
     if not apart(model, anchor):
-        return [(f"p_{name}", _frame(sheet, bodies[0]))]
-    return [(f"p_{name}_{k}", _frame(sheet, body)) for k, body in enumerate(bodies)]
+        return [(f"p_{name}", frame_of(sheet, bodies[0]))]
+    return [(f"p_{name}_{k}", frame_of(sheet, body)) for k, body in enumerate(bodies)]
 
 
-def _frame(sheet: SheetPart, body: int) -> str:
+def frame_of(sheet: SheetPart, body: int) -> str:
     """Marker that a box lies in, without m_."""
     bend = sheet.bend
     frame = 0 if bend is None or bend.start == "flat" else int(bend.frames.box[body - sheet.first])

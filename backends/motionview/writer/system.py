@@ -9,7 +9,7 @@ import numpy as np
 
 from mdlgen.altair.rims import Meeting, meetings
 from mdlgen.backends.motionview.writer.contacts import contact_views, pair_rows, rough_pairs
-from mdlgen.backends.motionview.writer.idle import used_by
+from mdlgen.backends.motionview.writer.idle import SCRIPT, STATEMENT, used_by
 from mdlgen.backends.motionview.writer.parts import graphics_of
 from mdlgen.backends.motionview.writer.rows import Attachment, Pair, SystemView, Value
 from mdlgen.backends.motionview.writer.units import number
@@ -29,7 +29,7 @@ def kept_contacts(model: Model) -> Ints:
 def system_view(model: Model, set_contact: bool) -> SystemView:
     """The rows of a Model without its machine, and the attachments."""
     table = model.contacts
-    given = given_values(model, set_contact, kept_contacts(model).tolist())
+    given = given_values(model, STATEMENT if set_contact else SCRIPT, kept_contacts(model).tolist())
     of_sheets = np.flatnonzero(~table.of_machine).tolist()
     scene = replace(
         scene_view(model, set_contact),
@@ -37,6 +37,7 @@ def system_view(model: Model, set_contact: bool) -> SystemView:
         **{kind.table: [] for kind in KINDS},
         contacts=contact_views(model, given, of_sheets),
         pairs=sheet_pairs(model),
+        laws=[],
     )
     return SystemView(
         name=model.name,

@@ -38,12 +38,6 @@ def check_sheets(model: Model) -> None:
     """Raises RefusedError by name for what the text of the sheets cannot represent."""
     refuse_searched(model, "MotionView text")
     refuse_unwritten(model, WRITTEN, "MotionView text")
-    if len(model.loads.body):
-        raise RefusedError(
-            "MotionView text: loads are not written, because no force statement with a certain meaning is "
-            "documented; run this scene locally, or leave the loads out and add them in MotionView",
-            ("loads",),
-        )
 
 
 def emit(model: Model, *, set_contact: bool = False, only: str | None = None) -> str:

@@ -6,9 +6,11 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from mdlgen.altair.statics import static_settings
+from mdlgen.backends.motionview.writer.commands import contact_laws
 from mdlgen.backends.motionview.writer.contacts import contact_views, pair_rows
 from mdlgen.backends.motionview.writer.formula import mdl_formula, rows_of, units_of
-from mdlgen.backends.motionview.writer.idle import idle_values
+from mdlgen.backends.motionview.writer.idle import COMMAND, STATEMENT, idle_values
+from mdlgen.backends.motionview.writer.loads import load_views
 from mdlgen.backends.motionview.writer.parts import WRITTEN
 from mdlgen.backends.motionview.writer.rows import SceneView, Value
 from mdlgen.backends.motionview.writer.sheets import probe_view, sheet_view, support_views
@@ -20,7 +22,8 @@ from mdlgen.model.tables import MachinePart, Model, Parameter
 
 def scene_view(model: Model, set_contact: bool) -> SceneView:
     """All rows of a Model."""
-    given = given_values(model, set_contact, model.pairs.contact.tolist())
+    given = given_values(model, STATEMENT if set_contact else COMMAND, model.pairs.contact.tolist())
+    contacts, pairs = contact_views(model, given, range(len(model.contacts))), pair_rows(model)
     return SceneView(
         name=model.name,
         parameters=given.get(OF_USER, []),
@@ -29,9 +32,11 @@ def scene_view(model: Model, set_contact: bool) -> SceneView:
         run=given["run"],
         sheets=[sheet_view(model, k, given) for k in range(len(model.sheets))],
         supports=support_views(model),
+        loads=load_views(model, given),
         **{kind.table: _views(model, getattr(model, kind.table), given) for kind in KINDS},
-        contacts=contact_views(model, given, range(len(model.contacts))),
-        pairs=pair_rows(model),
+        contacts=contacts,
+        pairs=pairs,
+        laws=[] if set_contact else contact_laws(contacts, pairs),
         probes=[probe_view(model, probe) for probe in model.probes],
         set_contact=set_contact,
     )
@@ -41,9 +46,9 @@ def _views(model: Model, parts: tuple[MachinePart, ...], given: Mapping[str, lis
     return [WRITTEN[type(part)].view(model, part, given[part.name]) for part in parts]
 
 
-def given_values(model: Model, set_contact: bool, kept: Sequence[int]) -> dict[str, list[Value]]:
-    """Members by data set, in the order of the parameters; `kept` as in `idle_values`."""
-    idle = idle_values(model, set_contact, kept)
+def given_values(model: Model, numbers_by: str, kept: Sequence[int]) -> dict[str, list[Value]]:
+    """Members by data set, in the order of the parameters; `numbers_by` and `kept` as in `idle_values`."""
+    idle = idle_values(model, numbers_by, kept)
     units, rows = units_of(model), rows_of(model)
     tables: dict[str, list[Value]] = {}
     for p in model.parameters:

@@ -37,8 +37,8 @@ def anchor(
 
 
 def lower_loads(scene: Scene, sheets: tuple[SheetPart, ...]) -> Loads:
-    rows = []
-    for load in scene.loads:
+    rows, entries = [], []
+    for entry, load in enumerate(scene.loads):
         sheet = next(s for s in sheets if s.name == load.sheet)
         if load.at is not None:
             found = grid.boxes_at(sheet, load.at)
@@ -54,11 +54,14 @@ def lower_loads(scene: Scene, sheets: tuple[SheetPart, ...]) -> Loads:
             force = load.stress * section * outward
         for body, local, share in targets:
             rows.append((body, local, sheet.rotation @ force * share, sheet.rotation @ moment * share))
+            entries.append(entry)
     count = len(rows)
     body, local, force, moment = [list(c) for c in zip(*rows, strict=True)] if rows else ([], [], [], [])
     return Loads(
         np.array(body, dtype=np.int64),
         *(np.array(v, dtype=float).reshape(count, 3) for v in (local, force, moment)),
+        np.array(entries, dtype=np.int64),
+        tuple(load.edge or "" for load in scene.loads),
     )
 
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from mdlgen.formulas import is_formula
+from mdlgen.model.parameters.loads import load_rows
 from mdlgen.model.parameters.machine import center_rows, guide_rows, mesh_rows, plate_press_rows, roller_rows
 from mdlgen.model.parameters.names import FRICTION, NAMED_AXES, OF_USER, in_text, unit
 from mdlgen.model.parameters.run import run_rows, step_source
@@ -38,13 +39,13 @@ def parameters(
 def unfollowed(scene: Scene, rows: tuple[Parameter, ...]) -> tuple[tuple[str, str], ...]:
     """Formulas of values that no row has, and that so are numbers in a text: where they stand, and texts.
 
-    Loads are not among them: with them a text is refused; of nips the rollers are there.
+    Of nips the rollers are there.
     """
     had = {row.path for row in rows} | {_source(scene, row)[0] for row in rows if row.formula}
     return tuple(
         (".".join(map(str, path)), formula)
         for path, formula in sorted(scene.formulas.items(), key=lambda item: str(item[0]))
-        if path not in had and path[0] not in ("loads", "nips") and path[2:3] != ("at",)
+        if path not in had and path[0] != "nips" and path[2:3] != ("at",)
     )
 
 
@@ -133,4 +134,4 @@ def _given(scene: Scene, starts: dict[str, tuple[float, float]], run: RunSetting
             ("v_n", "Smoothing velocity of the damping", smooth, "mm/ms", "smoothing"),
         ):
             rows.append(Parameter(group, member, label, value, shown, (*base, path) if path else None))
-    return [*rows, *run_rows(scene, run)]
+    return [*rows, *load_rows(scene), *run_rows(scene, run)]

@@ -48,6 +48,8 @@ class Loads(Frozen):
     local: Floats  # (n, 3)
     force: Floats  # [N], (n, 3)
     moment: Floats  # [N mm], (n, 3)
+    entry: Ints  # of the spec's list, (n,)
+    edge: tuple[str, ...]  # of each entry; empty: at a point
 
 
 @dataclass(frozen=True)

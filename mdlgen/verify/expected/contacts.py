@@ -21,6 +21,17 @@ CONTACT_NUMBERS = (
 )
 
 
+def masters(model: Model) -> Table:
+    """The side of each contact whose surface the solver must take as the master: a cylinder against another
+    shape (paper, 3.1). Elsewhere the solver chooses."""
+    rows = contacts(model)
+    found = []
+    for words in rows.words:
+        rounds = [any(name.startswith("gcyl_") for name in side) for side in (words[4:5], words[5:])]
+        found.append(("" if rounds[0] == rounds[1] else "I" if rounds[0] else "J",))
+    return table(rows.names, {}, found)
+
+
 def contacts(model: Model) -> Table:
     """One row for each pair of bodies that may touch, and each sector of a rim in it; without friction its
     four numbers are 0."""

@@ -13,6 +13,7 @@ from mdlgen.model.tables import (
     Model,
     SheetPart,
 )
+from mdlgen.verify.expected.loads import load_points
 from mdlgen.verify.expected.parts.kinds import kind_of
 from mdlgen.verify.expected.units import reach
 from mdlgen.verify.tables import Table, table
@@ -51,6 +52,9 @@ def points(model: Model) -> Table:
         split = apart(model, anchor)
         names += [f"p_{name}_{k}" for k in range(len(found))] if split else [f"p_{name}"]
         places.append(found if split else found[:1])
+    if len(model.loads.body):
+        names += [f"p_frc_{row}" for row in range(len(model.loads.body))]
+        places.append(load_points(model))
     for part in model.machine:
         for name, place in kind_of(part).points(model, part):
             names.append(name)

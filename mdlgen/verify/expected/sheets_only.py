@@ -11,7 +11,7 @@ from mdlgen.model.tables import Model
 from mdlgen.verify.expected.parts.kinds import kind_of
 from mdlgen.verify.tables import ANY, Table
 
-MACHINE_KINDS = ("springs", "cylinders", "motions", "vectors", "run", "gravity", "units")
+MACHINE_KINDS = ("springs", "cylinders", "motions", "vectors", "run", "gravity", "units", "masters")
 
 
 def of_sheets(said: dict[str, Table], model: Model, own_machine: bool) -> dict[str, Table]:

@@ -13,6 +13,7 @@ from mdlgen.verify.expected.bodies import bodies, velocities
 from mdlgen.verify.expected.bushings import bushings, curve_laws, curves, springs
 from mdlgen.verify.expected.graphics import boxes, surfaces
 from mdlgen.verify.expected.joints import joints
+from mdlgen.verify.expected.loads import loads
 from mdlgen.verify.expected.markers import markers, outputs, vectors
 from mdlgen.verify.expected.motions import Times, motions
 from mdlgen.verify.expected.parts.mesh import mesh_files, meshes
@@ -41,4 +42,5 @@ def expected(model: Model, times: Times) -> dict[str, Table]:
         "vectors": vectors(model),
         "surfaces": surfaces(model),
         "outputs": outputs(model),
+        "loads": loads(model),
     }

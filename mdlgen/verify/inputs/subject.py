@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -12,7 +13,7 @@ from mdlgen.model.tables import Model
 from mdlgen.paths import read_exactly, read_text
 from mdlgen.registry import TEXT, emitter
 from mdlgen.spec.scene import Scene
-from mdlgen.verify.expected.contacts import contacts
+from mdlgen.verify.expected.contacts import contacts, masters
 from mdlgen.verify.expected.data import data
 from mdlgen.verify.expected.motions import stations
 from mdlgen.verify.expected.run import gravity, run, units
@@ -20,7 +21,7 @@ from mdlgen.verify.expected.sheets_only import of_sheets
 from mdlgen.verify.expected.whole import expected
 from mdlgen.verify.inputs.systems import definition, inside
 from mdlgen.verify.readback import script
-from mdlgen.verify.readback.values import Values
+from mdlgen.verify.readback.values import Values, commanded
 from mdlgen.verify.tables import Table
 
 
@@ -43,6 +44,7 @@ class Read:
     def __init__(self, reading: Any, prefix: str):
         self.reading = reading
         self.prefix = prefix
+        self._by_command = True
 
     @cached_property
     def values(self) -> dict[str, Any]:
@@ -52,6 +54,18 @@ class Read:
     def has_numbers(self) -> bool:
         """Whether the text itself gives contacts their numbers."""
         return any("penalty" in record for record in self.values["contacts"].values())
+
+    @cached_property
+    def commanded(self) -> dict[str, dict[str, float]]:
+        """Numbers that solver commands give contacts, by contact."""
+        return commanded(self.values) if self._by_command else {}
+
+    def without_commands(self) -> Read:
+        """The same text, whose solver commands for contacts are passed over."""
+        found = copy(self)
+        found.__dict__.pop("commanded", None)
+        found._by_command = False
+        return found
 
     def changed(self, path: str, number: float) -> Values | None:
         """Values of what depends on a value of a data set, were it `number`."""
@@ -79,7 +93,7 @@ class Subject:
         """What must be said of a Model."""
         model = model or self.model
         said = expected(model, self.times) | {"data": data(model), "contacts": contacts(model)}
-        said |= {"run": run(model), "gravity": gravity(model), "units": units()}
+        said |= {"run": run(model), "gravity": gravity(model), "units": units(), "masters": masters(model)}
         return of_sheets(said, model, self.text is not None) if self.only else said
 
     def reads(self, set_contact: bool) -> list[Read]:
@@ -108,6 +122,6 @@ class Subject:
         return [Read(reading, instance) for instance in instances]
 
     def script(self, set_contact: bool) -> script.Script:
-        """The script that mdlgen writes for a text; empty where it needs none."""
+        """The script that mdlgen writes for a text; empty where there is nothing that it could set."""
         text = self.backend.companion(self.model, set_contact=set_contact, only=self.only)
         return script.NONE if text is None else script.read(text)

@@ -11,6 +11,7 @@ from mdlgen.verify.readback.script import Script
 from mdlgen.verify.readback.values import (
     ReadBack,
     Values,
+    commanded,
     contact_table,
     data_table,
     gravity_of,
@@ -28,15 +29,15 @@ def perturb_all(
     text: Read,
     numbers: Script,
     perturbed: Perturbed,
-    contacts_only: bool,
+    of: str,
     progress: Progress | None,
 ) -> None:
-    """Adds to `perturbed`. Of a second text of the same scene only the values of contacts need it."""
+    """Adds to `perturbed`; `of` is what names of values begin with: of a second text only few need it."""
     perturber = _Perturber(subject, text, numbers, perturbed)
     members = text.values["members"]
     chosen = [k for k in perturbations(subject.scene, subject.model) if k.path in perturber.known]
-    if contacts_only:
-        chosen = [k for k in chosen if k.path.startswith("ds_contact_")]
+    if of:
+        chosen = [k for k in chosen if k.path.startswith(of)]
     else:
         paths = {k.path for k in chosen}
         for path, member in members.items():
@@ -47,7 +48,8 @@ def perturb_all(
         if progress is not None:
             progress(done, len(chosen))
         if members[perturbation.path]["edit"] == "NO_EDIT":
-            perturbed.shown_only.add(perturbation.path)
+            if not of:  # another text may use it
+                perturbed.shown_only.add(perturbation.path)
         else:
             perturbed.shown_only.discard(perturbation.path)
             perturber.perturb(perturbation)
@@ -62,8 +64,9 @@ class _Perturber:
         self.perturbed = perturbed
         self.script = numbers
         self.known = set(subject.said()["data"].names) & set(text.values["members"])
-        self.kinds = set(subject.said()) - {"units"}
-        if not text.has_numbers and not numbers.follows:
+        self.kinds = set(subject.said()) - {"units", "masters"}
+        self.commands = text.commanded
+        if not text.has_numbers and not numbers.follows and not self.commands:
             self.kinds.discard("contacts")
         self.base = self._tables(text.values)
 
@@ -89,13 +92,17 @@ class _Perturber:
         tables = ReadBack(self.subject.times, self.text.values["markers"]).tables(values)
         tables["data"] = data_table(values)
         contacts = values.get("contacts", {})
-        if self.script.follows:  # contacts of the text change with values that no statement of theirs has
+        changed = commanded(values) if self.commands else {}
+        if changed:  # numbers of contacts none of whose statements changes
+            contacts = self.text.values["contacts"] | contacts
+            numbers = {name: self.commands.get(name, {}) | changed.get(name, {}) for name in contacts}
+        elif self.script.follows:  # contacts of the text change with values that no statement of theirs has
             sets, contacts = dict(self.text.values["datasets"]), self.text.values["contacts"] | contacts
             for holder, members in values.get("datasets", {}).items():
                 sets[holder] = {**sets.get(holder, {}), **members}
             numbers = {name: self.script.numbers(name, sets) for name in contacts}
         else:
-            numbers = {name: self.script.numbers(name) for name in contacts}
+            numbers = {n: self.script.numbers(n) | self.commands.get(n, {}) for n in contacts}
         tables["contacts"] = contact_table({**values, "contacts": contacts}, numbers)
         tables["run"] = run_table(values)
         standard = self.text.values["standard"]

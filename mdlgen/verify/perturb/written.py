@@ -11,7 +11,7 @@ from mdlgen.model import grid
 from mdlgen.model.lower import lower
 from mdlgen.model.lowering.supports import joined, support_bushings
 from mdlgen.model.parameters.starts import FOLLOWING, found, held
-from mdlgen.model.tables import SUPPORT, Anchor, Bushings, Model, Press, RollerPart
+from mdlgen.model.tables import SUPPORT, Anchor, Bushings, Loads, Model, Press, RollerPart
 from mdlgen.spec.scene import Scene
 
 BEGINS = ("touch", "start")  # of what is pressed, computed for the scene as it is written
@@ -26,7 +26,8 @@ def as_written(scene: Scene, base: Model, before: Scene) -> Model:
     guides = tuple(replace(new, facets=old.facets) for new, old in shown)
     rims = zip(made.rollers, base.rollers, strict=True)
     made = replace(made, rollers=tuple(_shown(new, old) for new, old in rims))
-    made = replace(made, pairs=base.pairs, probes=probes, supports=supports, guides=guides)
+    loads = _loaded(made, base, scene)
+    made = replace(made, pairs=base.pairs, probes=probes, supports=supports, guides=guides, loads=loads)
     if not supports:
         return made
     held = support_bushings(scene.supports, supports, made.sheets, made.bodies)
@@ -48,6 +49,26 @@ def _begins(made: Model, scene: Scene, base: Model, before: Scene) -> Model:
         if p.data_set in begun and p.member in FOLLOWING:
             rows.append(replace(p, value=numbers[p.data_set][p.member]) if p.follows else p)
     return placed(replace(made, parameters=tuple(rows)), begun)
+
+
+def _loaded(made: Model, base: Model, scene: Scene) -> Loads:
+    """Loads on the boxes that they were written for."""
+    was, now, turn = base.loads, made.loads, {s.name: s for s in made.sheets}
+    rows = {pair: k for k, pair in enumerate(zip(now.entry.tolist(), now.body.tolist(), strict=True))}
+    count = dict(zip(*np.unique(was.entry, return_counts=True), strict=True))
+    local, force, moment = np.zeros((3, len(was.body), 3))
+    for k, (entry, body) in enumerate(zip(was.entry.tolist(), was.body.tolist(), strict=True)):
+        load = scene.loads[entry]
+        if load.at is None:
+            row = rows[entry, body]
+            local[k], force[k], moment[k] = now.local[row], now.force[row], now.moment[row]
+            continue
+        assert load.force is not None
+        sheet = turn[load.sheet]
+        row, column = divmod(body - sheet.first, sheet.n_x)
+        local[k] = np.array([*load.at, 0.0]) - grid.local(sheet, 2.0 * column + 1, 2.0 * row + 1)
+        force[k] = sheet.rotation @ np.array(load.force) / count[entry]
+    return replace(was, local=local, force=force, moment=moment)
 
 
 def _shown(new: RollerPart, old: RollerPart) -> RollerPart:

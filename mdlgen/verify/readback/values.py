@@ -19,7 +19,17 @@ Values = Mapping[str, Mapping[str, Any]]
 Row = tuple[list[Any], tuple[str, ...]]  # numbers, words
 
 _NAN = float("nan")
+_LOAD = re.compile(r"frc_\d+")
 _MARKER = re.compile(r"[A-Za-z_][\w.]*(?=\s*[,)])")
+_CONTACT_ATTRIBUTES = {
+    "penalty": "penalty",
+    "restitution_coeff": "restitution",
+    "normal_trans_vel": "normal_trans_vel",
+    "mu_static": "mu_static",
+    "mu_dynamic": "mu_dynamic",
+    "stiction_trans_vel": "stiction_velocity",
+    "friction_trans_vel": "friction_velocity",
+}
 # Of the commands that say how a model is run: attribute -> what it is here.
 _RUN_ATTRIBUTES = {
     "Simulate": {"analysis_type": "analysis", "end_time": "end", "print_interval": "print"},
@@ -81,6 +91,9 @@ class ReadBack:
             "vectors": _table(values.get("vectors", {}), _vector, 3),
             "surfaces": _table(values.get("surfaces", {}), _surface, 0),
             "outputs": _table(values.get("outputs", {}), self._output, 6),
+            "loads": _table(
+                {n: r for n, r in values.get("forces", {}).items() if _LOAD.fullmatch(n)}, _load, 9
+            ),
         }
 
     def _motion(self, name: str, record: Mapping[str, Any]) -> Row:
@@ -206,9 +219,18 @@ def _surface(name: str, record: Mapping[str, Any]) -> Row:
     return [], (record["type"], f"{len(rows)} rows", *(m for row in rows for m in row))
 
 
+def _load(name: str, record: Mapping[str, Any]) -> Row:
+    """A force and a moment; of an expression, which no load here is, there is no number."""
+    return [*record["origin"], *record["force"], *record["torque"]], (record["body"],)
+
+
 def marker_table(values: Values, reach: float = 0.0) -> Table:
-    """All markers, those too that belong to bodies, joints and bushings; `reach` is the size of the scene."""
-    found = _table(values.get("markers", {}), _marker, 12)
+    """All markers, those too that belong to bodies, joints and bushings; `reach` is the size of the scene.
+
+    Left out are those that MotionView makes for a load on ground, which nothing uses.
+    """
+    unused = {f"{name}.{end}" for name in values.get("forces", {}) for end in ("j", "jfloat")}
+    found = _table({n: r for n, r in values.get("markers", {}).items() if n not in unused}, _marker, 12)
     return replace(found, scale=np.broadcast_to([reach] * 3 + [1.0] * 9, found.numbers.shape))
 
 
@@ -236,6 +258,27 @@ def contact_table(values: Values, numbers: Mapping[str, Mapping[str, float]]) ->
         return found, (record["type"], record["friction"], *named)
 
     return _table(values.get("contacts", {}), row, len(CONTACT_NUMBERS))
+
+
+def commanded(values: Values) -> dict[str, dict[str, float]]:
+    """Numbers that solver commands give contacts, by contact."""
+    found: dict[str, dict[str, float]] = {}
+    for command in (c for commands in values.get("commands", {}).values() for c in commands):
+        if command["command"] == "Force_Contact":
+            given = {
+                own: _float(command[name]) for name, own in _CONTACT_ATTRIBUTES.items() if name in command
+            }
+            found.setdefault(command.get("id", ""), {}).update(given)
+    return found
+
+
+def master_table(values: Values) -> Table:
+    """Which side of each contact is the master, of a deck or of the solver commands of a text."""
+    sides = {name: record.get("master", "") for name, record in values.get("contacts", {}).items()}
+    for command in (c for commands in values.get("commands", {}).values() for c in commands):
+        if command["command"] == "Force_Contact":
+            sides[command.get("id", "")] = command.get("master_surface", "")
+    return _table(sides, lambda n, side: ([], (side,)), 0)
 
 
 def run_table(values: Values) -> Table:

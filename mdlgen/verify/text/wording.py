@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Mapping
+from itertools import zip_longest
 from typing import Any
 
 from mdlgen.verify.readback.values import Values
@@ -39,10 +40,12 @@ def _commands(own: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Diff
     """What a template writes otherwise, to the numbers."""
     for name in {**own, **given}:
         mine, theirs = own.get(name, ()), given.get(name, ())
-        words = tuple(c["command"] for c in mine), tuple(c["command"] for c in theirs)
-        if words[0] != words[1]:
-            what = f"are {' '.join(words[1])[:200]}, not {' '.join(words[0])[:200]}"
-            yield Difference("commands", name, what)
+        words = [(m.get("command"), t.get("command")) for m, t in zip_longest(mine, theirs, fillvalue={})]
+        odd = next((k for k, (m, t) in enumerate(words) if m != t), None)
+        if odd is not None:
+            due, there = words[odd]
+            what = f"{len(theirs)} elements, not {len(mine)}; the first other one, {odd + 1}, is"
+            yield Difference("commands", name, f"{what} {there or 'nothing'}, not {due or 'nothing'}")
             continue
         for k, (one, other) in enumerate(zip(mine, theirs, strict=True)):
             for attribute in {**one, **other}:

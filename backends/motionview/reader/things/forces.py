@@ -227,7 +227,7 @@ class CoilSpring(_Link):
 
 
 class Force(_Link):
-    """A force or torque between two bodies, or on one; its markers, not its size.
+    """A force or torque between two bodies, or on one; its size where it is on one, along a marker's axes.
 
     `*ActionReactionForce( name, label, word, body_1, body_2, point, ... )` and
     `*ActionOnlyForce( name, label, word, body, point, marker )`. Where i and j are was read from a deck.
@@ -261,6 +261,47 @@ class Force(_Link):
     def p_jfloat(self) -> PartMarker:
         """The marker on the second body that moves with the first."""
         return self._part("jfloat", "Float Marker J", "b2", self.start)
+
+    def p_reference(self) -> Any:
+        """The marker along whose axes the components of a force on one body are."""
+        if not self.statement.arg(5):
+            return self.world.built_in("Global_Frame")
+        return self.related(5, "Marker")
+
+    def p_components(self) -> tuple[Vector | None, Vector | None]:
+        """Force and torque along the global axes; None for what is no number."""
+        chosen = self.chosen("setforce")
+        word = self.statement.arg(2).upper()
+        if chosen is None:
+            return None, None
+        laws = Laws(self, chosen)
+        found: dict[str, Vector | None] = {}
+        for kind in ("TRANS", "ROT"):
+            found[kind] = (0.0, 0.0, 0.0)
+            if kind in word.split("_"):
+                given = (laws.law(), laws.law(), laws.law())
+                found[kind] = self._turned(given)
+        return found["TRANS"], found["ROT"]
+
+    def _turned(self, given: tuple[float | str, ...]) -> Vector | None:
+        """Components along the global axes."""
+        numbers = [v for v in given if isinstance(v, float)]
+        if len(numbers) < 3:
+            return None
+        axes = self.world.frame(self.ask("reference"))[1]
+        x, y, z = (sum(v * axis[k] for v, axis in zip(numbers, axes, strict=True)) for k in range(3))
+        return x, y, z
+
+    def record(self) -> dict[str, Any]:
+        force, torque = self.ask("components")
+        return {
+            "label": self.ask("label"),
+            "body": self.ask("b1").name,
+            "origin": self.start(),
+            "reference": self.ask("reference").name,
+            "force": force or (None, None, None),
+            "torque": torque or (None, None, None),
+        }
 
     def markers(self) -> list[PartMarker]:
         found = super().markers()

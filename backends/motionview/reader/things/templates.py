@@ -18,6 +18,7 @@ _PRINT = re.compile(r"(.*?),\s*(%[-+ #0]*\d*(?:\.\d+)?[idfeEgGs])\s*", re.S)
 _OWN = re.compile(
     r"\s*(?:for|if|elseif|while)\s*\(|\s*(?:else|endif|endloop|endwhile)\s*\Z|'|.*(?<![=!<>])=(?!=)", re.S
 )
+_ASSIGNMENT = re.compile(r"([A-Za-z_]\w*)\s*=(?!=)\s*([^=]+)")
 _COMMENT = re.compile(r"<!--.*?-->", re.S)
 _COMMAND = re.compile(r"<(\w+)\b([^<>]*?)/?>", re.S)
 _ATTRIBUTE = re.compile(r'\b(\w+)\s*=\s*"([^"]*)"')
@@ -26,8 +27,8 @@ _ATTRIBUTE = re.compile(r'\b(\w+)\s*=\s*"([^"]*)"')
 class Template(Thing):
     """`*Template( name, label, use, definition, ... )`: text with a language of its own.
 
-    Evaluated are `{value}`, `{value, %.15g}` and the statement `{format, %.15g}`; not loops, conditions and
-    variables.
+    Evaluated are `{value}`, `{value, %.15g}`, the statement `{format, %.15g}`, variables `{name = value}`;
+    not loops, conditions and formulas over variables.
     """
 
     kind = "Template"
@@ -46,15 +47,14 @@ class Template(Thing):
         return None if definition is None or definition.statement is None else definition.statement.body
 
     def p_pasted(self) -> str | None:
-        """Its text where that holds nothing but values to paste; None where it has statements of its own."""
+        """Its text where that holds nothing but values and variables; None where it has other statements."""
         body = self.ask("body")
         if body is None or "{" in (plain := _BRACES.sub("", body)) or "}" in plain:
-            return None
-        if any(_OWN.match(m[1]) for m in _BRACES.finditer(body)):
             return None
         definition = self.world.program.definitions[self.statement.arg(3)]
         given = dict(zip(definition.parameters, self.statement.args[4:], strict=False))
         renamed = {name: actual for name, actual in given.items() if name != actual}
+        variables: dict[str, Any] = {}
         out, at, usual = [], 0, USUAL
         for match in _BRACES.finditer(body):
             out.append(body[at : match.start()])
@@ -65,22 +65,29 @@ class Template(Thing):
                 if text == "format":
                     usual = form
                     continue
+            made = _ASSIGNMENT.fullmatch(text)
+            if made is not None:
+                text = made[2]
+            elif text in variables:
+                out.append(_printed(variables[text], form))
+                continue
+            if _OWN.match(text) or variables.keys() & set(_NAMES.findall(text)):
+                return None
             if renamed:
                 text = _NAMES.sub(lambda name: renamed.get(name[0], name[0]), text)
-            out.append(self._printed(text, form))
+            value = self._value(text)
+            if made is not None:
+                variables[made[1]] = value
+            else:
+                out.append(_printed(value, form))
         return "".join([*out, body[at:]])
 
-    def _printed(self, text: str, form: str) -> str:
-        """A value as it is printed."""
-        scope = self.scope
-        value = scope.values.get(text)  # many commands have the same
+    def _value(self, text: str) -> Any:
+        values = self.scope.values
+        value = values.get(text)  # many commands have the same
         if value is None:
-            value = scope.values[text] = self.world.compiled(text).run(scope)
-        if not isinstance(value, float):
-            return shown(value)
-        if form[-1] in "id":
-            return form % int(value)
-        return form % value if form[-1] != "s" else shown(value)
+            value = values[text] = self.world.compiled(text).run(self.scope)
+        return value
 
     def p_commands(self) -> tuple[dict[str, str], ...] | None:
         """The elements that it writes, each with its attributes; None where its text is not known."""
@@ -97,3 +104,10 @@ class Template(Thing):
             "arguments": self.statement.args[3:],
             "text": self.ask("pasted"),
         }
+
+
+def _printed(value: Any, form: str) -> str:
+    """A value as it is printed."""
+    if not isinstance(value, float) or form[-1] == "s":
+        return shown(value)
+    return form % int(value) if form[-1] in "id" else form % value
