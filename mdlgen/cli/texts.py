@@ -58,6 +58,14 @@ def mdl(
             help="Write contact numbers with SetContact, whose order is unverified, not in solver commands.",
         ),
     ] = False,
+    target: Annotated[
+        str,
+        typer.Option(
+            "--target",
+            metavar="2021|2025",
+            help="Version of MotionView: 2025 documents contacts without words for flipped normals.",
+        ),
+    ] = "2021",
     script: Annotated[
         bool,
         typer.Option(
@@ -86,28 +94,26 @@ def mdl(
 
     model = model_of(spec, sets, limits)
     backend = registry.emitter(registry.TEXT)
-    text = backend.emit(model, set_contact=set_contact, only=only)
+    text = backend.emit(model, set_contact=set_contact, only=only, target=target)
     reasons = backend.companion_reasons(model, set_contact, only)
     wanted = bool(reasons) or script or companion is not None
     program = backend.companion(model, set_contact=set_contact, only=only) if wanted else None
     to_stdout = output is not None and str(output) == "-"
     own_name = Path(f"{model.name}_{only}.mdl" if only else f"{model.name}.mdl")
-    target = own_name if output is None or to_stdout else output
-    beside = companion or target.with_name(f"{target.stem}_mview.py")
-    files: dict[Path, str | bytes] = {} if to_stdout else {target: text}
+    path = own_name if output is None or to_stdout else output
+    beside = companion or path.with_name(f"{path.stem}_mview.py")
+    files: dict[Path, str | bytes] = {} if to_stdout else {path: text}
     if program is not None and (companion is not None or not to_stdout):
         files[beside] = program
-    if len({p.resolve() for p in (target, beside)}) == 1:
+    if len({p.resolve() for p in (path, beside)}) == 1:
         raise OutputError(f"{beside}: is named for both the text and the script")
     paths.write_together(files)
     if to_stdout:
         typer.echo(text, nl=False)
     elif not quiet:
-        say(f"wrote {target}")
+        say(f"wrote {path}")
     if program is not None and not quiet:
-        state = (
-            f"wrote {beside}" if beside in files else "a script is needed too (--companion FILE writes it)"
-        )
+        state = f"wrote {beside}" if beside in files else "a script goes with it (--companion FILE writes it)"
         say(f"{state}; run it in MotionView after the text" + (", since MDL leaves out:" if reasons else ""))
         for reason in reasons:
             say(f"  {reason}")

@@ -132,7 +132,7 @@ def _given(
     """What a given text has that no value shows, its wording, and its script."""
     one = reads[0]
     mine = subject.script(one.has_numbers)
-    our = subject.own(one.has_numbers)
+    our = subject.own(one.has_numbers, like=one)
     names = frozenset(our.reading.program.definitions) if subject.only else None
     in_host = subject.only is not None and one.reading.program.begin is not None
     scope = Scope(one.reading, names, tuple(r.prefix for r in reads) if subject.only else ())

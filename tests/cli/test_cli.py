@@ -246,12 +246,26 @@ def test_schema_is_json(mdl: Run) -> None:
 
 def test_mdl_writes_the_text_and_the_script(mdl: Run, tmp_path: Path) -> None:
     ended = mdl("mdl", FOUR, *SMALL)
-    assert (ended.code, ended.out) == (0, "")
-    assert files(tmp_path) == ["transport_4x4.mdl", "transport_4x4_mview.py"]
+    assert (ended.code, ended.out, ended.err) == (0, "", "wrote transport_4x4.mdl\n")
+    assert files(tmp_path) == ["transport_4x4.mdl"]
     model = mdlgen.lower(mdlgen.load(FOUR, ["sheets.note.boxes=[2,3]"]))
     assert (tmp_path / "transport_4x4.mdl").read_text("ascii") == mdlgen.emit(model)
-    for reason in registry.emitter("motionview").companion_reasons(model):
-        assert reason in ended.err
+    assert mdl("mdl", FOUR, *SMALL, "--script").code == 0
+    assert files(tmp_path) == ["transport_4x4.mdl", "transport_4x4_mview.py"]
+    ended = mdl("mdl", FOUR, *SMALL, "--set-contact")
+    (reason,) = registry.emitter("motionview").companion_reasons(model, set_contact=True)
+    assert reason in ended.err
+
+
+def test_mdl_for_a_version_of_motionview(mdl: Run, tmp_path: Path) -> None:
+    for target in ("2021", "2025"):
+        assert mdl("mdl", FOUR, *SMALL, "--target", target, "-o", f"{target}.mdl", "-q").code == 0
+        assert mdl("verify", FOUR, *SMALL, "--text", f"{target}.mdl", "--no-perturb", "-q").code == 0
+    older, newer = ((tmp_path / f"{target}.mdl").read_text() for target in ("2021", "2025"))
+    assert ", gbox_note_0_0, false, BODY" in older and ", gbox_note_0_0, BODY" in newer
+    assert "Target : MotionView 2025" in newer
+    ended = mdl("mdl", FOUR, *SMALL, "--target", "2019")
+    assert ended.code == 2 and "there are: 2021, 2025" in ended.err
 
 
 def test_mdl_names_its_files(mdl: Run, tmp_path: Path) -> None:
@@ -264,7 +278,9 @@ def test_mdl_names_its_files(mdl: Run, tmp_path: Path) -> None:
 def test_mdl_to_standard_output(mdl: Run, tmp_path: Path) -> None:
     ended = mdl("mdl", FOUR, *SMALL, "-o", "-")
     assert ended.out.count("*BeginMDL") == 1 and ended.out.endswith("\n")
-    assert "script" in ended.err
+    assert ended.err == "" and files(tmp_path) == []
+    ended = mdl("mdl", FOUR, *SMALL, "-o", "-", "--script")
+    assert "--companion FILE" in ended.err
     assert files(tmp_path) == []
 
 

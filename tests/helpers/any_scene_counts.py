@@ -182,4 +182,5 @@ def dangling(text: str) -> set[str]:
     """Names of ours that are used and not defined, by a statement with a label or a Define."""
     block = re.sub(r'"[^"\n]*"', '""', text[text.index("*BeginMDL") :])
     defined = re.findall(r'^ *\*\w+\( (\w+), ""|^ *\*Define\w+\( (\w+)', block, re.M)
-    return set(NAME.findall(block)) - {one or two for one, two in defined}
+    standard = {"ds_gravity", "ds_units"}  # of the standard include
+    return set(NAME.findall(block)) - {one or two for one, two in defined} - standard

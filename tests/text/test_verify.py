@@ -129,7 +129,7 @@ def test_a_statement_that_is_left_out_is_caught(only: str | None, tmp_path: Path
         ('"{ds_run.real_end.value}"', '"0.003"'),
         ('"{ds_run.real_h_max.value}"', '"1e-05"'),
         ('"{ds_run.real_tol.value}"', '"0.001"'),
-        ("kgrav, MODEL.ds_run.real_g_z.value", "kgrav, -9810.0"),
+        ("kgrav, MODEL.ds_run.real_g_z.value", "kgrav, -9000.0"),
         ("*SetPoint( p_low, ds_low.real_x.value", "*SetPoint( p_low, 3"),
         ("ds_floor.real_L_z.value^2)/12, ds_floor", "16)/12, ds_floor"),
         ("10*(ds_one.real_k_x.value < ds_one.real_k_y.value", "10*(1 < 0"),
@@ -164,7 +164,9 @@ def test_values_found_again_are_those_of_a_whole_reading() -> None:
         merged = {kind: dict(records) for kind, records in base.items()}
         for kind, records in changed.items():
             for key, record in records.items():
-                merged[kind][key] = {**merged[kind][key], **record} if kind == "datasets" else record
+                merged[kind][key] = (
+                    {**merged[kind][key], **record} if kind in ("datasets", "standard") else record
+                )
         for values in (merged, whole):  # the markers that MotionView makes are not found again
             values["markers"] = {n: r for n, r in values["markers"].items() if "." not in n}
         assert merged == whole, path

@@ -8,6 +8,7 @@ from __future__ import annotations
 from functools import lru_cache
 
 from mdlgen.backends.motionview.reader.statement import Statement
+from mdlgen.backends.motionview.reader.things.drives import flip_step
 
 _TABLE = """
 BeginMDL 2-3            EndMDL 0              StandardInclude 1-3    Include 1
@@ -47,7 +48,7 @@ PerpAxesJoint 9         PerpAxesJointPair 9   ParallelAxesJoint 7-9  PlanarJoint
 Motion 3-5              MotionPair 3-5        SetMotion 4+
 Coupler 5+              SetCoupler 2+
 
-Contact 12+             SetContact 3-11       DeformableSurface 9+   DeformableCurve 3+
+Contact 10+             SetContact 3-11       DeformableSurface 9+   DeformableCurve 3+
 PointToDeformableSurfaceContact 7
 
 Output 4+               SolverVariable 2      SolverVariablePair 2   SetSolverVariable 3-7
@@ -152,7 +153,7 @@ def _contact(statement: Statement, count: int) -> str:
         word, n = statement.arg(at).upper(), statement.arg(at + 2)
         if word != "BODY" or not n.isdigit():
             return f"*Contact: BODY, body, number of graphics is due for body {side}, not {word or 'nothing'}"
-        at += 3 + 2 * int(n)
+        at += 3 + flip_step(statement.args, at) * int(n)
     return "" if at == count else f"*Contact with these graphics takes {at} arguments, not {count}"
 
 

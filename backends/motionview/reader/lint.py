@@ -9,7 +9,7 @@ from mdlgen.backends.motionview.reader import arity
 from mdlgen.backends.motionview.reader.expand import Lost
 from mdlgen.backends.motionview.reader.report import Notes, Trouble
 from mdlgen.backends.motionview.reader.scope import Scope
-from mdlgen.backends.motionview.reader.settable import ACTED, acts, harmless
+from mdlgen.backends.motionview.reader.settable import ACTED, NOT_SHOWN, acts, harmless
 from mdlgen.backends.motionview.reader.statement import Statement
 from mdlgen.backends.motionview.reader.things.external import External
 from mdlgen.backends.motionview.reader.traps import traps
@@ -114,7 +114,10 @@ def _unread(reading: Reading) -> None:
     world = reading.world
     for slot in reading.expansion.slots():
         for (key, part), settings in (slot.settings or {}).items():
-            if key not in ACTED or any(acts(d.kind, key, part) for d in slot.declarations):
+            kinds = [d.kind for d in slot.declarations]
+            if key not in ACTED or any(acts(kind, key, part) for kind in kinds):
+                continue
+            if any((kind, key) in NOT_SHOWN for kind in kinds):
                 continue
             for setting in settings:
                 statement = setting.statement

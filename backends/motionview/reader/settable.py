@@ -45,6 +45,8 @@ ACTED: dict[str, Parts] = {
     "setfilename": _VALUES,
     "setval": _VALUES,
 }
+# What is usual and that no value shows: the size of a force between two bodies.
+NOT_SHOWN = {("ActionReactionForce", "setforce")}
 # Properties of *Set that change no value, as far as files and their exported decks show; and for which value.
 _HARMLESS = {"usecm": "true", "hide_in_post": "", "mesh_coarsening_level": ""}
 _CELL = re.compile(r"\w+\[\d+\]\Z")

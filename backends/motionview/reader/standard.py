@@ -13,6 +13,7 @@ from mdlgen.backends.motionview.reader.source import Source
 
 HOLDER = "sys_misc"
 PREFIX = f"{HOLDER}.ds_"
+FILE = "std_inc.mdl"
 AT_MODEL = ("ds_gravity", "ds_units")
 """Data sets of it that have a name at the model, too: DS_Gravity, DS_Units."""
 
@@ -40,4 +41,4 @@ _TEXT = """
 
 def standard() -> Program:
     """The definitions, and the statement that makes the system."""
-    return program(statements(Source(_TEXT, "std_inc.mdl"), Notes(), part=True), Notes())
+    return program(statements(Source(_TEXT, FILE), Notes(), part=True), Notes())

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from mdlgen.backends.motionview.reader.report import Notes, Trouble
-from mdlgen.backends.motionview.reader.standard import PREFIX
+from mdlgen.backends.motionview.reader.standard import FILE, PREFIX
 from mdlgen.backends.motionview.reader.things.beams import PolyBeam
 from mdlgen.backends.motionview.reader.things.bodies import Body
 from mdlgen.backends.motionview.reader.things.data import Option, Table, Value
@@ -129,8 +129,8 @@ class _Collector:
 
     def _value(self, thing: Value | Option | Table) -> None:
         holder, _, name = thing.name.rpartition(".")
-        if thing.scope.standard:
-            value = self.attempt(thing, lambda: thing.ask("value"))
+        if thing.scope.standard:  # only what this text sets: an include of the user's may say anything
+            value = self.attempt(thing, lambda: thing.ask("value")) if _is_set(thing) else None
             if value is not None:
                 self.found["standard"].setdefault(holder.removeprefix(PREFIX), {})[name] = value
             return
@@ -145,3 +145,9 @@ class _Collector:
         value = self.attempt(thing, lambda: thing.ask("value"))
         if value is not None:
             into[name] = value
+
+
+def _is_set(thing: Thing) -> bool:
+    """Whether a text that was read sets a value of the standard include."""
+    settings = (thing.declaration.slot.settings or {}).values()
+    return any(s.statement.source.file != FILE for found in settings for s in found)

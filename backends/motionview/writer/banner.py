@@ -39,6 +39,7 @@ def banner(model: Model, scene: SceneView) -> list[str]:
     lines = [
         f"{model.name}: MotionView model, written by mdlgen",
         "",
+        target_line(scene),
         "Units : mm, N, kg, s, rad; angles in data sets in degrees",
         f"Gravity : {gravity} mm/s2, set in ds_run, as the times and the longest step of the solver",
     ]
@@ -50,6 +51,15 @@ def banner(model: Model, scene: SceneView) -> list[str]:
         lines += [f"  {reason}" for reason in reasons]
     lines += ["", "Not yet read by a real MotionView; look at these first if it complains :"]
     return lines + [f"  {form}" for form in unverified(scene)]
+
+
+def target_line(scene: SceneView) -> str:
+    """For which version the text is."""
+    other = "2025" if scene.target == "2021" else "2021"
+    has = "with" if scene.target == "2021" else "without"
+    return (
+        f"Target : MotionView {scene.target}, Contact {has} words for flipped normals; else --target {other}"
+    )
 
 
 def sheet_lines(model: Model, scene: SceneView) -> list[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from mdlgen.altair.edges import edge_note
 from mdlgen.backends.motionview.writer import script
-from mdlgen.backends.motionview.writer.banner import SHARE, curve_lines, share_lines, sheet_lines
+from mdlgen.backends.motionview.writer.banner import SHARE, curve_lines, share_lines, sheet_lines, target_line
 from mdlgen.backends.motionview.writer.forms import unverified_system
 from mdlgen.backends.motionview.writer.rows import SystemView
 from mdlgen.backends.motionview.writer.units import number
@@ -17,6 +17,7 @@ def notes(model: Model, system: SystemView) -> list[str]:
     lines = [
         f"{system.name}: the sheets as a MotionView system definition, written by mdlgen",
         "",
+        target_line(system.scene),
         "Units : mm, N, kg, s, rad; angles in data sets in degrees",
         *sheet_lines(model, system.scene),
         *curve_lines(model),

@@ -389,6 +389,7 @@ class SceneView:
     laws: list[LawView]  # of contacts whose numbers stand in solver commands
     probes: list[ProbeView]
     set_contact: bool
+    target: str = "2021"  # version of MotionView whose form of Contact is written
 
 
 class Attachment(NamedTuple):

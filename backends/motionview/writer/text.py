@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from mdlgen.altair.parts import refuse_unwritten
 from mdlgen.altair.rolling import refuse_rolling
 from mdlgen.altair.springs import refuse_compressed
@@ -16,6 +18,9 @@ from mdlgen.errors import RefusedError, SpecError
 from mdlgen.model.external import refuse_externals
 from mdlgen.model.sheet_pairs import refuse_searched
 from mdlgen.model.tables import Model
+
+TARGETS = ("2021", "2025")
+"""Versions of MotionView whose form of Contact is written. Which one changed it is not known."""
 
 
 def check(model: Model) -> None:
@@ -40,21 +45,28 @@ def check_sheets(model: Model) -> None:
     refuse_unwritten(model, WRITTEN, "MotionView text")
 
 
-def emit(model: Model, *, set_contact: bool = False, only: str | None = None) -> str:
+def emit(
+    model: Model, *, set_contact: bool = False, only: str | None = None, target: str = TARGETS[0]
+) -> str:
     """The .mdl text, ASCII with LF line ends; the same Model always gives the same text.
 
     `set_contact` also writes the contact numbers with SetContact, whose argument order is documented but
     not seen in a file; without it they are set by the companion script. `only="sheets"` gives the sheets
     alone, as a system definition to bring into another model.
 
+    `target` is the version of MotionView: 2021 has a word for each graphic of a Contact, whether its normals
+    are flipped, which 2025 documents without.
+
     Raises RefusedError (see `check`), and SpecError where two names would meet in the text.
     """
+    if target not in TARGETS:
+        raise SpecError(f"there is no target {target[:80]!r}; there are: {', '.join(TARGETS)}")
     if only is not None:
         check_only(only)
-        return _sheets(model, set_contact)
+        return _sheets(model, set_contact, target)
     check(model)
     gate.check_names(model)
-    scene = scene_view(model, set_contact)
+    scene = replace(scene_view(model, set_contact), target=target)
     text = environment().get_template("model.mdl.j2").render(scene=scene, banner=banner(model, scene))
     gate.check_text(text)
     return text
@@ -66,10 +78,11 @@ def check_only(word: str) -> None:
         raise SpecError(f"{word[:80]!r} cannot be written alone; there is: sheets")
 
 
-def _sheets(model: Model, set_contact: bool) -> str:
+def _sheets(model: Model, set_contact: bool, target: str) -> str:
     check_sheets(model)
     gate.check_names(model)
     system = system_view(model, set_contact)
+    system = replace(system, scene=replace(system.scene, target=target))
     gate.check_free(system.variable)
     template = environment().get_template("system.mdl.j2")
     text = template.render(system=system, scene=system.scene, banner=notes(model, system))

@@ -23,6 +23,7 @@ from mdlgen.model.tables import MachinePart, Model, Parameter
 def scene_view(model: Model, set_contact: bool) -> SceneView:
     """All rows of a Model."""
     given = given_values(model, STATEMENT if set_contact else COMMAND, model.pairs.contact.tolist())
+    machine: dict[str, Any] = {k.table: _views(model, getattr(model, k.table), given) for k in KINDS}
     contacts, pairs = contact_views(model, given, range(len(model.contacts))), pair_rows(model)
     return SceneView(
         name=model.name,
@@ -33,7 +34,7 @@ def scene_view(model: Model, set_contact: bool) -> SceneView:
         sheets=[sheet_view(model, k, given) for k in range(len(model.sheets))],
         supports=support_views(model),
         loads=load_views(model, given),
-        **{kind.table: _views(model, getattr(model, kind.table), given) for kind in KINDS},
+        **machine,
         contacts=contacts,
         pairs=pairs,
         laws=[] if set_contact else contact_laws(contacts, pairs),

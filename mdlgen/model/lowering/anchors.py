@@ -58,10 +58,12 @@ def lower_loads(scene: Scene, sheets: tuple[SheetPart, ...]) -> Loads:
     count = len(rows)
     body, local, force, moment = [list(c) for c in zip(*rows, strict=True)] if rows else ([], [], [], [])
     return Loads(
-        np.array(body, dtype=np.int64),
-        *(np.array(v, dtype=float).reshape(count, 3) for v in (local, force, moment)),
-        np.array(entries, dtype=np.int64),
-        tuple(load.edge or "" for load in scene.loads),
+        body=np.array(body, dtype=np.int64),
+        local=np.array(local, dtype=float).reshape(count, 3),
+        force=np.array(force, dtype=float).reshape(count, 3),
+        moment=np.array(moment, dtype=float).reshape(count, 3),
+        entry=np.array(entries, dtype=np.int64),
+        edge=tuple(load.edge or "" for load in scene.loads),
     )
 
 

@@ -103,9 +103,11 @@ class Subject:
         path = self.text.path
         return self._read(self.backend.read(self.text.text, str(path), path.parent), str(path))
 
-    def own(self, set_contact: bool) -> Read:
-        """The text that mdlgen writes."""
-        text = self.backend.emit(self.model, set_contact=set_contact, only=self.only)
+    def own(self, set_contact: bool, like: Read | None = None) -> Read:
+        """The text that mdlgen writes; for the version of MotionView that `like` is for."""
+        flips = like is None or any(record["flips"] for record in like.values["contacts"].values())
+        options = {} if flips or not like or not like.values["contacts"] else {"target": "2025"}
+        text = self.backend.emit(self.model, set_contact=set_contact, only=self.only, **options)
         return self._read(self.backend.read(text, "<text>"), "<text>")[0]
 
     def _read(self, reading: Any, file: str) -> list[Read]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from mdlgen.backends.motionview.reader.things.thing import Thing
@@ -44,6 +45,12 @@ class Motion(Thing):
         }
 
 
+def flip_step(args: Sequence[str], at: int) -> int:
+    """Arguments of each graphic of a side that begins at `at`: 2 with a word for flipped normals, as in 2021,
+    1 without, as the help of 2025 has it."""
+    return 2 if at + 4 < len(args) and args[at + 4].lower() in ("true", "false") else 1
+
+
 class ContactThing(Thing):
     """`*Contact( name, label, force, friction, BODY, b1, n, graphic, flip, ..., BODY, b2, ... )`."""
 
@@ -56,11 +63,14 @@ class ContactThing(Thing):
         while at < len(args) and args[at].upper() == "BODY":
             body = self.related(at + 1, "Body")
             count = int(self.number(at + 2))
+            step = flip_step(args, at)
             graphics = [
-                self.related(at + 3 + 2 * k, "Graphic") for k in range(count) if at + 3 + 2 * k < len(args)
+                self.related(at + 3 + step * k, "Graphic")
+                for k in range(count)
+                if at + 3 + step * k < len(args)
             ]
             found.append((body, graphics))
-            at += 3 + 2 * count
+            at += 3 + step * count
         return found
 
     def _flips(self) -> tuple[str, ...]:
