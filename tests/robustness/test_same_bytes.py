@@ -43,7 +43,7 @@ def written(folder: Path, environment: dict[str, str]) -> dict[str, str]:
     """Digests of text, script, deck and a run's series, written by a process of its own."""
     folder.mkdir(parents=True, exist_ok=True)
     commands = [
-        ["mdl", str(SAMPLE), *SETS, "-o", "t.mdl", "-q"],
+        ["mdl", str(SAMPLE), *SETS, "--script", "-o", "t.mdl", "-q"],
         ["deck", str(SAMPLE), *SETS, "-o", "t.xml", "-q"],
     ]
     run = [["run", str(SAMPLE), *SETS, "-o", "d", "-q"]] if environment.get("RUN") else []
