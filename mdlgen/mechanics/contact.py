@@ -10,6 +10,14 @@ is k z^1.5 again. So a roller that passes from box to box feels one sheet. Beyon
 over: there the box keeps the whole, about the contact line of the roller as if the sheet went on, and as an
 edge comes to that line the pressure draws in to it, since force, moment and damping of both sides of that
 place must be the same. `share: pair` gives every box the full k, as MotionSolve does.
+
+Two rollers that face each other across a sheet must press alike on each of two boxes as a joint passes
+between them: what one of them presses further along than the other would turn the boxes out of the sheet, by
+a kink at every joint that passes, and fling a light sheet. With the pressure k z^1.5 of a round of radius R
+each reaches sqrt(2 R z), and in balance z goes with k^(-2/3). So the pressure of rollers that face each other
+is that of rounds whose radii go with k^(2/3) (`spread`, see mdlgen.model.nips); the force and its line are
+those of the roller. Where the radius is not the roller's, the moment on a box that two share is not quite
+that of an energy: by (spread - R) times the pressure's potential at the joint, for each angle of its kink.
 """
 
 from __future__ import annotations
@@ -19,7 +27,7 @@ import math
 import numpy as np
 
 from mdlgen.mechanics.frame import Sector
-from mdlgen.mechanics.point import STORED, Load, Nip, push, push_in_nip
+from mdlgen.mechanics.point import STORED, Load, Nip, passing, push, push_in_nip
 from mdlgen.mechanics.vector import add, back, dot, rotate, scale, sub
 from mdlgen.program.kernel import BORROWS, FUSED, OWNS, njit
 
@@ -43,7 +51,7 @@ def _face(out, face, a, half, b, roller, sector, law):
     """
     p, r, q, sign, free = face
     l0, al, radius, width = roller
-    to, angle, aside = sector
+    to, angle, aside, turns = sector
     k, shared = law.k, law.shared
     ra = a.r
     na = math.sqrt(al[p] * al[p] + al[r] * al[r])
@@ -69,7 +77,8 @@ def _face(out, face, a, half, b, roller, sector, law):
         steep_low, steep_high = math.tan(low_angle), math.tan(high_angle)
         basis = 2.0 * (c1 + c2) * na
     inner = abs(c1 - c2)
-    foundation = 3.0 / (4.0 * math.sqrt(2.0 * radius))
+    wide = law.spread if law.spread > 0.0 else radius
+    foundation = 3.0 / (4.0 * math.sqrt(2.0 * wide))
     for part in range(3):
         # between two corners the face's edges are straight, so two points integrate along the axis
         begin = max(low, base - inner) if part == 1 else max(low, base + inner) if part == 2 else low
@@ -112,12 +121,16 @@ def _face(out, face, a, half, b, roller, sector, law):
             if last <= first:
                 continue
             nearest = min(max(0.0, first), last)
-            depth = radius - math.sqrt(nearest * nearest + e * e)
-            if depth <= 0.0:
-                continue
             edge = (first > 0.0 and open_first) or (last < 0.0 and open_last)
             spread = shared and not edge
-            reach = math.sqrt(radius * radius - e * e)
+            # the round that the pressure is of, as deep at the contact line
+            of, off = radius, e
+            if spread and wide > radius - e:
+                of, off = wide, wide - (radius - e)
+            depth = of - math.sqrt(nearest * nearest + off * off)
+            if depth <= 0.0:
+                continue
+            reach = math.sqrt(of * of - off * off)
             left = -reach if open_first else max(first, -reach)
             right = reach if open_last else min(last, reach)
             # what lies beyond a free edge draws in to the contact line as the edge comes to it
@@ -136,15 +149,16 @@ def _face(out, face, a, half, b, roller, sector, law):
             if spread:
                 # energies of two points add up to it where they have all of the nip, and else do not; the
                 # round is z/(4R) narrower than its parabola
-                part = 0.5 * weight * foundation * (1.0 + 0.25 * (radius - e) / radius)
+                part = 0.5 * weight * foundation * (1.0 + 0.25 * (radius - e) / of)
                 out[STORED] += part * (_stored(right, reach) - _stored(left, reach)) * (radius - e) ** 2
+            pressed = draw * passing(line, across, reach / of, a, b) if spread and turns else 0.0
             for point in range(2 if spread else 1):
                 t = nearest
                 if spread:
                     t = 0.5 * (left + right) + (point - 0.5) * _GAUSS * (right - left)
-                zeta = radius - math.sqrt(t * t + e * e)
+                zeta = of - math.sqrt(t * t + off * off)
                 if spread:
-                    length = 0.5 * (right - left) * (1.0 + lost * (radius - e) / radius)
+                    length = 0.5 * (right - left) * (1.0 + lost * (radius - e) / of)
                     spring = weight * foundation * length * zeta
                     energy = 0.6 * spring * zeta  # 2/5 F z: both points are 2/3 z deep
                     out[STORED] -= energy
@@ -152,11 +166,14 @@ def _face(out, face, a, half, b, roller, sector, law):
                 else:
                     spring = weight * zeta * math.sqrt(zeta)
                     energy = 0.4 * spring * zeta
-                distance = math.sqrt(t * t + e * e)
-                at = add(line, scale(t, across))
-                normal = add(scale(t / distance, across), scale(e / distance, way))
+                distance = math.sqrt(t * t + off * off)
+                normal = add(scale(t / distance, across), scale(off / distance, way))
+                # on the normal's line, as far from the axis as the roller's own surface: it rolls at omega R
+                beyond = (radius - e) * distance / off if spread else radius - distance
+                at = add(add(line, scale(t, across)), scale(beyond, normal))
                 if spread:
-                    push_in_nip(out, at, normal, Nip(line, way), Load(spring, depth, energy), a, b, law)
+                    nip = Nip(line, way, pressed)
+                    push_in_nip(out, at, normal, nip, Load(spring, depth, energy), a, b, law)
                 else:
                     push(out, at, normal, Load(spring, depth, energy), a, b, law)
 
@@ -174,7 +191,7 @@ def local(p, r, q, a, b, c):
 def box_cylinder(out, a, box, b, roller, law):
     """Box a against a Cylinder b; out: see mechanics.point."""
     nowhere = (0.0, 0.0, 0.0)
-    box_sector(out, a, box, b, roller, Sector(roller.axis, WHOLE, nowhere), law)
+    box_sector(out, a, box, b, roller, Sector(roller.axis, WHOLE, nowhere, True), law)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -191,7 +208,7 @@ def box_sector(out, a, box, b, roller, sector, law):
     if dot(gap, gap) > near * near:
         return
     l0, al = back(a.r, gap), back(a.r, roller.axis)
-    seen, width = Sector(back(a.r, sector.middle), sector.angle, sector.aside), roller.width
+    seen, width = Sector(back(a.r, sector.middle), sector.angle, sector.aside, sector.turns), roller.width
     within = (l0, al, roller.radius, width)
     sign = 1.0 if l0[2] >= 0.0 else -1.0
     upright = abs(al[2]) > 0.98  # a roller that stands across the sheet meets its sides only

@@ -56,11 +56,13 @@ class Cylinder(NamedTuple):
 
 class Sector(NamedTuple):
     """The part of a cylinder's round within `angle` [rad] either way of `middle`, a unit vector square to the
-    axis; at most a quarter turn, or contact.WHOLE. Forces act `aside` of where they lie."""
+    axis; at most a quarter turn, or contact.WHOLE. Forces act `aside` of where they lie. What passes a sector
+    that `turns` is pressed in by it (see mechanics.point); what meets a standing one aslant hits it."""
 
     middle: Vector
     angle: float
     aside: Vector
+    turns: bool
 
 
 class Plate(NamedTuple):
@@ -83,7 +85,8 @@ class Plate(NamedTuple):
 class Law(NamedTuple):
     """Numbers of a contact: stiffness k (Eq. 10), whether boxes share it (`share: width`), the share of
     damping beta (Eq. 11), coefficients of friction (Eq. 12), the speeds at which friction has its static and
-    its dynamic one, and that at which damping is whole."""
+    its dynamic one, that at which damping is whole, and the radius of the round that a roller's force is
+    spread as, 0: the roller's (see mechanics.contact)."""
 
     k: float
     shared: bool
@@ -93,6 +96,7 @@ class Law(NamedTuple):
     stiction: float
     sliding: float
     smoothing: float
+    spread: float = 0.0
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -138,6 +142,7 @@ def law_of(pair):
         row[LAW_STICTION],
         row[LAW_SLIDING],
         row[LAW_SMOOTHING],
+        pair.spread,
     )
 
 
@@ -153,4 +158,5 @@ def scaled(law, stiffness, friction, beta):
         law.stiction,
         law.sliding,
         law.smoothing,
+        law.spread,
     )

@@ -100,7 +100,7 @@ def box_guide(out, a, box, b, plate, law):
         if part > 0.0:
             bend = Cylinder((rb[2], rb[5], rb[8]), radius - top + thick, 2.0 * half_b[1])
             own = scaled(law, part, 1.0, law.beta)
-            box_sector(out, a, box, b, bend, Sector(to, shape[2], zero), own)
+            box_sector(out, a, box, b, bend, Sector(to, shape[2], zero, False), own)
     else:
         _hollow(out, a, half, b, plate, look, tilted, law)
     if ends != 0:

@@ -31,7 +31,7 @@ import numpy as np
 from mdlgen.mechanics.contact import local
 from mdlgen.mechanics.frame import Vector
 from mdlgen.mechanics.mesh_side import Placed, meet_sides, ramp
-from mdlgen.mechanics.point import PRESSING, Load, Nip, push, push_in_nip
+from mdlgen.mechanics.point import PRESSING, Load, Nip, passing, push, push_in_nip
 from mdlgen.mechanics.tree import (
     AFTER,
     AREA,
@@ -45,7 +45,19 @@ from mdlgen.mechanics.tree import (
     overlaps,
     span,
 )
-from mdlgen.mechanics.vector import add, back, dot, matmul, nine, rotate, scale, sub, three, transpose_matmul
+from mdlgen.mechanics.vector import (
+    add,
+    back,
+    cross,
+    dot,
+    matmul,
+    nine,
+    rotate,
+    scale,
+    sub,
+    three,
+    transpose_matmul,
+)
 from mdlgen.model.meshes import origin
 from mdlgen.model.tables import Floats, Ints, Model
 from mdlgen.program.kernel import OWNS, njit
@@ -421,12 +433,18 @@ def box_mesh(out, a, box, b, axis, head, meshes, law):
         u, v = sums[4] / sums[3], sums[5] / sums[3]
         du = math.sqrt(max(sums[6] / sums[3] - u * u, 0.0))
         dv = math.sqrt(max(sums[7] / sums[3] - v * v, 0.0))
-        line, way = a.x, normal
+        line, way, pressed = a.x, normal, 0.0
         if head.basis > 0.0:
             sides = exposed if q == 2 else BLOCK
             fx, fy, fz, line_u, line_v = _nip(both, room, head, meshes, placed, half, sign, sides, stiff)
             line = add(a.x, rotate(ra, local(p, r, q, line_u, line_v, sign * half[q])))
             way = rotate(frame, scale(1.0 / math.sqrt(fx * fx + fy * fy + fz * fz), (fx, fy, fz)))
+            across = cross(axis, way)
+            seen = back(ra, across)
+            # a parabola of pressure with the deviation s along the way is 2 sqrt(5) s long
+            wide = math.sqrt(5.0 * ((du * seen[p]) ** 2 + (dv * seen[r]) ** 2))
+            if wide > 0.0:
+                pressed = passing(line, across, 2.0 * sums[9] / wide, a, b)
         for corner in range(4):
             at_u = u + (du if corner % 2 == 0 else -du)
             at_v = v + (dv if corner < 2 else -dv)
@@ -434,7 +452,10 @@ def box_mesh(out, a, box, b, axis, head, meshes, law):
             spring, energy = 0.25 * over * force, 0.25 * over * sums[8]
             if head.basis > 0.0:
                 under = add(line, scale(dot(sub(point, line), axis), axis))
-                push_in_nip(out, point, normal, Nip(under, way), Load(spring, sums[9], energy), a, b, law)
+                # on the mesh's own surface, where that is deepest: see mechanics.point
+                point = add(point, scale(sums[9] / dot(normal, way), normal))
+                nip = Nip(under, way, pressed)
+                push_in_nip(out, point, normal, nip, Load(spring, sums[9], energy), a, b, law)
             else:
                 push(out, point, normal, Load(spring, sums[9], energy), a, b, law)
     if lost > 0.0 and out[PRESSING] == 0.0:  # what is as near to the other side is in contact there

@@ -136,7 +136,7 @@ def pack_laws(model: Model, layout: np.dtype, chosen: Ints, units: Units = OWN) 
     pairs = np.zeros(len(chosen), layout)
     pairs["kind"] = rows.kind[chosen]
     pairs["shared"] = np.array([share == "width" for share in rows.share], dtype=int)[chosen]
-    pairs["k"] = rows.stiffness[chosen] * units.hertz
+    pairs["k"], pairs["spread"] = rows.stiffness[chosen] * units.hertz, rows.spread[chosen] * units.mm
     beta = damping_share.py_func(rows.restitution)  # compiled code is for a solver alone to load
     speeds = (v * units.speed for v in (rows.stiction_velocity, rows.friction_velocity, rows.smoothing))
     for column, values in enumerate((beta, rows.mu_static, rows.mu_dynamic, *speeds, rows.rolling)):

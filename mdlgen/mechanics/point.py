@@ -10,6 +10,16 @@ before and behind its contact line. Their own rates are those of rolling: the sh
 goes out at the other, while the nip is as deep as it was. So all points of a nip are damped by the rate at
 which the depth at its contact line grows, also where that lies on the next box, and a nip that rolls or
 slides at a constant depth loses nothing. A free edge that is met has one point, and its own rate.
+
+Of a sheet that passes at v, each element is pressed in and let go again at up to v sqrt(2z/R), the slope of
+the round where it comes in. Their damping has that sign already; a depth that grows more slowly turns it in
+that part of them only. So the damping of a nip is whole not over the law's smoothing speed alone but over
+that speed, too (`passing`): by the root of the sum of both squares. What does not pass is damped as before.
+
+Friction, too, is that of one nip: along the face, against the slip at the distance R from the axis, so that
+what rolls goes at omega R and is pulled at a lever of R. Along the round, or at the face, R - z from the
+axis, points of a nip would rub against each other, as they come in faster than they pass the contact line by
+v z/R: a web would creep by that much before it is held with mu N, and a nip that rolls would lose energy.
 """
 
 from __future__ import annotations
@@ -36,9 +46,10 @@ KIND = 16
 ALONE, OF_NIP, COUPLE = 0.0, 1.0, 2.0
 # Of one OF_NIP also the place on the contact line whose rate damps it, and the normal there.
 LINE, WAY = 17, 20
+OVER = 23  # the speed over which its damping is whole
 # Of a COUPLE: that at a high speed, its radius, the rolling speed and its axis.
 MOST_COUPLE, RADIUS, ROLLING, AXIS = 6, 7, 9, 17
-POINT = 23
+POINT = 24
 MOST_POINTS = 25  # of one pair: three parts of a face, two stations, two points; twice for a corner; a couple
 
 
@@ -51,10 +62,21 @@ class Load(NamedTuple):
 
 
 class Nip(NamedTuple):
-    """A place on a nip's contact line, and the normal there, to the first body."""
+    """A place on a nip's contact line, the normal there, to the first body, and the greatest speed at which
+    what passes is pressed in."""
 
     line: Vector
     way: Vector
+    pressed: float
+
+
+class Losses(NamedTuple):
+    """What loses energy at a point: the rate that damps it, the speed over which that damping is whole, and
+    the direction that its friction acts square to."""
+
+    rate: float
+    over: float
+    square: Vector
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -64,10 +86,18 @@ def closing(point, normal, a, b):
     return -dot(slip, normal)
 
 
+@njit(cache=True, error_model="numpy", forceinline=True)
+def passing(point, across, slope, a, b):
+    """How fast what passes a roller, body b, is pressed in at most: its speed across the contact line, which
+    goes with the roller's axis, times the round's slope where its pressure begins."""
+    return slope * dot(sub(add(a.v, cross(a.w, sub(point, a.x))), b.v), across)
+
+
 @njit(cache=True, error_model="numpy", **BORROWS)
 def push(out, point, normal, load, a, b, law):
     """Adds the force of one contact point of bodies a and b (Frames); `normal` points to a."""
-    at = _push(out, point, normal, closing(point, normal, a, b), load, a, b, law)
+    losses = Losses(closing(point, normal, a, b), law.smoothing, normal)
+    at = _push(out, point, normal, losses, load, a, b, law)
     if at > 0:
         out[at + KIND] = ALONE
 
@@ -75,7 +105,9 @@ def push(out, point, normal, load, a, b, law):
 @njit(cache=True, error_model="numpy", **BORROWS)
 def push_in_nip(out, point, normal, nip, load, a, b, law):
     """As `push` for one of several points of a nip, whose depth grows as its contact line closes."""
-    at = _push(out, point, normal, closing(nip.line, nip.way, a, b), load, a, b, law)
+    over = math.sqrt(law.smoothing * law.smoothing + nip.pressed * nip.pressed)
+    losses = Losses(closing(nip.line, nip.way, a, b), over, nip.way)
+    at = _push(out, point, normal, losses, load, a, b, law)
     if at > 0:
         out[at + KIND] = OF_NIP
         for i in range(3):
@@ -84,15 +116,16 @@ def push_in_nip(out, point, normal, nip, load, a, b, law):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS, **FUSED)
-def _push(out, point, normal, rate, load, a, b, law):
-    """Adds the force of a point that is damped by a rate; returns where it stands in `out`, 0: nowhere."""
+def _push(out, point, normal, losses, load, a, b, law):
+    """Adds the force of a point with its Losses; returns where it stands in `out`, 0: nowhere."""
     spring, depth, energy = load
+    rate, over, square = losses
     ra, rb = sub(point, a.x), sub(point, b.x)
     slip = sub(add(a.v, cross(a.w, ra)), add(b.v, cross(b.w, rb)))
     own = -dot(slip, normal)
-    slip = add(slip, scale(own, normal))
+    slip = sub(slip, scale(dot(slip, square), square))
     speed = math.sqrt(dot(slip, slip))
-    force = damped(spring, rate, law.beta, law.smoothing)
+    force = damped(spring, rate, law.beta, over)
     drag = force * friction_over_speed(speed, law.mu_static, law.mu_dynamic, law.stiction, law.sliding)
     f = sub(scale(force, normal), scale(drag, slip))
     ta, tb = cross(ra, f), cross(rb, f)
@@ -119,7 +152,7 @@ def _push(out, point, normal, rate, load, a, b, law):
     # F z^1.5 has stored 2/5 F z, an elastic foundation 3/5 F z: this is 3/2 F/z, and F/z
     out[at + GROWTH] = 0.6 * spring * spring / energy if energy > 0.0 else 0.0
     out[at + FORCE] = force
-    out[at + RATE] = rate
+    out[at + RATE], out[at + OVER] = rate, over
     return at
 
 

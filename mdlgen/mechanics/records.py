@@ -50,6 +50,7 @@ CONTACT = [
     ("shared", "i8"),
     ("mesh", "i8"),  # number of it
     ("beside", "i8"),  # sides of the box that stand before ends of a plate, see mechanics.edge
+    ("spread", "f8"),  # radius of the round that a roller's force is spread as, 0: its own
     ("k", "f8"),
     ("law", "f8", LAW),  # columns as in mechanics.frame
 ]

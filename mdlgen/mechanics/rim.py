@@ -131,7 +131,7 @@ def box_rim(out, a, box, b, body, law):
     h, lever, stiff, rough, growth, damping = profile(body, _angle(b.r, face), law.beta)
     aside = scale(lever, cross(axis, face))
     roller, own = Cylinder(axis, h, body.size[1]), scaled(law, stiff, rough, damping)
-    box_sector(out, a, box, b, roller, Sector(axis, WHOLE, aside), own)
+    box_sector(out, a, box, b, roller, Sector(axis, WHOLE, aside, True), own)
     # a stiffness that grows with the angle turns the roller on, and the box back
     torque = out[STORED] * growth / stiff
     for i in range(3):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,7 @@ from mdlgen.model.lowering.pairs import find_pairs
 from mdlgen.model.lowering.stiffness import between, coefficients, derived, extent
 from mdlgen.model.lowering.supports import joined, support_bushings
 from mdlgen.model.meshes import loaded
+from mdlgen.model.nips import spreads
 from mdlgen.model.parameters.given import parameters, unfollowed
 from mdlgen.model.parts.kinds import KINDS, kind_of
 from mdlgen.model.press.before import Before
@@ -76,6 +78,7 @@ def _lower(scene: Scene) -> Model:
     planes, guides = with_ends(parts["planes"], parts["guides"], contacts)
     rollers = loaded(parts["rollers"], parts["meshes"])
     parts |= {"rollers": rollers, "planes": planes, "guides": guides}
+    contacts = replace(contacts, spread=spreads(sheets, rollers, contacts))
     externals = lower_externals(scene)
     gravity = np.array(scene.gravity)
     machine = tuple(part for kind in KINDS for part in parts[kind.table])
@@ -221,6 +224,7 @@ def _contacts(scene: Scene) -> Contacts:
         smoothing=np.array([speed[i].smoothing for i, _, _ in rows], dtype=float),
         rolling=column(lambda c: c.rolling_resistance),
         share=tuple(scene.contacts[i].share for i, _, _ in rows),
+        spread=np.zeros(len(rows)),
         name=tuple(scene.contacts[i].name or "" for i, _, _ in rows) if named else (),
     )
 

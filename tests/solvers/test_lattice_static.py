@@ -189,13 +189,14 @@ def test_a_box_sinks_into_a_plane_by_its_weight() -> None:
 
 
 def test_a_nip_shares_the_spring_between_both_rollers() -> None:
-    """z = (F/k)^(2/3) on either side, F what the spring has left; the two-point rule is within (z/R)^2."""
+    """z = (F/k)^(2/3) on either side, F what the spring has left; the two-point rule is within (z/r)^2, r the
+    radius of the spread: of the softer one (1/3)^(1/3) of 5 mm."""
     made = lower(loads(NIP))
     result = run(made)
     top = result.model.rollers[1].body
     force = 3.0 - 0.3 * (6.0 - result.position[-1, top, 2])
     assert result.statistics.max_depth == pytest.approx(
-        [(force / k) ** (2 / 3) for k in (300, 100)], rel=4e-4
+        [(force / k) ** (2 / 3) for k in (300, 100)], rel=7.6e-4
     )
     closed = sum(result.statistics.max_depth)
     assert 6.0 - result.position[-1, top, 2] == pytest.approx(closed, rel=1e-6)

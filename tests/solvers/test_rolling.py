@@ -91,43 +91,46 @@ def test_a_sheet_coasts_through_a_frictionless_nip_in_exudyn(c_r: float) -> None
     assert abs(loss(solved(COAST, "exudyn", *damped(c_r)))) < 1e-3
 
 
-SOFT = pytest.mark.xfail(strict=True, reason="on a soft plane 0.27 and 0.15 % are lost, see the test")
-
-
-@pytest.mark.parametrize(
-    "plane, c_r",
-    [
-        *((30000, c) for c in (0.0, 0.5, 1.0)),
-        (300, 1.0),
-        *(pytest.param(300, c, marks=SOFT) for c in (0.0, 0.5)),
-    ],
-)
+@pytest.mark.parametrize("c_r", [0.0, 0.5, 1.0])
+@pytest.mark.parametrize("plane", [300, 30000])
 def test_a_sheet_coasts_under_one_roller_over_a_plane(plane: int, c_r: float) -> None:
-    """The plane gives back all that it takes. On one as soft as the roller's contact the roller's damping
-    still takes 0.27 % at restitution 0, and 0.8 % with 40 boxes, where 8.7 and 7.9 % were lost with two
-    rates. Nothing is lost at restitution 1, and less on a harder plane; the rate is of each box alone."""
+    """The plane gives back all that it takes. Boxes sink into a soft one, each on its own as the roller comes
+    to it, but slowly for the speed at which the nip presses in what passes."""
     text = "\n".join(line for line in COAST.splitlines() if "low" not in line) + PLANE
     bed = f"  - {{between: [n, bed], stiffness: {plane} N/mm^1.5, restitution: 1, friction: 0}}"
     text = text.replace('"???"', "top").replace("contacts:", f"contacts:\n{bed}")
     assert abs(loss(solved(text, "lattice", f"contacts.1.restitution={c_r}"))) < 1e-3
 
 
-LIGHT = pytest.mark.xfail(
-    strict=True, reason="a light sheet flutters in a damped nip and is braked, see the test"
-)
+@pytest.mark.parametrize("c_r", [0.0, 0.35, 1.0])
+@pytest.mark.parametrize("mass", ["10 g", "1 g", "0.3 g"])
+@pytest.mark.parametrize("boxes", [(20, 6), (40, 6), (7, 3)])
+def test_a_light_sheet_coasts(boxes: tuple[int, int], mass: str, c_r: float) -> None:
+    """Its rollers differ in radius, but as a joint passes they press alike on both of its boxes, and neither
+    fling the sheet about nor brake it. (Else 3.5 % of 1 g and 12 % of 0.3 g were lost in 20 ms.)"""
+    grid = f"sheets.n.boxes=[{boxes[0]}, {boxes[1]}]"
+    result = solved(COAST.replace("mass: 100 g", f"mass: {mass}"), "lattice", grid, *damped(c_r))
+    assert abs(loss(result)) < 2e-4
+    if boxes == (20, 6):
+        assert np.ptp(result.position[:, :120, 2]) < 2e-3  # of 0.1 mm of thickness
 
 
-@pytest.mark.parametrize(
-    "mass, c_r",
-    [("10 g", 0.35), ("1 g", 1.0), *(pytest.param(mass, 0.35, marks=LIGHT) for mass in ("1 g", "0.3 g"))],
-)
-def test_a_light_sheet_coasts(mass: str, c_r: float) -> None:
-    """Without friction nothing brakes it. Of a heavy sheet below 0.1 % of the speed is lost; a light one
-    exchanges some 0.4 % with the shaking of its boxes, undamped. Damped, one of 1 g loses 3.5 % in 20 ms and
-    one of 0.3 g 12 %: the rate of a nip has the tilt of the box times its speed, and damping acts along the
-    face that tilts. At a smoothing of 100 mm/s it is 0.5 %."""
-    result = solved(COAST.replace("mass: 100 g", f"mass: {mass}"), "lattice", f"contacts.0.restitution={c_r}")
-    assert abs(loss(result)) < (1e-3 if mass == "10 g" else 5e-3)
+def test_a_light_sheet_coasts_in_exudyn() -> None:
+    result = solved(COAST.replace("mass: 100 g", "mass: 1 g"), "exudyn", *damped(0.35))
+    assert abs(loss(result)) < 5e-4
+
+
+@pytest.mark.parametrize("c_r", [0.0, 0.35, 1.0])
+@pytest.mark.parametrize("radius", [5.0, 15.0])
+def test_a_light_sheet_coasts_between_a_hard_and_a_soft_roller(radius: float, c_r: float) -> None:
+    """Ten times as hard a roller is 4.6 times less deep: it reaches as far with a flatter pressure."""
+    hard = (
+        f"{{between: [n, top], stiffness: 3000 N/mm^1.5, restitution: {c_r}, friction: 0, smoothing: 5 mm/s}}"
+    )
+    text = COAST.replace("mass: 100 g", "mass: 1 g").replace('"???"', "low")
+    text = text.replace("contacts:", f"contacts:\n  - {hard}")
+    round_ = (f"rollers.top.radius={radius} mm", f"rollers.top.center=[0 mm, 0 mm, {radius + 0.05} mm]")
+    assert abs(loss(solved(text, "lattice", *round_, f"contacts.1.restitution={c_r}"))) < 1e-3
 
 
 @pytest.mark.parametrize("c_r", [0.0, 0.5])
@@ -202,18 +205,20 @@ def _under(out, at, speed, law):
 
 @pytest.mark.parametrize("rate", [-0.03, -0.004, 0.0, 0.004, 0.03])
 @pytest.mark.parametrize("beta", [0.6, 1.0])
-def test_all_points_of_a_nip_are_damped_by_its_one_rate(rate: float, beta: float) -> None:
+@pytest.mark.parametrize("passing", [0.0, 0.05])
+def test_all_points_of_a_nip_are_damped_by_its_one_rate(rate: float, beta: float, passing: float) -> None:
     """Two boxes side by side, the joint anywhere under the roller: together F = k z^1.5 (1 + beta s(rate))
     along the normal of the face, never below zero, and nothing along it; stored is 2/5 k z^2.5, and what
-    is lost is the work of the damping."""
+    is lost is the work of the damping. That of boxes that pass is whole over the speed at which they are
+    pressed in, too."""
     law, k, z = (beta, 0.0, 0.0, 1.0, 1.0, 0.01), 300.0, 0.04
-    x = rate / 0.01
+    x = rate / math.hypot(0.01, passing * math.sqrt(7.5**2 - (7.5 - z) ** 2) / 7.5)
     step = math.copysign(1.0, rate) if abs(x) >= 1.0 else 0.5 * x * (3.0 - x * x)
     for joint in np.linspace(-1.0, 1.0, 9):
         total = np.zeros(OUT)
         for side in (-2.0, 2.0):
             out = np.zeros(OUT + 1 + POINT * MOST_POINTS)
-            _under(out, joint + side, (0.5, 0.0, rate), Law(k, True, *law))
+            _under(out, joint + side, (passing, 0.0, rate), Law(k, True, *law))
             total += out[:OUT]
             points = out[OUT + 1 :].reshape(-1, POINT)[: int(out[OUT])]
             assert (points[:, FORCE] >= 0.0).all()
@@ -258,14 +263,12 @@ def _held(result: Result) -> float:
 @pytest.mark.parametrize("c_r", [0.0, 0.5])
 @pytest.mark.parametrize("solver", ["lattice", "exudyn"])
 def test_rollers_that_resist_rolling_hold_a_sheet_back_by_f_n_each(solver: str, c_r: float) -> None:
-    """By 2 f N more than without: friction alone, which slips a little before and behind the contact line,
-    holds by 0.0027 N, at any restitution. The lever of the friction is R - z, 0.6 and 0.9 % shorter than
-    R."""
+    """The couple is f N R, and the lever of the friction that bears it R."""
     result = solved(COAST, solver, *RESIST, *damped(c_r))
     without = solved(COAST, solver, *RESIST, *damped(c_r), "contacts.0.rolling_resistance=0")
     normal = result.contact_force[len(result.time) // 4 :, :2].mean(axis=0).sum()
-    assert _held(without) < 1e-3 * normal
-    assert _held(result) - _held(without) == pytest.approx(0.02 * normal, rel=0.01)
+    assert abs(_held(without)) < 2e-4 * normal
+    assert _held(result) - _held(without) == pytest.approx(0.02 * normal, rel=5e-3)
     # what the run misses of its energy is the same without: the couple's work is all in the account
     missed, had = (r.energy.balance_error * r.energy.scale for r in (result, without))
     lost = result.energy.dissipated - without.energy.dissipated

@@ -7,7 +7,7 @@ from mdlgen.backends.lattice.kernels.dense import lu_solve_transposed
 from mdlgen.backends.lattice.kernels.slopes import core, couple_growth, hat_left, hat_right, outer
 from mdlgen.mechanics.arm import turn_of, way_of
 from mdlgen.mechanics.driven import clutch
-from mdlgen.mechanics.point import AT, AXIS, COUPLE, KIND, LINE, NORMAL, OUT, POINT, POINTS, SLIP, WAY
+from mdlgen.mechanics.point import AT, AXIS, COUPLE, KIND, LINE, NORMAL, OF_NIP, OUT, POINT, POINTS, SLIP, WAY
 from mdlgen.mechanics.vector import add, back, cross, mat, scale, sub, three, three_from, vec
 from mdlgen.program.kernel import BORROWS, njit
 
@@ -98,7 +98,8 @@ def _pair_growth(pair, out, axes, h, motion, chord, growth):
             continue
         normal = back(axes, three_from(out, at + NORMAL))
         slip = back(axes, three_from(out, at + SLIP))
-        t, damping, phi = core(out, at, normal, slip, h, pair.law, chord, True)
+        square = back(axes, three_from(out, at + WAY)) if out[at + KIND] == OF_NIP else normal
+        t, damping, phi = core(out, at, normal, square, slip, h, pair.law, chord, True)
         arm = back(axes, sub(three_from(out, at + AT), vec(x, pair.a)))
         _point_growth(growth, t, arm)
         if damping != 0.0:

@@ -14,17 +14,14 @@ from mdlgen.mechanics.point import (
     MOST_COUPLE,
     MU_DYNAMIC,
     MU_STATIC,
+    OVER,
     RADIUS,
     RATE,
     ROLLING,
     SPRING,
 )
+from mdlgen.mechanics.vector import scale
 from mdlgen.program.kernel import BORROWS, njit
-
-# Damping and friction grow steeply at small speeds and hardly at all at large ones. A step along the tangent
-# of the flat part would cross to the other side, and back; a step along the chord to zero stops there. This
-# much of the chord converges from both sides.
-CHORD = 0.7
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -70,7 +67,12 @@ def hat_left(q, t):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def steepness(y, v_s, chord):
-    """Growth with v of what changes sign over v_s, at v = y v_s, with a part of its chord."""
+    """Growth with v of what changes sign over v_s, at v = y v_s, with a part of its chord.
+
+    Damping and friction grow steeply at small speeds and hardly at all at large ones. A step along the
+    tangent of the flat part would cross to the other side, and back; a step along the chord to zero stops
+    there. A good part of the chord converges from both sides.
+    """
     if abs(y) < 1.0:
         return max(1.5 * (1.0 - y * y), chord * 0.5 * (3.0 - y * y)) / v_s
     return chord / abs(y * v_s)
@@ -84,15 +86,16 @@ def couple_growth(out, at, h, law, chord):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def core(out, at, n, slip, h, law, chord, whole):
+def core(out, at, n, square, slip, h, law, chord, whole):
     """What the force of one contact point loses as the relative velocity grows, times h: a 3 x 3 matrix for
     the velocity at the point, and, where a nip damps it (0 else), what its normal force loses as the contact
     line closes, with its friction per slip velocity for 1 of that force.
 
+    n: the normal; square: the direction that friction acts square to, which is the normal, or a nip's;
     `whole`: with the growth of friction with the normal force, which is not symmetric.
     """
     spring, growth, force, rate = out[at + SPRING], out[at + GROWTH], out[at + FORCE], out[at + RATE]
-    v_s, v_d, v_n = law[LAW_STICTION], law[LAW_SLIDING], law[LAW_SMOOTHING]
+    v_s, v_d, v_n = law[LAW_STICTION], law[LAW_SLIDING], out[at + OVER]
     # a rim may have its own
     beta, mu_static, mu_dynamic = out[at + BETA], out[at + MU_STATIC], out[at + MU_DYNAMIC]
     y = rate / v_n
@@ -119,20 +122,20 @@ def core(out, at, n, slip, h, law, chord, whole):
     i = 1.0 / speed if speed > 0.0 else 0.0
     d = (slip[0] * i, slip[1] * i, slip[2] * i)
     less = tangent - secant
-    n1 = normal - secant
     # the force is F (n - phi slip), phi = mu/speed: as F grows with the depth, so does the drag
     phi = secant / (h * force) if whole and force > 0.0 else 0.0
     drag = normal * phi
-    p = (n1 * n[0] - drag * slip[0], n1 * n[1] - drag * slip[1], n1 * n[2] - drag * slip[2])
+    p = (normal * n[0] - drag * slip[0], normal * n[1] - drag * slip[1], normal * n[2] - drag * slip[2])
+    s = scale(secant, square)
     t = (
-        secant + p[0] * n[0] + less * d[0] * d[0],
-        p[0] * n[1] + less * d[0] * d[1],
-        p[0] * n[2] + less * d[0] * d[2],
-        p[1] * n[0] + less * d[1] * d[0],
-        secant + p[1] * n[1] + less * d[1] * d[1],
-        p[1] * n[2] + less * d[1] * d[2],
-        p[2] * n[0] + less * d[2] * d[0],
-        p[2] * n[1] + less * d[2] * d[1],
-        secant + p[2] * n[2] + less * d[2] * d[2],
+        secant + p[0] * n[0] - s[0] * square[0] + less * d[0] * d[0],
+        p[0] * n[1] - s[0] * square[1] + less * d[0] * d[1],
+        p[0] * n[2] - s[0] * square[2] + less * d[0] * d[2],
+        p[1] * n[0] - s[1] * square[0] + less * d[1] * d[0],
+        secant + p[1] * n[1] - s[1] * square[1] + less * d[1] * d[1],
+        p[1] * n[2] - s[1] * square[2] + less * d[1] * d[2],
+        p[2] * n[0] - s[2] * square[0] + less * d[2] * d[0],
+        p[2] * n[1] - s[2] * square[1] + less * d[2] * d[1],
+        secant + p[2] * n[2] - s[2] * square[2] + less * d[2] * d[2],
     )
     return t, damping, phi

@@ -11,7 +11,7 @@ from mdlgen.backends.lattice.kernels.forces import place_box, place_roller
 from mdlgen.backends.lattice.kernels.state import FORCE_NOW
 from mdlgen.mechanics.arm import turn_of, way_of
 from mdlgen.mechanics.crossing import above, buried, closing, deepest, unseen
-from mdlgen.mechanics.frame import LAW_SMOOTHING, Frame, Motion
+from mdlgen.mechanics.frame import Frame, Motion
 from mdlgen.mechanics.laws import sign_step
 from mdlgen.mechanics.mesh import BLOCK
 from mdlgen.mechanics.pair import BOX_CYLINDER, BOX_MESH, BOX_PLANE, pair_force
@@ -26,6 +26,7 @@ from mdlgen.mechanics.point import (
     NORMAL,
     OF_NIP,
     OUT,
+    OVER,
     POINT,
     POINTS,
     RATE,
@@ -129,7 +130,7 @@ def _made(work, count, dt, slower, rows):
         pair = pairs[touched[k]]
         if not _hits(bodies, pair, work.kept.rows):
             continue
-        row, law = pair.row, pair.law
+        row = pair.row
         one, spin_one = _changed(bodies[pair.a], pair.a, state, mid, slower)
         two, spin_two = _changed(bodies[pair.b], pair.b, state, mid, slower)
         still = mat(mid.motion.r, pair.a)
@@ -148,7 +149,7 @@ def _made(work, count, dt, slower, rows):
             place = three_from(point, LINE if kind == OF_NIP else AT)
             normal = three_from(point, WAY if kind == OF_NIP else NORMAL)
             faster = closing_at(place, normal, a, b)
-            missed = _turning_back(point[RATE], slower[2] * faster, point[BETA], law[LAW_SMOOTHING])
+            missed = _turning_back(point[RATE], slower[2] * faster, point[BETA], point[OVER])
             kept += force * dt * missed
     return kept
 

@@ -13,7 +13,7 @@ from mdlgen.mechanics.arm import AXIAL, DAMPING, INERTIA, STIFFNESS, turn_of, wa
 from mdlgen.mechanics.curve import curve_spring
 from mdlgen.mechanics.driven import clutch
 from mdlgen.mechanics.pair import on_fixed_plate
-from mdlgen.mechanics.point import AT, AXIS, COUPLE, KIND, LINE, NORMAL, OUT, POINT, POINTS, SLIP, WAY
+from mdlgen.mechanics.point import AT, AXIS, COUPLE, KIND, LINE, NORMAL, OF_NIP, OUT, POINT, POINTS, SLIP, WAY
 from mdlgen.mechanics.vector import (
     add,
     back,
@@ -266,7 +266,8 @@ def contacts_into(tables, h, mid, count, chord, planes, matrix):
                 continue
             where, normal = three_from(out, at + AT), three_from(out, at + NORMAL)
             slip = three_from(out, at + SLIP)
-            t, damping, _ = core(out, at, normal, slip, h, pair.law, chord, False)
+            square = three_from(out, at + WAY) if out[at + KIND] == OF_NIP else normal
+            t, damping, _ = core(out, at, normal, square, slip, h, pair.law, chord, False)
             _point_into(bodies, pair, x, where, t, coupled, matrix)
             if damping == 0.0:
                 continue

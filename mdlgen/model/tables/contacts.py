@@ -38,6 +38,7 @@ class Contacts(Frozen):
     smoothing: Floats  # [mm/ms]
     rolling: Floats  # coefficient of rolling resistance
     share: tuple[str, ...]  # width or pair
+    spread: Floats  # of a roller that faces another one: radius of the round its force is spread as [mm]; 0
     name: tuple[str, ...] = ()  # of the entries that have one, "" of others; none where no entry has
 
     def __len__(self) -> int:

@@ -1,0 +1,66 @@
+"""Which rollers face each other across a sheet, and the round that the force of each is spread as.
+
+Each of them presses with k z^1.5 in parallel to the other, so with the same force as deep as k^(-2/3). The
+reach sqrt(2 r z) of a pressure of radius r is then the same for all where r goes with k^(2/3); the factor is
+the geometric mean of what the rollers' own radii ask for. Rollers that are alike keep their radius, and so
+do those that face none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from mdlgen.model.tables import BOX_CYLINDER, Contacts, Floats, RollerPart, SheetPart
+
+PARALLEL = 0.985  # cosine of 10 degrees
+
+
+def spreads(sheets: tuple[SheetPart, ...], rollers: tuple[RollerPart, ...], contacts: Contacts) -> Floats:
+    """`Contacts.spread` of all rows [mm], (n,)."""
+    spread = np.zeros(len(contacts))
+    parts = {roller.name: roller for roller in rollers}
+    for sheet in sheets:
+        rows = [
+            row
+            for row, name in enumerate(contacts.part_a)
+            if name == sheet.name
+            and contacts.kind[row] == BOX_CYLINDER
+            and contacts.share[row] == "width"
+            and contacts.stiffness[row] > 0.0
+        ]
+        for group in _groups([parts[contacts.part_b[row]] for row in rows], float(sheet.thick.max())):
+            own = [rows[member] for member in group]
+            hard = contacts.stiffness[own] ** (2 / 3)
+            radius = np.array([parts[contacts.part_b[row]].radius for row in own])
+            spread[own] = hard * np.exp(np.mean(np.log(radius / hard)))
+    return spread
+
+
+def _groups(rollers: list[RollerPart], thickness: float) -> Iterator[list[int]]:
+    """Indices of rollers that face each other, or one another's other ones; of two at least."""
+    left = set(range(len(rollers)))
+    while left:
+        group, new = [], [left.pop()]
+        while new:
+            one = new.pop()
+            group.append(one)
+            found = {other for other in left if _face(rollers[one], rollers[other], thickness)}
+            left -= found
+            new += found
+        if len(group) > 1:
+            yield sorted(group)
+
+
+def _face(one: RollerPart, other: RollerPart, thickness: float) -> bool:
+    """Whether two rollers are parallel, overlap along their axes and stand less apart than the smaller one's
+    radius, over the sheet's thickness: they may be lifted, or come down on a slide or an arm."""
+    if abs(float(one.axis @ other.axis)) < PARALLEL:
+        return False
+    gap = other.center - one.center
+    along = float(gap @ one.axis)
+    if abs(along) >= 0.5 * (one.width + other.width):
+        return False
+    apart = float(np.linalg.norm(gap - along * one.axis)) - one.radius - other.radius
+    return apart < thickness + min(one.radius, other.radius)

@@ -1,0 +1,76 @@
+"""Rollers that face each other across a sheet spread the force of a nip over the same reach."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from mdlgen.model.lower import lower
+from mdlgen.spec.load import loads
+
+SCENE = """
+name: facing
+gravity: [0 m/s^2, 0 m/s^2, 0 m/s^2]
+materials: {p: {E_md: 2000 MPa, E_cd: 2000 MPa, D_md: 0.3 N*mm, D_cd: 0.3 N*mm}}
+sheets: {n: {material: p, size: [80 mm, 50 mm], thickness: 0.1 mm, mass: 1 g, boxes: [8, 5]}}
+rollers:
+  low: {center: [0 mm, 0 mm, -9.05 mm], axis: y, radius: 9 mm, width: 40 mm, mass: 10 g}
+  top: {center: [0 mm, 0 mm, 4.05 mm], axis: y, radius: 4 mm, width: 40 mm, mass: 5 g}
+  far: {center: [25 mm, 0 mm, 6.05 mm], axis: y, radius: 6 mm, width: 40 mm, mass: 5 g}
+contacts:
+  soft: {between: [n, low], stiffness: 200 N/mm^1.5, friction: 0}
+  hard: {between: [n, top], stiffness: 900 N/mm^1.5, friction: 0}
+  other: {between: [n, far], stiffness: 400 N/mm^1.5, friction: 0}
+run: {duration: 1 ms}
+"""
+
+
+def spread(*overrides: str) -> dict[str, float]:
+    contacts = lower(loads(SCENE, "facing", overrides)).contacts
+    return dict(zip(contacts.part_b, contacts.spread.tolist(), strict=True))
+
+
+def test_two_that_face_each_other_reach_as_far_under_one_force() -> None:
+    """sqrt(2 r z) with z = (N/k)^(2/3), about the mean of what the radii ask for."""
+    found = spread()
+    reach = {
+        name: math.sqrt(2.0 * found[name] * (2.5 / k) ** (2 / 3))
+        for name, k in (("low", 200.0), ("top", 900.0))
+    }
+    assert reach["low"] == pytest.approx(reach["top"], rel=1e-12)
+    own = [math.sqrt(2.0 * r * (2.5 / k) ** (2 / 3)) for r, k in ((9.0, 200.0), (4.0, 900.0))]
+    assert reach["low"] == pytest.approx(math.sqrt(own[0] * own[1]), rel=1e-12)
+    assert found["far"] == 0.0
+
+
+def test_rollers_that_are_alike_keep_their_radius() -> None:
+    alike = ("rollers.low.radius=4 mm", "rollers.low.center=[0 mm, 0 mm, -4.05 mm]")
+    found = spread(*alike, "contacts.hard.stiffness=200 N/mm^1.5")
+    assert found["low"] == pytest.approx(4.0, rel=1e-14)
+    assert found["top"] == pytest.approx(4.0, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    "apart",
+    [
+        "rollers.top.center=[0 mm, 0 mm, 8.1 mm]",  # lifted by more than its radius
+        "rollers.top.axis=x",
+        "rollers.top.center=[0 mm, 41 mm, 4.05 mm]",  # beside the other, along the axis
+        "contacts.hard.share=pair",
+    ],
+)
+def test_two_that_do_not_face_each_other_have_their_own_radii(apart: str) -> None:
+    assert set(spread(apart).values()) == {0.0}
+
+
+def test_rollers_round_one_drum_are_one_group() -> None:
+    """A second idler on the drum: all three reach alike."""
+    found = spread("rollers.far.center=[11 mm, 0 mm, 1.3 mm]")
+    deep = {name: k ** (-2 / 3) for name, k in (("low", 200.0), ("top", 900.0), ("far", 400.0))}
+    assert found["far"] > 0.0
+    assert {name: round(found[name] * deep[name] / (found["low"] * deep["low"]), 12) for name in deep} == {
+        "low": 1.0,
+        "top": 1.0,
+        "far": 1.0,
+    }
