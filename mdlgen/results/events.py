@@ -273,7 +273,7 @@ def _reach(result: Result, sheet: int, at: int, way: Floats) -> tuple[float, flo
 
 def _double_feeds(result: Result, stays: list[Stay]) -> list[dict[str, Any]]:
     """Two sheets at one roller, or at two that face each other, at once and at one place along them, that
-    both go on; one event for rollers that face each other."""
+    both go on, by more than a thickness; one event for rollers that face each other."""
     nips = _nips(result.model)
     feeds: dict[tuple[int, int, int], tuple[Stay, Stay, Floats]] = {}
     for k, one in enumerate(stays):
@@ -293,10 +293,13 @@ def _double_feeds(result: Result, stays: list[Stay]) -> list[dict[str, Any]]:
     for one, other, speed in feeds.values():
         for first, last in intervals(result.time, speed > 0.0, SHORT):
             both = slice(first, last + 1)
+            way = float(np.trapezoid(speed[both], result.time[both]))
+            if way < min(result.model.sheets[stay.sheet].thickness for stay in (one, other)):
+                continue  # it trembles where it lies
             numbers = {
                 "other": result.model.sheets[other.sheet].name,
                 "duration_ms": float(result.time[last] - result.time[first]),
-                "way_mm": float(np.trapezoid(speed[both], result.time[both])),
+                "way_mm": way,
             }
             found.append(_event(result, "double_feed", first, one, **numbers))
     return found
