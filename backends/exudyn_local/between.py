@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from mdlgen.backends.exudyn_local.kernels import place_all, place_body
+from mdlgen.backends.exudyn_local.place import place_all, place_body
 from mdlgen.backends.exudyn_local.state import Coordinates
 from mdlgen.mechanics.crossing import above, buried, closing, deepest, size, unseen
 from mdlgen.mechanics.frame import Motion

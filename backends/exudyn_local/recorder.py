@@ -6,7 +6,6 @@ from collections.abc import Callable
 
 import numpy as np
 
-from mdlgen.backends.exudyn_local import kernels
 from mdlgen.backends.exudyn_local.shipped import begin, ledger, overstretched, passed, set_limits
 from mdlgen.backends.exudyn_local.state import (
     DRIVING,
@@ -14,8 +13,10 @@ from mdlgen.backends.exudyn_local.state import (
     KINETIC,
     LOST,
     POTENTIAL,
+    SEEN,
     TOTALS,
     Coordinates,
+    workspace,
 )
 from mdlgen.backends.exudyn_local.system import MM, MS, PER_MM, System
 from mdlgen.mechanics.point import DEPTH, OUT, PRESSING
@@ -42,8 +43,8 @@ class Recorder:
         self.time = 0.0  # [s]
         self.reason: str | None = None
         self._due = np.zeros(0)  # times at which a state is stored [s]
-        self._work = kernels.workspace(system)
-        self._pairs = np.zeros((len(system.pairs), kernels.SEEN))
+        self._work = workspace(system)
+        self._pairs = np.zeros((len(system.pairs), SEEN))
         self._totals = np.zeros(TOTALS)
         system.pairs["beside"] = 0  # a run before this one may have left its own
         self._touched = np.zeros(len(system.pairs), bool)

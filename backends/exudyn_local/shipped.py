@@ -8,7 +8,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from mdlgen.backends.exudyn_local.between import passed, set_limits
-from mdlgen.backends.exudyn_local.kernels import forces, jacobian, ledger, place_all, set_owners
+from mdlgen.backends.exudyn_local.forces import forces
+from mdlgen.backends.exudyn_local.jacobian import jacobian
+from mdlgen.backends.exudyn_local.ledger import ledger
+from mdlgen.backends.exudyn_local.place import place_all, set_owners
 from mdlgen.mechanics import curve, pair
 from mdlgen.mechanics.tree import set_thickness
 from mdlgen.program.kernel import LAWS, njit

@@ -16,11 +16,11 @@ from typing import Any
 
 import numpy as np
 
-from mdlgen.backends.exudyn_local import kernels
+from mdlgen.backends.exudyn_local.place import owners
 from mdlgen.backends.exudyn_local.recorder import Recorder
 from mdlgen.backends.exudyn_local.shipped import PROGRAM, forces, jacobian, ledger, passed
 from mdlgen.backends.exudyn_local.stability import falling
-from mdlgen.backends.exudyn_local.state import TOTALS, Coordinates, Work
+from mdlgen.backends.exudyn_local.state import SEEN, TOTALS, Coordinates, Work, workspace
 from mdlgen.backends.exudyn_local.step import choose_steps, cost, given_steps
 from mdlgen.backends.exudyn_local.system import MM, MS, Pattern, System, build
 from mdlgen.mechanics.arm import AXIAL, INERTIA
@@ -78,7 +78,7 @@ def solve(model: Model, progress: Progress | None = None, step: float | None = N
     system, pattern = build(model)
     exu = _exudyn()
     compiled = clock.perf_counter()
-    work = kernels.workspace(system)
+    work = workspace(system)
     _compile(system, pattern, work)
     compile_s = clock.perf_counter() - compiled
     once = partial(_once, exu, model, system, pattern, work, progress)
@@ -206,10 +206,10 @@ def _compile(system: System, pattern: Pattern, work: Work) -> None:
     free, tables = system.free, system.tables
     q, v = np.zeros(max(1, free)), np.zeros(max(1, free))
     data = np.zeros(len(pattern.indices))
-    at, owner = Coordinates(q, v, 0.0), kernels.owners(system)
+    at, owner = Coordinates(q, v, 0.0), owners(system)
     forces(tables, at, 1.0, work)
     jacobian(tables, system.elements, at, 1.0, (1.0, 1.0), False, owner, work, data)
-    ledger(tables, at, work, np.zeros((len(system.pairs), kernels.SEEN)), np.zeros(TOTALS))
+    ledger(tables, at, work, np.zeros((len(system.pairs), SEEN)), np.zeros(TOTALS))
     passed(system.bodies, system.pairs, system.meshes, q, v, q, v, 0.0, 0.0)
 
 
@@ -268,7 +268,7 @@ def _assemble(exu, model: Model, system: System, pattern: Pattern, work: Work) -
                 nodes.append(node)
     f = work.forces
     tables = system.tables
-    owner = kernels.owners(system)
+    owner = owners(system)
     data = np.zeros(len(pattern.indices))
     state = mbs.systemData
     static = model.run.analysis == "static"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mdlgen.backends.exudyn_local import kernels
+from mdlgen.backends.exudyn_local.place import owners
 from mdlgen.backends.exudyn_local.shipped import jacobian
 from mdlgen.backends.exudyn_local.state import Coordinates, Work
 from mdlgen.backends.exudyn_local.system import Pattern, System
@@ -26,7 +26,7 @@ def falling(system: System, pattern: Pattern, q: Floats, work: Work) -> int:
 
     free = system.free
     data = np.zeros(len(pattern.indices))
-    owner = kernels.owners(system)
+    owner = owners(system)
     rest = np.zeros(max(1, free))
     at = Coordinates(q.copy(), rest, 1.0)
     jacobian(system.tables, system.elements, at, 1.0, (1.0, 0.0), True, owner, work, data)

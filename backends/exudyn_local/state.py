@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from mdlgen.mechanics.frame import Motion
-from mdlgen.mechanics.mesh import Meshes
+from mdlgen.mechanics.mesh_tables import Meshes
+from mdlgen.mechanics.point import MOST_POINTS, OUT, POINT
+from mdlgen.mechanics.turning import TURNING
 from mdlgen.model.tables import Floats
+
+if TYPE_CHECKING:
+    from mdlgen.backends.exudyn_local.system import System
 
 # Of the energies at a state [J, W]: kinetic, elastic, potential, dissipated power, power of drives and loads.
 KINETIC, ELASTIC, POTENTIAL, LOST, DRIVING, TOTALS = 0, 1, 2, 3, 4, 5
+# What is seen of a pair at a state: what it does, and what it turns; and with its points.
+SEEN, WIDE = OUT + TURNING, OUT + 1 + POINT * MOST_POINTS
 
 
 class Tables(NamedTuple):
@@ -40,3 +47,10 @@ class Work(NamedTuple):
     motion: Motion
     out: Floats  # (OUT,)
     forces: Floats  # (free,)
+
+
+def workspace(system: System) -> Work:
+    """Such arrays for a System, all zero."""
+    n = len(system.bodies)
+    motion = Motion(np.zeros((n, 3)), np.zeros((n, 9)), np.zeros((n, 3)), np.zeros((n, 3)))
+    return Work(motion, np.zeros(OUT), np.zeros(max(1, system.free)))

@@ -6,9 +6,8 @@ import math
 
 import numpy as np
 
-from mdlgen.backends.exudyn_local import kernels
 from mdlgen.backends.exudyn_local.shipped import ledger
-from mdlgen.backends.exudyn_local.state import TOTALS, Coordinates, Work
+from mdlgen.backends.exudyn_local.state import SEEN, TOTALS, Coordinates, Work
 from mdlgen.backends.exudyn_local.system import MS, System
 from mdlgen.mechanics.point import DEPTH, FORCE_A, FORCE_B, PRESSING, STORED
 from mdlgen.model.impact import approach_time, impact_time, lasting
@@ -62,7 +61,7 @@ def overlap_step(model: Model, system: System, work: Work) -> float:
     if not len(pairs):
         return math.inf
     q = np.zeros(max(1, system.free))
-    out = np.zeros((len(pairs), kernels.SEEN))
+    out = np.zeros((len(pairs), SEEN))
     ledger(system.tables, Coordinates(q, q.copy(), 0.0), work, out, np.zeros(TOTALS))
     stored, force = np.zeros(len(bodies)), np.zeros(len(bodies))
     left, stiffest = np.zeros((len(bodies), 3)), np.zeros(len(bodies))

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from mdlgen.backends.exudyn_local.state import Tables
 from mdlgen.errors import RefusedError
 from mdlgen.mechanics.curve import curve_points
-from mdlgen.mechanics.mesh import Meshes, mesh_tables
+from mdlgen.mechanics.mesh_tables import Meshes, mesh_tables
 from mdlgen.mechanics.pack import Units, gravity, number, pack_bodies, pack_bushings, pack_loads, pack_pairs
 from mdlgen.mechanics.records import (
     BODIES,

@@ -15,7 +15,7 @@ import numpy as np
 from mdlgen.backends.lattice.kernels.state import Tables
 from mdlgen.backends.lattice.search import Search, plan
 from mdlgen.mechanics.curve import curve_points
-from mdlgen.mechanics.mesh import Meshes, mesh_tables
+from mdlgen.mechanics.mesh_tables import Meshes, mesh_tables
 from mdlgen.mechanics.pack import (
     gravity,
     number,

@@ -14,7 +14,7 @@ from mdlgen.mechanics.curve import follow
 from mdlgen.mechanics.driven import drive
 from mdlgen.mechanics.frame import LAW_DYNAMIC, LAW_STATIC
 from mdlgen.mechanics.laws import damping_share
-from mdlgen.mechanics.mesh import mesh_numbers
+from mdlgen.mechanics.mesh_tables import mesh_numbers
 from mdlgen.mechanics.records import LOAD
 from mdlgen.mechanics.rim import rim
 from mdlgen.model.rotations import matrices

@@ -13,7 +13,8 @@ from solids import binary, brick, cylinder, flats, halved
 
 from mdlgen.mechanics.contact import box_cylinder
 from mdlgen.mechanics.frame import Box, Cylinder, Frame, Law, Plate
-from mdlgen.mechanics.mesh import LOST, box_mesh, mesh_tables
+from mdlgen.mechanics.mesh import LOST, box_mesh
+from mdlgen.mechanics.mesh_tables import mesh_tables
 from mdlgen.mechanics.plate import STRAIGHT, box_plane
 from mdlgen.mechanics.point import MOST_POINTS, OUT, POINT
 from mdlgen.mechanics.tree import build_tree, closest, depth_at

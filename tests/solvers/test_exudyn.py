@@ -395,14 +395,14 @@ def test_a_state_that_goes_non_finite_ends_with_a_reason():
 
 def test_a_long_run_has_no_estimate():
     """Two runs of 40 ms of the transport would take too long; one of 2 ms is estimated."""
-    from mdlgen.backends.exudyn_local import kernels
     from mdlgen.backends.exudyn_local.solve import ESTIMATED
+    from mdlgen.backends.exudyn_local.state import workspace
     from mdlgen.backends.exudyn_local.step import choose_steps, cost
     from mdlgen.backends.exudyn_local.system import build
 
     model = lower(load("samples/transport_4x4.yaml", ["run.duration=40 ms"]))
     system, _ = build(model)
-    assert cost(system, choose_steps(model, system, kernels.workspace(system))[0]) > ESTIMATED
+    assert cost(system, choose_steps(model, system, workspace(system))[0]) > ESTIMATED
     short = run("samples/transport_4x4.yaml", "run.duration=2 ms", "sheets.note.boxes=[4,6]")
     assert short.error_estimate is not None and short.error_estimate <= short.model.run.tolerance
 

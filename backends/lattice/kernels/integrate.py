@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from mdlgen.backends.lattice.kernels.carry import carry, spun
 from mdlgen.backends.lattice.kernels.damped import overshoot, take_off
 from mdlgen.backends.lattice.kernels.dense import copy
 from mdlgen.backends.lattice.kernels.search import look, strayed
@@ -44,7 +45,7 @@ from mdlgen.backends.lattice.kernels.state import (
     TURNING_NOW,
     WORST,
 )
-from mdlgen.backends.lattice.kernels.step import carry, midpoint, spun
+from mdlgen.backends.lattice.kernels.step import midpoint
 from mdlgen.backends.lattice.kernels.swept import swept
 from mdlgen.mechanics.arm import AXIAL, DAMPING, speeding
 from mdlgen.mechanics.crossing import deepest

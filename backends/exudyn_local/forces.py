@@ -1,0 +1,163 @@
+"""Generalised forces of a System, part by part and in all."""
+
+from __future__ import annotations
+
+from mdlgen.backends.exudyn_local.place import place_all
+from mdlgen.mechanics.arm import (
+    DAMPING,
+    FORCE_0,
+    INERTIA,
+    STIFFNESS,
+    moved,
+    torque_of,
+    turn_of,
+    way_of,
+)
+from mdlgen.mechanics.bushing import bushing
+from mdlgen.mechanics.curve import curve_excess, middle_and_gap
+from mdlgen.mechanics.driven import clutch
+from mdlgen.mechanics.frame import Frame
+from mdlgen.mechanics.pair import pair_force
+from mdlgen.mechanics.point import (
+    FORCE_A,
+    FORCE_B,
+    TORQUE_A,
+    TORQUE_B,
+)
+from mdlgen.mechanics.vector import (
+    add,
+    cross,
+    dot,
+    mat,
+    matmul,
+    nine,
+    rotate,
+    scale,
+    three,
+    three_from,
+    vec,
+)
+from mdlgen.program.kernel import njit
+
+# Either way of a time the speed of a drive is taken for its growth [s].
+INSTANT = 1e-7
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def spread(bodies, body, q, force, torque, f):
+    """Adds a force and a torque at a body's centre to the generalised forces."""
+    n = bodies[body].first
+    if n >= 0:
+        ref = bodies[body].reference
+        e0, e1, e2, e3 = ref[3] + q[n + 3], ref[4] + q[n + 4], ref[5] + q[n + 5], ref[6] + q[n + 6]
+        for i in range(3):
+            f[n + i] += force[i]
+        a, b, c = torque
+        f[n + 3] += 2 * (-e1 * a - e2 * b - e3 * c)
+        f[n + 4] += 2 * (e0 * a + e3 * b - e2 * c)
+        f[n + 5] += 2 * (-e3 * a + e0 * b + e1 * c)
+        f[n + 6] += 2 * (e2 * a - e1 * b + e0 * c)
+        return
+    if bodies[body].slide >= 0:
+        ref = bodies[body].reference
+        at = moved(bodies[body], (ref[0], ref[1], ref[2]), q[bodies[body].slide])
+        f[bodies[body].slide] += dot(force, way_of(bodies[body], at)) + dot(torque, turn_of(bodies[body]))
+    if bodies[body].spin >= 0:
+        f[bodies[body].spin] += dot(torque, three(bodies[body].axis))
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def bush_forces(tables, bush, q, motion, f):
+    """One bushing; returns (stored energy, dissipated power)."""
+    bodies, points = tables.bodies, tables.points
+    x, r, u, w = motion
+    a, b = bush.a, bush.b
+    ma, mb = mat(r, a), mat(r, b)
+    fa, fb = matmul(ma, nine(bush.fa)), matmul(mb, nine(bush.fb))
+    ra, rb = rotate(ma, three(bush.ra)), rotate(mb, three(bush.rb))
+    k, c = bush.k, bush.c
+    force, torque_b, torque_a, energy, power = bushing(
+        Frame(vec(x, a), fa, vec(u, a), vec(w, a)),
+        ra,
+        Frame(vec(x, b), fb, vec(u, b), vec(w, b)),
+        rb,
+        (k[0], k[1], k[2]),
+        (k[3], k[4], k[5]),
+        (c[0], c[1], c[2]),
+        (c[3], c[4], c[5]),
+    )
+    spread(bodies, a, q, (-force[0], -force[1], -force[2]), torque_a, f)
+    spread(bodies, b, q, force, torque_b, f)
+    if bush.first >= 0:
+        middle, gap = middle_and_gap(vec(x, a), fa, ra, vec(x, b), fb, rb)
+        force, torque_b, torque_a, more = curve_excess(points, bush, middle, gap, ra, rb)
+        spread(bodies, a, q, (-force[0], -force[1], -force[2]), torque_a, f)
+        spread(bodies, b, q, force, torque_b, f)
+        energy += more
+    return energy, power
+
+
+@njit(cache=True, error_model="numpy")
+def pair_forces(tables, pair, q, motion, f, out):
+    """One contact pair into `out`; returns whether it touches."""
+    out[:] = 0.0
+    if not pair_force(tables.bodies, pair, tables.meshes, motion, out):
+        return False
+    spread(tables.bodies, pair.a, q, three_from(out, FORCE_A), three_from(out, TORQUE_A), f)
+    spread(tables.bodies, pair.b, q, three_from(out, FORCE_B), three_from(out, TORQUE_B), f)
+    return True
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def slide_force(tables, body, at, f, level):
+    """Spring, damper and weight on a slide or an arm; `level` scales the preload's rest in a static run."""
+    bodies, gravity = tables.bodies, tables.gravity
+    q, v, t = at
+    k = bodies[body].slide
+    p = bodies[body].press
+    f[k] += p[FORCE_0] - p[STIFFNESS] * q[k] - p[DAMPING] * v[k]
+    if bodies[body].swings == 0:
+        f[k] += level * p[INERTIA] * dot(three(bodies[body].way), three(gravity))
+        return
+    ref = bodies[body].reference
+    place = moved(bodies[body], (ref[0], ref[1], ref[2]), q[k])
+    f[k] += level * bodies[body].mass * dot(way_of(bodies[body], place), three(gravity))
+    f[k] += torque_of(bodies[body], q[k], scale(level, three(gravity)), t, INSTANT)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def load_forces(bodies, load, q, r, f, level):
+    body = load.body
+    force = scale(level, three(load.force))
+    arm = rotate(mat(r, body), three(load.local))
+    moment = scale(level, three(load.moment))
+    spread(bodies, body, q, force, add(moment, cross(arm, force)), f)
+
+
+@njit(cache=True, error_model="numpy")
+def forces(tables, at, level, work):
+    """Generalised forces into those of `work`; `level` scales gravity and loads. Returns the number of
+    touching pairs."""
+    bodies, pairs, loads, gravity = tables.bodies, tables.pairs, tables.loads, tables.gravity
+    motion, out, f = work
+    q, v, t = at
+    place_all(bodies, at, motion)
+    f[:] = 0.0
+    for body in range(bodies.size - 1):
+        n = bodies[body].first
+        if n >= 0:
+            for i in range(3):
+                f[n + i] += level * bodies[body].mass * gravity[i]
+        if bodies[body].slide >= 0:
+            slide_force(tables, body, at, f, level)
+        if bodies[body].clutch[0] != 0.0:
+            f[bodies[body].spin] += clutch(bodies[body], v[bodies[body].spin], t)[0]
+    for i in range(tables.bushings.size):
+        bush_forces(tables, tables.bushings[i], q, motion, f)
+    touching = 0
+    for i in range(pairs.size):
+        if pair_forces(tables, pairs[i], q, motion, f, out):
+            touching += 1
+    for i in range(loads.size):
+        load_forces(bodies, loads[i], q, motion.r, f, level)
+    return touching

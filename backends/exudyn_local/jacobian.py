@@ -1,0 +1,105 @@
+"""The jacobian of the forces of a System, by difference quotients of its elements: blocks of bushings, pairs,
+slides, clutches and loads."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mdlgen.backends.exudyn_local.forces import bush_forces, load_forces, pair_forces, slide_force
+from mdlgen.backends.exudyn_local.place import place_all, place_body
+from mdlgen.mechanics.driven import clutch
+from mdlgen.program.kernel import njit
+
+# Perturbations of the difference quotients: positions and Euler parameters, velocities [SI]. A static run
+# takes central quotients: a joint bends 1e5 times easier than it stretches, and a one-sided quotient of the
+# stretching part would hide the bending; in a transient run the mass stands in between.
+_E_POSITION, _E_VELOCITY = 1e-9, 1e-6
+_E_CENTRAL = 1e-7
+
+
+@njit(cache=True, error_model="numpy")
+def _element(tables, block_start, element, at, level, work):
+    """Generalised forces of one element, added to those of `work`. Returns False where a pair does not
+    touch."""
+    bodies, pairs = tables.bodies, tables.pairs
+    motion, out, f = work
+    q, v, t = at
+    blocks = block_start.size - 1
+    if element < blocks:
+        for i in range(block_start[element], block_start[element + 1]):
+            bush_forces(tables, tables.bushings[i], q, motion, f)
+        return True
+    element -= blocks
+    if element < pairs.size:
+        return pair_forces(tables, pairs[element], q, motion, f, out)
+    element -= pairs.size
+    for body in range(bodies.size - 1):
+        if bodies[body].slide >= 0:
+            if element == 0:
+                slide_force(tables, body, at, f, level)
+                return True
+            element -= 1
+    for body in range(bodies.size - 1):
+        if bodies[body].clutch[0] != 0.0:
+            if element == 0:
+                f[bodies[body].spin] += clutch(bodies[body], v[bodies[body].spin], t)[0]
+                return True
+            element -= 1
+    load_forces(bodies, tables.loads[element], q, motion.r, f, level)
+    return True
+
+
+@njit(cache=True, error_model="numpy")
+def jacobian(tables, elements, at, level, by, central, owner, work, data):
+    """data = -(by[0] dF/dq + by[1] dF/dv) in the slots of the pattern, by difference quotients.
+
+    One quotient per coordinate gives both parts: q and v are moved together in the ratio wanted.
+    """
+    block_start, dofs, dof_start, slots, slot_start = elements
+    bodies, (motion, _out, f), (by_q, by_v) = tables.bodies, work, by
+    q, v = at.q, at.v
+    place_all(bodies, at, motion)
+    data[:] = 0.0
+    step = 1e30
+    if by_q != 0.0:
+        step = (_E_CENTRAL if central else _E_POSITION) / abs(by_q)
+    if by_v != 0.0:
+        step = min(step, _E_VELOCITY / abs(by_v))
+    base = np.empty(32)
+    for element in range(dof_start.size - 1):
+        begin, end = dof_start[element], dof_start[element + 1]
+        if begin == end:
+            continue
+        count = end - begin
+        for i in range(begin, end):
+            f[dofs[i]] = 0.0
+        if not _element(tables, block_start, element, at, level, work):
+            continue
+        for i in range(count):
+            base[i] = f[dofs[begin + i]]
+        slot = slot_start[element]
+        width = 2.0 * step if central else step
+        for j in range(count):
+            dof = dofs[begin + j]
+            body = owner[dof]
+            kept_q, kept_v = q[dof], v[dof]
+            if central:
+                q[dof] -= step * by_q
+                v[dof] -= step * by_v
+                place_body(bodies, body, at, motion)
+                for i in range(begin, end):
+                    f[dofs[i]] = 0.0
+                _element(tables, block_start, element, at, level, work)
+                for i in range(count):
+                    base[i] = f[dofs[begin + i]]
+                q[dof], v[dof] = kept_q, kept_v
+            q[dof] += step * by_q
+            v[dof] += step * by_v
+            place_body(bodies, body, at, motion)
+            for i in range(begin, end):
+                f[dofs[i]] = 0.0
+            _element(tables, block_start, element, at, level, work)
+            q[dof], v[dof] = kept_q, kept_v
+            place_body(bodies, body, at, motion)
+            for i in range(count):
+                data[slots[slot + i * count + j]] -= (f[dofs[begin + i]] - base[i]) / width

@@ -1,0 +1,105 @@
+"""Energies and powers of a System at a state."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mdlgen.backends.exudyn_local.forces import INSTANT, bush_forces, pair_forces
+from mdlgen.backends.exudyn_local.place import place_all
+from mdlgen.backends.exudyn_local.state import DRIVING, ELASTIC, KINETIC, LOST, POTENTIAL, WIDE
+from mdlgen.mechanics.arm import (
+    AXIAL,
+    DAMPING,
+    FORCE_0,
+    INERTIA,
+    STIFFNESS,
+    hung,
+    speeding,
+)
+from mdlgen.mechanics.driven import clutch, prescribed
+from mdlgen.mechanics.point import (
+    DISSIPATED,
+    OUT,
+    STORED,
+    TORQUE_A,
+    TORQUE_B,
+)
+from mdlgen.mechanics.turning import turning
+from mdlgen.mechanics.vector import (
+    add,
+    back,
+    cross,
+    dot,
+    mat,
+    rotate,
+    three,
+    three_from,
+    vec,
+)
+from mdlgen.program.kernel import njit
+
+
+@njit(cache=True, error_model="numpy")
+def ledger(tables, at, work, pair_out, totals):
+    """Energies and powers at a state into `totals` (columns KINETIC, ELASTIC, ... of state.py).
+
+    Also leaves the result of each pair in `pair_out` (p, SEEN) and the bodies' motion in `work`.
+    """
+    bodies, pairs, loads, gravity = tables.bodies, tables.pairs, tables.loads, tables.gravity
+    motion, f = work.motion, work.forces
+    x, r, u, w = motion
+    q, v, t = at
+    place_all(bodies, at, motion)
+    kinetic = elastic = potential = lost = driven = 0.0
+    for body in range(bodies.size - 1):
+        if bodies[body].first >= 0:
+            spin = back(mat(r, body), vec(w, body))
+            kinetic += 0.5 * bodies[body].mass * dot(vec(u, body), vec(u, body))
+            for i in range(3):
+                kinetic += 0.5 * bodies[body].inertia[i] * spin[i] * spin[i]
+            potential -= bodies[body].mass * dot(three(gravity), vec(x, body))
+        k = bodies[body].slide
+        if k >= 0:
+            p = bodies[body].press
+            kinetic += 0.5 * p[INERTIA] * v[k] * v[k]
+            potential -= p[FORCE_0] * q[k]
+            if bodies[body].swings > 0:
+                potential += hung(bodies[body], q[k], three(gravity))
+                potential -= bodies[body].mass * dot(three(gravity), vec(x, body))
+                driven -= speeding(bodies[body], t, INSTANT) * v[k]
+            else:
+                potential -= p[INERTIA] * dot(three(gravity), three(bodies[body].way)) * q[k]
+            elastic += 0.5 * p[STIFFNESS] * q[k] * q[k]
+            lost += p[DAMPING] * v[k] * v[k]
+        if bodies[body].spin >= 0:
+            spun = v[bodies[body].spin]
+            kinetic += 0.5 * bodies[body].press[AXIAL] * spun**2
+            torque, _, shaft = clutch(bodies[body], spun, t)
+            lost += torque * (shaft - spun)
+            driven += torque * shaft
+    for i in range(tables.bushings.size):
+        energy, power = bush_forces(tables, tables.bushings[i], q, motion, f)
+        elastic += energy
+        lost += power
+    whole = np.zeros(WIDE)
+    for i in range(pairs.size):
+        if not pair_forces(tables, pairs[i], q, motion, f, whole):
+            continue
+        row = pair_out[i]
+        for k in range(OUT):
+            row[k] = whole[k]
+        turning(bodies, pairs[i], whole, pair_out, i, OUT)
+        elastic += row[STORED]
+        lost += row[DISSIPATED]
+        for body, torque_at in ((pairs[i].a, TORQUE_A), (pairs[i].b, TORQUE_B)):
+            if bodies[body].first < 0 and bodies[body].spin < 0:
+                about = dot(three_from(row, torque_at), three(bodies[body].axis))
+                driven -= about * prescribed(bodies[body], t)
+    for i in range(loads.size):
+        load = loads[i]
+        body = load.body
+        arm = rotate(mat(r, body), three(load.local))
+        rate = add(vec(u, body), cross(vec(w, body), arm))
+        driven += dot(three(load.force), rate) + dot(three(load.moment), vec(w, body))
+    totals[KINETIC], totals[ELASTIC], totals[POTENTIAL] = kinetic, elastic, potential
+    totals[LOST], totals[DRIVING] = lost, driven

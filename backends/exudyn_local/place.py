@@ -1,0 +1,110 @@
+"""Places and velocities of all bodies at the solver's coordinates, and whose coordinate each is."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mdlgen.backends.exudyn_local.system import System
+from mdlgen.mechanics.arm import (
+    moved,
+    way_of,
+)
+from mdlgen.mechanics.driven import prescribed, turned
+from mdlgen.mechanics.vector import (
+    exp_rotation,
+    mat,
+    matmul,
+    scale,
+    three,
+    vec,
+)
+from mdlgen.model.tables import Ints
+from mdlgen.program.kernel import njit
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def place_body(bodies, body, at, motion):
+    """Position, rotation, velocity and angular velocity (global) of one body at some Coordinates."""
+    q, v, t = at
+    x, r, u, w = motion
+    ref = bodies[body].reference
+    for i in range(3):
+        x[body, i] = ref[i]
+        u[body, i] = 0.0
+        w[body, i] = 0.0
+    e0, e1, e2, e3 = ref[3], ref[4], ref[5], ref[6]
+    n = bodies[body].first
+    if n >= 0:
+        for i in range(3):
+            x[body, i] += q[n + i]
+            u[body, i] = v[n + i]
+        e0 += q[n + 3]
+        e1 += q[n + 4]
+        e2 += q[n + 5]
+        e3 += q[n + 6]
+        d0, d1, d2, d3 = v[n + 3], v[n + 4], v[n + 5], v[n + 6]
+        w[body, 0] = 2 * (-e1 * d0 + e0 * d1 - e3 * d2 + e2 * d3)
+        w[body, 1] = 2 * (-e2 * d0 + e3 * d1 + e0 * d2 - e1 * d3)
+        w[body, 2] = 2 * (-e3 * d0 - e2 * d1 + e1 * d2 + e0 * d3)
+    r[body, 0] = 1 - 2 * (e2 * e2 + e3 * e3)
+    r[body, 1] = 2 * (e1 * e2 - e0 * e3)
+    r[body, 2] = 2 * (e1 * e3 + e0 * e2)
+    r[body, 3] = 2 * (e1 * e2 + e0 * e3)
+    r[body, 4] = 1 - 2 * (e1 * e1 + e3 * e3)
+    r[body, 5] = 2 * (e2 * e3 - e0 * e1)
+    r[body, 6] = 2 * (e1 * e3 - e0 * e2)
+    r[body, 7] = 2 * (e2 * e3 + e0 * e1)
+    r[body, 8] = 1 - 2 * (e1 * e1 + e2 * e2)
+    k = bodies[body].slide
+    if k >= 0:
+        place = moved(bodies[body], vec(x, body), q[k])
+        way = way_of(bodies[body], place)
+        for i in range(3):
+            x[body, i] = place[i]
+            u[body, i] += v[k] * way[i]
+    spin = bodies[body].spin
+    if bodies[body].rims > 0:
+        angle = q[spin] if spin >= 0 else turned(bodies[body], t)
+        if bodies[body].swings == 2:
+            angle += q[k]
+        m = matmul(exp_rotation(scale(angle, three(bodies[body].axis))), mat(r, body))
+        for i in range(9):
+            r[body, i] = m[i]
+    rate = v[spin] if spin >= 0 else prescribed(bodies[body], t)
+    if bodies[body].swings == 2:
+        rate += v[k]
+    for i in range(3):
+        w[body, i] += rate * bodies[body].axis[i]
+    if bodies[body].carries != 0:  # a mesh shows how far the roller has turned
+        angle = q[spin] if spin >= 0 else turned(bodies[body], t)
+        m = matmul(exp_rotation(scale(angle, three(bodies[body].axis))), mat(r, body))
+        for i in range(9):
+            r[body, i] = m[i]
+
+
+@njit(cache=True, error_model="numpy")
+def place_all(bodies, at, motion):
+    """The Motion of all bodies at some Coordinates."""
+    for body in range(bodies.size):
+        place_body(bodies, body, at, motion)
+
+
+@njit(cache=True, error_model="numpy")
+def set_owners(bodies, owner):
+    """Body of each coordinate."""
+    for body in range(bodies.size):
+        n = bodies[body].first
+        if n >= 0:
+            for i in range(7):
+                owner[n + i] = body
+        if bodies[body].slide >= 0:
+            owner[bodies[body].slide] = body
+        if bodies[body].spin >= 0:
+            owner[bodies[body].spin] = body
+
+
+def owners(system: System) -> Ints:
+    """Body of each coordinate."""
+    owner = np.empty(system.free, np.int64)
+    set_owners(system.bodies, owner)
+    return owner

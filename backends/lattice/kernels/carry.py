@@ -1,0 +1,60 @@
+"""From the middle to the end of a step (see kernels.step)."""
+
+from __future__ import annotations
+
+from mdlgen.backends.lattice.kernels.forces import turn_roller
+from mdlgen.backends.lattice.kernels.image import reflect
+from mdlgen.mechanics.arm import AXIAL, moved
+from mdlgen.mechanics.driven import clutch, prescribed
+from mdlgen.mechanics.vector import back, exp_rotation, mat, matmul, rotate, vec
+from mdlgen.program.kernel import BORROWS, njit
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def spun(body, u, v, t, dt):
+    """Spin of a roller at the end of a step from t, from those at its middle and its beginning: 2 u - v, but
+    for a clutch that is stiff for the step.
+
+    The rule would let it ring about what it takes. What a step adds against the shaft is left out there, in
+    the measure of how much stiffer than the roller's inertia the clutch is.
+    """
+    h = 0.5 * dt
+    stiff = h * clutch(body, u, t + h)[1] / body.press[AXIAL]
+    if stiff == 0.0:
+        return 2.0 * u - v
+    added = u - prescribed(body, t + h) - v + prescribed(body, t)
+    return 2.0 * u - v - added * stiff * stiff / (1.0 + stiff * stiff)
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def carry(tables, state, t, dt):
+    """From the middle to the end of a step."""
+    bodies, nodes, images = tables.bodies, tables.nodes, tables.images
+    x, r, v, l, s, vb, u, ub = state
+    for n in range(nodes.size):
+        b = nodes[n]
+        m = matmul(exp_rotation((0.5 * dt * u[n, 3], 0.5 * dt * u[n, 4], 0.5 * dt * u[n, 5])), mat(r, b))
+        spin = back(m, (u[n, 3], u[n, 4], u[n, 5]))
+        j = bodies[b].inertia
+        p = rotate(m, (j[0] * spin[0], j[1] * spin[1], j[2] * spin[2]))
+        m = matmul(exp_rotation((dt * u[n, 3], dt * u[n, 4], dt * u[n, 5])), mat(r, b))
+        for i in range(9):
+            r[b, i] = m[i]
+        for i in range(3):
+            x[b, i] += dt * u[n, i]
+            v[n, i] = 2.0 * u[n, i] - v[n, i]
+            l[n, i] = 2.0 * p[i] - l[n, i]
+    reflect(images, x, r)
+    for k in range(bodies.size - 1):
+        slide, spin_at = bodies[k].slide, bodies[k].spin
+        if bodies[k].rims > 0 or bodies[k].carries != 0:
+            turning = ub[spin_at] if spin_at >= 0 else ub[slide] if bodies[k].swings == 2 else 0.0
+            turn_roller(bodies[k], k, dt, t + dt, turning, r, r)
+        if slide >= 0:
+            s[slide] += dt * ub[slide]
+            at = moved(bodies[k], vec(x, k), dt * ub[slide])
+            for i in range(3):
+                x[k, i] = at[i]
+            vb[slide] = 2.0 * ub[slide] - vb[slide]
+        if spin_at >= 0:
+            vb[spin_at] = spun(bodies[k], ub[spin_at], vb[spin_at], t, dt)

@@ -1,0 +1,90 @@
+"""Meshes of a Model in tables for compiled code: where each stands, and its tree of triangles."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from mdlgen.mechanics.tree import AFTER, AREA, FIRST, THICK, WIDTH, build_tree
+from mdlgen.model.meshes import origin
+from mdlgen.model.tables import Floats, Ints, Model
+
+DEEPEST = 1.0  # mm: what is deeper in a part is about to come out at its other side, or is lost
+BEYOND = 1.5  # how far beyond that depth a contact is still seen, so that a run can end
+HEAD = np.dtype(
+    [
+        ("first", "i8"),  # node of the tree
+        ("end", "i8"),
+        ("place", "f8", 3),  # of the file's axes, in those of the body that the mesh moves with
+        ("axes", "f8", 9),
+        ("basis", "f8"),  # 4/3 w sqrt(2 R) of the roller that it is on, 0: fixed
+        ("middles", "i8"),  # depth is looked at in the middles of elements
+        ("most", "f8"),  # DEEPEST
+        ("edge", "f8"),  # radius of its edges, 0: sharp
+        ("reach", "f8"),  # greatest distance from the body's centre
+        ("unseen", "f8"),  # how far a box may move from one state that is looked at to the next
+    ]
+)
+
+
+class Meshes(NamedTuple):
+    """All meshes of a Model: one HEAD each, and the trees behind each other."""
+
+    heads: np.ndarray
+    bounds: Floats  # as in mechanics.tree
+    links: Ints
+    triangles: Floats
+
+
+def mesh_tables(model: Model, mm: float = 1.0) -> Meshes:
+    """The meshes of a Model for compiled code; `mm` is a millimetre in the solver's unit."""
+    heads = np.zeros(len(model.meshes), HEAD)
+    bounds, links, triangles = [np.zeros((0, 12))], [np.zeros((0, 3), np.int64)], [np.zeros((0, WIDTH))]
+    built: dict[tuple[str, float], tuple[int, int, float]] = {}
+    for head, mesh in zip(heads, model.meshes, strict=True):
+        if (mesh.file, mesh.scale) not in built:
+            box, link, table = build_tree(mesh.corners * mm, mesh.triangles, DEEPEST * mm)
+            before, shift = sum(map(len, links)), sum(map(len, triangles))
+            link[:, FIRST] += shift
+            link[:, AFTER] += before
+            built[mesh.file, mesh.scale] = before, before + len(link), _unseen(table)
+            bounds.append(box)
+            links.append(link)
+            triangles.append(table)
+        head["first"], head["end"], head["unseen"] = built[mesh.file, mesh.scale]
+        body = mesh.body
+        if mesh.on >= 0:
+            roller = model.rollers[mesh.on]
+            body = roller.body
+            head["basis"] = 4 / 3 * roller.width * math.sqrt(2.0 * roller.radius) * mm**1.5
+        turn = model.bodies.rotation[body]
+        place = turn.T @ (origin(mesh, model.rollers) - model.bodies.position[body])
+        head["place"], head["axes"] = place * mm, (turn.T @ mesh.axes).ravel()
+        head["middles"], head["most"] = mesh.at == "centres", DEEPEST * mm
+        head["edge"] = mesh.edge_radius * mm
+        head["reach"] = (
+            float(np.linalg.norm(place + mesh.corners @ (turn.T @ mesh.axes).T, axis=1).max()) * mm
+        )
+    return Meshes(heads, np.concatenate(bounds), np.concatenate(links), np.concatenate(triangles))
+
+
+def _unseen(table: Floats) -> float:
+    """A little less than the band in which a box that is too deep is seen, where the part is thinnest, but
+    for the 2 % of its surface at its sharpest edges."""
+    order = np.argsort(table[:, THICK])
+    area = np.cumsum(table[order, AREA])
+    thin = table[order[np.searchsorted(area, 0.02 * area[-1])], THICK]
+    return 0.8 * (BEYOND - 1.0) * float(thin)
+
+
+def mesh_numbers(model: Model) -> tuple[np.ndarray, np.ndarray]:
+    """Of each kept pair: the number of its mesh (0 where it has none), and the body that this moves with."""
+    number = {mesh.body: k for k, mesh in enumerate(model.meshes)}
+    moved = {m.body: model.rollers[m.on].body for m in model.meshes if m.on >= 0}
+    bodies = model.pairs.b.tolist()
+    return (
+        np.array([number.get(b, 0) for b in bodies], dtype=np.int64),
+        np.array([moved.get(b, b) for b in bodies], dtype=np.int64),
+    )
