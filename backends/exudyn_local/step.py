@@ -89,12 +89,13 @@ def _from_tolerance(model: Model) -> float:
     finer = math.sqrt(model.run.tolerance / 1e-3)
     wanted = FLEXIBLE_STEP * finer
     for row in range(len(model.contacts)):
-        wanted = min(wanted, approach_time(model, row) / STEPS_OF_BOXES * finer)
+        restitution = max(float(model.contacts.restitution[row]), 0.25 * SOFT_RESTITUTION)
+        sharper = max(1.0, SOFT_RESTITUTION / restitution)
+        wanted = min(wanted, approach_time(model, row) / (STEPS_OF_BOXES * sharper) * finer)
         if model.contacts.kind[row] in OF_MACHINE:
             continue
         sheet = next(s for s in model.sheets if s.name == model.contacts.part_a[row])
         if sheet.count == 1:
             time = impact_time(model, row, sheet.derived["m"])
-            soft = SOFT_RESTITUTION / max(float(model.contacts.restitution[row]), 0.25 * SOFT_RESTITUTION)
-            wanted = min(wanted, time / (STEPS_IN_CONTACT * max(1.0, soft)) * finer)
+            wanted = min(wanted, time / (STEPS_IN_CONTACT * sharper) * finer)
     return wanted

@@ -37,8 +37,9 @@ def impact_time(model: Model, row: int, mass: float) -> float:
 
 
 def approach_time(model: Model, row: int) -> float:
-    """Duration of the impact [ms] of what flies, or swings, at its counterpart as the run begins: the boxes
-    of a flexible sheet along the sheet's normal, a roller on an arm. inf where nothing does.
+    """Duration of the impact [ms] of what flies, falls or swings at its counterpart as the run begins: the
+    boxes of a flexible sheet along the sheet's normal, those of one that nothing holds on a plane, a roller
+    on an arm. inf where nothing does.
 
     A sheet that is driven in its own plane meets rollers with its edge, softly, and does not count.
     """
@@ -50,6 +51,8 @@ def approach_time(model: Model, row: int) -> float:
         mass = first.derived["m"]
         if isinstance(second, SheetPart):
             mass = mass * second.derived["m"] / (mass + second.derived["m"])
+        if isinstance(second, PlanePart) and not _held(model, first):
+            speed = math.hypot(speed, _falling(model, first, second))
         if speed > 0.0:
             shortest = lasting(mass, stiffness, speed)
     for roller, other in ((first, second), (second, first)):
@@ -62,6 +65,23 @@ def approach_time(model: Model, row: int) -> float:
         if gap > TOUCHING and pull > 0.0:
             shortest = min(shortest, lasting(mass, stiffness, math.sqrt(2.0 * pull / mass * gap)))
     return shortest
+
+
+def _held(model: Model, sheet: SheetPart) -> bool:
+    """Whether something may keep a sheet from falling: a clamp, a roller or another sheet."""
+    others = {part.name for part in (*model.rollers, *model.sheets)} - {sheet.name}
+    pairs = zip(model.contacts.part_a, model.contacts.part_b, strict=True)
+    return sheet.clamp is not None or any(sheet.name in pair and others & set(pair) for pair in pairs)
+
+
+def _falling(model: Model, sheet: SheetPart, plane: PlanePart) -> float:
+    """Speed along a plane's normal that a sheet over its face falls at it with [mm/ms]."""
+    height = float((sheet.center - plane.center) @ plane.normal)
+    height -= 0.5 * (plane.size[2] + float(sheet.thick.max()))
+    pull = -float(model.gravity @ plane.normal)
+    if height <= TOUCHING or pull <= 0.0:
+        return 0.0
+    return min(math.sqrt(2.0 * pull * height), pull * model.run.duration)
 
 
 def _parts(model: Model, row: int):

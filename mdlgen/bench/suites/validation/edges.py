@@ -39,6 +39,8 @@ def cases(quick: bool) -> list[BenchCase]:
 
 def _drop(height: float, restitution: float) -> BenchCase:
     fall = math.sqrt(2.0 * height / GRAVITY)
+    # a fiftieth of the rebound is a small part of a note of 144 mm, which the tolerance is of
+    tolerance = min(1e-3, max(1e-4, 0.02 * height * restitution**2 / 144.0))
     note = (
         f"{{material: note, size: [67 mm, 127 mm], thickness: {THICK} mm, mass: {MASS} g, boxes: [3, 5],"
         f" layout: plate, center: [0 mm, 0 mm, {height + THICK / 2!r} mm]}}"
@@ -49,6 +51,7 @@ def _drop(height: float, restitution: float) -> BenchCase:
         f"contacts=[{{between: [note, floor], stiffness: {STIFFNESS} N/mm^1.5, restitution: {restitution},"
         " friction: 0.3}]",
         f"run.duration={fall * (1.0 + 1.7 * restitution) + 0.5!r} ms",
+        f"run.tolerance={tolerance:.2g}",
         "run.print_step=0.05 ms",
     )
     name = f"note dropped flat from {height:g} mm, c_R {restitution:g}"
