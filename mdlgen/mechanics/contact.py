@@ -16,8 +16,9 @@ between them: what one of them presses further along than the other would turn t
 a kink at every joint that passes, and fling a light sheet. With the pressure k z^1.5 of a round of radius R
 each reaches sqrt(2 R z), and in balance z goes with k^(-2/3). So the pressure of rollers that face each other
 is that of rounds whose radii go with k^(2/3) (`spread`, see mdlgen.model.nips); the force and its line are
-those of the roller. Where the radius is not the roller's, the moment on a box that two share is not quite
-that of an energy: by (spread - R) times the pressure's potential at the joint, for each angle of its kink.
+those of the roller. Where the radius is not the roller's, the moment on a box that ends in the nip is not
+that of the stored energy, but differs by (spread - R) times the energy per length at that end. What this
+takes where a sheet leaves a nip with another curvature than it came with is counted with what is dissipated.
 """
 
 from __future__ import annotations
@@ -27,8 +28,8 @@ import math
 import numpy as np
 
 from mdlgen.mechanics.frame import Sector
-from mdlgen.mechanics.point import STORED, Load, Nip, passing, push, push_in_nip
-from mdlgen.mechanics.vector import add, back, dot, rotate, scale, sub
+from mdlgen.mechanics.point import DISSIPATED, STORED, Load, Nip, passing, push, push_in_nip
+from mdlgen.mechanics.vector import add, back, cross, dot, rotate, scale, sub
 from mdlgen.program.kernel import BORROWS, FUSED, OWNS, njit
 
 WHOLE = 4.0  # no sector but the whole round: more than half a turn
@@ -40,6 +41,12 @@ def _stored(t, reach):
     """Integral from 0 to t of the square of a pressure that falls as 1 - (t/reach)^2."""
     s = (t / reach) ** 2
     return t * (1.0 - s * (2.0 / 3.0 - 0.2 * s))
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _at_ends(left, right, reach):
+    """The difference of what `_stored` adds up at both ends, 0 beyond the reach."""
+    return (1.0 - (right / reach) ** 2) ** 2 - (1.0 - (left / reach) ** 2) ** 2
 
 
 @njit(cache=True, error_model="numpy", **BORROWS, **FUSED)
@@ -151,6 +158,9 @@ def _face(out, face, a, half, b, roller, sector, law):
                 # round is z/(4R) narrower than its parabola
                 part = 0.5 * weight * foundation * (1.0 + 0.25 * (radius - e) / of)
                 out[STORED] += part * (_stored(right, reach) - _stored(left, reach)) * (radius - e) ** 2
+                if of != radius:
+                    ends = part * _at_ends(left, right, reach) * (radius - e) ** 2
+                    out[DISSIPATED] += (of - radius) * ends * dot(sub(a.w, b.w), cross(across, way))
             pressed = draw * passing(line, across, reach / of, a, b) if spread and turns else 0.0
             for point in range(2 if spread else 1):
                 t = nearest
