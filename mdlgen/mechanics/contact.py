@@ -162,10 +162,15 @@ def _face(out, face, a, half, b, roller, sector, law):
                     ends = part * _at_ends(left, right, reach) * (radius - e) ** 2
                     out[DISSIPATED] += (of - radius) * ends * dot(sub(a.w, b.w), cross(across, way))
             pressed = draw * passing(line, across, reach / of, a, b) if spread and turns else 0.0
+            middle_t, apart = 0.5 * (left + right), 0.5 * _GAUSS * (right - left)
+            low_zeta = of - math.sqrt((middle_t - apart) ** 2 + off * off)
+            high_zeta = of - math.sqrt((middle_t + apart) ** 2 + off * off)
+            # where what presses on this box has its middle
+            center = draw * (middle_t + apart * (high_zeta - low_zeta) / (high_zeta + low_zeta))
             for point in range(2 if spread else 1):
                 t = nearest
                 if spread:
-                    t = 0.5 * (left + right) + (point - 0.5) * _GAUSS * (right - left)
+                    t = middle_t + (2.0 * point - 1.0) * apart
                 zeta = of - math.sqrt(t * t + off * off)
                 if spread:
                     length = 0.5 * (right - left) * (1.0 + lost * (radius - e) / of)
@@ -182,7 +187,7 @@ def _face(out, face, a, half, b, roller, sector, law):
                 beyond = (radius - e) * distance / off if spread else radius - distance
                 at = add(add(line, scale(t, across)), scale(beyond, normal))
                 if spread:
-                    nip = Nip(line, way, pressed)
+                    nip = Nip(line, add(line, scale(center, across)), way, pressed)
                     push_in_nip(out, at, normal, nip, Load(spring, depth, energy), a, b, law)
                 else:
                     push(out, at, normal, Load(spring, depth, energy), a, b, law)

@@ -110,6 +110,7 @@ def box_mesh(out, a, box, b, axis, head, meshes, law):
         du = math.sqrt(max(sums[6] / sums[3] - u * u, 0.0))
         dv = math.sqrt(max(sums[7] / sums[3] - v * v, 0.0))
         line, way, pressed = a.x, normal, 0.0
+        middle = add(a.x, rotate(ra, local(p, r, q, u, v, sign * half[q])))
         if head.basis > 0.0:
             sides = exposed if q == 2 else BLOCK
             fx, fy, fz, line_u, line_v = _nip(both, room, head, meshes, placed, half, sign, sides, stiff)
@@ -128,9 +129,10 @@ def box_mesh(out, a, box, b, axis, head, meshes, law):
             spring, energy = 0.25 * over * force, 0.25 * over * sums[8]
             if head.basis > 0.0:
                 under = add(line, scale(dot(sub(point, line), axis), axis))
+                own = add(middle, scale(dot(sub(point, middle), axis), axis))
                 # on the mesh's own surface, where that is deepest: see mechanics.point
                 point = add(point, scale(sums[9] / dot(normal, way), normal))
-                nip = Nip(under, way, pressed)
+                nip = Nip(under, own, way, pressed)
                 push_in_nip(out, point, normal, nip, Load(spring, sums[9], energy), a, b, law)
             else:
                 push(out, point, normal, Load(spring, sums[9], energy), a, b, law)

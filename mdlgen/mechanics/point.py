@@ -11,6 +11,11 @@ goes out at the other, while the nip is as deep as it was. So all points of a ni
 which the depth at its contact line grows, also where that lies on the next box, and a nip that rolls or
 slides at a constant depth loses nothing. A free edge that is met has one point, and its own rate.
 
+A box that ends in a nip may turn about a place between its contact line and the middle of what presses on it.
+There it goes one way at the one and the other way at the other, and damping by the rate at the line would
+drive it, until the sheet flutters. So a box is damped by the lesser of both rates, and not at all where they
+differ in sign: then its damping takes energy, whatever it does (mechanics.point.push_in_nip).
+
 Of a sheet that passes at v, each element is pressed in and let go again at up to v sqrt(2z/R), the slope of
 the round where it comes in. Their damping has that sign already; a depth that grows more slowly turns it in
 that part of them only. So the damping of a nip is whole not over the law's smoothing speed alone but over
@@ -44,12 +49,13 @@ POINTS = 16
 AT, NORMAL, SPRING, GROWTH, FORCE, RATE, SLIP, BETA, MU_STATIC, MU_DYNAMIC = 0, 3, 6, 7, 8, 9, 10, 13, 14, 15
 KIND = 16
 ALONE, OF_NIP, COUPLE = 0.0, 1.0, 2.0
-# Of one OF_NIP also the place on the contact line whose rate damps it, and the normal there.
+# Of one OF_NIP also the place whose rate damps it, and the normal there.
 LINE, WAY = 17, 20
 OVER = 23  # the speed over which its damping is whole
 # Of a COUPLE: that at a high speed, its radius, the rolling speed and its axis.
 MOST_COUPLE, RADIUS, ROLLING, AXIS = 6, 7, 9, 17
 POINT = 24
+NEVER = 1e30  # over such a speed nothing is damped
 MOST_POINTS = 25  # of one pair: three parts of a face, two stations, two points; twice for a corner; a couple
 
 
@@ -62,10 +68,11 @@ class Load(NamedTuple):
 
 
 class Nip(NamedTuple):
-    """A place on a nip's contact line, the normal there, to the first body, and the greatest speed at which
-    what passes is pressed in."""
+    """A place on a nip's contact line, the middle of what presses on the first body, the normal there, to
+    that body, and the greatest speed at which what passes is pressed in."""
 
     line: Vector
+    middle: Vector
     way: Vector
     pressed: float
 
@@ -104,14 +111,21 @@ def push(out, point, normal, load, a, b, law):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def push_in_nip(out, point, normal, nip, load, a, b, law):
-    """As `push` for one of several points of a nip, whose depth grows as its contact line closes."""
+    """As `push` for one of several points of a nip, whose depth grows as its contact line closes, and as the
+    middle of what presses on the box goes the same way."""
     over = math.sqrt(law.smoothing * law.smoothing + nip.pressed * nip.pressed)
-    losses = Losses(closing(nip.line, nip.way, a, b), over, nip.way)
-    at = _push(out, point, normal, losses, load, a, b, law)
+    rate, place = closing(nip.line, nip.way, a, b), nip.line
+    # a roller's own turning leaves the depth as it is
+    own = dot(sub(b.v, add(a.v, cross(a.w, sub(nip.middle, a.x)))), nip.way)
+    if rate * own <= 0.0:
+        rate, over = 0.0, NEVER
+    elif abs(own) < abs(rate):
+        rate, place = own, nip.middle
+    at = _push(out, point, normal, Losses(rate, over, nip.way), load, a, b, law)
     if at > 0:
         out[at + KIND] = OF_NIP
         for i in range(3):
-            out[at + LINE + i] = nip.line[i]
+            out[at + LINE + i] = place[i]
             out[at + WAY + i] = nip.way[i]
 
 
