@@ -2,10 +2,10 @@
 
 Counted are boxes, pairs of bodies by what they are of, and steps. Fitted to the samples and to some of them
 on other grids and at other tolerances, on one core of some 3 GHz, with all that the solver lattice runs: the
-coarser runs from which the error is estimated, too. Of 19 transient samples processor time was 0.54 to 1.8
-times what is said here, of `snatch`, 17 ms, twice. On other grids and at other tolerances it was 0.2 to 5
-times: the step is halved until the estimate is within the tolerance, and how often is not known ahead. Where
-two processors run two passes at a time, a run takes about two thirds of it.
+coarser runs from which the error is estimated, too. Of 19 transient samples processor time was 0.54 to 2.0
+times what is said here. On other grids and at other tolerances it was 0.2 to 5 times: the step is halved
+until the estimate is within the tolerance, and how often is not known ahead. Where two processors run two
+passes at a time, a run takes about two thirds of it.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ PASSES = 1.8  # what the coarser runs add to the last one
 # Of one step [s]; BAND for each box and the square of the boxes on the shorter side of its sheet, which is
 # what a factor of its joints takes.
 STEP, BOX, BAND = 6e-6, 0.03e-6, 2.1e-9
-PAIR, CURVED, LAID = 0.26e-6, 1.06e-6, 1.2e-6  # with a roller or a plane, a guide or a mesh, another sheet
+PAIR, CURVED, LAID = 0.26e-6, 1.06e-6, 0.8e-6  # with a roller or a plane, a guide or a mesh, another sheet
 MOST_LAID = 4  # of such pairs a box touches so many at a time
 STATIC_BOX, STATIC_BAND = 4e-5, 1e-7  # [s], of a static run
 # The step of blocks, or without contacts, at a tolerance of 1e-3 [ms]; it goes with the tolerance's root.
 FIRST_STEP, PARTS_AT_LEAST, HALVED = 0.2, 20, 2.0
-# Of sheets in contact it is finer the faster they are for the smoothing of friction, at 100 times that by
-# FINER; and goes with the tolerance below 1e-3.
-FINER, FASTER, BY_SPEED, BY_TOLERANCE = 5.9, 100.0, 0.21, 1.27
+# Of sheets in contact it is finer than the first one, more so where a plate is pressed, on which they clap;
+# and goes with the tolerance below 1e-3.
+FINER, PRESSED, BY_TOLERANCE = 3.7, 2.7, 1.27
 LONG, MANY_TIMES = 60.0, 4.0  # [s]: below, nothing is said
 USUAL_TOLERANCE, USUAL_OUTPUTS, USUAL_DURATION, USUAL_BOXES = 1e-3, 200, 1000.0, 500
 
@@ -61,7 +61,7 @@ class _Size:
     curved: int
     laid: int
     contact: bool  # of sheets of more than one box
-    speed: float  # the greatest, in times the least smoothing
+    pressed: bool  # a plate
 
     def cost(self) -> Cost:
         """Of a transient run."""
@@ -77,7 +77,7 @@ class _Size:
         if not self.contact:
             return min(FIRST_STEP * math.sqrt(strict), self.duration / PARTS_AT_LEAST) / HALVED
         first = min(FIRST_STEP * min(strict, 1.0) ** BY_TOLERANCE, self.duration / PARTS_AT_LEAST)
-        return first / max(1.0, FINER * (max(self.speed, 1.0) / FASTER) ** BY_SPEED)
+        return first / (FINER * (PRESSED if self.pressed else 1.0))
 
 
 def cost(model: Model) -> Cost | None:
@@ -103,9 +103,6 @@ def _size(model: Model) -> _Size:
     kinds = model.contacts.kind[model.pairs.contact].tolist()
     curved, laid = kinds.count(BOX_GUIDE) + kinds.count(BOX_MESH), kinds.count(BOX_BOX)
     boxes, band = _boxes(model)
-    speeds = [abs(roller.speed or 0.0) * roller.radius for roller in model.rollers]
-    speeds += [math.hypot(*sheet.velocity.tolist()) for sheet in model.sheets]
-    smoothing = model.contacts.smoothing.min() if len(model.contacts) else 1.0
     return _Size(
         duration=run.duration,
         outputs=run.duration / run.print_step,
@@ -117,7 +114,7 @@ def _size(model: Model) -> _Size:
         curved=curved,
         laid=laid + beside,
         contact=len(model.pairs) + beside > 0 and max(counts.values()) > 1,
-        speed=max(speeds) / float(smoothing),
+        pressed=any(plane.press is not None for plane in model.planes),
     )
 
 
