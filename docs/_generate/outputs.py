@@ -67,6 +67,19 @@ SUMMARY: dict[str, tuple[str, str]] = {
         "turn of the sheet about its normal, with the `turn` that it begins with; it does not change where "
         "the sheet only bends or goes round a curve",
     ),
+    "sheets.NAME.way_mm": (
+        "mm",
+        "mean way of its boxes in their own planes: along the path also round a bend, where travel is less",
+    ),
+    "sheets.NAME.mean_speed_mm_per_s": (
+        "mm/s",
+        "mean speed of its boxes in their own planes, over the last tenth of the run",
+    ),
+    "sheets.NAME.skew_deg": (
+        "deg",
+        "turn of the sheet's nearer side against its way, about its normal, over the last tenth of the run; "
+        "null where it stands",
+    ),
     "sheets.NAME.boxes": ("", "number of boxes"),
     "sheets.NAME.bushings": ("", "number of bushings"),
     "sheets.NAME.strain": ("", "null for a sheet without joints"),

@@ -23,6 +23,7 @@ from mdlgen.results.torques import (
     peak,
 )
 from mdlgen.results.verdict import verdict
+from mdlgen.results.way import at_the_end
 from mdlgen.version import version
 
 PER_SECOND = 1000.0  # mm/ms -> mm/s, rad/ms -> rad/s
@@ -129,13 +130,18 @@ def strain(result: Result) -> float:
 
 def _sheet(result: Result, index: int, bearing: bool) -> dict[str, Any]:
     sheet = result.model.sheets[index]
-    record: dict[str, Any] = {"travel_mm": None, "speed_mm_per_s": None, "yaw_deg": None}
+    numbers = ("travel_mm", "speed_mm_per_s", "yaw_deg", "way_mm", "mean_speed_mm_per_s", "skew_deg")
+    record: dict[str, Any] = dict.fromkeys(numbers)
     if len(result.time):
         _, rate, yaw = result.sheet_motion(index)
+        way, fast, skew = at_the_end(result, index)
         record = {
             "travel_mm": travel(result, index),
             "speed_mm_per_s": rate[-1] * PER_SECOND,
             "yaw_deg": math.degrees(yaw[-1]),
+            "way_mm": way,
+            "mean_speed_mm_per_s": fast * PER_SECOND,
+            "skew_deg": math.degrees(skew),
         }
     return {
         **record,

@@ -13,6 +13,7 @@ from mdlgen.errors import SpecError, did_you_mean
 from mdlgen.model.parts.kinds import KINDS
 from mdlgen.model.tables import Floats, RollerPart
 from mdlgen.results.torques import contact_torque, drive_power, drive_torque, grips
+from mdlgen.results.way import way_of
 from mdlgen.spec.require import Requirement, requirement
 from mdlgen.units import parse_unit, same
 
@@ -242,6 +243,9 @@ def _series(result: Result, path: str) -> Floats:
             sizes |= {f"{key}.{axis}": vectors[:, k] for k, axis in enumerate("xyz")}
         if what in sizes:
             return sizes[what]
+        if what in ("way", "way_mm", "skew", "skew_deg"):
+            way = way_of(result, index)
+            return way.length if what.startswith("way") else way.skew
     parts = {part.name: part for part in model.machine}
     if kind in {each.table for each in KINDS} and name in parts:
         if what in ("nip_force", "nip_force_n"):
@@ -253,8 +257,8 @@ def _series(result: Result, path: str) -> Floats:
         if kind == "rollers" and (found := _turning(result, model.roller(name), what)) is not None:
             return found
     raise ValueError(
-        f"{path} is known at the end alone; over time there are yaw, speed and travel of sheets, nip_force "
-        "of parts, and omega, torque, power, contact_torque and traction.OTHER.reserve of rollers"
+        f"{path} is known at the end alone; over time there are yaw, skew, speed, travel and way of sheets, "
+        "nip_force of parts, and omega, torque, power, contact_torque and traction.OTHER.reserve of rollers"
     )
 
 

@@ -90,7 +90,8 @@ class TestSummary:
         assert set(record) == PROMISED | WORK
         assert set(record["pairs"]) == {"possible", "kept", "searched", "touched"}
         assert set(record["sheets"]["note"]) == {
-            "travel_mm", "speed_mm_per_s", "yaw_deg", "boxes", "bushings", "strain", "curvature", "twist",
+            "travel_mm", "speed_mm_per_s", "yaw_deg", "way_mm", "mean_speed_mm_per_s", "skew_deg",
+            "boxes", "bushings", "strain", "curvature", "twist",
         }  # fmt: skip
         assert set(record["probes"]["lead"]) == {"displacement_mm", "speed_mm_per_s"}
 
