@@ -34,6 +34,7 @@ CALM: dict[str, tuple[str, ...]] = {
     "transport_4x4": (),
     "transport_nips": (),
     "stack": (),
+    "pile": ("run.duration=5 ms",),
     "cantilever": (),
     "snatch": (),
     "verify/drop": ("run.duration=60 ms",),

@@ -118,7 +118,7 @@ def test_the_text_says_the_same(name, more):
     # fewer boxes; folds and ears are where lines are
     few = ("sheets.note.boxes=[10,10]", *more)
     message = scene(FREE, f"sheets.note.shape={SHAPES[name]}", *few)
-    found = verify(message, lower(message), turn=not more)
+    found = verify(message, lower(message), perturb=not more)
     assert found.ok, found.all_differences()[:3]
 
 
