@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from mdlgen.runs.checkpoint import Checkpointer
 
 # Name of a backend -> its package.
-EMITTERS = {"motionview": "mdlgen.backends.motionview", "motionsolve": "mdlgen.backends.motionsolve"}
+EMITTERS = {name: f"mdlgen.backends.{name}" for name in ("motionview", "motionsolve", "msolve")}
 SOLVERS = {"exudyn": "mdlgen.backends.exudyn_local", "lattice": "mdlgen.backends.lattice"}
-TEXT, DECK = "motionview", "motionsolve"
+TEXT, DECK, SCRIPT = "motionview", "motionsolve", "msolve"
 FAST, REFERENCE = "lattice", "exudyn"
 AUTO = (FAST, REFERENCE)  # in this order: the fast one where it can represent the scene
 

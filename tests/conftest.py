@@ -28,7 +28,7 @@ settings.load_profile("mdlgen")
 # The first test of each compiles nearly all that there is.
 COMPILING = ("test_lattice", "test_lattice_static", "test_exudyn")
 # Folders whose tests need nothing compiled, or little.
-PLAIN = ("spec", "model", "text", "deck")
+PLAIN = ("spec", "model", "text", "deck", "script")
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -22,6 +22,7 @@ COMMANDS = {
     "preview": "preview",
     "mdl": "texts",
     "deck": "texts",
+    "script": "texts",
     "verify": "texts",
     "lint": "texts",
     "run": "run",

@@ -160,6 +160,43 @@ def deck(
 
 @app.command()
 @reports_errors
+def script(
+    spec: Spec,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="FILE.py",
+            help="Where to write: NAME.py if left out, - for standard output.",
+        ),
+    ] = None,
+    sets: Sets = None,
+    limits: Raised = None,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
+) -> None:
+    """Write the scene as a script for MotionSolve's Python.
+
+    It makes the model, runs it, and writes what is recorded as CSV.
+
+    Example: mdlgen script samples/transport_4x4.yaml -o note.py
+    """
+    from mdlgen import paths, registry
+
+    model = model_of(spec, sets, limits)
+    text = registry.emitter(registry.SCRIPT).emit(model)
+    if output is not None and str(output) == "-":
+        typer.echo(text, nl=False)
+        return
+    target = Path(f"{model.name}.py") if output is None else output
+    paths.write_atomic(target, text)
+    if not quiet:
+        say(f"wrote {target}")
+
+
+@app.command()
+@reports_errors
 def lint(
     text: Annotated[Path, typer.Argument(metavar="FILE.mdl", help="Any MotionView text.")],
     values: Annotated[
@@ -228,6 +265,14 @@ def verify(
         Path | None,
         typer.Option("--deck", metavar="FILE.xml", help="A deck to check in place of the one mdlgen writes."),
     ] = None,
+    msolve: Annotated[
+        Path | None,
+        typer.Option(
+            "--msolve",
+            metavar="FILE.py",
+            help="A script for MotionSolve to check in place of the one mdlgen writes; it is not run.",
+        ),
+    ] = None,
     only: Annotated[
         str | None,
         typer.Option(
@@ -251,7 +296,7 @@ def verify(
     quiet: Quiet = False,
     verbose: Verbose = False,
 ) -> None:
-    """Compare text, script and deck with the model that is run.
+    """Compare text, deck and scripts with the model that is run.
 
     They are read back; every number in them is compared with the tables of the local run.
 
@@ -264,7 +309,7 @@ def verify(
     from mdlgen.verify.verification import verify as compare
 
     scene = scene_of(spec, sets, limits)
-    files = {"text": text, "companion": script, "deck": deck}
+    files = {"text": text, "companion": script, "deck": deck, "msolve": msolve}
     with count(quiet, "values changed") as progress:
         found = compare(scene, lower(scene), **files, only=only, perturb=perturb, progress=progress)
     if as_json:

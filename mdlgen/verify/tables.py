@@ -51,6 +51,12 @@ class Table:
         names = tuple(self.names[k] for k in rows)
         return Table(names, self.columns, self.numbers[rows], self.scale[rows], words)
 
+    def without(self, column: int) -> Table:
+        """The table without one of its columns."""
+        keep = [k for k in range(len(self.columns)) if k != column]
+        names = tuple(self.columns[k] for k in keep)
+        return Table(self.names, names, self.numbers[:, keep], self.scale[:, keep], self.words)
+
     def updated(self, other: Table) -> Table:
         """This table with the rows of another one in place of its own; names that are new are left out."""
         rows = [(self.index[name], k) for k, name in enumerate(other.names) if name in self.index]

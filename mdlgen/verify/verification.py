@@ -1,4 +1,5 @@
-"""A text, its script and its deck against the Model: read back, compared, and each value changed."""
+"""A text, its script, its deck and the script for MotionSolve against the Model: read back and compared, each
+value of the text changed."""
 
 from __future__ import annotations
 
@@ -8,8 +9,9 @@ from pathlib import Path
 from mdlgen.errors import RefusedError, SpecError
 from mdlgen.model.parameters.names import OF_USER
 from mdlgen.model.tables import Model
-from mdlgen.registry import DECK, emitter
+from mdlgen.registry import DECK, SCRIPT, emitter
 from mdlgen.spec.scene import Scene
+from mdlgen.verify.expected.contacts import CONTACT_NUMBERS, contact_outputs
 from mdlgen.verify.expected.parts.mesh import mesh_shapes
 from mdlgen.verify.expected.units import reach
 from mdlgen.verify.inputs.companion import beside, chosen, of_systems, taken
@@ -21,6 +23,7 @@ from mdlgen.verify.readback.script import NONE, Script
 from mdlgen.verify.readback.values import (
     ReadBack,
     Values,
+    contact_output_table,
     contact_table,
     data_table,
     gravity_of,
@@ -33,11 +36,15 @@ from mdlgen.verify.readback.values import (
 from mdlgen.verify.tables import Difference, Table, compare
 from mdlgen.verify.text.elements import element_differences
 from mdlgen.verify.text.host_model import host_notes
+from mdlgen.verify.text.objects import object_differences
 from mdlgen.verify.text.statements import remarks, unaccounted
 from mdlgen.verify.text.wording import wording
 
 # Kinds that a deck has no entities for: points, vectors and data sets are the text's way to say numbers.
 _NOT_IN_DECK = ("points", "vectors", "data", "mesh files")
+# A script for MotionSolve has no surfaces either.
+_NOT_IN_SCRIPT = (*_NOT_IN_DECK, "surfaces")
+_UNSET = CONTACT_NUMBERS.index("normal_trans_vel")
 _MACHINE = frozenset(("bodies", "graphics"))
 
 
@@ -48,11 +55,12 @@ def verify(
     text: Path | None = None,
     companion: Path | None = None,
     deck: Path | None = None,
+    msolve: Path | None = None,
     only: str | None = None,
     perturb: bool = True,
     progress: Progress | None = None,
 ) -> Verification:
-    """Compares text, script and deck with the Model of a scene.
+    """Compares text, script and deck with the Model of a scene, and the script for MotionSolve, `msolve`.
 
     Without `text` the texts that mdlgen writes are taken: with the contact numbers in solver commands, in the
     script, and in statements of the text. `companion` is looked for beside `text` where it is left out.
@@ -81,6 +89,8 @@ def verify(
         found.notes.append("no deck: it is of a whole machine")
     else:
         _deck(said, subject, first.values, File.read(deck), found)
+    if not subject.only or msolve is not None:
+        _script(said, subject, File.read(msolve), found)
     return found
 
 
@@ -219,3 +229,42 @@ def _deck(
             found.add("deck", compare(kind, table, tables[kind]))
     found.add("deck", compare("mesh shapes", mesh_shapes(subject.model), tables["mesh shapes"]))
     found.add("deck", compare("all markers", marker_table(text, reach(subject.model)), marker_table(values)))
+
+
+def _script(said: dict[str, Table], subject: Subject, given: File | None, found: Verification) -> None:
+    """The script for MotionSolve against the Model. It has the markers of probes, and no keyword for
+    normal_trans_vel."""
+    backend, model = emitter(SCRIPT), subject.model
+    try:
+        own = backend.emit(model)
+    except RefusedError as error:
+        if given is None:
+            found.notes.append(f"no script: {error.message}")
+            return
+        raise
+    path = Path("<msolve>") if given is None else given.path
+    mine = backend.read(own, "<msolve>")
+    reading = mine if given is None else backend.read(given.text, str(path))
+    values = reading.values
+    if given is not None:
+        found.differences += object_differences(mine, reading, str(path))
+    tables = ReadBack(subject.times).tables(values)
+    tables["contacts"] = contact_table(values, {}).without(_UNSET)
+    tables["run"] = run_table(values)
+    tables["gravity"] = gravity_table(values["gravity"])
+    tables["units"] = units_table(values)
+    tables["masters"] = master_table(values)
+    tables["contact outputs"] = contact_output_table(values)
+    of_probes = {f"m_probe_{probe.name}" for probe in model.probes}
+
+    def probed(name: str) -> bool:
+        head, _, end = name.rpartition("_")
+        return name in of_probes or (head in of_probes and end.isdigit())
+
+    due = {kind: table for kind, table in said.items() if kind not in _NOT_IN_SCRIPT}
+    due["contacts"] = due["contacts"].without(_UNSET)
+    due["markers"] = due["markers"].only(probed)
+    tables["markers"] = tables["markers"].only(probed)
+    due |= {"contact outputs": contact_outputs(model), "mesh shapes": mesh_shapes(model)}
+    for kind, table in due.items():
+        found.add("msolve", compare(kind, table, tables[kind]))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from mdlgen.altair.recorded import called, recorded
 from mdlgen.altair.rims import Side, meetings
 from mdlgen.model.tables import Model
 from mdlgen.verify.expected.parts.kinds import kind_of
@@ -80,3 +81,25 @@ def contacts(model: Model) -> Table:
     said = [("POISSON", "ON" if on else "OFF", *row) for on, row in zip(rubs.tolist(), words, strict=True)]
     parts: dict[str, Part] = {n: (numbers[:, k], None) for k, n in enumerate(CONTACT_NUMBERS)}
     return table(names, parts, said)
+
+
+SIX = ("2", "3", "4", "6", "7", "8")
+"""Components of the force and of the torque of a contact, as the solver's function CONTACT counts them."""
+
+
+def contact_outputs(model: Model) -> Table:
+    """Per recorded row of contacts and component: each contact of it, the side that is its second part, the
+    component, and the frame that it is along."""
+    names, words = [], []
+    said = dict(zip(contacts(model).names, contacts(model).words, strict=True))
+    mine: dict[int, list[str]] = {}
+    for met in meetings(model):
+        a, b = (model.bodies.name[int(v[met.pair])] for v in (model.pairs.a, model.pairs.b))
+        mine.setdefault(int(model.pairs.contact[met.pair]), []).append(f"con_{a}_{b}{met.suffix}")
+    for row in recorded(model):
+        on = f"b_{model.contacts.part_b[row]}"
+        sides = [(name, "1" if said[name][3] == on else "0") for name in mine[row]]
+        for component in SIX:
+            names.append(f"{called(model, row)}.{component}")
+            words.append(sorted(f"{name} {side} {component} Global_Frame" for name, side in sides))
+    return table(names, {}, words)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from mdlgen.verify.expected.contacts import CONTACT_NUMBERS
+from mdlgen.verify.expected.contacts import CONTACT_NUMBERS, SIX
 from mdlgen.verify.expected.parts.mesh import shape_numbers
 from mdlgen.verify.expected.run import RUN_NUMBERS
 from mdlgen.verify.solver_expressions import Places, Unreadable, law, request
@@ -279,6 +279,16 @@ def master_table(values: Values) -> Table:
         if command["command"] == "Force_Contact":
             sides[command.get("id", "")] = command.get("master_surface", "")
     return _table(sides, lambda n, side: ([], (side,)), 0)
+
+
+def contact_output_table(values: Values) -> Table:
+    """Of each component of what is recorded of contacts: contact, side, component and frame of each term."""
+    found = {
+        f"{name}.{key}": tuple(sorted(" ".join(term) for term in terms))
+        for name, components in values.get("contact outputs", {}).items()
+        for key, terms in zip(SIX, components, strict=True)
+    }
+    return _table(found, lambda n, words: ([], words), 0)
 
 
 def run_table(values: Values) -> Table:

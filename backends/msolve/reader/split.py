@@ -1,0 +1,90 @@
+"""A script as its values, which are literals, and the rest, which must be the program of the template."""
+
+from __future__ import annotations
+
+import ast
+from typing import Any, NamedTuple
+
+from mdlgen.backends.msolve.environment import environment
+from mdlgen.errors import Place, SpecError
+
+TABLES = (
+    *("NAME", "GRAVITY", "RUN", "CURVES", "SHEETS", "LISTED", "ROLLERS", "PLANES", "GUIDES", "MESHES"),
+    *("SUPPORTS", "LOADS", "PROBES", "CONTACTS", "FORCES"),
+)
+_ALWAYS = ("NAME", "GRAVITY", "RUN")
+_HEAD = "import csv\nfrom msolve import *\n"
+
+
+class Script(NamedTuple):
+    """The values by name, and the program that mdlgen writes for a scene that has these."""
+
+    values: dict[str, Any]
+    program: str
+    same_program: bool
+
+
+def split(text: str, file: str) -> Script:
+    """Raises SpecError with the place of what is no literal, or no Python."""
+    tree = _parsed(text, file)
+    values: dict[str, Any] = {}
+    rest: list[ast.stmt] = []
+    for statement in tree.body:
+        name = _name(statement)
+        if name not in TABLES:
+            rest.append(statement)
+            continue
+        assert isinstance(statement, ast.Assign)
+        if name in values:
+            raise _wrong(f"{name} is given twice", statement, file)
+        values[name] = _literal(statement, file)
+    for name in _ALWAYS:
+        if name not in values:
+            raise SpecError(f"there is no {name}: this is no script of mdlgen", place=Place(file, 1, 1))
+    program = _program(values)
+    same = ast.dump(ast.Module(_without_notes(rest), [])) == ast.dump(ast.parse(_HEAD + program))
+    return Script(values, program, same)
+
+
+def _program(values: dict[str, Any]) -> str:
+    """The program for the tables that there are."""
+    there = {name for name, value in values.items() if value}
+    run = values["RUN"]
+    template = environment().get_template("program.py.j2")
+    return template.render(tables=there, static=isinstance(run, dict) and "end" not in run)
+
+
+def _parsed(text: str, file: str) -> ast.Module:
+    try:
+        return ast.parse(text)
+    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+        place = Place(file, getattr(error, "lineno", None) or 1, getattr(error, "offset", None) or 1)
+        raise SpecError(f"this is no Python: {error}", place=place) from None
+
+
+def _name(statement: ast.stmt) -> str:
+    if isinstance(statement, ast.Assign) and len(statement.targets) == 1:
+        target = statement.targets[0]
+        return target.id if isinstance(target, ast.Name) else ""
+    return ""
+
+
+def _literal(statement: ast.Assign, file: str) -> Any:
+    try:
+        return ast.literal_eval(statement.value)
+    except (ValueError, TypeError, RecursionError, MemoryError, SyntaxError):
+        raise _wrong(
+            "only plain numbers, texts, lists and tables are due here", statement.value, file
+        ) from None
+
+
+def _wrong(message: str, node: ast.AST, file: str) -> SpecError:
+    place = Place(file, getattr(node, "lineno", 1), getattr(node, "col_offset", 0) + 1)
+    return SpecError(message, place=place)
+
+
+def _without_notes(statements: list[ast.stmt]) -> list[ast.stmt]:
+    """Without the text at the head, which is for people."""
+    if statements and isinstance(statements[0], ast.Expr) and isinstance(statements[0].value, ast.Constant):
+        return statements[1:]
+    return statements

@@ -1,0 +1,384 @@
+"""All entities of a script, in the shape that the readers of MotionView text and of decks have for them.
+
+Names are labels. Kinds: bodies, markers, bushings, springs, graphics, joints, motions, contacts, velocities;
+curves, outputs, contact outputs, forces (loads), clutches by name; gravity [mm/s^2]; run; standard.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+from typing import Any
+
+from mdlgen.backends.msolve.reader.build import Made
+from mdlgen.backends.msolve.reader.standin import Thing
+from mdlgen.errors import Place, SpecError
+
+Vector = tuple[float, float, float]
+_GLOBAL: tuple[Vector, Vector, Vector] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+_IDS = re.compile(r"\b([DVW][XYZ])\(([0-9]{1,10}(?:,[0-9]{1,10})*)\)")
+_CURVED = re.compile(r"-LINSPL\((.*),0,([0-9]{1,10})\)")
+_CONTACT = re.compile(r"CONTACT\(([0-9]{1,10}),([01]),([1-8]),([0-9]{1,10})\)")
+_CAPS = {"CLOSED": "CAPBOTH"}
+_SIX = ("f2", "f3", "f4", "f6", "f7", "f8")
+
+
+class Objects:
+    """What was made, by class and by id; a name that two of a kind have raises SpecError."""
+
+    def __init__(self, made: Made, file: str):
+        self._things = made.things
+        self._file = file
+
+    def of(self, kind: str) -> Iterator[tuple[str, Thing]]:
+        """Objects of a class with their labels."""
+        for thing in self._things:
+            if type(thing).__name__ == kind:
+                yield label(thing), thing
+
+    def one(self, kind: str) -> dict[str, Any]:
+        """What was given to the only object of a class; nothing where there is none."""
+        return next((thing.given for _, thing in self.of(kind)), {})
+
+    def by_id(self, number: int, kind: str) -> str:
+        """The label of an object of a class; its number where there is none."""
+        if 1 <= number <= len(self._things):
+            thing = self._things[number - 1]
+            if type(thing).__name__ == kind:
+                return label(thing)
+        return f"{kind} {number}"
+
+    def put(self, listed: dict[str, Any], name: str, value: Any) -> None:
+        """Files a record under its name."""
+        if listed.setdefault(name, value) is not value:
+            raise SpecError(f"{name} is there twice", place=Place(self._file, 1, 1))
+
+
+def label(thing: Thing) -> str:
+    """The label of an object, which is its name here."""
+    return str(thing.given.get("label", ""))
+
+
+def values(made: Made, file: str) -> dict[str, Any]:
+    """Every entity of the kinds above. Raises SpecError for two of a name."""
+    objects = Objects(made, file)
+    found: dict[str, Any] = {"velocities": {}}
+    for kind, where, record in (
+        ("Part", "bodies", _body),
+        ("Bushing", "bushings", _bushing),
+        ("SpringDamper", "springs", _spring),
+        ("Box", "graphics", _box),
+        ("Frustum", "graphics", _cylinder),
+        ("Triamesh", "graphics", _mesh),
+        ("Joint", "joints", _joint),
+        ("Motion", "motions", _motion),
+        ("Contact", "contacts", _contact),
+        ("Spline", "curves", _spline),
+        ("Marker", "markers", _marker),
+    ):
+        listed = found.setdefault(where, {})
+        for name, thing in objects.of(kind):
+            value = record(thing)
+            if value is not None:
+                objects.put(listed, name, value)
+    for name, part in objects.of("Part"):
+        if "vx" in part.given:
+            found["velocities"][name] = tuple(float(part.given[f"{k}{a}"]) for k in "vw" for a in "xyz")
+    _requests(objects, found)
+    _forces(objects, found)
+    _curves(objects, found)
+    gravity = objects.one("Accgrav")
+    found["gravity"] = [float(gravity.get(f"{a}grav", 0.0)) for a in "ijk"]
+    found["run"] = _run(objects, made.simulate)
+    units = objects.one("Units")
+    found["standard"] = {"units": {f"op_{name}": value for name, value in units.items()}}
+    return found
+
+
+def _frame(marker: Thing) -> tuple[Vector, tuple[Vector, Vector, Vector]]:
+    """Origin and axes: z goes to `zp`, x lies in the plane of z and `xp`, on its side."""
+    given = marker.given
+    x, y, z = (float(v) for v in given.get("qp", (0.0, 0.0, 0.0)))
+    origin = (x, y, z)
+    if "zp" not in given or "xp" not in given:
+        return origin, _GLOBAL
+    up = _unit([p - o for p, o in zip(given["zp"], origin, strict=True)])
+    way = [p - o for p, o in zip(given["xp"], origin, strict=True)]
+    over = sum(a * b for a, b in zip(way, up, strict=True))
+    a = _unit([v - over * w for v, w in zip(way, up, strict=True)])
+    b = (up[1] * a[2] - up[2] * a[1], up[2] * a[0] - up[0] * a[2], up[0] * a[1] - up[1] * a[0])
+    return origin, (a, b, up)
+
+
+def _unit(way: list[float]) -> Vector:
+    size = math.sqrt(sum(v * v for v in way))
+    x, y, z = (v / size if size else math.nan for v in way)
+    return x, y, z
+
+
+def _of(marker: Thing) -> str:
+    """The part that a marker is on."""
+    return label(marker.part)
+
+
+def _marker(marker: Thing) -> dict[str, Any] | None:
+    if marker.given.get("floating") or label(marker) == "Global_Frame":
+        return None
+    origin, axes = _frame(marker)
+    return {"label": label(marker), "body": _of(marker), "origin": origin, "axes": axes}
+
+
+def _body(part: Thing) -> dict[str, Any] | None:
+    given = part.given
+    if given.get("ground"):
+        return None
+    origin, axes = _frame(part.cm) if "cm" in given else ((math.nan,) * 3, _GLOBAL)
+    inertia = tuple(float(v) for v in given.get("ip", [math.nan] * 6))
+    own = "cm" in given and part.cm.part is part
+    mass = float(given.get("mass", math.nan)) if own else math.nan
+    return {"label": label(part), "mass": mass, "inertia": inertia, "cm": origin, "axes": axes}
+
+
+def _ends(thing: Thing) -> tuple[str, str]:
+    return _of(thing.i), _of(thing.j)
+
+
+def _bushing(bushing: Thing) -> dict[str, Any]:
+    origin, axes = _frame(bushing.i)
+    same = _frame(bushing.j) == (origin, axes)
+    numbers = {
+        name: tuple(float(v) for v in bushing.given.get(name, [0.0] * 3))
+        for name in ("k", "c", "kt", "ct", "force", "torque")
+    }
+    place = origin if same else (math.nan,) * 3  # both markers are where the bushing is
+    return {"label": label(bushing), "bodies": _ends(bushing), "origin": place, "axes": axes, **numbers}
+
+
+def _spring(spring: Thing) -> dict[str, Any]:
+    points = _frame(spring.i)[0], _frame(spring.j)[0]
+    numbers = {name: float(spring.given.get(name, 0.0)) for name in ("k", "c", "force", "length")}
+    return {"label": label(spring), "bodies": _ends(spring), "points": points, **numbers}
+
+
+def _box(box: Thing) -> dict[str, Any]:
+    center, axes = _frame(box.cm)
+    lengths = tuple(float(box.given[a]) for a in "xyz")
+    record = {"label": label(box), "type": "BOX", "body": _of(box.cm)}
+    return {**record, "center": center, "axes": axes, "lengths": lengths}
+
+
+def _cylinder(cylinder: Thing) -> dict[str, Any]:
+    start, axes = _frame(cylinder.cm)
+    return {
+        "label": label(cylinder),
+        "type": "CYLINDER",
+        "body": _of(cylinder.cm),
+        "start": start,
+        "axis": axes[2],
+        "radii": (float(cylinder.bottom), float(cylinder.top)),
+        "length": float(cylinder.length),
+        "caps": _CAPS.get(cylinder.given.get("end_caps", ""), ""),
+    }
+
+
+def _mesh(mesh: Thing) -> dict[str, Any]:
+    origin, axes = _frame(mesh.rm)
+    count = len(mesh.nodes)
+    if any(not 0 <= k < count for face in mesh.faces for k in face):
+        raise SpecError(f"{label(mesh)}: a face names a node that is not there")
+    shape = {"corners": mesh.nodes, "triangles": mesh.faces}
+    return {
+        "label": label(mesh),
+        "type": "CADGRAPHIC",
+        "body": _of(mesh.rm),
+        "origin": origin,
+        "axes": axes,
+        **shape,
+    }
+
+
+def _joint(joint: Thing) -> dict[str, Any]:
+    origin, axes = _frame(joint.i)
+    same = _frame(joint.j) == (origin, axes)
+    return {
+        "label": label(joint),
+        "type": joint.type,
+        "bodies": _ends(joint),
+        "origin": origin if same else (math.nan,) * 3,
+        "axis": None if joint.type == "FIXED" else axes[2],
+    }
+
+
+def _motion(motion: Thing) -> dict[str, Any]:
+    return {
+        "label": label(motion),
+        "joint": label(motion.joint),
+        "freedom": {"ROTATION": "ROT"}[motion.jtype],
+        "quantity": {"VELOCITY": "VEL"}[motion.dtype],
+        "type": "EXPR",
+        "value": motion.function,
+    }
+
+
+def _contact(contact: Thing) -> dict[str, Any]:
+    given = contact.given
+    sides = [one if isinstance(one, list) else [one] for one in (contact.igeom, contact.jgeom)]
+    bodies = [{_of(shape.given.get("cm") or shape.rm) for shape in side} for side in sides]
+    record: dict[str, Any] = {
+        "label": label(contact),
+        "type": contact.type,
+        "friction": contact.coulomb_friction,
+        "bodies": tuple(" ".join(sorted(side)) for side in bodies),
+        "graphics": tuple(tuple(label(shape) for shape in side) for side in sides),
+        "penalty": float(contact.penalty),
+        "restitution": float(contact.restitution_coefficient),
+    }
+    if "master_surface" in given:
+        record["master"] = given["master_surface"]
+    for own, name in (
+        ("mu_static", "mu_static"),
+        ("mu_dynamic", "mu_dynamic"),
+        ("stiction_velocity", "stiction_transition_velocity"),
+        ("friction_velocity", "friction_transition_velocity"),
+    ):
+        if record["friction"] != "OFF" and name in given:
+            record[own] = float(given[name])
+    return record
+
+
+def _spline(spline: Thing) -> dict[str, Any]:
+    beyond = "TRUE" if spline.given.get("linear_extrapolate") else "FALSE"
+    x, y = ([float(v) for v in values] for values in (spline.x, spline.y))
+    if len(x) != len(y):
+        raise SpecError(f"{label(spline)}: {len(x)} places, {len(y)} values")
+    return {"label": label(spline), "beyond": beyond, "x": x, "y": y}
+
+
+def _named(objects: Objects, text: str) -> str:
+    """A solver expression with the names of its markers in place of their ids."""
+
+    def call(found: re.Match[str]) -> str:
+        names = [objects.by_id(int(number), "Marker") for number in found[2].split(",")]
+        return f"{found[1]}({','.join(names)})"
+
+    return _IDS.sub(call, text)
+
+
+def _requests(objects: Objects, found: dict[str, Any]) -> None:
+    """Requests of markers, and those of contacts: of each component the contacts, with the side."""
+    found["outputs"], found["contact outputs"] = {}, {}
+    for name, request in objects.of("Request"):
+        texts = [str(request.given.get(key, "")) for key in _SIX]
+        if not texts[0].startswith("CONTACT("):
+            record = {
+                "label": request.given.get("comment", ""),
+                "expressions": [_named(objects, t) for t in texts],
+            }
+            objects.put(found["outputs"], name, record)
+            continue
+        terms = [[_CONTACT.fullmatch(term) for term in text.split("+")] for text in texts]
+        objects.put(
+            found["contact outputs"],
+            name,
+            [
+                [
+                    (objects.by_id(int(t[1]), "Contact"), t[2], t[3], objects.by_id(int(t[4]), "Marker"))
+                    if t
+                    else ("", "", "", "")
+                    for t in component
+                ]
+                for component in terms
+            ],
+        )
+
+
+def _forces(objects: Objects, found: dict[str, Any]) -> None:
+    """Loads with their numbers, and clutches with their torque as an expression."""
+    found["forces"], found["clutches"] = {}, {}
+    for name, force in objects.of("Gforce"):
+        given = force.given
+        three = [tuple(given.get(f"{kind}{a}", "0") for a in "xyz") for kind in "ft"]
+        if name.endswith("_clutch"):
+            torque = [_named(objects, text) for text in three[1]]
+            ends = (_of(force.i), label(force.i), label(force.rm))
+            objects.put(found["clutches"], name, {"ends": ends, "force": three[0], "torque": torque})
+            continue
+        load = {
+            "label": name,
+            "body": _of(force.i),
+            "origin": _frame(force.i)[0],
+            "reference": label(force.rm) if "rm" in given else "",
+            "force": tuple(_constant(v) for v in three[0]),
+            "torque": tuple(_constant(v) for v in three[1]),
+        }
+        objects.put(found["forces"], name, load)
+
+
+def _constant(text: str) -> float | str:
+    try:
+        number = float(text)
+    except ValueError:
+        return text
+    return number if math.isfinite(number) else text
+
+
+def _curves(objects: Objects, found: dict[str, Any]) -> None:
+    """Forces along curves, with the bushings whose markers they have."""
+    for _, force in objects.of("Vforce"):
+        name = label(force.i).removesuffix(".i")
+        bushing = found["bushings"].get(name)
+        if bushing is None or label(force.rm) != f"{name}.j" or _of(force.jfloat) != bushing["bodies"][1]:
+            raise SpecError(f"{label(force)}: its markers are not those of a bushing")
+        for k, axis in enumerate("xyz"):
+            text = str(force.given.get(f"f{axis}", "0"))
+            if text == "0":
+                continue
+            form = _CURVED.fullmatch(text)
+            if form is None:
+                raise SpecError(f"{label(force)}: f{axis} is {text[:80]!r}, not -LINSPL of a curve")
+            curve = objects.by_id(int(form[2]), "Spline")
+            law = {"curve": curve, "method": "LINEAR", "variable": _named(objects, form[1])}
+            bushing.setdefault("curves", {})[f"k.{k}"] = law
+
+
+def _run(objects: Objects, simulate: dict[str, Any]) -> dict[str, Any]:
+    """The analysis with its times [s], and the settings of its integrator or of its method."""
+    if simulate["type"] == "STATICS":
+        settings = objects.one("Equilibrium")
+        method = "FIM_D" if settings.get("skip_mkeam") else "MKEAM"
+        return {"analysis": "Static", "method": method, "end": 0.0, "print": 0.0}
+    settings = objects.one("Integrator")
+    found: dict[str, Any] = {"analysis": "Transient", "integrator": settings.get("type")}
+    found |= {
+        own: settings.get(name) for own, name in (("tol", "error"), ("h_max", "hmax"), ("h_min", "hmin"))
+    }
+    return found | {"end": float(simulate["end"]), "print": float(simulate["dtout"])}
+
+
+def comparable(made: Made) -> list[tuple[tuple[str, str], dict[str, Any]]]:
+    """Class and label of every object, with what was given to it: numbers, words, names of other objects."""
+    objects = Objects(made, "")
+    found = []
+    for thing in made.things:
+        given = {name: _plain(objects, value) for name, value in thing.given.items()}
+        found.append(((type(thing).__name__, label(thing)), given))
+    return [*found, (("simulate", ""), dict(made.simulate))]
+
+
+def _plain(objects: Objects, value: Any) -> Any:
+    if isinstance(value, Thing):
+        return label(value)
+    if isinstance(value, str):
+        text = _CONTACT.sub(
+            lambda found: (
+                f"CONTACT({objects.by_id(int(found[1]), 'Contact')},{found[2]},{found[3]},"
+                f"{objects.by_id(int(found[4]), 'Marker')})"
+            ),
+            _named(objects, value),
+        )
+        curve = _CURVED.fullmatch(text)
+        return text if curve is None else f"-LINSPL({curve[1]},0,{objects.by_id(int(curve[2]), 'Spline')})"
+    if isinstance(value, (list, tuple)):
+        return [_plain(objects, item) for item in value]
+    return value

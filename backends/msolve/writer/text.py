@@ -1,0 +1,91 @@
+"""Model -> the script."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from mdlgen.altair.parts import refuse_unwritten
+from mdlgen.altair.rolling import refuse_rolling
+from mdlgen.altair.springs import refuse_compressed
+from mdlgen.altair.statics import static_method
+from mdlgen.backends.msolve.environment import environment
+from mdlgen.backends.msolve.writer import contacts, gate, machine, sheets
+from mdlgen.backends.msolve.writer.banner import banner
+from mdlgen.backends.msolve.writer.units import acceleration, per_thousand, row
+from mdlgen.errors import SpecError
+from mdlgen.model.external import refuse_externals
+from mdlgen.model.parameters.run import longest_step
+from mdlgen.model.sheet_pairs import refuse_searched
+from mdlgen.model.tables import Model
+
+# The smallest step that MotionView writes [s]; a smaller largest step needs a smaller one.
+_H_MIN, _STEPS = 1e-6, 100.0
+_ERROR = 1e-3  # of the integrator, as MotionView writes it
+
+
+def check(model: Model) -> None:
+    """Raises RefusedError by name for what the script cannot represent."""
+    who = "MotionSolve script"
+    refuse_externals(model, who)
+    refuse_searched(model, who)
+    refuse_unwritten(model, machine.WRITTEN, who)
+    refuse_compressed(model, who)
+    refuse_rolling(model, who)
+
+
+def tables(model: Model) -> dict[str, Any]:
+    """The values of the script by name; a table of which a scene has nothing is empty."""
+    grids, listed = sheets.sheets(model)
+    return {
+        "NAME": model.name,
+        "GRAVITY": row(model.gravity, acceleration),
+        "RUN": _run(model),
+        "CURVES": sheets.curves(model),
+        "SHEETS": grids,
+        "LISTED": listed,
+        "ROLLERS": machine.rollers(model),
+        "PLANES": machine.planes(model),
+        "GUIDES": machine.guides(model),
+        "MESHES": machine.meshes(model),
+        "SUPPORTS": sheets.supports(model),
+        "LOADS": sheets.loads(model),
+        "PROBES": sheets.probes(model),
+        "CONTACTS": contacts.contacts(model),
+        "FORCES": contacts.forces(model),
+    }
+
+
+def emit(model: Model) -> str:
+    """The whole script, ASCII with LF line ends; the same Model always gives the same text.
+
+    Raises RefusedError (see `check`), and SpecError where two names would meet in the script.
+    """
+    check(model)
+    values = tables(model)
+    gate.check(model, values)
+    there = {name for name, value in values.items() if value}
+    text = (
+        environment()
+        .get_template("script.py.j2")
+        .render(
+            **values, name=model.name, banner=banner(model), tables=there, static="end" not in values["RUN"]
+        )
+    )
+    if not text.isascii() or "\r" in text:
+        raise SpecError("the script would hold characters other than ASCII")
+    return text
+
+
+def _run(model: Model) -> dict[str, Any]:
+    """Times and steps [s] of a transient run; of a static one whether it is by MKEAM, for contacts."""
+    run = model.run
+    if run.analysis == "static":
+        return {"skip_mkeam": static_method(model) != "MKEAM"}
+    h_max = per_thousand(longest_step(run))
+    return {
+        "end": per_thousand(run.duration),
+        "dtout": per_thousand(run.print_step),
+        "error": _ERROR,
+        "hmax": h_max,
+        "hmin": min(_H_MIN, float(f"{h_max / _STEPS:.15g}")),
+    }
