@@ -26,6 +26,7 @@ COMMANDS = {
     "verify": "texts",
     "lint": "texts",
     "run": "run",
+    "compare": "compare",
     "report": "report",
     "view": "report",
     "export": "report",

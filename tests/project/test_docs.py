@@ -16,11 +16,13 @@ from typing import Any
 import pytest
 from places import ROOT
 from ran import transport
+from recordings import plt
 from typer.testing import CliRunner
 
 from mdlgen.cli import app
 from mdlgen.paths import samples
 from mdlgen.results.io.series import series
+from mdlgen.results.result import Result
 
 DOCS = ROOT / "docs"
 PAGES = [ROOT / "README.md", *sorted(p for p in DOCS.rglob("*.md") if "_build" not in p.parts)]
@@ -174,6 +176,8 @@ def test_examples_of_other_pages_run(page: Path, tmp_path: Path, monkeypatch: py
         run(f"run samples/transport_4x4.yaml --set run.step={step}ms -o out/{folder}")
     whole = "--set run.tolerance=0.005 --set run.duration=50ms"
     run(f"run samples/transport_4x4.yaml {whole} -o out/transport_4x4")
+    # what MotionSolve would have left
+    Path("transport_4x4.plt").write_text(plt(Result.load("out/transport_4x4")), "ascii", newline="")
     lines = re.findall(r"^ {4,}mdlgen ((?!.*OPTIONS\])[^\n]*)$", page.read_text("utf-8"), re.MULTILINE)
     for line in lines:
         if not line.startswith(tuple(ELSEWHERE)):

@@ -7,7 +7,7 @@ from mdlgen.altair.recorded import MOST_SUMMED, unrecorded
 from mdlgen.model.tables import Model
 
 _RUNS = (
-    "Run it with MotionSolve's Python. It writes NAME.plt and NAME_requests.csv, with what is recorded.",
+    "Run it with MotionSolve's Python. It writes NAME.plt and NAME_requests.csv: mdlgen compare reads both.",
     "No MotionSolve was at hand when it was written: each class and keyword is from Altair's help, or from a",
     "script that ran (docs/motionview/script.md).",
 )

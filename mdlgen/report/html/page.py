@@ -15,6 +15,7 @@ from mdlgen.paths import templates
 from mdlgen.report import boxes
 from mdlgen.report.animation import animation, frames, packed
 from mdlgen.report.figures.maps import Map, maps
+from mdlgen.report.html import recorded
 from mdlgen.report.html.curves import Panel, panels
 from mdlgen.report.html.differences import differences
 from mdlgen.report.html.environment import environment, library
@@ -23,18 +24,22 @@ from mdlgen.results.strain import histories, sheet_joints
 
 if TYPE_CHECKING:
     from mdlgen.model.tables import Model
+    from mdlgen.results.recorded.against import Against
 
 _STEPS = 18  # of colour in a map: .c0 to .c18 in style.css
 _SCRIPTS = ("charts.js", "player.js", "page.js")
 
 
-def page(results: Sequence[Result], names: Sequence[str] = ()) -> str:
+def page(results: Sequence[Result], names: Sequence[str] = (), against: Against | None = None) -> str:
     """The page of one run, or of several side by side; `names` are what they are called, else A, B, ...
+    `against` is how far the first one is from what another program recorded.
 
     The same results give the same text. Every name and text of a scene is escaped.
     """
     names = list(names) or [chr(ord("A") + k) for k in range(len(results))]
     runs = [_run(result, name) for result, name in zip(results, names, strict=True)]
+    if against is not None:
+        runs[0]["drawn"]["panels"] = [*map(_panel, recorded.panels(against)), *runs[0]["drawn"]["panels"]]
     drawn = json.dumps([run.pop("drawn") for run in runs], allow_nan=False, separators=(",", ":"))
     folder = templates() / "report"
     return (
@@ -46,6 +51,12 @@ def page(results: Sequence[Result], names: Sequence[str] = ()) -> str:
             differences=differences(results, names, [run["summary"] for run in runs])
             if len(runs) > 1
             else None,
+            recorded=None
+            if against is None
+            else {
+                "rows": [recorded.row(apart) for apart in against.quantities],
+                "sentences": recorded.sentences(against),
+            },
             # inside a script element nothing may look like markup
             data=drawn.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026"),
             style=(folder / "style.css").read_text("utf-8"),
