@@ -228,6 +228,8 @@ def _deck(
         if kind not in _NOT_IN_DECK:
             found.add("deck", compare(kind, table, tables[kind]))
     found.add("deck", compare("mesh shapes", mesh_shapes(subject.model), tables["mesh shapes"]))
+    recorded = contact_output_table(values)
+    found.add("deck", compare("contact outputs", contact_outputs(subject.model), recorded))
     found.add("deck", compare("all markers", marker_table(text, reach(subject.model)), marker_table(values)))
 
 

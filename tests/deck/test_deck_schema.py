@@ -80,6 +80,8 @@ BROKEN = {
     "a marker less": (r'(i_marker_id +)= "\d+"', r'\1= "999999"', "999999"),
     "a graphic less": (r'(i_graphics_id +)= "\d+"', r'\1= "999999"', "Post_Graphic 999999"),
     "an expression of nothing": (r"DX\(\d+,", "DX(999999,", "Reference_Marker 999999"),
+    "a contact less": (r"CONTACT\(\d+,", "CONTACT(999999,", "Force_Contact 999999"),
+    "the frame of a contact less": (r"(CONTACT\(\d+,\d,\d),1\)", r"\1,999999)", "Reference_Marker 999999"),
     "an id twice": (r'( id +)= "2"', r'\1= "1"', "twice"),
     "another body's centre": (r'(cg_id +)= "\d+"', r'\1= "1"', "another body"),
     "a count that is wrong": (r'(num_i_graphics +)= "1"', r'\1= "2"', "num_i_graphics"),

@@ -13,6 +13,8 @@ from mdlgen.backends.motionsolve.reader.markers import Marker
 _ID = re.compile(r"(?<![\w.])[0-9]+(?![\w.])")
 _CALL = re.compile(r"[A-Za-z]\w*\([^()]*\)")
 _CURVED = re.compile(r"-LINSPL\((.*),0,([0-9]{1,10})\)")
+_CONTACT = re.compile(r"CONTACT\(([0-9]{1,10}),([01]),([1-8]),([0-9]{1,10})\)")
+_SIX = (2, 3, 4, 6, 7, 8)  # expressions of a request that are written
 _CAPS = {"CLOSED": "CAPBOTH", "TOP_ONLY": "CAPEND", "BOTTOM_ONLY": "CAPBEGIN", "OPEN": "CAPNONE"}
 _QUANTITIES = {"D": "DISP", "V": "VEL", "A": "ACCL"}
 _FREEDOMS = {"R": "ROT", "T": "TRANS"}
@@ -263,14 +265,35 @@ def surface(deck: Deck, entity: Entity) -> dict[str, Any]:
 
 def output(deck: Deck, entity: Entity) -> dict[str, Any] | None:
     """Its six expressions, with the names of the markers; None for a request of another form."""
-    if entity.word("type") != "EXPRESSION":
+    if entity.word("type") != "EXPRESSION" or _of_contacts(entity):
         return None
 
     def named(call: re.Match[str]) -> str:
         return _named(deck, entity, call[0])
 
-    texts = [entity.word(f"expr{k}") for k in (2, 3, 4, 6, 7, 8)]
+    texts = [entity.word(f"expr{k}") for k in _SIX]
     return {"label": entity.word("comment", ""), "expressions": [_CALL.sub(named, text) for text in texts]}
+
+
+def _of_contacts(entity: Entity) -> bool:
+    """Whether a request is of what contacts do."""
+    return entity.word(f"expr{_SIX[0]}", "").startswith("CONTACT(")
+
+
+def contact_output(deck: Deck, entity: Entity) -> list[list[tuple[str, str, str, str]]] | None:
+    """Of each component the contacts that are summed: name, side, component and the frame that it is along;
+    None for another request."""
+    if entity.word("type") != "EXPRESSION" or not _of_contacts(entity):
+        return None
+
+    def named(term: str) -> tuple[str, str, str, str]:
+        form = _CONTACT.fullmatch(term)
+        if form is None:
+            raise entity.wrong(f"{term[:80]!r} is not a component of a contact")
+        contact = deck.elements.by_id(entity, int(form[1]), "Force_Contact").name
+        return contact, form[2], form[3], deck.by_id(entity, int(form[4])).name
+
+    return [[named(term) for term in entity.word(f"expr{k}").split("+")] for k in _SIX]
 
 
 def load(deck: Deck, entity: Entity) -> dict[str, Any]:

@@ -29,6 +29,8 @@ _OWN = ("cg_id", "im_id", "lprf_id")  # markers that must be of the body itself
 _CALL = re.compile(r"\b(?:[DVWFT][XYZM]|ACC[XYZM]|A[XYZ]|WDT[XYZM]|ROLL|PITCH|YAW)\(([^()]*)\)", re.I)
 # The spline of an interpolation, behind its two variables.
 _SPLINE = re.compile(r"\b(?:LIN|AKI|CUB|FIT)SPL\((?:[^()]|\([^()]*\))*,[^(),]*,\s*([0-9]+)\s*\)", re.I)
+# The force of a contact: its id, side, component, and a marker.
+_CONTACT = re.compile(r"\bCONTACT\(([0-9]+),[^(),]*,[^(),]*,([0-9]+)\)", re.I)
 _BIG = re.compile(r"[0-9]{11,}")
 
 
@@ -64,6 +66,9 @@ def _of(element: etree._Element, known: dict[str, dict[int, etree._Element]]) ->
         elif attribute.startswith("expr") or attribute.endswith("_expression"):
             for call in _CALL.finditer(text):
                 yield from _missing(attribute, MARKER, _numbers(call[1]), known)
+            for call in _CONTACT.finditer(text):
+                yield from _missing(attribute, "Force_Contact", _numbers(call[1]), known)
+                yield from _missing(attribute, MARKER, _numbers(call[2]), known)
             for call in _SPLINE.finditer(text):
                 yield from _missing(attribute, "Reference_Spline", _numbers(call[1]), known)
     if element.tag == "Reference_DeformSurface":

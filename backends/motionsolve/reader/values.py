@@ -1,8 +1,8 @@
 """All entities of a deck, in the shape that the reader of MotionView text has for them.
 
 Kinds: bodies, markers, bushings, springs, graphics, joints, motions, contacts, velocities; surfaces, outputs,
-forces (one-body loads) by name; gravity [mm/s^2]; run. Left out are, as there, the global frame and the
-markers of graphics, and floating ones. A deck has no points, vectors or data sets.
+contact outputs, forces (one-body loads) by name; gravity [mm/s^2]; run. Left out are, as there, the global
+frame and the markers of graphics, and floating ones. A deck has no points, vectors or data sets.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from mdlgen.backends.motionsolve.reader.index import Index
 from mdlgen.backends.motionsolve.reader.markers import markers
 from mdlgen.backends.motionsolve.reader.parse import children, line, trouble
 
-_Record = Callable[[records.Deck, Entity], dict[str, Any] | None]
+_Record = Callable[[records.Deck, Entity], dict[str, Any] | list[Any] | None]
 
 # Kind of element -> where it is listed, and how it is read; None leaves it out.
 KINDS: tuple[tuple[str, str, _Record], ...] = (
@@ -31,6 +31,7 @@ KINDS: tuple[tuple[str, str, _Record], ...] = (
     ("Force_Contact", "contacts", records.contact),
     ("Reference_DeformSurface", "surfaces", records.surface),
     ("Post_Request", "outputs", records.output),
+    ("Post_Request", "contact outputs", records.contact_output),
     ("Force_Vector_OneBody", "forces", records.load),
     ("Reference_Spline", "curves", records.spline),
 )

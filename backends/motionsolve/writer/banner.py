@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import groupby
 
 from mdlgen.altair.edges import edge_note
+from mdlgen.altair.recorded import MOST_SUMMED, unrecorded
 from mdlgen.backends.motionsolve.writer.rows import Deck
 from mdlgen.backends.motionsolve.writer.units import number
 from mdlgen.model.curves import limit
@@ -60,6 +61,9 @@ def _contacts(model: Model) -> list[str]:
         "  the boxes under one part share it by the width that each covers; share pair gives it to each too.",
         *edge_note(model),
     ]
+    for row in unrecorded(model):
+        parts = f"{table.part_a[row]} on {table.part_b[row]}"
+        lines.append(f"  Not recorded: the force of {parts}, of more than {MOST_SUMMED} pairs.")
     for entry, group in groupby(range(len(table)), key=lambda row: int(table.entry[row])):
         first, *others = group
         more = f" and {len(others)} more" if others else ""
@@ -101,6 +105,10 @@ def unverified(model: Model, deck: Deck) -> list[str]:
             "Force_Vector_OneBody with a torque of MAX and WZ, for one-way rollers (seen with other torques)",
         ),
         (bool(deck.contacts), "Force_Contact (documented, not seen in a deck)"),
+        (
+            any("CONTACT(" in request.expressions[0] for request in deck.requests),
+            "Post_Request with sums of CONTACT (the function documented; how long a sum may be is not known)",
+        ),
         (
             bool(deck.shells),
             "Post_Graphic of a TriaMesh (documented; names of attributes and order of its numbers guessed "

@@ -6,6 +6,7 @@ from mdlgen.altair.statics import static_method
 from mdlgen.backends.motionsolve.writer.bodies import add_bodies, add_frames
 from mdlgen.backends.motionsolve.writer.contacts import add_contacts
 from mdlgen.backends.motionsolve.writer.machine import add_machine
+from mdlgen.backends.motionsolve.writer.requests import add_forces
 from mdlgen.backends.motionsolve.writer.rows import Deck, Run
 from mdlgen.backends.motionsolve.writer.sheets import add_bushings, add_loads, add_probes, add_surfaces
 from mdlgen.backends.motionsolve.writer.units import acceleration, number, per_thousand
@@ -28,6 +29,7 @@ def deck_view(model: Model) -> Deck:
     add_probes(deck, model)
     add_loads(deck, model)
     add_contacts(deck, model)
+    add_forces(deck, model)
     return deck
 
 
