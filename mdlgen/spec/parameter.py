@@ -13,10 +13,11 @@ from pydantic_core import PydanticCustomError
 
 from mdlgen import formulas
 from mdlgen.formulas import Amount
-from mdlgen.units import is_unit, parse_number, parse_unit
+from mdlgen.units import is_unit, parse_number, parse_unit, same
 
 MOST = 1000  # parameters
 MOST_BEHIND = 50  # one follows from another, which follows from another
+RANGED = {"value", "range"}  # keys of a parameter with the range of its slider
 _PLAIN = re.compile(r"[-+]?[0-9]{1,18}(?:\.[0-9]{0,18})?(?: *%)?")
 Path = tuple[str | int, ...]
 
@@ -38,16 +39,27 @@ class Unknown(ValueError):
 
 
 class Parameters:
-    """What each parameter comes to, and what is wrong with those that have no value."""
+    """What each parameter comes to, and what is wrong with those that have no value.
+
+    One is given as a value, or as `{value: 3 N, range: [1 N, 5 N]}`: the range is that of its slider.
+    """
 
     def __init__(self, given: Mapping[Any, Any]):
-        self.given = given
+        self.given = {name: _plain(item) for name, item in given.items()}
         self.amounts: dict[str, Amount] = {}
         self.errors: dict[str, ValueError] = {}
         for name in given:
             self._find(name, ())
         # of a parameter that follows from a wrong one the mistake is reported there
         self.own = {name: str(e) for name, e in self.errors.items() if not isinstance(e, Unknown)}
+        self.ranges: dict[str, tuple[float, float]] = {}  # in internal units
+        self.wrong_ranges: dict[str, str] = {}
+        for name, item in given.items():
+            if name in self.amounts and _is_ranged(item):
+                try:
+                    self.ranges[name] = self._range(name, item["range"])
+                except ValueError as error:
+                    self.wrong_ranges[name] = str(error)
 
     def evaluated(self, text: str) -> Amount:
         """What a formula comes to. Raises ValueError."""
@@ -58,6 +70,18 @@ class Parameters:
         if wrong:
             raise Unknown(f"the parameter {wrong[0]} has no value")
         return formulas.evaluated(text, self.amounts)
+
+    def _range(self, name: str, ends: Any) -> tuple[float, float]:
+        """The ends of the slider of a parameter. Raises ValueError."""
+        if not isinstance(ends, list) or len(ends) != 2:
+            raise ValueError(f"{ends!r} is not a range"[:200] + "; write like [1 N, 5 N]")
+        low, high = (self._amount_of(end, name, ()) for end in ends)
+        for end in (low, high):
+            if not same(end.dimension, self.amounts[name].dimension):
+                raise ValueError(f"the range has {end.unit}, its value {self.amounts[name].unit}")
+        if not low.value < high.value:
+            raise ValueError("the first value of a range is below the second")
+        return low.value, high.value
 
     def _find(self, name: Any, users: tuple[str, ...]) -> None:
         """The value of one, after those that it follows from."""
@@ -74,6 +98,10 @@ class Parameters:
             raise ValueError(message)
         if len(users) > MOST_BEHIND:
             raise ValueError(f"{name} follows from more than {MOST_BEHIND} others, one behind the other")
+        return self._amount_of(value, name, users)
+
+    def _amount_of(self, value: Any, name: str, users: tuple[str, ...]) -> Amount:
+        """What a value of that parameter comes to."""
         if isinstance(value, Amount):
             return value
         if isinstance(value, (int, float)) and not isinstance(value, bool):
@@ -92,6 +120,15 @@ class Parameters:
             if other in self.given:
                 self._find(other, (*users, name))
         return self.evaluated(value)
+
+
+def _is_ranged(item: Any) -> bool:
+    return isinstance(item, dict) and set(item) == RANGED
+
+
+def _plain(item: Any) -> Any:
+    """The value of a parameter without its range."""
+    return item["value"] if _is_ranged(item) else item
 
 
 def _taken(name: object) -> str:
@@ -134,7 +171,13 @@ def is_formula(text: str) -> bool:
 def _text_or_number(value: Any) -> Any:
     if isinstance(value, bool) or not isinstance(value, (str, int, float)):
         raise PydanticCustomError(
-            "spec", "{text}", {"text": f"{value!r} is not a value; write like 3 N"[:200], "path": None}
+            "spec",
+            "{text}",
+            {
+                "text": f"{value!r} is not a value"[:160]
+                + "; write like 3 N, or {value: 3 N, range: [1 N, 5 N]}",
+                "path": None,
+            },
         )
     return value
 
@@ -151,6 +194,22 @@ ParameterValue = Annotated[
                     "examples": ["3 N", "speed/2"],
                 },
                 {"type": "number"},
+                {
+                    "type": "object",
+                    "description": "a value, and the range of its slider in mdlgen live",
+                    "required": ["value", "range"],
+                    "additionalProperties": False,
+                    "properties": {
+                        "value": {"type": ["string", "number"]},
+                        "range": {
+                            "type": "array",
+                            "items": {"type": ["string", "number"]},
+                            "minItems": 2,
+                            "maxItems": 2,
+                            "examples": [["1 N", "5 N"]],
+                        },
+                    },
+                },
             ]
         }
     ),

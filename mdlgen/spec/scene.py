@@ -81,7 +81,8 @@ class Scene(Strict):
     )
     parameters: dict[Name, ParameterValue] = Field(
         default_factory=dict,
-        description="named values; every quantity may be a formula over them, as -radius - gap/2",
+        description="named values; every quantity may be a formula over them, as -radius - gap/2. "
+        "{value: 3 N, range: [1 N, 5 N]} gives the range of a slider, too",
     )
     materials: dict[Name, Material] = Field(
         default_factory=dict, description="sheet materials by name; a sheet names one of them"
@@ -133,6 +134,7 @@ class Scene(Strict):
     _limits: Limits = PrivateAttr(default=DEFAULT)
     _source: Source = PrivateAttr(default_factory=Source)
     _amounts: dict[str, Amount] = PrivateAttr(default_factory=dict)
+    _ranges: dict[str, tuple[float, float]] = PrivateAttr(default_factory=dict)
     _formulas: dict[tuple[str | int, ...], str] = PrivateAttr(default_factory=dict)
     _contacts_made: int = PrivateAttr(default=0)
     _sheets_of_piles: dict[str, Any] = PrivateAttr(default_factory=dict)
@@ -141,6 +143,11 @@ class Scene(Strict):
     def amounts(self) -> dict[str, Amount]:
         """What each parameter comes to."""
         return self._amounts
+
+    @property
+    def ranges(self) -> dict[str, tuple[float, float]]:
+        """The ranges of sliders of the parameters that have one, in internal units."""
+        return self._ranges
 
     @property
     def formulas(self) -> dict[tuple[str | int, ...], str]:
@@ -240,9 +247,10 @@ class Scene(Strict):
         given = value.get("parameters")
         parameters = Parameters(given) if isinstance(given, dict) else NO_PARAMETERS
         origins = context.get("origins", {})
+        plain = {**value, "parameters": parameters.given} if parameters.given else value
         with of_scene(parameters):
-            scene = handler(written_out(value, origins))
-        scene._amounts = parameters.amounts
+            scene = handler(written_out(plain, origins))
+        scene._amounts, scene._ranges = parameters.amounts, parameters.ranges
         scene._contacts_made = sum(
             key[0] == "contacts" and len(key) == 2 and path[0] in ("nips", "piles")
             for key, path in origins.items()
@@ -289,6 +297,7 @@ class Scene(Strict):
             raise fail(f"{len(found)} parameters; allowed are {MOST_PARAMETERS}")
         lower: dict[str, str] = {}
         wrong = [fail(message, ("parameters", name)) for name, message in parameters.own.items()]
+        wrong += [fail(text, ("parameters", name, "range")) for name, text in parameters.wrong_ranges.items()]
         for name in found:
             if lower.setdefault(name.lower(), name) != name:
                 message = f"the name {name!r} is used twice (also {lower[name.lower()]})"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import cache
 from typing import Any, get_args
 
@@ -105,6 +106,19 @@ def example(model: type[BaseModel], key: str) -> str:
     schema = model.model_json_schema(schema_generator=_Schema)
     own = schema.get("properties", {}).get(key)
     return _looks(own, schema.get("$defs", {})) if own else ""
+
+
+@cache
+def bounds(path: tuple[str | int, ...], key: str) -> tuple[float, float]:
+    """What a plain number of the mapping at a path may be, from its JSON schema; infinite where that does not
+    say."""
+    model = model_at(path)
+    schema = model.model_json_schema(schema_generator=_Schema) if model else {}
+    own = schema.get("properties", {}).get(key, {})
+    for choice in (own, *own.get("anyOf", ())):
+        if "minimum" in choice or "maximum" in choice:
+            return choice.get("minimum", -math.inf), choice.get("maximum", math.inf)
+    return -math.inf, math.inf
 
 
 def _looks(schema: dict[str, Any], models: dict[str, Any]) -> str:

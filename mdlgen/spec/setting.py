@@ -16,6 +16,7 @@ from mdlgen.spec.pile import names_of as sheets_of
 from mdlgen.spec.rows import KINDS, expanded
 
 _PATTERN = re.compile(r"[*?]")
+WORD = re.compile(r"[A-Za-z0-9_*?]{1,64}")  # of a path
 MADE = (("rollers",), ("contacts",), ("sheets",))  # tables that nips and piles add to
 MOST_PLACES = 10_000  # that one pattern may meet
 
@@ -29,7 +30,7 @@ def set_value(document: Document, override: str) -> None:
     file = f"--set {path_text}"
     here = Place(file, 1, 1)
     words = path_text.strip().split(".")
-    if not equals or not all(re.fullmatch(r"[A-Za-z0-9_*?]{1,64}", w) for w in words):
+    if not equals or not all(WORD.fullmatch(w) for w in words):
         raise SpecError(
             f"{override[:80]!r} is not PATH=VALUE; write like sheets.note.boxes=[20,30]", place=here
         )
@@ -131,8 +132,12 @@ def _put(document: Document, path: SpecPath, value: Document, here: Place) -> No
             document.made.add(path[: depth + 1])
         node = node[key]
     last = path[-1]
-    if len(path) == 2 and path[0] == "parameters" and last not in node:
-        document.new_parameters.append(str(last))
+    if len(path) == 2 and path[0] == "parameters":
+        if last not in node:
+            document.new_parameters.append(str(last))
+        elif isinstance(node[last], dict) and not isinstance(value.data, dict):
+            # of one with the range of its slider the value alone
+            return _put(document, (*path, "value"), value, here)
     if isinstance(node, dict):
         for other in others(last):
             node.pop(other, None)

@@ -314,7 +314,8 @@ def test_formulas_beside_other_words_for_a_value() -> None:
 def test_the_schema_has_them_as_texts() -> None:
     schema = json_schema()
     values = schema["properties"]["parameters"]["patternProperties"][IDENTIFIER.pattern]["anyOf"]
-    assert [value["type"] for value in values] == ["string", "number"] and values[0]["examples"]
+    assert [value["type"] for value in values] == ["string", "number", "object"] and values[0]["examples"]
+    assert set(values[2]["properties"]) == {"value", "range"}
     contact = schema["$defs"]["Contact"]["properties"]
     assert {kind["type"] for kind in contact["restitution"]["anyOf"]} == {"number", "string"}
     assert contact["stiffness"]["type"] == "string" and "pattern" not in contact["stiffness"]
@@ -333,3 +334,35 @@ def test_a_sweep_goes_over_a_parameter() -> None:
     cases, _ = sweep.over(["parameters.v=900 mm/s:1400 mm/s:3"], None, 0)
     rates = [loads(SHORT, "s", case.overrides).rollers["motor_1_left"].drive for case in cases]
     assert [rate and round(1e3 * (rate.speed or 0.0) * 7.5) for rate in rates] == [900, 1150, 1400]
+
+
+def ranged(entry: str, *sets: str) -> Scene:
+    text = (samples() / "transport_nips.yaml").read_text("utf-8")
+    assert "speed: 1400.25 mm/s" in text
+    return loads(text.replace("speed: 1400.25 mm/s", f"speed: {entry}"), "scene", sets)
+
+
+def test_a_parameter_may_have_the_range_of_its_slider() -> None:
+    plain, found = ranged("1400.25 mm/s"), ranged("{value: 1400.25 mm/s, range: [600 mm/s, 2 m/s]}")
+    assert plain.ranges == {} and found.ranges == {"speed": (0.6, 2.0)}
+    assert found.rollers == plain.rollers
+    # --set is of the value, and the range stays where it is
+    slow = found.with_({"parameters.speed": "700 mm/s"})
+    assert slow.ranges == found.ranges and slow.amounts["speed"].value == pytest.approx(0.7)
+    assert "speed: {value: 700 mm/s, range: [600 mm/s, 2 m/s]}" in slow.to_yaml()
+
+
+@pytest.mark.parametrize(
+    "entry, said",
+    [
+        ("{value: 1 m/s, range: [1 N, 2 N]}", "parameters.speed.range: the range has N, its value mm/s"),
+        ("{value: 1 m/s, range: [1 m/s]}", "parameters.speed.range: ['1 m/s'] is not a range"),
+        ("{value: 1 m/s, range: [3 m/s, 2 m/s]}", "the first value of a range is below the second"),
+        ("{value: 1 m/s, rang: [1 m/s, 2 m/s]}", "is not a value; write like 3 N, or {value: 3 N, range:"),
+        ("{value: 1 mmm/s, range: [1 m/s, 2 m/s]}", "parameters.speed: unknown unit 'mmm'"),
+    ],
+)
+def test_a_wrong_range_is_one_line_where_it_stands(entry: str, said: str) -> None:
+    with pytest.raises(SpecError) as error:
+        ranged(entry)
+    assert said in str(error.value) and str(error.value).startswith("scene:5:")
