@@ -397,7 +397,7 @@ class Scene(_Scene):
         name: str,
         sheets: Mapping[str, _Sheet | Mapping[str, Any]],
         gravity: Sequence[str] = ...,
-        parameters: Mapping[str, str | float] = ...,
+        parameters: Mapping[str, str | float | Mapping[str, Any]] = ...,
         materials: Mapping[str, _Material | Mapping[str, Any]] = ...,
         rollers: Mapping[str, _Roller | Mapping[str, Any]] = ...,
         nips: Mapping[str, _Nip | Mapping[str, Any]] = ...,

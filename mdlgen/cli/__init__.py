@@ -20,6 +20,7 @@ COMMANDS = {
     "new": "scene",
     "check": "scene",
     "preview": "preview",
+    "live": "live",
     "mdl": "texts",
     "deck": "texts",
     "script": "texts",

@@ -6,7 +6,8 @@ const DASHES = ["", "6 3", "2 2", "8 3 2 3", "1 3"];
 const WIDTH = 560, HEIGHT = 250, LEFT = 62, RIGHT = 12, TOP = 8, BOTTOM = 40;
 
 function unpack(text, Kind) {
-  const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+  const raw = atob(text), bytes = new Uint8Array(raw.length);
+  for (let k = 0; k < raw.length; k += 1) bytes[k] = raw.charCodeAt(k);
   return new Kind(bytes.buffer);
 }
 

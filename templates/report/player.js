@@ -6,6 +6,7 @@ const KINDS = {
   plane: { color: 0xc8ccd2, opacity: 0.35 }, guide: { color: 0x7d93a8, opacity: 0.45 },
   drive: { color: 0x0072b2 }, press: { color: 0x009e73 }, motion: { color: 0xcc79a7 }, load: { color: 0xe69f00 },
 };
+const GHOST = { color: 0x808890, opacity: 0.4 };
 const ARROWS = ["drive", "press", "motion", "load"];
 // Lit once a corner and not once a pixel, which is what costs without a graphics card.
 const LAMP = [-0.3, -0.5, 0.81]; // from above, and a little from the left and the front
@@ -61,7 +62,7 @@ async function player(canvas, changed) {
   ground();
   const camera = new THREE.OrthographicCamera(-1, 1, 1, -1, -1e5, 1e5);
   const target = new THREE.Vector3();
-  let away = new THREE.Vector3(0, -1, 0), size = 100, follow = false, machine = true, arrows = true, seen = null, time = 0;
+  let away = new THREE.Vector3(0, -1, 0), size = 100, follow = false, machine = true, arrows = true, seen = null, ghost = null, time = 0;
 
   const part = (colour, i) => parseInt(colour.slice(1 + 2 * i, 3 + 2 * i), 16) / 255;
   const ramp = new Float32Array(256 * 3);
@@ -148,14 +149,24 @@ async function player(canvas, changed) {
   const middle = new THREE.Vector3(), moved = new THREE.Vector3();
   function refreshPoses() {
     if (!seen) return;
-    const { animation, boxes, half } = seen;
+    if (ghost) move(ghost);
+    move(seen);
+    for (const { drawn, row, kind } of seen.parts) drawn.visible = ARROWS.includes(kind) ? arrows : machine;
+    if (follow && seen.known) target.add(moved.subVectors(middle, seen.last));
+    seen.last.copy(middle);
+    seen.known = true;
+  }
+
+  // Moves the boxes and parts of a run to where they are at the time.
+  function move(run) {
+    const { animation, boxes, half } = run;
     const [k, part] = pointer(animation, time);
-    const colour = seen.colours[seen.colour];
+    const colour = run.colours[run.colour];
     const near = part < 0.5 ? k : Math.min(k + 1, animation.time.length - 1);
     const points = boxes.geometry.attributes.position, tints = boxes.geometry.attributes.color;
     middle.set(0, 0, 0);
     for (let row = 0; row < animation.boxes; row += 1) {
-      pose(seen, row, k, part);
+      pose(run, row, k, part);
       middle.addScaledVector(position, 1 / animation.boxes);
       for (let k = 0; k < 3; k += 1) {
         axis.set(Number(k === 0), Number(k === 1), Number(k === 2)).applyQuaternion(one);
@@ -181,16 +192,34 @@ async function player(canvas, changed) {
     }
     points.needsUpdate = true;
     tints.needsUpdate = true;
-    for (const { drawn, row, kind } of seen.parts) {
-      drawn.visible = ARROWS.includes(kind) ? arrows : machine;
+    for (const { drawn, row } of run.parts) {
       if (row < 0) continue;
-      pose(seen, row, k, part);
+      pose(run, row, k, part);
       drawn.position.copy(position);
       drawn.quaternion.copy(one);
     }
-    if (follow && seen.known) target.add(moved.subVectors(middle, seen.last));
-    seen.last.copy(middle);
-    seen.known = true;
+  }
+
+  // Runs that are not seen any more. What their graphics take is given back once another is drawn, which has the
+  // same programs: those without a user would be compiled again.
+  const left = [];
+  function drop(run) {
+    for (const { geometry, material } of [run.boxes, ...run.parts.map((part) => part.drawn)]) { geometry.dispose(); material.dispose(); }
+  }
+
+  // A run as a ghost behind the one that is seen: its sheets, and the parts of its machine that stand elsewhere.
+  function faint(animation) {
+    const run = take(animation), as = ({ points, place, turn }) => `${place} ${turn} ${points}`;
+    const there = new Set(seen.parts.map(({ mesh }) => as(mesh)));
+    run.boxes.material.dispose();
+    run.boxes.material = paint(GHOST, { polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 4 });
+    run.colour = 0;
+    for (const { drawn, mesh } of run.parts) {
+      drawn.material.dispose();
+      drawn.material = paint(GHOST);
+      drawn.visible = !there.has(as(mesh));
+    }
+    return run;
   }
 
   let wide = 0, high = 0, drawn = 0, thin = 0; // thin: half of what a sheet is thick at least [mm]
@@ -209,6 +238,7 @@ async function player(canvas, changed) {
     camera.lookAt(target);
     camera.updateProjectionMatrix();
     renderer.render(scene, camera);
+    while (left.length) drop(left.pop());
     shown.drew?.();
   }
 
@@ -247,6 +277,20 @@ async function player(canvas, changed) {
     THREE,
     runs: [],
     add(animation) { this.runs.push(take(animation)); },
+    // Another run in the place of one, seen as that was.
+    replace(index, animation) {
+      const before = this.runs[index];
+      this.runs[index] = take(animation);
+      if (!seen || seen === before) this.choose(index);
+      if (before) left.push(before);
+    },
+    // A run over the one that is seen, as a ghost; null: none.
+    ghost(animation) {
+      if (ghost) { scene.remove(ghost.group); left.push(ghost); }
+      ghost = animation && faint(animation);
+      if (ghost) scene.add(ghost.group);
+      refreshPoses(); refresh();
+    },
     choose(index) {
       if (seen) scene.remove(seen.group);
       const colour = seen ? seen.colour : 0;

@@ -149,6 +149,7 @@ def test_the_commands_of_the_readme_print_what_it_says(
 ELSEWHERE = {
     "bench": "test_bench.py, test_validation.py",
     "cache": "test_packaging.py",
+    "live": "tests/live",
     "run --resume": "test_keep.py",
     "calibrate samples/cantilever.yaml --measured decay.csv": "test_calibrate.py",
     "sweep scene.yaml": "test_sweep_cluster.py, with a scheduler",

@@ -23,11 +23,11 @@ from mdlgen.results.result import Result
 from mdlgen.results.strain import histories, sheet_joints
 
 if TYPE_CHECKING:
-    from mdlgen.model.tables import Model
+    from mdlgen.model.tables import Ints, Model
     from mdlgen.results.recorded.against import Against
 
 _STEPS = 18  # of colour in a map: .c0 to .c18 in style.css
-_SCRIPTS = ("charts.js", "player.js", "page.js")
+_SCRIPTS = ("charts.js", "player.js", "play.js", "page.js")
 
 
 def page(results: Sequence[Result], names: Sequence[str] = (), against: Against | None = None) -> str:
@@ -37,7 +37,7 @@ def page(results: Sequence[Result], names: Sequence[str] = (), against: Against 
     The same results give the same text. Every name and text of a scene is escaped.
     """
     names = list(names) or [chr(ord("A") + k) for k in range(len(results))]
-    runs = [_run(result, name) for result, name in zip(results, names, strict=True)]
+    runs = [run_record(result, name) for result, name in zip(results, names, strict=True)]
     if against is not None:
         runs[0]["drawn"]["panels"] = [*map(_panel, recorded.panels(against)), *runs[0]["drawn"]["panels"]]
     drawn = json.dumps([run.pop("drawn") for run in runs], allow_nan=False, separators=(",", ":"))
@@ -80,9 +80,13 @@ def prepare(model: Model) -> None:
     lints(model)
 
 
-def _run(result: Result, name: str) -> dict[str, Any]:
-    """What the template and the scripts take of a run."""
-    at = frames(result)
+def run_record(result: Result, name: str, draft: Ints | None = None) -> dict[str, Any]:
+    """What the template takes of a run, and under `drawn` the scripts.
+
+    `draft`: the stored states that are drawn of a run that another soon takes the place of; it has no maps of
+    what each joint bore.
+    """
+    at = frames(result) if draft is None else draft
     joints = histories(result, at)
     force, deep = boxes.contact(result, at)
     strain, curvature = boxes.greatest(joints, force.shape)
@@ -108,7 +112,7 @@ def _run(result: Result, name: str) -> dict[str, Any]:
         },
         "parameters": [asdict(parameter) for parameter in result.model.parameters],
         "source": result.source,
-        "maps": [_map(found) for found in maps(result)],
+        "maps": [_map(found) for found in maps(result)] if draft is None else [],
         "lints": [asdict(lint) for lint in lints(result.model)],
         "drawn": {
             "name": name,

@@ -1,0 +1,21 @@
+"""What the server and its worker send each other: a record as JSON, and a body of bytes behind it."""
+
+from __future__ import annotations
+
+import json
+import struct
+from typing import Any
+
+_LENGTHS = struct.Struct(">II")
+HEAD = _LENGTHS.size
+Frame = tuple[dict[str, Any], bytes]
+
+
+def packed(record: dict[str, Any], body: bytes = b"") -> bytes:
+    head = json.dumps(record, allow_nan=False).encode()
+    return _LENGTHS.pack(len(head), len(body)) + head + body
+
+
+def lengths(head: bytes) -> tuple[int, int]:
+    """Of the record and of the body, from the first HEAD bytes."""
+    return _LENGTHS.unpack(head)

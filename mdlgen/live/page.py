@@ -1,0 +1,41 @@
+"""The page of `mdlgen live`: one text, which asks its own server for all else."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from mdlgen.paths import templates
+from mdlgen.report.html.environment import environment, library
+
+_STYLES = ("style.css", "live.css")
+_SCRIPTS = ("charts.js", "player.js", "play.js", "live.js")
+
+
+def page(title: str, nonce: str) -> str:
+    """The page; `nonce` marks the scripts and styles that may run."""
+    return (
+        environment()
+        .get_template("live.html.j2")
+        .render(
+            title=title,
+            runs=[],  # they come later
+            nonce=nonce,
+            style="\n".join(_file(name) for name in _STYLES),
+            library=library(),
+            licence=_file("third_party/LICENSE"),
+            scripts=[_file(name) for name in _SCRIPTS],
+        )
+    )
+
+
+def policy(nonce: str) -> str:
+    """Content-Security-Policy: scripts and styles of the page itself, and questions to its own server."""
+    return (
+        f"default-src 'none'; script-src 'nonce-{nonce}' blob:; style-src 'nonce-{nonce}'; img-src data:; "
+        "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+    )
+
+
+@cache
+def _file(name: str) -> str:
+    return (templates() / "report" / name).read_text("utf-8")
