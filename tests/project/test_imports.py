@@ -75,7 +75,7 @@ def test_a_plain_run_imports_what_it_uses_and_starts_no_process(tmp_path: Path) 
     not_used |= {"numpy.random", "numpy.fft", "numpy.polynomial"}
     # what is another command's
     rooms = {"bench", "calibrate", "study", "verify", "spec.schema"}
-    rooms |= {"backends.exudyn_local", "backends.motionview", "backends.motionsolve"}
+    rooms |= {"backends.exudyn_local", "backends.motionview", "backends.motionsolve", "backends.msolve"}
     rooms |= {f"cli.{name}" for name in set(COMMANDS.values()) - {"run"}}
     assert found & (not_used | {f"mdlgen.{room}" for room in rooms}) == set()
 

@@ -14,10 +14,13 @@ from browser import Tab, found, tab
 from frames import picture_ms
 from PIL import Image
 from ran import ran, transport
+from recordings import plt
 from synthetic import moving, small_model
 
 from mdlgen.report.boxes import contact
 from mdlgen.report.html.page import page
+from mdlgen.results.recorded.against import against
+from mdlgen.results.recorded.files import read
 from mdlgen.results.result import Result
 
 pytestmark = pytest.mark.skipif(
@@ -87,6 +90,25 @@ def test_a_run_is_shown_and_plays(browser: Tab, tmp_path: Path, result: Result) 
     browser.ask(f"mdlgen.seek({0.998 * end})")
     browser.until("!mdlgen.state.playing")
     assert browser.ask("mdlgen.state.time") == end
+    silent(browser, tmp_path)
+
+
+def test_a_run_is_shown_against_a_recording(browser: Tab, tmp_path: Path) -> None:
+    """A figure of each quantity, with the run and the file in it."""
+    result = transport()
+    file = tmp_path / "note.plt"
+    file.write_bytes(plt(result, later=0.5).encode())
+    found = against(result, read(file))
+    (tmp_path / "report.html").write_text(page([result], (), found), "utf-8")
+    browser.complaints.clear()
+    browser.requests.clear()
+    browser.open(tmp_path / "report.html")
+    names = browser.ask("[...document.querySelectorAll('#panels figure')].map((f) => f.dataset.key)")
+    assert [f"recorded {apart.name}" for apart in found.quantities] == names[: len(found.quantities)]
+    lines = browser.ask("document.querySelector('#panels figure svg').querySelectorAll('path').length")
+    assert lines == 6, "x, y and z of both"
+    assert browser.ask("document.querySelectorAll('#recorded tbody tr').length") == len(found.quantities)
+    assert "would fit better" in browser.ask("document.getElementById('recorded').textContent")
     silent(browser, tmp_path)
 
 

@@ -364,7 +364,7 @@ class TestRegistry:
             mdlgen.solve(model, name)
 
     def test_an_unknown_text_backend_names_those_there_are(self, model: Model) -> None:
-        with pytest.raises(SpecError, match="there are: motionsolve, motionview"):
+        with pytest.raises(SpecError, match="there are: motionsolve, motionview, msolve"):
             mdlgen.emit(model, "adams")
 
     def test_check_step_returns_the_finer_with_its_distance(

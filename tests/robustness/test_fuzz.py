@@ -336,11 +336,11 @@ def checked(spec: Path) -> int:
 
 
 def through(spec: Path) -> int:
-    """Exit code of check, after text and deck of the scene; of one that another process does, 2."""
+    """Exit code of check, after text, deck and script of the scene; of one that another process does, 2."""
     if next(NUMBER) % PARTS != PART:
         return 2
     folder, code = spec.parent, checked(spec)
-    for name in ("mdl", "deck"):
+    for name in ("mdl", "deck", "script"):
         file = folder / f"out.{name}"
         ended, err = command(
             name,
@@ -357,7 +357,7 @@ def through(spec: Path) -> int:
         if ended == 0:
             # as a word of its own, and not one that the scene has as a name
             assert not NAN.search(file.read_bytes()) or NAN.search(spec.read_bytes())
-            assert name == "deck" or command("lint", str(file), "-q")[0] == 0
+            assert name != "mdl" or command("lint", str(file), "-q")[0] == 0
     assert not [*folder.rglob(".*")]  # nothing that is half written
     return code
 

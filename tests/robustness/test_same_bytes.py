@@ -40,11 +40,12 @@ ENVIRONMENTS = [
 
 
 def written(folder: Path, environment: dict[str, str]) -> dict[str, str]:
-    """Digests of text, script, deck and a run's series, written by a process of its own."""
+    """Digests of text, scripts, deck and a run's series, written by a process of its own."""
     folder.mkdir(parents=True, exist_ok=True)
     commands = [
         ["mdl", str(SAMPLE), *SETS, "--script", "-o", "t.mdl", "-q"],
         ["deck", str(SAMPLE), *SETS, "-o", "t.xml", "-q"],
+        ["script", str(SAMPLE), *SETS, "-o", "t.py", "-q"],
     ]
     run = [["run", str(SAMPLE), *SETS, "-o", "d", "-q"]] if environment.get("RUN") else []
     script = SCRIPT.format(commands=commands + run)
@@ -56,7 +57,7 @@ def written(folder: Path, environment: dict[str, str]) -> dict[str, str]:
         check=False,
     )
     assert done.returncode == 0, done.stderr
-    files = ["t.mdl", "t_mview.py", "t.xml", *(["d/series.csv", "d/result.h5"] if run else [])]
+    files = ["t.mdl", "t_mview.py", "t.xml", "t.py", *(["d/series.csv", "d/result.h5"] if run else [])]
     held = {name: (folder / name).read_bytes() for name in files}
     return {n: hashlib.sha256(bits(b) if n.endswith("h5") else b).hexdigest() for n, b in held.items()}
 
@@ -102,9 +103,11 @@ def test_nothing_is_fetched(tmp_path: Path) -> None:
         ["mdl", str(SAMPLE), *SETS, "-o", "t.mdl"],
         ["lint", "t.mdl"],
         ["deck", str(SAMPLE), *SETS],
+        ["script", str(SAMPLE), *SETS],
         ["verify", str(SAMPLE), *SETS, "--no-turn"],
         ["run", str(SAMPLE), *SETS, "-o", "d"],
         ["run", str(SAMPLE), *SETS, "-o", "e", "--solver", "exudyn", "-q"],
+        ["compare", "d", "--with", "d/series.csv"],
         ["schema"],
     ]
     script = NO_NETWORK + SCRIPT.format(commands=commands)

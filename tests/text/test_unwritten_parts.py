@@ -28,6 +28,13 @@ def test_a_part_of_a_kind_without_words_is_refused_by_name(
         emitter(name).emit(model)
 
 
+def test_a_script_without_words_for_a_part_is_refused_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    model = lower(load(samples() / "verify" / "incline.yaml"))
+    monkeypatch.setattr("mdlgen.backends.msolve.writer.machine.WRITTEN", ())
+    with pytest.raises(RefusedError, match=r"MotionSolve script: .* is a plane, which is not written yet"):
+        emitter("msolve").emit(model)
+
+
 def test_verify_refuses_a_part_of_a_kind_of_which_it_expects_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     scene = load(samples() / "verify" / "incline.yaml")
     model = lower(scene)

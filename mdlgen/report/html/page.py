@@ -15,7 +15,6 @@ from mdlgen.paths import templates
 from mdlgen.report import boxes
 from mdlgen.report.animation import animation, frames, packed
 from mdlgen.report.figures.maps import Map, maps
-from mdlgen.report.html import recorded
 from mdlgen.report.html.curves import Panel, panels
 from mdlgen.report.html.differences import differences
 from mdlgen.report.html.environment import environment, library
@@ -38,8 +37,13 @@ def page(results: Sequence[Result], names: Sequence[str] = (), against: Against 
     """
     names = list(names) or [chr(ord("A") + k) for k in range(len(results))]
     runs = [run_record(result, name) for result, name in zip(results, names, strict=True)]
+    beside: dict[str, Any] | None = None
     if against is not None:
+        from mdlgen.report.html import recorded
+
         runs[0]["drawn"]["panels"] = [*map(_panel, recorded.panels(against)), *runs[0]["drawn"]["panels"]]
+        rows = [recorded.row(apart) for apart in against.quantities]
+        beside = {"rows": rows, "sentences": recorded.sentences(against)}
     drawn = json.dumps([run.pop("drawn") for run in runs], allow_nan=False, separators=(",", ":"))
     folder = templates() / "report"
     return (
@@ -51,12 +55,7 @@ def page(results: Sequence[Result], names: Sequence[str] = (), against: Against 
             differences=differences(results, names, [run["summary"] for run in runs])
             if len(runs) > 1
             else None,
-            recorded=None
-            if against is None
-            else {
-                "rows": [recorded.row(apart) for apart in against.quantities],
-                "sentences": recorded.sentences(against),
-            },
+            recorded=beside,
             # inside a script element nothing may look like markup
             data=drawn.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026"),
             style=(folder / "style.css").read_text("utf-8"),
