@@ -151,7 +151,7 @@ class Session:
         try:
             text = read(self.file)
         except MdlgenError as error:
-            self.errors = [{"says": str(error), "line": None, "path": ""}]
+            self.errors = [_plain(str(error))]
             self._publish()
             return
         self.turned = still_turned(self.text, text, self.turned)
@@ -262,7 +262,8 @@ class Session:
         newest = (self._job.text, dict(self._job.turned)) == (self.text, self.turned)
         self._job, self._progress, self._word = None, None, ""
         if record["kind"] == "ended" and record["how"] in (DRAFT, FULL):
-            self.errors = []
+            failed = record["status"] != "ok"
+            self.errors = [_plain(f"the run failed: {record['status']}")] if failed else []
             self._drafted = newest and record["how"] == DRAFT
             if record["how"] == DRAFT:
                 self._draft_took = self._now() - self._job_began
@@ -271,7 +272,7 @@ class Session:
             self.errors = record["errors"]
             self._todo = []
         elif record["kind"] == "failed" and newest:
-            self.errors = [{"says": record["reason"], "line": None, "path": ""}]
+            self.errors = [_plain(record["reason"])]
             self._todo = []
         self._go_on()
 
@@ -316,3 +317,8 @@ class Session:
     def _publish(self) -> None:
         for changed in self._waiting:
             changed.set()
+
+
+def _plain(says: str) -> dict[str, Any]:
+    """A mistake that is at no line."""
+    return {"says": says, "line": None, "path": ""}

@@ -106,6 +106,7 @@ function list(controls) {
     group.append(...lines);
     return group;
   }));
+  shownBefore = "";
   if (!controls.length) piece("p", { className: "note", textContent: "The file has no values to turn yet; it is followed." }, get("groups"));
   find();
 }
@@ -124,11 +125,11 @@ function find() {
   }
 }
 
-let before = "";
+let shownBefore = "";
 function show(turned, errors) {
   const now = JSON.stringify([turned, errors, listed, held]);
-  if (now === before) return; // to write into so many fields makes the page slow
-  before = now;
+  if (now === shownBefore) return; // to write into so many fields makes the page slow
+  shownBefore = now;
   const wrong = new Map(errors.filter((error) => error.path).map((error) => [error.path, error.says]));
   for (const [path, made] of rows) {
     const text = turned[path] ?? made.control.text;
@@ -147,18 +148,23 @@ function show(turned, errors) {
     made.wrong.hidden = !says;
     made.wrong.textContent = says ?? "";
     made.field.setAttribute("aria-invalid", String(Boolean(says)));
-    if (says) made.field.setAttribute("aria-describedby", made.wrong.id);
-    else made.field.removeAttribute("aria-describedby");
+    if (says) {
+      made.field.setAttribute("aria-describedby", made.wrong.id);
+      made.line.closest("details").open = true;
+    } else made.field.removeAttribute("aria-describedby");
   }
 }
 
 // ---- the state of the session
 
+// A text that is the same is not written again: who hears the page would hear it again.
+function write(id, text) { if (get(id).textContent !== text) get(id).textContent = text; }
+
 function heard(next) {
   told = next;
   document.title = `${next.scene}: mdlgen live`;
-  get("scene").textContent = next.scene;
-  get("command").textContent = next.command;
+  write("scene", next.scene);
+  write("command", next.command);
   const turned = Object.keys(next.turned).length;
   get("write").disabled = get("reset").disabled = !turned;
   complain(next.errors);
@@ -166,8 +172,9 @@ function heard(next) {
   bar.hidden = !progress;
   if (progress) bar.value = progress.time / progress.end;
   const doing = { preparing: "preparing the solver, once on this machine", compiling: "compiling the solver, once on this machine (some minutes)" }[word];
-  const what = doing ?? (progress ? `running, ${progress.time.toFixed(1)} of ${number(progress.end)} ms` : busy ? "running" : errors.length ? "the last run that was right is shown" : "up to date");
-  get("status").textContent = `${next.file}: ${what}${run.kind === "draft" ? "; a draft at a coarse step is shown" : ""}`;
+  get("far").textContent = progress ? `${progress.time.toFixed(1)} of ${number(progress.end)} ms` : "";
+  const what = doing ?? (busy ? "running" : errors.length ? "the last run that was right is shown" : "up to date");
+  write("status", `${next.file}: ${what}${run.kind === "draft" ? "; a draft at a coarse step is shown" : ""}`);
   if (listed !== next.controls) { listed = next.controls; ask("controls").then((found) => { list(found); show(told.turned, told.errors); }); }
   if (written !== next.text) { written = next.text; ask("text").then(({ text }) => numberLines(text)); }
   show(next.turned, next.errors);
@@ -243,9 +250,11 @@ function take(found, kind) {
   runs[0] = { ...found, panels: found.panels ?? runs[0]?.panels ?? [] };
   stage?.replace(0, found.animation);
   choose(0);
-  if (first) {
-    view("iso");
+  if (first) { view("iso"); fitted(); }
+  else refit();
+  if (!timed) {
     rate(rates.findIndex((r) => r >= (end() - start()) / 10));
+    timed = !grows; // a choice of one's own stays
   }
   if (growing && state.time !== placed) kept = state.time; // moved by hand meanwhile
   if (grows) {
@@ -268,7 +277,21 @@ function take(found, kind) {
     if (pinned && kind === "full") ghost();
   }
 }
-let growing = false;
+let growing = false, timed = false;
+
+// The view anew where what moves takes up much more room than when it was chosen, or much less; not once the
+// picture was moved by hand.
+const MUCH = 1.4;
+let room = 0, byHand = false;
+function refit() {
+  const { step } = runs[0].animation, now = Math.hypot(...step);
+  if (byHand || !state.view || (now < MUCH * room && now > room / MUCH)) return;
+  view(state.view);
+  fitted();
+}
+function fitted() { room = runs.length ? Math.hypot(...runs[0].animation.step) : 0; byHand = false; }
+for (const button of document.querySelectorAll("[data-view]")) button.addEventListener("click", fitted);
+for (const kind of ["wheel", "pointerdown"]) get("canvas").addEventListener(kind, () => { byHand = true; });
 
 // The figures anew; lines that were hidden stay so. While a value is dragged, those that are in sight.
 function figures(draft) {
