@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from threading import Thread
 from typing import Annotated
 
 import typer
@@ -53,17 +54,21 @@ def live(
         typer.echo(address)  # flushed
         if not quiet:
             say(f"follows {spec}; Ctrl-C ends it")
-        if browser:
-            import webbrowser
-
-            if not webbrowser.open(address) and not quiet:
-                say("no browser was found; open the address yourself")
+        if browser:  # one in a terminal would keep the server from answering
+            Thread(target=_open, args=(address, quiet), daemon=True).start()
 
     try:
         serve(Session(spec, tuple(sets or ()), tuple(limits or ()), solver), listening(port), ready)
     except KeyboardInterrupt:  # the way it ends
         if not quiet:
             say("ended")
+
+
+def _open(address: str, quiet: bool) -> None:
+    import webbrowser
+
+    if not webbrowser.open(address) and not quiet:
+        say("no browser was found; open the address yourself")
 
 
 def _check_extra() -> None:

@@ -4,24 +4,26 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
-from mdlgen.spec.document import Document, SpecPath
+from mdlgen.errors import Place, SpecError
+from mdlgen.spec.document import Document, SpecPath, parse
 from mdlgen.spec.scene import Scene
 from mdlgen.spec.schema import bounds
-from mdlgen.spec.setting import WORD
+from mdlgen.spec.setting import WORD, met
 from mdlgen.study.design.variable import quantity
 from mdlgen.units import parse_unit
 
 MOST = 600  # values of a scene that are offered
 LONGEST = 3  # list whose items are offered one by one: a place, not a curve
-PARAMETERS, BOXES = "parameters", "boxes"
+PARAMETERS, BOXES, SEVERAL = "parameters", "boxes", "several at once"
 STEPS = 200  # of a slider, at least
 AXES = "xyz"
 # Half the span of a value that is 0, in its unit; others have 1.
 FROM_ZERO = {"mm": 10.0, "deg": 10.0, "mm/s": 100.0, "rad/s": 10.0}
-_LEFT_OUT = (PARAMETERS, "name", "defaults", "require")
+_TEXTS = ("name", "require")
+_LEFT_OUT = (PARAMETERS, "defaults", *_TEXTS)
 
 
 @dataclass(frozen=True)
@@ -50,6 +52,21 @@ def controls(scene: Scene, document: Document) -> list[Control]:
         if control is not None:
             found.append(control)
     return found
+
+
+def of_pattern(text: str, pattern: str) -> Control:
+    """One for all values that a path with patterns meets in the text of a scene, as
+    `rollers.motor_*.drive.speed`; it begins at the first of them. Raises SpecError."""
+    words = pattern.strip().split(".")
+    if not all(WORD.fullmatch(word) for word in words):
+        raise SpecError(f"{pattern[:80]!r} is no path; write like rollers.motor_*.drive.speed")
+    data = parse(text, "scene").data
+    paths = met(data, words, Place("scene", 1, 1))
+    found = [control_of(path, _at(data, path), SEVERAL) for path in paths if path[0] not in _TEXTS]
+    if not found or None in found:
+        raise SpecError(f"{pattern[:80]!r} meets what is no number with its unit")
+    first = next(control for control in found if control is not None)
+    return replace(first, path=".".join(words), label=".".join(words[1:]) or words[0])
 
 
 def control_of(path: SpecPath, value: Any, group: str) -> Control | None:
@@ -146,3 +163,13 @@ def _values(node: Any, path: SpecPath) -> Iterator[tuple[SpecPath, Any]]:
             yield from _values(item, (*path, k))
     else:
         yield path, node
+
+
+def _at(data: Any, path: SpecPath) -> Any:
+    """The value at a path that plain data has, None: that is made where it is set."""
+    for key in path:
+        try:
+            data = data[key]
+        except (KeyError, IndexError, TypeError):
+            return None
+    return data

@@ -44,12 +44,18 @@ def listening(port: int = 0) -> socket.socket:
 
 
 def serve(session: Session, open_socket: socket.socket, ready: Callable[[str], None]) -> None:
-    """Answers until it is interrupted; `ready` is called with the address once it does."""
+    """Answers until it is interrupted; `ready` is called with the address once it does.
+
+    Raises OutputError where no process can be started that runs the scene.
+    """
     token, port = secrets.token_urlsafe(24), open_socket.getsockname()[1]
     app = Guard(application(session, lambda: ready(f"http://{HOST}:{port}/{token}/")), token, port)
     options: dict[str, Any] = {"log_level": "critical", "access_log": False, "server_header": False}
     config = uvicorn.Config(app, **options, timeout_graceful_shutdown=1, lifespan="on", ws="none")
-    _Server(config, session).run(sockets=[open_socket])
+    server = _Server(config, session)
+    server.run(sockets=[open_socket])
+    if not server.started:
+        raise OutputError("no process can be started that runs the scene")
 
 
 class _Server(uvicorn.Server):
@@ -92,6 +98,10 @@ def application(session: Session, ready: Callable[[], None] = lambda: None) -> S
         session.turn(dict(asked["values"]), bool(asked.get("held")))
         return JSONResponse({})
 
+    async def add(request: Request) -> Response:
+        session.add(str((await request.json())["path"]))
+        return JSONResponse({})
+
     async def write(_: Request) -> Response:
         session.write()
         return JSONResponse({})
@@ -111,7 +121,7 @@ def application(session: Session, ready: Callable[[], None] = lambda: None) -> S
         routes=[
             Route("/", show),
             *(Route(f"/{each.__name__}", each) for each in (state, events, controls, text, run)),
-            *(Route(f"/{each.__name__}", each, methods=["POST"]) for each in (turn, write)),
+            *(Route(f"/{each.__name__}", each, methods=["POST"]) for each in (turn, add, write)),
         ],
         lifespan=life,
         exception_handlers={MdlgenError: _refused, **dict.fromkeys(_WRONG, _not_asked_so)},

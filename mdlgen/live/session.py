@@ -8,14 +8,17 @@ is dragged.
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import json
 import re
 import shlex
 from collections.abc import AsyncIterator, Mapping
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from mdlgen.errors import MdlgenError, SpecError, printable
+from mdlgen.live.controls import SEVERAL, of_pattern
 from mdlgen.live.job import Job
 from mdlgen.live.process import Worker
 from mdlgen.live.writing import still_turned, with_values
@@ -25,6 +28,7 @@ from mdlgen.spec.load import loads, read
 # How long a draft goes on where a newer value waits [s]: at least, as many times what the last one took, and
 # at most. So there is something to see while a slider moves.
 PATIENCE, TIMES, MOST_PATIENCE = 0.3, 2.0, 1.5
+DRAWING = 0.12  # that a page has to draw a draft, before the full run takes all processors [s]
 PAUSE = 0.2  # without a newer value, after which the full run follows a draft while a slider is held [s]
 GRACE = 0.5  # that a run has to end once it is cancelled, before its process is ended [s]
 LONGEST = 300  # characters of a value
@@ -52,6 +56,7 @@ class Session:
         self._todo: list[str] = []
         self._drafted = False  # a draft of the newest values is shown
         self._held = False  # a slider is: the full run waits for a pause
+        self._drawing = False  # a draft has just been sent
         self._job: Job | None = None  # that the worker has
         self._job_began = self._draft_took = 0.0
         self._cancelled = False
@@ -133,6 +138,13 @@ class Session:
         elif not held:
             self._go_on()
 
+    def add(self, pattern: str) -> None:
+        """One more control, for all values that a path with patterns meets. Raises SpecError."""
+        control = asdict(of_pattern(self.text, pattern))
+        if control["path"] not in {other["path"] for other in self.controls}:
+            self._list([*self.controls, control])
+            self._publish()
+
     def write(self) -> None:
         """Puts the turned values into the file. Raises SpecError where the scene would be wrong, or the file
         is not the one that is shown, OutputError where it cannot be written."""
@@ -204,8 +216,8 @@ class Session:
         """Begins with what is to be done next."""
         if self._job is not None or not self._todo or self._ended:
             return
-        if self._todo[0] == FULL and self._held:
-            self._timer("pause", PAUSE, self._let_go)
+        if self._todo[0] == FULL and (self._held or self._drawing):
+            self._timer("pause", PAUSE if self._held else DRAWING, self._let_go)
             return
         self._number += 1
         kind = self._todo.pop(0)
@@ -227,7 +239,7 @@ class Session:
         self._worker.ask(self._job)
 
     def _let_go(self) -> None:
-        self._held = False
+        self._held = self._drawing = False
         self._go_on()
         self._publish()
 
@@ -238,10 +250,7 @@ class Session:
         elif self._job is None or record["number"] != self._job.number:
             return
         elif kind == "controls":
-            own = json.loads(body)
-            if own != self.controls:
-                self.controls = own
-                self._version["controls"] += 1
+            self._list([*json.loads(body), *self._several()])
         elif kind == "begun":
             self._about = {"scene": record["scene"], "lints": record["lints"]}
             self.errors = []
@@ -264,7 +273,7 @@ class Session:
         if record["kind"] == "ended" and record["how"] in (DRAFT, FULL):
             failed = record["status"] != "ok"
             self.errors = [_plain(f"the run failed: {record['status']}")] if failed else []
-            self._drafted = newest and record["how"] == DRAFT
+            self._drafted = self._drawing = newest and record["how"] == DRAFT
             if record["how"] == DRAFT:
                 self._draft_took = self._now() - self._job_began
             self._show(record["how"], record["status"], body)
@@ -280,6 +289,20 @@ class Session:
         number = self._shown["number"] + bool(body)
         self._shown = {"number": number, "kind": kind, "status": status}
         self.body = body or self.body
+
+    def _list(self, controls: list[dict[str, Any]]) -> None:
+        if controls != self.controls:
+            self.controls = controls
+            self._version["controls"] += 1
+
+    def _several(self) -> list[dict[str, Any]]:
+        """The controls of several values, as the text has them now; those that meet nothing go."""
+        found = []
+        for control in self.controls:
+            if control["group"] == SEVERAL:
+                with contextlib.suppress(SpecError):
+                    found.append(asdict(of_pattern(self.text, control["path"])))
+        return found
 
     def _died(self) -> None:
         """The worker ended by itself, which another one may not."""

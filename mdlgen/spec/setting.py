@@ -36,7 +36,7 @@ def set_value(document: Document, override: str) -> None:
         )
     value = parse(value_text, file)
     _write_out(document, words)
-    for path in _met(document.data, words, here):
+    for path in met(document.data, words, here):
         _put(document, path, value.copy(), here)
 
 
@@ -62,8 +62,9 @@ def _write_out(document: Document, words: list[str]) -> None:
     document.data[kind] = entries
 
 
-def _met(data: Any, words: list[str], here: Place) -> list[SpecPath]:
-    """Every path that words with patterns mean; keys that are not there yet are made where no pattern is."""
+def met(data: Any, words: list[str], here: Place) -> list[SpecPath]:
+    """Every path that words with patterns mean in plain data; keys that are not there yet are made where no
+    pattern is. Raises SpecError where there is none."""
     found: list[tuple[SpecPath, Any]] = [((), data)]
     for word in words:
         step: list[tuple[SpecPath, Any]] = []

@@ -1,6 +1,7 @@
 // A scene that is followed and turned: its values, the run that belongs to them, what is wrong with them.
 
 const SECTIONS = ["headline", "numbers", "events", "lints", "map"];
+const SEVERAL = "several at once"; // the group of values that one slider turns
 const MOST_LINES = 5000; // of the file, that are numbered
 const live = { seen: 0, kind: null, log: [] }; // the number of the run that is drawn, and when each was
 let told = null, listed = -1, written = -1, pinned = null;
@@ -89,7 +90,7 @@ function row(control, k) {
 
 function list(controls) {
   const open = new Set([...document.querySelectorAll("#groups details[open]")].map((group) => group.dataset.group));
-  const first = !rows.size;
+  const first = !rows.size, known = new Set([...document.querySelectorAll("#groups details")].map((group) => group.dataset.group));
   rows.clear();
   const groups = new Map();
   controls.forEach((control, k) => {
@@ -101,7 +102,7 @@ function list(controls) {
   get("groups").replaceChildren(...[...groups].map(([name, lines]) => {
     const group = document.createElement("details");
     group.dataset.group = name;
-    group.open = first ? name === (groups.has("parameters") ? "parameters" : [...groups.keys()].find((one) => one.startsWith("sheets."))) : open.has(name);
+    group.open = name === SEVERAL ? !known.has(name) || open.has(name) : first ? name === (groups.has("parameters") ? "parameters" : [...groups.keys()].find((one) => one.startsWith("sheets."))) : open.has(name);
     piece("summary", { textContent: name }, group);
     group.append(...lines);
     return group;
@@ -226,15 +227,14 @@ async function fetchRun() {
   try {
     while (told.run.number !== live.seen || told.run.kind !== live.kind) {
       const { number: wanted, kind } = told.run;
-      if (wanted !== live.seen) {
-        const found = await ask("run");
-        if (found) take(found, kind);
-      }
+      const found = wanted === live.seen ? null : await ask("run");
+      if (found) take(found, kind);
       await new Promise((done) => requestAnimationFrame(() => setTimeout(done))); // it is drawn
       live.seen = wanted;
       live.kind = kind;
       live.log.push({ number: wanted, kind, at: performance.now() });
       if (live.log.length > 1000) live.log.shift();
+      if (found) describe(found, kind); // what is drawn in space is seen first
       document.documentElement.dataset.shown = `${wanted} ${kind}`;
     }
   } catch (error) {
@@ -266,6 +266,11 @@ function take(found, kind) {
     kept = null;
   }
   growing = grows;
+}
+
+// The figures, numbers and words of a run.
+function describe(found, kind) {
+  const grows = kind === "part" || kind === "start";
   get("panels").classList.toggle("stale", grows);
   for (const name of SECTIONS) {
     const place = name === "headline" ? get("headline") : get(`html-${name}`);
@@ -337,6 +342,10 @@ function ghost() { stage?.ghost(pinned && get("ghost").checked ? pinned.animatio
 // ---- controls
 
 get("filter").addEventListener("input", find);
+get("several").addEventListener("submit", async (event) => {
+  event.preventDefault();
+  try { await ask("add", { path: get("pattern").value }); get("pattern").value = ""; say(""); } catch (error) { say(error.message, true); }
+});
 get("reset").addEventListener("click", () => turn(Object.fromEntries(Object.keys(told.turned).map((path) => [path, null])), false));
 get("write").addEventListener("click", async () => {
   try { await ask("write", {}); say(`written into ${told.file}`); } catch (error) { say(error.message, true); }

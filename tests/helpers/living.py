@@ -27,7 +27,7 @@ def scene(folder: Path, sample: str = "transport_nips", *changes: tuple[str, str
     for old, new in changes or SMALL:
         assert old in text
         text = text.replace(old, new)
-    path = folder / f"{sample}.yaml"
+    path = folder / f"{Path(sample).name}.yaml"
     path.write_text(text, "utf-8")
     return path
 

@@ -88,6 +88,29 @@ def test_an_edit_is_followed_and_its_mistakes_are_at_their_lines(tmp_path: Path)
         assert made.settled()["errors"] == []
 
 
+def test_a_scene_that_is_wrong_from_the_start_is_followed(tmp_path: Path) -> None:
+    spec = scene(tmp_path)
+    edit(spec, "mass: 0.72 g", "mass: 0.72 N")
+    with live(spec) as made:
+        state = made.until(lambda state: bool(state["errors"]))
+        assert [error["says"] for error in state["errors"]] == says(spec)
+        assert made.get("controls") == [] and state["run"]["kind"] is None
+        edit(spec, "mass: 0.72 N", "mass: 0.72 g")
+        state = made.until(lambda state: state["run"]["kind"] == "full")
+        assert state["errors"] == [] and len(made.get("controls")) > 20
+
+
+def test_the_reference_solver_runs_a_scene_too(tmp_path: Path) -> None:
+    """Without drafts; a newer value ends its run as well."""
+    spec = scene(tmp_path, "verify/slide", ("duration: ", "duration: 10"))
+    with live(spec, "--solver", "exudyn") as made:
+        made.until(lambda state: state["progress"] is not None or state["run"]["kind"] == "full")
+        made.turn(run__duration="5 ms")
+        state = made.settled()
+        assert state["run"]["kind"] == "full" and state["command"].endswith("--solver exudyn")
+        assert made.get("run")["animation"]["time"][-1] == 5.0
+
+
 def test_values_are_turned_and_stay_where_the_file_is_edited(tmp_path: Path) -> None:
     spec = scene(tmp_path)
     with live(spec, "--set", "parameters.radius=8 mm") as made:
@@ -112,6 +135,25 @@ def test_values_are_turned_and_stay_where_the_file_is_edited(tmp_path: Path) -> 
         assert error["path"] == "sheets.note.mass" and "wrong unit" in error["says"]
         made.turn(sheets__note__mass=None)
         assert made.until(lambda s: not s["errors"] and s["busy"] is None)["turned"] == {}
+
+
+def test_one_slider_turns_several_values(tmp_path: Path) -> None:
+    spec = scene(tmp_path, "transport_4x4")
+    path = "rollers.motor_*.drive.speed"
+    with live(spec) as made:
+        made.settled()
+        assert made.post("turn", {"values": {path: "90 rad/s"}})[0] == 409
+        assert made.post("add", {"path": "rollers.*.axis"})[0] == 409
+        assert made.post("add", {"path": path}) == (200, {})
+        assert made.get("controls")[-1]["path"] == path
+        assert made.post("turn", {"values": {path: "90 rad/s"}}) == (200, {})
+        assert made.settled()["command"] == f"mdlgen run {spec} --set 'rollers.motor_*.drive.speed=90 rad/s'"
+        assert travel(made) == pytest.approx(solved(spec, f"{path}=90 rad/s"), abs=0.01)
+        # it follows the file, and goes with what it meets
+        edit(spec, "186.7 rad/s", "100 rad/s")
+        made.until(lambda _: made.get("controls")[-1]["number"] == 100.0)
+        assert made.post("write", {}) == (200, {})
+        assert "100 rad/s" not in spec.read_text("utf-8") and spec.read_text("utf-8").count("90 rad/s") == 4
 
 
 def test_a_file_that_the_scene_names_is_followed(tmp_path: Path) -> None:

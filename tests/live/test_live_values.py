@@ -10,7 +10,7 @@ import pytest
 from living import scene
 
 from mdlgen.errors import SpecError
-from mdlgen.live.controls import Control, controls
+from mdlgen.live.controls import Control, controls, of_pattern
 from mdlgen.live.session import Session
 from mdlgen.live.writing import still_turned, with_values
 from mdlgen.paths import samples
@@ -69,6 +69,17 @@ def test_a_scene_without_parameters_has_its_values() -> None:
         if c.label == "restitution"
     }
     assert top == 1.0  # which the scene allows at most
+
+
+def test_one_control_for_several_values() -> None:
+    control = of_pattern(FOUR, "rollers.motor_*.drive.speed")
+    assert (control.path, control.group) == ("rollers.motor_*.drive.speed", "several at once")
+    assert (control.number, control.unit, control.low, control.high) == (186.7, "rad/s", 93.3, 280.1)
+    text = with_values(FOUR, "s", {control.path: "90 rad/s"})
+    assert text == FOUR.replace("186.7 rad/s", "90 rad/s")
+    for wrong in ("rollers.*.axis", "meshes.*.file", "rollers.none_*.radius", "name", "a b", "rollers", ""):
+        with pytest.raises(SpecError):
+            of_pattern(FOUR, wrong)
 
 
 def test_every_value_can_be_set_by_its_path() -> None:
