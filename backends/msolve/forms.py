@@ -55,7 +55,7 @@ FORMS: dict[str, Form] = {
         "type:STATIC skip_mkeam:yes error:number maxit:count imbalance:number kinetic_energy_error:number "
         "stability:number",
     ),
-    "Output": _form("output_api.htm", "reqsave:yes req_comment_only:yes capture_max_pd:yes"),
+    "Output": _form("output_api.htm", "reqsave:yes req_comment_only:yes"),
     "H3dOutput": _form("h3doutput_api.htm", "save:yes"),
     "Part": _form(
         "part_api.htm",
@@ -79,7 +79,7 @@ FORMS: dict[str, Form] = {
     "Bushing": _form(
         "bushing_api.htm",
         "label:text k:three c:three kt:three ct:three",
-        "i:Marker j:Marker force:three torque:three",
+        "i:Marker j:Marker torque:three",
         needed="i j k c kt ct",
     ),
     "SpringDamper": _form(

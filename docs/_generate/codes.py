@@ -12,7 +12,11 @@ EXITS = (
     ("2", "a mistake in a scene, a value or a call; a MotionView text with errors (`lint`)"),
     ("3", "a file that cannot be read or written"),
     ("4", "a solver failed; the reason is printed and nothing is written"),
-    ("5", "an accuracy check failed: `run.tolerance` was missed, or `verify` found a difference"),
+    (
+        "5",
+        "an accuracy check failed: `run.tolerance` was missed, `verify` found a difference, or `compare "
+        "--within` a larger one",
+    ),
     ("6", "a run is right, and misses what its scene requires; its results are written"),
     ("130", "interrupted by Ctrl-C"),
 )

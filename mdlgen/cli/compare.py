@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from mdlgen.cli.shell import Json, Quiet, Verbose, app, echo_json, reports_errors, say
+from mdlgen.errors import AccuracyError
 
 PAGE = "compare.html"
 
@@ -29,6 +30,14 @@ def compare(
         Path | None,
         typer.Option(
             "-o", "--output", metavar="FILE.html", help="The page with both: DIR/compare.html if left out."
+        ),
+    ] = None,
+    within: Annotated[
+        float | None,
+        typer.Option(
+            metavar="FRACTION",
+            min=0.0,
+            help="The largest relative difference that is allowed, such as 0.05: above it, exit code 5.",
         ),
     ] = None,
     as_json: Json = False,
@@ -58,3 +67,10 @@ def compare(
         typer.echo("\n".join(lines(found)))
     if not quiet:
         say(f"wrote {target}")
+    worst = max(found.quantities, key=lambda one: one.relative)
+    if within is not None and not worst.relative <= within:
+        apart = sum(not one.relative <= within for one in found.quantities)
+        raise AccuracyError(
+            f"{recorded}: {apart} of {len(found.quantities)} quantities are further than {within:g} from "
+            f"the run; furthest {worst.name}: {worst.relative:.3g}"
+        )

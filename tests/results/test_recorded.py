@@ -170,6 +170,14 @@ def test_what_is_not_of_the_scene_is_named(ran: Result, tmp_path: Path) -> None:
     assert not any(a.name.startswith("probes.lead") for a in found.quantities)
 
 
+def test_of_several_requests_with_one_label_the_first_counts(ran: Result, tmp_path: Path) -> None:
+    text = plt(ran)
+    first, second = (text.splitlines()[k] for k in (4, 6))
+    found = compared(ran, text.replace(second, first, 1), tmp_path, "note.plt")
+    assert found.unknown == (f"{' '.join(first.split())} (request 2)",)
+    assert max(one.relative for one in found.quantities) < 1e-5
+
+
 def damage(text: str, line: int, new: str | None) -> str:
     lines = text.split("\r\n")
     lines[line - 1 : line] = [] if new is None else [new]
@@ -296,6 +304,12 @@ def test_the_command(ran: Result, tmp_path: Path, capsys: pytest.CaptureFixture[
     assert set(record["quantities"][0]) == {
         *("name", "unit", "rms", "greatest", "at_ms", "offset", "scale", "relative")
     }
+    assert run("compare", folder, "--with", file, "-q", "--within", 0.5) == 0
+    assert capsys.readouterr() == ("", "")
+    assert run("compare", folder, "--with", file, "-q", "--within", 1e-3) == 5
+    out, err = capsys.readouterr()
+    worst = max(record["quantities"], key=lambda q: q["relative"])
+    assert out == "" and f"furthest {worst['name']}: {worst['relative']:.3g}\n" in err
     for args in ((folder, "--with", tmp_path / "no.plt"), (tmp_path, "--with", file)):
         assert run("compare", *args) == 3
         assert len(capsys.readouterr().err.splitlines()) == 1

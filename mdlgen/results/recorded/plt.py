@@ -37,11 +37,12 @@ def read(text: str, file: Path) -> Recording:
     body = _HEADER + 2 * count
     if len(lines) < body:
         raise damaged(file, len(lines), f"the file ends among its {count} requests")
-    labels: list[str] = []
-    for k in range(_HEADER, body, 2):
+    labels: dict[str, int] = {}  # of several with one label the first keeps it
+    for number, k in enumerate(range(_HEADER, body, 2)):
         if not lines[k].split() or not lines[k].split()[0].isdigit():
             raise damaged(file, k + 1, "an id is due here, and the label of a request below it")
-        labels.append(" ".join(lines[k + 1].split()))
+        label = " ".join(lines[k + 1].split())
+        labels[label if label not in labels else f"{label} (request {number + 1})"] = number
     rows = len(lines) - body
     if rows < count + 1 or rows % (count + 1):
         times = rows // (count + 1)
@@ -51,7 +52,7 @@ def read(text: str, file: Path) -> Recording:
     at = [body + 1 + k * (count + 1) for k in range(len(numbers))]
     time, values = increasing(file, at, numbers[:, 0], numbers[:, 1:])
     sixes = values.reshape(len(time), count, 6)
-    return Recording(str(file), 1000.0 * time, {label: sixes[:, k] for k, label in enumerate(labels)})
+    return Recording(str(file), 1000.0 * time, {label: sixes[:, k] for label, k in labels.items()})
 
 
 def _count(lines: list[str], file: Path) -> int:
