@@ -104,7 +104,7 @@ def _control(
     whole: bool = False,
 ) -> Control:
     label = [str(key) for key in path[2:]] or [str(path[-1])]
-    if isinstance(path[-1], int) and path[-2] != BOXES and path[-1] < len(AXES):
+    if isinstance(path[-1], int) and path[-1] < len(AXES):
         label[-1] = AXES[path[-1]]
     number, unit = amount
     low, high = span

@@ -27,8 +27,9 @@ if TYPE_CHECKING:
 # The step of a draft at a tolerance of 1e-3 [ms], and in steps where one is given. The fast solver's search
 # begins with a little less; a longer one saves nothing, since it is halved where it does not converge.
 DRAFT_STEP, DRAFT_PART = 0.25, 4.0
-# Between two reports of progress, and two parts of the animation [s]; parts take at most a share of the run.
-REPORT, PART, SHARE = 0.1, 0.4, 0.2
+# Between two reports of progress, before the first part of the animation, between two parts [s], which take
+# at most a share of the run.
+REPORT, FIRST_PART, PART, SHARE = 0.1, 1.0, 0.4, 0.2
 
 Send = Callable[[dict[str, Any], bytes], None]
 
@@ -184,7 +185,7 @@ class _Reporter:
         if not self.job.parts:
             return
         # a finer pass begins anew: what a coarser one has shown stays until this one is as far
-        wait = max(PART, self.cost / SHARE)
+        wait = max(PART, self.cost / SHARE) if self.furthest else FIRST_PART
         if self.keep.part is None or at <= self.furthest or now - self.parted < wait:
             return
         from mdlgen.live.drawn import partial

@@ -212,11 +212,12 @@ async function player(canvas, changed) {
     const run = take(animation), as = ({ points, place, turn }) => `${place} ${turn} ${points}`;
     const there = new Set(seen.parts.map(({ mesh }) => as(mesh)));
     run.boxes.material.dispose();
-    run.boxes.material = paint(GHOST, { polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 4 });
+    const behind = { polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 4 };
+    run.boxes.material = paint(GHOST, behind);
     run.colour = 0;
     for (const { drawn, mesh } of run.parts) {
       drawn.material.dispose();
-      drawn.material = paint(GHOST);
+      drawn.material = paint(GHOST, behind);
       drawn.visible = !there.has(as(mesh));
     }
     return run;
