@@ -53,6 +53,12 @@ class Beside(Generic[T]):
             raise self._failed[0]
         return self._found[0]
 
+    def raises(self, but: type[BaseException]) -> None:
+        """Raises what it raised, `but` that, once it has ended."""
+        self._thread.join()
+        if self._failed and not isinstance(self._failed[0], but):
+            raise self._failed[0]
+
 
 def own(system: System) -> System:
     """The same System in arrays of its own: a pass writes into some of them."""

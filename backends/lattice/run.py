@@ -3,11 +3,11 @@ the difference is within the tolerance."""
 
 from __future__ import annotations
 
-import contextlib
 import math
 import time as clock
 from collections.abc import Callable
 from functools import partial
+from queue import SimpleQueue
 from threading import Event, Thread
 
 import numpy as np
@@ -40,6 +40,8 @@ FREE_GAIN = 1e-3
 
 # Two runs that end early end at the same time where it differs by less than this part of the duration.
 SAME_END = 0.01
+
+Report = tuple[float, float, int, int]  # what progress is called with
 
 # Numbers by which states of passes are kept: first those of the first step, halved so many times, or of the
 # step that is given, doubled so many times; then of twice the first step; of a check at a step of its own.
@@ -231,32 +233,52 @@ class Search:
             return second
 
     def _three(self) -> Result | None:
-        """The third pass, which most scenes with flexible sheets need, beside the first two, which take as
-        long; None where the search ends with these."""
-        model, h, enough = self._model, first_step(self._model), Event()
-        seen, beside = [self._watch(number) for number in (0, 1, 2, DOUBLED)], own(self._system)
+        """The first pass beside the second one, and then the third, which most scenes with flexible sheets
+        need; None where the search ends with two. Progress is that of the third."""
+        model, h = self._model, first_step(self._model)
+        coarse, second, third, doubled = (self._watch(number) for number in (0, 1, 2, DOUBLED))
+        beside, first, reports = (
+            own(self._system),
+            Event(),
+            SimpleQueue[tuple[float, float, int, int] | None](),
+        )
+        finer = division(model, 0.5 * division(model, h).step).step
 
-        def two(stop: Event) -> bool:
-            hidden = [each.beside(stop) for each in seen]
-            ends = True
+        def others(stop: Event) -> Result:
             try:
-                self._runs.append(self._once(h, 0, hidden[0], beside))
-                seen[0].leave()
-                second = self._once(0.5 * self._runs[0].step, 1, hidden[1], beside)
-                ends = self._ends(second, 1, hidden[3], beside)
-                if not ends:
-                    _strains(self._runs)
-                return ends
+                self._runs.append(self._once(h, 0, coarse.beside(stop), beside))
             finally:
-                if ends:
-                    enough.set()
+                first.set()
+            followed = third.beside(stop)._replace(progress=lambda *report: reports.put(report))
+            return self._once(0.5 * finer, 2, followed, beside)
 
-        second = division(model, 0.5 * division(model, h).step)
-        with Beside(two, seen[0].leave) as coarser:
-            third = None
-            with contextlib.suppress(Stopped):
-                third = self._once(0.5 * second.step, 2, seen[2]._replace(stop=enough))
-            return None if coarser.result() else third
+        def report(*_: float) -> None:
+            for _ in range(reports.qsize()):
+                found = reports.get()
+                if found is None:
+                    reports.put(None)  # it has ended, which is waited for
+                elif third.progress is not None:
+                    third.progress(*found)
+
+        def ended() -> None:
+            coarse.leave()
+            reports.put(None)
+
+        with Beside(others, ended) as side:
+            run = self._once(finer, 1, second._replace(progress=report))
+            first.wait()
+            if not self._runs:
+                return side.result()  # raises what the first pass raised
+            ends = self._ends(run, 1, doubled._replace(progress=None))
+            if not ends:
+                coarse.leave()  # this processor has no more to do
+                _strains(self._runs)
+                for found in iter(reports.get, None):
+                    if third.progress is not None:
+                        third.progress(*found)
+                return side.result()
+        side.raises(Stopped)
+        return None
 
     def _failed(self) -> Result:
         result = self._runs[0]

@@ -118,7 +118,7 @@ def test_a_third_pass_stops_where_two_are_enough(monkeypatch: pytest.MonkeyPatch
     once, ended = lattice.one_pass, []
 
     def watched(*args: Any, **named: Any) -> Result:
-        if args[3].hidden:
+        if args[3].number < 2:
             return once(*args, **named)
         assert args[3].stop.wait(60.0)
         try:
@@ -148,6 +148,21 @@ def test_an_error_in_either_is_raised(name: str, coarser: bool, monkeypatch: pyt
     with pytest.raises(OutputError, match="the disk is full"):
         lattice.solve(model_of(name), threads=2)
     assert threading.active_count() == before
+
+
+def test_an_error_in_a_third_pass_is_raised(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whether it was needed or not."""
+    once = lattice.one_pass
+
+    def failing(*args: Any, **named: Any) -> Result:
+        if args[3].number == 2:
+            raise OutputError("the disk is full")
+        return once(*args, **named)
+
+    monkeypatch.setattr(lattice, "one_pass", failing)
+    for name in ("transport_4x4", "transport_4x4, three"):
+        with pytest.raises(OutputError, match="the disk is full"):
+            lattice.solve(model_of(name), threads=2)
 
 
 @pytest.mark.parametrize(("threads", "at_the_start"), [(1, True), (2, False), (3, True)])
