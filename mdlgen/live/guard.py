@@ -46,14 +46,16 @@ class Guard:
                 message["headers"] = [*message["headers"], *HEADERS]
             await send(message)
 
-        reason = self.refuses(scope)
-        if reason is None:
-            own = f"/{self._token}"
-            await self._app({**scope, "path": scope["path"].removeprefix(own) or "/"}, receive, with_headers)
+        reason, own = self.refuses(scope), f"/{self._token}"
+        if reason is None and scope["path"] != own:
+            await self._app({**scope, "path": scope["path"].removeprefix(own)}, receive, with_headers)
             return
-        text = f"{reason}\n".encode()
+        text = f"{reason or 'the address ends with /'}\n".encode()
         headers = [(b"content-type", b"text/plain; charset=utf-8"), (b"content-length", b"%d" % len(text))]
-        await with_headers({"type": "http.response.start", "status": 403, "headers": headers})
+        if reason is None:  # typed without its end, from which the page would ask elsewhere
+            headers.append((b"location", f"{own}/".encode()))
+        status = 403 if reason else 307
+        await with_headers({"type": "http.response.start", "status": status, "headers": headers})
         await send({"type": "http.response.body", "body": text})
 
     def refuses(self, scope: Scope) -> str | None:

@@ -118,7 +118,6 @@ def _described(text: str, file: str, sets: tuple[str, ...], folder: str, limits:
 
 def _perform(job: Job, send: Send, cancelled: Callable[[], bool]) -> None:
     from mdlgen import registry
-    from mdlgen.checks import lints
     from mdlgen.live.drawn import begun, finished
     from mdlgen.model.lower import lower
     from mdlgen.processors import processors
@@ -131,8 +130,7 @@ def _perform(job: Job, send: Send, cancelled: Callable[[], bool]) -> None:
     model = lower(_scene(job, job.overrides))
     if cancelled():
         raise Cancelled
-    if not job.draft:
-        send({"kind": "begun", "scene": model.name, "lints": [str(lint) for lint in lints(model)]}, b"")
+    send({"kind": "begun", "scene": model.name}, b"")
     if job.first:
         send({"kind": "start"}, begun(model))
     name, _ = registry.chosen(job.solver, model)

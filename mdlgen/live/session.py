@@ -25,9 +25,9 @@ from mdlgen.live.writing import still_turned, with_values
 from mdlgen.paths import write_atomic
 from mdlgen.spec.load import loads, read
 
-# How long a draft goes on where a newer value waits [s]: at least, as many times what the last one took, and
-# at most. So there is something to see while a slider moves.
-PATIENCE, TIMES, MOST_PATIENCE = 0.3, 2.0, 1.5
+# How long a draft goes on where a newer value waits [s], and the one after a draft that was ended for that.
+# So there is something to see while a slider moves, of a run that takes long its parts.
+PATIENCE, MORE_PATIENCE = 0.5, 1.5
 DRAWING = 0.12  # that a page has to draw a draft, before the full run takes all processors [s]
 PAUSE = 0.2  # without a newer value, after which the full run follows a draft while a slider is held [s]
 GRACE = 0.5  # that a run has to end once it is cancelled, before its process is ended [s]
@@ -49,7 +49,7 @@ class Session:
         self.controls: list[dict[str, Any]] = []
         self.body: bytes = b""  # of the run that is shown, as JSON
         self._shown: dict[str, Any] = {"number": 0, "kind": None, "status": ""}
-        self._about: dict[str, Any] = {"scene": file.stem, "lints": []}
+        self._scene = file.stem
         self._progress: dict[str, Any] | None = None
         self._word = ""
         self._version = {"controls": 0, "text": 0}
@@ -58,7 +58,8 @@ class Session:
         self._held = False  # a slider is: the full run waits for a pause
         self._drawing = False  # a draft has just been sent
         self._job: Job | None = None  # that the worker has
-        self._job_began = self._draft_took = 0.0
+        self._job_began = 0.0
+        self._impatient = False  # the last draft was ended for a newer value
         self._cancelled = False
         self._number = 0
         self._timers: dict[str, asyncio.TimerHandle] = {}
@@ -86,7 +87,7 @@ class Session:
         """All but what is large: that is asked for by its version."""
         return {
             "file": str(self.file),
-            **self._about,
+            "scene": self._scene,
             "errors": self.errors,
             "turned": self.turned,
             "command": self.command(),
@@ -196,7 +197,7 @@ class Session:
         self._todo = [DRAFT, FULL]
         self._stop_timer("pause")
         if self._job is not None and not self._cancelled:
-            wait = min(max(PATIENCE, TIMES * self._draft_took), MOST_PATIENCE)
+            wait = MORE_PATIENCE if self._impatient else PATIENCE
             left = wait - (self._now() - self._job_began) if self._job.draft else 0.0
             if left > 0.0:
                 self._timer("patience", left, self._cancel)
@@ -252,8 +253,7 @@ class Session:
         elif kind == "controls":
             self._list([*json.loads(body), *self._several()])
         elif kind == "begun":
-            self._about = {"scene": record["scene"], "lints": record["lints"]}
-            self.errors = []
+            self._scene = record["scene"]
         elif kind == "progress":
             self._word = ""
             self._progress = {name: record[name] for name in ("time", "end", "steps", "touching")}
@@ -268,14 +268,14 @@ class Session:
         for name in ("patience", "grace"):
             self._stop_timer(name)
         assert self._job is not None
+        if self._job.draft:
+            self._impatient = self._cancelled
         newest = (self._job.text, dict(self._job.turned)) == (self.text, self.turned)
         self._job, self._progress, self._word = None, None, ""
         if record["kind"] == "ended" and record["how"] in (DRAFT, FULL):
             failed = record["status"] != "ok"
             self.errors = [_plain(f"the run failed: {record['status']}")] if failed else []
             self._drafted = self._drawing = newest and record["how"] == DRAFT
-            if record["how"] == DRAFT:
-                self._draft_took = self._now() - self._job_began
             self._show(record["how"], record["status"], body)
         elif record["kind"] == "refused" and newest:
             self.errors = record["errors"]
@@ -313,7 +313,10 @@ class Session:
         await self._worker.end()
         if self._ended:
             return
-        await self._worker.start()
+        try:
+            await self._worker.start()
+        except OSError as error:
+            closing = {"kind": "failed", "reason": f"no process can be started: {error.strerror or error}"}
         if self._job is not None:
             self._close(closing or {"kind": "ended", "how": "cancelled"}, b"")
         self._publish()

@@ -76,6 +76,7 @@ function row(control, k) {
       made.slider.ariaValueText = text;
       turn({ [control.path]: text }, true);
     });
+    for (const kind of ["pointerup", "blur"]) made.slider.addEventListener(kind, () => { held = null; });
     made.slider.addEventListener("change", () => { held = null; turn({ [control.path]: made.field.value }, false); });
   } else {
     piece("span", { className: "note", textContent: "follows" }, line);

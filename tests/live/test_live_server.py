@@ -21,7 +21,7 @@ from mdlgen.live.server import listening
 from mdlgen.spec.load import load
 
 SPEED = "parameters.speed"
-LONG = ("boxes: [10, 20]", "boxes: [3, 4]"), ("duration: 50 ms", "duration: 20000 ms")
+LONG = ("boxes: [10, 20]", "boxes: [3, 4]"), ("duration: 50 ms", "duration: 200000 ms")
 
 
 @pytest.fixture(scope="module")
@@ -46,6 +46,12 @@ def test_its_own_page_is_answered(running: Live) -> None:
     own = {"Origin": f"http://{running.host}:{running.port}", "Sec_Fetch_Site": "same-origin"}
     assert running.request(f"{running.path}state", **own)[0] == 200
     assert len(running.path.strip("/")) >= 30  # the token cannot be guessed
+
+
+def test_the_address_without_its_end_leads_to_it(running: Live) -> None:
+    status, _, headers = running.request(running.path.rstrip("/"))
+    assert (status, headers["location"]) == (307, running.path)
+    assert running.request(running.path.rstrip("/"), Origin="http://evil.example")[0] == 403
 
 
 @pytest.mark.parametrize(
