@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -80,6 +81,9 @@ def test_verify_takes_a_file(capsys: pytest.CaptureFixture[str], tmp_path: Path)
     file.write_text(text.replace("kmax=5", "kmax=4"))
     assert run("verify", spec, "--set", SMALL, "--msolve", file, "--no-perturb") == 5
     assert "only its values may differ" in capsys.readouterr().err
+    file.write_text(re.sub(r'"boxes": \[.*\]', '"boxes": [10, 9000000000]', text))
+    assert run("verify", spec, "--set", SMALL, "--msolve", file, "--no-perturb") == 2
+    assert re.search(r"its values make no model: more than \d{3,4} objects", capsys.readouterr().err)
     assert run("verify", spec, "--set", SMALL, "--msolve", tmp_path / "none.py") == 3
 
 

@@ -58,7 +58,7 @@ def test_nothing_of_a_file_is_run(where: str, what: str, tmp_path: Path) -> None
         assert not reading.same_program
         assert reading.values["bodies"]
     except SpecError as error:
-        assert re.match(r"bad\.py:\d+:\d+: only plain ", str(error))
+        assert re.match(r"bad\.py:\d+:\d+: (only plain |there is no NAME below its imports)", str(error))
     assert not trap.exists()
 
 
@@ -78,13 +78,17 @@ HOSTILE = {
     "boxes without end": small_script().replace('"boxes": [2, 2]', '"boxes": [10**9, 2]'),
     "very many boxes": small_script().replace('"boxes": [2, 2]', '"boxes": [9000000000, 2]'),
     "a part that is not there": small_script().replace('("note_0_0", "low")', '("note_9_9", "low")', 1),
+    "other bytes": "# coding: utf-7\n" + small_script(),
+    "other bytes below a line": "\n#!vim: set fileencoding=rot13\n" + small_script(),
+    "values below the program": re.sub(r"^(NAME = .*\n)((.|\n)*)", r"\2\1", small_script(), flags=re.M),
+    "values above the imports": small_script().replace("import csv\n", "NAME = 'x'\nimport csv\n"),
     "endless": small_script().replace('"mass": ', '"mass": 1e999, "m": ', 1),
 }
 
 
 @pytest.mark.parametrize("name", HOSTILE)
 def test_a_hostile_script_ends_in_one_line(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("mdlgen.backends.msolve.reader.build.MOST", 20_000)
+    monkeypatch.setattr("mdlgen.backends.msolve.reader.Reading.most", 20_000)
     with pytest.raises(SpecError) as error:
         _ = msolve.read(HOSTILE[name], "bad.py").values
     message = str(error.value)
@@ -114,7 +118,7 @@ KEYS = "center axes boxes pitch mass inertia lengths held columns rows at k kt l
 def test_a_wrong_value_never_ends_in_a_traceback(
     key: str, value: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("mdlgen.backends.msolve.reader.build.MOST", 20_000)
+    monkeypatch.setattr("mdlgen.backends.msolve.reader.Reading.most", 20_000)
     text = re.sub(rf'"{key}": ', f'"{key}": {value}, "old": ', small_script(), count=1)
     assert text != small_script()
     try:

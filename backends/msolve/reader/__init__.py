@@ -6,7 +6,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import Any
 
-from mdlgen.backends.msolve.reader.build import Made, made
+from mdlgen.backends.msolve.reader.build import MOST, Made, made
 from mdlgen.backends.msolve.reader.split import Script, split
 from mdlgen.backends.msolve.reader.values import comparable, values
 
@@ -14,7 +14,10 @@ __all__ = ["Reading", "read"]
 
 
 class Reading:
-    """A script, read. Raises SpecError with file:line where the text cannot be meant as one."""
+    """A script, read. Raises SpecError with file:line where the text cannot be meant as one, or where it
+    makes more than `most` objects."""
+
+    most: int = MOST
 
     def __init__(self, text: str, file: str):
         self._script: Script = split(text, file)
@@ -28,7 +31,7 @@ class Reading:
     @cached_property
     def made(self) -> Made:
         """What the program makes of the values, object by object."""
-        return made(self._script, self._file)
+        return made(self._script, self._file, self.most)
 
     @cached_property
     def values(self) -> dict[str, Any]:

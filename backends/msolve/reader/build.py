@@ -19,10 +19,10 @@ class Made(NamedTuple):
     simulate: dict[str, Any]
 
 
-def made(script: Script, file: str) -> Made:
+def made(script: Script, file: str, most: int = MOST) -> Made:
     """Raises SpecError where the values are not such as the program takes. Of the file only the values are
     used, which are literals: what runs is the program of mdlgen's own template, up to the simulation."""
-    own, things = names(MOST)
+    own, things = names(most)
     own |= script.values
     own["__name__"] = "script"
     try:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from typing import Any, NamedTuple
 
 from mdlgen.backends.msolve.environment import environment
@@ -14,6 +15,9 @@ TABLES = (
 )
 _ALWAYS = ("NAME", "GRAVITY", "RUN")
 _HEAD = "import csv\nfrom msolve import *\n"
+_IMPORTS = 2
+_CODING = re.compile(r"[ \t\f]*#.*?coding[:=][ \t]*([-\w.]+)")
+"""In one of the first two lines it says that Python takes the bytes of a file as other than UTF-8."""
 
 
 class Script(NamedTuple):
@@ -31,7 +35,7 @@ def split(text: str, file: str) -> Script:
     rest: list[ast.stmt] = []
     for statement in tree.body:
         name = _name(statement)
-        if name not in TABLES:
+        if name not in TABLES or len(_without_notes(rest)) != _IMPORTS:  # values stand below the imports
             rest.append(statement)
             continue
         assert isinstance(statement, ast.Assign)
@@ -40,7 +44,9 @@ def split(text: str, file: str) -> Script:
         values[name] = _literal(statement, file)
     for name in _ALWAYS:
         if name not in values:
-            raise SpecError(f"there is no {name}: this is no script of mdlgen", place=Place(file, 1, 1))
+            raise SpecError(
+                f"there is no {name} below its imports: this is no script of mdlgen", place=Place(file, 1, 1)
+            )
     program = _program(values)
     same = ast.dump(ast.Module(_without_notes(rest), [])) == ast.dump(ast.parse(_HEAD + program))
     return Script(values, program, same)
@@ -55,6 +61,10 @@ def _program(values: dict[str, Any]) -> str:
 
 
 def _parsed(text: str, file: str) -> ast.Module:
+    for line, row in enumerate(text.splitlines()[:2], 1):
+        coding = _CODING.match(row)
+        if coding and coding[1].lower() not in ("utf-8", "utf8"):
+            raise SpecError(f"it is in {coding[1]}: utf-8 is due", place=Place(file, line, 1))
     try:
         return ast.parse(text)
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
