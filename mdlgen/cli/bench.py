@@ -29,7 +29,7 @@ def bench(
         list[str] | None,
         typer.Argument(
             metavar="SUITE ...",
-            help="transport, elastica, impact, friction, flight, scaling, skip, feeder, stability, "
+            help="transport, elastica, impact, friction, flight, scaling, skip, feeder, piles, stability, "
             "validation: all if left out.",
             autocompletion=completion.suites,
         ),

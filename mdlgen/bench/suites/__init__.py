@@ -9,8 +9,8 @@ from mdlgen.errors import SpecError, did_you_mean
 from mdlgen.registry import AUTO
 
 SUITES = (
-    *("transport", "elastica", "impact", "friction", "flight", "scaling", "skip", "feeder", "stability"),
-    "validation",
+    *("transport", "elastica", "impact", "friction", "flight", "scaling", "skip", "feeder", "piles"),
+    *("stability", "validation"),
 )
 
 

@@ -1,0 +1,68 @@
+"""Piles: what sheets that lie on each other cost, at rest and under a feeding roller."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+from mdlgen.bench.case import BenchCase, Finding, Run
+from mdlgen.registry import REFERENCE
+from mdlgen.results.result import Result
+
+SAMPLE = "pile"
+STEP = 0.1  # [ms]
+DURATION, QUICK = 100.0, 5.0  # [ms]
+GRID = (10, 20)
+COUNTS = {"rest": (5, 20), "fed": (5, 20, 100)}
+TALL = 0.1  # of a note [mm]
+# The middle of the roller over the face of the uppermost note, and where it touches nothing [mm].
+ABOVE, AWAY = 12.4, 250.0
+CREEP = 10.0  # [um/s] that a pile at rest may move by
+LIMIT = 1800.0  # [s]
+
+
+def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
+    """Piles of 5 to 100 notes of 200 boxes at a step that is given; in Exudyn a small one."""
+    duration = QUICK if quick or solver == REFERENCE else DURATION
+    found = []
+    for kind, counts in COUNTS.items():
+        for count in counts[:1] if quick or solver == REFERENCE else counts:
+            middle = AWAY if kind == "rest" else ABOVE + TALL * count
+            sets = (
+                f"piles.cassette.count={count}",
+                f"sheets.note.boxes=[{GRID[0]},{GRID[1]}]",
+                f"rollers.pick.center=[0 mm, 0 mm, {middle:g} mm]",
+                "rollers.pick.drive={speed: 25 rad/s, ramp: 10 ms}",
+                f"contacts.pick.between=[cassette_{count}, pick]",
+                f"probes.lead.sheet=cassette_{count}",
+                f"run.duration={duration:g} ms",
+                "require=[]",
+            )
+            measure = rests if kind == "rest" else partial(feeds, count=count)
+            name = f"{count} notes {'at rest' if kind == 'rest' else 'under a roller'}"
+            found.append(
+                BenchCase("piles", name, Run(SAMPLE, sets, STEP), measure, repeats=False, limit=LIMIT)
+            )
+    return found
+
+
+def rests(result: Result, _: Result | None) -> list[Finding]:
+    """How fast the notes of a pile move at the end, as a part of what they may."""
+    notes = range(len(result.model.sheets))
+    fastest = max(float(np.linalg.norm(result.sheet_motion(k)[1][-1])) for k in notes)
+    details = _taken(result) | {"creep_um_per_s": 1e6 * fastest}
+    return [Finding(f"creep, of {CREEP:g} um/s", 1e6 * fastest / CREEP, None, details)]
+
+
+def feeds(result: Result, _: Result | None, count: int) -> list[Finding]:
+    """The energy balance of a pile whose uppermost note is fed, and how far that and the next one came."""
+    names = [sheet.name for sheet in result.model.sheets]
+    notes = [names.index(f"cassette_{number}") for number in (count, count - 1)]
+    ways = [float(np.ptp(result.sheet_motion(k)[0][[0, -1], 0])) for k in notes]
+    details = _taken(result) | {"fed_mm": ways[0], "next_mm": ways[1]}
+    return [Finding("energy balance, relative", abs(result.energy.balance_error), None, details)]
+
+
+def _taken(result: Result) -> dict[str, float]:
+    return {"steps": float(result.steps or 0), "iterations": float(result.iterations or 0)}
