@@ -28,9 +28,9 @@ from mdlgen.program.kernel import OWNS, njit
 
 # Parts of the boxes' size by which another face must overlap less to own the contact: round-off does not
 # make two parallel faces take turns.
-_TIE = 1e-9
+TIE = 1e-9
 # Nor do faces whose outlines only meet, as those of boxes in equal grids on each other do, have an area.
-_GRAZE = 1e-9
+GRAZE = 1e-9
 
 
 @njit(cache=True, error_model="numpy")
@@ -47,7 +47,7 @@ def _parting(ra, half_a, exposed, rb, half_b, gap):
             spread += abs(turn[3 * q + i]) * half_b[i]
         distance = abs(place[q]) - spread
         sign = 1.0 if place[q] >= 0.0 else -1.0
-        if distance >= (-_GRAZE * half_a[q] if q < 2 else 0.0):
+        if distance >= (-GRAZE * half_a[q] if q < 2 else 0.0):
             return True, face, face_sign, best, at, side
         if q == 2:
             face, face_sign = distance, sign
@@ -57,7 +57,7 @@ def _parting(ra, half_a, exposed, rb, half_b, gap):
 
 
 @njit(cache=True, error_model="numpy")
-def _overlay(points, owner, half, q, sign, other, wide):
+def overlay(points, owner, half, q, sign, other, wide):
     """The part of the face of box `other` (half lengths `wide`) that looks at face q of box `owner`, over
     that face's outline: its corners into `points`, in the axes of the owner; (number of corners, area of the
     smaller face, global normal)."""
@@ -73,7 +73,7 @@ def _overlay(points, owner, half, q, sign, other, wide):
 
 
 @njit(cache=True, error_model="numpy")
-def _shares(points, count, p, r, weights):
+def shares(points, count, p, r, weights):
     """Area that each corner of a polygon stands for, into `weights`; returns the whole. p, r: its axes."""
     area = cp = cr = 0.0
     for i in range(1, count - 1):
@@ -116,24 +116,24 @@ def box_box(out, a, one_box, b, two_box, law):
         return
     points = np.empty((12, 3))
     owner, half, other, wide, to_a, q = a, half_a, b, half_b, -1.0, 2
-    if two > one + _TIE * reach:
+    if two > one + TIE * reach:
         owner, half, other, wide, to_a, sign = b, half_b, a, half_a, 1.0, sign_two
-    count, smaller, normal = _overlay(points, owner, half, q, sign, other, wide)
+    count, smaller, normal = overlay(points, owner, half, q, sign, other, wide)
     side = max(side_a, side_b)
-    if side > max(one, two) + _TIE * reach:
+    if side > max(one, two) + TIE * reach:
         deepest = -1.0
         for corner in range(count):
             deepest = max(deepest, half[q] - sign * points[corner, q])
         if count < 3 or deepest > -side:
             owner, half, other, wide, to_a, q, sign = a, half_a, b, half_b, -1.0, q_a, sign_a
-            if side_b > side_a + _TIE * reach:
+            if side_b > side_a + TIE * reach:
                 owner, half, other, wide, to_a, q, sign = b, half_b, a, half_a, 1.0, q_b, sign_b
-            count, smaller, normal = _overlay(points, owner, half, q, sign, other, wide)
+            count, smaller, normal = overlay(points, owner, half, q, sign, other, wide)
     if count < 3:
         return
     p, r = (q + 1) % 3, (q + 2) % 3
     weights = np.empty(12)
-    area = _shares(points, count, p, r, weights)
+    area = shares(points, count, p, r, weights)
     if area <= 1e-12 * smaller:
         return
     foundation = law.k / smaller if law.shared else law.k / area

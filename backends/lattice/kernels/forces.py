@@ -256,7 +256,7 @@ def near_pairs(tables, motion, margin, ahead, near):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _onto(f, pair, out):
+def onto(f, pair, out):
     """Adds what a pair does to the forces on its bodies."""
     for i in range(6):
         f[pair.a, i] += out[FORCE_A + i]
@@ -264,13 +264,13 @@ def _onto(f, pair, out):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _touches(tables, pair, motion, f, out):
+def touches(tables, pair, motion, f, out):
     """What one pair does into `out`, and onto f. Returns whether it touches."""
     for i in range(OUT + 1):
         out[i] = 0.0
     if not pair_force(tables.bodies, pair, tables.meshes, motion, out):
         return False
-    _onto(f, pair, out)
+    onto(f, pair, out)
     return True
 
 
@@ -282,7 +282,7 @@ def pair_forces(tables, near, close, motion, f, touched, results):
     stored = lost = 0.0
     for at in range(close):
         out = results[count]
-        if _touches(tables, tables.pairs[near[at]], motion, f, out):
+        if touches(tables, tables.pairs[near[at]], motion, f, out):
             stored += out[STORED]
             lost += out[DISSIPATED]
             touched[count] = near[at]
@@ -300,14 +300,14 @@ def pair_forces_again(tables, near, close, known, motion, f, touched, results):
     for k in range(many):
         for i in range(OUT + 1 + POINT * int(done[k, POINTS])):
             results[count, i] = done[k, i]
-        _onto(f, tables.pairs[had[k]], done[k])
+        onto(f, tables.pairs[had[k]], done[k])
         stored += done[k, STORED]
         lost += done[k, DISSIPATED]
         touched[count] = had[k]
         count += 1
     for at in range(close):
         out = results[count]
-        if not seen[near[at]] and _touches(tables, tables.pairs[near[at]], motion, f, out):
+        if not seen[near[at]] and touches(tables, tables.pairs[near[at]], motion, f, out):
             stored += out[STORED]
             lost += out[DISSIPATED]
             touched[count] = near[at]

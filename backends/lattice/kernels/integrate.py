@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from mdlgen.backends.lattice.kernels.between import forget_overlaps
 from mdlgen.backends.lattice.kernels.carry import carry, spun
 from mdlgen.backends.lattice.kernels.damped import overshoot, take_off
 from mdlgen.backends.lattice.kernels.dense import copy
@@ -212,8 +213,10 @@ def run(work, t, steps, tolerance, control):
             copy(guess, u)
             if pace[ANEW] != 0.0:
                 control.factored[STALE] = 1.0
-            if search.regions.size > 0 and strayed(bodies, search, x, u, dt) and not look(pairs, search, x):
-                return CROWDED, t
+            if search.regions.size > 0 and strayed(bodies, search, x, u, dt):
+                forget_overlaps(mid.overlaps)
+                if not look(pairs, search, x):
+                    return CROWDED, t
             iterations = counters[ITERATIONS]
             # a halved step's guess is the better, and what it may leave must fall as fast; where sheets lie
             # on each other iterations do not come as far

@@ -53,6 +53,7 @@ class Midpoint(NamedTuple):
     results: Floats  # what each of them does, see mechanics.point, (pairs, forces.WIDE)
     totals: Floats  # (3,) LOST, POWER, NUMERICAL
     near: Ints  # pairs that may touch
+    overlaps: np.ndarray  # of pairs that are searched, mechanics.overlap.OVERLAP
 
 
 # Of Midpoint.totals [N mm/ms]: dissipated, put in by loads, dissipated by the numerical damping of joints.
@@ -72,6 +73,7 @@ class Matrix(NamedTuple):
     direction: Floats  # (4, 3) scratch: how a pair's rollers move a point
     unknowns: Ints  # (4,) scratch: which unknowns these are
     couplings: Any  # coupled.Couplings
+    mixing: Floats  # changes of the iteration before: as found, as taken, (2, 6 nodes + border)
 
 
 class Free(NamedTuple):

@@ -18,6 +18,7 @@ import numpy as np
 
 from mdlgen.backends.lattice.kernels.band import empty as no_band
 from mdlgen.backends.lattice.kernels.band import factor, solve
+from mdlgen.backends.lattice.kernels.between import FRESH, STEADY, contact_points, near_forces
 from mdlgen.backends.lattice.kernels.bordered import eliminate
 from mdlgen.backends.lattice.kernels.condensed import (
     APART,
@@ -43,6 +44,7 @@ from mdlgen.backends.lattice.kernels.forces import (
     pair_forces_again,
     place,
 )
+from mdlgen.backends.lattice.kernels.mixing import mix
 from mdlgen.backends.lattice.kernels.momentum import keep
 from mdlgen.backends.lattice.kernels.sides import crossed, part_of_change
 from mdlgen.backends.lattice.kernels.state import (
@@ -81,6 +83,7 @@ from mdlgen.mechanics.arm import (
     way_of,
 )
 from mdlgen.mechanics.frame import Motion
+from mdlgen.mechanics.overlap import OVERLAP
 from mdlgen.mechanics.vector import back, dot, mat, rotate, three, vec
 from mdlgen.program.kernel import BORROWS, njit
 
@@ -153,15 +156,18 @@ def _turn(nodes, r, res, inward):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _contact_forces(work, close, known):
+def _contact_forces(work, close, known, part, whole):
     """Adds the forces of contacts to those of the midpoint, where `known` from what the contact solve last
-    evaluated. Returns (how many pairs touch, dissipated power)."""
+    evaluated; overlaps of boxes may have moved by `part` of a box; `whole`: with all contact points. Returns
+    (how many pairs touch, dissipated power)."""
     mid, condensed = work.mid, work.condensed
     if known:
         again = (condensed.touched, condensed.results, condensed.looked[TOUCHED], condensed.seen)
         count, _stored, rubbed = pair_forces_again(
             work.tables, mid.near, close, again, mid.motion, mid.forces, mid.touched, mid.results
         )
+    elif work.search.regions.size > 0:
+        count, rubbed = near_forces(work, close, part, whole)
     else:
         count, _stored, rubbed = pair_forces(
             work.tables, mid.near, close, mid.motion, mid.forces, mid.touched, mid.results
@@ -191,27 +197,35 @@ def _make_factor(work, t, h, lag, where, count, chord):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _change(tables, state, motion, res, resb, counters):
-    """Takes a change off the velocities. Returns the greatest [mm/ms], of turning times a box's size."""
-    bodies, nodes, u, ub = tables.bodies, tables.nodes, state.u, state.ub
+def _greatest(tables, motion, res, resb, counters):
+    """The greatest change of a velocity [mm/ms], of turning times a box's size."""
+    bodies, nodes = tables.bodies, tables.nodes
     change = 0.0
     for n in range(nodes.size):
         size = bodies[nodes[n]].half[0] + bodies[nodes[n]].half[1]
         for i in range(6):
-            step = res[6 * n + i]
-            u[n, i] -= step
-            moved = abs(step) if i < 3 else size * abs(step)
+            moved = abs(res[6 * n + i]) if i < 3 else size * abs(res[6 * n + i])
             if moved > change:
                 change = moved
                 counters[WORST] = nodes[n]
-    for i in range(ub.size):
-        ub[i] -= resb[i]
+    for i in range(resb.size):
         change = max(change, abs(resb[i]))
     for k in range(bodies.size - 1):
         if bodies[k].swings > 0:
             way = way_of(bodies[k], vec(motion.x, k))
             change = max(change, math.sqrt(dot(way, way)) * abs(resb[bodies[k].slide]))
     return change
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _take_off(state, res, resb):
+    """Takes a change off the velocities."""
+    u, ub = state.u, state.ub
+    for n in range(u.shape[0]):
+        for i in range(6):
+            u[n, i] -= res[6 * n + i]
+    for i in range(ub.size):
+        ub[i] -= resb[i]
 
 
 @njit(cache=True, error_model="numpy")
@@ -228,7 +242,7 @@ def midpoint(work, t, dt, tolerance, control):
     careful = 0
     counters[THROUGH] = -1.0
     close, where, m = 0, int(factored[WHERE]), 0
-    margin, moved = FAR, 0.0
+    margin, moved, mixes = FAR, 0.0, False
     for iteration in range(MOST_ITERATIONS):
         place(tables, h, t + h, state, mid.motion)
         if iteration == 0 or margin < dt * moved:
@@ -239,7 +253,8 @@ def midpoint(work, t, dt, tolerance, control):
         mid.forces[:] = 0.0
         _stored, lost, numerical = joint_forces(tables.joints, tables.points, mid.motion, mid.forces, lag)
         known = iteration > 0 and where == APART and condensed.looked[UP_TO_DATE] == 1
-        count, rubbed = _contact_forces(work, close, known)
+        moving = FRESH if iteration == 0 else STEADY
+        count, rubbed = _contact_forces(work, close, known, moving, False)
         power = other_forces(tables, 1.0, mid.motion, mid.forces)
         _weights(bodies, tables.gravity, mid.forces)
         clutch_torques(bodies, t + h, state.ub, mid.forces)
@@ -260,8 +275,10 @@ def midpoint(work, t, dt, tolerance, control):
             chord = MUCH if careful > 0 else LITTLE
             if where != APART:
                 careful -= 1
+                contact_points(work, count)
             if not _make_factor(work, t + h, h, lag, where, count, chord):
                 break
+            mixes = False
             factored[MADE_FOR], factored[STALE], factored[WHERE] = dt, 0.0, where
         counters[ITERATIONS] += 1
         # what is free converges fast, and keeps its angular momentum as well as the iterations end
@@ -278,12 +295,19 @@ def midpoint(work, t, dt, tolerance, control):
             if not solve_contacts(work, m, where, h, t + h, (close, count), (ROUGH * limit, 0.3 * limit)):
                 break
         _turn(nodes, condensed.axes, res, False)
+        found = 0.0
+        if where == INSIDE:
+            # what is mixed may be small while what is left is not
+            found = _greatest(tables, mid.motion, res, resb, counters)
+            mix(matrix, mixes)
+            mixes = True
         keep(tables, mid.touched, count, work.free, mid.motion.x, mid.motion.r, res)
         part = part_of_change(tables, mid.near, close, mid.motion.r, h, res)
         if part < 1.0:
             res *= part
             resb *= part
-        change = _change(tables, state, mid.motion, res, resb, counters)
+        change = max(found, _greatest(tables, mid.motion, res, resb, counters))
+        _take_off(state, res, resb)
         if not change < 1e30:
             break
         rate = change / before
@@ -293,7 +317,7 @@ def midpoint(work, t, dt, tolerance, control):
             # forces change much with what the last iteration changed: friction, over its smoothing speed
             place(tables, h, t + h, state, mid.motion)
             mid.forces[:] = 0.0
-            count, rubbed = _contact_forces(work, close, False)
+            count, rubbed = _contact_forces(work, close, False, STEADY, True)
             mid.totals[LOST], mid.totals[POWER], mid.totals[NUMERICAL] = lost + rubbed, power, numerical
             counters[TOUCHING], counters[CLOSE] = count, close
             release(condensed, m)
@@ -333,6 +357,7 @@ def empty(system, wide: int) -> tuple[State, Midpoint, Matrix]:
         results=np.zeros((max(1, len(system.pairs)), wide)),
         totals=np.zeros(3),
         near=np.zeros(len(system.pairs), np.int64),
+        overlaps=np.zeros(max(1, len(system.pairs) - system.search.first), OVERLAP),
     )
     matrix = Matrix(
         band=no_band(nodes, system.reach),
@@ -345,5 +370,6 @@ def empty(system, wide: int) -> tuple[State, Midpoint, Matrix]:
         direction=np.zeros((4, 3)),
         unknowns=np.zeros(4, np.int64),
         couplings=couplings(len(system.pairs) - system.search.first, system.sheets, border),
+        mixing=np.zeros((2, 6 * nodes + border)),
     )
     return state, mid, matrix

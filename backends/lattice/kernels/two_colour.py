@@ -20,6 +20,7 @@ class Colouring(NamedTuple):
     """Which sheet has which colour, and the rollers' corner beside the first."""
 
     spans: np.ndarray  # first node of a sheet and the first behind it, (sheets, 2)
+    label: np.ndarray  # the sheet of each node, by its row in spans
     of: np.ndarray  # the colour of each sheet, 0 or 1; -1: not known yet
     found: np.ndarray  # (1,) whether two colours are enough
     corner: np.ndarray  # Cholesky factor, (border, border)
@@ -31,6 +32,7 @@ def colouring(label: np.ndarray, border: int) -> Colouring:
     spans = np.stack([np.searchsorted(label, sheets), np.searchsorted(label, sheets, side="right")], axis=1)
     return Colouring(
         spans.astype(np.int64),
+        np.searchsorted(sheets, label).astype(np.int64),
         np.full(len(sheets), -1, np.int64),
         np.zeros(1, np.int64),
         np.zeros((border, border)),
@@ -38,17 +40,9 @@ def colouring(label: np.ndarray, border: int) -> Colouring:
 
 
 @njit(cache=True, error_model="numpy")
-def _sheet(spans, node):
-    for sheet in range(spans.shape[0]):
-        if node < spans[sheet, 1]:
-            return sheet
-    return -1
-
-
-@njit(cache=True, error_model="numpy")
 def _colour(couplings):
     """Gives the sheets colours. Returns False where two are too few: three that all touch each other."""
-    spans, of, ends = couplings.colouring.spans, couplings.colouring.of, couplings.ends
+    label, of, ends = couplings.colouring.label, couplings.colouring.of, couplings.ends
     for sheet in range(of.size):
         of[sheet] = -1
     for first in range(of.size):
@@ -59,7 +53,7 @@ def _colour(couplings):
         while grew:
             grew = False
             for k in range(couplings.many[0]):
-                one, two = _sheet(spans, ends[k, 0]), _sheet(spans, ends[k, 1])
+                one, two = label[ends[k, 0]], label[ends[k, 1]]
                 if of[one] < 0 and of[two] >= 0:
                     one, two = two, one
                 if of[one] >= 0 and of[two] < 0:
@@ -129,7 +123,7 @@ def _across(b, couplings, source, p, rollers, q, rollers_q):
     for k in range(many):
         one, two = 6 * ends[k, 0], 6 * ends[k, 1]
         block = blocks[k]
-        if colours.of[_sheet(colours.spans, ends[k, 0])] == source:
+        if colours.of[colours.label[ends[k, 0]]] == source:
             for c in range(6):
                 v = 0.0
                 for i in range(6):

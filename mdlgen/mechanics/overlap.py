@@ -1,0 +1,239 @@
+"""The overlap of two boxes' faces, kept while the boxes hardly move along them.
+
+Boxes of two sheets that lie on each other move across their faces by what their contact gives, and along them
+by what slides. Which corners the overlap has (mechanics.facing), and what each stands for, follows from the
+latter alone, and costs ten times as much as the force of them. So it is kept with the pair, in the axes of
+the face that owns the contact; the depth of a corner, its place and its normal are those of the boxes as they
+stand. It is found anew where a corner of the other face may have moved along the owner by more than a stated
+part of the smaller of half its lengths, seen from where it was found.
+
+Faces whose outlines are apart have none, nor have boxes that are clear of each other when they are looked at.
+What is not face on face - a side of a box may own the contact, a box may stand on its edge - is left to
+`facing.box_box` each time.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from mdlgen.mechanics.facing import GRAZE, TIE, overlay, shares
+from mdlgen.mechanics.laws import damped, friction_over_speed
+from mdlgen.mechanics.point import (
+    DEPTH,
+    DISSIPATED,
+    FORCE_A,
+    FORCE_B,
+    PRESSING,
+    STORED,
+    TORQUE_A,
+    TORQUE_B,
+    Load,
+    push,
+)
+from mdlgen.mechanics.vector import add, back, cross, dot, rotate, sub, transpose_matmul
+from mdlgen.program.kernel import BORROWS, FUSED, OWNS, njit
+
+# What a pair may have: nothing yet, outlines that are apart, an overlap, something else.
+UNKNOWN, APART, OVERLAPS, OTHER = 0, 1, 2, 3
+MOST_CORNERS = 8  # of a rectangle that is cut by another
+OVERLAP = np.dtype(
+    [
+        ("state", "i8"),
+        ("count", "i8"),  # of corners
+        ("first", "i8"),  # whether the first box owns the contact
+        ("side", "f8"),  # of the owner's face along its normal
+        ("slack", "f8"),  # how far outlines are apart [mm]
+        ("place", "f8", 2),  # of the other box along the owner's face when it was found [mm]
+        ("turn", "f8", 4),  # and the directions of its faces' edges there
+        ("owner", "f8", 3),  # half lengths of the box whose face it is,
+        ("other", "f8", 3),  # and of the other one [mm]
+        ("corners", "f8", (MOST_CORNERS, 2)),  # in the owner's axes [mm]
+        ("stiffness", "f8", MOST_CORNERS),  # of each [N/mm^1.5]
+    ]
+)
+STEEP = 0.75  # cosine of the angle between two faces beyond which they do not lie on each other
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _seen(owner, other):
+    """Place of the other box in the owner's axes, and the directions of its axes there."""
+    return back(owner.r, sub(other.x, owner.x)), transpose_matmul(owner.r, other.r)
+
+
+@njit(cache=True, error_model="numpy", **BORROWS, **FUSED)
+def holds(kept, a, b, part):
+    """Whether what is kept of two boxes (Frames) still is what they have."""
+    if kept.state == UNKNOWN or kept.state == OTHER:
+        return False
+    place, turn = _seen(a, b) if kept.first != 0 else _seen(b, a)
+    wide, smaller = kept.other, min(kept.owner[0], kept.owner[1], kept.other[0], kept.other[1])
+    allowed = max(part * smaller, kept.slack)
+    for q in range(2):
+        moved = abs(place[q] - kept.place[q])
+        for i in range(2):
+            moved += wide[i] * abs(turn[3 * q + i] - kept.turn[2 * q + i])
+        if moved > allowed:
+            return False
+    return True
+
+
+@njit(cache=True, error_model="numpy", **BORROWS, **FUSED)
+def apart(a, half_a, b, half_b):
+    """Whether two boxes (Frames) are clear of each other along one of their faces' normals."""
+    gap = sub(b.x, a.x)
+    for k in range(2):
+        one, half, other, wide = (a, half_a, b, half_b) if k == 0 else (b, half_b, a, half_a)
+        normal = (one.r[2], one.r[5], one.r[8])
+        there = back(other.r, normal)
+        spread = half[2] + abs(there[0]) * wide[0] + abs(there[1]) * wide[1] + abs(there[2]) * wide[2]
+        if abs(dot(gap, normal)) >= spread:
+            return True
+    return False
+
+
+@njit(cache=True, error_model="numpy", **OWNS)
+def find(kept, a, one_box, b, two_box, law):
+    """What two boxes of two sheets have, into a record OVERLAP."""
+    half_a, half_b = one_box.half, two_box.half
+    place, turn = _seen(a, b)
+    far, turned = _seen(b, a)
+    above, below = abs(place[2]) - half_a[2], abs(far[2]) - half_b[2]
+    for i in range(3):
+        above -= abs(turn[6 + i]) * half_b[i]
+        below -= abs(turned[6 + i]) * half_a[i]
+    reach = math.sqrt(dot(half_a, half_a)) + math.sqrt(dot(half_b, half_b))
+    owner, half, other, wide, kept.first = a, half_a, b, half_b, 1
+    if below > above + TIE * reach:
+        owner, half, other, wide, kept.first = b, half_b, a, half_a, 0
+        place, turn = far, turned
+    kept.side = 1.0 if place[2] >= 0.0 else -1.0
+    for q in range(3):
+        kept.owner[q], kept.other[q] = half[q], wide[q]
+    for q in range(2):
+        kept.place[q] = place[q]
+        for i in range(2):
+            kept.turn[2 * q + i] = turn[3 * q + i]
+    kept.count, kept.state, kept.slack = 0, APART, 0.0
+    if abs(turn[8]) < STEEP:
+        kept.state = OTHER
+        return
+    # how deep a side would have to be to own the contact: no less than boxes may be in each other
+    apart = False
+    thin, narrow, gap = min(half_a[2], half_b[2]), 1e300, 0.0
+    for q in range(2):
+        spread, across = half[q] - abs(place[q]), wide[q] - abs(back(other.r, sub(owner.x, other.x))[q])
+        for i in range(3):
+            spread += abs(turn[3 * q + i]) * wide[i]
+            across += abs(turn[3 * i + q]) * half[i]
+        if spread <= GRAZE * half[q] or across <= GRAZE * wide[q]:
+            gap = max(gap, -min(spread, across))
+            apart = True
+        narrow = min(narrow, spread, across)
+    if apart:
+        kept.slack = gap
+        return
+    if one_box.exposed + two_box.exposed > 0 and narrow < 2.0 * thin:
+        kept.state = OTHER
+        return
+    points = np.empty((12, 3))
+    count, smaller, _ = overlay(points, owner, half, 2, kept.side, other, wide)
+    if count < 3 or count > MOST_CORNERS:
+        return
+    weights = np.empty(12)
+    area = shares(points, count, 0, 1, weights)
+    if area <= 1e-12 * smaller:
+        return
+    foundation = law.k / smaller if law.shared else law.k / area
+    kept.count, kept.state = count, OVERLAPS
+    for corner in range(count):
+        kept.corners[corner, 0], kept.corners[corner, 1] = points[corner, 0], points[corner, 1]
+        kept.stiffness[corner] = foundation * weights[corner]
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _plane(kept, owner, other):
+    """The other box's face that looks at the owner's, in the owner's axes: place of its box, depth at the
+    middle of the owner's face, growth of depth along both of its edges."""
+    normal = back(owner.r, (other.r[2], other.r[5], other.r[8]))
+    place = back(owner.r, sub(other.x, owner.x))
+    to = -kept.other[2] if kept.side * normal[2] > 0.0 else kept.other[2]
+    p, r, up = place[0] + to * normal[0], place[1] + to * normal[1], place[2] + to * normal[2]
+    lean_p, lean_r = normal[0] / normal[2], normal[1] / normal[2]
+    level = kept.owner[2] - kept.side * (up + lean_p * p + lean_r * r)
+    return place, level, kept.side * lean_p, kept.side * lean_r
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def points(out, kept, a, b, law):
+    """The contact of two boxes (Frames) by the overlap that is kept, with its points, into `out` (see
+    mechanics.point)."""
+    first = kept.first != 0
+    owner, other = (a, b) if first else (b, a)
+    _, level, lean_p, lean_r = _plane(kept, owner, other)
+    to_a = -kept.side if first else kept.side
+    for corner in range(kept.count):
+        p, r = kept.corners[corner, 0], kept.corners[corner, 1]
+        depth = level + lean_p * p + lean_r * r
+        if depth <= 0.0:
+            continue
+        # halfway between both faces
+        at = (p, r, kept.side * (kept.owner[2] - 0.5 * depth))
+        spring = kept.stiffness[corner] * depth * math.sqrt(depth)
+        push(
+            out,
+            add(owner.x, rotate(owner.r, at)),
+            (to_a * owner.r[2], to_a * owner.r[5], to_a * owner.r[8]),
+            Load(spring, depth, 0.4 * spring * depth),
+            a,
+            b,
+            law,
+        )
+
+
+@njit(cache=True, error_model="numpy", **BORROWS, **FUSED)
+def press(out, kept, a, b, law):
+    """As `points`, without them: what they add up to, worked out in the owner's axes. Returns whether boxes
+    touch; only then `out` is set."""
+    first = kept.first != 0
+    owner, other = (a, b) if first else (b, a)
+    place, level, lean_p, lean_r = _plane(kept, owner, other)
+    deepest = 0.0
+    for corner in range(kept.count):
+        deepest = max(deepest, level + lean_p * kept.corners[corner, 0] + lean_r * kept.corners[corner, 1])
+    if deepest <= 0.0:
+        return False
+    way = -kept.side  # of the owner's normal, from the other box to it
+    rate, w, far = back(owner.r, sub(owner.v, other.v)), back(owner.r, owner.w), back(owner.r, other.w)
+    # of the velocity at a point p it is what does not turn: v + w x p - far x (p - place)
+    rate = add(rate, cross(far, place))
+    spin = sub(w, far)
+    force, torque = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    pressing = stored = lost = 0.0
+    for corner in range(kept.count):
+        p, r = kept.corners[corner, 0], kept.corners[corner, 1]
+        depth = level + lean_p * p + lean_r * r
+        if depth <= 0.0:
+            continue
+        at = (p, r, kept.side * (kept.owner[2] - 0.5 * depth))
+        spring = kept.stiffness[corner] * depth * math.sqrt(depth)
+        v = add(rate, cross(spin, at))
+        closes = -way * v[2]
+        speed = math.sqrt(v[0] * v[0] + v[1] * v[1])
+        normal = damped(spring, closes, law.beta, law.smoothing)
+        drag = normal * friction_over_speed(speed, law.mu_static, law.mu_dynamic, law.stiction, law.sliding)
+        f = (-drag * v[0], -drag * v[1], way * normal)
+        force, torque = add(force, f), add(torque, cross(at, f))
+        pressing += normal
+        stored += 0.4 * spring * depth
+        lost += (normal - spring) * closes + drag * speed * speed
+    back_on = sub(cross(place, force), torque)  # on the other box, about its own centre
+    force, torque, back_on = rotate(owner.r, force), rotate(owner.r, torque), rotate(owner.r, back_on)
+    sign = 1.0 if first else -1.0
+    on_a, on_b = (torque, back_on) if first else (back_on, torque)
+    for i in range(3):
+        out[FORCE_A + i], out[FORCE_B + i] = sign * force[i], -sign * force[i]
+        out[TORQUE_A + i], out[TORQUE_B + i] = on_a[i], on_b[i]
+    out[PRESSING], out[STORED], out[DISSIPATED], out[DEPTH] = pressing, stored, lost, deepest
+    return pressing != 0.0

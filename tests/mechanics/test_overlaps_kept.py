@@ -1,0 +1,103 @@
+"""Overlaps of two boxes that are kept: the law of two boxes, and when they are found anew."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from mdlgen.mechanics.facing import box_box
+from mdlgen.mechanics.frame import Box, Frame, Law
+from mdlgen.mechanics.overlap import APART, OTHER, OVERLAP, OVERLAPS, find, holds, points, press
+from mdlgen.mechanics.point import MOST_POINTS, OUT, POINT, POINTS
+
+HALF, OTHER_HALF = (3.35, 3.175, 0.05), (2.0, 3.0, 0.04)
+WIDE = OUT + 1 + POINT * MOST_POINTS
+
+
+def law(shared: bool) -> Law:
+    return Law(20000.0, shared, 0.6, 0.4, 0.3, 1e-3, 2e-3, 1e-3)
+
+
+def frame(draw: np.random.Generator, place: Any, turn: Any) -> Frame:
+    rate, spin = draw.normal(0, 1, 3), draw.normal(0, 0.1, 3)
+    return Frame(*(tuple(np.ravel(part).tolist()) for part in (place, turn, rate, spin)))
+
+
+def two(seed: int) -> tuple[Frame, Box, Frame, Box, Law]:
+    """Two boxes, one on or near the other, slightly askew, anywhere in space; some with free sides."""
+    draw = np.random.default_rng(seed)
+    other = OTHER_HALF if seed % 3 == 0 else HALF
+    whole = Rotation.random(random_state=seed).as_matrix()
+    askew = [Rotation.from_rotvec(draw.normal(0, 2e-3, 3) * [1, 1, 30]).as_matrix() for _ in range(2)]
+    flip = np.diag([1.0, -1.0, -1.0]) if seed % 5 == 0 else np.eye(3)
+    up = draw.choice([-1, 1]) * (HALF[2] + other[2] - draw.uniform(-0.005, 0.02))
+    place = draw.normal(0, 50, 3)
+    far = place + whole @ np.array([draw.uniform(-7, 7), draw.uniform(-7, 7), up])
+    exposed = 15 if seed % 4 == 0 else 0
+    a, b = frame(draw, place, whole @ askew[0]), frame(draw, far, whole @ askew[1] @ flip)
+    return a, Box(HALF, exposed), b, Box(other, exposed), law(seed % 7 > 0)
+
+
+def found(case: tuple[Frame, Box, Frame, Box, Law]) -> np.ndarray:
+    kept = np.zeros(1, OVERLAP).view(np.recarray)
+    find.py_func(kept[0], *case)
+    return kept
+
+
+@pytest.fixture(scope="module")
+def cases() -> list[tuple[Any, np.ndarray]]:
+    made = [two(seed) for seed in range(300)]
+    return [(case, found(case)) for case in made]
+
+
+def test_the_law_is_that_of_two_boxes(cases: list[tuple[Any, np.ndarray]]) -> None:
+    """What is kept gives the force, torques, energy, loss and points that the law itself gives."""
+    touching = 0
+    for case, kept in cases:
+        a, _, b, _, numbers = case
+        if kept[0]["state"] == OTHER:
+            continue
+        whole, pointwise, pressed = np.zeros(WIDE), np.zeros(WIDE), np.zeros(OUT)
+        box_box.py_func(whole, *case)
+        if kept[0]["count"]:
+            points.py_func(pointwise, kept[0], a, b, numbers)
+            assert press.py_func(pressed, kept[0], a, b, numbers) == bool(whole[POINTS])
+        count = OUT + 1 + POINT * int(whole[POINTS])
+        scale = 1e-9 * np.abs(whole[:count]).max() + 1e-15
+        assert pointwise[:count] == pytest.approx(whole[:count], abs=scale)
+        assert pressed == pytest.approx(whole[:OUT], abs=scale)
+        touching += bool(whole[POINTS])
+    assert touching > 100
+
+
+def test_both_bodies_get_opposite_forces_at_one_place(cases: list[tuple[Any, np.ndarray]]) -> None:
+    for (a, _, b, _, numbers), kept in cases:
+        if not kept[0]["count"]:
+            continue
+        out = np.zeros(OUT)
+        press.py_func(out, kept[0], a, b, numbers)
+        force, torque, back, turned = out[:12].reshape(4, 3)
+        assert (force == -back).all()
+        moment = torque + np.cross(a.x, force) + turned + np.cross(b.x, back)
+        assert np.abs(moment).max() <= 1e-9 * np.abs(force).max() * 100.0 + 1e-15
+
+
+@pytest.mark.parametrize("along", [True, False])
+def test_it_is_found_anew_where_a_box_moved_along_the_other(
+    along: bool, cases: list[tuple[Any, np.ndarray]]
+) -> None:
+    part = 1e-3
+    allowed = part * min(HALF[:2])
+    for (a, _, b, _, _), kept in cases:
+        if kept[0]["state"] not in (APART, OVERLAPS):
+            continue
+        assert holds.py_func(kept[0], a, b, part)
+        owner = a if kept[0]["first"] else b
+        slack = kept[0]["slack"]
+        smaller = min(kept[0]["owner"][:2].min(), kept[0]["other"][:2].min()) * part
+        way = np.reshape(owner.r, (3, 3))[:, 0 if along else 2] * 1.01 * max(smaller, slack, allowed)
+        moved = b._replace(x=tuple(np.add(b.x, way).tolist()))
+        assert holds.py_func(kept[0], a, moved, part) is not along
