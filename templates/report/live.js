@@ -21,11 +21,13 @@ function say(text, bad = false) {
   get("said").className = bad ? "note bad" : "note";
 }
 
-// What is turned while an answer is on its way goes with the next question, the newest value of each.
-const OFTEN = 60; // ms between two questions while a value is dragged
-let waiting = null, asking = false;
+// What is turned while an answer is on its way goes with the next question, the newest value of each; while a
+// value is dragged, once the picture of the one before is drawn.
+const AWAITED = 400; // ms that a picture is waited for at most
+let waiting = null, asking = false, goOn = () => {};
 function turn(values, held) {
   waiting = { values: { ...waiting?.values, ...values }, held };
+  if (!held) goOn();
   if (!asking) send();
 }
 
@@ -35,7 +37,7 @@ async function send() {
     const next = waiting;
     waiting = null;
     try { await ask("turn", next); } catch (error) { say(error.message, true); }
-    if (next.held) await new Promise((done) => setTimeout(done, OFTEN));
+    if (next.held && waiting?.held !== false) await new Promise((done) => { goOn = done; setTimeout(done, AWAITED); });
   }
   asking = false;
 }
@@ -231,6 +233,7 @@ async function fetchRun() {
       const found = wanted === live.seen ? null : await ask("run");
       if (found) take(found, kind);
       await new Promise((done) => requestAnimationFrame(() => setTimeout(done))); // it is drawn
+      goOn();
       live.seen = wanted;
       live.kind = kind;
       live.log.push({ number: wanted, kind, at: performance.now() });
@@ -269,14 +272,16 @@ function take(found, kind) {
   growing = grows;
 }
 
-// The figures, numbers and words of a run.
+// The figures, numbers and words of a run; of a draft those that are in sight.
+const inSight = (element) => { const { bottom, top } = element.getBoundingClientRect(); return bottom > 0 && top < window.innerHeight; };
 function describe(found, kind) {
   const grows = kind === "part" || kind === "start";
   get("panels").classList.toggle("stale", grows);
   for (const name of SECTIONS) {
     const place = name === "headline" ? get("headline") : get(`html-${name}`);
-    if (found.html && name in found.html) place.innerHTML = found.html[name];
-    place.classList.toggle("stale", !(found.html && name in found.html));
+    const fresh = found.html && name in found.html && (kind === "full" || inSight(place));
+    if (fresh) place.innerHTML = found.html[name];
+    place.classList.toggle("stale", !fresh);
   }
   if (!grows) {
     figures(kind === "draft");
@@ -306,8 +311,8 @@ function figures(draft) {
   const there = new Map([...get("panels").children].map((figure) => [figure.dataset.key, figure]));
   for (const [key, figure] of there) if (!wanted.includes(key)) { moves.delete(key); figure.remove(); }
   for (const key of wanted) {
-    const old = there.get(key), box = old?.getBoundingClientRect();
-    if (old && draft && (box.bottom < 0 || box.top > window.innerHeight)) continue;
+    const old = there.get(key);
+    if (old && draft && !inSight(old)) continue;
     const hidden = old ? [...old.querySelectorAll('.key[aria-pressed="false"]')].map((button) => button.dataset.name) : [];
     moves.set(key, chart(get("panels"), shownRuns, key, (time) => seek(time)));
     const made = get("panels").lastElementChild;
