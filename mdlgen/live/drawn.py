@@ -38,14 +38,12 @@ def finished(result: Result, draft: bool) -> bytes:
 
 
 def partial(result: Result) -> bytes:
-    """The states so far, few of them."""
+    """The states so far, few of them, in the colours of speed; the others take long, and come at the end."""
     if not _is_finite(result):
         return b""
     shown = _few(result)
-    force, _ = boxes.contact(result, shown)
-    none = np.zeros(force.shape)
-    values = (boxes.speed(result, shown), none, none, force)
-    colours = {name: (unit, each) for (name, unit), each in zip(COLOURS, values, strict=True)}
+    speed = boxes.speed(result, shown)
+    colours = {name: (unit, speed if name == "speed" else np.zeros_like(speed)) for name, unit in COLOURS}
     return _json({"name": NAME, "scene": result.model.name, "animation": animation(result, shown, colours)})
 
 

@@ -254,6 +254,8 @@ function take(found, kind) {
   runs[0] = { ...found, panels: found.panels ?? runs[0]?.panels ?? [] };
   stage?.replace(0, found.animation);
   choose(0);
+  if (found.animation.static && !atRest) colour(shown().colours.findIndex((c) => c.name === "curvature")); // what bends
+  atRest = found.animation.static;
   if (first) { view("iso"); fitted(); }
   else refit();
   if (!timed) {
@@ -288,7 +290,7 @@ function describe(found, kind) {
     if (pinned && kind === "full") ghost();
   }
 }
-let growing = false, timed = false;
+let growing = false, timed = false, atRest = false;
 
 // The view anew where what moves takes up much more room than when it was chosen, or much less; not once the
 // picture was moved by hand.
