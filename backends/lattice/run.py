@@ -41,6 +41,9 @@ FREE_GAIN = 1e-3
 # Two runs that end early end at the same time where it differs by less than this part of the duration.
 SAME_END = 0.01
 
+# A first pass that takes less than this [s] has a third begun where it is needed alone.
+SHORT = 0.25
+
 Report = tuple[float, float, int, int]  # what progress is called with
 
 # Numbers by which states of passes are kept: first those of the first step, halved so many times, or of the
@@ -233,22 +236,20 @@ class Search:
             return second
 
     def _three(self) -> Result | None:
-        """The first pass beside the second one, and then the third, which most scenes with flexible sheets
-        need; None where the search ends with two. Progress is that of the third."""
+        """The first pass beside the second one; the third, where it is needed, else None. It is begun beside
+        the second where the first took long, and progress is that of the third then."""
         model, h = self._model, first_step(self._model)
         coarse, second, third, doubled = (self._watch(number) for number in (0, 1, 2, DOUBLED))
-        beside, first, reports = (
-            own(self._system),
-            Event(),
-            SimpleQueue[tuple[float, float, int, int] | None](),
-        )
+        beside, first, reports = own(self._system), Event(), SimpleQueue[Report | None]()
         finer = division(model, 0.5 * division(model, h).step).step
 
-        def others(stop: Event) -> Result:
+        def others(stop: Event) -> Result | None:
             try:
                 self._runs.append(self._once(h, 0, coarse.beside(stop), beside))
             finally:
                 first.set()
+            if self._runs[0].wall_s < SHORT:
+                return None  # what comes after the run has more use for this processor
             followed = third.beside(stop)._replace(progress=lambda *report: reports.put(report))
             return self._once(0.5 * finer, 2, followed, beside)
 
@@ -268,7 +269,7 @@ class Search:
             run = self._once(finer, 1, second._replace(progress=report))
             first.wait()
             if not self._runs:
-                return side.result()  # raises what the first pass raised
+                side.raises(Stopped)
             ends = self._ends(run, 1, doubled._replace(progress=None))
             if not ends:
                 coarse.leave()  # this processor has no more to do
@@ -276,7 +277,7 @@ class Search:
                 for found in iter(reports.get, None):
                     if third.progress is not None:
                         third.progress(*found)
-                return side.result()
+                return side.result() or self._once(0.5 * finer, 2, third)
         side.raises(Stopped)
         return None
 
