@@ -60,23 +60,35 @@ def json_schema() -> dict[str, Any]:
 
 
 def _unless_default(schema: dict[str, Any], kind: str, model: str) -> dict[str, Any]:
-    """Takes from a model what it requires and `defaults` may give, and requires it where there are none."""
+    """Takes from a model what it requires, which `defaults` may give, and requires it where there are none.
+
+    Beside `nips` nothing is required: an entry may be a part of what a nip makes, `entry_lower: {mass: 2 g}`.
+    """
     part = schema["$defs"][model]
     given = {"between", "center"}  # of each one alone
-    each = {"required": [name for name in part["required"] if name not in given]}
-    part["required"] = [name for name in part["required"] if name in given]
+    own = [name for name in part["required"] if name in given]
+    others = [name for name in part["required"] if name not in given]
+    del part["required"]
+    ways = part.pop("oneOf", None)
+    rest = {"required": others} if ways is None else {"required": others, "oneOf": ways}
+    if ways is not None:  # of several ways to give one thing no two at once
+        part["not"] = {"required": [way["required"][0] for way in ways]}
+    defaults = {"required": ["defaults"], "properties": {"defaults": {"required": [kind]}}}
     return {
-        "if": {"required": ["defaults"], "properties": {"defaults": {"required": [kind]}}},
+        "if": {"required": ["nips"]},
         "else": {
-            "properties": {
-                kind: {
-                    "if": {"type": "array"},
-                    "then": {"items": each},
-                    "else": {"additionalProperties": each},
-                }
-            }
+            "allOf": [
+                _each(kind, {"required": own}),
+                {"if": defaults, "else": _each(kind, rest)},
+            ]
         },
     }
+
+
+def _each(kind: str, each: dict[str, Any]) -> dict[str, Any]:
+    """A schema of each part of a kind, which stand in a list or a mapping."""
+    entries = {"if": {"type": "array"}, "then": {"items": each}, "else": {"additionalProperties": each}}
+    return {"properties": {kind: entries}}
 
 
 def model_at(path: tuple[str | int, ...]) -> type[BaseModel] | None:

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
+from jsonschema import Draft202012Validator
+from ruamel.yaml import YAML
 
 from mdlgen.backends.lattice.arrays import build
 from mdlgen.backends.lattice.symmetry import find as symmetry
@@ -150,11 +154,64 @@ def test_the_json_schema_knows_the_short_forms() -> None:
     press = models["Nip"]["properties"]["upper"]["properties"]["press"]["anyOf"][0]
     assert "preload" in press["properties"] and not {"preload", "direction"} & set(press["required"])
     assert {"preload", "direction"} <= set(models["Press"]["required"])
-    # what defaults may give is required where there are none
-    assert models["Contact"]["required"] == ["between"] and models["Roller"]["required"] == ["center"]
-    (contacts, rollers) = (rule["else"]["properties"] for rule in schema["allOf"])
-    assert contacts["contacts"]["then"]["items"]["required"] == ["stiffness", "friction"]
-    assert rollers["rollers"]["else"]["additionalProperties"]["required"] == ["axis", "width", "mass"]
+
+
+WHOLE = """
+name: s
+materials: {p: {E_md: 2000 MPa, E_cd: 2000 MPa, D_md: 0.3 N*mm, D_cd: 0.3 N*mm}}
+sheets: {n: {material: p, size: [80 mm, 50 mm], thickness: 0.1 mm, mass: 1 g, boxes: [4, 3]}}
+rollers: {m: {center: [0 mm, 0 mm, -5 mm], axis: y, radius: 5 mm, width: 8 mm, mass: 10 g}}
+contacts: {grip: {between: [n, m], stiffness: 300 N/mm^1.5, friction: 0.5}}
+run: {duration: 1 ms}
+"""
+NIP = """
+nips: {e: {at: [30 mm, 0 mm, 0 mm], force: 2 N, lower: {radius: 6 mm, width: 8 mm, mass: 9 g},
+  upper: {radius: 4 mm, width: 8 mm, mass: 4 g, press: {stiffness: 0.3 N/mm}}}}
+"""
+
+
+def flagged(text: str, *changes: tuple[str, str]) -> bool:
+    """Whether an editor that has the schema marks a scene."""
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    return not Draft202012Validator(json_schema()).is_valid(YAML(typ="safe").load(text))
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        (", mass: 10 g", ""),
+        (", friction: 0.5", ""),
+        (", radius: 5 mm", ""),
+        (", radius: 5 mm", ", radius: 5 mm, diameter: 10 mm"),
+        ("center: [0 mm, 0 mm, -5 mm], ", ""),
+        ("between: [n, m], ", ""),
+    ],
+)
+def test_the_schema_requires_what_a_scene_must_have(old: str, new: str) -> None:
+    assert not flagged(WHOLE)
+    assert flagged(WHOLE, (old, new))
+    given = "defaults: {rollers: {mass: 1 g, radius: 5 mm}, contacts: {friction: 0.1}}\n"
+    alone = old.startswith(("center", "between")) or new != ""
+    assert flagged(WHOLE + given, (old, new)) is alone
+
+
+def test_the_schema_takes_a_part_of_what_a_nip_makes() -> None:
+    parts = (
+        ("rollers: {m:", "rollers: {e_upper: {mass: 3 g}, m:"),
+        ("{grip:", "{e_upper: {friction: 1}, grip:"),
+    )
+    assert flagged(WHOLE, *parts)
+    assert not flagged(WHOLE + NIP, *parts)
+    assert flagged(WHOLE + NIP, ("rollers: {m:", "rollers: {e_upper: {width: 3}, m:"))
+
+
+@pytest.mark.parametrize("path", sorted(samples().rglob("*.yaml")), ids=lambda path: path.stem)
+def test_the_schema_takes_every_sample(path: Path) -> None:
+    scene = YAML(typ="safe").load(path.read_text("utf-8"))
+    found = [error.message for error in Draft202012Validator(json_schema()).iter_errors(scene)]
+    assert "sheets" not in scene or found == []
 
 
 ROW = """
