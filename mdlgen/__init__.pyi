@@ -95,8 +95,8 @@ class Contact(_Contact):
     def __init__(
         self,
         *,
-        between: Sequence[str | Sequence[str]],
         name: str | None = ...,
+        between: Sequence[str | Sequence[str]] = ...,
         stiffness: str = ...,
         restitution: float | str = ...,
         friction: float | str | _Friction | Mapping[str, Any] = ...,
@@ -361,7 +361,7 @@ class Roller(_Roller):
     def __init__(
         self,
         *,
-        center: Sequence[str],
+        center: Sequence[str] = ...,
         axis: Literal["x", "y", "z", "-x", "-y", "-z", "+x", "+y", "+z"] | Sequence[float] = ...,
         radius: str = ...,
         diameter: str | None = ...,

@@ -254,7 +254,7 @@ class Search:
             return self._once(0.5 * finer, 2, followed, beside)
 
         def report(*_: float) -> None:
-            for _ in range(reports.qsize()):
+            for _waiting in range(reports.qsize()):
                 found = reports.get()
                 if found is None:
                     reports.put(None)  # it has ended, which is waited for
