@@ -25,7 +25,7 @@ from mdlgen.live.page import page, policy
 from mdlgen.live.session import Session
 
 ALIVE = 15.0  # seconds between two signs of life, by which a page that has gone is noticed
-SETTLED = 50  # ms without a change of the file, after which it is read
+UNCHANGED = 50  # ms without a change of the file, after which it is read
 
 
 def listening(port: int = 0) -> socket.socket:
@@ -160,7 +160,7 @@ async def _follow(session: Session) -> None:
         def concerned(_: Any, changed: str) -> bool:
             return Path(changed).name in session.names()
 
-        async for _ in awatch(*folders, watch_filter=concerned, step=SETTLED, recursive=False):
+        async for _ in awatch(*folders, watch_filter=concerned, step=UNCHANGED, recursive=False):
             session.look()
             if session.folders() != folders:
                 break

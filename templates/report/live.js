@@ -4,7 +4,7 @@ const SECTIONS = ["headline", "numbers", "events", "lints", "map"];
 const SEVERAL = "several at once"; // the group of values that one slider turns
 const MOST_LINES = 5000; // of the file, that are numbered
 const live = { seen: 0, kind: null, log: [] }; // the number of the run that is drawn, and when each was
-let told = null, listed = -1, written = -1, pinned = null;
+let session = null, listed = -1, written = -1, pinned = null;
 let kept = null, placed = null; // the time to go back to when a run that grows is as far
 
 // ---- asking
@@ -165,7 +165,7 @@ function show(turned, errors) {
 function write(id, text) { if (get(id).textContent !== text) get(id).textContent = text; }
 
 function heard(next) {
-  told = next;
+  session = next;
   document.title = `${next.scene}: mdlgen live`;
   write("scene", next.scene);
   write("command", next.command);
@@ -179,7 +179,7 @@ function heard(next) {
   get("far").textContent = progress ? `${progress.time.toFixed(1)} of ${number(progress.end)} ms` : "";
   const what = doing ?? (busy ? "running" : errors.length ? "the last run that was right is shown" : "up to date");
   write("status", `${next.file}: ${what}${run.kind === "draft" ? "; a draft at a coarse step is shown" : ""}`);
-  if (listed !== next.controls) { listed = next.controls; ask("controls").then((found) => { list(found); show(told.turned, told.errors); }); }
+  if (listed !== next.controls) { listed = next.controls; ask("controls").then((found) => { list(found); show(session.turned, session.errors); }); }
   if (written !== next.text) { written = next.text; ask("text").then(({ text }) => numberLines(text)); }
   show(next.turned, next.errors);
   fetchRun();
@@ -207,7 +207,7 @@ function numberLines(text) {
   if (lines.length > MOST_LINES) { get("lines").textContent = text; return; }
   if (lines.at(-1) === "") lines.pop();
   get("lines").replaceChildren(...lines.map((line, k) => { const made = piece("div", { textContent: line }); made.dataset.line = k + 1; return made; }));
-  markLines(told.errors);
+  markLines(session.errors);
 }
 
 function markLines(errors) {
@@ -228,8 +228,8 @@ async function fetchRun() {
   if (fetching) return;
   fetching = true;
   try {
-    while (told.run.number !== live.seen || told.run.kind !== live.kind) {
-      const { number: wanted, kind } = told.run;
+    while (session.run.number !== live.seen || session.run.kind !== live.kind) {
+      const { number: wanted, kind } = session.run;
       const found = wanted === live.seen ? null : await ask("run");
       if (found) take(found, kind);
       await new Promise((done) => requestAnimationFrame(() => setTimeout(done))); // it is drawn
@@ -331,7 +331,7 @@ const moves = new Map();
 function pin() {
   if (pinned) pinned = null;
   else if (runs.length) {
-    const values = Object.entries(told.turned).map(([path, text]) => `${path} = ${text}`);
+    const values = Object.entries(session.turned).map(([path, text]) => `${path} = ${text}`);
     pinned = { ...runs[0], name: "pinned", says: `pinned (${values.join(", ") || "as in the file"}): `, headline: get("headline").innerHTML };
   }
   get("pin").setAttribute("aria-pressed", String(Boolean(pinned)));
@@ -354,12 +354,12 @@ get("several").addEventListener("submit", async (event) => {
   event.preventDefault();
   try { await ask("add", { path: get("pattern").value }); get("pattern").value = ""; say(""); } catch (error) { say(error.message, true); }
 });
-get("reset").addEventListener("click", () => turn(Object.fromEntries(Object.keys(told.turned).map((path) => [path, null])), false));
+get("reset").addEventListener("click", () => turn(Object.fromEntries(Object.keys(session.turned).map((path) => [path, null])), false));
 get("write").addEventListener("click", async () => {
-  try { await ask("write", {}); say(`written into ${told.file}`); } catch (error) { say(error.message, true); }
+  try { await ask("write", {}); say(`written into ${session.file}`); } catch (error) { say(error.message, true); }
 });
 get("copy").addEventListener("click", async () => {
-  try { await navigator.clipboard.writeText(told.command); say("copied"); } catch {
+  try { await navigator.clipboard.writeText(session.command); say("copied"); } catch {
     getSelection().selectAllChildren(get("command"));
     say("the browser does not let it be copied; it is selected");
   }
@@ -376,4 +376,4 @@ try {
 const source = new EventSource("events");
 source.addEventListener("message", (event) => heard(JSON.parse(event.data)));
 source.addEventListener("error", () => { get("status").textContent = "mdlgen live has ended; what it showed last stays"; });
-window.mdlgen = { state, seek, play, colour, view, choose, check, stage, runs, live, rows, told: () => told };
+window.mdlgen = { state, seek, play, colour, view, choose, check, stage, runs, live, rows, session: () => session };

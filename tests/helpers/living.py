@@ -78,7 +78,7 @@ class Live:
             time.sleep(0.02)
         return state
 
-    def settled(self) -> dict[str, Any]:
+    def quiet(self) -> dict[str, Any]:
         """The state once nothing runs any more."""
         return self.until(
             lambda state: state["busy"] is None and (state["errors"] or state["run"]["kind"] == "full")

@@ -27,7 +27,8 @@ pytestmark = pytest.mark.skipif(
 )
 SPEED = "rollers.motor_1_left.drive.speed"
 READY = "document.documentElement?.dataset.ready === 'yes'"
-FULL = f"{READY} && mdlgen.told().busy === null && document.documentElement.dataset.shown?.endsWith('full')"
+DRAWN = "document.documentElement.dataset.shown?.endsWith('full')"
+FULL = f"{READY} && mdlgen.session().busy === null && {DRAWN}"
 # From a slider to the picture, and between two pictures while it is dragged, in times of the bare solve of
 # mdlgen run, which is a search of several passes. Seen: 0.3 to 0.8, with and without others on the machine.
 LATENCY, BETWEEN = 1.5, 1.5
@@ -78,7 +79,7 @@ def drawn(browser: Tab, first: int) -> list[dict[str, Any]]:
     return json.loads(browser.ask(f"JSON.stringify({text})"))
 
 
-def settled(browser: Tab) -> None:
+def quiet(browser: Tab) -> None:
     browser.ask("new Promise((done) => setTimeout(done, 150))")  # what was turned has been asked for
     browser.until(FULL)
 
@@ -105,7 +106,7 @@ def test_a_slider_is_dragged(browser: Tab, tmp_path: Path) -> None:
             slide(browser, SPEED, 0.35 + 0.05 * k)
             browser.until(f"mdlgen.live.log.length > {first}")
             took.append(drawn(browser, first)[0]["at"] / 1000.0)
-            settled(browser)
+            quiet(browser)
         assert statistics.median(took) < LATENCY * statistics.median(solving), (took, solving)
         # another picture: the left drive is slower, and the note turns
         assert (np.abs(pixels(browser) - before).max(axis=2) > 30).mean() > 0.01
@@ -121,7 +122,7 @@ def test_a_slider_is_dragged(browser: Tab, tmp_path: Path) -> None:
             "slider.dispatchEvent(new Event('change')); })()"
         )
         during = [one["at"] / 1000.0 for one in drawn(browser, first)]
-        settled(browser)
+        quiet(browser)
         gaps = np.diff([0.0, *during])
         assert len(during) >= 3 and np.median(gaps) < BETWEEN * statistics.median(solving), (during, solving)
         kinds = [one["kind"] for one in drawn(browser, first)]
@@ -176,7 +177,7 @@ def test_edits_mistakes_and_values_are_shown(browser: Tab, tmp_path: Path) -> No
         # an edit
         spec.write_text(text.replace("1400.25 mm/s", "200 mm/s"), "utf-8")
         browser.until(f"{field}.value === '200 mm/s'")
-        settled(browser)
+        quiet(browser)
         assert "FAIL speed above 300 mm/s" in browser.ask("document.getElementById('headline').innerText")
         # a mistake, at its line; the run before stays
         spec.write_text(text.replace("mass: 0.72 g", "mass: 0.72 N"), "utf-8")
@@ -189,7 +190,7 @@ def test_edits_mistakes_and_values_are_shown(browser: Tab, tmp_path: Path) -> No
         assert "speed" in browser.ask("document.getElementById('headline').innerText")
         spec.write_text(text, "utf-8")
         browser.until(f"{errors}.length === 0")
-        settled(browser)
+        quiet(browser)
         # a value that is wrong says so beside its field
         browser.ask(
             "(() => { const { field } = mdlgen.rows.get('sheets.note.mass'); field.value = '3 N';"
@@ -202,15 +203,15 @@ def test_edits_mistakes_and_values_are_shown(browser: Tab, tmp_path: Path) -> No
         # a slider by the keyboard, and the value is written back
         browser.ask("mdlgen.rows.get('parameters.speed').slider.focus()")
         browser.press("ArrowLeft")
-        browser.until("'parameters.speed' in mdlgen.told().turned")
-        settled(browser)
+        browser.until("'parameters.speed' in mdlgen.session().turned")
+        quiet(browser)
         value = browser.ask(f"{field}.value")
         assert value != "1400.25 mm/s"
         assert browser.ask("document.getElementById('command').innerText") == (
             f"mdlgen run {spec} --set 'parameters.speed={value}'"
         )
         browser.ask("document.getElementById('write').click()")
-        browser.until("Object.keys(mdlgen.told().turned).length === 0")
+        browser.until("Object.keys(mdlgen.session().turned).length === 0")
         assert spec.read_text("utf-8") == text.replace("1400.25 mm/s", value)
         # every control has a name for those who hear the page
         assert browser.ask(
@@ -228,7 +229,7 @@ def test_two_designs_are_overlaid(browser: Tab, tmp_path: Path) -> None:
         one = pixels(browser)
         assert browser.ask(paths) == 6
         slide(browser, "parameters.speed", 0.1)
-        settled(browser)
+        quiet(browser)
         both = pixels(browser)
         browser.ask("document.getElementById('ghost').click()")
         without = pixels(browser)
@@ -257,7 +258,7 @@ def test_a_long_run_grows_and_has_a_bar(browser: Tab, tmp_path: Path) -> None:
             "(() => { const { field } = mdlgen.rows.get('run.duration'); field.value = '6 ms';"
             "field.dispatchEvent(new Event('change')); })()"
         )
-        settled(browser)
+        quiet(browser)
         assert browser.ask("mdlgen.runs[0].animation.time.at(-1)") == 6
         assert browser.ask("document.getElementById('progress').hidden")
         silent(browser, made)

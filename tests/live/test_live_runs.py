@@ -56,12 +56,12 @@ def solved(spec: Path, *sets: str) -> float:
 def test_an_edit_is_followed_and_its_mistakes_are_at_their_lines(tmp_path: Path) -> None:
     spec = scene(tmp_path)
     with live(spec) as made:
-        first = made.settled()
+        first = made.quiet()
         assert first["errors"] == [] and first["scene"] == "transport_nips"
         assert travel(made) == pytest.approx(solved(spec), abs=0.01)
         edit(spec, "speed: 1400.25 mm/s", "speed: 700 mm/s")
         made.until(lambda state: state["text"] != first["text"])
-        made.settled()
+        made.quiet()
         assert travel(made) == pytest.approx(solved(spec), abs=0.01)
         assert made.get("text")["text"] == spec.read_text("utf-8")
         shown = made.get("state")["run"]
@@ -85,7 +85,7 @@ def test_an_edit_is_followed_and_its_mistakes_are_at_their_lines(tmp_path: Path)
             text = text.replace(old, new)
         spec.write_text(text, "utf-8")
         state = made.until(lambda state: state["scene"] == "other")
-        assert made.settled()["errors"] == []
+        assert made.quiet()["errors"] == []
 
 
 def test_a_scene_that_is_wrong_from_the_start_is_followed(tmp_path: Path) -> None:
@@ -106,7 +106,7 @@ def test_the_reference_solver_runs_a_scene_too(tmp_path: Path) -> None:
     with live(spec, "--solver", "exudyn") as made:
         made.until(lambda state: state["progress"] is not None or state["run"]["kind"] == "full")
         made.turn(run__duration="5 ms")
-        state = made.settled()
+        state = made.quiet()
         assert state["run"]["kind"] == "full" and state["command"].endswith("--solver exudyn")
         assert made.get("run")["animation"]["time"][-1] == 5.0
 
@@ -114,9 +114,9 @@ def test_the_reference_solver_runs_a_scene_too(tmp_path: Path) -> None:
 def test_values_are_turned_and_stay_where_the_file_is_edited(tmp_path: Path) -> None:
     spec = scene(tmp_path)
     with live(spec, "--set", "parameters.radius=8 mm") as made:
-        made.settled()
+        made.quiet()
         made.turn(parameters__speed="800 mm/s")
-        state = made.settled()
+        state = made.quiet()
         assert state["turned"] == {"parameters.speed": "800 mm/s"}
         assert travel(made) == pytest.approx(
             solved(spec, "parameters.radius=8 mm", "parameters.speed=800 mm/s"), abs=0.01
@@ -127,11 +127,11 @@ def test_values_are_turned_and_stay_where_the_file_is_edited(tmp_path: Path) -> 
         # one that is edited has the value of the file
         edit(spec, "speed: 1400.25 mm/s", "speed: 500 mm/s")
         state = made.until(lambda s: s["turned"] == {})
-        made.settled()
+        made.quiet()
         assert travel(made) == pytest.approx(solved(spec, "parameters.radius=8 mm"), abs=0.01)
         # a value that is wrong says so at its path, and None is that of the file
         made.turn(sheets__note__mass="0.1 N")
-        (error,) = made.settled()["errors"]
+        (error,) = made.quiet()["errors"]
         assert error["path"] == "sheets.note.mass" and "wrong unit" in error["says"]
         made.turn(sheets__note__mass=None)
         assert made.until(lambda s: not s["errors"] and s["busy"] is None)["turned"] == {}
@@ -141,13 +141,13 @@ def test_one_slider_turns_several_values(tmp_path: Path) -> None:
     spec = scene(tmp_path, "transport_4x4")
     path = "rollers.motor_*.drive.speed"
     with live(spec) as made:
-        made.settled()
+        made.quiet()
         assert made.post("turn", {"values": {path: "90 rad/s"}})[0] == 409
         assert made.post("add", {"path": "rollers.*.axis"})[0] == 409
         assert made.post("add", {"path": path}) == (200, {})
         assert made.get("controls")[-1]["path"] == path
         assert made.post("turn", {"values": {path: "90 rad/s"}}) == (200, {})
-        assert made.settled()["command"] == f"mdlgen run {spec} --set 'rollers.motor_*.drive.speed=90 rad/s'"
+        assert made.quiet()["command"] == f"mdlgen run {spec} --set 'rollers.motor_*.drive.speed=90 rad/s'"
         assert travel(made) == pytest.approx(solved(spec, f"{path}=90 rad/s"), abs=0.01)
         # it follows the file, and goes with what it meets
         edit(spec, "186.7 rad/s", "100 rad/s")
@@ -184,7 +184,7 @@ def test_the_newest_value_wins(tmp_path: Path) -> None:
         for speed in (500, 600, 700, 800):
             made.turn(parameters__speed=f"{speed} mm/s")
         made.turn(parameters__speed="900 mm/s", run__duration="6 ms")
-        state = made.settled()
+        state = made.quiet()
         took = time.monotonic() - began
         assert state["turned"] == {"parameters.speed": "900 mm/s", "run.duration": "6 ms"}
         assert made.get("run")["animation"]["time"][-1] == 6.0
@@ -203,14 +203,14 @@ def test_a_run_that_cannot_be_stopped_is_ended_with_its_process(tmp_path: Path) 
         *SMALL,
     )
     with live(spec) as made:
-        made.settled()
+        made.quiet()
         (worker,) = made.children()
         os.kill(worker, 19)  # it stands still: nothing that is sent is heard
         made.turn(parameters__speed="900 mm/s")
         made.until(lambda state: state["busy"] is not None)
         time.sleep(0.5)  # a draft has a moment
         made.turn(parameters__speed="950 mm/s")
-        state = made.settled()
+        state = made.quiet()
         assert state["turned"] == {"parameters.speed": "950 mm/s"}
         assert travel(made) == pytest.approx(solved(spec, "parameters.speed=950 mm/s"), abs=0.01)
         assert worker not in made.children() and len(made.children()) == 1
@@ -225,7 +225,7 @@ def test_a_worker_that_is_killed_is_reported_and_replaced(tmp_path: Path) -> Non
         state = made.until(lambda state: bool(state["errors"]))
         assert "the process of the run has ended" in state["errors"][0]["says"]
         made.turn(run__duration="6 ms")
-        assert made.settled()["errors"] == []
+        assert made.quiet()["errors"] == []
 
 
 def test_a_long_run_grows_on_the_page(tmp_path: Path) -> None:
@@ -251,7 +251,7 @@ def test_a_requirement_has_its_verdict(tmp_path: Path) -> None:
     spec = scene(tmp_path)
     spec.write_text(spec.read_text("utf-8") + "require: [no jam, speed above 2000 mm/s]\n", "utf-8")
     with live(spec) as made:
-        made.settled()
+        made.quiet()
         html = made.get("run")["html"]
         assert "FAIL</b> speed above 2000 mm/s" in html["headline"] and "pass</b> no jam" in html["headline"]
 
@@ -259,5 +259,5 @@ def test_a_requirement_has_its_verdict(tmp_path: Path) -> None:
 def test_a_static_scene_is_run_without_a_draft(tmp_path: Path) -> None:
     spec = scene(tmp_path, "cantilever", ("name: cantilever", "name: cantilever"))
     with live(spec) as made:
-        state = made.settled()
+        state = made.quiet()
         assert state["run"]["status"] == "ok" and made.get("run")["animation"]["static"]

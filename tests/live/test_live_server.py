@@ -29,7 +29,7 @@ def running(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Live]:
     folder = tmp_path_factory.mktemp("scene")
     (folder.parent / "secret.txt").write_text("not for all")
     with live(scene(folder)) as made:
-        made.settled()
+        made.quiet()
         yield made
 
 
@@ -232,14 +232,14 @@ def test_the_scene_that_is_written_is_the_one_that_is_shown(tmp_path: Path) -> N
     spec = scene(tmp_path)
     text = spec.read_text("utf-8")
     with live(spec) as made:
-        made.settled()
+        made.quiet()
         made.turn(parameters__speed="900 mm/s", sheets__note__thickness="0.12 mm")
-        state = made.settled()
+        state = made.quiet()
         assert state["command"] == (
             f"mdlgen run {spec} --set 'parameters.speed=900 mm/s' --set 'sheets.note.thickness=0.12 mm'"
         )
         assert made.post("write", {}) == (200, {})
-        state = made.settled()
+        state = made.quiet()
         assert state["turned"] == {} and state["command"] == f"mdlgen run {spec}"
     written = spec.read_text("utf-8")
     assert written == text.replace("speed: 1400.25 mm/s", "speed: 900 mm/s").replace(

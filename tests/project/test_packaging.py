@@ -131,11 +131,11 @@ def test_the_manuals_pieces_of_scenes_load():
     turned = {name: {**plain, **part} for name, part in rims["rollers"].items()}
     made = lowered(rollers=scene["rollers"] | turned)
     assert made.roller("feed").rim is not None and made.roller("skim").arm is not None
-    piled = {"sheets": piles["sheets"], "piles": piles["piles"]}
+    with_pile = {"sheets": piles["sheets"], "piles": piles["piles"]}
     floor = {
         "floor": {"center": ["0 mm", "0 mm", "-5 mm"], "normal": "z", "size": ["99 mm", "200 mm", "10 mm"]}
     }
-    pile = lowered(**piled, planes=floor, rollers={}, contacts=piles["contacts"], probes={})
+    pile = lowered(**with_pile, planes=floor, rollers={}, contacts=piles["contacts"], probes={})
     assert {sheet.name for sheet in pile.sheets} == {f"cassette_{k}" for k in range(1, 21)}
     # values that follow from parameters, and rollers and contacts that a nip makes
     motor = {**scene["rollers"]["motor"], **formulas["rollers"]["motor"], "radius": "radius"}
