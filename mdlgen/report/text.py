@@ -214,12 +214,15 @@ def summary_text(record: dict[str, Any]) -> str:
         )
         if sheet["strain"] is not None:
             lines.append(f"  {_bearing(sheet)}")
+        if sheet.get("tension") is not None:
+            lines.append(f"  {_tension(sheet['tension'])}")
     for name, probe in record["probes"].items():
         lines.append(f"probe {name}: displacement {_vector(probe['displacement_mm'])} mm")
     if record.get("strain") is not None:
         lines.append(f"strain {record['strain']:.6g}")
     if record["rollers"]:
         lines += _rollers(record["rollers"])
+    lines += _drags(record)
     plates = {name: plane for name, plane in record.get("planes", {}).items() if "center_mm" in plane}
     if plates:
         lines += _plates(plates)
@@ -249,6 +252,30 @@ def _bearing(sheet: dict[str, Any]) -> str:
     if "margin" in strain:
         line += f"; {strain['margin']:.0%} left to the curve's end ({strain['margin_joint']})"
     return line
+
+
+def _tension(tension: dict[str, Any]) -> str:
+    """The pull and the push over a section along the way, and where and when."""
+    way, figures = tension["along"].upper(), {key: _number(tension[key]) for key in tension if key != "along"}
+    line = (
+        f"tension along {way} up to {figures['max_n']} N ({figures['at_mm']} mm from the centre, "
+        f"{figures['at_ms']} ms), mean {figures['mean_n']} N"
+    )
+    if figures["min_n"] != "0" and tension["min_n"] < 0.0:
+        line += f"; pushed by up to {_number(-tension['min_n'])} N"
+    return line
+
+
+def _drags(record: dict[str, Any]) -> list[str]:
+    """What planes, guides and fixed meshes take from sheets by friction, where they take some."""
+    rows = [["drag on sheets", "of", "N: mean", "peak"]]
+    for kind in ("planes", "guides", "meshes"):
+        for name, part in record.get(kind, {}).items():
+            for sheet, contact in part["contacts"].items():
+                if contact.get("max_drag_n"):
+                    keys = ("mean_drag_n", "max_drag_n")
+                    rows.append([sheet, name, *(_number(contact[key]) for key in keys)])
+    return _table(rows) if len(rows) > 1 else []
 
 
 def _rollers(rollers: dict[str, Any]) -> list[str]:

@@ -18,6 +18,7 @@ from mdlgen.results.wording import number, numbers
 
 if TYPE_CHECKING:
     from mdlgen.results.result import Result
+    from mdlgen.results.tension import Tension
 
 _SHOWN = 4  # digits
 
@@ -53,6 +54,7 @@ class SheetResult(_Named):
         "position": "mm",
         "velocity": "mm/s",
         "turn": "deg",
+        "tension": "N",
     }
     shown: ClassVar[tuple[str, ...]] = ("travel", "speed", "yaw")
     travel: Floats  # [mm], of the centre of mass since the start, (3,)
@@ -62,6 +64,8 @@ class SheetResult(_Named):
     position: Floats  # of the centre of mass [mm], (t, 3)
     velocity: Floats  # [mm/s], (t, 3)
     turn: Floats  # yaw [deg], (t,)
+    # along its way: `force` of sections [N], (t, sections), `at` [mm]; None where it has no joints along it
+    tension: Tension | None
 
 
 @dataclass(frozen=True, repr=False, eq=False, kw_only=True)
@@ -132,6 +136,7 @@ def sheets(result: Result) -> Mapping[str, SheetResult]:
             position=place,
             velocity=rate * PER_SECOND,
             turn=np.degrees(yaw),
+            tension=result.tensions[k],
         )
     return MappingProxyType(found)
 

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from mdlgen.results.estimates import Estimate
     from mdlgen.results.named import ProbeResult, RollerResult, SheetResult
     from mdlgen.results.strain import Strains
+    from mdlgen.results.tension import Tension
     from mdlgen.results.verdict import Outcome
 
 
@@ -176,7 +177,7 @@ class Result:
         return Shown(page([self]), height)
 
     def plot(self, what: str = "travel") -> Plot:
-        """One quantity over time: travel, speed, yaw, roller_speed, nip_force, torque,
+        """One quantity over time: travel, speed, yaw, tension, roller_speed, nip_force, torque,
         power, contact_torque or probes. A notebook shows it,
         `save(path)` writes it as PNG, and `figure` is matplotlib's. Raises SpecError for another one."""
         from mdlgen.report.figures.plots import plot
@@ -234,6 +235,14 @@ class Result:
         from mdlgen.results.strain import all_borne
 
         return all_borne(self)
+
+    @cached_property
+    def tensions(self) -> tuple[Tension | None, ...]:
+        """Tension of each sheet along its way, as `results.tension` has it; worked out when first asked for,
+        and kept."""
+        from mdlgen.results.tension import tension_of
+
+        return tuple(tension_of(self, k) for k in range(len(self.model.sheets)))
 
     @cached_property
     def events(self) -> list[dict[str, Any]]:

@@ -238,6 +238,16 @@ def all_borne(result: Result) -> Floats | None:
     return found
 
 
+def stretched(result: Result, part: slice, mine: Ints, axis: int) -> tuple[Floats, Floats]:
+    """Strain of the more and of the less stretched bushing of the joints `mine`, which lie along `axis`, at
+    some stored states, (t, n) each."""
+    if result.borne is not None:
+        return result.borne[0, part].take(mine, axis=1), result.borne[1, part].take(mine, axis=1)
+    fixed = _Fixed(result.model, sheet_joints(result.model), mine)
+    more, less, *_ = _measure(result, part, fixed, axis)
+    return more, less
+
+
 def _borne(result: Result, part: slice | Ints, fixed: _Fixed, axis: int) -> tuple[Floats, ...]:
     """As `all_borne`, of some joints along `axis` at some states."""
     known = result.borne

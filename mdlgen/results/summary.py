@@ -8,11 +8,14 @@ from typing import Any
 
 import numpy as np
 
+from mdlgen.model.curves import WAYS
 from mdlgen.model.parts.kinds import KINDS
 from mdlgen.model.tables import Floats, MachinePart, PlanePart, RollerPart
 from mdlgen.results.compare import travel
+from mdlgen.results.drag import drags
 from mdlgen.results.estimates import complete
 from mdlgen.results.result import Result
+from mdlgen.results.tension import Tension
 from mdlgen.results.torques import (
     Grip,
     contact_torque,
@@ -152,10 +155,11 @@ def _sheet(result: Result, index: int, bearing: bool) -> dict[str, Any]:
 
 
 def _bearing(result: Result, index: int) -> dict[str, Any]:
-    """Peaks over joints and stored times, with place and time of the greatest; None without joints."""
+    """Peaks over joints and stored times, with place and time of the greatest, and the tension; None without
+    joints."""
     strains = result.strains
     if strains is None or not (strains.joints.sheet == index).any():
-        return {"strain": None, "curvature": None, "twist": None}
+        return {"strain": None, "curvature": None, "twist": None, "tension": None}
     joints = strains.joints
     mine = joints.sheet == index
 
@@ -181,6 +185,29 @@ def _bearing(result: Result, index: int) -> dict[str, Any]:
         "strain": strain,
         "curvature": curvature | place(bend, strains.curvature.at),
         "twist": {"max_per_mm": turn[mine].max(), **place(turn, strains.twist.at)},
+        "tension": _tension(result, result.tensions[index]),
+    }
+
+
+def _tension(result: Result, tension: Tension | None) -> dict[str, Any] | None:
+    """Extremes over sections and stored times, and the mean over the run of that section of which it is
+    greatest in size, each with its place along the way from the sheet's centre."""
+    if tension is None:
+        return None
+    force = tension.force
+    high, low = (np.unravel_index(k, force.shape) for k in (force.argmax(), force.argmin()))
+    means = [over_time(result, values) for values in tension.force.T]
+    most = int(np.abs(means).argmax())
+    return {
+        "along": WAYS[tension.axis],
+        "max_n": force[high],
+        "at_mm": tension.at[high[1]],
+        "at_ms": result.time[high[0]],
+        "min_n": force[low],
+        "least_at_mm": tension.at[low[1]],
+        "least_at_ms": result.time[low[0]],
+        "mean_n": means[most],
+        "mean_at_mm": tension.at[most],
     }
 
 
@@ -191,7 +218,7 @@ def part_rows(result: Result, part: MachinePart) -> dict[int, str]:
     return {k: b if a == part.name else a for k, (a, b) in enumerate(sides) if part.name in (a, b)}
 
 
-def _contacts(result: Result, rows: dict[int, str]) -> dict[str, dict[str, float]]:
+def _contacts(result: Result, rows: dict[int, str]) -> dict[str, dict[str, float | None]]:
     """What each contact of a part came to."""
     statistics = result.statistics
     return {
@@ -209,7 +236,21 @@ def _touched(result: Result, part: MachinePart) -> dict[str, Any]:
     """The sum of normal forces on a part at the end, and its contacts."""
     rows = part_rows(result, part)
     force = float(result.contact_force[-1, list(rows)].sum()) if len(result.time) else None
-    return {"nip_force_n": force, "contacts": _contacts(result, rows)}
+    contacts, taken = _contacts(result, rows), drags(result, part)
+    for row, other in rows.items():
+        if other in taken:
+            contacts[other] |= _drag(result, row, taken[other])
+    return {"nip_force_n": force, "contacts": contacts}
+
+
+def _drag(result: Result, row: int, drag: Floats) -> dict[str, float | None]:
+    """What a part takes from a sheet by friction: at the end, the greatest of the stored times, and the mean
+    over those at which the two touch."""
+    if not len(drag):
+        return dict.fromkeys(("drag_n", "max_drag_n", "mean_drag_n"))
+    touches = result.contact_force[:, row] > 0.0
+    mean = float(drag[touches].mean()) if touches.any() else 0.0
+    return {"drag_n": float(drag[-1]), "max_drag_n": float(drag.max()), "mean_drag_n": mean}
 
 
 def _pressing(result: Result, part: RollerPart | PlanePart) -> dict[str, Any]:

@@ -12,6 +12,7 @@ import numpy as np
 from mdlgen.errors import SpecError, did_you_mean
 from mdlgen.model.parts.kinds import KINDS
 from mdlgen.model.tables import Floats, RollerPart
+from mdlgen.results.drag import drags
 from mdlgen.results.torques import contact_torque, drive_power, drive_torque, grips
 from mdlgen.results.way import way_of
 from mdlgen.spec.require import Requirement, requirement
@@ -243,6 +244,12 @@ def _series(result: Result, path: str) -> Floats:
             sizes |= {f"{key}.{axis}": vectors[:, k] for k, axis in enumerate("xyz")}
         if what in sizes:
             return sizes[what]
+        tension = result.tensions[index] if what.startswith("tension") else None
+        if tension is not None:
+            most, least = tension.greatest, tension.least
+            sizes = {"tension": np.maximum(most, -least), "tension.max": most, "tension.min": least}
+            if (what := what.removesuffix("_n")) in sizes:
+                return sizes[what]
         if what in ("way", "way_mm", "skew", "skew_deg"):
             way = way_of(result, index)
             return way.length if what.startswith("way") else way.skew
@@ -251,14 +258,18 @@ def _series(result: Result, path: str) -> Floats:
         if what in ("nip_force", "nip_force_n"):
             sides = zip(model.contacts.part_a, model.contacts.part_b, strict=True)
             return result.contact_force[:, [k for k, ends in enumerate(sides) if name in ends]].sum(axis=1)
+        for sheet, drag in drags(result, parts[name]).items():
+            if what in (f"contacts.{sheet}.drag", f"contacts.{sheet}.drag_n"):
+                return drag
         if kind == "rollers" and what in ("omega", "omega_rad_per_s"):
             roller = model.roller(name)
             return result.spin[:, roller.body] @ roller.axis
         if kind == "rollers" and (found := _turning(result, model.roller(name), what)) is not None:
             return found
     raise ValueError(
-        f"{path} is known at the end alone; over time there are yaw, skew, speed, travel and way of sheets, "
-        "nip_force of parts, and omega, torque, power, contact_torque and traction.OTHER.reserve of rollers"
+        f"{path} is known at the end alone; over time there are yaw, skew, speed, travel, way and tension of "
+        "sheets, nip_force of parts, contacts.SHEET.drag of planes, guides and meshes, and omega, torque, "
+        "power, contact_torque and traction.OTHER.reserve of rollers"
     )
 
 

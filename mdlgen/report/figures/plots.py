@@ -61,6 +61,14 @@ def _driven(what: str) -> Callable[[Result], Lines]:
     return lines
 
 
+def _tensions(result: Result) -> Lines:
+    found = {name: sheet.tension for name, sheet in result.sheets.items() if sheet.tension is not None}
+    lines = {}
+    for name, tension in found.items():
+        lines |= {f"{name} greatest": tension.greatest, f"{name} least": tension.least}
+    return lines
+
+
 def _probes(result: Result) -> Lines:
     return _since_start({name: probe.position for name, probe in result.probes.items()})
 
@@ -70,6 +78,7 @@ QUANTITIES: dict[str, tuple[str, str, Callable[[Result], Lines]]] = {
     "travel": ("travel of the sheet's centre of mass", "mm", _sheets("position")),
     "speed": ("speed of the sheet's centre of mass", "mm/s", _sheets("velocity")),
     "yaw": ("turn of the sheet about its normal", "deg", _sheets("turn")),
+    "tension": ("tension of the sheet along its way, of its sections", "N", _tensions),
     "roller_speed": ("speed of rollers about their axes", "rad/s", _rollers("rate")),
     "nip_force": ("normal force on rollers", "N", _rollers("force")),
     "torque": ("torque of drives", "N mm", _driven("drive_torque")),

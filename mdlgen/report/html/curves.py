@@ -9,10 +9,11 @@ import numpy as np
 from mdlgen.model.tables import Floats, Ints
 from mdlgen.report.animation import thinned
 from mdlgen.results.compare import travel
+from mdlgen.results.drag import drags
 from mdlgen.results.result import Result
 from mdlgen.results.strain import SheetJoints
 from mdlgen.results.summary import PER_SECOND, part_rows
-from mdlgen.results.torques import drive_power, drive_torque, grips
+from mdlgen.results.torques import drive_power, drive_torque, grips, over_time
 
 POINTS = 4000  # of a line; more are not seen
 
@@ -47,8 +48,9 @@ def panels(
     gives there.
     """
     if result.model.run.analysis == "static" or len(result.time) < 2:
-        return _shapes(result)
-    found = [*_motion(result), *_tilt(result, at), *_rollers(result, at, deep), *_bearing(result, at, joints)]
+        return [panel for panel in (*_shapes(result), *_tensions(result)) if panel.lines]
+    found = [*_motion(result), *_tilt(result, at), *_rollers(result, at, deep), *_drags(result)]
+    found += [*_tensions(result), *_bearing(result, at, joints)]
     return [panel for panel in found if panel.lines]
 
 
@@ -151,6 +153,48 @@ def _drives(result: Result, thin: Ints) -> list[Panel]:
                 name = roller.name if len(sheets) == 1 else f"{roller.name} {grip.other}"
                 traction.lines.append(Line(name, result.time[thin], 100.0 * np.nan_to_num(grip.used[thin])))
     return [torque, power, traction]
+
+
+def _drags(result: Result) -> list[Panel]:
+    """What planes, guides and fixed meshes take from sheets by friction."""
+    thin = _thin(result)
+    panel = Panel("drag", "Drag of each plane and guide on sheets", "N")
+    panel.note = "friction, summed over contact points"
+    several = len(result.model.sheets) > 1
+    for part in result.model.machine:
+        for sheet, drag in drags(result, part).items():
+            if drag.any():
+                name = f"{part.name} {sheet}" if several else part.name
+                panel.lines.append(Line(name, result.time[thin], drag[thin]))
+    return [panel]
+
+
+def _tensions(result: Result) -> list[Panel]:
+    """Tension of each sheet along its way: its extremes over time, and over its length."""
+    thin = _thin(result)
+    extremes = Panel("tension", "Tension of the sheet along its way, greatest and least of its sections", "N")
+    extremes.note = "membrane force over a section across the way, positive where it is pulled"
+    places = Panel("tension along", "Tension over the sheet's length", "N")
+    places.x_title = "place along the way from the sheet's centre [mm]"
+    places.note = "of each section across the way" + (
+        ": the greatest and least of the run, and its mean" if len(result.time) > 1 else ""
+    )
+    for sheet, tension in zip(result.model.sheets, result.tensions, strict=True):
+        if tension is None or not tension.force.any():
+            continue
+        if len(result.time) < 2:
+            places.lines.append(Line(sheet.name, tension.at, tension.force[-1]))
+            continue
+        for name, values in (("greatest", tension.greatest), ("least", tension.least)):
+            extremes.lines.append(Line(f"{sheet.name} {name}", result.time[thin], values[thin]))
+        means = np.array([over_time(result, values) for values in tension.force.T])
+        for name, values in (
+            ("greatest", tension.force.max(axis=0)),
+            ("mean", means),
+            ("least", tension.force.min(axis=0)),
+        ):
+            places.lines.append(Line(f"{sheet.name} {name}", tension.at, values))
+    return [extremes, places]
 
 
 def _bearing(result: Result, at: Ints, joints: tuple[SheetJoints, Floats, Floats] | None) -> list[Panel]:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from mdlgen.model.tables import Floats, PlanePart, RollerPart
+from mdlgen.model.tables import Floats, MachinePart, PlanePart, RollerPart
+from mdlgen.results.drag import drags
 from mdlgen.results.result import Result
 from mdlgen.results.summary import PER_SECOND, part_rows
 from mdlgen.results.torques import contact_torque, drive_power, drive_torque, grips
@@ -13,13 +14,16 @@ SLIGHT = 1e-9  # part of a slide along an axis that is round-off
 
 
 def series(result: Result) -> dict[str, Floats]:
-    """Column name -> values at the stored times: sheets (centre of mass), probes, rollers, pressed plates,
-    with their torques, then what does not move: planes, guides and meshes."""
+    """Column name -> values at the stored times: sheets (centre of mass, tension), probes, rollers with their
+    torques, pressed plates, then what does not move: planes, guides and meshes; with the drag on sheets."""
     table: dict[str, Floats] = {"time_ms": result.time}
     for index, sheet in enumerate(result.model.sheets):
         place, rate, yaw = result.sheet_motion(index)
         table |= _motion(sheet.name, place, rate)
         table[f"{sheet.name}.yaw_deg"] = np.degrees(yaw)
+        if (tension := result.tensions[index]) is not None:
+            table[f"{sheet.name}.tension_max_n"] = tension.greatest
+            table[f"{sheet.name}.tension_min_n"] = tension.least
     for index, probe in enumerate(result.model.probes):
         table |= _motion(probe.name, *result.anchor_motion(index))
     for roller in result.model.rollers:
@@ -32,11 +36,13 @@ def series(result: Result) -> dict[str, Floats]:
         rows = list(part_rows(result, plate))
         table |= _places(result, plate)
         table[f"{plate.name}.force_n"] = result.contact_force[:, rows].sum(axis=1)
+        table |= _drags(result, plate)
     pressed = {plate.name for plate, _ in result.model.plates}
     for part in result.model.machine:
         if isinstance(part, RollerPart) or part.name in pressed:
             continue
         table[f"{part.name}.force_n"] = result.contact_force[:, list(part_rows(result, part))].sum(axis=1)
+        table |= _drags(result, part)
     return table
 
 
@@ -65,6 +71,10 @@ def _turning(result: Result, roller: RollerPart) -> dict[str, Floats]:
         found = {"torque_n_mm": drive_torque(result, roller), "power_w": drive_power(result, roller), **found}
     known = {f"{roller.name}.{name}": values for name, values in found.items() if values is not None}
     return known | {f"{roller.name}.{grip.other}.tangential_n": grip.along for grip in grips(result, roller)}
+
+
+def _drags(result: Result, part: MachinePart) -> dict[str, Floats]:
+    return {f"{part.name}.{sheet}.drag_n": drag for sheet, drag in drags(result, part).items()}
 
 
 def csv(result: Result) -> str:

@@ -1,0 +1,202 @@
+"""Tension of sheets along their way: the membrane force over each cross-section, by the bushings' laws.
+
+A section is a row of joints across the way. Its tension is the sum of what springs and dampers of these
+joints pull with along themselves, positive where they pull and negative where the sheet is pushed. The
+springs follow stress-strain curves where the material has some.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mdlgen.model.rotations import column, matrices
+from mdlgen.model.tables import GROUND, SUPPORT, Curves, Floats, Frozen, Ints, Model, SheetPart
+from mdlgen.results.result import Result
+from mdlgen.results.strain import SheetJoints, sheet_joints, stretched
+
+# States of joints worked on at a time: the arrays of so many stay in the cache.
+_CHUNK = 10_000
+# Stored times from which the way of a sheet is found.
+_LOOKS = 50
+# A sheet that goes less than this part of its length stands [1]: it has no way of its own.
+_STANDS = 1e-3
+# Rounding errors, in units of the last place, that positions and turns bring into an elongation.
+_ROUNDINGS = 16.0
+# A part of a unit vector or an arm below it is round-off [1], [mm].
+_NONE = 1e-12
+
+
+@dataclass(frozen=True)
+class Tension(Frozen):
+    """Of one sheet over the stored times."""
+
+    axis: int  # sheet axis that it acts along, 0: x (MD), 1: y (CD)
+    at: Floats  # place of each section along that axis, from the sheet's centre [mm], (sections,)
+    force: Floats  # positive where the sheet is pulled [N], (t, sections)
+
+    @property
+    def greatest(self) -> Floats:
+        """Of all sections at each time [N], (t,)."""
+        return self.force.max(axis=1)
+
+    @property
+    def least(self) -> Floats:
+        """Of all sections at each time [N], (t,): below 0 where one is pushed."""
+        return self.force.min(axis=1)
+
+
+def tension_of(result: Result, index: int) -> Tension | None:
+    """Tension of a sheet along its way; None where it has no joints along it, or the run no state.
+
+    That is the sheet axis away from its clamp, else the one that it goes along more. Where it stands, it is
+    the one that bears more.
+    """
+    if not len(result.time):
+        return None
+    axis = _way(result, index)
+    if axis is not None:
+        return _along(result, index, axis)
+    found = [one for one in (_along(result, index, k) for k in (0, 1)) if one is not None]
+    return max(found, key=lambda one: float(np.abs(one.force).max()), default=None)
+
+
+def _way(result: Result, index: int) -> int | None:
+    """Sheet axis of its clamp or its way; None of a sheet that stands."""
+    sheet = result.model.sheets[index]
+    if sheet.clamp is not None:
+        return int(sheet.clamp.edge[0] == "y")
+    if len(result.time) < 2:
+        return None
+    looks = np.unique(np.linspace(0, len(result.time) - 1, _LOOKS).astype(int))
+    boxes, share = slice(sheet.first, sheet.first + sheet.count), result.model.mass_share(index)
+    rate, turned = result.velocity[looks, boxes], result.rotation[looks, boxes]
+    speeds = [np.abs(np.einsum("tbi,tbi->tb", rate, column(turned, k)) @ share) for k in (0, 1)]
+    ways = [float(np.trapezoid(speed, result.time[looks])) for speed in speeds]
+    return int(ways[1] > ways[0]) if max(ways) > _STANDS * max(sheet.size) else None
+
+
+def _along(result: Result, index: int, axis: int) -> Tension | None:
+    model, sheet = result.model, result.model.sheets[index]
+    joints = sheet_joints(model)
+    mine = np.flatnonzero((joints.sheet == index) & (joints.axis == axis))
+    if not len(mine):
+        return None
+    # sections follow each other along the axis
+    line = model.bushings.node[joints.bushing[mine], axis]
+    order = np.argsort(line, kind="stable")
+    mine, line = mine[order], line[order]
+    starts = np.flatnonzero(np.concatenate([[True], line[1:] != line[:-1]]))
+    law = _Law(model, joints, mine, axis)
+    moves = _Moves(model, sheet, joints, mine, axis)
+    force = np.empty((len(result.time), len(starts)))
+    frames = max(1, _CHUNK // len(mine))
+    for start in range(0, len(result.time), frames):
+        part = slice(start, start + frames)
+        pull = law.springs(*stretched(result, part, mine, axis))
+        pull += law.damping * moves.parting(result, part)
+        force[part] = np.add.reduceat(pull, starts, axis=1)
+    far = float(np.abs(result.position[:, sheet.first : sheet.first + sheet.count]).max())
+    least = _ROUNDINGS * np.finfo(float).eps * (far + max(sheet.size))
+    force[np.abs(force) < least * np.add.reduceat(law.stiffness, starts)] = 0.0
+    return Tension(axis, joints.at[mine[starts], axis], force)
+
+
+class _Law:
+    """What joints pull with along themselves: (n,) each."""
+
+    def __init__(self, model: Model, joints: SheetJoints, mine: Ints, axis: int):
+        bushings = model.bushings
+        rows = np.flatnonzero(bushings.kind != SUPPORT)
+        # the bushings of a joint follow each other
+        starts = np.searchsorted(rows, joints.bushing)
+        count = np.diff(np.append(starts, len(rows)))
+        self.stiffness = np.add.reduceat(bushings.k[rows, axis], starts)[mine]  # [N/mm]
+        self.damping = np.add.reduceat(bushings.c[rows, axis], starts)[mine]  # [N ms/mm]
+        self._two, self._length = count[mine] == 2, joints.length[mine]
+        self._bushing, self._curves = joints.bushing[mine], model.curves
+
+    def springs(self, more: Floats, less: Floats) -> Floats:
+        """Of the strain of their more and their less stretched bushing, all (t, n)."""
+        force = 0.5 * self.stiffness * self._length * (more + less)
+        if not len(self._curves.of):
+            return force
+        of = self._curves.of[self._bushing]
+        for number in np.unique(of[of >= 0]).tolist():
+            own = np.flatnonzero(of == number)
+            row = self._bushing[own]
+            per = self._length[own] / self._curves.length[row]
+            one, two = more[:, own], less[:, own]
+            # the one bushing of a joint has the mean
+            mean, two_of = 0.5 * (one + two), self._two[own]
+            sides = (np.where(two_of, side, mean) for side in (one, two))
+            stress = sum(curve_stress(self._curves, number, per * side) for side in sides)
+            force[:, own] = self._curves.area[row] * np.where(two_of, 1.0, 0.5) * stress
+        return force
+
+
+def curve_stress(curves: Curves, number: int, strain: Floats) -> Floats:
+    """Stress [MPa] of a curve at strains of any shape, as `mechanics.curve.curve_spring` has it."""
+    points = slice(curves.start[number], curves.start[number + 1])
+    x, y, slope = curves.strain[points], curves.stress[points], curves.slope[points]
+    size = np.abs(strain)
+    k = np.clip(np.searchsorted(x, size, side="right") - 1, 0, len(x) - 2)
+    h = x[k + 1] - x[k]
+    t, m, end, rise = (size - x[k]) / h, h * slope[k], h * slope[k + 1], y[k + 1] - y[k]
+    inside = y[k] + t * (m + t * (3.0 * rise - 2.0 * m - end + t * (m + end - 2.0 * rise)))
+    beyond = y[-1] + curves.rise[number] * (size - x[-1])
+    return np.copysign(np.where(size < x[-1], inside, beyond), strain)
+
+
+class _Moves:
+    """How fast joints open along themselves, as `mechanics.bushing` has it."""
+
+    def __init__(self, model: Model, sheet: SheetPart, joints: SheetJoints, mine: Ints, axis: int):
+        self._boxes, self._way = slice(sheet.first, sheet.first + sheet.count), joints.way[mine]
+        # the last row stands for the ground
+        turned = np.concatenate([model.bodies.rotation, np.eye(3)[None]])
+        placed = np.concatenate([model.bodies.position, np.zeros((1, 3))])
+        axes, origin = joints.axes[mine], joints.origin[mine]
+        own = (axes, axes @ matrices(-joints.rest[mine]))
+        self._sides: list[tuple[Ints, Floats, Floats]] = []
+        for body, frame in zip((joints.a[mine], joints.b[mine]), own, strict=True):
+            at = np.where(body == GROUND, len(placed) - 1, body)
+            # direction of the joint and arm to it, along the axes of the body
+            local = [np.einsum("nki,nk->ni", turned[at], v) for v in (frame[:, :, axis], origin - placed[at])]
+            along, arm = (np.where(np.abs(v) > _NONE, v, 0.0) for v in local)
+            self._sides.append((np.where(body == GROUND, sheet.count, body - sheet.first), along, arm))
+
+    def parting(self, result: Result, part: slice) -> Floats:
+        """Rate of the elongation [mm/ms], (t, n)."""
+        still = ((0, 0), (0, 0), (0, 1))  # the ground
+        place, rate, spin = (
+            np.pad(np.moveaxis(values[part, self._boxes], 2, 0), still)
+            for values in (result.position, result.velocity, result.spin)
+        )
+        turned = np.pad(np.moveaxis(result.rotation[part, self._boxes], 2, 0), still)
+        turned[0, :, -1] = 1.0
+        ends = [_end(place, rate, spin, turned, *side) for side in self._sides]
+        (from_, slow, swing, way), (to, fast, spun, other) = ends
+        # the frame halfway between both: what it differs from their mean by is of the second order in twist
+        middle = way + other
+        gap, apart, turn = to - from_, fast - slow, 0.5 * (swing + spun)
+        apart = apart - _cross(turn, gap)
+        return self._way * (apart * middle).sum(axis=0) / np.sqrt((middle * middle).sum(axis=0))
+
+
+def _end(
+    place: Floats, rate: Floats, spin: Floats, turned: Floats, body: Ints, along: Floats, arm: Floats
+) -> tuple[Floats, Floats, Floats, Floats]:
+    """Of one end of joints: its place, its velocity, the spin of its body and its direction, (3, t, n)."""
+    used = [k for k in range(3) if along[:, k].any() or arm[:, k].any()]
+    columns = {k: np.moveaxis(column(np.moveaxis(turned, 0, -1), k), -1, 0).take(body, axis=2) for k in used}
+    way = sum((columns[k] * along[:, k] for k in used), np.zeros(1))
+    lever = sum((columns[k] * arm[:, k] for k in used), np.zeros(1))
+    own = spin.take(body, axis=2)
+    return place.take(body, axis=2) + lever, rate.take(body, axis=2) + _cross(own, lever), own, way
+
+
+def _cross(a: Floats, b: Floats) -> Floats:
+    """Of vectors with their components first."""
+    return np.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
