@@ -103,6 +103,25 @@ SUMMARY: dict[str, tuple[str, str]] = {
             "joint": ("", "its joint"),
         }.items()
     },
+    "sheets.NAME.tension": (
+        "",
+        "membrane force over the sections across its way, positive where it is pulled; null for a sheet "
+        "without joints along it",
+    ),
+    **{
+        f"sheets.NAME.tension.{key}": words
+        for key, words in {
+            "along": ("", "`md` or `cd`: away from its clamp, else where it goes, else where it bears more"),
+            "max_n": ("N", "the greatest of all sections and stored times"),
+            "at_mm": ("mm", "its section, along the way from the sheet's centre"),
+            "at_ms": ("ms", "its time"),
+            "min_n": ("N", "the least, below zero where the sheet is pushed"),
+            "least_at_mm": ("mm", "its section"),
+            "least_at_ms": ("ms", "its time"),
+            "mean_n": ("N", "mean over the run, of that section of which it is greatest in size"),
+            "mean_at_mm": ("mm", "that section"),
+        }.items()
+    },
     "rollers.NAME.omega_rad_per_s": ("rad/s", "speed about the roller's axis at the end"),
     **{
         f"rollers.NAME.{key}": words
@@ -151,6 +170,16 @@ SUMMARY: dict[str, tuple[str, str]] = {
             "mean_force_n": ("N", "mean normal force over the time in contact"),
         }.items()
     },
+    **{
+        f"{part}.NAME.{CONTACT}.{key}": words
+        for part in PARTS
+        if part != "rollers"
+        for key, words in {
+            "drag_n": ("N", "friction that it takes from a sheet at the end"),
+            "max_drag_n": ("N", "the greatest of the stored times"),
+            "mean_drag_n": ("N", "mean over the stored times at which the two touch"),
+        }.items()
+    },
     "probes.NAME.displacement_mm": ("mm", "displacement at the end, [x, y, z]"),
     "probes.NAME.speed_mm_per_s": ("mm/s", "velocity at the end, [x, y, z]"),
 }
@@ -166,11 +195,14 @@ SERIES: dict[str, tuple[str, str]] = {
     "NAME.vy_mm_per_s": ("mm/s", "the same along y"),
     "NAME.vz_mm_per_s": ("mm/s", "the same along z"),
     "NAME.yaw_deg": ("deg", "turn of a sheet about its normal, as `yaw_deg` of the summary"),
+    "NAME.tension_max_n": ("N", "greatest tension of a sheet's sections along its way"),
+    "NAME.tension_min_n": ("N", "the least, below zero where one is pushed"),
     "NAME.omega_rad_per_s": ("rad/s", "speed of a roller about its axis"),
     "NAME.torque_n_mm": ("N mm", "torque that the drive of a roller gives about its axis"),
     "NAME.power_w": ("W", "power that it gives"),
     "NAME.contact_torque_n_mm": ("N mm", "torque of contacts on a roller about its axis"),
     "NAME.OTHER.tangential_n": ("N", "friction along a roller's surface, as it turns, by another part"),
+    "NAME.OTHER.drag_n": ("N", "friction of a plane, guide or mesh on a sheet, by its size"),
     "NAME.force_n": ("N", "sum of the normal forces on a roller, plane, guide or mesh"),
 }
 STATES: dict[str, tuple[str, str, str]] = {

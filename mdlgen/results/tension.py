@@ -90,17 +90,35 @@ def _along(result: Result, index: int, axis: int) -> Tension | None:
     starts = np.flatnonzero(np.concatenate([[True], line[1:] != line[:-1]]))
     law = _Law(model, joints, mine, axis)
     moves = _Moves(model, sheet, joints, mine, axis)
-    force = np.empty((len(result.time), len(starts)))
+    force, before = np.empty((len(result.time), len(starts))), None
     frames = max(1, _CHUNK // len(mine))
     for start in range(0, len(result.time), frames):
         part = slice(start, start + frames)
-        pull = law.springs(*stretched(result, part, mine, axis))
-        pull += law.damping * moves.parting(result, part)
+        parting, way = moves.rates(result, part)
+        more, less = stretched(result, part, mine, axis)
+        if result.solver == "lattice":
+            before, chord = way[:, -1:], _chords(result, part, before, way)
+            more, less = more - chord, less - chord
+        pull = law.springs(more, less) + law.damping * parting
         force[part] = np.add.reduceat(pull, starts, axis=1)
     far = float(np.abs(result.position[:, sheet.first : sheet.first + sheet.count]).max())
     least = _ROUNDINGS * np.finfo(float).eps * (far + max(sheet.size))
     force[np.abs(force) < least * np.add.reduceat(law.stiffness, starts)] = 0.0
     return Tension(axis, joints.at[mine[starts], axis], force)
+
+
+def _chords(result: Result, part: slice, before: Floats | None, way: Floats) -> Floats:
+    """By what strain joints are longer at stored states than halfway through a step, where lattice has its
+    forces, (t, n): what turns with w is a chord there, shorter by the part (w h)^2 / 8.
+
+    `way` are directions at these states, `before` those at the one before them; w is what they turn by from
+    one to the next. Spins of the states themselves are those of a flutter from step to step, too.
+    """
+    time = result.time[part]
+    first = (way[:, :1], time[0] - 1.0) if before is None else (before, result.time[part.start - 1])
+    turned = np.diff(np.concatenate([first[0], way], axis=1), axis=1)
+    lasts = np.diff(np.concatenate([[first[1]], time]))
+    return _dot(turned, turned) * (result.step**2 / 8.0 / lasts**2)[:, None]
 
 
 class _Law:
@@ -166,37 +184,60 @@ class _Moves:
             local = [np.einsum("nki,nk->ni", turned[at], v) for v in (frame[:, :, axis], origin - placed[at])]
             along, arm = (np.where(np.abs(v) > _NONE, v, 0.0) for v in local)
             self._sides.append((np.where(body == GROUND, sheet.count, body - sheet.first), along, arm))
+        self._held = bool((joints.a[mine] == GROUND).any())
+        # most joints lie along an axis of their bodies: then there is one column to work out
+        self._used = [k for k in range(3) if any(v[:, k].any() for side in self._sides for v in side[1:])]
 
-    def parting(self, result: Result, part: slice) -> Floats:
-        """Rate of the elongation [mm/ms], (t, n)."""
-        still = ((0, 0), (0, 0), (0, 1))  # the ground
+    def rates(self, result: Result, part: slice) -> tuple[Floats, Floats]:
+        """Rate of the elongation [mm/ms], (t, n), and the direction, (3, t, n)."""
         place, rate, spin = (
-            np.pad(np.moveaxis(values[part, self._boxes], 2, 0), still)
-            for values in (result.position, result.velocity, result.spin)
+            self._of_boxes(values, part) for values in (result.position, result.velocity, result.spin)
         )
-        turned = np.pad(np.moveaxis(result.rotation[part, self._boxes], 2, 0), still)
-        turned[0, :, -1] = 1.0
-        ends = [_end(place, rate, spin, turned, *side) for side in self._sides]
+        turned = self._of_boxes(result.rotation, part)
+        if self._held:
+            turned[0, :, -1] = 1.0  # the ground
+        columns = {k: np.moveaxis(column(np.moveaxis(turned, 0, -1), k), -1, 0) for k in self._used}
+        ends = [_end(place, rate, spin, columns, *side) for side in self._sides]
         (from_, slow, swing, way), (to, fast, spun, other) = ends
         # the frame halfway between both: what it differs from their mean by is of the second order in twist
         middle = way + other
-        gap, apart, turn = to - from_, fast - slow, 0.5 * (swing + spun)
-        apart = apart - _cross(turn, gap)
-        return self._way * (apart * middle).sum(axis=0) / np.sqrt((middle * middle).sum(axis=0))
+        middle /= np.sqrt(_dot(middle, middle))
+        # of the gap as seen from that frame, which turns with the mean of both
+        opens = _dot(fast - slow, middle) - 0.5 * _dot(swing + spun, _cross(to - from_, middle))
+        return self._way * opens, middle
+
+    def _of_boxes(self, values: Floats, part: slice) -> Floats:
+        """Of the sheet's boxes with components first, and of the ground behind them where it is held."""
+        own = np.moveaxis(values[part, self._boxes], 2, 0)
+        return np.pad(own, ((0, 0), (0, 0), (0, 1))) if self._held else np.ascontiguousarray(own)
 
 
 def _end(
-    place: Floats, rate: Floats, spin: Floats, turned: Floats, body: Ints, along: Floats, arm: Floats
+    place: Floats,
+    rate: Floats,
+    spin: Floats,
+    columns: dict[int, Floats],
+    body: Ints,
+    along: Floats,
+    arm: Floats,
 ) -> tuple[Floats, Floats, Floats, Floats]:
     """Of one end of joints: its place, its velocity, the spin of its body and its direction, (3, t, n)."""
-    used = [k for k in range(3) if along[:, k].any() or arm[:, k].any()]
-    columns = {k: np.moveaxis(column(np.moveaxis(turned, 0, -1), k), -1, 0).take(body, axis=2) for k in used}
-    way = sum((columns[k] * along[:, k] for k in used), np.zeros(1))
-    lever = sum((columns[k] * arm[:, k] for k in used), np.zeros(1))
+    way = lever = np.zeros(1)
+    for k, axes in columns.items():
+        axis = axes.take(body, axis=2)
+        way, lever = way + axis * along[:, k], lever + axis * arm[:, k]
     own = spin.take(body, axis=2)
     return place.take(body, axis=2) + lever, rate.take(body, axis=2) + _cross(own, lever), own, way
 
 
+def _dot(a: Floats, b: Floats) -> Floats:
+    """Of vectors with their components first."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
 def _cross(a: Floats, b: Floats) -> Floats:
     """Of vectors with their components first."""
-    return np.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+    found = np.empty(np.broadcast_shapes(a.shape, b.shape))
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        found[i] = a[j] * b[k] - a[k] * b[j]
+    return found
