@@ -248,14 +248,15 @@ class TestPicture:
         keys = [panel["key"] for panel in record["panels"]]
         assert keys == [
             "displacement", "speed", "drift", "yaw", "tilt", "force", "penetration", "omega", "torque",
-            "power", "traction", "strain", "curvature",
+            "power", "traction", "drag", "tension", "tension along", "strain", "curvature",
         ]  # fmt: skip
 
     def test_a_static_run_is_shown_before_and_after(self) -> None:
         result = ran("cantilever", "sheets.note.boxes=[2,8]")
         record = embedded(page([result]))[0]
         assert record["animation"]["static"] and len(record["animation"]["time"]) == 2
-        (panel,) = record["panels"]
+        panel, pulled = record["panels"]
+        assert pulled["key"] == "tension along"
         assert {line["name"] for line in panel["lines"]} == {"before", "after"}
         drop = result.summary()["probes"]["tip"]["displacement_mm"][2]
         lowest = min(float(numbers(line["y"], "<f4").min()) for line in panel["lines"])

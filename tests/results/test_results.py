@@ -91,7 +91,7 @@ class TestSummary:
         assert set(record["pairs"]) == {"possible", "kept", "searched", "touched"}
         assert set(record["sheets"]["note"]) == {
             "travel_mm", "speed_mm_per_s", "yaw_deg", "way_mm", "mean_speed_mm_per_s", "skew_deg",
-            "boxes", "bushings", "strain", "curvature", "twist",
+            "boxes", "bushings", "strain", "curvature", "twist", "tension",
         }  # fmt: skip
         assert set(record["probes"]["lead"]) == {"displacement_mm", "speed_mm_per_s"}
 
@@ -204,7 +204,7 @@ class TestFiles:
         with open(tmp_path / "series.csv", newline="") as stream:
             rows = list(csv.DictReader(stream))
         motion = ["x_mm", "y_mm", "z_mm", "vx_mm_per_s", "vy_mm_per_s", "vz_mm_per_s"]
-        columns = ["time_ms", *(f"note.{c}" for c in [*motion, "yaw_deg"])]
+        columns = ["time_ms", *(f"note.{c}" for c in [*motion, "yaw_deg", "tension_max_n", "tension_min_n"])]
         columns += [f"{p}.{c}" for p in ("grip", "lead") for c in motion]
         columns += [
             f"{r.name}.{c}" for r in result.model.rollers for c in ("z_mm", "omega_rad_per_s", "force_n")

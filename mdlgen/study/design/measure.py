@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 AXES = "xyz"
 # They differ from run to run of the same case; a study keeps them apart from its table.
 TIMES = ("wall_s", "estimate_s", "compile_s", "build_s")
-BEARING = ("strain", "curvature", "twist")
+BEARING = ("strain", "curvature", "twist", "tension")
 LEFT_OUT = ("error_estimate_of", "estimate_scales")
 MOST = 200  # measures
 _NAMED = re.compile(r"\s*([A-Za-z]\w{0,62})\s*=(?!=)(.*)", re.ASCII | re.DOTALL)
