@@ -155,6 +155,13 @@ SUMMARY: dict[str, tuple[str, str]] = {
         for part in ("rollers", "planes")
         for key, words in {
             "center_mm": ("mm", "centre at the end, [x, y, z]; of a plane only where it is pressed"),
+            "slide_mm": (
+                "mm",
+                "way of one that is pressed along its press direction at the end, from where it is given: it "
+                "falls as a sheet lifts it",
+            ),
+            "max_slide_mm": ("mm", "the greatest of the stored times"),
+            "min_slide_mm": ("mm", "the least of the stored times"),
             "max_penetration_mm": ("mm", "greatest depth in sheets"),
             "mean_penetration_mm": ("mm", "mean depth in sheets over the time in contact"),
         }.items()
@@ -198,6 +205,10 @@ SERIES: dict[str, tuple[str, str]] = {
     "NAME.tension_max_n": ("N", "greatest tension of a sheet's sections along its way"),
     "NAME.tension_min_n": ("N", "the least, below zero where one is pushed"),
     "NAME.omega_rad_per_s": ("rad/s", "speed of a roller about its axis"),
+    "NAME.slide_mm": (
+        "mm",
+        "way of a pressed roller or plate along its press direction, from where it is given",
+    ),
     "NAME.torque_n_mm": ("N mm", "torque that the drive of a roller gives about its axis"),
     "NAME.power_w": ("W", "power that it gives"),
     "NAME.contact_torque_n_mm": ("N mm", "torque of contacts on a roller about its axis"),

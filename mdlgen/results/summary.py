@@ -15,6 +15,7 @@ from mdlgen.results.compare import travel
 from mdlgen.results.drag import drags
 from mdlgen.results.estimates import complete
 from mdlgen.results.result import Result
+from mdlgen.results.slide import slide
 from mdlgen.results.tension import Tension
 from mdlgen.results.torques import (
     Grip,
@@ -265,7 +266,13 @@ def _pressing(result: Result, part: RollerPart | PlanePart) -> dict[str, Any]:
 
 
 def _centre(result: Result, part: RollerPart | PlanePart) -> dict[str, Any]:
-    return {"center_mm": result.position[-1, part.body] if len(result.time) else None}
+    """Where it is at the end, and of one that is pressed the way along its press direction, with its
+    extremes over the stored times."""
+    record: dict[str, Any] = {"center_mm": result.position[-1, part.body] if len(result.time) else None}
+    if (way := slide(result, part)) is not None:
+        numbers = (way[-1], way.max(), way.min()) if len(way) else (None, None, None)
+        record |= dict(zip(("slide_mm", "max_slide_mm", "min_slide_mm"), numbers, strict=True))
+    return record
 
 
 def _plane(result: Result, plane: PlanePart) -> dict[str, Any]:

@@ -11,8 +11,9 @@ import numpy as np
 
 from mdlgen.errors import SpecError, did_you_mean
 from mdlgen.model.parts.kinds import KINDS
-from mdlgen.model.tables import Floats, RollerPart
+from mdlgen.model.tables import Floats, PlanePart, RollerPart
 from mdlgen.results.drag import drags
+from mdlgen.results.slide import slide
 from mdlgen.results.torques import contact_torque, drive_power, drive_torque, grips
 from mdlgen.results.way import way_of
 from mdlgen.spec.require import Requirement, requirement
@@ -258,6 +259,10 @@ def _series(result: Result, path: str) -> Floats:
         if what in ("nip_force", "nip_force_n"):
             sides = zip(model.contacts.part_a, model.contacts.part_b, strict=True)
             return result.contact_force[:, [k for k, ends in enumerate(sides) if name in ends]].sum(axis=1)
+        if what in ("slide", "slide_mm") and isinstance(part := parts[name], RollerPart | PlanePart):
+            way = slide(result, part)
+            if way is not None:
+                return way
         for sheet, drag in drags(result, parts[name]).items():
             if what in (f"contacts.{sheet}.drag", f"contacts.{sheet}.drag_n"):
                 return drag
@@ -268,8 +273,8 @@ def _series(result: Result, path: str) -> Floats:
             return found
     raise ValueError(
         f"{path} is known at the end alone; over time there are yaw, skew, speed, travel, way and tension of "
-        "sheets, nip_force of parts, contacts.SHEET.drag of planes, guides and meshes, and omega, torque, "
-        "power, contact_torque and traction.OTHER.reserve of rollers"
+        "sheets, nip_force and slide of parts, contacts.SHEET.drag of planes, guides and meshes, and omega, "
+        "torque, power, contact_torque and traction.OTHER.reserve of rollers"
     )
 
 

@@ -247,8 +247,8 @@ class TestPicture:
             assert last["force", name] == pytest.approx(roller["nip_force_n"], rel=1e-6)
         keys = [panel["key"] for panel in record["panels"]]
         assert keys == [
-            "displacement", "speed", "drift", "yaw", "tilt", "force", "penetration", "omega", "torque",
-            "power", "traction", "drag", "tension", "tension along", "strain", "curvature",
+            "displacement", "speed", "drift", "yaw", "tilt", "force", "penetration", "slide", "omega",
+            "torque", "power", "traction", "drag", "tension", "tension along", "strain", "curvature",
         ]  # fmt: skip
 
     def test_a_static_run_is_shown_before_and_after(self) -> None:

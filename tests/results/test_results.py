@@ -207,7 +207,9 @@ class TestFiles:
         columns = ["time_ms", *(f"note.{c}" for c in [*motion, "yaw_deg", "tension_max_n", "tension_min_n"])]
         columns += [f"{p}.{c}" for p in ("grip", "lead") for c in motion]
         columns += [
-            f"{r.name}.{c}" for r in result.model.rollers for c in ("z_mm", "omega_rad_per_s", "force_n")
+            f"{r.name}.{c}"
+            for r in result.model.rollers
+            for c in ("z_mm", *["slide_mm"] * (r.press is not None), "omega_rad_per_s", "force_n")
         ]
         columns += [f"{plane.name}.force_n" for plane in result.model.planes]
         assert list(rows[0]) == columns

@@ -17,6 +17,7 @@ from mdlgen.mechanics.driven import clutch
 from mdlgen.model.lower import lower
 from mdlgen.results import torques
 from mdlgen.results.begun import begun_of
+from mdlgen.results.io.series import series
 from mdlgen.results.result import Result
 from mdlgen.results.verdict import judge
 from mdlgen.spec.load import loads
@@ -191,6 +192,34 @@ def test_a_file_of_an_older_version_has_no_torques(tmp_path: Path) -> None:
     again = Result.load(tmp_path)
     assert again.contact_torque is None and np.isnan(again.rollers["motor"].torque)
     assert again.summary()["rollers"]["motor"]["max_torque_n_mm"] is None
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+@pytest.mark.parametrize("place", [(0.0, 0.0, 30.0), (18.0, 0.0, 24.0)])
+def test_a_pressed_roller_stands_where_its_spring_and_its_contact_balance(
+    solver: str, place: tuple[float, float, float]
+) -> None:
+    """3000 N/mm^1.5 d^1.5 = 3 N - 5 N/mm d, along the direction of its press, which may lean."""
+    towards = [-x / 30.0 for x in place]
+    press = f"{{direction: {towards}, stiffness: 5 N/mm, preload: 3 N, damping_ratio: 0.5}}"
+    center = f"[{place[0]} mm, {place[1]} mm, {place[2]} mm]"
+    asked = (
+        'require=["rollers.top.slide from 9.8 um to 9.95 um throughout", "rollers.top.max_slide below 9 um"]'
+    )
+    result = run(PAIR, solver, f"rollers.top.press={press}", f"rollers.top.center={center}", asked)
+    depth = DEPTH
+    for _ in range(20):
+        depth = ((3.0 - 5.0 * depth) / 3000.0) ** (2 / 3)
+    record = result.summary()["rollers"]["top"]
+    # the run starts in balance and friction of the ramp is across the slide
+    assert record["slide_mm"] == pytest.approx(depth, rel=1e-3)
+    way = series(result)["top.slide_mm"]
+    assert (record["max_slide_mm"], record["min_slide_mm"]) == (way.max(), way.min())
+    assert way == pytest.approx(
+        (np.array(place) - result.position[:, result.model.roller("top").body]) @ place / 30
+    )
+    assert [one.passed for one in judge(result, result.summary())] == [True, False]
+    assert "slide_mm" not in result.summary()["rollers"]["motor"]
 
 
 def test_what_is_on_a_roller_turns_it(tmp_path: Path) -> None:

@@ -285,7 +285,7 @@ def test_what_a_run_tells_of_it(stack: dict[str, Result]) -> None:
     at = np.arange(len(result.time))
     shown = panels(result, at, np.zeros((len(at), len(result.model.contacts))), None)
     lines = {p.key: [line.name for line in p.lines] for p in shown}
-    assert lines["force"] == lines["penetration"] == ["feed", "plate"] and lines["plate"] == ["plate"]
+    assert lines["force"] == lines["penetration"] == ["feed", "plate"] and lines["slide"] == ["plate"]
     assert plate.body in moving(result.model)
 
 

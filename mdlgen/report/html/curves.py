@@ -11,6 +11,7 @@ from mdlgen.report.animation import thinned
 from mdlgen.results.compare import travel
 from mdlgen.results.drag import drags
 from mdlgen.results.result import Result
+from mdlgen.results.slide import slide
 from mdlgen.results.strain import SheetJoints
 from mdlgen.results.summary import PER_SECOND, part_rows
 from mdlgen.results.torques import drive_power, drive_torque, grips, over_time
@@ -115,7 +116,8 @@ def _rollers(result: Result, at: Ints, deep: Floats) -> list[Panel]:
     each = "each roller and spring plate" if plates else "each roller"
     force = Panel("force", f"Normal force on {each}", "N")
     depth = Panel("penetration", f"Penetration of sheets into {each}", "mm")
-    place = Panel("plate", "Way of each spring plate along its slide, from where it is given", "mm")
+    place = Panel("slide", f"Way of {each} that is pressed along its press direction", "mm")
+    place.note = "from where it is given; it falls as a sheet lifts the part"
     spin = Panel("omega", "Speed of each roller", "rad/s")
     depth.note = "of the deepest box at stored states; the table has the greatest over every step"
     for part in (*result.model.rollers, *(plate for plate, _ in plates)):
@@ -126,9 +128,9 @@ def _rollers(result: Result, at: Ints, deep: Floats) -> list[Panel]:
             force.lines.append(Line(part.name, result.time[thin], y[thin]))
         if sheets:
             depth.lines.append(Line(part.name, result.time[at], deep[:, sheets].max(axis=1)))
-    for plate, press in plates:
-        way = (result.position[thin, plate.body] - plate.center) @ press.direction
-        place.lines.append(Line(plate.name, result.time[thin], way))
+        way = slide(result, part)
+        if way is not None:
+            place.lines.append(Line(part.name, result.time[thin], way[thin]))
     for roller in result.model.rollers:
         omega = result.spin[:, roller.body] @ roller.axis * PER_SECOND
         spin.lines.append(Line(roller.name, result.time[thin], omega[thin]))

@@ -7,6 +7,7 @@ import numpy as np
 from mdlgen.model.tables import Floats, MachinePart, PlanePart, RollerPart
 from mdlgen.results.drag import drags
 from mdlgen.results.result import Result
+from mdlgen.results.slide import slide
 from mdlgen.results.summary import PER_SECOND, part_rows
 from mdlgen.results.torques import contact_torque, drive_power, drive_torque, grips
 
@@ -47,16 +48,19 @@ def series(result: Result) -> dict[str, Floats]:
 
 
 def _places(result: Result, part: RollerPart | PlanePart) -> dict[str, Floats]:
-    """z of its centre, and x and y where it may move along them: on its slide, or round its arm's pivot."""
+    """z of its centre, and x and y where it may move along them: on its slide, or round its arm's pivot; and
+    its way along its press direction."""
     moves = np.zeros(3) if part.press is None else np.abs(part.press.direction)
     if isinstance(part, RollerPart) and part.arm is not None:
         moves = 1.0 - np.abs(part.axis)
     places = result.position[:, part.body]
-    return {
+    table = {
         f"{part.name}.{axis}_mm": places[:, k]
         for k, axis in enumerate("xyz")
         if axis == "z" or moves[k] > SLIGHT
     }
+    way = slide(result, part)
+    return table if way is None else table | {f"{part.name}.slide_mm": way}
 
 
 def _motion(name: str, place: Floats, rate: Floats) -> dict[str, Floats]:
