@@ -18,7 +18,7 @@ import numpy as np
 
 from mdlgen.backends.lattice.kernels.band import empty as no_band
 from mdlgen.backends.lattice.kernels.band import factor, solve
-from mdlgen.backends.lattice.kernels.between import FRESH, STEADY, contact_points, near_forces
+from mdlgen.backends.lattice.kernels.between import contact_points, near_forces
 from mdlgen.backends.lattice.kernels.bordered import eliminate
 from mdlgen.backends.lattice.kernels.condensed import (
     APART,
@@ -156,10 +156,9 @@ def _turn(nodes, r, res, inward):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _contact_forces(work, close, known, part, whole):
+def _contact_forces(work, close, known, whole):
     """Adds the forces of contacts to those of the midpoint, where `known` from what the contact solve last
-    evaluated; overlaps of boxes may have moved by `part` of a box; `whole`: with all contact points. Returns
-    (how many pairs touch, dissipated power)."""
+    evaluated; `whole`: with all contact points. Returns (how many pairs touch, dissipated power)."""
     mid, condensed = work.mid, work.condensed
     if known:
         again = (condensed.touched, condensed.results, condensed.looked[TOUCHED], condensed.seen)
@@ -167,7 +166,7 @@ def _contact_forces(work, close, known, part, whole):
             work.tables, mid.near, close, again, mid.motion, mid.forces, mid.touched, mid.results
         )
     elif work.search.regions.size > 0:
-        count, rubbed = near_forces(work, close, part, whole)
+        count, rubbed = near_forces(work, close, whole)
     else:
         count, _stored, rubbed = pair_forces(
             work.tables, mid.near, close, mid.motion, mid.forces, mid.touched, mid.results
@@ -253,8 +252,7 @@ def midpoint(work, t, dt, tolerance, control):
         mid.forces[:] = 0.0
         _stored, lost, numerical = joint_forces(tables.joints, tables.points, mid.motion, mid.forces, lag)
         known = iteration > 0 and where == APART and condensed.looked[UP_TO_DATE] == 1
-        moving = FRESH if iteration == 0 else STEADY
-        count, rubbed = _contact_forces(work, close, known, moving, False)
+        count, rubbed = _contact_forces(work, close, known, False)
         power = other_forces(tables, 1.0, mid.motion, mid.forces)
         _weights(bodies, tables.gravity, mid.forces)
         clutch_torques(bodies, t + h, state.ub, mid.forces)
@@ -317,7 +315,7 @@ def midpoint(work, t, dt, tolerance, control):
             # forces change much with what the last iteration changed: friction, over its smoothing speed
             place(tables, h, t + h, state, mid.motion)
             mid.forces[:] = 0.0
-            count, rubbed = _contact_forces(work, close, False, STEADY, True)
+            count, rubbed = _contact_forces(work, close, False, True)
             mid.totals[LOST], mid.totals[POWER], mid.totals[NUMERICAL] = lost + rubbed, power, numerical
             counters[TOUCHING], counters[CLOSE] = count, close
             release(condensed, m)
