@@ -12,13 +12,15 @@ from mdlgen.results.result import Result
 
 SAMPLE = "pile"
 STEP = 0.1  # [ms]
-DURATION, QUICK = 100.0, 5.0  # [ms]
+DURATION, QUICK = 100.0, 20.0  # [ms]
 GRID = (10, 20)
 COUNTS = {"rest": (5, 20), "fed": (5, 20, 100)}
 TALL = 0.1  # of a note [mm]
 # The middle of the roller over the face of the uppermost note, and where it touches nothing [mm].
 ABOVE, AWAY = 12.4, 250.0
 CREEP = 10.0  # [um/s] that a pile at rest may move by
+STIFFNESS = "100 N/mm^1.5"  # soft enough for that step
+CONTACT = f"{{stiffness: {STIFFNESS}, restitution: 0.5, friction: 0.3, smoothing: 1 mm/s}}"
 LIMIT = 1800.0  # [s]
 
 
@@ -33,6 +35,8 @@ def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
                 f"piles.cassette.count={count}",
                 f"sheets.note.boxes=[{GRID[0]},{GRID[1]}]",
                 f"rollers.pick.center=[0 mm, 0 mm, {middle:g} mm]",
+                f"piles.cassette.contact={CONTACT}",
+                f"contacts.floor.stiffness={STIFFNESS}",
                 "rollers.pick.drive={speed: 25 rad/s, ramp: 10 ms}",
                 f"contacts.pick.between=[cassette_{count}, pick]",
                 f"probes.lead.sheet=cassette_{count}",
