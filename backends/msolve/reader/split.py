@@ -6,6 +6,7 @@ import ast
 import re
 from typing import Any, NamedTuple
 
+from mdlgen.altair.literals import literal, name_of, without_notes, wrong
 from mdlgen.backends.msolve.environment import environment
 from mdlgen.errors import Place, SpecError
 
@@ -34,21 +35,21 @@ def split(text: str, file: str) -> Script:
     values: dict[str, Any] = {}
     rest: list[ast.stmt] = []
     for statement in tree.body:
-        name = _name(statement)
-        if name not in TABLES or len(_without_notes(rest)) != _IMPORTS:  # values stand below the imports
+        name = name_of(statement)
+        if name not in TABLES or len(without_notes(rest)) != _IMPORTS:  # values stand below the imports
             rest.append(statement)
             continue
         assert isinstance(statement, ast.Assign)
         if name in values:
-            raise _wrong(f"{name} is given twice", statement, file)
-        values[name] = _literal(statement, file)
+            raise wrong(f"{name} is given twice", statement, file)
+        values[name] = literal(statement, file)
     for name in _ALWAYS:
         if name not in values:
             raise SpecError(
                 f"there is no {name} below its imports: this is no script of mdlgen", place=Place(file, 1, 1)
             )
     program = _program(values)
-    same = ast.dump(ast.Module(_without_notes(rest), [])) == ast.dump(ast.parse(_HEAD + program))
+    same = ast.dump(ast.Module(without_notes(rest), [])) == ast.dump(ast.parse(_HEAD + program))
     return Script(values, program, same)
 
 
@@ -70,31 +71,3 @@ def _parsed(text: str, file: str) -> ast.Module:
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         place = Place(file, getattr(error, "lineno", None) or 1, getattr(error, "offset", None) or 1)
         raise SpecError(f"this is no Python: {error}", place=place) from None
-
-
-def _name(statement: ast.stmt) -> str:
-    if isinstance(statement, ast.Assign) and len(statement.targets) == 1:
-        target = statement.targets[0]
-        return target.id if isinstance(target, ast.Name) else ""
-    return ""
-
-
-def _literal(statement: ast.Assign, file: str) -> Any:
-    try:
-        return ast.literal_eval(statement.value)
-    except (ValueError, TypeError, RecursionError, MemoryError, SyntaxError):
-        raise _wrong(
-            "only plain numbers, texts, lists and tables are due here", statement.value, file
-        ) from None
-
-
-def _wrong(message: str, node: ast.AST, file: str) -> SpecError:
-    place = Place(file, getattr(node, "lineno", 1), getattr(node, "col_offset", 0) + 1)
-    return SpecError(message, place=place)
-
-
-def _without_notes(statements: list[ast.stmt]) -> list[ast.stmt]:
-    """Without the text at the head, which is for people."""
-    if statements and isinstance(statements[0], ast.Expr) and isinstance(statements[0].value, ast.Constant):
-        return statements[1:]
-    return statements

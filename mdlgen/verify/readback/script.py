@@ -7,6 +7,7 @@ import math
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
+from mdlgen.altair.literals import literal, name_of, without_notes, wrong
 from mdlgen.errors import Place, SpecError
 
 DEFAULT_SMOOTHING = 1.0  # of a contact that nothing gives one [mm/s]
@@ -72,41 +73,22 @@ def read(text: str, file: str = "<script>") -> Script:
     data: dict[str, Any] = {}
     rest: list[ast.stmt] = []
     for statement in tree.body:
-        name = _name(statement)
+        name = name_of(statement)
         if name not in _DATA:
             rest.append(statement)
             continue
         assert isinstance(statement, ast.Assign)
         if name in data:
-            raise _wrong(f"{name} is given twice", statement, file)
-        data[name] = _literal(statement, file)
+            raise wrong(f"{name} is given twice", statement, file)
+        data[name] = literal(statement, file)
     try:
         contacts = _contacts(data.get("CONTACTS", []))
     except ValueError as error:
-        raise _wrong(str(error), tree.body[0], file) from None
+        raise wrong(str(error), tree.body[0], file) from None
     system = data.get("SYSTEM")
     if not isinstance(system, str | None):
-        raise _wrong("SYSTEM is a text", tree.body[0], file)
-    return Script(contacts, ast.dump(ast.Module(_without_notes(rest), [])), system)
-
-
-def _name(statement: ast.stmt) -> str:
-    if isinstance(statement, ast.Assign) and len(statement.targets) == 1:
-        target = statement.targets[0]
-        return target.id if isinstance(target, ast.Name) else ""
-    return ""
-
-
-def _literal(statement: ast.Assign, file: str) -> Any:
-    try:
-        return ast.literal_eval(statement.value)
-    except (ValueError, TypeError, RecursionError, MemoryError, SyntaxError):
-        raise _wrong("only plain numbers, texts and lists are due here", statement.value, file) from None
-
-
-def _wrong(message: str, node: ast.AST, file: str) -> SpecError:
-    place = Place(file, getattr(node, "lineno", 1), getattr(node, "col_offset", 0) + 1)
-    return SpecError(message, place=place)
+        raise wrong("SYSTEM is a text", tree.body[0], file)
+    return Script(contacts, ast.dump(ast.Module(without_notes(rest), [])), system)
 
 
 def _contacts(value: Any) -> dict[str, dict[str, float | Followed]]:
@@ -142,10 +124,3 @@ def _number(value: Any) -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
         raise ValueError(f"{value!r} is no number")
     return float(value)
-
-
-def _without_notes(statements: list[ast.stmt]) -> list[ast.stmt]:
-    """Without the text at the head, which is for people."""
-    if statements and isinstance(statements[0], ast.Expr) and isinstance(statements[0].value, ast.Constant):
-        return statements[1:]
-    return statements
