@@ -15,6 +15,9 @@ import numpy as np
 from mdlgen.model.tables import BOX_CYLINDER, Contacts, Floats, RollerPart, SheetPart
 
 PARALLEL = 0.985  # cosine of 10 degrees
+# Of a sheet's thickness: a wider gap between two rollers has room for it.
+GAP = 2.0
+LEAST = 1e-12
 
 
 def spreads(sheets: tuple[SheetPart, ...], rollers: tuple[RollerPart, ...], contacts: Contacts) -> Floats:
@@ -54,13 +57,46 @@ def _groups(rollers: list[RollerPart], thickness: float) -> Iterator[list[int]]:
 
 
 def _face(one: RollerPart, other: RollerPart, thickness: float) -> bool:
-    """Whether two rollers are parallel, overlap along their axes and stand less apart than the smaller one's
-    radius, over the sheet's thickness: they may be lifted, or come down on a slide or an arm."""
+    """Whether two rollers are parallel, overlap along their axes and may have the sheet between them.
+
+    Those that stand still have it where their gap is not above GAP times its thickness; neighbours along a
+    path, a few millimetres apart, do not. One that moves may be lifted by the smaller one's radius, and has
+    to come that near on its slide or arm.
+    """
     if abs(float(one.axis @ other.axis)) < PARALLEL:
         return False
     gap = other.center - one.center
     along = float(gap @ one.axis)
     if abs(along) >= 0.5 * (one.width + other.width):
         return False
-    apart = float(np.linalg.norm(gap - along * one.axis)) - one.radius - other.radius
-    return apart < thickness + min(one.radius, other.radius)
+    radii = one.radius + other.radius
+    apart = float(np.linalg.norm(gap - along * one.axis)) - radii
+    lifted = apart < thickness + min(one.radius, other.radius)
+    return lifted and _nearest(one, other) - radii <= GAP * thickness
+
+
+def _nearest(one: RollerPart, other: RollerPart) -> float:
+    """How near the axes of two parallel rollers may come to each other on their slides and arms [mm]."""
+    moving = [roller for roller in (one, other) if roller.press is not None or roller.arm is not None]
+    gap = _across(other.center - one.center, one)
+    if not moving:
+        return float(np.linalg.norm(gap))
+    ways = [_across(roller.press.direction, one) for roller in moving if roller.press is not None]
+    if len(moving) == 2 and not (len(ways) == 2 and _parallel(*ways)):
+        return 0.0  # two that move on different ways may meet
+    first = moving[0]
+    if first.arm is not None:
+        still = other if first is one else one
+        reach = float(np.linalg.norm(_across(first.center - first.arm.pivot, one)))
+        return abs(float(np.linalg.norm(_across(still.center - first.arm.pivot, one))) - reach)
+    way = ways[0] / max(float(np.linalg.norm(ways[0])), LEAST)
+    return float(np.linalg.norm(gap - (gap @ way) * way))
+
+
+def _across(vector: Floats, roller: RollerPart) -> Floats:
+    """The part of a vector that is square to the roller's axis."""
+    return vector - (vector @ roller.axis) * roller.axis
+
+
+def _parallel(one: Floats, other: Floats) -> bool:
+    return abs(float(one @ other)) > PARALLEL * float(np.linalg.norm(one) * np.linalg.norm(other))

@@ -74,3 +74,50 @@ def test_rollers_round_one_drum_are_one_group() -> None:
         "top": 1.0,
         "far": 1.0,
     }
+
+
+PRESS = "{direction: -z, preload: 5 N, stiffness: 1 N/mm}"
+SMALL = "rollers.low.radius=4 mm", "rollers.low.center=[0 mm, 0 mm, -4.05 mm]"
+
+
+@pytest.mark.parametrize(
+    "far",
+    [
+        # neighbours along the way of the sheet, fewer millimetres apart than their radii
+        ("rollers.far.center=[14 mm, 0 mm, 6.05 mm]",),
+        ("rollers.far.center=[18 mm, 0 mm, -6.05 mm]",),
+        (
+            "rollers.far.center=[14 mm, 0 mm, 6.05 mm]",
+            f"rollers.far.press={PRESS}",
+        ),
+        (
+            "rollers.far.center=[14 mm, 0 mm, 6.05 mm]",
+            f"rollers.far.press={PRESS}",
+            f"rollers.top.press={PRESS}",
+        ),
+        (
+            "rollers.far.center=[14 mm, 0 mm, 6.05 mm]",
+            "rollers.far.arm={pivot: [34 mm, 0 mm, 9 mm], mass: 3 g, torque: 6 N*mm}",
+        ),
+    ],
+)
+def test_neighbours_along_a_path_do_not_face_each_other(far: tuple[str, ...]) -> None:
+    """A harder one beside two that are alike leaves these their radius."""
+    found = spread(*SMALL, "contacts.hard.stiffness=200 N/mm^1.5", *far)
+    assert found == {"low": pytest.approx(4.0, rel=1e-14), "top": pytest.approx(4.0, rel=1e-14), "far": 0.0}
+
+
+@pytest.mark.parametrize(
+    "top",
+    [
+        (),
+        (f"rollers.top.press={PRESS}",),
+        ("rollers.top.arm={pivot: [-20 mm, 0 mm, 4.05 mm], mass: 3 g, torque: 6 N*mm}",),
+        (
+            "rollers.top.center=[0 mm, 0 mm, 6 mm]",
+            f"rollers.top.press={PRESS}",
+        ),
+    ],
+)
+def test_one_that_is_pressed_faces_the_other(top: tuple[str, ...]) -> None:
+    assert spread(*top)["top"] > 0.0
