@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import re
 from copy import deepcopy
+from functools import lru_cache
 from typing import Any
 
 from ruamel.yaml import YAML
@@ -26,6 +27,7 @@ from mdlgen.errors import Place, SpecError
 from mdlgen.spec.limits import DEFAULT, Limits
 
 MAX_DEPTH = 40
+_KEPT = 20_000  # characters of a text that is kept as parsed: some MB for all of them
 SpecPath = tuple[str | int, ...]
 
 _INT = re.compile(r"[-+]?[0-9]{1,18}")
@@ -67,6 +69,15 @@ class Document:
 
 def parse(text: str, file: str, limits: Limits = DEFAULT) -> Document:
     """Plain data with places; no anchors, tags, duplicate keys, or more than the stated limits."""
+    return _kept(text, file, limits).copy() if len(text) <= _KEPT else _parsed(text, file, limits)
+
+
+@lru_cache(maxsize=64)  # one text is often read with one value changed after the other
+def _kept(text: str, file: str, limits: Limits) -> Document:
+    return _parsed(text, file, limits)
+
+
+def _parsed(text: str, file: str, limits: Limits) -> Document:
     places: dict[SpecPath, Place] = {}
     keys: dict[SpecPath, Place] = {}
     result: list[Any] = []

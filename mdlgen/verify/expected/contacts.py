@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
 from mdlgen.altair.recorded import called, recorded
@@ -22,10 +24,9 @@ CONTACT_NUMBERS = (
 )
 
 
-def masters(model: Model) -> Table:
-    """The side of each contact whose surface the solver must take as the master: a cylinder against another
-    shape (paper, 3.1). Elsewhere the solver chooses."""
-    rows = contacts(model)
+def masters(rows: Table) -> Table:
+    """The side of each of `contacts` whose surface the solver must take as the master: a cylinder against
+    another shape (paper, 3.1). Elsewhere the solver chooses."""
     found = []
     for words in rows.words:
         rounds = [any(name.startswith("gcyl_") for name in side) for side in (words[4:5], words[5:])]
@@ -61,15 +62,17 @@ def contacts(model: Model) -> Table:
     )
     machine = {part.body: part for part in model.machine}
 
-    def shown(body: int, side: Side) -> list[str]:
+    @cache  # most bodies meet many
+    def end(body: int, side: Side) -> tuple[str, list[str]]:
         part = machine.get(body)
-        return [f"gbox_{bodies.name[body]}"] if part is None else kind_of(part).graphics(part, side)
+        shown = [f"gbox_{bodies.name[body]}"] if part is None else kind_of(part).graphics(part, side)
+        return body_name(model, body), shown
 
     names, words = [], []
     for m in met:
         a, b = int(pairs.a[m.pair]), int(pairs.b[m.pair])
         names.append(f"con_{bodies.name[a]}_{bodies.name[b]}{m.suffix}")
-        ends = [(body_name(model, a), shown(a, m.a)), (body_name(model, b), shown(b, m.b))]
+        ends = [end(a, m.a), end(b, m.b)]
         if len(ends[0][1]) > 1:  # the first side of a statement has one graphic
             ends.reverse()
         words.append((ends[0][0], ends[1][0], *ends[0][1], *ends[1][1]))

@@ -92,8 +92,9 @@ class Subject:
     def said(self, model: Model | None = None) -> dict[str, Table]:
         """What must be said of a Model."""
         model = model or self.model
-        said = expected(model, self.times) | {"data": data(model), "contacts": contacts(model)}
-        said |= {"run": run(model), "gravity": gravity(model), "units": units(), "masters": masters(model)}
+        rows = contacts(model)
+        said = expected(model, self.times) | {"data": data(model), "contacts": rows, "masters": masters(rows)}
+        said |= {"run": run(model), "gravity": gravity(model), "units": units()}
         return of_sheets(said, model, self.text is not None) if self.only else said
 
     def reads(self, set_contact: bool) -> list[Read]:

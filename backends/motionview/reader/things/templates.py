@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from typing import Any
+from functools import lru_cache
+from typing import Any, NamedTuple
 
 from mdlgen.backends.motionview.reader.operators import shown
 from mdlgen.backends.motionview.reader.report import Trouble
@@ -49,38 +50,34 @@ class Template(Thing):
     def p_pasted(self) -> str | None:
         """Its text where that holds nothing but values and variables; None where it has other statements."""
         body = self.ask("body")
-        if body is None or "{" in (plain := _BRACES.sub("", body)) or "}" in plain:
+        cut = None if body is None else _cut(body)
+        if cut is None:
             return None
+        pieces, end = cut
         definition = self.world.program.definitions[self.statement.arg(3)]
         given = dict(zip(definition.parameters, self.statement.args[4:], strict=False))
         renamed = {name: actual for name, actual in given.items() if name != actual}
         variables: dict[str, Any] = {}
-        out, at, usual = [], 0, USUAL
-        for match in _BRACES.finditer(body):
-            out.append(body[at : match.start()])
-            at = match.end()
-            text, form = match[1].strip(), usual
-            if (own := _PRINT.fullmatch(text)) is not None:
-                text, form = own[1].strip(), own[2]
-                if text == "format":
-                    usual = form
-                    continue
-            made = _ASSIGNMENT.fullmatch(text)
-            if made is not None:
-                text = made[2]
-            elif text in variables:
+        printed: dict[tuple[str, str], str] = {}  # many elements have the same values
+        out = []
+        for before, text, form, into in pieces:
+            out.append(before)
+            if into is None and text in variables:
                 out.append(_printed(variables[text], form))
                 continue
-            if _OWN.match(text) or variables.keys() & set(_NAMES.findall(text)):
-                return None
-            if renamed:
-                text = _NAMES.sub(lambda name: renamed.get(name[0], name[0]), text)
-            value = self._value(text)
-            if made is not None:
-                variables[made[1]] = value
-            else:
-                out.append(_printed(value, form))
-        return "".join([*out, body[at:]])
+            done = printed.get((text, form)) if into is None else None
+            if done is None:
+                if _OWN.match(text) or variables.keys() & set(_NAMES.findall(text)):
+                    return None
+                named = _NAMES.sub(lambda name: renamed.get(name[0], name[0]), text) if renamed else text
+                value = self._value(named)
+                if into is not None:
+                    variables[into] = value
+                    printed.clear()
+                    continue
+                done = printed[text, form] = _printed(value, form)
+            out.append(done)
+        return "".join([*out, end])
 
     def _value(self, text: str) -> Any:
         values = self.scope.values
@@ -104,6 +101,36 @@ class Template(Thing):
             "arguments": self.statement.args[3:],
             "text": self.ask("pasted"),
         }
+
+
+class _Piece(NamedTuple):
+    """The text between two values, and what stands in the braces behind it."""
+
+    before: str
+    text: str
+    form: str
+    into: str | None  # a variable that takes the value, which is not printed then
+
+
+@lru_cache(maxsize=4)  # a text is read again for each value of it that is changed
+def _cut(body: str) -> tuple[list[_Piece], str] | None:
+    """A template at its braces, and the text behind the last of them; None where braces are in each other."""
+    if "{" in (plain := _BRACES.sub("", body)) or "}" in plain:
+        return None
+    pieces, before, at, usual = [], "", 0, USUAL
+    for match in _BRACES.finditer(body):
+        before += body[at : match.start()]
+        at = match.end()
+        text, form = match[1].strip(), usual
+        if (own := _PRINT.fullmatch(text)) is not None:
+            text, form = own[1].strip(), own[2]
+            if text == "format":
+                usual = form
+                continue
+        made = _ASSIGNMENT.fullmatch(text)
+        pieces.append(_Piece(before, text if made is None else made[2], form, made[1] if made else None))
+        before = ""
+    return pieces, before + body[at:]
 
 
 def _printed(value: Any, form: str) -> str:
