@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import codes
 import commands
+import forms
 import gallery
 import outputs
 import scene
@@ -17,6 +18,7 @@ def pages() -> dict[str, str]:
         "reference/commands.md": commands.page(),
         "reference/codes.md": codes.page(),
         "reference/summary.md": outputs.summary_page(),
+        "motionview/unverified.md": forms.page(),
         "gallery/index.md": gallery.page(),
         "../mdlgen/__init__.pyi": stub.stub(),
     }

@@ -15,7 +15,8 @@ def refuse_rolling(model: Model, who: str) -> None:
             one, two = model.contacts.part_a[row], model.contacts.part_b[row]
             raise RefusedError(
                 f"{who}: the contact of {one} and {two} has a rolling_resistance of {value:g}, a couple that "
-                "follows the normal force, and no statement with a documented meaning says that; run it "
-                "locally, or leave rolling_resistance out",
+                "follows the normal force; it needs the index of that force in the function CONTACT, which "
+                "stands in a part of Altair's page contact.htm that could not be read; run it locally, or "
+                "leave rolling_resistance out",
                 ("contacts", int(model.contacts.entry[row]), "rolling_resistance"),
             )

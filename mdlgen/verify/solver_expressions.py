@@ -1,4 +1,4 @@
-"""Solver expressions, evaluated: the laws of drives over time, and outputs in a made-up state of motion.
+"""Solver expressions, evaluated: laws of drives and clutches over time, and outputs in a made-up state.
 
 An output is a formula of markers. Whether it reads the right ones is seen by numbers: each body gets a
 displacement, a velocity and a spin of its own, made from its name, and the formula must give what these
@@ -103,6 +103,17 @@ def law(text: str, time: float) -> float:
         raise Unreadable(f"{name} in a law of time")
 
     return _value(text, {"time": time, "pi": math.pi}, none)
+
+
+def torque(text: str, time: float, spin: float) -> float:
+    """Value of a clutch's expression at a time [s] and a spin about z [rad/s]. Raises Unreadable."""
+
+    def measure(name: str, names: list[str]) -> float:
+        if name != "WZ":
+            raise Unreadable(f"{name} in a clutch")
+        return spin
+
+    return _value(text, {"time": time, "pi": math.pi}, measure)
 
 
 _MEASURES = tuple(f"{kind}{axis}" for kind in "DVW" for axis in "XYZ")

@@ -59,10 +59,6 @@ def is_moving(sheet: Spec) -> bool:
     return any(float(v.split()[0]) != 0.0 for v in (*sheet["velocity"], *sheet["spin"]))
 
 
-def is_turned(sheet: Spec) -> bool:
-    return any(float(a.split()[0]) != 0.0 for a in (*sheet.get("rotation", []), sheet.get("turn", "0 deg")))
-
-
 def possible_pairs(scene: Spec) -> int:
     """Pairs of bodies of all pairs of parts that the contacts name."""
     size = {n: s["boxes"][0] * s["boxes"][1] for n, s in scene["sheets"].items()}
@@ -127,7 +123,7 @@ def expected_counts(scene: Spec, pairs: int) -> Counter[str]:
     sets += sum("at" in p for p in probes)
     bodies = boxes + len(machine) + pressed + len(plates)
     points = boxes + nodes + pressed + sprung + sum(map(len, (table, machine, plates, probes, supports)))
-    aligned = sum(not is_turned(s) for s in table)
+    angled = sum("rotation" in s for s in table)
     return +Counter(
         {
             "BeginMDL": 1,
@@ -138,14 +134,15 @@ def expected_counts(scene: Spec, pairs: int) -> Counter[str]:
             **{"BeginContext": 1, "EndContext": 1, "SetOption": 5},  # gravity and units
             "Template": 1,
             "DefineTemplate": 1,
+            **{"System": 1, "DefineSystem": 1},  # run settings
             "DefineDataSet": sets,
             "DataSet": sets,
-            "EndDefine": sets + 1,
+            "EndDefine": sets + 2,
             "Point": points,
             "SetPoint": points,
             "Marker": len(table) + marked + sum(surfaces),
-            "Vector": pressed + sprung + own + own_normals,
-            "SetVector": pressed + sprung + own + own_normals,
+            "Vector": pressed + sprung + own + own_normals + len(table) + angled,
+            "SetVector": pressed + sprung + own + own_normals + len(table) + angled,
             "Body": bodies,
             "SetBodyInertia": bodies,
             "SetBodyIC": moving,
@@ -162,8 +159,6 @@ def expected_counts(scene: Spec, pairs: int) -> Counter[str]:
             "Graphic": bodies - pressed,
             "DeformableSurface": len(surfaces),
             "SetOrientation": len(table) + boxes + joints + len(machine) + len(tilted),
-            "if": aligned,
-            "endif": aligned,
             "Contact": pairs,
             "Output": len(probes) + len(machine) + sprung,
         }

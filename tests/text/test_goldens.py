@@ -84,6 +84,12 @@ ROLLERS = _put(
         "swung": ROLLER | {"arm": {"pivot": ["-30 mm", "0 mm", "-5 mm"], "mass": "8 g", "torque": "60 N*mm"}},
         "held": ROLLER
         | {"axis": "x", "arm": {"pivot": ["0 mm", "9 mm", "0 mm"], "mass": "2 g", "inertia": "90 g*mm^2"}},
+        "freed": ROLLER | {"one_way": {"direction": 1, "torque": "4 N*mm"}},
+        "overrun": ROLLER
+        | {
+            "drive": DRIVE | {"ramp": "5 ms"},
+            "one_way": {"direction": -1, "torque": "2 N*mm", "creep": "3 rad/s"},
+        },
         "stopped": ROLLER | {"drive": {"profile": [["1 ms", "90 rad/s"], ["2 ms", "-9 rad/s"]]}},
     },
 )

@@ -110,13 +110,3 @@ def test_editing_one_of_three_angles_turns_the_whole_sheet_and_back(axis):
     follows(text, aligned)
     follows(edited(text, value, 20.0), turned)
     follows(edited(motionview.emit(turned), value, 0.0), aligned)
-
-
-def test_an_aligned_sheet_is_oriented_only_once_it_is_turned():
-    text = motionview.emit(model_of("transport_4x4.yaml", SMALL))
-    outside = re.sub(r"^  \*if\(.*?^  \*endif\(\)$", "", text, flags=re.M | re.S)
-    assert not re.search(r"\*SetOrientation\( (bsh_|b_note)", outside)
-    assert text.count("*if( ds_note.real_turn.value != 0 )") == text.count("*if(") == 1
-    turned = motionview.emit(model_of("transport_4x4.yaml", SMALL, TURN))
-    assert "*if(" not in turned
-    assert "inside an if" in text and "inside an if" not in turned

@@ -32,7 +32,7 @@ ARITY = {  # measured over real files or documented: see the MDL reference
     "Body": 7, "SetBodyInertia": 8, "SetBodyIC": 7, "SetBodyICFlag": 7,
     "Bush": 5, "SetBush": 31, "CoilSpring": 6, "SetCoilSpring": 7, "Contact": 14,
     "RevJoint": 7, "TransJoint": 7, "FixedJoint": 5, "Motion": 5, "SetMotion": 4,
-    "Output": 9, "Template": 5, "DefineTemplate": 2, "if": 1, "endif": 0,
+    "Output": 9, "Template": 5, "DefineTemplate": 2, "System": 3, "DefineSystem": 1,
 }  # fmt: skip
 
 

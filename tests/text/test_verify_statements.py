@@ -55,8 +55,8 @@ def test_what_is_for_people_passes(tmp_path: Path) -> None:
     [
         ("  *StandardInclude(FILE)\n", "", "standard_include"),
         ("  *SetCurrentSolverMode(MotionSolve)\n", "", "solver"),
-        ("real_turn.value != 0 )", "real_turn.value > 0 )", "*if( ds_two.real_turn.value != 0 ) is missing"),
-        ("real_turn.value != 0 )", "real_turn.value != 10 )", "*if( ds_two.real_turn.value != 10 )"),
+        ('"Run settings", def_sys_run )', '"Run settings", def_sys_other )', "def_sys_other"),
+        ("  *Vector( v_one_x,", "  *Vector( v_other_x,", "v_one_x"),
         ('op_length, "MILLIMETER"', 'op_length, "METER"', "METER, not MILLIMETER"),
         ('op_gravity, "On"', 'op_gravity, "Off"', "gravity"),
         ("  *BeginContext( model.sys_misc )\n", "", "*EndContext closes no"),

@@ -12,6 +12,7 @@ from mdlgen.backends.motionsolve.reader.markers import Marker
 
 _ID = re.compile(r"(?<![\w.])[0-9]+(?![\w.])")
 _CALL = re.compile(r"[A-Za-z]\w*\([^()]*\)")
+_MEASURE = re.compile(r"[DVW][XYZ]\([^()]*\)")
 _CURVED = re.compile(r"-LINSPL\((.*),0,([0-9]{1,10})\)")
 _CONTACT = re.compile(r"CONTACT\(([0-9]{1,10}),([01]),([1-8]),([0-9]{1,10})\)")
 _SIX = (2, 3, 4, 6, 7, 8)  # expressions of a request that are written
@@ -300,8 +301,11 @@ def load(deck: Deck, entity: Entity) -> dict[str, Any]:
     """Force and torque on a body, as numbers where they are, in the axes of its reference marker."""
     at, reference = deck.marker(entity, "marker_id"), deck.marker(entity, "ref_marker_id")
 
+    def named(call: re.Match[str]) -> str:
+        return _named(deck, entity, call[0])
+
     def three(form: str) -> tuple[float | str, ...]:
-        return tuple(_constant(entity.word(form.format(axis), "0")) for axis in "xyz")
+        return tuple(_constant(_MEASURE.sub(named, entity.word(form.format(axis), "0"))) for axis in "xyz")
 
     return {
         "label": entity.word("label", ""),

@@ -88,13 +88,15 @@ def _add_clutch(deck: Deck, model: Model, roller: RollerPart, way: OneWay, axle:
     shaft = f"({law(roller)})" if roller.speed is not None else "0"
     sense = way.direction
     s = f"MAX(0,{sense}*({shaft}-WZ({axle.i},{axle.j},{axle.j}))/{thousandfold(way.creep)})"
+    name, label = f"frc_{roller.name}_clutch", f"Clutch of {roller.name}"
+    (at,) = triples(model.bodies.position[roller.body][None])
     deck.clutches.append(
         Clutch(
-            name=f"frc_{roller.name}_clutch",
-            label=f"Clutch of {roller.name}",
+            name=name,
+            label=label,
             id=len(model.loads.body) + len(deck.clutches) + 1,
-            i=axle.i,
-            j=axle.j,
+            marker=deck.marker(f"{name}.i", f"{label}-Marker I", body_id(roller.body), at),
+            along=axle.i,
             torque=f"{number(2 * sense * way.torque)}*{s}*{s}/(1+{s})",
         )
     )

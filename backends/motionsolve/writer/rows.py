@@ -119,13 +119,13 @@ class Load(NamedTuple):
 
 
 class Clutch(NamedTuple):
-    """A torque on a roller about the z axis of a marker of what it turns on."""
+    """A torque on a roller at a marker, about the z axis of another one, which lies along its axle."""
 
     name: str
     label: str
     id: int
-    i: int
-    j: int
+    marker: int
+    along: int
     torque: str
 
 

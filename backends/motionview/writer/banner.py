@@ -49,8 +49,7 @@ def banner(model: Model, scene: SceneView) -> list[str]:
     if reasons:
         lines += ["", "Companion script : run it once in the Python window after loading, because of"]
         lines += [f"  {reason}" for reason in reasons]
-    lines += ["", "Not yet read by a real MotionView; look at these first if it complains :"]
-    return lines + [f"  {form}" for form in unverified(scene)]
+    return lines + unverified(scene)
 
 
 def target_line(scene: SceneView) -> str:

@@ -28,8 +28,7 @@ def notes(model: Model, system: SystemView) -> list[str]:
     if reasons:
         lines += ["", "Companion script : run it once with the system in place, because of"]
         lines += [f"  {reason}" for reason in reasons]
-    lines += ["", "Not yet read by a real MotionView; look at these first if it complains :"]
-    return lines + [f"  {form}" for form in unverified_system(system)]
+    return lines + unverified_system(system)
 
 
 def _way_in(system: SystemView) -> list[str]:

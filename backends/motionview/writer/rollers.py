@@ -28,6 +28,7 @@ def roller_view(model: Model, roller: RollerPart, given: list[Value]) -> RollerV
         axis=axis,
         guide=zx_vector(model.bodies.rotation[roller.body]),
         driven=roller.speed is not None,
+        free_sense=0 if roller.one_way is None else roller.one_way.direction,
         ramped=roller.ramp > 0.0,
         corners=0 if roller.profile is None else len(roller.profile),
         pressed=press is not None,

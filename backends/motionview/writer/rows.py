@@ -169,7 +169,6 @@ class SheetView:
     tiled: bool
     parts: int  # bushings per pair
     rotation: bool  # three angles in place of turn
-    turned: bool  # any angle is not zero; else the text orients bodies and bushings only if one is edited
     moving: bool  # has initial velocities
     bending: tuple[str, str]
     in_plane: bool
@@ -226,7 +225,8 @@ class RollerView:
     given: list[Value]
     axis: Axis
     guide: str  # global vector that fixes the x axis of the body
-    driven: bool
+    driven: bool  # has a speed: of its axle, or of the shaft of its clutch
+    free_sense: int  # of its clutch, 1 or -1; 0: it has none
     ramped: bool
     corners: int  # of its speed over time; 0: a ramp
     pressed: bool

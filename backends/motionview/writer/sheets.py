@@ -54,7 +54,6 @@ def sheet_view(model: Model, index: int, tables: dict[str, list[Value]]) -> Shee
         tiled=sheet.grid == "tiled",
         parts=2 if sheet.layout == "edge_to_edge" else 1,
         rotation=any(v.member == "r_x" for v in given),
-        turned=any(sheet.angles) or (sheet.bend is not None and sheet.bend.start == "bent"),
         moving=bool(np.any(sheet.velocity) or np.any(sheet.spin)),
         bending=sheet.bending,
         in_plane=sheet.in_plane,

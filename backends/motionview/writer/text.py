@@ -14,7 +14,7 @@ from mdlgen.backends.motionview.writer.notes import notes
 from mdlgen.backends.motionview.writer.parts import WRITTEN
 from mdlgen.backends.motionview.writer.system import system_view
 from mdlgen.backends.motionview.writer.views import scene_view
-from mdlgen.errors import RefusedError, SpecError
+from mdlgen.errors import SpecError
 from mdlgen.model.external import refuse_externals
 from mdlgen.model.sheet_pairs import refuse_searched
 from mdlgen.model.tables import Model
@@ -29,14 +29,6 @@ def check(model: Model) -> None:
     check_sheets(model)
     refuse_compressed(model, "MotionView text")
     refuse_rolling(model, "MotionView text")
-    for roller in model.rollers:
-        if roller.one_way is not None:
-            raise RefusedError(
-                f"MotionView text: roller {roller.name} has a one_way clutch, a torque by formula, and "
-                "no force statement with a certain meaning is documented; run it locally, write a deck, "
-                "or leave one_way out",
-                ("rollers", roller.name, "one_way"),
-            )
 
 
 def check_sheets(model: Model) -> None:

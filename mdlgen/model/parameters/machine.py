@@ -74,6 +74,13 @@ def roller_rows(scene: Scene, name: str, starts: dict[str, tuple[float, float]])
             at = (*drive, "profile", k)
             rows.append(Parameter(name, f"t_{k}", f"Time of corner {k}", time, "ms", (*at, 0)))
             rows.append(Parameter(name, f"w_{k}", f"Speed at corner {k} (rad/s)", speed, "rad/ms", (*at, 1)))
+    if roller.one_way is not None:
+        way, path = roller.one_way, (*base, "one_way")
+        label = "Speed of its clutch at that torque (rad/s)"
+        rows += [
+            Parameter(name, "T_w", "Torque of its clutch (N mm)", way.torque, "N*mm", (*path, "torque")),
+            Parameter(name, "w_w", label, way.creep, "rad/ms", (*path, "creep")),
+        ]
     rows += _rim(scene, name) + _arm(scene, name)
     if roller.press is not None:
         carrier = roller.press.carrier_mass

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from mdlgen.model.tables import (
     Floats,
     Model,
 )
+from mdlgen.verify.expected.parts.kind import axis_vectors
 from mdlgen.verify.expected.parts.kinds import kind_of
 from mdlgen.verify.expected.points import anchor_points, boxes_of
 from mdlgen.verify.expected.units import body_name, reach
@@ -51,9 +52,22 @@ def markers(model: Model) -> Table:
 
 
 def vectors(model: Model) -> Table:
-    found = [vector for part in model.machine for vector in kind_of(part).vectors(model, part)]
+    found = list(_sheet_vectors(model))
+    found += [vector for part in model.machine for vector in kind_of(part).vectors(model, part)]
     directions = np.array([direction for _, direction in found]).reshape(-1, 3)
     return table([name for name, _ in found], {"direction": (directions, 1.0)})
+
+
+def _sheet_vectors(model: Model) -> Iterator[tuple[str, Floats]]:
+    """Those that give the markers of sheets their axes: of a sheet that turns about z alone only x."""
+    angled = {p.data_set for p in model.parameters if p.member == "r_x"}
+    for index, sheet in enumerate(model.sheets):
+        if sheet.name in angled:
+            yield from axis_vectors(f"v_{sheet.name}", sheet.rotation)
+        else:
+            yield f"v_{sheet.name}_x", sheet.rotation[:, 0]
+        for frame in ground_frames(model, index):
+            yield from axis_vectors(f"v_{frame.name.removeprefix('m_')}", frame.axes)
 
 
 def outputs(model: Model) -> Table:

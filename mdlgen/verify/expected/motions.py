@@ -39,9 +39,11 @@ def _profile_stations(corners: Floats) -> tuple[float, ...]:
 
 
 def motions(model: Model, times: Times) -> Table:
-    driven = [r for r in model.rollers if r.speed is not None]
+    """Those of rollers with a clutch are in its torque (`clutches`)."""
+    driven = [r for r in model.rollers if r.speed is not None and r.one_way is None]
+    most = max(map(len, times.values()), default=0)
     laws = [r.prescribed(np.array(times[f"mot_{r.name}"]) / SECOND) / SECOND for r in driven]
-    speeds = np.array(laws).reshape(len(driven), -1) if driven else np.zeros((0, 0))
+    speeds = np.array(laws).reshape(len(driven), -1) if driven else np.zeros((0, most))
     scale = np.array([[np.abs(r.corners[:, 1]).max() / SECOND] for r in driven]).reshape(-1, 1)
     words = [(f"j_{r.name}", "ROT", "VEL") for r in driven]
     return table([f"mot_{r.name}" for r in driven], {"speed": (speeds, scale)}, words)

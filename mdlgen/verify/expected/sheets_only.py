@@ -11,7 +11,7 @@ from mdlgen.model.tables import Model
 from mdlgen.verify.expected.parts.kinds import kind_of
 from mdlgen.verify.tables import ANY, Table
 
-MACHINE_KINDS = ("springs", "cylinders", "motions", "vectors", "run", "gravity", "units", "masters")
+MACHINE_KINDS = ("springs", "cylinders", "motions", "run", "gravity", "units", "masters")
 
 
 def of_sheets(said: dict[str, Table], model: Model, own_machine: bool) -> dict[str, Table]:
@@ -31,7 +31,8 @@ def _machine(model: Model) -> set[str]:
     """Names of the text that belong to the machine."""
     names = {"ds_run"}
     for part in model.machine:
-        names |= kind_of(part).names(part)
+        kind = kind_of(part)
+        names |= kind.names(part) | {name for name, _ in kind.vectors(model, part)}
     table = model.contacts
     of, bodies = model.pairs.contact, model.bodies.name
     for met in meetings(model):

@@ -11,6 +11,7 @@ from mdlgen.model.tables import (
 )
 from mdlgen.verify.expected.bodies import bodies, velocities
 from mdlgen.verify.expected.bushings import bushings, curve_laws, curves, springs
+from mdlgen.verify.expected.clutches import clutches
 from mdlgen.verify.expected.graphics import boxes, surfaces
 from mdlgen.verify.expected.joints import joints
 from mdlgen.verify.expected.loads import loads
@@ -37,6 +38,7 @@ def expected(model: Model, times: Times) -> dict[str, Table]:
         "mesh files": mesh_files(model),
         "joints": joints(model),
         "motions": motions(model, times),
+        "clutches": clutches(model, times),
         "velocities": velocities(model),
         "markers": markers(model),
         "vectors": vectors(model),

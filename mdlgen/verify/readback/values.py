@@ -9,10 +9,11 @@ from typing import Any
 
 import numpy as np
 
+from mdlgen.verify.expected.clutches import SPINS, clutch_times
 from mdlgen.verify.expected.contacts import CONTACT_NUMBERS, SIX
 from mdlgen.verify.expected.parts.mesh import shape_numbers
 from mdlgen.verify.expected.run import RUN_NUMBERS
-from mdlgen.verify.solver_expressions import Places, Unreadable, law, request
+from mdlgen.verify.solver_expressions import Places, Unreadable, law, request, torque
 from mdlgen.verify.tables import Table
 
 Values = Mapping[str, Mapping[str, Any]]
@@ -20,6 +21,8 @@ Row = tuple[list[Any], tuple[str, ...]]  # numbers, words
 
 _NAN = float("nan")
 _LOAD = re.compile(r"frc_\d+")
+_CLUTCH = re.compile(r"frc_(\w+)_clutch")
+_SPIN = re.compile(r"WZ\(([^()]*)\)")
 _MARKER = re.compile(r"[A-Za-z_][\w.]*(?=\s*[,)])")
 _CONTACT_ATTRIBUTES = {
     "penalty": "penalty",
@@ -84,6 +87,9 @@ class ReadBack:
             "motions": _table(
                 values.get("motions", {}), self._motion, max(map(len, self.stations.values()), default=0)
             ),
+            "clutches": _table(
+                _clutches(values), self._clutch, 3 + len(clutch_times(self.stations, "")) * len(SPINS)
+            ),
             "velocities": _table(values.get("velocities", {}), lambda n, r: (list(r), ()), 6),
             "markers": _table(
                 {n: r for n, r in values.get("markers", {}).items() if "." not in n}, _marker, 12
@@ -111,6 +117,19 @@ class ReadBack:
             return law(str(record["value"]), time)
         except Unreadable:
             return _NAN
+
+    def _clutch(self, name: str, record: Mapping[str, Any]) -> Row:
+        form, (*idle, about) = _CLUTCH.fullmatch(name), record["components"]
+        assert form is not None, "only such names are asked for"
+        # a marker of a joint is called joint_i in texts and decks, i in scripts
+        calls = {re.sub(r"\s|joint_", "", call) for call in _SPIN.findall(about)}
+        said = (record["body"], *sorted(calls), *idle)
+        try:
+            axis = self.places[record["reference"]].axes[2].tolist()
+            laws = [torque(about, t, w) for t in clutch_times(self.stations, form[1]) for w in SPINS]
+        except Unreadable:
+            return [], said
+        return [*axis, *laws], said
 
     def _curve_law(self, name: str, record: Mapping[str, str]) -> Row:
         variable = record["variable"]
@@ -170,6 +189,24 @@ def _curve_points(records: Mapping[str, Any]) -> dict[str, tuple[float, float]]:
 
 def _curve_laws(records: Mapping[str, Any]) -> dict[str, Mapping[str, str]]:
     return {f"{n}.{place}": law for n, r in records.items() for place, law in r.get("curves", {}).items()}
+
+
+def _clutches(values: Values) -> dict[str, dict[str, Any]]:
+    """Body, reference marker and six components of each, as expressions; a script lists them apart."""
+    found: dict[str, dict[str, Any]] = {}
+    for name, record in values.get("clutches", {}).items():
+        body, _, reference = record["ends"]
+        components = (*record["force"], *record["torque"])
+        found[name] = {"body": body, "reference": reference, "components": [_text(v) for v in components]}
+    for name, record in values.get("forces", {}).items():
+        if _CLUTCH.fullmatch(name):
+            components = (*record["force"], *record["torque"])
+            found[name] = record | {"components": [_text(v) for v in components]}
+    return found
+
+
+def _text(component: Any) -> str:
+    return f"{component:g}" if isinstance(component, float) else str(component)
 
 
 def _spring(name: str, record: Mapping[str, Any]) -> Row:

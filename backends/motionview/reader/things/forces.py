@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 # How many arguments stand after the word that says how a stiffness or a force is given.
 TOKENS = {"LIN": 1, "CRV": 3, "SPL3D": 4, "EXPR": 1, "USER": 1}
 GROUPS = ("k", "c", "kt", "ct")
+Components = tuple[float | str, float | str, float | str]
 
 
 class Laws:
@@ -32,8 +33,9 @@ class Laws:
         self.at = chosen.first
         self.curves: list[tuple[str, str, str] | None] = []  # of each law so far: curve, method, variable
 
-    def law(self) -> float | str:
-        """A number for LIN, else the word and what follows it."""
+    def law(self, pasted: bool = False) -> float | str:
+        """A number for LIN, else the word and what follows it; `pasted`: of EXPR the expression as the solver
+        gets it."""
         word = self.statement.arg(self.at).upper()
         if word not in TOKENS:
             trouble = Trouble("keyword", f"LIN, CRV, SPL3D or EXPR is due here, not {word or 'nothing'}")
@@ -43,6 +45,8 @@ class Laws:
         self.curves.append(self._curve() if word == "CRV" else None)
         if word == "LIN":
             return self.thing.number(self.at - 1, self.statement, self.scope)
+        if word == "EXPR" and pasted:
+            return str(self.thing.given(self.at - 1, self.statement, self.scope))
         return ", ".join((word, *self.statement.args[self.at - TOKENS[word] : self.at]))
 
     def _curve(self) -> tuple[str, str, str]:
@@ -268,26 +272,26 @@ class Force(_Link):
             return self.world.built_in("Global_Frame")
         return self.related(5, "Marker")
 
-    def p_components(self) -> tuple[Vector | None, Vector | None]:
-        """Force and torque along the global axes; None for what is no number."""
+    def p_components(self) -> tuple[Components | None, Components | None]:
+        """Force and torque along the global axes; where one is an expression all three are those along the
+        marker's, as given."""
         chosen = self.chosen("setforce")
         word = self.statement.arg(2).upper()
         if chosen is None:
             return None, None
         laws = Laws(self, chosen)
-        found: dict[str, Vector | None] = {}
+        found: dict[str, Components | None] = {}
         for kind in ("TRANS", "ROT"):
             found[kind] = (0.0, 0.0, 0.0)
             if kind in word.split("_"):
-                given = (laws.law(), laws.law(), laws.law())
-                found[kind] = self._turned(given)
+                found[kind] = self._turned((laws.law(True), laws.law(True), laws.law(True)))
         return found["TRANS"], found["ROT"]
 
-    def _turned(self, given: tuple[float | str, ...]) -> Vector | None:
+    def _turned(self, given: Components) -> Components:
         """Components along the global axes."""
         numbers = [v for v in given if isinstance(v, float)]
         if len(numbers) < 3:
-            return None
+            return given
         axes = self.world.frame(self.ask("reference"))[1]
         x, y, z = (sum(v * axis[k] for v, axis in zip(numbers, axes, strict=True)) for k in range(3))
         return x, y, z

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+import numpy as np
+
 from mdlgen.altair.rims import Side
 from mdlgen.model.parts.guide import facets, outer
 from mdlgen.model.tables import Floats, GuidePart, Model
@@ -26,6 +28,10 @@ class _Guides(Kind[GuidePart]):
 
     def vectors(self, model: Model, part: GuidePart) -> Iterator[tuple[str, Floats]]:
         yield from own_vector(f"v_{part.name}_axis", part.axes[:, 2])
+        if part.radius == 0.0:
+            given = {p.member: p.value for p in model.parameters if p.data_set == part.name}
+            along = np.array([given[f"{a}_1"] - given[f"{a}_0"] for a in "xyz"])
+            yield f"v_{part.name}_along", along / np.linalg.norm(along)
 
     def data(self, model: Model, part: GuidePart) -> dict[str, float]:
         if part.radius == 0.0:

@@ -128,6 +128,11 @@ def own_vector(name: str, direction: Floats) -> Iterable[tuple[str, Floats]]:
     return () if there else ((name, direction),)
 
 
+def axis_vectors(name: str, rotation: Floats) -> Iterable[tuple[str, Floats]]:
+    """The two that give a marker its axes, which are the columns of `rotation`."""
+    return ((f"{name}_z", rotation[:, 2]), (f"{name}_x", rotation[:, 0]))
+
+
 def spring_of(model: Model, part: MachinePart, press: Press, body: str) -> Spring:
     """The spring of a part that stands where its body does."""
     anchor = part.center + press.direction * (press.touch - press.free_length)

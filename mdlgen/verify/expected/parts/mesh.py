@@ -10,7 +10,7 @@ from mdlgen.altair.rims import Side
 from mdlgen.model.meshes import origin
 from mdlgen.model.tables import Floats, Ints, MeshPart, Model
 from mdlgen.spec.solid import moments
-from mdlgen.verify.expected.parts.kind import Joint, Kind, Marker
+from mdlgen.verify.expected.parts.kind import Joint, Kind, Marker, axis_vectors
 from mdlgen.verify.expected.units import reach
 from mdlgen.verify.tables import Part, Table, table
 
@@ -27,6 +27,10 @@ class _Meshes(Kind[MeshPart]):
 
     def markers(self, model: Model, part: MeshPart) -> Iterator[Marker]:
         yield Marker(f"m_{part.name}", _under(model, part), origin(part, model.rollers), part.axes)
+
+    def vectors(self, model: Model, part: MeshPart) -> Iterator[tuple[str, Floats]]:
+        yield from axis_vectors(f"v_{part.name}", part.axes)
+        yield from axis_vectors(f"v_{part.name}_cm", model.bodies.rotation[part.body])
 
     def data(self, model: Model, part: MeshPart) -> dict[str, float]:
         found = {"scale": part.scale}

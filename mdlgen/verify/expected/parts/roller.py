@@ -105,6 +105,7 @@ class _Rollers(Kind[RollerPart]):
     def names(self, part: RollerPart) -> set[str]:
         n = part.name
         found = super().names(part) | {f"p_{n}_anchor", f"b_{n}_carrier", f"j_{n}_slide"}
+        found |= {f"frc_{n}_clutch"}
         found |= {f"p_{n}_pivot", f"p_{n}_arm", f"b_{n}_arm", f"j_{n}_pivot", f"bsh_{n}_arm"}
         if part.rim is not None:
             shown = [name.removeprefix("gbox_") for name in graphics(part, WHOLE)]
