@@ -396,6 +396,8 @@ class Scene(_Scene):
         *,
         name: str,
         sheets: Mapping[str, _Sheet | Mapping[str, Any]],
+        author: str | float | None = ...,
+        revision: str | float | None = ...,
         gravity: Sequence[str] = ...,
         parameters: Mapping[str, str | float | Mapping[str, Any]] = ...,
         materials: Mapping[str, _Material | Mapping[str, Any]] = ...,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from datetime import UTC, datetime
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -34,6 +35,10 @@ def solver(name: str) -> Backend:
     """The backend that runs a Model, by its name. Raises SpecError for one that there is not."""
     _known(name, SOLVERS, "solver")
     return _backend(SOLVERS[name])
+
+
+def _now() -> str:
+    return datetime.now(UTC).isoformat(timespec="seconds")
 
 
 def _backend(package: str) -> Backend:
@@ -107,6 +112,7 @@ def solve(
     if threads > 1 and backend.capabilities.threads > 1:
         options["threads"] = threads
     result = backend.solve(model, progress, **options)
+    result.ran_at = _now()
     # a static run has no step, and a failed one nothing to compare
     if not check_step or not result.ok or result.step <= 0.0:
         return result
@@ -117,5 +123,5 @@ def solve(
         return finer.failed(f"at half the step ({result.step / 2:.6g} ms): {finer.status}")
     # kernels are compiled once, for the first of the two
     compile_s = result.compile_s + finer.compile_s
-    checked = replace(finer, checks=True, compile_s=compile_s)
+    checked = replace(finer, checks=True, compile_s=compile_s, ran_at=_now())
     return estimated(checked, (result, *result.coarser)[:2])

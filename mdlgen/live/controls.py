@@ -22,7 +22,7 @@ STEPS = 200  # of a slider, at least
 AXES = "xyz"
 # Half the span of a value that is 0, in its unit; others have 1.
 FROM_ZERO = {"mm": 10.0, "deg": 10.0, "mm/s": 100.0, "rad/s": 10.0}
-_TEXTS = ("name", "require")
+_TEXTS = ("name", "author", "revision", "require")
 _LEFT_OUT = (PARAMETERS, "defaults", *_TEXTS)
 
 

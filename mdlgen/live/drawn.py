@@ -10,6 +10,7 @@ import numpy as np
 from mdlgen.report import boxes
 from mdlgen.report.animation import animation, at_the_start, colour, frames
 from mdlgen.report.html.environment import environment
+from mdlgen.report.html.labels import labels
 from mdlgen.report.html.page import run_record
 
 if TYPE_CHECKING:
@@ -44,7 +45,8 @@ def partial(result: Result) -> bytes:
     shown = _few(result)
     speed = boxes.speed(result, shown)
     colours = {name: (unit, speed if name == "speed" else np.zeros_like(speed)) for name, unit in COLOURS}
-    return _json({"name": NAME, "scene": result.model.name, "animation": animation(result, shown, colours)})
+    drawn = {"animation": animation(result, shown, colours), **labels(result.model)}
+    return _json({"name": NAME, "scene": result.model.name, **drawn})
 
 
 def _few(result: Result) -> Ints:
@@ -60,7 +62,7 @@ def begun(model: Model) -> bytes:
     none = np.zeros((1, boxes.count(model)))
     colours = [colour(name, unit, none) for name, unit in COLOURS]
     drawn = {**at_the_start(model, colours), "static": False}
-    return _json({"name": NAME, "scene": model.name, "animation": drawn})
+    return _json({"name": NAME, "scene": model.name, "animation": drawn, **labels(model)})
 
 
 def _is_finite(result: Result) -> bool:

@@ -5,10 +5,9 @@ from __future__ import annotations
 from functools import cache
 
 from mdlgen.paths import templates
-from mdlgen.report.html.environment import environment, library
+from mdlgen.report.html.environment import environment, library, licences, style
 
-_STYLES = ("style.css", "live.css")
-_SCRIPTS = ("charts.js", "player.js", "play.js", "live.js")
+_SCRIPTS = ("drawing.js", "charts.js", "labels.js", "player.js", "play.js", "live.js")
 
 
 def page(title: str, nonce: str) -> str:
@@ -20,9 +19,9 @@ def page(title: str, nonce: str) -> str:
             title=title,
             runs=[],  # they come later
             nonce=nonce,
-            style="\n".join(_file(name) for name in _STYLES),
+            style=style("live.css"),
             library=library(),
-            licence=_file("third_party/LICENSE"),
+            licences=licences(),
             scripts=[_file(name) for name in _SCRIPTS],
         )
     )

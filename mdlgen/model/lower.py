@@ -131,6 +131,8 @@ def _lower(scene: Scene) -> Model:
         unfollowed=unfollowed(scene, rows),
         following=tuple(following(scene)),
         require=scene.require,
+        author=scene.author or "",
+        revision=scene.revision or "",
     )
 
 

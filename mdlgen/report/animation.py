@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from base64 import b64encode
+from collections.abc import Collection
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,6 +19,9 @@ if TYPE_CHECKING:
 # Boxes times states of a page, 600 boxes at 501 states; more states than FRAMES are not seen one by one.
 MOST, FRAMES = 600 * 501, 1000
 WHOLE = 32767  # of a 16-bit number
+# Colours leave out this part of the values where the greatest is so many times the rest, and begin at the
+# least where that is this part of the greatest.
+OUTLIERS, FAR, NEAR = 0.005, 1.5, 0.5
 
 
 def frames(result: Result) -> Ints:
@@ -38,11 +42,17 @@ def packed(values: Any, kind: str) -> str:
     return b64encode(np.ascontiguousarray(values, dtype=np.dtype(kind).newbyteorder("<")).tobytes()).decode()
 
 
-def animation(result: Result, at: Ints, colours: dict[str, tuple[str, Floats]]) -> dict[str, Any]:
+def animation(
+    result: Result,
+    at: Ints,
+    colours: dict[str, tuple[str, Floats]],
+    names: Collection[str] = (),
+) -> dict[str, Any]:
     """What the page draws in space.
 
-    `colours` are, by name, a unit and the values of boxes at the states `at`, (t, boxes). A run with one
-    state (a static one) is shown beside where it began.
+    `colours` are, by name, a unit and the values of boxes at the states `at`, (t, boxes). Those of `names`
+    are parts of the ramp itself, (1, boxes). A run with one state (a static one) is shown beside where it
+    began.
     """
     model = result.model
     moves = np.array(moving(model), dtype=np.int64)
@@ -52,8 +62,14 @@ def animation(result: Result, at: Ints, colours: dict[str, tuple[str, Floats]]) 
         before = [whole[None, moves] for whole in start(model)]
         place, turn = np.concatenate([before[0], place]), np.concatenate([before[1], turn])
         time = np.array([0.0, 1.0])
-        colours = {k: (u, np.concatenate([np.zeros_like(v), v])) for k, (u, v) in colours.items()}
-    packed_colours = [colour(name, unit, values) for name, (unit, values) in colours.items()]
+        colours = {
+            k: (u, v if k in names else np.concatenate([np.zeros_like(v), v]))
+            for k, (u, v) in colours.items()
+        }
+    packed_colours = [
+        colour(name, unit, values, (0.0, 1.0) if name in names else None)
+        for name, (unit, values) in colours.items()
+    ]
     return {**_states(model, moves, time, place, turn, packed_colours), "static": len(at) == 1}
 
 
@@ -85,11 +101,34 @@ def _states(
     }
 
 
-def colour(name: str, unit: str, values: Floats, most: float | None = None) -> dict[str, Any]:
-    """Values of boxes (t, boxes) as parts of the greatest, or of `most`."""
-    most = float(values.max(initial=0.0)) if most is None else most
-    share = np.clip(values / most, 0.0, 1.0) if most > 0.0 else np.zeros_like(values)
-    return {"name": name, "unit": unit, "most": most, "values": packed(np.round(255 * share), "u1")}
+def colour(name: str, unit: str, values: Floats, ends: tuple[float, float] | None = None) -> dict[str, Any]:
+    """Values of boxes (t, boxes) as parts of a span: `ends`, or that of the values without outliers, of
+    which the legend speaks."""
+    least, most, beyond = (*ends, "") if ends is not None else span(values, unit)
+    share = np.clip((values - least) / (most - least), 0.0, 1.0) if most > least else np.zeros_like(values)
+    packed_values = packed(np.round(255 * share), "u1")
+    return {
+        "name": name, "unit": unit, "least": least, "most": most, "beyond": beyond, "values": packed_values,
+    }  # fmt: skip
+
+
+def span(values: Floats, unit: str) -> tuple[float, float, str]:
+    """From where to where colours go, and what is beyond that, in words.
+
+    To the greatest value, or to that which OUTLIERS of those above zero exceed, where these are FAR above it;
+    from 0, or from the least where all are near the greatest.
+    """
+    most, least = float(values.max(initial=0.0)), float(values.min()) if values.size else 0.0
+    if most <= 0.0:
+        return 0.0, most, ""
+    above = values[values > 0.0]
+    usual = float(np.partition(above, k := int((1.0 - OUTLIERS) * (len(above) - 1)))[k])
+    beyond = ""
+    if most > FAR * usual:
+        part = 100.0 * float(np.count_nonzero(values > usual)) / values.size
+        beyond = f"{part:.2g} % of boxes and times above, up to {most:.4g} {unit}".strip()
+        most = usual
+    return (least if least > NEAR * most else 0.0), most, beyond
 
 
 def _meshes(model: Model, moves: Ints) -> list[dict[str, Any]]:

@@ -98,6 +98,7 @@ class Result:
     coarser: tuple[Result, ...] = field(default=(), repr=False)  # runs from which these follow, then none
     halved: bool = False  # one side was solved, the other is its mirror image
     versions: dict[str, str] = field(default_factory=dict)
+    ran_at: str = ""  # date and time at which the run ended, ISO 8601 in UTC; empty: not known
     source: str = ""  # the scene as it was written, with what was set on the command line
 
     def __repr__(self) -> str:

@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Callable
 from contextlib import suppress
+from datetime import date
 from typing import Annotated, Any
 
 from pydantic import (
@@ -24,6 +25,7 @@ from mdlgen.units import check_unit, exact_quantity, parse_quantity, parse_unit
 SMALLEST, LARGEST = 1e-20, 1e20
 UNIT = 4e-16  # how far the length of a unit vector is from 1, in round-off
 IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,62}")
+MOST_WORDS = 100  # characters of a text in the head of the report
 RESERVED = frozenset(
     (
         *("b_ground", "p_global_origin", "v_global_x", "v_global_y", "v_global_z", "global_frame"),
@@ -342,6 +344,16 @@ def _name(value: Any) -> str:
     return value
 
 
+def _words(value: object) -> str:
+    """A short text of one line; numbers and dates, which YAML makes of some, as they are written."""
+    if isinstance(value, bool) or not isinstance(value, (str, int, float, date)):
+        raise fail("must be a text")
+    text = str(value).strip()
+    if not text or len(text) > MOST_WORDS or not text.isprintable():
+        raise fail(f"must be one line of 1 to {MOST_WORDS} characters")
+    return text
+
+
 def _triple(unit: str) -> BeforeValidator:
     return _fixed_length(3, f"quantities like '1 {unit}'")
 
@@ -392,6 +404,9 @@ Direction = Annotated[
             ]
         }
     ),
+]
+Words = Annotated[
+    str, BeforeValidator(_words), WithJsonSchema({"anyOf": [{"type": "string"}, {"type": "number"}]})
 ]
 Name = Annotated[
     str, BeforeValidator(_name), WithJsonSchema({"type": "string", "pattern": IDENTIFIER.pattern})

@@ -28,7 +28,7 @@ from mdlgen.spec.consistency import check_counts, check_names, checks
 from mdlgen.spec.contact import Contact
 from mdlgen.spec.document import Document
 from mdlgen.spec.dump import in_plain_data, said
-from mdlgen.spec.fields import Acceleration, Name, default
+from mdlgen.spec.fields import Acceleration, Name, Words, default
 from mdlgen.spec.guide import Guide
 from mdlgen.spec.limits import DEFAULT, Limits
 from mdlgen.spec.machine import Plane, Roller
@@ -75,6 +75,10 @@ class Scene(Strict):
     """Everything that a user describes; see `mdlgen schema` for each field."""
 
     name: Name = Field(description="name of the scene and of the files made from it")
+    author: Words | None = Field(default=None, description="who designs it, for the head of the report")
+    revision: Words | None = Field(
+        default=None, description="state of the design, as B or 2026-11, for the head of the report"
+    )
     gravity: Acceleration = Field(
         default=(default("0 m/s^2"), default("0 m/s^2"), default("-9.81 m/s^2")),
         description="acceleration of gravity, global axes",

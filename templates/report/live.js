@@ -56,13 +56,6 @@ function numberOf(control, text) {
   return match && match[2] === control.unit ? Number(match[1]) : NaN;
 }
 
-function piece(name, attributes, parent) {
-  const made = document.createElement(name);
-  for (const [key, value] of Object.entries(attributes)) made[key] = value;
-  parent?.append(made);
-  return made;
-}
-
 function row(control, k) {
   const line = piece("div", { className: "value" });
   line.dataset.path = control.path;
@@ -311,20 +304,20 @@ function figures(draft) {
   const shownRuns = pinned ? [{ ...runs[0], name: "current" }, pinned] : [runs[0]];
   const wanted = [...new Set(shownRuns.flatMap((run) => run.panels.map((panel) => panel.key)))];
   const there = new Map([...get("panels").children].map((figure) => [figure.dataset.key, figure]));
-  for (const [key, figure] of there) if (!wanted.includes(key)) { moves.delete(key); figure.remove(); }
+  for (const [key, figure] of there) if (!wanted.includes(key)) { made.get(key).drop(); made.delete(key); figure.remove(); }
   for (const key of wanted) {
     const old = there.get(key);
     if (old && draft && !inSight(old)) continue;
     const hidden = old ? [...old.querySelectorAll('.key[aria-pressed="false"]')].map((button) => button.dataset.name) : [];
-    moves.set(key, chart(get("panels"), shownRuns, key, (time) => seek(time)));
-    const made = get("panels").lastElementChild;
-    if (old) old.replaceWith(made);
-    for (const button of made.querySelectorAll(".key")) if (hidden.includes(button.dataset.name)) button.click();
+    const fresh = chart(get("panels"), shownRuns, key, (time) => seek(time));
+    if (old) { made.get(key).drop(); old.replaceWith(fresh.figure); }
+    made.set(key, fresh);
+    for (const button of fresh.figure.querySelectorAll("button.key")) if (hidden.includes(button.dataset.name)) button.click();
   }
-  movers.splice(0, movers.length, ...moves.values());
+  movers.splice(0, movers.length, ...[...made.values()].map((one) => one.move));
   mark();
 }
-const moves = new Map();
+const made = new Map(); // figures by their keys
 
 // ---- two designs
 
@@ -369,6 +362,7 @@ get("ghost").addEventListener("change", ghost);
 
 try {
   stage = await player(get("canvas"), () => view(null));
+  over = overlay(stage, lines);
 } catch (error) {
   get("no-drawing").hidden = false;
   get("no-drawing").textContent = `This browser does not draw in space (WebGL): ${error.message}. The figures and tables are all here.`;

@@ -2,9 +2,11 @@
 
 const runs = JSON.parse(document.getElementById("data").textContent);
 const get = (id) => document.getElementById(id);
-const state = { run: 0, time: 0, playing: false, colour: 0, view: null, rate: 1, frames: 0 };
+let over = null;
+const state = { run: 0, under: -1, time: 0, playing: false, colour: 0, view: null, rate: 1, frames: 0 };
 const shown = () => runs[state.run].animation;
-const end = () => shown().time.at(-1), start = () => shown().time[0];
+// runs that are seen together have one clock, to the end of the longer one
+const end = () => Math.max(shown().time.at(-1), state.under >= 0 ? runs[state.under].animation.time.at(-1) : -Infinity), start = () => shown().time[0];
 const movers = [];
 let stage = null;
 
@@ -58,20 +60,8 @@ function play(on) {
 function colour(index) {
   state.colour = (index + shown().colours.length) % shown().colours.length;
   get("colour").value = state.colour;
-  const { name, unit, most } = shown().colours[state.colour];
-  const legend = get("legend");
-  legend.replaceChildren();
-  const ramp = document.createElement("div"), ends = document.createElement("div"), title = document.createElement("div");
-  ramp.className = "ramp";
-  ramp.style.background = RAMP;
-  ends.className = "ends";
-  for (const text of ["0", `${number(most)}${unit ? ` ${unit}` : ""}`]) {
-    const piece = document.createElement("span");
-    piece.textContent = text;
-    ends.append(piece);
-  }
-  title.textContent = { speed: "speed", strain: "strain of the box's joints", curvature: "curvature of the box's joints", contact: "contact force of the box" }[name];
-  legend.append(title, ramp, ends);
+  const seen = shown().colours[state.colour];
+  legendOf(seen, runs[state.run].keys?.[seen.name]);
   stage?.colour(state.colour);
 }
 
@@ -84,10 +74,43 @@ function view(name) {
 function choose(index) {
   state.run = index;
   stage?.choose(index);
+  if (state.under === index) under(-1);
+  if (over && runs[index].parts) over.take(runs[index]);
   const list = get("colour");
   list.replaceChildren(...shown().colours.map((c, k) => new Option(c.name, k)));
   colour(state.colour);
   seek(state.time);
+}
+
+// Another run as a ghost over the one that is seen, on the same clock.
+function under(index) {
+  state.under = index === state.run ? -1 : index;
+  get("over-choice").value = state.under;
+  stage?.ghost(state.under >= 0 ? runs[state.under].animation : null);
+}
+
+// What is known of what is under the pointer: the part, the box's colour, and the part's values at the time.
+const MOST_VALUES = 12;
+function lines(found, parts) {
+  const said = ofPart(found, parts, runs[state.run]);
+  if (!said) return null;
+  if (found.box !== undefined) {
+    const own = stage.runs[state.run].colours[state.colour];
+    if (!runs[state.run].keys?.[own.name]) said.texts.push(`${COLOUR_WORDS[own.name]} ${stage.valueAt(found.box)}`);
+  }
+  for (const panel of runs[state.run].panels) {
+    if (panel.x_title !== OVER_TIME) continue;
+    for (const line of panel.lines) {
+      if (said.texts.length >= MOST_VALUES || (line.name !== said.part && !line.name.startsWith(`${said.part} `))) continue;
+      line.values ??= [unpack(line.x, Float32Array), unpack(line.y, Float32Array)];
+      const [x, y] = line.values;
+      let k = x.findIndex((time) => time >= state.time);
+      if (k < 0) k = x.length - 1;
+      const what = line.name === said.part ? "" : ` ${line.name.slice(said.part.length + 1)}`;
+      said.texts.push(`${panel.short}${what} ${number(Math.abs(y[k]) < panel.least ? 0 : y[k])} ${panel.unit}`);
+    }
+  }
+  return said;
 }
 
 const rates = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
@@ -110,6 +133,7 @@ get("nearer").addEventListener("click", () => stage?.near());
 get("time").addEventListener("input", (event) => { play(false); seek(start() + event.target.value / 1000 * (end() - start())); });
 get("colour").addEventListener("change", (event) => colour(Number(event.target.value)));
 get("rate").addEventListener("change", (event) => rate(Number(event.target.value)));
+get("over-choice")?.addEventListener("change", (event) => { under(Number(event.target.value)); seek(state.time); });
 get("run-choice")?.addEventListener("change", (event) => choose(Number(event.target.value)));
 for (const id of ["follow", "machine"]) get(id).addEventListener("change", (event) => check(id, event.target.checked));
 for (const button of document.querySelectorAll("[data-view]")) button.addEventListener("click", () => view(button.dataset.view));
@@ -121,6 +145,15 @@ document.addEventListener("click", (event) => {
   seek(Number(link.dataset.time));
   get("animation").scrollIntoView({ block: "start" });
 });
+
+// Print has the picture as one that stays, and figures of its own size, in the light colours.
+function print(on) {
+  document.documentElement.toggleAttribute("data-print", on);
+  for (const one of drawnCharts) one.print(on);
+  if (stage) stage.print(on, get("printed"));
+}
+window.addEventListener("beforeprint", () => print(true));
+window.addEventListener("afterprint", () => print(false));
 
 const strokes = {
   " ": () => play(!state.playing), ArrowLeft: (event) => step(event.shiftKey ? -10 : -1), ArrowRight: (event) => step(event.shiftKey ? 10 : 1),

@@ -23,8 +23,10 @@ const VERTEX = `
 const FRAGMENT = `
   uniform float opacity; varying vec3 shade;
   void main() { gl_FragColor = vec4(shade, opacity); }`;
-// where the camera is, seen from what it looks at, and what is up
-const VIEWS = { xz: [[0, -1, 0], [0, 0, 1]], yz: [[-1, 0, 0], [0, 0, 1]], xy: [[0, 0, 1], [0, 1, 0]], iso: [[-0.55, -0.75, 0.5], [0, 0, 1]] };
+// where the camera is, seen from what it looks at; z is up, from above y
+const VIEWS = { xz: [0, -1, 0], yz: [-1, 0, 0], xy: [0, -1e-5, 1], iso: [-0.55, -0.75, 0.5] };
+const PRINTED_AT = 2; // pixels of the printed picture for one of the page
+const FAR = 1000, TURNED = 1e-4; // of the eye [mm]; of its direction: less is round-off
 const SLOW = 40, COARSEST = 0.4; // ms a picture; part of the finest
 const THIN = 2.5; // pixels that a sheet is thick at least, so that it is seen from the side
 // corners of a box's faces, four each, counterclockwise: bits 0, 1 and 2 tell the sides along x, y and z
@@ -46,11 +48,13 @@ async function library() {
   const text = (name) => document.querySelector(`script[data-library="${name}"]`).textContent;
   const url = (code) => URL.createObjectURL(new Blob([code], { type: "text/javascript" }));
   const core = url(text("three.core.min.js"));
-  return import(url(text("three.module.min.js").replaceAll("./three.core.min.js", core)));
+  const three = url(text("three.module.min.js").replaceAll("./three.core.min.js", core));
+  const { OrbitControls } = await import(url(text("OrbitControls.js").replace("from 'three'", `from '${three}'`)));
+  return [await import(three), OrbitControls];
 }
 
 async function player(canvas, changed) {
-  const THREE = await library();
+  const [THREE, OrbitControls] = await library();
   // opaque, so that the browser need not blend each picture with the page
   const context = canvas.getContext("webgl2", { alpha: false, antialias: !soft(), powerPreference: "default" });
   const renderer = new THREE.WebGLRenderer({ canvas, context });
@@ -61,8 +65,20 @@ async function player(canvas, changed) {
   const ground = () => { scene.background = new THREE.Color(getComputedStyle(canvas).backgroundColor); };
   ground();
   const camera = new THREE.OrthographicCamera(-1, 1, 1, -1, -1e5, 1e5);
-  const target = new THREE.Vector3();
-  let away = new THREE.Vector3(0, -1, 0), size = 100, follow = false, machine = true, arrows = true, seen = null, ghost = null, time = 0;
+  camera.up.set(0, 0, 1);
+  camera.position.set(0, -FAR, 0);
+  // orbit, move, zoom, by mouse and touch
+  const controls = new OrbitControls(camera, canvas);
+  controls.zoomToCursor = true;
+  const { target } = controls;
+  const away = new THREE.Vector3(0, -1, 0), before = new THREE.Vector3(0, -1, 0); // from what is looked at to the eye
+  controls.addEventListener("change", () => {
+    away.subVectors(camera.position, target).normalize();
+    if (away.distanceTo(before) > TURNED) changed();
+    before.copy(away);
+    refresh();
+  });
+  let size = 100, follow = false, machine = true, arrows = true, seen = null, ghost = null, time = 0;
 
   const part = (colour, i) => parseInt(colour.slice(1 + 2 * i, 3 + 2 * i), 16) / 255;
   const ramp = new Float32Array(256 * 3);
@@ -103,7 +119,7 @@ async function player(canvas, changed) {
     const half = unpack(animation.half, Float32Array);
     const run = {
       animation, half, place: unpack(animation.place, Uint16Array), turn: unpack(animation.turn, Int16Array),
-      colours: animation.colours.map((c) => ({ ...c, values: unpack(c.values, Uint8Array) })),
+      colours: animation.colours.map((c) => ({ ...c, values: unpack(c.values, Uint8Array) })).map((c) => ({ ...c, fixed: c.values.length === animation.boxes })),
       group: new THREE.Group(), parts: [], last: new THREE.Vector3(), known: false,
     };
     run.boxes = blocks(animation.boxes);
@@ -152,7 +168,7 @@ async function player(canvas, changed) {
     if (ghost) move(ghost);
     move(seen);
     for (const { drawn, row, kind } of seen.parts) drawn.visible = ARROWS.includes(kind) ? arrows : machine;
-    if (follow && seen.known) target.add(moved.subVectors(middle, seen.last));
+    if (follow && seen.known) { target.add(moved.subVectors(middle, seen.last)); camera.position.add(moved); }
     seen.last.copy(middle);
     seen.known = true;
   }
@@ -179,7 +195,7 @@ async function player(canvas, changed) {
         const x = c & 1 ? 1 : -1, y = c & 2 ? 1 : -1, z = c & 4 ? 1 : -1;
         for (let i = 0; i < 3; i += 1) corners[3 * c + i] = position.getComponent(i) + x * sides[i] + y * sides[3 + i] + z * sides[6 + i];
       }
-      const value = 3 * colour.values[near * animation.boxes + row];
+      const value = 3 * colour.values[(colour.fixed ? 0 : near * animation.boxes) + row];
       for (let face = 0, at = 72 * row; face < 6; face += 1) {
         for (let k = 0; k < 4; k += 1, at += 3) {
           const corner = 3 * FACES[face][k];
@@ -233,10 +249,8 @@ async function player(canvas, changed) {
     const ratio = wide / high;
     camera.left = -size * ratio; camera.right = size * ratio; camera.top = size; camera.bottom = -size;
     const before = thin;
-    thin = THIN * size / (high * Math.max(fineness, 1));
+    thin = THIN * size / (camera.zoom * high * Math.max(fineness, 1));
     if (thin !== before) refreshPoses();
-    camera.position.copy(target).addScaledVector(away, 1000);
-    camera.lookAt(target);
     camera.updateProjectionMatrix();
     renderer.render(scene, camera);
     while (left.length) drop(left.pop());
@@ -262,16 +276,18 @@ async function player(canvas, changed) {
     if (!sheets && machine) for (const { drawn, kind } of seen.parts) if (kind !== "plane") box.expandByObject(drawn);
     box.expandByScalar(0.02 * box.getSize(moved).length());
     box.getCenter(target);
-    camera.position.copy(target).addScaledVector(away, 1000);
-    camera.lookAt(target);
+    camera.zoom = 1;
+    camera.position.copy(target).addScaledVector(away, FAR);
+    controls.update();
     camera.updateMatrixWorld();
-    let wide = 0, high = 0;
+    let across = 0, up = 0;
     for (let k = 0; k < 8; k += 1) {
       moved.set(k & 1 ? box.max.x : box.min.x, k & 2 ? box.max.y : box.min.y, k & 4 ? box.max.z : box.min.z);
       moved.applyMatrix4(camera.matrixWorldInverse);
-      wide = Math.max(wide, Math.abs(moved.x)); high = Math.max(high, Math.abs(moved.y));
+      across = Math.max(across, Math.abs(moved.x)); up = Math.max(up, Math.abs(moved.y));
     }
-    size = 1.15 * Math.max(high, wide * canvas.clientHeight / canvas.clientWidth, 1e-3);
+    size = 1.15 * Math.max(up, across * high / Math.max(wide, 1), 1e-3);
+    camera.left = -size * wide / high; camera.right = -camera.left; camera.top = size; camera.bottom = -size;
   }
 
   const shown = {
@@ -303,8 +319,7 @@ async function player(canvas, changed) {
     },
     colour(index) { seen.colour = index; refreshPoses(); refresh(); },
     view(name) {
-      away = new THREE.Vector3(...VIEWS[name][0]).normalize();
-      camera.up.set(...VIEWS[name][1]);
+      before.copy(away.set(...VIEWS[name]).normalize());
       fit(false); refresh();
     },
     near() { fit(true); refresh(); },
@@ -318,7 +333,39 @@ async function player(canvas, changed) {
     },
     // A direction as it is seen: to the right and upward, and toward the eye.
     seenAlong(way) { moved.fromArray(way).transformDirection(camera.matrixWorldInverse); return [moved.x, moved.y, moved.z]; },
-    pixelsPerMm() { return high / (2 * size); },
+    pixelsPerMm() { return camera.zoom * high / (2 * size); },
+    size() { return [wide, high]; },
+    // The value that colours a box now, in words.
+    valueAt(box) {
+      const { least, most, unit, values, fixed } = seen.colours[seen.colour];
+      const [k, part] = pointer(seen.animation, time);
+      const near = fixed || part < 0.5 ? k : Math.min(k + 1, seen.animation.time.length - 1);
+      return `${number(least + (most - least) * values[(fixed ? 0 : near * seen.animation.boxes) + box] / 255)} ${unit}`.trim();
+    },
+    // Where something is now that was at `at` at the start and moves with a row of bodies; -1: with none.
+    where({ at, row }) {
+      if (row < 0) return at;
+      const [k, part] = pointer(seen.animation, time);
+      pose(seen, row, 0, 0);
+      moved.fromArray(at).sub(position);
+      pose(seen, row, k, part);
+      return moved.add(position).toArray();
+    },
+    // Draws it once as it is printed, on a canvas that keeps it: what three.js draws on is blank in print.
+    print(on, onto) {
+      if (!on) { measure(); draw(); return; }
+      [wide, high] = [onto.width / PRINTED_AT, onto.height / PRINTED_AT];
+      drawn = 0;
+      const held = [fineness, thin, camera.zoom];
+      fineness = PRINTED_AT;
+      ground();
+      camera.zoom *= Math.min(1, (wide / high) / (canvas.clientWidth / canvas.clientHeight || 1));
+      refreshPoses();
+      draw();
+      onto.getContext("2d").drawImage(canvas, 0, 0);
+      [fineness, thin, camera.zoom] = held;
+      drawn = 0;
+    },
     // What is under a point of the canvas [px]: a mesh, or a box by its number; planes only where nothing else is.
     pick(x, y) {
       const ray = new THREE.Raycaster();
@@ -343,44 +390,8 @@ async function player(canvas, changed) {
     now() { refreshPoses(); draw(); const gl = renderer.getContext(); gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4)); },
   };
 
-  // orbit, move, zoom
-  const held = new Map();
-  let spread = 0;
-  const right = new THREE.Vector3(), up = new THREE.Vector3();
-  canvas.addEventListener("contextmenu", (event) => event.preventDefault());
-  canvas.addEventListener("pointerdown", (event) => { canvas.setPointerCapture(event.pointerId); held.set(event.pointerId, [event.clientX, event.clientY]); spread = 0; });
-  for (const kind of ["pointerup", "pointercancel"]) canvas.addEventListener(kind, (event) => { held.delete(event.pointerId); spread = 0; });
-  canvas.addEventListener("pointermove", (event) => {
-    const before = held.get(event.pointerId);
-    if (!before) return;
-    const dx = event.clientX - before[0], dy = event.clientY - before[1];
-    held.set(event.pointerId, [event.clientX, event.clientY]);
-    if (held.size === 2) {
-      const [a, b] = [...held.values()];
-      const apart = Math.hypot(a[0] - b[0], a[1] - b[1]);
-      if (spread > 0 && apart > 0) size *= spread / apart;
-      spread = apart;
-    }
-    camera.updateMatrixWorld();
-    right.setFromMatrixColumn(camera.matrixWorld, 0);
-    up.setFromMatrixColumn(camera.matrixWorld, 1);
-    if (event.shiftKey || event.buttons === 2 || held.size === 2) {
-      const mm = 2 * size / canvas.clientHeight / Math.max(held.size, 1);
-      target.addScaledVector(right, -dx * mm).addScaledVector(up, dy * mm);
-    } else {
-      // about z, and about the picture's own horizontal, short of straight down
-      camera.up.set(0, 0, 1);
-      const flat = Math.hypot(away.x, away.y) > 1e-6 ? Math.atan2(away.y, away.x) : -Math.PI / 2;
-      const rise = Math.min(Math.max(Math.asin(away.z) + 0.008 * dy, -1.55), 1.55);
-      const turn = flat - 0.008 * dx;
-      away.set(Math.cos(rise) * Math.cos(turn), Math.cos(rise) * Math.sin(turn), Math.sin(rise));
-      changed();
-    }
-    refresh();
-  });
-  canvas.addEventListener("wheel", (event) => { event.preventDefault(); size *= Math.exp(event.deltaY * 0.001); refresh(); }, { passive: false });
   dark.addEventListener("change", () => { ground(); refresh(); });
-  function measure() { wide = canvas.clientWidth; high = canvas.clientHeight; drawn = 0; }
+  function measure() { wide = canvas.clientWidth; high = canvas.clientHeight; drawn = 0; ground(); }
   new ResizeObserver(() => { measure(); refresh(); }).observe(canvas);
   measure();
   return shown;

@@ -215,8 +215,8 @@ def test_edits_mistakes_and_values_are_shown(browser: Tab, tmp_path: Path) -> No
         assert spec.read_text("utf-8") == text.replace("1400.25 mm/s", value)
         # every control has a name for those who hear the page
         assert browser.ask(
-            "[...document.querySelectorAll('button, select, input, progress, pre, canvas')].every((e) =>"
-            "e.textContent.trim() || e.ariaLabel || e.labels?.length)"
+            "[...document.querySelectorAll('button, select, input, progress, pre, #canvas, .plot')]"
+            ".every((e) => e.textContent.trim() || e.ariaLabel || e.labels?.length)"
         )
         silent(browser, made)
 
@@ -225,7 +225,7 @@ def test_two_designs_are_overlaid(browser: Tab, tmp_path: Path) -> None:
     with live(scene(tmp_path, "transport_nips", SMALL[0], ("duration: 50 ms", "duration: 20 ms"))) as made:
         show(browser, made)
         browser.ask("document.getElementById('pin').click()")
-        paths = "document.querySelectorAll('figure[data-key=displacement] path').length"
+        paths = "document.querySelectorAll('figure[data-key=displacement] .key').length"
         one = pixels(browser)
         assert browser.ask(paths) == 6
         slide(browser, "parameters.speed", 0.1)

@@ -114,6 +114,8 @@ class Model(Frozen):
     unfollowed: tuple[tuple[str, str], ...] = ()  # formulas of what is no Parameter: places, texts
     following: tuple[int, ...] = ()  # entries of the contacts whose smoothing follows from the speeds
     require: tuple[str, ...] = ()  # what a run is judged by, see spec.require
+    author: str = ""  # of the design, for the head of the page
+    revision: str = ""
 
     def __repr__(self) -> str:
         kinds = ("sheets", "rollers", "planes", "guides", "bushings", "contacts")

@@ -33,6 +33,7 @@ class Panel:
     key: str  # the same in every run
     title: str
     unit: str
+    short: str = field(default="", kw_only=True)  # its name beside a part, in words; else its key
     lines: list[Line] = field(default_factory=list)
     x_title: str = "time [ms]"
     note: str = ""
@@ -116,9 +117,9 @@ def _rollers(result: Result, at: Ints, deep: Floats) -> list[Panel]:
     each = "each roller and spring plate" if plates else "each roller"
     force = Panel("force", f"Normal force on {each}", "N")
     depth = Panel("penetration", f"Penetration of sheets into {each}", "mm")
-    place = Panel("slide", f"Way of {each} that is pressed along its press direction", "mm")
+    place = Panel("slide", f"Way of {each} that is pressed along its press direction", "mm", short="way")
     place.note = "from where it is given; it falls as a sheet lifts the part"
-    spin = Panel("omega", "Speed of each roller", "rad/s")
+    spin = Panel("omega", "Speed of each roller", "rad/s", short="speed")
     depth.note = "of the deepest box at stored states; the table has the greatest over every step"
     for part in (*result.model.rollers, *(plate for plate, _ in plates)):
         rows = list(part_rows(result, part))
@@ -142,7 +143,7 @@ def _drives(result: Result, thin: Ints) -> list[Panel]:
     torque = Panel("torque", "Torque of each drive", "N mm")
     torque.note = "about the roller's axis: what contacts and its inertia take"
     power = Panel("power", "Power of each drive", "W")
-    traction = Panel("traction", "Used part of the grip of sheets on each roller", "%")
+    traction = Panel("traction", "Used part of the grip of sheets on each roller", "%", short="grip used")
     traction.note = "friction along the surface over the most that it can be, mu times the normal force"
     sheets = {sheet.name for sheet in result.model.sheets}
     for roller in result.model.rollers:

@@ -1,7 +1,9 @@
-"""Two or more runs beside each other: numbers, what was set differently, and how far apart the sheets are."""
+"""Two or more runs beside each other: what was set differently, what came of it, and how far apart the
+sheets are."""
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Sequence
 from typing import Any
 
@@ -9,29 +11,40 @@ from mdlgen.errors import SpecError
 from mdlgen.results.compare import compare
 from mdlgen.results.result import Result
 
-# of summary.json: a list of events or of names is no number to compare
-_LEFT_OUT = ("events", "versions", "estimates", "estimate_scales")
+# of summary.json: a list of events or of names is no number to compare; verdicts have a table of their own
+_LEFT_OUT = ("events", "versions", "estimates", "estimate_scales", "verdict")
+# Numbers nearer to each other than this part of the greatest, or than this, are the same.
+SAME = 1e-9
+# What a design is judged by; where a greatest value was, and what it cost to compute, comes behind it.
+_OUTCOMES = ("sheets.", "probes.", "rollers.", "planes.")
+_DETAILS = ("boxes", "bushings", "at_mm", "at_ms", "joint", "contacts", "rounds")
 
 
 def differences(
     results: Sequence[Result], names: Sequence[str], summaries: Sequence[dict[str, Any]]
 ) -> dict[str, Any]:
-    """For the page: rows of numbers (what, one value a run, differences to the first), of parameters that
-    are not the same in all runs, and the distance of each run from the first."""
+    """For the page: parameters and lines of the scene that are not the same in all runs; rows of numbers
+    that are not (what, one value a run, differences to the first and their parts of it), first `outcomes`,
+    then `others`; those that are the `same`; and the distance of each run from the first."""
     flat = [dict(_flat({k: v for k, v in record.items() if k not in _LEFT_OUT})) for record in summaries]
     keys = list(dict.fromkeys(key for record in flat for key in record))
-    numbers = []
+    outcomes, others, same = [], [], []
     for key in keys:
         values = [record.get(key) for record in flat]
-        if any(isinstance(value, str) for value in values):
-            if len(set(values)) > 1:
-                numbers.append({"what": key, "values": values, "less": None})
-            continue
-        numbers.append({"what": key, "values": values, "less": [_less(v, values[0]) for v in values[1:]]})
+        row: dict[str, Any] = {"what": key, "values": values, "less": None}
+        if not any(isinstance(value, str) for value in values):
+            row["less"] = [_less(v, values[0]) for v in values[1:]]
+        if _equal(values):
+            same.append(row)
+        else:
+            (outcomes if _is_outcome(key) else others).append(row)
     return {
         "names": list(names),
-        "numbers": numbers,
+        "outcomes": outcomes,
+        "others": others,
+        "same": same,
         "parameters": _parameters(results),
+        "lines": [_lines(results[0], other) for other in results[1:]],
         "distances": [_distance(results[0], other) for other in results[1:]],
     }
 
@@ -46,8 +59,29 @@ def _flat(value: Any, path: str = "") -> list[tuple[str, Any]]:
     return [(path, value)]
 
 
-def _less(value: Any, first: Any) -> float | None:
-    return None if value is None or first is None else float(value) - float(first)
+def _is_outcome(key: str) -> bool:
+    return key.startswith(_OUTCOMES) and not set(key.split(".")) & set(_DETAILS)
+
+
+def _equal(values: Sequence[Any]) -> bool:
+    """Whether all runs have one value, but for round-off."""
+    if any(value is None or isinstance(value, str) for value in values):
+        return len(set(values)) == 1
+    return max(values) - min(values) <= SAME * max(1.0, *map(abs, values))
+
+
+def _less(value: Any, first: Any) -> tuple[float, float | None] | None:
+    """Difference to the first run, and which part of that it is."""
+    if value is None or first is None:
+        return None
+    less = float(value) - float(first)
+    return less, less / abs(first) if abs(first) > SAME else None
+
+
+def _lines(first: Result, other: Result) -> str:
+    """The lines of both scenes, as they were written, that are not the same."""
+    found = difflib.unified_diff(first.source.split("\n"), other.source.split("\n"), n=0, lineterm="")
+    return "\n".join(line for line in found if not line.startswith(("---", "+++", "@@")))
 
 
 def _parameters(results: Sequence[Result]) -> list[dict[str, Any]]:

@@ -6,17 +6,36 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from mdlgen.paths import templates
+from mdlgen.report.html.happened import happened
 from mdlgen.report.html.wording import percent, shown
 
 if TYPE_CHECKING:
     from jinja2 import Environment
 
-_LIBRARY = ("three.core.min.js", "three.module.min.js")
+_SPACE = ("three.core.min.js", "three.module.min.js", "OrbitControls.js")
+_FIGURES = ("uPlot.iife.min.js",)
 
 
-def library() -> dict[str, str]:
-    """The scripts that draw in space, by their names."""
-    return {name: (templates() / "report" / "third_party" / name).read_text("utf-8") for name in _LIBRARY}
+def library(figures: bool = True) -> dict[str, str]:
+    """The scripts that draw in space, and `figures`, by their names."""
+    return {name: _third(name) for name in (*_SPACE, *(_FIGURES if figures else ()))}
+
+
+def licences(figures: bool = True) -> dict[str, str]:
+    """Of what a page is drawn with, by name."""
+    found = {"three.js (MIT)": _third("LICENSE")}
+    return found | ({"uPlot (MIT)": _third("LICENSE.uPlot")} if figures else {})
+
+
+def style(*more: str) -> str:
+    """Of pages with figures; `more` are files behind it."""
+    own = [(templates() / "report" / name).read_text("utf-8") for name in ("style.css", *more)]
+    return "\n".join([_third("uPlot.min.css"), *own])
+
+
+@lru_cache(maxsize=16)
+def _third(name: str) -> str:
+    return (templates() / "report" / "third_party" / name).read_text("utf-8")
 
 
 @lru_cache(maxsize=1)
@@ -24,5 +43,5 @@ def environment() -> Environment:
     from mdlgen import templating
 
     made = templating.environment("report", autoescape=True)
-    made.filters |= {"shown": shown, "percent": percent}
+    made.filters |= {"shown": shown, "percent": percent, "happened": happened}
     return made

@@ -17,7 +17,9 @@ from mdlgen.report.animation import animation, frames, packed
 from mdlgen.report.figures.maps import Map, maps
 from mdlgen.report.html.curves import Panel, panels
 from mdlgen.report.html.differences import differences
-from mdlgen.report.html.environment import environment, library
+from mdlgen.report.html.environment import environment, library, licences, style
+from mdlgen.report.html.labels import labels
+from mdlgen.report.sheets import parts_of_sheets
 from mdlgen.results.result import Result
 from mdlgen.results.strain import histories, sheet_joints
 
@@ -26,7 +28,7 @@ if TYPE_CHECKING:
     from mdlgen.results.recorded.against import Against
 
 _STEPS = 18  # of colour in a map: .c0 to .c18 in style.css
-_SCRIPTS = ("charts.js", "player.js", "play.js", "page.js")
+_SCRIPTS = ("drawing.js", "charts.js", "labels.js", "player.js", "play.js", "page.js")
 
 
 def page(results: Sequence[Result], names: Sequence[str] = (), against: Against | None = None) -> str:
@@ -58,9 +60,9 @@ def page(results: Sequence[Result], names: Sequence[str] = (), against: Against 
             recorded=beside,
             # inside a script element nothing may look like markup
             data=drawn.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026"),
-            style=(folder / "style.css").read_text("utf-8"),
+            style=style(),
             library=library(),
-            licence=(folder / "third_party" / "LICENSE").read_text("utf-8"),
+            licences=licences(),
             scripts=[(folder / name).read_text("utf-8") for name in _SCRIPTS],
         )
     )
@@ -95,9 +97,16 @@ def run_record(result: Result, name: str, draft: Ints | None = None) -> dict[str
         "curvature": ("1/mm", curvature),
         "contact": ("N", force),
     }
+    keys = {}
+    if any(sheet.zones for sheet in result.model.sheets):
+        keys["zones"], share = parts_of_sheets(result.model)
+        colours["zones"] = ("", share[None])
     summary = result.summary()
     return {
         "name": name,
+        "author": result.model.author,
+        "revision": result.model.revision,
+        "ran_at": result.ran_at,
         "summary": summary,
         "model": {
             "gravity": [float(v) * 1000.0 for v in result.model.gravity],
@@ -116,8 +125,10 @@ def run_record(result: Result, name: str, draft: Ints | None = None) -> dict[str
         "drawn": {
             "name": name,
             "scene": summary["scene"],
-            "animation": animation(result, at, colours),
+            "animation": animation(result, at, colours, names=frozenset(keys)),
+            "keys": keys,
             "panels": [_panel(panel) for panel in panels(result, at, deep, joints)],
+            **labels(result.model),
         },
     }
 
@@ -140,4 +151,4 @@ def _panel(panel: Panel) -> dict[str, Any]:
         {"name": line.name, "x": packed(line.x, "f4"), "y": packed(np.nan_to_num(line.y), "f4")}
         for line in panel.lines
     ]
-    return {**vars(panel), "lines": lines}
+    return {**vars(panel), "short": panel.short or panel.key, "lines": lines}

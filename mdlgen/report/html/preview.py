@@ -15,10 +15,11 @@ from mdlgen.report import boxes
 from mdlgen.report.animation import at_the_start, colour, packed
 from mdlgen.report.arrows import BREADTH, arrows, longest
 from mdlgen.report.begin import depths, known, met, of_no_part
-from mdlgen.report.html.environment import environment, library
+from mdlgen.report.html.environment import environment, library, licences
+from mdlgen.report.html.labels import labels
 from mdlgen.report.sheets import parts_of_sheets
 
-_SCRIPTS = ("charts.js", "player.js", "preview.js")
+_SCRIPTS = ("drawing.js", "labels.js", "player.js", "preview.js")
 PER_SECOND_SQUARED = 1000.0  # of mm/ms^2: m/s^2
 
 
@@ -26,30 +27,14 @@ def preview(model: Model, source: str = "") -> str:
     """The page; `source` is the text of the scene. The same Model gives the same text."""
     parts, contacts = known(model), met(model)
     keys, animation = _animation(model)
-    drawn = {
-        "animation": animation,
-        "keys": keys,
-        "parts": [
-            {
-                "name": part.name,
-                "kind": part.kind,
-                "at": part.at,
-                "facts": part.facts,
-                "contacts": [
-                    f"{row.other if row.one == part.name else row.one}: {row.says}"
-                    for row in contacts
-                    if part.name in (row.one, row.other)
-                ],
-                "lints": [f"{lint.code} {lint.message}; {lint.remedy}" for lint in part.lints],
-            }
-            for part in parts
-        ],
-        "sheets": [
-            {"name": s.name, "first": s.first, "n_x": s.n_x, "count": s.count, "zones": _zones(model, k)}
-            for k, s in enumerate(model.sheets)
-        ],
-        "gravity": [float(g) for g in model.gravity],
-    }
+    drawn = {"animation": animation, "keys": keys, **labels(model)}
+    for shown, part in zip(drawn["parts"], parts, strict=True):
+        shown["contacts"] = [
+            f"{row.other if row.one == part.name else row.one}: {row.says}"
+            for row in contacts
+            if part.name in (row.one, row.other)
+        ]
+        shown["lints"] = [f"{lint.code} {lint.message}; {lint.remedy}" for lint in part.lints]
     data = json.dumps(drawn, allow_nan=False, separators=(",", ":"))
     took = cost(model)
     folder = templates() / "report"
@@ -75,8 +60,8 @@ def preview(model: Model, source: str = "") -> str:
             # inside a script element nothing may look like markup
             data=data.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026"),
             style=(folder / "style.css").read_text("utf-8"),
-            library=library(),
-            licence=(folder / "third_party" / "LICENSE").read_text("utf-8"),
+            library=library(figures=False),
+            licences=licences(figures=False),
             scripts=[(folder / name).read_text("utf-8") for name in _SCRIPTS],
         )
     )
@@ -86,7 +71,7 @@ def _animation(model: Model) -> tuple[dict[str, list[tuple[str, float]]], dict[s
     """What is drawn in space, and what parts of the ramp mean in the colours that are no number."""
     keys, share = parts_of_sheets(model)
     thick = np.concatenate([sheet.thick for sheet in model.sheets])
-    colours = [colour("sheet", "", share[None], 1.0)]
+    colours = [colour("sheet", "", share[None], (0.0, 1.0))]
     deep = np.maximum(depths(model), 0.0)
     if deep.max() > 0.0:
         colours.append(colour("depth", "mm", deep[None]))
@@ -109,8 +94,3 @@ def _animation(model: Model) -> tuple[dict[str, list[tuple[str, float]]], dict[s
             }
         )
     return {"sheet": keys}, animation
-
-
-def _zones(model: Model, index: int) -> list[tuple[str, list[int]]]:
-    """Zones of a sheet and the boxes that they cover, counted from its first."""
-    return [(zone.name, np.flatnonzero(zone.share).tolist()) for zone in model.sheets[index].zones]

@@ -6,12 +6,12 @@ from typing import Any
 
 from mdlgen.results.wording import ROUND_OFF, number, numbers
 
-FIGURES = 5
+FIGURES = 4
 UNKNOWN = "–"
 
 
 def shown(value: Any) -> str:
-    """A number as a reader wants it: five figures, 0 for round-off; a dash for what is not known.
+    """A number as a reader wants it: four figures, 0 for round-off; a dash for what is not known.
 
     In a vector a component that is round-off of the others is 0.
     """

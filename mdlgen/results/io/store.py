@@ -62,7 +62,8 @@ def hdf5(result: Result) -> bytes:
     """result.h5: states and statistics in the Model's units, with the names of bodies and contact rows, what
     the joints of the sheets bore at most (`joints/...`; see `results.strain`), and the Model (`model/...`).
 
-    The same result gives the same bytes: no times of writing are kept, and `took` alone has those of the run.
+    The same result gives the same bytes: no times of writing are kept; `took` and `ran_at` alone
+    have those of the run.
     """
     import h5py
 
@@ -82,6 +83,7 @@ def hdf5(result: Result) -> bytes:
             put(f"joints/{name}", data)
         tree.put(file, {name: getattr(result, name) for name in STORED} | {"versions": versions(result)})
         put("took", np.array([getattr(result, name) for name in TOOK]))
+        put("ran_at", np.bytes_(result.ran_at.encode("ascii")))
         put("bodies", _names(model.bodies.name))
         put("contacts", _names(_rows(result)))
         for name, value in (
@@ -108,6 +110,8 @@ def load(folder: str | Path) -> Result:
                 raise OutputError(f"{path}: holds states and no model; it is of an older mdlgen, run again")
             message = tree.take(file) | dict(zip(TOOK, file["took"][()].tolist(), strict=True))
             states = {name: file[name][()] for name in (*STATES, *TURNS) if name not in TURNS or name in file}
+            if "ran_at" in file:  # which files of older versions do not have
+                message["ran_at"] = bytes(file["ran_at"][()]).decode("ascii")
             statistics = ContactStatistics(**{name: file[f"statistics/{name}"][()] for name in STATISTICS})
             return Result(**message, **states, statistics=statistics)
     except (OSError, KeyError, TypeError, ValueError, AttributeError) as error:

@@ -22,7 +22,7 @@ from mdlgen.study.output.fragment import options
 NAME = "study.html"
 # More lines than these no browser draws at ease, and no reader can distinguish.
 MOST_DRAWN = 5000
-_SCRIPTS = ("charts.js", "study.js")
+_SCRIPTS = ("drawing.js", "study.js")
 _ELSEWHERE = ("status", "reason", "solver")  # columns that the page has in other places
 _REPORT, _STATES = "report.html", "result.h5"
 
