@@ -70,11 +70,11 @@ function axes(box, x, y) {
   const marks = (axis, about) => (axis.words.length ? axis.words.map((_, k) => k) : ticks(...axis.ends, about));
   const word = (axis, v) => (axis.words.length ? short(axis.words[v], 14) : number(v));
   for (const v of marks(x, 6)) {
-    element("line", { x1: wide(v), x2: wide(v), y1: top, y2: bottom, stroke: "#e4e4e4" }, svg);
+    element("line", { x1: wide(v), x2: wide(v), y1: top, y2: bottom, stroke: "var(--rule)" }, svg);
     element("text", { x: wide(v), y: bottom + 15, "text-anchor": "middle" }, svg).textContent = word(x, v);
   }
   for (const v of marks(y, 5)) {
-    element("line", { x1: left, x2: right, y1: high(v), y2: high(v), stroke: "#e4e4e4" }, svg);
+    element("line", { x1: left, x2: right, y1: high(v), y2: high(v), stroke: "var(--rule)" }, svg);
     element("text", { x: left - 5, y: high(v) + 4, "text-anchor": "end" }, svg).textContent = word(y, v);
   }
   element("text", { x: (left + right) / 2, y: bottom + 34, "text-anchor": "middle" }, svg).textContent = short(title(x), 70);
@@ -84,7 +84,10 @@ function axes(box, x, y) {
 // A measure over one variable; joined where that is the only one, with the means of its values otherwise.
 function response() {
   const x = along(), y = measures[state.measure];
-  const box = frame(get("response"), title(y), 560, 300, 70);
+  const coloured = variables.length > 1 && x.role !== "case";
+  const box = frame(get("response"), `${title(y)}, over ${short(title(x), 40)}${coloured ? `, coloured by ${short(title(across()), 40)}` : ""}`, 560, coloured ? 340 : 300, 70);
+  box.top += 12;
+  if (coloured) box.bottom -= 34;
   const [wide, high] = axes(box, x, y);
   const seen = rows.filter((row) => measured(row) && y.at[row] !== null);
   let steps = [];
@@ -106,6 +109,19 @@ function response() {
     say(element("circle", { cx: wide(x.at[row]), cy: high(y.at[row]), r: 4, fill, class: "point" }, box.svg), row);
   }
   for (const row of rows) if (!measured(row) && x.at[row] !== null) cross(wide(x.at[row]), box.bottom - 6, row, box.svg);
+  const crossed = rows.some((row) => !measured(row)), joined = steps.length > 1;
+  if (variables.length > 1 && x.role !== "case") legend({ ...box, height: 334 }, across(), "colour");
+  // what the marks are
+  const marks = [["circle", "a case"], ...(joined ? [["line", x.role === "case" ? "best so far" : variables.length === 1 ? "joins cases" : "mean of a value"]] : []), ...(crossed ? [["cross", "without measures"]] : [])];
+  let at = box.left;
+  for (const [kind, words] of marks) {
+    const y = 8;
+    if (kind === "circle") element("circle", { cx: at + 6, cy: y, r: 4, fill: COLOURS[0] }, box.svg);
+    else if (kind === "line") element("line", { x1: at, x2: at + 14, y1: y, y2: y, stroke: COLOURS[0], "stroke-width": 1.6 }, box.svg);
+    else element("path", { d: `M${at + 2} ${y - 4}l8 8m0 -8l-8 8`, stroke: BAD, "stroke-width": 2, fill: "none" }, box.svg);
+    element("text", { x: at + 18, y: y + 4, class: "legend" }, box.svg).textContent = words;
+    at += 34 + 7 * words.length;
+  }
 }
 
 // Two variables, the measure as colour: fields where the values form a grid, points elsewhere.
@@ -135,19 +151,22 @@ function map() {
 }
 
 // The colours of a measure: its values where there are few, a ramp otherwise.
-function legend(box, z) {
-  const y = box.height - 22, few = z.levels.length <= 5;
+function legend(box, z, what = "") {
+  const y = box.height - 22;
+  if (!z.levels.length) return;
+  element("text", { x: 4, y: y + 9, class: "legend" }, box.svg).textContent = what;
+  const few = z.levels.length <= 5;
   const shown = few ? z.levels : [...Array(41).keys()].map((k) => z.levels[0] + (z.levels.at(-1) - z.levels[0]) * k / 40);
   const size = few ? 70 : 6;
   shown.forEach((value, k) => {
     const row = z.at.indexOf(value);
     const fill = row >= 0 && few ? colour(z, row) : ramp(k / 40);
     element("rect", { x: box.left + k * size, y, width: few ? 14 : size, height: 10, fill }, box.svg);
-    if (few) element("text", { x: box.left + k * size + 18, y: y + 9 }, box.svg).textContent = number(value);
+    if (few) element("text", { x: box.left + k * size + 18, y: y + 9, class: "legend" }, box.svg).textContent = z.words.length ? short(z.words[value], 8) : number(value);
   });
   if (!few) {
     element("text", { x: box.left - 5, y: y + 9, "text-anchor": "end" }, box.svg).textContent = number(z.levels[0]);
-    element("text", { x: box.left + 41 * size + 5, y: y + 9 }, box.svg).textContent = number(z.levels.at(-1));
+    element("text", { x: box.left + 41 * size + 5, y: y + 9, class: "legend" }, box.svg).textContent = number(z.levels.at(-1));
   }
 }
 
@@ -158,9 +177,10 @@ function ramp(part) {
 
 // Every case a line over all variables and measures; one without measures ends after its values.
 function parallel() {
-  const most = 14, all = [...variables, ...measures].slice(0, most);
-  const box = frame(get("parallel"), "All values and measures of each case", 1120, 340, 60);
+  // a measure that is the same in all cases says nothing
+  const most = 14, all = [...variables, ...measures.filter((measure) => !isConstant(measure))].slice(0, most);
   const z = measures[state.measure];
+  const box = frame(get("parallel"), `All values and measures of each case, coloured by ${title(z)}`, 1120, 376, 60);
   const top = 52, bottom = 320;
   const x = (k) => box.left + (all.length > 1 ? (1120 - 120) * k / (all.length - 1) : 500);
   const y = (axis, v) => bottom - (bottom - top) * (v - axis.ends[0]) / (axis.ends[1] - axis.ends[0]);
@@ -180,7 +200,7 @@ function parallel() {
     if (!good) cross(...last, row, box.svg);
   }
   all.forEach((axis, k) => {
-    element("line", { x1: x(k), x2: x(k), y1: top, y2: bottom, stroke: "#3a424b" }, box.svg);
+    element("line", { x1: x(k), x2: x(k), y1: top, y2: bottom, stroke: "var(--axis)" }, box.svg);
     const place = { x: x(k), "text-anchor": all.length === 1 ? "middle" : k === 0 ? "start" : k === all.length - 1 ? "end" : "middle" };
     const name = element("text", { ...place, y: 14 + 14 * (k % 2), "font-weight": 600 }, box.svg);
     name.textContent = short(title(axis), Math.max(16, Math.floor(250 / all.length)));
@@ -189,8 +209,10 @@ function parallel() {
     element("text", { x: x(k), y: bottom + 14, "text-anchor": "middle" }, box.svg).textContent = ends[0];
     element("text", { x: x(k), y: top - 6, "text-anchor": "middle" }, box.svg).textContent = ends[1];
   });
+  legend(box, z);
 }
 
+const isConstant = ({ levels }) => levels.length < 2 || levels.at(-1) - levels[0] <= 1e-9 * Math.max(1, Math.abs(levels.at(-1)));
 const along = () => [...variables, order][state.along];
 const across = () => variables[state.across];
 
@@ -248,7 +270,8 @@ function options(id, all, chosen) {
   get(id).addEventListener("change", (event) => { state[id] = Number(event.target.value); draw(); });
 }
 
-options("measure", measures, Math.max(0, measures.findIndex((measure) => measure.event)));
+const first = [(measure) => measure.event && !isConstant(measure), (measure) => !isConstant(measure)].map((found) => measures.findIndex(found)).find((k) => k >= 0);
+options("measure", measures, first ?? 0);
 options("along", [...variables, order], content.objective ? variables.length : 0);
 options("across", variables, state.across);
 get("across-label").hidden = variables.length < 2;

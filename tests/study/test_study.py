@@ -10,7 +10,7 @@ from scipy import stats
 
 from mdlgen.errors import SpecError
 from mdlgen.paths import samples
-from mdlgen.study.analysis.effects import main_effect, sobol
+from mdlgen.study.analysis.effects import interaction, main_effect, sobol
 from mdlgen.study.analysis.findings import findings, findings_text
 from mdlgen.study.analysis.probability import caveat, probability
 from mdlgen.study.analysis.table import columns
@@ -223,6 +223,24 @@ class TestEffects:
         assert (one.range, other.range) == (9.0, 18.0)
         assert [group.mean for group in one.groups] == [k + 9.0 for k in range(10)]
         assert main_effect(a.tolist(), [1.0] * 100) is None
+
+    def test_what_two_do_together_is_what_a_sum_leaves(self) -> None:
+        """y = a + b + 3 a b with a and b -1 or 1 or between: variances 1, 1 and 9 times that of a grid."""
+        values = np.linspace(-1.0, 1.0, 9)
+        a, b = (v.ravel() for v in np.meshgrid(values, values))
+        square = float((values**2).mean())
+        share = 9.0 * square**2 / (2.0 * square + 9.0 * square**2)
+        assert interaction(a.tolist(), b.tolist(), (a + b + 3 * a * b).tolist()) == pytest.approx(share)
+        assert interaction(a.tolist(), b.tolist(), (a + b).tolist()) == pytest.approx(0.0, abs=1e-12)
+        # a third variable is no interaction of these two; nor is what chance gives
+        x = sample("random", 2000, self.THREE, 1)
+        one, other = x[:, 0].tolist(), x[:, 1].tolist()
+        assert (interaction(one, other, x.sum(axis=1).tolist()) or 0.0) < 0.02
+        assert (interaction(one, other, (x[:, 0] * x[:, 1]).tolist()) or 0.0) > 0.05
+        # too few cases for so many cells, and a measure of round-off
+        assert interaction(one[:20], other[:20], x[:20, 2].tolist()) is None
+        assert interaction(a.tolist(), b.tolist(), (1e-17 * a).tolist()) is None
+        assert main_effect(a.tolist(), (1e-17 * a).tolist()) is None
 
     def test_a_variable_without_effect_has_none(self) -> None:
         x = sample("random", 1000, self.THREE, 1)

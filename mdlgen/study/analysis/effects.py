@@ -1,4 +1,5 @@
-"""What a measure owes to which variable: means over the levels of one, and Sobol's indices."""
+"""What a measure owes to which variable: means over the levels of one, what two do together, and Sobol's
+indices."""
 
 from __future__ import annotations
 
@@ -8,11 +9,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from mdlgen.errors import SpecError
-from mdlgen.model.tables import Floats
+from mdlgen.model.tables import Floats, Ints
+from mdlgen.results.wording import ROUND_OFF
 
 LEVEL = 0.95
 # Of a variable with more values than this its cases are put into so many groups of equal size.
 LEVELS, GROUPS = 12, 5
+# Cells of two variables that hold one case or two count where this part of them is filled, as in a grid.
+FILLED = 0.8
 RESAMPLES, SEED = 1000, 0
 
 
@@ -45,6 +49,12 @@ class MainEffect:
         return max(means) - min(means)
 
 
+def is_constant(measure: Floats) -> bool:
+    """Whether a measure is the same in all cases, but for round-off: then nothing is said of what it owes to
+    what."""
+    return not len(measure) or float(np.ptp(measure)) <= ROUND_OFF * max(1.0, float(np.abs(measure).max()))
+
+
 def main_effect(values: Sequence[float], measure: Sequence[float]) -> MainEffect | None:
     """Of the cases with these values of a variable and of a measure; those without a number are left out.
 
@@ -53,18 +63,55 @@ def main_effect(values: Sequence[float], measure: Sequence[float]) -> MainEffect
     x, y = np.asarray(values, dtype=float), np.asarray(measure, dtype=float)
     known = np.isfinite(x) & np.isfinite(y)
     x, y = x[known], y[known]
-    levels = np.unique(x)
-    if len(levels) < 2 or not np.ptp(y):
+    if is_constant(y):
         return None
-    if len(levels) <= LEVELS:
-        members = [np.flatnonzero(x == level) for level in levels]
-    else:
-        members = np.array_split(np.argsort(x, kind="stable"), GROUPS)
+    group = _groups(x)
+    members = [np.flatnonzero(group == k) for k in range(group.max() + 1)]
+    if len(members) < 2:
+        return None
     total = float(((y - y.mean()) ** 2).sum())
     inside = sum(float(((y[rows] - y[rows].mean()) ** 2).sum()) for rows in members)
     free = len(y) - len(members)
     share = 1.0 - inside / total * (len(y) - 1) / free if free else 1.0
     return MainEffect(tuple(_group(x[rows], y[rows]) for rows in members), max(share, 0.0))
+
+
+def _groups(x: Floats) -> Ints:
+    """The group of each value, from 0: one for each of a few values, else some of equal size."""
+    levels, which = np.unique(x, return_inverse=True)
+    if len(levels) <= LEVELS:
+        return which.reshape(-1)
+    group = np.empty(len(x), dtype=np.int64)
+    for k, rows in enumerate(np.array_split(np.argsort(x, kind="stable"), GROUPS)):
+        group[rows] = k
+    return group
+
+
+def interaction(one: Sequence[float], other: Sequence[float], measure: Sequence[float]) -> float | None:
+    """Part of a measure's variance that two variables decide together, beyond what each does alone.
+
+    It is what the means of their cells leave less than the sum of an effect of each does, freed of what
+    chance alone would give where cells have several cases. None where the measure never changes, or the
+    cases are too few for the cells that there are.
+    """
+    x1, x2, y = (np.asarray(v, dtype=float) for v in (one, other, measure))
+    known = np.isfinite(x1) & np.isfinite(x2) & np.isfinite(y)
+    if not known.any() or is_constant(y[known]):
+        return None
+    y = y[known]
+    a, b = _groups(x1[known]), _groups(x2[known])
+    rows, columns = int(a.max()) + 1, int(b.max()) + 1
+    cell, count = np.unique(a * columns + b, return_inverse=True, return_counts=True)[1:]
+    free = len(y) - len(count)
+    if min(rows, columns) < 2 or free < len(count) < FILLED * rows * columns:
+        return None
+    means = np.bincount(cell.reshape(-1), y) / count
+    inside = float(((y - means[cell.reshape(-1)]) ** 2).sum())
+    sums = np.concatenate([np.eye(rows)[a], np.eye(columns)[b]], axis=1)
+    found, _, rank, _ = np.linalg.lstsq(sums, y, rcond=None)
+    beyond = float(((y - sums @ found) ** 2).sum()) - inside
+    chance = inside / free * (len(count) - int(rank)) if free else 0.0
+    return max(beyond - chance, 0.0) / float(((y - y.mean()) ** 2).sum())
 
 
 def _group(x: Floats, y: Floats) -> Group:
@@ -102,7 +149,7 @@ def sobol(measure: Sequence[float], variables: int) -> tuple[Indices, ...] | Non
         raise SpecError(f"{len(y)} cases of {variables} variables are no sample saltelli")
     rows = y.reshape(variables + 2, -1)
     rows = rows[:, np.isfinite(rows).all(axis=0)]
-    if rows.shape[1] < 2 or not np.ptp(rows):
+    if rows.shape[1] < 2 or is_constant(rows.ravel()):
         return None
     found = _indices(rows)
     random = np.random.default_rng(SEED)

@@ -1,12 +1,22 @@
-"""What a sweep says as a whole: probabilities of events, main effects and Sobol's indices."""
+"""What a sweep says as a whole: probabilities of events, effects, interactions and Sobol's indices."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import combinations
 from typing import Any
 
+import numpy as np
+
 from mdlgen.results.summary import plain
-from mdlgen.study.analysis.effects import Indices, MainEffect, main_effect, sobol
+from mdlgen.study.analysis.effects import (
+    Indices,
+    MainEffect,
+    interaction,
+    is_constant,
+    main_effect,
+    sobol,
+)
 from mdlgen.study.analysis.probability import caveat, probability
 from mdlgen.study.analysis.table import Column
 from mdlgen.study.design.task import Task
@@ -14,6 +24,8 @@ from mdlgen.study.execution.row import CaseRow
 
 # Effects are printed on a terminal for so many measures; findings.json has all.
 _SHOWN = 6
+# An interaction of less than this part of the variance is not told, nor those of more variables than this.
+_SLIGHT, _MOST_VARIABLES = 0.01, 10
 
 
 def findings(task: Task, how: str, rows: Sequence[CaseRow], columns: Sequence[Column]) -> dict[str, Any]:
@@ -26,14 +38,22 @@ def findings(task: Task, how: str, rows: Sequence[CaseRow], columns: Sequence[Co
         "without_measures": sum(not row.measured for row in rows),
         "how": how,
         "events": {name: _event(task, name, table[name], kind) for name in task.events},
+        "constant": {},
         "effects": {},
+        "interactions": {},
         "indices": {},
     }
     names = [name for name, _ in task.measures if name not in task.events]
     for name in (*task.events, *names):
         measure = [float("nan") if cell is None else float(cell) for cell in table[name].cells]
+        known = np.array([value for value in measure if np.isfinite(value)])
+        if is_constant(known):  # a finding about it would be one about round-off
+            if len(known) and name in names:
+                record["constant"][name] = float(known[0])
+            continue
         effects = {path: main_effect(places(table[path]), measure) for path in paths}
         record["effects"][name] = {path: _effect(found) for path, found in effects.items() if found}
+        record["interactions"][name] = _interactions(paths, table, measure)
         if kind == "saltelli":
             found = sobol(measure, len(paths))
             record["indices"][name] = dict(zip(paths, map(_indices, found), strict=True)) if found else {}
@@ -63,6 +83,18 @@ def _effect(found: MainEffect) -> dict[str, Any]:
     return {"share": found.share, "range": found.range, "groups": [vars(group) for group in found.groups]}
 
 
+def _interactions(
+    paths: Sequence[str], table: dict[str, Column], measure: Sequence[float]
+) -> list[dict[str, Any]]:
+    """What two variables do together, the greatest first."""
+    found: list[dict[str, Any]] = []
+    for one, other in combinations(paths[:_MOST_VARIABLES], 2):
+        share = interaction(places(table[one]), places(table[other]), measure)
+        if share is not None and share >= _SLIGHT:
+            found.append({"variables": [one, other], "share": share})
+    return sorted(found, key=lambda row: -row["share"])
+
+
 def _indices(found: Indices) -> dict[str, Any]:
     return {"first": vars(found.first), "total": vars(found.total)}
 
@@ -85,7 +117,16 @@ def findings_text(record: dict[str, Any]) -> list[str]:
             if len(variables) > 1:
                 order = sorted(variables.items(), key=lambda item: -item[1]["share"])
                 shares = ", ".join(f"{path} {_percent(found['share'])}" for path, found in order)
-                lines.append(f"{name}, part of its variance by each value alone: {shares}")
+                line = f"{name}, part of its variance by each value alone: {shares}"
+                both = record["interactions"].get(name, ())
+                if both:
+                    line += "; beyond that together: " + ", ".join(
+                        f"{' and '.join(row['variables'])} {_percent(row['share'])}" for row in both[:_SHOWN]
+                    )
+                lines.append(line)
+    if record["constant"]:
+        told = ", ".join(f"{name} {value:.4g}" for name, value in list(record["constant"].items())[:_SHOWN])
+        lines.append(f"the same in all cases: {told}")
     return lines
 
 
