@@ -25,7 +25,7 @@ typer.main.get_command = functools.cache(typer.main.get_command)
 settings.register_profile("mdlgen", deadline=None, derandomize=True)
 settings.load_profile("mdlgen")
 
-# The first test of each compiles nearly all that there is.
+# The first test of each compiles nearly all that there is, or prepares what is shipped.
 COMPILING = ("test_lattice", "test_lattice_static", "test_exudyn")
 # Folders whose tests need nothing compiled, or little.
 PLAIN = ("spec", "model", "text", "deck", "script")
@@ -39,23 +39,35 @@ def _shared_runs(tmp_path_factory: pytest.TempPathFactory) -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """What compiles comes first, on one worker; then what needs nothing compiled, for the other one."""
+    """What compiles comes first, on one worker; then what needs nothing compiled, for the other one.
+
+    Of what is shipped each of two workers prepares one program: the second begins in the middle of the list.
+    """
     first = [next((i for i in items if i.path.stem == name), None) for name in COMPILING]
-    begin = [i for i in first if i is not None]
+    shipped = _shipped()
+    begin = [i for i in (first[:1] if shipped else first) if i is not None]
     plain = [i for i in items if i.path.parent.name in PLAIN]
     early = {id(i) for i in (*begin, *plain)}
     items[:] = [*begin, *plain, *(i for i in items if id(i) not in early)]
+    if shipped and first[-1] is not None:
+        items.remove(first[-1])
+        items.insert((len(items) + 1) // 2, first[-1])
 
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
     """Each worker takes one part of the list, and from the other's once it is at its end: tests of one file
     share what they run. Not where numba compiles, which the order is for then."""
-    if config.getvalue("dist") != "load" or alone() or not all(map(_fits, build.programs())):
+    if config.getvalue("dist") != "load" or not _shipped():
         return None
     from xdist.scheduler import WorkStealingScheduling
 
     return WorkStealingScheduling(config, log)
+
+
+def _shipped() -> bool:
+    """Whether all that solvers run is shipped, and numba compiles for tests of single laws alone."""
+    return not alone() and all(map(_fits, build.programs()))
 
 
 def _fits(program: Program) -> bool:

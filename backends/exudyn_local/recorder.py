@@ -38,7 +38,11 @@ class Recorder:
 
     def __init__(self, model: Model, system: System, progress: Callable | None):
         self.model, self.system, self.progress = model, system, progress
-        self._tables = system.tables  # the same at each step, so that compiled code looks at them once
+        # the same at each step, so that compiled code looks at them once
+        self._tables = system.tables
+        self._state, self._before = np.zeros((2, 2, max(1, system.free)))  # coordinates and velocities
+        self._q, self._v = self._state
+        self._last_q, self._last_v = self._before
         self.steps = 0
         self.time = 0.0  # [s]
         self.reason: str | None = None
@@ -54,9 +58,8 @@ class Recorder:
         self._in_contact, self._last = np.zeros(rows), np.zeros(rows)
         self._acting = np.zeros(rows, bool)
         self._force = np.zeros(rows)  # of the state last observed; a failed static run observes none [N]
-        self._turning = np.zeros((rows, TURNING))  # of that state [N m, N]
         self._stored: dict[str, list] = {name: [] for name in ("t", "x", "e", "u", "w", "f", "turning")}
-        self._first: np.ndarray | None = None
+        self._first: list[float] | None = None  # energies at the start [J]
         self._lost = self._driven = 0.0
         self._through = self._most = 0.0
         self.gained = self.vanished = 0.0  # how far the balance was off, most above and most below [J]
@@ -64,8 +67,6 @@ class Recorder:
         self._last_stored = -1
         self._deepest = np.empty(len(system.pairs))
         set_limits(system.bodies, system.pairs, self._deepest)
-        # coordinates and velocities of the last step
-        self._before: tuple[np.ndarray, np.ndarray] | None = None
         self._unheld = Unheld(model)
 
     def plan(self, h: float) -> None:
@@ -80,20 +81,22 @@ class Recorder:
         if t <= self.time:  # Exudyn also calls at the start
             return True
         data = mbs.systemData
-        q, v = data.GetODE2Coordinates(), data.GetODE2Coordinates_t()
+        free = self.system.free
+        self._q[:free] = data.GetODE2Coordinates(copy=False)
+        self._v[:free] = data.GetODE2Coordinates_t(copy=False)
         self.steps += 1
         step = t - self.time
-        if not (np.isfinite(q).all() and np.isfinite(v).all()):
+        if np.count_nonzero(np.isfinite(self._state)) < self._state.size:
             self.reason = f"the state went non-finite at {t / MS:.6g} ms (step {step / MS:.3g} ms)"
             return False
-        self._observe(q, v, t)
+        self._observe(t)
         done = len(self._stored["t"]) - 1
         if done < len(self._due) and t >= self._due[done]:
             self._store(t)
         if self.reason is None:
             self._watch(t, step)
         if self.reason is None:
-            self._between(q, v, t, step)
+            self._between(t, step)
         if self.progress is not None and self.steps % 20 == 0:
             self.progress(t / MS, self.model.run.duration, self.steps, self.touching)
         return self.reason is None
@@ -105,24 +108,26 @@ class Recorder:
 
     def store(self, q: np.ndarray, v: np.ndarray, t: float) -> None:
         """Observe and store one state outside the stepping (the start, or a static result)."""
-        self._observe(q, v, t)
+        self._q[:], self._v[:] = q, v
+        self._observe(t)
         self._store(t)
         self._watch(t, 0.0)
-        self._before = np.array(q), np.array(v)
+        self._before[:] = self._state
 
-    def _observe(self, q: np.ndarray, v: np.ndarray, t: float) -> None:
-        before = self._totals.copy()
+    def _observe(self, t: float) -> None:
+        before = self._totals.tolist()
         self._pairs[:] = 0.0
-        at = Coordinates(q, v, t)
+        at = Coordinates(self._q, self._v, t)
         ledger(self._tables, at, self._work, self._pairs, self._totals)
+        now = self._totals.tolist()
         step, self.time = t - self.time, t
-        self._lost += 0.5 * step * (before[LOST] + self._totals[LOST])
-        self._driven += 0.5 * step * (before[DRIVING] + self._totals[DRIVING])
-        self._through += 0.5 * step * (abs(before[DRIVING]) + abs(self._totals[DRIVING]))
-        self._most = max(self._most, self._totals[KINETIC] + self._totals[ELASTIC])
+        self._lost += 0.5 * step * (before[LOST] + now[LOST])
+        self._driven += 0.5 * step * (before[DRIVING] + now[DRIVING])
+        self._through += 0.5 * step * (abs(before[DRIVING]) + abs(now[DRIVING]))
+        self._most = max(self._most, now[KINETIC] + now[ELASTIC])
         if self._first is None:
-            self._first = self._totals[:3].copy()
-        off = self._off()
+            self._first = now[:3]
+        off = self._off(now)
         self.gained, self.vanished = max(self.gained, off), min(self.vanished, off)
         self._contacts(step, t)
         begin(self.system.bodies, self.system.pairs, at, self._work.motion)
@@ -133,7 +138,6 @@ class Recorder:
         rows = len(self._max_depth)
         if not self._acting.any() and not self._pairs.any():  # a body that flies: nothing of this changes
             self._force = np.zeros(rows)
-            self._turning = np.zeros((rows, TURNING))
             return
         row = self.model.pairs.contact
         force = np.asarray(np.bincount(row, weights=self._pairs[:, PRESSING], minlength=rows), dtype=float)
@@ -150,8 +154,6 @@ class Recorder:
         self._last = np.where(self._acting & ~acting, t, self._last)
         self._acting = acting
         self._force = force
-        self._turning = np.zeros((rows, TURNING))
-        np.add.at(self._turning, row, self._pairs[:, OUT:])
 
     def _store(self, t: float) -> None:
         if self._last_stored == self.steps:
@@ -165,7 +167,9 @@ class Recorder:
         self._stored["u"].append(u[:-1].copy())
         self._stored["w"].append(w[:-1].copy())
         self._stored["f"].append(self._force.copy())
-        self._stored["turning"].append(self._turning)
+        turning = np.zeros((len(self._force), TURNING))  # [N m, N]
+        np.add.at(turning, self.model.pairs.contact, self._pairs[:, OUT:])
+        self._stored["turning"].append(turning)
         self.reason = self.reason or self._unheld.found(x[:-1] / MM, r[:-1], t / MS)
 
     def _watch(self, t: float, step: float) -> None:
@@ -178,23 +182,24 @@ class Recorder:
                 row = int(self.system.bushings["row"][joint])
                 time = None if self.model.run.analysis == "static" else t / MS
                 self.reason = curves.overstretched(self.model, row, float(strain), time)
-        deep = np.flatnonzero(self._pairs[:, DEPTH] > self._deepest)
-        if deep.size:
-            self._too_deep(int(deep[0]), t, step)
-        out = np.flatnonzero(((x < self._low) | (x > self._high)).any(axis=1))
-        if out.size:
+        deep = self._pairs[:, DEPTH] > self._deepest
+        if np.count_nonzero(deep):
+            self._too_deep(int(np.flatnonzero(deep)[0]), t, step)
+        beyond = (x < self._low) | (x > self._high)
+        if np.count_nonzero(beyond):
+            out = np.flatnonzero(beyond.any(axis=1))
             at = ", ".join(f"{value:.4g}" for value in x[out[0]] * PER_MM)
             name, (bounds, advice) = self.model.called(int(out[0])), self.model.bounds_of(int(out[0]))
             self.reason = f"{name} left {bounds} at {t / MS:.6g} ms (it is at {at} mm); {advice}"
 
-    def _between(self, q: np.ndarray, v: np.ndarray, t: float, step: float) -> None:
+    def _between(self, t: float, step: float) -> None:
         """Sets the reason where a pair has passed since the last step."""
-        if self._before is not None:
-            tables, was = self.system, self._before
-            pair = passed(tables.bodies, tables.pairs, tables.meshes, *was, q, v, t - step, step)
-            if pair >= 0:
-                self._too_deep(pair, t, step)
-        self._before = np.array(q), np.array(v)
+        tables = self.system
+        states = (self._last_q, self._last_v, self._q, self._v)
+        pair = passed(tables.bodies, tables.pairs, tables.meshes, *states, t - step, step)
+        if pair >= 0:
+            self._too_deep(pair, t, step)
+        self._before[:] = self._state
 
     def _too_deep(self, pair: int, t: float, step: float) -> None:
         one, two = (int(side[pair]) for side in (self.model.pairs.a, self.model.pairs.b))
@@ -237,10 +242,12 @@ class Recorder:
             energy=self._balance(),
         )
 
-    def _off(self) -> float:
+    def _off(self, energies: list[float]) -> float:
         """Energy that is there and came from nowhere since the start [J]."""
         assert self._first is not None, "something was observed"
-        return float(self._totals[:3].sum() - self._first.sum() + self._lost - self._driven)
+        kinetic, elastic, potential = energies[:3]
+        first = self._first[0] + self._first[1] + self._first[2]
+        return kinetic + elastic + potential - first + self._lost - self._driven
 
     def _balance(self) -> Energy:
         if self._first is None:
@@ -258,7 +265,7 @@ class Recorder:
             elastic=self._totals[ELASTIC] * to_nmm,
             dissipated=self._lost * to_nmm,
             driven=self._driven * to_nmm,
-            balance_error=float(self._off() * to_nmm / scale) if self.steps else 0.0,
+            balance_error=self._off(self._totals.tolist()) * to_nmm / scale if self.steps else 0.0,
             scale=scale,
         )
 

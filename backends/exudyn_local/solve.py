@@ -273,11 +273,16 @@ def _assemble(exu, model: Model, system: System, pattern: Pattern, work: Work) -
     state = mbs.systemData
     static = model.run.analysis == "static"
     rest = np.zeros_like(q)
+    here, rates = (
+        np.zeros_like(q),
+        np.zeros_like(q),
+    )  # the same at each call: compiled code looks at them once
 
     def force(mbs, t, itemNumber, q, q_t):
-        rates = rest if static else state.GetODE2Coordinates_t(copy=False)
-        at = Coordinates(state.GetODE2Coordinates(copy=False), rates, t)
-        forces(tables, at, t if static else 1.0, work)
+        here[:] = state.GetODE2Coordinates(copy=False)
+        if not static:
+            rates[:] = state.GetODE2Coordinates_t(copy=False)
+        forces(tables, Coordinates(here, rates, t), t if static else 1.0, work)
         return f
 
     def tangent(mbs, t, itemNumber, q, q_t, fODE2, fODE2_t):

@@ -67,6 +67,11 @@ def writer(kind: Type, at: int) -> Write:
     return (_tuple if kind[0] == "tuple" else _array)(kind, at)
 
 
+def part_writers(kind: Type, at: int) -> Write | list[Write]:
+    """What writes an argument of a type; for a tuple, what writes each of its items."""
+    return _items(kind, at) if kind[0] == "tuple" else writer(kind, at)
+
+
 def _number(at: int) -> Write:
     pack, at = struct.Struct("=d").pack_into, 8 * at
 
@@ -100,11 +105,16 @@ def _truth(at: int) -> Write:
     return write
 
 
-def _tuple(kind: Type, at: int) -> Write:
+def _items(kind: Type, at: int) -> list[Write]:
     parts: list[Write] = []
     for item in kind[1]:
         parts.append(writer(item, at))
         at += words(item)
+    return parts
+
+
+def _tuple(kind: Type, at: int) -> Write:
+    parts = _items(kind, at)
     count = len(parts)
 
     def write(buffer: Any, value: Any) -> None:

@@ -8,14 +8,14 @@ import logging
 import platform
 import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 from mdlgen import paths
 from mdlgen.errors import OutputError
 from mdlgen.program.file import Head, Unfit, Variant
-from mdlgen.program.layout import Misfit, reader, words, writer
+from mdlgen.program.layout import Misfit, Write, part_writers, reader, words
 
 LOG = logging.getLogger("mdlgen.compiling")
 
@@ -124,13 +124,15 @@ class Machine:
 
 
 class ArgumentWords(threading.local):
-    """The words of one thread's calls, and the arguments that they were made of."""
+    """The words of one thread's calls, and the arguments that they were made of; `items` has how many each
+    argument has that is a tuple, 0 for the others."""
 
-    def __init__(self, size: int, arguments: int, result: int):
+    def __init__(self, size: int, items: Sequence[int], result: int):
         self.words = ctypes.create_string_buffer(8 * size)
         self.result = ctypes.create_string_buffer(max(8, result))
         self.error = ctypes.create_string_buffer(8)
-        self.last: list[Any] = [_NOTHING] * arguments
+        self.last: list[Any] = [_NOTHING] * len(items)
+        self.items: list[list[Any]] = [[_NOTHING] * count for count in items]
         self.address = ctypes.addressof(self.words)
         head = (ctypes.c_int64 * 2).from_buffer(self.words)
         head[0], head[1] = ctypes.addressof(self.result), ctypes.addressof(self.error)
@@ -139,18 +141,20 @@ class ArgumentWords(threading.local):
 class Call:
     """Calls one variant of an entry.
 
-    Arguments that are the same objects as the last time are not looked at again: their words stand there.
+    Arguments that are the same objects as the last time are not looked at again, nor are such items of a
+    tuple: their words stand there.
     """
 
     def __init__(self, name: str, variant: Variant, address: int):
         self.name = name
         at, self._writers = 2, []
         for kind in variant.arguments:
-            self._writers.append(writer(kind, at))
+            self._writers.append(part_writers(kind, at))
             at += words(kind)
         size, self._read = reader(variant.result)
         self._count = len(self._writers)
-        self._row = ArgumentWords(at, self._count, size)
+        items = [0 if callable(writers) else len(writers) for writers in self._writers]
+        self._row = ArgumentWords(at, items, size)
         self._function = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p)(address)
 
     def __call__(self, *args: Any) -> Any:
@@ -162,7 +166,11 @@ class Call:
         for k, arg in enumerate(args):
             if arg is not last[k]:
                 last[k] = _NOTHING
-                self._writers[k](row.words, arg)
+                write = self._writers[k]
+                if callable(write):
+                    write(row.words, arg)
+                else:
+                    _write_items(write, row.words, arg, row.items[k])
                 last[k] = arg
         if self._function(row.address) != 0:
             raise MemoryError(f"{self.name}: not enough memory for its arrays")
@@ -170,4 +178,18 @@ class Call:
 
     def release(self) -> None:
         """Forgets the arguments of this thread's last call."""
-        self._row.last[:] = [_NOTHING] * self._count
+        row = self._row
+        row.last[:] = [_NOTHING] * self._count
+        for items in row.items:
+            items[:] = [_NOTHING] * len(items)
+
+
+def _write_items(writers: list[Write], buffer: Any, value: Any, last: list[Any]) -> None:
+    """Writes the items of a tuple that are others than the last time. Raises Misfit."""
+    if not isinstance(value, tuple) or len(value) != len(writers):
+        raise Misfit(f"a {type(value).__name__} for a tuple of {len(writers)}")
+    for k, item in enumerate(value):
+        if item is not last[k]:
+            last[k] = _NOTHING
+            writers[k](buffer, item)
+            last[k] = item

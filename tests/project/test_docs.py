@@ -162,23 +162,35 @@ EXAMPLES = [
 ]
 
 
-@pytest.mark.parametrize("page", EXAMPLES, ids=lambda p: p.stem)
-def test_examples_of_other_pages_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Indented commands, with samples of few boxes and a short run, and the results that they speak of."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("webbrowser.open", lambda url: True)
-    shutil.copytree(samples(), tmp_path / "samples")
+@pytest.fixture(scope="module")
+def worked_in(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with samples of few boxes and short runs, and the results that examples speak of."""
+    folder = tmp_path_factory.mktemp("examples")
+    shutil.copytree(samples(), folder / "samples")
     for name in ("transport_4x4", "tilt_correction", "cantilever"):
-        file = tmp_path / "samples" / f"{name}.yaml"
+        file = folder / "samples" / f"{name}.yaml"
         text = re.sub(r"boxes: \[\d+, \d+\]", "boxes: [5, 6]", file.read_text("utf-8"))
         file.write_text(re.sub(r"duration: \d+ ms", "duration: 4 ms", text), "utf-8")
-    shutil.copy(tmp_path / "samples" / "transport_4x4.yaml", tmp_path / "scene.yaml")
-    for folder, step in (("coarse", 0.2), ("fine", 0.1), ("coarse_step", 0.2), ("fine_step", 0.1)):
-        run(f"run samples/transport_4x4.yaml --set run.step={step}ms -o out/{folder}")
-    whole = "--set run.tolerance=0.005 --set run.duration=50ms"
-    run(f"run samples/transport_4x4.yaml {whole} -o out/transport_4x4")
+    shutil.copy(folder / "samples" / "transport_4x4.yaml", folder / "scene.yaml")
+    with contextlib.chdir(folder):
+        for name, step in (("coarse", 0.2), ("fine", 0.1), ("coarse_step", 0.2), ("fine_step", 0.1)):
+            run(f"run samples/transport_4x4.yaml --set run.step={step}ms -o out/{name}")
+        whole = "--set run.tolerance=0.005 --set run.duration=50ms"
+        run(f"run samples/transport_4x4.yaml {whole} -o out/transport_4x4")
     # what MotionSolve would have left
-    Path("transport_4x4.plt").write_text(plt(Result.load("out/transport_4x4")), "ascii", newline="")
+    found = plt(Result.load(folder / "out" / "transport_4x4"))
+    (folder / "transport_4x4.plt").write_text(found, "ascii", newline="")
+    return folder
+
+
+@pytest.mark.parametrize("page", EXAMPLES, ids=lambda p: p.stem)
+def test_examples_of_other_pages_run(
+    page: Path, worked_in: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Indented commands, each page in a folder of its own."""
+    shutil.copytree(worked_in, tmp_path, dirs_exist_ok=True)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("webbrowser.open", lambda url: True)
     lines = re.findall(r"^ {4,}mdlgen ((?!.*OPTIONS\])[^\n]*)$", page.read_text("utf-8"), re.MULTILINE)
     for line in lines:
         if not line.startswith(tuple(ELSEWHERE)):
