@@ -14,11 +14,18 @@ if TYPE_CHECKING:
 __all__ = ["BACKEND", "check", "companion", "companion_reasons", "emit", "read"]
 
 
-def emit(model: Model, *, set_contact: bool = False, only: str | None = None, target: str = "2021") -> str:
+def emit(
+    model: Model,
+    *,
+    set_contact: bool = False,
+    only: str | None = None,
+    target: str = "2021",
+    forces: bool = False,
+) -> str:
     """The .mdl text, whole or of the sheets only; see `mdlgen.backends.motionview.writer.text.emit`."""
     from mdlgen.backends.motionview.writer import text
 
-    return text.emit(model, set_contact=set_contact, only=only, target=target)
+    return text.emit(model, set_contact=set_contact, only=only, target=target, forces=forces)
 
 
 def check(model: Model) -> None:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import re
+
 from mdlgen.altair.rims import meetings
 from mdlgen.model.tables import BOX_BOX, Model
 
+_PART = re.compile(r"(.*) \(([1-9]\d{0,5}) of ([1-9]\d{0,5})\)")
 MOST_SUMMED = 200
 """Pairs whose forces are summed in one expression: longer ones would be some 5,000 characters."""
 
@@ -36,3 +39,14 @@ def counts(model: Model) -> dict[int, int]:
 def called(model: Model, row: int) -> str:
     """Name of the request of a row."""
     return f"o_{model.contacts.part_a[row]}_on_{model.contacts.part_b[row]}"
+
+
+def part_of(label: str, part: int, parts: int) -> str:
+    """Label of one of several requests whose numbers are a sum together, counted from 1."""
+    return label if parts == 1 else f"{label} ({part} of {parts})"
+
+
+def whole(label: str) -> tuple[str, int, int] | None:
+    """What such a label is of: the label of all, the part, and how many there are; None for another label."""
+    found = _PART.fullmatch(label)
+    return None if found is None else (found[1], int(found[2]), int(found[3]))

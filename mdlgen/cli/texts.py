@@ -66,6 +66,13 @@ def mdl(
             help="Version of MotionView: 2025 documents contacts without words for flipped normals.",
         ),
     ] = "2021",
+    forces: Annotated[
+        bool,
+        typer.Option(
+            "--forces",
+            help="Also record the force of each contact of two parts, whose ids no file shows in an output.",
+        ),
+    ] = False,
     script: Annotated[
         bool,
         typer.Option(
@@ -94,7 +101,7 @@ def mdl(
 
     model = model_of(spec, sets, limits)
     backend = registry.emitter(registry.TEXT)
-    text = backend.emit(model, set_contact=set_contact, only=only, target=target)
+    text = backend.emit(model, set_contact=set_contact, only=only, target=target, forces=forces)
     reasons = backend.companion_reasons(model, set_contact, only)
     wanted = bool(reasons) or script or companion is not None
     program = backend.companion(model, set_contact=set_contact, only=only) if wanted else None

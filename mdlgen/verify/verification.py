@@ -182,6 +182,9 @@ def _text(
     for kind, table in said.items():
         if kind != "masters" or commands:  # no statement of a text says it
             found.add("text", compare(kind, table, tables[kind]), within)
+    recorded = contact_output_table(values)
+    if recorded.names:  # asked for by an option
+        found.add("text", compare("contact outputs", contact_outputs(subject.model), recorded), within)
     if numbers.follows:
         followed = contact_table(values, {n: numbers.numbers(n, values["datasets"]) for n in names})
         found.add("text", compare("contacts", said["contacts"], followed), within)

@@ -75,6 +75,26 @@ def plt(result: Result, called: Names = comment, later: float = 0.0) -> str:
     return "\r\n".join(lines) + "\r\n"
 
 
+def split_in_parts(text: str, label: str, names: tuple[str, str]) -> str:
+    """A plot file in which one request is two: a quarter of its numbers, and the rest."""
+    lines = text.splitlines()
+    at = lines.index(label)
+    count = int(lines[2].split()[0])
+    which = (at - 4) // 2
+    head = [*lines[:2], f"{count + 1:5d}" + lines[2][5:], *lines[3 : at - 1]]
+    for part, name in enumerate(names, 1):
+        head += [f"{90 + part:11d}" + lines[at - 1][11:], name]
+    head += lines[at + 1 : 3 + 2 * count]
+    body = []
+    for k in range(3 + 2 * count, len(lines), count + 1):
+        block = lines[k : k + count + 1]
+        numbers = [float(v) for v in block[1 + which].split()]
+        parts = [[0.25 * v for v in numbers], [0.75 * v for v in numbers]]
+        split = (" ".join(f"{v:.9E}" for v in part) for part in parts)
+        body += [*block[: 1 + which], *split, *block[2 + which :]]
+    return "\r\n".join((*head, *body)) + "\r\n"
+
+
 def table(result: Result, called: Names = label) -> str:
     """The table that a script writes, NAME_requests.csv."""
     found = requests(result)

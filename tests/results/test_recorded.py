@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from decks import run
 from ran import ran as result_of
-from recordings import comment, label, plt, requests, table
+from recordings import comment, label, plt, requests, split_in_parts, table
 
 from mdlgen.errors import OutputError
 from mdlgen.results.io.series import csv
@@ -161,6 +161,20 @@ def test_what_is_recorded_is_what_texts_ask_for(ran: Result) -> None:
     assert names == {*deck["outputs"], *deck["contact outputs"]}
     comments = {comment for _, comment in requests(ran)}
     assert {record["label"] for record in deck["outputs"].values()} <= comments
+
+
+def test_parts_of_a_sum_are_added_up(ran: Result, tmp_path: Path) -> None:
+    """A text records long sums in parts; where one is missing none of them counts."""
+    text = plt(ran)
+    own = next(line for line in text.splitlines() if line.startswith("Contact of note on motor_1_left"))
+    first, second = (f"{' '.join(own.split())} ({k} of 2)" for k in (1, 2))
+    whole = compared(ran, text, tmp_path)
+    halves = compared(ran, split_in_parts(text, own, (first, second)), tmp_path, "parts.plt")
+    assert {one.name: one.relative for one in halves.quantities} == pytest.approx(
+        {one.name: one.relative for one in whole.quantities}, rel=1e-3, abs=1e-5
+    )
+    one = compared(ran, text.replace(own, first), tmp_path, "one.plt")
+    assert one.unknown == (first,)
 
 
 def test_what_is_not_of_the_scene_is_named(ran: Result, tmp_path: Path) -> None:

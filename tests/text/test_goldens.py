@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from places import GOLDEN
 
 import mdlgen.backends.motionview as motionview
 from mdlgen.backends.motionview.writer.banner import banner
+from mdlgen.backends.motionview.writer.contacts import force_views
 from mdlgen.backends.motionview.writer.environment import environment
 from mdlgen.backends.motionview.writer.views import scene_view
 from mdlgen.model.lower import lower
@@ -286,6 +288,7 @@ PARTS: dict[str, dict[str, tuple[str, ...]]] = {
         "none": PLAIN,
     },
     "probe.mdl.j2": {"on one, two and four boxes, on edges": PROBES},
+    "force.mdl.j2": {"of a contact, in parts": (*CONTACTS, "sheets.note.boxes=[3,4]", "run.prune=false")},
     "run.mdl.j2": {
         "transient": PLAIN,
         "static": ("run.analysis=static",),
@@ -309,6 +312,7 @@ LOOPED = {
     "guide.mdl.j2": "guides",
     "mesh.mdl.j2": "meshes",
     "probe.mdl.j2": "probes",
+    "force.mdl.j2": "forces",
 }
 # Their text stands in the goldens of those that take them in.
 WITHIN = tuple(
@@ -328,8 +332,9 @@ def rendered(template: str, model: Model) -> str:
     if template == "system.mdl.j2":
         return motionview.emit(model, only="sheets")
     if template == "model.mdl.j2":
-        return motionview.emit(model)
+        return motionview.emit(model, forces=True)
     scene = scene_view(model, template in WITH_SET_CONTACT)
+    scene = replace(scene, forces=force_views(model, scene.pairs))
     context: dict[str, Any] = {"scene": scene, "banner": banner(model, scene)}
     part = environment().get_template(template)
     if template not in LOOPED:

@@ -7,11 +7,15 @@ from itertools import groupby
 
 import numpy as np
 
+from mdlgen.altair.recorded import called, part_of, recorded
 from mdlgen.altair.rims import Side, graphics, meetings
 from mdlgen.backends.motionview.writer.cells import rough_boxes
 from mdlgen.backends.motionview.writer.parts import graphics_of
-from mdlgen.backends.motionview.writer.rows import ContactView, Pair, Value
+from mdlgen.backends.motionview.writer.rows import ContactView, ForceView, Pair, Value
 from mdlgen.model.tables import Model, RollerPart
+
+_ON_A_LINE = 500  # characters of a sum: lines of 528 were seen
+_AROUND = len("+CONTACT({.idstring},1,2,{Global_Frame.idstring})")
 
 
 def contact_views(model: Model, given: dict[str, list[Value]], written: Sequence[int]) -> list[ContactView]:
@@ -73,6 +77,40 @@ def pair_rows(model: Model) -> list[Pair]:
             )
         )
     return made
+
+
+def force_views(model: Model, pairs: Sequence[Pair]) -> list[ForceView]:
+    """One row for each contact of two parts whose force solvers record; `pairs` are those of `pair_rows`."""
+    table, bodies = model.contacts, model.bodies
+    terms: dict[int, list[tuple[str, int]]] = {row: [] for row in recorded(model)}
+    for met, pair in zip(meetings(model), pairs, strict=True):
+        row = int(model.pairs.contact[met.pair])
+        if row in terms:
+            on = f"b_{bodies.name[int(model.pairs.b[met.pair])]}"
+            terms[row].append((pair.name, 0 if pair.body_1 == on else 1))
+    views = []
+    for row, of in terms.items():
+        name = called(model, row)
+        label = f"Contact of {table.part_a[row]} on {table.part_b[row]}: force, torque"
+        parts = _short(of)
+        for k, part in enumerate(parts, 1):
+            own = name if k == 1 else f"{name}_part{k}"
+            views.append(ForceView(own, part_of(label, k, len(parts)), part))
+    return views
+
+
+def _short(terms: list[tuple[str, int]]) -> list[list[tuple[str, int]]]:
+    """The terms of a sum in parts, each on a line that is no longer than those that were seen."""
+    parts: list[list[tuple[str, int]]] = [[]]
+    left = _ON_A_LINE
+    for term in terms:
+        wide = len(term[0]) + _AROUND
+        if parts[-1] and wide > left:
+            parts.append([])
+            left = _ON_A_LINE
+        parts[-1].append(term)
+        left -= wide
+    return parts
 
 
 def _master(one: list[str], two: list[str]) -> str:

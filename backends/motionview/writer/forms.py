@@ -63,12 +63,12 @@ def _faceted(scene: SceneView) -> bool:
 
 UNVERIFIED = (
     Unverified(
-        "`{con_x.idstring}` in `Force_Contact` commands of a template",
+        "`{con_x.idstring}` in `Force_Contact` commands of a template, and with `--forces` in outputs",
         "each attribute is documented (`xml-format_9.htm`), and so is `idstring` of bodies (`body_r.htm`); "
         "commands that change a motion or a force by it are seen, one that changes a contact is not",
         "the numbers of a contact in the command section of the exported deck, and the solver's log; else "
         "`--set-contact`, or the script",
-        lambda scene: bool(scene.laws),
+        lambda scene: bool(scene.laws or scene.forces),
     ),
     Unverified(
         "`CADGraphic` with STL and OBJ files and an empty list of components",
@@ -163,6 +163,14 @@ DOCUMENTED = (
             "2024.help.altair.com/2024.1/hwdesktop/hwx/topics/motionview/contacts_edit_r.htm",
         ),
         lambda scene: any(law.master for law in scene.laws),
+    ),
+    Documented(
+        "with `--forces` sums of `CONTACT` in `*Output( .., EXPR, .. )`",
+        (
+            f"{MOTIONSOLVE}contact.htm",
+            "help.altair.com/hwdesktop/hwx/topics/motionview/template_expressions_r.htm",
+        ),
+        lambda scene: bool(scene.forces),
     ),
     Documented(
         "a `BOX` turned by `VECTOR` and `POINT` (seen by two vectors)", ("graphic_box_r.htm",), _faceted

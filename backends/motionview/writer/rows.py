@@ -5,7 +5,7 @@ What can be a formula is not here: it stands in the templates.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 
@@ -317,6 +317,14 @@ class LawView(NamedTuple):
     contacts: list[str]
 
 
+class ForceView(NamedTuple):
+    """What the contacts of two parts do to the second one, recorded as a sum over them."""
+
+    name: str
+    label: str
+    terms: list[tuple[str, int]]  # contact, and its side that is the second part: 0 or 1
+
+
 @dataclass(frozen=True)
 class ProbeView:
     """A probe: an edge's middle, or a data set with x and y."""
@@ -389,6 +397,7 @@ class SceneView:
     laws: list[LawView]  # of contacts whose numbers stand in solver commands
     probes: list[ProbeView]
     set_contact: bool
+    forces: list[ForceView] = field(default_factory=list)  # of contacts, where they are asked for
     target: str = "2021"  # version of MotionView whose form of Contact is written
 
 

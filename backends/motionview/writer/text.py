@@ -9,6 +9,7 @@ from mdlgen.altair.rolling import refuse_rolling
 from mdlgen.altair.springs import refuse_compressed
 from mdlgen.backends.motionview.writer import gate
 from mdlgen.backends.motionview.writer.banner import banner
+from mdlgen.backends.motionview.writer.contacts import force_views
 from mdlgen.backends.motionview.writer.environment import environment
 from mdlgen.backends.motionview.writer.notes import notes
 from mdlgen.backends.motionview.writer.parts import WRITTEN
@@ -38,13 +39,21 @@ def check_sheets(model: Model) -> None:
 
 
 def emit(
-    model: Model, *, set_contact: bool = False, only: str | None = None, target: str = TARGETS[0]
+    model: Model,
+    *,
+    set_contact: bool = False,
+    only: str | None = None,
+    target: str = TARGETS[0],
+    forces: bool = False,
 ) -> str:
     """The .mdl text, ASCII with LF line ends; the same Model always gives the same text.
 
     `set_contact` also writes the contact numbers with SetContact, whose argument order is documented but
     not seen in a file; without it they are set by the companion script. `only="sheets"` gives the sheets
     alone, as a system definition to bring into another model.
+
+    `forces` also records the force of each contact of two parts, as the deck does: a sum over its pairs of
+    the solver's CONTACT, with ids of contacts, which no file shows in an output.
 
     `target` is the version of MotionView: 2021 has a word for each graphic of a Contact, whether its normals
     are flipped, which 2025 documents without.
@@ -55,10 +64,16 @@ def emit(
         raise SpecError(f"there is no target {target[:80]!r}; there are: {', '.join(TARGETS)}")
     if only is not None:
         check_only(only)
+        if forces:
+            raise SpecError(
+                "forces of contacts are recorded in the whole text, not in that of the sheets alone"
+            )
         return _sheets(model, set_contact, target)
     check(model)
     gate.check_names(model)
     scene = replace(scene_view(model, set_contact), target=target)
+    if forces:
+        scene = replace(scene, forces=force_views(model, scene.pairs))
     text = environment().get_template("model.mdl.j2").render(scene=scene, banner=banner(model, scene))
     gate.check_text(text)
     return text

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from mdlgen.altair.recorded import whole
 from mdlgen.errors import OutputError
 from mdlgen.model.tables import Floats
 from mdlgen.results.io.series import series
@@ -132,7 +133,7 @@ Pair = tuple[Quantity, _Recorded]
 def _matched(result: Result, recording: Recording) -> tuple[list[Pair], list[str]]:
     """Quantities of the run with what was recorded of them; and names that are not of the run."""
     slack = ROUNDED * max(float(result.time[-1]), float(recording.time[-1]), LEAST)
-    labels = {" ".join(label.split()): six for label, six in recording.requests.items()}
+    labels = _summed({" ".join(label.split()): six for label, six in recording.requests.items()})
     used: set[str] = set()
     pairs: list[Pair] = []
     for quantity in quantities(result):
@@ -154,6 +155,20 @@ def _matched(result: Result, recording: Recording) -> tuple[list[Pair], list[str
             column = Quantity(name, _unit(name), here, (name, name), lambda six: six)
             pairs.append((column, _Recorded(recording.time, values[:, None], None, slack)))
     return pairs, [name for name in (*labels, *recording.series) if name not in used]
+
+
+def _summed(requests: dict[str, Floats]) -> dict[str, Floats]:
+    """Requests with those that are parts of one added up, where all parts are there."""
+    parts: dict[tuple[str, int], dict[int, str]] = {}
+    for label in requests:
+        found = whole(label)
+        if found is not None:
+            parts.setdefault((found[0], found[2]), {})[found[1]] = label
+    summed = dict(requests)
+    for (label, many), own in parts.items():
+        if label not in requests and sorted(own) == list(range(1, many + 1)):
+            summed[label] = np.sum([summed.pop(name) for name in own.values()], axis=0)
+    return summed
 
 
 def _unit(column: str) -> str:

@@ -21,7 +21,7 @@ from mdlgen.verify.expected.sheets_only import of_sheets
 from mdlgen.verify.expected.whole import expected
 from mdlgen.verify.inputs.systems import definition, inside
 from mdlgen.verify.readback import script
-from mdlgen.verify.readback.values import Values, commanded
+from mdlgen.verify.readback.values import Values, commanded, contact_outputs_of
 from mdlgen.verify.tables import Table
 
 
@@ -107,7 +107,10 @@ class Subject:
     def own(self, set_contact: bool, like: Read | None = None) -> Read:
         """The text that mdlgen writes; for the version of MotionView that `like` is for."""
         flips = like is None or any(record["flips"] for record in like.values["contacts"].values())
-        options = {} if flips or not like or not like.values["contacts"] else {"target": "2025"}
+        options: dict[str, Any] = {}
+        if like is not None:
+            options = {} if flips or not like.values["contacts"] else {"target": "2025"}
+            options |= {"forces": True} if contact_outputs_of(like.values) and not self.only else {}
         text = self.backend.emit(self.model, set_contact=set_contact, only=self.only, **options)
         return self._read(self.backend.read(text, "<text>"), "<text>")[0]
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from mdlgen.altair.recorded import whole
 from mdlgen.verify.expected.clutches import SPINS, clutch_times
 from mdlgen.verify.expected.contacts import CONTACT_NUMBERS, SIX
 from mdlgen.verify.expected.parts.mesh import shape_numbers
@@ -23,6 +24,7 @@ _NAN = float("nan")
 _LOAD = re.compile(r"frc_\d+")
 _CLUTCH = re.compile(r"frc_(\w+)_clutch")
 _SPIN = re.compile(r"WZ\(([^()]*)\)")
+_CONTACT = re.compile(r"^\s*CONTACT\(|\)\s*$|\s")
 _MARKER = re.compile(r"[A-Za-z_][\w.]*(?=\s*[,)])")
 _CONTACT_ATTRIBUTES = {
     "penalty": "penalty",
@@ -96,7 +98,9 @@ class ReadBack:
             ),
             "vectors": _table(values.get("vectors", {}), _vector, 3),
             "surfaces": _table(values.get("surfaces", {}), _surface, 0),
-            "outputs": _table(values.get("outputs", {}), self._output, 6),
+            "outputs": _table(
+                {n: r for n, r in values.get("outputs", {}).items() if not _of_contacts(r)}, self._output, 6
+            ),
             "loads": _table(
                 {n: r for n, r in values.get("forces", {}).items() if _LOAD.fullmatch(n)}, _load, 9
             ),
@@ -318,11 +322,33 @@ def master_table(values: Values) -> Table:
     return _table(sides, lambda n, side: ([], (side,)), 0)
 
 
+def contact_outputs_of(values: Values) -> dict[str, list[list[tuple[str, ...]]]]:
+    """What of the outputs of a text is of contacts: of each component the terms, as contact, side, component
+    and frame."""
+    found: dict[str, list[list[tuple[str, ...]]]] = {}
+    for name, record in values.get("outputs", {}).items():
+        if not _of_contacts(record):
+            continue
+        part = whole(str(record["label"]))
+        all_parts = found.setdefault(
+            name if part is None else name.removesuffix(f"_part{part[1]}"),
+            [[] for _ in record["expressions"]],
+        )
+        for terms, text in zip(all_parts, record["expressions"], strict=True):
+            terms += [tuple(_CONTACT.sub("", term).split(",")) for term in text.split("+")]
+    return found
+
+
+def _of_contacts(record: Mapping[str, Any]) -> bool:
+    return any(text.startswith("CONTACT(") for text in record["expressions"] or ())
+
+
 def contact_output_table(values: Values) -> Table:
     """Of each component of what is recorded of contacts: contact, side, component and frame of each term."""
+    recorded = {**contact_outputs_of(values), **values.get("contact outputs", {})}
     found = {
         f"{name}.{key}": tuple(sorted(" ".join(term) for term in terms))
-        for name, components in values.get("contact outputs", {}).items()
+        for name, components in recorded.items()
         for key, terms in zip(SIX, components, strict=True)
     }
     return _table(found, lambda n, words: ([], words), 0)
