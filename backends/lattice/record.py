@@ -9,6 +9,7 @@ import numpy as np
 from mdlgen.backends.lattice.arrays import System
 from mdlgen.backends.lattice.kernels.state import (
     ACTS,
+    DEPTH_NOW,
     DEPTH_TIME,
     ENDED,
     FORCE_BEGUN,
@@ -79,6 +80,8 @@ class Recorder:
             self._stored[name].append(array[:count].copy())
         if t == 0.0:
             self.kept.rows[:, NOW] = rows[:, NOW]
+            # what presses as a run begins may be gone in the middle of its first step
+            self.kept.rows[:, [MAX_FORCE, MAX_DEPTH]] = rows[:, [FORCE_NOW, DEPTH_NOW]]
         # forces in the middle of the last step, where the rule has them, until the next one shows what they
         # are at its end; at the start as it begins
         self._stored["f"].append(self.kept.rows[:, NOW])

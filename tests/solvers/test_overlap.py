@@ -15,6 +15,7 @@ from mdlgen.checks import lints
 from mdlgen.geometry.rods import Box, Rod, into_box, into_triangles
 from mdlgen.model.lower import lower
 from mdlgen.model.overlaps.parts import HAIR, Overlaps
+from mdlgen.paths import samples
 from mdlgen.spec.load import load, loads
 
 ROD = Rod(np.zeros(3), np.array([0.0, 1.0, 0.0]), 10.0, 8.0)
@@ -157,3 +158,16 @@ def test_what_overlaps_from_the_start_is_a_hole(solver: str) -> None:
     text = without(scene(PLANE, "press: {direction: -z, stiffness: 0.5 N/mm, preload: 1 N}"))
     text = text.replace("center: [0 mm, 0 mm, 10 mm]", "center: [0 mm, 0 mm, -4 mm]")
     assert mdlgen.solve(lower(loads(text)), solver).ok
+
+
+@pytest.mark.parametrize("solver", ["lattice", "exudyn"])
+@pytest.mark.parametrize("step", ["0.02 ms", "0.1 ms"])
+def test_what_presses_as_a_run_begins_may_be_the_greatest_force(solver: str, step: str) -> None:
+    """A block that begins 0.05 mm deep leaves within half a millisecond: k z^1.5 and its depth, at any
+    step."""
+    sets = ["sheets.block.center=[0 mm, 0 mm, 4.95 mm]", "run.duration=2 ms", f"run.step={step}"]
+    result = mdlgen.solve(lower(load(samples() / "verify" / "drop.yaml", sets)), solver)
+    found = result.statistics
+    assert found.max_force[0] == pytest.approx(1000.0 * 0.05**1.5, rel=1e-9)
+    assert found.max_depth[0] == pytest.approx(0.05, rel=1e-9)
+    assert found.max_force[0] == pytest.approx(float(result.contact_force.max()), rel=1e-9)

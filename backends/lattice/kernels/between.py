@@ -16,7 +16,7 @@ MOVED = 1e-5
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def forget_overlaps(overlaps):
-    """Pairs are others now, or a run begins."""
+    """Pairs are others now."""
     for k in range(overlaps.size):
         overlaps[k].state = UNKNOWN
 

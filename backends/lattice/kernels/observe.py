@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from mdlgen.backends.lattice.kernels.forces import joint_forces, near_pairs, pair_forces
-from mdlgen.backends.lattice.kernels.state import FORCE_NOW, TURNING_NOW
+from mdlgen.backends.lattice.kernels.state import DEPTH_NOW, FORCE_NOW, TURNING_NOW
 from mdlgen.mechanics.arm import AXIAL, FORCE_0, INERTIA, STIFFNESS, hung, way_of
 from mdlgen.mechanics.driven import prescribed
 from mdlgen.mechanics.frame import Motion
-from mdlgen.mechanics.point import PRESSING
+from mdlgen.mechanics.point import DEPTH, PRESSING
 from mdlgen.mechanics.turning import turning
 from mdlgen.mechanics.vector import back, dot, mat, rotate, three, vec
 from mdlgen.program.kernel import njit
@@ -17,7 +17,7 @@ from mdlgen.program.kernel import njit
 def ledger(tables, state, mid, t, energies, rows):
     """Velocities of all bodies at the end of a step, at time t, into those of the midpoint's motion; kinetic,
     elastic and potential energy; adds to each row of the contacts its normal force, FORCE_NOW, and what it
-    turns, TURNING_NOW."""
+    turns, TURNING_NOW, and has its greatest depth in DEPTH_NOW."""
     bodies, gravity, nodes = tables.bodies, tables.gravity, tables.nodes
     x, r, v, l, s, vb = state.x, state.r, state.v, state.l, state.s, state.vb
     u, w, f = mid.motion.u, mid.motion.w, mid.forces
@@ -67,5 +67,6 @@ def ledger(tables, state, mid, t, energies, rows):
     for k in range(count):
         pair = tables.pairs[mid.touched[k]]
         rows[pair.row, FORCE_NOW] += mid.results[k, PRESSING]
+        rows[pair.row, DEPTH_NOW] = max(rows[pair.row, DEPTH_NOW], mid.results[k, DEPTH])
         turning(tables.bodies, pair, mid.results[k], rows, pair.row, TURNING_NOW)
     energies[0], energies[1], energies[2] = kinetic, elastic + stored + pressed, potential
