@@ -25,9 +25,9 @@ if TYPE_CHECKING:
 SAFETY, SAFETY_REST = 2.0, 4.0
 # What the difference before the last leaves of itself at an order of two.
 SECOND_ORDER = 0.25
-# Ratios of the difference before to the last one: of an order of one; of a third, below which they do not
-# fall; below which they grow.
-FIRST, FALLS, GROWS = 2.0, 1.25, 0.5
+# Ratios of the difference before to the last one: of an order of a third, below which they do not fall;
+# below which they grow.
+FALLS, GROWS = 1.25, 0.5
 # Times the greater of two differences that do not fall.
 STILL = 4.0
 # An error of more than this part of the scale is not estimated: such differences do not say how large it is.
@@ -102,10 +102,11 @@ def rule(last: float, before: float | None, safety: float, judged: bool, most: f
     elif before < FALLS * last:
         found = STILL * max(last, before)
     else:
-        # what a trajectory's difference is, is known by a third run; a peak's may still agree by accident
-        found = max(last * (1.0 if judged else safety), SECOND_ORDER * before)
-        if before < FIRST * last:
-            found = max(found, last / (before / last - 1.0))
+        # What is left of a geometric series, and a safety factor. A third run that comes much closer leaves a
+        # trajectory's difference as it is; a peak's may still agree by accident.
+        left = last / (before / last - 1.0)
+        found = max(last, SAFETY * left) if judged else max(safety * last, left)
+        found = max(min(found, STILL * before), SECOND_ORDER * before)
     return found if found <= most else None
 
 

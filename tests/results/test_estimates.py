@@ -164,8 +164,8 @@ def test_differences_are_what_they_are_said_to_be() -> None:
     [
         (1e-3, None, True, 2e-3),  # two runs: twice the difference
         (1e-3, 4e-3, True, 1e-3),  # second order: the difference, three times the error
-        (1e-3, 2e-3, True, 1e-3),  # first order: the error
-        (1e-3, 1.5e-3, True, 2e-3),  # below that the rest of the geometric series
+        (1e-3, 2e-3, True, 2e-3),  # first order: twice the error
+        (1e-3, 1.5e-3, True, 4e-3),  # below that twice the rest of the geometric series
         (1e-6, 4e-3, True, 1e-3),  # agreed by accident: what the one before leaves
         (1e-3, 1.1e-3, True, 4.4e-3),  # does not fall
         (1e-3, 1e-4, True, None),  # grows
