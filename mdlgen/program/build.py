@@ -3,7 +3,7 @@
 Each entry is compiled by numba in a process of its own, for the types that it has in some small scenes, and
 not optimised. What numba gives of it (`inspect_llvm`) is linked into one module for all entries, of which
 only what they call is kept, with a wrapper for each that takes its arguments as words. LLVM optimises that
-without vector instructions, which is for the machine that it will run on.
+without vector instructions, which is for the machine that it will run on, and divides it into two parts.
 
 It stands above what it makes, so it knows that by name only.
 """
@@ -22,10 +22,11 @@ import warnings
 from typing import Any
 
 from mdlgen.program import file
+from mdlgen.program.emit import SMALL
 from mdlgen.program.file import Head, Unfit, Variant
 from mdlgen.program.kernel import Kernel, sources_digest
 from mdlgen.program.layout import described, words
-from mdlgen.program.native import SMALL
+from mdlgen.program.parts import split
 from mdlgen.program.ship import Program
 
 # What a program may call of the system it runs on.
@@ -35,6 +36,8 @@ SYSTEM = (
     *("exp", "exp2", "expm1", "log", "log2", "log10", "log1p", "pow", "sqrt", "hypot", "cbrt"),
     *("floor", "ceil", "trunc", "rint", "round", "fmod", "ldexp", "frexp", "fma"),
 )
+# Of a program, which are made into machine code at the same time.
+PARTS = 2
 # numba's memory: an array is counted by those who hold it, each of which is of the same thread.
 MEMORY = """
 %info = type { i64, ptr, ptr, ptr, i64 }
@@ -192,14 +195,16 @@ def write(program: Program, types: Types) -> int:
     external = shrink(whole, target)
     if strange := sorted(set(external) - set(SYSTEM)):
         sys.exit(f"{program.path.name}: kernels call what no program may: {', '.join(strange)}")
-    packed, digest = file.pack(whole.as_bitcode())
+    parts = split(whole, PARTS)
+    packed, digest = file.pack(parts)
     versions = {
         "python": sys.version.split()[0],
         "llvmlite": llvmlite.__version__,
         "llvm": ".".join(map(str, llvm.llvm_version_info)),
         "numba": importlib.import_module("numba").__version__,
     }
-    head = Head(sources_digest(program.rooms), digest, versions, entries, tuple(external))
+    sizes = tuple(map(len, parts))
+    head = Head(sources_digest(program.rooms), digest, versions, entries, tuple(external), sizes)
     file.write(program.path, head, packed)
     return len(packed)
 
@@ -264,7 +269,9 @@ def _stripped(text: str, inner: str) -> str:
             kept.append(line)
         elif line == "}":
             inside = False
-    text = "\n".join(kept)
+    # exceptions as pickles: nobody reads them, and they name files of the machine that they were made on
+    pickles = r'(= internal constant \[\d+ x i8\]) c"\\80\\04\\95[^"\n]*"'
+    text = re.sub(pickles, r"\1 zeroinitializer", "\n".join(kept))
     for name, shape in (
         ("NRT_MemInfo_alloc_aligned", "ptr @{}(i64, i32)"),
         ("NRT_MemInfo_data_fast", "ptr @{}(ptr)"),

@@ -1,17 +1,19 @@
-"""A file NAME.program: one line of JSON that says what it is, and LLVM bitcode, compressed."""
+"""A file NAME.program: one line of JSON that says what it is, and LLVM bitcode of its parts, compressed."""
 
 from __future__ import annotations
 
 import hashlib
+import itertools
 import json
 import lzma
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from mdlgen.program.layout import Type
 
-FORMAT = 1
+FORMAT = 2
 MOST_BYTES = 50_000_000
 
 
@@ -37,6 +39,7 @@ class Head:
     versions: dict[str, str]  # of what made it
     entries: dict[str, tuple[Variant, ...]]
     external: tuple[str, ...]  # functions of the system that it calls
+    parts: tuple[int, ...]  # bytes of bitcode of each part
 
     def line(self) -> bytes:
         """The first line of the file."""
@@ -46,6 +49,7 @@ class Head:
             "code": self.code,
             "versions": self.versions,
             "external": list(self.external),
+            "parts": list(self.parts),
             "entries": {
                 name: [[v.symbol, list(v.arguments), v.result] for v in variants]
                 for name, variants in self.entries.items()
@@ -59,9 +63,9 @@ def write(path: Path, head: Head, packed: bytes) -> None:
     path.write_bytes(head.line() + packed)
 
 
-def pack(bitcode: bytes) -> tuple[bytes, str]:
-    """Compressed bitcode, and the digest of that."""
-    packed = lzma.compress(bitcode, preset=9 | lzma.PRESET_EXTREME)
+def pack(parts: Sequence[bytes]) -> tuple[bytes, str]:
+    """Compressed bitcode of the parts of a program, and the digest of that."""
+    packed = lzma.compress(b"".join(parts), preset=9 | lzma.PRESET_EXTREME)
     return packed, hashlib.sha256(packed).hexdigest()
 
 
@@ -70,15 +74,19 @@ def read_head(path: Path) -> Head:
     return _open(path)[0]
 
 
-def read(path: Path) -> tuple[Head, bytes]:
-    """What a program is, and its bitcode. Raises Unfit for a file that is damaged, or is none."""
+def read(path: Path) -> tuple[Head, list[bytes]]:
+    """What a program is, and the bitcode of its parts. Raises Unfit for a file that is damaged, or none."""
     head, packed = _open(path)
     if hashlib.sha256(packed).hexdigest() != head.code:
         raise Unfit(f"{path.name} is damaged")
     try:
-        return head, lzma.decompress(packed)
+        whole = lzma.decompress(packed)
     except lzma.LZMAError:
         raise Unfit(f"{path.name} is damaged") from None
+    ends = list(itertools.accumulate(head.parts, initial=0))
+    if ends[-1] != len(whole):
+        raise Unfit(f"{path.name} is damaged")
+    return head, [whole[begin:end] for begin, end in itertools.pairwise(ends)]
 
 
 def _open(path: Path) -> tuple[Head, bytes]:
@@ -98,8 +106,8 @@ def _open(path: Path) -> tuple[Head, bytes]:
             name: tuple(Variant(symbol, tuple(arguments), result) for symbol, arguments, result in variants)
             for name, variants in record["entries"].items()
         }
-        return Head(
-            str(record["digest"]), str(record["code"]), record["versions"], entries, tuple(record["external"])
-        ), packed
+        external, parts = tuple(record["external"]), tuple(int(size) for size in record["parts"])
+        head = Head(str(record["digest"]), str(record["code"]), record["versions"], entries, external, parts)
+        return head, packed
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
         raise Unfit(f"{path.name} is damaged") from None

@@ -2,31 +2,35 @@
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import hashlib
 import logging
+import os
 import platform
+import subprocess
 import sys
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 from mdlgen import paths
 from mdlgen.errors import OutputError
+from mdlgen.program import emit
 from mdlgen.program.file import Head, Unfit, Variant
 from mdlgen.program.layout import Misfit, Write, part_writers, reader, words
 
 LOG = logging.getLogger("mdlgen.compiling")
 
 _NOTHING: Any = object()
-# Functions up to this size (in LLVM's own measure, whose default is 225) are opened where they are called;
-# kernels say themselves which others are to be. More is twice the time to prepare, and no faster.
-SMALL = 25
+# How long another process may take for its part after this one has made its own [s].
+PATIENCE = 120.0
 
 
-def load(name: str, head: Head, bitcode: Callable[[], bytes]) -> Machine:
-    """The machine code of a program for this processor; `bitcode` is asked for where it is not kept.
+def load(name: str, head: Head, bitcode: Callable[[], Sequence[bytes]]) -> Machine:
+    """The machine code of a program for this processor; the `bitcode` of its parts is asked for where it is
+    not kept.
 
     Raises Unfit.
     """
@@ -35,47 +39,91 @@ def load(name: str, head: Head, bitcode: Callable[[], bytes]) -> Machine:
 
     if ctypes.sizeof(ctypes.c_void_p) != 8 or sys.byteorder != "little":
         raise Unfit("addresses are not of 64 bits here, the low ones first")
-    llvm.initialize_native_target()
-    llvm.initialize_native_asmprinter()
+    machine = emit.host()
     processor, features = llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
     message = (head.code, llvm.get_process_triple(), processor, features, llvmlite.__version__)
     key = hashlib.sha256("\n".join((*message, platform.python_version())).encode()).hexdigest()[:24]
     for symbol in head.external:
         if llvm.address_of_symbol(symbol) is None:
             llvm.add_symbol(symbol, _address(symbol))
-    target = llvm.Target.from_triple(llvm.get_process_triple())
-    machine = target.create_target_machine(
-        cpu=processor, features=features, opt=3, reloc="pic", codemodel="jitdefault", jit=True
-    )
     folder = paths.cache("programs")
-    kept = folder / f"{name}_{key}.o" if folder is not None else None
-    code = _kept(kept)
-    if code is None:
+    count = len(head.parts) if emit.apart() else 1
+    kept = [folder / f"{name}_{key}_{k}.o" if folder else None for k in range(count)]
+    codes = [_kept(path) for path in kept]
+    if missing := [k for k, code in enumerate(codes) if code is None]:
         LOG.info("%s is prepared", name)
-        code = emit(machine, bitcode())
-        _keep(kept, code)
+        made = emitted(machine, bitcode(), missing)
+        for k, code in zip(missing, made, strict=True):
+            codes[k] = code
+            _keep(kept[k], code)
     engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), machine)
-    engine.add_object_file(llvm.ObjectFileRef.from_data(code))
+    for code in codes:
+        engine.add_object_file(llvm.ObjectFileRef.from_data(code))
     engine.finalize_object()
     return Machine(engine)
 
 
-def emit(machine: Any, bitcode: bytes) -> bytes:
-    """Optimises bitcode for a target machine of llvmlite; an object file. Raises Unfit."""
-    import llvmlite.binding as llvm
-
+def emitted(machine: Any, parts: Sequence[bytes], wanted: Sequence[int] = (0,)) -> list[bytes]:
+    """The `wanted` object files of a program in parts: the first one is made by this process, each other one
+    at the same time by one of its own, where there are processors. What another process does not give is
+    made here. Raises Unfit."""
     try:
-        module = llvm.parse_bitcode(bitcode)
-        module.triple, module.data_layout = machine.triple, str(machine.target_data)
-        tuning = llvm.create_pipeline_tuning_options(speed_level=3)
-        tuning.loop_vectorization, tuning.slp_vectorization = True, False
-        tuning.inlining_threshold = SMALL
-        builder = llvm.create_pass_builder(machine, tuning)
-        builder.getModulePassManager().run(module, builder)
-        return machine.emit_object(module)
+        every = emit.units(parts)
+        units = [every[k] for k in wanted]
+        if len(units) == 1 or processors() == 1:
+            return [emit.emit(machine, unit) for unit in units]
+        with contextlib.ExitStack() as stack:
+            others = [stack.enter_context(_elsewhere(unit)) for unit in units[1:]]
+            codes = [emit.emit(machine, units[0])]
+            for unit, answer in zip(units[1:], others, strict=True):
+                codes.append(answer() or emit.emit(machine, unit))
+            return codes
     except RuntimeError as error:  # bitcode of a later LLVM, for one
         record = str(error).strip().splitlines() or ["it cannot be read"]
         raise Unfit(f"LLVM does not take it: {record[0]}") from None
+
+
+def processors() -> int:
+    """How many this process may use."""
+    affinity = getattr(os, "sched_getaffinity", None)  # not on macOS and Windows
+    return len(affinity(0)) if affinity is not None else os.cpu_count() or 1
+
+
+@contextlib.contextmanager
+def _elsewhere(part: bytes) -> Iterator[Callable[[], bytes | None]]:
+    """Another process that emits a part; what it is called for waits for its machine code, None: it gave
+    none. It does not outlive the block."""
+    surroundings = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    try:
+        process = subprocess.Popen(
+            [sys.executable, "-P", emit.__file__],
+            env=surroundings,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+        )
+    except (OSError, ValueError):  # no room for it, or Python is part of another program
+        yield lambda: None
+        return
+    found: list[bytes] = []
+
+    def talk() -> None:
+        with contextlib.suppress(OSError, ValueError):  # it is gone
+            found.append(process.communicate(part)[0])
+
+    talking = threading.Thread(target=talk, daemon=True)
+    talking.start()
+
+    def answer() -> bytes | None:
+        talking.join(PATIENCE)
+        return found[0] if found and found[0] and process.returncode == 0 else None
+
+    try:
+        yield answer
+    finally:
+        if process.poll() is None:
+            process.kill()
+        talking.join()
 
 
 def _address(symbol: str) -> int:

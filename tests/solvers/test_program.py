@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import hashlib
 import json
 import os
@@ -18,7 +19,7 @@ from synthetic import moving, small_model
 from mdlgen import paths
 from mdlgen.backends.lattice.kernels.entries import PROGRAM
 from mdlgen.paths import samples
-from mdlgen.program import build, compare, file, layout, native
+from mdlgen.program import build, compare, emit, file, layout, native, parts
 from mdlgen.program.file import Unfit
 from mdlgen.program.layout import Misfit
 from mdlgen.results.estimates import between
@@ -145,8 +146,8 @@ def test_a_program_is_called_without_numba(tmp_path: Path, made: bytes) -> None:
 def test_a_program_that_does_not_fit_is_compiled_by_numba(tmp_path: Path, made: bytes, harm: str) -> None:
     head, _, code = made.partition(b"\n")
     bitcode = b"BC\xc0\xde" + bytes(2000)
-    packed, digest = file.pack(bitcode)
-    alike = {**json.loads(head), "code": digest}
+    packed, digest = file.pack([bitcode])
+    alike = {**json.loads(head), "code": digest, "parts": [len(bitcode)]}
     program = {
         "cut": made[:-100],
         "changed": made[:-50] + bytes([made[-50] ^ 1]) + made[-49:],
@@ -301,15 +302,85 @@ def test_machine_code_is_made_for_other_machines(
     llvm.initialize_all_asmprinters()
     path = tmp_path / "tiny.program"
     path.write_bytes(made)
-    programs = [file.read(path)[1]]
+    bitcodes = [emit.joined(file.read(path)[1])]
     # that of lattice takes the most time: for x86_64 it is made before its first run here
     for program in build.programs():
         if program.path.exists() and (program.name != "lattice" or triple.startswith("arm64")):
-            programs.append(file.read(program.path)[1])
-    for bitcode in programs:
+            bitcodes.append(emit.joined(file.read(program.path)[1]))
+    for bitcode in bitcodes:
         machine = llvm.Target.from_triple(triple).create_target_machine(opt=3, reloc="pic")
-        code = native.emit(machine, bitcode)
+        code = emit.emit(machine, bitcode)
         assert code.startswith(magic) and len(code) > 1000
+
+
+CALLS = """
+@table = internal constant [2 x double] [double 2.0, double 3.0]
+define internal fastcc double @twice(double %x) noinline {
+  %y = load double, ptr @table
+  %z = fmul double %x, %y
+  ret double %z
+}
+define internal fastcc double @0(double %x) noinline {
+  %y = call fastcc double @twice(double %x)
+  %z = fadd double %y, 1.0
+  ret double %z
+}
+define double @one(double %x) {
+  %y = call fastcc double @0(double %x)
+  ret double %y
+}
+define double @two(double %x) {
+  %y = call fastcc double @twice(double %x)
+  %z = call fastcc double @0(double %y)
+  ret double %z
+}
+"""
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 9])
+@pytest.mark.parametrize(("processors", "apart"), [(1, True), (2, True), (2, False)])
+def test_parts_of_a_module_call_each_other(
+    monkeypatch: pytest.MonkeyPatch, count: int, processors: int, apart: bool
+) -> None:
+    import llvmlite.binding as llvm
+
+    if apart and not emit.apart():
+        pytest.skip("one object file is made of a program here")
+    monkeypatch.setattr(emit, "apart", lambda: apart)
+
+    monkeypatch.setattr(parts, "WORTH", 0)
+    monkeypatch.setattr(parts, "OWN", 0)
+    monkeypatch.setattr(native, "processors", lambda: processors)
+    machine = emit.host()
+    bitcodes = parts.split(llvm.parse_assembly(CALLS), count)
+    assert len(bitcodes) == count
+    codes = native.emitted(machine, bitcodes, range(count if apart else 1))
+    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), machine)
+    for code in codes:
+        engine.add_object_file(llvm.ObjectFileRef.from_data(code))
+    engine.finalize_object()
+    kind = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double)
+    one, two = (kind(engine.get_function_address(name)) for name in ("one", "two"))
+    assert (one(5.0), two(5.0)) == (11.0, 21.0)
+
+
+@pytest.mark.parametrize("harm", ["no python", "one that fails", "one that says nothing"])
+def test_a_part_that_no_other_process_makes_is_made_here(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, harm: str
+) -> None:
+    import llvmlite.binding as llvm
+
+    bitcode = llvm.parse_assembly("define double @one(double %x) {\n  ret double %x\n}\n").as_bitcode()
+    script = tmp_path / "emit.py"
+    script.write_text("raise SystemExit(3)" if harm == "one that fails" else "")
+    monkeypatch.setattr(native, "processors", lambda: 2)
+    if harm == "no python":
+        monkeypatch.setattr(sys, "executable", str(tmp_path / "none"))
+    else:
+        monkeypatch.setattr(emit, "__file__", str(script))
+    monkeypatch.setattr(emit, "apart", lambda: True)
+    first, second = native.emitted(emit.host(), [bitcode, bitcode], (0, 1))
+    assert first == second and len(first) > 100
 
 
 def test_every_sample_is_compared() -> None:
