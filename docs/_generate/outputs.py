@@ -48,6 +48,22 @@ SUMMARY: dict[str, tuple[str, str]] = {
         "error of the energy balance over `energy.scale`; positive: a gain",
     ),
     "energy.scale": ("N mm", "energy that passes through the run"),
+    "energy.friction": (
+        "N mm",
+        "what contacts took by friction and rolling, over the stored states; see [size a drive]"
+        "(../how-to/size-a-drive.md)",
+    ),
+    "energy.other_losses": (
+        "N mm",
+        "the rest of all that was dissipated: by dampers of joints, presses and normal forces, in contacts "
+        "of sheets with each other and of meshes, and between stored states",
+    ),
+    "energy.drives": ("N mm", "what the drives gave by their torques, over the stored states"),
+    "energy.drives_unseen": (
+        "N mm",
+        "what the solver has besides that, with the kinetic energy of driven rollers: between stored states, "
+        "and work of loads",
+    ),
     "events": ("", "list of [events](events.md)"),
     "estimates.QUANTITY": ("", "error estimate of each quantity, relative to its scale; null if not known"),
     "estimate_scales.QUANTITY.scale": ("", "scale of that estimate"),
@@ -103,6 +119,11 @@ SUMMARY: dict[str, tuple[str, str]] = {
             "joint": ("", "its joint"),
         }.items()
     },
+    "sheets.NAME.energy.kinetic_n_mm": ("N mm", "by how much its kinetic energy grew"),
+    "sheets.NAME.energy.friction_n_mm": (
+        "N mm",
+        "what its contacts with rollers, planes and guides took by friction and rolling",
+    ),
     "sheets.NAME.tension": (
         "",
         "membrane force over the sections across its way, positive where it is pulled; null for a sheet "
@@ -166,6 +187,18 @@ SUMMARY: dict[str, tuple[str, str]] = {
             "mean_penetration_mm": ("mm", "mean depth in sheets over the time in contact"),
         }.items()
     },
+    "rollers.NAME.energy.driven_n_mm": ("N mm", "what its drive gave; null of a free roller"),
+    "rollers.NAME.arm_deg": ("deg", "turn of its arm at the end since it was given, about the roller's axis"),
+    "rollers.NAME.max_arm_deg": ("deg", "the greatest of the stored times"),
+    "rollers.NAME.min_arm_deg": ("deg", "the least of the stored times"),
+    **{
+        f"{part}.NAME.energy.friction_n_mm": (
+            "N mm",
+            "what its contacts with sheets took by friction and rolling, and half of what is between it and "
+            "another part; null where none has an account",
+        )
+        for part in PARTS
+    },
     **{f"{part}.NAME.nip_force_n": ("N", "sum of the normal forces on it at the end") for part in PARTS},
     **{
         f"{part}.NAME.{CONTACT}.{key}": words
@@ -196,7 +229,8 @@ SERIES: dict[str, tuple[str, str]] = {
     "NAME.y_mm": ("mm", "the same along y"),
     "NAME.z_mm": (
         "mm",
-        "the same along z; of a roller or pressed plate, z of its centre, and x, y where it moves along them",
+        "the same along z; of a roller or pressed plate, x, y and z of its centre where it moves along them, "
+        "z of a roller that stands",
     ),
     "NAME.vx_mm_per_s": ("mm/s", "velocity of it; so too `vy_mm_per_s`, `vz_mm_per_s`"),
     "NAME.vy_mm_per_s": ("mm/s", "the same along y"),
@@ -211,6 +245,9 @@ SERIES: dict[str, tuple[str, str]] = {
     ),
     "NAME.torque_n_mm": ("N mm", "torque that the drive of a roller gives about its axis"),
     "NAME.power_w": ("W", "power that it gives"),
+    "NAME.arm_deg": ("deg", "turn of a roller's arm since it was given, about the roller's axis"),
+    "NAME.driven_energy_n_mm": ("N mm", "what a drive has given since the start"),
+    "NAME.friction_loss_n_mm": ("N mm", "what contacts of a part have taken by friction and rolling"),
     "NAME.contact_torque_n_mm": ("N mm", "torque of contacts on a roller about its axis"),
     "NAME.OTHER.tangential_n": ("N", "friction along a roller's surface, as it turns, by another part"),
     "NAME.OTHER.drag_n": ("N", "friction of a plane, guide or mesh on a sheet, by its size"),

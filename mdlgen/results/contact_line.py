@@ -31,6 +31,22 @@ class ContactLine:
     high: Floats
 
 
+def of_row(result: Result, row: int) -> tuple[Ints, ContactLine]:
+    """Of a sheet on a roller: the stored states at which they touch, and the line there; kept, since events
+    and losses both look at it."""
+    if row not in result.lines:
+        at = np.flatnonzero(result.contact_force[:, row] > 0.0)
+        boxes = result.model.pairs.a[result.model.pairs.contact == row]
+        roller = result.model.roller(result.model.contacts.part_b[row])
+        result.lines[row] = at, contact_line(result, boxes, roller, at)
+    return result.lines[row]
+
+
+def chosen(line: ContactLine, which: Ints) -> ContactLine:
+    """Some of the states of a line."""
+    return ContactLine(*(getattr(line, f.name)[which] for f in fields(line)))
+
+
 def contact_line(result: Result, boxes: Ints, roller: RollerPart, at: Ints) -> ContactLine:
     """Of some boxes of a sheet, at the stored states `at`."""
     few = max(1, MOST // max(1, len(boxes)))

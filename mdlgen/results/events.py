@@ -14,7 +14,7 @@ import numpy as np
 
 from mdlgen.model.rotations import turns
 from mdlgen.model.tables import BOX_CYLINDER, Floats, Ints, Model, RollerPart
-from mdlgen.results.contact_line import ContactLine, contact_line
+from mdlgen.results.contact_line import ContactLine, chosen, contact_line, of_row
 from mdlgen.results.stacked import stacked
 from mdlgen.results.stubs import stops
 
@@ -91,7 +91,7 @@ def _stubs(result: Result) -> list[dict[str, Any]]:
 
 
 def _stays(result: Result) -> list[Stay]:
-    model, time, pairs = result.model, result.time, result.model.pairs
+    model, time = result.model, result.time
     sheets = {sheet.name: k for k, sheet in enumerate(model.sheets)}
     found = []
     for row in np.flatnonzero(model.contacts.kind == BOX_CYLINDER).tolist():
@@ -100,7 +100,8 @@ def _stays(result: Result) -> list[Stay]:
         sheet, roller = sheets[model.contacts.part_a[row]], model.roller(model.contacts.part_b[row])
         for first, last in intervals(time, touching, SHORT):
             at = np.flatnonzero(touching[first : last + 1]) + first
-            line = contact_line(result, pairs.a[pairs.contact == row], roller, at)
+            states, lines = of_row(result, row)
+            line = chosen(lines, np.searchsorted(states, at))
             found.append(Stay(sheet, roller, first, last, last + 1 < len(time), at, line))
     return found
 

@@ -10,14 +10,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mdlgen.model.rotations import column, turns
-from mdlgen.model.tables import Floats, Model
+from mdlgen.model.tables import Floats, Ints, Model
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from mdlgen.report.figures.plots import Plot
     from mdlgen.report.html.shown import Shown
+    from mdlgen.results.contact_line import ContactLine
     from mdlgen.results.estimates import Estimate
+    from mdlgen.results.losses import Losses
     from mdlgen.results.named import ProbeResult, RollerResult, SheetResult
     from mdlgen.results.strain import Strains
     from mdlgen.results.tension import Tension
@@ -244,6 +246,19 @@ class Result:
         from mdlgen.results.tension import tension_of
 
         return tuple(tension_of(self, k) for k in range(len(self.model.sheets)))
+
+    @cached_property
+    def lines(self) -> dict[int, tuple[Ints, ContactLine]]:
+        """Contact lines of sheets on rollers by row, as `results.contact_line.of_row` works them out."""
+        return {}
+
+    @cached_property
+    def losses(self) -> Losses | None:
+        """Power that contacts take by friction and rolling, as `results.losses` has it; worked out when first
+        asked for, and kept."""
+        from mdlgen.results.losses import losses
+
+        return losses(self)
 
     @cached_property
     def events(self) -> list[dict[str, Any]]:

@@ -14,8 +14,10 @@ from mdlgen.model.tables import Floats, MachinePart, PlanePart, RollerPart
 from mdlgen.results.compare import travel
 from mdlgen.results.drag import drags
 from mdlgen.results.estimates import complete
+from mdlgen.results.losses import driven, kinetic
 from mdlgen.results.result import Result
 from mdlgen.results.slide import slide
+from mdlgen.results.swing import swing
 from mdlgen.results.tension import Tension
 from mdlgen.results.torques import (
     Grip,
@@ -73,6 +75,7 @@ def summary(result: Result, without: Collection[str] = ()) -> dict[str, Any]:
             "driven": energy.driven,
             "balance_error": energy.balance_error,
             "scale": energy.scale,
+            **_accounts(result),
         },
         **({} if "events" in without else {"events": result.events}),
         "sheets": {s.name: _sheet(result, k, "bearing" not in without) for k, s in enumerate(model.sheets)},
@@ -152,7 +155,58 @@ def _sheet(result: Result, index: int, bearing: bool) -> dict[str, Any]:
         "boxes": sheet.count,
         "bushings": int(np.sum(result.model.bushings.sheet == index)),
         **(_bearing(result, index) if bearing else {}),
+        "energy": _energy_of_sheet(result, index),
     }
+
+
+def _accounts(result: Result) -> dict[str, float | None]:
+    """What contacts took by friction and rolling, and what is left of all that was dissipated: by dampers of
+    joints, presses and normal forces, in contacts without an account, and between stored states. What drives
+    gave by their torques, and what the solver has besides: between stored states."""
+    found = result.losses
+    names = ("friction", "other_losses", "drives", "drives_unseen")
+    if found is None:
+        return dict.fromkeys(names)
+    rubbed = float(sum(np.trapezoid(power, result.time) for power in found.rows.values()))
+    given, own = 0.0, 0.0
+    for roller in result.model.rollers:
+        if (energy := driven(result, roller)) is not None:
+            given += float(energy[-1])
+            if roller.one_way is None:  # the solvers do not count what it takes to turn them
+                inertia = roller.inertia_axial + roller.carried[1]
+                rates = result.spin[[0, -1], roller.body] @ roller.axis
+                own += 0.5 * inertia * float(rates[1] ** 2 - rates[0] ** 2)
+    lost = result.energy.dissipated + (result.energy.numerical or 0.0)
+    numbers = (rubbed, lost - rubbed, given, result.energy.driven + own - given)
+    return dict(zip(names, numbers, strict=True))
+
+
+def _energy_of_sheet(result: Result, index: int) -> dict[str, float | None]:
+    """By how much its kinetic energy grew, and what its contacts took by friction and rolling."""
+    sheet, found = result.model.sheets[index], result.losses
+    if found is None:
+        return dict.fromkeys(("kinetic_n_mm", "friction_n_mm"))
+    boxes = slice(sheet.first, sheet.first + sheet.count)
+    contacts, rubbed = result.model.contacts, 0.0
+    for row, power in found.rows.items():
+        if sheet.name in (contacts.part_a[row], contacts.part_b[row]):
+            rubbed += float(np.trapezoid(power, result.time))
+    return {
+        "kinetic_n_mm": kinetic(result, boxes, -1) - kinetic(result, boxes, 0),
+        "friction_n_mm": rubbed,
+    }
+
+
+def _energy_of_part(result: Result, part: MachinePart) -> dict[str, float | None]:
+    """What its drive gave, of a roller, and what its contacts took by friction and rolling, half of what is
+    between two parts of the machine."""
+    found = result.losses
+    power = None if found is None else found.of(result, part)
+    record = {"friction_n_mm": None if power is None else float(np.trapezoid(power, result.time))}
+    if isinstance(part, RollerPart):
+        given = None if found is None else driven(result, part)
+        record = {"driven_n_mm": None if given is None else float(given[-1]), **record}
+    return record
 
 
 def _bearing(result: Result, index: int) -> dict[str, Any]:
@@ -241,7 +295,7 @@ def _touched(result: Result, part: MachinePart) -> dict[str, Any]:
     for row, other in rows.items():
         if other in taken:
             contacts[other] |= _drag(result, row, taken[other])
-    return {"nip_force_n": force, "contacts": contacts}
+    return {"nip_force_n": force, "contacts": contacts, "energy": _energy_of_part(result, part)}
 
 
 def _drag(result: Result, row: int, drag: Floats) -> dict[str, float | None]:
@@ -269,6 +323,9 @@ def _centre(result: Result, part: RollerPart | PlanePart) -> dict[str, Any]:
     """Where it is at the end, and of one that is pressed the way along its press direction, with its
     extremes over the stored times."""
     record: dict[str, Any] = {"center_mm": result.position[-1, part.body] if len(result.time) else None}
+    if isinstance(part, RollerPart) and (turned := swing(result, part)) is not None and len(turned):
+        angles = np.degrees([turned[-1], turned.max(), turned.min()])
+        record |= dict(zip(("arm_deg", "max_arm_deg", "min_arm_deg"), angles, strict=True))
     if (way := slide(result, part)) is not None:
         numbers = (way[-1], way.max(), way.min()) if len(way) else (None, None, None)
         record |= dict(zip(("slide_mm", "max_slide_mm", "min_slide_mm"), numbers, strict=True))

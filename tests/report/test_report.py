@@ -248,7 +248,8 @@ class TestPicture:
         keys = [panel["key"] for panel in record["panels"]]
         assert keys == [
             "displacement", "speed", "drift", "yaw", "tilt", "force", "penetration", "slide", "omega",
-            "torque", "power", "traction", "drag", "tension", "tension along", "strain", "curvature",
+            "torque", "power", "traction", "drag",
+            "driven_energy", "friction_loss", "tension", "tension along", "strain", "curvature",
         ]  # fmt: skip
 
     def test_a_static_run_is_shown_before_and_after(self) -> None:

@@ -6,14 +6,16 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from mdlgen.model.tables import Floats, Ints
+from mdlgen.model.tables import Floats, Ints, RollerPart
 from mdlgen.report.animation import thinned
 from mdlgen.results.compare import travel
 from mdlgen.results.drag import drags
+from mdlgen.results.losses import driven, summed
 from mdlgen.results.result import Result
 from mdlgen.results.slide import slide
 from mdlgen.results.strain import SheetJoints
 from mdlgen.results.summary import PER_SECOND, part_rows
+from mdlgen.results.swing import swing
 from mdlgen.results.torques import drive_power, drive_torque, grips, over_time
 
 POINTS = 4000  # of a line; more are not seen
@@ -52,6 +54,7 @@ def panels(
     if result.model.run.analysis == "static" or len(result.time) < 2:
         return [panel for panel in (*_shapes(result), *_tensions(result)) if panel.lines]
     found = [*_motion(result), *_tilt(result, at), *_rollers(result, at, deep), *_drags(result)]
+    found += _energies(result)
     found += [*_tensions(result), *_bearing(result, at, joints)]
     return [panel for panel in found if panel.lines]
 
@@ -119,6 +122,8 @@ def _rollers(result: Result, at: Ints, deep: Floats) -> list[Panel]:
     depth = Panel("penetration", f"Penetration of sheets into {each}", "mm")
     place = Panel("slide", f"Way of {each} that is pressed along its press direction", "mm", short="way")
     place.note = "from where it is given; it falls as a sheet lifts the part"
+    arms = Panel("arm", "Angle of each arm", "deg", short="arm")
+    arms.note = "since it was given, positive about the roller's axis"
     spin = Panel("omega", "Speed of each roller", "rad/s", short="speed")
     depth.note = "of the deepest box at stored states; the table has the greatest over every step"
     for part in (*result.model.rollers, *(plate for plate, _ in plates)):
@@ -133,9 +138,12 @@ def _rollers(result: Result, at: Ints, deep: Floats) -> list[Panel]:
         if way is not None:
             place.lines.append(Line(part.name, result.time[thin], way[thin]))
     for roller in result.model.rollers:
+        turned = swing(result, roller)
+        if turned is not None:
+            arms.lines.append(Line(roller.name, result.time[thin], np.degrees(turned[thin])))
         omega = result.spin[:, roller.body] @ roller.axis * PER_SECOND
         spin.lines.append(Line(roller.name, result.time[thin], omega[thin]))
-    return [force, depth, place, spin, *_drives(result, thin)]
+    return [force, depth, place, arms, spin, *_drives(result, thin)]
 
 
 def _drives(result: Result, thin: Ints) -> list[Panel]:
@@ -170,6 +178,23 @@ def _drags(result: Result) -> list[Panel]:
                 name = f"{part.name} {sheet}" if several else part.name
                 panel.lines.append(Line(name, result.time[thin], drag[thin]))
     return [panel]
+
+
+def _energies(result: Result) -> list[Panel]:
+    """What drives have given since the start, and what contacts have taken by friction and rolling."""
+    given = Panel("driven_energy", "Energy that each drive has given", "N mm", short="driven")
+    rubbed = Panel("friction_loss", "Energy lost at each part by friction and rolling", "N mm", short="lost")
+    rubbed.note = "at its contacts with sheets, and half of what is between two parts; from stored states"
+    if result.losses is None:
+        return []
+    thin = _thin(result)
+    for part in result.model.machine:
+        energy = driven(result, part) if isinstance(part, RollerPart) else None
+        if energy is not None:
+            given.lines.append(Line(part.name, result.time[thin], energy[thin]))
+        if (power := result.losses.of(result, part)) is not None and power.any():
+            rubbed.lines.append(Line(part.name, result.time[thin], summed(result, power)[thin]))
+    return [given, rubbed]
 
 
 def _tensions(result: Result) -> list[Panel]:

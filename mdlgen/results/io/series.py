@@ -6,9 +6,11 @@ import numpy as np
 
 from mdlgen.model.tables import Floats, MachinePart, PlanePart, RollerPart
 from mdlgen.results.drag import drags
+from mdlgen.results.losses import driven, summed
 from mdlgen.results.result import Result
 from mdlgen.results.slide import slide
 from mdlgen.results.summary import PER_SECOND, part_rows
+from mdlgen.results.swing import swing
 from mdlgen.results.torques import contact_torque, drive_power, drive_torque, grips
 
 SLIGHT = 1e-9  # part of a slide along an axis that is round-off
@@ -44,12 +46,27 @@ def series(result: Result) -> dict[str, Floats]:
             continue
         table[f"{part.name}.force_n"] = result.contact_force[:, list(part_rows(result, part))].sum(axis=1)
         table |= _drags(result, part)
-    return table
+    return table | _energies(result)
+
+
+def _energies(result: Result) -> dict[str, Floats]:
+    """What each drive has given, and what the contacts of each part have taken by friction and rolling, since
+    the start."""
+    found: dict[str, Floats] = {}
+    if result.losses is None:
+        return found
+    for part in result.model.machine:
+        given = driven(result, part) if isinstance(part, RollerPart) else None
+        if given is not None:
+            found[f"{part.name}.driven_energy_n_mm"] = given
+        if (power := result.losses.of(result, part)) is not None:
+            found[f"{part.name}.friction_loss_n_mm"] = summed(result, power)
+    return found
 
 
 def _places(result: Result, part: RollerPart | PlanePart) -> dict[str, Floats]:
-    """z of its centre, and x and y where it may move along them: on its slide, or round its arm's pivot; and
-    its way along its press direction."""
+    """x, y and z of its centre where it may move along them, on its slide or round its arm's pivot, z alone
+    of one that stands; and its way along its press direction, and the angle of its arm."""
     moves = np.zeros(3) if part.press is None else np.abs(part.press.direction)
     if isinstance(part, RollerPart) and part.arm is not None:
         moves = 1.0 - np.abs(part.axis)
@@ -57,8 +74,10 @@ def _places(result: Result, part: RollerPart | PlanePart) -> dict[str, Floats]:
     table = {
         f"{part.name}.{axis}_mm": places[:, k]
         for k, axis in enumerate("xyz")
-        if axis == "z" or moves[k] > SLIGHT
+        if moves[k] > SLIGHT or (axis == "z" and not moves.any())
     }
+    if isinstance(part, RollerPart) and (turned := swing(result, part)) is not None:
+        table[f"{part.name}.arm_deg"] = np.degrees(turned)
     way = slide(result, part)
     return table if way is None else table | {f"{part.name}.slide_mm": way}
 
