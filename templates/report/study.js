@@ -3,8 +3,9 @@
 const content = JSON.parse(document.getElementById("data").textContent);
 const get = (id) => document.getElementById(id);
 const BAD = "#b13c00", NONE = "#b9c0c7";
-// viridis, at equal steps
-const RAMP = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]];
+// viridis, at equal steps; on a dark page it begins lighter, so that lines are seen
+const DARK = window.matchMedia("(prefers-color-scheme: dark)").matches;
+const RAMP = [...(DARK ? [[140, 105, 215], [95, 125, 195], [50, 160, 155]] : [[68, 1, 84], [59, 82, 139], [33, 145, 140]]), [94, 201, 98], [253, 231, 37]];
 const count = content.kind.length;
 const rows = [...Array(count).keys()];
 const columns = content.columns.map(scaled);

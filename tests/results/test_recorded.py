@@ -59,6 +59,21 @@ def test_our_own_run_in_a_table_does_not_differ(ran: Result, tmp_path: Path) -> 
     assert [a.relative for a in same.quantities] == [a.relative for a in found.quantities]
 
 
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+def test_what_is_round_off_in_the_run_is_relative_to_the_file(ran: Result, tmp_path: Path) -> None:
+    """The note does not turn here, and does in the file."""
+    head, *lines = csv(ran).splitlines()
+    at, time = head.split(",").index("note.yaw_deg"), ran.time.tolist()
+    cells = [line.split(",") for line in lines]
+    for k, row in enumerate(cells):
+        row[at] = repr(0.1 * time[k])
+    text = "\n".join([head, *map(",".join, cells)]) + "\n"
+    found = {apart.name: apart for apart in compared(ran, text, tmp_path, "series.csv").quantities}
+    yaw = found.pop("note.yaw_deg")
+    assert yaw.scale == pytest.approx(2.0) and yaw.relative == pytest.approx(np.sqrt(1 / 3), rel=0.02)
+    assert all(apart.relative <= EXACT for apart in found.values())
+
+
 def test_series_of_our_own_do_not_differ(ran: Result, tmp_path: Path) -> None:
     found = compared(ran, csv(ran), tmp_path, "series.csv")
     assert {"note.x_mm", "lead.vx_mm_per_s", "motor_1_left.omega_rad_per_s"} <= {

@@ -19,6 +19,7 @@ from mdlgen.results.quantities import LEAST
 from mdlgen.results.recorded.own import Quantity, quantities
 from mdlgen.results.recorded.recording import Recording
 from mdlgen.results.result import Result
+from mdlgen.results.wording import ROUND_OFF
 
 ROUNDED = 1e-5  # of the end of the run: what times with six digits are known to
 _LAG = 0.1  # of the common time: the largest shift that is looked for
@@ -38,7 +39,7 @@ class Apart:
     at_ms: float  # of the greatest
     offset: tuple[float, ...]  # mean difference, by component
     scale: float  # what `relative` is relative to: the greatest value, of a position the greatest motion, at
-    # least what `Quantity.least` has
+    # least what `Quantity.least` has; of round-off that of the recording
     relative: float  # rms over scale
     time: Floats = field(repr=False, compare=False)  # common times [ms]
     here: Floats = field(repr=False, compare=False)
@@ -197,8 +198,9 @@ def _apart(quantity: Quantity, time: Floats, common: np.ndarray, recorded: _Reco
     gap = there - here
     size = np.linalg.norm(gap, axis=1)
     rms, greatest = float(np.sqrt(np.mean(size**2))), int(size.argmax())
-    moved = quantity.values - quantity.values[0] if quantity.moves else quantity.values
-    scale = max(float(np.linalg.norm(moved, axis=1).max()), quantity.least)
+    own, other = _size(quantity.values, quantity.moves), _size(there, quantity.moves)
+    # of what is round-off in the run, as the yaw of one that is alike on both sides, the file's size
+    scale = max(own if own >= ROUND_OFF else max(other, ROUND_OFF), quantity.least)
     return Apart(
         name=quantity.name,
         unit=quantity.unit,
@@ -212,6 +214,11 @@ def _apart(quantity: Quantity, time: Floats, common: np.ndarray, recorded: _Reco
         here=here,
         there=there,
     )
+
+
+def _size(values: Floats, moves: bool) -> float:
+    """The greatest value, of a position the greatest motion."""
+    return float(np.linalg.norm(values - values[0] if moves else values, axis=1).max())
 
 
 def _shift(found: list[Apart], pairs: list[Pair], recording: Recording) -> Shift | None:
