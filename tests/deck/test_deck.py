@@ -253,3 +253,19 @@ def test_axes_of_joints_follow_the_rule_of_decks() -> None:
         np.testing.assert_allclose(axes.T @ axes, np.eye(3), atol=1e-15)
         assert np.linalg.det(axes) == pytest.approx(1.0)
         assert axes[2, 0] == 0.0
+
+
+def test_a_mesh_is_as_in_an_exported_deck() -> None:
+    """Attributes and notes of nine meshes in the deck of a car that MotionView 2022 exported."""
+    model, deck = model_of("pick.yaml"), etree.fromstring(motionsolve.emit(model_of("pick.yaml")).encode())
+    meshes = deck.findall(".//Post_Graphic[@type='TriaMesh']")
+    assert len(meshes) == len(model.meshes) > 0
+    named = {"id", "label", "full_label", "type", "ref_marker_id"}
+    named |= {"num_point", "num_triangle", "refinement_level", "is_material_inside"}
+    for mesh, part in zip(meshes, model.meshes, strict=True):
+        assert set(mesh.attrib) == named
+        corners, triangles = mesh
+        assert (corners.text, triangles.text) == (" Node Position ", " Tria Connectivity ")
+        assert len(corners.tail.split()) == 3 * int(mesh.get("num_point")) == part.corners.size
+        numbers = [int(number) for number in triangles.tail.split()]
+        assert numbers == part.triangles.ravel().tolist() and min(numbers) == 0

@@ -68,9 +68,10 @@ class Entity:
         return [[self._positive(part, "content") for part in row.split()] for row in lines if row.strip()]
 
     def numbers(self) -> list[float]:
-        """The content as finite numbers."""
+        """The content as finite numbers; comments may stand between them."""
         found = []
-        for part in (self._element.text or "").split():
+        content = (self._element.text, *(child.tail for child in self._element))
+        for part in " ".join(text or "" for text in content).split():
             try:
                 found.append(float(part))
             except ValueError:

@@ -153,7 +153,7 @@ def graphic(deck: Deck, entity: Entity) -> dict[str, Any] | None:
     shape = entity.word("type")
     if shape not in ("BoxDefinedFromCenter", "Frustum", "TriaMesh"):
         return None
-    marker = deck.marker(entity, "center_marker_id")
+    marker = _under(deck, entity)
     label = entity.word("label", "")
     if shape == "BoxDefinedFromCenter":
         lengths = entity.vector("length_x", "length_y", "length_z")
@@ -176,9 +176,14 @@ def graphic(deck: Deck, entity: Entity) -> dict[str, Any] | None:
     }
 
 
+def _under(deck: Deck, entity: Entity) -> Marker:
+    """The marker that a shape moves with."""
+    return deck.marker(entity, "ref_marker_id" if entity.word("type") == "TriaMesh" else "center_marker_id")
+
+
 def _triangles(entity: Entity) -> tuple[list[list[float]], list[list[int]]]:
     """Corners, and the numbers of those of each triangle from 0 on, as many as it says."""
-    numbers, nodes, faces = entity.numbers(), entity.id("num_nodes"), entity.id("num_faces")
+    numbers, nodes, faces = entity.numbers(), entity.id("num_point"), entity.id("num_triangle")
     if len(numbers) != 3 * (nodes + faces):
         raise entity.wrong(f"{len(numbers)} numbers, not three times {nodes} + {faces}")
     corners = [numbers[k : k + 3] for k in range(0, 3 * nodes, 3)]
@@ -243,7 +248,7 @@ def contact(deck: Deck, entity: Entity) -> dict[str, Any]:
 
 
 def _body_of(deck: Deck, contact: Entity, side: list[Entity]) -> str:
-    bodies = {deck.marker(graphic, "center_marker_id").body for graphic in side}
+    bodies = {_under(deck, graphic).body for graphic in side}
     if len(bodies) != 1:
         raise contact.wrong(f"the graphics of one side lie on {len(bodies)} bodies, not on one")
     return bodies.pop()

@@ -100,19 +100,10 @@ def unverified(model: Model, deck: Deck) -> list[str]:
             bool(deck.loads),
             "Force_Vector_OneBody with forces and torques (seen with torques alone, documented)",
         ),
-        (
-            bool(deck.clutches),
-            "Force_Vector_OneBody with a torque of MAX and WZ, for one-way rollers (seen with other torques)",
-        ),
         (bool(deck.contacts), "Force_Contact (documented, not seen in a deck)"),
         (
             any("CONTACT(" in request.expressions[0] for request in deck.requests),
             "Post_Request with sums of CONTACT (the function documented; how long a sum may be is not known)",
-        ),
-        (
-            bool(deck.shells),
-            "Post_Graphic of a TriaMesh (documented; names of attributes and order of its numbers guessed "
-            "from the Python twin)",
         ),
         (
             deck.run.static and deck.run.method == "MKEAM",
