@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cache
-
-from mdlgen.paths import templates
-from mdlgen.report.html.environment import environment, library, licences, style
+from mdlgen.report.html.environment import environment, library, licences, scripts, style
 
 _SCRIPTS = ("drawing.js", "charts.js", "labels.js", "player.js", "play.js", "live.js")
 
@@ -22,7 +19,7 @@ def page(title: str, nonce: str) -> str:
             style=style("live.css"),
             library=library(),
             licences=licences(),
-            scripts=[_file(name) for name in _SCRIPTS],
+            scripts=scripts(_SCRIPTS),
         )
     )
 
@@ -33,8 +30,3 @@ def policy(nonce: str) -> str:
         f"default-src 'none'; script-src 'nonce-{nonce}' blob:; style-src 'nonce-{nonce}'; img-src data:; "
         "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
     )
-
-
-@cache
-def _file(name: str) -> str:
-    return (templates() / "report" / name).read_text("utf-8")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -29,13 +30,21 @@ def licences(figures: bool = True) -> dict[str, str]:
 
 def style(*more: str) -> str:
     """Of pages with figures; `more` are files behind it."""
-    own = [(templates() / "report" / name).read_text("utf-8") for name in ("style.css", *more)]
-    return "\n".join([_third("uPlot.min.css"), *own])
+    return "\n".join([_third("uPlot.min.css"), *scripts(("style.css", *more))])
 
 
-@lru_cache(maxsize=16)
+def scripts(names: Sequence[str]) -> list[str]:
+    """Texts of files of our own."""
+    return [_text(name) for name in names]
+
+
 def _third(name: str) -> str:
-    return (templates() / "report" / "third_party" / name).read_text("utf-8")
+    return _text(f"third_party/{name}")
+
+
+@lru_cache(maxsize=32)
+def _text(name: str) -> str:
+    return (templates() / "report" / name).read_text("utf-8")
 
 
 @lru_cache(maxsize=1)

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import asdict
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from mdlgen.checks import lints
 from mdlgen.model.parts.kinds import KINDS
-from mdlgen.paths import templates
 from mdlgen.report import boxes
 from mdlgen.report.animation import animation, frames, packed
 from mdlgen.report.figures.maps import Map, maps
 from mdlgen.report.html.curves import Panel, panels
 from mdlgen.report.html.differences import differences
-from mdlgen.report.html.environment import environment, library, licences, style
+from mdlgen.report.html.environment import environment, library, licences, scripts, style
 from mdlgen.report.html.labels import labels
 from mdlgen.report.sheets import parts_of_sheets
 from mdlgen.results.result import Result
@@ -27,6 +26,7 @@ if TYPE_CHECKING:
     from mdlgen.model.tables import Ints, Model
     from mdlgen.results.recorded.against import Against
 
+_CORNERS = "%.3f,%.3f %.3f,%.3f %.3f,%.3f %.3f,%.3f"  # of a cell
 _STEPS = 18  # of colour in a map: .c0 to .c18 in style.css
 _SCRIPTS = ("drawing.js", "charts.js", "labels.js", "player.js", "play.js", "page.js")
 
@@ -47,7 +47,6 @@ def page(results: Sequence[Result], names: Sequence[str] = (), against: Against 
         rows = [recorded.row(apart) for apart in against.quantities]
         beside = {"rows": rows, "sentences": recorded.sentences(against)}
     drawn = json.dumps([run.pop("drawn") for run in runs], allow_nan=False, separators=(",", ":"))
-    folder = templates() / "report"
     return (
         environment()
         .get_template("page.html.j2")
@@ -63,7 +62,7 @@ def page(results: Sequence[Result], names: Sequence[str] = (), against: Against 
             style=style(),
             library=library(),
             licences=licences(),
-            scripts=[(folder / name).read_text("utf-8") for name in _SCRIPTS],
+            scripts=scripts(_SCRIPTS),
         )
     )
 
@@ -77,6 +76,8 @@ def prepare(model: Model) -> None:
     from mdlgen.results.io import store  # noqa: F401
 
     environment().get_template("page.html.j2")
+    for read in (library, licences, style, partial(scripts, _SCRIPTS)):
+        read()
     sheet_joints(model)
     lints(model)
 
@@ -118,10 +119,10 @@ def run_record(result: Result, name: str, draft: Ints | None = None) -> dict[str
                 for kind in ("sheets", *(each.table for each in KINDS), "contacts", "probes")
             },
         },
-        "parameters": [asdict(parameter) for parameter in result.model.parameters],
+        "parameters": result.model.parameters,
         "source": result.source,
         "maps": [_map(found) for found in maps(result)] if draft is None else [],
-        "lints": [asdict(lint) for lint in lints(result.model)],
+        "lints": lints(result.model),
         "drawn": {
             "name": name,
             "scene": summary["scene"],
@@ -135,14 +136,16 @@ def run_record(result: Result, name: str, draft: Ints | None = None) -> dict[str
 
 def _map(found: Map) -> dict[str, Any]:
     """A map as the template draws it [mm], y downwards; the colours are steps of its style."""
+    corners = (found.cells * (1.0, -1.0)).reshape(len(found.cells), -1)
     return {
         "title": found.title.split("\n"),
         "size": found.sheet.outline,
         "ring": (found.place * (1, -1)).tolist() if found.parts.any() else None,
-        "cells": [
-            (" ".join(f"{x:.3f},{-y:.3f}" for x, y in cell), round(_STEPS * part))
-            for cell, part in zip(found.cells.tolist(), found.parts.tolist(), strict=True)
-        ],
+        # whole elements of numbers: a template takes longer for so many
+        "cells": "\n".join(
+            f'<polygon class="c{round(_STEPS * part)}" points="{_CORNERS % tuple(cell)}"/>'
+            for cell, part in zip(corners.tolist(), found.parts.tolist(), strict=True)
+        ),
     }
 
 
