@@ -1,6 +1,6 @@
 """Random and mutated scenes, texts and meshes: one line and a known exit code, whatever comes.
 
-300 examples of each, the same ones every time; as many as MDLGEN_FUZZ says with
+200 examples of each, the same ones every time; as many as MDLGEN_FUZZ says with
 `MDLGEN_FUZZ=10000 python -m pytest tests/robustness/test_fuzz.py`. With MDLGEN_FUZZ_PART=0/2 a process does
 every other one of the scenes, and leaves the rest to one with 1/2.
 """
@@ -34,7 +34,7 @@ from mdlgen.cli import app
 from mdlgen.paths import samples
 from mdlgen.spec.solid import Solid, signed_volume
 
-COUNT = int(os.environ.get("MDLGEN_FUZZ", "300"))
+COUNT = int(os.environ.get("MDLGEN_FUZZ", "200"))
 PART, PARTS = (int(k) for k in os.environ.get("MDLGEN_FUZZ_PART", "0/1").split("/"))
 NUMBER = itertools.count()
 NAN = re.compile(rb"(?<![\w.])nan(?!\w)")
