@@ -112,6 +112,17 @@ function overlay(stage, lines) {
   return own;
 }
 
+// Print has the picture as one that stays, and figures of its own size, in the light colours.
+function onPaper(stageOf, charts = []) {
+  const print = (on) => {
+    document.documentElement.toggleAttribute("data-print", on);
+    for (const one of charts) one.print(on);
+    stageOf()?.print(on, document.getElementById("printed"));
+  };
+  window.addEventListener("beforeprint", () => print(true));
+  window.addEventListener("afterprint", () => print(false));
+}
+
 // What is known of a part, and of the box of a sheet that was hit.
 function ofPart(found, parts, scene) {
   const name = found.mesh ? found.mesh.name.split(" ")[0] : scene.sheets.findLast((s) => found.box >= s.first).name;

@@ -146,14 +146,7 @@ document.addEventListener("click", (event) => {
   get("animation").scrollIntoView({ block: "start" });
 });
 
-// Print has the picture as one that stays, and figures of its own size, in the light colours.
-function print(on) {
-  document.documentElement.toggleAttribute("data-print", on);
-  for (const one of drawnCharts) one.print(on);
-  if (stage) stage.print(on, get("printed"));
-}
-window.addEventListener("beforeprint", () => print(true));
-window.addEventListener("afterprint", () => print(false));
+onPaper(() => stage, drawnCharts);
 
 const strokes = {
   " ": () => play(!state.playing), ArrowLeft: (event) => step(event.shiftKey ? -10 : -1), ArrowRight: (event) => step(event.shiftKey ? 10 : 1),

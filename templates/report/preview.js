@@ -50,6 +50,7 @@ document.addEventListener("keydown", (event) => {
   else if (event.key === "c") colour(state.colour + 1);
 });
 
+onPaper(() => stage);
 try {
   stage = await player(get("canvas"), () => view(null));
   stage.add(scene.animation);

@@ -153,6 +153,23 @@ def test_warnings_are_at_their_parts(browser: Tab, tmp_path: Path) -> None:
     silent(browser, path)
 
 
+def test_it_prints_with_its_picture(browser: Tab, tmp_path: Path) -> None:
+    from pypdfium2 import PdfDocument
+
+    path = show(browser, tmp_path, four())
+    pages = PdfDocument(
+        b64decode(browser.call("Page.printToPDF", paperWidth=8.27, paperHeight=11.69)["data"])
+    )
+    assert len(pages) <= 3
+    first = np.asarray(pages[0].render(scale=1).to_pil().convert("RGB")).astype(int)
+    red, green, blue = np.moveaxis(first[: len(first) // 2], 2, 0)
+    # the note in its colour, names beside it, and no black
+    assert ((green > red + 60) & (green > blue)).mean() > 0.02
+    assert (first[: len(first) // 2].max(axis=2) < 30).mean() < 0.02
+    assert "motor_1_left" in pages[0].get_textpage().get_text_range()
+    silent(browser, path)
+
+
 def test_views_colours_and_switches(browser: Tab, tmp_path: Path) -> None:
     path = show(browser, tmp_path, four(ZONE))
     whole = pixels(browser)
