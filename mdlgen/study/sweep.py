@@ -21,6 +21,7 @@ from mdlgen.study.execution.workers import Runner
 WHAT = "sweep"
 # How many cases are tried for one that can be read, from which the names of its numbers are known.
 LOOKED_AT = 100
+PASSES = "pass=verdict.passed > 0"  # of a scene that requires something: the share of cases that do it
 
 Count = Callable[[int, int], None]
 
@@ -75,7 +76,8 @@ def sweep(
     task: Task, cases: Sequence[Case], how: str, asked: Iterable[str] = (), events: Iterable[str] = ()
 ) -> Sweep:
     """A Sweep whose measures are the texts `asked` for, travel, speed and yaw of the sheets where there are
-    none, and the `events`, conditions that hold where something happened.
+    none, and the `events`, conditions that hold where something happened. Where the scene requires something,
+    and none of them is about verdicts, whether a case does all of it is one of the events.
 
     Raises SpecError for a measure that there is not, and where not one of the cases can be read.
     """
@@ -85,7 +87,11 @@ def sweep(
     check_links(task.lets, [path for path, _ in cases[0].values])
     model = first_model(task, cases)
     names = known(model)
-    wanted = measures(list(asked) or defaults(model), names, "--measure")
+    asked = list(asked)
+    wanted = measures(asked or defaults(model), names, "--measure")
+    events = list(events)
+    if model.require and not any("verdict." in text for text in (*asked, *events)):
+        events.append(PASSES)
     happened = measures(events, names, "--event")
     check_apart([name for name, _ in (*wanted, *happened, *cases[0].values)])
     task = replace(task, measures=wanted + happened, events=tuple(name for name, _ in happened))
