@@ -21,24 +21,25 @@ from mdlgen.spec.load import loads
 SCRIPT = Path(__file__).parent / "users" / "nip.py"
 
 
-def strict(folder: Path, script: Path) -> list[str]:
-    """What the strict mode finds in a script."""
-    record = {"typeCheckingMode": "strict", "include": [str(script)], "extraPaths": [str(ROOT)]}
+def strict(folder: Path, *scripts: Path) -> dict[str, list[str]]:
+    """What the strict mode finds in scripts, each by its name."""
+    names = [str(script) for script in scripts]
+    record = {"typeCheckingMode": "strict", "include": names, "extraPaths": [str(ROOT)]}
     config = folder / "pyrightconfig.json"
     config.write_text(json.dumps(record))
     command = ["basedpyright", "-p", str(config), "--outputjson"]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=300)
     found = json.loads(done.stdout)
-    assert found["summary"]["filesAnalyzed"] == 1
-    return [
-        f"{item['range']['start']['line'] + 1}: {item['message']}" for item in found["generalDiagnostics"]
-    ]
+    assert found["summary"]["filesAnalyzed"] == len(scripts)
+    lines: dict[str, list[str]] = {script.name: [] for script in scripts}
+    for item in found["generalDiagnostics"]:
+        lines[Path(item["file"]).name].append(f"{item['range']['start']['line'] + 1}: {item['message']}")
+    return lines
 
 
 @pytest.mark.skipif(shutil.which("basedpyright") is None, reason="basedpyright is not installed")
 def test_strict_types_find_nothing_in_a_users_script_and_each_mistake(tmp_path: Path) -> None:
     assert len(SCRIPT.read_text().splitlines()) >= 60
-    assert strict(tmp_path, SCRIPT) == []
     wrong = tmp_path / "wrong.py"
     text = SCRIPT.read_text()
     for good, bad in (
@@ -50,7 +51,9 @@ def test_strict_types_find_nothing_in_a_users_script_and_each_mistake(tmp_path: 
         assert good in text
         text = text.replace(good, bad, 1)
     wrong.write_text(text)
-    assert len({line.partition(":")[0] for line in strict(tmp_path, wrong)}) == 4
+    found = strict(tmp_path, SCRIPT, wrong)
+    assert found[SCRIPT.name] == []
+    assert len({line.partition(":")[0] for line in found[wrong.name]}) == 4
 
 
 def test_the_script_runs(tmp_path: Path) -> None:

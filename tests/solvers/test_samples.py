@@ -29,9 +29,9 @@ PIECES = {
     # Exudyn takes a minute for all of it: to where the second note has left the pick roller, which lands then
     ("retard_pad", "exudyn"): ("run.duration=160 ms", "run.tolerance=0.01"),
     # blocks, which tests/solvers/test_exudyn.py runs to what their samples say
-    ("verify/drop", "exudyn"): ("run.duration=300 ms",),
-    ("verify/incline", "exudyn"): ("run.duration=200 ms",),
-    ("verify/slide", "exudyn"): ("run.duration=200 ms",),
+    ("verify/drop", "exudyn"): ("run.duration=150 ms",),
+    ("verify/incline", "exudyn"): ("run.duration=100 ms",),
+    ("verify/slide", "exudyn"): ("run.duration=100 ms",),
     ("pile", "exudyn"): ("run.duration=1 ms",),
     # the Model of transport_4x4 (tests/model/test_nips.py), which it runs as a whole below
     ("transport_nips", "exudyn"): ("run.duration=5 ms",),

@@ -235,7 +235,7 @@ def test_statics_of_both_solvers() -> None:
 @pytest.fixture(scope="module")
 def stack() -> dict[str, Result]:
     scene = load(samples() / "spring_plate.yaml")
-    return {solver: mdlgen.solve(lower(scene), solver) for solver in SOLVERS}
+    return {solver: ran.solved(lower(scene), solver) for solver in SOLVERS}
 
 
 def test_both_solvers_agree_on_a_stack_under_a_roller(stack: dict[str, Result]) -> None:
