@@ -216,3 +216,20 @@ class TestMeasures:
         assert perform.perform(asked.task, asked.cases[0]).ok
         events = replace(asked.task, measures=(("jams", "events.jam"),))
         assert "worked out for nothing" in perform.perform(events, asked.cases[0]).status
+
+
+def test_margins_of_requirements_are_measures() -> None:
+    """In the order of the scene; of an event less how often it came."""
+    rows = [
+        {"requirement": "yaw within 1 deg", "passed": True, "value": 0.2, "unit": "deg", "margin": 0.8},
+        {"requirement": "no jam", "passed": False, "value": 2.0, "unit": "", "margin": None},
+        {"requirement": "strain below 1 %", "passed": False, "value": None, "unit": "%", "margin": None},
+    ]
+    found = measure.flat({"verdict": {"passed": False, "requirements": rows, "events": ["jam"]}})
+    margins = {f"verdict.margin_{k}": value for k, value in enumerate([0.8, -2.0, None], 1)}
+    assert found == {"verdict.passed": 0.0, **margins}
+    asked = 'require=["sheets.block.travel below 1 m", "no jam"]'
+    own = wanted(f"{FRICTION}=[0.1]", measures=["verdict.margin_1", "verdict.margin_2"], sets=[*SHORT, asked])
+    row = perform.perform(own.task, own.cases[0])
+    assert row.measures["verdict.margin_1"] == pytest.approx(1.0, rel=1e-4)  # m, as it is given
+    assert row.measures["verdict.margin_2"] == 0.0

@@ -31,7 +31,7 @@ def flat(record: Mapping[str, Any], within: str = "") -> dict[str, Value]:
     """Numbers and vectors of a summary by dotted name; the parts of a vector as NAME.x, .y, .z too.
 
     `events.jam` is how many there were, `events.jam.NAME` of them with a sheet, a roller or a plate. Texts
-    and times are left out.
+    and times are left out. `verdict.margin_1` is the margin of the first requirement.
     """
     found: dict[str, Value] = {}
     for key, value in record.items():
@@ -42,6 +42,8 @@ def flat(record: Mapping[str, Any], within: str = "") -> dict[str, Value]:
             found |= flat(value, f"{name}.")
         elif name == "events":
             found |= _counts(value)
+        elif name == "verdict.requirements":
+            found |= {f"verdict.margin_{k}": _margin(row) for k, row in enumerate(value, 1)}
         elif name in TIMES or isinstance(value, str):
             continue
         elif isinstance(value, (list, tuple)):
@@ -52,6 +54,13 @@ def flat(record: Mapping[str, Any], within: str = "") -> dict[str, Value]:
         else:
             found[name] = None if value is None else float(value)
     return found
+
+
+def _margin(row: Mapping[str, Any]) -> float | None:
+    """Of a requirement in its unit, below zero where it is missed; of an event less how often it came."""
+    if row["value"] is None:
+        return None
+    return float(row["margin"]) if row["margin"] is not None else -float(row["value"])
 
 
 def _counts(events: Sequence[Mapping[str, Any]]) -> dict[str, Value]:
