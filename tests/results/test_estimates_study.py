@@ -32,7 +32,7 @@ from mdlgen.results.result import Result
 COUNT = int(os.environ.get("MDLGEN_ESTIMATES", "0"))
 SEED = int(os.environ.get("MDLGEN_ESTIMATES_SEED", "0"))
 # A scene whose finest run would take longer than this is left out [s], as is one of more steps.
-MOST_TIME, MOST_STEPS = 60.0 if COUNT > 20 else 4.0, 3e5
+MOST_TIME, MOST_STEPS = 15.0 if COUNT > 20 else 4.0, 3e5
 # The two finer runs agree where they differ by less than this part of the error, or of the estimate.
 AGREE = 0.3
 FACTORS = (0.3, 0.5, 0.8, 1.25, 2.0, 3.0)
