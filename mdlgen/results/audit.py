@@ -48,6 +48,13 @@ def reason(model: Model, energy: Energy, step: float, loss: float | None = None)
     What is gained may be GAIN of the scale, what is lost `loss` of it (None: any, for an integrator that
     damps).
     """
+    made = -energy.dissipated / energy.scale
+    if made > GAIN:
+        return (
+            f"nips made {made * energy.scale:.3g} N mm of energy, {100 * made:.3g} % of "
+            f"{energy.scale:.3g} N mm; allowed are {100 * GAIN:g} %; that is of a hard and a soft roller "
+            "that press deep: raise the stiffness of the soft one's contact, or lower the preload (see W105)"
+        )
     off = energy.balance_error
     if off <= GAIN and (loss is None or off >= -loss):
         return None
