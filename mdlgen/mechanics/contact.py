@@ -34,6 +34,12 @@ from mdlgen.program.kernel import BORROWS, FUSED, OWNS, njit
 
 WHOLE = 4.0  # no sector but the whole round: more than half a turn
 _GAUSS = 1.0 / math.sqrt(3.0)
+# Places and weights of Gauss' rule of four points.
+_INNER, _OUTER = (
+    math.sqrt(3.0 / 7.0 - 2.0 / 7.0 * math.sqrt(1.2)),
+    math.sqrt(3.0 / 7.0 + 2.0 / 7.0 * math.sqrt(1.2)),
+)
+_WIDE, _NARROW = 0.5 + math.sqrt(30.0) / 36.0, 0.5 - math.sqrt(30.0) / 36.0
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -47,6 +53,44 @@ def _stored(t, reach):
 def _at_ends(left, right, reach):
     """The difference of what `_stored` adds up at both ends, 0 beyond the reach."""
     return (1.0 - (right / reach) ** 2) ** 2 - (1.0 - (left / reach) ** 2) ** 2
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _at_two(middle, apart, of, off):
+    """What presses across and along a face at two places of a round, beside the middle between them."""
+    across = along = 0.0
+    for side in (-1.0, 1.0):
+        t = middle + side * apart
+        distance = math.sqrt(t * t + off * off)
+        across += (of / distance - 1.0) * off
+        along += (of / distance - 1.0) * t
+    return across, along
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _over(left, right, of, off):
+    """Integral from left to right of what a round presses across a face, half the length times that."""
+    middle, half = 0.5 * (left + right), 0.5 * (right - left)
+    inner, _ = _at_two(middle, _INNER * half, of, off)
+    outer, _ = _at_two(middle, _OUTER * half, of, off)
+    return half * (_WIDE * inner + _NARROW * outer)
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _part_of_nip(left, right, reach, of, off):
+    """Factor of the forces, and angle to turn the normals by, of two points for a part of a nip, so that all
+    parts of it add up to what two points have of the whole, and push nothing along faces that go on as one.
+
+    Along a face the pressure zeta of a round adds up to the difference of zeta^2/2 at both ends.
+    """
+    middle, half = 0.5 * (left + right), 0.5 * (right - left)
+    across, along = _at_two(middle, _GAUSS * half, of, off)
+    whole, _ = _at_two(0.0, _GAUSS * reach, of, off)
+    share = reach * whole / _over(-reach, reach, of, off)
+    factor = share * _over(left, right, of, off) / (half * across)
+    low, high = of - math.sqrt(left * left + off * off), of - math.sqrt(right * right + off * off)
+    ends = 0.5 * share * (low - high) * (low + high)
+    return factor, (ends / (factor * half) - along) / across
 
 
 @njit(cache=True, error_model="numpy", **BORROWS, **FUSED)
@@ -165,6 +209,10 @@ def _face(out, face, a, half, b, roller, sector, law):
             middle_t, apart = 0.5 * (left + right), 0.5 * _GAUSS * (right - left)
             low_zeta = of - math.sqrt((middle_t - apart) ** 2 + off * off)
             high_zeta = of - math.sqrt((middle_t + apart) ** 2 + off * off)
+            factor, turned = 1.0, 0.0
+            if spread and (left > -reach or right < reach):
+                factor, turned = _part_of_nip(left, right, reach, of, off)
+                turned *= draw
             # where what presses on this box has its middle
             center = draw * (middle_t + apart * (high_zeta - low_zeta) / (high_zeta + low_zeta))
             for point in range(2 if spread else 1):
@@ -173,7 +221,7 @@ def _face(out, face, a, half, b, roller, sector, law):
                     t = middle_t + (2.0 * point - 1.0) * apart
                 zeta = of - math.sqrt(t * t + off * off)
                 if spread:
-                    length = 0.5 * (right - left) * (1.0 + lost * (radius - e) / of)
+                    length = 0.5 * (right - left) * (1.0 + lost * (radius - e) / of) * factor
                     spring = weight * foundation * length * zeta
                     energy = 0.6 * spring * zeta  # 2/5 F z: both points are 2/3 z deep
                     out[STORED] -= energy
@@ -182,7 +230,10 @@ def _face(out, face, a, half, b, roller, sector, law):
                     spring = weight * zeta * math.sqrt(zeta)
                     energy = 0.4 * spring * zeta
                 distance = math.sqrt(t * t + off * off)
-                normal = add(scale(t / distance, across), scale(off / distance, way))
+                slant = distance * math.sqrt(1.0 + turned * turned)
+                normal = add(
+                    scale((t + turned * off) / slant, across), scale((off - turned * t) / slant, way)
+                )
                 # on the normal's line, as far from the axis as the roller's own surface: it rolls at omega R
                 beyond = (radius - e) * distance / off if spread else radius - distance
                 at = add(add(line, scale(t, across)), scale(beyond, normal))
