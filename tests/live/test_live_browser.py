@@ -107,7 +107,8 @@ def test_a_slider_is_dragged(browser: Tab, tmp_path: Path) -> None:
             browser.until(f"mdlgen.live.log.length > {first}")
             took.append(drawn(browser, first)[0]["at"] / 1000.0)
             quiet(browser)
-        assert statistics.median(took) < LATENCY * statistics.median(solving), (took, solving)
+        # the least of each: other processes take their share of what is measured
+        assert min(took) < LATENCY * min(solving), (took, solving)
         # another picture: the left drive is slower, and the note turns
         assert (np.abs(pixels(browser) - before).max(axis=2) > 30).mean() > 0.01
         # dragged for so long that some drafts are drawn, and the full run after it

@@ -245,7 +245,7 @@ def test_a_leading_edge_stubs_or_climbs_as_the_round_has_it(h, mu, radius):
 
 def test_a_stub_is_a_row_of_the_page():
     result, _ = meets(0.7, 0.3, 0.02)
-    assert "<td>stub</td><td>n</td><td>t</td>" in page([result])
+    assert "<td>stub</td><td>t</td><td>n is stopped by its end for " in page([result])
 
 
 @pytest.mark.parametrize(

@@ -269,13 +269,14 @@ def test_what_spins_takes_no_more_iterations_than_what_rests() -> None:
 def test_a_turned_world_gives_the_turned_motion() -> None:
     angles = "[20 deg, -35 deg, 50 deg]"
     rest = "sheets.note.velocity=[0 m/s, 0 m/s, 0 m/s]"
-    plain = lower(loads(SHEET, [rest]))
-    turned = lower(loads(SHEET, [rest, f"sheets.note.rotation={angles}"]))
+    plain = lower(loads(SHEET, "flight", [rest]))
+    turned = lower(loads(SHEET, "flight", [rest, f"sheets.note.rotation={angles}"]))
     rotation = turned.sheets[0].rotation
     spin = rotation @ plain.sheets[0].spin * 1000
     turned = lower(
         loads(
             SHEET,
+            "flight",
             [
                 rest,
                 f"sheets.note.rotation={angles}",
@@ -288,7 +289,7 @@ def test_a_turned_world_gives_the_turned_motion() -> None:
 
 
 def test_the_error_falls_with_the_square_of_the_step() -> None:
-    made = lower(loads(SHEET, ["run.duration=5 ms"]))
+    made = lower(loads(SHEET, "flight", ["run.duration=5 ms"]))
     fine = run(made, 0.003125)
     errors = [compare(fine, run(made, step)).position_rms_mm for step in (0.05, 0.025, 0.0125)]
     assert 1.7 < math.log2(errors[0] / errors[1]) < 2.3
