@@ -17,6 +17,7 @@ from typing import Any
 
 from mdlgen import paths
 from mdlgen.errors import OutputError
+from mdlgen.processors import processors
 from mdlgen.program import emit
 from mdlgen.program.file import Head, Unfit, Variant
 from mdlgen.program.layout import Misfit, Write, part_writers, reader, words
@@ -81,12 +82,6 @@ def emitted(machine: Any, parts: Sequence[bytes], wanted: Sequence[int] = (0,)) 
     except RuntimeError as error:  # bitcode of a later LLVM, for one
         record = str(error).strip().splitlines() or ["it cannot be read"]
         raise Unfit(f"LLVM does not take it: {record[0]}") from None
-
-
-def processors() -> int:
-    """How many this process may use."""
-    affinity = getattr(os, "sched_getaffinity", None)  # not on macOS and Windows
-    return len(affinity(0)) if affinity is not None else os.cpu_count() or 1
 
 
 @contextlib.contextmanager

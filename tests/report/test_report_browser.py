@@ -67,7 +67,7 @@ def silent(browser: Tab, folder: Path) -> None:
     assert browser.ask("document.getElementById('no-drawing').hidden")
 
 
-def settled(browser: Tab) -> None:
+def two_frames(browser: Tab) -> None:
     """What was asked for is drawn."""
     browser.ask("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
@@ -205,17 +205,17 @@ def test_figures_have_one_span_and_one_cursor(browser: Tab, tmp_path: Path) -> N
     # a drag is the span of all of them
     for kind, x in (("mousePressed", places[0]), ("mouseMoved", places[2]), ("mouseReleased", places[2])):
         mouse(kind, x)
-    settled(browser)
+    two_frames(browser)
     assert np.allclose(json.loads(browser.ask(spans)), [10.0, 30.0], atol=0.2)
     # with shift it moves
     for kind, x in (("mousePressed", places[2]), ("mouseMoved", places[1]), ("mouseReleased", places[1])):
         mouse(kind, x, 1, 8)
-    settled(browser)
+    two_frames(browser)
     moved = np.array(json.loads(browser.ask(spans)))
     assert np.allclose(moved, [14.0, 34.0], atol=0.3)
     # the pointer is at one time in all, and the values beside the names are those there
     mouse("mouseMoved", places[1], 0)
-    settled(browser)
+    two_frames(browser)
     cursors = browser.ask(
         "[...new Set([...mdlgen.charts].filter((c) => c.overTime).map((c) => "
         "c.plot.posToVal(c.plot.cursor.left, 'x').toFixed(1)))].length"
@@ -231,7 +231,7 @@ def test_figures_have_one_span_and_one_cursor(browser: Tab, tmp_path: Path) -> N
     assert browser.ask("mdlgen.state.time") == pytest.approx(result.time[at], abs=0.3)
     browser.ask("document.querySelector('[data-key=speed] .plot').focus()")
     browser.press("0")
-    settled(browser)
+    two_frames(browser)
     assert np.allclose(json.loads(browser.ask(spans)), [0.0, 50.0])
     assert "note x from 0 to" in browser.ask(
         "document.querySelector('[data-key=speed] .plot').getAttribute('aria-label')"
@@ -262,7 +262,7 @@ def test_two_runs_with_verdicts_in_each_width_and_tone(browser: Tab, tmp_path: P
                 "Emulation.setDeviceMetricsOverride",
                 **{"width": wide, "height": 1000, "deviceScaleFactor": 1, "mobile": False},
             )
-            settled(browser)
+            two_frames(browser)
             whole = np.asarray(Image.open(io.BytesIO(browser.picture())).convert("L")).astype(int)
             assert (np.median(whole) < 100) == (tone == "dark")
             assert browser.ask("document.documentElement.scrollWidth") <= wide

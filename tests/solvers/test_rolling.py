@@ -153,7 +153,7 @@ run: {duration: 30 ms, margin: 30 mm, print_step: 0.25 ms}
 @pytest.mark.parametrize(("mass", "within"), [("0.5 g", 0.02), ("5 g", 0.003)])
 def test_a_light_sheet_coasts_between_rollers_of_foam(mass: str, within: float, c_r: float) -> None:
     """At all times. (The lighter one went at 0.4 to 0.45 m/s in turns as joints passed, and 1 % of energy was
-    made.) What is left comes as the roller settles in the beginning: damping leans with the round."""
+    made.) What is left comes as the roller finds its balance at first: damping leans with the round."""
     result = solved(FOAM.replace("mass: 0.5 g", f"mass: {mass}"), "lattice", *damped(c_r))
     speeds = [speed(result, k) for k in range(len(result.time))]
     assert np.ptp(speeds) < within * speeds[0]

@@ -219,12 +219,12 @@ class TestSweep:
 
     def test_of_a_scene_that_requires_something_the_share_that_passes_is_known(self, tmp_path: Path) -> None:
         asked = 'require=["sheets.block.travel above 1 um"]'
-        code, told, _ = cli(
+        code, out, _ = cli(
             *("sweep", INCLINE, "--set", "run.duration=2 ms", "--set", asked),
             *("--over", f"{FRICTION}=[0.1, 2.0]", "-o", tmp_path, "--workers", "1"),
         )
         assert code == 0 and [row["pass"] for row in read(tmp_path / "table.csv")] == ["1.0", "0.0"]
-        assert "probability of pass: 0.5" in told and "1 of 2 cases" in told
+        assert "probability of pass: 0.5" in out and "1 of 2 cases" in out
         # verdicts that are asked for are enough
         own = wanted(f"{FRICTION}=[0.1, 2.0]", measures=["verdict.passed"], sets=[*SHORT, asked])
         assert own.task.events == () and wanted(f"{FRICTION}=[0.1, 2.0]").task.events == ()

@@ -24,7 +24,7 @@ from mdlgen.study.execution.row import CaseRow
 
 # Effects are printed on a terminal for so many measures; findings.json has all.
 _SHOWN = 6
-# An interaction of less than this part of the variance is not told, nor those of more variables than this.
+# An interaction of less than this part of the variance is not listed, nor one of more variables than this.
 _SLIGHT, _MOST_VARIABLES = 0.01, 10
 
 
@@ -125,8 +125,8 @@ def findings_text(record: dict[str, Any]) -> list[str]:
                     )
                 lines.append(line)
     if record["constant"]:
-        told = ", ".join(f"{name} {value:.4g}" for name, value in list(record["constant"].items())[:_SHOWN])
-        lines.append(f"the same in all cases: {told}")
+        values = ", ".join(f"{name} {value:.4g}" for name, value in list(record["constant"].items())[:_SHOWN])
+        lines.append(f"the same in all cases: {values}")
     return lines
 
 
