@@ -5,8 +5,11 @@ from __future__ import annotations
 
 import functools
 import os
+import sys
+from collections.abc import Callable, Iterator
 from typing import Any
 
+import numpy as np
 import pytest
 import ran
 import typer.main
@@ -14,7 +17,7 @@ from hypothesis import settings
 
 from mdlgen.program import build
 from mdlgen.program.file import Unfit
-from mdlgen.program.kernel import alone
+from mdlgen.program.kernel import Kernel, alone
 from mdlgen.program.ship import Program
 
 pytest.register_assert_rewrite("motionview_cases")  # so that a failing check of a helper shows its values
@@ -36,6 +39,39 @@ def _shared_runs(tmp_path_factory: pytest.TempPathFactory) -> None:
     """Workers read the results of each other's runs; see ran.solved."""
     if os.environ.get("PYTEST_XDIST_WORKER"):
         ran.folder = tmp_path_factory.getbasetemp().parent / "ran"
+
+
+@pytest.fixture(scope="module")
+def as_python() -> Iterator[None]:
+    """Kernels that tests call, but no solver from Python, run as Python: in less time than numba compiles
+    them. MDLGEN_NUMBA=1 has them compiled."""
+    rooms = [vars(room) for name, room in sys.modules.items() if name.startswith("mdlgen.")]
+    kernels = {k for room in rooms for k in room.values() if isinstance(k, Kernel) and not k.programs}
+    with pytest.MonkeyPatch.context() as patch:
+        for kernel in () if alone() else kernels:
+            patch.setattr(kernel, "_call", functools.partial(_python, kernel.py_func))
+        yield
+
+
+def _python(function: Callable[..., Any], *args: Any) -> Any:
+    return function(*map(_by_names, args))
+
+
+class _Record(np.record):
+    """Fields are attributes, as in compiled code."""
+
+    @property
+    def size(self) -> Any:
+        """A field, too."""
+        return self["size"]
+
+
+def _by_names(value: Any) -> Any:
+    if isinstance(value, (np.ndarray, np.void)) and value.dtype.names is not None:
+        return value.view(np.dtype((_Record, value.dtype)))
+    if isinstance(value, tuple) and hasattr(value, "_fields"):
+        return type(value)(*map(_by_names, value))
+    return value
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -7,17 +7,19 @@ from decimal import Decimal, localcontext
 
 import numpy as np
 import pytest
+from laws import box_cylinder, box_plane, cylinder_cylinder
 from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
 
 from mdlgen.mechanics.bushing import bushing
-from mdlgen.mechanics.contact import box_cylinder, cylinder_cylinder
 from mdlgen.mechanics.frame import Box, Cylinder, Frame, Law, Plate
 from mdlgen.mechanics.laws import damped, damping_share, friction_over_speed, sign_step
-from mdlgen.mechanics.plate import STRAIGHT, box_plane
+from mdlgen.mechanics.plate import STRAIGHT
 from mdlgen.mechanics.point import OUT
 from mdlgen.mechanics.vector import exp_rotation, log_rotation, sines
+
+pytestmark = pytest.mark.usefixtures("as_python")
 
 ZERO, EYE = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 K, R, WIDTH, HALF = 300.0, 7.5, 5.0, (3.35, 3.175, 0.05)

@@ -7,19 +7,20 @@ import math
 
 import numpy as np
 import pytest
+from laws import box_cylinder, box_mesh, box_plane
 from mesh_scenes import turn
-from numba import njit
 from solids import binary, brick, cylinder, flats, halved
 
-from mdlgen.mechanics.contact import box_cylinder
 from mdlgen.mechanics.frame import Box, Cylinder, Frame, Law, Plate
-from mdlgen.mechanics.mesh import LOST, box_mesh
+from mdlgen.mechanics.mesh import LOST
 from mdlgen.mechanics.mesh_tables import mesh_tables
-from mdlgen.mechanics.plate import STRAIGHT, box_plane
+from mdlgen.mechanics.plate import STRAIGHT
 from mdlgen.mechanics.point import MOST_POINTS, OUT, POINT
 from mdlgen.mechanics.tree import build_tree, closest, depth_at
 from mdlgen.model.lower import lower
 from mdlgen.spec.load import loads
+
+pytestmark = pytest.mark.usefixtures("as_python")
 
 ZERO, EYE = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 K, HALF = 300.0, (3.35, 3.175, 0.05)
@@ -66,19 +67,13 @@ def parts(tmp_path, solid, on="", at="nodes"):
     return mesh_tables(model), tuple(model.bodies.position[body]), model.bodies.rotation[body]
 
 
-@njit
-def _mesh(out, xa, ra, half, exposed, xb, rb, meshes, law):
-    head, axis = meshes.heads[0], (0.0, 1.0, 0.0)
-    a, b = Frame(xa, ra, ZERO, ZERO), Frame(xb, rb, ZERO, ZERO)
-    box_mesh(out, a, Box(half, exposed), b, axis, head, meshes, law)
-
-
 def press(part, place, tilt=EYE, half=HALF, exposed=0, turned=0.0):
     """What a box gets of a mesh whose body is turned about y."""
     meshes, xb, rb = part
     out = np.zeros(OUT + 1 + POINT * MOST_POINTS)
     rb = tuple((turn("y", turned) @ rb).ravel())
-    _mesh(out, tuple(map(float, place)), tuple(np.ravel(tilt)), half, exposed, xb, rb, meshes, LAW)
+    a, b = Frame(tuple(map(float, place)), tuple(np.ravel(tilt)), ZERO, ZERO), Frame(xb, rb, ZERO, ZERO)
+    box_mesh(out, a, Box(half, exposed), b, (0.0, 1.0, 0.0), 0, meshes, LAW)
     return out
 
 

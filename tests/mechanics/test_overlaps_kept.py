@@ -13,6 +13,8 @@ from mdlgen.mechanics.frame import Box, Frame, Law
 from mdlgen.mechanics.overlap import APART, OTHER, OVERLAP, OVERLAPS, find, holds, points, press
 from mdlgen.mechanics.point import MOST_POINTS, OUT, POINT, POINTS
 
+pytestmark = pytest.mark.usefixtures("as_python")
+
 HALF, OTHER_HALF = (3.35, 3.175, 0.05), (2.0, 3.0, 0.04)
 WIDE = OUT + 1 + POINT * MOST_POINTS
 

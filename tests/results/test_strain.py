@@ -29,6 +29,8 @@ from mdlgen.results.result import Result
 from mdlgen.results.strain import Strains, sheet_joints, strains
 from mdlgen.spec.load import loads
 
+pytestmark = pytest.mark.usefixtures("as_python")
+
 STRIP = """
 name: strip
 gravity: [0 m/s^2, 0 m/s^2, 0 m/s^2]

@@ -22,6 +22,8 @@ from mdlgen.results.result import Result
 from mdlgen.results.verdict import judge
 from mdlgen.spec.load import loads
 
+pytestmark = pytest.mark.usefixtures("as_python")
+
 SOLVERS = ("lattice", "exudyn")
 # A motor and a pressed roller in contact, far from a block that only has to be there. Without gravity the
 # force is the preload at the touching place, less what the spring gives on 0.2 mm.

@@ -165,7 +165,7 @@ def test_pairs_that_are_searched_change_in_a_run() -> None:
     system = lattice.build(model, fold=True)
     assert lattice.one_pass(model, system, 0.1).ok
     at_the_end = system.pairs[["a", "b"]].copy()
-    entries.look(system.pairs, system.search, model.bodies.position)
+    entries.look(system.pairs, system.search, model.bodies.position.copy())
     assert (system.pairs[["a", "b"]] != at_the_end).any()
 
 

@@ -24,6 +24,8 @@ from mdlgen.results.events import events
 from mdlgen.results.result import Result
 from mdlgen.spec.load import load, loads
 
+pytestmark = pytest.mark.usefixtures("as_python")
+
 ZERO, EYE = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 PLAIN = (0.0, 0.0, 0.0, 1.0, 1.0, 1.0)
 HALF, PLATE = (1.7, 5.0, 0.05), (100.0, 150.0, 0.5)  # a box of a sheet; a plate of 1 mm from x = 0 on

@@ -7,6 +7,7 @@ import re
 
 import numpy as np
 import pytest
+from laws import box_guide
 from papers import on_paper
 
 import mdlgen
@@ -14,7 +15,7 @@ from mdlgen.backends.lattice import solve as lattice
 from mdlgen.checks import lints
 from mdlgen.errors import SpecError
 from mdlgen.mechanics.frame import Box, Frame, Law, Plate
-from mdlgen.mechanics.guide import BOTH, INSIDE, OUTSIDE, box_guide, upper
+from mdlgen.mechanics.guide import BOTH, INSIDE, OUTSIDE, upper
 from mdlgen.mechanics.point import OUT
 from mdlgen.model.lower import lower
 from mdlgen.model.parts.guide import SAG, facets
@@ -23,6 +24,8 @@ from mdlgen.registry import emitter
 from mdlgen.results.io.series import series
 from mdlgen.spec.load import load, loads
 from mdlgen.verify.verification import verify
+
+pytestmark = pytest.mark.usefixtures("as_python")
 
 ZERO, EYE = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 K, HALF, PLAIN = 300.0, (2.0, 0.05, 3.0), (0.0, 0.0, 0.0, 1.0, 1.0, 1.0)  # thin along y, the guide's normal

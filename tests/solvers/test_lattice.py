@@ -26,6 +26,8 @@ from mdlgen.results.compare import compare, travel
 from mdlgen.results.result import Result
 from mdlgen.spec.load import load, loads
 
+pytestmark = pytest.mark.usefixtures("as_python")
+
 SHEET = on_paper("""
 name: flight
 gravity: [0 m/s^2, 0 m/s^2, 0 m/s^2]

@@ -23,6 +23,8 @@ from mdlgen.registry import chosen
 from mdlgen.results.result import Result
 from mdlgen.spec.load import load, loads
 
+pytestmark = pytest.mark.usefixtures("as_python")
+
 STATIC = "run.analysis=static"
 SMOOTH = ("contacts.0.friction=0", "run.prune=false")
 ELASTICA = 76.5308  # mm, heavy elastica of the sample

@@ -21,6 +21,8 @@ from mdlgen.results.compare import compare
 from mdlgen.results.result import Result
 from mdlgen.spec.load import loads
 
+pytestmark = pytest.mark.usefixtures("as_python")
+
 CREEP, TORQUE = 1e-4, 40.0  # rad/ms, N mm: more than friction, 0.8 of some 3 N, and inertia can bring up
 BACKSTOP = f"rollers.idler.one_way={WAY % -1}"
 SOLVERS = ("lattice", "exudyn")

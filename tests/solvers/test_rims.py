@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from laws import pair_force
 from papers import on_paper
 from ran import solved
 
@@ -14,7 +15,6 @@ from mdlgen.backends.lattice.arrays import build
 from mdlgen.backends.motionsolve import validate
 from mdlgen.errors import SpecError
 from mdlgen.mechanics.frame import Motion
-from mdlgen.mechanics.pair import pair_force
 from mdlgen.mechanics.point import OUT
 from mdlgen.mechanics.rim import profile
 from mdlgen.model.lower import lower
@@ -25,6 +25,8 @@ from mdlgen.results.compare import compare
 from mdlgen.results.result import Result
 from mdlgen.spec.load import load, loads
 from mdlgen.verify.verification import verify
+
+pytestmark = pytest.mark.usefixtures("as_python")
 
 # 90 deg of rubber: it grips where its friction is above 0.5, which is in the middle of the blend
 FEED = on_paper("""

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from laws import pair_force
 from ran import solved
 from roller_scenes import DOWN, MASS, RADIUS, SOLVERS, G, K, N, depth, press, scene, spun
 from solids import binary, brick, cylinder, halved, prism
@@ -14,7 +15,6 @@ from solids import binary, brick, cylinder, halved, prism
 from mdlgen.backends.lattice.arrays import build
 from mdlgen.errors import SpecError
 from mdlgen.mechanics.frame import Motion
-from mdlgen.mechanics.pair import pair_force
 from mdlgen.mechanics.point import OUT
 from mdlgen.model.lower import lower
 from mdlgen.model.tables import CYLINDER_MESH, Model

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import ran
+from laws import pair_force
 from roller_scenes import (
     ARC,
     DOWN,
@@ -30,7 +31,6 @@ from roller_scenes import (
 from mdlgen.backends.lattice.arrays import build
 from mdlgen.errors import SpecError
 from mdlgen.mechanics.frame import Motion
-from mdlgen.mechanics.pair import pair_force
 from mdlgen.mechanics.point import OUT
 from mdlgen.model.lower import lower
 from mdlgen.model.tables import CYLINDER_GUIDE, CYLINDER_PLANE

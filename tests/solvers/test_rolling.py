@@ -9,14 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 import ran
-from numba import njit
+from laws import box_cylinder
 from papers import on_paper
 from solids import binary, cylinder
 
 import mdlgen
 from mdlgen.checks import lints
 from mdlgen.errors import RefusedError, SpecError
-from mdlgen.mechanics.contact import box_cylinder
 from mdlgen.mechanics.frame import Box, Cylinder, Frame, Law
 from mdlgen.mechanics.point import DISSIPATED, FORCE, MOST_POINTS, OUT, POINT, PRESSING, RATE, resist_rolling
 from mdlgen.model.lower import lower
@@ -24,6 +23,8 @@ from mdlgen.paths import samples
 from mdlgen.results.compare import compare
 from mdlgen.results.result import Result
 from mdlgen.spec.load import load, loads
+
+pytestmark = pytest.mark.usefixtures("as_python")
 
 # a sheet of 100 g at 0.5 m/s between rollers that press with 3 N
 COAST = on_paper("""
@@ -273,14 +274,12 @@ def test_a_slipping_nip_pulls_with_mu_n(both: bool, c_r: float) -> None:
 # -- the law
 
 
-@njit
 def _under(out, at, speed, law):
     zero, one = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
     a, b = Frame((at, 0.0, 0.0), one, speed, zero), Frame((0.0, 0.0, 7.51), one, zero, (0.0, 0.07, 0.0))
     box_cylinder(out, a, Box((2.0, 3.0, 0.05), 0), b, Cylinder((0.0, 1.0, 0.0), 7.5, 4.0), law)
 
 
-@njit
 def _over(out, at, rise, spin, law):
     zero, one = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
     a = Frame((at, 0.0, 0.0), one, (0.0, 0.0, rise), (0.0, spin, 0.0))
@@ -327,7 +326,6 @@ def test_all_points_of_a_nip_are_damped_by_its_one_rate(rate: float, beta: float
         assert total[14] == pytest.approx(beta * step * k * z**1.5 * rate, rel=5e-3, abs=2e-4 * force)
 
 
-@njit
 def _pressed(out, at, depth, law):
     zero, one = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
     a, b = Frame((at, 0.0, 0.0), one, zero, zero), Frame((0.0, 0.0, 7.55 - depth), one, zero, zero)

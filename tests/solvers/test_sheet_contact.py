@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from laws import box_box
 from papers import HINGED_PAPER, on_paper
 from scipy.spatial.transform import Rotation
 
@@ -11,7 +12,6 @@ import mdlgen
 from mdlgen.bench.oracles import impact as oracle
 from mdlgen.checks import lints
 from mdlgen.errors import RefusedError
-from mdlgen.mechanics.facing import box_box
 from mdlgen.mechanics.frame import Box, Frame, Law, Motion
 from mdlgen.mechanics.point import OUT
 from mdlgen.model import sheet_pairs
@@ -22,6 +22,8 @@ from mdlgen.results.result import Result
 from mdlgen.results.stacked import stacked
 from mdlgen.spec.load import loads
 from mdlgen.verify.verification import verify
+
+pytestmark = pytest.mark.usefixtures("as_python")
 
 SOLVERS = ["lattice", "exudyn"]
 ZERO = (0.0, 0.0, 0.0)

@@ -9,6 +9,8 @@ from mdlgen.backends.lattice.kernels import coupled, two_colour
 from mdlgen.backends.lattice.kernels.band import PAD, factor
 from mdlgen.backends.lattice.kernels.bordered import eliminate
 
+pytestmark = pytest.mark.usefixtures("as_python")
+
 NODES, BORDER = 4, 2  # of a sheet; unknowns of rollers
 
 
