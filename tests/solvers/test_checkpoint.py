@@ -277,7 +277,7 @@ def command(folder: Path, *args: str) -> subprocess.Popen[str]:
 def cut(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, int, str, float]:
     """A folder with a run that Ctrl-C ended, its exit code, what it said, and how long its end took [s]."""
     folder = tmp_path_factory.mktemp("cut")
-    process = command(folder, *LONG, "-o", "d", "--checkpoint", "0.2", "--keep-partial")
+    process = command(folder, *LONG, "-o", "d", "--checkpoint", "0.05", "--keep-partial")
     while not (folder / "d" / "checkpoint" / "run.json").exists():
         assert process.poll() is None, process.communicate()
         time.sleep(0.02)
