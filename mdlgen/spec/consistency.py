@@ -7,7 +7,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from mdlgen.spec.action import OnSheet
-from mdlgen.spec.between import MACHINE, known
+from mdlgen.spec.between import known
 from mdlgen.spec.nip import names_of as rollers_of
 from mdlgen.spec.pile import names_of as sheets_of
 from mdlgen.spec.require import requirement
@@ -47,7 +47,7 @@ def _check_requirement(scene: Scene, k: int) -> None:
     except ValueError as error:
         raise fail(str(error), path) from None
     if wanted.part is not None:
-        parts = [name for kind in ("sheets", *MACHINE) for name in getattr(scene, kind)]
+        parts = [*scene.sheets, *scene.machine]
         known(wanted.part, parts, "part", path)
 
 
@@ -120,7 +120,7 @@ def check_counts(scene: Scene) -> None:
     if message := scene.limits.exceeded("boxes", boxes, "boxes of all sheets"):
         raise fail(message, ("sheets",))
     if scene.run.analysis == "transient" and scene.run.print_step is not None:
-        bodies = boxes + sum(len(getattr(scene, kind)) for kind in MACHINE)
+        bodies = boxes + len(scene.machine)
         stored = bodies * scene.run.duration / scene.run.print_step
         if message := scene.limits.exceeded("states", stored, "states stored (bodies times outputs)"):
             raise fail(message, ("run", "print_step"))
@@ -128,7 +128,7 @@ def check_counts(scene: Scene) -> None:
 
 def check_names(scene: Scene) -> None:
     seen: dict[str, str] = {}
-    for kind in ("sheets", *MACHINE, "parts", "probes"):
+    for kind in ("sheets", *scene.machine_tables(), "parts", "probes"):
         for name in getattr(scene, kind):
             other = seen.setdefault(name.lower(), f"{kind}.{name}")
             if other != f"{kind}.{name}":

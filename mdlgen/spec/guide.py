@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from pydantic import Field, model_validator
 
 from mdlgen.spec.fields import Angle, Direction, LengthOrZero, Mass, Position, PositiveLength, default
+from mdlgen.spec.machine_part import PARALLEL, MachinePart, cosine, not_modelled, on_its_end, rim_of_sectors
 from mdlgen.spec.strict import Strict, fail
+
+if TYPE_CHECKING:
+    from mdlgen.spec.machine import Roller
 
 # Edges of sheet metal guides are sharp, 0.02 mm as cut to 0.1 mm where the burr is taken off. The blunt end
 # of that is the default: by what a soft contact lets a sheet into one plate it must not stub on the next.
@@ -87,9 +91,10 @@ class Arc(Strict):
         return self
 
 
-class Guide(Strict):
+class Guide(MachinePart):
     """A fixed plate that leads sheets."""
 
+    kind = "guide"
     line: Line | None = Field(default=None, description="a straight guide")
     arc: Arc | None = Field(default=None, description="a guide bent to an arc")
     width: PositiveLength = Field(description="length along its axis")
@@ -123,3 +128,12 @@ class Guide(Strict):
             raise fail(f"thickness {self.thickness:g} mm is not less than the radius {self.arc.radius:g} mm")
         check_edge(self.edge_radius, self.thickness)
         return self
+
+    def unlike_roller(self, names: tuple[str, str], roller: Roller) -> str | None:
+        if self.arc is None:
+            return on_its_end(names, roller.axis, self.normal)
+        if abs(abs(cosine(roller.axis, self.arc.axis)) - 1.0) > PARALLEL:
+            return f"{not_modelled(names)}the roller's axis is not parallel to that of the arc"
+        if roller.rim is not None:
+            return rim_of_sectors(names, "an arc")
+        return None

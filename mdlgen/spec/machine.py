@@ -25,6 +25,7 @@ from mdlgen.spec.fields import (
     reading,
 )
 from mdlgen.spec.guide import check_edge
+from mdlgen.spec.machine_part import PARALLEL, MachinePart, cosine, not_modelled, on_its_end
 from mdlgen.spec.rim import Rim
 from mdlgen.spec.rows import Mirror, Repeat
 from mdlgen.spec.strict import Strict, fail, with_values
@@ -158,9 +159,10 @@ class Arm(Strict):
         return any(value != 0.0 for value in (self.torque, self.stiffness, self.damping))
 
 
-class Roller(Strict):
+class Roller(MachinePart):
     """A cylinder that turns about its axis: driven, free, or pressed and free."""
 
+    kind = "roller"
     model_config = ConfigDict(json_schema_extra=one_of("radius", "diameter"))
 
     center: Position = Field(description="middle of the cylinder")
@@ -210,10 +212,18 @@ class Roller(Strict):
             raise fail("arm.pivot is on the roller's own axis; an arm needs a length", within=("arm",))
         return self
 
+    def unlike_roller(self, names: tuple[str, str], roller: Roller) -> str | None:
+        if abs(abs(cosine(roller.axis, self.axis)) - 1.0) > PARALLEL:
+            return f"the rollers {names[0]} and {names[1]} are in contact but their axes are not parallel"
+        if roller.rim is not None and self.rim is not None:
+            return f"{not_modelled(names)}both have a rim of sectors"
+        return None
 
-class Plane(Strict):
+
+class Plane(MachinePart):
     """A plate, fixed or pressed by a spring; its contact face is the one on the side of the normal."""
 
+    kind = "plane"
     center: Position = Field(
         description="middle of the plate; its face lies half of the thickness above, along the normal"
     )
@@ -281,3 +291,6 @@ class Plane(Strict):
         flat = [p - lean * q for p, q in zip(near, n, strict=True)]
         x, y, z = (f / math.hypot(*flat) for f in flat)
         return (x, y, z), (n[1] * z - n[2] * y, n[2] * x - n[0] * z, n[0] * y - n[1] * x)
+
+    def unlike_roller(self, names: tuple[str, str], roller: Roller) -> str | None:
+        return on_its_end(names, roller.axis, self.normal)

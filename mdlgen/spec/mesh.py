@@ -2,23 +2,29 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field, PrivateAttr, ValidationInfo, field_serializer, model_validator
 
 from mdlgen.spec.beside import beside
 from mdlgen.spec.fields import Angles, LengthOrZero, Mass, Name, Position, default, origin, quantity
 from mdlgen.spec.limits import Tally
+from mdlgen.spec.machine_part import MachinePart, not_modelled, rim_of_sectors
 from mdlgen.spec.solid import Solid, read_solid
 from mdlgen.spec.source import Source
-from mdlgen.spec.strict import Strict, fail, with_values
+from mdlgen.spec.strict import fail, with_values
+
+if TYPE_CHECKING:
+    from mdlgen.spec.contact import Contact
+    from mdlgen.spec.machine import Roller
 
 Density = Annotated[float, quantity("g/mm^3", 0.0, open_low=True)]
 
 
-class Mesh(Strict):
+class Mesh(MachinePart):
     """A part with the shape of a closed surface of triangles."""
 
+    kind = "mesh"
     file: str = Field(
         description="STL (binary or ASCII) or OBJ, in the folder of the spec or below: a closed surface"
     )
@@ -75,3 +81,18 @@ class Mesh(Strict):
         """The surface, in the unit of the file."""
         assert self._solid is not None, "read as the mesh is made"
         return self._solid
+
+    def unlike_sheets(self, name: str, contact: Contact) -> tuple[str, str] | None:
+        if contact.share != "pair":
+            return None
+        return (
+            "share",
+            f"share: pair is not modelled with the mesh {name}: boxes share it by the area they cover",
+        )
+
+    def unlike_roller(self, names: tuple[str, str], roller: Roller) -> str | None:
+        if self.on is not None:
+            return f"{not_modelled(names)}{names[1]} is on a roller, and such a mesh touches sheets only"
+        if roller.rim is not None:
+            return rim_of_sectors(names, "a mesh")
+        return None

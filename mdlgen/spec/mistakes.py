@@ -6,7 +6,7 @@ import difflib
 import re
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from pydantic import ValidationError
 from pydantic_core import PydanticCustomError
@@ -14,18 +14,16 @@ from pydantic_core import PydanticCustomError
 from mdlgen import formulas
 from mdlgen.errors import SpecError, did_you_mean
 from mdlgen.spec.alternatives import others
-from mdlgen.spec.between import MACHINE, known, matching
+from mdlgen.spec.between import known, matching
 from mdlgen.spec.document import Document, SpecPath
+from mdlgen.spec.scene import Scene
 from mdlgen.spec.setting import MADE, made
 from mdlgen.spec.shorthand import in_the_text, written_out
-
-if TYPE_CHECKING:
-    from mdlgen.spec.scene import Scene
 
 MOST = 20
 # Tables of parts by name: what --set makes anew here is more often a name that is misspelt.
 _MOST_LOOKS = 1000  # at names beside other mistakes
-_PARTS = ("sheets", *MACHINE, "parts")
+_PARTS = ("sheets", *Scene.machine_tables(), "parts")
 _TABLES = ("parameters", "materials", *_PARTS, "nips", "piles", "probes")
 _NAMED = ("contacts", *_TABLES)
 # What stands behind a decimal comma: digits, perhaps with a unit.

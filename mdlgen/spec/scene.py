@@ -32,6 +32,7 @@ from mdlgen.spec.fields import Acceleration, Name, Words, default
 from mdlgen.spec.guide import Guide
 from mdlgen.spec.limits import DEFAULT, Limits
 from mdlgen.spec.machine import Plane, Roller
+from mdlgen.spec.machine_part import MachinePart, tables_of
 from mdlgen.spec.material import Material
 from mdlgen.spec.mesh import Mesh
 from mdlgen.spec.nip import Nip
@@ -143,6 +144,17 @@ class Scene(Strict):
     _contacts_made: int = PrivateAttr(default=0)
     _sheets_of_piles: dict[str, Any] = PrivateAttr(default_factory=dict)
 
+    @classmethod
+    def machine_tables(cls) -> tuple[str, ...]:
+        """Names of the tables of parts of the machine that have a body, in the order of their bodies."""
+        return tables_of(cls)
+
+    @property
+    def machine(self) -> dict[str, MachinePart]:
+        """All parts of the machine that have a body, by name, in the order of their bodies."""
+        tables = (getattr(self, name) for name in self.machine_tables())
+        return {name: part for table in tables for name, part in table.items()}
+
     @property
     def amounts(self) -> dict[str, Amount]:
         """What each parameter comes to."""
@@ -235,7 +247,7 @@ class Scene(Strict):
         return self._source.document.copy()
 
     def __repr__(self) -> str:
-        kinds = ("sheets", "rollers", "planes", "guides", "parts", "contacts", "loads", "probes", "supports")
+        kinds = ("sheets", *self.machine_tables(), "parts", "contacts", "loads", "probes", "supports")
         message = ", ".join(f"{len(getattr(self, kind))} {kind}" for kind in kinds if getattr(self, kind))
         return f"<Scene {self.name}: {message}>"
 
