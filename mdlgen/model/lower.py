@@ -101,7 +101,7 @@ def _lower(scene: Scene) -> Model:
         name=scene.name,
         gravity=gravity,
         sheets=sheets,
-        **parts,
+        machine=machine,
         externals=externals,
         bodies=bodies,
         bushings=bushings,

@@ -70,7 +70,7 @@ def plain(model: Model) -> dict[str, np.ndarray]:
             contacts |= ends
             r = dataclasses.replace(r, press=press, center=np.zeros(3))
         rollers.append(r)
-    rest = dataclasses.replace(model, rollers=tuple(rollers), parameters=(), unfollowed=())
+    rest = dataclasses.replace(model.with_parts(rollers), parameters=(), unfollowed=())
     found = {k: v for k, v in arrays(rest).items() if not k.startswith((".contacts", ".pairs"))}
     return (
         found | contacts | {"pairs": np.array([p[:2] for p in kept])} | arrays(model.pairs.margin, "margin")

@@ -72,13 +72,20 @@ class RimPart(Frozen):
 
 
 @dataclass(frozen=True)
-class RollerPart(Frozen):
+class MachinePart(Frozen):
+    """A part of the machine that has a body, of any kind."""
+
+    kind: ClassVar[str]  # what one is called in a sentence
+    name: str
+    body: int  # its row in Bodies
+    center: Floats  # as the user gave it, before a spring moves it [mm], (3,)
+
+
+@dataclass(frozen=True)
+class RollerPart(MachinePart):
     """A cylinder; `center` is as the user gave it, the body's position includes `press.start`."""
 
-    kind: ClassVar[str] = "roller"  # what one is called in a sentence
-    name: str
-    body: int
-    center: Floats  # (3,)
+    kind: ClassVar[str] = "roller"
     axis: Floats  # unit vector, (3,)
     radius: float
     width: float
@@ -137,14 +144,11 @@ class RollerPart(Frozen):
 
 
 @dataclass(frozen=True)
-class PlanePart(Frozen):
+class PlanePart(MachinePart):
     """A plate, fixed or pressed; local axes in the columns of the body's rotation, z = normal. `center` is as
     the user gave it, the body's position includes `press.start`."""
 
     kind: ClassVar[str] = "plane"
-    name: str
-    body: int
-    center: Floats
     normal: Floats
     size: tuple[float, float, float]
     mass: float
@@ -164,14 +168,12 @@ class PlanePart(Frozen):
 
 
 @dataclass(frozen=True)
-class GuidePart(Frozen):
-    """A fixed plate, straight or bent to an arc. Of its axes z is along the width; x is along a line and y
-    its normal, and the angles of an arc turn from x to y."""
+class GuidePart(MachinePart):
+    """A fixed plate, straight or bent to an arc; its centre is the middle of a line, or on an arc's axis. Of
+    its axes z is along the width; x is along a line and y its normal, and the angles of an arc turn from x to
+    y."""
 
     kind: ClassVar[str] = "guide"
-    name: str
-    body: int
-    center: Floats  # middle of a line, or on the axis of an arc [mm], (3,)
     axes: Floats  # in columns; those of its body, too, (3, 3)
     radius: float  # of the face, or of the middle where both sides are touched; 0: a line [mm]
     middle: float  # angle of the middle of an arc [rad]
@@ -188,18 +190,15 @@ class GuidePart(Frozen):
 
 
 @dataclass(frozen=True)
-class MeshPart(Frozen):
-    """A closed surface of triangles, fixed or on a roller. Its body has the axes of its inertia, and its
-    centre is the middle of its mass."""
+class MeshPart(MachinePart):
+    """A closed surface of triangles, fixed or on a roller. Its body has the axes of its inertia, and stands
+    at the middle of its mass; `center` is the origin of the file's axes."""
 
     kind: ClassVar[str] = "mesh"
-    name: str
-    body: int
     file: str
     scale: float  # of the file's numbers to mm
     at: str  # nodes or centres
     on: int  # index of the roller that it moves with, -1: fixed
-    center: Floats  # of the file's axes; with a pressed roller as given, before that slides [mm], (3,)
     angles: tuple[float, float, float]  # about the global x, then y, then z axis [rad]
     axes: Floats  # of the file, in columns, (3, 3)
     corners: Floats  # file axes, counter-clockwise as seen from outside [mm], (n, 3)
@@ -212,10 +211,6 @@ class MeshPart(Frozen):
     mass: float
     density: float | None  # that the user gave in place of the mass [g/mm^3]
     edge_radius: float = 0.0  # that outer sides of sheets meet at its edges [mm]
-
-
-# a part of the machine that has a body, of any kind
-MachinePart = RollerPart | PlanePart | GuidePart | MeshPart
 
 
 @dataclass(frozen=True)

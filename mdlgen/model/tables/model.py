@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TypeVar
 
 from mdlgen.geometry.arrays import Floats as Floats
 from mdlgen.geometry.arrays import Ints as Ints
@@ -18,6 +21,8 @@ from mdlgen.model.tables.machine import (
     RollerPart,
 )
 from mdlgen.model.tables.sheets import SheetPart
+
+P = TypeVar("P")
 
 GROUND = -1
 # A contact that goes from touching to too deep in fewer than so many steps may be held by finer ones.
@@ -94,10 +99,9 @@ class Model(Frozen):
     name: str
     gravity: Floats  # [mm/ms^2], (3,)
     sheets: tuple[SheetPart, ...]
-    rollers: tuple[RollerPart, ...]
-    planes: tuple[PlanePart, ...]
-    guides: tuple[GuidePart, ...]
-    meshes: tuple[MeshPart, ...]
+    machine: tuple[
+        MachinePart, ...
+    ]  # all its parts that have a body, as these are numbered: by kind, by name
     externals: tuple[ExternalPart, ...]  # a Model that has one is not run here
     bodies: Bodies
     bushings: Bushings
@@ -124,10 +128,30 @@ class Model(Frozen):
         )
         return f"<Model {self.name}: {len(self.bodies.name)} bodies, {message}>"
 
-    @property
-    def machine(self) -> tuple[MachinePart, ...]:
-        """All parts of the machine, as their bodies are numbered."""
-        return (*self.rollers, *self.planes, *self.guides, *self.meshes)
+    def parts_of(self, kind: type[P]) -> tuple[P, ...]:
+        """The parts of the machine of one kind, by name."""
+        return tuple(part for part in self.machine if isinstance(part, kind))
+
+    @cached_property
+    def rollers(self) -> tuple[RollerPart, ...]:
+        return self.parts_of(RollerPart)
+
+    @cached_property
+    def planes(self) -> tuple[PlanePart, ...]:
+        return self.parts_of(PlanePart)
+
+    @cached_property
+    def guides(self) -> tuple[GuidePart, ...]:
+        return self.parts_of(GuidePart)
+
+    @cached_property
+    def meshes(self) -> tuple[MeshPart, ...]:
+        return self.parts_of(MeshPart)
+
+    def with_parts(self, parts: Iterable[MachinePart]) -> Model:
+        """With these in place of those of their names."""
+        new = {part.name: part for part in parts}
+        return replace(self, machine=tuple(new.get(part.name, part) for part in self.machine))
 
     def roller(self, name: str) -> RollerPart:
         return next(r for r in self.rollers if r.name == name)

@@ -9,16 +9,19 @@ from typing import Any
 import numpy as np
 
 from mdlgen.model import tables
+from mdlgen.model.parts.kinds import KINDS
 from mdlgen.results.estimates import Estimate
 from mdlgen.results.result import Energy
 
 # What may stand in a file; a name is looked up here and nowhere else.
 _CLASSES = {
     **{name: kind for name, kind in vars(tables).items() if isinstance(kind, type) and is_dataclass(kind)},
+    **{kind.part.__name__: kind.part for kind in KINDS},
     "Energy": Energy,
     "Estimate": Estimate,
 }
 _TEXT = "model/tables"
+_FORMER = ("rollers", "planes", "guides", "meshes")  # parts of the machine in files of older versions
 
 
 class Writer:
@@ -84,4 +87,6 @@ def _decode(value: Any, file: Any) -> Any:
     if "map" in value:
         return {key: _decode(item, file) for key, item in value["map"].items()}
     held = {key: _decode(item, file) for key, item in value["of"].items()}
+    if value["table"] == "Model" and "machine" not in held:  # of an older version, with a table for each kind
+        held["machine"] = sum((held.pop(kind, ()) for kind in _FORMER), ())
     return _CLASSES[value["table"]](**held)

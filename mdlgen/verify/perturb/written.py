@@ -11,7 +11,7 @@ from mdlgen.model import grid
 from mdlgen.model.lower import lower
 from mdlgen.model.lowering.supports import joined, support_bushings
 from mdlgen.model.parameters.starts import FOLLOWING, found, held
-from mdlgen.model.tables import SUPPORT, Anchor, Bushings, Loads, Model, Press, RollerPart
+from mdlgen.model.tables import SUPPORT, Anchor, Bushings, Loads, MachinePart, Model, Press, RollerPart
 from mdlgen.spec.scene import Scene
 
 BEGINS = ("touch", "start")  # of what is pressed, computed for the scene as it is written
@@ -23,11 +23,11 @@ def as_written(scene: Scene, base: Model, before: Scene) -> Model:
     probes = tuple(_held(new, old, made) for new, old in zip(made.probes, base.probes, strict=True))
     supports = tuple(_held(new, old, made) for new, old in zip(made.supports, base.supports, strict=True))
     shown = zip(made.guides, base.guides, strict=True)
-    guides = tuple(replace(new, facets=old.facets) for new, old in shown)
+    guides = [replace(new, facets=old.facets) for new, old in shown]
     rims = zip(made.rollers, base.rollers, strict=True)
-    made = replace(made, rollers=tuple(_shown(new, old) for new, old in rims))
+    made = made.with_parts([*guides, *(_shown(new, old) for new, old in rims)])
     loads = _loaded(made, base, scene)
-    made = replace(made, pairs=base.pairs, probes=probes, supports=supports, guides=guides, loads=loads)
+    made = replace(made, pairs=base.pairs, probes=probes, supports=supports, loads=loads)
     if not supports:
         return made
     held = support_bushings(scene.supports, supports, made.sheets, made.bodies)
@@ -90,7 +90,7 @@ def placed(model: Model, starts: dict[str, Press]) -> Model:
     if not starts:
         return model
     position = model.bodies.position.copy()
-    rollers = []
+    parts: list[MachinePart] = []
     for roller in model.rollers:
         if roller.press is not None:
             start, roller_start = starts[roller.name], roller.press.start
@@ -99,15 +99,11 @@ def placed(model: Model, starts: dict[str, Press]) -> Model:
             for mesh in model.meshes:
                 if mesh.on >= 0 and model.rollers[mesh.on].name == roller.name:
                     position[mesh.body] += press.direction * (press.start - roller_start)
-            roller = replace(roller, press=press)
-        rollers.append(roller)
-    planes = []
-    for plane in model.planes:
-        if plane.press is not None:
-            press = replace(plane.press, touch=starts[plane.name].touch, start=starts[plane.name].start)
-            position[plane.body] = plane.center + press.direction * press.start
-            plane = replace(plane, press=press)
-        planes.append(plane)
+            parts.append(replace(roller, press=press))
+    for plane, spring in model.plates:
+        press = replace(spring, touch=starts[plane.name].touch, start=starts[plane.name].start)
+        position[plane.body] = plane.center + press.direction * press.start
+        parts.append(replace(plane, press=press))
     parameters = tuple(
         replace(p, value=getattr(starts[p.data_set], p.member))
         if p.data_set in starts and p.member in BEGINS
@@ -115,8 +111,7 @@ def placed(model: Model, starts: dict[str, Press]) -> Model:
         for p in model.parameters
     )
     bodies = replace(model.bodies, position=position)
-    parts = {"rollers": tuple(rollers), "planes": tuple(planes)}
-    return replace(model, **parts, bodies=bodies, parameters=parameters)
+    return replace(model.with_parts(parts), bodies=bodies, parameters=parameters)
 
 
 def _held(new: Anchor, old: Anchor, model: Model) -> Anchor:
