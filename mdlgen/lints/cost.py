@@ -15,7 +15,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from mdlgen.lints.lint import Lint
-from mdlgen.model.tables import BOX_BOX, BOX_GUIDE, BOX_MESH, Model
+from mdlgen.model.parts.kinds import KINDS
+from mdlgen.model.tables import BOX_BOX, Model
 
 START = 4e-3  # [s]
 PASSES = 1.8  # what the coarser runs add to the last one
@@ -101,7 +102,7 @@ def _size(model: Model) -> _Size:
     searched = (int(row) for row in model.pairs.searched)
     beside = sum(counts[model.contacts.part_a[row]] + counts[model.contacts.part_b[row]] for row in searched)
     kinds = model.contacts.kind[model.pairs.contact].tolist()
-    curved, laid = kinds.count(BOX_GUIDE) + kinds.count(BOX_MESH), kinds.count(BOX_BOX)
+    curved, laid = sum(kinds.count(kind.with_sheet) for kind in KINDS if kind.curved), kinds.count(BOX_BOX)
     boxes, band = _boxes(model)
     return _Size(
         duration=run.duration,

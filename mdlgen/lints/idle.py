@@ -8,13 +8,9 @@ import numpy as np
 
 from mdlgen.lints.contacts import nips
 from mdlgen.lints.lint import Lint
-from mdlgen.model.parts.kinds import kind_of
-from mdlgen.model.sheet_corners import corners
+from mdlgen.model.parts.kinds import WITH_SHEET, kind_of
 from mdlgen.model.tables import (
-    BOX_GUIDE,
-    BOX_MESH,
-    BOX_PLANE,
-    EXTERNAL,
+    BOX_BOX,
     SUPPORT,
     Floats,
     Model,
@@ -108,12 +104,9 @@ def untouched(model: Model) -> Iterator[Lint]:
 def free_static(model: Model) -> Iterator[Lint]:
     if model.run.analysis != "static":
         return
-    sides = zip(model.contacts.part_a, model.contacts.kind, strict=True)
-    # what such a part holds is not known
-    unknown = {sheet for sheet, kind in sides if kind in (EXTERNAL, BOX_GUIDE, BOX_MESH)}
     for index, sheet in enumerate(model.sheets):
-        free = 6 - _held(model, index, sheet)
-        if sheet.clamp is None and free > 0 and sheet.name not in unknown:
+        held = _held(model, index, sheet)
+        if sheet.clamp is None and held is not None and (free := 6 - held) > 0:
             yield Lint(
                 "W110",
                 f"sheets.{sheet.name}",
@@ -122,8 +115,9 @@ def free_static(model: Model) -> Iterator[Lint]:
             )
 
 
-def _held(model: Model, index: int, sheet: SheetPart) -> int:
-    """Rigid-body motions of a sheet that supports and contacts hold: the rank of their directions."""
+def _held(model: Model, index: int, sheet: SheetPart) -> int | None:
+    """Rigid-body motions of a sheet that supports and contacts hold: the rank of their directions; None where
+    it touches what is not known to hold it or not."""
     rows: list[Floats] = []
 
     def hold(point: Floats, direction: Floats) -> None:
@@ -141,9 +135,13 @@ def _held(model: Model, index: int, sheet: SheetPart) -> int:
                     model.bodies.position[roller.body] + end * roller.width * roller.axis,
                     sheet.rotation[:, 2],
                 )
-    planes = {p.name: p for p in model.planes}
-    for row in np.flatnonzero(model.contacts.kind == BOX_PLANE):
-        if model.contacts.part_a[row] == sheet.name:
-            for corner in corners(sheet):
-                hold(corner, planes[model.contacts.part_b[row]].normal)
+    parts, table = {part.name: part for part in model.machine}, model.contacts
+    for name, other, kind in zip(table.part_a, table.part_b, table.kind.tolist(), strict=True):
+        if name != sheet.name or kind == BOX_BOX:
+            continue
+        held = WITH_SHEET[kind].constraints(model, sheet, parts[other]) if kind in WITH_SHEET else None
+        if held is None:
+            return None
+        for point, way in held:
+            hold(point, way)
     return int(np.linalg.matrix_rank(np.array(rows), tol=1e-9)) if rows else 0

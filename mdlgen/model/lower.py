@@ -96,7 +96,13 @@ def _lower(scene: Scene) -> Model:
     naming.check_unique("bushings", bushings.name)
     pressed = (*rollers, *planes)
     starts = {part.name: (part.press.touch, part.press.start) for part in pressed if part.press is not None}
-    rows = parameters(scene, starts, run, sheets, contacts)
+    given = [
+        row
+        for kind in KINDS
+        for part in parts[kind.table]
+        for row in kind.parameters(scene, part.name, starts)
+    ]
+    rows = parameters(scene, starts, run, sheets, contacts, given)
     return Model(
         name=scene.name,
         gravity=gravity,

@@ -10,16 +10,14 @@ from mdlgen.checks import lints
 from mdlgen.lints.lint import Lint
 from mdlgen.lints.start import overlap
 from mdlgen.model.overlaps.parts import rod
-from mdlgen.model.parts.kind import Boxes
 from mdlgen.model.parts.kinds import WITH_SHEET, kind_of
+from mdlgen.model.parts.roller import ROLLER
 from mdlgen.model.tables import (
     BOX_BOX,
     BOX_CYLINDER,
-    BOX_MESH,
     CYLINDER_CYLINDER,
     EXTERNAL,
     Floats,
-    Ints,
     Model,
     RollerPart,
 )
@@ -91,15 +89,9 @@ def _deep(model: Model, row: int, kind: int) -> float | None:
     one, name = model.contacts.part_a[row], model.contacts.part_b[row]
     if kind == BOX_BOX:
         return max(0.0, overlap(sheets[one], sheets[name]))
-    if kind == BOX_MESH:
-        return None
     part = next(p for p in model.machine if p.name == name)
-    if kind == BOX_CYLINDER:
-        mine = model.pairs.a[model.pairs.contact == row]
-        depths = _boxes_in(model, mine, part)
-        return float(depths.max()) if len(depths) else 0.0
     if kind in WITH_SHEET:
-        return max(0.0, kind_of(part).depth_at_start(model, sheets[one], part))
+        return WITH_SHEET[kind].contact_depth(model, row, sheets[one], part)
     first, position = model.roller(one), model.bodies.position
     if kind == CYLINDER_CYLINDER:
         assert isinstance(part, RollerPart)
@@ -113,24 +105,14 @@ def _deep(model: Model, row: int, kind: int) -> float | None:
     return max(0.0, into(shape))
 
 
-def _boxes_in(model: Model, boxes: Ints, part: object) -> Floats:
-    """How deep boxes are in a roller [mm], (n,); below zero by how far they are off."""
-    assert isinstance(part, RollerPart)
-    bodies = model.bodies
-    shown = Boxes(bodies.position[boxes][None], bodies.rotation[boxes][None], bodies.half[boxes])
-    found = WITH_SHEET[BOX_CYLINDER].depths(part, shown, bodies.position[part.body][None])
-    assert found is not None, "only those of meshes follow from areas"
-    return found[0]
-
-
 def depths(model: Model) -> Floats:
     """How deep each box of the sheets is in a roller as the run begins [mm], (boxes,)."""
     found = np.zeros(sum(sheet.count for sheet in model.sheets))
-    parts = {part.name: part for part in model.machine}
+    parts = {roller.name: roller for roller in model.rollers}
     for row in np.flatnonzero(model.contacts.kind == BOX_CYLINDER).tolist():
         mine = model.pairs.a[model.pairs.contact == row]
         if len(mine):
-            deep = _boxes_in(model, mine, parts[model.contacts.part_b[row]])
+            deep = ROLLER.of_boxes(model, mine, parts[model.contacts.part_b[row]])
             found[mine] = np.maximum(found[mine], deep)
     return found
 

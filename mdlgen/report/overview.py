@@ -10,8 +10,9 @@ import numpy as np
 from mdlgen.checks import lints
 from mdlgen.lints.cost import cost
 from mdlgen.lints.smoothing import smoothings
+from mdlgen.model.parts.kind import Kind
 from mdlgen.model.parts.kinds import KINDS
-from mdlgen.model.tables import MeshPart, Model, SheetPart
+from mdlgen.model.tables import Model, SheetPart
 
 UNITS = {
     "d": "mm", "m": "g", "I": "g mm^2",
@@ -25,7 +26,7 @@ def overview(model: Model) -> dict[str, Any]:
         "scene": model.name,
         "analysis": model.run.analysis,
         "sheets": {s.name: _sheet(model, k) for k, s in enumerate(model.sheets)},
-        **{kind.table: _parts(getattr(model, kind.table), kind.part) for kind in KINDS},
+        **{kind.table: _parts(kind, model.parts_of(kind.part)) for kind in KINDS},
         "external_parts": {e.name: {"body": e.body, "graphics": list(e.graphics)} for e in model.externals},
         "contacts": len(model.contacts),
         "probes": len(model.probes),
@@ -44,24 +45,8 @@ def overview(model: Model) -> dict[str, Any]:
     }
 
 
-def _mesh(mesh: MeshPart) -> dict[str, Any]:
-    return {
-        "file": mesh.file,
-        "triangles": len(mesh.triangles),
-        "left_out": mesh.flat,
-        "size_mm": np.ptp(mesh.corners, axis=0).tolist(),
-        "volume_mm3": mesh.volume,
-        "mass_g": mesh.mass,
-        "inertia_g_mm2": (mesh.mass * mesh.gyration).tolist(),
-    }
-
-
-# of kinds of which more than the number is shown
-_SHOWN = {MeshPart: _mesh}
-
-
-def _parts(parts: tuple[Any, ...], kind: type) -> int | dict[str, Any]:
-    return {part.name: _SHOWN[kind](part) for part in parts} if kind in _SHOWN else len(parts)
+def _parts(kind: Kind[Any], parts: tuple[Any, ...]) -> int | dict[str, Any]:
+    return {part.name: kind.overview(part) for part in parts} if kind.described else len(parts)
 
 
 def _sheet(model: Model, index: int) -> dict[str, Any]:

@@ -18,13 +18,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mdlgen.model.parts.kind import Boxes
-from mdlgen.model.parts.kinds import WITH_SHEET
+from mdlgen.model.parts.kinds import KINDS, WITH_SHEET
 from mdlgen.model.rotations import column, turns
 from mdlgen.model.tables import (
     BOX_BOX,
     BOX_CYLINDER,
-    BOX_MESH,
-    CYLINDER_MESH,
     EXTERNAL,
     Floats,
     MachinePart,
@@ -40,6 +38,13 @@ if TYPE_CHECKING:
 EXPONENT = 1.5
 MOST = 20_000  # boxes, times states, that are looked at together
 STANDS = 1e-9  # [mm/ms]: a slower surface has no direction
+# kinds of contacts without an account: depths do not say how their force is shared
+_BY_AREA = [kind for kind in KINDS if kind.by_area]
+_WITHOUT = {
+    BOX_BOX,
+    EXTERNAL,
+    *(number for kind in _BY_AREA for number in (kind.with_sheet, kind.with_roller)),
+}
 
 
 @dataclass(frozen=True)
@@ -67,7 +72,7 @@ def losses(result: Result) -> Losses | None:
         return None
     contacts, found = result.model.contacts, {}
     for row, kind in enumerate(contacts.kind.tolist()):
-        if kind in (BOX_BOX, BOX_MESH, CYLINDER_MESH, EXTERNAL):
+        if kind in _WITHOUT:
             continue
         acts = np.flatnonzero(result.contact_force[:, row] > 0.0)
         power = np.zeros(len(result.time))

@@ -31,6 +31,7 @@ from mdlgen.mechanics.pair import DEEP_ROLLER
 from mdlgen.mechanics.point import DEPTH, PRESSING
 from mdlgen.model import curves
 from mdlgen.model.overlaps.unheld import Unheld
+from mdlgen.model.parts.kinds import kind_of
 from mdlgen.model.tables import BOX_GUIDE, BOX_PLANE, GROUND, ON_PARTS, Model, SheetPart
 from mdlgen.results.result import Result
 
@@ -56,7 +57,7 @@ def rest(model: Model, system: System, state: State, mid: Midpoint) -> Result:
     still = np.zeros_like(x)
     load = _load(model, system)
     loose = _loose(model)
-    found = lying.holds(model, loose, load)
+    found = lying.constraints(model, loose, load)
     grip = lying.Grip(lying.held(model, system, found))
     tables = grip.system.tables
     entries.remember(tables.bodies, system.pairs, Motion(x, r, still, still))
@@ -170,10 +171,7 @@ def _loose(model: Model) -> list[SheetPart]:
 
 def _reach(model: Model) -> float:
     """The longest step [mm]: half of what a box would have to cross to be behind a contact."""
-    depths = [float(model.bodies.half[plane.body, 2]) for plane in model.planes]
-    depths += [0.5 * guide.thickness for guide in model.guides] + [0.5 for _ in model.meshes]
-    radii = [0.5 * roller.radius for roller in model.rollers]
-    return min([*depths, *radii], default=np.inf)
+    return min((kind_of(part).half_depth(part) for part in model.machine), default=np.inf)
 
 
 def _touch(model: Model, system: System, state: State, mid: Midpoint, kept: Kept) -> str | None:

@@ -20,7 +20,6 @@ from mdlgen.errors import SpecError
 from mdlgen.model import meshes
 from mdlgen.model.parts.kind import SLACK
 from mdlgen.model.parts.kinds import kind_of
-from mdlgen.model.parts.roller import swing
 from mdlgen.model.sheet_pairs import linked, meeting
 from mdlgen.model.tables import (
     BOX_BOX,
@@ -32,7 +31,6 @@ from mdlgen.model.tables import (
     MachinePart,
     MeshPart,
     Pairs,
-    PlanePart,
     RollerPart,
     RunSettings,
     SheetPart,
@@ -89,21 +87,10 @@ def find_pairs(
             least, most, reach = _swept(gravity, sheet, touched, found, others, bodies, run)
             low[boxes], high[boxes] = least - margin, most + margin
             extents[sheet.name] = (low[boxes] - reach - SLACK, high[boxes] + reach + SLACK)
-    if prune:
-        for roller in rollers:
-            if roller.press is not None:  # it may move by its radius along its slide
-                way = roller.reach * np.abs(roller.press.direction) + margin
-                low[roller.body] = bodies.position[roller.body] - way
-                high[roller.body] = bodies.position[roller.body] + way
-            if roller.arm is not None:  # or swing by as much
-                low[roller.body] = bodies.position[roller.body] - swing(roller) - margin
-                high[roller.body] = bodies.position[roller.body] + swing(roller) + margin
-    for plane in (part for part in machine if isinstance(part, PlanePart)):
-        if plane.press is None:
-            continue
-        # a spring ends, whatever is kept; its slide keeps a plate on its way to round-off
-        far = plane.travel + 1e-6 * plane.press.free_length
-        low[plane.body], high[plane.body] = plane.center - far, plane.center + far
+    for part in machine:
+        watched = kind_of(part).centre_bounds(part, bodies.position[part.body], margin if prune else None)
+        if watched is not None:
+            low[part.body], high[part.body] = watched
     for row in np.flatnonzero(contacts.kind != EXTERNAL).tolist():
         if contacts.kind[row] == BOX_BOX:
             pair = by_name[contacts.part_a[row]], by_name[contacts.part_b[row]]
@@ -187,8 +174,8 @@ def _swept(
     shift = sheet.velocity * time
     # a heavy sheet throws a light one forward with up to twice its own velocity
     thrown = [2.0 * (other.velocity - sheet.velocity) * time for other in others]
-    plates = {part.name: part.travel for _, part in touched if isinstance(part, PlanePart)}
-    lift = sum(plates.values(), np.zeros(3))
+    lifts = {part.name: kind_of(part).carry(part) for _, part in touched}
+    lift = sum(lifts.values(), np.zeros(3))
     moves = np.array([fall, shift, *drives.ends])
     if any(kind_of(part).leads for _, part in touched):
         paths = np.linalg.norm(moves, axis=1)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from mdlgen.formulas import is_formula
 from mdlgen.model.parameters.loads import load_rows
-from mdlgen.model.parameters.machine import center_rows, guide_rows, mesh_rows, plate_press_rows, roller_rows
-from mdlgen.model.parameters.names import FRICTION, NAMED_AXES, OF_USER, in_text, unit
+from mdlgen.model.parameters.names import FRICTION, OF_USER, in_text, unit
 from mdlgen.model.parameters.run import run_rows, step_source
 from mdlgen.model.parameters.sheets import grading_rows, shape_rows, sheet_rows, zones_rows
 from mdlgen.model.parameters.starts import followed, held
@@ -24,9 +23,11 @@ def parameters(
     run: RunSettings,
     sheets: tuple[SheetPart, ...],
     contacts: Contacts,
+    machine: Sequence[Parameter],
 ) -> tuple[Parameter, ...]:
-    """All parameters of a scene; `starts` gives (touch, start) of each pressed roller and plate [mm]."""
-    rows = _given(scene, starts, run)
+    """All parameters of a scene; `starts` gives (touch, start) of each pressed roller and plate [mm];
+    `machine` has those of its parts."""
+    rows = _given(scene, machine, run)
     if not scene.formulas and not scene.parameters:
         return tuple(rows)
     for name in sorted(set(starts) & set(scene.rollers)):
@@ -97,7 +98,7 @@ def _source(scene: Scene, row: Parameter) -> tuple[tuple[str | int, ...], str]:
     return (), "{}"
 
 
-def _given(scene: Scene, starts: dict[str, tuple[float, float]], run: RunSettings) -> list[Parameter]:
+def _given(scene: Scene, machine: Sequence[Parameter], run: RunSettings) -> list[Parameter]:
     """All parameters but those that the user named, as numbers."""
     rows: list[Parameter] = []
     for name in sorted(scene.sheets):
@@ -105,23 +106,7 @@ def _given(scene: Scene, starts: dict[str, tuple[float, float]], run: RunSetting
         rows += grading_rows(scene, name)
         rows += zones_rows(scene, name)
         rows += shape_rows(scene, name)
-    for name in sorted(scene.rollers):
-        rows += roller_rows(scene, name, starts)
-    for name in sorted(scene.planes):
-        plane, base = scene.planes[name], ("planes", name)
-        rows += center_rows(name, plane.center, base)
-        for k, size in enumerate(plane.size):
-            axis = NAMED_AXES[k]
-            rows.append(
-                Parameter(name, f"L_{axis}", f"Length along its {axis}", size, "mm", (*base, "size", k))
-            )
-        rows.append(Parameter(name, "M", "Mass", plane.mass, "g", (*base, "mass")))
-        if plane.press is not None:
-            rows += plate_press_rows(name, plane.press, starts[name][1])
-    for name in sorted(scene.guides):
-        rows += guide_rows(scene, name)
-    for name in sorted(scene.meshes):
-        rows += mesh_rows(scene, name)
+    rows += machine
     for index, (contact, (smooth, slow, fast)) in enumerate(zip(scene.contacts, speeds(scene), strict=True)):
         base, group, friction = ("contacts", index), f"contact_{index}", contact.friction
         for member, label, value, shown, path in (

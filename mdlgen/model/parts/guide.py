@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -12,12 +12,22 @@ from mdlgen.geometry.arrays import Floats
 from mdlgen.geometry.rods import Box, Rod, into_box
 from mdlgen.geometry.solids import BOX, CORNERS, Solid, bent_plate
 from mdlgen.model.frames import frame
-from mdlgen.model.parts.kind import BodyRow, Boxes, Drawn
+from mdlgen.model.parameters.names import NAMED_AXES
+from mdlgen.model.parts.kind import BodyRow, Boxes, Drawn, Kind
 from mdlgen.model.press.before import Before
 from mdlgen.model.press.faces import Bow, Face, face_of_guide
 from mdlgen.model.rims import SAG
 from mdlgen.model.sheet_corners import each_box
-from mdlgen.model.tables import BOX_GUIDE, CYLINDER_GUIDE, Bodies, GuidePart, Model, RollerPart, SheetPart
+from mdlgen.model.tables import (
+    BOX_GUIDE,
+    CYLINDER_GUIDE,
+    Bodies,
+    GuidePart,
+    Model,
+    Parameter,
+    RollerPart,
+    SheetPart,
+)
 from mdlgen.spec.guide import Guide, edge_radii
 from mdlgen.spec.scene import Scene
 
@@ -32,10 +42,10 @@ class Facet(NamedTuple):
     lengths: tuple[float, float, float]
 
 
-class _Guides:
-    name, table, part = GuidePart.kind, "guides", GuidePart
+class _Guides(Kind[GuidePart]):
+    table, part = "guides", GuidePart
     with_sheet, with_roller = BOX_GUIDE, CYLINDER_GUIDE
-    leads = True
+    leads = curved = True
 
     def lower(self, scene: Scene, before: Before, first: int) -> tuple[GuidePart, ...]:
         return tuple(
@@ -56,12 +66,6 @@ class _Guides:
     def reach(self, part: GuidePart, bodies: Bodies, way: Floats) -> float:
         low, high = bounds(part)
         return float(np.where(way > 0, high, low) @ way)
-
-    def press(self, part: GuidePart) -> None:
-        """None: it is fixed."""
-
-    def carrier(self, part: GuidePart) -> int:
-        return -1
 
     def overlap(self, part: GuidePart, position: Floats, rotation: Floats) -> Callable[[Rod], float]:
         blocks = [Box(f.center, f.rotation, np.array(f.lengths) / 2) for f in facets(part)]
@@ -84,6 +88,52 @@ class _Guides:
 
     def drawn(self, part: GuidePart, half: Floats) -> list[Drawn]:
         return [Drawn(part.name, "guide", _solid(part))]
+
+    def half_depth(self, part: GuidePart) -> float:
+        return 0.5 * part.thickness
+
+    def parameters(
+        self, scene: Scene, name: str, starts: Mapping[str, tuple[float, float]]
+    ) -> list[Parameter]:
+        guide, base = scene.guides[name], ("guides", name)
+        rows = []
+        if guide.line is not None:
+            for end, key, place in (("0", "from", guide.line.from_), ("1", "to", guide.line.to)):
+                for k, axis in enumerate(NAMED_AXES):
+                    path = (*base, "line", key, k)
+                    label = f"{axis} where it {'ends' if key == 'to' else 'begins'}"
+                    rows.append(Parameter(name, f"{axis}_{end}", label, place[k], "mm", path))
+        if guide.arc is not None:
+            arc, path = guide.arc, (*base, "arc")
+            for k, axis in enumerate(NAMED_AXES):
+                rows.append(
+                    Parameter(name, axis, f"Centre {axis}", arc.center[k], "mm", (*path, "center", k))
+                )
+            rows += [
+                Parameter(name, "R", f"Radius, {arc.side}", arc.radius, "mm", (*path, "radius")),
+                Parameter(name, "from", "Angle where it begins (deg)", arc.from_, "rad", (*path, "from")),
+                Parameter(name, "to", "Angle where it ends (deg)", arc.to, "rad", (*path, "to")),
+            ]
+        return [
+            *rows,
+            Parameter(name, "w", "Width", guide.width, "mm", (*base, "width")),
+            Parameter(name, "s", "Thickness of the plate", guide.thickness, "mm", (*base, "thickness")),
+            Parameter(name, "M", "Mass", guide.mass, "g", (*base, "mass")),
+        ]
+
+    def facts(self, model: Model, part: GuidePart) -> list[str]:
+        if part.radius == 0.0:
+            form = f"straight, {part.length:.4g} mm long"
+        else:
+            form = f"arc of radius {part.radius:.4g} mm over {np.degrees(2 * part.half_angle):.4g} deg"
+        return [f"{form}, {part.width:.4g} mm wide", f"touched on the side: {part.side}"]
+
+    def label(self, model: Model, part: GuidePart, seen: tuple[Floats, Floats]) -> Floats:
+        """The middle of its face."""
+        if part.radius == 0.0:
+            return part.center
+        way = np.array([np.cos(part.middle), np.sin(part.middle), 0.0])
+        return part.center + part.radius * part.axes @ way
 
 
 def _guide(name: str, guide: Guide, body: int) -> GuidePart:

@@ -5,18 +5,20 @@ A new kind is a file beside this one, and a line in `kinds.py`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import NamedTuple, Protocol, TypeVar
+from collections.abc import Callable, Mapping
+from typing import Any, ClassVar, Generic, NamedTuple, TypeVar
+
+import numpy as np
 
 from mdlgen.geometry.arrays import Floats
 from mdlgen.geometry.rods import Rod
 from mdlgen.geometry.solids import Solid
 from mdlgen.model.press.before import Before
 from mdlgen.model.press.faces import Bow, Face, Facets
-from mdlgen.model.tables import Bodies, Model, Press, RollerPart, SheetPart
+from mdlgen.model.tables import Bodies, MachinePart, Model, Parameter, Press, RollerPart, SheetPart
 from mdlgen.spec.scene import Scene
 
-P = TypeVar("P")
+P = TypeVar("P", bound=MachinePart)
 
 # The centre of a box may be beyond its bounds by one step before a solver sees it; parts reach this far more.
 SLACK = 1.0  # mm
@@ -49,88 +51,127 @@ class Drawn(NamedTuple):
     solid: Solid  # body axes [mm]
 
 
-class Kind(Protocol[P]):
+class Kind(Generic[P]):
     """One kind of part. Lengths in mm, bodies and places global where nothing else is said."""
+
+    table: ClassVar[str]  # where they stand in a scene: `rollers`
+    part: type[P]  # what the Model has for each
+    with_sheet: ClassVar[int]  # kind of its contacts with sheets
+    with_roller: ClassVar[int]  # kind of its contacts with rollers
+    leads: ClassVar[bool] = False  # whether it may lead a sheet in any direction
+    curved: ClassVar[bool] = False  # whether its contact with a box takes longer than that of a flat face
+    by_area: ClassVar[bool] = (
+        False  # whether boxes share its force by the area that each covers, not by depth
+    )
+    described: ClassVar[bool] = False  # whether `overview` has more of each than that it is there
 
     @property
     def name(self) -> str:
         """What one is called in a sentence."""
-        ...
+        return self.part.kind
 
-    @property
-    def table(self) -> str:
-        """Where they stand in a scene and in a Model: `rollers`."""
-        ...
-
-    @property
-    def part(self) -> type[P]:
-        """What the Model has for each."""
-        ...
-
-    @property
-    def with_sheet(self) -> int:
-        """Kind of its contacts with sheets."""
-        ...
-
-    @property
-    def with_roller(self) -> int:
-        """Kind of its contacts with rollers."""
-        ...
-
-    @property
-    def leads(self) -> bool:
-        """Whether it may lead a sheet in any direction."""
-        ...
+    # -- as a run begins
 
     def lower(self, scene: Scene, before: Before, first: int) -> tuple[P, ...]:
         """All of a scene, by name; their bodies are numbered from `first`. Raises SpecError."""
-        ...
+        raise NotImplementedError
+
+    def parameters(
+        self, scene: Scene, name: str, starts: Mapping[str, tuple[float, float]]
+    ) -> list[Parameter]:
+        """What the user gave of one, as texts have it; `starts`: where those that are pressed touch and begin
+        along their slides."""
+        raise NotImplementedError
+
+    def body(self, part: P, rollers: tuple[RollerPart, ...]) -> BodyRow:
+        raise NotImplementedError
 
     def face(self, scene: Scene, name: str, at: Floats, roller: str) -> Face | Bow | Facets | None:
         """The face that a pressed roller at a place meets; None: none. Raises SpecError where both are
         pressed."""
-        ...
-
-    def body(self, part: P, rollers: tuple[RollerPart, ...]) -> BodyRow: ...
-
-    def bounds(self, part: P, bodies: Bodies, rollers: tuple[RollerPart, ...]) -> tuple[Floats, Floats]:
-        """Least and greatest coordinates that it may have during a run, (3,) each."""
-        ...
-
-    def reach(self, part: P, bodies: Bodies, way: Floats) -> float:
-        """How far it reaches along a unit vector as the run begins: the greatest coordinate [mm]."""
-        ...
+        return None
 
     def press(self, part: P) -> Press | None:
         """The spring that presses it along a slide; None: none does."""
-        ...
+        return None
 
     def carrier(self, part: P) -> int:
         """Index of the roller that it moves with; -1: none."""
-        ...
+        return -1
+
+    # -- where it may be
+
+    def bounds(self, part: P, bodies: Bodies, rollers: tuple[RollerPart, ...]) -> tuple[Floats, Floats]:
+        """Least and greatest coordinates that it may have during a run, (3,) each."""
+        raise NotImplementedError
+
+    def centre_bounds(self, part: P, position: Floats, margin: float | None) -> tuple[Floats, Floats] | None:
+        """Bounds of its centre that end a run, which begins with it at a place; None: it is not watched.
+        margin: None where no pair is left out."""
+        return None
+
+    def carry(self, part: P) -> Floats:
+        """How far it may carry a sheet along each global axis, either way, (3,)."""
+        return np.zeros(3)
+
+    def reach(self, part: P, bodies: Bodies, way: Floats) -> float:
+        """How far it reaches along a unit vector as the run begins: the greatest coordinate [mm]."""
+        raise NotImplementedError
+
+    # -- how deep something is in it
 
     def overlap(self, part: P, position: Floats, rotation: Floats) -> Callable[[Rod], float]:
         """How deep a rod is in the part, whose body stands at a place; below zero by how far it is off."""
-        ...
+        raise NotImplementedError
 
     def inside(
         self, part: P, points: Floats, centers: Floats, position: Floats, rotation: Floats
     ) -> Floats | None:
         """How deep points (..., 3) of bodies with these centres are in the part, whose body stands at a
         place: (...), where they are off not above zero; None where it is not computed."""
-        ...
+        return None
 
     def depth_at_start(self, model: Model, sheet: SheetPart, part: P) -> float:
         """How deep a sheet is in it as the run begins; 0 where it is off, or where none is computed."""
-        ...
-
-    def place(self, part: P) -> str:
-        """Where in the scene it is said that it stands, for lints."""
-        ...
+        return 0.0
 
     def depths(self, part: P, boxes: Boxes, at: Floats) -> Floats | None:
         """How deep boxes are in it, whose body is `at` (t, 3): (t, n), where they are off not above zero;
         None where their share of a force follows from areas."""
-        ...
+        return None
 
-    def drawn(self, part: P, half: Floats) -> list[Drawn]: ...
+    def contact_depth(self, model: Model, row: int, sheet: SheetPart, part: P) -> float | None:
+        """How deep a sheet is in it as the run begins by a row of the contacts, below zero by how far it is
+        off where that is known; None where it is not computed."""
+        return max(0.0, self.depth_at_start(model, sheet, part))
+
+    def half_depth(self, part: P) -> float:
+        """Half of what a box would have to cross to be behind it."""
+        return 0.5
+
+    def constraints(self, model: Model, sheet: SheetPart, part: P) -> list[tuple[Floats, Floats]] | None:
+        """Points of a sheet that it has a contact with and the directions in which it holds them, in a static
+        run; None where that is not known."""
+        return None
+
+    # -- what is shown of it
+
+    def place(self, part: P) -> str:
+        """Where in the scene it is said that it stands, for lints."""
+        return f"{self.table}.{part.name}.center"
+
+    def drawn(self, part: P, half: Floats) -> list[Drawn]:
+        """Its shape; half: half lengths of its body, see Bodies."""
+        raise NotImplementedError
+
+    def facts(self, model: Model, part: P) -> list[str]:
+        """What it is as the run begins, in words."""
+        raise NotImplementedError
+
+    def label(self, model: Model, part: P, seen: tuple[Floats, Floats]) -> Floats:
+        """Where its name stands in a picture, (3,); seen: least and greatest coordinates of what moves."""
+        return model.bodies.position[part.body]
+
+    def overview(self, part: P) -> dict[str, Any]:
+        """What `mdlgen check --json` has of one that is `described`."""
+        return {}

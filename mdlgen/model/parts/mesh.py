@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 
@@ -10,11 +11,22 @@ from mdlgen.geometry.arrays import Floats
 from mdlgen.geometry.rods import Rod, into_triangles
 from mdlgen.geometry.solids import Solid
 from mdlgen.model.grid import rotation_matrix
-from mdlgen.model.meshes import mass_of, placed, reach
-from mdlgen.model.parts.kind import SLACK, BodyRow, Boxes, Drawn
+from mdlgen.model.meshes import LIGHT, mass_of, placed, reach
+from mdlgen.model.parameters.machine import center_rows
+from mdlgen.model.parameters.names import NAMED_AXES
+from mdlgen.model.parts.kind import SLACK, BodyRow, Drawn, Kind
 from mdlgen.model.press.before import Before
 from mdlgen.model.press.faces import Facets, facets_of_mesh
-from mdlgen.model.tables import BOX_MESH, CYLINDER_MESH, Bodies, MeshPart, Model, RollerPart, SheetPart
+from mdlgen.model.tables import (
+    BOX_MESH,
+    CYLINDER_MESH,
+    Bodies,
+    MeshPart,
+    Model,
+    Parameter,
+    RollerPart,
+    SheetPart,
+)
 from mdlgen.spec.mesh import Mesh
 from mdlgen.spec.scene import Scene
 from mdlgen.spec.solid import SCALES, moments
@@ -22,10 +34,10 @@ from mdlgen.spec.solid import SCALES, moments
 PIECE = 20000  # triangles of a part of a mesh that is drawn: a page counts corners in 16 bits
 
 
-class _Meshes:
-    name, table, part = MeshPart.kind, "meshes", MeshPart
+class _Meshes(Kind[MeshPart]):
+    table, part = "meshes", MeshPart
     with_sheet, with_roller = BOX_MESH, CYLINDER_MESH
-    leads = True
+    leads = curved = by_area = described = True
 
     def lower(self, scene: Scene, before: Before, first: int) -> tuple[MeshPart, ...]:
         names = [roller.name for roller in before.rollers]
@@ -54,9 +66,6 @@ class _Meshes:
     def reach(self, part: MeshPart, bodies: Bodies, way: Floats) -> float:
         return float(((part.center + part.corners @ part.axes.T) @ way).max())
 
-    def press(self, part: MeshPart) -> None:
-        """None: one on a pressed roller moves with that."""
-
     def carrier(self, part: MeshPart) -> int:
         return part.on
 
@@ -64,20 +73,11 @@ class _Meshes:
         triangles = (part.center + part.corners @ part.axes.T)[part.triangles]
         return lambda rod: into_triangles(rod, triangles)
 
-    def inside(
-        self, part: MeshPart, points: Floats, centers: Floats, position: Floats, rotation: Floats
-    ) -> None:
-        """None: not computed."""
-
-    def depth_at_start(self, model: Model, sheet: SheetPart, part: MeshPart) -> float:
-        """Not computed: see `model.overlaps.sheets`."""
-        return 0.0
+    def contact_depth(self, model: Model, row: int, sheet: SheetPart, part: MeshPart) -> None:
+        """None: it is not computed, see `model.overlaps.sheets`."""
 
     def place(self, part: MeshPart) -> str:
         return f"meshes.{part.name}"
-
-    def depths(self, part: MeshPart, boxes: Boxes, at: Floats) -> None:
-        """None: its force is shared by the area that each box covers."""
 
     def drawn(self, part: MeshPart, half: Floats) -> list[Drawn]:
         points = (part.corners - part.middle) @ part.principal
@@ -86,6 +86,35 @@ class _Meshes:
             used, own = np.unique(part.triangles[first : first + PIECE], return_inverse=True)
             found.append(Drawn(part.name, kind, Solid(points[used], own.reshape(-1, 3))))
         return found
+
+    def parameters(
+        self, scene: Scene, name: str, starts: Mapping[str, tuple[float, float]]
+    ) -> list[Parameter]:
+        mesh, base = scene.meshes[name], ("meshes", name)
+        rows = center_rows(name, mesh.center, base)
+        for k, axis in enumerate(NAMED_AXES):
+            label = f"Rotation about {axis} (deg)"
+            rows.append(Parameter(name, f"r_{axis}", label, mesh.rotation[k], "rad", (*base, "rotation", k)))
+        if mesh.density is not None:
+            path = (*base, "density")
+            return [*rows, Parameter(name, "rho", "Density (kg/mm3)", mesh.density, "g/mm^3", path)]
+        mass = LIGHT if mesh.mass is None else mesh.mass
+        return [*rows, Parameter(name, "M", "Mass", mass, "g", (*base, "mass"))]
+
+    def facts(self, model: Model, part: MeshPart) -> list[str]:
+        where = "fixed" if part.on < 0 else f"turns with {model.rollers[part.on].name}"
+        return [f"{part.file}, {len(part.triangles)} triangles", where]
+
+    def overview(self, part: MeshPart) -> dict[str, Any]:
+        return {
+            "file": part.file,
+            "triangles": len(part.triangles),
+            "left_out": part.flat,
+            "size_mm": np.ptp(part.corners, axis=0).tolist(),
+            "volume_mm3": part.volume,
+            "mass_g": part.mass,
+            "inertia_g_mm2": (part.mass * part.gyration).tolist(),
+        }
 
 
 def _mesh(name: str, mesh: Mesh, body: int, on: int) -> MeshPart:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
@@ -11,7 +11,10 @@ from mdlgen.geometry.arrays import Floats
 from mdlgen.geometry.rods import Box, Rod, into_box
 from mdlgen.geometry.solids import BOX, CORNERS, Solid
 from mdlgen.model.frames import frame
-from mdlgen.model.parts.kind import SLACK, BodyRow, Boxes, Drawn
+from mdlgen.model.parameters.machine import center_rows, spring_rows, start_row
+from mdlgen.model.parameters.names import NAMED_AXES
+from mdlgen.model.parts.kind import SLACK, BodyRow, Boxes, Drawn, Kind
+from mdlgen.model.parts.words import direction
 from mdlgen.model.press.before import Before
 from mdlgen.model.press.faces import Face, faces_of_plate
 from mdlgen.model.press.springs import plate_press
@@ -21,6 +24,7 @@ from mdlgen.model.tables import (
     CYLINDER_PLANE,
     Bodies,
     Model,
+    Parameter,
     PlanePart,
     Press,
     RollerPart,
@@ -30,10 +34,9 @@ from mdlgen.spec.guide import edge_radii
 from mdlgen.spec.scene import Scene
 
 
-class _Planes:
-    name, table, part = PlanePart.kind, "planes", PlanePart
+class _Planes(Kind[PlanePart]):
+    table, part = "planes", PlanePart
     with_sheet, with_roller = BOX_PLANE, CYLINDER_PLANE
-    leads = False
 
     def lower(self, scene: Scene, before: Before, first: int) -> tuple[PlanePart, ...]:
         return tuple(
@@ -83,8 +86,17 @@ class _Planes:
     def press(self, part: PlanePart) -> Press | None:
         return part.press
 
-    def carrier(self, part: PlanePart) -> int:
-        return -1
+    def centre_bounds(
+        self, part: PlanePart, position: Floats, margin: float | None
+    ) -> tuple[Floats, Floats] | None:
+        """A spring ends, whatever is kept; its slide keeps a plate on its way to round-off."""
+        if part.press is None:
+            return None
+        far = part.travel + 1e-6 * part.press.free_length
+        return part.center - far, part.center + far
+
+    def carry(self, part: PlanePart) -> Floats:
+        return part.travel
 
     def overlap(self, part: PlanePart, position: Floats, rotation: Floats) -> Callable[[Rod], float]:
         block = Box(position, rotation, np.array(part.size) / 2)
@@ -104,8 +116,11 @@ class _Planes:
         depth = float(np.max(-((points - face) @ part.normal)[over], initial=0.0))
         return depth if depth < part.size[2] else 0.0
 
-    def place(self, part: PlanePart) -> str:
-        return f"planes.{part.name}.center"
+    def half_depth(self, part: PlanePart) -> float:
+        return 0.5 * part.size[2]
+
+    def constraints(self, model: Model, sheet: SheetPart, part: PlanePart) -> list[tuple[Floats, Floats]]:
+        return [(corner, part.normal) for corner in corners(sheet)]
 
     def depths(self, part: PlanePart, boxes: Boxes, at: Floats) -> Floats:
         face = at[:, None] + part.normal * part.size[2] / 2
@@ -114,6 +129,41 @@ class _Planes:
 
     def drawn(self, part: PlanePart, half: Floats) -> list[Drawn]:
         return [Drawn(part.name, "plane", Solid(CORNERS * half, BOX))]
+
+    def parameters(
+        self, scene: Scene, name: str, starts: Mapping[str, tuple[float, float]]
+    ) -> list[Parameter]:
+        plane, base = scene.planes[name], ("planes", name)
+        rows = center_rows(name, plane.center, base)
+        for k, size in enumerate(plane.size):
+            axis = NAMED_AXES[k]
+            label = f"Length along its {axis}"
+            rows.append(Parameter(name, f"L_{axis}", label, size, "mm", (*base, "size", k)))
+        rows.append(Parameter(name, "M", "Mass", plane.mass, "g", (*base, "mass")))
+        if plane.press is None:
+            return rows
+        rows += spring_rows(name, plane.press, base)
+        if plane.press.carrier_mass is not None:
+            path = (*base, "press", "carrier_mass")
+            rows.append(Parameter(name, "M_c", "Mass of its slide", plane.press.carrier_mass, "g", path))
+        return [*rows, start_row(name, starts[name][1])]
+
+    def facts(self, model: Model, part: PlanePart) -> list[str]:
+        facts = [" x ".join(f"{s:.4g}" for s in part.size) + f" mm, face towards {direction(part.normal)}"]
+        if part.press is None:
+            return [*facts, "fixed"]
+        spring = part.press
+        force = f"pressed along {direction(spring.direction)} by {spring.preload:.4g} N"
+        return [*facts, f"{force}, {spring.stiffness:.4g} N/mm, {part.sliding_mass:.4g} g"]
+
+    def label(self, model: Model, part: PlanePart, seen: tuple[Floats, Floats]) -> Floats:
+        """At a corner of its face, or what is nearest to that of where other parts are: in the middle are the
+        sheets."""
+        bodies = model.bodies
+        corner = bodies.half[part.body] * [-1.0, -1.0, 1.0]
+        corner = bodies.position[part.body] + bodies.rotation[part.body] @ corner
+        near = np.clip(corner, *seen)
+        return near + part.normal * float((corner - near) @ part.normal)
 
 
 PLANE = _Planes()

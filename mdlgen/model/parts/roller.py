@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Mapping
 
 import numpy as np
 
 from mdlgen.geometry.arrays import Floats
-from mdlgen.geometry.rods import Rod
 from mdlgen.geometry.solids import BOX, CORNERS, Solid, cylinder, slice_
 from mdlgen.model.frames import frame
-from mdlgen.model.parts.kind import SLACK, BodyRow, Boxes, Drawn
+from mdlgen.model.parameters.machine import center_rows, spring_rows, start_row
+from mdlgen.model.parameters.names import NAMED_AXES
+from mdlgen.model.parts.kind import SLACK, BodyRow, Boxes, Drawn, Kind
+from mdlgen.model.parts.words import PER_SECOND, direction
 from mdlgen.model.press import balance
 from mdlgen.model.press.before import Before
 from mdlgen.model.press.springs import roller_press
@@ -20,8 +22,10 @@ from mdlgen.model.tables import (
     CYLINDER_CYLINDER,
     ArmPart,
     Bodies,
+    Ints,
     Model,
     OneWay,
+    Parameter,
     Press,
     RollerPart,
     SheetPart,
@@ -34,10 +38,9 @@ MARK = 0.12  # breadth of the mark on a roller, in times its radius
 PROUD = 0.01  # how far the mark stands out, in times the radius
 
 
-class _Rollers:
-    name, table, part = RollerPart.kind, "rollers", RollerPart
+class _Rollers(Kind[RollerPart]):
+    table, part = "rollers", RollerPart
     with_sheet, with_roller = BOX_CYLINDER, CYLINDER_CYLINDER
-    leads = False
 
     def lower(self, scene: Scene, before: Before, first: int) -> tuple[RollerPart, ...]:
         parts = []
@@ -67,9 +70,6 @@ class _Rollers:
             )
         return tuple(parts)
 
-    def face(self, scene: Scene, name: str, at: Floats, roller: str) -> None:
-        """None: two rollers meet along a line."""
-
     def body(self, part: RollerPart, rollers: tuple[RollerPart, ...]) -> BodyRow:
         start = part.press.start * part.press.direction if part.press else np.zeros(3)
         inertia = np.array([part.inertia_transverse, part.inertia_transverse, part.inertia_axial])
@@ -95,11 +95,17 @@ class _Rollers:
     def press(self, part: RollerPart) -> Press | None:
         return part.press
 
-    def carrier(self, part: RollerPart) -> int:
-        return -1
-
-    def overlap(self, part: RollerPart, position: Floats, rotation: Floats) -> Callable[[Rod], float]:
-        raise NotImplementedError("two rollers overlap in their contact")
+    def centre_bounds(
+        self, part: RollerPart, position: Floats, margin: float | None
+    ) -> tuple[Floats, Floats] | None:
+        """One may move by its radius along its slide, or swing by as much."""
+        if margin is None or (part.press is None and part.arm is None):
+            return None
+        if part.arm is not None:
+            return position - swing(part) - margin, position + swing(part) + margin
+        assert part.press is not None
+        way = part.reach * np.abs(part.press.direction) + margin
+        return position - way, position + way
 
     def inside(
         self, part: RollerPart, points: Floats, centers: Floats, position: Floats, rotation: Floats
@@ -119,8 +125,22 @@ class _Rollers:
             return 0.0
         return part.radius + sheet.thickness / 2 - abs(float((center - sheet.center) @ normal))
 
-    def place(self, part: RollerPart) -> str:
-        return f"rollers.{part.name}.center"
+    def contact_depth(self, model: Model, row: int, sheet: SheetPart, part: RollerPart) -> float:
+        boxes = model.pairs.a[model.pairs.contact == row]
+        return float(self.of_boxes(model, boxes, part).max()) if len(boxes) else 0.0
+
+    def of_boxes(self, model: Model, boxes: Ints, part: RollerPart) -> Floats:
+        """How deep boxes are in it as the run begins, (n,); below zero by how far they are off."""
+        bodies = model.bodies
+        shown = Boxes(bodies.position[boxes][None], bodies.rotation[boxes][None], bodies.half[boxes])
+        return self.depths(part, shown, bodies.position[part.body][None])[0]
+
+    def half_depth(self, part: RollerPart) -> float:
+        return 0.5 * part.radius
+
+    def constraints(self, model: Model, sheet: SheetPart, part: RollerPart) -> list[tuple[Floats, Floats]]:
+        """What a nip holds, see `lints.idle`; one roller alone lets a sheet go."""
+        return []
 
     def depths(self, part: RollerPart, boxes: Boxes, at: Floats) -> Floats:
         """From the point of each box's middle plane that is nearest to the axis, kept on the box."""
@@ -136,6 +156,79 @@ class _Rollers:
         """A cylinder about the z axis of its body, or the sectors of its rim, and a bar across both ends from
         the axis to the rim, which shows how it turns."""
         return _drawn(part)
+
+    def parameters(
+        self, scene: Scene, name: str, starts: Mapping[str, tuple[float, float]]
+    ) -> list[Parameter]:
+        roller, base = scene.rollers[name], ("rollers", name)
+        rows = center_rows(name, roller.center, base)
+        rows += [
+            Parameter(name, "R", "Radius R", roller.radius, "mm", (*base, "radius")),
+            Parameter(name, "w", "Width", roller.width, "mm", (*base, "width")),
+            Parameter(name, "M", "Mass", roller.mass, "g", (*base, "mass")),
+        ]
+        if roller.drive is not None:
+            drive = (*base, "drive")
+            if roller.drive.speed is not None:
+                rows.append(
+                    Parameter(name, "omega", "Speed (rad/s)", roller.drive.speed, "rad/ms", (*drive, "speed"))
+                )
+                rows.append(Parameter(name, "ramp", "Ramp time", roller.drive.ramp, "ms", (*drive, "ramp")))
+            for k, (time, speed) in enumerate(roller.drive.profile or ()):
+                at = (*drive, "profile", k)
+                rows.append(Parameter(name, f"t_{k}", f"Time of corner {k}", time, "ms", (*at, 0)))
+                rows.append(
+                    Parameter(name, f"w_{k}", f"Speed at corner {k} (rad/s)", speed, "rad/ms", (*at, 1))
+                )
+        if roller.one_way is not None:
+            way, path = roller.one_way, (*base, "one_way")
+            label = "Speed of its clutch at that torque (rad/s)"
+            rows += [
+                Parameter(name, "T_w", "Torque of its clutch (N mm)", way.torque, "N*mm", (*path, "torque")),
+                Parameter(name, "w_w", label, way.creep, "rad/ms", (*path, "creep")),
+            ]
+        rows += _rim_rows(scene, name) + _arm_rows(scene, name)
+        if roller.press is not None:
+            carrier = roller.press.carrier_mass
+            touch, start = starts[name]
+            rows += [
+                *spring_rows(name, roller.press, base),
+                Parameter(
+                    name,
+                    "M_c",
+                    "Carrier mass",
+                    roller.mass / 1000 if carrier is None else carrier,
+                    "g",
+                    (*base, "press", "carrier_mass"),
+                ),
+                Parameter(name, "touch", "Touching position along the slide, as written", touch, "mm", None),
+                start_row(name, start),
+            ]
+        return rows
+
+    def facts(self, model: Model, part: RollerPart) -> list[str]:
+        facts = [f"radius {part.radius:.4g} mm, width {part.width:.4g} mm, {part.mass:.4g} g"]
+        if part.speed is None:
+            facts.append("turns freely")
+        elif part.profile is not None:
+            facts.append(f"driven by a profile, {PER_SECOND * part.speed:.4g} rad/s at most")
+        else:
+            surface = PER_SECOND * abs(part.speed) * part.radius
+            ramp = f", ramp {part.ramp:.4g} ms" if part.ramp else ""
+            facts.append(f"driven at {PER_SECOND * part.speed:.4g} rad/s, surface {surface:.4g} mm/s{ramp}")
+        if part.one_way is not None:
+            facts.append(f"clutch, free in the sense {part.one_way.direction:+d}")
+        if part.press is not None:
+            spring = part.press
+            facts.append(
+                f"pressed along {direction(spring.direction)} by {spring.preload:.4g} N where it touches, "
+                f"{spring.stiffness:.4g} N/mm"
+            )
+        if part.arm is not None:
+            facts.append(f"on an arm of {part.arm.mass:.4g} g, spring torque {part.arm.torque:.4g} N mm")
+        if part.rim is not None:
+            facts.append(f"rim of {len(part.rim)} sectors")
+        return facts
 
 
 def _drawn(roller: RollerPart) -> list[Drawn]:
@@ -184,6 +277,54 @@ def _arm(roller: Roller) -> ArmPart:
         damping=spec.damping,
         sprung=spec.sprung,
     )
+
+
+def _rim_rows(scene: Scene, name: str) -> list[Parameter]:
+    """Angles, radius, friction, stiffness and restitution of the sectors of a rim, as far as given."""
+    rim, rows = scene.rollers[name].rim, []
+    for k, sector in enumerate(rim.sectors if rim is not None else ()):
+        path = ("rollers", name, "rim", "sectors", k)
+        for member, label, value, unit in (
+            ("from", "Angle where sector %d begins (deg)", sector.from_, "rad"),
+            ("to", "Angle where sector %d ends (deg)", sector.to, "rad"),
+            ("radius", "Radius of sector %d", sector.radius, "mm"),
+            ("friction", "Friction of sector %d in times that of the contact", sector.friction, "1"),
+            ("stiffness", "Stiffness of sector %d in times that of the contact", sector.stiffness, "1"),
+            ("restitution", "Restitution c_R of sector %d", sector.restitution, "1"),
+        ):
+            if value is not None:
+                rows.append(Parameter(name, f"s{k}_{member}", label % k, value, unit, (*path, member)))
+    return rows
+
+
+def _arm_rows(scene: Scene, name: str) -> list[Parameter]:
+    """Pivot, mass and spring of an arm; centre of mass and inertia where they are given."""
+    arm, path = scene.rollers[name].arm, ("rollers", name, "arm")
+    if arm is None:
+        return []
+    rows = []
+    for k, axis in enumerate(NAMED_AXES):
+        label = f"Pivot of the arm {axis}"
+        rows.append(Parameter(name, f"a_{axis}", label, arm.pivot[k], "mm", (*path, "pivot", k)))
+    rows.append(Parameter(name, "M_a", "Mass of the arm", arm.mass, "g", (*path, "mass")))
+    if arm.center is not None:
+        for k, axis in enumerate(NAMED_AXES):
+            label = f"Centre of mass of the arm {axis}"
+            rows.append(Parameter(name, f"g_{axis}", label, arm.center[k], "mm", (*path, "center", k)))
+    if arm.inertia is not None:
+        label = "Inertia of the arm about it (kg mm2)"
+        rows.append(Parameter(name, "I_a", label, arm.inertia, "g*mm^2", (*path, "inertia")))
+    if arm.sprung:
+        rows += [
+            Parameter(name, "T_a", "Torque of its spring (N mm)", arm.torque, "N*mm", (*path, "torque")),
+            Parameter(
+                name, "k_a", "Its stiffness (N mm/rad)", arm.stiffness, "N*mm/rad", (*path, "stiffness")
+            ),
+            Parameter(
+                name, "c_a", "Its damping (N mm s/rad)", arm.damping, "N*mm*ms/rad", (*path, "damping")
+            ),
+        ]
+    return rows
 
 
 ROLLER = _Rollers()
