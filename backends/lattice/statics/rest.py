@@ -57,7 +57,7 @@ def rest(model: Model, system: System, state: State, mid: Midpoint) -> Result:
     still = np.zeros_like(x)
     load = _load(model, system)
     loose = _loose(model)
-    found = lying.constraints(model, loose, load)
+    found = lying.holds(model, loose, load)
     grip = lying.Grip(lying.held(model, system, found))
     tables = grip.system.tables
     entries.remember(tables.bodies, system.pairs, Motion(x, r, still, still))
