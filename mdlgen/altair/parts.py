@@ -1,12 +1,23 @@
-"""Parts of kinds that an output has no words for."""
+"""Kinds of parts that an output has: a file for each, and a refusal for what has none."""
 
 from __future__ import annotations
 
 from collections.abc import Container
+from importlib import import_module
+from importlib.util import find_spec
+from types import ModuleType
+from typing import Any
 
 from mdlgen.errors import RefusedError
-from mdlgen.model.parts.kinds import kind_of
-from mdlgen.model.tables import Model
+from mdlgen.model.parts.kinds import KINDS, kind_of
+from mdlgen.model.tables import MachinePart, Model
+
+
+def by_kind(package: ModuleType) -> dict[type[MachinePart], Any]:
+    """What the files of a package say of kinds of parts, as KIND, each called as one of its kind is; a kind
+    without a file is left out."""
+    names = {kind.part: f"{package.__name__}.{kind.name}" for kind in KINDS}
+    return {part: import_module(name).KIND for part, name in names.items() if find_spec(name) is not None}
 
 
 def refuse_unwritten(model: Model, written: Container[type], what: str) -> None:

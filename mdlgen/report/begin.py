@@ -11,7 +11,7 @@ from mdlgen.lints.lint import Lint
 from mdlgen.lints.start import overlap
 from mdlgen.model.overlaps.parts import rod
 from mdlgen.model.parts.kinds import WITH_SHEET, kind_of
-from mdlgen.model.parts.roller import ROLLER
+from mdlgen.model.parts.roller import KIND as ROLLER
 from mdlgen.model.tables import (
     BOX_BOX,
     BOX_CYLINDER,

@@ -269,8 +269,8 @@ def _tension(tension: dict[str, Any]) -> str:
 def _drags(record: dict[str, Any]) -> list[str]:
     """What planes, guides and fixed meshes take from sheets by friction, where they take some."""
     rows = [["drag on sheets", "of", "N: mean", "peak"]]
-    for kind in ("planes", "guides", "meshes"):
-        for name, part in record.get(kind, {}).items():
+    for kind in KINDS:
+        for name, part in record.get(kind.table, {}).items():
             for sheet, contact in part["contacts"].items():
                 if contact.get("max_drag_n"):
                     keys = ("mean_drag_n", "max_drag_n")

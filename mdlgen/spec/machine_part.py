@@ -61,9 +61,8 @@ def rim_of_sectors(names: tuple[str, str], other: str) -> str:
     return f"{not_modelled(names)}the rim of {names[0]} is in sectors, and {other} meets round rollers only"
 
 
-def tables_of(scene: type[Any]) -> tuple[str, ...]:
-    """Names of the tables of a scene that hold parts of the machine, in the order of their bodies."""
+def classes_of(scene: type[Any]) -> dict[str, type[MachinePart]]:
+    """What the tables of a scene that are of the machine hold, by their names, in the order of the bodies."""
     held = ((name, get_args(field.annotation)[-1:]) for name, field in scene.model_fields.items())
-    return tuple(
-        name for name, of in held if of and isinstance(of[0], type) and issubclass(of[0], MachinePart)
-    )
+    classes = ((name, of[0]) for name, of in held if of and isinstance(of[0], type))
+    return {name: of for name, of in classes if issubclass(of, MachinePart)}

@@ -32,7 +32,7 @@ from mdlgen.spec.fields import Acceleration, Name, Words, default
 from mdlgen.spec.guide import Guide
 from mdlgen.spec.limits import DEFAULT, Limits
 from mdlgen.spec.machine import Plane, Roller
-from mdlgen.spec.machine_part import MachinePart, tables_of
+from mdlgen.spec.machine_part import MachinePart, classes_of
 from mdlgen.spec.material import Material
 from mdlgen.spec.mesh import Mesh
 from mdlgen.spec.nip import Nip
@@ -147,7 +147,7 @@ class Scene(Strict):
     @classmethod
     def machine_tables(cls) -> tuple[str, ...]:
         """Names of the tables of parts of the machine that have a body, in the order of their bodies."""
-        return tables_of(cls)
+        return tuple(classes_of(cls))
 
     @property
     def machine(self) -> dict[str, MachinePart]:

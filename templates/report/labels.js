@@ -1,7 +1,9 @@
 // Over the picture in space: names of parts, axes, scale, and what is known of what is under the pointer.
 
-// those that are in the way of others give way: probes to parts, parts without a warning to those with one
-const ORDER = ["sheet", "roller", "mesh", "guide", "plane", "probe"];
+// those that are in the way of others give way: probes to parts, parts without a warning to those with one; kinds
+// that are not listed come before planes, which are wide
+const ORDER = ["sheet", "roller", "mesh", "guide", "", "plane", "probe"];
+const order = (kind) => (ORDER.includes(kind) ? ORDER.indexOf(kind) : ORDER.indexOf(""));
 
 // `stage` draws, `lines` says what is known of something that was hit: part, title, texts, contacts, lints.
 function overlay(stage, lines) {
@@ -22,7 +24,7 @@ function overlay(stage, lines) {
     });
     get("labels").replaceChildren(...labels.map((label) => label.made));
   };
-  const rank = ({ part }) => (part.name === (own.over ?? own.pinned) ? -200 : 0) - (part.lints?.length ? 100 : 0) + ORDER.indexOf(part.kind);
+  const rank = ({ part }) => (part.name === (own.over ?? own.pinned) ? -200 : 0) - (part.lints?.length ? 100 : 0) + order(part.kind);
 
   own.place = () => {
     const taken = [];

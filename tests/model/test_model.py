@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from itertools import pairwise
 from pathlib import Path
 
@@ -10,8 +11,11 @@ import pytest
 
 from mdlgen.errors import SpecError
 from mdlgen.model.lower import lower
+from mdlgen.model.parts.kinds import KINDS
 from mdlgen.model.tables import CLAMP, GROUND, JOINT_X, JOINT_Y, SUPPORT
 from mdlgen.spec.load import load, loads
+from mdlgen.spec.scene import Scene
+from mdlgen.verify.expected.parts.kinds import KINDS as EXPECTED
 
 TRANSPORT, CANTILEVER = "samples/transport_4x4.yaml", "samples/cantilever.yaml"
 
@@ -200,3 +204,12 @@ def test_the_pulled_sheet_is_the_one_with_the_load():
     tension = lower(loads(second)).tension
     assert tension is not None
     assert (tension.axis, tension.length) == (1, pytest.approx(19.5 * 6.35))
+
+
+def test_every_kind_of_part_is_found_by_its_name_in_every_place() -> None:
+    assert tuple(kind.table for kind in KINDS) == Scene.machine_tables()
+    assert len({number for kind in KINDS for number in (kind.with_sheet, kind.with_roller)}) == 2 * len(KINDS)
+    for place in ("backends.motionview.writer", "backends.motionsolve.writer", "backends.msolve.writer"):
+        written = import_module(f"mdlgen.{place}.parts.kinds").WRITTEN
+        assert list(written) == [kind.part for kind in KINDS]
+    assert list(EXPECTED) == [kind.part for kind in KINDS]

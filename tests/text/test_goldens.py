@@ -314,6 +314,7 @@ LOOPED = {
     "probe.mdl.j2": "probes",
     "force.mdl.j2": "forces",
 }
+MACHINE = ("rollers", "planes", "guides", "meshes")
 # Their text stands in the goldens of those that take them in.
 WITHIN = tuple(
     f"{name}.mdl.j2" for name in ("bend", "cells", "contact_commands", "law", "lengths", "macros", "notes")
@@ -340,7 +341,7 @@ def rendered(template: str, model: Model) -> str:
     if template not in LOOPED:
         return part.render(context)
     kind = LOOPED[template]
-    name = {"meshes": "mesh"}.get(kind, kind.removesuffix("s"))
+    name = "part" if kind in MACHINE else kind.removesuffix("s")
     return "\n".join(part.render(context, **{name: item}) for item in getattr(scene, kind))
 
 

@@ -16,23 +16,16 @@ from mdlgen.verify.expected.parts.kinds import KINDS
 from mdlgen.verify.verification import verify
 
 
-@pytest.mark.parametrize("name", ["motionview", "motionsolve"])
+@pytest.mark.parametrize("name", ["motionview", "motionsolve", "msolve"])
 def test_a_part_of_a_kind_without_words_is_refused_by_name(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    parts = import_module(f"mdlgen.backends.{name}.writer.parts")
+    parts = import_module(f"mdlgen.backends.{name}.writer.parts.kinds")
     model = lower(load(samples() / "verify" / "incline.yaml"))
     assert model.planes
     monkeypatch.delitem(parts.WRITTEN, PlanePart)
     with pytest.raises(RefusedError, match=rf"{model.planes[0].name} is a plane, which is not written yet"):
         emitter(name).emit(model)
-
-
-def test_a_script_without_words_for_a_part_is_refused_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
-    model = lower(load(samples() / "verify" / "incline.yaml"))
-    monkeypatch.setattr("mdlgen.backends.msolve.writer.machine.WRITTEN", ())
-    with pytest.raises(RefusedError, match=r"MotionSolve script: .* is a plane, which is not written yet"):
-        emitter("msolve").emit(model)
 
 
 def test_verify_refuses_a_part_of_a_kind_of_which_it_expects_nothing(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,7 +9,7 @@ from mdlgen.backends.motionsolve.writer.axes import cosines
 from mdlgen.backends.motionsolve.writer.body import add_body
 from mdlgen.backends.motionsolve.writer.ids import GROUND_ID, body_id, graphic_id
 from mdlgen.backends.motionsolve.writer.joints import fix
-from mdlgen.backends.motionsolve.writer.parts import written
+from mdlgen.backends.motionsolve.writer.parts.kinds import written
 from mdlgen.backends.motionsolve.writer.rows import Box, Deck
 from mdlgen.backends.motionsolve.writer.units import numbers, thousandfold, triples
 from mdlgen.model.shape import ground_frames
@@ -26,7 +26,7 @@ def add_frames(deck: Deck, model: Model) -> None:
             (place,) = triples(frame.origin[None])
             deck.marker(frame.name, frame.label, GROUND_ID, place, cosines(frame.axes))
     for kind, part in written(model):
-        kind.frame(deck, model, part)
+        kind.add_frame(deck, model, part)
 
 
 def add_bodies(deck: Deck, model: Model) -> None:

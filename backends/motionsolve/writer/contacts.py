@@ -7,7 +7,7 @@ from functools import cache, partial
 from mdlgen.altair.rims import Side, graphics, meetings
 from mdlgen.backends.motionsolve.writer.ids import graphic_id
 from mdlgen.backends.motionsolve.writer.machine import facet_ids
-from mdlgen.backends.motionsolve.writer.parts import written
+from mdlgen.backends.motionsolve.writer.parts.kinds import written
 from mdlgen.backends.motionsolve.writer.rows import ContactRow, Deck, Law
 from mdlgen.backends.motionsolve.writer.units import number, thousandfold
 from mdlgen.model.tables import Model

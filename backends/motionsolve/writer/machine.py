@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from mdlgen.backends.motionsolve.writer.axes import cosines
 from mdlgen.backends.motionsolve.writer.ids import body_id
-from mdlgen.backends.motionsolve.writer.parts import written
+from mdlgen.backends.motionsolve.writer.parts.kinds import written
 from mdlgen.backends.motionsolve.writer.rows import Box, Deck
 from mdlgen.backends.motionsolve.writer.units import numbers, triples
 from mdlgen.model.tables import Model
@@ -20,9 +20,9 @@ def add_machine(deck: Deck, model: Model) -> None:
     """All parts."""
     _add_facets(deck, model)
     for kind, part in written(model):
-        kind.shell(deck, model, part)
+        kind.add_shell(deck, model, part)
     for kind, part in written(model):
-        kind.moves(deck, model, part)
+        kind.add_joints(deck, model, part)
 
 
 def _add_facets(deck: Deck, model: Model) -> None:

@@ -8,7 +8,7 @@ from mdlgen.altair.springs import refuse_compressed
 from mdlgen.backends.motionsolve.writer import gate
 from mdlgen.backends.motionsolve.writer.banner import banner
 from mdlgen.backends.motionsolve.writer.environment import environment
-from mdlgen.backends.motionsolve.writer.parts import WRITTEN
+from mdlgen.backends.motionsolve.writer.parts.kinds import WRITTEN
 from mdlgen.backends.motionsolve.writer.views import deck_view
 from mdlgen.errors import SpecError
 from mdlgen.model.external import refuse_externals

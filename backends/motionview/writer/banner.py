@@ -8,7 +8,7 @@ from mdlgen.altair.curves import TEXT_BEYOND
 from mdlgen.altair.edges import edge_note
 from mdlgen.backends.motionview.writer import script
 from mdlgen.backends.motionview.writer.forms import unverified
-from mdlgen.backends.motionview.writer.rows import SceneView
+from mdlgen.backends.motionview.writer.scene_rows import SceneView
 from mdlgen.backends.motionview.writer.units import mdl_value, number
 from mdlgen.model.curves import limit
 from mdlgen.model.tables import Model

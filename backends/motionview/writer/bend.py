@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from mdlgen.backends.motionview.writer.rows import BendView, EarView, FrameView, Value
+from mdlgen.backends.motionview.writer.rows import Value
+from mdlgen.backends.motionview.writer.sheet_rows import BendView, EarView, FrameView
 from mdlgen.backends.motionview.writer.units import number
 from mdlgen.model.tables import SUPPORT, Bend, Model, SheetPart
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from mdlgen.altair.classes import BoxClass, box_classes, joint_classes
-from mdlgen.backends.motionview.writer.rows import CellView, GridView, HingeView, Lengths, Value, ZoneView
+from mdlgen.backends.motionview.writer.rows import Value
+from mdlgen.backends.motionview.writer.sheet_rows import CellView, GridView, HingeView, Lengths, ZoneView
 from mdlgen.backends.motionview.writer.units import number
 from mdlgen.model.tables import SheetPart
 

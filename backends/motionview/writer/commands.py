@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from mdlgen.backends.motionview.writer.rows import ContactView, LawView, Pair
+from mdlgen.backends.motionview.writer.contact_rows import ContactView, LawView, Pair
 
 
 def contact_laws(contacts: Sequence[ContactView], pairs: Iterable[Pair]) -> list[LawView]:

@@ -10,8 +10,9 @@ import numpy as np
 from mdlgen.altair.recorded import called, part_of, recorded
 from mdlgen.altair.rims import Side, graphics, meetings
 from mdlgen.backends.motionview.writer.cells import rough_boxes
-from mdlgen.backends.motionview.writer.parts import graphics_of
-from mdlgen.backends.motionview.writer.rows import ContactView, ForceView, Pair, Value
+from mdlgen.backends.motionview.writer.contact_rows import ContactView, ForceView, Pair
+from mdlgen.backends.motionview.writer.parts.kinds import graphics_of
+from mdlgen.backends.motionview.writer.rows import Value
 from mdlgen.model.tables import Model, RollerPart
 
 _ON_A_LINE = 500  # characters of a sum: lines of 528 were seen

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from mdlgen.backends.motionview.writer.rows import SceneView, SystemView
+from mdlgen.backends.motionview.writer.scene_rows import SceneView, SystemView
 
 MOTIONVIEW = "2021.help.altair.com/2021/hwdesktop/hwd/topics/reference/mv/"
 MOTIONSOLVE = "2021.help.altair.com/2021/hwsolvers/ms/topics/solvers/ms/"

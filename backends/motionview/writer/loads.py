@@ -8,7 +8,8 @@ import numpy as np
 
 from mdlgen.backends.motionview.writer.cells import Differences, differences
 from mdlgen.backends.motionview.writer.environment import values
-from mdlgen.backends.motionview.writer.rows import LoadPart, LoadView, Value
+from mdlgen.backends.motionview.writer.rows import Value
+from mdlgen.backends.motionview.writer.sheet_rows import LoadPart, LoadView
 from mdlgen.backends.motionview.writer.sheets import frame_of
 from mdlgen.backends.motionview.writer.units import number
 from mdlgen.model.tables import Model, SheetPart

@@ -6,7 +6,7 @@ from mdlgen.altair.edges import edge_note
 from mdlgen.backends.motionview.writer import script
 from mdlgen.backends.motionview.writer.banner import SHARE, curve_lines, share_lines, sheet_lines, target_line
 from mdlgen.backends.motionview.writer.forms import unverified_system
-from mdlgen.backends.motionview.writer.rows import SystemView
+from mdlgen.backends.motionview.writer.scene_rows import SystemView
 from mdlgen.backends.motionview.writer.units import number
 from mdlgen.model.tables import BOX_BOX, Model
 

@@ -11,7 +11,8 @@ from mdlgen.altair.curves import straight_points, written
 from mdlgen.backends.motionview.writer.bend import bend_view
 from mdlgen.backends.motionview.writer.cells import Differences, differences, grid_views, zone_views
 from mdlgen.backends.motionview.writer.formula import mdl_formula, units_of
-from mdlgen.backends.motionview.writer.rows import (
+from mdlgen.backends.motionview.writer.rows import Value
+from mdlgen.backends.motionview.writer.sheet_rows import (
     Bush,
     CurveView,
     JointGroup,
@@ -19,7 +20,6 @@ from mdlgen.backends.motionview.writer.rows import (
     ProbeView,
     SheetView,
     SupportView,
-    Value,
 )
 from mdlgen.backends.motionview.writer.units import number
 from mdlgen.model.lowering.plate import SHEAR_RATIO

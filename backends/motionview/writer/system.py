@@ -8,14 +8,15 @@ from dataclasses import replace
 import numpy as np
 
 from mdlgen.altair.rims import Meeting, meetings
+from mdlgen.backends.motionview.writer.contact_rows import Pair
 from mdlgen.backends.motionview.writer.contacts import contact_views, pair_rows, rough_pairs
 from mdlgen.backends.motionview.writer.idle import SCRIPT, STATEMENT, used_by
-from mdlgen.backends.motionview.writer.parts import graphics_of
-from mdlgen.backends.motionview.writer.rows import Attachment, Pair, SystemView, Value
+from mdlgen.backends.motionview.writer.parts.kinds import graphics_of
+from mdlgen.backends.motionview.writer.rows import Value
+from mdlgen.backends.motionview.writer.scene_rows import Attachment, SystemView
 from mdlgen.backends.motionview.writer.units import number
 from mdlgen.backends.motionview.writer.views import given_values, scene_view
 from mdlgen.model.parameters.names import OF_USER
-from mdlgen.model.parts.kinds import KINDS
 from mdlgen.model.tables import BOX_BOX, Ints, Model
 
 
@@ -34,7 +35,7 @@ def system_view(model: Model, set_contact: bool) -> SystemView:
     scene = replace(
         scene_view(model, set_contact),
         parameters=_used(model, given, of_sheets),
-        **{kind.table: [] for kind in KINDS},
+        machine=[],
         contacts=contact_views(model, given, of_sheets),
         pairs=sheet_pairs(model),
         laws=[],

@@ -12,7 +12,7 @@ from mdlgen.backends.motionview.writer.banner import banner
 from mdlgen.backends.motionview.writer.contacts import force_views
 from mdlgen.backends.motionview.writer.environment import environment
 from mdlgen.backends.motionview.writer.notes import notes
-from mdlgen.backends.motionview.writer.parts import WRITTEN
+from mdlgen.backends.motionview.writer.parts.kinds import WRITTEN
 from mdlgen.backends.motionview.writer.system import system_view
 from mdlgen.backends.motionview.writer.views import scene_view
 from mdlgen.errors import SpecError

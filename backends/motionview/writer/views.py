@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 from mdlgen.altair.statics import static_settings
 from mdlgen.backends.motionview.writer.commands import contact_laws
@@ -11,19 +10,19 @@ from mdlgen.backends.motionview.writer.contacts import contact_views, pair_rows
 from mdlgen.backends.motionview.writer.formula import mdl_formula, rows_of, units_of
 from mdlgen.backends.motionview.writer.idle import COMMAND, STATEMENT, idle_values
 from mdlgen.backends.motionview.writer.loads import load_views
-from mdlgen.backends.motionview.writer.parts import WRITTEN
-from mdlgen.backends.motionview.writer.rows import SceneView, Value
+from mdlgen.backends.motionview.writer.parts.kinds import WRITTEN
+from mdlgen.backends.motionview.writer.rows import Value
+from mdlgen.backends.motionview.writer.scene_rows import SceneView
 from mdlgen.backends.motionview.writer.sheets import probe_view, sheet_view, support_views
 from mdlgen.backends.motionview.writer.units import mdl_value, number, with_unit
 from mdlgen.model.parameters.names import OF_USER
-from mdlgen.model.parts.kinds import KINDS
-from mdlgen.model.tables import MachinePart, Model, Parameter
+from mdlgen.model.tables import Model, Parameter
 
 
 def scene_view(model: Model, set_contact: bool) -> SceneView:
     """All rows of a Model."""
     given = given_values(model, STATEMENT if set_contact else COMMAND, model.pairs.contact.tolist())
-    machine: dict[str, Any] = {k.table: _views(model, getattr(model, k.table), given) for k in KINDS}
+    machine = [WRITTEN[type(part)].view(model, part, given[part.name]) for part in model.machine]
     contacts, pairs = contact_views(model, given, range(len(model.contacts))), pair_rows(model)
     return SceneView(
         name=model.name,
@@ -34,17 +33,13 @@ def scene_view(model: Model, set_contact: bool) -> SceneView:
         sheets=[sheet_view(model, k, given) for k in range(len(model.sheets))],
         supports=support_views(model),
         loads=load_views(model, given),
-        **machine,
+        machine=machine,
         contacts=contacts,
         pairs=pairs,
         laws=[] if set_contact else contact_laws(contacts, pairs),
         probes=[probe_view(model, probe) for probe in model.probes],
         set_contact=set_contact,
     )
-
-
-def _views(model: Model, parts: tuple[MachinePart, ...], given: Mapping[str, list[Value]]) -> list[Any]:
-    return [WRITTEN[type(part)].view(model, part, given[part.name]) for part in parts]
 
 
 def given_values(model: Model, numbers_by: str, kept: Sequence[int]) -> dict[str, list[Value]]:

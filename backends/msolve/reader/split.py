@@ -8,10 +8,11 @@ from typing import Any, NamedTuple
 
 from mdlgen.altair.literals import literal, name_of, without_notes, wrong
 from mdlgen.backends.msolve.environment import environment
+from mdlgen.backends.msolve.writer.parts.kinds import MACHINE
 from mdlgen.errors import Place, SpecError
 
 TABLES = (
-    *("NAME", "GRAVITY", "RUN", "CURVES", "SHEETS", "LISTED", "ROLLERS", "PLANES", "GUIDES", "MESHES"),
+    *("NAME", "GRAVITY", "RUN", "CURVES", "SHEETS", "LISTED", *(of.variable for of in MACHINE)),
     *("SUPPORTS", "LOADS", "PROBES", "CONTACTS", "FORCES"),
 )
 _ALWAYS = ("NAME", "GRAVITY", "RUN")
@@ -58,7 +59,7 @@ def _program(values: dict[str, Any]) -> str:
     there = {name for name, value in values.items() if value}
     run = values["RUN"]
     template = environment().get_template("program.py.j2")
-    return template.render(tables=there, static=isinstance(run, dict) and "end" not in run)
+    return template.render(tables=there, machine=MACHINE, static=isinstance(run, dict) and "end" not in run)
 
 
 def _parsed(text: str, file: str) -> ast.Module:

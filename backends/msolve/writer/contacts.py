@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from mdlgen.altair.recorded import recorded
-from mdlgen.altair.rims import Meeting, Side, graphics, meetings
+from mdlgen.altair.rims import Meeting, Side, meetings
+from mdlgen.backends.msolve.writer.parts.kinds import WRITTEN
 from mdlgen.backends.msolve.writer.units import same, thousandfold
-from mdlgen.model.parts.guide import facets
 from mdlgen.model.tables import Model
 
 Table = dict[str, Any]
@@ -62,19 +62,18 @@ class _Shapes:
 
     def __init__(self, model: Model):
         self.model = model
-        self.rollers = {roller.body: roller for roller in model.rollers}
-        self.counts = {guide.body: len(facets(guide)) for guide in model.guides}
+        self.machine = {part.body: part for part in model.machine}
 
     def name(self, body: int, side: Side) -> str:
         return f"{self.model.bodies.name[body]}{side.suffix}"
 
     def many(self, body: int, side: Side) -> bool:
-        if body in self.rollers:
-            return len(graphics(self.rollers[body], side)) > 1
-        return self.counts.get(body, 1) > 1
+        part = self.machine.get(body)
+        return part is not None and WRITTEN[type(part)].graphics(part, side) > 1
 
     def is_round(self, body: int, side: Side) -> bool:
-        return body in self.rollers and graphics(self.rollers[body], side)[0].startswith("gcyl_")
+        part = self.machine.get(body)
+        return part is not None and WRITTEN[type(part)].is_round(part, side)
 
 
 def forces(model: Model) -> list[tuple[str, str]]:

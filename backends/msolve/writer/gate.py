@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from mdlgen.altair.labels import check_allowed
+from mdlgen.backends.msolve.writer.parts.kinds import WRITTEN
 from mdlgen.model import naming
 from mdlgen.model.tables import Model
 
@@ -22,15 +23,9 @@ def _things(model: Model) -> Iterator[str]:
     yield from ("B_Ground", "Global_Frame")
     for name in model.bodies.name:
         yield f"b_{name}"
-    for roller in model.rollers:
-        if roller.press is not None:
-            yield f"b_{roller.name}_carrier"
-        if roller.arm is not None:
-            yield f"b_{roller.name}_arm"
-        yield f"o_{roller.name}"
+    for part in model.machine:
+        yield from WRITTEN[type(part)].labels(part)
     for name in model.bushings.name:
         yield f"bsh_{name}"
-    for plane in model.planes:
-        yield f"o_{plane.name}"
     for probe in model.probes:
         yield f"o_{probe.name}"

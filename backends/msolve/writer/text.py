@@ -9,8 +9,9 @@ from mdlgen.altair.rolling import refuse_rolling
 from mdlgen.altair.springs import refuse_compressed
 from mdlgen.altair.statics import static_method
 from mdlgen.backends.msolve.environment import environment
-from mdlgen.backends.msolve.writer import contacts, gate, machine, sheets
+from mdlgen.backends.msolve.writer import contacts, gate, sheets
 from mdlgen.backends.msolve.writer.banner import banner
+from mdlgen.backends.msolve.writer.parts.kinds import MACHINE, WRITTEN
 from mdlgen.backends.msolve.writer.units import acceleration, per_thousand, row
 from mdlgen.errors import SpecError
 from mdlgen.model.external import refuse_externals
@@ -28,7 +29,7 @@ def check(model: Model) -> None:
     who = "MotionSolve script"
     refuse_externals(model, who)
     refuse_searched(model, who)
-    refuse_unwritten(model, machine.WRITTEN, who)
+    refuse_unwritten(model, WRITTEN, who)
     refuse_compressed(model, who)
     refuse_rolling(model, who)
 
@@ -43,10 +44,10 @@ def tables(model: Model) -> dict[str, Any]:
         "CURVES": sheets.curves(model),
         "SHEETS": grids,
         "LISTED": listed,
-        "ROLLERS": machine.rollers(model),
-        "PLANES": machine.planes(model),
-        "GUIDES": machine.guides(model),
-        "MESHES": machine.meshes(model),
+        **{
+            of.variable: {part.name: of.kind.table(model, part) for part in model.parts_of(of.part)}
+            for of in MACHINE
+        },
         "SUPPORTS": sheets.supports(model),
         "LOADS": sheets.loads(model),
         "PROBES": sheets.probes(model),
@@ -64,12 +65,15 @@ def emit(model: Model) -> str:
     values = tables(model)
     gate.check(model, values)
     there = {name for name, value in values.items() if value}
-    text = (
-        environment()
-        .get_template("script.py.j2")
-        .render(
-            **values, name=model.name, banner=banner(model), tables=there, static="end" not in values["RUN"]
-        )
+    template = environment().get_template("script.py.j2")
+    text = template.render(
+        **values,
+        values=values,
+        name=model.name,
+        banner=banner(model),
+        tables=there,
+        machine=MACHINE,
+        static="end" not in values["RUN"],
     )
     if not text.isascii() or "\r" in text:
         raise SpecError("the script would hold characters other than ASCII")

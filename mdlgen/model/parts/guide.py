@@ -241,4 +241,4 @@ def _solid(guide: GuidePart) -> Solid:
     return Solid(points @ guide.axes, BOX)
 
 
-GUIDE = _Guides()
+KIND = _Guides()

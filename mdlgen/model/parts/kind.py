@@ -1,6 +1,6 @@
 """What the Model has to know of a kind of part of the machine.
 
-A new kind is a file beside this one, and a line in `kinds.py`.
+A new kind is a file beside this one, called as one is.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from mdlgen.model.press.faces import Bow, Face, Facets
 from mdlgen.model.tables import Bodies, MachinePart, Model, Parameter, Press, RollerPart, SheetPart
 from mdlgen.spec.scene import Scene
 
+NONE = -1
 P = TypeVar("P", bound=MachinePart)
 
 # The centre of a box may be beyond its bounds by one step before a solver sees it; parts reach this far more.
@@ -57,7 +58,7 @@ class Kind(Generic[P]):
     table: ClassVar[str]  # where they stand in a scene: `rollers`
     part: type[P]  # what the Model has for each
     with_sheet: ClassVar[int]  # kind of its contacts with sheets
-    with_roller: ClassVar[int]  # kind of its contacts with rollers
+    with_roller: ClassVar[int] = NONE  # kind of its contacts with rollers; NONE: it has none
     leads: ClassVar[bool] = False  # whether it may lead a sheet in any direction
     curved: ClassVar[bool] = False  # whether its contact with a box takes longer than that of a flat face
     by_area: ClassVar[bool] = (

@@ -1,16 +1,21 @@
-"""All kinds of parts of a machine, in the order in which their bodies are numbered."""
+"""All kinds of parts of a machine, in the order in which their bodies are numbered: that of a scene's tables.
+
+A kind is called as its class in `mdlgen.spec` says, and has a file of that name beside this one.
+"""
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import Any
 
-from mdlgen.model.parts.guide import GUIDE
+from mdlgen.model import parts
 from mdlgen.model.parts.kind import Kind
-from mdlgen.model.parts.mesh import MESH
-from mdlgen.model.parts.plane import PLANE
-from mdlgen.model.parts.roller import ROLLER
+from mdlgen.spec.machine_part import classes_of
+from mdlgen.spec.scene import Scene
 
-KINDS: tuple[Kind[Any], ...] = (ROLLER, PLANE, GUIDE, MESH)
+KINDS: tuple[Kind[Any], ...] = tuple(
+    import_module(f"{parts.__name__}.{part.kind}").KIND for part in classes_of(Scene).values()
+)
 # by the kind of the contacts of sheets with it
 WITH_SHEET: dict[int, Kind[Any]] = {kind.with_sheet: kind for kind in KINDS}
 

@@ -174,4 +174,4 @@ def _bounds(mesh: MeshPart, rollers: tuple[RollerPart, ...]) -> tuple[Floats, Fl
     return ends.min(axis=0) - around, ends.max(axis=0) + around
 
 
-MESH = _Meshes()
+KIND = _Meshes()

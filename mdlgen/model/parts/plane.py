@@ -166,4 +166,4 @@ class _Planes(Kind[PlanePart]):
         return near + part.normal * float((corner - near) @ part.normal)
 
 
-PLANE = _Planes()
+KIND = _Planes()

@@ -327,4 +327,4 @@ def _arm_rows(scene: Scene, name: str) -> list[Parameter]:
     return rows
 
 
-ROLLER = _Rollers()
+KIND = _Rollers()

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from mdlgen.model.parts.kinds import KINDS
 from mdlgen.paths import templates
 from mdlgen.report.html.happened import happened
 from mdlgen.report.html.wording import percent, shown
@@ -52,5 +53,6 @@ def environment() -> Environment:
     from mdlgen import templating
 
     made = templating.environment("report", autoescape=True)
+    made.globals["machine"] = [kind.table for kind in KINDS]
     made.filters |= {"shown": shown, "percent": percent, "happened": happened}
     return made

@@ -17,8 +17,7 @@ from mdlgen.verify.expected.joints import joints
 from mdlgen.verify.expected.loads import loads
 from mdlgen.verify.expected.markers import markers, outputs, vectors
 from mdlgen.verify.expected.motions import Times, motions
-from mdlgen.verify.expected.parts.mesh import mesh_files, meshes
-from mdlgen.verify.expected.parts.roller import cylinders
+from mdlgen.verify.expected.parts.kinds import own_tables
 from mdlgen.verify.expected.points import points
 from mdlgen.verify.tables import Table
 
@@ -33,9 +32,7 @@ def expected(model: Model, times: Times) -> dict[str, Table]:
         "curve laws": curve_laws(model),
         "springs": springs(model),
         "boxes": boxes(model),
-        "cylinders": cylinders(model),
-        "meshes": meshes(model),
-        "mesh files": mesh_files(model),
+        **own_tables(model),
         "joints": joints(model),
         "motions": motions(model, times),
         "clutches": clutches(model, times),

@@ -48,4 +48,4 @@ class _Guides(Kind[GuidePart]):
         return super().names(part) | {f"m_{part.name}"} | shown
 
 
-GUIDE = _Guides()
+KIND = _Guides()

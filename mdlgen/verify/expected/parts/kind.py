@@ -1,6 +1,6 @@
 """What a text must say of a part of the machine, by entity. Lengths in mm, places and axes global.
 
-A new kind is a file beside this one, and a line in `kinds.py`.
+A new kind is a file beside this one, called as one is.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import numpy as np
 
 from mdlgen.altair.rims import Side
 from mdlgen.model.tables import Floats, MachinePart, Model, Press
+from mdlgen.verify.tables import Table
 
 P = TypeVar("P", bound=MachinePart)
 
@@ -111,6 +112,10 @@ class Kind(Generic[P]):
 
     def data(self, model: Model, part: P) -> dict[str, float]:
         """What the text computes, by member of the part's data set."""
+        return {}
+
+    def tables(self, model: Model) -> dict[str, Table]:
+        """Of what shows parts of this kind alone, by what the read-back calls it."""
         return {}
 
     def graphics(self, part: P, side: Side) -> list[str]:

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
+from mdlgen.altair.parts import by_kind
 from mdlgen.errors import RefusedError
-from mdlgen.model.tables import GuidePart, MachinePart, MeshPart, PlanePart, RollerPart
-from mdlgen.verify.expected.parts.guide import GUIDE
+from mdlgen.model.tables import MachinePart, Model
+from mdlgen.verify.expected import parts
 from mdlgen.verify.expected.parts.kind import Kind
-from mdlgen.verify.expected.parts.mesh import MESH
-from mdlgen.verify.expected.parts.plane import PLANE
-from mdlgen.verify.expected.parts.roller import ROLLER
+from mdlgen.verify.tables import Table
 
-KINDS: dict[type, Kind[Any]] = {RollerPart: ROLLER, PlanePart: PLANE, GuidePart: GUIDE, MeshPart: MESH}
+KINDS: dict[type[MachinePart], Kind[Any]] = by_kind(parts)
 
 
 def kind_of(part: MachinePart) -> Kind[Any]:
@@ -21,3 +20,11 @@ def kind_of(part: MachinePart) -> Kind[Any]:
     if kind is None:
         raise RefusedError(f"verify: {part.name} is a {part.kind}, of which no text is expected yet")
     return kind
+
+
+def own_tables(model: Model) -> dict[str, Table]:
+    """The tables that hold one kind of part each."""
+    found: dict[str, Table] = {}
+    for kind in KINDS.values():
+        found |= kind.tables(model)
+    return found

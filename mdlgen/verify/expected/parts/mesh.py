@@ -38,6 +38,9 @@ class _Meshes(Kind[MeshPart]):
         found |= {f"j_{a}": float(v) for a, v in zip("xyz", part.gyration, strict=True)}
         return found | ({} if part.density is None else {"V": part.volume})
 
+    def tables(self, model: Model) -> dict[str, Table]:
+        return {"meshes": meshes(model), "mesh files": mesh_files(model)}
+
     def graphics(self, part: MeshPart, side: Side) -> list[str]:
         return [f"gcad_{part.name}"]
 
@@ -45,7 +48,7 @@ class _Meshes(Kind[MeshPart]):
         return super().names(part) | {f"m_{part.name}", f"gcad_{part.name}", f"p_{part.name}_cm"}
 
 
-MESH = _Meshes()
+KIND = _Meshes()
 
 
 def _under(model: Model, mesh: MeshPart) -> str:

@@ -49,4 +49,4 @@ class _Planes(Kind[PlanePart]):
         return super().names(part) | {f"p_{part.name}_anchor", f"j_{part.name}_slide"}
 
 
-PLANE = _Planes()
+KIND = _Planes()

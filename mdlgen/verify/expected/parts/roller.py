@@ -99,6 +99,9 @@ class _Rollers(Kind[RollerPart]):
             found |= {f"{name}_deep": DEEP * radius, f"{name}_chord": 2 * radius * math.tan(turn / 2)}
         return found if part.arm is None else {**found, "I_a": part.arm.inertia * KG}
 
+    def tables(self, model: Model) -> dict[str, Table]:
+        return {"cylinders": cylinders(model)}
+
     def graphics(self, part: RollerPart, side: Side) -> list[str]:
         return graphics(part, side)
 
@@ -113,7 +116,7 @@ class _Rollers(Kind[RollerPart]):
         return found
 
 
-ROLLER = _Rollers()
+KIND = _Rollers()
 
 
 def cylinders(model: Model) -> Table:

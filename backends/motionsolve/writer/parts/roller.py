@@ -12,6 +12,7 @@ from mdlgen.backends.motionsolve.writer.body import add_body
 from mdlgen.backends.motionsolve.writer.facets import Shown
 from mdlgen.backends.motionsolve.writer.ids import GROUND_ID, body_id, graphic_id
 from mdlgen.backends.motionsolve.writer.joints import add_slide, join
+from mdlgen.backends.motionsolve.writer.parts.kind import Kind
 from mdlgen.backends.motionsolve.writer.requests import add_request
 from mdlgen.backends.motionsolve.writer.rows import (
     Bushing,
@@ -28,45 +29,46 @@ from mdlgen.model.tables import ArmPart, Floats, Model, OneWay, Press, RollerPar
 _CONVERT = ((0, per_thousand), (1, thousandfold))  # the columns of a profile
 
 
-def add_frame(deck: Deck, model: Model, roller: RollerPart) -> None:
-    """The axes of a rim, on ground."""
-    if roller.rim is not None:
-        (at,) = triples(model.bodies.position[roller.body][None])
-        axes = cosines(model.bodies.rotation[roller.body])
-        deck.marker(f"m_{roller.name}", f"Axes of {roller.name}", GROUND_ID, at, axes)
+class _Rollers(Kind[RollerPart]):
+    rank = 2
 
+    def add_frame(self, deck: Deck, model: Model, part: RollerPart) -> None:
+        """The axes of a rim, on ground."""
+        if part.rim is not None:
+            (at,) = triples(model.bodies.position[part.body][None])
+            axes = cosines(model.bodies.rotation[part.body])
+            deck.marker(f"m_{part.name}", f"Axes of {part.name}", GROUND_ID, at, axes)
 
-def shown(model: Model, roller: RollerPart) -> list[Shown]:
-    """The boxes that show a rim."""
-    made, table = [], model.bodies
-    for part, facet in rim_facets(roller, table.position[roller.body], table.rotation[roller.body]):
-        pieces = part.removeprefix(f"{roller.name}_").split("_")
-        made.append(Shown(f"gbox_{part}", f"{roller.name}, {pieces[0]}, part {pieces[1]}", facet))
-    return made
+    def shown(self, model: Model, part: RollerPart) -> list[Shown]:
+        """The boxes that show a rim."""
+        made, table = [], model.bodies
+        for name, facet in rim_facets(part, table.position[part.body], table.rotation[part.body]):
+            pieces = name.removeprefix(f"{part.name}_").split("_")
+            made.append(Shown(f"gbox_{name}", f"{part.name}, {pieces[0]}, part {pieces[1]}", facet))
+        return made
 
-
-def add_roller(deck: Deck, model: Model, roller: RollerPart) -> None:
-    """Axle, drive, cylinder and what is recorded; a carrier, or an arm, follows the bodies of the Model."""
-    place = model.bodies.position[roller.body]
-    on = GROUND_ID
-    if roller.press is not None:
-        on = body_id(len(deck.bodies))
-        _add_press(deck, roller, roller.press, place, on)
-    if roller.arm is not None:
-        on = body_id(len(deck.bodies))
-        _add_arm(deck, model, roller, roller.arm, on)
-    body = body_id(roller.body)
-    axle = join(deck, f"j_{roller.name}", f"Axle of {roller.name}", "REVOLUTE", body, on, place, roller.axis)
-    if roller.one_way is not None:
-        _add_clutch(deck, model, roller, roller.one_way, deck.joints[-1])
-    elif roller.speed is not None:
-        name, label = f"mot_{roller.name}", f"Drive of {roller.name}"
-        deck.motions.append(Motion(name, label, len(deck.motions) + 1, law(roller), axle))
-    _add_cylinder(deck, model, roller, place)
-    markers = [deck.bodies[roller.body].cm]
-    add_request(
-        deck, f"o_{roller.name}", f"Roller {roller.name}: position, spin", "DX DY DZ WX WY WZ", markers
-    )
+    def add_joints(self, deck: Deck, model: Model, part: RollerPart) -> None:
+        """Axle, drive, cylinder and what is recorded; a carrier, or an arm, follows the Model's bodies."""
+        place = model.bodies.position[part.body]
+        on = GROUND_ID
+        if part.press is not None:
+            on = body_id(len(deck.bodies))
+            _add_press(deck, part, part.press, place, on)
+        if part.arm is not None:
+            on = body_id(len(deck.bodies))
+            _add_arm(deck, model, part, part.arm, on)
+        body = body_id(part.body)
+        axle = join(deck, f"j_{part.name}", f"Axle of {part.name}", "REVOLUTE", body, on, place, part.axis)
+        if part.one_way is not None:
+            _add_clutch(deck, model, part, part.one_way, deck.joints[-1])
+        elif part.speed is not None:
+            name, label = f"mot_{part.name}", f"Drive of {part.name}"
+            deck.motions.append(Motion(name, label, len(deck.motions) + 1, law(part), axle))
+        _add_cylinder(deck, model, part, place)
+        markers = [deck.bodies[part.body].cm]
+        add_request(
+            deck, f"o_{part.name}", f"Roller {part.name}: position, spin", "DX DY DZ WX WY WZ", markers
+        )
 
 
 def law(roller: RollerPart) -> str:
@@ -149,3 +151,6 @@ def _add_cylinder(deck: Deck, model: Model, roller: RollerPart, place: Floats) -
             length=number(roller.width),
         )
     )
+
+
+KIND = _Rollers()

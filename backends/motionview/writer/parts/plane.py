@@ -1,0 +1,45 @@
+"""Rows of planes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mdlgen.backends.motionview.writer.axes import axis_of, components, zx_vector
+from mdlgen.backends.motionview.writer.parts.kind import Kind, PartView
+from mdlgen.backends.motionview.writer.rows import Axis, Value
+from mdlgen.model.tables import Model, PlanePart
+
+
+@dataclass(frozen=True)
+class PlaneView(PartView):
+    """One plane."""
+
+    template = "plane.mdl.j2"
+    normal: Axis
+    guide: str
+    pressed: bool
+    press: tuple[str, str, str]
+    mass: str  # formula of all that slides
+
+
+class _Planes(Kind[PlanePart]):
+    def view(self, model: Model, part: PlanePart, given: list[Value]) -> PlaneView:
+        """One plane; its body has z along the normal."""
+        press = part.press
+        return PlaneView(
+            name=part.name,
+            given=given,
+            normal=axis_of(f"v_{part.name}_normal", part.normal),
+            guide=zx_vector(model.bodies.rotation[part.body]),
+            pressed=press is not None,
+            press=components(press.direction if press is not None else np.zeros(3)),
+            mass="($M+$M_c)" if any(value.member == "M_c" for value in given) else "$M",
+        )
+
+    def graphics(self, part: PlanePart) -> list[str]:
+        return [f"gbox_{part.name}"]
+
+
+KIND = _Planes()

@@ -1,0 +1,115 @@
+"""Rows of rollers, with their arms and rims."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from mdlgen.altair.rims import DEEP, WHOLE, graphics
+from mdlgen.backends.motionview.writer.axes import axis_of, components, zx_vector
+from mdlgen.backends.motionview.writer.parts.kind import Kind, PartView
+from mdlgen.backends.motionview.writer.rows import Axis, Value
+from mdlgen.backends.motionview.writer.units import number
+from mdlgen.model.tables import Model, RimPart, RollerPart
+
+
+class ArmView(NamedTuple):
+    """An arm: its centre of mass, and whether it has a spring."""
+
+    center: tuple[str, str, str]
+    sprung: bool
+
+
+class SectorView(NamedTuple):
+    """A sector of a rim: its angles (deg) and radius as formulas, and how many boxes show it."""
+
+    name: str
+    begin: str
+    radius: str
+    facets: int
+
+
+@dataclass(frozen=True)
+class RollerView(PartView):
+    """One roller."""
+
+    template = "roller.mdl.j2"
+    axis: Axis
+    guide: str  # global vector that fixes the x axis of the body
+    driven: bool  # has a speed: of its axle, or of the shaft of its clutch
+    free_sense: int  # of its clutch, 1 or -1; 0: it has none
+    ramped: bool
+    corners: int  # of its speed over time; 0: a ramp
+    pressed: bool
+    press: tuple[str, str, str]
+    arm: ArmView | None
+    rim: list[SectorView]
+    derived: list[tuple[str, str, str]]
+
+
+class _Rollers(Kind[RollerPart]):
+    def view(self, model: Model, part: RollerPart, given: list[Value]) -> RollerView:
+        """One roller; its body has z along the axis."""
+        press = part.press
+        rim, derived = _rim(part.rim) if part.rim is not None else ([], [])
+        members, axis = {value.member for value in given}, axis_of(f"v_{part.name}_axis", part.axis)
+        arm = None
+        if part.arm is not None:
+            x, y, z = (f"$g_{a}" if "g_x" in members else f"($a_{a}+${a})/2" for a in "xyz")
+            arm = ArmView((x, y, z), part.arm.sprung)
+            if "I_a" not in members:
+                derived = [("I_a", "Inertia of the arm, a rod (kg mm2)", _rod(axis.vector)), *derived]
+        return RollerView(
+            name=part.name,
+            given=given,
+            axis=axis,
+            guide=zx_vector(model.bodies.rotation[part.body]),
+            driven=part.speed is not None,
+            free_sense=0 if part.one_way is None else part.one_way.direction,
+            ramped=part.ramp > 0.0,
+            corners=0 if part.profile is None else len(part.profile),
+            pressed=press is not None,
+            press=components(press.direction if press is not None else np.zeros(3)),
+            arm=arm,
+            rim=rim,
+            derived=derived,
+        )
+
+    def graphics(self, part: RollerPart) -> list[str]:
+        return graphics(part, WHOLE)
+
+
+def _rod(axis: str) -> str:
+    """Inertia of a rod from the pivot of an arm to the roller, about the middle along the axis."""
+    along = "+".join(f"(${a}-$a_{a})*{axis}.{a}" for a in "xyz")
+    square = "+".join(f"(${a}-$a_{a})^2" for a in "xyz")
+    return f"$M_a*({square}-({along})^2)/12"
+
+
+def _rim(rim: RimPart) -> tuple[list[SectorView], list[tuple[str, str, str]]]:
+    """The sectors of a rim, and what is computed of them; the number of their boxes is fixed in a text."""
+    views, derived = [], []
+    given = [name for name in rim.name if name[0] == "s"]
+    for k, (name, own, facets) in enumerate(zip(rim.name, rim.own, rim.facets, strict=True)):
+        number_of = int(name[1:])
+        begin, end = f"$s{number_of}_from", f"$s{number_of}_to"
+        if name[0] == "g":
+            begin = end
+            end = f"$s{number_of + 1}_from" if number_of + 1 < len(given) else "($s0_from+360)"
+        radius = f"${name}_radius" if own else "$R"
+        what = f"Sector {number_of}" if name[0] == "s" else f"Behind sector {number_of}"
+        derived += [
+            (f"{name}_n", f"{what} : boxes that show it; fixed in this text", str(facets)),
+            (f"{name}_turn", f"{what} : angle of one of them", f"({end}-{begin})*PI/180/${name}_n"),
+            (f"{name}_deep", f"{what} : thickness of a box (mm)", f"{number(DEEP)}*{radius}"),
+            (f"{name}_chord", f"{what} : length of a box (mm)", f"2*{radius}*tan(${name}_turn/2)"),
+        ]
+        # within a turn either way, as people write angles
+        turns = 360 * round(np.degrees(0.5 * (rim.begin[k] + rim.end[k])) / 360)
+        views.append(SectorView(name, f"({begin}-({turns}))" if turns else begin, radius, facets))
+    return views, derived
+
+
+KIND = _Rollers()

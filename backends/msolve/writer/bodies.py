@@ -1,0 +1,40 @@
+"""Values that several kinds of parts have: those of a body, of a spring that presses it, of a box."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from mdlgen.backends.msolve.writer.units import axes, per_thousand, row, same
+from mdlgen.model.parts.guide import Facet
+from mdlgen.model.tables import Model, PlanePart, Press, RollerPart
+
+Table = dict[str, Any]
+
+
+def body(model: Model, body: int) -> Table:
+    """Place, axes, mass and inertia of a body."""
+    table = model.bodies
+    return {
+        "center": row(table.position[body]),
+        "axes": axes(table.rotation[body]),
+        "mass": per_thousand(table.mass[body]),
+        "inertia": row(table.inertia[body], per_thousand),
+    }
+
+
+def press(part: RollerPart | PlanePart, spring: Press) -> Table:
+    """A spring that is anchored its free length from where it touches."""
+    anchor = part.center + (spring.touch - spring.free_length) * spring.direction
+    return {
+        "direction": row(spring.direction),
+        "anchor": row(anchor),
+        "k": same(spring.stiffness),
+        "c": per_thousand(spring.damping),
+        "force": same(spring.preload),
+        "length": same(spring.free_length),
+    }
+
+
+def box(facet: Facet) -> tuple[Any, ...]:
+    """Place, axes and lengths of a box."""
+    return row(facet.center), axes(facet.rotation), row(list(facet.lengths))
