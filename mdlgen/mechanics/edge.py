@@ -27,10 +27,9 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from mdlgen.mechanics.contact import local
 from mdlgen.mechanics.frame import Vector
 from mdlgen.mechanics.point import Load, push
-from mdlgen.mechanics.vector import add, back, dot, rotate, scale, sub
+from mdlgen.mechanics.vector import add, back, dot, local, rotate, scale, sub
 from mdlgen.program.kernel import BORROWS, njit
 
 NORM = 12.0

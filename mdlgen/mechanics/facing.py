@@ -21,9 +21,9 @@ import math
 
 import numpy as np
 
-from mdlgen.mechanics.contact import clip, face_corners, local
+from mdlgen.mechanics.contact import clip, face_corners
 from mdlgen.mechanics.point import Load, push
-from mdlgen.mechanics.vector import add, back, dot, rotate, scale, sub, transpose_matmul
+from mdlgen.mechanics.vector import add, back, dot, local, rotate, scale, sub, transpose_matmul
 from mdlgen.program.kernel import OWNS, njit
 
 # Parts of the boxes' size by which another face must overlap less to own the contact: round-off does not

@@ -27,7 +27,6 @@ import math
 
 import numpy as np
 
-from mdlgen.mechanics.contact import local
 from mdlgen.mechanics.mesh_pressure import gather
 from mdlgen.mechanics.mesh_side import Placed, meet_sides
 from mdlgen.mechanics.point import PRESSING, Load, Nip, passing, push, push_in_nip
@@ -37,6 +36,7 @@ from mdlgen.mechanics.vector import (
     back,
     cross,
     dot,
+    local,
     matmul,
     nine,
     rotate,

@@ -56,7 +56,7 @@ OVER = 23  # the speed over which its damping is whole
 MOST_COUPLE, RADIUS, ROLLING, AXIS = 6, 7, 9, 17
 POINT = 24
 NEVER = 1e30  # over such a speed nothing is damped
-MOST_POINTS = 25  # of one pair: three parts of a face, two stations, two points; twice for a corner; a couple
+MOST_POINTS = 64  # of one pair: an oblique face under a roller has up to 48, a corner more, and a couple
 
 
 class Load(NamedTuple):

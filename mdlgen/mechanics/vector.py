@@ -173,3 +173,12 @@ def turned(theta, s, c):
         c * y * z + s * x,
         1 - c * (x * x + y * y),
     )
+
+
+@njit(cache=True, error_model="numpy")
+def local(p, r, q, a, b, c):
+    """The vector with components a, b, c on the axes p, r, q."""
+    x = a if p == 0 else b if r == 0 else c
+    y = a if p == 1 else b if r == 1 else c
+    z = a if p == 2 else b if r == 2 else c
+    return (x, y, z)
