@@ -29,7 +29,7 @@ CHECKS: tuple[Callable[[Model], Iterator[Lint]], ...] = (
     sheets.aspect,
     sheets.idle_in_plane,
     sheets.idle_clamp,
-    contacts.facets,
+    contacts.coarse_boxes,
     contacts.deep_nip,
     contacts.deep_stack,
     contacts.smoothing,

@@ -20,8 +20,9 @@ SCENE = {
     ),
     "W104": (
         "Boxes are flat. A roller whose radius is below half a box's length meets a face, or an edge, "
-        "where a sheet would wrap around it; forces and slip are then those of the grid. Use more boxes "
-        "along the way the sheet runs, or grading near the roller."
+        "where a sheet would wrap around it; forces and slip are then those of the grid. The boxes rattle, "
+        "too, so estimates of errors are taken four times. Use more boxes along the way the sheet runs, or "
+        "grading near the roller."
     ),
     "W105": (
         "The preload presses a pressed roller deeper into the sheet than half of its thickness, so "

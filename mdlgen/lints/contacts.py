@@ -7,13 +7,13 @@ from collections.abc import Iterator
 import numpy as np
 
 from mdlgen.lints.lint import Lint
+from mdlgen.model.nips import facets, nips
 from mdlgen.model.parts.roller import FLAT
 from mdlgen.model.press import balance
 from mdlgen.model.rolling import rolls
 from mdlgen.model.sheet_pairs import linked
 from mdlgen.model.tables import (
     BOX_BOX,
-    BOX_CYLINDER,
     BOX_PLANE,
     CYLINDER_CYLINDER,
     Floats,
@@ -30,21 +30,15 @@ DEEP = 0.505
 BESIDE = 1.5  # boxes that carry a roller, over those that it stands on: their neighbours tilt with them
 
 
-def facets(model: Model) -> Iterator[Lint]:
-    for _, sheet, roller in nips(model):
-        if sheet.count == 1:
-            continue
-        across = [abs(float(roller.axis @ sheet.rotation[:, k])) for k in range(2)]
-        axis = 0 if across[0] <= across[1] else 1
-        length = float(2 * model.bodies.half[sheet.first : sheet.first + sheet.count, axis].max())
-        if roller.radius < length / 2:
-            yield Lint(
-                "W104",
-                f"rollers.{roller.name}.radius",
-                f"radius {roller.radius:g} mm is below half a box ({length / 2:.3g} mm) of {sheet.name}: "
-                "flat boxes cannot follow the roller",
-                "use more boxes along the roller's circumference",
-            )
+def coarse_boxes(model: Model) -> Iterator[Lint]:
+    for sheet, roller, length in facets(model):
+        yield Lint(
+            "W104",
+            f"rollers.{roller.name}.radius",
+            f"radius {roller.radius:g} mm is below half a box ({length / 2:.3g} mm) of {sheet.name}: "
+            "flat boxes cannot follow the roller",
+            "use more boxes along the roller's circumference",
+        )
 
 
 def deep_nip(model: Model) -> Iterator[Lint]:
@@ -140,14 +134,6 @@ def idle_rolling(model: Model) -> Iterator[Lint]:
                 f"{contacts.rolling[rows[0]]:g} between {one} and {two} does nothing: neither is a roller",
                 "leave it out, or name a contact with a roller",
             )
-
-
-def nips(model: Model) -> Iterator[tuple[int, SheetPart, RollerPart]]:
-    """(row of contacts, sheet, roller) of every sheet-roller pair."""
-    sheets = {s.name: s for s in model.sheets}
-    rollers = {r.name: r for r in model.rollers}
-    for row in np.flatnonzero(model.contacts.kind == BOX_CYLINDER):
-        yield int(row), sheets[model.contacts.part_a[row]], rollers[model.contacts.part_b[row]]
 
 
 def deep(depth: float, sheet: SheetPart) -> bool:

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from mdlgen.lints.contacts import nips
 from mdlgen.lints.lint import Lint
+from mdlgen.model.nips import nips
 from mdlgen.model.parts.kinds import WITH_SHEET, kind_of
 from mdlgen.model.tables import (
     BOX_BOX,

@@ -1,4 +1,5 @@
-"""Which rollers face each other across a sheet, and the round that the force of each is spread as.
+"""Pairs of sheets and rollers: which rollers face each other across a sheet, and the round that the force of
+each is spread as; which boxes are too long to follow a roller.
 
 Each of them presses with k z^1.5 in parallel to the other, so with the same force as deep as k^(-2/3). The
 reach sqrt(2 r z) of a pressure of radius r is then the same for all where r goes with k^(2/3); the factor is
@@ -12,7 +13,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from mdlgen.model.tables import BOX_CYLINDER, Contacts, Floats, RollerPart, SheetPart
+from mdlgen.model.tables import BOX_CYLINDER, Contacts, Floats, Model, RollerPart, SheetPart
 
 PARALLEL = 0.985  # cosine of 10 degrees
 # Of a sheet's thickness: a wider gap between two rollers has room for it.
@@ -100,3 +101,23 @@ def _across(vector: Floats, roller: RollerPart) -> Floats:
 
 def _parallel(one: Floats, other: Floats) -> bool:
     return abs(float(one @ other)) > PARALLEL * float(np.linalg.norm(one) * np.linalg.norm(other))
+
+
+def nips(model: Model) -> Iterator[tuple[int, SheetPart, RollerPart]]:
+    """(row of contacts, sheet, roller) of every sheet-roller pair."""
+    sheets = {s.name: s for s in model.sheets}
+    rollers = {r.name: r for r in model.rollers}
+    for row in np.flatnonzero(model.contacts.kind == BOX_CYLINDER):
+        yield int(row), sheets[model.contacts.part_a[row]], rollers[model.contacts.part_b[row]]
+
+
+def facets(model: Model) -> Iterator[tuple[SheetPart, RollerPart, float]]:
+    """(sheet, roller, length of a box [mm]) of every such pair whose flat boxes cannot follow the roller."""
+    for _, sheet, roller in nips(model):
+        if sheet.count == 1:
+            continue
+        across = [abs(float(roller.axis @ sheet.rotation[:, k])) for k in range(2)]
+        axis = 0 if across[0] <= across[1] else 1
+        length = float(2 * model.bodies.half[sheet.first : sheet.first + sheet.count, axis].max())
+        if roller.radius < length / 2:
+            yield sheet, roller, length

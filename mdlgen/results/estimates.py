@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
+from mdlgen.model.nips import facets
 from mdlgen.results.quantities import Difference, differences
 
 if TYPE_CHECKING:
@@ -23,6 +24,9 @@ if TYPE_CHECKING:
 # Of the last difference: for two runs that judge a trajectory; for what the tolerance does not judge, forces,
 # peaks, speeds and probes, of which two runs agree by accident more often.
 SAFETY, SAFETY_REST = 2.0, 4.0
+# Times that again where boxes are too long to follow a roller: they rattle in its nip, and runs at several
+# steps may share an error.
+FACETS = 4.0
 # What the difference before the last leaves of itself at an order of two.
 SECOND_ORDER = 0.25
 # Ratios of the difference before to the last one: of an order of a third, below which they do not fall;
@@ -68,13 +72,15 @@ def between(runs: Sequence[Result], judged: bool = False) -> dict[str, Estimate]
         return {name: Estimate(None, q.scale, q.unit, q.judged) for name, q in known.items()}
     before = differences(runs[1], runs[2], judged) if len(runs) > 2 else {}
     touching = any(run.touched for run in runs)
+    faceted = FACETS if any(facets(result.model)) else 1.0
     for name, last in after.items():
         there = before.get(name)
         earlier = None if there is None else there.value * there.scale / last.scale
         judged = last.judged is not None
-        safety = 1.0 if judged and result.checks else _safety(last)
+        asked = judged and result.checks
+        safety, times = (1.0, 1.0) if asked else (_safety(last), faceted)
         most = MOST * (last.judged or last.scale) / last.scale
-        value = rule(last.value, earlier, safety, judged, most)
+        value = rule(times * last.value, earlier and times * earlier, safety, judged, most)
         least = result.model.run.tolerance * _floor(last, touching, result.model)
         found[name] = Estimate(
             None if value is None else max(value, least), last.scale, last.unit, last.judged
