@@ -187,7 +187,7 @@ name: stub
 gravity: [0 m/s^2, 0 m/s^2, -9.81 m/s^2]
 materials: {{p: {{E_md: 3530 MPa, E_cd: 1113 MPa, D_md: 0.40 N*mm, D_cd: 0.242 N*mm}}}}
 sheets:
-  n: {{material: p, size: [67 mm, 60 mm], thickness: 0.1 mm, mass: 0.3216 g, boxes: [20, 6],
+  n: {{material: p, size: [67 mm, 60 mm], thickness: 0.1 mm, mass: 0.3216 g, boxes: [20, 2],
       center: [-35.5 mm, 0 mm, 0 mm], velocity: [1.4 m/s, 0 m/s, 0 m/s]}}
 rollers:
   motor: {{center: [-10 mm, 0 mm, -7.504 mm], axis: y, radius: 7.5 mm, width: 50 mm, mass: 10 g,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from itertools import pairwise
 
 import numpy as np
@@ -11,6 +12,7 @@ import ran
 from papers import on_paper
 
 from mdlgen.backends.exudyn_local import solve
+from mdlgen.backends.exudyn_local.shipped import jacobian
 from mdlgen.cli import app
 from mdlgen.model.lower import lower
 from mdlgen.spec.load import load, loads
@@ -246,12 +248,12 @@ def test_energy_balances_in_a_bounce():
 
 def test_pruning_changes_nothing():
     """The series of a piece of the transport is the same with all pairs kept."""
-    short = ("run.duration=1 ms",)
+    short = ("run.duration=1 ms", "sheets.note.boxes=[5,8]")
     one = run("samples/transport_4x4.yaml", *short)
     two = run("samples/transport_4x4.yaml", *short, "run.prune=false")
     # the same forces in another order of unknowns: equal to Newton's tolerance
     assert np.abs(one.position - two.position).max() < 1e-6
-    assert len(two.model.pairs) == 1804
+    assert (len(one.model.pairs), len(two.model.pairs)) == (68, 364)
 
 
 def test_a_block_rests_on_a_plate_smaller_than_itself():
@@ -386,10 +388,18 @@ def test_a_buckled_column_is_the_elastica(across):
     assert 1.0 + tip[1] == pytest.approx(exact.x, abs=0.01)
 
 
-def test_a_state_that_goes_non_finite_ends_with_a_reason():
-    """A nip at steps of 20 ms: Exudyn's sparse factor would end the process on such a stiffness."""
-    sets = ("run.duration=50 ms", "run.print_step=0.5 ms", "run.step=20 ms")
-    result = solve(lower(load("samples/transport_4x4.yaml", sets)))
+def test_a_state_that_goes_non_finite_ends_with_a_reason(monkeypatch):
+    """Nips at steps of 5 ms: Exudyn's sparse factor would end the process on such a stiffness."""
+    solver, found = sys.modules[solve.__module__], []
+
+    def seen(*args):
+        jacobian(*args)
+        found.append(np.isfinite(args[-1]).all())
+
+    monkeypatch.setattr(solver, "jacobian", seen)
+    sets = ("run.duration=50 ms", "run.print_step=0.5 ms", "run.step=5 ms", "run.prune=false")
+    result = solve(lower(load("samples/transport_4x4.yaml", (*sets, "sheets.note.boxes=[4,6]"))))
+    assert not all(found)
     assert not result.ok and result.status
 
 

@@ -14,7 +14,6 @@ from mdlgen.results.compare import compare
 from mdlgen.results.events import events
 from mdlgen.results.result import Result
 from mdlgen.spec.load import load
-from mdlgen.verify.verification import verify
 
 COARSE = ("sheets.note_1.boxes=[10,8]", "run.step=0.0625 ms")
 # note on rejection roller below note on note
@@ -71,13 +70,6 @@ def test_both_leave_where_notes_rub_more_on_each_other_than_on_the_rejection_rol
     result = run("feeder", *SWAPPED, "run.duration=60 ms")
     assert together(result) > 58.0
     assert place(result, 1, 60.0) - place(result, 1, STANDS) > 2.0
-
-
-@pytest.mark.parametrize("name, notes", [("feeder_one", 1), ("feeder", 2)])
-def test_its_text_says_the_same(name: str, notes: int) -> None:
-    few = [f"sheets.note_{number}.boxes=[4,3]" for number in range(1, notes + 1)]
-    scene = load(samples() / f"{name}.yaml", few)
-    assert verify(scene, lower(scene)).ok
 
 
 def test_lattice_and_exudyn_agree_on_its_first_60_ms() -> None:

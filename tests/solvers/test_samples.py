@@ -26,8 +26,12 @@ def solved(name, solver="auto", *sets):
 
 
 PIECES = {
-    # Exudyn takes a minute for all of it: to where the second note has left the pick roller, which lands then
-    ("retard_pad", "exudyn"): ("run.duration=160 ms", "run.tolerance=0.01"),
+    # Exudyn takes a minute for all of it: to where the second note has left the pick roller, which lands
+    # then, with notes that are one box wide
+    ("retard_pad", "exudyn"): (
+        *("run.duration=160 ms", "run.tolerance=0.01"),
+        *("sheets.note_1.boxes=[8,1]", "sheets.note_2.boxes=[8,1]"),
+    ),
     # blocks, which tests/solvers/test_exudyn.py runs to what their samples say
     ("verify/drop", "exudyn"): ("run.duration=150 ms",),
     ("verify/incline", "exudyn"): ("run.duration=100 ms",),

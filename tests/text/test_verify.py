@@ -117,6 +117,7 @@ def test_a_statement_that_is_left_out_is_caught(only: str | None, tmp_path: Path
     assert tried >= (20 if only else 30)
 
 
+@pytest.mark.usefixtures("text_alone")
 @pytest.mark.parametrize(
     ("old", "new"),
     [

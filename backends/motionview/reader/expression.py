@@ -10,6 +10,7 @@ import math
 import operator
 import re
 from collections.abc import Callable
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from mdlgen.backends.motionview.reader.functions import FUNCTIONS
@@ -59,6 +60,7 @@ def literal(text: str) -> float | None:
     return number if math.isfinite(number) else None
 
 
+@lru_cache(maxsize=10_000)  # of the texts that are read while a scene is verified, most are the same
 def compiled(text: str) -> Compiled:
     """Raises Trouble (with the offset in `text`) for what is no expression."""
     return _Parser(text).whole()

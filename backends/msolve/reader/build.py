@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+from types import CodeType
 from typing import Any, NamedTuple
 
 from mdlgen.backends.msolve.reader.split import Script
@@ -26,7 +28,7 @@ def made(script: Script, file: str, most: int = MOST) -> Made:
     own |= script.values
     own["__name__"] = "script"
     try:
-        exec(compile(script.program, "<program of mdlgen>", "exec"), own)
+        exec(_code(script.program), own)
         own["run"](own["build"]())
     except Simulated as simulated:
         return Made(list(things), simulated.arguments)
@@ -36,3 +38,8 @@ def made(script: Script, file: str, most: int = MOST) -> Made:
         what = f"{type(error).__name__}: {error}" if not isinstance(error, TypeError) else str(error)
         raise SpecError(f"its values make no model: {what}"[:300], place=Place(file, 1, 1)) from None
     raise AssertionError("the program runs a simulation")
+
+
+@lru_cache(maxsize=8)
+def _code(program: str) -> CodeType:
+    return compile(program, "<program of mdlgen>", "exec")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 from mdlgen.altair.literals import literal, name_of, without_notes, wrong
@@ -50,8 +51,13 @@ def split(text: str, file: str) -> Script:
                 f"there is no {name} below its imports: this is no script of mdlgen", place=Place(file, 1, 1)
             )
     program = _program(values)
-    same = ast.dump(ast.Module(without_notes(rest), [])) == ast.dump(ast.parse(_HEAD + program))
+    same = ast.dump(ast.Module(without_notes(rest), [])) == _tree(program)
     return Script(values, program, same)
+
+
+@lru_cache(maxsize=8)
+def _tree(program: str) -> str:
+    return ast.dump(ast.parse(_HEAD + program))
 
 
 def _program(values: dict[str, Any]) -> str:
