@@ -12,6 +12,8 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
+PER_SECOND = 1000.0  # what is per ms, as speeds in mm/ms and rad/ms are, to what is per s
+
 
 class Unit(NamedTuple):
     """Factor to the internal set, and exponents of length, mass, time, angle."""

@@ -69,11 +69,12 @@ class Recorder:
         observe.ledger(self.tables, self.state, self.mid, t, energies, rows)
         if self.system.mirror is not None:
             energies *= 2.0
-        now = (float(energies[0]), float(energies[1]), float(energies[2]))
+        kinetic, elastic, potential = energies.tolist()
+        now = (kinetic, elastic, potential)
         if self._first is None:
             self._first = now
         self._last = now
-        self._most = max(self._most, now[0] + now[1])
+        self._most = max(self._most, kinetic + elastic)
         self._times.append(t)
         motion = self.mid.motion
         for name, array in (("x", self.state.x), ("r", self.state.r), ("u", motion.u), ("w", motion.w)):

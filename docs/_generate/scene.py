@@ -14,8 +14,8 @@ from pydantic.fields import FieldInfo
 
 from mdlgen.spec.contact import Friction
 from mdlgen.spec.curve import Curve
-from mdlgen.spec.fields import Default, one_or_two, quantity, ratio
 from mdlgen.spec.grading import Graded
+from mdlgen.spec.quantities import Default, one_or_two, quantity, ratio
 from mdlgen.spec.scene import Scene
 
 HEAD = f"""{NOTE}# Every key of a scene

@@ -10,11 +10,11 @@ import numpy as np
 from mdlgen.geometry.solids import Solid, arrow
 from mdlgen.model.frames import frame
 from mdlgen.model.tables import Floats, Model, PlanePart, RollerPart
+from mdlgen.units import PER_SECOND
 
 LENGTH, LEAST = 0.1, 0.35  # of the greatest arrow, in times the scene's diagonal; of the least, in its own
 BREADTH = 0.16  # of a head, in times the greatest length
 AWAY = np.array([-0.55, -0.75, 0.5])  # where a scene is first looked at from
-PER_SECOND = 1000.0
 
 
 @dataclass(frozen=True)

@@ -17,12 +17,11 @@ from mdlgen.model.tables import (
     Ints,
     Model,
 )
+from mdlgen.units import PER_SECOND
 
 if TYPE_CHECKING:
     from mdlgen.results.result import Result
     from mdlgen.results.strain import SheetJoints
-
-PER_SECOND = 1000.0
 
 
 def count(model: Model) -> int:

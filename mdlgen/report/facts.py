@@ -7,9 +7,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from mdlgen.model.parts.kinds import kind_of
-from mdlgen.model.parts.words import PER_SECOND
 from mdlgen.model.tables import Anchor, Floats, Model, SheetPart
 from mdlgen.report.arrows import extent
+from mdlgen.units import PER_SECOND
 
 
 def facts(model: Model) -> Iterator[tuple[str, str, Floats, list[str]]]:

@@ -17,6 +17,7 @@ from mdlgen.model.tables import BOX_CYLINDER, Floats, Ints, Model, RollerPart
 from mdlgen.results.contact_line import ContactLine, chosen, contact_line, of_row
 from mdlgen.results.stacked import stacked
 from mdlgen.results.stubs import stops
+from mdlgen.units import PER_SECOND
 
 if TYPE_CHECKING:
     from mdlgen.results.result import Result
@@ -33,7 +34,6 @@ JAM_PART, JAM_TIME = 0.1, 5.0
 # A sheet that is slower than this [mm/ms] stands: smoothed friction lets what waits under a force creep.
 # One that is slower than this part of another one is held back while that one is fed.
 STANDS, HELD_PART = 0.01, 0.1
-PER_SECOND = 1000.0
 
 
 @dataclass(frozen=True)

@@ -12,9 +12,10 @@ import numpy as np
 
 from mdlgen.model.tables import Floats
 from mdlgen.results.compare import travel
-from mdlgen.results.summary import PER_SECOND, part_rows
+from mdlgen.results.summary_of_parts import part_rows
 from mdlgen.results.torques import contact_torque, drive_power, drive_torque, grips
 from mdlgen.results.wording import number, numbers
+from mdlgen.units import PER_SECOND
 
 if TYPE_CHECKING:
     from mdlgen.results.result import Result

@@ -6,7 +6,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from mdlgen.spec.fields import ForceVector, MomentVector, Name, Point2, quantity
+from mdlgen.spec.fields import ForceVector, MomentVector, Name, Point2
+from mdlgen.spec.quantities import quantity
 from mdlgen.spec.sheet import Edge
 from mdlgen.spec.strict import Strict, fail
 

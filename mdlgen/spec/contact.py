@@ -7,8 +7,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from mdlgen.spec.fields import Name, SpeedScale, of_percent, quantity, ratio
+from mdlgen.spec.fields import Name, SpeedScale
 from mdlgen.spec.parameter import is_formula
+from mdlgen.spec.quantities import of_percent, quantity, ratio
 from mdlgen.spec.strict import Strict, fail
 
 Coefficient = Annotated[float, ratio(0.0, 1e3)]

@@ -19,8 +19,8 @@ from pydantic_core import CoreSchema
 from mdlgen.errors import OutputError
 from mdlgen.paths import read_at_most
 from mdlgen.spec.beside import beside
-from mdlgen.spec.fields import quantity
 from mdlgen.spec.limits import Tally
+from mdlgen.spec.quantities import quantity
 from mdlgen.spec.strict import Strict, fail
 
 BYTES = 200  # of a file for each point that is allowed

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Literal
 
 from pydantic import Field, model_validator
 
-from mdlgen.spec.fields import Angle, Direction, LengthOrZero, Mass, Position, PositiveLength, default
+from mdlgen.spec.fields import Angle, Direction, LengthOrZero, Mass, Position, PositiveLength
 from mdlgen.spec.machine_part import PARALLEL, MachinePart, cosine, not_modelled, on_its_end, rim_of_sectors
+from mdlgen.spec.quantities import default
 from mdlgen.spec.strict import Strict, fail
 
 if TYPE_CHECKING:

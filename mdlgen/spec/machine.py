@@ -18,14 +18,11 @@ from mdlgen.spec.fields import (
     Stiffness,
     TimeOrZero,
     Torsion,
-    combined,
-    default,
     one_of,
-    quantity,
-    reading,
 )
 from mdlgen.spec.guide import check_edge
 from mdlgen.spec.machine_part import PARALLEL, MachinePart, cosine, not_modelled, on_its_end
+from mdlgen.spec.quantities import combined, default, quantity, reading
 from mdlgen.spec.rim import Rim
 from mdlgen.spec.rows import Mirror, Repeat
 from mdlgen.spec.strict import Strict, fail, with_values

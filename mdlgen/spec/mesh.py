@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from pydantic import Field, PrivateAttr, ValidationInfo, field_serializer, model_validator
 
 from mdlgen.spec.beside import beside
-from mdlgen.spec.fields import Angles, LengthOrZero, Mass, Name, Position, default, origin, quantity
+from mdlgen.spec.fields import Angles, LengthOrZero, Mass, Name, Position, origin
 from mdlgen.spec.limits import Tally
 from mdlgen.spec.machine_part import MachinePart, not_modelled, rim_of_sectors
+from mdlgen.spec.quantities import default, quantity
 from mdlgen.spec.solid import Solid, read_solid
 from mdlgen.spec.source import Source
 from mdlgen.spec.strict import fail, with_values

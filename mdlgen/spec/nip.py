@@ -10,8 +10,9 @@ from pydantic import Field
 from pydantic_core import PydanticCustomError
 
 from mdlgen.spec.alternatives import others
-from mdlgen.spec.fields import Direction, Name, Position, of_text, quantity, read_direction
+from mdlgen.spec.fields import Direction, Name, Position, read_direction
 from mdlgen.spec.parameter import Computed
+from mdlgen.spec.quantities import of_text, quantity
 from mdlgen.spec.rows import ZERO, Mirror, Repeat
 from mdlgen.spec.strict import Strict
 from mdlgen.units import exact_quantity

@@ -11,8 +11,9 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
-from mdlgen.spec.fields import Name, default, of_text, quantity
+from mdlgen.spec.fields import Name
 from mdlgen.spec.nip import merged
+from mdlgen.spec.quantities import default, of_text, quantity
 from mdlgen.spec.strict import Strict
 
 Path = tuple[str | int, ...]

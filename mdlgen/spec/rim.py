@@ -7,7 +7,8 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
-from mdlgen.spec.fields import Angle, PositiveLength, default
+from mdlgen.spec.fields import Angle, PositiveLength
+from mdlgen.spec.quantities import default
 from mdlgen.spec.strict import Strict, fail
 
 # A solver keeps them beside each body, with the gaps between them.

@@ -7,7 +7,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from mdlgen.spec.fields import Length, Name, Position, default
+from mdlgen.spec.fields import Length, Name, Position
+from mdlgen.spec.quantities import default
 from mdlgen.spec.strict import Strict
 
 Path = tuple[str | int, ...]

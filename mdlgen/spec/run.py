@@ -6,7 +6,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from mdlgen.spec.fields import PositiveLength, Time, default, ratio
+from mdlgen.spec.fields import PositiveLength, Time
+from mdlgen.spec.quantities import default, ratio
 from mdlgen.spec.strict import Strict, fail
 
 

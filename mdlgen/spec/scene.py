@@ -28,7 +28,7 @@ from mdlgen.spec.consistency import check_counts, check_names, checks
 from mdlgen.spec.contact import Contact
 from mdlgen.spec.document import Document
 from mdlgen.spec.dump import in_plain_data, said
-from mdlgen.spec.fields import Acceleration, Name, Words, default
+from mdlgen.spec.fields import Acceleration, Name, Words
 from mdlgen.spec.guide import Guide
 from mdlgen.spec.limits import DEFAULT, Limits
 from mdlgen.spec.machine import Plane, Roller
@@ -50,6 +50,7 @@ from mdlgen.spec.parameter import (
 )
 from mdlgen.spec.part import Part
 from mdlgen.spec.pile import Pile
+from mdlgen.spec.quantities import default
 from mdlgen.spec.run import Run
 from mdlgen.spec.sheet import Sheet
 from mdlgen.spec.shorthand import Defaults, written_out

@@ -18,15 +18,12 @@ from mdlgen.spec.fields import (
     Size2,
     Spin,
     Velocity,
-    combined,
-    default,
     one_of,
     origin,
-    quantity,
-    reading,
 )
 from mdlgen.spec.grading import Graded, Grading
 from mdlgen.spec.limits import DEFAULT
+from mdlgen.spec.quantities import combined, default, quantity, reading
 from mdlgen.spec.shape import Shape
 from mdlgen.spec.strict import Strict, fail, with_values
 from mdlgen.spec.zone import Zone

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from pydantic_core import PydanticCustomError
 
-from mdlgen.spec.fields import combined
+from mdlgen.spec.quantities import combined
 from mdlgen.spec.sheet import Sheet
 from mdlgen.spec.strict import fail, fail_all
 

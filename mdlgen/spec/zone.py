@@ -6,7 +6,8 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from mdlgen.spec.fields import Length, quantity
+from mdlgen.spec.fields import Length
+from mdlgen.spec.quantities import quantity
 from mdlgen.spec.strict import Strict, fail
 
 

@@ -108,7 +108,7 @@ function chart(parent, runs, key, seek) {
   const box = piece("div", { className: "plot" }, figure), keys = piece("div", { className: "keys-of" }, figure);
   if (content.note) piece("p", { className: "note", textContent: content.note }, figure);
   box.setAttribute("role", "img");
-  box.setAttribute("aria-label", told(content, runs, lines, overTime));
+  box.setAttribute("aria-label", spoken(content, runs, lines, overTime));
 
   // lines of the same times share a table
   const tables = new Map();
@@ -283,7 +283,7 @@ function constant(figure, content, runs, lines) {
 }
 
 // A figure for those who hear the page.
-function told(content, runs, lines, overTime) {
+function spoken(content, runs, lines, overTime) {
   const said = lines.slice(0, 8).map((line) => {
     const [low, high] = line.y.reduce(([a, b], v) => [Math.min(a, v), Math.max(b, v)], [Infinity, -Infinity]);
     return `${runs.length > 1 ? `${runs[line.run].name} ` : ""}${line.name} from ${number(low)} to ${number(high)}${overTime ? `, at the end ${number(line.y.at(-1))}` : ""}`;

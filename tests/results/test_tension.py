@@ -152,7 +152,7 @@ def test_a_strip_that_is_pulled_over_a_table(solver: str) -> None:
     late = result.time > 15.0
     found = tension(result)
     drag = series(result)["table.strip.drag_n"]
-    # the table holds the weight as soon as the strip has settled in it; by 1 % more while it does
+    # the table holds the weight as soon as the strip lies still in it; by 1 % more while it does
     assert drag[late] == pytest.approx(MU * WEIGHT, rel=1e-4)
     # friction acts on the lower face: its couple moves mu m g (t/2) / L of the weight to the leading boxes
     couple = MU * MU * WEIGHT * 0.05 / 60.0

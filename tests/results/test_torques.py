@@ -57,7 +57,7 @@ def test_a_ramp_takes_the_inertia_of_both_rollers(solver: str) -> None:
     ramp = (result.time > 3.0) & (result.time < 9.0)
     after = result.time > 13.0
     own = 0.5 * 10.0 * R_TOP**2
-    # creep of the regularised friction settles in 1 ms; the arms lack half of the depth
+    # creep of the regularised friction is steady after 1 ms; the arms lack half of the depth
     arms = pytest.approx(own * ALPHA * (R / R_TOP), rel=1e-3 + DEPTH / R_TOP)
     assert np.abs(top.contact_torque[ramp]).mean() == arms
     expected = INERTIA * ALPHA + own * ALPHA * (R / R_TOP) ** 2

@@ -92,7 +92,7 @@ def test_a_block_and_its_plate_swing_as_one(solver: str) -> None:
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_it_settles_where_spring_and_preload_bear_the_weight(solver: str) -> None:
+def test_it_comes_to_rest_where_spring_and_preload_bear_the_weight(solver: str) -> None:
     """Damped, and let go 0.4 mm above balance."""
     sets = ("planes.plate.press.damping_ratio=0.7", "planes.plate.press.preload=0.6 N")
     result = solved(SCENE, solver, *sets, "run.tolerance=1e-2")

@@ -12,7 +12,7 @@ from mdlgen.model.frames import frame
 from mdlgen.model.parameters.machine import center_rows, spring_rows, start_row
 from mdlgen.model.parameters.names import NAMED_AXES
 from mdlgen.model.parts.kind import SLACK, BodyRow, Boxes, Drawn, Kind
-from mdlgen.model.parts.words import PER_SECOND, direction
+from mdlgen.model.parts.words import direction
 from mdlgen.model.press import balance
 from mdlgen.model.press.before import Before
 from mdlgen.model.press.springs import roller_press
@@ -32,6 +32,7 @@ from mdlgen.model.tables import (
 )
 from mdlgen.spec.machine import Drive, Roller
 from mdlgen.spec.scene import Scene
+from mdlgen.units import PER_SECOND
 
 FLAT = 0.1  # a roller is parallel to a sheet while |axis . normal| is below this
 MARK = 0.12  # breadth of the mark on a roller, in times its radius

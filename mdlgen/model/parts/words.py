@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from mdlgen.geometry.arrays import Floats
 
-PER_SECOND = 1000.0  # speeds in 1/ms to those that are shown
-
 
 def direction(way: Floats) -> str:
     """A direction as a scene has it."""

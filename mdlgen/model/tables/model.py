@@ -122,7 +122,7 @@ class Model(Frozen):
     revision: str = ""
 
     def __repr__(self) -> str:
-        kinds = ("sheets", "rollers", "planes", "guides", "bushings", "contacts")
+        kinds = ("sheets", "rollers", "planes", "guides", "meshes", "bushings", "contacts")
         message = ", ".join(
             f"{len(getattr(self, kind))} {kind}" for kind in kinds if len(getattr(self, kind))
         )

@@ -14,9 +14,10 @@ from mdlgen.results.losses import driven, summed
 from mdlgen.results.result import Result
 from mdlgen.results.slide import slide
 from mdlgen.results.strain import SheetJoints
-from mdlgen.results.summary import PER_SECOND, part_rows
+from mdlgen.results.summary_of_parts import part_rows
 from mdlgen.results.swing import swing
 from mdlgen.results.torques import drive_power, drive_torque, grips, over_time
+from mdlgen.units import PER_SECOND
 
 POINTS = 4000  # of a line; more are not seen
 

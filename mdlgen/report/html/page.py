@@ -115,8 +115,10 @@ def run_record(result: Result, name: str, draft: Ints | None = None) -> dict[str
             "boxes": sum(sheet.count for sheet in result.model.sheets),
             "bushings": len(result.model.bushings),
             "parts": {
-                kind: len(getattr(result.model, kind))
-                for kind in ("sheets", *(each.table for each in KINDS), "contacts", "probes")
+                "sheets": len(result.model.sheets),
+                **{kind.table: len(result.model.parts_of(kind.part)) for kind in KINDS},
+                "contacts": len(result.model.contacts),
+                "probes": len(result.model.probes),
             },
         },
         "parameters": result.model.parameters,

@@ -9,9 +9,10 @@ from mdlgen.results.drag import drags
 from mdlgen.results.losses import driven, summed
 from mdlgen.results.result import Result
 from mdlgen.results.slide import slide
-from mdlgen.results.summary import PER_SECOND, part_rows
+from mdlgen.results.summary_of_parts import part_rows
 from mdlgen.results.swing import swing
 from mdlgen.results.torques import contact_torque, drive_power, drive_torque, grips
+from mdlgen.units import PER_SECOND
 
 SLIGHT = 1e-9  # part of a slide along an axis that is round-off
 

@@ -11,7 +11,7 @@ from mdlgen.altair.recorded import called, recorded
 from mdlgen.model.tables import Floats
 from mdlgen.results.quantities import GRAZE, LEAST, TENTH
 from mdlgen.results.result import Result
-from mdlgen.results.summary import PER_SECOND
+from mdlgen.units import PER_SECOND
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -12,13 +12,13 @@ import numpy as np
 from mdlgen.altair.recorded import whole
 from mdlgen.verify.expected.clutches import SPINS, clutch_times
 from mdlgen.verify.expected.contacts import CONTACT_NUMBERS, SIX
-from mdlgen.verify.expected.parts.mesh import shape_numbers
 from mdlgen.verify.expected.run import RUN_NUMBERS
+from mdlgen.verify.readback.graphics import graphic_tables, surface_table
+from mdlgen.verify.readback.rows import Row, flat, table_of
 from mdlgen.verify.solver_expressions import Places, Unreadable, law, request, torque
 from mdlgen.verify.tables import Table
 
 Values = Mapping[str, Mapping[str, Any]]
-Row = tuple[list[Any], tuple[str, ...]]  # numbers, words
 
 _NAN = float("nan")
 _LOAD = re.compile(r"frc_\d+")
@@ -69,39 +69,31 @@ class ReadBack:
             for end, body in zip("ij", record["bodies"], strict=True)
         }
         self.places = Places(self.markers, values.get("markers", {}), of_bodies, of_bushings)
-        graphics = values.get("graphics", {})
-        boxes = {n: r for n, r in graphics.items() if r["type"] == "BOX"}
-        cylinders = {n: r for n, r in graphics.items() if r["type"] == "CYLINDER"}
-        meshes = {n: r for n, r in graphics.items() if r["type"] == "CADGRAPHIC"}
         return {
-            "points": _table(values.get("points", {}), lambda n, r: (list(r), ()), 3),
-            "bodies": _table(values.get("bodies", {}), _body, 19),
-            "bushings": _table(values.get("bushings", {}), _bushing, 30),
-            "curves": _table(_curve_points(values.get("curves", {})), lambda n, r: (list(r), ()), 2),
-            "curve laws": _table(_curve_laws(values.get("bushings", {})), self._curve_law, 1),
-            "springs": _table(values.get("springs", {}), _spring, 10),
-            "boxes": _table(boxes, _box, 15),
-            "cylinders": _table(cylinders, _cylinder, 9),
-            "meshes": _table(meshes, _mesh, 12),
-            "mesh files": _table({n: r for n, r in meshes.items() if "file" in r}, _mesh_file, 9),
-            "mesh shapes": _table({n: r for n, r in meshes.items() if "corners" in r}, _mesh_shape, 12),
-            "joints": _table(values.get("joints", {}), _joint, 6),
-            "motions": _table(
+            "points": table_of(values.get("points", {}), lambda n, r: (list(r), ()), 3),
+            "bodies": table_of(values.get("bodies", {}), _body, 19),
+            "bushings": table_of(values.get("bushings", {}), _bushing, 30),
+            "curves": table_of(_curve_points(values.get("curves", {})), lambda n, r: (list(r), ()), 2),
+            "curve laws": table_of(_curve_laws(values.get("bushings", {})), self._curve_law, 1),
+            "springs": table_of(values.get("springs", {}), _spring, 10),
+            **graphic_tables(values.get("graphics", {})),
+            "joints": table_of(values.get("joints", {}), _joint, 6),
+            "motions": table_of(
                 values.get("motions", {}), self._motion, max(map(len, self.stations.values()), default=0)
             ),
-            "clutches": _table(
+            "clutches": table_of(
                 _clutches(values), self._clutch, 3 + len(clutch_times(self.stations, "")) * len(SPINS)
             ),
-            "velocities": _table(values.get("velocities", {}), lambda n, r: (list(r), ()), 6),
-            "markers": _table(
+            "velocities": table_of(values.get("velocities", {}), lambda n, r: (list(r), ()), 6),
+            "markers": table_of(
                 {n: r for n, r in values.get("markers", {}).items() if "." not in n}, _marker, 12
             ),
-            "vectors": _table(values.get("vectors", {}), _vector, 3),
-            "surfaces": _table(values.get("surfaces", {}), _surface, 0),
-            "outputs": _table(
+            "vectors": table_of(values.get("vectors", {}), _vector, 3),
+            "surfaces": surface_table(values.get("surfaces", {})),
+            "outputs": table_of(
                 {n: r for n, r in values.get("outputs", {}).items() if not _of_contacts(r)}, self._output, 6
             ),
-            "loads": _table(
+            "loads": table_of(
                 {n: r for n, r in values.get("forces", {}).items() if _LOAD.fullmatch(n)}, _load, 9
             ),
         }
@@ -150,26 +142,10 @@ class ReadBack:
             return _NAN
 
 
-def _table(records: Mapping[str, Any], row: Callable[[str, Any], Row], width: int) -> Table:
-    numbers = np.full((len(records), width), _NAN)
-    words = []
-    for k, (name, record) in enumerate(records.items()):
-        values, said = row(name, record)
-        if len(values) == width:
-            numbers[k] = [v if isinstance(v, (float, int)) else _NAN for v in values]
-        words.append(said)
-    columns = tuple(str(k) for k in range(width))
-    return Table(tuple(records), columns, numbers, np.zeros_like(numbers), tuple(words))
-
-
-def _flat(axes: Any) -> list[float]:
-    return [v for axis in axes for v in axis]
-
-
 def _body(name: str, record: Mapping[str, Any]) -> Row:
     inertia = record["inertia"] or [_NAN] * 6
     mass = record["mass"] if record["mass"] is not None else _NAN
-    return [mass, *inertia, *record["cm"], *_flat(record["axes"])], ()
+    return [mass, *inertia, *record["cm"], *flat(record["axes"])], ()
 
 
 def _bushing(name: str, record: Mapping[str, Any]) -> Row:
@@ -180,7 +156,7 @@ def _bushing(name: str, record: Mapping[str, Any]) -> Row:
         group, k = place.split(".")
         if isinstance(groups[group][int(k)], str):
             groups[group][int(k)] = 0.0
-    return [*record["origin"], *_flat(record["axes"]), *_flat(groups.values())], tuple(record["bodies"])
+    return [*record["origin"], *flat(record["axes"]), *flat(groups.values())], tuple(record["bodies"])
 
 
 def _curve_points(records: Mapping[str, Any]) -> dict[str, tuple[float, float]]:
@@ -214,31 +190,8 @@ def _text(component: Any) -> str:
 
 
 def _spring(name: str, record: Mapping[str, Any]) -> Row:
-    numbers = [*_flat(record["points"]), *(record[k] for k in ("k", "c", "force", "length"))]
+    numbers = [*flat(record["points"]), *(record[k] for k in ("k", "c", "force", "length"))]
     return numbers, tuple(record["bodies"])
-
-
-def _box(name: str, record: Mapping[str, Any]) -> Row:
-    return [*record["center"], *_flat(record["axes"]), *record["lengths"]], (record["body"],)
-
-
-def _cylinder(name: str, record: Mapping[str, Any]) -> Row:
-    numbers = [*record["start"], *record["axis"], *record["radii"], record["length"]]
-    return numbers, (record["body"], record["caps"])
-
-
-def _mesh(name: str, record: Mapping[str, Any]) -> Row:
-    if record.get("origin") is None:
-        return [], (record["body"] or "",)
-    return [*record["origin"], *_flat(record["axes"])], (record["body"] or "",)
-
-
-def _mesh_file(name: str, record: Mapping[str, Any]) -> Row:
-    return [*record["moved"], *record["scale"]], (record["file"],)
-
-
-def _mesh_shape(name: str, record: Mapping[str, Any]) -> Row:
-    return shape_numbers(np.array(record["corners"]), np.array(record["triangles"])), ()
 
 
 def _joint(name: str, record: Mapping[str, Any]) -> Row:
@@ -247,17 +200,12 @@ def _joint(name: str, record: Mapping[str, Any]) -> Row:
 
 
 def _marker(name: str, record: Mapping[str, Any]) -> Row:
-    return [*record["origin"], *_flat(record["axes"])], (record["body"] or "",)
+    return [*record["origin"], *flat(record["axes"])], (record["body"] or "",)
 
 
 def _vector(name: str, record: Any) -> Row:
     length = float(np.linalg.norm(record))
     return [v / length if length else _NAN for v in record], ()
-
-
-def _surface(name: str, record: Mapping[str, Any]) -> Row:
-    rows = record["markers"]
-    return [], (record["type"], f"{len(rows)} rows", *(m for row in rows for m in row))
 
 
 def _load(name: str, record: Mapping[str, Any]) -> Row:
@@ -271,7 +219,7 @@ def marker_table(values: Values, reach: float = 0.0) -> Table:
     Left out are those that MotionView makes for a load on ground, which nothing uses.
     """
     unused = {f"{name}.{end}" for name in values.get("forces", {}) for end in ("j", "jfloat")}
-    found = _table({n: r for n, r in values.get("markers", {}).items() if n not in unused}, _marker, 12)
+    found = table_of({n: r for n, r in values.get("markers", {}).items() if n not in unused}, _marker, 12)
     return replace(found, scale=np.broadcast_to([reach] * 3 + [1.0] * 9, found.numbers.shape))
 
 
@@ -282,7 +230,7 @@ def data_table(values: Values) -> Table:
         for holder, members in values.get("datasets", {}).items()
         for member, value in members.items()
     }
-    return _table(found, lambda n, value: ([value], ()), 1)
+    return table_of(found, lambda n, value: ([value], ()), 1)
 
 
 def contact_table(values: Values, numbers: Mapping[str, Mapping[str, float]]) -> Table:
@@ -298,7 +246,7 @@ def contact_table(values: Values, numbers: Mapping[str, Mapping[str, float]]) ->
         named = [name.removeprefix("MODEL.") for name in (*record["bodies"], *graphics)]
         return found, (record["type"], record["friction"], *named)
 
-    return _table(values.get("contacts", {}), row, len(CONTACT_NUMBERS))
+    return table_of(values.get("contacts", {}), row, len(CONTACT_NUMBERS))
 
 
 def commanded(values: Values) -> dict[str, dict[str, float]]:
@@ -319,7 +267,7 @@ def master_table(values: Values) -> Table:
     for command in (c for commands in values.get("commands", {}).values() for c in commands):
         if command["command"] == "Force_Contact":
             sides[command.get("id", "")] = command.get("master_surface", "")
-    return _table(sides, lambda n, side: ([], (side,)), 0)
+    return table_of(sides, lambda n, side: ([], (side,)), 0)
 
 
 def contact_outputs_of(values: Values) -> dict[str, list[list[tuple[str, ...]]]]:
@@ -351,7 +299,7 @@ def contact_output_table(values: Values) -> Table:
         for name, components in recorded.items()
         for key, terms in zip(SIX, components, strict=True)
     }
-    return _table(found, lambda n, words: ([], words), 0)
+    return table_of(found, lambda n, words: ([], words), 0)
 
 
 def run_table(values: Values) -> Table:
@@ -360,7 +308,7 @@ def run_table(values: Values) -> Table:
     if "run" in values:
         settings = dict(values["run"])
     elif not values.get("templates"):
-        return _table({}, lambda n, r: ([], ()), len(RUN_NUMBERS))
+        return table_of({}, lambda n, r: ([], ()), len(RUN_NUMBERS))
     else:
         for command in (c for commands in values["commands"].values() for c in commands):
             named = _RUN_ATTRIBUTES.get(command["command"], {})
@@ -371,7 +319,7 @@ def run_table(values: Values) -> Table:
     numbers = [_float(settings.get(name, missing)) for name in RUN_NUMBERS]
     if static:  # takes no steps
         numbers[1:] = [0.0] * (len(RUN_NUMBERS) - 1)
-    return _table({"run": None}, lambda n, r: (numbers, words), len(RUN_NUMBERS))
+    return table_of({"run": None}, lambda n, r: (numbers, words), len(RUN_NUMBERS))
 
 
 def gravity_of(values: Values) -> tuple[float, float, float]:
@@ -387,12 +335,12 @@ def units_table(values: Values) -> Table:
     """Units of a deck, or of a text."""
     given = values.get("standard", {}).get("units", {})
     words = tuple(str(given.get(f"op_{name}")) for name in ("force", "length", "mass", "time"))
-    return _table({"units": None}, lambda n, r: ([], words), 0)
+    return table_of({"units": None}, lambda n, r: ([], words), 0)
 
 
 def gravity_table(gravity: Any) -> Table:
     """Gravity [mm/s^2]."""
-    return _table({"gravity": gravity}, lambda n, r: (list(r), ()), 3)
+    return table_of({"gravity": gravity}, lambda n, r: (list(r), ()), 3)
 
 
 def _float(value: Any) -> float:

@@ -163,7 +163,7 @@ def slides(result: Result, _: Result | None) -> list[Finding]:
     names = result.model.bodies.name
     top, base = names.index("block_0_0"), names.index("base_0_0")
     moved = (result.position[-1] - result.model.bodies.position)[:, 0]
-    because = "friction over a smoothing of 1 mm/s, and the base's first settling"
+    because = "friction over a smoothing of 1 mm/s, and the base's way to rest on its table"
     rubbed, kept = Basis("v^2/(2 mu g (1 + m/M))", because), Basis("momentum: v m/(m + M)", because)
     ends = [float(result.velocity[-1, body, 0]) for body in (top, base)]
     return [
