@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import dataclasses
-import json
-from typing import Any
 
 import numpy as np
 import pytest
 from arrays import arrays
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from one_nip import ONE, SHEET
 
 from mdlgen.errors import SpecError
 from mdlgen.model.lower import lower
@@ -26,25 +23,7 @@ from mdlgen.verify.verification import verify
 FILE = samples() / "transport_nips.yaml"
 NIPS = FILE.read_text("utf-8")
 FOUR = samples() / "transport_4x4.yaml"
-# the sheet, square to the nip: at is on its middle plane
-SHEET = """name: s
-materials: {p: {E_md: 3.5 GPa, E_cd: 1.1 GPa, k_tx: 0.15 N*mm/rad, k_ty: 0.2 N*mm/rad}}
-sheets: {note: {material: p, size: [60 mm, 40 mm], thickness: 0.1 mm, mass: 0.3 g, boxes: [6, 4]}}
-"""
-ONE = (
-    SHEET
-    + """nips:
-  entry:
-    at: [0 mm, 0 mm, 0 mm]
-    force: 3 N
-    lower: {diameter: 15 mm, width: 8 mm, mass: 1 g, contact: {stiffness: 300 N/mm^1.5, friction: 1}}
-    upper:
-      {radius: 5 mm, width: 6 mm, mass: 4 g, press: {stiffness: 0.3 N/mm}, contact: CONTACT}
-    contact: {stiffness: 30 N/mm^1.5, friction: 1}
-"""
-)
 LEANING = "nips.entry.normal=[0.5,0,0.8660254037844386]"
-ONE = ONE.replace("CONTACT", "{stiffness: 200 N/mm^1.5, friction: 0}")
 
 
 def plain(model: Model) -> dict[str, np.ndarray]:
@@ -389,25 +368,3 @@ def test_the_schema_knows_nips() -> None:
     assert "center" not in lower_
     assert lower_["contact"]["properties"]["stiffness"] == {"$ref": "#/$defs/Contact/properties/stiffness"}
     assert "nips" in schema["properties"] and schema["$defs"]["Defaults"]["properties"]["nips"]["properties"]
-
-
-WORDS = st.sampled_from(["3 N", "note", "x", "-z", "*", "1 mm"])
-KEYS = "at force lower upper contact radius press name repeat mirror count step across names normal stiffness"
-VALUES = st.recursive(
-    st.one_of(st.none(), st.booleans(), st.integers(-3, 3), WORDS),
-    lambda inner: (
-        st.lists(inner, max_size=3)
-        | st.dictionaries(st.sampled_from([*KEYS.split(), "sheet", "mass"]), inner, max_size=4)
-    ),
-    max_leaves=12,
-)
-PLACES = ("nips", "defaults.nips", "rollers", "planes", "nips.entry", "nips.entry.upper")
-
-
-@settings(max_examples=300, deadline=None)
-@given(VALUES, st.sampled_from(PLACES))
-def test_any_value_is_a_scene_or_lines(value: Any, place: str) -> None:
-    try:
-        loads(ONE, "s", [f"{place}={json.dumps(value)}"])
-    except SpecError as error:
-        assert all("\n" not in str(e) for e in (error, *error.others))

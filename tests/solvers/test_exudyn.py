@@ -3,30 +3,19 @@
 from __future__ import annotations
 
 import math
-import sys
 from itertools import pairwise
 
 import numpy as np
 import pytest
-import ran
+from by_exudyn import CANTILEVER, POST, run, run_text
 from papers import on_paper
 
 from mdlgen.backends.exudyn_local import solve
-from mdlgen.backends.exudyn_local.shipped import jacobian
 from mdlgen.cli import app
 from mdlgen.model.lower import lower
 from mdlgen.spec.load import load, loads
 
-CANTILEVER = "samples/cantilever.yaml"
 SHORT = "run.duration=200 ms"  # in which a block comes to rest, or to an even acceleration
-
-
-def run(path, *overrides):
-    return ran.solved(lower(load(path, overrides)), "exudyn")
-
-
-def run_text(text, *overrides):
-    return ran.solved(lower(loads(text, overrides=overrides)), "exudyn")
 
 
 def drop_of(*overrides):
@@ -267,20 +256,6 @@ def test_a_block_rests_on_a_plate_smaller_than_itself():
         assert np.abs(result.position - whole.position)[:, 0].max() < 1e-6
 
 
-POST = """
-name: post
-gravity: [0 m/s^2, 0 m/s^2, 0 m/s^2]
-materials: {s: {E_md: 1000 MPa, E_cd: 1000 MPa, k_tx: 1 N*mm/rad, k_ty: 1 N*mm/rad}}
-sheets:
-  block: {material: s, size: [20 mm, 20 mm], thickness: 2 mm, mass: 2 g, boxes: [1, 1],
-          velocity: [1 m/s, 0 m/s, 0 m/s]}
-rollers:
-  post: {center: [30 mm, 0 mm, 0 mm], axis: z, radius: 5 mm, width: 20 mm, mass: 10 g}
-contacts: [{between: [block, post], stiffness: 300 N/mm^1.5, restitution: 1.0, friction: 0}]
-run: {duration: 30 ms}
-"""
-
-
 @pytest.mark.parametrize("height", [0.0, 0.9, 1.1, 5.0])
 def test_a_roller_that_stands_across_the_sheet_stops_it(height):
     result = run_text(POST, f"rollers.post.center=[30 mm, 0 mm, {height} mm]")
@@ -386,45 +361,3 @@ def test_a_buckled_column_is_the_elastica(across):
     # the lattice of 20 rows: 0.2 % of the critical load, which goes into the place by less than 1 %
     assert tip[2] == pytest.approx(math.copysign(exact.z, across), abs=0.01)
     assert 1.0 + tip[1] == pytest.approx(exact.x, abs=0.01)
-
-
-def test_a_state_that_goes_non_finite_ends_with_a_reason(monkeypatch):
-    """Nips at steps of 5 ms: Exudyn's sparse factor would end the process on such a stiffness."""
-    solver, found = sys.modules[solve.__module__], []
-
-    def seen(*args):
-        jacobian(*args)
-        found.append(np.isfinite(args[-1]).all())
-
-    monkeypatch.setattr(solver, "jacobian", seen)
-    sets = ("run.duration=50 ms", "run.print_step=0.5 ms", "run.step=5 ms", "run.prune=false")
-    result = solve(lower(load("samples/transport_4x4.yaml", (*sets, "sheets.note.boxes=[4,6]"))))
-    assert not all(found)
-    assert not result.ok and result.status
-
-
-def test_a_long_run_has_no_estimate():
-    """Two runs of 40 ms of the transport would take too long; one of 2 ms is estimated."""
-    from mdlgen.backends.exudyn_local.solve import ESTIMATED
-    from mdlgen.backends.exudyn_local.state import workspace
-    from mdlgen.backends.exudyn_local.step import choose_steps, cost
-    from mdlgen.backends.exudyn_local.system import build
-
-    model = lower(load("samples/transport_4x4.yaml", ["run.duration=40 ms"]))
-    system, _ = build(model)
-    assert cost(system, choose_steps(model, system, workspace(system))[0]) > ESTIMATED
-    short = run("samples/transport_4x4.yaml", "run.duration=2 ms", "sheets.note.boxes=[4,6]")
-    assert short.error_estimate is not None and short.error_estimate <= short.model.run.tolerance
-
-
-def test_a_pressed_roller_that_runs_away_fails_by_name():
-    text = POST.replace("axis: z", "axis: y, press: {direction: -z, stiffness: 0 N/mm, preload: 0.5 N}")
-    result = solve(lower(loads(text, overrides=["sheets.block.velocity=[0 m/s, 0 m/s, 0 m/s]"])))
-    assert not result.ok
-    assert "roller post left the bounds" in result.status
-
-
-def test_a_static_run_is_at_rest():
-    result = run(CANTILEVER, "sheets.note.boxes=[1,20]", "sheets.note.velocity=[1 m/s, 0 m/s, 0 m/s]")
-    assert not result.velocity.any()
-    assert result.energy.kinetic == 0.0
