@@ -4,6 +4,7 @@ which two workers do not compile the same for minutes."""
 from __future__ import annotations
 
 import functools
+import gc
 import os
 import sys
 from collections.abc import Callable, Iterator
@@ -88,6 +89,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     if shipped and first[-1] is not None:
         items.remove(first[-1])
         items.insert((len(items) + 1) // 2, first[-1])
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_unconfigure() -> None:
+    """What is left at the end goes with the process: to look through it for cycles takes seconds."""
+    gc.freeze()
 
 
 @pytest.hookimpl(optionalhook=True)

@@ -305,8 +305,9 @@ def _held(result: Result) -> float:
 @pytest.mark.parametrize("solver", ["lattice", "exudyn"])
 def test_rollers_that_resist_rolling_hold_a_sheet_back_by_f_n_each(solver: str, c_r: float) -> None:
     """The couple is f N R, and the lever of the friction that bears it R."""
-    result = solved(COAST, solver, *RESIST, *damped(c_r))
-    without = solved(COAST, solver, *RESIST, *damped(c_r), "contacts.0.rolling_resistance=0")
+    sets = (*RESIST, *damped(c_r), "sheets.n.boxes=[20,2]")
+    result = solved(COAST, solver, *sets)
+    without = solved(COAST, solver, *sets, "contacts.0.rolling_resistance=0")
     normal = result.contact_force[len(result.time) // 4 :, :2].mean(axis=0).sum()
     assert abs(_held(without)) < 2e-4 * normal
     assert _held(result) - _held(without) == pytest.approx(0.02 * normal, rel=5e-3)
