@@ -127,7 +127,7 @@ def test_what_was_looked_at_before_changes_nothing(part: str) -> None:
 def test_a_pick_roller_without_a_contact_ends_its_run_with_both_names(solver: str) -> None:
     """The roller falls on the table as the note leaves, and would brake the note."""
     bare = PICK.replace("  - {between: [pick, table]", "  # {between: [pick, table]")
-    result = mdlgen.solve(lower(loads(bare)), solver)
+    result = mdlgen.solve(lower(loads(bare, overrides=["sheets.n.boxes=[12, 2]"])), solver)
     assert not result.ok
     assert "roller pick and plane table overlap by" in result.status
     assert "give a contact between [pick, table]" in result.status
