@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple
 
 import pytest
+from called import Run, runner
 from places import GOLDEN
 
 import mdlgen
 import mdlgen.backends.motionview as motionview
 from mdlgen.backends.motionview.reader import read
-from mdlgen.cli import app
 from mdlgen.model.tables import Model
 from mdlgen.paths import samples
 
@@ -69,28 +67,7 @@ def host_of(model: Model, include: str) -> str:
     return "\n".join(lines)
 
 
-class Ended(NamedTuple):
-    code: int
-    out: str
-    err: str
-
-
-Run = Callable[..., Ended]
-
-
-Run = Callable[..., Ended]
-
-
 def commands(capsys: pytest.CaptureFixture[str], folder: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
     """Runs commands in a folder that holds the scene alone."""
-    monkeypatch.chdir(folder)
     (folder / "feed.yaml").write_text(SCENE)
-
-    def run(*args: object) -> Ended:
-        with pytest.raises(SystemExit) as ended:
-            app([str(a) for a in args], prog_name="mdlgen")
-        code = ended.value.code
-        assert isinstance(code, int)
-        return Ended(code, *capsys.readouterr())
-
-    return run
+    return runner(capsys, folder, monkeypatch)

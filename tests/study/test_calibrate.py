@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 import pytest
+from called import Ended, Run, runner
 from synthetic import moving
 
 import mdlgen
@@ -19,7 +18,7 @@ from mdlgen.calibrate.measured import Decay, read_measured
 from mdlgen.calibrate.report import fragment, quantity, report_text
 from mdlgen.calibrate.search import MAX_RUNS
 from mdlgen.calibrate.value import FITS, Fit
-from mdlgen.cli import app, shell
+from mdlgen.cli import shell
 from mdlgen.errors import SpecError
 from mdlgen.model.tables import Model
 from mdlgen.paths import samples
@@ -40,27 +39,14 @@ SMALL = [
 ]
 
 
-class Ended(NamedTuple):
-    code: int
-    out: str
-    err: str
-
-
-Run = Callable[..., Ended]
-
-
 @pytest.fixture
 def cli(capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
     """Runs `mdlgen calibrate samples/cantilever.yaml` in an empty folder."""
-    monkeypatch.chdir(tmp_path)
+    mdl = runner(capsys, tmp_path, monkeypatch)
 
     def run(*args: object, sets: list[str] = NARROW) -> Ended:
         options = [part for text in sets for part in ("--set", text)]
-        with pytest.raises(SystemExit) as ended:
-            app(["calibrate", str(CANTILEVER), *map(str, args), *options], prog_name="mdlgen")
-        code = ended.value.code
-        assert isinstance(code, int)
-        return Ended(code, *capsys.readouterr())
+        return mdl("calibrate", CANTILEVER, *args, *options)
 
     return run
 
