@@ -7,6 +7,8 @@ import pytest
 
 from mdlgen.backends.lattice.kernels import band, dense
 
+pytestmark = pytest.mark.usefixtures("as_python")
+
 
 @pytest.mark.parametrize(("nodes", "reach"), [(1, 0), (5, 1), (30, 4), (40, 11)])
 def test_the_band_is_factored_and_solved(nodes: int, reach: int) -> None:

@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from mdlgen import paths
@@ -100,7 +101,7 @@ def answer(process: subprocess.Popen[str]) -> Any:
     """What it printed, evaluated; on standard error it says nothing."""
     out, err = process.communicate(timeout=300)
     assert (process.returncode, err) == (0, "")
-    return eval(out)
+    return eval(out, {"np": np})
 
 
 @pytest.fixture(scope="module")

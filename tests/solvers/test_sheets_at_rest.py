@@ -20,6 +20,8 @@ from mdlgen.results.stacked import stacked
 from mdlgen.spec.load import loads
 from mdlgen.verify.verification import verify
 
+pytestmark = pytest.mark.usefixtures("as_python")
+
 # notes that were laid on each other by hand: x, y [mm], turn [deg]
 LAID = [(0.4, -0.3, 0.3), (-0.5, 0.2, -0.4), (0.1, 0.6, 0.2), (0.7, -0.2, -0.1), (-0.3, 0.4, 0.5)]
 
