@@ -24,8 +24,8 @@ from mdlgen.backends.lattice.kernels.state import (
 )
 from mdlgen.backends.lattice.kernels.state import MADE as MADE_OF
 from mdlgen.backends.lattice.kernels.state import MISS as MISS_OF
-from mdlgen.backends.lattice.mark import Mark, Stage
-from mdlgen.backends.lattice.record import Recorder, Stand
+from mdlgen.backends.lattice.pass_state import PassState, Stage
+from mdlgen.backends.lattice.record import Recorder, Snapshot
 from mdlgen.backends.lattice.work import arrays, control, flexible
 from mdlgen.errors import SpecError
 from mdlgen.model.tables import Model
@@ -137,15 +137,15 @@ def one_pass(
     tolerance = part * accuracy(model)
     steering.pace[[MISS_OF, ANEW, FASTEST, MADE_OF]] = miss, float(anew), speed(model), made
     status, t, past = integrate.DONE, 0.0, 0.0
-    mark = Mark(work, steering, recorder)
-    stage = mark.back(keep, number) if keep is not None else None
+    pass_state = PassState(work, steering, recorder)
+    stage = pass_state.back(keep, number) if keep is not None else None
     if stage is not None:
         status, t, past = stage.status, stage.t, stage.wall
         entries.look(system.pairs, system.search, system.search.place.copy())
 
     def show() -> None:
         if keep is not None and not hidden:  # the one beside shows a later part, or a finer one
-            keep.part = partial(_part, recorder, recorder.stand(energies), dt, int(counters[STEPS]))
+            keep.part = partial(_part, recorder, recorder.snapshot(energies), dt, int(counters[STEPS]))
 
     if stage is not None:
         show()
@@ -175,12 +175,12 @@ def one_pass(
         show()
         if keep is not None and keep.due(number) and output + 1 < outputs:
             wall = past + clock.perf_counter() - begun
-            keep.save(number, mark.arrays(Stage(status, t, output + 1, wall, False)))
+            keep.save(number, pass_state.arrays(Stage(status, t, output + 1, wall, False)))
         if progress is not None:
             progress(t, run.duration, int(counters[STEPS]), int(counters[TOUCHING]))
     wall = past + clock.perf_counter() - begun
     if keep is not None and todo and (keep.written or keep.due(number)):
-        keep.save(number, mark.arrays(Stage(status, t, todo.stop, wall, True)))
+        keep.save(number, pass_state.arrays(Stage(status, t, todo.stop, wall, True)))
     reason = None if status == integrate.DONE else reason_of(model, system, status, t, dt, state, counters)
     if status in (integrate.LEFT, integrate.DEEP, integrate.STRETCHED):
         recorder.store(t)  # with which its energies balance, or do not
@@ -200,8 +200,8 @@ def one_pass(
     return result.failed(wrong if result.ok else f"{result.status}; and {wrong}")
 
 
-def _part(recorder: Recorder, stand: Stand, dt: float, steps: int) -> Result:
+def _part(recorder: Recorder, snapshot: Snapshot, dt: float, steps: int) -> Result:
     """The result up to where a run stood."""
-    result = recorder.result_at(stand, "lattice", None)
+    result = recorder.result_at(snapshot, "lattice", None)
     result.step, result.steps = dt, steps
     return result

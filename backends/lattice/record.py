@@ -38,8 +38,8 @@ BEGUN = [FORCE_BEGUN, *range(TURNING_BEGUN, TURNING_BEGUN + TURNING)]
 TOGETHER = 20_000  # bodies, times states, whose rotations are looked at together
 
 
-class Stand(NamedTuple):
-    """How far a recorder is: what a result up to there is made from, apart from the stored states."""
+class Snapshot(NamedTuple):
+    """How far a recorder is: what a result up to there is made from, besides the stored states."""
 
     times: int  # how many are stored
     rows: np.ndarray
@@ -116,34 +116,34 @@ class Recorder:
         self._first, self._last = tuple(first.tolist()), tuple(last.tolist())
         self.kept.rows[:], self.kept.marks[:] = arrays["rows"], arrays["marks"]
 
-    def stand(self, work: np.ndarray) -> Stand:
+    def snapshot(self, work: np.ndarray) -> Snapshot:
         """How far it is now; it stays as it is while the run goes on."""
         assert self._first is not None
         rows, marks = self.kept
         energies = (self._first, self._last, self._most)
-        return Stand(len(self._times), rows.copy(), marks.copy(), work.copy(), energies)
+        return Snapshot(len(self._times), rows.copy(), marks.copy(), work.copy(), energies)
 
     def result(self, solver: str, reason: str | None, work: np.ndarray) -> Result:
         """The Result in mm, N, g, ms."""
-        return self.result_at(self.stand(work), solver, reason)
+        return self.result_at(self.snapshot(work), solver, reason)
 
-    def result_at(self, stand: Stand, solver: str, reason: str | None) -> Result:
-        """The Result up to where the recorder stood."""
-        rows, marks = stand.rows, stand.marks
+    def result_at(self, snapshot: Snapshot, solver: str, reason: str | None) -> Result:
+        """The Result up to the snapshot."""
+        rows, marks = snapshot.rows, snapshot.marks
         mirror, touched = self.system.mirror, int(marks.sum())
         if mirror is not None:
             touched = mirror.touched(self.system, marks)
             summed = (MAX_FORCE, FORCE_TIME, FORCE_NOW)  # depths and times hold for both sides
             columns = enumerate(rows.T)
             rows = np.array([(mirror.sums if k in summed else mirror.largest)(c) for k, c in columns]).T
-            stand = stand._replace(work=2.0 * stand.work)
+            snapshot = snapshot._replace(work=2.0 * snapshot.work)
         inside = np.where(rows[:, TIME] > 0, rows[:, TIME], 1.0)
-        held = self._whole(stand.times)
+        held = self._whole(snapshot.times)
         return Result(
             model=self.model,
             solver=solver,
             status=reason or "ok",
-            time=np.array(self._times[: stand.times]),
+            time=np.array(self._times[: snapshot.times]),
             position=held["x"],
             rotation=held["e"],
             velocity=held["u"],
@@ -159,7 +159,7 @@ class Recorder:
                 last_force_at=np.where(rows[:, ACTS] != 0, np.nan, rows[:, ENDED]),
             ),
             touched=touched,
-            energy=_balance(self.model, stand),
+            energy=_balance(self.model, snapshot),
             versions=_versions(),
             halved=mirror is not None,
         )
@@ -183,9 +183,9 @@ class Recorder:
         return held | {"e": _without_jumps(held["e"]) if finite else held["e"]}
 
 
-def _balance(model: Model, stand: Stand) -> Energy:
-    lost, driven, through, numerical = (float(v) for v in stand.work)
-    first, last, most = stand.energies
+def _balance(model: Model, snapshot: Snapshot) -> Energy:
+    lost, driven, through, numerical = (float(v) for v in snapshot.work)
+    first, last, most = snapshot.energies
     kinetic, elastic, potential = last
     change = sum(last) - sum(first)
     scale = audit.scale(model, lost, through, most, potential - first[2])

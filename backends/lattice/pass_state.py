@@ -23,7 +23,7 @@ class Stage(NamedTuple):
     ended: bool
 
 
-class Mark:
+class PassState:
     """Writes and reads a pass: the state, what it counts and is steered by, and the work arrays of a step,
     which a pass that has ended does not need."""
 
@@ -35,7 +35,7 @@ class Mark:
         self._recorder = recorder
 
     def arrays(self, stage: Stage) -> State:
-        """The pass as it stands."""
+        """The pass as it is now."""
         stored = {f"stored.{name}": array for name, array in self._recorder.arrays().items()}
         work = {} if stage.ended else self._work
         return {**self._state, **work, **stored, "stage": np.array(stage, dtype=float)}
