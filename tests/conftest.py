@@ -16,6 +16,7 @@ import ran
 import typer.main
 from hypothesis import settings
 
+from mdlgen.__main__ import MANY
 from mdlgen.program import build
 from mdlgen.program.file import Unfit
 from mdlgen.program.kernel import Kernel, alone
@@ -25,6 +26,8 @@ pytest.register_assert_rewrite("motionview_cases")  # so that a failing check of
 
 # A process makes its commands ready once; tests that call hundreds of them in one process would each time.
 typer.main.get_command = functools.cache(typer.main.get_command)
+
+gc.set_threshold(MANY)  # cycles are looked for as rarely as in a command
 
 settings.register_profile("mdlgen", deadline=None, derandomize=True)
 settings.load_profile("mdlgen")
