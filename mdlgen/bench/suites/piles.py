@@ -16,8 +16,9 @@ DURATION, QUICK = 100.0, 20.0  # [ms]
 GRID = (10, 20)
 COUNTS = {"rest": (5, 20), "fed": (5, 20, 100)}
 TALL = 0.1  # of a note [mm]
-# The middle of the roller over the face of the uppermost note, and where it touches nothing [mm].
+# The middle of the roller over the face of the uppermost note [mm]; for a pile at rest it stands still above.
 ABOVE, AWAY = 12.4, 250.0
+STILL = ("rollers.pick.press=null", "rollers.pick.drive=null")
 CREEP = 10.0  # [um/s] that a pile at rest may move by
 STIFFNESS = "100 N/mm^1.5"  # soft enough for that step
 CONTACT = f"{{stiffness: {STIFFNESS}, restitution: 0.5, friction: 0.3, smoothing: 1 mm/s}}"
@@ -35,9 +36,9 @@ def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
                 f"piles.cassette.count={count}",
                 f"sheets.note.boxes=[{GRID[0]},{GRID[1]}]",
                 f"rollers.pick.center=[0 mm, 0 mm, {middle:g} mm]",
+                *(STILL if kind == "rest" else ("rollers.pick.drive={speed: 25 rad/s, ramp: 10 ms}",)),
                 f"piles.cassette.contact={CONTACT}",
                 f"contacts.floor.stiffness={STIFFNESS}",
-                "rollers.pick.drive={speed: 25 rad/s, ramp: 10 ms}",
                 f"contacts.pick.between=[cassette_{count}, pick]",
                 f"probes.lead.sheet=cassette_{count}",
                 f"run.duration={duration:g} ms",
