@@ -87,7 +87,7 @@ class System(NamedTuple):
     gravity: Floats
     nodes: Ints  # body of each node
     sheets: Ints  # and its sheet; the free boxes of a sheet all hang together
-    reach: int  # how many nodes apart two that are coupled may be
+    offsets: Ints  # how many nodes apart two may be that a joint couples, from 0 on
     border: int  # unknowns of rollers and pressed plates
     folded: int  # bushings that share a joint with another one
     points: np.ndarray  # of the curves that joints follow, mechanics.curve.POINT
@@ -96,6 +96,11 @@ class System(NamedTuple):
     search: Search  # of boxes of two sheets that are near each other
     marks: int  # how many pairs there can be
     meshes: Meshes
+
+    @property
+    def reach(self) -> int:
+        """How many nodes apart two are that a joint couples, at most."""
+        return int(self.offsets[-1])
 
     @property
     def tables(self) -> Tables:
@@ -129,7 +134,7 @@ def build(model: Model, fold: bool = True) -> System:
         gravity=gravity(model),
         nodes=nodes,
         sheets=np.searchsorted([s.first for s in model.sheets], nodes, side="right") - 1,
-        reach=reach(bodies, joints),
+        offsets=offsets(bodies, joints),
         border=border,
         folded=folded,
         points=curve_points(model.curves),
@@ -227,8 +232,8 @@ def partner(model: Model, pair: Any) -> int:
     )
 
 
-def reach(bodies: np.ndarray, joints: np.ndarray) -> int:
-    """How many nodes apart two are that a joint couples, at most."""
+def offsets(bodies: np.ndarray, joints: np.ndarray) -> Ints:
+    """How many nodes apart two may be that a joint couples, from 0 on."""
     a, b = bodies["node"][joints["a"]], bodies["node"][joints["b"]]
     both = (a >= 0) & (b >= 0)
-    return int(np.abs(a - b)[both].max(initial=0))
+    return np.unique(np.append(np.abs(a - b)[both], 0)).astype(np.int64)

@@ -27,6 +27,9 @@ from mdlgen.mechanics.tree import THICK, depth_at
 from mdlgen.mechanics.vector import add, back, dot, mat, matmul, nine, rotate, scale, sub, three, vec
 from mdlgen.program.kernel import BORROWS, njit
 
+# Of what is deepest.
+UNSEEN = 0.8
+
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def deepest(bodies, pair):
@@ -52,13 +55,19 @@ def unseen(bodies, pair, meshes):
     than the band beyond `deepest` is wide, which for each of these laws is as wide as that is deep."""
     if pair.kind == BOX_MESH:
         return meshes.heads[pair.mesh].unseen
-    return 0.8 * deepest(bodies, pair)
+    return UNSEEN * deepest(bodies, pair)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def size(body):
     """Half of a box's diagonal."""
     return math.sqrt(body.half[0] * body.half[0] + body.half[1] * body.half[1] + body.half[2] * body.half[2])
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def fastest_place(body, rate, spin):
+    """How fast any place of a box is at most, of its velocity and its angular velocity."""
+    return math.sqrt(dot(rate, rate)) + math.sqrt(dot(spin, spin)) * size(body)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)

@@ -45,6 +45,7 @@ def pair_force(bodies: np.ndarray, pair: np.void, meshes: Meshes, motion: Motion
         totals=np.zeros(3),
         near=np.zeros(1, np.int64),
         overlaps=np.zeros(1, OVERLAP),
+        fastest=np.zeros((2, len(bodies))),
     )
     touching = entries.contacts(tables, motion, mid)
     out[:] = mid.results[0, : len(out)]

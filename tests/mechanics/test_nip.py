@@ -8,18 +8,13 @@ import pytest
 from mdlgen.mechanics.contact import box_cylinder
 from mdlgen.mechanics.frame import Box, Cylinder, Frame, Law
 from mdlgen.mechanics.point import DISSIPATED, MOST_POINTS, OUT, POINT, POINTS, STORED, TORQUE_B
-from mdlgen.program.kernel import Kernel
+
+pytestmark = pytest.mark.usefixtures("as_python")
 
 RADIUS, WIDTH, STIFFNESS = 10.0, 30.0, 10.0
 STILL = (0.0, 0.0, 0.0)
 # Half of the thickness of a box, and halves of its other sides: of 10 by 5 boxes.
 THIN, HALF = 0.05, (3.35, 6.0)
-
-
-@pytest.fixture(autouse=True)
-def in_python(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Laws are called as the Python that they are written in: there is nothing to compile."""
-    monkeypatch.setattr(Kernel, "__call__", lambda kernel, *args: kernel.py_func(*args))
 
 
 def _sheet(

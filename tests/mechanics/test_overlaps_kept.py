@@ -10,8 +10,26 @@ from scipy.spatial.transform import Rotation
 
 from mdlgen.mechanics.facing import box_box
 from mdlgen.mechanics.frame import Box, Frame, Law
-from mdlgen.mechanics.overlap import APART, OTHER, OVERLAP, OVERLAPS, find, holds, points, press
-from mdlgen.mechanics.point import MOST_POINTS, OUT, POINT, POINTS
+from mdlgen.mechanics.impacts import stored_beyond, turning_back
+from mdlgen.mechanics.laws import friction_over_speed
+from mdlgen.mechanics.overlap import APART, OTHER, OVERLAP, OVERLAPS, find, holds, impact, points, press
+from mdlgen.mechanics.point import (
+    AT,
+    FORCE,
+    GRIP,
+    GROWTH,
+    MOST_POINTS,
+    NORMAL,
+    OUT,
+    POINT,
+    POINTS,
+    PRESSING,
+    RATE,
+    RUBBING,
+    SLIP,
+    SPRING,
+    closing,
+)
 
 pytestmark = pytest.mark.usefixtures("as_python")
 
@@ -71,7 +89,7 @@ def test_the_law_is_that_of_two_boxes(cases: list[tuple[Any, np.ndarray]]) -> No
         a, _, b, _, numbers = case
         if kept[0]["state"] == OTHER:
             continue
-        whole, pointwise, pressed = np.zeros(WIDE), np.zeros(WIDE), np.zeros(OUT)
+        whole, pointwise, pressed = np.zeros(WIDE), np.zeros(WIDE), np.zeros(GRIP + 1)
         box_box.py_func(whole, *case)
         if kept[0]["count"]:
             points.py_func(pointwise, kept[0], a, b, numbers)
@@ -79,16 +97,60 @@ def test_the_law_is_that_of_two_boxes(cases: list[tuple[Any, np.ndarray]]) -> No
         count = OUT + 1 + POINT * int(whole[POINTS])
         scale = 1e-9 * np.abs(whole[:count]).max() + 1e-15
         assert pointwise[:count] == pytest.approx(whole[:count], abs=scale)
-        assert pressed == pytest.approx(whole[:OUT], abs=scale)
+        assert pressed[:OUT] == pytest.approx(whole[:OUT], abs=scale)
         touching += bool(whole[POINTS])
     assert touching > 100
+
+
+def test_friction_of_faces_is_that_of_their_points(cases: list[tuple[Any, np.ndarray]]) -> None:
+    touching = 0
+    for (a, _, b, _, numbers), kept in cases:
+        pointwise, pressed = np.zeros(WIDE), np.zeros(GRIP + 1)
+        if not kept[0]["count"] or not press.py_func(pressed, kept[0], a, b, numbers):
+            continue
+        points.py_func(pointwise, kept[0], a, b, numbers)
+        rows = pointwise[OUT + 1 :].reshape(-1, POINT)[: int(pointwise[POINTS])]
+        speed = np.linalg.norm(rows[:, SLIP : SLIP + 3], axis=1)
+        law = (numbers.mu_static, numbers.mu_dynamic, numbers.stiction, numbers.sliding)
+        grip = [friction_over_speed.py_func(v, *law) for v in speed]
+        assert pressed[RUBBING] == pytest.approx((rows[:, FORCE] * grip * speed).sum(), rel=1e-9)
+        assert pressed[GRIP] == pytest.approx(numbers.mu_static * pressed[PRESSING], rel=1e-12)
+        touching += 1
+    assert touching > 100
+
+
+@pytest.mark.parametrize("dt", [1e-3, 0.1])
+def test_impacts_of_faces_are_those_of_their_points(dt: float, cases: list[tuple[Any, np.ndarray]]) -> None:
+    """By the rates and changes of rates at each point, which the law gives in global axes."""
+    draw = np.random.default_rng(1)
+    makes = misses = 0
+    for (a, _, b, _, numbers), kept in cases:
+        if not kept[0]["count"]:
+            continue
+        pointwise = np.zeros(WIDE)
+        points.py_func(pointwise, kept[0], a, b, numbers)
+        rows = pointwise[OUT + 1 :].reshape(-1, POINT)[: int(pointwise[POINTS])]
+        faster = [(_three(draw.normal(0, 1, 3)), _three(draw.normal(0, 0.1, 3))) for _ in range(2)]
+        quick = [frame._replace(v=v, w=w) for frame, (v, w) in zip((a, b), faster, strict=True)]
+        made = missed = 0.0
+        for row in rows:
+            depth = 1.5 * row[SPRING] / row[GROWTH]
+            made += stored_beyond.py_func(row[SPRING], depth, 0.4 * row[SPRING] * depth, 0.5 * dt * row[RATE])
+            more = closing.py_func(row[AT : AT + 3], row[NORMAL : NORMAL + 3], *quick)
+            back = turning_back.py_func(row[RATE], more, numbers.beta, numbers.smoothing)
+            missed += row[SPRING] * dt * back
+        assert impact.py_func(kept[0], a, b, tuple(faster), numbers, dt) == pytest.approx(
+            (made, missed), rel=1e-7, abs=1e-12
+        )
+        makes, misses = makes + (made != 0.0), misses + (missed > 0.0)
+    assert makes > 100 and misses > 50
 
 
 def test_both_bodies_get_opposite_forces_at_one_place(cases: list[tuple[Any, np.ndarray]]) -> None:
     for (a, _, b, _, numbers), kept in cases:
         if not kept[0]["count"]:
             continue
-        out = np.zeros(OUT)
+        out = np.zeros(GRIP + 1)
         press.py_func(out, kept[0], a, b, numbers)
         force, torque, back, turned = out[:12].reshape(4, 3)
         assert (force == -back).all()

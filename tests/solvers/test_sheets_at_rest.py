@@ -9,9 +9,12 @@ from scipy.spatial.transform import Rotation
 from stacks import ran, stack
 
 import mdlgen
+from mdlgen.backends.lattice.kernels.state import Midpoint
 from mdlgen.checks import lints
 from mdlgen.errors import RefusedError
 from mdlgen.mechanics.frame import Motion
+from mdlgen.mechanics.overlap import OVERLAP
+from mdlgen.mechanics.point import OUT
 from mdlgen.model import sheet_pairs
 from mdlgen.model.lower import lower
 from mdlgen.model.tables import BOX_BOX
@@ -68,7 +71,18 @@ def test_boxes_that_lean_have_not_crossed_where_a_centre_passes_a_plane():
         near = np.array([system.search.first])
         still = np.zeros((count, 3))
         begins, middle = (Motion(place, turned, still, still) for place in places)
-        return sides.crossed(system.tables, near, 1, begins, middle) >= 0
+        # of nothing that is kept is it known that faces lie on each other
+        mid = Midpoint(
+            motion=middle,
+            forces=still,
+            touched=near,
+            results=np.zeros((1, OUT)),
+            totals=np.zeros(3),
+            near=near,
+            overlaps=np.zeros(1, OVERLAP).view(np.recarray),
+            fastest=np.zeros((2, count)),
+        )
+        return sides.crossed(system.tables, mid, (0, 1), begins, system.search.first, 1.0) >= 0
 
     assert through(0.0, 0.0, 0.05, -0.05) and not through(0.0, 0.0, 0.05, 0.02)
     assert not through(70.0, 0.0, 0.05, -0.05), "beside it"

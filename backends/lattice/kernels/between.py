@@ -6,7 +6,7 @@ from mdlgen.backends.lattice.kernels.forces import onto, touches
 from mdlgen.mechanics.frame import box_of, frame_of, law_of
 from mdlgen.mechanics.overlap import OTHER, UNKNOWN, apart, find, holds, points, press
 from mdlgen.mechanics.pair import BOX_BOX
-from mdlgen.mechanics.point import DISSIPATED, OUT, POINTS, PRESSING
+from mdlgen.mechanics.point import DISSIPATED, OUT, POINTS
 from mdlgen.program.kernel import BORROWS, njit
 
 # Part of a box by which its overlap may have moved along it since it was found. With 1e-2 within a step the
@@ -22,9 +22,9 @@ def forget_overlaps(overlaps):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _two_boxes(tables, pair, kept, motion, whole, f, out):
-    """What two boxes of two sheets do, into `out` and onto f; `whole`: with contact points. Returns whether
-    they touch."""
+def _two_boxes(tables, pair, kept, motion, f, out):
+    """What two boxes of two sheets do, into `out`, without contact points, and onto f. Returns whether they
+    touch."""
     a, b = frame_of(motion, pair.a), frame_of(motion, pair.b)
     if not holds(kept, a, b, MOVED):
         one, two = box_of(tables.bodies[pair.a]), box_of(tables.bodies[pair.b])
@@ -36,23 +36,16 @@ def _two_boxes(tables, pair, kept, motion, whole, f, out):
     if kept.count == 0:
         return False
     out[POINTS] = 0.0
-    if not whole:
-        if not press(out, kept, a, b, law_of(pair)):
-            return False
-    else:
-        for i in range(OUT):
-            out[i] = 0.0
-        points(out, kept, a, b, law_of(pair))
-        if out[PRESSING] == 0.0:
-            return False
+    if not press(out, kept, a, b, law_of(pair)):
+        return False
     onto(f, pair, out)
     return True
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def near_forces(work, close, whole):
-    """Adds the forces of the near pairs to those of the midpoint, as forces.pair_forces does; contact points
-    of two sheets only where they are wanted, `whole`. Returns (how many pairs touch, dissipated power)."""
+def near_forces(work, close):
+    """Adds the forces of the near pairs to those of the midpoint, as forces.pair_forces does, but without the
+    contact points of two sheets. Returns (how many pairs touch, dissipated power)."""
     tables, mid, first = work.tables, work.mid, work.search.first
     near, motion, f, results, overlaps = mid.near, mid.motion, mid.forces, mid.results, mid.overlaps
     count = 0
@@ -60,7 +53,7 @@ def near_forces(work, close, whole):
     for at in range(close):
         pair, out = tables.pairs[near[at]], results[count]
         if pair.kind == BOX_BOX:
-            touching = _two_boxes(tables, pair, overlaps[near[at] - first], motion, whole, f, out)
+            touching = _two_boxes(tables, pair, overlaps[near[at] - first], motion, f, out)
         else:
             touching = touches(tables, pair, motion, f, out)
         if touching:

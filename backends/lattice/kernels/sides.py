@@ -7,7 +7,12 @@ faces that only just touch have no stiffness yet; and a step could end there.
 
 from __future__ import annotations
 
+import math
+
+from mdlgen.backends.lattice.kernels.state import MIDDLE
+from mdlgen.mechanics.overlap import OVERLAPS
 from mdlgen.mechanics.pair import BOX_BOX
+from mdlgen.mechanics.point import DEPTH
 from mdlgen.mechanics.vector import back, mat, sub, transpose_matmul, vec
 from mdlgen.program.kernel import njit
 
@@ -19,7 +24,13 @@ CLOSER = 0.5
 def part_of_change(tables, near, close, r, h, change):
     """The part of a change of velocities (6 nodes,), taken off, that moves no box of the pairs near[:close]
     further to another sheet in h than it may in one iteration; at most 1."""
-    bodies, pairs = tables.bodies, tables.pairs
+    bodies, pairs, nodes = tables.bodies, tables.pairs, tables.nodes
+    most, thinnest = 0.0, 1e300
+    for n in range(nodes.size):
+        square = change[6 * n] ** 2 + change[6 * n + 1] ** 2 + change[6 * n + 2] ** 2
+        most, thinnest = max(most, square), min(thinnest, bodies[nodes[n]].half[2])
+    if 2.0 * h * math.sqrt(most) <= CLOSER * thinnest:  # no pair needs a look
+        return 1.0
     worst = 0.0
     for at in range(close):
         pair = pairs[near[at]]
@@ -61,13 +72,28 @@ def _height(bodies, pair, x, r):
 
 
 @njit(cache=True, error_model="numpy")
-def crossed(tables, near, close, state, motion):
-    """The pair of near[:close] of which a step takes a box through one of another sheet, or -1: from
-    `state` over the middle as far again."""
-    bodies, pairs = tables.bodies, tables.pairs
+def crossed(tables, mid, counts, state, first, h):
+    """The near pair of which a step takes a box through one of another sheet, or -1: from `state` over the
+    middle, h later, as far again.
+
+    counts: how many pairs touch in the middle, how many are near; first: the pair of the first overlap that
+    is kept. Where faces lie on each other in the middle, no deeper than half of the thinner box, they can
+    have changed sides only where they moved by a quarter of it.
+    """
+    bodies, pairs, near, motion = tables.bodies, tables.pairs, mid.near, mid.motion
+    fast, known = mid.fastest[MIDDLE], 0
+    count, close = counts
     for at in range(close):
         pair = pairs[near[at]]
+        touches = known < count and mid.touched[known] == near[at]
+        deep = mid.results[known, DEPTH] if touches else 0.0
+        if touches:
+            known += 1
         if pair.kind != BOX_BOX:
+            continue
+        thin = min(bodies[pair.a].half[2], bodies[pair.b].half[2])
+        lie = mid.overlaps[near[at] - first].state == OVERLAPS and deep <= thin
+        if lie and h * (fast[pair.a] + fast[pair.b]) < CLOSER * thin:
             continue
         begin, _ = _height(bodies, pair, state.x, state.r)
         middle, over = _height(bodies, pair, motion.x, motion.r)

@@ -54,8 +54,10 @@ class Midpoint(NamedTuple):
     totals: Floats  # (3,) LOST, POWER, NUMERICAL
     near: Ints  # pairs that may touch
     overlaps: np.ndarray  # of pairs that are searched, mechanics.overlap.OVERLAP
+    fastest: Floats  # how fast places of free boxes are at most, MIDDLE and ENDS of a step, (2, bodies)
 
 
+MIDDLE, ENDS = 0, 1
 # Of Midpoint.totals [N mm/ms]: dissipated, put in by loads, dissipated by the numerical damping of joints.
 LOST, POWER, NUMERICAL = 0, 1, 2
 
@@ -74,6 +76,7 @@ class Matrix(NamedTuple):
     unknowns: Ints  # (4,) scratch: which unknowns these are
     couplings: Any  # coupled.Couplings
     mixing: Floats  # changes of the iteration before: as found, as taken, (2, 6 nodes + border)
+    offsets: Ints  # how many nodes apart two may be that a joint couples, from 0 on
 
 
 class Free(NamedTuple):

@@ -53,6 +53,7 @@ from mdlgen.backends.lattice.kernels.state import (
     ITERATIONS,
     LOST,
     MADE_FOR,
+    MIDDLE,
     NUMERICAL,
     POWER,
     STALE,
@@ -82,6 +83,7 @@ from mdlgen.mechanics.arm import (
     turn_of,
     way_of,
 )
+from mdlgen.mechanics.crossing import fastest_place
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.overlap import OVERLAP
 from mdlgen.mechanics.vector import back, dot, mat, rotate, three, vec
@@ -156,9 +158,9 @@ def _turn(nodes, r, res, inward):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _contact_forces(work, close, known, whole):
+def _contact_forces(work, close, known):
     """Adds the forces of contacts to those of the midpoint, where `known` from what the contact solve last
-    evaluated; `whole`: with all contact points. Returns (how many pairs touch, dissipated power)."""
+    evaluated. Returns (how many pairs touch, dissipated power)."""
     mid, condensed = work.mid, work.condensed
     if known:
         again = (condensed.touched, condensed.results, condensed.looked[TOUCHED], condensed.seen)
@@ -166,7 +168,7 @@ def _contact_forces(work, close, known, whole):
             work.tables, mid.near, close, again, mid.motion, mid.forces, mid.touched, mid.results
         )
     elif work.search.regions.size > 0:
-        count, rubbed = near_forces(work, close, whole)
+        count, rubbed = near_forces(work, close)
     else:
         count, _stored, rubbed = pair_forces(
             work.tables, mid.near, close, mid.motion, mid.forces, mid.touched, mid.results
@@ -186,7 +188,7 @@ def _make_factor(work, t, h, lag, where, count, chord):
     if where != APART:
         contacts_into(tables, h, work.mid, count, chord, where == PLANES, matrix)
         couplings_in_box_axes(tables.nodes, motion.r, matrix.couplings)
-    in_box_axes(tables.nodes, motion.r, a, b)
+    in_box_axes(tables.nodes, motion.r, a, b, matrix.offsets)
     forget(work.condensed)
     if not factor(a) or (where == INSIDE and not eliminate(a, b, d, matrix.eliminated, matrix.schur)):
         return False
@@ -214,6 +216,15 @@ def _greatest(tables, motion, res, resb, counters):
             way = way_of(bodies[k], vec(motion.x, k))
             change = max(change, math.sqrt(dot(way, way)) * abs(resb[bodies[k].slide]))
     return change
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _fastest(tables, u, fastest):
+    """How fast any place of a free box is at most (bodies,)."""
+    for n in range(tables.nodes.size):
+        b = tables.nodes[n]
+        rate, spin = (u[n, 0], u[n, 1], u[n, 2]), (u[n, 3], u[n, 4], u[n, 5])
+        fastest[b] = fastest_place(tables.bodies[b], rate, spin)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -252,7 +263,7 @@ def midpoint(work, t, dt, tolerance, control):
         mid.forces[:] = 0.0
         _stored, lost, numerical = joint_forces(tables.joints, tables.points, mid.motion, mid.forces, lag)
         known = iteration > 0 and where == APART and condensed.looked[UP_TO_DATE] == 1
-        count, rubbed = _contact_forces(work, close, known, False)
+        count, rubbed = _contact_forces(work, close, known)
         power = other_forces(tables, 1.0, mid.motion, mid.forces)
         _weights(bodies, tables.gravity, mid.forces)
         clutch_torques(bodies, t + h, state.ub, mid.forces)
@@ -315,11 +326,13 @@ def midpoint(work, t, dt, tolerance, control):
             # forces change much with what the last iteration changed: friction, over its smoothing speed
             place(tables, h, t + h, state, mid.motion)
             mid.forces[:] = 0.0
-            count, rubbed = _contact_forces(work, close, False, True)
+            count, rubbed = _contact_forces(work, close, False)
             mid.totals[LOST], mid.totals[POWER], mid.totals[NUMERICAL] = lost + rubbed, power, numerical
             counters[TOUCHING], counters[CLOSE] = count, close
             release(condensed, m)
-            counters[THROUGH] = crossed(tables, mid.near, close, state, mid.motion)
+            if work.search.regions.size > 0:
+                _fastest(tables, state.u, mid.fastest[MIDDLE])
+            counters[THROUGH] = crossed(tables, mid, (count, close), state, work.search.first, h)
             return counters[THROUGH] < 0.0
         if before < 1e299 and (rate >= 1.0 or math.log(limit / change) < (WORTH + m) * math.log(rate)):
             factored[STALE] = 1.0
@@ -356,6 +369,7 @@ def empty(system, wide: int) -> tuple[State, Midpoint, Matrix]:
         totals=np.zeros(3),
         near=np.zeros(len(system.pairs), np.int64),
         overlaps=np.zeros(max(1, len(system.pairs) - system.search.first), OVERLAP),
+        fastest=np.zeros((2, bodies)),
     )
     matrix = Matrix(
         band=no_band(nodes, system.reach),
@@ -369,5 +383,6 @@ def empty(system, wide: int) -> tuple[State, Midpoint, Matrix]:
         unknowns=np.zeros(4, np.int64),
         couplings=couplings(len(system.pairs) - system.search.first, system.sheets, border),
         mixing=np.zeros((2, 6 * nodes + border)),
+        offsets=system.offsets,
     )
     return state, mid, matrix

@@ -8,13 +8,14 @@ import math
 import numpy as np
 
 from mdlgen.backends.lattice.kernels.forces import place_box, place_roller
-from mdlgen.backends.lattice.kernels.state import FORCE_NOW
+from mdlgen.backends.lattice.kernels.state import ENDS, FORCE_NOW, MIDDLE
 from mdlgen.mechanics.arm import turn_of, way_of
-from mdlgen.mechanics.crossing import above, buried, closing, deepest, unseen
-from mdlgen.mechanics.frame import Frame, Motion
-from mdlgen.mechanics.laws import sign_step
+from mdlgen.mechanics.crossing import UNSEEN, above, buried, closing, deepest, fastest_place, unseen
+from mdlgen.mechanics.frame import Frame, Motion, frame_of, law_of
+from mdlgen.mechanics.impacts import stored_beyond, turning_back
 from mdlgen.mechanics.mesh import BLOCK
-from mdlgen.mechanics.pair import BOX_CYLINDER, BOX_MESH, BOX_PLANE, pair_force
+from mdlgen.mechanics.overlap import impact
+from mdlgen.mechanics.pair import BOX_BOX, BOX_CYLINDER, BOX_MESH, BOX_PLANE, pair_force
 from mdlgen.mechanics.point import (
     AT,
     BETA,
@@ -29,6 +30,7 @@ from mdlgen.mechanics.point import (
     OVER,
     POINT,
     POINTS,
+    PRESSING,
     RATE,
     SPRING,
     STORED,
@@ -103,55 +105,72 @@ def _changed(body, b, state, mid, slower):
     return rate, spin
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
-def _turning_back(rate, faster, beta, smoothing):
-    """What damping misses in a step in which a contact turns from closing to opening, for 1 of its elastic
-    force and of time: the rule has the rate in the middle, and may hold it at zero there until the step ends
-    as fast outwards as it began inwards. `faster`: what the rate changes in half of the step."""
-    begin, end = rate - faster, rate + faster
-    if begin <= 0.0 or end >= 0.0 or max(begin, -end) < smoothing:
-        return 0.0
-    mean = 0.5 * (begin * begin + end * end) / (begin - end)
-    return beta * max(mean - sign_step(rate, smoothing) * rate, 0.0)
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _fastest_at_ends(tables, state, slower, fastest):
+    """How fast any place of a free box is at most at either end of a step, in fastest[ENDS]."""
+    u, kept = state.u, slower[0]
+    for n in range(tables.nodes.size):
+        b = tables.nodes[n]
+        more = sub((u[n, 0], u[n, 1], u[n, 2]), (kept[n, 0], kept[n, 1], kept[n, 2]))
+        spin = sub((u[n, 3], u[n, 4], u[n, 5]), (kept[n, 3], kept[n, 4], kept[n, 5]))
+        fastest[ENDS, b] = fastest[MIDDLE, b] + fastest_place(tables.bodies[b], more, spin)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _made(work, count, dt, slower, rows):
+def _made(work, count, dt, slower, least, rows):
     """Adds to `rows` (contacts,) the energy that contacts store in a step beyond the work done on them;
-    returns what their damping should have taken and did not. `slower`: see _changed.
-
-    The rule takes the force in the middle of a step over all of it. The depth of each point at both ends
-    follows from its rate; it has stored 2/5 F z (of z^1.5; other laws are near enough).
-    """
+    returns what their damping should have taken and did not. `slower`: see _changed; of two sheets boxes that
+    cannot make `least` of energy are not looked at."""
     bodies, pairs, state, mid = work.tables.bodies, work.tables.pairs, work.state, work.mid
-    touched, results, x = mid.touched, mid.results, mid.motion.x
-    kept = 0.0
+    touched, results, motion, ends = mid.touched, mid.results, mid.motion, mid.fastest[ENDS]
+    missed = 0.0
     for k in range(count):
-        pair = pairs[touched[k]]
+        pair, out = pairs[touched[k]], results[k]
         if not _hits(bodies, pair, work.kept.rows):
+            continue
+        faces = pair.kind == BOX_BOX and out[POINTS] == 0.0
+        if faces and 4.0 * dt * out[PRESSING] * (ends[pair.a] + ends[pair.b]) < least:
             continue
         row = pair.row
         one, spin_one = _changed(bodies[pair.a], pair.a, state, mid, slower)
         two, spin_two = _changed(bodies[pair.b], pair.b, state, mid, slower)
-        still = mat(mid.motion.r, pair.a)
-        a, b = Frame(vec(x, pair.a), still, one, spin_one), Frame(vec(x, pair.b), still, two, spin_two)
-        for i in range(int(results[k, POINTS])):
+        part = slower[2]
+        if faces:
+            faster = (scale(part, one), scale(part, spin_one)), (scale(part, two), scale(part, spin_two))
+            kept, law = mid.overlaps[touched[k] - work.search.first], law_of(pair)
+            made, less = impact(kept, frame_of(motion, pair.a), frame_of(motion, pair.b), faster, law, dt)
+            rows[row] += made
+            missed += less
+            continue
+        still = mat(motion.r, pair.a)
+        a = Frame(vec(motion.x, pair.a), still, one, spin_one)
+        b = Frame(vec(motion.x, pair.b), still, two, spin_two)
+        for i in range(int(out[POINTS])):
             at = OUT + 1 + POINT * i
-            point, kind = results[k, at:], results[k, at + KIND]
-            force, growth, moved = point[SPRING], point[GROWTH], 0.5 * dt * point[RATE]
+            point, kind = out[at:], out[at + KIND]
+            force, growth = point[SPRING], point[GROWTH]
             if growth <= 0.0 or kind == COUPLE:
                 continue
             depth, energy = 1.5 * force / growth, 0.6 * force * force / growth
-            part = moved / depth
-            if abs(part) > 0.02:
-                ends = max(1.0 + part, 0.0) ** 2.5 - max(1.0 - part, 0.0) ** 2.5
-                rows[row] += energy * ends - 2.0 * force * moved
+            rows[row] += stored_beyond(force, depth, energy, 0.5 * dt * point[RATE])
             place = three_from(point, LINE if kind == OF_NIP else AT)
             normal = three_from(point, WAY if kind == OF_NIP else NORMAL)
-            faster = closing_at(place, normal, a, b)
-            missed = _turning_back(point[RATE], slower[2] * faster, point[BETA], point[OVER])
-            kept += force * dt * missed
-    return kept
+            faster = part * closing_at(place, normal, a, b)
+            missed += force * dt * turning_back(point[RATE], faster, point[BETA], point[OVER])
+    return missed
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _slow(bodies, pair, fastest, dt, little):
+    """Whether two boxes of two sheets move too little in a step to cross each other unseen, or to make more
+    than `little` of energy where they come to touch."""
+    if pair.kind != BOX_BOX:
+        return False
+    way = dt * (fastest[pair.a] + fastest[pair.b])
+    if way > UNSEEN * deepest(bodies, pair):
+        return False
+    half = 0.5 * way
+    return 0.4 * pair.k * half * half * math.sqrt(half) <= little
 
 
 @njit(cache=True, error_model="numpy")
@@ -172,13 +191,17 @@ def swept(work, counts, t, dt, allowed, slower, rows):
     rows[:] = 0.0
     total = 0.0
     if allowed > 0.0:
-        total = _made(work, count, dt, slower, rows)
+        if work.search.regions.size > 0:
+            _fastest_at_ends(tables, state, slower, mid.fastest)
+        total = _made(work, count, dt, slower, LITTLE * allowed / max(1, count), rows)
     known = 0
     for at in range(close):
         pair = pairs[near[at]]
         touches = known < count and touched[known] == near[at]
         if touches:
             known += 1
+        if _slow(bodies, pair, mid.fastest[MIDDLE], dt, LITTLE * allowed if allowed > 0.0 else 1e300):
+            continue
         began = Motion(x, r, mid.motion.u, mid.motion.w)
         fast = closing(bodies, pair, meshes, began, dt)
         way, band = dt * fast, unseen(bodies, pair, meshes)

@@ -7,7 +7,6 @@ iterations for them, and the matrix stays positive.
 
 from __future__ import annotations
 
-from mdlgen.backends.lattice.kernels.band import PAD
 from mdlgen.backends.lattice.kernels.slopes import core, couple_growth, hat_left, hat_right, outer
 from mdlgen.mechanics.arm import AXIAL, DAMPING, INERTIA, STIFFNESS, turn_of, way_of
 from mdlgen.mechanics.curve import curve_spring
@@ -290,34 +289,33 @@ def rollers_into(bodies, h, t, ub, b, d):
             d[bodies[k].spin, bodies[k].spin] = p[AXIAL] + h * clutch(bodies[k], ub[bodies[k].spin], t)[1]
 
 
-@njit(cache=True, error_model="numpy")
-def in_box_axes(nodes, r, a, b):
-    """Turns the band and the border from global axes to those of the boxes."""
+@njit(cache=True, error_model="numpy", **BORROWS)
+def in_box_axes(nodes, r, a, b, offsets):
+    """Turns the band and the border from global axes to those of the boxes; `offsets`: see state.Matrix."""
     for n in range(nodes.size):
         mine = mat(r, nodes[n])
-        for k in range(min((a.shape[2] - PAD) // 6, nodes.size - n)):
-            other = mat(r, nodes[n + k])
-            block = a[n, :, 6 * k : 6 * k + 6]
+        for offset in offsets:
+            if n + offset >= nodes.size:
+                break
+            other = mat(r, nodes[n + offset])
             for p in range(0, 6, 3):
-                for q in range(0, 6, 3):
-                    # stored column by column: block[c, r]
+                for q in range(6 * offset, 6 * offset + 6, 3):
+                    # stored column by column: a[n, c, r]
                     part = (
-                        block[p, q],
-                        block[p + 1, q],
-                        block[p + 2, q],
-                        block[p, q + 1],
-                        block[p + 1, q + 1],
-                        block[p + 2, q + 1],
-                        block[p, q + 2],
-                        block[p + 1, q + 2],
-                        block[p + 2, q + 2],
+                        a[n, p, q],
+                        a[n, p + 1, q],
+                        a[n, p + 2, q],
+                        a[n, p, q + 1],
+                        a[n, p + 1, q + 1],
+                        a[n, p + 2, q + 1],
+                        a[n, p, q + 2],
+                        a[n, p + 1, q + 2],
+                        a[n, p + 2, q + 2],
                     )
-                    if k > 0 and part == (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0):
-                        continue
                     turned = transpose_matmul(other, matmul(part, mine))
                     for i in range(3):
                         for j in range(3):
-                            block[p + j, q + i] = turned[3 * i + j]
+                            a[n, p + j, q + i] = turned[3 * i + j]
         for i in range(b.shape[0]):
             for q in range(6 * n, 6 * n + 6, 3):
                 v = back(mine, (b[i, q], b[i, q + 1], b[i, q + 2]))

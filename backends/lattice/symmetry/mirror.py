@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mdlgen.backends.lattice.arrays import IMAGE, System, reach
+from mdlgen.backends.lattice.arrays import IMAGE, System, offsets
 from mdlgen.mechanics.turning import ABOUT_A, ALONG
 from mdlgen.model.tables import Floats, Ints
 
@@ -129,7 +129,7 @@ def halve(system: System, mirror: Mirror) -> System:
         loads=system.loads[~gone[system.loads["body"]]],
         nodes=nodes,
         sheets=system.sheets[left],
-        reach=reach(bodies, joints),
+        offsets=offsets(bodies, joints),
         border=border,
         images=images,
         search=system.search._replace(
