@@ -14,7 +14,6 @@ from mdlgen.mechanics.guide import BOTH, inward
 from mdlgen.mechanics.mesh import LOST
 from mdlgen.mechanics.pair import (
     BOX_BOX,
-    BOX_CYLINDER,
     BOX_GUIDE,
     BOX_MESH,
     BOX_PLANE,
@@ -34,19 +33,19 @@ UNSEEN = 0.8
 @njit(cache=True, error_model="numpy", **BORROWS)
 def deepest(bodies, pair):
     """Depth beyond which a pair is about to come out at the other side: half of a plate's thickness, of the
-    thinner of two boxes', of a roller's radius, of two rollers the smaller radius. A mesh has its own."""
+    thinner of two boxes', of what is round its radius, of two rollers the smaller one. A mesh has its own."""
     a, b, kind = pair.a, pair.b, pair.kind
     if on_plate(pair):
         return bodies[b].half[2]
     if kind == BOX_BOX:
         return min(bodies[a].half[2], bodies[b].half[2])
-    if kind == BOX_CYLINDER:
-        return 0.5 * bodies[b].size[0]
     if kind == CYLINDER_CYLINDER:
         return min(bodies[a].size[0], bodies[b].size[0])
     if on_part(pair):
         return DEEP_ROLLER * bodies[a].size[0]
-    return LOST
+    if kind == BOX_MESH:
+        return LOST
+    return 0.5 * bodies[b].size[0]
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)

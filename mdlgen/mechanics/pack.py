@@ -51,9 +51,12 @@ def pack_bodies(model: Model, layout: np.dtype, units: Units = OWN, driven: bool
     bodies["half"][:count] = table.half * mm
     bodies["exposed"][:count] = table.exposed @ np.array([1, 2, 4, 8])
     bodies["size"] = 1.0
+    for part in model.machine:
+        if part.round is not None:
+            bodies["size"][part.body] = [mm * length for length in part.round]
     for roller in model.rollers:
         row = bodies[roller.body]
-        row["axis"], row["size"] = roller.axis, (roller.reach * mm, roller.width * mm)
+        row["axis"] = roller.axis
         row["press"][AXIAL] = (roller.inertia_axial + roller.carried[1]) * g * mm**2
         if roller.press is not None:
             _press(row, roller.press, roller.mass + roller.carried[0] + roller.press.carrier_mass, units)

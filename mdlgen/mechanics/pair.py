@@ -26,11 +26,26 @@ from mdlgen.mechanics.rim import box_rim, rim_rim
 from mdlgen.mechanics.roller_mesh import roller_mesh, roller_mesh_near
 from mdlgen.mechanics.roller_plate import guide_near, plate_near, roller_guide, roller_plane
 from mdlgen.mechanics.vector import back, dot, mat, sub, three, vec
+from mdlgen.model.tables.contacts import (
+    BOX_BOX,
+    BOX_CYLINDER,
+    BOX_GUIDE,
+    BOX_MESH,
+    BOX_PLANE,
+    CYLINDER_CYLINDER,
+    CYLINDER_GUIDE,
+    CYLINDER_MESH,
+    CYLINDER_PLANE,
+)
 from mdlgen.program.kernel import BORROWS, njit
 
-# As in mdlgen.model.tables.
-BOX_CYLINDER, BOX_PLANE, CYLINDER_CYLINDER, BOX_GUIDE, BOX_BOX, BOX_MESH = 0, 1, 2, 4, 5, 6
-CYLINDER_PLANE, CYLINDER_GUIDE, CYLINDER_MESH = 7, 8, 9
+# Kinds of contacts that have a law: those that `pair_force` tells apart.
+WITH_LAW = frozenset(
+    (
+        *(BOX_BOX, BOX_CYLINDER, BOX_GUIDE, BOX_MESH, BOX_PLANE),
+        *(CYLINDER_CYLINDER, CYLINDER_GUIDE, CYLINDER_MESH, CYLINDER_PLANE),
+    )
+)
 # How deep a roller may be in a plate, in times its radius: its axis is soon behind the face.
 DEEP_ROLLER = 0.5
 

@@ -3,27 +3,8 @@
 from __future__ import annotations
 
 from mdlgen.errors import RefusedError
-from mdlgen.model.tables import (
-    BOX_BOX,
-    BOX_CYLINDER,
-    BOX_GUIDE,
-    BOX_MESH,
-    BOX_PLANE,
-    CYLINDER_CYLINDER,
-    CYLINDER_GUIDE,
-    CYLINDER_MESH,
-    CYLINDER_PLANE,
-    EXTERNAL,
-    Model,
-)
-
-# those of mechanics.pair, which takes any other kind for a box and a cylinder
-WITH_LAW: frozenset[int] = frozenset(
-    (
-        *(BOX_BOX, BOX_CYLINDER, BOX_GUIDE, BOX_MESH, BOX_PLANE),
-        *(CYLINDER_CYLINDER, CYLINDER_GUIDE, CYLINDER_MESH, CYLINDER_PLANE),
-    )
-)
+from mdlgen.mechanics.pair import WITH_LAW
+from mdlgen.model.tables import EXTERNAL, Model
 
 
 def refuse_unsolved(model: Model, who: str) -> None:

@@ -3,7 +3,14 @@
 from __future__ import annotations
 
 from mdlgen.backends.lattice.kernels.forces import joint_forces, near_pairs, pair_forces
-from mdlgen.backends.lattice.kernels.state import DEPTH_NOW, FORCE_NOW, TURNING_NOW
+from mdlgen.backends.lattice.kernels.state import (
+    DEPTH_NOW,
+    ELASTIC,
+    FORCE_NOW,
+    KINETIC,
+    POTENTIAL,
+    TURNING_NOW,
+)
 from mdlgen.mechanics.arm import AXIAL, FORCE_0, INERTIA, STIFFNESS, hung, way_of
 from mdlgen.mechanics.driven import prescribed
 from mdlgen.mechanics.frame import Motion
@@ -69,4 +76,4 @@ def ledger(tables, state, mid, t, energies, rows):
         rows[pair.row, FORCE_NOW] += mid.results[k, PRESSING]
         rows[pair.row, DEPTH_NOW] = max(rows[pair.row, DEPTH_NOW], mid.results[k, DEPTH])
         turning(tables.bodies, pair, mid.results[k], rows, pair.row, TURNING_NOW)
-    energies[0], energies[1], energies[2] = kinetic, elastic + stored + pressed, potential
+    energies[KINETIC], energies[ELASTIC], energies[POTENTIAL] = kinetic, elastic + stored + pressed, potential

@@ -58,6 +58,8 @@ class Midpoint(NamedTuple):
 
 
 MIDDLE, ENDS = 0, 1
+# Of the energies of a state [N mm], see observe.ledger.
+KINETIC, ELASTIC, POTENTIAL = 0, 1, 2
 # Of Midpoint.totals [N mm/ms]: dissipated, put in by loads, dissipated by the numerical damping of joints.
 LOST, POWER, NUMERICAL = 0, 1, 2
 

@@ -80,6 +80,11 @@ class MachinePart(Frozen):
     body: int  # its row in Bodies
     center: Floats  # as the user gave it, before a spring moves it [mm], (3,)
 
+    @property
+    def round(self) -> tuple[float, float] | None:
+        """Radius and width of what its contacts take for round [mm]; None: it is not."""
+        return None
+
 
 @dataclass(frozen=True)
 class RollerPart(MachinePart):
@@ -110,6 +115,10 @@ class RollerPart(MachinePart):
             way = np.cross(self.axis, at - self.arm.pivot)
             total += mass * float(way @ way)
         return total
+
+    @property
+    def round(self) -> tuple[float, float]:
+        return self.reach, self.width
 
     @property
     def reach(self) -> float:
