@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from called import Run, runner
+from called import Run, files
 
 import mdlgen
 from mdlgen import registry
@@ -21,16 +21,6 @@ from mdlgen.paths import samples
 FOUR = samples() / "transport_4x4.yaml"
 SMALL = ["--set", "sheets.note.boxes=[2,3]"]
 DROP = [str(samples() / "verify" / "drop.yaml"), "--set", "run.duration=60 ms"]
-
-
-@pytest.fixture
-def mdl(capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
-    """Runs a command in an empty folder."""
-    return runner(capsys, tmp_path, monkeypatch)
-
-
-def files(folder: Path) -> list[str]:
-    return sorted(p.relative_to(folder).as_posix() for p in folder.rglob("*") if p.is_file())
 
 
 # ---------------------------------------------------------------- bad scenes

@@ -32,3 +32,8 @@ def runner(capsys: pytest.CaptureFixture[str], folder: Path, monkeypatch: pytest
         return Ended(code, *capsys.readouterr())
 
     return run
+
+
+def files(folder: Path) -> list[str]:
+    """Paths of all files in a folder, relative to it."""
+    return sorted(p.relative_to(folder).as_posix() for p in folder.rglob("*") if p.is_file())
