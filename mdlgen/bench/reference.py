@@ -37,7 +37,7 @@ def _sources(module: str) -> list[Path]:
     if found is None or found.origin is None:
         return []
     origin = Path(found.origin)
-    return sorted(origin.parent.glob("*.py")) if origin.name == "__init__.py" else [origin]
+    return sorted(origin.parent.rglob("*.py")) if origin.name == "__init__.py" else [origin]
 
 
 def keep(result: Result, file: str) -> None:

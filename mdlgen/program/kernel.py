@@ -10,7 +10,7 @@ import hashlib
 import importlib
 import logging
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from itertools import count
 from pathlib import Path
@@ -166,19 +166,37 @@ def _room_folder(room: str) -> Path | None:
 
 
 def _folder(function: Callable[..., Any]) -> Path | None:
-    """Where numba keeps a kernel: a folder for exactly these laws and the sources beside the kernel.
+    """Where numba keeps a kernel: a folder for exactly these laws and the sources of the kernel's room.
 
     numba notices that a function's own file has changed, but not a file whose functions it calls: a solver
     would go on with an older law without a word.
     """
-    room = function.__module__.rpartition(".")[0]
-    return _room_folder(room) if room else None
+    package = function.__module__.rpartition(".")[0]
+    return _room_folder(room_of(package)) if package else None
 
 
-def kernel_sources(room: str) -> list[Path]:
-    """Files with kernels in a package, sorted by name."""
-    folder = Path(str(importlib.import_module(room).__file__)).parent
-    return [path for path in sorted(folder.glob("*.py")) if b"@njit" in path.read_bytes()]
+@functools.cache
+def room_of(package: str) -> str:
+    """The room of a package: the highest one around it that has kernels itself, and not only in packages."""
+    names = package.split(".")
+    around = (".".join(names[: k + 1]) for k in range(len(names)))
+    return next((room for room in around if _with_kernels(_folder_of(room).glob("*.py"))), package)
+
+
+def kernel_sources(room: str) -> dict[str, Path]:
+    """Files with kernels in a package and in those inside it, by the names of their modules, sorted."""
+    folder = _folder_of(room)
+    found = _with_kernels(folder.rglob("*.py"))
+    named = {".".join((room, *path.relative_to(folder).with_suffix("").parts)): path for path in found}
+    return dict(sorted(named.items()))
+
+
+def _folder_of(package: str) -> Path:
+    return Path(str(importlib.import_module(package).__file__)).parent
+
+
+def _with_kernels(files: Iterable[Path]) -> list[Path]:
+    return [path for path in files if b"@njit" in path.read_bytes()]
 
 
 @functools.cache
@@ -187,9 +205,9 @@ def sources_digest(rooms: tuple[str, ...]) -> str:
     modules that they name."""
     found = hashlib.sha256()
     for room in rooms:
-        for path in kernel_sources(room):
-            module = importlib.import_module(f"{room}.{path.stem}")
-            found.update(f"{room}.{path.stem}\n".encode())
+        for name, path in kernel_sources(room).items():
+            module = importlib.import_module(name)
+            found.update(f"{name}\n".encode())
             found.update(path.read_bytes().replace(b"\r\n", b"\n"))
             for line in _numbers(module):
                 found.update(line.encode())
