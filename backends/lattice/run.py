@@ -13,15 +13,15 @@ from threading import Event, Thread
 import numpy as np
 
 from mdlgen.backends.lattice.arrays import System, build
-from mdlgen.backends.lattice.beside import Beside, Stopped, own
-from mdlgen.backends.lattice.ends import unbalanced
+from mdlgen.backends.lattice.integrate.beside import Beside, Stopped, own
+from mdlgen.backends.lattice.integrate.ends import unbalanced
+from mdlgen.backends.lattice.integrate.passes import FIRST_STEP, Progress, Watch, accuracy, division, one_pass
+from mdlgen.backends.lattice.integrate.work import flexible, start, warm
 from mdlgen.backends.lattice.kernels.entries import PROGRAM
-from mdlgen.backends.lattice.passes import FIRST_STEP, Progress, Watch, accuracy, division, one_pass
 from mdlgen.backends.lattice.scope import check
 from mdlgen.backends.lattice.statics.rest import rest
 from mdlgen.backends.lattice.symmetry.find import find
 from mdlgen.backends.lattice.symmetry.mirror import halve
-from mdlgen.backends.lattice.work import flexible, start, warm
 from mdlgen.model.tables import Model
 from mdlgen.results.estimates import estimated, open_yet
 from mdlgen.results.result import Result

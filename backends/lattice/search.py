@@ -55,7 +55,7 @@ class Search(NamedTuple):
 def plan(model: Model, pairs: np.ndarray) -> tuple[np.ndarray, Search, int]:
     """The pairs of a Model with room for those that are searched, the search, and how many different pairs
     there can be."""
-    from mdlgen.backends.lattice.kernels.search import EMPTY, SKIN
+    from mdlgen.backends.lattice.kernels.contact.search import EMPTY, SKIN
 
     rows = np.flatnonzero(model.contacts.kind == BOX_BOX)
     sheets = {s.name: s for s in model.sheets}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 import subprocess
 import sys
@@ -13,6 +14,9 @@ from places import ROOT
 from mdlgen.backends.lattice.kernels.entries import PROGRAM
 from mdlgen.cli import COMMANDS
 from mdlgen.paths import samples
+from mdlgen.program.build import programs
+from mdlgen.program.kernel import Kernel, kernel_sources, room_of
+from mdlgen.program.ship import Program
 
 HEAVY = ("exudyn", "numba", "scipy", "matplotlib", "h5py", "rich")
 
@@ -80,11 +84,12 @@ def test_a_plain_run_imports_what_it_uses_and_starts_no_process(tmp_path: Path) 
     assert found & (not_used | {f"mdlgen.{room}" for room in rooms}) == set()
 
 
-@pytest.mark.parametrize("first", ["mdlgen.mechanics.contact", "mdlgen.backends.lattice.kernels.band"])
+@pytest.mark.parametrize("first", ["mdlgen.mechanics.contact", "mdlgen.backends.lattice.kernels.linear.band"])
 def test_compiled_code_is_kept_in_one_place_whoever_imports_it_first(first: str) -> None:
     code = (
         f"import {first}\n"
-        "from mdlgen.backends.lattice.kernels import band, integrate\n"
+        "from mdlgen.backends.lattice.kernels.integrate import integrate\n"
+        "from mdlgen.backends.lattice.kernels.linear import band\n"
         "from mdlgen.mechanics import plate\n"
         "for one in (band.factor, integrate.run, plate.box_plane):\n"
         "    print(one.dispatcher._cache.cache_path.replace('\\\\', '/').split('/')[-2].rsplit('_', 1)[0])"
@@ -95,6 +100,17 @@ def test_compiled_code_is_kept_in_one_place_whoever_imports_it_first(first: str)
         "mdlgen.backends.lattice.kernels",
         "mdlgen.mechanics",
     ]
+
+
+@pytest.mark.parametrize("program", programs(), ids=lambda program: program.name)
+def test_a_program_and_what_numba_keeps_know_all_sources_of_a_kernel(program: Program) -> None:
+    """A kernel and all that it calls lie in the rooms that its program has the digest of."""
+    for room in program.rooms:
+        for module in kernel_sources(room):
+            assert room_of(module.rpartition(".")[0]) == room
+            source = vars(importlib.import_module(module))
+            for kernel in (value for value in source.values() if isinstance(value, Kernel)):
+                assert room_of(kernel.__module__.rpartition(".")[0]) in program.rooms, (module, kernel)
 
 
 def test_rooms_import_only_lower_rooms() -> None:
@@ -121,7 +137,7 @@ def test_names_for_types_follow_the_layers_too(tmp_path: Path) -> None:
     text = strict((ROOT / "pyproject.toml").read_text("utf-8"))
     file.write_text(text, "utf-8")
     done = linted(file)
-    assert done.returncode == 0 and "4 kept, 0 broken" in done.stdout, done.stdout
+    assert done.returncode == 0 and "5 kept, 0 broken" in done.stdout, done.stdout
     file.write_text(text.replace(FOR_A_TYPE, ""), "utf-8")
     assert linted(file).returncode != 0
 

@@ -11,7 +11,7 @@ from same import bits
 
 import mdlgen
 from mdlgen.backends.lattice import run as lattice
-from mdlgen.backends.lattice.beside import Stopped
+from mdlgen.backends.lattice.integrate.beside import Stopped
 from mdlgen.backends.lattice.kernels.entries import PROGRAM
 from mdlgen.errors import OutputError
 from mdlgen.model.tables import Model

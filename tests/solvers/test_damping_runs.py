@@ -227,7 +227,7 @@ def test_both_add_up_where_both_are() -> None:
     energy = free_decay("{time: 0.01 ms}", 0.3).energy
     assert energy.numerical is not None
     # min(1 ms^-1 dt, 0.3) dt/2 = 0.045 ms in all, 0.01 ms of it the paper's; which also has what is taken off
-    # the velocities that no step resolves (kernels.damped)
+    # the velocities that no step resolves (kernels.integrate.damped)
     assert energy.numerical / energy.dissipated == pytest.approx(3.5, rel=0.01)
     assert abs(energy.balance_error) < 1e-6
 

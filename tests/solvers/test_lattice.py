@@ -11,7 +11,8 @@ from papers import on_paper
 
 import mdlgen
 from mdlgen.backends.lattice.arrays import System, build
-from mdlgen.backends.lattice.kernels import entries, forces, step
+from mdlgen.backends.lattice.kernels import entries, forces
+from mdlgen.backends.lattice.kernels.integrate import step
 from mdlgen.bench.suites import flight
 from mdlgen.bench.suites.impact import thrown
 from mdlgen.errors import RefusedError

@@ -9,9 +9,9 @@ import pytest
 
 import mdlgen
 from mdlgen.backends.lattice.arrays import build
-from mdlgen.backends.lattice.kernels.band import empty
+from mdlgen.backends.lattice.integrate.work import start
+from mdlgen.backends.lattice.kernels.linear.band import empty
 from mdlgen.backends.lattice.statics import rest as static
-from mdlgen.backends.lattice.work import start
 from mdlgen.bench.oracles import overhang
 from mdlgen.errors import RefusedError
 from mdlgen.mechanics.frame import Motion
@@ -91,7 +91,8 @@ def test_the_stiffness_is_the_derivative_of_the_forces(
     spread: float, bent: tuple[str, ...], away: float
 ) -> None:
     """Any state, gaps and turns of `spread`; to the round-off of the differences."""
-    from mdlgen.backends.lattice.kernels import forces, stiffness
+    from mdlgen.backends.lattice.kernels import forces
+    from mdlgen.backends.lattice.kernels.statics import stiffness
 
     pulled = "loads=[{sheet: note, edge: y_max, force: [0.002 N, 0 N, 0.004 N]}]"
     made = model("cantilever", "sheets.note.boxes=[2,3]", pulled, *bent)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mdlgen.backends.lattice.kernels import band, dense
+from mdlgen.backends.lattice.kernels.linear import band, dense
 
 pytestmark = pytest.mark.usefixtures("as_python")
 

@@ -146,7 +146,7 @@ def test_a_side_that_a_neighbour_covers_owns_no_contact():
 
 def test_the_search_finds_the_pairs_that_are_near_and_no_other():
     from mdlgen.backends.lattice.arrays import build
-    from mdlgen.backends.lattice.kernels import search
+    from mdlgen.backends.lattice.kernels.contact import search
 
     model = lower(loads(stack(3, "[4, 6]"), overrides=["run.prune=false"]))
     system = build(model)

@@ -55,7 +55,7 @@ def test_a_stack_at_rest_does_not_creep_or_gain_energy():
 
 def test_boxes_that_lean_have_not_crossed_where_a_centre_passes_a_plane():
     from mdlgen.backends.lattice.arrays import build
-    from mdlgen.backends.lattice.kernels import search, sides
+    from mdlgen.backends.lattice.kernels.contact import search, sides
 
     model = lower(loads(stack(2, "[1, 1]")))
     system = build(model)

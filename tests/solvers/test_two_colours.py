@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mdlgen.backends.lattice.kernels import coupled, two_colour
-from mdlgen.backends.lattice.kernels.band import PAD, factor
-from mdlgen.backends.lattice.kernels.bordered import eliminate
+from mdlgen.backends.lattice.kernels.linear import coupled, two_colour
+from mdlgen.backends.lattice.kernels.linear.band import PAD, factor
+from mdlgen.backends.lattice.kernels.linear.bordered import eliminate
 
 pytestmark = pytest.mark.usefixtures("as_python")
 

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from mdlgen.backends.lattice.kernels import forces, search
-from mdlgen.backends.lattice.kernels.balance import equilibrium, stands
-from mdlgen.backends.lattice.kernels.integrate import run
-from mdlgen.backends.lattice.kernels.observe import ledger
+from mdlgen.backends.lattice.kernels import forces
+from mdlgen.backends.lattice.kernels.contact import search
+from mdlgen.backends.lattice.kernels.integrate.integrate import run
+from mdlgen.backends.lattice.kernels.integrate.observe import ledger
+from mdlgen.backends.lattice.kernels.statics.balance import equilibrium, stands
 from mdlgen.mechanics import curve, pair
 from mdlgen.mechanics.tree import set_thickness
 from mdlgen.program.kernel import LAWS, njit

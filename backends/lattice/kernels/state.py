@@ -67,7 +67,7 @@ LOST, POWER, NUMERICAL = 0, 1, 2
 class Matrix(NamedTuple):
     """The tangent of a step: a band, bordered by the unknowns of rollers and plates, and its residual."""
 
-    band: Floats  # of the nodes, see kernels.band
+    band: Floats  # of the nodes, see linear.band
     border: Floats  # (border, 6 nodes)
     corner: Floats  # (border, border)
     eliminated: Floats  # band^-1 border^T, row by row
@@ -114,7 +114,7 @@ class Bounds(NamedTuple):
 
 
 class Damped(NamedTuple):
-    """Joints with a damping time, see kernels.damped."""
+    """Joints with a damping time, see integrate.damped."""
 
     joints: np.ndarray
     band: Floats

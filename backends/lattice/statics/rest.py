@@ -8,6 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from mdlgen.backends.lattice.arrays import System, partner
+from mdlgen.backends.lattice.integrate.record import Recorder
 from mdlgen.backends.lattice.kernels.state import (
     ACTS,
     DEPTH_NOW,
@@ -22,7 +23,6 @@ from mdlgen.backends.lattice.kernels.state import (
     Midpoint,
     State,
 )
-from mdlgen.backends.lattice.record import Recorder
 from mdlgen.backends.lattice.statics import lying, standing
 from mdlgen.mechanics.arm import FORCE_0
 from mdlgen.mechanics.frame import Motion
@@ -48,7 +48,7 @@ TETHER = 1e-9
 def rest(model: Model, system: System, state: State, mid: Midpoint) -> Result:
     """The Result of a Model at rest, from its start."""
     from mdlgen.backends.lattice.kernels import entries
-    from mdlgen.backends.lattice.kernels.band import PAD
+    from mdlgen.backends.lattice.kernels.linear.band import PAD
 
     x, r, s = place = (state.x, state.r, state.s)
     state.v[:] = 0.0

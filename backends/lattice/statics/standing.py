@@ -34,7 +34,7 @@ def falling(band: Floats, border: Floats, corner: Floats) -> int:
 
 
 def whole(band: Floats, border: Floats, corner: Floats) -> Any:
-    """The whole matrix of a band of blocks (see kernels.band) and its border, a scipy csc_matrix."""
+    """The whole matrix of a band of blocks (see kernels.linear.band) and its border, a scipy csc_matrix."""
     from scipy.sparse import bmat, coo_matrix
 
     nodes = len(band)

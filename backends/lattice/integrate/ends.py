@@ -5,20 +5,20 @@ from __future__ import annotations
 import numpy as np
 
 from mdlgen.backends.lattice.arrays import System, partner
+from mdlgen.backends.lattice.integrate.work import flexible
 from mdlgen.backends.lattice.kernels.state import (
     STRAIN,
     THROUGH,
     WORST,
     State,
 )
-from mdlgen.backends.lattice.work import flexible
 from mdlgen.model.curves import overstretched
 from mdlgen.model.overlaps.unheld import Unheld
 from mdlgen.model.tables import Floats, Model
 from mdlgen.results import audit
 from mdlgen.results.result import Result
 
-# How a halved run ends, beside those of kernels.integrate.
+# How a halved run ends, beside those of kernels.integrate.integrate.
 PASSED, OVERLAPPED = -1, -2
 
 
@@ -26,7 +26,7 @@ def reason_of(
     model: Model, system: System, status: int, t: float, dt: float, state: State, counters: Floats
 ) -> str:
     """Why a run ended before its end."""
-    from mdlgen.backends.lattice.kernels import integrate
+    from mdlgen.backends.lattice.kernels.integrate import integrate
 
     names = model.bodies.name
     if status == integrate.STOPPED and counters[THROUGH] >= 0:

@@ -16,11 +16,8 @@ import math
 
 import numpy as np
 
-from mdlgen.backends.lattice.kernels.band import empty as no_band
-from mdlgen.backends.lattice.kernels.band import factor, solve
-from mdlgen.backends.lattice.kernels.between import contact_points, near_forces
-from mdlgen.backends.lattice.kernels.bordered import eliminate
-from mdlgen.backends.lattice.kernels.condensed import (
+from mdlgen.backends.lattice.kernels.contact.between import contact_points, near_forces
+from mdlgen.backends.lattice.kernels.contact.condensed import (
     APART,
     INSIDE,
     PLANES,
@@ -32,9 +29,8 @@ from mdlgen.backends.lattice.kernels.condensed import (
     release,
     unsee,
 )
-from mdlgen.backends.lattice.kernels.contact_solve import solve_contacts
-from mdlgen.backends.lattice.kernels.coupled import couplings, couplings_in_box_axes, solve_coupled
-from mdlgen.backends.lattice.kernels.dense import copy
+from mdlgen.backends.lattice.kernels.contact.contact_solve import solve_contacts
+from mdlgen.backends.lattice.kernels.contact.sides import crossed, part_of_change
 from mdlgen.backends.lattice.kernels.forces import (
     clutch_torques,
     joint_forces,
@@ -44,9 +40,21 @@ from mdlgen.backends.lattice.kernels.forces import (
     pair_forces_again,
     place,
 )
-from mdlgen.backends.lattice.kernels.mixing import mix
-from mdlgen.backends.lattice.kernels.momentum import keep
-from mdlgen.backends.lattice.kernels.sides import crossed, part_of_change
+from mdlgen.backends.lattice.kernels.integrate.mixing import mix
+from mdlgen.backends.lattice.kernels.integrate.momentum import keep
+from mdlgen.backends.lattice.kernels.integrate.tangent import (
+    contacts_into,
+    in_box_axes,
+    joints_into,
+    masses,
+    rollers_into,
+)
+from mdlgen.backends.lattice.kernels.linear.band import empty as no_band
+from mdlgen.backends.lattice.kernels.linear.band import factor, solve
+from mdlgen.backends.lattice.kernels.linear.bordered import eliminate
+from mdlgen.backends.lattice.kernels.linear.coupled import couplings, couplings_in_box_axes, solve_coupled
+from mdlgen.backends.lattice.kernels.linear.dense import copy
+from mdlgen.backends.lattice.kernels.linear.two_colour import colour
 from mdlgen.backends.lattice.kernels.state import (
     CLOSE,
     FACTORS,
@@ -65,14 +73,6 @@ from mdlgen.backends.lattice.kernels.state import (
     Midpoint,
     State,
 )
-from mdlgen.backends.lattice.kernels.tangent import (
-    contacts_into,
-    in_box_axes,
-    joints_into,
-    masses,
-    rollers_into,
-)
-from mdlgen.backends.lattice.kernels.two_colour import colour
 from mdlgen.mechanics.arm import (
     AXIAL,
     DAMPING,

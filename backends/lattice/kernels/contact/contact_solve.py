@@ -16,10 +16,24 @@ from __future__ import annotations
 
 import math
 
-from mdlgen.backends.lattice.kernels.condensed import ACTIVE, MINE, PLANES, REUSE, TOUCHED, UP_TO_DATE, unsee
-from mdlgen.backends.lattice.kernels.dense import lu
+from mdlgen.backends.lattice.kernels.contact.condensed import (
+    ACTIVE,
+    MINE,
+    PLANES,
+    REUSE,
+    TOUCHED,
+    UP_TO_DATE,
+    unsee,
+)
+from mdlgen.backends.lattice.kernels.contact.jacobian import (
+    activate,
+    clutches,
+    gradient,
+    newton,
+    newton_matrix,
+)
 from mdlgen.backends.lattice.kernels.forces import pair_forces, place_box, place_roller
-from mdlgen.backends.lattice.kernels.jacobian import activate, clutches, gradient, newton, newton_matrix
+from mdlgen.backends.lattice.kernels.linear.dense import lu
 from mdlgen.mechanics.arm import AXIAL, DAMPING, INERTIA, STIFFNESS, turn_of, way_of
 from mdlgen.mechanics.driven import clutch
 from mdlgen.mechanics.pair import BOX_BOX, on_fixed_plate

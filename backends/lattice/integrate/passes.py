@@ -12,8 +12,11 @@ from typing import NamedTuple
 import numpy as np
 
 from mdlgen.backends.lattice.arrays import System
-from mdlgen.backends.lattice.beside import Stopped
-from mdlgen.backends.lattice.ends import OVERLAPPED, PASSED, reason_of, unbalanced, unheld
+from mdlgen.backends.lattice.integrate.beside import Stopped
+from mdlgen.backends.lattice.integrate.ends import OVERLAPPED, PASSED, reason_of, unbalanced, unheld
+from mdlgen.backends.lattice.integrate.pass_state import PassState, Stage
+from mdlgen.backends.lattice.integrate.record import Recorder, Snapshot
+from mdlgen.backends.lattice.integrate.work import arrays, control, flexible
 from mdlgen.backends.lattice.kernels.state import (
     ANEW,
     FASTEST,
@@ -24,9 +27,6 @@ from mdlgen.backends.lattice.kernels.state import (
 )
 from mdlgen.backends.lattice.kernels.state import MADE as MADE_OF
 from mdlgen.backends.lattice.kernels.state import MISS as MISS_OF
-from mdlgen.backends.lattice.pass_state import PassState, Stage
-from mdlgen.backends.lattice.record import Recorder, Snapshot
-from mdlgen.backends.lattice.work import arrays, control, flexible
 from mdlgen.errors import SpecError
 from mdlgen.model.tables import Model
 from mdlgen.results.result import Result
@@ -119,7 +119,8 @@ def one_pass(
 ) -> Result:
     """One run at a step, or the next smaller one that outputs fall on; `miss`, `made`: see run.MISS and
     run.MADE, 0 for any; `anew`: a new factor for each step. Raises Stopped where `watch` says so."""
-    from mdlgen.backends.lattice.kernels import entries, integrate
+    from mdlgen.backends.lattice.kernels import entries
+    from mdlgen.backends.lattice.kernels.integrate import integrate
 
     run = model.run
     outputs, each, dt = division(model, wanted)

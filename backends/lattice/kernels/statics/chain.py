@@ -7,7 +7,7 @@ says, and stand where their joints have the gaps that it says: a chain stays a c
 
 from __future__ import annotations
 
-from mdlgen.backends.lattice.kernels.band import factor, solve
+from mdlgen.backends.lattice.kernels.linear.band import factor, solve
 from mdlgen.mechanics.vector import (
     add,
     cross,

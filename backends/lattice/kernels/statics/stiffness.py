@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from mdlgen.backends.lattice.kernels.dense import copy
+from mdlgen.backends.lattice.kernels.linear.dense import copy
 from mdlgen.mechanics.arm import STIFFNESS
 from mdlgen.mechanics.curve import curve_spring
 from mdlgen.mechanics.pair import pair_force

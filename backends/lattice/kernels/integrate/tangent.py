@@ -7,7 +7,7 @@ iterations for them, and the matrix stays positive.
 
 from __future__ import annotations
 
-from mdlgen.backends.lattice.kernels.slopes import core, couple_growth, hat_left, hat_right, outer
+from mdlgen.backends.lattice.kernels.contact.slopes import core, couple_growth, hat_left, hat_right, outer
 from mdlgen.mechanics.arm import AXIAL, DAMPING, INERTIA, STIFFNESS, turn_of, way_of
 from mdlgen.mechanics.curve import curve_spring
 from mdlgen.mechanics.driven import clutch

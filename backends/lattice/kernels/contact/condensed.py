@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mdlgen.backends.lattice.kernels.band import solve_six
+from mdlgen.backends.lattice.kernels.linear.band import solve_six
 from mdlgen.mechanics.pair import BOX_BOX, on_fixed_plate
 from mdlgen.program.kernel import BORROWS, njit
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from mdlgen.backends.lattice.kernels.band import solve
-from mdlgen.backends.lattice.kernels.dense import cholesky, cholesky_solve, copy
+from mdlgen.backends.lattice.kernels.linear.band import solve
+from mdlgen.backends.lattice.kernels.linear.dense import cholesky, cholesky_solve, copy
 from mdlgen.program.kernel import njit
 
 

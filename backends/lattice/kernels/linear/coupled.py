@@ -13,9 +13,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mdlgen.backends.lattice.kernels.bordered import solve_bordered
-from mdlgen.backends.lattice.kernels.dense import copy
-from mdlgen.backends.lattice.kernels.two_colour import Colouring, colouring, solve_coloured
+from mdlgen.backends.lattice.kernels.linear.bordered import solve_bordered
+from mdlgen.backends.lattice.kernels.linear.dense import copy
+from mdlgen.backends.lattice.kernels.linear.two_colour import Colouring, colouring, solve_coloured
 from mdlgen.mechanics.vector import mat, matmul, nine, transpose_matmul
 from mdlgen.program.kernel import njit
 

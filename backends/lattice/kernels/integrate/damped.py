@@ -16,11 +16,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from mdlgen.backends.lattice.kernels.band import empty as no_band
-from mdlgen.backends.lattice.kernels.band import factor, solve
-from mdlgen.backends.lattice.kernels.momentum import keep
+from mdlgen.backends.lattice.kernels.integrate.momentum import keep
+from mdlgen.backends.lattice.kernels.integrate.tangent import in_box_axes, joints_into, masses
+from mdlgen.backends.lattice.kernels.linear.band import empty as no_band
+from mdlgen.backends.lattice.kernels.linear.band import factor, solve
 from mdlgen.backends.lattice.kernels.state import Damped
-from mdlgen.backends.lattice.kernels.tangent import in_box_axes, joints_into, masses
 from mdlgen.mechanics.vector import back, mat, rotate
 from mdlgen.program.kernel import BORROWS, njit
 

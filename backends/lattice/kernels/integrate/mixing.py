@@ -1,8 +1,8 @@
 """Anderson's mixing of Newton's changes, of depth one, where contacts stand in the matrix of a step.
 
-There the tangent is not the whole derivative (see kernels.tangent), and its factor is used again. So changes
-fall by some part in each iteration, or two boxes in a nip take turns. Mixing takes the change of the last
-two iterations that leaves the least of both, which needs a third fewer factors.
+There the tangent is not the whole derivative (see integrate.tangent), and its factor is used again. So
+changes fall by some part in each iteration, or two boxes in a nip take turns. Mixing takes the change of the
+last two iterations that leaves the least of both, which needs a third fewer factors.
 """
 
 from __future__ import annotations

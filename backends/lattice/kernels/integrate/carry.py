@@ -1,4 +1,4 @@
-"""From the middle to the end of a step (see kernels.step)."""
+"""From the middle to the end of a step (see integrate.step)."""
 
 from __future__ import annotations
 

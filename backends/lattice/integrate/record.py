@@ -62,7 +62,7 @@ class Recorder:
 
     def store(self, t: float) -> None:
         """The state at the end of a step."""
-        from mdlgen.backends.lattice.kernels import observe
+        from mdlgen.backends.lattice.kernels.integrate import observe
 
         count = len(self.model.bodies.name)
         energies, rows = np.zeros(3), np.zeros_like(self.kept.rows)

@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from mdlgen.backends.lattice.integrate.record import Recorder
 from mdlgen.backends.lattice.kernels.state import Control, Workspace
-from mdlgen.backends.lattice.record import Recorder
 from mdlgen.errors import OutputError
 from mdlgen.runs.checkpoint import Checkpointer, State
 

@@ -6,11 +6,13 @@ import math
 
 import numpy as np
 
-from mdlgen.backends.lattice.kernels.between import forget_overlaps
-from mdlgen.backends.lattice.kernels.carry import carry, spun
-from mdlgen.backends.lattice.kernels.damped import overshoot, take_off
-from mdlgen.backends.lattice.kernels.dense import copy
-from mdlgen.backends.lattice.kernels.search import look, strayed
+from mdlgen.backends.lattice.kernels.contact.between import forget_overlaps
+from mdlgen.backends.lattice.kernels.contact.search import look, strayed
+from mdlgen.backends.lattice.kernels.contact.swept import swept
+from mdlgen.backends.lattice.kernels.integrate.carry import carry, spun
+from mdlgen.backends.lattice.kernels.integrate.damped import overshoot, take_off
+from mdlgen.backends.lattice.kernels.integrate.step import midpoint
+from mdlgen.backends.lattice.kernels.linear.dense import copy
 from mdlgen.backends.lattice.kernels.state import (
     ACTS,
     ANEW,
@@ -46,8 +48,6 @@ from mdlgen.backends.lattice.kernels.state import (
     TURNING_NOW,
     WORST,
 )
-from mdlgen.backends.lattice.kernels.step import midpoint
-from mdlgen.backends.lattice.kernels.swept import swept
 from mdlgen.mechanics.arm import AXIAL, DAMPING, speeding
 from mdlgen.mechanics.crossing import deepest
 from mdlgen.mechanics.curve import overstretched

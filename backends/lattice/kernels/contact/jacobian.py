@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from mdlgen.backends.lattice.kernels.condensed import ACTIVE
-from mdlgen.backends.lattice.kernels.dense import lu_solve_transposed
-from mdlgen.backends.lattice.kernels.slopes import core, couple_growth, hat_left, hat_right, outer
+from mdlgen.backends.lattice.kernels.contact.condensed import ACTIVE
+from mdlgen.backends.lattice.kernels.contact.slopes import core, couple_growth, hat_left, hat_right, outer
+from mdlgen.backends.lattice.kernels.linear.dense import lu_solve_transposed
 from mdlgen.mechanics.arm import turn_of, way_of
 from mdlgen.mechanics.driven import clutch
 from mdlgen.mechanics.point import AT, AXIS, COUPLE, KIND, LINE, NORMAL, OF_NIP, OUT, POINT, POINTS, SLIP, WAY

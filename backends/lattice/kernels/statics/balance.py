@@ -12,12 +12,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from mdlgen.backends.lattice.kernels.band import factor
-from mdlgen.backends.lattice.kernels.bordered import eliminate, solve_bordered
-from mdlgen.backends.lattice.kernels.chain import follow, link, opening
-from mdlgen.backends.lattice.kernels.dense import copy
 from mdlgen.backends.lattice.kernels.forces import joint_forces, near_pairs, other_forces, pair_forces
-from mdlgen.backends.lattice.kernels.stiffness import contacts_into, rollers_into, sheets_into
+from mdlgen.backends.lattice.kernels.linear.band import factor
+from mdlgen.backends.lattice.kernels.linear.bordered import eliminate, solve_bordered
+from mdlgen.backends.lattice.kernels.linear.dense import copy
+from mdlgen.backends.lattice.kernels.statics.chain import follow, link, opening
+from mdlgen.backends.lattice.kernels.statics.stiffness import contacts_into, rollers_into, sheets_into
 from mdlgen.mechanics.arm import FORCE_0, INERTIA, STIFFNESS
 from mdlgen.mechanics.frame import Motion
 from mdlgen.program.kernel import njit

@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mdlgen.backends.lattice.kernels.band import solve
-from mdlgen.backends.lattice.kernels.dense import cholesky, cholesky_solve
+from mdlgen.backends.lattice.kernels.linear.band import solve
+from mdlgen.backends.lattice.kernels.linear.dense import cholesky, cholesky_solve
 from mdlgen.program.kernel import njit
 
 

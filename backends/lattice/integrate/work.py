@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from mdlgen.backends.lattice.arrays import System
+from mdlgen.backends.lattice.integrate.record import Recorder
 from mdlgen.backends.lattice.kernels.state import (
     COUNTERS,
     ROW,
@@ -17,14 +18,14 @@ from mdlgen.backends.lattice.kernels.state import (
     State,
     Workspace,
 )
-from mdlgen.backends.lattice.record import Recorder
 from mdlgen.mechanics.frame import Motion
 from mdlgen.model.tables import Model
 
 
 def start(model: Model, system: System) -> tuple[State, Midpoint, Matrix]:
     """State at the start, and the arrays of a step."""
-    from mdlgen.backends.lattice.kernels import forces, step
+    from mdlgen.backends.lattice.kernels import forces
+    from mdlgen.backends.lattice.kernels.integrate import step
 
     state, mid, matrix = step.empty(system, forces.WIDE)
     bodies = model.bodies
@@ -49,7 +50,9 @@ def start(model: Model, system: System) -> tuple[State, Midpoint, Matrix]:
 
 def arrays(model: Model, system: System) -> Workspace:
     """What a run works on, made for the start."""
-    from mdlgen.backends.lattice.kernels import condensed, damped, entries, forces, momentum
+    from mdlgen.backends.lattice.kernels import entries, forces
+    from mdlgen.backends.lattice.kernels.contact import condensed
+    from mdlgen.backends.lattice.kernels.integrate import damped, momentum
 
     state, mid, matrix = start(model, system)
     entries.look(system.pairs, system.search, state.x)
@@ -77,7 +80,7 @@ def control(work: Workspace) -> Control:
 
 def warm(model: Model, system: System) -> None:
     """Compiles, or loads from the cache, before the clock of the run starts."""
-    from mdlgen.backends.lattice.kernels import integrate
+    from mdlgen.backends.lattice.kernels.integrate import integrate
 
     work = arrays(model, system)
     integrate.run(work, 0.0, np.zeros(0), 1.0, control(work))

@@ -1,0 +1,1 @@
+"""Steps in time: the equations of one and their tangent, the iterations that solve them, and many steps."""
