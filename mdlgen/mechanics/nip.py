@@ -19,6 +19,11 @@ those of the roller. Where the radius is not the roller's, the moment on a box t
 that of the stored energy, but differs by (spread - R) times the energy per length at that end. What this
 takes where a sheet leaves a nip with another curvature than it came with is counted with what is dissipated.
 
+A roller that leans out of the face presses it square to its own axis, so that the pushes add up to a force
+along the sheet. Where the roller ends on the sheet, its rim pushes back with the energy per length there
+(`_rim`): both together are what the stored energy asks for where a sheet is moved along the axis. So a sheet
+that is wider than the roller is not pushed at all, and one that is narrower is squeezed out as by a wedge.
+
 Over a line of the face that is square to the axis, two points have what the round presses there (`_line`).
 Along the axis such lines are added up by Gauss' rule. Where a joint stands oblique to the roller, the
 pressure begins and ends at it, so that the sum is taken over pieces, from where an edge of the face comes
@@ -28,15 +33,37 @@ into the nip to where it leaves it. Boxes on both sides of that joint then add u
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
-from mdlgen.mechanics.frame import Vector
-from mdlgen.mechanics.point import DISSIPATED, STORED, Load, Nip, passing, push, push_in_nip
+from mdlgen.mechanics.contact_patch import (
+    GAUSS,
+    NONE,
+    Seen,
+    at_ends,
+    cuts_of,
+    energy_of,
+    foundation,
+    free_at,
+    lie_of,
+    next_of,
+    scale_of_energy,
+    straight_edges,
+)
+from mdlgen.mechanics.laws import damped
+from mdlgen.mechanics.point import (
+    DISSIPATED,
+    STORED,
+    Load,
+    Nip,
+    closing,
+    passing,
+    push,
+    push_in_nip,
+    push_without_friction,
+)
 from mdlgen.mechanics.vector import add, cross, dot, local, rotate, scale, sub
 from mdlgen.program.kernel import BORROWS, FUSED, njit
 
 WHOLE = 4.0  # no sector but the whole round: more than half a turn
-_GAUSS = 1.0 / math.sqrt(3.0)
 _THIRD = math.sqrt(0.6)
 # Places and weights of Gauss' rule of four points.
 _INNER, _OUTER = (
@@ -44,54 +71,6 @@ _INNER, _OUTER = (
     math.sqrt(3.0 / 7.0 + 2.0 / 7.0 * math.sqrt(1.2)),
 )
 _WIDE, _NARROW = 0.5 + math.sqrt(30.0) / 36.0, 0.5 - math.sqrt(30.0) / 36.0
-
-
-_NONE = 2.0  # no place of a part, which goes from -1 to 1
-# An edge that goes by less than this share of the reach over a part is along the axis, and by more than the
-# other so oblique that three lines are needed: the square of the pressure along it is of the fourth degree.
-_ALONG, _OBLIQUE = 0.0025, 0.025
-
-
-class Seen(NamedTuple):
-    """A round as a face has it: its centre in box axes; its axis in the face, (up, ur) along p and r, of
-    length `flat` before that was made 1; how far it leans out of the face, and how far its centre is from it;
-    the slopes at which its sector begins and ends; its radius, and that of the round its pressure is of; the
-    last two as of a Sector."""
-
-    center: Vector
-    up: float
-    ur: float
-    flat: float
-    lean: float
-    height: float
-    low: float
-    high: float
-    radius: float
-    wide: float
-    aside: Vector
-    turns: bool
-
-
-class Span(NamedTuple):
-    """Of a line of the face across the axis: where it begins and ends, and whether these are free edges."""
-
-    first: float
-    last: float
-    open_first: bool
-    open_last: bool
-
-
-@njit(cache=True, error_model="numpy", forceinline=True)
-def _stored(t, reach):
-    """Integral from 0 to t of the square of a pressure that falls as 1 - (t/reach)^2."""
-    s = (t / reach) ** 2
-    return t * (1.0 - s * (2.0 / 3.0 - 0.2 * s))
-
-
-@njit(cache=True, error_model="numpy", forceinline=True)
-def _at_ends(left, right, reach):
-    """The difference of what `_stored` adds up at both ends, 0 beyond the reach."""
-    return (1.0 - (right / reach) ** 2) ** 2 - (1.0 - (left / reach) ** 2) ** 2
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -123,94 +102,13 @@ def _part_of_nip(left, right, reach, of, off):
     Along a face the pressure zeta of a round adds up to the difference of zeta^2/2 at both ends.
     """
     middle, half = 0.5 * (left + right), 0.5 * (right - left)
-    across, along = _at_two(middle, _GAUSS * half, of, off)
-    whole, _ = _at_two(0.0, _GAUSS * reach, of, off)
+    across, along = _at_two(middle, GAUSS * half, of, off)
+    whole, _ = _at_two(0.0, GAUSS * reach, of, off)
     share = reach * whole / _over(-reach, reach, of, off)
     factor = share * _over(left, right, of, off) / (half * across)
     low, high = of - math.sqrt(left * left + off * off), of - math.sqrt(right * right + off * off)
     ends = 0.5 * share * (low - high) * (low + high)
     return factor, (ends / (factor * half) - along) / across
-
-
-@njit(cache=True, error_model="numpy", forceinline=True)
-def _span(seen, face, half, u):
-    """The Span of the line at u along the axis."""
-    p, r, _, _, free = face
-    e = seen.height * seen.flat + u * seen.lean
-    first, last, open_first, open_last = -1e30, 1e30, False, False
-    for axis in range(2):
-        at = seen.center[p] + u * seen.up if axis == 0 else seen.center[r] + u * seen.ur
-        step = -seen.ur if axis == 0 else seen.up
-        h = half[p] if axis == 0 else half[r]
-        if abs(step) < 1e-12:
-            if abs(at) > h:
-                last = first - 1.0
-            continue
-        open_low, open_high = free & (1 << (2 * axis)) != 0, free & (2 << (2 * axis)) != 0
-        t1, t2 = (-h - at) / step, (h - at) / step
-        if t1 > t2:
-            t1, t2, open_low, open_high = t2, t1, open_high, open_low
-        if t1 > first:
-            first, open_first = t1, open_low
-        if t2 < last:
-            last, open_last = t2, open_high
-    if e * seen.low > first:
-        first, open_first = e * seen.low, False
-    if e * seen.high < last:
-        last, open_last = e * seen.high, False
-    return Span(first, last, open_first, open_last)
-
-
-@njit(cache=True, error_model="numpy", forceinline=True)
-def _straight(seen, deep, long):
-    """Whether all edges of the face go along the axis, or square to it, over a length, in a nip that is
-    `deep` at its middle."""
-    goes = long * min(abs(seen.up), abs(seen.ur)) / max(abs(seen.up), abs(seen.ur))
-    return goes * goes <= 8.0 * _ALONG * _ALONG * seen.wide * deep
-
-
-@njit(cache=True, error_model="numpy", forceinline=True)
-def _crossings(m, s, rm, rs):
-    """Where a place m + s v crosses the bounds of a nip, whose reach squared is rm + rs v."""
-    a, b, c = s * s, 2.0 * m * s - rs, m * m - rm
-    under = b * b - 4.0 * a * c
-    if under < 0.0:
-        return _NONE, _NONE
-    one = -0.5 * (b + math.copysign(math.sqrt(under), b))
-    return one / a if a > 0.0 else _NONE, c / one if one != 0.0 else _NONE
-
-
-@njit(cache=True, error_model="numpy")
-def _cuts(seen, face, half, middle, long):
-    """Places where the pressure on a part of the face has a kink, in times half its length `long` from its
-    middle along the axis; and whether an edge lies so oblique in the nip that three lines a piece are
-    needed."""
-    down, on = middle - _GAUSS * long, middle + _GAUSS * long
-    one, two = _span(seen, face, half, down), _span(seen, face, half, on)
-    # the square of the reach is nearly linear along the axis
-    deep_one = seen.radius - seen.height * seen.flat - down * seen.lean
-    deep_two = seen.radius - seen.height * seen.flat - on * seen.lean
-    reach_one, reach_two = deep_one * (2.0 * seen.wide - deep_one), deep_two * (2.0 * seen.wide - deep_two)
-    rm, rs = 0.5 * (reach_one + reach_two), 0.5 * (reach_two - reach_one) / _GAUSS
-    fm, fs = 0.5 * (one.first + two.first), 0.5 * (two.first - one.first) / _GAUSS
-    lm, ls = 0.5 * (one.last + two.last), 0.5 * (two.last - one.last) / _GAUSS
-    slope = max(abs(fs), abs(ls))
-    ends = -rm / rs if rs != 0.0 else _NONE
-    f1, f2 = _crossings(fm, fs, rm, rs)
-    l1, l2 = _crossings(lm, ls, rm, rs)
-    f0 = -fm / fs if one.open_first and fs != 0.0 else _NONE
-    l0 = -lm / ls if one.open_last and ls != 0.0 else _NONE
-    return (f1, f2, l1, l2, f0, l0, ends), abs(ends) < 1.0 or slope * slope > _OBLIQUE * _OBLIQUE * rm
-
-
-@njit(cache=True, error_model="numpy", forceinline=True)
-def _next(v, cuts):
-    """The next of the `cuts` after v, or the end of the part."""
-    found = 1.0
-    for cut in cuts:
-        if v + 1e-9 < cut < found - 1e-9:
-            found = cut
-    return found
 
 
 @njit(cache=True, error_model="numpy", **BORROWS, **FUSED)
@@ -246,12 +144,21 @@ def press(out, face, a, half, b, roller, sector, law):
         steep_low, steep_high = math.tan(low_angle), math.tan(high_angle)
         basis = 2.0 * (c1 + c2) * na
     wide = law.spread if law.spread > 0.0 else radius
-    seen = Seen(l0, up, ur, na, lean, height, steep_low, steep_high, radius, wide, sector.aside, sector.turns)
+    rim_low, rim_high = low > base - c1 - c2, high < base + c1 + c2
+    flush = (rim_low if lean > 0.0 else rim_high) or not free_at(face, up, ur, lean < 0.0)
+    seen = Seen(
+        l0, up, ur, na, lean, height, steep_low, steep_high, radius, wide, sector.aside, sector.turns, flush
+    )
     deep_low, deep_high = radius - height * na - low * lean, radius - height * na - high * lean
     if deep_low <= 0.0 and deep_high <= 0.0:
         return
+    if law.shared:
+        if rim_low:
+            _rim(out, face, a, half, b, seen, law, low, -law.k / basis)
+        if rim_high:
+            _rim(out, face, a, half, b, seen, law, high, law.k / basis)
     straight = not law.shared or (
-        deep_low > 0.0 and deep_high > 0.0 and _straight(seen, 0.5 * (deep_low + deep_high), high - low)
+        deep_low > 0.0 and deep_high > 0.0 and straight_edges(seen, 0.5 * (deep_low + deep_high), high - low)
     )
     inner = abs(c1 - c2)
     for part in range(3 if law.shared else 1):
@@ -263,16 +170,16 @@ def press(out, face, a, half, b, roller, sector, law):
         if end - begin <= 1e-12 * width:
             continue
         middle, long = 0.5 * (begin + end), 0.5 * (end - begin)
-        cuts, oblique = (_NONE, _NONE, _NONE, _NONE, _NONE, _NONE, _NONE), False
+        cuts, oblique = (NONE, NONE, NONE, NONE, NONE, NONE, NONE), False
         if not straight:
-            cuts, oblique = _cuts(seen, face, half, middle, long)
+            cuts, oblique = cuts_of(seen, face, half, middle, long)
         v = -1.0
         while v < 1.0:
-            to_v = _next(v, cuts)
+            to_v = next_of(v, cuts)
             center, half_piece = middle + 0.5 * (v + to_v) * long, 0.5 * (to_v - v) * long
             # the piece's part of k
             weight = law.k * (2.0 * half_piece * na / basis if law.shared else 1.0)
-            apart = half_piece * (_THIRD if oblique else _GAUSS)
+            apart = half_piece * (_THIRD if oblique else GAUSS)
             for side in range(3 if oblique else 2):
                 part_of = 0.5 if not oblique else 4.0 / 9.0 if side == 2 else 5.0 / 18.0
                 u = center + (apart if side == 1 else -apart if side == 0 else 0.0)
@@ -280,62 +187,56 @@ def press(out, face, a, half, b, roller, sector, law):
             v = to_v
 
 
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _rim(out, face, a, half, b, seen, law, u, stiffness):
+    """The force of an end of the roller, at u along its axis, on the face: the energy per length there, along
+    the axis, outward. It is damped as the nip is, so that a sheet that meets it is not thrown aside either.
+    `stiffness` is that per length, below zero at the low end."""
+    lie = lie_of(seen, face, half, True, u)
+    if lie.depth <= 0.0:
+        return
+    p, r, q, sign, _ = face
+    under = local(p, r, q, seen.center[p] + u * seen.up, seen.center[r] + u * seen.ur, sign * half[q])
+    at = add(add(a.x, rotate(a.r, under)), seen.aside)
+    axis = local(p, r, q, seen.flat * seen.up, seen.flat * seen.ur, sign * seen.lean)
+    square = rotate(a.r, local(p, r, q, 0.0, 0.0, -sign))
+    over = law.smoothing
+    if seen.turns:
+        across = rotate(a.r, local(p, r, q, -seen.ur, seen.up, 0.0))
+        pressed = passing(at, across, lie.reach / lie.of, a, b)
+        over = math.sqrt(over * over + pressed * pressed)
+    spring = stiffness * energy_of(seen, lie)
+    force = damped(spring, closing(at, square, a, b), law.beta, over)
+    push_without_friction(out, at, rotate(a.r, axis), spring, force, a, b)
+
+
 @njit(cache=True, error_model="numpy", forceinline=True, **BORROWS, **FUSED)
 def _line(out, face, a, half, b, seen, law, u, weight):
     """What a round presses on the line of a face at u along its axis, which has `weight` of the stiffness."""
+    lie = lie_of(seen, face, half, law.shared, u)
+    if lie.depth <= 0.0:
+        return
     p, r, q, sign, _ = face
-    l0, up, ur, na, lean, radius, wide = (
-        seen.center,
-        seen.up,
-        seen.ur,
-        seen.flat,
-        seen.lean,
-        seen.radius,
-        seen.wide,
-    )
-    e = seen.height * na + u * lean  # distance of the axis from the face
-    if e <= 0.0 or e >= radius:
-        return
-    first, last, open_first, open_last = _span(seen, face, half, u)
-    if last <= first:
-        return
-    nearest = min(max(0.0, first), last)
-    edge = (first > 0.0 and open_first) or (last < 0.0 and open_last)
-    spread = law.shared and not edge
-    # the round that the pressure is of, as deep at the contact line
-    of, off = radius, e
-    if spread and wide > radius - e:
-        of, off = wide, wide - (radius - e)
-    depth = of - math.sqrt(nearest * nearest + off * off)
-    if depth <= 0.0:
-        return
-    foundation = 3.0 / (4.0 * math.sqrt(2.0 * wide))
-    reach = math.sqrt(of * of - off * off)
-    left = -reach if open_first else max(first, -reach)
-    right = reach if open_last else min(last, reach)
-    # what lies beyond a free edge draws in to the contact line as the edge comes to it
-    draw = 1.0
-    if spread and open_first:
-        draw = min(draw, -first / reach)
-    if spread and open_last:
-        draw = min(draw, last / reach)
+    l0, up, ur, na, lean, radius = seen.center, seen.up, seen.ur, seen.flat, seen.lean, seen.radius
+    e, nearest, spread, of, off, reach, left, right, depth, draw = lie
     # from the axis to the contact line: back along the face's normal, turned with the lean
-    way = rotate(a.r, local(p, r, q, lean * up, lean * ur, -na * sign))
+    square = rotate(a.r, local(p, r, q, 0.0, 0.0, -sign))
+    way = square
+    if law.shared or not seen.flush:
+        way = rotate(a.r, local(p, r, q, lean * up, lean * ur, -na * sign))
     under = local(p, r, q, l0[p] + u * up, l0[r] + u * ur, sign * half[q])
     line = add(add(a.x, rotate(a.r, under)), seen.aside)
     across = rotate(a.r, local(p, r, q, -ur, up, 0.0))
     # the 2-point rule costs 5/12 z/R of the force, the lean of the pressure 1/3 z/R
     lost = 5.0 / 12.0 + draw * draw / 3.0
     if spread:
-        # energies of two points add up to it where they have all of the nip, and else do not; the
-        # round is z/(4R) narrower than its parabola
-        part = 0.5 * weight * foundation * (1.0 + 0.25 * (radius - e) / of)
-        out[STORED] += part * (_stored(right, reach) - _stored(left, reach)) * (radius - e) ** 2
+        # energies of two points add up to it where they have all of the nip, and else do not
+        out[STORED] += weight * energy_of(seen, lie)
         if of != radius:
-            ends = part * _at_ends(left, right, reach) * (radius - e) ** 2
+            ends = weight * scale_of_energy(seen, lie) * at_ends(left, right, reach)
             out[DISSIPATED] += (of - radius) * ends * dot(sub(a.w, b.w), cross(across, way))
     pressed = draw * passing(line, across, reach / of, a, b) if spread and seen.turns else 0.0
-    middle_t, apart = 0.5 * (left + right), 0.5 * _GAUSS * (right - left)
+    middle_t, apart = 0.5 * (left + right), 0.5 * GAUSS * (right - left)
     low_zeta = of - math.sqrt((middle_t - apart) ** 2 + off * off)
     high_zeta = of - math.sqrt((middle_t + apart) ** 2 + off * off)
     factor, turned = 1.0, 0.0
@@ -351,7 +252,7 @@ def _line(out, face, a, half, b, seen, law, u, weight):
         zeta = of - math.sqrt(t * t + off * off)
         if spread:
             length = 0.5 * (right - left) * (1.0 + lost * (radius - e) / of) * factor
-            spring = weight * foundation * length * zeta
+            spring = weight * foundation(seen) * length * zeta
             energy = 0.6 * spring * zeta  # 2/5 F z: both points are 2/3 z deep
             out[STORED] -= energy
             t *= draw
@@ -365,7 +266,7 @@ def _line(out, face, a, half, b, seen, law, u, weight):
         beyond = (radius - e) * distance / off if spread else radius - distance
         at = add(add(line, scale(t, across)), scale(beyond, normal))
         if spread:
-            nip = Nip(line, add(line, scale(center, across)), way, pressed)
+            nip = Nip(line, add(line, scale(center, across)), square if seen.flush else way, pressed)
             push_in_nip(out, at, normal, nip, Load(spring, depth, energy), a, b, law)
         else:
             push(out, at, normal, Load(spring, depth, energy), a, b, law)

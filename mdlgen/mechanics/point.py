@@ -172,6 +172,22 @@ def _push(out, point, normal, losses, load, a, b, law):
     return at
 
 
+@njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)
+def push_without_friction(out, point, normal, spring, force, a, b):
+    """Adds a force along a normal that points to a, `spring` of it elastic, where another point of the pair
+    presses and counts the energy."""
+    ra, rb = sub(point, a.x), sub(point, b.x)
+    own = dot(sub(add(b.v, cross(b.w, rb)), add(a.v, cross(a.w, ra))), normal)
+    f = scale(force, normal)
+    ta, tb = cross(ra, f), cross(rb, f)
+    for i in range(3):
+        out[FORCE_A + i] += f[i]
+        out[TORQUE_A + i] += ta[i]
+        out[FORCE_B + i] -= f[i]
+        out[TORQUE_B + i] -= tb[i]
+    out[DISSIPATED] += (force - spring) * own
+
+
 @njit(cache=True, error_model="numpy", **BORROWS)
 def resist_rolling(out, wa, wb, axis, radius, f, v_s):
     """Adds the couple that resists the turning of two bodies against each other about an axis: f N R, N their

@@ -36,3 +36,37 @@ def test_a_light_sheet_coasts_askew_as_it_does_straight(solver: str, degrees: in
     assert np.abs(velocity[:, 1]).max() < 1e-3 * 0.4
     assert np.abs(result.spin[:, :50, 2].mean(axis=1)).max() < 1e-3 * 0.4 / 30.0
     assert result.contact_force[-1].sum() == pytest.approx(2 * 3.0, rel=0.02)
+
+
+def _leaning(width: float, mass: str) -> str:
+    """The rollers lean out of the sheet, away from each other, so that the gap between them is a wedge."""
+    lean = 1e-3
+    return (
+        ASKEW.replace("TURN deg", "0 deg")
+        .replace("mass: 0.5 g", f"mass: {mass}")
+        .replace("axis: y, radius: 15", f"axis: [0, 1, {lean}], radius: 15")
+        .replace("axis: y, radius: 10", f"axis: [0, 1, {-lean}], radius: 10")
+        .replace("direction: -z", f"direction: [0, {-lean}, -1]")
+        .replace("width: 30 mm", f"width: {width} mm")
+    )
+
+
+@pytest.mark.parametrize("solver", ["lattice", "exudyn"])
+def test_rollers_that_lean_do_not_push_a_wider_sheet_along_their_axes(solver: str) -> None:
+    """Their ends hold the sheet. (It was pushed by the sine of the angle times the force: to 0.3 m/s.)"""
+    result = mdlgen.solve(lower(loads(_leaning(30.0, "0.5 g"), "leaning")), solver)
+    assert result.ok, result.status
+    mass = result.model.bodies.mass[:50]
+    velocity = np.einsum("i,tij->tj", mass, result.velocity[:, :50]) / mass.sum()
+    assert np.abs(velocity[:, 0] - 0.4).max() < 1e-3 * 0.4
+    assert np.abs(velocity[:, 1]).max() < 1e-3 * 0.4
+
+
+def test_rollers_that_lean_squeeze_out_a_sheet_between_their_ends() -> None:
+    """A wedge: 2 F_N sin of the angle, along the axes, to the wide side."""
+    result = mdlgen.solve(lower(loads(_leaning(90.0, "5 g"), "wedge")), "lattice")
+    assert result.ok, result.status
+    mass = result.model.bodies.mass[:50]
+    sideways = np.einsum("i,ti->t", mass, result.velocity[:, :50, 1]) / mass.sum()
+    expected = -2 * 3.0 * 1e-3 / 5e-3 * 25e-3
+    assert sideways[-1] == pytest.approx(expected, rel=0.03)
