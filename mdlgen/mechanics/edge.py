@@ -38,6 +38,8 @@ NORM = 12.0
 LEVEL, LEANING = 0.03, 0.1
 # Where a box of a sheet passes the edge on to the next, in parts of a box, either way of their joint.
 SHARED = 0.02
+# So what a box of a sheet may touch: this times what it is long.
+TAKES = 1.0 + 2.0 * SHARED
 FACES = 0.35  # cosine of the angle to an end at which a side may come to stand before it
 # Fields of a body record: its free ends as a bit mask; the radii of the edges of its upper and its lower
 # face, and 1 where friction holds what is on them (a static analysis).

@@ -152,6 +152,36 @@ def test_what_touches_after_a_step_was_near_before_it() -> None:
     assert seen > 500
 
 
+OVER_AN_EDGE = """
+name: over
+materials: {p: {E_md: 3000 MPa, E_cd: 1500 MPa}}
+sheets: {n: {material: p, size: [6.8 mm, 10 mm], thickness: 0.1 mm, mass: 0.1 g, boxes: [2, 1]}}
+planes: {t: {normal: z, center: [50 mm, 0 mm, -0.5 mm], size: [100 mm, 90 mm, 1 mm], mass: 1 g, edge_radius: 0.1 mm}}
+contacts: [{between: [n, t], stiffness: 100 N/mm^1.5, friction: 0}]
+run: {duration: 1 ms, margin: 20 mm}
+"""
+
+
+def test_a_box_that_takes_the_edge_over_from_its_neighbour_is_looked_at() -> None:
+    """Its lowest corner is beside the round and above the face yet. (Its force was not stored.)"""
+    model = mdlgen.lower(loads(OVER_AN_EDGE, "over"))
+    system = build(model)
+    state, mid, _ = step.empty(system, forces.WIDE)
+    slope, x, r, count = 0.3, state.x, state.r, len(model.bodies.name)
+    x[:count], r[:count] = model.bodies.position, model.bodies.rotation.reshape(-1, 9)
+    r[count] = np.eye(3).ravel()
+    cos, sin = math.cos(slope), math.sin(slope)
+    on_edge = np.array([0.1, 0.0, -0.1]) + (0.1 - 0.01 + 0.05) * np.array([-sin, 0.0, cos])
+    still = np.zeros_like(x)
+    for shift in np.linspace(-0.1, 0.1, 21):
+        for node, side in zip(system.nodes, (-1.7, 1.7), strict=True):
+            x[node] = on_edge + (shift + side) * np.array([cos, 0.0, sin])
+            r[node] = np.array([cos, 0.0, -sin, 0.0, 1.0, 0.0, sin, 0.0, cos])
+        mid.forces[:] = 0.0
+        entries.contacts(system.tables, Motion(x, r, still, still), mid)
+        assert mid.forces[system.nodes, 2].sum() == pytest.approx(100 * 0.01**1.5 * cos, rel=0.03)
+
+
 def test_bushings_fold_where_two_stand_side_by_side() -> None:
     system = build(model("transport_4x4"))
     assert (len(system.joints), system.folded, system.reach, system.border) == (370, 370, 10, 8)

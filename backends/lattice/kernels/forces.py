@@ -9,6 +9,7 @@ from mdlgen.mechanics.arm import moved, way_of
 from mdlgen.mechanics.bushing import bushing_pair
 from mdlgen.mechanics.curve import curve_excess
 from mdlgen.mechanics.driven import clutch, prescribed, turned
+from mdlgen.mechanics.edge import TAKES
 from mdlgen.mechanics.frame import Frame
 from mdlgen.mechanics.guide import inward
 from mdlgen.mechanics.mesh import mesh_near
@@ -202,11 +203,13 @@ def near_pairs(tables, motion, margin, ahead, near):
             out = 0.0  # how far the box reaches along the plate's normal
             for i in range(3):
                 out += half[i] * abs(normal[0] * r[a, i] + normal[1] * r[a, 3 + i] + normal[2] * r[a, 6 + i])
+            out *= TAKES
             height = -(gap[0] * normal[0] + gap[1] * normal[1] + gap[2] * normal[2]) - bodies[b].half[2]
             if height > out + margin + ahead * closing:
                 continue
         elif pairs[p].kind == BOX_GUIDE:
-            reached = size + margin + ahead * (math.sqrt(dot(rate, rate)) + math.sqrt(dot(spin, spin)) * size)
+            reached = TAKES * size + margin
+            reached += ahead * (math.sqrt(dot(rate, rate)) + math.sqrt(dot(spin, spin)) * size)
             at, plate = back(mat(r, b), scale(-1.0, gap)), bodies[b].half
             radius = bodies[b].arc[0]
             if abs(at[2]) > plate[1] + reached or abs(inward(at, radius)) > 2.0 * plate[2] + reached:
