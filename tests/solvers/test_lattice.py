@@ -156,7 +156,8 @@ OVER_AN_EDGE = """
 name: over
 materials: {p: {E_md: 3000 MPa, E_cd: 1500 MPa}}
 sheets: {n: {material: p, size: [6.8 mm, 10 mm], thickness: 0.1 mm, mass: 0.1 g, boxes: [2, 1]}}
-planes: {t: {normal: z, center: [50 mm, 0 mm, -0.5 mm], size: [100 mm, 90 mm, 1 mm], mass: 1 g, edge_radius: 0.1 mm}}
+planes:
+  t: {normal: z, center: [50 mm, 0 mm, -0.5 mm], size: [100 mm, 90 mm, 1 mm], mass: 1 g, edge_radius: 0.1 mm}
 contacts: [{between: [n, t], stiffness: 100 N/mm^1.5, friction: 0}]
 run: {duration: 1 ms, margin: 20 mm}
 """
