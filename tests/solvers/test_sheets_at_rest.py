@@ -53,6 +53,19 @@ def test_a_stack_at_rest_does_not_creep_or_gain_energy():
     assert together is not None and together[-1].all()
 
 
+def test_what_slides_on_a_stack_at_rest_is_not_held_by_steps_without_a_solve():
+    """A note without friction on one that lies still, under a weight with a small part along it: its
+    velocity is that part times the time."""
+    text = stack(2, "[4, 4]").replace("restitution: 0.5, friction: 0.3}", "restitution: 0.5, friction: 0}", 1)
+    along = 1e-3
+    run = [f"gravity=[{9.81 * along} m/s^2, 0 m/s^2, -9.81 m/s^2]", "run.duration=60 ms", "run.step=0.1 ms"]
+    result = ran(lower(loads(text, overrides=run)), "lattice")
+    upper = result.velocity[:, 16:32, 0].mean(axis=1)
+    late = result.time >= 5.0
+    expected = 9.81e-3 * along * result.time
+    assert np.abs(upper - expected)[late].max() < 2e-3 * expected[-1]
+
+
 def test_boxes_that_lean_have_not_crossed_where_a_centre_passes_a_plane():
     from mdlgen.backends.lattice.arrays import build
     from mdlgen.backends.lattice.kernels.contact import search, sides

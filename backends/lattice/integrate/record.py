@@ -66,7 +66,7 @@ class Recorder:
 
         count = len(self.model.bodies.name)
         energies, rows = np.zeros(3), np.zeros_like(self.kept.rows)
-        observe.ledger(self.tables, self.state, self.mid, t, energies, rows)
+        observe.ledger(self.tables, self.state, self.mid, t, self.system.search.first, energies, rows)
         if self.system.mirror is not None:
             energies *= 2.0
         kinetic, elastic, potential = energies.tolist()

@@ -151,7 +151,7 @@ LAST_STEP, BETWEEN = 0, 1
 class Control(NamedTuple):
     """What a run counts and is steered by."""
 
-    factored: Floats  # (3,) MADE_FOR, STALE, WHERE
+    factored: Floats  # (6,) MADE_FOR, STALE, WHERE, CALM, IMBALANCE, THEN
     counters: Floats  # (COUNTERS,)
     energies: Floats  # (4,) DISSIPATED, DRIVEN, THROUGH_DRIVES, DAMPED_NUMERICALLY [N mm]
     history: History
@@ -159,8 +159,9 @@ class Control(NamedTuple):
 
 
 # Of Control.factored: the step that the factor was made for (0: none), whether it is to be made anew, and
-# where contacts stand (condensed.APART, PLANES or INSIDE).
-MADE_FOR, STALE, WHERE = 0, 1, 2
+# where contacts stand (condensed.APART, PLANES or INSIDE); of a pile that rests, how many steps may yet go by
+# without a solve, and what the last one found: what free boxes would change by, and how many pairs touched.
+MADE_FOR, STALE, WHERE, CALM, IMBALANCE, THEN = 0, 1, 2, 3, 4, 5
 # Of Control.counters. WORST names the body, pair or joint of a failure, STRAIN is that of a joint beyond its
 # curve, THROUGH the pair of two sheets that a step would take through each other, or -1.
 STEPS, ITERATIONS, FACTORS, TOUCHING, WORST, STRAIN, THROUGH, CLOSE, COUNTERS = 0, 1, 2, 3, 4, 5, 6, 7, 8

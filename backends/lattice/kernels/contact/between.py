@@ -6,7 +6,7 @@ from mdlgen.backends.lattice.kernels.forces import onto, touches
 from mdlgen.mechanics.frame import box_of, frame_of, law_of
 from mdlgen.mechanics.overlap import OTHER, UNKNOWN, apart, find, holds, points, press
 from mdlgen.mechanics.pair import BOX_BOX
-from mdlgen.mechanics.point import DISSIPATED, OUT, POINTS
+from mdlgen.mechanics.point import DISSIPATED, OUT, POINTS, STORED
 from mdlgen.program.kernel import BORROWS, njit
 
 # Part of a box by which its overlap may have moved along it since it was found. With 1e-2 within a step the
@@ -74,3 +74,30 @@ def contact_points(work, count):
                 out[i] = 0.0
             a, b = frame_of(mid.motion, pair.a), frame_of(mid.motion, pair.b)
             points(out, mid.overlaps[mid.touched[k] - first], a, b, law_of(pair))
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def forces_at(tables, mid, first, motion, close):
+    """As `near_forces` for a state between steps, without touching what is kept of overlaps: `first` is the
+    first of the pairs that have any. Returns (how many pairs touch, stored energy)."""
+    near, f, results, overlaps = mid.near, mid.forces, mid.results, mid.overlaps
+    count = 0
+    stored = 0.0
+    for at in range(close):
+        pair, out = tables.pairs[near[at]], results[count]
+        known, touching = False, False
+        if pair.kind == BOX_BOX and near[at] >= first:
+            kept, a, b = overlaps[near[at] - first], frame_of(motion, pair.a), frame_of(motion, pair.b)
+            known = holds(kept, a, b, MOVED)
+            if known and kept.count > 0:
+                out[POINTS] = 0.0
+                touching = press(out, kept, a, b, law_of(pair))
+                if touching:
+                    onto(f, pair, out)
+        if not known:
+            touching = touches(tables, pair, motion, f, out)
+        if touching:
+            stored += out[STORED]
+            mid.touched[count] = near[at]
+            count += 1
+    return count, stored

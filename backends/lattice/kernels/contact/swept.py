@@ -164,13 +164,23 @@ def _made(work, count, dt, slower, least, rows):
 def _slow(bodies, pair, fastest, dt, little):
     """Whether two boxes of two sheets move too little in a step to cross each other unseen, or to make more
     than `little` of energy where they come to touch."""
-    if pair.kind != BOX_BOX:
-        return False
     way = dt * (fastest[pair.a] + fastest[pair.b])
     if way > UNSEEN * deepest(bodies, pair):
         return False
     half = 0.5 * way
     return 0.4 * pair.k * half * half * math.sqrt(half) <= little
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _slowest(tables, fastest, dt):
+    """What no two boxes of two sheets go beyond: the stiffness of a pair, times this, is the most energy that
+    it may make where it comes to touch; without an end where a box is so fast that it may cross another."""
+    most, thin = 0.0, 1e300
+    for n in range(tables.nodes.size):
+        b = tables.nodes[n]
+        most, thin = max(most, fastest[b]), min(thin, tables.bodies[b].half[2])
+    half = dt * most
+    return 0.4 * half * half * math.sqrt(half) if 2.0 * half <= UNSEEN * thin else 1e300
 
 
 @njit(cache=True, error_model="numpy")
@@ -195,12 +205,16 @@ def swept(work, counts, t, dt, allowed, slower, rows):
             _fastest_at_ends(tables, state, slower, mid.fastest)
         total = _made(work, count, dt, slower, LITTLE * allowed / max(1, count), rows)
     known = 0
+    little = LITTLE * allowed if allowed > 0.0 else 1e300
+    reach = _slowest(tables, mid.fastest[MIDDLE], dt)
     for at in range(close):
         pair = pairs[near[at]]
         touches = known < count and touched[known] == near[at]
         if touches:
             known += 1
-        if _slow(bodies, pair, mid.fastest[MIDDLE], dt, LITTLE * allowed if allowed > 0.0 else 1e300):
+        if pair.kind == BOX_BOX and (
+            pair.k * reach <= little or _slow(bodies, pair, mid.fastest[MIDDLE], dt, little)
+        ):
             continue
         began = Motion(x, r, mid.motion.u, mid.motion.w)
         fast = closing(bodies, pair, meshes, began, dt)
@@ -210,7 +224,7 @@ def swept(work, counts, t, dt, allowed, slower, rows):
         enters = False
         if allowed > 0.0 and not touches:
             half = 0.5 * way
-            enters = 0.4 * pair.k * half * half * math.sqrt(half) > LITTLE * allowed
+            enters = 0.4 * pair.k * half * half * math.sqrt(half) > little
             enters = enters and _hits(bodies, pair, work.kept.rows)
             enters = enters and not _clear(bodies, pair, x, r, way)
         if way <= band and side == 0 and not solid and not enters:

@@ -53,9 +53,9 @@ from mdlgen.mechanics.crossing import deepest
 from mdlgen.mechanics.curve import overstretched
 from mdlgen.mechanics.driven import clutch, prescribed
 from mdlgen.mechanics.frame import Motion
-from mdlgen.mechanics.pair import BOX_BOX, remember
-from mdlgen.mechanics.point import DEPTH, GRIP, POINTS, PRESSING, RUBBING
-from mdlgen.mechanics.turning import ALONG, LIMIT, TURNING, turning
+from mdlgen.mechanics.pair import remember
+from mdlgen.mechanics.point import DEPTH, PRESSING
+from mdlgen.mechanics.turning import TURNING, turning
 from mdlgen.program.kernel import BORROWS, njit
 
 DONE, STOPPED, LEFT, DEEP, STRETCHED, CROWDED = 0, 1, 2, 3, 4, 5
@@ -95,11 +95,7 @@ def _watch(tables, mid, count, t, dt, kept):
         marks[pair.mark] = True
         rows[pair.row, FORCE_NOW] += mid.results[k, PRESSING]
         rows[pair.row, DEPTH_NOW] = max(rows[pair.row, DEPTH_NOW], mid.results[k, DEPTH])
-        if pair.kind == BOX_BOX and mid.results[k, POINTS] == 0.0:
-            rows[pair.row, TURNING_NOW + ALONG] += mid.results[k, RUBBING]
-            rows[pair.row, TURNING_NOW + LIMIT] += mid.results[k, GRIP]
-        else:
-            turning(tables.bodies, pair, mid.results[k], rows, pair.row, TURNING_NOW)
+        turning(tables.bodies, pair, mid.results[k], rows, pair.row, TURNING_NOW)
     for row in range(rows.shape[0]):
         force, depth = rows[row, FORCE_NOW], rows[row, DEPTH_NOW]
         acts = force > GRAZE * max(rows[row, MAX_FORCE], force)

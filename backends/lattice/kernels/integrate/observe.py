@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from mdlgen.backends.lattice.kernels.forces import joint_forces, near_pairs, pair_forces
+from mdlgen.backends.lattice.kernels.contact.between import forces_at
+from mdlgen.backends.lattice.kernels.forces import joint_forces, near_pairs
 from mdlgen.backends.lattice.kernels.state import (
     DEPTH_NOW,
     ELASTIC,
@@ -21,10 +22,10 @@ from mdlgen.program.kernel import njit
 
 
 @njit(cache=True, error_model="numpy")
-def ledger(tables, state, mid, t, energies, rows):
+def ledger(tables, state, mid, t, first, energies, rows):
     """Velocities of all bodies at the end of a step, at time t, into those of the midpoint's motion; kinetic,
     elastic and potential energy; adds to each row of the contacts its normal force, FORCE_NOW, and what it
-    turns, TURNING_NOW, and has its greatest depth in DEPTH_NOW."""
+    turns, TURNING_NOW, and has its greatest depth in DEPTH_NOW. `first`: of the pairs that are searched."""
     bodies, gravity, nodes = tables.bodies, tables.gravity, tables.nodes
     x, r, v, l, s, vb = state.x, state.r, state.v, state.l, state.s, state.vb
     u, w, f = mid.motion.u, mid.motion.w, mid.forces
@@ -70,7 +71,7 @@ def ledger(tables, state, mid, t, energies, rows):
     motion = Motion(x, r, u, w)
     stored, _, _ = joint_forces(tables.joints, tables.points, motion, f)
     close = near_pairs(tables, motion, 0.0, 0.0, mid.near)
-    count, pressed, _ = pair_forces(tables, mid.near, close, motion, f, mid.touched, mid.results)
+    count, pressed = forces_at(tables, mid, first, motion, close)
     for k in range(count):
         pair = tables.pairs[mid.touched[k]]
         rows[pair.row, FORCE_NOW] += mid.results[k, PRESSING]

@@ -40,6 +40,7 @@ from mdlgen.backends.lattice.kernels.forces import (
     pair_forces_again,
     place,
 )
+from mdlgen.backends.lattice.kernels.integrate.change import fastest, greatest, imbalance, take_off
 from mdlgen.backends.lattice.kernels.integrate.mixing import mix
 from mdlgen.backends.lattice.kernels.integrate.momentum import keep
 from mdlgen.backends.lattice.kernels.integrate.tangent import (
@@ -56,8 +57,10 @@ from mdlgen.backends.lattice.kernels.linear.coupled import couplings, couplings_
 from mdlgen.backends.lattice.kernels.linear.dense import copy
 from mdlgen.backends.lattice.kernels.linear.two_colour import colour
 from mdlgen.backends.lattice.kernels.state import (
+    CALM,
     CLOSE,
     FACTORS,
+    IMBALANCE,
     ITERATIONS,
     LOST,
     MADE_FOR,
@@ -65,10 +68,10 @@ from mdlgen.backends.lattice.kernels.state import (
     NUMERICAL,
     POWER,
     STALE,
+    THEN,
     THROUGH,
     TOUCHING,
     WHERE,
-    WORST,
     Matrix,
     Midpoint,
     State,
@@ -83,7 +86,6 @@ from mdlgen.mechanics.arm import (
     turn_of,
     way_of,
 )
-from mdlgen.mechanics.crossing import fastest_place
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.overlap import OVERLAP
 from mdlgen.mechanics.vector import back, dot, mat, rotate, three, vec
@@ -100,6 +102,12 @@ FREE = 1e-5
 ROUGH = 100.0
 # Damping of joints, as a part of h for 1 ms of a step, and at most.
 DAMPED, MOST_DAMPED = 1.0, 0.3
+# A pile rests where the solve of a step changed less than STILL of its limit. Then the guesses of the next
+# RESTS steps are taken as they are, while as many pairs touch, the residual is not GREATER, and it would
+# change even free boxes by less than the limit: of boxes that hold each other it changes less.
+STILL, RESTS, GREATER = 1e-3, 7.0, 1.25
+# Forces of sheets on sheets are those before an iteration that changed less than this part of the limit.
+SAME = 1e-2
 # How much of the chord a factor takes (see slopes.core): little converges fast, much does not cross to the
 # other side of what is flat; the latter is taken twice where an iteration moved more than the one before.
 LITTLE, MUCH = 0.05, 0.7
@@ -198,44 +206,16 @@ def _make_factor(work, t, h, lag, where, count, chord):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _greatest(tables, motion, res, resb, counters):
-    """The greatest change of a velocity [mm/ms], of turning times a box's size."""
-    bodies, nodes = tables.bodies, tables.nodes
-    change = 0.0
-    for n in range(nodes.size):
-        size = bodies[nodes[n]].half[0] + bodies[nodes[n]].half[1]
-        for i in range(6):
-            moved = abs(res[6 * n + i]) if i < 3 else size * abs(res[6 * n + i])
-            if moved > change:
-                change = moved
-                counters[WORST] = nodes[n]
-    for i in range(resb.size):
-        change = max(change, abs(resb[i]))
-    for k in range(bodies.size - 1):
-        if bodies[k].swings > 0:
-            way = way_of(bodies[k], vec(motion.x, k))
-            change = max(change, math.sqrt(dot(way, way)) * abs(resb[bodies[k].slide]))
-    return change
-
-
-@njit(cache=True, error_model="numpy", **BORROWS)
-def _fastest(tables, u, fastest):
-    """How fast any place of a free box is at most (bodies,)."""
-    for n in range(tables.nodes.size):
-        b = tables.nodes[n]
-        rate, spin = (u[n, 0], u[n, 1], u[n, 2]), (u[n, 3], u[n, 4], u[n, 5])
-        fastest[b] = fastest_place(tables.bodies[b], rate, spin)
-
-
-@njit(cache=True, error_model="numpy", **BORROWS)
-def _take_off(state, res, resb):
-    """Takes a change off the velocities."""
-    u, ub = state.u, state.ub
-    for n in range(u.shape[0]):
-        for i in range(6):
-            u[n, i] -= res[6 * n + i]
-    for i in range(ub.size):
-        ub[i] -= resb[i]
+def _done(work, h, counts, totals, counters):
+    """Ends a step whose velocities are found; `counts`: how many pairs touch, how many are near. Returns
+    whether no sheet went through another."""
+    mid, search = work.mid, work.search
+    mid.totals[LOST], mid.totals[POWER], mid.totals[NUMERICAL] = totals
+    counters[TOUCHING], counters[CLOSE] = counts
+    if search.regions.size > 0:
+        fastest(work.tables, work.state.u, mid.fastest[MIDDLE])
+    counters[THROUGH] = crossed(work.tables, mid, counts, work.state, search.first, h)
+    return counters[THROUGH] < 0.0
 
 
 @njit(cache=True, error_model="numpy")
@@ -253,6 +233,8 @@ def midpoint(work, t, dt, tolerance, control):
     counters[THROUGH] = -1.0
     close, where, m = 0, int(factored[WHERE]), 0
     margin, moved, mixes = FAR, 0.0, False
+    # loads add to the forces, of which the drives' power is told
+    piled, unsolved = work.search.regions.size > 0 and tables.loads.size == 0, 0.0
     for iteration in range(MOST_ITERATIONS):
         place(tables, h, t + h, state, mid.motion)
         if iteration == 0 or margin < dt * moved:
@@ -268,6 +250,17 @@ def midpoint(work, t, dt, tolerance, control):
         _weights(bodies, tables.gravity, mid.forces)
         clutch_torques(bodies, t + h, state.ub, mid.forces)
         _residual(tables, t + h, h, state, mid, res, resb)
+        # what is free converges fast, and keeps its angular momentum as well as the iterations end
+        limit = tolerance if count > 0 else FREE * tolerance
+        if piled and iteration == 0:
+            unsolved = imbalance(tables, res, resb)
+            made = factored[MADE_FOR] == dt and factored[STALE] == 0.0
+            calm = factored[CALM] > 0.0 and count == factored[THEN]
+            if made and calm and unsolved < min(limit, GREATER * factored[IMBALANCE]):
+                factored[CALM] -= 1.0
+                counters[ITERATIONS] += 1
+                return _done(work, h, (count, close), (lost + rubbed, power, numerical), counters)
+            factored[CALM], factored[IMBALANCE], factored[THEN] = 0.0, unsolved, float(count)
         if iteration == 0:
             for fewer in range(where):
                 m = choose(bodies, pairs, mid.touched, count, fewer, condensed, 0, most // 2)
@@ -290,8 +283,6 @@ def midpoint(work, t, dt, tolerance, control):
             mixes = False
             factored[MADE_FOR], factored[STALE], factored[WHERE] = dt, 0.0, where
         counters[ITERATIONS] += 1
-        # what is free converges fast, and keeps its angular momentum as well as the iterations end
-        limit = tolerance if count > 0 else FREE * tolerance
         copy(work.free.residual, res)
         # the axes of the boxes as they stand now: half a step before, what is stiff in a box points elsewhere
         copy(condensed.axes, mid.motion.r)
@@ -307,7 +298,7 @@ def midpoint(work, t, dt, tolerance, control):
         found = 0.0
         if where == INSIDE:
             # what is mixed may be small while what is left is not
-            found = _greatest(tables, mid.motion, res, resb, counters)
+            found = greatest(tables, mid.motion, res, resb, counters)
             mix(matrix, mixes)
             mixes = True
         keep(tables, mid.touched, count, work.free, mid.motion.x, mid.motion.r, res)
@@ -315,8 +306,8 @@ def midpoint(work, t, dt, tolerance, control):
         if part < 1.0:
             res *= part
             resb *= part
-        change = max(found, _greatest(tables, mid.motion, res, resb, counters))
-        _take_off(state, res, resb)
+        change = max(found, greatest(tables, mid.motion, res, resb, counters))
+        take_off(state, res, resb)
         if not change < 1e30:
             break
         rate = change / before
@@ -325,15 +316,13 @@ def midpoint(work, t, dt, tolerance, control):
         if dt * moved <= margin and (change <= limit or (falls and change * rate / (1.0 - rate) <= limit)):
             # forces change much with what the last iteration changed: friction, over its smoothing speed
             place(tables, h, t + h, state, mid.motion)
-            mid.forces[:] = 0.0
-            count, rubbed = _contact_forces(work, close, False)
-            mid.totals[LOST], mid.totals[POWER], mid.totals[NUMERICAL] = lost + rubbed, power, numerical
-            counters[TOUCHING], counters[CLOSE] = count, close
+            if piled and iteration == 0 and change < STILL * limit:
+                factored[CALM] = RESTS
+            if not piled or change > SAME * limit:
+                mid.forces[:] = 0.0
+                count, rubbed = _contact_forces(work, close, False)
             release(condensed, m)
-            if work.search.regions.size > 0:
-                _fastest(tables, state.u, mid.fastest[MIDDLE])
-            counters[THROUGH] = crossed(tables, mid, (count, close), state, work.search.first, h)
-            return counters[THROUGH] < 0.0
+            return _done(work, h, (count, close), (lost + rubbed, power, numerical), counters)
         if before < 1e299 and (rate >= 1.0 or math.log(limit / change) < (WORTH + m) * math.log(rate)):
             factored[STALE] = 1.0
         if before < 1e299 and rate > 0.9:

@@ -1,0 +1,71 @@
+"""Changes of the velocities of all bodies: the greatest of an iteration, and what moves most."""
+
+from __future__ import annotations
+
+import math
+
+from mdlgen.backends.lattice.kernels.state import WORST
+from mdlgen.mechanics.arm import AXIAL, INERTIA, way_of
+from mdlgen.mechanics.crossing import fastest_place
+from mdlgen.mechanics.vector import dot, vec
+from mdlgen.program.kernel import BORROWS, njit
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def greatest(tables, motion, res, resb, counters):
+    """The greatest change of a velocity [mm/ms], of turning times a box's size."""
+    bodies, nodes = tables.bodies, tables.nodes
+    change = 0.0
+    for n in range(nodes.size):
+        size = bodies[nodes[n]].half[0] + bodies[nodes[n]].half[1]
+        for i in range(6):
+            moved = abs(res[6 * n + i]) if i < 3 else size * abs(res[6 * n + i])
+            if moved > change:
+                change = moved
+                counters[WORST] = nodes[n]
+    for i in range(resb.size):
+        change = max(change, abs(resb[i]))
+    for k in range(bodies.size - 1):
+        if bodies[k].swings > 0:
+            way = way_of(bodies[k], vec(motion.x, k))
+            change = max(change, math.sqrt(dot(way, way)) * abs(resb[bodies[k].slide]))
+    return change
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def imbalance(tables, res, resb):
+    """The greatest change of a velocity, as of `_greatest`, that a residual would make of free bodies."""
+    bodies, nodes = tables.bodies, tables.nodes
+    change = 0.0
+    for n in range(nodes.size):
+        body = bodies[nodes[n]]
+        size, j = body.half[0] + body.half[1], body.inertia
+        light = size / min(j[0], j[1], j[2])
+        for i in range(3):
+            change = max(change, abs(res[6 * n + i]) / body.mass, light * abs(res[6 * n + 3 + i]))
+    for k in range(bodies.size - 1):
+        if bodies[k].slide >= 0:
+            change = max(change, abs(resb[bodies[k].slide]) / bodies[k].press[INERTIA])
+        if bodies[k].spin >= 0:
+            change = max(change, abs(resb[bodies[k].spin]) / bodies[k].press[AXIAL])
+    return change
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def fastest(tables, u, found):
+    """How fast any place of a free box is at most (bodies,)."""
+    for n in range(tables.nodes.size):
+        b = tables.nodes[n]
+        rate, spin = (u[n, 0], u[n, 1], u[n, 2]), (u[n, 3], u[n, 4], u[n, 5])
+        found[b] = fastest_place(tables.bodies[b], rate, spin)
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def take_off(state, res, resb):
+    """Takes a change off the velocities."""
+    u, ub = state.u, state.ub
+    for n in range(u.shape[0]):
+        for i in range(6):
+            u[n, i] -= res[6 * n + i]
+    for i in range(ub.size):
+        ub[i] -= resb[i]
