@@ -179,12 +179,12 @@ def one_pass(
             keep.save(number, pass_state.arrays(Stage(status, t, output + 1, wall, False)))
         if progress is not None:
             progress(t, run.duration, int(counters[STEPS]), int(counters[TOUCHING]))
+    if todo and status in (integrate.LEFT, integrate.DEEP, integrate.STRETCHED):
+        recorder.store(t)  # with which its energies balance, or do not
     wall = past + clock.perf_counter() - begun
     if keep is not None and todo and (keep.written or keep.due(number)):
         keep.save(number, pass_state.arrays(Stage(status, t, todo.stop, wall, True)))
     reason = None if status == integrate.DONE else reason_of(model, system, status, t, dt, state, counters)
-    if status in (integrate.LEFT, integrate.DEEP, integrate.STRETCHED):
-        recorder.store(t)  # with which its energies balance, or do not
     result = recorder.result("lattice", reason, energies)
     result.step, result.steps = dt, int(counters[STEPS])
     result.rounds, result.wall_s = int(counters[ITERATIONS]), wall
