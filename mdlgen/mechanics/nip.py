@@ -65,6 +65,8 @@ from mdlgen.program.kernel import BORROWS, FUSED, njit
 
 WHOLE = 4.0  # no sector but the whole round: more than half a turn
 _THIRD = math.sqrt(0.6)
+# An end of a roller stands on all boxes that are nearer to it along the axis than this part of its width.
+EASE = 0.003
 # Places and weights of Gauss' rule of four points.
 _INNER, _OUTER = (
     math.sqrt(3.0 / 7.0 - 2.0 / 7.0 * math.sqrt(1.2)),
@@ -132,7 +134,7 @@ def press(out, face, a, half, b, roller, sector, law):
     base = -(l0[p] * up + l0[r] * ur)
     low = max(base - c1 - c2, (-0.5 * width + height * lean) / na)
     high = min(base + c1 + c2, (0.5 * width + height * lean) / na)
-    if high <= low:
+    if high <= low - (2.0 * EASE * width / na if law.shared else 0.0):
         return
     steep_low, steep_high, basis = -1e30, 1e30, width
     if angle < WHOLE:
@@ -149,14 +151,20 @@ def press(out, face, a, half, b, roller, sector, law):
     seen = Seen(
         l0, up, ur, na, lean, height, steep_low, steep_high, radius, wide, sector.aside, sector.turns, flush
     )
-    deep_low, deep_high = radius - height * na - low * lean, radius - height * na - high * lean
-    if deep_low <= 0.0 and deep_high <= 0.0:
-        return
     if law.shared:
-        if rim_low:
-            _rim(out, face, a, half, b, seen, law, low, -law.k / basis)
-        if rim_high:
-            _rim(out, face, a, half, b, seen, law, high, law.k / basis)
+        # an end is handed on from box to box over a short way, else its force would jump at their joint
+        ease = EASE * width / na
+        for outward in (-1.0, 1.0):
+            at = (outward * 0.5 * width + height * lean) / na
+            first, last = max(at - ease, base - c1 - c2), min(at + ease, base + c1 + c2)
+            if last > first:
+                middle, apart = 0.5 * (first + last), 0.5 * GAUSS * (last - first)
+                stiffness = outward * law.k / basis * (last - first) / (4.0 * ease)
+                _rim(out, face, a, half, b, seen, law, middle - apart, stiffness)
+                _rim(out, face, a, half, b, seen, law, middle + apart, stiffness)
+    deep_low, deep_high = radius - height * na - low * lean, radius - height * na - high * lean
+    if high <= low or (deep_low <= 0.0 and deep_high <= 0.0):
+        return
     straight = not law.shared or (
         deep_low > 0.0 and deep_high > 0.0 and straight_edges(seen, 0.5 * (deep_low + deep_high), high - low)
     )

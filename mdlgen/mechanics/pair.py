@@ -21,7 +21,7 @@ from mdlgen.mechanics.frame import (
 from mdlgen.mechanics.guide import box_guide, upper
 from mdlgen.mechanics.mesh import box_mesh
 from mdlgen.mechanics.plate import STRAIGHT, as_guide, box_plane
-from mdlgen.mechanics.point import PRESSING, resist_rolling
+from mdlgen.mechanics.point import FORCE_A, PRESSING, resist_rolling
 from mdlgen.mechanics.rim import box_rim, rim_rim
 from mdlgen.mechanics.roller_mesh import roller_mesh, roller_mesh_near
 from mdlgen.mechanics.roller_plate import guide_near, plate_near, roller_guide, roller_plane
@@ -154,7 +154,12 @@ def pair_force(bodies, pair, meshes, motion, out):
         axis, curved = _rolling(bodies, pair, meshes, a.x, b.x, b.r)
         if curved > 0.0:
             resist_rolling(out, a.w, b.w, axis, 1.0 / curved, pair.law[LAW_ROLLING], law.smoothing)
-    return out[PRESSING] != 0.0
+    if out[PRESSING] != 0.0:
+        return True
+    # a box just beyond the end of a roller has a part of what that does, and nothing presses on it
+    return kind == BOX_CYLINDER and (
+        out[FORCE_A] != 0.0 or out[FORCE_A + 1] != 0.0 or out[FORCE_A + 2] != 0.0
+    )
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)

@@ -13,6 +13,7 @@ from mdlgen.mechanics.edge import TAKES
 from mdlgen.mechanics.frame import Frame
 from mdlgen.mechanics.guide import inward
 from mdlgen.mechanics.mesh import mesh_near
+from mdlgen.mechanics.nip import EASE
 from mdlgen.mechanics.pair import (
     BOX_BOX,
     BOX_GUIDE,
@@ -242,7 +243,7 @@ def near_pairs(tables, motion, margin, ahead, near):
             axis = bodies[b].axis
             along = gap[0] * axis[0] + gap[1] * axis[1] + gap[2] * axis[2]
             across = gap[0] * gap[0] + gap[1] * gap[1] + gap[2] * gap[2] - along * along
-            radius, width = bodies[b].size[0], 0.5 * bodies[b].size[1]
+            radius, width = bodies[b].size[0], (0.5 + EASE) * bodies[b].size[1]
             if pairs[p].kind == CYLINDER_CYLINDER:
                 reach = bodies[a].size[0] + reached
                 width += 0.5 * bodies[a].size[1]
