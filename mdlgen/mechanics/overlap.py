@@ -33,8 +33,6 @@ from mdlgen.mechanics.point import (
     STORED,
     TORQUE_A,
     TORQUE_B,
-    Load,
-    push,
 )
 from mdlgen.mechanics.vector import add, back, cross, dot, rotate, sub, transpose_matmul
 from mdlgen.program.kernel import BORROWS, FUSED, OWNS, njit
@@ -84,15 +82,16 @@ def holds(kept, a, b, part):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS, **FUSED)
-def apart(a, half_a, b, half_b):
-    """Whether two boxes (Frames) are clear of each other along one of their faces' normals."""
+def apart(a, half_a, b, half_b, more):
+    """Whether two boxes (Frames) are clear of each other by more than `more` [mm] along one of their faces'
+    normals."""
     gap = sub(b.x, a.x)
     for k in range(2):
         one, half, other, wide = (a, half_a, b, half_b) if k == 0 else (b, half_b, a, half_a)
         normal = (one.r[2], one.r[5], one.r[8])
         there = back(other.r, normal)
         spread = half[2] + abs(there[0]) * wide[0] + abs(there[1]) * wide[1] + abs(there[2]) * wide[2]
-        if abs(dot(gap, normal)) >= spread:
+        if abs(dot(gap, normal)) >= spread + more:
             return True
     return False
 
@@ -157,7 +156,7 @@ def find(kept, a, one_box, b, two_box, law):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def _plane(kept, owner, other):
+def plane_of(kept, owner, other):
     """The other box's face that looks at the owner's, in the owner's axes: place of its box, depth at the
     middle of the owner's face, growth of depth along both of its edges."""
     normal = back(owner.r, (other.r[2], other.r[5], other.r[8]))
@@ -195,7 +194,7 @@ def impact(kept, a, b, faster, law, dt):
     first = kept.first != 0
     owner, other = (a, b) if first else (b, a)
     one, two = faster if first else (faster[1], faster[0])
-    place, level, lean_p, lean_r = _plane(kept, owner, other)
+    place, level, lean_p, lean_r = plane_of(kept, owner, other)
     rate, spin = _moves(owner, other, place)
     closes, closes_p, closes_r = _closing(kept, rate, spin)
     rate, spin = _moves(
@@ -217,40 +216,13 @@ def impact(kept, a, b, faster, law, dt):
     return made, missed
 
 
-@njit(cache=True, error_model="numpy", **BORROWS)
-def points(out, kept, a, b, law):
-    """The contact of two boxes (Frames) by the overlap that is kept, with its points, into `out` (see
-    mechanics.point)."""
-    first = kept.first != 0
-    owner, other = (a, b) if first else (b, a)
-    _, level, lean_p, lean_r = _plane(kept, owner, other)
-    to_a = -kept.side if first else kept.side
-    for corner in range(kept.count):
-        p, r = kept.corners[corner, 0], kept.corners[corner, 1]
-        depth = level + lean_p * p + lean_r * r
-        if depth <= 0.0:
-            continue
-        # halfway between both faces
-        at = (p, r, kept.side * (kept.owner[2] - 0.5 * depth))
-        spring = kept.stiffness[corner] * depth * math.sqrt(depth)
-        push(
-            out,
-            add(owner.x, rotate(owner.r, at)),
-            (to_a * owner.r[2], to_a * owner.r[5], to_a * owner.r[8]),
-            Load(spring, depth, 0.4 * spring * depth),
-            a,
-            b,
-            law,
-        )
-
-
 @njit(cache=True, error_model="numpy", **BORROWS, **FUSED)
 def press(out, kept, a, b, law):
-    """As `points`, without them: what they add up to, worked out in the owner's axes. Returns whether boxes
-    touch; only then `out` is set."""
+    """The contact of two boxes (Frames) by the overlap that is kept, into `out` (see mechanics.point), worked
+    out in the owner's axes and without its points. Returns whether boxes touch; only then `out` is set."""
     first = kept.first != 0
     owner, other = (a, b) if first else (b, a)
-    place, level, lean_p, lean_r = _plane(kept, owner, other)
+    place, level, lean_p, lean_r = plane_of(kept, owner, other)
     deepest = 0.0
     for corner in range(kept.count):
         deepest = max(deepest, level + lean_p * kept.corners[corner, 0] + lean_r * kept.corners[corner, 1])

@@ -44,7 +44,7 @@ PRESSING, STORED, DISSIPATED, DEPTH = 12, 13, 14, 15
 OUT = 16
 POINTS = 16
 # Of two faces without their points (POINTS is 0): friction along them by its size, and the most it can be.
-RUBBING, GRIP = 17, 18
+RUBBING, GRIP, FACES = 17, 18, 19
 # Of each point, from OUT + 1 on: the place, the normal to the first body, the elastic force and its growth
 # with depth, the normal force, the rate that damps it, the slip velocity, the share of damping, both
 # coefficients of friction, and what it is.

@@ -18,6 +18,7 @@ from mdlgen.mechanics.guide import BOTH, INSIDE, OUTSIDE, upper
 from mdlgen.mechanics.mesh_tables import HEAD, Meshes
 from mdlgen.mechanics.overlap import OVERLAP
 from mdlgen.mechanics.pair import BOX_BOX, BOX_CYLINDER, BOX_GUIDE, BOX_MESH, BOX_PLANE, CYLINDER_CYLINDER
+from mdlgen.mechanics.point import FACES
 from mdlgen.mechanics.records import LOAD
 from mdlgen.mechanics.tree import WIDTH
 
@@ -42,6 +43,7 @@ def pair_force(bodies: np.ndarray, pair: np.void, meshes: Meshes, motion: Motion
         forces=np.zeros((len(bodies), 6)),
         touched=np.zeros(1, np.int64),
         results=np.zeros((1, WIDE)),
+        faces=np.zeros((1, FACES)),
         totals=np.zeros(3),
         near=np.zeros(1, np.int64),
         overlaps=np.zeros(1, OVERLAP),

@@ -14,7 +14,7 @@ from mdlgen.checks import lints
 from mdlgen.errors import RefusedError
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.overlap import OVERLAP
-from mdlgen.mechanics.point import OUT
+from mdlgen.mechanics.point import FACES, OUT
 from mdlgen.model import sheet_pairs
 from mdlgen.model.lower import lower
 from mdlgen.model.tables import BOX_BOX
@@ -90,6 +90,7 @@ def test_boxes_that_lean_have_not_crossed_where_a_centre_passes_a_plane():
             forces=still,
             touched=near,
             results=np.zeros((1, OUT)),
+            faces=np.zeros((1, FACES)),
             totals=np.zeros(3),
             near=near,
             overlaps=np.zeros(1, OVERLAP).view(np.recarray),

@@ -52,7 +52,7 @@ def arrays(model: Model, system: System) -> Workspace:
     """What a run works on, made for the start."""
     from mdlgen.backends.lattice.kernels import entries, forces
     from mdlgen.backends.lattice.kernels.contact import condensed
-    from mdlgen.backends.lattice.kernels.integrate import damped, momentum
+    from mdlgen.backends.lattice.kernels.integrate import damped, momentum, step
 
     state, mid, matrix = start(model, system)
     entries.look(system.pairs, system.search, state.x)
@@ -69,13 +69,14 @@ def arrays(model: Model, system: System) -> Workspace:
         bounds=Bounds(model.pairs.low, model.pairs.high),
         search=system.search,
         damped=damped.empty(system),
+        frozen=step.frozen(system),
     )
 
 
 def control(work: Workspace) -> Control:
     """Counts and settings of a run before its first step."""
     history = History(work.state.u.copy(), work.state.ub.copy(), np.zeros(2))
-    return Control(np.zeros(6), np.zeros(COUNTERS), np.zeros(4), history, np.zeros(5))
+    return Control(np.zeros(4), np.zeros(COUNTERS), np.zeros(4), history, np.zeros(5))
 
 
 def warm(model: Model, system: System) -> None:

@@ -51,6 +51,7 @@ class Midpoint(NamedTuple):
     forces: Floats  # (bodies, 6) [N, N mm]
     touched: Ints  # pairs that touch
     results: Floats  # what each of them does, see mechanics.point, (pairs, forces.WIDE)
+    faces: Floats  # of two boxes of two sheets, without points, (pairs, mechanics.point.FACES)
     totals: Floats  # (3,) LOST, POWER, NUMERICAL
     near: Ints  # pairs that may touch
     overlaps: np.ndarray  # of pairs that are searched, mechanics.overlap.OVERLAP
@@ -78,7 +79,38 @@ class Matrix(NamedTuple):
     unknowns: Ints  # (4,) scratch: which unknowns these are
     couplings: Any  # coupled.Couplings
     mixing: Floats  # changes of the iteration before: as found, as taken, (2, 6 nodes + border)
+    inner: Floats  # the band of masses and bushings alone, in box axes, where contacts stand in the other one
+    own: Floats  # and the corner of the rollers alone
     offsets: Ints  # how many nodes apart two may be that a joint couples, from 0 on
+
+
+class Frozen(NamedTuple):
+    """Contact points of an iteration, whose geometry is frozen, and what the iteration looks for; see
+    integrate.points and integrate.convex."""
+
+    points: Floats  # (room, POINT)
+    pair: Ints  # of each, (room,)
+    many: Ints  # (1,) how many there are
+    vectors: Floats  # CHANGE to STEEPEST of the nodes, (6, 6 nodes)
+    border: Floats  # the same of the border, (6, border)
+
+
+# Rows of Frozen.vectors: the change of velocities, what masses and bushings make of it, the slope of what is
+# made least, the direction that is gone along, what masses and bushings make of that, and the change that
+# Newton's method would take off.
+CHANGE, OF_CHANGE, GRADIENT, DIRECTION, OF_DIRECTION, STEEPEST = 0, 1, 2, 3, 4, 5
+# Columns of Frozen.points: normal to the first body, the direction that friction acts square to, arms from
+# both bodies; depth and stiffness of a corner of two faces, of others (stiffness 0) elastic force and its
+# growth; rate, speed over which it damps, share of damping; friction and its speeds; the normal force that
+# limits it; velocity of the first body against the second now, its change along a direction, and the force as
+# the iteration began; what it is.
+NORMAL, SQUARE, ARM_A, ARM_B = 0, 3, 6, 9
+DEPTH, STIFFNESS, SPRING, GROWTH, RATE, OVER, BETA = 12, 13, 14, 15, 16, 17, 18
+MU_STATIC, MU_DYNAMIC, STICTION, SLIDING, PRESSING = 19, 20, 21, 22, 23
+NOW, ALONG, START, KIND, POINT = 24, 27, 30, 33, 34
+# What a point does: it presses and rubs; it damps alone; it is a couple about its normal, of SPRING at most,
+# of a rolling speed of GROWTH times the angular velocity.
+PRESSES, DAMPS, TURNS = 0.0, 1.0, 2.0
 
 
 class Free(NamedTuple):
@@ -135,6 +167,7 @@ class Workspace(NamedTuple):
     bounds: Bounds
     search: Any  # lattice.search.Search
     damped: Damped
+    frozen: Frozen
 
 
 class History(NamedTuple):
@@ -151,20 +184,22 @@ LAST_STEP, BETWEEN = 0, 1
 class Control(NamedTuple):
     """What a run counts and is steered by."""
 
-    factored: Floats  # (6,) MADE_FOR, STALE, WHERE, CALM, IMBALANCE, THEN
+    factored: Floats  # (4,) MADE_FOR, STALE, WHERE, TOUGH
     counters: Floats  # (COUNTERS,)
     energies: Floats  # (4,) DISSIPATED, DRIVEN, THROUGH_DRIVES, DAMPED_NUMERICALLY [N mm]
     history: History
     pace: Floats  # (5,) LEVEL, MISS, ANEW, FASTEST, MADE
 
 
-# Of Control.factored: the step that the factor was made for (0: none), whether it is to be made anew, and
-# where contacts stand (condensed.APART, PLANES or INSIDE); of a pile that rests, how many steps may yet go by
-# without a solve, and what the last one found: what free boxes would change by, and how many pairs touched.
-MADE_FOR, STALE, WHERE, CALM, IMBALANCE, THEN = 0, 1, 2, 3, 4, 5
+# Of Control.factored: the step that the factor was made for (0: none), whether it is to be made anew, where
+# contacts stand (condensed.APART, PLANES or INSIDE), and for how many steps each iteration is a convex
+# problem (see integrate.step).
+MADE_FOR, STALE, WHERE, TOUGH = 0, 1, 2, 3
 # Of Control.counters. WORST names the body, pair or joint of a failure, STRAIN is that of a joint beyond its
-# curve, THROUGH the pair of two sheets that a step would take through each other, or -1.
-STEPS, ITERATIONS, FACTORS, TOUCHING, WORST, STRAIN, THROUGH, CLOSE, COUNTERS = 0, 1, 2, 3, 4, 5, 6, 7, 8
+# curve, THROUGH the pair of two sheets that a step would take through each other, or -1; SOLVES counts linear
+# solves of iterations with frozen contacts, GIVEN_UP steps that did not converge.
+STEPS, ITERATIONS, FACTORS, TOUCHING, WORST, STRAIN, THROUGH, CLOSE, SOLVES, GIVEN_UP = range(10)
+COUNTERS = 10
 # Of Control.energies; the third adds up what drives and loads moved either way.
 DISSIPATED, DRIVEN, THROUGH_DRIVES, DAMPED_NUMERICALLY = 0, 1, 2, 3
 # Of Control.pace: how often steps are halved now; what velocities may miss their guess by (0: anything);

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from mdlgen.backends.lattice.kernels.forces import onto, touches
 from mdlgen.mechanics.frame import box_of, frame_of, law_of
-from mdlgen.mechanics.overlap import OTHER, UNKNOWN, apart, find, holds, points, press
+from mdlgen.mechanics.overlap import OTHER, UNKNOWN, apart, find, holds, press
 from mdlgen.mechanics.pair import BOX_BOX
 from mdlgen.mechanics.point import DISSIPATED, OUT, POINTS, STORED
 from mdlgen.program.kernel import BORROWS, njit
@@ -22,23 +22,31 @@ def forget_overlaps(overlaps):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _two_boxes(tables, pair, kept, motion, f, out):
-    """What two boxes of two sheets do, into `out`, without contact points, and onto f. Returns whether they
-    touch."""
+def _by_sides(tables, pair, motion, f, out, short):
+    """What two boxes do that are not face on face, into `out`, with its sums into `short`, too."""
+    if not touches(tables, pair, motion, f, out):
+        return False
+    for i in range(OUT + 1):
+        short[i] = out[i]
+    return True
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _two_boxes(tables, pair, kept, motion, f, out, short):
+    """What two boxes of two sheets do into `short`, and onto f; of sides with points into `out`. Returns
+    whether they touch."""
     a, b = frame_of(motion, pair.a), frame_of(motion, pair.b)
     if not holds(kept, a, b, MOVED):
         one, two = box_of(tables.bodies[pair.a]), box_of(tables.bodies[pair.b])
-        if apart(a, one.half, b, two.half):
+        if apart(a, one.half, b, two.half, 0.0):
             return False
         find(kept, a, one, b, two, law_of(pair))
     if kept.state == OTHER:
-        return touches(tables, pair, motion, f, out)
-    if kept.count == 0:
+        return _by_sides(tables, pair, motion, f, out, short)
+    if kept.count == 0 or not press(short, kept, a, b, law_of(pair)):
         return False
-    out[POINTS] = 0.0
-    if not press(out, kept, a, b, law_of(pair)):
-        return False
-    onto(f, pair, out)
+    short[POINTS] = 0.0
+    onto(f, pair, short)
     return True
 
 
@@ -51,29 +59,16 @@ def near_forces(work, close):
     count = 0
     lost = 0.0
     for at in range(close):
-        pair, out = tables.pairs[near[at]], results[count]
+        pair, out, short = tables.pairs[near[at]], results[count], mid.faces[count]
         if pair.kind == BOX_BOX:
-            touching = _two_boxes(tables, pair, overlaps[near[at] - first], motion, f, out)
+            touching = _two_boxes(tables, pair, overlaps[near[at] - first], motion, f, out, short)
         else:
             touching = touches(tables, pair, motion, f, out)
         if touching:
-            lost += out[DISSIPATED]
+            lost += short[DISSIPATED] if pair.kind == BOX_BOX else out[DISSIPATED]
             mid.touched[count] = near[at]
             count += 1
     return count, lost
-
-
-@njit(cache=True, error_model="numpy", **BORROWS)
-def contact_points(work, count):
-    """Adds the contact points of two sheets to what `near_forces` left without them."""
-    tables, mid, first = work.tables, work.mid, work.search.first
-    for k in range(count):
-        pair, out = tables.pairs[mid.touched[k]], mid.results[k]
-        if pair.kind == BOX_BOX and out[POINTS] == 0.0:
-            for i in range(OUT):
-                out[i] = 0.0
-            a, b = frame_of(mid.motion, pair.a), frame_of(mid.motion, pair.b)
-            points(out, mid.overlaps[mid.touched[k] - first], a, b, law_of(pair))
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -84,20 +79,20 @@ def forces_at(tables, mid, first, motion, close):
     count = 0
     stored = 0.0
     for at in range(close):
-        pair, out = tables.pairs[near[at]], results[count]
-        known, touching = False, False
-        if pair.kind == BOX_BOX and near[at] >= first:
+        pair, out, short = tables.pairs[near[at]], results[count], mid.faces[count]
+        if pair.kind == BOX_BOX:
             kept, a, b = overlaps[near[at] - first], frame_of(motion, pair.a), frame_of(motion, pair.b)
-            known = holds(kept, a, b, MOVED)
-            if known and kept.count > 0:
-                out[POINTS] = 0.0
-                touching = press(out, kept, a, b, law_of(pair))
+            if holds(kept, a, b, MOVED):
+                touching = kept.count > 0 and press(short, kept, a, b, law_of(pair))
                 if touching:
-                    onto(f, pair, out)
-        if not known:
+                    short[POINTS] = 0.0
+                    onto(f, pair, short)
+            else:
+                touching = _by_sides(tables, pair, motion, f, out, short)
+        else:
             touching = touches(tables, pair, motion, f, out)
         if touching:
-            stored += out[STORED]
+            stored += short[STORED] if pair.kind == BOX_BOX else out[STORED]
             mid.touched[count] = near[at]
             count += 1
     return count, stored

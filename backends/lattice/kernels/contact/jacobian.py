@@ -3,7 +3,14 @@
 from __future__ import annotations
 
 from mdlgen.backends.lattice.kernels.contact.condensed import ACTIVE
-from mdlgen.backends.lattice.kernels.contact.slopes import core, couple_growth, hat_left, hat_right, outer
+from mdlgen.backends.lattice.kernels.contact.slopes import (
+    core,
+    couple_growth,
+    hat_left,
+    hat_right,
+    numbers_of,
+    outer,
+)
 from mdlgen.backends.lattice.kernels.linear.dense import lu_solve_transposed
 from mdlgen.mechanics.arm import turn_of, way_of
 from mdlgen.mechanics.driven import clutch
@@ -99,7 +106,7 @@ def _pair_growth(pair, out, axes, h, motion, chord, growth):
         normal = back(axes, three_from(out, at + NORMAL))
         slip = back(axes, three_from(out, at + SLIP))
         square = back(axes, three_from(out, at + WAY)) if out[at + KIND] == OF_NIP else normal
-        t, damping, phi = core(out, at, normal, square, slip, h, pair.law, chord, True)
+        t, damping, phi = core(numbers_of(out, at, pair.law), normal, square, slip, h, chord, True)
         arm = back(axes, sub(three_from(out, at + AT), vec(x, pair.a)))
         _point_growth(growth, t, arm)
         if damping != 0.0:

@@ -86,8 +86,9 @@ def crossed(tables, mid, counts, state, first, h):
     for at in range(close):
         pair = pairs[near[at]]
         touches = known < count and mid.touched[known] == near[at]
-        deep = mid.results[known, DEPTH] if touches else 0.0
+        deep = 0.0
         if touches:
+            deep = mid.faces[known, DEPTH]
             known += 1
         if pair.kind != BOX_BOX:
             continue

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from mdlgen.mechanics.frame import LAW_SLIDING, LAW_SMOOTHING, LAW_STICTION
 from mdlgen.mechanics.point import (
@@ -85,8 +86,45 @@ def couple_growth(out, at, h, law, chord):
     return h * out[at + MOST_COUPLE] * out[at + RADIUS] * steepness(out[at + ROLLING] / v_n, v_n, chord)
 
 
+class Numbers(NamedTuple):
+    """Of one contact point what its slopes follow from: the elastic force and its growth with depth, the
+    normal force that friction counts by, the rate that damps it and the speed over which it does, the share
+    of damping, both coefficients of friction and their speeds; `alone`: its own rate damps it."""
+
+    spring: float
+    growth: float
+    force: float
+    rate: float
+    over: float
+    beta: float
+    mu_static: float
+    mu_dynamic: float
+    stiction: float
+    sliding: float
+    alone: bool
+
+
+@njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)
+def numbers_of(out, at, law):
+    """Numbers of a point as a force law leaves it in `out` (see mechanics.point)."""
+    return Numbers(
+        out[at + SPRING],
+        out[at + GROWTH],
+        out[at + FORCE],
+        out[at + RATE],
+        out[at + OVER],
+        # a rim may have its own
+        out[at + BETA],
+        out[at + MU_STATIC],
+        out[at + MU_DYNAMIC],
+        law[LAW_STICTION],
+        law[LAW_SLIDING],
+        out[at + KIND] == ALONE,
+    )
+
+
 @njit(cache=True, error_model="numpy", **BORROWS)
-def core(out, at, n, square, slip, h, law, chord, whole):
+def core(numbers, n, square, slip, h, chord, whole):
     """What the force of one contact point loses as the relative velocity grows, times h: a 3 x 3 matrix for
     the velocity at the point, and, where a nip damps it (0 else), what its normal force loses as the contact
     line closes, with its friction per slip velocity for 1 of that force.
@@ -94,15 +132,12 @@ def core(out, at, n, square, slip, h, law, chord, whole):
     n: the normal; square: the direction that friction acts square to, which is the normal, or a nip's;
     `whole`: with the growth of friction with the normal force, which is not symmetric.
     """
-    spring, growth, force, rate = out[at + SPRING], out[at + GROWTH], out[at + FORCE], out[at + RATE]
-    v_s, v_d, v_n = law[LAW_STICTION], law[LAW_SLIDING], out[at + OVER]
-    # a rim may have its own
-    beta, mu_static, mu_dynamic = out[at + BETA], out[at + MU_STATIC], out[at + MU_DYNAMIC]
+    spring, growth, force, rate, v_n, beta, mu_static, mu_dynamic, v_s, v_d, alone = numbers
     y = rate / v_n
     sign = 0.5 * y * (3.0 - y * y) if abs(y) < 1.0 else math.copysign(1.0, y)
     damping = h * spring * beta * steepness(y, v_n, chord)
     normal = h * h * growth * (1.0 + beta * sign)
-    if out[at + KIND] == ALONE:
+    if alone:
         normal += damping
         damping = 0.0
     speed = math.sqrt(slip[0] * slip[0] + slip[1] * slip[1] + slip[2] * slip[2])

@@ -122,14 +122,14 @@ def _made(work, count, dt, slower, least, rows):
     returns what their damping should have taken and did not. `slower`: see _changed; of two sheets boxes that
     cannot make `least` of energy are not looked at."""
     bodies, pairs, state, mid = work.tables.bodies, work.tables.pairs, work.state, work.mid
-    touched, results, motion, ends = mid.touched, mid.results, mid.motion, mid.fastest[ENDS]
+    touched, motion, ends = mid.touched, mid.motion, mid.fastest[ENDS]
     missed = 0.0
     for k in range(count):
-        pair, out = pairs[touched[k]], results[k]
+        pair, out = pairs[touched[k]], mid.results[k]
         if not _hits(bodies, pair, work.kept.rows):
             continue
-        faces = pair.kind == BOX_BOX and out[POINTS] == 0.0
-        if faces and 4.0 * dt * out[PRESSING] * (ends[pair.a] + ends[pair.b]) < least:
+        faces = pair.kind == BOX_BOX and mid.faces[k, POINTS] == 0.0
+        if faces and 4.0 * dt * mid.faces[k, PRESSING] * (ends[pair.a] + ends[pair.b]) < least:
             continue
         row = pair.row
         one, spin_one = _changed(bodies[pair.a], pair.a, state, mid, slower)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from mdlgen.backends.lattice.kernels.state import WORST
-from mdlgen.mechanics.arm import AXIAL, INERTIA, way_of
+from mdlgen.mechanics.arm import way_of
 from mdlgen.mechanics.crossing import fastest_place
 from mdlgen.mechanics.vector import dot, vec
 from mdlgen.program.kernel import BORROWS, njit
@@ -33,21 +33,16 @@ def greatest(tables, motion, res, resb, counters):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def imbalance(tables, res, resb):
-    """The greatest change of a velocity, as of `_greatest`, that a residual would make of free bodies."""
+def greatest_of_free(tables, free, res):
+    """The same of boxes whose sheets hang on nothing and touch nothing (see momentum.keep) alone."""
     bodies, nodes = tables.bodies, tables.nodes
     change = 0.0
     for n in range(nodes.size):
-        body = bodies[nodes[n]]
-        size, j = body.half[0] + body.half[1], body.inertia
-        light = size / min(j[0], j[1], j[2])
-        for i in range(3):
-            change = max(change, abs(res[6 * n + i]) / body.mass, light * abs(res[6 * n + 3 + i]))
-    for k in range(bodies.size - 1):
-        if bodies[k].slide >= 0:
-            change = max(change, abs(resb[bodies[k].slide]) / bodies[k].press[INERTIA])
-        if bodies[k].spin >= 0:
-            change = max(change, abs(resb[bodies[k].spin]) / bodies[k].press[AXIAL])
+        if free.busy[free.one_with[free.label[n]]]:
+            continue
+        size = bodies[nodes[n]].half[0] + bodies[nodes[n]].half[1]
+        for i in range(6):
+            change = max(change, abs(res[6 * n + i]) if i < 3 else size * abs(res[6 * n + i]))
     return change
 
 

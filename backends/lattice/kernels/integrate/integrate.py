@@ -28,6 +28,7 @@ from mdlgen.backends.lattice.kernels.state import (
     FORCE_BEGUN,
     FORCE_NOW,
     FORCE_TIME,
+    GIVEN_UP,
     ITERATIONS,
     LAST_STEP,
     LEVEL,
@@ -53,8 +54,8 @@ from mdlgen.mechanics.crossing import deepest
 from mdlgen.mechanics.curve import overstretched
 from mdlgen.mechanics.driven import clutch, prescribed
 from mdlgen.mechanics.frame import Motion
-from mdlgen.mechanics.pair import remember
-from mdlgen.mechanics.point import DEPTH, PRESSING
+from mdlgen.mechanics.pair import BOX_BOX, remember
+from mdlgen.mechanics.point import DEPTH, POINTS, PRESSING
 from mdlgen.mechanics.turning import TURNING, turning
 from mdlgen.program.kernel import BORROWS, njit
 
@@ -77,7 +78,9 @@ GRAZE = 0.05
 def _deep(tables, mid, count):
     """The pair that is deeper than it may be in the middle of a step, or -1."""
     for k in range(count):
-        if mid.results[k, DEPTH] > deepest(tables.bodies, tables.pairs[mid.touched[k]]):
+        pair = tables.pairs[mid.touched[k]]
+        depth = mid.faces[k, DEPTH] if pair.kind == BOX_BOX else mid.results[k, DEPTH]
+        if depth > deepest(tables.bodies, pair):
             return mid.touched[k]
     return -1
 
@@ -93,9 +96,11 @@ def _watch(tables, mid, count, t, dt, kept):
     for k in range(count):
         pair = tables.pairs[mid.touched[k]]
         marks[pair.mark] = True
-        rows[pair.row, FORCE_NOW] += mid.results[k, PRESSING]
-        rows[pair.row, DEPTH_NOW] = max(rows[pair.row, DEPTH_NOW], mid.results[k, DEPTH])
-        turning(tables.bodies, pair, mid.results[k], rows, pair.row, TURNING_NOW)
+        out = mid.faces[k] if pair.kind == BOX_BOX else mid.results[k]
+        rows[pair.row, FORCE_NOW] += out[PRESSING]
+        rows[pair.row, DEPTH_NOW] = max(rows[pair.row, DEPTH_NOW], out[DEPTH])
+        points = out if out[POINTS] == 0.0 else mid.results[k]
+        turning(tables.bodies, pair, points, rows, pair.row, TURNING_NOW)
     for row in range(rows.shape[0]):
         force, depth = rows[row, FORCE_NOW], rows[row, DEPTH_NOW]
         acts = force > GRAZE * max(rows[row, MAX_FORCE], force)
@@ -246,6 +251,7 @@ def run(work, t, steps, tolerance, control):
                 halvings = math.ceil(math.log2(made / allowed) / 2.5) if made > AGAIN * allowed else 1
                 pace[LEVEL] = min(level + max(1, halvings), DEEPEST if level >= FINEST else FINEST)
                 if not solved:
+                    counters[GIVEN_UP] += 1
                     spans[BETWEEN] = 0.0
                 continue
             if work.damped.joints.size > 0:

@@ -15,7 +15,8 @@ from mdlgen.backends.lattice.kernels.state import (
 from mdlgen.mechanics.arm import AXIAL, FORCE_0, INERTIA, STIFFNESS, hung, way_of
 from mdlgen.mechanics.driven import prescribed
 from mdlgen.mechanics.frame import Motion
-from mdlgen.mechanics.point import DEPTH, PRESSING
+from mdlgen.mechanics.pair import BOX_BOX
+from mdlgen.mechanics.point import DEPTH, POINTS, PRESSING
 from mdlgen.mechanics.turning import turning
 from mdlgen.mechanics.vector import back, dot, mat, rotate, three, vec
 from mdlgen.program.kernel import njit
@@ -74,7 +75,9 @@ def ledger(tables, state, mid, t, first, energies, rows):
     count, pressed = forces_at(tables, mid, first, motion, close)
     for k in range(count):
         pair = tables.pairs[mid.touched[k]]
-        rows[pair.row, FORCE_NOW] += mid.results[k, PRESSING]
-        rows[pair.row, DEPTH_NOW] = max(rows[pair.row, DEPTH_NOW], mid.results[k, DEPTH])
-        turning(tables.bodies, pair, mid.results[k], rows, pair.row, TURNING_NOW)
+        out = mid.faces[k] if pair.kind == BOX_BOX else mid.results[k]
+        rows[pair.row, FORCE_NOW] += out[PRESSING]
+        rows[pair.row, DEPTH_NOW] = max(rows[pair.row, DEPTH_NOW], out[DEPTH])
+        points = out if out[POINTS] == 0.0 else mid.results[k]
+        turning(tables.bodies, pair, points, rows, pair.row, TURNING_NOW)
     energies[KINETIC], energies[ELASTIC], energies[POTENTIAL] = kinetic, elastic + stored + pressed, potential

@@ -16,7 +16,7 @@ import math
 
 import numpy as np
 
-from mdlgen.backends.lattice.kernels.contact.between import contact_points, near_forces
+from mdlgen.backends.lattice.kernels.contact.between import near_forces
 from mdlgen.backends.lattice.kernels.contact.condensed import (
     APART,
     INSIDE,
@@ -40,38 +40,32 @@ from mdlgen.backends.lattice.kernels.forces import (
     pair_forces_again,
     place,
 )
-from mdlgen.backends.lattice.kernels.integrate.change import fastest, greatest, imbalance, take_off
+from mdlgen.backends.lattice.kernels.integrate.change import fastest, greatest, greatest_of_free, take_off
+from mdlgen.backends.lattice.kernels.integrate.convex import solve_convex
 from mdlgen.backends.lattice.kernels.integrate.mixing import mix
 from mdlgen.backends.lattice.kernels.integrate.momentum import keep
-from mdlgen.backends.lattice.kernels.integrate.tangent import (
-    contacts_into,
-    in_box_axes,
-    joints_into,
-    masses,
-    rollers_into,
-)
+from mdlgen.backends.lattice.kernels.integrate.points import gather, points_into
+from mdlgen.backends.lattice.kernels.integrate.tangent import in_box_axes, joints_into, masses, turn_nodes
 from mdlgen.backends.lattice.kernels.linear.band import empty as no_band
 from mdlgen.backends.lattice.kernels.linear.band import factor, solve
-from mdlgen.backends.lattice.kernels.linear.bordered import eliminate
-from mdlgen.backends.lattice.kernels.linear.coupled import couplings, couplings_in_box_axes, solve_coupled
+from mdlgen.backends.lattice.kernels.linear.coupled import couplings
 from mdlgen.backends.lattice.kernels.linear.dense import copy
-from mdlgen.backends.lattice.kernels.linear.two_colour import colour
 from mdlgen.backends.lattice.kernels.state import (
-    CALM,
     CLOSE,
     FACTORS,
-    IMBALANCE,
     ITERATIONS,
     LOST,
     MADE_FOR,
     MIDDLE,
     NUMERICAL,
+    POINT,
     POWER,
     STALE,
-    THEN,
     THROUGH,
     TOUCHING,
+    TOUGH,
     WHERE,
+    Frozen,
     Matrix,
     Midpoint,
     State,
@@ -88,6 +82,7 @@ from mdlgen.mechanics.arm import (
 )
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.overlap import OVERLAP
+from mdlgen.mechanics.point import FACES, MOST_POINTS
 from mdlgen.mechanics.vector import back, dot, mat, rotate, three, vec
 from mdlgen.program.kernel import BORROWS, njit
 
@@ -102,12 +97,11 @@ FREE = 1e-5
 ROUGH = 100.0
 # Damping of joints, as a part of h for 1 ms of a step, and at most.
 DAMPED, MOST_DAMPED = 1.0, 0.3
-# A pile rests where the solve of a step changed less than STILL of its limit. Then the guesses of the next
-# RESTS steps are taken as they are, while as many pairs touch, the residual is not GREATER, and it would
-# change even free boxes by less than the limit: of boxes that hold each other it changes less.
-STILL, RESTS, GREATER = 1e-3, 7.0, 1.25
 # Forces of sheets on sheets are those before an iteration that changed less than this part of the limit.
-SAME = 1e-2
+SAME = 1e-3
+# Where contacts stand in the matrix, each iteration is a convex problem for so many steps after one that took
+# more than a few iterations of Newton's method as they come.
+PLAIN, MEMORY = 3, 20.0
 # How much of the chord a factor takes (see slopes.core): little converges fast, much does not cross to the
 # other side of what is flat; the latter is taken twice where an iteration moved more than the one before.
 LITTLE, MUCH = 0.05, 0.7
@@ -155,17 +149,6 @@ def _weights(bodies, gravity, f):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _turn(nodes, r, res, inward):
-    """Turns a vector of the nodes into box axes, or back."""
-    for n in range(nodes.size):
-        m = mat(r, nodes[n])
-        for k in range(6 * n, 6 * n + 6, 3):
-            part = (res[k], res[k + 1], res[k + 2])
-            part = back(m, part) if inward else rotate(m, part)
-            res[k], res[k + 1], res[k + 2] = part
-
-
-@njit(cache=True, error_model="numpy", **BORROWS)
 def _contact_forces(work, close, known):
     """Adds the forces of contacts to those of the midpoint, where `known` from what the contact solve last
     evaluated. Returns (how many pairs touch, dissipated power)."""
@@ -185,24 +168,18 @@ def _contact_forces(work, close, known):
 
 
 @njit(cache=True, error_model="numpy")
-def _make_factor(work, t, h, lag, where, count, chord):
+def _make_factor(work, counts, h, lag, where, chord):
     """The tangent of a step in box axes, factored. Returns False where it is not regular."""
-    tables, matrix, ub = work.tables, work.matrix, work.state.ub
-    motion = work.mid.motion
-    a, b, d = matrix.band, matrix.border, matrix.corner
+    tables, matrix, motion = work.tables, work.matrix, work.mid.motion
+    a = matrix.band
     masses(tables.bodies, tables.nodes, motion.r, a)
     joints_into(tables, tables.joints, h, lag, motion.x, motion.r, a)
-    rollers_into(tables.bodies, h, t, ub, b, d)
-    if where != APART:
-        contacts_into(tables, h, work.mid, count, chord, where == PLANES, matrix)
-        couplings_in_box_axes(tables.nodes, motion.r, matrix.couplings)
-    in_box_axes(tables.nodes, motion.r, a, b, matrix.offsets)
+    if where == PLANES:
+        gather(work, counts, h, True)
+        points_into(work, h, chord)
+    in_box_axes(tables.nodes, motion.r, a, matrix.border, matrix.offsets)
     forget(work.condensed)
-    if not factor(a) or (where == INSIDE and not eliminate(a, b, d, matrix.eliminated, matrix.schur)):
-        return False
-    if where == INSIDE:
-        colour(matrix.couplings, b, d, matrix.eliminated)
-    return True
+    return factor(a)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -224,17 +201,18 @@ def midpoint(work, t, dt, tolerance, control):
     tables, state, mid, matrix, condensed = work.tables, work.state, work.mid, work.matrix, work.condensed
     bodies, pairs, nodes = tables.bodies, tables.pairs, tables.nodes
     factored, counters = control.factored, control.counters
-    a, res, resb = matrix.band, matrix.res, matrix.resb
+    res, resb = matrix.res, matrix.resb
     most = condensed.chosen.size
     h = 0.5 * dt
     lag = min(DAMPED * dt, MOST_DAMPED) * h
     before = 1e300
-    careful = 0
+    careful, plain = 0, True
     counters[THROUGH] = -1.0
     close, where, m = 0, int(factored[WHERE]), 0
-    margin, moved, mixes = FAR, 0.0, False
-    # loads add to the forces, of which the drives' power is told
-    piled, unsolved = work.search.regions.size > 0 and tables.loads.size == 0, 0.0
+    margin, moved, sheets = FAR, 0.0, work.search.regions.size > 0
+    # loads add to the forces, by which the drives' power is counted
+    lasting = sheets and tables.loads.size == 0
+    inner, factors = 0, 0.0
     for iteration in range(MOST_ITERATIONS):
         place(tables, h, t + h, state, mid.motion)
         if iteration == 0 or margin < dt * moved:
@@ -245,6 +223,7 @@ def midpoint(work, t, dt, tolerance, control):
         mid.forces[:] = 0.0
         _stored, lost, numerical = joint_forces(tables.joints, tables.points, mid.motion, mid.forces, lag)
         known = iteration > 0 and where == APART and condensed.looked[UP_TO_DATE] == 1
+        known = known and not sheets
         count, rubbed = _contact_forces(work, close, known)
         power = other_forces(tables, 1.0, mid.motion, mid.forces)
         _weights(bodies, tables.gravity, mid.forces)
@@ -252,15 +231,6 @@ def midpoint(work, t, dt, tolerance, control):
         _residual(tables, t + h, h, state, mid, res, resb)
         # what is free converges fast, and keeps its angular momentum as well as the iterations end
         limit = tolerance if count > 0 else FREE * tolerance
-        if piled and iteration == 0:
-            unsolved = imbalance(tables, res, resb)
-            made = factored[MADE_FOR] == dt and factored[STALE] == 0.0
-            calm = factored[CALM] > 0.0 and count == factored[THEN]
-            if made and calm and unsolved < min(limit, GREATER * factored[IMBALANCE]):
-                factored[CALM] -= 1.0
-                counters[ITERATIONS] += 1
-                return _done(work, h, (count, close), (lost + rubbed, power, numerical), counters)
-            factored[CALM], factored[IMBALANCE], factored[THEN] = 0.0, unsolved, float(count)
         if iteration == 0:
             for fewer in range(where):
                 m = choose(bodies, pairs, mid.touched, count, fewer, condensed, 0, most // 2)
@@ -272,35 +242,38 @@ def midpoint(work, t, dt, tolerance, control):
         while m < 0:
             where += 1
             m = choose(bodies, pairs, mid.touched, count, where, condensed, 0, most)
-        if factored[MADE_FOR] != dt or factored[STALE] != 0.0 or factored[WHERE] != where:
-            counters[FACTORS] += 1
-            chord = MUCH if careful > 0 else LITTLE
-            if where != APART:
-                careful -= 1
-                contact_points(work, count)
-            if not _make_factor(work, t + h, h, lag, where, count, chord):
-                break
-            mixes = False
-            factored[MADE_FOR], factored[STALE], factored[WHERE] = dt, 0.0, where
         counters[ITERATIONS] += 1
         copy(work.free.residual, res)
         # the axes of the boxes as they stand now: half a step before, what is stiff in a box points elsewhere
         copy(condensed.axes, mid.motion.r)
-        _turn(nodes, condensed.axes, res, True)
         if where == INSIDE:
-            solve_coupled(a, matrix.border, matrix.eliminated, matrix.schur, matrix.couplings, res, resb)
+            turn_nodes(nodes, condensed.axes, res, True)
+            renew = iteration == 0 or factored[WHERE] != INSIDE
+            plain = factored[TOUGH] == 0.0 and iteration < PLAIN
+            factors = counters[FACTORS]
+            inner = solve_convex(work, t + h, h, lag, (count, close), limit, control, renew, plain)
+            if inner == 0:
+                break
         else:
-            solve(a, res)
-            columns(a, condensed, m)
+            if factored[MADE_FOR] != dt or factored[STALE] != 0.0 or factored[WHERE] != where:
+                counters[FACTORS] += 1
+                chord = MUCH if careful > 0 else LITTLE
+                if where == PLANES:
+                    careful -= 1
+                if not _make_factor(work, (count, close), h, lag, where, chord):
+                    break
+                factored[MADE_FOR], factored[STALE], factored[WHERE] = dt, 0.0, where
+            turn_nodes(nodes, condensed.axes, res, True)
+            solve(matrix.band, res)
+            columns(matrix.band, condensed, m)
             if not solve_contacts(work, m, where, h, t + h, (close, count), (ROUGH * limit, 0.3 * limit)):
                 break
-        _turn(nodes, condensed.axes, res, False)
+        turn_nodes(nodes, condensed.axes, res, False)
         found = 0.0
         if where == INSIDE:
             # what is mixed may be small while what is left is not
             found = greatest(tables, mid.motion, res, resb, counters)
-            mix(matrix, mixes)
-            mixes = True
+            mix(matrix, iteration > 1 or (iteration > 0 and plain and counters[FACTORS] == factors))
         keep(tables, mid.touched, count, work.free, mid.motion.x, mid.motion.r, res)
         part = part_of_change(tables, mid.near, close, mid.motion.r, h, res)
         if part < 1.0:
@@ -310,20 +283,23 @@ def midpoint(work, t, dt, tolerance, control):
         take_off(state, res, resb)
         if not change < 1e30:
             break
+        moved += change
+        if count > 0:
+            # what is free beside what touches converges as far as it would alone
+            change = max(change, greatest_of_free(tables, work.free, res) / FREE)
         rate = change / before
         falls = before < 1e299 and rate < 0.5
-        moved += change
         if dt * moved <= margin and (change <= limit or (falls and change * rate / (1.0 - rate) <= limit)):
             # forces change much with what the last iteration changed: friction, over its smoothing speed
             place(tables, h, t + h, state, mid.motion)
-            if piled and iteration == 0 and change < STILL * limit:
-                factored[CALM] = RESTS
-            if not piled or change > SAME * limit:
+            if not lasting or change > SAME * limit:
                 mid.forces[:] = 0.0
                 count, rubbed = _contact_forces(work, close, False)
             release(condensed, m)
+            factored[TOUGH] = MEMORY if iteration >= PLAIN else max(factored[TOUGH] - 1.0, 0.0)
             return _done(work, h, (count, close), (lost + rubbed, power, numerical), counters)
-        if before < 1e299 and (rate >= 1.0 or math.log(limit / change) < (WORTH + m) * math.log(rate)):
+        slow = before < 1e299 and (rate >= 1.0 or math.log(limit / change) < (WORTH + m) * math.log(rate))
+        if slow and (where != INSIDE or inner == 1):
             factored[STALE] = 1.0
         if before < 1e299 and rate > 0.9:
             careful = 2
@@ -355,6 +331,7 @@ def empty(system, wide: int) -> tuple[State, Midpoint, Matrix]:
         forces=np.zeros((bodies, 6)),
         touched=np.zeros(len(system.pairs), np.int64),
         results=np.zeros((max(1, len(system.pairs)), wide)),
+        faces=np.zeros((max(1, len(system.pairs)), FACES)),
         totals=np.zeros(3),
         near=np.zeros(len(system.pairs), np.int64),
         overlaps=np.zeros(max(1, len(system.pairs) - system.search.first), OVERLAP),
@@ -373,5 +350,22 @@ def empty(system, wide: int) -> tuple[State, Midpoint, Matrix]:
         couplings=couplings(len(system.pairs) - system.search.first, system.sheets, border),
         mixing=np.zeros((2, 6 * nodes + border)),
         offsets=system.offsets,
+        inner=no_band(nodes, system.reach),
+        own=np.zeros((border, border)),
     )
     return state, mid, matrix
+
+
+def frozen(system) -> Frozen:
+    """Room for the points of an iteration with frozen contacts. Boxes of two sheets have four or five points
+    where they overlap, and there is room for many more pairs than overlap; where none is left, points are
+    left out of the iteration, and of nothing else."""
+    nodes, border, listed = len(system.nodes), system.border, system.search.first
+    room = 2 * MOST_POINTS * listed + 2 * (len(system.pairs) - listed)
+    return Frozen(
+        points=np.zeros((room, POINT)),
+        pair=np.zeros(room, np.int64),
+        many=np.zeros(1, np.int64),
+        vectors=np.zeros((6, 6 * nodes)),
+        border=np.zeros((6, border)),
+    )

@@ -7,16 +7,13 @@ iterations for them, and the matrix stays positive.
 
 from __future__ import annotations
 
-from mdlgen.backends.lattice.kernels.contact.slopes import core, couple_growth, hat_left, hat_right, outer
-from mdlgen.mechanics.arm import AXIAL, DAMPING, INERTIA, STIFFNESS, turn_of, way_of
+from mdlgen.backends.lattice.kernels.contact.slopes import hat_left, hat_right
+from mdlgen.mechanics.arm import AXIAL, DAMPING, INERTIA, STIFFNESS
 from mdlgen.mechanics.curve import curve_spring
 from mdlgen.mechanics.driven import clutch
-from mdlgen.mechanics.pair import on_fixed_plate
-from mdlgen.mechanics.point import AT, AXIS, COUPLE, KIND, LINE, NORMAL, OF_NIP, OUT, POINT, POINTS, SLIP, WAY
 from mdlgen.mechanics.vector import (
     add,
     back,
-    cross,
     dot,
     exp_rotation,
     log_rotation,
@@ -27,7 +24,6 @@ from mdlgen.mechanics.vector import (
     scale,
     sub,
     three,
-    three_from,
     transpose_matmul,
     vec,
 )
@@ -73,7 +69,7 @@ def _less(times, a, b):
 
 
 @njit(cache=True, error_model="numpy")
-def _blocks(a, column, offset, sign, t, q, p, g):
+def blocks(a, column, offset, sign, t, q, p, g):
     """Adds sign (P_q^T t P_p + g) with P_q = [1, -[q]x] to the block of `column` whose rows begin at
     `offset`: rows are of the body with arm q, columns of that with arm p."""
     right = hat_right(t, p)
@@ -145,141 +141,19 @@ def joints_into(tables, joints, h, lag, x, r, a):
             t = _along(t, n, 2.0)
             g = _less(2.0, g, _along(g, n, 2.0))
         if na >= 0:
-            _blocks(a, na, 0, 1.0, t, qa, qa, g)
+            blocks(a, na, 0, 1.0, t, qa, qa, g)
         if nb >= 0:
-            _blocks(a, nb, 0, 1.0, t, qb, qb, g)
+            blocks(a, nb, 0, 1.0, t, qb, qb, g)
         if na >= 0 and nb >= 0:
             if nb > na:
-                _blocks(a, na, 6 * (nb - na), -1.0, t, qb, qa, g)
+                blocks(a, na, 6 * (nb - na), -1.0, t, qb, qa, g)
             else:
-                _blocks(a, nb, 6 * (na - nb), -1.0, t, qa, qb, g)
+                blocks(a, nb, 6 * (na - nb), -1.0, t, qa, qb, g)
 
 
 @njit(cache=True, error_model="numpy")
-def _columns(body, arm, x, sign, direction, index, count):
-    """The unknowns of a roller at x that move a contact point, each with the direction of its velocity."""
-    if body.slide >= 0:
-        way = add(way_of(body, x), cross(turn_of(body), arm))
-        for i in range(3):
-            direction[count, i] = sign * way[i]
-        index[count] = body.slide
-        count += 1
-    if body.spin >= 0:
-        ax, ay, az = body.axis[0], body.axis[1], body.axis[2]
-        direction[count, 0] = sign * (ay * arm[2] - az * arm[1])
-        direction[count, 1] = sign * (az * arm[0] - ax * arm[2])
-        direction[count, 2] = sign * (ax * arm[1] - ay * arm[0])
-        index[count] = body.spin
-        count += 1
-    return count
-
-
-@njit(cache=True, error_model="numpy")
-def _point_into(bodies, pair, x, where, t, coupled, matrix):
-    """Adds a matrix of the velocity at one contact point to band, border and corner, and to the couplings."""
-    a, b, d = matrix.band, matrix.border, matrix.corner
-    direction, index = matrix.direction, matrix.unknowns
-    zero = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    node, other = bodies[pair.a].node, bodies[pair.b].node
-    arm = sub(where, vec(x, pair.a))
-    if node >= 0:
-        _blocks(a, node, 0, 1.0, t, arm, arm, zero)
-    moving = 0
-    if node < 0:
-        moving = _columns(bodies[pair.a], arm, vec(x, pair.a), 1.0, direction, index, moving)
-    far = sub(where, vec(x, pair.b))
-    if other >= 0:
-        _blocks(a, other, 0, 1.0, t, far, far, zero)
-    if node >= 0 and other >= 0:
-        _blocks(matrix.couplings.blocks, coupled, 0, -1.0, t, arm, far, zero)
-    moving = _columns(bodies[pair.b], far, vec(x, pair.b), -1.0, direction, index, moving)
-    for i in range(moving):
-        v = rotate(t, (direction[i, 0], direction[i, 1], direction[i, 2]))
-        for j in range(moving):
-            d[index[i], index[j]] += v[0] * direction[j, 0] + v[1] * direction[j, 1] + v[2] * direction[j, 2]
-        if node >= 0:
-            base = 6 * node
-            for l in range(3):
-                b[index[i], base + l] += v[l]
-            b[index[i], base + 3] += arm[1] * v[2] - arm[2] * v[1]
-            b[index[i], base + 4] += arm[2] * v[0] - arm[0] * v[2]
-            b[index[i], base + 5] += arm[0] * v[1] - arm[1] * v[0]
-
-
-@njit(cache=True, error_model="numpy")
-def _couple_into(bodies, pair, axis, slope, matrix):
-    """Adds the couple of rolling resistance of a box, or a roller, against a roller or a part that does not
-    turn."""
-    a, b, d = matrix.band, matrix.border, matrix.corner
-    node = bodies[pair.a].node
-    if node >= 0:
-        for c in range(3):
-            for k in range(3):
-                a[node, 3 + c, 3 + k] += slope * axis[c] * axis[k]
-    for one in range(4):
-        i, turning = _turning(bodies, pair, one, axis)
-        if i < 0:
-            continue
-        for two in range(4):
-            j, other = _turning(bodies, pair, two, axis)
-            if j >= 0:
-                d[i, j] += slope * turning * other
-        if node >= 0:
-            for c in range(3):
-                b[i, 6 * node + 3 + c] += slope * turning * axis[c]
-
-
-@njit(cache=True, error_model="numpy")
-def _turning(bodies, pair, which, axis):
-    """The unknown of a pair's rollers with a number from 0 to 3, -1: none, and how fast it turns the first
-    body against the second about an axis."""
-    body, sign = bodies[pair.a if which < 2 else pair.b], 1.0 if which < 2 else -1.0
-    if which % 2 == 0:
-        return body.spin, sign * dot(three(body.axis), axis)
-    if body.swings != 2:
-        return -1, 0.0
-    return body.slide, sign * dot(turn_of(body), axis)
-
-
-@njit(cache=True, error_model="numpy")
-def contacts_into(tables, h, mid, count, chord, planes, matrix):
-    """Adds the contacts that touch, or only those with fixed plates (`planes`), to band, border and corner;
-    what couples boxes of two sheets goes to the couplings."""
-    bodies, pairs, x, couplings = tables.bodies, tables.pairs, mid.motion.x, matrix.couplings
-    couplings.many[0] = 0
-    for k in range(count):
-        pair, out = pairs[mid.touched[k]], mid.results[k]
-        if planes and not on_fixed_plate(pair, bodies[pair.b]):
-            continue
-        node, other = bodies[pair.a].node, bodies[pair.b].node
-        coupled = couplings.many[0]
-        if node >= 0 and other >= 0:
-            couplings.ends[coupled, 0], couplings.ends[coupled, 1] = node, other
-            couplings.blocks[coupled] = 0.0
-            couplings.many[0] += 1
-        for point in range(int(out[POINTS])):
-            at = OUT + 1 + POINT * point
-            if out[at + KIND] == COUPLE:
-                slope = couple_growth(out, at, h, pair.law, chord)
-                _couple_into(bodies, pair, three_from(out, at + AXIS), slope, matrix)
-                continue
-            where, normal = three_from(out, at + AT), three_from(out, at + NORMAL)
-            slip = three_from(out, at + SLIP)
-            square = three_from(out, at + WAY) if out[at + KIND] == OF_NIP else normal
-            t, damping, _ = core(out, at, normal, square, slip, h, pair.law, chord, False)
-            _point_into(bodies, pair, x, where, t, coupled, matrix)
-            if damping == 0.0:
-                continue
-            # the points of a nip together damp as one on its contact line would
-            way = three_from(out, at + WAY)
-            t = outer(scale(damping, way), way)
-            _point_into(bodies, pair, x, three_from(out, at + LINE), t, coupled, matrix)
-
-
-@njit(cache=True, error_model="numpy")
-def rollers_into(bodies, h, t, ub, b, d):
-    """Sets border and corner to the rollers' own: masses, springs and dampers of slides, clutches at t."""
-    b[:] = 0.0
+def rollers_into(bodies, h, t, ub, d):
+    """Sets the corner to the rollers' own: masses, springs and dampers of slides, clutches at t."""
     d[:] = 0.0
     for k in range(bodies.size - 1):
         p = bodies[k].press
@@ -321,3 +195,14 @@ def in_box_axes(nodes, r, a, b, offsets):
                 v = back(mine, (b[i, q], b[i, q + 1], b[i, q + 2]))
                 for c in range(3):
                     b[i, q + c] = v[c]
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def turn_nodes(nodes, r, vector, inward):
+    """Turns a vector of the nodes into box axes, or back."""
+    for n in range(nodes.size):
+        m = mat(r, nodes[n])
+        for k in range(6 * n, 6 * n + 6, 3):
+            part = (vector[k], vector[k + 1], vector[k + 2])
+            part = back(m, part) if inward else rotate(m, part)
+            vector[k], vector[k + 1], vector[k + 2] = part

@@ -1,0 +1,246 @@
+"""An iteration of a step's equations where contacts stand in its matrix: a convex problem.
+
+With the geometry of contacts frozen, and friction limited by the normal forces as the iteration begins, the
+change d of the velocities makes a convex function least (integrate.points): half d A d, A being masses and
+bushings, and res d, and what the points add. Newton's method finds it with a factored matrix of an earlier
+state, and goes along each direction as far as the function falls. Contacts that open and close, and friction
+that turns, cannot make it go back and forth, as they do without that search (Castro et al., arXiv
+2110.10107).
+
+The next iteration begins with all forces as they are there, so what was frozen leaves no error.
+"""
+
+from __future__ import annotations
+
+import math
+
+from mdlgen.backends.lattice.kernels.contact.condensed import INSIDE, forget
+from mdlgen.backends.lattice.kernels.integrate.change import greatest
+from mdlgen.backends.lattice.kernels.integrate.points import (
+    gather,
+    look_along,
+    points_into,
+    pull,
+    slope,
+)
+from mdlgen.backends.lattice.kernels.integrate.tangent import (
+    in_box_axes,
+    joints_into,
+    masses,
+    rollers_into,
+    turn_nodes,
+)
+from mdlgen.backends.lattice.kernels.linear.band import factor
+from mdlgen.backends.lattice.kernels.linear.bordered import eliminate
+from mdlgen.backends.lattice.kernels.linear.coupled import couplings_in_box_axes, solve_coupled
+from mdlgen.backends.lattice.kernels.linear.dense import copy
+from mdlgen.backends.lattice.kernels.linear.product import times
+from mdlgen.backends.lattice.kernels.linear.two_colour import colour
+from mdlgen.backends.lattice.kernels.state import (
+    CHANGE,
+    DIRECTION,
+    FACTORS,
+    GRADIENT,
+    MADE_FOR,
+    OF_CHANGE,
+    OF_DIRECTION,
+    SOLVES,
+    STALE,
+    STEEPEST,
+    WHERE,
+)
+from mdlgen.program.kernel import BORROWS, njit
+
+MOST_ITERATIONS = 25
+# What an iteration of Newton's method leaves, in times what the step's own iterations may leave.
+ROUGH = 0.3
+# A direction is gone along wholly where the slope at its end is less than this part of that at its begin, and
+# else to where it is less than the other part.
+LEVEL, FLAT = 0.25, 0.1
+MOST_LOOKS, MOST_DOUBLED = 12, 4
+# A factor is worth so many iterations (see integrate.step).
+WORTH = 4.0
+CHORD = 0.02
+
+
+@njit(cache=True, error_model="numpy")
+def _make_matrix(work, t, h, lag, renew):
+    """The matrix of the frozen points, factored; `renew`: masses and bushings too. Returns False where it is
+    not regular."""
+    tables, matrix, motion = work.tables, work.matrix, work.mid.motion
+    a, b, d = matrix.band, matrix.border, matrix.corner
+    if renew:
+        masses(tables.bodies, tables.nodes, motion.r, matrix.inner)
+        joints_into(tables, tables.joints, h, lag, motion.x, motion.r, matrix.inner)
+        in_box_axes(tables.nodes, motion.r, matrix.inner, b, matrix.offsets)
+    a[:] = 0.0
+    b[:] = 0.0
+    copy(d, matrix.own)
+    points_into(work, h, CHORD)
+    couplings_in_box_axes(tables.nodes, motion.r, matrix.couplings)
+    in_box_axes(tables.nodes, motion.r, a, b, matrix.offsets[:1])
+    a += matrix.inner
+    forget(work.condensed)
+    if not factor(a) or not eliminate(a, b, d, matrix.eliminated, matrix.schur):
+        return False
+    colour(matrix.couplings, b, d, matrix.eliminated)
+    return True
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _how_far(frozen, h, begin, linear, square):
+    """The part of a direction to go along. begin: the slope where it begins; linear + part square: what
+    masses and bushings have of it there."""
+    low, high, at_low = 0.0, 1.0, begin
+    at_high = linear + square + slope(frozen, h, 1.0)
+    if abs(at_high) <= LEVEL * abs(begin):
+        return 1.0
+    for _ in range(MOST_DOUBLED):
+        if at_high >= 0.0:
+            break
+        low, at_low = high, at_high
+        high *= 2.0
+        at_high = linear + high * square + slope(frozen, h, high)
+    if at_high <= 0.0:
+        return high
+    part = high
+    for _ in range(MOST_LOOKS):
+        part = low - at_low * (high - low) / (at_high - at_low)
+        part = min(max(part, low + 0.05 * (high - low)), high - 0.05 * (high - low))
+        found = linear + part * square + slope(frozen, h, part)
+        if abs(found) <= FLAT * abs(begin):
+            break
+        if found > 0.0:
+            high, at_high = part, found
+        else:
+            low, at_low = part, found
+    return part
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, **BORROWS)
+def _dot(a, b):
+    total = 0.0
+    for i in range(a.size):
+        total += a[i] * b[i]
+    return total
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _gradient(work, h, axes, part):
+    """Goes that part of the direction, and finds the slope of the function in all unknowns there: the
+    vectors' GRADIENT."""
+    frozen, matrix, nodes = work.frozen, work.matrix, work.tables.nodes
+    res, resb, own = matrix.res, matrix.resb, matrix.own
+    g, gb = frozen.vectors[GRADIENT], frozen.border[GRADIENT]
+    g[:] = 0.0
+    for i in range(resb.size):
+        gb[i] = resb[i] + _dot(own[i], frozen.border[CHANGE])
+    pull(work, h, part, g, gb)
+    turn_nodes(nodes, axes, g, True)
+    for i in range(res.size):
+        g[i] += res[i] + frozen.vectors[OF_CHANGE, i]
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _direction(work, axes):
+    """The points look along the direction, and what masses and bushings make of it is worked out. Returns
+    what these have of the slope along it where it begins, and for 1 of it more."""
+    frozen, matrix = work.frozen, work.matrix
+    p, pb, product = frozen.vectors[DIRECTION], frozen.border[DIRECTION], frozen.vectors[OF_DIRECTION]
+    copy(product, p)
+    turn_nodes(work.tables.nodes, axes, product, False)
+    look_along(work, product, pb)
+    times(matrix.inner, p, product)
+    linear = _dot(p, matrix.res) + _dot(p, frozen.vectors[OF_CHANGE])
+    square = _dot(p, product)
+    for i in range(pb.size):
+        linear += pb[i] * (matrix.resb[i] + _dot(matrix.own[i], frozen.border[CHANGE]))
+        square += pb[i] * _dot(matrix.own[i], pb)
+    return linear, square
+
+
+@njit(cache=True, error_model="numpy")
+def solve_convex(work, t, h, lag, counts, limit, control, renew, plain):
+    """Makes of the residual, in box axes, the change of velocities that is to be taken off. Returns in how
+    many iterations, 0: it could not. counts: how many pairs touch, how many are near; `renew`: a factor has
+    masses and bushings anew; `plain`: a step of Newton's method is taken as it is."""
+    tables, matrix, frozen = work.tables, work.matrix, work.frozen
+    factored, counters = control.factored, control.counters
+    res, resb, axes = matrix.res, matrix.resb, work.condensed.axes
+    change, of_change = frozen.vectors[CHANGE], frozen.vectors[OF_CHANGE]
+    g, gb = frozen.vectors[GRADIENT], frozen.border[GRADIENT]
+    p, pb, changeb = frozen.vectors[DIRECTION], frozen.border[DIRECTION], frozen.border[CHANGE]
+    change[:] = 0.0
+    of_change[:] = 0.0
+    changeb[:] = 0.0
+    rollers_into(tables.bodies, h, t, work.state.ub, matrix.own)
+    z, zb = frozen.vectors[STEEPEST], frozen.border[STEEPEST]
+    before, along, part, gathered = 1e300, 0.0, 0.0, False
+    for iteration in range(MOST_ITERATIONS):
+        if iteration == 0:
+            copy(g, res)
+            copy(gb, resb)
+        else:
+            _gradient(work, h, axes, part)
+        part = 0.0
+        made = factored[MADE_FOR] != 2.0 * h or factored[STALE] != 0.0 or factored[WHERE] != INSIDE
+        if made:
+            if not gathered:
+                gather(work, counts, h, False)
+                gathered = True
+            counters[FACTORS] += 1
+            if not _make_matrix(work, t, h, lag, renew):
+                return 0
+            factored[MADE_FOR], factored[STALE], factored[WHERE] = 2.0 * h, 0.0, INSIDE
+            renew = False
+        crossing = _dot(g, z) + _dot(gb, zb) if iteration > 0 and not made else 0.0
+        copy(z, g)
+        copy(zb, gb)
+        counters[SOLVES] += 1
+        solve_coupled(matrix.band, matrix.border, matrix.eliminated, matrix.schur, matrix.couplings, z, zb)
+        # conjugate directions, by Polak and Ribiere: they make up for a factor of an earlier state
+        square = _dot(g, z) + _dot(gb, zb)
+        turn = max(0.0, (square - crossing) / along) if iteration > 0 and not made and along > 0.0 else 0.0
+        along = square
+        for i in range(p.size):
+            p[i] = turn * p[i] - z[i]
+        for i in range(pb.size):
+            pb[i] = turn * pb[i] - zb[i]
+        moved = greatest(tables, work.mid.motion, p, pb, counters)
+        if plain or (iteration == 0 and moved <= limit):
+            copy(change, p)
+            copy(changeb, pb)
+            break
+        if not gathered:
+            gather(work, counts, h, False)
+            gathered = True
+        begin = _dot(g, p) + _dot(gb, pb)
+        if not begin < 0.0:
+            # a factor of an earlier state may lead up
+            if made:
+                break
+            factored[STALE] = 1.0
+            continue
+        linear, square = _direction(work, axes)
+        part = _how_far(frozen, h, begin, linear, square)
+        for i in range(p.size):
+            of_change[i] += part * frozen.vectors[OF_DIRECTION, i]
+            change[i] += part * p[i]
+        for i in range(pb.size):
+            changeb[i] += part * pb[i]
+        moved *= part
+        rate = moved / before
+        if (iteration == 0 and part == 1.0) or moved <= ROUGH * limit:
+            break
+        if before < 1e299 and rate < 0.5 and moved * rate / (1.0 - rate) <= ROUGH * limit:
+            break
+        if before < 1e299 and (
+            rate >= 0.7 or math.log(ROUGH * limit / moved) < WORTH * math.log(max(rate, 1e-6))
+        ):
+            factored[STALE] = 1.0
+        before = moved
+    for i in range(res.size):
+        res[i] = -change[i]
+    for i in range(resb.size):
+        resb[i] = -changeb[i]
+    return iteration + 1

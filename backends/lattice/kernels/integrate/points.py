@@ -1,0 +1,466 @@
+"""Contact points of a step whose geometry is frozen: what an iteration of the step's equations may take for
+granted while it looks for the velocities.
+
+Within an iteration boxes move by little. So a point keeps its normal, its arms and its part of the stiffness;
+its depth grows with the rate at which it closes, and its friction has the limit that its normal force had as
+the iteration began. Such forces are the slope of a convex function of the velocities, which has one least
+value, and a search along any direction that leads down finds it (see integrate.convex). Corners of two faces
+that are open, but by less than REACH, are points, too: they may close.
+
+What is wrong in all this costs iterations and no accuracy: an iteration begins with the forces as the laws
+have them, and adds what the points make of the change.
+"""
+
+from __future__ import annotations
+
+import math
+
+from mdlgen.backends.lattice.kernels.contact.between import MOVED
+from mdlgen.backends.lattice.kernels.contact.slopes import Numbers, core, outer, steepness
+from mdlgen.backends.lattice.kernels.integrate.tangent import blocks
+from mdlgen.backends.lattice.kernels.state import (
+    ALONG,
+    ARM_A,
+    ARM_B,
+    BETA,
+    DAMPS,
+    DEPTH,
+    GROWTH,
+    KIND,
+    MU_DYNAMIC,
+    MU_STATIC,
+    NORMAL,
+    NOW,
+    OVER,
+    PRESSES,
+    PRESSING,
+    RATE,
+    SLIDING,
+    SPRING,
+    SQUARE,
+    START,
+    STICTION,
+    STIFFNESS,
+    TURNS,
+)
+from mdlgen.mechanics import point as law_point
+from mdlgen.mechanics.arm import turn_of, way_of
+from mdlgen.mechanics.frame import LAW_SMOOTHING, box_of, frame_of, law_of
+from mdlgen.mechanics.laws import damped, friction_over_speed, sign_step
+from mdlgen.mechanics.overlap import OTHER, apart, find, holds, plane_of
+from mdlgen.mechanics.pair import BOX_BOX, on_fixed_plate
+from mdlgen.mechanics.vector import add, cross, dot, rotate, scale, sub, three, three_from, vec
+from mdlgen.program.kernel import BORROWS, njit
+
+# How far two faces may be open at a corner that may close in an iteration [mm].
+REACH = 0.003
+ZERO = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _law(q, v, h):
+    """Elastic force of a point and its growth with depth, its normal force, rate and slip velocity, at the
+    velocity v of the first body against the second."""
+    n, square = three_from(q, NORMAL), three_from(q, SQUARE)
+    rate = -dot(v, n)
+    more = h * (rate - q[RATE])
+    if q[STIFFNESS] > 0.0:
+        depth = max(q[DEPTH] + more, 0.0)
+        growth = q[STIFFNESS] * math.sqrt(depth)
+        spring = growth * depth
+        growth *= 1.5
+    else:
+        spring, growth = max(q[SPRING] + q[GROWTH] * more, 0.0), q[GROWTH]
+    normal = damped(spring, rate, q[BETA], q[OVER])
+    return spring, growth, normal, rate, sub(v, scale(dot(v, square), square))
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _force(q, v, h):
+    """Force of a point on the first body at the velocity v; of one that TURNS the couple."""
+    n = three_from(q, NORMAL)
+    if q[KIND] == DAMPS:
+        return scale(q[SPRING] * q[BETA] * sign_step(-dot(v, n), q[OVER]), n)
+    if q[KIND] == TURNS:
+        return scale(-q[SPRING] * sign_step(q[GROWTH] * dot(v, n), q[OVER]), n)
+    _spring, _growth, normal, _rate, slip = _law(q, v, h)
+    if q[PRESSING] <= 0.0:
+        return scale(normal, n)
+    speed = math.sqrt(dot(slip, slip))
+    over = friction_over_speed(speed, q[MU_STATIC], q[MU_DYNAMIC], q[STICTION], q[SLIDING])
+    return sub(scale(normal, n), scale(q[PRESSING] * over, slip))
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _begin(frozen, p, where, normal, a, b):
+    """A point more of a pair, of bodies that are Frames; returns its number, -1: there is no room for it."""
+    many = frozen.many[0]
+    if many == frozen.pair.size:
+        return -1
+    q = frozen.points[many]
+    arm, far = sub(where, a.x), sub(where, b.x)
+    v = sub(add(a.v, cross(a.w, arm)), add(b.v, cross(b.w, far)))
+    for i in range(3):
+        q[NORMAL + i] = q[SQUARE + i] = normal[i]
+        q[ARM_A + i], q[ARM_B + i], q[NOW + i], q[ALONG + i] = arm[i], far[i], v[i], 0.0
+    q[RATE] = -dot(v, normal)
+    q[STIFFNESS] = q[DEPTH] = q[SPRING] = q[GROWTH] = q[PRESSING] = 0.0
+    q[KIND], q[BETA], q[OVER] = PRESSES, 0.0, 1.0
+    q[MU_STATIC] = q[MU_DYNAMIC] = 0.0
+    q[STICTION] = q[SLIDING] = 1.0
+    frozen.pair[many] = p
+    frozen.many[0] = many + 1
+    return many
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _started(q, h):
+    """Notes what a point does as the iteration begins."""
+    f = _force(q, three_from(q, NOW), h)
+    for i in range(3):
+        q[START + i] = f[i]
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _of_law(frozen, p, pair, out, h, motion):
+    """Adds the points of a pair as its law has left them in `out` (see mechanics.point)."""
+    a, b = frame_of(motion, pair.a), frame_of(motion, pair.b)
+    law = law_of(pair)
+    for k in range(int(out[law_point.POINTS])):
+        at = law_point.OUT + 1 + law_point.POINT * k
+        kind = out[at + law_point.KIND]
+        if kind == law_point.COUPLE:
+            axis = three_from(out, at + law_point.AXIS)
+            many = _begin(frozen, p, a.x, axis, a, b)
+            if many < 0:
+                return
+            q = frozen.points[many]
+            turning = sub(a.w, b.w)
+            for i in range(3):
+                q[NOW + i] = turning[i]
+            q[KIND], q[SPRING] = TURNS, out[at + law_point.MOST_COUPLE]
+            q[GROWTH], q[OVER] = out[at + law_point.RADIUS], pair.law[LAW_SMOOTHING]
+            _started(q, h)
+            continue
+        spring, force = out[at + law_point.SPRING], out[at + law_point.FORCE]
+        normal = three_from(out, at + law_point.NORMAL)
+        many = _begin(frozen, p, three_from(out, at + law_point.AT), normal, a, b)
+        if many < 0:
+            return
+        q = frozen.points[many]
+        alone = kind == law_point.ALONE
+        # what the points of a nip are damped by stands on its contact line
+        times = 1.0 if alone or spring == 0.0 else force / spring
+        q[SPRING], q[GROWTH] = times * spring, times * out[at + law_point.GROWTH]
+        if alone:
+            q[BETA], q[OVER] = out[at + law_point.BETA], out[at + law_point.OVER]
+        else:
+            for i in range(3):
+                q[SQUARE + i] = out[at + law_point.WAY + i]
+        q[MU_STATIC], q[MU_DYNAMIC] = out[at + law_point.MU_STATIC], out[at + law_point.MU_DYNAMIC]
+        q[STICTION], q[SLIDING], q[PRESSING] = law.stiction, law.sliding, force
+        _started(q, h)
+        if alone or out[at + law_point.BETA] == 0.0 or out[at + law_point.OVER] == law_point.NEVER:
+            continue
+        line, way = three_from(out, at + law_point.LINE), three_from(out, at + law_point.WAY)
+        many = _begin(frozen, p, line, way, a, b)
+        if many < 0:
+            return
+        q = frozen.points[many]
+        q[KIND], q[SPRING] = DAMPS, spring
+        q[BETA], q[OVER] = out[at + law_point.BETA], out[at + law_point.OVER]
+        _started(q, h)
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _of_faces(frozen, p, pair, kept, h, motion):
+    """Adds the corners of the overlap that is kept of two boxes."""
+    a, b = frame_of(motion, pair.a), frame_of(motion, pair.b)
+    law = law_of(pair)
+    first = kept.first != 0
+    owner, other = (a, b) if first else (b, a)
+    _, level, lean_p, lean_r = plane_of(kept, owner, other)
+    to_a = -kept.side if first else kept.side
+    normal = (to_a * owner.r[2], to_a * owner.r[5], to_a * owner.r[8])
+    for corner in range(kept.count):
+        along, across = kept.corners[corner, 0], kept.corners[corner, 1]
+        depth = level + lean_p * along + lean_r * across
+        if depth <= -REACH:
+            continue
+        at = (along, across, kept.side * (kept.owner[2] - 0.5 * depth))
+        many = _begin(frozen, p, add(owner.x, rotate(owner.r, at)), normal, a, b)
+        if many < 0:
+            return
+        q = frozen.points[many]
+        q[STIFFNESS], q[DEPTH] = kept.stiffness[corner], depth
+        q[BETA], q[OVER] = law.beta, law.smoothing
+        q[MU_STATIC], q[MU_DYNAMIC] = law.mu_static, law.mu_dynamic
+        q[STICTION], q[SLIDING] = law.stiction, law.sliding
+        q[PRESSING] = _law(q, three_from(q, NOW), h)[2]
+        _started(q, h)
+
+
+@njit(cache=True, error_model="numpy")
+def gather(work, counts, h, plates):
+    """Takes the points of the near pairs at the midpoint; `counts`: how many touch, how many are near;
+    `plates`: of those with fixed plates alone."""
+    tables, mid, frozen, first = work.tables, work.mid, work.frozen, work.search.first
+    bodies, pairs, near, motion = tables.bodies, tables.pairs, mid.near, mid.motion
+    count, close = counts
+    frozen.many[0] = known = 0
+    for at in range(close):
+        p = near[at]
+        pair = pairs[p]
+        row = known
+        touching = known < count and mid.touched[known] == p
+        if touching:
+            known += 1
+        if plates and not on_fixed_plate(pair, bodies[pair.b]):
+            continue
+        if pair.kind != BOX_BOX:
+            if touching:
+                _of_law(frozen, p, pair, mid.results[row], h, motion)
+            continue
+        kept = mid.overlaps[p - first]
+        a, b = frame_of(motion, pair.a), frame_of(motion, pair.b)
+        if not holds(kept, a, b, MOVED):
+            one, two = box_of(bodies[pair.a]), box_of(bodies[pair.b])
+            if apart(a, one.half, b, two.half, REACH):
+                continue
+            find(kept, a, one, b, two, law_of(pair))
+        if kept.state == OTHER:
+            if touching:
+                _of_law(frozen, p, pair, mid.results[row], h, motion)
+        elif kept.count > 0:
+            _of_faces(frozen, p, pair, kept, h, motion)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)
+def _moves(body, arm, x, sign, direction, index, count):
+    """The unknowns of a roller or a pressed plate at x that move a contact point, each with the direction of
+    its velocity there."""
+    if body.slide >= 0:
+        way = add(way_of(body, x), cross(turn_of(body), arm))
+        for i in range(3):
+            direction[count, i] = sign * way[i]
+        index[count] = body.slide
+        count += 1
+    if body.spin >= 0:
+        turn = cross(three(body.axis), arm)
+        for i in range(3):
+            direction[count, i] = sign * turn[i]
+        index[count] = body.spin
+        count += 1
+    return count
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _turning(bodies, pair, which, axis):
+    """The unknown of a pair's rollers with a number from 0 to 3, -1: none, and how fast it turns the first
+    body against the second about an axis."""
+    body, sign = bodies[pair.a if which < 2 else pair.b], 1.0 if which < 2 else -1.0
+    if which % 2 == 0:
+        return body.spin, sign * dot(three(body.axis), axis)
+    if body.swings != 2:
+        return -1, 0.0
+    return body.slide, sign * dot(turn_of(body), axis)
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _rate_of(bodies, pair, q, x, change, changeb, matrix):
+    """How the velocity of a point changes where velocities of nodes and of the border change."""
+    one, two = bodies[pair.a].node, bodies[pair.b].node
+    v = (0.0, 0.0, 0.0)
+    if q[KIND] == TURNS:
+        n = three_from(q, NORMAL)
+        turning = 0.0
+        if one >= 0:
+            turning += dot(three_from(change, 6 * one + 3), n)
+        if two >= 0:
+            turning -= dot(three_from(change, 6 * two + 3), n)
+        for which in range(4):
+            unknown, part = _turning(bodies, pair, which, n)
+            if unknown >= 0:
+                turning += part * changeb[unknown]
+        return scale(turning, n)
+    direction, index = matrix.direction, matrix.unknowns
+    arm, far, moving = three_from(q, ARM_A), three_from(q, ARM_B), 0
+    if one >= 0:
+        v = add(three_from(change, 6 * one), cross(three_from(change, 6 * one + 3), arm))
+    else:
+        moving = _moves(bodies[pair.a], arm, vec(x, pair.a), 1.0, direction, index, moving)
+    if two >= 0:
+        v = sub(v, add(three_from(change, 6 * two), cross(three_from(change, 6 * two + 3), far)))
+    else:
+        moving = _moves(bodies[pair.b], far, vec(x, pair.b), -1.0, direction, index, moving)
+    for i in range(moving):
+        v = add(v, scale(changeb[index[i]], three_from(direction[i], 0)))
+    return v
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def look_along(work, change, changeb):
+    """Notes how the velocities of all points change with a change of the unknowns, in global axes."""
+    tables, frozen, x = work.tables, work.frozen, work.mid.motion.x
+    for k in range(frozen.many[0]):
+        q = frozen.points[k]
+        pair = tables.pairs[frozen.pair[k]]
+        v = _rate_of(tables.bodies, pair, q, x, change, changeb, work.matrix)
+        for i in range(3):
+            q[ALONG + i] = v[i]
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def pull(work, h, part, g, gb):
+    """Changes the velocities of all points by that part of the change looked along, and takes off g
+    (6 nodes,), global axes, and gb what their forces have added since the iteration began."""
+    tables, frozen, matrix, x = work.tables, work.frozen, work.matrix, work.mid.motion.x
+    bodies, direction, index = tables.bodies, matrix.direction, matrix.unknowns
+    for k in range(frozen.many[0]):
+        q = frozen.points[k]
+        for i in range(3):
+            q[NOW + i] += part * q[ALONG + i]
+        f = scale(h, sub(_force(q, three_from(q, NOW), h), three_from(q, START)))
+        if f[0] == 0.0 and f[1] == 0.0 and f[2] == 0.0:
+            continue
+        pair = tables.pairs[frozen.pair[k]]
+        one, two = bodies[pair.a].node, bodies[pair.b].node
+        if q[KIND] == TURNS:
+            for i in range(3):
+                if one >= 0:
+                    g[6 * one + 3 + i] -= f[i]
+                if two >= 0:
+                    g[6 * two + 3 + i] += f[i]
+            n = three_from(q, NORMAL)
+            for which in range(4):
+                unknown, part = _turning(bodies, pair, which, n)
+                if unknown >= 0:
+                    gb[unknown] -= part * dot(f, n)
+            continue
+        arm, far, moving = three_from(q, ARM_A), three_from(q, ARM_B), 0
+        if one >= 0:
+            t = cross(arm, f)
+            for i in range(3):
+                g[6 * one + i] -= f[i]
+                g[6 * one + 3 + i] -= t[i]
+        else:
+            moving = _moves(bodies[pair.a], arm, vec(x, pair.a), 1.0, direction, index, moving)
+        if two >= 0:
+            t = cross(far, f)
+            for i in range(3):
+                g[6 * two + i] += f[i]
+                g[6 * two + 3 + i] += t[i]
+        else:
+            moving = _moves(bodies[pair.b], far, vec(x, pair.b), -1.0, direction, index, moving)
+        for i in range(moving):
+            gb[index[i]] -= dot(three_from(direction[i], 0), f)
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def slope(frozen, h, part):
+    """What the points add to the slope of the function that is made least, along the change looked along, at
+    that part of it."""
+    total = 0.0
+    for k in range(frozen.many[0]):
+        q = frozen.points[k]
+        way = three_from(q, ALONG)
+        f = _force(q, add(three_from(q, NOW), scale(part, way)), h)
+        total += dot(sub(f, three_from(q, START)), way)
+    return -h * total
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _point_into(bodies, pair, q, x, t, coupled, matrix):
+    """Adds a matrix of the velocity at one point to band, border and corner, and to the couplings."""
+    a, b, d = matrix.band, matrix.border, matrix.corner
+    direction, index = matrix.direction, matrix.unknowns
+    node, other = bodies[pair.a].node, bodies[pair.b].node
+    arm, far, moving = three_from(q, ARM_A), three_from(q, ARM_B), 0
+    if node >= 0:
+        blocks(a, node, 0, 1.0, t, arm, arm, ZERO)
+    else:
+        moving = _moves(bodies[pair.a], arm, vec(x, pair.a), 1.0, direction, index, moving)
+    if other >= 0:
+        blocks(a, other, 0, 1.0, t, far, far, ZERO)
+        if node >= 0:
+            blocks(matrix.couplings.blocks, coupled, 0, -1.0, t, arm, far, ZERO)
+    else:
+        moving = _moves(bodies[pair.b], far, vec(x, pair.b), -1.0, direction, index, moving)
+    for i in range(moving):
+        v = rotate(t, three_from(direction[i], 0))
+        for j in range(moving):
+            d[index[i], index[j]] += dot(v, three_from(direction[j], 0))
+        if node >= 0:
+            torque = cross(arm, v)
+            for l in range(3):
+                b[index[i], 6 * node + l] += v[l]
+                b[index[i], 6 * node + 3 + l] += torque[l]
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _couple_into(bodies, pair, axis, growth, matrix):
+    """Adds the couple of rolling resistance of a box, or a roller, against a roller or a part that does not
+    turn."""
+    a, b, d = matrix.band, matrix.border, matrix.corner
+    node = bodies[pair.a].node
+    if node >= 0:
+        for c in range(3):
+            for k in range(3):
+                a[node, 3 + c, 3 + k] += growth * axis[c] * axis[k]
+    for one in range(4):
+        i, turning = _turning(bodies, pair, one, axis)
+        if i < 0:
+            continue
+        for two in range(4):
+            j, other = _turning(bodies, pair, two, axis)
+            if j >= 0:
+                d[i, j] += growth * turning * other
+        if node >= 0:
+            for c in range(3):
+                b[i, 6 * node + 3 + c] += growth * turning * axis[c]
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def points_into(work, h, chord):
+    """Adds what the forces of all points lose as velocities grow, times h, to band, border and corner; what
+    couples boxes of two sheets goes to the couplings. `chord`: see slopes.steepness."""
+    tables, frozen, matrix, x = work.tables, work.frozen, work.matrix, work.mid.motion.x
+    bodies, couplings = tables.bodies, matrix.couplings
+    couplings.many[0], last = 0, -1
+    for k in range(frozen.many[0]):
+        q, p = frozen.points[k], frozen.pair[k]
+        pair = tables.pairs[p]
+        node, other = bodies[pair.a].node, bodies[pair.b].node
+        if p != last and node >= 0 and other >= 0:
+            coupled = couplings.many[0]
+            couplings.ends[coupled, 0], couplings.ends[coupled, 1] = node, other
+            couplings.blocks[coupled] = 0.0
+            couplings.many[0] = coupled + 1
+        last = p
+        coupled = couplings.many[0] - 1
+        n = three_from(q, NORMAL)
+        if q[KIND] == TURNS:
+            y = q[GROWTH] * dot(three_from(q, NOW), n) / q[OVER]
+            growth = h * q[SPRING] * q[GROWTH] * steepness(y, q[OVER], chord)
+            _couple_into(bodies, pair, n, growth, matrix)
+        elif q[KIND] == DAMPS:
+            y = -dot(three_from(q, NOW), n) / q[OVER]
+            damping = h * q[SPRING] * q[BETA] * steepness(y, q[OVER], chord)
+            _point_into(bodies, pair, q, x, outer(scale(damping, n), n), coupled, matrix)
+        else:
+            spring, growth, _normal, rate, slip = _law(q, three_from(q, NOW), h)
+            numbers = Numbers(
+                spring,
+                growth,
+                q[PRESSING],
+                rate,
+                q[OVER],
+                q[BETA],
+                q[MU_STATIC],
+                q[MU_DYNAMIC],
+                q[STICTION],
+                q[SLIDING],
+                True,
+            )
+            t, _, _ = core(numbers, n, three_from(q, SQUARE), slip, h, chord, False)
+            _point_into(bodies, pair, q, x, t, coupled, matrix)
