@@ -15,7 +15,7 @@ from mdlgen.mechanics.arm import (
 )
 from mdlgen.mechanics.bushing import bushing
 from mdlgen.mechanics.curve import curve_excess, middle_and_gap
-from mdlgen.mechanics.driven import clutch
+from mdlgen.mechanics.driven import SENSE, clutch
 from mdlgen.mechanics.frame import Frame
 from mdlgen.mechanics.pair import pair_force
 from mdlgen.mechanics.point import (
@@ -150,8 +150,8 @@ def forces(tables, at, level, work):
                 f[n + i] += level * bodies[body].mass * gravity[i]
         if bodies[body].slide >= 0:
             slide_force(tables, body, at, f, level)
-        if bodies[body].clutch[0] != 0.0:
-            f[bodies[body].spin] += clutch(bodies[body], v[bodies[body].spin], t)[0]
+        if bodies[body].clutch[SENSE] != 0.0:
+            f[bodies[body].spin] += clutch(bodies[body], v[bodies[body].spin], t).torque
     for i in range(tables.bushings.size):
         bush_forces(tables, tables.bushings[i], q, motion, f)
     touching = 0

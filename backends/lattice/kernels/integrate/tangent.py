@@ -286,7 +286,7 @@ def rollers_into(bodies, h, t, ub, b, d):
         if bodies[k].slide >= 0:
             d[bodies[k].slide, bodies[k].slide] = p[INERTIA] + h * p[DAMPING] + h * h * p[STIFFNESS]
         if bodies[k].spin >= 0:
-            d[bodies[k].spin, bodies[k].spin] = p[AXIAL] + h * clutch(bodies[k], ub[bodies[k].spin], t)[1]
+            d[bodies[k].spin, bodies[k].spin] = p[AXIAL] + h * clutch(bodies[k], ub[bodies[k].spin], t).growth
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
