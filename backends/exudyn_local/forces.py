@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mdlgen.backends.exudyn_local.place import place_all
+from mdlgen.backends.exudyn_local.system import EULER
 from mdlgen.mechanics.arm import (
     DAMPING,
     FORCE_0,
@@ -49,14 +50,19 @@ def spread(bodies, body, q, force, torque, f):
     n = bodies[body].first
     if n >= 0:
         ref = bodies[body].reference
-        e0, e1, e2, e3 = ref[3] + q[n + 3], ref[4] + q[n + 4], ref[5] + q[n + 5], ref[6] + q[n + 6]
+        e0, e1, e2, e3 = (
+            ref[EULER] + q[n + EULER],
+            ref[EULER + 1] + q[n + EULER + 1],
+            ref[EULER + 2] + q[n + EULER + 2],
+            ref[EULER + 3] + q[n + EULER + 3],
+        )
         for i in range(3):
             f[n + i] += force[i]
         a, b, c = torque
-        f[n + 3] += 2 * (-e1 * a - e2 * b - e3 * c)
-        f[n + 4] += 2 * (e0 * a + e3 * b - e2 * c)
-        f[n + 5] += 2 * (-e3 * a + e0 * b + e1 * c)
-        f[n + 6] += 2 * (e2 * a - e1 * b + e0 * c)
+        f[n + EULER] += 2 * (-e1 * a - e2 * b - e3 * c)
+        f[n + EULER + 1] += 2 * (e0 * a + e3 * b - e2 * c)
+        f[n + EULER + 2] += 2 * (-e3 * a + e0 * b + e1 * c)
+        f[n + EULER + 3] += 2 * (e2 * a - e1 * b + e0 * c)
         return
     if bodies[body].slide >= 0:
         ref = bodies[body].reference
