@@ -65,11 +65,11 @@ BLOCK = 15  # all four sides of a box are outer ones
 
 
 @njit(cache=True, error_model="numpy")
-def _nip(sums, room, head, meshes, placed, half, sign, exposed, stiff):
+def _nip(both, room, head, meshes, placed, half, sign, exposed, stiff):
     """What presses on a broad face that goes on over the sides that are not exposed: its force along the
-    file's axes and its middle in the face (force, u, v). Of both `sums` the first has what presses on the box
-    itself."""
-    own, whole = sums[0], sums[1]
+    file's axes and its middle in the face (force, u, v). The first of `both` sums has what presses on the
+    box itself, the second is room."""
+    own, whole = both[0], both[1]
     u, v = own[FIRST_U] / own[IN_ALL], own[FIRST_V] / own[IN_ALL]
     du = math.sqrt(max(own[SECOND_U] / own[IN_ALL] - u * u, 0.0))
     dv = math.sqrt(max(own[SECOND_V] / own[IN_ALL] - v * v, 0.0))

@@ -32,7 +32,6 @@ _JOINED = 1e-7  # of the radius: ends of pieces that are one
 # Columns of a piece: places where it begins and ends (2 each); the integrals of zeta and of its square; those
 # of place (2), and of zeta times place (2); its patch.
 _BEGIN, _END, _ZETA, _SQUARE, _PLACE, _MOMENT, _PATCH, _PIECE = 0, 2, 4, 5, 6, 8, 10, 11
-_SUMS = _PATCH - _ZETA  # columns that a patch adds up, from _ZETA on
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -149,7 +148,7 @@ def roller_mesh(out, body, a, b, head, meshes, law):
     axis, center = back(frame, three(body.axis)), back(frame, sub(a.x, place))
     one, two = _frame(axis)
     radius, width = body.size[RADIUS], body.size[WIDTH]
-    pieces, sums = np.empty((MOST_PIECES + 1, _PIECE)), np.empty(_SUMS)
+    pieces, sums = np.empty((MOST_PIECES + 1, _PIECE)), np.empty(_PIECE)
     for slice in range(SLICES):
         u = ((slice + 0.5) / SLICES - 0.5) * width
         found = _gather(pieces, meshes, head, add(center, scale(u, axis)), axis, one, two, radius)
@@ -158,9 +157,9 @@ def roller_mesh(out, body, a, b, head, meshes, law):
             sums[:] = 0.0
             for i in range(found):
                 if pieces[i, _PATCH] == patch:
-                    for j in range(_SUMS):
-                        sums[j] += pieces[i, _ZETA + j]
-            zeta, square = sums[0], sums[_SQUARE - _ZETA]
+                    for j in range(_ZETA, _PATCH):
+                        sums[j] += pieces[i, j]
+            zeta, square = sums[_ZETA], sums[_SQUARE]
             if zeta <= 0.0:
                 continue
             mean = square / zeta
@@ -169,9 +168,8 @@ def roller_mesh(out, body, a, b, head, meshes, law):
             depth = radius - left
             # from the axis into the mesh: the growth of the depth with a move of the axis
             grows = 1.25 / (zeta * left)
-            place, moment = sums[_PLACE - _ZETA :], sums[_MOMENT - _ZETA :]
-            gx = grows * (2.0 * moment[0] - mean * place[0])
-            gy = grows * (2.0 * moment[1] - mean * place[1])
+            gx = grows * (2.0 * sums[_MOMENT] - mean * sums[_PLACE])
+            gy = grows * (2.0 * sums[_MOMENT + 1] - mean * sums[_PLACE + 1])
             steep = math.sqrt(gx * gx + gy * gy)
             if steep <= 0.0:
                 continue

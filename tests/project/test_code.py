@@ -16,6 +16,11 @@ PRIVATE = re.compile(
 )
 FOLDERS = ("mdlgen", "backends", "docs/_generate", "tests")
 MOST_PARAMETERS = 9
+# arrays of kernels whose columns have names
+NAMED = {
+    *("arc", "clutch", "counters", "energies", "factored", "law", "out", "pace", "press", "results", "rim"),
+    *("rows", "sums", "totals"),
+}
 MOST_LINES = 400
 
 
@@ -66,6 +71,27 @@ def test_no_kernel_has_many_parameters() -> None:
     }
     assert len(counts) > 200
     assert {name: count for name, count in counts.items() if count > MOST_PARAMETERS} == {}
+
+
+def bare(index: ast.expr) -> bool:
+    """Whether a column is a number, or so many behind a number that is no name."""
+    column = index.elts[-1] if isinstance(index, ast.Tuple) else index
+    if isinstance(column, ast.BinOp):
+        names = [node.id for node in ast.walk(column) if isinstance(node, ast.Name)]
+        return isinstance(column.right, ast.Constant) and not any(name.strip("_").isupper() for name in names)
+    return isinstance(column, ast.Constant)
+
+
+def test_columns_that_have_a_name_are_called_by_it() -> None:
+    found = [
+        f"{file}:{node.lineno}: {ast.unparse(node)}"
+        for file, text in sources("mdlgen/mechanics", "backends").items()
+        for kernel in kernels(ast.parse(text))
+        for node in ast.walk(kernel)
+        if isinstance(node, ast.Subscript) and bare(node.slice)
+        if getattr(node.value, "attr", getattr(node.value, "id", "")) in NAMED
+    ]
+    assert found == []
 
 
 def test_no_file_is_long() -> None:
