@@ -9,7 +9,7 @@ import numpy as np
 from mdlgen.backends.exudyn_local.place import place_all, place_body
 from mdlgen.backends.exudyn_local.state import Coordinates
 from mdlgen.mechanics.crossing import above, buried, closing, deepest, size, unseen
-from mdlgen.mechanics.frame import Motion
+from mdlgen.mechanics.frame import ARC_RADIUS, RADIUS, WIDTH, Motion
 from mdlgen.mechanics.guide import inward
 from mdlgen.mechanics.pair import (
     BOX_BOX,
@@ -63,18 +63,18 @@ def _apart(bodies, pair, meshes, x, r, way):
         height = abs(dot(gap, (r[b, 2], r[b, 5], r[b, 8])))
         return height > bodies[b].half[2] + size(bodies[a]) + way
     if pair.kind == BOX_GUIDE:
-        height = abs(inward(back(mat(r, b), gap), bodies[b].arc[0]))
+        height = abs(inward(back(mat(r, b), gap), bodies[b].arc[ARC_RADIUS]))
         return height > 2.0 * bodies[b].half[2] + size(bodies[a]) + way
     far = size(bodies[b])
     if pair.kind == BOX_MESH:
         far = meshes.heads[pair.mesh].reach
     elif pair.kind != BOX_BOX:
-        far = math.hypot(bodies[b].size[0], 0.5 * bodies[b].size[1])
+        far = math.hypot(bodies[b].size[RADIUS], 0.5 * bodies[b].size[WIDTH])
     if on_part(pair):
         return not roller_near(bodies, pair, meshes, x, r, way)
     own = size(bodies[a])
     if pair.kind == CYLINDER_CYLINDER:
-        own = math.hypot(bodies[a].size[0], 0.5 * bodies[a].size[1])
+        own = math.hypot(bodies[a].size[RADIUS], 0.5 * bodies[a].size[WIDTH])
     return math.sqrt(dot(gap, gap)) > own + far + way
 
 

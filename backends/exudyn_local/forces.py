@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mdlgen.backends.exudyn_local.place import place_all
+from mdlgen.backends.exudyn_local.system import EULER
 from mdlgen.mechanics.arm import (
     DAMPING,
     FORCE_0,
@@ -15,7 +16,7 @@ from mdlgen.mechanics.arm import (
 )
 from mdlgen.mechanics.bushing import bushing
 from mdlgen.mechanics.curve import curve_excess, middle_and_gap
-from mdlgen.mechanics.driven import clutch
+from mdlgen.mechanics.driven import SENSE, clutch
 from mdlgen.mechanics.frame import Frame
 from mdlgen.mechanics.pair import pair_force
 from mdlgen.mechanics.point import (
@@ -49,14 +50,19 @@ def spread(bodies, body, q, force, torque, f):
     n = bodies[body].first
     if n >= 0:
         ref = bodies[body].reference
-        e0, e1, e2, e3 = ref[3] + q[n + 3], ref[4] + q[n + 4], ref[5] + q[n + 5], ref[6] + q[n + 6]
+        e0, e1, e2, e3 = (
+            ref[EULER] + q[n + EULER],
+            ref[EULER + 1] + q[n + EULER + 1],
+            ref[EULER + 2] + q[n + EULER + 2],
+            ref[EULER + 3] + q[n + EULER + 3],
+        )
         for i in range(3):
             f[n + i] += force[i]
         a, b, c = torque
-        f[n + 3] += 2 * (-e1 * a - e2 * b - e3 * c)
-        f[n + 4] += 2 * (e0 * a + e3 * b - e2 * c)
-        f[n + 5] += 2 * (-e3 * a + e0 * b + e1 * c)
-        f[n + 6] += 2 * (e2 * a - e1 * b + e0 * c)
+        f[n + EULER] += 2 * (-e1 * a - e2 * b - e3 * c)
+        f[n + EULER + 1] += 2 * (e0 * a + e3 * b - e2 * c)
+        f[n + EULER + 2] += 2 * (-e3 * a + e0 * b + e1 * c)
+        f[n + EULER + 3] += 2 * (e2 * a - e1 * b + e0 * c)
         return
     if bodies[body].slide >= 0:
         ref = bodies[body].reference
@@ -150,8 +156,8 @@ def forces(tables, at, level, work):
                 f[n + i] += level * bodies[body].mass * gravity[i]
         if bodies[body].slide >= 0:
             slide_force(tables, body, at, f, level)
-        if bodies[body].clutch[0] != 0.0:
-            f[bodies[body].spin] += clutch(bodies[body], v[bodies[body].spin], t)[0]
+        if bodies[body].clutch[SENSE] != 0.0:
+            f[bodies[body].spin] += clutch(bodies[body], v[bodies[body].spin], t).torque
     for i in range(tables.bushings.size):
         bush_forces(tables, tables.bushings[i], q, motion, f)
     touching = 0

@@ -7,7 +7,7 @@ import numpy as np
 
 from mdlgen.backends.exudyn_local.forces import bush_forces, load_forces, pair_forces, slide_force
 from mdlgen.backends.exudyn_local.place import place_all, place_body
-from mdlgen.mechanics.driven import clutch
+from mdlgen.mechanics.driven import SENSE, clutch
 from mdlgen.program.kernel import njit
 
 # Perturbations of the difference quotients: positions and Euler parameters, velocities [SI]. A static run
@@ -40,9 +40,9 @@ def _element(tables, block_start, element, at, level, work):
                 return True
             element -= 1
     for body in range(bodies.size - 1):
-        if bodies[body].clutch[0] != 0.0:
+        if bodies[body].clutch[SENSE] != 0.0:
             if element == 0:
-                f[bodies[body].spin] += clutch(bodies[body], v[bodies[body].spin], t)[0]
+                f[bodies[body].spin] += clutch(bodies[body], v[bodies[body].spin], t).torque
                 return True
             element -= 1
     load_forces(bodies, tables.loads[element], q, motion.r, f, level)

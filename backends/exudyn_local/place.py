@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mdlgen.backends.exudyn_local.system import System
+from mdlgen.backends.exudyn_local.system import EULER, System
 from mdlgen.mechanics.arm import (
     moved,
     way_of,
@@ -32,17 +32,17 @@ def place_body(bodies, body, at, motion):
         x[body, i] = ref[i]
         u[body, i] = 0.0
         w[body, i] = 0.0
-    e0, e1, e2, e3 = ref[3], ref[4], ref[5], ref[6]
+    e0, e1, e2, e3 = ref[EULER], ref[EULER + 1], ref[EULER + 2], ref[EULER + 3]
     n = bodies[body].first
     if n >= 0:
         for i in range(3):
             x[body, i] += q[n + i]
             u[body, i] = v[n + i]
-        e0 += q[n + 3]
-        e1 += q[n + 4]
-        e2 += q[n + 5]
-        e3 += q[n + 6]
-        d0, d1, d2, d3 = v[n + 3], v[n + 4], v[n + 5], v[n + 6]
+        e0 += q[n + EULER]
+        e1 += q[n + EULER + 1]
+        e2 += q[n + EULER + 2]
+        e3 += q[n + EULER + 3]
+        d0, d1, d2, d3 = v[n + EULER], v[n + EULER + 1], v[n + EULER + 2], v[n + EULER + 3]
         w[body, 0] = 2 * (-e1 * d0 + e0 * d1 - e3 * d2 + e2 * d3)
         w[body, 1] = 2 * (-e2 * d0 + e3 * d1 + e0 * d2 - e1 * d3)
         w[body, 2] = 2 * (-e3 * d0 - e2 * d1 + e1 * d2 + e0 * d3)

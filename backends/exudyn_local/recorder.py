@@ -246,7 +246,7 @@ class Recorder:
         """Energy that is there and came from nowhere since the start [J]."""
         assert self._first is not None, "something was observed"
         kinetic, elastic, potential = energies[:3]
-        first = self._first[0] + self._first[1] + self._first[2]
+        first = self._first[KINETIC] + self._first[ELASTIC] + self._first[POTENTIAL]
         return kinetic + elastic + potential - first + self._lost - self._driven
 
     def _balance(self) -> Energy:

@@ -22,7 +22,7 @@ from mdlgen.backends.exudyn_local.shipped import PROGRAM, forces, jacobian, ledg
 from mdlgen.backends.exudyn_local.stability import falling
 from mdlgen.backends.exudyn_local.state import SEEN, TOTALS, Coordinates, Work, workspace
 from mdlgen.backends.exudyn_local.step import choose_steps, cost, given_steps
-from mdlgen.backends.exudyn_local.system import MM, MS, Pattern, System, build
+from mdlgen.backends.exudyn_local.system import EULER, MM, MS, Pattern, System, build
 from mdlgen.mechanics.arm import AXIAL, INERTIA
 from mdlgen.model.external import refuse_externals
 from mdlgen.model.sheet_pairs import refuse_searched
@@ -242,9 +242,9 @@ def _assemble(exu, model: Model, system: System, pattern: Pattern, work: Work) -
         if n >= 0:
             reference = row["reference"]
             rate = bodies.spin[body] / MS
-            e = reference[3:]
-            v[n : n + 3] = bodies.velocity[body] * MM / MS
-            v[n + 3 : n + 7] = 0.5 * np.array(
+            e = reference[EULER:]
+            v[n : n + EULER] = bodies.velocity[body] * MM / MS
+            v[n + EULER : n + 7] = 0.5 * np.array(
                 [
                     -e[1] * rate[0] - e[2] * rate[1] - e[3] * rate[2],
                     e[0] * rate[0] + e[3] * rate[1] - e[2] * rate[2],

@@ -37,6 +37,8 @@ MM, G, MS = 1e-3, 1e-3, 1e-3
 PER_MM = 1e3
 SI = Units(mm=MM, per_mm=PER_MM, g=G, ms=MS, hertz=1e3**1.5, mpa=1e6)
 
+# Where the Euler parameters are among the coordinates of a box, and in `reference`; before them its position.
+EULER = 3
 BODY = np.dtype(
     [
         ("reference", "f8", 7),  # position [m], Euler parameters
@@ -130,9 +132,9 @@ def _bodies(model: Model, moving: bool) -> tuple[np.ndarray, int]:
     table = model.bodies
     count = len(table.name)
     bodies = pack_bodies(model, BODY, SI, driven=moving)
-    bodies["reference"][:, 3] = 1.0
-    bodies["reference"][:count, :3] = table.position * MM
-    bodies["reference"][:count, 3:] = euler_parameters(table.rotation)
+    bodies["reference"][:, EULER] = 1.0
+    bodies["reference"][:count, :EULER] = table.position * MM
+    bodies["reference"][:count, EULER:] = euler_parameters(table.rotation)
     bodies["first"] = -1
     free = 0
     for sheet in model.sheets:

@@ -1,5 +1,7 @@
 """Classes of MotionSolve's Python interface that a script uses, each keyword with its kind and confidence.
 
+Those of shapes are in `reader/shapes`.
+
 SEEN: in a script that an Altair program exported, or in one that says it ran there. DOC: in Altair's help,
 `help.altair.com/2021/hwsolvers/ms/topics/solvers/ms/` and `help.altair.com/hwsolvers/motionapi/`. A keyword
 that is in neither is not here, and so in no script.
@@ -30,7 +32,8 @@ class Form(NamedTuple):
     page: str
 
 
-def _form(page: str, seen: str = "", documented: str = "", needed: str = "") -> Form:
+def form(page: str, seen: str = "", documented: str = "", needed: str = "") -> Form:
+    """A Form by the words of its keywords, `name:kind` each."""
     keywords = {
         name: Keyword(kind, confidence)
         for words, confidence in ((seen, SEEN), (documented, DOC))
@@ -40,96 +43,79 @@ def _form(page: str, seen: str = "", documented: str = "", needed: str = "") -> 
 
 
 FORMS: dict[str, Form] = {
-    "Model": _form("msolve_model.html", "label:text output:text"),
-    "Units": _form(
+    "Model": form("msolve_model.html", "label:text output:text"),
+    "Units": form(
         "units_api.htm", "force:text length:text mass:text time:text", needed="force length mass time"
     ),
-    "Accgrav": _form("msolve.model.forces.html", "igrav:number jgrav:number kgrav:number"),
-    "Integrator": _form(
+    "Accgrav": form("msolve.model.forces.html", "igrav:number jgrav:number kgrav:number"),
+    "Integrator": form(
         "integrator_api.htm",
         "type:DSTIFF error:number hinit:number hmax:number hmin:number kmax:count maxit:count "
         "dae_index:count dae_constr_tol:number",
     ),
-    "Equilibrium": _form(
+    "Equilibrium": form(
         "equilibrium_api.htm",
         "type:STATIC skip_mkeam:yes error:number maxit:count imbalance:number kinetic_energy_error:number "
         "stability:number",
     ),
-    "Output": _form("output_api.htm", "reqsave:yes req_comment_only:yes"),
-    "H3dOutput": _form("h3doutput_api.htm", "save:yes"),
-    "Part": _form(
+    "Output": form("output_api.htm", "reqsave:yes req_comment_only:yes"),
+    "H3dOutput": form("h3doutput_api.htm", "save:yes"),
+    "Part": form(
         "part_api.htm",
         "label:text ground:yes mass:number ip:six cm:Marker "
         "vx:number vy:number vz:number wx:number wy:number wz:number vm:Marker wm:Marker",
     ),
-    "Marker": _form(
+    "Marker": form(
         "marker_api.htm", "label:text part:Part qp:point zp:point xp:point", "floating:yes", needed="part"
     ),
-    "Joint": _form(
+    "Joint": form(
         "joint_api.htm",
         "label:text type:FIXED|REVOLUTE|TRANSLATIONAL i:Marker j:Marker",
         needed="type i j",
     ),
-    "Motion": _form(
+    "Motion": form(
         "motion_msapi.htm",
         "label:text dtype:VELOCITY function:text",
         "joint:Joint jtype:ROTATION",
         needed="joint jtype dtype function",
     ),
-    "Bushing": _form(
+    "Bushing": form(
         "bushing_api.htm",
         "label:text k:three c:three kt:three ct:three",
         "i:Marker j:Marker torque:three",
         needed="i j k c kt ct",
     ),
-    "SpringDamper": _form(
+    "SpringDamper": form(
         "springdamper_api.htm",
         documented="label:text type:TRANSLATION i:Marker j:Marker k:number c:number force:number "
         "length:number",
         needed="type i j",
     ),
-    "Spline": _form("spline_api.htm", "label:text x:numbers y:numbers linear_extrapolate:yes", needed="x y"),
-    "Vforce": _form(
+    "Spline": form("spline_api.htm", "label:text x:numbers y:numbers linear_extrapolate:yes", needed="x y"),
+    "Vforce": form(
         "vforce_api.htm",
         documented="label:text i:Marker jfloat:Marker rm:Marker fx:text fy:text fz:text",
         needed="i jfloat",
     ),
-    "Gforce": _form(
+    "Gforce": form(
         "gforce_api.htm",
         documented="label:text i:Marker jfloat:Marker rm:Marker fx:text fy:text fz:text "
         "tx:text ty:text tz:text",
         needed="i jfloat",
     ),
-    "Box": _form(
-        "box_msapi.htm",
-        documented="label:text cm:Marker x:number y:number z:number refinement_level:count",
-        needed="cm x y z",
-    ),
-    "Frustum": _form(
-        "frustrum_msapi.htm",
-        documented="label:text cm:Marker top:number bottom:number length:number end_caps:CLOSED "
-        "refinement_level:count",
-        needed="cm top bottom length",
-    ),
-    "Triamesh": _form(
-        "triamesh_msapi.htm",
-        documented="label:text rm:Marker nodes:triples faces:counts refinement_level:count",
-        needed="rm nodes faces",
-    ),
-    "Contact": _form(
+    "Contact": form(
         "contact_api.htm",
         documented="label:text igeom:shapes jgeom:shapes type:POISSON penalty:number "
         "restitution_coefficient:number coulomb_friction:ON|OFF mu_static:number mu_dynamic:number "
         "stiction_transition_velocity:number friction_transition_velocity:number master_surface:I|J",
         needed="igeom jgeom type penalty restitution_coefficient coulomb_friction",
     ),
-    "Request": _form(
+    "Request": form(
         "request_api.htm",
         "label:text type:EXPRESSION f2:text f3:text f4:text f6:text f7:text f8:text",
         "comment:text",
         needed="type",
     ),
 }
-SHAPES = ("Box", "Frustum", "Triamesh")
 ANALYSES = {"STATICS": (), "TRANSIENT": ("end", "dtout")}
 """What `Model.simulate` takes beside `type` and `returnResults` (SEEN)."""

@@ -114,7 +114,8 @@ def free_at(face, up, ur, high):
     """Whether the edge of the face that ends it along the axis, at the high end or the low one, is free."""
     on = ur if abs(ur) >= abs(up) else up
     bit = 1 if (on > 0.0) != high else 2
-    return face[4] & (bit << 2 if abs(ur) >= abs(up) else bit) != 0
+    _, _, _, _, free = face
+    return free & (bit << 2 if abs(ur) >= abs(up) else bit) != 0
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 
+from mdlgen.mechanics.frame import ARC_ANGLE, ARC_MIDDLE, ARC_RADIUS, RADIUS
 from mdlgen.mechanics.guide import BOTH, inward
 from mdlgen.mechanics.mesh import LOST
 from mdlgen.mechanics.pair import (
@@ -40,12 +41,12 @@ def deepest(bodies, pair):
     if kind == BOX_BOX:
         return min(bodies[a].half[2], bodies[b].half[2])
     if kind == CYLINDER_CYLINDER:
-        return min(bodies[a].size[0], bodies[b].size[0])
+        return min(bodies[a].size[RADIUS], bodies[b].size[RADIUS])
     if on_part(pair):
-        return DEEP_ROLLER * bodies[a].size[0]
+        return DEEP_ROLLER * bodies[a].size[RADIUS]
     if kind == BOX_MESH:
         return LOST
-    return 0.5 * bodies[b].size[0]
+    return 0.5 * bodies[b].size[RADIUS]
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -81,10 +82,10 @@ def closing(bodies, pair, meshes, motion, ahead):
         return abs(dot(rate, (r[b, 2], r[b, 5], r[b, 8]))) + turning
     if kind == BOX_GUIDE:
         own = back(mat(r, b), rate)
-        if bodies[b].arc[0] == 0.0:
+        if bodies[b].arc[ARC_RADIUS] == 0.0:
             return abs(own[1]) + turning
         at = back(mat(r, b), sub(vec(x, a), vec(x, b)))
-        away = max(math.sqrt(at[0] * at[0] + at[1] * at[1]), 1e-3 * bodies[b].arc[0])
+        away = max(math.sqrt(at[0] * at[0] + at[1] * at[1]), 1e-3 * bodies[b].arc[ARC_RADIUS])
         bent = ahead * (own[0] * own[0] + own[1] * own[1]) / away
         return abs(own[0] * at[0] + own[1] * at[1]) / away + bent + turning
     if kind == BOX_BOX:
@@ -113,7 +114,7 @@ def above(bodies, pair, x, r):
     at = back(mat(r, b), scale(-1.0, sub(vec(x, b), vec(x, pair.a))))
     if abs(at[2]) > bodies[b].half[1]:
         return 0
-    radius, middle, angle = bodies[b].arc[0], bodies[b].arc[1], bodies[b].arc[2]
+    radius, middle, angle = bodies[b].arc[ARC_RADIUS], bodies[b].arc[ARC_MIDDLE], bodies[b].arc[ARC_ANGLE]
     if radius == 0.0:
         if abs(at[0]) > bodies[b].half[0]:
             return 0

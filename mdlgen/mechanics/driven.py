@@ -6,13 +6,25 @@ sense that is free (1 or -1 about the axis, 0: there is none), a torque, and the
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from mdlgen.model.limits import MOST_CORNERS
 from mdlgen.model.tables import RollerPart
 from mdlgen.program.kernel import njit
 
+# Of a record's `clutch`.
+SENSE, TORQUE, CREEP = 0, 1, 2
 DRIVEN = [("corners", "i8"), ("drive", "f8", 2 * MOST_CORNERS), ("clutch", "f8", 3)]
+
+
+class Clutch(NamedTuple):
+    """What a clutch does: the torque on the roller, what that loses as the spin grows, the shaft's speed."""
+
+    torque: float
+    growth: float
+    shaft: float
 
 
 def drive(row: np.void, roller: RollerPart, time: float = 1.0, torque: float = 1.0) -> None:
@@ -60,19 +72,20 @@ def turned(body, t):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def clutch(body, spin, t):
-    """What a clutch does at a spin about the axis: (torque on the roller, what it loses as the spin grows,
-    the shaft's speed).
+    """The Clutch at a spin about the axis.
 
     With b the speed against the free sense, relative to the shaft, and s = b / creep, the torque towards
     the free sense is 2 torque s^2 / (1 + s): nothing where b <= 0, `torque` at b = creep, and in proportion
     beyond. It has a continuous slope, and its power relative to the shaft is never positive.
     """
-    sense, torque, creep = body.clutch[0], body.clutch[1], body.clutch[2]
+    sense, torque, creep = body.clutch[SENSE], body.clutch[TORQUE], body.clutch[CREEP]
     if sense == 0.0:
-        return 0.0, 0.0, 0.0
+        return Clutch(0.0, 0.0, 0.0)
     shaft = prescribed(body, t)
     s = sense * (shaft - spin) / creep
     if s <= 0.0:
-        return 0.0, 0.0, shaft
+        return Clutch(0.0, 0.0, shaft)
     more = 1.0 + s
-    return sense * 2.0 * torque * s * s / more, 2.0 * torque / creep * s * (s + 2.0) / (more * more), shaft
+    return Clutch(
+        sense * 2.0 * torque * s * s / more, 2.0 * torque / creep * s * (s + 2.0) / (more * more), shaft
+    )

@@ -27,7 +27,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from mdlgen.mechanics.frame import Vector
+from mdlgen.mechanics.frame import ARC_RADIUS, Vector
 from mdlgen.mechanics.point import Load, push
 from mdlgen.mechanics.vector import add, back, dot, local, rotate, scale, sub
 from mdlgen.program.kernel import BORROWS, njit
@@ -43,6 +43,7 @@ TAKES = 1.0 + 2.0 * SHARED
 FACES = 0.35  # cosine of the angle to an end at which a side may come to stand before it
 # Fields of a body record: its free ends as a bit mask; the radii of the edges of its upper and its lower
 # face, and 1 where friction holds what is on them (a static analysis).
+UPPER, LOWER, HOLDS = 0, 1, 2
 ENDS = [("ends", "i8"), ("edge", "f8", 3)]
 _GAUSS = 1.0 / math.sqrt(3.0)
 
@@ -113,7 +114,7 @@ def rounded(u, h, thick, edge):
     """Depth of a point that stands against an end, and its growth with u and h; 0 where it is clear."""
     if u <= 0.0 or h <= 0.0 or h >= thick:
         return 0.0, 0.0, 0.0
-    low, sign, radius = (h, 1.0, edge[0]) if h <= 0.5 * thick else (thick - h, -1.0, edge[1])
+    low, sign, radius = (h, 1.0, edge[UPPER]) if h <= 0.5 * thick else (thick - h, -1.0, edge[LOWER])
     if low >= radius:
         return u, 1.0, 0.0
     c = 1.0 - low / radius
@@ -259,7 +260,7 @@ def line(out, a, box, end, plate, b, law):
     point, away, up, along, length = end
     half, edge, thick = box.half, plate.edge, 2.0 * plate.half[2]
     gap = sub(a.x, point)
-    reach = math.sqrt(dot(half, half)) + max(edge[0], edge[1])
+    reach = math.sqrt(dot(half, half)) + max(edge[UPPER], edge[LOWER])
     if abs(dot(gap, away)) > reach or abs(dot(gap, along)) > length + reach:
         return
     height = dot(gap, up)
@@ -267,7 +268,7 @@ def line(out, a, box, end, plate, b, law):
         return
     inner = add(point, scale(-0.5 * thick, add(up, away)))
     for lower in range(2):
-        normal, radius = (up, edge[0]) if lower == 0 else (scale(-1.0, up), edge[1])
+        normal, radius = (up, edge[UPPER]) if lower == 0 else (scale(-1.0, up), edge[LOWER])
         corner = point if lower == 0 else sub(point, scale(thick, up))
         axis = sub(corner, scale(radius, add(normal, away)))
         seen = End(point, away, normal, along, length)
@@ -287,7 +288,7 @@ def line(out, a, box, end, plate, b, law):
                     best, q, sign = depth, i, way
             if q < 0:
                 continue
-        _pressed(out, a, box, (q, sign), (axis, radius), seen, b, law, edge[2] * law.mu_static)
+        _pressed(out, a, box, (q, sign), (axis, radius), seen, b, law, edge[HOLDS] * law.mu_static)
 
 
 @njit(cache=True, error_model="numpy")
@@ -305,7 +306,7 @@ def stands(a, box, b, plate):
         faces = scale(sign, (a.r[p], a.r[3 + p], a.r[6 + p]))
         which, most = known - 1, FACES
         if known == 0:
-            for i in range(4 if plate.shape[0] == 0.0 else 2):
+            for i in range(4 if plate.shape[ARC_RADIUS] == 0.0 else 2):
                 if ends & (1 << i) != 0:
                     end = end_of(i, b, plate)
                     if -dot(faces, end.out) > most:

@@ -18,6 +18,11 @@ Floats = Any  # an array of float64; laws do not ask which
 # Columns of the law of a pair record: numbers as of Law, and the coefficient of rolling resistance.
 LAW_BETA, LAW_STATIC, LAW_DYNAMIC, LAW_STICTION, LAW_SLIDING, LAW_SMOOTHING, LAW_ROLLING, LAW = range(8)
 
+# Of what a body record has of a cylinder (`size`), and of an arc (`arc`, `Plate.shape`): its radius, 0 of a
+# straight guide, the angle of its middle, and half of the angle that it goes over.
+RADIUS, WIDTH = 0, 1
+ARC_RADIUS, ARC_MIDDLE, ARC_ANGLE = 0, 1, 2
+
 
 class Motion(NamedTuple):
     """All bodies at one state: places (n, 3) [mm], rotations (n, 9), velocities (n, 3) [mm/ms] and angular
@@ -126,7 +131,7 @@ def box_of(body):
 @njit(cache=True, error_model="numpy", forceinline=True)
 def cylinder_of(body):
     """Cylinder of a body record."""
-    return Cylinder(three(body.axis), body.size[0], body.size[1])
+    return Cylinder(three(body.axis), body.size[RADIUS], body.size[WIDTH])
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)

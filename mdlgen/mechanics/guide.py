@@ -19,8 +19,8 @@ import math
 import numpy as np
 
 from mdlgen.mechanics.contact import box_sector, clip, face_corners
-from mdlgen.mechanics.edge import held, leaning
-from mdlgen.mechanics.frame import Cylinder, Sector, scaled
+from mdlgen.mechanics.edge import HOLDS, UPPER, held, leaning
+from mdlgen.mechanics.frame import ARC_ANGLE, ARC_MIDDLE, ARC_RADIUS, Cylinder, Sector, scaled
 from mdlgen.mechanics.plate import area_of, box_ends, box_flat, facing
 from mdlgen.mechanics.point import Load, push
 from mdlgen.mechanics.vector import add, back, dot, rotate, scale, sub
@@ -56,7 +56,7 @@ def _covered(points, shape, half):
 def _beyond(i, shape):
     """Direction out of the end i of an arc, guide's axes."""
     sign = 1.0 if i == 0 else -1.0
-    at = shape[1] + sign * shape[2]
+    at = shape[ARC_MIDDLE] + sign * shape[ARC_ANGLE]
     return (-sign * math.sin(at), sign * math.cos(at), 0.0)
 
 
@@ -70,7 +70,7 @@ def box_guide(out, a, box, b, plate, law):
     zero = (0.0, 0.0, 0.0)
     half, half_b, shape, top, ends = box.half, plate.half, plate.shape, plate.top, plate.ends
     ra, rb = a.r, b.r
-    radius, thick = shape[0], 2.0 * half_b[2]
+    radius, thick = shape[ARC_RADIUS], 2.0 * half_b[2]
     if radius == 0.0:
         box_flat(out, a, box, b, plate, law.shared, law)
         return
@@ -96,11 +96,11 @@ def box_guide(out, a, box, b, plate, law):
         for i in range(2):
             if ends & (1 << i) != 0:
                 part -= leaning(dot(tilted, _beyond(i, shape)))
-        to = rotate(rb, (math.cos(shape[1]), math.sin(shape[1]), 0.0))
+        to = rotate(rb, (math.cos(shape[ARC_MIDDLE]), math.sin(shape[ARC_MIDDLE]), 0.0))
         if part > 0.0:
             bend = Cylinder((rb[2], rb[5], rb[8]), radius - top + thick, 2.0 * half_b[1])
             own = scaled(law, part, 1.0, law.beta)
-            box_sector(out, a, box, b, bend, Sector(to, shape[2], zero, False), own)
+            box_sector(out, a, box, b, bend, Sector(to, shape[ARC_ANGLE], zero, False), own)
     else:
         _hollow(out, a, half, b, plate, look, tilted, law)
     if ends != 0:
@@ -121,7 +121,7 @@ def _hollow(out, a, half, b, plate, look, tilted, law):
     share = law.k / count * (area_of(points, count) / area if law.shared else 1.0)
     for i in range(count):
         point = (points[i, 0], points[i, 1], points[i, 2])
-        depth = top - inward(point, shape[0])
+        depth = top - inward(point, shape[ARC_RADIUS])
         if depth <= 0.0 or depth > 2.0 * half_b[2]:
             continue
         away = math.sqrt(point[0] * point[0] + point[1] * point[1])
@@ -132,7 +132,7 @@ def _hollow(out, a, half, b, plate, look, tilted, law):
                 continue
             beyond = _beyond(j, shape)
             lean = dot(tilted, beyond)
-            part = 2.0 - max(-dot(point, beyond), 0.0) / max(edge[0], 1e-300)
+            part = 2.0 - max(-dot(point, beyond), 0.0) / max(edge[UPPER], 1e-300)
             if lean > 0.0 and part > 0.0:
                 weight *= 1.0 - leaning(lean) * min(part, 1.0)
                 part = max(part - 1.0, 0.0)
@@ -142,7 +142,7 @@ def _hollow(out, a, half, b, plate, look, tilted, law):
         spring = weight * depth * math.sqrt(depth)
         if spring <= 0.0:
             continue
-        way = held(way, normal, edge[2] * law.mu_static)
+        way = held(way, normal, edge[HOLDS] * law.mu_static)
         where = add(b.x, rotate(rb, point))
         energy = 0.4 * spring * depth
         push(out, where, rotate(rb, way), Load(spring, depth, energy), a, b, law)

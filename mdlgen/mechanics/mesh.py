@@ -27,7 +27,19 @@ import math
 
 import numpy as np
 
-from mdlgen.mechanics.mesh_pressure import gather
+from mdlgen.mechanics.mesh_pressure import (
+    DEEPEST,
+    ENERGY,
+    FIRST_U,
+    FIRST_V,
+    FORCE,
+    IN_ALL,
+    SECOND_U,
+    SECOND_V,
+    SUMS,
+    TOO_DEEP,
+    gather,
+)
 from mdlgen.mechanics.mesh_side import Placed, meet_sides
 from mdlgen.mechanics.point import PRESSING, Load, Nip, passing, push, push_in_nip
 from mdlgen.mechanics.tree import overlaps
@@ -53,12 +65,14 @@ BLOCK = 15  # all four sides of a box are outer ones
 
 
 @njit(cache=True, error_model="numpy")
-def _nip(sums, room, head, meshes, placed, half, sign, exposed, stiff):
+def _nip(both, room, head, meshes, placed, half, sign, exposed, stiff):
     """What presses on a broad face that goes on over the sides that are not exposed: its force along the
-    file's axes and its middle in the face (fx, fy, fz, u, v). `sums` has what presses on the box itself."""
-    u, v = sums[0, 4] / sums[0, 3], sums[0, 5] / sums[0, 3]
-    du = math.sqrt(max(sums[0, 6] / sums[0, 3] - u * u, 0.0))
-    dv = math.sqrt(max(sums[0, 7] / sums[0, 3] - v * v, 0.0))
+    file's axes and its middle in the face (force, u, v). The first of `both` sums has what presses on the
+    box itself, the second is room."""
+    own, whole = both[0], both[1]
+    u, v = own[FIRST_U] / own[IN_ALL], own[FIRST_V] / own[IN_ALL]
+    du = math.sqrt(max(own[SECOND_U] / own[IN_ALL] - u * u, 0.0))
+    dv = math.sqrt(max(own[SECOND_V] / own[IN_ALL] - v * v, 0.0))
     more = math.sqrt(2.0 * head.reach * head.most)  # half of what the deepest contact with a round one spans
     grown = (
         more if exposed & 1 == 0 and -u + _SPAN * du > half[0] else 0.0,
@@ -67,14 +81,14 @@ def _nip(sums, room, head, meshes, placed, half, sign, exposed, stiff):
         more if exposed & 8 == 0 and v + _SPAN * dv > half[1] else 0.0,
     )
     if grown[0] + grown[1] + grown[2] + grown[3] == 0.0:
-        return sums[0, 0], sums[0, 1], sums[0, 2], u, v
+        return three(own[FORCE:]), u, v
     aside = (0.5 * (grown[1] - grown[0]), 0.5 * (grown[3] - grown[2]), 0.0)
     wide = (half[0] + 0.5 * (grown[0] + grown[1]), half[1] + 0.5 * (grown[2] + grown[3]), half[2])
-    sums[1] = 0.0
+    whole[:] = 0.0
     moved = Placed(add(placed.middle, rotate(placed.axes, aside)), placed.axes, placed.frame)
-    gather(sums[1], room, head, meshes, moved, wide, 2, sign, stiff)
-    u, v = sums[1, 4] / sums[1, 3] + aside[0], sums[1, 5] / sums[1, 3] + aside[1]
-    return sums[1, 0], sums[1, 1], sums[1, 2], u, v
+    gather(whole, room, head, meshes, moved, wide, 2, sign, stiff)
+    u, v = whole[FIRST_U] / whole[IN_ALL] + aside[0], whole[FIRST_V] / whole[IN_ALL] + aside[1]
+    return three(whole[FORCE:]), u, v
 
 
 @njit(cache=True, error_model="numpy", **OWNS)
@@ -90,8 +104,8 @@ def box_mesh(out, a, box, b, axis, head, meshes, law):
     placed, over = Placed(middle, axes, frame), 1.0
     if exposed != 0 and exposed != BLOCK:
         over = meet_sides(out, a, box, placed, head, meshes, b, law)
-    both, room = np.zeros((2, 11)), np.empty((2, 12, 3))
-    sums = both[0]
+    both, room = np.zeros((2, SUMS)), np.empty((2, 12, 3))
+    sums = both[0]  # of the box itself
     lost, spot, out_of = 0.0, a.x, (0.0, 0.0, 0.0)
     for face in range(6 if exposed == BLOCK else 2):
         q, sign = (2 + face // 2) % 3, 1.0 if face % 2 == 0 else -1.0
@@ -99,21 +113,22 @@ def box_mesh(out, a, box, b, axis, head, meshes, law):
         stiff = law.k / head.basis if head.basis > 0.0 else law.k / (4.0 * half[p] * half[r])
         sums[:] = 0.0
         gather(sums, room, head, meshes, placed, half, q, sign, stiff)
-        force = math.sqrt(sums[0] * sums[0] + sums[1] * sums[1] + sums[2] * sums[2])
-        if sums[10] > 0.0 and (lost == 0.0 or sums[10] < lost):
-            lost, spot = sums[10], add(a.x, rotate(ra, local(p, r, q, 0.0, 0.0, sign * half[q])))
+        fx, fy, fz = three(sums[FORCE:])
+        force = math.sqrt(fx * fx + fy * fy + fz * fz)
+        if sums[TOO_DEEP] > 0.0 and (lost == 0.0 or sums[TOO_DEEP] < lost):
+            lost, spot = sums[TOO_DEEP], add(a.x, rotate(ra, local(p, r, q, 0.0, 0.0, sign * half[q])))
             out_of = rotate(ra, local(p, r, q, 0.0, 0.0, -sign))
         if force <= 0.0 or over <= 0.0:
             continue
-        normal = rotate(frame, (sums[0] / force, sums[1] / force, sums[2] / force))
-        u, v = sums[4] / sums[3], sums[5] / sums[3]
-        du = math.sqrt(max(sums[6] / sums[3] - u * u, 0.0))
-        dv = math.sqrt(max(sums[7] / sums[3] - v * v, 0.0))
+        normal = rotate(frame, (fx / force, fy / force, fz / force))
+        u, v = sums[FIRST_U] / sums[IN_ALL], sums[FIRST_V] / sums[IN_ALL]
+        du = math.sqrt(max(sums[SECOND_U] / sums[IN_ALL] - u * u, 0.0))
+        dv = math.sqrt(max(sums[SECOND_V] / sums[IN_ALL] - v * v, 0.0))
         line, way, pressed = a.x, normal, 0.0
         middle = add(a.x, rotate(ra, local(p, r, q, u, v, sign * half[q])))
         if head.basis > 0.0:
             sides = exposed if q == 2 else BLOCK
-            fx, fy, fz, line_u, line_v = _nip(both, room, head, meshes, placed, half, sign, sides, stiff)
+            (fx, fy, fz), line_u, line_v = _nip(both, room, head, meshes, placed, half, sign, sides, stiff)
             line = add(a.x, rotate(ra, local(p, r, q, line_u, line_v, sign * half[q])))
             way = rotate(frame, scale(1.0 / math.sqrt(fx * fx + fy * fy + fz * fz), (fx, fy, fz)))
             across = cross(axis, way)
@@ -121,21 +136,21 @@ def box_mesh(out, a, box, b, axis, head, meshes, law):
             # a parabola of pressure with the deviation s along the way is 2 sqrt(5) s long
             wide = math.sqrt(5.0 * ((du * seen[p]) ** 2 + (dv * seen[r]) ** 2))
             if wide > 0.0:
-                pressed = passing(line, across, 2.0 * sums[9] / wide, a, b)
+                pressed = passing(line, across, 2.0 * sums[DEEPEST] / wide, a, b)
         for corner in range(4):
             at_u = u + (du if corner % 2 == 0 else -du)
             at_v = v + (dv if corner < 2 else -dv)
             point = add(a.x, rotate(ra, local(p, r, q, at_u, at_v, sign * half[q])))
-            spring, energy = 0.25 * over * force, 0.25 * over * sums[8]
+            spring, energy = 0.25 * over * force, 0.25 * over * sums[ENERGY]
             if head.basis > 0.0:
                 under = add(line, scale(dot(sub(point, line), axis), axis))
                 own = add(middle, scale(dot(sub(point, middle), axis), axis))
                 # on the mesh's own surface, where that is deepest: see mechanics.point
-                point = add(point, scale(sums[9] / dot(normal, way), normal))
+                point = add(point, scale(sums[DEEPEST] / dot(normal, way), normal))
                 nip = Nip(under, own, way, pressed)
-                push_in_nip(out, point, normal, nip, Load(spring, sums[9], energy), a, b, law)
+                push_in_nip(out, point, normal, nip, Load(spring, sums[DEEPEST], energy), a, b, law)
             else:
-                push(out, point, normal, Load(spring, sums[9], energy), a, b, law)
+                push(out, point, normal, Load(spring, sums[DEEPEST], energy), a, b, law)
     if lost > 0.0 and out[PRESSING] == 0.0:  # what is as near to the other side is in contact there
         push(out, spot, out_of, Load(lost, math.inf, 0.0), a, b, law)
 

@@ -9,11 +9,15 @@ from typing import NamedTuple
 from mdlgen.mechanics.frame import Vector
 from mdlgen.mechanics.mesh_side import ramp
 from mdlgen.mechanics.mesh_tables import BEYOND
-from mdlgen.mechanics.tree import AFTER, AREA, COUNT, FIRST, LEAST, MOST, THICK, span
+from mdlgen.mechanics.tree import AFTER, AREA, COUNT, FIRST, LEAST, MOST, NORMAL, THICK, span
 from mdlgen.mechanics.vector import dot, scale
 from mdlgen.program.kernel import njit
 
 STEEP, GENTLE = 0.4, 0.6  # cosines of the angles between which the law of broad faces ends
+# Columns of what presses on a face: its force along the file's axes (3) and in all; moments of that in the
+# face, of first and of second order; energy; greatest depth; what would be the force of what is too deep.
+FORCE, IN_ALL, FIRST_U, FIRST_V, SECOND_U, SECOND_V = 0, 3, 4, 5, 6, 7
+ENERGY, DEEPEST, TOO_DEEP, SUMS = 8, 9, 10, 11
 
 
 class Face(NamedTuple):
@@ -86,14 +90,14 @@ def _press(sums, area, u, v, depth, thick, stiff, linear):
         return 0.0
     force = area * stiff * depth * (1.0 if linear else math.sqrt(depth))
     if depth > thick:
-        sums[10] += force
+        sums[TOO_DEEP] += force
         return 0.0
-    sums[4] += force * u
-    sums[5] += force * v
-    sums[6] += force * u * u
-    sums[7] += force * v * v
-    sums[8] += force * depth * (0.5 if linear else 0.4)
-    sums[9] = max(sums[9], depth)
+    sums[FIRST_U] += force * u
+    sums[FIRST_V] += force * v
+    sums[SECOND_U] += force * u * u
+    sums[SECOND_V] += force * v * v
+    sums[ENERGY] += force * depth * (0.5 if linear else 0.4)
+    sums[DEEPEST] = max(sums[DEEPEST], depth)
     return force
 
 
@@ -116,12 +120,12 @@ def _press_linear(sums, area, us, vs, zs, thick, stiff):
     uu, vv = u0 * u0 + u1 * u1 + u2 * u2, v0 * v0 + v1 * v1 + v2 * v2
     zuu, zvv = z0 * u0 * u0 + z1 * u1 * u1 + z2 * u2 * u2, z0 * v0 * v0 + z1 * v1 * v1 + z2 * v2 * v2
     part = area * stiff
-    sums[4] += part / 12.0 * (z * u + zu)
-    sums[5] += part / 12.0 * (z * v + zv)
-    sums[6] += part / 60.0 * (z * (u * u + uu) + 2.0 * (u * zu + zuu))
-    sums[7] += part / 60.0 * (z * (v * v + vv) + 2.0 * (v * zv + zvv))
-    sums[8] += part / 24.0 * (z * z + z0 * z0 + z1 * z1 + z2 * z2)
-    sums[9] = max(sums[9], deepest)
+    sums[FIRST_U] += part / 12.0 * (z * u + zu)
+    sums[FIRST_V] += part / 12.0 * (z * v + zv)
+    sums[SECOND_U] += part / 60.0 * (z * (u * u + uu) + 2.0 * (u * zu + zuu))
+    sums[SECOND_V] += part / 60.0 * (z * (v * v + vv) + 2.0 * (v * zv + zvv))
+    sums[ENERGY] += part / 24.0 * (z * z + z0 * z0 + z1 * z1 + z2 * z2)
+    sums[DEEPEST] = max(sums[DEEPEST], deepest)
     return part / 3.0 * z
 
 
@@ -169,7 +173,9 @@ def _piece(sums, points, count, scale, thick, stiff, linear, middles):
 def _element(sums, room, triangles, t, face):
     """Adds what one triangle does to a Face."""
     way, along, across, where, hp, hr, stiff, linear, middles = face
-    cosine = -(way[0] * triangles[t, 9] + way[1] * triangles[t, 10] + way[2] * triangles[t, 11])
+    cosine = -(
+        way[0] * triangles[t, NORMAL] + way[1] * triangles[t, NORMAL + 1] + way[2] * triangles[t, NORMAL + 2]
+    )
     if cosine <= STEEP:
         return
     z0 = where[0] - (way[0] * triangles[t, 0] + way[1] * triangles[t, 1] + way[2] * triangles[t, 2])
@@ -206,17 +212,15 @@ def _element(sums, room, triangles, t, face):
     else:
         which, count = _over(room, (u0, u1, u2), (v0, v1, v2), (z0, z1, z2), hp, hr)
         force = _piece(sums, room[which], count, cosine, thick, stiff, linear, middles)
-    sums[0] += force * triangles[t, 9]
-    sums[1] += force * triangles[t, 10]
-    sums[2] += force * triangles[t, 11]
-    sums[3] += force
+    sums[FORCE] += force * triangles[t, NORMAL]
+    sums[FORCE + 1] += force * triangles[t, NORMAL + 1]
+    sums[FORCE + 2] += force * triangles[t, NORMAL + 2]
+    sums[IN_ALL] += force
 
 
 @njit(cache=True, error_model="numpy")
 def gather(sums, room, head, meshes, placed, half, q, sign, stiff):
-    """Adds up what presses on the face q (on the side `sign`) of a box: force along the file's axes (0-2) and
-    in all (3), moments in the face of first (4-5) and second order (6-7), energy (8), greatest depth (9), and
-    what would be the force of what is too deep (10)."""
+    """Adds up what presses on the face q (on the side `sign`) of a box, into its sums."""
     bounds, links, triangles = meshes.bounds, meshes.links, meshes.triangles
     middle, axes = placed.middle, placed.axes
     p, r = (q + 1) % 3, (q + 2) % 3

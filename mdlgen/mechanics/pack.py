@@ -57,9 +57,9 @@ def pack_bodies(model: Model, layout: np.dtype, units: Units = OWN, driven: bool
     for roller in model.rollers:
         row = bodies[roller.body]
         row["axis"] = roller.axis
-        row["press"][AXIAL] = (roller.inertia_axial + roller.carried[1]) * g * mm**2
+        row["press"][AXIAL] = roller.loaded_inertia * g * mm**2
         if roller.press is not None:
-            _press(row, roller.press, roller.mass + roller.carried[0] + roller.press.carrier_mass, units)
+            _press(row, roller.press, roller.loaded_mass + roller.press.carrier_mass, units)
         if driven:
             drive(row, roller, units.ms, mm)
         rim(row, roller, mm)

@@ -8,7 +8,9 @@ from mdlgen.mechanics.contact import box_cylinder, cylinder_cylinder
 from mdlgen.mechanics.edge import stands
 from mdlgen.mechanics.facing import box_box
 from mdlgen.mechanics.frame import (
+    ARC_RADIUS,
     LAW_ROLLING,
+    RADIUS,
     Frame,
     Plate,
     box_of,
@@ -102,18 +104,18 @@ def _rolling(bodies, pair, meshes, xa, xb, rb):
     0 where none of them is a roller."""
     one, two = bodies[pair.a], bodies[pair.b]
     if pair.kind == CYLINDER_CYLINDER:
-        return three(two.axis), 1.0 / one.size[0] + 1.0 / two.size[0]
+        return three(two.axis), 1.0 / one.size[RADIUS] + 1.0 / two.size[RADIUS]
     if pair.kind == CYLINDER_PLANE or pair.kind == CYLINDER_MESH:
-        return three(one.axis), 1.0 / one.size[0]
+        return three(one.axis), 1.0 / one.size[RADIUS]
     if pair.kind == CYLINDER_GUIDE:
-        curved, arc = 1.0 / one.size[0], two.arc[0]
+        curved, arc = 1.0 / one.size[RADIUS], two.arc[ARC_RADIUS]
         if arc > 0.0:
             at = back(rb, sub(xa, xb))
             hollow = at[0] * at[0] + at[1] * at[1] < arc * arc
             curved += -1.0 / arc if hollow else 1.0 / arc
         return three(one.axis), curved
     rolls = pair.kind == BOX_CYLINDER or (pair.kind == BOX_MESH and meshes.heads[pair.mesh].basis > 0.0)
-    return three(two.axis), 1.0 / two.size[0] if rolls else 0.0
+    return three(two.axis), 1.0 / two.size[RADIUS] if rolls else 0.0
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -181,7 +183,7 @@ def remember(bodies, pairs, motion):
         if kind == BOX_PLANE:
             two = Frame(two.x, as_guide(two.r), two.v, two.w)
             plate = plane_of(bodies[b], pairs[p].beside)
-        if plate.shape[0] == 0.0:
+        if plate.shape[ARC_RADIUS] == 0.0:
             at, half, size = back(two.r, sub(one.x, two.x)), three(bodies[a].half), plate.half
             reach = math.sqrt(dot(half, half))
             if at[1] > plate.top + reach or at[1] < plate.top - 2.0 * size[2] - reach:

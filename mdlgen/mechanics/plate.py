@@ -13,8 +13,8 @@ import math
 import numpy as np
 
 from mdlgen.mechanics.contact import clip, face_corner, face_corners, looking
-from mdlgen.mechanics.edge import end_of, held, leaning, line, stub
-from mdlgen.mechanics.frame import Frame
+from mdlgen.mechanics.edge import HOLDS, LOWER, UPPER, end_of, held, leaning, line, stub
+from mdlgen.mechanics.frame import ARC_RADIUS, Frame
 from mdlgen.mechanics.point import Load, push
 from mdlgen.mechanics.vector import add, back, cross, dot, rotate, scale, sub, vec
 from mdlgen.program.kernel import BORROWS, OWNS, njit
@@ -56,7 +56,7 @@ def box_ends(out, a, box, b, plate, law):
                 sign = 1.0 if side % 2 == 1 else -1.0
                 stub(out, a, box.half, side // 2, sign, end_of(known - 1, b, plate), plate, b, law)
         return
-    for i in range(4 if plate.shape[0] == 0.0 else 2):
+    for i in range(4 if plate.shape[ARC_RADIUS] == 0.0 else 2):
         if plate.ends & (1 << i) != 0:
             line(out, a, box, end_of(i, b, plate), plate, b, law)
 
@@ -77,7 +77,7 @@ def box_flat(out, a, box, b, plate, covered, law):
         return
     if at[1] > top + reach or at[1] < bottom - reach:
         return
-    blunt = 2.0 * max(edge[0], edge[1])
+    blunt = 2.0 * max(edge[UPPER], edge[LOWER])
     inside = abs(at[0]) + reach <= half_b[0] - blunt and abs(at[2]) + reach <= half_b[1] - blunt
     if plate.beside != 0 and not inside:
         box_ends(out, a, box, b, plate, law)
@@ -92,7 +92,7 @@ def box_flat(out, a, box, b, plate, covered, law):
     sign = 1.0 if at[1] >= near[1] else -1.0
     if abs(upright[1]) > 0.3:
         sign = 1.0 if dot(upright, sub(near, at)) * upright[1] < 0.0 else -1.0
-    normal, radius = (0.0, sign, 0.0), edge[0] if sign > 0.0 else edge[1]
+    normal, radius = (0.0, sign, 0.0), edge[UPPER] if sign > 0.0 else edge[LOWER]
     look = back(ra, rotate(rb, normal))
     if inside:
         for corner in range(4):
@@ -126,7 +126,7 @@ def box_flat(out, a, box, b, plate, covered, law):
             if ends != 0:
                 weight, way = _near_end(points[i], half_b, ends, radius, inward, normal, share)
                 depth *= sign * way[1]
-                way = held(way, normal, edge[2] * law.mu_static)
+                way = held(way, normal, edge[HOLDS] * law.mu_static)
             spring = weight * depth * math.sqrt(depth)
             if spring <= 0.0:
                 continue

@@ -18,7 +18,7 @@ import math
 import numpy as np
 
 from mdlgen.mechanics.contact import WHOLE, box_sector, cylinder_cylinder
-from mdlgen.mechanics.frame import Cylinder, Sector, scaled
+from mdlgen.mechanics.frame import RADIUS, WIDTH, Cylinder, Sector, scaled
 from mdlgen.mechanics.laws import damping_share
 from mdlgen.mechanics.point import DEPTH, FORCE_A, FORCE_B, STORED, TORQUE_A, TORQUE_B
 from mdlgen.mechanics.vector import back, cross, dot, rotate, scale, sub, three
@@ -26,7 +26,8 @@ from mdlgen.model.rims import MOST_PIECES, TURN, pieces
 from mdlgen.model.tables import RollerPart
 from mdlgen.program.kernel import njit
 
-PIECE = 6
+# Columns of a piece, as above.
+_BEGIN, _RADIUS, _EDGE, _STIFFNESS, _FRICTION, _DAMPING, PIECE = 0, 1, 2, 3, 4, 5, 6
 RIM = [("rims", "i8"), ("blend", "f8"), ("rim", "f8", PIECE * MOST_PIECES)]
 
 
@@ -55,16 +56,16 @@ def rim(row: np.void, roller: RollerPart, length: float = 1.0) -> None:
 def _piece(body, i, angle, beta):
     """Of one piece, at an angle: (h, h', stiffness, friction, share of damping)."""
     at = PIECE * i
-    radius, edge, own = body.rim[at + 1], body.rim[at + 2], body.rim[at + 5]
+    radius, edge, own = body.rim[at + _RADIUS], body.rim[at + _EDGE], body.rim[at + _DAMPING]
     damping = own if own >= 0.0 else beta
     if math.isnan(edge):
-        return radius, 0.0, body.rim[at + 3], body.rim[at + 4], damping
+        return radius, 0.0, body.rim[at + _STIFFNESS], body.rim[at + _FRICTION], damping
     away = angle - edge
     return (
         radius * math.cos(away),
         -radius * math.sin(away),
-        body.rim[at + 3],
-        body.rim[at + 4],
+        body.rim[at + _STIFFNESS],
+        body.rim[at + _FRICTION],
         damping,
     )
 
@@ -130,7 +131,7 @@ def box_rim(out, a, box, b, body, law):
     face = rotate(a.r, _facing(l0, al, box.half, box.exposed))
     h, lever, stiff, rough, growth, damping = profile(body, _angle(b.r, face), law.beta)
     aside = scale(lever, cross(axis, face))
-    roller, own = Cylinder(axis, h, body.size[1]), scaled(law, stiff, rough, damping)
+    roller, own = Cylinder(axis, h, body.size[WIDTH]), scaled(law, stiff, rough, damping)
     box_sector(out, a, box, b, roller, Sector(axis, WHOLE, aside, True), own)
     # a stiffness that grows with the angle turns the roller on, and the box back
     torque = out[STORED] * growth / stiff
@@ -143,7 +144,7 @@ def box_rim(out, a, box, b, body, law):
 def _towards(body, r, way, beta):
     """What `profile` has of a roller along a direction; a round one has its radius, and factors of 1."""
     if body.rims == 0:
-        return body.size[0], 0.0, 1.0, 1.0, 0.0, beta
+        return body.size[RADIUS], 0.0, 1.0, 1.0, 0.0, beta
     return profile(body, _angle(r, way), beta)
 
 
@@ -163,7 +164,7 @@ def rim_rim(out, a, one, b, two, law):
     h1, lever1, stiff1, rough1, growth1, beta1 = _towards(one, a.r, way, law.beta)
     h2, lever2, stiff2, rough2, growth2, beta2 = _towards(two, b.r, scale(-1.0, way), law.beta)
     own = scaled(law, stiff1 * stiff2, rough1 * rough2, beta1 if one.rims > 0 else beta2)
-    rollers = Cylinder(axis, h1, one.size[1]), Cylinder(other, h2, two.size[1])
+    rollers = Cylinder(axis, h1, one.size[WIDTH]), Cylinder(other, h2, two.size[WIDTH])
     cylinder_cylinder(out, a, rollers[0], b, rollers[1], own)
     if out[DEPTH] <= 0.0:
         return

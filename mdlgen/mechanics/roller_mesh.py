@@ -20,6 +20,7 @@ import math
 
 import numpy as np
 
+from mdlgen.mechanics.frame import RADIUS, WIDTH
 from mdlgen.mechanics.point import Load, push
 from mdlgen.mechanics.tree import AFTER, COUNT, FIRST, HIGH, LOW, NORMAL, overlaps, span
 from mdlgen.mechanics.vector import add, back, cross, dot, matmul, nine, rotate, scale, sub, three
@@ -28,9 +29,9 @@ from mdlgen.program.kernel import OWNS, njit
 SLICES = 8
 MOST_PIECES = 512  # of one slice; what is more counts to the patch of the last
 _JOINED = 1e-7  # of the radius: ends of pieces that are one
-_PIECE = (
-    11  # numbers of a piece: its ends (4), both integrals, those of zeta and its square times place, patch
-)
+# Columns of a piece: places where it begins and ends (2 each); the integrals of zeta and of its square; those
+# of place (2), and of zeta times place (2); its patch.
+_BEGIN, _END, _ZETA, _SQUARE, _PLACE, _MOMENT, _PATCH, _PIECE = 0, 2, 4, 5, 6, 8, 10, 11
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -58,21 +59,21 @@ def _piece(piece, x0, y0, x1, y1, radius):
     first, last = max(0.0, along - reach), min(length, along + reach)
     if last <= first:
         return False
-    piece[0], piece[1] = x0 + first * dx, y0 + first * dy
-    piece[2], piece[3] = x0 + last * dx, y0 + last * dy
-    for i in range(4, _PIECE):
+    piece[_BEGIN], piece[_BEGIN + 1] = x0 + first * dx, y0 + first * dy
+    piece[_END], piece[_END + 1] = x0 + last * dx, y0 + last * dy
+    for i in range(_ZETA, _PIECE):
         piece[i] = 0.0
     for k in range(3):  # Gauss: exact for the products of two parabolas
         s = 0.5 * (first + last) + (k - 1) * 0.5 * math.sqrt(0.6) * (last - first)
         weight = (4.0 if k == 1 else 2.5) / 9.0 * (last - first)
         x, y = x0 + s * dx, y0 + s * dy
         zeta = 0.5 * (radius * radius - x * x - y * y) / radius
-        piece[4] += weight * zeta
-        piece[5] += weight * zeta * zeta
-        piece[6] += weight * x
-        piece[7] += weight * y
-        piece[8] += weight * zeta * x
-        piece[9] += weight * zeta * y
+        piece[_ZETA] += weight * zeta
+        piece[_SQUARE] += weight * zeta * zeta
+        piece[_PLACE] += weight * x
+        piece[_PLACE + 1] += weight * y
+        piece[_MOMENT] += weight * zeta * x
+        piece[_MOMENT + 1] += weight * zeta * y
     return True
 
 
@@ -110,10 +111,10 @@ def _gather(pieces, meshes, head, at, axis, one, two, radius):
             if not _piece(room, dot(q1, one), dot(q1, two), dot(q2, one), dot(q2, two), radius):
                 continue
             if found < MOST_PIECES:
-                room[10] = found
+                room[_PATCH] = found
                 found += 1
                 continue
-            for i in range(4, 10):
+            for i in range(_ZETA, _PATCH):
                 pieces[found - 1, i] += room[i]
         n += 1
     return found
@@ -125,18 +126,18 @@ def _join(pieces, found, radius):
     near = _JOINED * radius
     for i in range(found):
         for j in range(i):
-            if pieces[i, 10] == pieces[j, 10]:
+            if pieces[i, _PATCH] == pieces[j, _PATCH]:
                 continue
             meets = False
-            for a in range(0, 4, 2):
-                for b in range(0, 4, 2):
+            for a in (_BEGIN, _END):
+                for b in (_BEGIN, _END):
                     gap = abs(pieces[i, a] - pieces[j, b]) + abs(pieces[i, a + 1] - pieces[j, b + 1])
                     meets = meets or gap <= near
             if meets:
-                old, new = pieces[i, 10], pieces[j, 10]
+                old, new = pieces[i, _PATCH], pieces[j, _PATCH]
                 for k in range(i + 1):
-                    if pieces[k, 10] == old:
-                        pieces[k, 10] = new
+                    if pieces[k, _PATCH] == old:
+                        pieces[k, _PATCH] = new
 
 
 @njit(cache=True, error_model="numpy", **OWNS)
@@ -146,8 +147,8 @@ def roller_mesh(out, body, a, b, head, meshes, law):
     place = add(b.x, rotate(b.r, three(head.place)))
     axis, center = back(frame, three(body.axis)), back(frame, sub(a.x, place))
     one, two = _frame(axis)
-    radius, width = body.size[0], body.size[1]
-    pieces, sums = np.empty((MOST_PIECES + 1, _PIECE)), np.empty(6)
+    radius, width = body.size[RADIUS], body.size[WIDTH]
+    pieces, sums = np.empty((MOST_PIECES + 1, _PIECE)), np.empty(_PIECE)
     for slice in range(SLICES):
         u = ((slice + 0.5) / SLICES - 0.5) * width
         found = _gather(pieces, meshes, head, add(center, scale(u, axis)), axis, one, two, radius)
@@ -155,18 +156,20 @@ def roller_mesh(out, body, a, b, head, meshes, law):
         for patch in range(found):
             sums[:] = 0.0
             for i in range(found):
-                if pieces[i, 10] == patch:
-                    for j in range(6):
-                        sums[j] += pieces[i, 4 + j]
-            if sums[0] <= 0.0:
+                if pieces[i, _PATCH] == patch:
+                    for j in range(_ZETA, _PATCH):
+                        sums[j] += pieces[i, j]
+            zeta, square = sums[_ZETA], sums[_SQUARE]
+            if zeta <= 0.0:
                 continue
-            mean = sums[1] / sums[0]
+            mean = square / zeta
             y = min(1.25 * mean, 0.499 * radius)
             left = math.sqrt(radius * radius - 2.0 * radius * y)
             depth = radius - left
             # from the axis into the mesh: the growth of the depth with a move of the axis
-            grows = 1.25 / (sums[0] * left)
-            gx, gy = grows * (2.0 * sums[4] - mean * sums[2]), grows * (2.0 * sums[5] - mean * sums[3])
+            grows = 1.25 / (zeta * left)
+            gx = grows * (2.0 * sums[_MOMENT] - mean * sums[_PLACE])
+            gy = grows * (2.0 * sums[_MOMENT + 1] - mean * sums[_PLACE + 1])
             steep = math.sqrt(gx * gx + gy * gy)
             if steep <= 0.0:
                 continue
@@ -181,7 +184,7 @@ def roller_mesh(out, body, a, b, head, meshes, law):
 @njit(cache=True, error_model="numpy")
 def roller_mesh_near(body, xa, xb, rb, head, meshes, more):
     """Whether a roller that is larger by `more` on all sides may meet a leaf of the mesh's tree."""
-    radius, half = body.size[0] + more, 0.5 * body.size[1] + more
+    radius, half = body.size[RADIUS] + more, 0.5 * body.size[WIDTH] + more
     gap = sub(xa, xb)
     wide = head.reach + math.sqrt(radius * radius + half * half)
     if dot(gap, gap) > wide * wide:

@@ -23,7 +23,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from mdlgen.mechanics.frame import Vector, scaled
+from mdlgen.mechanics.frame import ARC_RADIUS, RADIUS, WIDTH, Vector, scaled
 from mdlgen.mechanics.guide import BOTH, INSIDE, OUTSIDE, inward
 from mdlgen.mechanics.point import FORCE_A, FORCE_B, TORQUE_A, Load, push
 from mdlgen.mechanics.rim import profile
@@ -71,7 +71,7 @@ def touch(out, body, a, spot, weight, b, law):
     at, way, gap, normal, turns = spot
     upright = -dot(way, normal)  # 1 but for a roller that leans
     axis = three(body.axis)
-    radius, lever, stiff, rough, growth, damping = body.size[0], 0.0, 1.0, 1.0, 0.0, law.beta
+    radius, lever, stiff, rough, growth, damping = body.size[RADIUS], 0.0, 1.0, 1.0, 0.0, law.beta
     if body.rims > 0:
         own = back(a.r, way)
         radius, lever, stiff, rough, growth, damping = profile(body, math.atan2(own[1], own[0]), law.beta)
@@ -106,7 +106,7 @@ def _inside(at, step, half, low, high):
 def roller_plate(out, body, a, b, face, law):
     """Roller a against a Face of a flat plate b."""
     axis = three(body.axis)
-    radius, width = body.size[0], body.size[1]
+    radius, width = body.size[RADIUS], body.size[WIDTH]
     middle, ways, half, thick, both = face
     gap = sub(a.x, middle)
     p, r, n = ways
@@ -192,7 +192,7 @@ def _end(out, body, a, at, share, b, own, line, law):
     along = min(max(own[0] * ray[0] + own[1] * ray[1], near), far)
     x, y = along * ray[0] - own[0], along * ray[1] - own[1]
     away = math.sqrt(x * x + y * y)
-    if away <= 0.0 or away >= body.size[0]:
+    if away <= 0.0 or away >= body.size[RADIUS]:
         return
     way = rotate(b.r, (x / away, y / away, 0.0))
     touch(out, body, a, Spot(at, way, away, scale(-1.0, way), -1.0 / away), share, b, law)
@@ -203,7 +203,7 @@ def roller_arc(out, body, a, b, shape, half, side, law):
     """Roller a against a guide b that is an arc, of a parallel axis; the rest as in mechanics.guide."""
     radius, middle, angle = shape
     rb = b.r
-    own, width, thick = back(rb, sub(a.x, b.x)), body.size[1], 2.0 * half[2]
+    own, width, thick = back(rb, sub(a.x, b.x)), body.size[WIDTH], 2.0 * half[2]
     low, high = max(own[2] - 0.5 * width, -half[1]), min(own[2] + 0.5 * width, half[1])
     if high <= low:
         return
@@ -236,7 +236,7 @@ def roller_arc(out, body, a, b, shape, half, side, law):
 def reach_along(body, way):
     """How far a roller reaches to either side of its centre along a direction."""
     lean = dot(three(body.axis), way)
-    return 0.5 * body.size[1] * abs(lean) + body.size[0] * math.sqrt(max(0.0, 1.0 - lean * lean))
+    return 0.5 * body.size[WIDTH] * abs(lean) + body.size[RADIUS] * math.sqrt(max(0.0, 1.0 - lean * lean))
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -252,11 +252,11 @@ def plate_near(body, at, rb, other, more):
 @njit(cache=True, error_model="numpy", **BORROWS)
 def guide_near(body, at, rb, other, more):
     """As plate_near for a guide."""
-    half, radius = other.half, other.arc[0]
+    half, radius = other.half, other.arc[ARC_RADIUS]
     if abs(at[2]) > half[1] + reach_along(body, (rb[2], rb[5], rb[8])) + more:
         return False
     if radius > 0.0:
-        return abs(inward(at, radius)) <= body.size[0] + 2.0 * half[2] + more
+        return abs(inward(at, radius)) <= body.size[RADIUS] + 2.0 * half[2] + more
     if abs(at[0]) > half[0] + reach_along(body, (rb[0], rb[3], rb[6])) + more:
         return False
     return abs(at[1]) <= 2.0 * half[2] + reach_along(body, (rb[1], rb[4], rb[7])) + more
@@ -275,7 +275,7 @@ def roller_plane(out, body, a, b, half, law):
 @njit(cache=True, error_model="numpy")
 def roller_guide(out, body, a, b, shape, half, side, law):
     """Roller a against guide b, which does not move; side: INSIDE, OUTSIDE or BOTH; the rest as in Plate."""
-    if shape[0] > 0.0:
+    if shape[ARC_RADIUS] > 0.0:
         roller_arc(out, body, a, b, shape, half, side, law)
         return
     rb = b.r

@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from mdlgen.model.tables import Floats, MachinePart, MeshPart, RollerPart
+from mdlgen.results.result import RUBS
 
 if TYPE_CHECKING:
     from mdlgen.results.result import Result
@@ -28,5 +29,5 @@ def drags(result: Result, part: MachinePart) -> dict[str, Floats]:
     for row, (a, b) in enumerate(zip(contacts.part_a, contacts.part_b, strict=True)):
         other = b if a == part.name else a
         if part.name in (a, b) and other in sheets:
-            found[other] = result.contact_friction[:, row, 0]
+            found[other] = result.contact_friction[:, row, RUBS]
     return found

@@ -29,6 +29,7 @@ from mdlgen.model.tables import (
     RollerPart,
 )
 from mdlgen.results.contact_line import of_row
+from mdlgen.results.result import ON_B, RUBS
 from mdlgen.results.torques import drive_power
 
 if TYPE_CHECKING:
@@ -119,7 +120,7 @@ def _on_roller(result: Result, row: int) -> Floats:
     size = np.linalg.norm(line.roller, axis=1)
     way = np.sign(spin)[:, None] * line.roller / np.maximum(size, STANDS)[:, None]
     across = slip - (slip @ roller.axis)[:, None] * roller.axis
-    friction, torque = result.contact_friction[at, row, 0], result.contact_torque[at, row, 1]
+    friction, torque = result.contact_friction[at, row, RUBS], result.contact_torque[at, row, ON_B]
     turned = size > STANDS
     signed = np.einsum("ti,ti->t", slip, way)
     rubbed = np.where(turned, friction * signed, np.abs(friction) * np.linalg.norm(across, axis=1))
@@ -152,7 +153,7 @@ def _on_plate(result: Result, row: int, at: Any) -> Floats:
         normal = column(result.rotation[states], 2)
         along = rate - normal * np.einsum("tni,tni->tn", rate, normal)[..., None]
         speeds.append(np.einsum("tn,tn->t", weight, np.linalg.norm(along, axis=2)))
-    return result.contact_friction[at, row, 0] * np.concatenate(speeds)
+    return result.contact_friction[at, row, RUBS] * np.concatenate(speeds)
 
 
 def _in_machine(result: Result, row: int, at: Any) -> Floats:

@@ -242,16 +242,16 @@ def _peaks(pair: Pair) -> Iterator[Difference]:
     found = apart(pair.result, pair.other, pair.here, pair.there)
     if one is None or two is None or found is None:
         return
-    joints, most = found
+    joints, (stretch, squeeze, curvature, twist) = found
     for k, sheet in enumerate(model.sheets):
         mine = joints.sheet == k
         ways = [(way, mine & (joints.axis == axis)) for axis, way in enumerate(("md", "cd"))]
         bend = LEAST_BEND / max(sheet.size)
         for kind, message, attribute, unit, least, gap in (
-            ("strain", "max_", "stretch", "", LEAST_STRAIN, most[0]),
-            ("strain", "min_", "squeeze", "", LEAST_STRAIN, most[1]),
-            ("curvature", "max_", "curvature", "1/mm", bend, most[2]),
-            ("twist", "max", "twist", "1/mm", bend, most[3]),
+            ("strain", "max_", "stretch", "", LEAST_STRAIN, stretch),
+            ("strain", "min_", "squeeze", "", LEAST_STRAIN, squeeze),
+            ("curvature", "max_", "curvature", "1/mm", bend, curvature),
+            ("twist", "max", "twist", "1/mm", bend, twist),
         ):
             a, b = (getattr(run, attribute).value for run in (one, two))
             scale = max(float(np.abs(a[mine]).max(initial=0.0)), least)

@@ -12,6 +12,10 @@ import numpy as np
 from mdlgen.model.rotations import column, turns
 from mdlgen.model.tables import Floats, Ints, Model
 
+# Columns of Result.contact_torque and of Result.contact_friction.
+ON_A, ON_B = 0, 1
+RUBS, GRIPS = 0, 1
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -78,10 +82,10 @@ class Result:
     contact_force: Floats  # total normal force per contact row [N], (t, rows)
     statistics: ContactStatistics
     # of each contact row, of both parts: torque on it about its axis [N mm], 0 where it is no roller,
-    # (t, rows, 2); None: of an older file, or another program
+    # (t, rows, 2), ON_A and ON_B; None: of an older file, or another program
     contact_torque: Floats | None = None
     # friction along the surface of its roller as that turns, without one its size, and the most that it can
-    # be, mu_static times the normal force [N], (t, rows, 2)
+    # be, mu_static times the normal force [N], (t, rows, 2), RUBS and GRIPS
     contact_friction: Floats | None = None
     touched: int = 0  # pairs that touched at any step
     energy: Energy = field(default_factory=Energy)

@@ -167,8 +167,8 @@ def _peaks(result: Result, fixed: _Fixed, axis: int) -> tuple[Floats, Ints]:
     columns = np.arange(count)
     for start in range(0, len(result.time), frames):
         part = slice(start, start + frames)
-        measured = _borne(result, part, fixed, axis)
-        sizes = (measured[0], -measured[1], np.abs(measured[2]), np.abs(measured[3]))
+        more, less, bend, twist = measured = _borne(result, part, fixed, axis)
+        sizes = (more, -less, np.abs(bend), np.abs(twist))
         for k, (values, size) in enumerate(zip(measured, sizes, strict=True)):
             row = size.argmax(axis=0)
             larger = size[row, columns]
@@ -194,9 +194,8 @@ def histories(result: Result, at: Ints) -> tuple[SheetJoints, Floats, Floats] | 
         frames = max(1, _CHUNK // len(along))
         for start in range(0, len(at), frames):
             part = at[start : start + frames]
-            measured = _borne(result, part, fixed, axis)
-            stretch[start : start + frames, along] = measured[0]
-            bend[start : start + frames, along] = measured[2]
+            more, _, curved, _ = _borne(result, part, fixed, axis)
+            stretch[start : start + frames, along], bend[start : start + frames, along] = more, curved
     return joints, stretch, bend
 
 
@@ -242,7 +241,8 @@ def stretched(result: Result, part: slice, mine: Ints, axis: int) -> tuple[Float
     """Strain of the more and of the less stretched bushing of the joints `mine`, which lie along `axis`, at
     some stored states, (t, n) each."""
     if result.borne is not None:
-        return result.borne[0, part].take(mine, axis=1), result.borne[1, part].take(mine, axis=1)
+        more, less, *_ = result.borne
+        return more[part].take(mine, axis=1), less[part].take(mine, axis=1)
     fixed = _Fixed(result.model, sheet_joints(result.model), mine)
     more, less, *_ = _measure(result, part, fixed, axis)
     return more, less

@@ -164,7 +164,7 @@ def _accounts(result: Result) -> dict[str, float | None]:
         if (energy := driven(result, roller)) is not None:
             given += float(energy[-1])
             if roller.one_way is None:  # the solvers do not count what it takes to turn them
-                inertia = roller.inertia_axial + roller.carried[1]
+                inertia = roller.loaded_inertia
                 rates = result.spin[[0, -1], roller.body] @ roller.axis
                 own += 0.5 * inertia * float(rates[1] ** 2 - rates[0] ** 2)
     lost = result.energy.dissipated + (result.energy.numerical or 0.0)

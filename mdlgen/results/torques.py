@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mdlgen.model.tables import Floats, RollerPart
+from mdlgen.results.result import GRIPS, RUBS
 
 if TYPE_CHECKING:
     from mdlgen.results.result import Result
@@ -68,7 +69,7 @@ def drive_torque(result: Result, roller: RollerPart) -> Floats | None:
     contacts = contact_torque(result, roller)
     if contacts is None:
         return None
-    return (roller.inertia_axial + roller.carried[1]) * _acceleration(result, roller) - contacts
+    return roller.loaded_inertia * _acceleration(result, roller) - contacts
 
 
 def drive_power(result: Result, roller: RollerPart) -> Floats | None:
@@ -86,7 +87,7 @@ def grips(result: Result, roller: RollerPart) -> list[Grip]:
     axes = {part.name: part.axis for part in result.model.rollers}
     found = []
     for row, side, other in rows_of(result, roller):
-        along, limit = result.contact_friction[:, row, 0], result.contact_friction[:, row, 1]
+        along, limit = result.contact_friction[:, row, RUBS], result.contact_friction[:, row, GRIPS]
         # of two rollers the second one counts; friction turns both alike about one axis
         turned = side == 0 and other in axes and float(roller.axis @ axes[other]) < 0.0
         found.append(Grip(other, -along if turned else along, limit))

@@ -201,11 +201,11 @@ def test_a_value_that_is_changed_is_changed_in_all_that_follows() -> None:
 def test_the_forms_are_those_of_the_reference() -> None:
     """Every class and keyword that is in use has a row in the manual, with its confidence."""
     page = (ROOT / "docs" / "motionview" / "script.md").read_text().partition("## Classes")[2]
-    from mdlgen.backends.msolve.forms import FORMS
+    from mdlgen.backends.msolve.reader.standin import KNOWN
 
     rows = dict(re.findall(r"^\| `(\w+)` \| (.*) \|$", page, re.M))
-    assert set(rows) == set(FORMS)
-    for name, form in FORMS.items():
+    assert set(rows) == set(KNOWN)
+    for name, form in KNOWN.items():
         seen, documented, source = rows[name].split(" | ")
         for column, confidence in ((seen, "SEEN"), (documented, "DOC")):
             own = {k for k, v in form.keywords.items() if v.confidence == confidence}
@@ -218,7 +218,7 @@ def test_the_forms_are_those_of_the_reference() -> None:
         for thing in msolve.read(text).made.things
         for k in thing.given
     }
-    known = {(name, keyword) for name, form in FORMS.items() for keyword in form.keywords}
+    known = {(name, keyword) for name, form in KNOWN.items() for keyword in form.keywords}
     assert used == known, "a form or a keyword that no script uses"
 
 

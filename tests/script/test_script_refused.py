@@ -10,8 +10,8 @@ from decks import FOUR, SHORT_SPRING, SMALL, model_of
 from scripts import script_of, small_script
 
 from mdlgen.backends import msolve
-from mdlgen.backends.msolve.forms import FORMS
 from mdlgen.backends.msolve.reader import standin
+from mdlgen.backends.msolve.reader.standin import KNOWN
 from mdlgen.errors import RefusedError, SpecError
 
 TOUCH = "open({path!r}, 'w')"
@@ -163,7 +163,7 @@ def test_the_stand_in_allows_only_what_is_in_the_table(call: str, message: str) 
 
 
 def test_there_is_no_other_class() -> None:
-    assert set(made()) == {"Point", *FORMS}
+    assert set(made()) == {"Point", *KNOWN}
     with pytest.raises(AttributeError, match="Part has no mass"):
         eval("Part().mass", made())
 

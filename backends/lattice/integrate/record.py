@@ -17,9 +17,12 @@ from mdlgen.backends.lattice.kernels.state import (
     FORCE_TIME,
     MAX_DEPTH,
     MAX_FORCE,
+    POTENTIAL,
+    PRESSES,
     TIME,
     TURNING_BEGUN,
     TURNING_NOW,
+    TURNS,
     Kept,
     Midpoint,
     State,
@@ -33,7 +36,7 @@ from mdlgen.results.result import ContactStatistics, Energy, Result
 from mdlgen.version import of
 
 STORED = {"x": 3, "r": 9, "u": 3, "w": 3}
-NOW = [FORCE_NOW, *range(TURNING_NOW, TURNING_NOW + TURNING)]  # of the rows of contacts
+NOW = [FORCE_NOW, *range(TURNING_NOW, TURNING_NOW + TURNING)]  # of the rows of contacts: PRESSES, TURNS
 BEGUN = [FORCE_BEGUN, *range(TURNING_BEGUN, TURNING_BEGUN + TURNING)]
 TOGETHER = 20_000  # bodies, times states, whose rotations are looked at together
 
@@ -148,9 +151,9 @@ class Recorder:
             rotation=held["e"],
             velocity=held["u"],
             spin=held["w"],
-            contact_force=held["f"][..., 0],
-            contact_torque=held["f"][..., [1 + ABOUT_A, 1 + ABOUT_B]],
-            contact_friction=held["f"][..., [1 + ALONG, 1 + LIMIT]],
+            contact_force=held["f"][..., PRESSES],
+            contact_torque=held["f"][..., [TURNS + ABOUT_A, TURNS + ABOUT_B]],
+            contact_friction=held["f"][..., [TURNS + ALONG, TURNS + LIMIT]],
             statistics=ContactStatistics(
                 max_depth=rows[:, MAX_DEPTH].copy(),
                 mean_depth=rows[:, DEPTH_TIME] / inside,
@@ -188,7 +191,7 @@ def _balance(model: Model, snapshot: Snapshot) -> Energy:
     first, last, most = snapshot.energies
     kinetic, elastic, potential = last
     change = sum(last) - sum(first)
-    scale = audit.scale(model, lost, through, most, potential - first[2])
+    scale = audit.scale(model, lost, through, most, potential - first[POTENTIAL])
     balance = float((change + lost - driven) / scale)
     return Energy(kinetic, elastic, lost - numerical, driven, balance, scale, numerical)
 

@@ -42,7 +42,8 @@ def overstretched(points, joints, x, r):
 @njit(cache=True, error_model="numpy")
 def joint_forces(joints, points, motion, f):
     """See forces.joint_forces, without numerical damping; returns the stored energy."""
-    return _joint_forces(joints, points, motion, f, 0.0)[0]
+    stored, _, _ = _joint_forces(joints, points, motion, f, 0.0)
+    return stored
 
 
 @njit(cache=True, error_model="numpy")
@@ -50,7 +51,8 @@ def contacts(tables, motion, mid):
     """Contacts of bodies at rest: forces, touching pairs and what they do into those of a Midpoint; returns
     how many touch."""
     close = _near_pairs(tables, motion, 0.0, 0.0, mid.near)
-    return _pair_forces(tables, mid.near, close, motion, mid.forces, mid.touched, mid.results)[0]
+    count, _, _ = _pair_forces(tables, mid.near, close, motion, mid.forces, mid.touched, mid.results)
+    return count
 
 
 PROGRAM = Program(

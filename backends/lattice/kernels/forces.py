@@ -8,9 +8,9 @@ from mdlgen.backends.lattice.kernels.image import reflect, reflect_rates
 from mdlgen.mechanics.arm import moved, way_of
 from mdlgen.mechanics.bushing import bushing_pair
 from mdlgen.mechanics.curve import curve_excess
-from mdlgen.mechanics.driven import clutch, prescribed, turned
+from mdlgen.mechanics.driven import SENSE, clutch, prescribed, turned
 from mdlgen.mechanics.edge import TAKES
-from mdlgen.mechanics.frame import Frame
+from mdlgen.mechanics.frame import ARC_RADIUS, RADIUS, WIDTH, Frame
 from mdlgen.mechanics.guide import inward
 from mdlgen.mechanics.mesh import mesh_near
 from mdlgen.mechanics.nip import EASE
@@ -212,7 +212,7 @@ def near_pairs(tables, motion, margin, ahead, near):
             reached = TAKES * size + margin
             reached += ahead * (math.sqrt(dot(rate, rate)) + math.sqrt(dot(spin, spin)) * size)
             at, plate = back(mat(r, b), scale(-1.0, gap)), bodies[b].half
-            radius = bodies[b].arc[0]
+            radius = bodies[b].arc[ARC_RADIUS]
             if abs(at[2]) > plate[1] + reached or abs(inward(at, radius)) > 2.0 * plate[2] + reached:
                 continue
             if radius == 0.0 and abs(at[0]) > plate[0] + reached:
@@ -243,10 +243,10 @@ def near_pairs(tables, motion, margin, ahead, near):
             axis = bodies[b].axis
             along = gap[0] * axis[0] + gap[1] * axis[1] + gap[2] * axis[2]
             across = gap[0] * gap[0] + gap[1] * gap[1] + gap[2] * gap[2] - along * along
-            radius, width = bodies[b].size[0], (0.5 + EASE) * bodies[b].size[1]
+            radius, width = bodies[b].size[RADIUS], (0.5 + EASE) * bodies[b].size[WIDTH]
             if pairs[p].kind == CYLINDER_CYLINDER:
-                reach = bodies[a].size[0] + reached
-                width += 0.5 * bodies[a].size[1]
+                reach = bodies[a].size[RADIUS] + reached
+                width += 0.5 * bodies[a].size[WIDTH]
             if abs(along) > width + reach or across > (radius + reach) * (radius + reach):
                 continue
             if pairs[p].kind != CYLINDER_CYLINDER:  # the axis above or below the face
@@ -323,7 +323,7 @@ def pair_forces_again(tables, near, close, known, motion, f, touched, results):
 def clutch_torques(bodies, t, ub, f):
     """Adds the torques of clutches on the rollers that turn at the rates ub, at a time."""
     for b in range(bodies.size - 1):
-        if bodies[b].clutch[0] != 0.0:
+        if bodies[b].clutch[SENSE] != 0.0:
             torque, _, _ = clutch(bodies[b], ub[bodies[b].spin], t)
             for i in range(3):
                 f[b, 3 + i] += torque * bodies[b].axis[i]

@@ -136,6 +136,8 @@ class Kept(NamedTuple):
 MAX_DEPTH, MAX_FORCE, DEPTH_TIME, FORCE_TIME, TIME = 0, 1, 2, 3, 4
 FORCE_NOW, DEPTH_NOW, ACTS, ENDED, FORCE_BEGUN, TURNING_NOW, TURNING_BEGUN = 5, 6, 7, 8, 9, 10, 10 + TURNING
 ROW = TURNING_BEGUN + TURNING
+# Of what is stored of a row at a time: its normal force, then what mechanics.turning has.
+PRESSES, TURNS = 0, 1
 
 
 class Bounds(NamedTuple):

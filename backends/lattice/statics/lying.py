@@ -17,6 +17,7 @@ import numpy as np
 
 from mdlgen.backends.lattice.arrays import JOINT, System
 from mdlgen.backends.lattice.kernels.state import Midpoint
+from mdlgen.mechanics.edge import HOLDS
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.records import LOAD
 from mdlgen.model.rotations import matrices, vectors
@@ -113,13 +114,13 @@ class Grip:
 
     def __init__(self, system: System) -> None:
         self._with = system
-        grips = system.bodies["edge"][:, 2] > 0.0
+        grips = system.bodies["edge"][:, HOLDS] > 0.0
         self.acts = bool((grips & (system.bodies["ends"] != 0)).any())
         if not self.acts:
             self.system = system
             return
         bodies, loads = system.bodies.copy(), np.zeros(len(system.nodes), LOAD)
-        bodies["edge"][:, 2] = 0.0
+        bodies["edge"][:, HOLDS] = 0.0
         loads["body"] = system.nodes
         self.system = system._replace(bodies=bodies, loads=np.concatenate([system.loads, loads]))
         self._loads = self.system.loads[len(system.loads) :]

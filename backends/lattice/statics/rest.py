@@ -25,7 +25,7 @@ from mdlgen.backends.lattice.kernels.state import (
 )
 from mdlgen.backends.lattice.statics import lying, standing
 from mdlgen.mechanics.arm import FORCE_0
-from mdlgen.mechanics.frame import Motion
+from mdlgen.mechanics.frame import RADIUS, Motion
 from mdlgen.mechanics.mesh import LOST
 from mdlgen.mechanics.pair import DEEP_ROLLER
 from mdlgen.mechanics.point import DEPTH, PRESSING
@@ -185,7 +185,7 @@ def _touch(model: Model, system: System, state: State, mid: Midpoint, kept: Kept
         plate = pair["kind"] in (BOX_GUIDE, BOX_PLANE)
         most = system.bodies["half"][pair["b"], 2] if plate else LOST
         if pair["kind"] in ON_PARTS:
-            most = DEEP_ROLLER * system.bodies["size"][pair["a"], 0]
+            most = DEEP_ROLLER * system.bodies["size"][pair["a"], RADIUS]
         if depth > most:
             return f"{model.too_deep(int(pair['a']), partner(model, pair))} at rest; give a stiffer contact"
         kept.marks[mid.touched[k]] = True

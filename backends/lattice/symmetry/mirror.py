@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mdlgen.backends.lattice.arrays import IMAGE, System, offsets
+from mdlgen.backends.lattice.kernels.state import TURNS
 from mdlgen.mechanics.turning import ABOUT_A, ALONG
 from mdlgen.model.tables import Floats, Ints
 
@@ -68,7 +69,7 @@ class Mirror:
         whole = rows[..., self.rows, :] * self.times[self.rows, None]
         image = (self.rows != np.arange(len(self.rows)))[:, None]
         own = np.where(self.times[:, None] > 1.0, 0.5 + 0.5 * self.senses, 1.0)
-        whole[..., 1 + ABOUT_A : 2 + ALONG] *= np.where(image, self.senses, own)
+        whole[..., TURNS + ABOUT_A : TURNS + ALONG + 1] *= np.where(image, self.senses, own)
         return whole
 
     def largest(self, rows: Floats) -> Floats:

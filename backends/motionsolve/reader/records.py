@@ -149,9 +149,9 @@ def spring(deck: Deck, entity: Entity) -> dict[str, Any]:
 
 
 def graphic(deck: Deck, entity: Entity) -> dict[str, Any] | None:
-    """Boxes, cylinders (cut cones) and meshes with their numbers; None for other shapes."""
+    """Boxes, cylinders (cut cones), spheres and meshes with their numbers; None for other shapes."""
     shape = entity.word("type")
-    if shape not in ("BoxDefinedFromCenter", "Frustum", "TriaMesh"):
+    if shape not in ("BoxDefinedFromCenter", "Frustum", "Sphere", "TriaMesh"):
         return None
     marker = _under(deck, entity)
     label = entity.word("label", "")
@@ -159,6 +159,9 @@ def graphic(deck: Deck, entity: Entity) -> dict[str, Any] | None:
         lengths = entity.vector("length_x", "length_y", "length_z")
         sizes: dict[str, Any] = {"center": marker.origin, "axes": marker.axes, "lengths": lengths}
         return {"label": label, "type": "BOX", "body": marker.body, **sizes}
+    if shape == "Sphere":
+        round_: dict[str, Any] = {"center": marker.origin, "radius": entity.number("radius")}
+        return {"label": label, "type": "SPHERE", "body": marker.body, **round_}
     if shape == "TriaMesh":
         corners, triangles = _triangles(entity)
         place: dict[str, Any] = {"origin": marker.origin, "axes": marker.axes}

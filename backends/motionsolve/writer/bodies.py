@@ -10,7 +10,7 @@ from mdlgen.backends.motionsolve.writer.body import add_body
 from mdlgen.backends.motionsolve.writer.ids import GROUND_ID, body_id, graphic_id
 from mdlgen.backends.motionsolve.writer.joints import fix
 from mdlgen.backends.motionsolve.writer.parts.kinds import written
-from mdlgen.backends.motionsolve.writer.rows import Box, Deck
+from mdlgen.backends.motionsolve.writer.rows import Deck
 from mdlgen.backends.motionsolve.writer.units import numbers, thousandfold, triples
 from mdlgen.model.shape import ground_frames
 from mdlgen.model.tables import Model
@@ -42,7 +42,7 @@ def add_bodies(deck: Deck, model: Model) -> None:
         if any(half):
             x, y, z = numbers(2.0 * h for h in half)
             marker = deck.bodies[-1].cm
-            deck.boxes.append(Box(f"gbox_{table.name[k]}", label, graphic_id(k), marker, (x, y, z)))
+            deck.box(f"gbox_{table.name[k]}", label, graphic_id(k), marker, (x, y, z))
         if held[k]:
             how = "held" if model.sheet_of(k) else "fixed"
             fix(deck, f"j_{table.name[k]}", f"{label} {how}", body_id(k), positions[k])

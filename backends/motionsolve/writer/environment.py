@@ -7,7 +7,6 @@ from functools import lru_cache
 from jinja2 import Environment
 
 from mdlgen import templating
-from mdlgen.altair.refinement import GRAPHICS
 
 
 def comment(text: str) -> str:
@@ -20,5 +19,4 @@ def environment() -> Environment:
     """One environment for all decks."""
     made = templating.environment("motionsolve", autoescape=True)
     made.filters["comment"] = comment
-    made.globals.update(GRAPHICS)
     return made

@@ -47,6 +47,5 @@ def _entities(deck: Deck) -> Iterator[Labelled]:
     yield from deck.contacts
     yield from deck.surfaces
     yield from deck.requests
-    yield from deck.boxes
-    yield from deck.cylinders
+    yield from deck.solids
     yield from deck.shells

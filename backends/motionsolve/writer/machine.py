@@ -5,7 +5,7 @@ from __future__ import annotations
 from mdlgen.backends.motionsolve.writer.axes import cosines
 from mdlgen.backends.motionsolve.writer.ids import body_id
 from mdlgen.backends.motionsolve.writer.parts.kinds import written
-from mdlgen.backends.motionsolve.writer.rows import Box, Deck
+from mdlgen.backends.motionsolve.writer.rows import Deck
 from mdlgen.backends.motionsolve.writer.units import numbers, triples
 from mdlgen.model.tables import Model
 
@@ -36,4 +36,4 @@ def _add_facets(deck: Deck, model: Model) -> None:
                 f"{name}_center_marker", f"{label} - Center Marker", body_id(part.body), at, axes
             )
             x, y, z = numbers(facet.lengths)
-            deck.boxes.append(Box(name, label, ids[name], marker, (x, y, z)))
+            deck.box(name, label, ids[name], marker, (x, y, z))

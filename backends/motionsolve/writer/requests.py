@@ -28,7 +28,7 @@ def add_forces(deck: Deck, model: Model) -> None:
     pairs, table = model.pairs, model.contacts
     sides: dict[int, list[tuple[int, int]]] = {row: [] for row in recorded(model)}
     bodies = {marker.id: marker.body for marker in deck.markers}
-    on = {shape.id: bodies[shape.marker] for shape in (*deck.boxes, *deck.cylinders, *deck.shells)}
+    on = {shape.id: bodies[shape.marker] for shape in (*deck.solids, *deck.shells)}
     for met, contact in zip(meetings(model), deck.contacts, strict=True):
         row, b = int(pairs.contact[met.pair]), int(pairs.b[met.pair])
         if row in sides:  # 0: the first side, 1: the second

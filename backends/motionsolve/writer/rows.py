@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+from mdlgen.altair import refinement
 from mdlgen.backends.motionsolve.writer.units import Triple
 
 Cosines = tuple[str, str, str, str, str, str]
@@ -129,25 +130,17 @@ class Clutch(NamedTuple):
     torque: str
 
 
-class Box(NamedTuple):
-    """A box round a marker."""
+class Solid(NamedTuple):
+    """A solid on a marker, which is its centre or where it starts: the schema's word for it, and its sizes by
+    their attributes."""
 
     name: str
     label: str
     id: int
     marker: int
-    lengths: Triple
-
-
-class Cylinder(NamedTuple):
-    """A cylinder from a marker along its Z."""
-
-    name: str
-    label: str
-    id: int
-    marker: int
-    radius: str
-    length: str
+    type: str
+    sizes: dict[str, str]
+    refinement: int
 
 
 class Shell(NamedTuple):
@@ -231,8 +224,7 @@ class Deck:
     contacts: list[ContactRow] = field(default_factory=list)
     surfaces: list[Surface] = field(default_factory=list)
     requests: list[Request] = field(default_factory=list)
-    boxes: list[Box] = field(default_factory=list)
-    cylinders: list[Cylinder] = field(default_factory=list)
+    solids: list[Solid] = field(default_factory=list)
     shells: list[Shell] = field(default_factory=list)
 
     def marker(self, name: str, label: str, body: int, at: Triple | None, axes: Cosines | None = None) -> int:
@@ -240,6 +232,11 @@ class Deck:
         id = len(self.markers) + 1
         self.markers.append(Marker(name, label, id, body, at, axes))
         return id
+
+    def box(self, name: str, label: str, id: int, marker: int, lengths: Triple) -> None:
+        """Adds a box round a marker."""
+        sizes = {f"length_{axis}": length for axis, length in zip("xyz", lengths, strict=True)}
+        self.solids.append(Solid(name, label, id, marker, "BoxDefinedFromCenter", sizes, refinement.BOX))
 
     def joint(self, name: str, label: str, type: str, i: int, j: int) -> int:
         """Adds a joint and returns its id."""

@@ -10,7 +10,10 @@ import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from mdlgen.backends.msolve.forms import ANALYSES, FORMS, SHAPES, Form
+from mdlgen.backends.msolve.forms import ANALYSES, FORMS, Form
+from mdlgen.backends.msolve.reader.shapes.kinds import SHAPES
+
+KNOWN = {**FORMS, **{name: shape.form for name, shape in SHAPES.items()}}
 
 _LENGTHS = {"three": 3, "six": 6}
 
@@ -113,7 +116,7 @@ _KINDS: dict[str, Callable[[Any], bool]] = {
 
 def fits(value: Any, kind: str) -> bool:
     """Whether a value is of a kind of the table of forms."""
-    if kind in FORMS:
+    if kind in KNOWN:
         return _of(value, kind)
     if kind in _KINDS:
         return _KINDS[kind](value)
@@ -146,7 +149,7 @@ def names(most: int) -> tuple[dict[str, Any], list[Thing]]:
 
     made: list[Thing] = Bounded()
     found: dict[str, Any] = {"Point": Point}
-    for name, form in FORMS.items():
+    for name, form in KNOWN.items():
         body: dict[str, Any] = {"form": form, "_made": made}
         if name == "Model":
             body["simulate"] = _simulate

@@ -12,15 +12,14 @@ from collections.abc import Iterator
 from typing import Any
 
 from mdlgen.backends.msolve.reader.build import Made
+from mdlgen.backends.msolve.reader.frames import GLOBAL, frame, label, on
+from mdlgen.backends.msolve.reader.shapes.kinds import SHAPES
 from mdlgen.backends.msolve.reader.standin import Thing
 from mdlgen.errors import Place, SpecError
 
-Vector = tuple[float, float, float]
-_GLOBAL: tuple[Vector, Vector, Vector] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 _IDS = re.compile(r"\b([DVW][XYZ])\(([0-9]{1,10}(?:,[0-9]{1,10})*)\)")
 _CURVED = re.compile(r"-LINSPL\((.*),0,([0-9]{1,10})\)")
 _CONTACT = re.compile(r"CONTACT\(([0-9]{1,10}),([01]),([1-8]),([0-9]{1,10})\)")
-_CAPS = {"CLOSED": "CAPBOTH"}
 _SIX = ("f2", "f3", "f4", "f6", "f7", "f8")
 
 
@@ -55,11 +54,6 @@ class Objects:
             raise SpecError(f"{name} is there twice", place=Place(self._file, 1, 1))
 
 
-def label(thing: Thing) -> str:
-    """The label of an object, which is its name here."""
-    return str(thing.given.get("label", ""))
-
-
 def values(made: Made, file: str) -> dict[str, Any]:
     """Every entity of the kinds above. Raises SpecError for two of a name."""
     objects = Objects(made, file)
@@ -68,9 +62,7 @@ def values(made: Made, file: str) -> dict[str, Any]:
         ("Part", "bodies", _body),
         ("Bushing", "bushings", _bushing),
         ("SpringDamper", "springs", _spring),
-        ("Box", "graphics", _box),
-        ("Frustum", "graphics", _cylinder),
-        ("Triamesh", "graphics", _mesh),
+        *((name, "graphics", shape.record) for name, shape in SHAPES.items()),
         ("Joint", "joints", _joint),
         ("Motion", "motions", _motion),
         ("Contact", "contacts", _contact),
@@ -96,44 +88,18 @@ def values(made: Made, file: str) -> dict[str, Any]:
     return found
 
 
-def _frame(marker: Thing) -> tuple[Vector, tuple[Vector, Vector, Vector]]:
-    """Origin and axes: z goes to `zp`, x lies in the plane of z and `xp`, on its side."""
-    given = marker.given
-    x, y, z = (float(v) for v in given.get("qp", (0.0, 0.0, 0.0)))
-    origin = (x, y, z)
-    if "zp" not in given or "xp" not in given:
-        return origin, _GLOBAL
-    up = _unit([p - o for p, o in zip(given["zp"], origin, strict=True)])
-    way = [p - o for p, o in zip(given["xp"], origin, strict=True)]
-    over = sum(a * b for a, b in zip(way, up, strict=True))
-    a = _unit([v - over * w for v, w in zip(way, up, strict=True)])
-    b = (up[1] * a[2] - up[2] * a[1], up[2] * a[0] - up[0] * a[2], up[0] * a[1] - up[1] * a[0])
-    return origin, (a, b, up)
-
-
-def _unit(way: list[float]) -> Vector:
-    size = math.sqrt(sum(v * v for v in way))
-    x, y, z = (v / size if size else math.nan for v in way)
-    return x, y, z
-
-
-def _of(marker: Thing) -> str:
-    """The part that a marker is on."""
-    return label(marker.part)
-
-
 def _marker(marker: Thing) -> dict[str, Any] | None:
     if marker.given.get("floating") or label(marker) == "Global_Frame":
         return None
-    origin, axes = _frame(marker)
-    return {"label": label(marker), "body": _of(marker), "origin": origin, "axes": axes}
+    origin, axes = frame(marker)
+    return {"label": label(marker), "body": on(marker), "origin": origin, "axes": axes}
 
 
 def _body(part: Thing) -> dict[str, Any] | None:
     given = part.given
     if given.get("ground"):
         return None
-    origin, axes = _frame(part.cm) if "cm" in given else ((math.nan,) * 3, _GLOBAL)
+    origin, axes = frame(part.cm) if "cm" in given else ((math.nan,) * 3, GLOBAL)
     inertia = tuple(float(v) for v in given.get("ip", [math.nan] * 6))
     own = "cm" in given and part.cm.part is part
     mass = float(given.get("mass", math.nan)) if own else math.nan
@@ -141,12 +107,12 @@ def _body(part: Thing) -> dict[str, Any] | None:
 
 
 def _ends(thing: Thing) -> tuple[str, str]:
-    return _of(thing.i), _of(thing.j)
+    return on(thing.i), on(thing.j)
 
 
 def _bushing(bushing: Thing) -> dict[str, Any]:
-    origin, axes = _frame(bushing.i)
-    same = _frame(bushing.j) == (origin, axes)
+    origin, axes = frame(bushing.i)
+    same = frame(bushing.j) == (origin, axes)
     numbers = {
         name: tuple(float(v) for v in bushing.given.get(name, [0.0] * 3))
         for name in ("k", "c", "kt", "ct", "force", "torque")
@@ -156,51 +122,14 @@ def _bushing(bushing: Thing) -> dict[str, Any]:
 
 
 def _spring(spring: Thing) -> dict[str, Any]:
-    points = _frame(spring.i)[0], _frame(spring.j)[0]
+    points = frame(spring.i)[0], frame(spring.j)[0]
     numbers = {name: float(spring.given.get(name, 0.0)) for name in ("k", "c", "force", "length")}
     return {"label": label(spring), "bodies": _ends(spring), "points": points, **numbers}
 
 
-def _box(box: Thing) -> dict[str, Any]:
-    center, axes = _frame(box.cm)
-    lengths = tuple(float(box.given[a]) for a in "xyz")
-    record = {"label": label(box), "type": "BOX", "body": _of(box.cm)}
-    return {**record, "center": center, "axes": axes, "lengths": lengths}
-
-
-def _cylinder(cylinder: Thing) -> dict[str, Any]:
-    start, axes = _frame(cylinder.cm)
-    return {
-        "label": label(cylinder),
-        "type": "CYLINDER",
-        "body": _of(cylinder.cm),
-        "start": start,
-        "axis": axes[2],
-        "radii": (float(cylinder.bottom), float(cylinder.top)),
-        "length": float(cylinder.length),
-        "caps": _CAPS.get(cylinder.given.get("end_caps", ""), ""),
-    }
-
-
-def _mesh(mesh: Thing) -> dict[str, Any]:
-    origin, axes = _frame(mesh.rm)
-    count = len(mesh.nodes)
-    if any(not 0 <= k < count for face in mesh.faces for k in face):
-        raise SpecError(f"{label(mesh)}: a face names a node that is not there")
-    shape = {"corners": mesh.nodes, "triangles": mesh.faces}
-    return {
-        "label": label(mesh),
-        "type": "CADGRAPHIC",
-        "body": _of(mesh.rm),
-        "origin": origin,
-        "axes": axes,
-        **shape,
-    }
-
-
 def _joint(joint: Thing) -> dict[str, Any]:
-    origin, axes = _frame(joint.i)
-    same = _frame(joint.j) == (origin, axes)
+    origin, axes = frame(joint.i)
+    same = frame(joint.j) == (origin, axes)
     return {
         "label": label(joint),
         "type": joint.type,
@@ -224,7 +153,7 @@ def _motion(motion: Thing) -> dict[str, Any]:
 def _contact(contact: Thing) -> dict[str, Any]:
     given = contact.given
     sides = [one if isinstance(one, list) else [one] for one in (contact.igeom, contact.jgeom)]
-    bodies = [{_of(shape.given.get("cm") or shape.rm) for shape in side} for side in sides]
+    bodies = [{on(shape.given.get("cm") or shape.rm) for shape in side} for side in sides]
     record: dict[str, Any] = {
         "label": label(contact),
         "type": contact.type,
@@ -301,13 +230,13 @@ def _forces(objects: Objects, found: dict[str, Any]) -> None:
         three = [tuple(given.get(f"{kind}{a}", "0") for a in "xyz") for kind in "ft"]
         if name.endswith("_clutch"):
             torque = [_named(objects, text) for text in three[1]]
-            ends = (_of(force.i), label(force.i), label(force.rm))
+            ends = (on(force.i), label(force.i), label(force.rm))
             objects.put(found["clutches"], name, {"ends": ends, "force": three[0], "torque": torque})
             continue
         load = {
             "label": name,
-            "body": _of(force.i),
-            "origin": _frame(force.i)[0],
+            "body": on(force.i),
+            "origin": frame(force.i)[0],
             "reference": label(force.rm) if "rm" in given else "",
             "force": tuple(_constant(v) for v in three[0]),
             "torque": tuple(_constant(v) for v in three[1]),
@@ -328,7 +257,7 @@ def _curves(objects: Objects, found: dict[str, Any]) -> None:
     for _, force in objects.of("Vforce"):
         name = label(force.i).removesuffix(".i")
         bushing = found["bushings"].get(name)
-        if bushing is None or label(force.rm) != f"{name}.j" or _of(force.jfloat) != bushing["bodies"][1]:
+        if bushing is None or label(force.rm) != f"{name}.j" or on(force.jfloat) != bushing["bodies"][1]:
             raise SpecError(f"{label(force)}: its markers are not those of a bushing")
         for k, axis in enumerate("xyz"):
             text = str(force.given.get(f"f{axis}", "0"))

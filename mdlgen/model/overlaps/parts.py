@@ -139,7 +139,7 @@ class Overlaps:
         weight = model.gravity
         if roller.press is not None:
             spring = roller.press
-            mass = roller.mass + roller.carried[0] + spring.carrier_mass
+            mass = roller.loaded_mass + spring.carrier_mass
             force = spring.preload + mass * float(weight @ spring.direction)
             rows = self._rows(roller)
             if rows:

@@ -107,6 +107,18 @@ class RollerPart(MachinePart):
     arm: ArmPart | None = None
 
     @property
+    def loaded_mass(self) -> float:
+        """Mass of the roller and of what is on it [g]."""
+        mass, _ = self.carried
+        return self.mass + mass
+
+    @property
+    def loaded_inertia(self) -> float:
+        """Inertia about the axis of the roller and of what is on it [g mm^2]."""
+        _, inertia = self.carried
+        return self.inertia_axial + inertia
+
+    @property
     def swung_inertia(self) -> float:
         """Inertia of all that turns with its arm about the pivot [g mm^2]: a free roller does not turn."""
         assert self.arm is not None, "asked only of a roller on an arm"

@@ -10,7 +10,7 @@ import numpy as np
 from mdlgen.altair.recorded import called, recorded
 from mdlgen.model.tables import Floats
 from mdlgen.results.quantities import GRAZE, LEAST, TENTH
-from mdlgen.results.result import Result
+from mdlgen.results.result import ON_B, RUBS, Result
 from mdlgen.units import PER_SECOND
 
 
@@ -100,9 +100,9 @@ def _contacts(result: Result) -> Iterator[Quantity]:
         labels = called(result.model, row), f"Contact of {by} on {on}: force, torque"
         name, part = f"contacts.{by}.{on}", rollers.get(on)
         if result.contact_friction is not None:
-            force = np.hypot(result.contact_force[:, row], result.contact_friction[:, row, 0])
+            force = np.hypot(result.contact_force[:, row], result.contact_friction[:, row, RUBS])
             yield Quantity(f"{name}.resultant", "N", force[:, None], labels, _size, least=least)
         if result.contact_torque is not None and part is not None:
-            torque = result.contact_torque[:, row, 1:]
+            torque = result.contact_torque[:, row, ON_B:]
             turn = _along(part.axis)
             yield Quantity(f"{name}.torque", "N mm", torque, labels, turn, least=least * part.radius)

@@ -11,7 +11,7 @@ from mdlgen.verify.expected.parts.mesh import shape_numbers
 from mdlgen.verify.readback.rows import Row, flat, table_of
 from mdlgen.verify.tables import Table
 
-FORMS = ("BOX", "CYLINDER", "CADGRAPHIC")
+FORMS = ("BOX", "CYLINDER", "SPHERE", "CADGRAPHIC")
 
 
 def graphic_tables(graphics: Mapping[str, Mapping[str, Any]]) -> dict[str, Table]:
@@ -21,6 +21,7 @@ def graphic_tables(graphics: Mapping[str, Mapping[str, Any]]) -> dict[str, Table
     return {
         "boxes": table_of(of["BOX"], _box, 15),
         "cylinders": table_of(of["CYLINDER"], _cylinder, 9),
+        "spheres": table_of(of["SPHERE"], _sphere, 4),
         "meshes": table_of(meshes, _mesh, 12),
         "mesh files": table_of({n: r for n, r in meshes.items() if "file" in r}, _mesh_file, 9),
         "mesh shapes": table_of({n: r for n, r in meshes.items() if "corners" in r}, _mesh_shape, 12),
@@ -39,6 +40,10 @@ def _box(name: str, record: Mapping[str, Any]) -> Row:
 def _cylinder(name: str, record: Mapping[str, Any]) -> Row:
     numbers = [*record["start"], *record["axis"], *record["radii"], record["length"]]
     return numbers, (record["body"], record["caps"])
+
+
+def _sphere(name: str, record: Mapping[str, Any]) -> Row:
+    return [*record["center"], record["radius"]], (record["body"],)
 
 
 def _mesh(name: str, record: Mapping[str, Any]) -> Row:

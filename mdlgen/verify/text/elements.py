@@ -34,7 +34,9 @@ _COMPARED: dict[str, frozenset[str]] = {
         )
     ),
     "Post_Request": frozenset(f"expr{k}" for k in (2, 3, 4, 6, 7, 8)),
-    "Post_Graphic": frozenset((*(f"length_{a}" for a in _XYZ), "length", "top_radius", "bottom_radius")),
+    "Post_Graphic": frozenset(
+        (*(f"length_{a}" for a in _XYZ), "length", "radius", "top_radius", "bottom_radius")
+    ),
     "Simulate": frozenset(("end_time", "print_interval")),
 }
 # Attributes that name the place in a tree of systems, for panels.

@@ -36,6 +36,7 @@ from mdlgen.backends.lattice.kernels.forces import pair_forces, place_box, place
 from mdlgen.backends.lattice.kernels.linear.dense import lu
 from mdlgen.mechanics.arm import AXIAL, DAMPING, INERTIA, STIFFNESS, turn_of, way_of
 from mdlgen.mechanics.driven import clutch
+from mdlgen.mechanics.frame import RADIUS
 from mdlgen.mechanics.pair import BOX_BOX, on_fixed_plate
 from mdlgen.mechanics.point import FORCE_A, FORCE_B, OUT, POINT, POINTS
 from mdlgen.mechanics.vector import back, dot, mat, rotate, vec
@@ -111,7 +112,7 @@ def _impulses(tables, xm, h, t, ub, condensed, m, p):
         if spin >= 0:
             axis = bodies[b].axis
             about = f[b, 3] * axis[0] + f[b, 4] * axis[1] + f[b, 5] * axis[2]
-            p[6 * m + spin] = h * (about + clutch(bodies[b], ub[spin] + condensed.z[6 * m + spin], t)[0])
+            p[6 * m + spin] = h * (about + clutch(bodies[b], ub[spin] + condensed.z[6 * m + spin], t).torque)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -134,7 +135,7 @@ def _begin(tables, x, h, ub, condensed, m, res, resb):
             measure[6 * m + slide] = math.sqrt(dot(way, way))
         if spin >= 0:
             own[spin] = 1.0 / p[AXIAL]
-            measure[6 * m + spin] = bodies[b].size[0]
+            measure[6 * m + spin] = bodies[b].size[RADIUS]
     for i in range(ub.size):
         z[6 * m + i] = 0.0
         z0[6 * m + i] = -own[i] * resb[i]
@@ -218,7 +219,7 @@ def _apply(condensed, m, res, resb):
 @njit(cache=True, error_model="numpy", **BORROWS)
 def solve_contacts(work, m, where, h, t, seen, limits):
     """Solves for the velocities of the m chosen boxes and of the rollers. Returns whether it converged: what
-    is left is below limits[0], or an iteration moved them by less than limits[1].
+    is left is below the first of `limits`, or an iteration moved them by less than the second.
 
     The midpoint is that after h, at time t; `seen`: how many pairs are near there, and how many touch. The
     matrix's `res` is what the lattice alone would lose of its velocities, in box axes, and `resb` the
@@ -228,14 +229,15 @@ def solve_contacts(work, m, where, h, t, seen, limits):
     bodies, pairs, ub, xm = tables.bodies, tables.pairs, state.ub, mid.motion.x
     res, resb = work.matrix.res, work.matrix.resb
     limit, strict = limits
+    near, touching = seen
     z, step, p, used = condensed.z, condensed.step, condensed.p, condensed.used
     boxes = 6 * m
     many = boxes + ub.size
     if many == 0:
         return True
-    _mine(bodies, pairs, mid.near[: seen[0]], where, condensed)
+    _mine(bodies, pairs, mid.near[:near], where, condensed)
     _begin(tables, state.x, h, ub, condensed, m, res, resb)
-    count = _take(tables, mid, seen[1], condensed, m)
+    count = _take(tables, mid, touching, condensed, m)
     _impulses(tables, xm, h, t, ub, condensed, m, condensed.p0)
     for i in range(many):
         p[i] = used[i] = condensed.p0[i]

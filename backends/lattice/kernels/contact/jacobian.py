@@ -172,7 +172,7 @@ def clutches(bodies, h, t, ub, condensed, m, acting):
         spin = bodies[b].spin
         if spin >= 0:
             at = 6 * acting + spin
-            condensed.growth[at, at] += h * clutch(bodies[b], ub[spin] + condensed.z[6 * m + spin], t)[1]
+            condensed.growth[at, at] += h * clutch(bodies[b], ub[spin] + condensed.z[6 * m + spin], t).growth
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False, **BORROWS)

@@ -19,7 +19,7 @@ def spun(body, u, v, t, dt):
     the measure of how much stiffer than the roller's inertia the clutch is.
     """
     h = 0.5 * dt
-    stiff = h * clutch(body, u, t + h)[1] / body.press[AXIAL]
+    stiff = h * clutch(body, u, t + h).growth / body.press[AXIAL]
     if stiff == 0.0:
         return 2.0 * u - v
     added = u - prescribed(body, t + h) - v + prescribed(body, t)

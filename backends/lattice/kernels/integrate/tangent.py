@@ -33,7 +33,7 @@ from mdlgen.program.kernel import BORROWS, njit
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _conjugate(m, d):
     """m diag(d) m^T, row by row."""
-    out = (
+    xx, xy, xz, yy, yz, zz = (
         m[0] * d[0] * m[0] + m[1] * d[1] * m[1] + m[2] * d[2] * m[2],
         m[0] * d[0] * m[3] + m[1] * d[1] * m[4] + m[2] * d[2] * m[5],
         m[0] * d[0] * m[6] + m[1] * d[1] * m[7] + m[2] * d[2] * m[8],
@@ -41,7 +41,7 @@ def _conjugate(m, d):
         m[3] * d[0] * m[6] + m[4] * d[1] * m[7] + m[5] * d[2] * m[8],
         m[6] * d[0] * m[6] + m[7] * d[1] * m[7] + m[8] * d[2] * m[8],
     )
-    return (out[0], out[1], out[2], out[1], out[3], out[4], out[2], out[4], out[5])
+    return (xx, xy, xz, xy, yy, yz, xz, yz, zz)
 
 
 @njit(cache=True, error_model="numpy")
@@ -160,7 +160,7 @@ def rollers_into(bodies, h, t, ub, d):
         if bodies[k].slide >= 0:
             d[bodies[k].slide, bodies[k].slide] = p[INERTIA] + h * p[DAMPING] + h * h * p[STIFFNESS]
         if bodies[k].spin >= 0:
-            d[bodies[k].spin, bodies[k].spin] = p[AXIAL] + h * clutch(bodies[k], ub[bodies[k].spin], t)[1]
+            d[bodies[k].spin, bodies[k].spin] = p[AXIAL] + h * clutch(bodies[k], ub[bodies[k].spin], t).growth
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)

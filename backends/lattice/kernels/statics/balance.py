@@ -78,6 +78,7 @@ def _newton(matrix, plain, shift, load, rest, step):
     """Solves for a step. Returns the part of the stiffest that the diagonal had to be given for the matrix to
     be positive, `shift` or more; -1 where nothing helps. `plain` is room for what is factored in place."""
     a, b, d, y, corner = matrix
+    (on_boxes, on_slides), (moves, slides) = rest, step
     band, square = plain
     copy(band, a)
     copy(square, d)
@@ -93,9 +94,9 @@ def _newton(matrix, plain, shift, load, rest, step):
         for k in range(d.shape[0]):
             d[k, k] += shift * ease
         if factor(a) and eliminate(a, b, d, y, corner):
-            copy(step[0], rest[0])
-            copy(step[1], rest[1])
-            solve_bordered(a, b, y, corner, step[0], step[1])
+            copy(moves, on_boxes)
+            copy(slides, on_slides)
+            solve_bordered(a, b, y, corner, moves, slides)
             return shift
         copy(a, band)
         copy(d, square)
@@ -154,12 +155,13 @@ def equilibrium(tables, size, level, load, least, reach, place, lists):
     )
     border, height = size
     x, r, s = place
+    touched, _results, _near = lists
     many, unknowns = nodes.size, 6 * nodes.size
     a, links, band = np.zeros((many, 6, height)), np.zeros((many, 6, height)), np.zeros((many, 6, height))
     b, d = np.zeros((border, unknowns)), np.zeros((border, border))
     matrix, plain = (a, b, d, np.zeros(b.shape), np.zeros(d.shape)), (band, np.zeros(d.shape))
     rest, step = (np.zeros(unknowns), np.zeros(border)), (np.zeros(unknowns), np.zeros(border))
-    before = (x.copy(), r.copy(), s.copy())
+    before = x0, r0, s0 = x.copy(), r.copy(), s.copy()
     still = np.zeros(x.shape)
     blank = (still, np.zeros((x.shape[0], 6)))
     gaps, room = np.zeros((joints.size, 3)), np.zeros(unknowns)
@@ -183,16 +185,16 @@ def equilibrium(tables, size, level, load, least, reach, place, lists):
             return False, iteration, at, worst / load
         sheets_into(bodies, joints, points, loads, level, gaps, x, r, a)
         rollers_into(bodies, b, d)
-        contacts_into(tables, lists[0], count, Motion(x, r, still, still), a, b, d)
+        contacts_into(tables, touched, count, Motion(x, r, still, still), a, b, d)
         shift = _newton(matrix, plain, shift, load, rest, step)
         if shift < 0.0:
             return False, iteration, at, worst / load
         part, moved = _longest(bodies, joints, nodes, step, reach)
         if not moved < _LOST:
             return False, iteration, at, worst / load
-        copy(before[0], x)
-        copy(before[1], r)
-        copy(before[2], s)
+        copy(x0, x)
+        copy(r0, r)
+        copy(s0, s)
         falls = _along(rest, step)
         for _ in range(MOST_TRIES):
             follow(tables, links, part, step, before, place, room, gaps)
@@ -229,6 +231,7 @@ def stands(tables, level, least, slow, place, lists, matrix):
         tables.points,
     )
     x, r, _slides = place
+    touched, _results, _near = lists
     a, b, d = matrix
     many, size = nodes.size, 6 * nodes.size
     still, f = np.zeros(x.shape), np.zeros((x.shape[0], 6))
@@ -241,7 +244,7 @@ def stands(tables, level, least, slow, place, lists, matrix):
     _, _, count = _residual(tables, level, place, lists, (still, f), rest)
     sheets_into(bodies, joints, points, loads, level, gaps, x, r, a)
     rollers_into(bodies, b, d)
-    contacts_into(tables, lists[0], count, Motion(x, r, still, still), a, b, d)
+    contacts_into(tables, touched, count, Motion(x, r, still, still), a, b, d)
     ease = twist = 0.0
     for n in range(many):
         for i in range(3):

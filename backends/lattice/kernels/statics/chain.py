@@ -75,7 +75,8 @@ def _gap(joint, one, x, r):
 @njit(cache=True, error_model="numpy")
 def opening(joint, one, x, r):
     """What is between the ends of a joint on body `one` and on its second one [mm]."""
-    return _gap(joint, one, x, r)[2]
+    _, _, gap = _gap(joint, one, x, r)
+    return gap
 
 
 @njit(cache=True, error_model="numpy")
@@ -86,8 +87,9 @@ def follow(tables, links, part, step, before, place, y, gaps):
     turned with the boxes; in the mean, where not all can be. `y` is room to work in.
     """
     bodies, joints, nodes = tables.bodies, tables.joints, tables.nodes
-    moves, x0, r0 = step[0], before[0], before[1]
-    x, r = place[0], place[1]
+    moves, _slides = step
+    x0, r0, _s0 = before
+    x, r, _s = place
     _go(bodies, nodes, part, step, before, place)
     y[:] = 0.0
     for j in range(joints.size):
@@ -106,7 +108,7 @@ def follow(tables, links, part, step, before, place, y, gaps):
         wanted = add(gap, scale(part, sub(opens, cross(turn, gap))))
         wanted = rotate(exp_rotation(scale(part, turn)), wanted)
         gaps[j, 0], gaps[j, 1], gaps[j, 2] = wanted
-        miss = sub(wanted, _gap(joints[j], one, x, r)[2])
+        miss = sub(wanted, opening(joints[j], one, x, r))
         for i in range(3):
             if na >= 0:
                 y[6 * na + i] -= miss[i]

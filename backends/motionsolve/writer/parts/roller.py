@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from mdlgen.altair import refinement
 from mdlgen.altair.rims import rim_facets
 from mdlgen.backends.motionsolve.writer.axes import cosines
 from mdlgen.backends.motionsolve.writer.body import add_body
@@ -18,10 +19,10 @@ from mdlgen.backends.motionsolve.writer.rows import (
     Bushing,
     BushingGroup,
     Clutch,
-    Cylinder,
     Deck,
     Joint,
     Motion,
+    Solid,
 )
 from mdlgen.backends.motionsolve.writer.units import number, per_thousand, thousandfold, triples
 from mdlgen.model.tables import ArmPart, Floats, Model, OneWay, Press, RollerPart
@@ -141,16 +142,11 @@ def _add_cylinder(deck: Deck, model: Model, roller: RollerPart, place: Floats) -
     marker = deck.marker(
         f"{name}_center_marker", f"{label} - Center Marker", body_id(roller.body), start, axes
     )
-    deck.cylinders.append(
-        Cylinder(
-            name=name,
-            label=label,
-            id=graphic_id(roller.body),
-            marker=marker,
-            radius=number(roller.radius),
-            length=number(roller.width),
-        )
-    )
+    radius = number(roller.radius)
+    sizes = {"top_radius": radius, "bottom_radius": radius, "length": number(roller.width)}
+    sizes["ends_type"] = "CLOSED"
+    id, level = graphic_id(roller.body), refinement.CYLINDER
+    deck.solids.append(Solid(name, label, id, marker, "Frustum", sizes, level))
 
 
 KIND = _Rollers()
