@@ -8,12 +8,14 @@ from pathlib import Path
 
 import pytest
 
+import mdlgen
 from mdlgen.bench.case import BenchCase, Finding, Run
 from mdlgen.bench.fits import EQUAL_ERROR, fits, wall_at
 from mdlgen.bench.row import Outcome, rows
 from mdlgen.bench.run import Bench, bench
 from mdlgen.bench.suites import SUITES, cases, stability
 from mdlgen.bench.suites.elastica import drop
+from mdlgen.bench.suites.ladder import piles
 from mdlgen.bench.table import markdown
 
 STRIP = Run("cantilever", ("sheets.note.boxes=[1,10]",))
@@ -66,6 +68,29 @@ def test_growth_is_of_the_whole_wall_time():
 def test_the_quick_ladder_has_a_rung_of_each_name():
     made = cases("stability", "exudyn", ("exudyn",), quick=True)
     assert {case.name for case in made} == set(stability.QUICK)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "pile of masses 1 : 100, light on heavy: laid down",
+        "sheets struck one by another, masses 100 : 1",
+        "step 1e-05 s: pile in free fall, struck",
+        "thrown along a pile: middle one of 5",
+    ],
+)
+def test_a_rung_of_a_pile_is_right_and_is_wrong_where_its_motion_is(name):
+    """Each measure has an independent truth: velocities that are off by 2 % are seen."""
+    rung = next(rung for rung in piles.rungs() if rung.name == name)
+    result = mdlgen.solve(rung.run.model(), "lattice")
+    assert result.ok, result.status
+
+    def wrong(tested):
+        return [f.quantity for f in rung.measure(tested, None) if f.error > (f.tolerance or 0.0)]
+
+    assert not wrong(result)
+    stretched = result.position[0] + 1.02 * (result.position - result.position[0])
+    assert wrong(replace(result, position=stretched, velocity=1.02 * result.velocity))
 
 
 def test_a_reference_is_kept_and_used_again(tmp_path):

@@ -7,7 +7,7 @@ The rungs of each kind stand in a file of their own, with their oracles.
 from __future__ import annotations
 
 from mdlgen.bench.case import BenchCase
-from mdlgen.bench.suites.ladder import blocks, machines, strips
+from mdlgen.bench.suites.ladder import blocks, machines, piles, strips
 
 # One rung of each kind that a slow solver ends within a few seconds.
 QUICK = (
@@ -22,10 +22,12 @@ QUICK = (
     "roller at 100000 rad/s: block on it",
     "overlap 10 thicknesses: rigid note",
     "world rotated: static strip",
+    "pile of 10: laid down",
+    "step 0.0001 s: thrown along a pile",
 )
 
 
 def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
     """All rungs, or one of each kind."""
-    rungs = [*strips.rungs(reference), *blocks.rungs(), *machines.rungs(reference)]
+    rungs = [*strips.rungs(reference), *blocks.rungs(), *machines.rungs(reference), *piles.rungs()]
     return [rung for rung in rungs if rung.name in QUICK] if quick else rungs
