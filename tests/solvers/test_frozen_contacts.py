@@ -1,4 +1,4 @@
-"""Contact points of an iteration whose geometry is frozen: forces, what these lose, and the convex problem."""
+"""Contact points of an iteration, their geometry frozen: forces, what these lose, the convex problem."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from mdlgen.backends.lattice.integrate.work import arrays, control
 from mdlgen.backends.lattice.kernels import forces
 from mdlgen.backends.lattice.kernels.contact import between
 from mdlgen.backends.lattice.kernels.contact.condensed import INSIDE
-from mdlgen.backends.lattice.kernels.integrate import convex, points, tangent
+from mdlgen.backends.lattice.kernels.integrate import convex, points, points_matrix, tangent
 from mdlgen.backends.lattice.kernels.state import DIRECTION, MADE_FOR, WHERE, Control, Workspace
 from mdlgen.model.lower import lower
 from mdlgen.spec.load import loads
@@ -94,14 +94,16 @@ def test_the_forces_of_the_points_are_those_of_the_laws(case: Case) -> None:
     work = case.work
     points.gather(work, case.counts, H, False)
     many = int(work.frozen.many[0])
-    assert {points.PRESSES, points.DAMPS, points.TURNS} == set(work.frozen.points[:many, points.KIND])
+    assert {points.A_PRESSURE, points.A_DAMPER, points.A_COUPLE} == set(
+        work.frozen.points[:many, points.KIND]
+    )
     work.frozen.points[:many, points.START : points.START + 3] = 0.0
     g, gb = np.zeros(work.matrix.res.shape), np.zeros(work.matrix.resb.shape)
     points.pull(work, 1.0, 0.0, g, gb)
     expected = case.pressing[work.tables.nodes].ravel()
     # what damps in a nip is counted by its change alone
     rows = work.frozen.points[:many]
-    damping = np.abs(rows[rows[:, points.KIND] == points.DAMPS, points.SPRING]).sum()
+    damping = np.abs(rows[rows[:, points.KIND] == points.A_DAMPER, points.SPRING]).sum()
     assert -g == pytest.approx(expected, abs=1e-9 * np.abs(expected).max() + 2.0 * damping)
     assert np.abs(expected).max() > 0.1
 
@@ -113,7 +115,7 @@ def test_the_matrix_of_the_points_is_what_their_forces_lose(seed: int, case: Cas
     matrix, nodes = work.matrix, work.tables.nodes
     matrix.band[:] = matrix.border[:] = matrix.corner[:] = 0.0
     points.gather(work, case.counts, H, False)
-    points.points_into(work, H, 0.0)
+    points_matrix.points_into(work, H, 0.0)
     size = 6 * nodes.size
     whole = np.zeros((size + matrix.resb.size,) * 2)
     for n in range(nodes.size):

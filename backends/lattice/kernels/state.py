@@ -108,9 +108,9 @@ NORMAL, SQUARE, ARM_A, ARM_B = 0, 3, 6, 9
 DEPTH, STIFFNESS, SPRING, GROWTH, RATE, OVER, BETA = 12, 13, 14, 15, 16, 17, 18
 MU_STATIC, MU_DYNAMIC, STICTION, SLIDING, PRESSING = 19, 20, 21, 22, 23
 NOW, ALONG, START, KIND, POINT = 24, 27, 30, 33, 34
-# What a point does: it presses and rubs; it damps alone; it is a couple about its normal, of SPRING at most,
-# of a rolling speed of GROWTH times the angular velocity.
-PRESSES, DAMPS, TURNS = 0.0, 1.0, 2.0
+# What a point is: one that presses and rubs; a damper alone; a couple about its normal, of SPRING at most, of
+# a rolling speed of GROWTH times the angular velocity.
+A_PRESSURE, A_DAMPER, A_COUPLE = 0.0, 1.0, 2.0
 
 
 class Free(NamedTuple):

@@ -19,10 +19,10 @@ from mdlgen.backends.lattice.kernels.integrate.change import greatest
 from mdlgen.backends.lattice.kernels.integrate.points import (
     gather,
     look_along,
-    points_into,
     pull,
     slope,
 )
+from mdlgen.backends.lattice.kernels.integrate.points_matrix import points_into
 from mdlgen.backends.lattice.kernels.integrate.tangent import (
     in_box_axes,
     joints_into,

@@ -52,7 +52,7 @@ from mdlgen.backends.lattice.kernels.state import (
 from mdlgen.mechanics.arm import AXIAL, DAMPING, speeding
 from mdlgen.mechanics.crossing import deepest
 from mdlgen.mechanics.curve import overstretched
-from mdlgen.mechanics.driven import clutch, prescribed
+from mdlgen.mechanics.driven import SENSE, clutch, prescribed
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.pair import BOX_BOX, remember
 from mdlgen.mechanics.point import DEPTH, POINTS, PRESSING
@@ -157,7 +157,7 @@ def _account(bodies, mid, state, t, dt, energies):
     f, ub, vb = mid.forces, state.ub, state.vb
     lost, driving = mid.totals[LOST], mid.totals[POWER]
     for b in range(bodies.size - 1):
-        if bodies[b].clutch[0] != 0.0:
+        if bodies[b].clutch[SENSE] != 0.0:
             spin, before = ub[bodies[b].spin], vb[bodies[b].spin]
             torque, _, shaft = clutch(bodies[b], spin, t + 0.5 * dt)
             lost += torque * (shaft - spin)

@@ -16,14 +16,14 @@ from __future__ import annotations
 import math
 
 from mdlgen.backends.lattice.kernels.contact.between import MOVED
-from mdlgen.backends.lattice.kernels.contact.slopes import Numbers, core, outer, steepness
-from mdlgen.backends.lattice.kernels.integrate.tangent import blocks
 from mdlgen.backends.lattice.kernels.state import (
+    A_COUPLE,
+    A_DAMPER,
+    A_PRESSURE,
     ALONG,
     ARM_A,
     ARM_B,
     BETA,
-    DAMPS,
     DEPTH,
     GROWTH,
     KIND,
@@ -32,7 +32,6 @@ from mdlgen.backends.lattice.kernels.state import (
     NORMAL,
     NOW,
     OVER,
-    PRESSES,
     PRESSING,
     RATE,
     SLIDING,
@@ -41,7 +40,6 @@ from mdlgen.backends.lattice.kernels.state import (
     START,
     STICTION,
     STIFFNESS,
-    TURNS,
 )
 from mdlgen.mechanics import point as law_point
 from mdlgen.mechanics.arm import turn_of, way_of
@@ -54,11 +52,10 @@ from mdlgen.program.kernel import BORROWS, njit
 
 # How far two faces may be open at a corner that may close in an iteration [mm].
 REACH = 0.003
-ZERO = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _law(q, v, h):
+def law_at(q, v, h):
     """Elastic force of a point and its growth with depth, its normal force, rate and slip velocity, at the
     velocity v of the first body against the second."""
     n, square = three_from(q, NORMAL), three_from(q, SQUARE)
@@ -77,13 +74,13 @@ def _law(q, v, h):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _force(q, v, h):
-    """Force of a point on the first body at the velocity v; of one that TURNS the couple."""
+    """Force of a point on the first body at the velocity v; of one that A_COUPLE the couple."""
     n = three_from(q, NORMAL)
-    if q[KIND] == DAMPS:
+    if q[KIND] == A_DAMPER:
         return scale(q[SPRING] * q[BETA] * sign_step(-dot(v, n), q[OVER]), n)
-    if q[KIND] == TURNS:
+    if q[KIND] == A_COUPLE:
         return scale(-q[SPRING] * sign_step(q[GROWTH] * dot(v, n), q[OVER]), n)
-    _spring, _growth, normal, _rate, slip = _law(q, v, h)
+    _spring, _growth, normal, _rate, slip = law_at(q, v, h)
     if q[PRESSING] <= 0.0:
         return scale(normal, n)
     speed = math.sqrt(dot(slip, slip))
@@ -105,7 +102,7 @@ def _begin(frozen, p, where, normal, a, b):
         q[ARM_A + i], q[ARM_B + i], q[NOW + i], q[ALONG + i] = arm[i], far[i], v[i], 0.0
     q[RATE] = -dot(v, normal)
     q[STIFFNESS] = q[DEPTH] = q[SPRING] = q[GROWTH] = q[PRESSING] = 0.0
-    q[KIND], q[BETA], q[OVER] = PRESSES, 0.0, 1.0
+    q[KIND], q[BETA], q[OVER] = A_PRESSURE, 0.0, 1.0
     q[MU_STATIC] = q[MU_DYNAMIC] = 0.0
     q[STICTION] = q[SLIDING] = 1.0
     frozen.pair[many] = p
@@ -138,7 +135,7 @@ def _of_law(frozen, p, pair, out, h, motion):
             turning = sub(a.w, b.w)
             for i in range(3):
                 q[NOW + i] = turning[i]
-            q[KIND], q[SPRING] = TURNS, out[at + law_point.MOST_COUPLE]
+            q[KIND], q[SPRING] = A_COUPLE, out[at + law_point.MOST_COUPLE]
             q[GROWTH], q[OVER] = out[at + law_point.RADIUS], pair.law[LAW_SMOOTHING]
             _started(q, h)
             continue
@@ -167,7 +164,7 @@ def _of_law(frozen, p, pair, out, h, motion):
         if many < 0:
             return
         q = frozen.points[many]
-        q[KIND], q[SPRING] = DAMPS, spring
+        q[KIND], q[SPRING] = A_DAMPER, spring
         q[BETA], q[OVER] = out[at + law_point.BETA], out[at + law_point.OVER]
         _started(q, h)
 
@@ -196,7 +193,7 @@ def _of_faces(frozen, p, pair, kept, h, motion):
         q[BETA], q[OVER] = law.beta, law.smoothing
         q[MU_STATIC], q[MU_DYNAMIC] = law.mu_static, law.mu_dynamic
         q[STICTION], q[SLIDING] = law.stiction, law.sliding
-        q[PRESSING] = _law(q, three_from(q, NOW), h)[2]
+        q[PRESSING] = law_at(q, three_from(q, NOW), h)[2]
         _started(q, h)
 
 
@@ -236,7 +233,7 @@ def gather(work, counts, h, plates):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)
-def _moves(body, arm, x, sign, direction, index, count):
+def moving(body, arm, x, sign, direction, index, count):
     """The unknowns of a roller or a pressed plate at x that move a contact point, each with the direction of
     its velocity there."""
     if body.slide >= 0:
@@ -255,7 +252,7 @@ def _moves(body, arm, x, sign, direction, index, count):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _turning(bodies, pair, which, axis):
+def turning_of(bodies, pair, which, axis):
     """The unknown of a pair's rollers with a number from 0 to 3, -1: none, and how fast it turns the first
     body against the second about an axis."""
     body, sign = bodies[pair.a if which < 2 else pair.b], 1.0 if which < 2 else -1.0
@@ -271,7 +268,7 @@ def _rate_of(bodies, pair, q, x, change, changeb, matrix):
     """How the velocity of a point changes where velocities of nodes and of the border change."""
     one, two = bodies[pair.a].node, bodies[pair.b].node
     v = (0.0, 0.0, 0.0)
-    if q[KIND] == TURNS:
+    if q[KIND] == A_COUPLE:
         n = three_from(q, NORMAL)
         turning = 0.0
         if one >= 0:
@@ -279,21 +276,21 @@ def _rate_of(bodies, pair, q, x, change, changeb, matrix):
         if two >= 0:
             turning -= dot(three_from(change, 6 * two + 3), n)
         for which in range(4):
-            unknown, part = _turning(bodies, pair, which, n)
+            unknown, part = turning_of(bodies, pair, which, n)
             if unknown >= 0:
                 turning += part * changeb[unknown]
         return scale(turning, n)
     direction, index = matrix.direction, matrix.unknowns
-    arm, far, moving = three_from(q, ARM_A), three_from(q, ARM_B), 0
+    arm, far, many = three_from(q, ARM_A), three_from(q, ARM_B), 0
     if one >= 0:
         v = add(three_from(change, 6 * one), cross(three_from(change, 6 * one + 3), arm))
     else:
-        moving = _moves(bodies[pair.a], arm, vec(x, pair.a), 1.0, direction, index, moving)
+        many = moving(bodies[pair.a], arm, vec(x, pair.a), 1.0, direction, index, many)
     if two >= 0:
         v = sub(v, add(three_from(change, 6 * two), cross(three_from(change, 6 * two + 3), far)))
     else:
-        moving = _moves(bodies[pair.b], far, vec(x, pair.b), -1.0, direction, index, moving)
-    for i in range(moving):
+        many = moving(bodies[pair.b], far, vec(x, pair.b), -1.0, direction, index, many)
+    for i in range(many):
         v = add(v, scale(changeb[index[i]], three_from(direction[i], 0)))
     return v
 
@@ -325,7 +322,7 @@ def pull(work, h, part, g, gb):
             continue
         pair = tables.pairs[frozen.pair[k]]
         one, two = bodies[pair.a].node, bodies[pair.b].node
-        if q[KIND] == TURNS:
+        if q[KIND] == A_COUPLE:
             for i in range(3):
                 if one >= 0:
                     g[6 * one + 3 + i] -= f[i]
@@ -333,26 +330,26 @@ def pull(work, h, part, g, gb):
                     g[6 * two + 3 + i] += f[i]
             n = three_from(q, NORMAL)
             for which in range(4):
-                unknown, part = _turning(bodies, pair, which, n)
+                unknown, part = turning_of(bodies, pair, which, n)
                 if unknown >= 0:
                     gb[unknown] -= part * dot(f, n)
             continue
-        arm, far, moving = three_from(q, ARM_A), three_from(q, ARM_B), 0
+        arm, far, many = three_from(q, ARM_A), three_from(q, ARM_B), 0
         if one >= 0:
             t = cross(arm, f)
             for i in range(3):
                 g[6 * one + i] -= f[i]
                 g[6 * one + 3 + i] -= t[i]
         else:
-            moving = _moves(bodies[pair.a], arm, vec(x, pair.a), 1.0, direction, index, moving)
+            many = moving(bodies[pair.a], arm, vec(x, pair.a), 1.0, direction, index, many)
         if two >= 0:
             t = cross(far, f)
             for i in range(3):
                 g[6 * two + i] += f[i]
                 g[6 * two + 3 + i] += t[i]
         else:
-            moving = _moves(bodies[pair.b], far, vec(x, pair.b), -1.0, direction, index, moving)
-        for i in range(moving):
+            many = moving(bodies[pair.b], far, vec(x, pair.b), -1.0, direction, index, many)
+        for i in range(many):
             gb[index[i]] -= dot(three_from(direction[i], 0), f)
 
 
@@ -367,100 +364,3 @@ def slope(frozen, h, part):
         f = _force(q, add(three_from(q, NOW), scale(part, way)), h)
         total += dot(sub(f, three_from(q, START)), way)
     return -h * total
-
-
-@njit(cache=True, error_model="numpy", **BORROWS)
-def _point_into(bodies, pair, q, x, t, coupled, matrix):
-    """Adds a matrix of the velocity at one point to band, border and corner, and to the couplings."""
-    a, b, d = matrix.band, matrix.border, matrix.corner
-    direction, index = matrix.direction, matrix.unknowns
-    node, other = bodies[pair.a].node, bodies[pair.b].node
-    arm, far, moving = three_from(q, ARM_A), three_from(q, ARM_B), 0
-    if node >= 0:
-        blocks(a, node, 0, 1.0, t, arm, arm, ZERO)
-    else:
-        moving = _moves(bodies[pair.a], arm, vec(x, pair.a), 1.0, direction, index, moving)
-    if other >= 0:
-        blocks(a, other, 0, 1.0, t, far, far, ZERO)
-        if node >= 0:
-            blocks(matrix.couplings.blocks, coupled, 0, -1.0, t, arm, far, ZERO)
-    else:
-        moving = _moves(bodies[pair.b], far, vec(x, pair.b), -1.0, direction, index, moving)
-    for i in range(moving):
-        v = rotate(t, three_from(direction[i], 0))
-        for j in range(moving):
-            d[index[i], index[j]] += dot(v, three_from(direction[j], 0))
-        if node >= 0:
-            torque = cross(arm, v)
-            for l in range(3):
-                b[index[i], 6 * node + l] += v[l]
-                b[index[i], 6 * node + 3 + l] += torque[l]
-
-
-@njit(cache=True, error_model="numpy", **BORROWS)
-def _couple_into(bodies, pair, axis, growth, matrix):
-    """Adds the couple of rolling resistance of a box, or a roller, against a roller or a part that does not
-    turn."""
-    a, b, d = matrix.band, matrix.border, matrix.corner
-    node = bodies[pair.a].node
-    if node >= 0:
-        for c in range(3):
-            for k in range(3):
-                a[node, 3 + c, 3 + k] += growth * axis[c] * axis[k]
-    for one in range(4):
-        i, turning = _turning(bodies, pair, one, axis)
-        if i < 0:
-            continue
-        for two in range(4):
-            j, other = _turning(bodies, pair, two, axis)
-            if j >= 0:
-                d[i, j] += growth * turning * other
-        if node >= 0:
-            for c in range(3):
-                b[i, 6 * node + 3 + c] += growth * turning * axis[c]
-
-
-@njit(cache=True, error_model="numpy", **BORROWS)
-def points_into(work, h, chord):
-    """Adds what the forces of all points lose as velocities grow, times h, to band, border and corner; what
-    couples boxes of two sheets goes to the couplings. `chord`: see slopes.steepness."""
-    tables, frozen, matrix, x = work.tables, work.frozen, work.matrix, work.mid.motion.x
-    bodies, couplings = tables.bodies, matrix.couplings
-    couplings.many[0], last = 0, -1
-    for k in range(frozen.many[0]):
-        q, p = frozen.points[k], frozen.pair[k]
-        pair = tables.pairs[p]
-        node, other = bodies[pair.a].node, bodies[pair.b].node
-        if p != last and node >= 0 and other >= 0:
-            coupled = couplings.many[0]
-            couplings.ends[coupled, 0], couplings.ends[coupled, 1] = node, other
-            couplings.blocks[coupled] = 0.0
-            couplings.many[0] = coupled + 1
-        last = p
-        coupled = couplings.many[0] - 1
-        n = three_from(q, NORMAL)
-        if q[KIND] == TURNS:
-            y = q[GROWTH] * dot(three_from(q, NOW), n) / q[OVER]
-            growth = h * q[SPRING] * q[GROWTH] * steepness(y, q[OVER], chord)
-            _couple_into(bodies, pair, n, growth, matrix)
-        elif q[KIND] == DAMPS:
-            y = -dot(three_from(q, NOW), n) / q[OVER]
-            damping = h * q[SPRING] * q[BETA] * steepness(y, q[OVER], chord)
-            _point_into(bodies, pair, q, x, outer(scale(damping, n), n), coupled, matrix)
-        else:
-            spring, growth, _normal, rate, slip = _law(q, three_from(q, NOW), h)
-            numbers = Numbers(
-                spring,
-                growth,
-                q[PRESSING],
-                rate,
-                q[OVER],
-                q[BETA],
-                q[MU_STATIC],
-                q[MU_DYNAMIC],
-                q[STICTION],
-                q[SLIDING],
-                True,
-            )
-            t, _, _ = core(numbers, n, three_from(q, SQUARE), slip, h, chord, False)
-            _point_into(bodies, pair, q, x, t, coupled, matrix)

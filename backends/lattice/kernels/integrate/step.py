@@ -44,7 +44,8 @@ from mdlgen.backends.lattice.kernels.integrate.change import fastest, greatest, 
 from mdlgen.backends.lattice.kernels.integrate.convex import solve_convex
 from mdlgen.backends.lattice.kernels.integrate.mixing import mix
 from mdlgen.backends.lattice.kernels.integrate.momentum import keep
-from mdlgen.backends.lattice.kernels.integrate.points import gather, points_into
+from mdlgen.backends.lattice.kernels.integrate.points import gather
+from mdlgen.backends.lattice.kernels.integrate.points_matrix import points_into
 from mdlgen.backends.lattice.kernels.integrate.tangent import in_box_axes, joints_into, masses, turn_nodes
 from mdlgen.backends.lattice.kernels.linear.band import empty as no_band
 from mdlgen.backends.lattice.kernels.linear.band import factor, solve

@@ -1,0 +1,127 @@
+"""What the points of an iteration with frozen contacts lose as velocities grow: their part of its matrix."""
+
+from __future__ import annotations
+
+from mdlgen.backends.lattice.kernels.contact.slopes import Numbers, core, outer, steepness
+from mdlgen.backends.lattice.kernels.integrate.points import law_at, moving, turning_of
+from mdlgen.backends.lattice.kernels.integrate.tangent import blocks
+from mdlgen.backends.lattice.kernels.state import (
+    A_COUPLE,
+    A_DAMPER,
+    ARM_A,
+    ARM_B,
+    BETA,
+    GROWTH,
+    KIND,
+    MU_DYNAMIC,
+    MU_STATIC,
+    NORMAL,
+    NOW,
+    OVER,
+    PRESSING,
+    SLIDING,
+    SPRING,
+    SQUARE,
+    STICTION,
+)
+from mdlgen.mechanics.vector import cross, dot, rotate, scale, three_from, vec
+from mdlgen.program.kernel import BORROWS, njit
+
+ZERO = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _point_into(bodies, pair, q, x, t, coupled, matrix):
+    """Adds a matrix of the velocity at one point to band, border and corner, and to the couplings."""
+    a, b, d = matrix.band, matrix.border, matrix.corner
+    direction, index = matrix.direction, matrix.unknowns
+    node, other = bodies[pair.a].node, bodies[pair.b].node
+    arm, far, many = three_from(q, ARM_A), three_from(q, ARM_B), 0
+    if node >= 0:
+        blocks(a, node, 0, 1.0, t, arm, arm, ZERO)
+    else:
+        many = moving(bodies[pair.a], arm, vec(x, pair.a), 1.0, direction, index, many)
+    if other >= 0:
+        blocks(a, other, 0, 1.0, t, far, far, ZERO)
+        if node >= 0:
+            blocks(matrix.couplings.blocks, coupled, 0, -1.0, t, arm, far, ZERO)
+    else:
+        many = moving(bodies[pair.b], far, vec(x, pair.b), -1.0, direction, index, many)
+    for i in range(many):
+        v = rotate(t, three_from(direction[i], 0))
+        for j in range(many):
+            d[index[i], index[j]] += dot(v, three_from(direction[j], 0))
+        if node >= 0:
+            torque = cross(arm, v)
+            for l in range(3):
+                b[index[i], 6 * node + l] += v[l]
+                b[index[i], 6 * node + 3 + l] += torque[l]
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _couple_into(bodies, pair, axis, growth, matrix):
+    """Adds the couple of rolling resistance of a box, or a roller, against a roller or a part that does not
+    turn."""
+    a, b, d = matrix.band, matrix.border, matrix.corner
+    node = bodies[pair.a].node
+    if node >= 0:
+        for c in range(3):
+            for k in range(3):
+                a[node, 3 + c, 3 + k] += growth * axis[c] * axis[k]
+    for one in range(4):
+        i, turning = turning_of(bodies, pair, one, axis)
+        if i < 0:
+            continue
+        for two in range(4):
+            j, other = turning_of(bodies, pair, two, axis)
+            if j >= 0:
+                d[i, j] += growth * turning * other
+        if node >= 0:
+            for c in range(3):
+                b[i, 6 * node + 3 + c] += growth * turning * axis[c]
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def points_into(work, h, chord):
+    """Adds what the forces of all points lose as velocities grow, times h, to band, border and corner; what
+    couples boxes of two sheets goes to the couplings. `chord`: see slopes.steepness."""
+    tables, frozen, matrix, x = work.tables, work.frozen, work.matrix, work.mid.motion.x
+    bodies, couplings = tables.bodies, matrix.couplings
+    couplings.many[0], last = 0, -1
+    for k in range(frozen.many[0]):
+        q, p = frozen.points[k], frozen.pair[k]
+        pair = tables.pairs[p]
+        node, other = bodies[pair.a].node, bodies[pair.b].node
+        if p != last and node >= 0 and other >= 0:
+            coupled = couplings.many[0]
+            couplings.ends[coupled, 0], couplings.ends[coupled, 1] = node, other
+            couplings.blocks[coupled] = 0.0
+            couplings.many[0] = coupled + 1
+        last = p
+        coupled = couplings.many[0] - 1
+        n = three_from(q, NORMAL)
+        if q[KIND] == A_COUPLE:
+            y = q[GROWTH] * dot(three_from(q, NOW), n) / q[OVER]
+            growth = h * q[SPRING] * q[GROWTH] * steepness(y, q[OVER], chord)
+            _couple_into(bodies, pair, n, growth, matrix)
+        elif q[KIND] == A_DAMPER:
+            y = -dot(three_from(q, NOW), n) / q[OVER]
+            damping = h * q[SPRING] * q[BETA] * steepness(y, q[OVER], chord)
+            _point_into(bodies, pair, q, x, outer(scale(damping, n), n), coupled, matrix)
+        else:
+            spring, growth, _normal, rate, slip = law_at(q, three_from(q, NOW), h)
+            numbers = Numbers(
+                spring,
+                growth,
+                q[PRESSING],
+                rate,
+                q[OVER],
+                q[BETA],
+                q[MU_STATIC],
+                q[MU_DYNAMIC],
+                q[STICTION],
+                q[SLIDING],
+                True,
+            )
+            t, _, _ = core(numbers, n, three_from(q, SQUARE), slip, h, chord, False)
+            _point_into(bodies, pair, q, x, t, coupled, matrix)
