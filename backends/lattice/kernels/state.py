@@ -135,6 +135,7 @@ class Workspace(NamedTuple):
     bounds: Bounds
     search: Any  # lattice.search.Search
     damped: Damped
+    pool: Any  # parallel.Pool
 
 
 class History(NamedTuple):

@@ -51,10 +51,10 @@ from mdlgen.backends.lattice.kernels.integrate.tangent import (
     rollers_into,
 )
 from mdlgen.backends.lattice.kernels.linear.band import empty as no_band
-from mdlgen.backends.lattice.kernels.linear.band import factor, solve
-from mdlgen.backends.lattice.kernels.linear.bordered import eliminate
+from mdlgen.backends.lattice.kernels.linear.band import solve
 from mdlgen.backends.lattice.kernels.linear.coupled import couplings, couplings_in_box_axes, solve_coupled
 from mdlgen.backends.lattice.kernels.linear.dense import copy
+from mdlgen.backends.lattice.kernels.linear.sheets import eliminate_sheets, factor_sheets
 from mdlgen.backends.lattice.kernels.linear.two_colour import colour
 from mdlgen.backends.lattice.kernels.state import (
     CALM,
@@ -198,10 +198,10 @@ def _make_factor(work, t, h, lag, where, count, chord):
         couplings_in_box_axes(tables.nodes, motion.r, matrix.couplings)
     in_box_axes(tables.nodes, motion.r, a, b, matrix.offsets)
     forget(work.condensed)
-    if not factor(a) or (where == INSIDE and not eliminate(a, b, d, matrix.eliminated, matrix.schur)):
+    if not factor_sheets(work.pool, matrix) or (where == INSIDE and not eliminate_sheets(work.pool, matrix)):
         return False
     if where == INSIDE:
-        colour(matrix.couplings, b, d, matrix.eliminated)
+        colour(matrix)
     return True
 
 
@@ -288,7 +288,7 @@ def midpoint(work, t, dt, tolerance, control):
         copy(condensed.axes, mid.motion.r)
         _turn(nodes, condensed.axes, res, True)
         if where == INSIDE:
-            solve_coupled(a, matrix.border, matrix.eliminated, matrix.schur, matrix.couplings, res, resb)
+            solve_coupled(work.pool, matrix)
         else:
             solve(a, res)
             columns(a, condensed, m)

@@ -15,6 +15,7 @@ import numpy as np
 
 from mdlgen.backends.lattice.kernels.linear.bordered import solve_bordered
 from mdlgen.backends.lattice.kernels.linear.dense import copy
+from mdlgen.backends.lattice.kernels.linear.sheets import solve_sheets
 from mdlgen.backends.lattice.kernels.linear.two_colour import Colouring, colouring, solve_coloured
 from mdlgen.mechanics.vector import mat, matmul, nine, transpose_matmul
 from mdlgen.program.kernel import njit
@@ -44,7 +45,7 @@ def couplings(pairs: int, label: np.ndarray, border: int) -> Couplings:
         np.zeros((pairs, 2), np.int64),
         np.zeros((pairs, 6, 6)),
         np.zeros((5, 6 * nodes + border)),
-        colouring(label, border),
+        colouring(label, border, pairs),
     )
 
 
@@ -89,20 +90,21 @@ def _couple(couplings, p, q):
 
 
 @njit(cache=True, error_model="numpy")
-def solve_coupled(a, b, y, corner, couplings, res, resb):
-    """Solves band, border and couplings in place, as border.solve_bordered does without the last."""
+def solve_coupled(pool, matrix):
+    """Solves band, border and couplings in place, as bordered.solve_bordered does without the last."""
+    couplings, res, resb = matrix.couplings, matrix.res, matrix.resb
     if couplings.many[0] == 0:
-        solve_bordered(a, b, y, corner, res, resb)
+        solve_bordered(matrix.band, matrix.border, matrix.eliminated, matrix.schur, res, resb)
         return
     if couplings.colouring.found[0] == 1:
-        solve_coloured(a, b, y, couplings, res, resb, MOST_ITERATIONS, LEFT)
+        solve_coloured(pool, matrix, MOST_ITERATIONS, LEFT)
         return
     many = res.size
     r, z, p, own, q = couplings.room
     copy(r[:many], res)
     copy(r[many:], resb)
     copy(z, r)
-    solve_bordered(a, b, y, corner, z[:many], z[many:])
+    solve_sheets(pool, matrix)
     copy(p, z)
     copy(own, r)  # what band and border make of p
     res[:] = 0.0
@@ -125,7 +127,7 @@ def solve_coupled(a, b, y, corner, couplings, res, resb):
         for i in range(resb.size):
             resb[i] += part * p[many + i]
         copy(z, r)
-        solve_bordered(a, b, y, corner, z[:many], z[many:])
+        solve_sheets(pool, matrix)
         after = _dot(r, z)
         turn, left = after / left, after
         for i in range(r.size):

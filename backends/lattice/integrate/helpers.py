@@ -1,0 +1,57 @@
+"""Threads that take parts of the jobs of one pass, for as long as it lasts (see kernels.parallel)."""
+
+from __future__ import annotations
+
+import time
+from threading import Event, Thread
+from typing import Any
+
+from mdlgen.backends.lattice.kernels.parallel import CLOSED, HELPERS
+from mdlgen.backends.lattice.kernels.state import Workspace
+
+# How often a helper looks for a part before it sleeps (some tens of microseconds), and how long it sleeps [s]:
+# twice as long each time that it found none. One that sleeps holds nobody up: the others take its parts.
+LOOKS, SHORTEST, LONGEST = 10_000, 2e-5, 5e-4
+
+
+class Helpers:
+    """`threads` - 1 of them, for the body of a `with` statement, however that ends."""
+
+    def __init__(self, work: Workspace, threads: int):
+        self._work, self._words = work, work.pool.words
+        self._closed = Event()
+        self._threads = [
+            Thread(target=self._help, name=f"helper {k}", daemon=True) for k in range(1, threads)
+        ]
+
+    def _help(self) -> None:
+        from mdlgen.backends.lattice.kernels import entries
+
+        sleep = SHORTEST
+        while not self._closed.is_set():
+            if entries.help(self._work, LOOKS):
+                sleep = SHORTEST
+            else:
+                time.sleep(sleep)
+                sleep = min(2.0 * sleep, LONGEST)
+
+    def __enter__(self) -> Helpers:
+        self._words[HELPERS] = len(self._threads)
+        try:
+            for thread in self._threads:
+                thread.start()
+        except RuntimeError:  # the system gives no more: those that there are do
+            pass
+        except BaseException:
+            self.__exit__()
+            raise
+        return self
+
+    def __exit__(self, *_: Any) -> None:
+        # a job that an error cut short goes no further; a part that is begun ends
+        self._closed.set()
+        self._words[CLOSED] = 1
+        for thread in self._threads:
+            if thread.is_alive():
+                thread.join()
+        self._words[HELPERS] = 0
