@@ -84,7 +84,8 @@ def test_every_other_sheet_is_solved_with_the_rest_eliminated(seed: int) -> None
     whole, pool, matrix = equations([(0, 1), (1, 2)], seed)
     colouring = matrix.couplings.colouring
     assert colouring.found[0] == 1 and colouring.of.tolist() == [0, 1, 0]
-    assert colouring.begins.tolist() == [0, 2, 6, 8] and colouring.own[:8].tolist() == [0, 1, 0, 1, 2, 3, 2, 3]
+    assert colouring.begins.tolist() == [0, 2, 6, 8]
+    assert colouring.own[:8].tolist() == [0, 1, 0, 1, 2, 3, 2, 3]
     right = np.random.default_rng(seed + 10).normal(size=len(whole))
     matrix.res[:], matrix.resb[:] = right[:-BORDER], right[-BORDER:]
     two_colour.solve_coloured(pool, matrix, 200, 1e-26)

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import time
 from threading import Event, Thread
+from time import sleep
 from typing import Any
 
 from mdlgen.backends.lattice.kernels.parallel import CLOSED, HELPERS
 from mdlgen.backends.lattice.kernels.state import Workspace
 
-# How often a helper looks for a part before it sleeps (some tens of microseconds), and how long it sleeps [s]:
-# twice as long each time that it found none. One that sleeps holds nobody up: the others take its parts.
+# How often a helper looks for a part before it sleeps (some tens of microseconds), and how long it sleeps
+# [s]: twice as long each time that it found none. One that sleeps holds nobody up: others take its parts.
 LOOKS, SHORTEST, LONGEST = 10_000, 2e-5, 5e-4
 
 
@@ -27,13 +27,13 @@ class Helpers:
     def _help(self) -> None:
         from mdlgen.backends.lattice.kernels import entries
 
-        sleep = SHORTEST
+        time = SHORTEST
         while not self._closed.is_set():
             if entries.help(self._work, LOOKS):
-                sleep = SHORTEST
+                time = SHORTEST
             else:
-                time.sleep(sleep)
-                sleep = min(2.0 * sleep, LONGEST)
+                sleep(time)
+                time = min(2.0 * time, LONGEST)
 
     def __enter__(self) -> Helpers:
         self._words[HELPERS] = len(self._threads)

@@ -47,13 +47,15 @@ Progress = Callable[[float, float, int, int], None]
 
 class Watch(NamedTuple):
     """Who follows a pass: what is called as it goes, what keeps it and by which number, and what stops it
-    where it goes on at the same time as another one; one of the two is hidden."""
+    where it goes on at the same time as another one; one of the two is hidden. And how many threads share
+    the work of its steps."""
 
     progress: Progress | None = None
     keep: Checkpointer | None = None
     number: int = 0
     stop: Event | None = None
     hidden: bool = False
+    threads: int = 1
 
     def beside(self, stop: Event) -> Watch:
         """Of a pass that goes on beside another one, which is the one that reports."""
@@ -117,17 +119,15 @@ def one_pass(
     miss: float = 0.0,
     made: float = 0.0,
     anew: bool = False,
-    threads: int = 1,
 ) -> Result:
     """One run at a step, or the next smaller one that outputs fall on; `miss`, `made`: see run.MISS and
-    run.MADE, 0 for any; `anew`: a new factor for each step; `threads` share the work of its
-    steps. Raises Stopped where `watch` says so."""
+    run.MADE, 0 for any; `anew`: a new factor for each step. Raises Stopped where `watch` says so."""
     from mdlgen.backends.lattice.kernels import entries
     from mdlgen.backends.lattice.kernels.integrate import integrate
 
     run = model.run
     outputs, each, dt = division(model, wanted)
-    progress, keep, number, stop, hidden = watch
+    progress, keep, number, stop, hidden, threads = watch
     begun = clock.perf_counter()
     work = arrays(model, system)
     state = work.state
