@@ -34,8 +34,8 @@ class Run(Strict):
     )
     threads: Annotated[int, Field(ge=1)] = Field(
         default=1,
-        description="threads that share the work of each step of several sheets, at most one for each processor; "
-        "the result is the same to the last bit; sweeps take 1 (lattice)",
+        description="threads that share the work of each step of several sheets, at most one for each "
+        "processor; the result is the same to the last bit; sweeps take 1 (lattice)",
     )
     margin: PositiveLength = Field(
         default=default("5 mm"),

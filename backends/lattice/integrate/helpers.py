@@ -11,7 +11,7 @@ from mdlgen.backends.lattice.kernels.state import Workspace
 
 # How often a helper looks for a part before it sleeps (some tens of microseconds), and how long it sleeps
 # [s]: twice as long each time that it found none. One that sleeps holds nobody up: others take its parts.
-LOOKS, SHORTEST, LONGEST = 10_000, 2e-5, 5e-4
+LOOKS, SHORTEST, LONGEST = 10_000, 2e-5, 2e-4
 
 
 class Helpers:

@@ -57,5 +57,8 @@ def contacts(tables, motion, mid):
 PROGRAM = Program(
     Path(__file__).resolve().parents[1] / "lattice.program",
     (LAWS, "mdlgen.backends.lattice.kernels"),
-    (run, help, ledger, equilibrium, stands, look, remember, overstretched, joint_forces, contacts, set_thickness),
+    (
+        *(run, help, ledger, equilibrium, stands, look, remember, overstretched, joint_forces, contacts),
+        set_thickness,
+    ),
 )

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from mdlgen.backends.lattice.kernels.linear.coupled import axes_part
 from mdlgen.backends.lattice.kernels.linear.sheets import eliminate_part, factor_part, solve_part
 from mdlgen.backends.lattice.kernels.linear.two_colour import part_of
 from mdlgen.backends.lattice.kernels.parallel import (
+    AXES,
     ELIMINATE,
     FACTOR,
     KIND,
@@ -19,7 +21,9 @@ from mdlgen.program.kernel import BORROWS, njit
 def do_part(work, kind, part):
     """Does one part of a job."""
     pool, matrix = work.pool, work.matrix
-    if kind == FACTOR:
+    if kind == AXES:
+        axes_part(work.tables.nodes, work.mid.motion.r, matrix.couplings, part)
+    elif kind == FACTOR:
         factor_part(pool, matrix, part)
     elif kind == ELIMINATE:
         eliminate_part(pool, matrix, part)

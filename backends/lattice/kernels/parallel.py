@@ -2,29 +2,32 @@
 
 What the thread of a run would do in a loop over sheets, pairs or rows it offers as a job:
 
-    begin(pool, KIND, many)
-    part = take(pool)
+    begin(work.pool, KIND, many)
+    part = take(work.pool)
     while part >= 0:
-        do_it(..., part)
-        part = take(pool)
-    finish(pool, many)
+        do_it(work, part)
+        part = take(work.pool)
+    finish(work.pool, many)
 
-That is `run_parts`, written out, since a kernel can be given no function. Each helper thread waits in
-`jobs.help` and takes parts of the same job, which `jobs.do_part` does by its kind. With no helper this is the
-loop alone, from the last part to the first.
+A kernel can be given no function, so the loop stands where the job is begun. Each helper thread waits in
+`jobs.help` and takes parts of the same job, which `jobs.do_part` does by its kind: a new job is a KIND here,
+a kernel for one part of it, such a loop, and a branch in `do_part`. With no helper this is the loop alone,
+from the last part to the first.
 
 Rules for what is a part, by which the bits are the same whoever takes it, and nobody waits for ever:
 
 - It writes where no other part of the job reads or writes. What several parts add up to (forces on a body, a
   dot product, a count) they leave in rows of their own, and the thread of the run adds these in their order
   after `finish`.
-- It is one kernel, called by the loop above and by `do_part`: two copies of a loop may be rounded in two ways
-  where it is compiled with `reassoc`. Such a loop stands in a function of its own that is not opened.
+- It is one kernel, called by the loop and by `do_part`. Where it is small it may be opened in both, and two
+  copies of a loop may be rounded in two ways if it is compiled with `reassoc` or `contract`. So it has
+  neither, or is a large function of its own as band.solve is.
 - It BORROWS its arrays: what makes arrays can fail, and the job would never end.
 - All it reads is reached from the Workspace, or stands in `pool.given`, which is written before `begin`.
 - It begins no job itself.
 
-A part is worth a job where it takes some microseconds; a job costs one or two.
+A job costs one or two microseconds: it is worth that from some ten on. Of many small items, as pairs, a
+part is a range of them, CHUNK in each: see `chunks` and `items_of`.
 """
 
 from __future__ import annotations
@@ -36,14 +39,15 @@ import numpy as np
 from mdlgen.program.kernel import BORROWS, intrinsic, njit
 
 # Kinds of jobs, see jobs.do_part.
-FACTOR, ELIMINATE, SOLVE, FIRST, BACK, ACROSS, SPLIT, STEP, TURN = range(9)
+FACTOR, ELIMINATE, SOLVE, FIRST, BACK, ACROSS, SPLIT, STEP, TURN, AXES = range(10)
 
-# Words of a pool. Each that several threads write has a line of the processor's cache for itself: the number
-# of the job, times MOST, and how many of its parts are left to take; how many parts helpers have done. Then
-# how many helpers there are, whether they are to end, the kind of the job, its number, and how many parts the
-# thread of the run took, or with no helper may still take.
-TICKET, DONE, HELPERS, CLOSED, KIND, NUMBER, OWN, WORDS = 0, 16, 32, 33, 34, 35, 36, 48
+# Words of a pool, in lines of the processor's cache by who writes them: the number of the job, times MOST,
+# and how many of its parts are left to take, with its kind; how many parts helpers have done; of the thread
+# of the run how many helpers there are, the number of the job, and how many parts it took itself, or with no
+# helper may still take; whether helpers are to end.
+TICKET, KIND, DONE, HELPERS, NUMBER, OWN, CLOSED, WORDS = 0, 1, 16, 32, 33, 34, 48, 64
 MOST = 1 << 20  # parts of a job
+CHUNK = 64  # items of a part, where these are small
 
 
 class Pool(NamedTuple):
@@ -168,6 +172,18 @@ def finish(pool, many):
     if words[HELPERS] > 0:
         while _load(words, DONE) + words[OWN] < many:
             pass
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def chunks(items):
+    """How many parts so many small items make."""
+    return (items + CHUNK - 1) // CHUNK
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def items_of(part, items):
+    """The first of the items of a part, and the first behind them."""
+    return part * CHUNK, min(items, (part + 1) * CHUNK)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)

@@ -195,7 +195,7 @@ def _make_factor(work, t, h, lag, where, count, chord):
     rollers_into(tables.bodies, h, t, ub, b, d)
     if where != APART:
         contacts_into(tables, h, work.mid, count, chord, where == PLANES, matrix)
-        couplings_in_box_axes(tables.nodes, motion.r, matrix.couplings)
+        couplings_in_box_axes(work.pool, tables.nodes, motion.r, matrix.couplings)
     in_box_axes(tables.nodes, motion.r, a, b, matrix.offsets)
     forget(work.condensed)
     if not factor_sheets(work.pool, matrix) or (where == INSIDE and not eliminate_sheets(work.pool, matrix)):

@@ -17,8 +17,9 @@ from mdlgen.backends.lattice.kernels.linear.bordered import solve_bordered
 from mdlgen.backends.lattice.kernels.linear.dense import copy
 from mdlgen.backends.lattice.kernels.linear.sheets import solve_sheets
 from mdlgen.backends.lattice.kernels.linear.two_colour import Colouring, colouring, solve_coloured
-from mdlgen.mechanics.vector import mat, matmul, nine, transpose_matmul
-from mdlgen.program.kernel import njit
+from mdlgen.backends.lattice.kernels.parallel import AXES, begin, chunks, finish, items_of, take
+from mdlgen.mechanics.vector import mat, matmul, transpose_matmul
+from mdlgen.program.kernel import BORROWS, njit
 
 MOST_ITERATIONS = 200
 # What may be left of the square of the residual, measured with the preconditioner: an iteration of Newton's
@@ -49,22 +50,35 @@ def couplings(pairs: int, label: np.ndarray, border: int) -> Couplings:
     )
 
 
-@njit(cache=True, error_model="numpy")
-def couplings_in_box_axes(nodes, r, couplings):
-    """Turns the blocks from global axes to those of their boxes."""
-    part = np.empty(9)
-    for k in range(couplings.many[0]):
+@njit(cache=True, error_model="numpy", **BORROWS)
+def axes_part(nodes, r, couplings, part):
+    """Turns the blocks of some couplings."""
+    low, high = items_of(part, couplings.many[0])
+    for k in range(low, high):
         one, two = mat(r, nodes[couplings.ends[k, 0]]), mat(r, nodes[couplings.ends[k, 1]])
         block = couplings.blocks[k]
         for p in range(0, 6, 3):
             for q in range(0, 6, 3):
-                for i in range(3):
-                    for j in range(3):
-                        part[3 * i + j] = block[q + j, p + i]
-                turned = transpose_matmul(one, matmul(nine(part), two))
+                # rows of the first
+                x = (block[q, p], block[q + 1, p], block[q + 2, p])
+                y = (block[q, p + 1], block[q + 1, p + 1], block[q + 2, p + 1])
+                z = (block[q, p + 2], block[q + 1, p + 2], block[q + 2, p + 2])
+                turned = transpose_matmul(one, matmul((*x, *y, *z), two))
                 for i in range(3):
                     for j in range(3):
                         block[q + j, p + i] = turned[3 * i + j]
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def couplings_in_box_axes(pool, nodes, r, couplings):
+    """Turns the blocks from global axes to those of their boxes."""
+    many = chunks(couplings.many[0])
+    begin(pool, AXES, many)
+    part = take(pool)
+    while part >= 0:
+        axes_part(nodes, r, couplings, part)
+        part = take(pool)
+    finish(pool, many)
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})

@@ -26,16 +26,17 @@ def factor_sheets(pool, matrix):
         factor_part(pool, matrix, sheet)
         sheet = take(pool)
     finish(pool, many)
+    failed = 0
     for k in range(many):
-        if pool.failed[k] != 0:
-            return False
-    return True
+        failed += pool.failed[k]
+    return failed == 0
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def eliminate_part(pool, matrix, sheet):
     """Rows of Y = A^-1 B in the columns of a sheet, and what they take off the corner."""
-    span, b, y, shares = matrix.couplings.colouring.spans[sheet], matrix.border, matrix.eliminated, pool.shares
+    span, shares = matrix.couplings.colouring.spans[sheet], pool.shares
+    b, y = matrix.border, matrix.eliminated
     start, end = 6 * span[0], 6 * span[1]
     for j in range(b.shape[0]):
         first = start

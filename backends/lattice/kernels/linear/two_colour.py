@@ -4,8 +4,9 @@ Then no two boxes of one colour are coupled but through their own sheet. What th
 do is eliminated exactly, a solve with their bands each time, and the method of conjugate gradients looks for
 the second colour alone. It needs half the iterations that it needs for both at once, which are no dearer.
 
-All of it is done sheet by sheet, in jobs that threads share: FIRST and BACK solve for what the first colour does
-where the second moves by p, ACROSS has what that does to the second, STEP goes that way, TURN finds the next.
+All of it is done sheet by sheet, in jobs that threads share: FIRST and BACK solve for what the first colour
+does where the second moves by p, ACROSS has what that does to the second, STEP goes that way, TURN finds the
+next.
 """
 
 from __future__ import annotations
