@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -123,7 +124,7 @@ def test_a_pass_that_is_cut_short_leaves_no_thread(
         raise error
 
     monkeypatch.setattr(integrate, "run", failing)
-    monkeypatch.setattr(lattice, "PROGRAM", type("Loaded", (), {"loaded": True}))
+    monkeypatch.setattr(lattice, "PROGRAM", SimpleNamespace(loaded=True))
     monkeypatch.setattr(lattice, "processors", lambda: 3)
     with pytest.raises(error):
         lattice.solve(pile(3))
@@ -148,8 +149,8 @@ def test_helpers_sleep_where_there_is_nothing_to_do(monkeypatch: pytest.MonkeyPa
 
     monkeypatch.setattr(entries, "help", lambda *_: 0)
     monkeypatch.setattr(helpers, "sleep", sleep)
-    work = type("Work", (), {"pool": parallel.empty(2, 0)})
-    with helpers.Helpers(work, 2):  # pyright: ignore[reportArgumentType]
+    work: Any = SimpleNamespace(pool=parallel.empty(2, 0))
+    with helpers.Helpers(work, 2):
         assert looked.wait(10.0)
     assert slept[0] == helpers.SHORTEST and max(slept) == helpers.LONGEST
     assert work.pool.words[parallel.HELPERS] == 0 and work.pool.words[parallel.CLOSED] == 1
@@ -160,8 +161,8 @@ def test_threads_that_the_system_does_not_give_are_done_without(monkeypatch: pyt
         raise RuntimeError("can't start new thread")
 
     monkeypatch.setattr(threading.Thread, "start", refuse)
-    work = type("Work", (), {"pool": parallel.empty(2, 0)})
-    with helpers.Helpers(work, 3):  # pyright: ignore[reportArgumentType]
+    work: Any = SimpleNamespace(pool=parallel.empty(2, 0))
+    with helpers.Helpers(work, 3):
         pass
 
 
