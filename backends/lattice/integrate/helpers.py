@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import ctypes
+import functools
+import sys
 from threading import Event, Thread
 from time import sleep
 from typing import Any
 
-from mdlgen.backends.lattice.kernels.parallel import CLOSED, HELPERS
+from mdlgen.backends.lattice.kernels.parallel import CLOSED, HELPERS, LEAVE
 from mdlgen.backends.lattice.kernels.state import Workspace
 
 # How often a helper looks for a part before it sleeps (some tens of microseconds), and how long it sleeps
@@ -37,6 +40,7 @@ class Helpers:
 
     def __enter__(self) -> Helpers:
         self._words[HELPERS] = len(self._threads)
+        self._words[LEAVE] = _leaving()
         try:
             for thread in self._threads:
                 thread.start()
@@ -55,3 +59,17 @@ class Helpers:
             if thread.is_alive():
                 thread.join()
         self._words[HELPERS] = 0
+
+
+@functools.cache
+def _leaving() -> int:
+    """Address of the system's function by which a thread leaves its processor to another one, without
+    arguments, which returns an int on each system; 0 where there is none."""
+    try:
+        if sys.platform == "win32":
+            found = ctypes.WinDLL("kernel32").SwitchToThread
+        else:
+            found = ctypes.CDLL(None).sched_yield
+    except (OSError, AttributeError):
+        return 0
+    return ctypes.cast(found, ctypes.c_void_p).value or 0

@@ -44,10 +44,14 @@ FACTOR, ELIMINATE, SOLVE, FIRST, BACK, ACROSS, SPLIT, STEP, TURN, AXES = range(1
 # Words of a pool, in lines of the processor's cache by who writes them: the number of the job, times MOST,
 # and how many of its parts are left to take, with its kind; how many parts helpers have done; of the thread
 # of the run how many helpers there are, the number of the job, and how many parts it took itself, or with no
-# helper may still take; whether helpers are to end.
-TICKET, KIND, DONE, HELPERS, NUMBER, OWN, CLOSED, WORDS = 0, 1, 16, 32, 33, 34, 48, 64
+# helper may still take; whether helpers are to end, and the address of what leaves the processor to another
+# thread, 0: it is not known.
+TICKET, KIND, DONE, HELPERS, NUMBER, OWN, CLOSED, LEAVE, WORDS = 0, 1, 16, 32, 33, 34, 48, 49, 64
 MOST = 1 << 20  # parts of a job
 CHUNK = 64  # items of a part, where these are small
+# How often the thread of the run looks whether helpers have done their last parts before it leaves its
+# processor for a while: on a busy machine one of them may wait for just that.
+PATIENCE = 2000
 
 
 class Pool(NamedTuple):
@@ -126,6 +130,19 @@ def _replace(_typing: Any, words: Any, at: Any, was: Any, new: Any) -> Any:
     return types.boolean(words, at, was, new), make
 
 
+@intrinsic
+def _call(_typing: Any, address: Any) -> Any:
+    """Calls a function of the system without arguments that returns a whole number of 32 bits."""
+    from llvmlite import ir
+    from numba.core import types
+
+    def make(_context: Any, builder: Any, _signature: Any, values: Any) -> Any:
+        kind = ir.FunctionType(ir.IntType(32), [])
+        return builder.call(builder.inttoptr(values[0], kind.as_pointer()), [])
+
+    return types.int32(address), make
+
+
 @njit(cache=True, error_model="numpy", **BORROWS)
 def begin(pool, kind, many):
     """Offers a job of `many` parts, less than MOST."""
@@ -169,9 +186,13 @@ def take(pool):
 def finish(pool, many):
     """Waits until all parts are done."""
     words = pool.words
-    if words[HELPERS] > 0:
-        while _load(words, DONE) + words[OWN] < many:
-            pass
+    if words[HELPERS] == 0:
+        return
+    looked = 0
+    while _load(words, DONE) + words[OWN] < many:
+        looked += 1
+        if looked > PATIENCE and words[LEAVE] != 0:
+            _call(words[LEAVE])
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
