@@ -156,6 +156,12 @@ def test_helpers_sleep_where_there_is_nothing_to_do(monkeypatch: pytest.MonkeyPa
     assert work.pool.words[parallel.HELPERS] == 0 and work.pool.words[parallel.CLOSED] == 1
 
 
+def test_a_sheet_alone_has_no_helper() -> None:
+    work: Any = SimpleNamespace(pool=parallel.empty(1, 0))
+    with helpers.Helpers(work, 2):
+        assert work.pool.words[parallel.HELPERS] == 0
+
+
 def test_threads_that_the_system_does_not_give_are_done_without(monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(_: threading.Thread) -> None:
         raise RuntimeError("can't start new thread")

@@ -18,13 +18,15 @@ LOOKS, SHORTEST, LONGEST = 10_000, 2e-5, 2e-4
 
 
 class Helpers:
-    """`threads` - 1 of them, for the body of a `with` statement, however that ends."""
+    """`threads` - 1 of them, at most one for each sheet but one, for the body of a `with` statement, however
+    that ends."""
 
     def __init__(self, work: Workspace, threads: int):
         self._work, self._words = work, work.pool.words
         self._closed = Event()
         self._threads = [
-            Thread(target=self._help, name=f"helper {k}", daemon=True) for k in range(1, threads)
+            Thread(target=self._help, name=f"helper {k}", daemon=True)
+            for k in range(1, min(threads, work.pool.failed.size))
         ]
 
     def _help(self) -> None:
