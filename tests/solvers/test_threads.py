@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import time
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
@@ -139,21 +140,41 @@ def test_a_pass_that_fails_leaves_no_thread() -> None:
 
 
 def test_helpers_sleep_where_there_is_nothing_to_do(monkeypatch: pytest.MonkeyPatch) -> None:
-    looked = threading.Event()
-    slept: list[float] = []
-
-    def sleep(time: float) -> None:
-        slept.append(time)
-        if len(slept) > 7:
-            looked.set()
-
+    slept = _waits(monkeypatch, 8)
     monkeypatch.setattr(entries, "help", lambda *_: 0)
-    monkeypatch.setattr(helpers, "sleep", sleep)
+    monkeypatch.setattr(helpers, "LATE", 1e9)
     work: Any = SimpleNamespace(pool=parallel.empty(2, 0))
     with helpers.Helpers(work, 2):
-        assert looked.wait(10.0)
+        while len(slept) < 8:
+            time.sleep(0.001)
     assert slept[0] == helpers.SHORTEST and max(slept) == helpers.LONGEST
     assert work.pool.words[parallel.HELPERS] == 0 and work.pool.words[parallel.CLOSED] == 1
+
+
+def test_a_helper_that_waited_for_a_processor_stays_away(monkeypatch: pytest.MonkeyPatch) -> None:
+    slept = _waits(monkeypatch, 12)
+    monkeypatch.setattr(entries, "help", lambda *_: 5)
+    monkeypatch.setattr(helpers, "LATE", -1.0)
+    work: Any = SimpleNamespace(pool=parallel.empty(2, 0))
+    with helpers.Helpers(work, 2):
+        while len(slept) < 12:
+            time.sleep(0.001)
+    assert slept[:2] == [helpers.AWAY, 2.0 * helpers.AWAY] and slept[-1] == helpers.FAR_AWAY
+
+
+def _waits(monkeypatch: pytest.MonkeyPatch, many: int) -> list[float]:
+    """How long helpers wait, so many times, which they do not."""
+    slept: list[float] = []
+
+    class Waited(threading.Event):
+        def wait(self, timeout: float | None = None) -> bool:
+            if timeout is None or len(slept) >= many:
+                return super().wait(timeout)
+            slept.append(timeout)
+            return self.is_set()
+
+    monkeypatch.setattr(helpers, "Event", Waited)
+    return slept
 
 
 def test_a_sheet_alone_has_no_helper() -> None:

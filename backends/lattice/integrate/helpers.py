@@ -6,7 +6,7 @@ import ctypes
 import functools
 import sys
 from threading import Event, Thread
-from time import sleep
+from time import perf_counter, thread_time
 from typing import Any
 
 from mdlgen.backends.lattice.kernels.parallel import CLOSED, HELPERS, LEAVE
@@ -15,6 +15,9 @@ from mdlgen.backends.lattice.kernels.state import Workspace
 # How often a helper looks for a part before it sleeps (some tens of microseconds), and how long it sleeps
 # [s]: twice as long each time that it found none. One that sleeps holds nobody up: others take its parts.
 LOOKS, SHORTEST, LONGEST = 10_000, 2e-5, 2e-4
+# A helper that waited this long for a processor [s] held up the thread of the run, where it had begun a part.
+# On a busy machine it then stays away: from the one time on, twice as long each time, to the other at most.
+LATE, AWAY, FAR_AWAY = 1e-3, 5e-3, 1.0
 
 
 class Helpers:
@@ -32,13 +35,19 @@ class Helpers:
     def _help(self) -> None:
         from mdlgen.backends.lattice.kernels import entries
 
-        time = SHORTEST
+        idle, away = SHORTEST, AWAY
         while not self._closed.is_set():
-            if entries.help(self._work, LOOKS):
-                time = SHORTEST
+            begun, ran = perf_counter(), thread_time()
+            taken = entries.help(self._work, LOOKS)
+            if perf_counter() - begun - (thread_time() - ran) > LATE:
+                self._closed.wait(away)
+                away = min(2.0 * away, FAR_AWAY)
+                continue
+            if taken:
+                idle, away = SHORTEST, max(0.9 * away, AWAY)
             else:
-                sleep(time)
-                time = min(2.0 * time, LONGEST)
+                self._closed.wait(idle)
+                idle = min(2.0 * idle, LONGEST)
 
     def __enter__(self) -> Helpers:
         self._words[HELPERS] = len(self._threads)
