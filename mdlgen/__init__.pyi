@@ -387,6 +387,7 @@ class Run(_Run):
         print_step: str | None = ...,
         prune: bool = ...,
         symmetry: bool = ...,
+        threads: int = ...,
         margin: str = ...,
     ) -> None: ...
 

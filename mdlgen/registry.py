@@ -98,10 +98,10 @@ def solve(
     progress: Progress | None = None,
     check_step: bool = False,
     checkpointer: Checkpointer | None = None,
-    threads: int = 1,
+    threads: int | None = None,
 ) -> Result:
     """Run a Model; see `mdlgen.solve`. `checkpointer` writes states, of a solver that can; `threads` are how
-    many it may use, where it has use for them."""
+    many it may use, where it has use for them; left out: as many as the Model says."""
     from mdlgen.results.required import check
 
     check(model)
@@ -109,7 +109,7 @@ def solve(
     options: dict[str, Any] = {}
     if checkpointer is not None and backend.capabilities.resumes:
         options["keep"] = checkpointer
-    if threads > 1 and backend.capabilities.threads > 1:
+    if threads is not None and backend.capabilities.threads > 1:
         options["threads"] = threads
     result = backend.solve(model, progress, **options)
     result.ran_at = _now()

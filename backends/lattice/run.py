@@ -23,6 +23,7 @@ from mdlgen.backends.lattice.statics.rest import rest
 from mdlgen.backends.lattice.symmetry.find import find
 from mdlgen.backends.lattice.symmetry.mirror import halve
 from mdlgen.model.tables import Model
+from mdlgen.processors import processors
 from mdlgen.results.estimates import estimated, open_yet
 from mdlgen.results.result import Result
 from mdlgen.runs.checkpoint import Checkpointer
@@ -54,11 +55,11 @@ DOUBLED, CHECK = MOST_REFINED_RIGID + 1, MOST_REFINED_RIGID + 2
 FOLDING, FACTORS, SYMMETRY = "folding", "factors", "symmetry"
 
 
-def _watch(progress: Progress | None, keep: Checkpointer | None, number: int) -> Watch:
+def _watch(progress: Progress | None, keep: Checkpointer | None, threads: int, number: int) -> Watch:
     """Of the pass of that number."""
     if keep is not None:
         keep.begin(number)
-    return Watch(progress, keep, number)
+    return Watch(progress, keep, number, threads=threads)
 
 
 @PROGRAM.releases
@@ -68,7 +69,7 @@ def solve(
     step: float | None = None,
     without: tuple[str, ...] = (),
     keep: Checkpointer | None = None,
-    threads: int = 1,
+    threads: int | None = None,
 ) -> Result:
     """Run a Model; `progress(time, end, steps, touching)` is called as it goes (times in ms).
 
@@ -79,8 +80,9 @@ def solve(
 
     `without` names rules that are not to be used: FOLDING of equal bushings, keeping of FACTORS over steps,
     SYMMETRY of both sides. `keep` is given states to go on from, and a run goes on from those that it has, to
-    the same bits. With two `threads` or more, two passes go on at the same time, to the same bits as well;
-    progress is that of the finer one.
+    the same bits. `threads` is how many there may be at the same time, to the same bits as well: each pass
+    has those that the Model asks for, and two passes go on at the same time where there are enough for both;
+    progress is that of the finer one. Left out: those of one pass.
     """
     check(model)
     started = clock.perf_counter()
@@ -100,9 +102,12 @@ def solve(
     build_s = clock.perf_counter() - started - compile_s
     wanted = step or model.run.step
     begun = clock.perf_counter()
-    watch = partial(_watch, progress, keep)
-    together = threads > 1 and PROGRAM.loaded  # numba's code keeps the lock of Python
-    if keep is not None and not (together and threads == 2):
+    allowed = processors() if threads is None else threads
+    each = min(model.run.threads, allowed) if PROGRAM.loaded else 1
+    watch = partial(_watch, progress, keep, each)
+    # numba's code keeps the lock of Python
+    together = threads is not None and threads >= 2 * each and threads > 1 and PROGRAM.loaded
+    if keep is not None and not (together and threads == 2 * each):
         keep.free.set()
     if wanted is None:
         result = Search(model, system, watch).result(together)

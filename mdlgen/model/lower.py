@@ -151,7 +151,9 @@ def _formulas(scene: Scene, kind: str, key: str | int) -> tuple[str, str]:
 def _run(scene: Scene) -> RunSettings:
     run = scene.run
     print_step = run.print_step if run.print_step is not None else run.duration / 200
-    return RunSettings(run.duration, run.analysis, run.step, run.tolerance, print_step, run.symmetry)
+    return RunSettings(
+        run.duration, run.analysis, run.step, run.tolerance, print_step, run.symmetry, run.threads
+    )
 
 
 def _sheets(scene: Scene) -> tuple[tuple[SheetPart, ...], list[Cells]]:

@@ -112,6 +112,34 @@ class Kernel:
         return self.dispatcher._numba_type_
 
 
+def intrinsic(function: Callable[..., Any]) -> Intrinsic:
+    """Makes an Intrinsic of a function, which is as for `numba.extending.intrinsic`."""
+    return Intrinsic(function)
+
+
+class Intrinsic:
+    """What kernels call that LLVM knows and Python does not: atomic operations."""
+
+    def __init__(self, function: Callable[..., Any]):
+        functools.update_wrapper(self, function)
+        self._function = function
+        self._made: Any = None
+
+    def __call__(self, *args: Any) -> Any:
+        """No kernel that runs as Python may come here."""
+        raise NotImplementedError(f"{self._function.__name__} is for compiled code only")
+
+    @property
+    def _numba_type_(self) -> Any:
+        if self._made is None:
+            with _lock:
+                if self._made is None:
+                    make = importlib.import_module("numba.core.typing.templates").make_intrinsic_template
+                    template = make(self, self._function, self._function.__name__, kwargs={})
+                    self._made = importlib.import_module("numba").types.Function(template)
+        return self._made
+
+
 def _dispatcher(function: Callable[..., Any], options: dict[str, Any]) -> Any:
     """A dispatcher whose code is kept in our folder; the settings of numba are afterwards as they were."""
     numba = importlib.import_module("numba")

@@ -32,6 +32,11 @@ class Run(Strict):
     symmetry: bool = Field(
         default=True, description="solve one half of a scene that is its own mirror image (lattice)"
     )
+    threads: Annotated[int, Field(ge=1)] = Field(
+        default=1,
+        description="threads that share the work of each step of several sheets, at most one for each "
+        "processor; the result is the same to the last bit; sweeps take 1 (lattice)",
+    )
     margin: PositiveLength = Field(
         default=default("5 mm"),
         description="how far a body may go beyond the bounds that its speeds allow; pairs within are kept",

@@ -104,7 +104,7 @@ def _row(
 def _ran(model: Model, expressions: Sequence[tuple[str, Expression]], solver: str) -> dict[str, Any]:
     from mdlgen import registry
 
-    result = registry.solve(model, solver)
+    result = registry.solve(model, solver, threads=1)
     record: dict[str, Any] = {"solver": result.solver, "error_estimate": result.error_estimate}
     if not result.ok:
         return {**record, "kind": FAILED, "status": result.status}

@@ -13,7 +13,7 @@ from mdlgen.backends.lattice.kernels import forces
 from mdlgen.backends.lattice.kernels.contact import between
 from mdlgen.backends.lattice.kernels.contact.condensed import INSIDE
 from mdlgen.backends.lattice.kernels.integrate import convex, points, points_matrix, tangent
-from mdlgen.backends.lattice.kernels.state import DIRECTION, MADE_FOR, WHERE, Control, Workspace
+from mdlgen.backends.lattice.kernels.state import DIRECTION, MADE_FOR, RESIDUAL, WHERE, Control, Workspace
 from mdlgen.model.lower import lower
 from mdlgen.spec.load import loads
 
@@ -171,6 +171,7 @@ def test_a_direction_is_gone_along_to_where_the_function_is_least(times: float, 
     matrix.res[:], matrix.resb[:] = draw.normal(0, 1e-3, matrix.res.shape), 0.0
     for vectors in (frozen.vectors, frozen.border):
         vectors[:] = 0.0
+    frozen.vectors[RESIDUAL] = matrix.res
     points.gather(work, case.counts, H, False)
     assert convex._make_matrix(work, H, H, LAG, True)
     frozen.vectors[DIRECTION] = -times * matrix.res

@@ -5,18 +5,21 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from mdlgen.backends.lattice.kernels import parallel
 from mdlgen.backends.lattice.kernels.linear import coupled, two_colour
-from mdlgen.backends.lattice.kernels.linear.band import PAD, factor
-from mdlgen.backends.lattice.kernels.linear.bordered import eliminate
+from mdlgen.backends.lattice.kernels.linear.band import PAD
+from mdlgen.backends.lattice.kernels.linear.sheets import eliminate_sheets, factor_sheets
+from mdlgen.backends.lattice.kernels.parallel import Pool
+from mdlgen.backends.lattice.kernels.state import Matrix
 
 pytestmark = pytest.mark.usefixtures("as_python")
 
 NODES, BORDER = 4, 2  # of a sheet; unknowns of rollers
 
 
-def equations(touch: list[tuple[int, int]], seed: int) -> tuple:
+def equations(touch: list[tuple[int, int]], seed: int) -> tuple[np.ndarray, Pool, Matrix]:
     """A positive matrix of three sheets, two rollers and the couplings of `touch`, pairs of sheets: the
-    whole, and the factored band, border and corner with what eliminates them, and the couplings."""
+    whole, and the same as a step has it, factored."""
     rng = np.random.default_rng(seed)
     size = 6 * 3 * NODES
     whole = np.zeros((size + BORDER, size + BORDER))
@@ -51,31 +54,54 @@ def equations(touch: list[tuple[int, int]], seed: int) -> tuple:
         for block in range(min(reach + 1, NODES - n % NODES)):
             rows, columns = slice(6 * (n + block), 6 * (n + block) + 6), slice(6 * n, 6 * n + 6)
             band[n, :, 6 * block : 6 * block + 6] = whole[rows, columns].T
-    corner, y = np.zeros((BORDER, BORDER)), np.zeros((BORDER, size))
-    d = whole[size:, size:].copy()
-    assert factor(band) and eliminate(band, across, d, y, corner)
-    two_colour.colour(made, across, d, y)
-    return whole, (band, across, y, corner), made
+    none = np.zeros(0)
+    matrix = Matrix(
+        band=band,
+        border=across,
+        corner=whole[size:, size:].copy(),
+        eliminated=np.zeros((BORDER, size)),
+        schur=np.zeros((BORDER, BORDER)),
+        res=np.zeros(size),
+        resb=np.zeros(BORDER),
+        direction=none,
+        unknowns=none,
+        couplings=made,
+        mixing=none,
+        offsets=none,
+        inner=np.zeros((0, 6, 0)),
+        own=np.zeros((0, 0)),
+    )
+    pool = parallel.empty(3, BORDER)
+    assert factor_sheets(pool, matrix) and eliminate_sheets(pool, matrix)
+    two_colour.colour(matrix)
+    return whole, pool, matrix
+
+
+def solved(matrix: Matrix) -> np.ndarray:
+    return np.concatenate([matrix.res, matrix.resb])
 
 
 @pytest.mark.parametrize("seed", range(4))
 def test_every_other_sheet_is_solved_with_the_rest_eliminated(seed: int) -> None:
-    whole, (band, across, y, _), made = equations([(0, 1), (1, 2)], seed)
-    assert made.colouring.found[0] == 1 and made.colouring.of.tolist() == [0, 1, 0]
+    whole, pool, matrix = equations([(0, 1), (1, 2)], seed)
+    colouring = matrix.couplings.colouring
+    assert colouring.found[0] == 1 and colouring.of.tolist() == [0, 1, 0]
+    assert colouring.begins.tolist() == [0, 2, 6, 8]
+    assert colouring.own[:8].tolist() == [0, 1, 0, 1, 2, 3, 2, 3]
     right = np.random.default_rng(seed + 10).normal(size=len(whole))
-    res, rollers = right[:-BORDER].copy(), right[-BORDER:].copy()
-    two_colour.solve_coloured(band, across, y, made, res, rollers, 200, 1e-26)
+    matrix.res[:], matrix.resb[:] = right[:-BORDER], right[-BORDER:]
+    two_colour.solve_coloured(pool, matrix, 200, 1e-26, 0.0)
     wanted = np.linalg.solve(whole, right)
-    assert np.abs(np.concatenate([res, rollers]) - wanted).max() < 1e-9 * np.abs(wanted).max()
+    assert np.abs(solved(matrix) - wanted).max() < 1e-9 * np.abs(wanted).max()
 
 
 def test_sheets_that_all_touch_each_other_are_solved_at_once() -> None:
-    whole, (band, across, y, corner), made = equations([(0, 1), (1, 2), (2, 0)], 1)
-    assert made.colouring.found[0] == 0
+    whole, pool, matrix = equations([(0, 1), (1, 2), (2, 0)], 1)
+    assert matrix.couplings.colouring.found[0] == 0
     right = np.random.default_rng(5).normal(size=len(whole))
-    res, rollers = right[:-BORDER].copy(), right[-BORDER:].copy()
-    coupled.solve_coupled(band, across, y, corner, made, res, rollers)
+    matrix.res[:], matrix.resb[:] = right[:-BORDER], right[-BORDER:]
+    coupled.solve_coupled(pool, matrix, 0.0)
     # as far as an iteration of Newton's method needs it
-    left = whole @ np.concatenate([res, rollers]) - right
+    left = whole @ solved(matrix) - right
     before = right @ np.linalg.solve(whole, right)
     assert left @ np.linalg.solve(whole, left) < 0.1 * before

@@ -14,6 +14,7 @@ import numpy as np
 from mdlgen.backends.lattice.arrays import System
 from mdlgen.backends.lattice.integrate.beside import Stopped
 from mdlgen.backends.lattice.integrate.ends import OVERLAPPED, PASSED, reason_of, unbalanced, unheld
+from mdlgen.backends.lattice.integrate.helpers import Helpers
 from mdlgen.backends.lattice.integrate.pass_state import PassState, Stage
 from mdlgen.backends.lattice.integrate.record import Recorder, Snapshot
 from mdlgen.backends.lattice.integrate.work import arrays, control, flexible
@@ -46,13 +47,15 @@ Progress = Callable[[float, float, int, int], None]
 
 class Watch(NamedTuple):
     """Who follows a pass: what is called as it goes, what keeps it and by which number, and what stops it
-    where it goes on at the same time as another one; one of the two is hidden."""
+    where it goes on at the same time as another one; one of the two is hidden. And how many threads share
+    the work of its steps."""
 
     progress: Progress | None = None
     keep: Checkpointer | None = None
     number: int = 0
     stop: Event | None = None
     hidden: bool = False
+    threads: int = 1
 
     def beside(self, stop: Event) -> Watch:
         """Of a pass that goes on beside another one, which is the one that reports."""
@@ -124,7 +127,7 @@ def one_pass(
 
     run = model.run
     outputs, each, dt = division(model, wanted)
-    progress, keep, number, stop, hidden = watch
+    progress, keep, number, stop, hidden, threads = watch
     begun = clock.perf_counter()
     work = arrays(model, system)
     state = work.state
@@ -151,34 +154,35 @@ def one_pass(
     if stage is not None:
         show()
     todo = range(stage.outputs if stage else 0, 0 if stage and stage.ended else outputs)
-    for output in todo:
-        for taken in range(0, each, MOST_AT_ONCE):
-            if stop is not None and stop.is_set():
-                raise Stopped
-            steps = np.full(min(each - taken, MOST_AT_ONCE), dt)
-            status, t = integrate.run(work, t, steps, tolerance, steering)
-            if taken == 0:
-                recorder.between()
+    with Helpers(work, threads):
+        for output in todo:
+            for taken in range(0, each, MOST_AT_ONCE):
+                if stop is not None and stop.is_set():
+                    raise Stopped
+                steps = np.full(min(each - taken, MOST_AT_ONCE), dt)
+                status, t = integrate.run(work, t, steps, tolerance, steering)
+                if taken == 0:
+                    recorder.between()
+                if status != integrate.DONE:
+                    break
             if status != integrate.DONE:
                 break
-        if status != integrate.DONE:
-            break
-        t = (output + 1) * run.duration / outputs
-        recorder.store(t)
-        passed = system.mirror.passed(state.x, system.nodes) if system.mirror is not None else -1
-        if passed >= 0:
-            status = PASSED
-            counters[WORST] = passed
-            break
-        if overlaps.found(state.x, state.r, t) is not None:
-            status = OVERLAPPED
-            break
-        show()
-        if keep is not None and keep.due(number) and output + 1 < outputs:
-            wall = past + clock.perf_counter() - begun
-            keep.save(number, pass_state.arrays(Stage(status, t, output + 1, wall, False)))
-        if progress is not None:
-            progress(t, run.duration, int(counters[STEPS]), int(counters[TOUCHING]))
+            t = (output + 1) * run.duration / outputs
+            recorder.store(t)
+            passed = system.mirror.passed(state.x, system.nodes) if system.mirror is not None else -1
+            if passed >= 0:
+                status = PASSED
+                counters[WORST] = passed
+                break
+            if overlaps.found(state.x, state.r, t) is not None:
+                status = OVERLAPPED
+                break
+            show()
+            if keep is not None and keep.due(number) and output + 1 < outputs:
+                wall = past + clock.perf_counter() - begun
+                keep.save(number, pass_state.arrays(Stage(status, t, output + 1, wall, False)))
+            if progress is not None:
+                progress(t, run.duration, int(counters[STEPS]), int(counters[TOUCHING]))
     if todo and status in (integrate.LEFT, integrate.DEEP, integrate.STRETCHED):
         recorder.store(t)  # with which its energies balance, or do not
     wall = past + clock.perf_counter() - begun

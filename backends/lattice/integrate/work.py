@@ -50,7 +50,7 @@ def start(model: Model, system: System) -> tuple[State, Midpoint, Matrix]:
 
 def arrays(model: Model, system: System) -> Workspace:
     """What a run works on, made for the start."""
-    from mdlgen.backends.lattice.kernels import entries, forces
+    from mdlgen.backends.lattice.kernels import entries, forces, parallel
     from mdlgen.backends.lattice.kernels.contact import condensed
     from mdlgen.backends.lattice.kernels.integrate import damped, momentum, step
 
@@ -70,6 +70,7 @@ def arrays(model: Model, system: System) -> Workspace:
         search=system.search,
         damped=damped.empty(system),
         frozen=step.frozen(system),
+        pool=parallel.empty(len(matrix.couplings.colouring.spans), system.border),
     )
 
 
@@ -81,9 +82,11 @@ def control(work: Workspace) -> Control:
 
 def warm(model: Model, system: System) -> None:
     """Compiles, or loads from the cache, before the clock of the run starts."""
+    from mdlgen.backends.lattice.kernels import entries
     from mdlgen.backends.lattice.kernels.integrate import integrate
 
     work = arrays(model, system)
+    entries.help(work, 0)
     integrate.run(work, 0.0, np.zeros(0), 1.0, control(work))
     Recorder(model, system, work.state, work.mid, work.kept).store(0.0)
 

@@ -91,14 +91,14 @@ class Frozen(NamedTuple):
     points: Floats  # (room, POINT)
     pair: Ints  # of each, (room,)
     many: Ints  # (1,) how many there are
-    vectors: Floats  # CHANGE to STEEPEST of the nodes, (6, 6 nodes)
+    vectors: Floats  # CHANGE to RESIDUAL of the nodes, (6, 6 nodes)
     border: Floats  # the same of the border, (6, border)
 
 
 # Rows of Frozen.vectors: the change of velocities, what masses and bushings make of it, the slope of what is
-# made least, the direction that is gone along, what masses and bushings make of that, and the change that
-# Newton's method would take off.
-CHANGE, OF_CHANGE, GRADIENT, DIRECTION, OF_DIRECTION, STEEPEST = 0, 1, 2, 3, 4, 5
+# made least, the direction that is gone along, what masses and bushings make of that, and the residual as the
+# iteration began.
+CHANGE, OF_CHANGE, GRADIENT, DIRECTION, OF_DIRECTION, RESIDUAL = 0, 1, 2, 3, 4, 5
 # Columns of Frozen.points: normal to the first body, the direction that friction acts square to, arms from
 # both bodies; depth and stiffness of a corner of two faces, of others (stiffness 0) elastic force and its
 # growth; rate, speed over which it damps, share of damping; friction and its speeds; the normal force that
@@ -170,6 +170,7 @@ class Workspace(NamedTuple):
     search: Any  # lattice.search.Search
     damped: Damped
     frozen: Frozen
+    pool: Any  # parallel.Pool
 
 
 class History(NamedTuple):

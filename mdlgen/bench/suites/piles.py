@@ -14,7 +14,8 @@ SAMPLE = "pile"
 STEP = 0.1  # [ms]
 DURATION, QUICK = 100.0, 20.0  # [ms]
 GRID = (10, 20)
-COUNTS = {"rest": (5, 20), "fed": (5, 20, 100)}
+COUNTS = {"rest": (5, 20), "fed": (5, 20, 100), "shared": (5, 20)}
+NAMES = {"rest": "at rest", "fed": "under a roller", "shared": "under a roller, two threads"}
 TALL = 0.1  # of a note [mm]
 # The middle of the roller over the face of the uppermost note [mm]; for a pile at rest it stands still above.
 ABOVE, AWAY = 12.4, 250.0
@@ -26,10 +27,13 @@ LIMIT = 1800.0  # [s]
 
 
 def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
-    """Piles of 5 to 100 notes of 200 boxes at a step that is given; in Exudyn a small one."""
+    """Piles of 5 to 100 notes of 200 boxes at a step that is given, some with two threads that share it; in
+    Exudyn a small one."""
     duration = QUICK if quick or solver == REFERENCE else DURATION
     found = []
     for kind, counts in COUNTS.items():
+        if kind == "shared" and solver == REFERENCE:
+            continue
         for count in counts[:1] if quick or solver == REFERENCE else counts:
             middle = AWAY if kind == "rest" else ABOVE + TALL * count
             sets = (
@@ -42,10 +46,11 @@ def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
                 f"contacts.pick.between=[cassette_{count}, pick]",
                 f"probes.lead.sheet=cassette_{count}",
                 f"run.duration={duration:g} ms",
+                *(("run.threads=2",) if kind == "shared" else ()),
                 "require=[]",
             )
             measure = rests if kind == "rest" else partial(feeds, count=count)
-            name = f"{count} notes {'at rest' if kind == 'rest' else 'under a roller'}"
+            name = f"{count} notes {NAMES[kind]}"
             found.append(
                 BenchCase("piles", name, Run(SAMPLE, sets, STEP), measure, repeats=False, limit=LIMIT)
             )

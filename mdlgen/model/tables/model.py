@@ -90,6 +90,7 @@ class RunSettings:
     tolerance: float
     print_step: float
     symmetry: bool  # a scene that is its own mirror image may be halved
+    threads: int = 1  # that share the work of a step
 
 
 @dataclass(frozen=True)

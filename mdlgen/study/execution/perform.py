@@ -61,7 +61,8 @@ def _run(task: Task, case: Case, begun: Callable[[], None] | None) -> dict[str, 
 
     model = task.model(case)
     with contextlib.redirect_stdout(io.StringIO()):  # a solver may talk there
-        result = registry.solve(model, task.solver, progress, task.check_step)
+        # cases keep the processors busy
+        result = registry.solve(model, task.solver, progress, task.check_step, threads=1)
     times = {name: getattr(result, name) for name in ("wall_s", "estimate_s", "build_s", "compile_s")}
     record = {"solver": result.solver, "error_estimate": result.error_estimate, "times": times}
     if not result.ok:

@@ -30,11 +30,10 @@ from mdlgen.backends.lattice.kernels.integrate.tangent import (
     rollers_into,
     turn_nodes,
 )
-from mdlgen.backends.lattice.kernels.linear.band import factor
-from mdlgen.backends.lattice.kernels.linear.bordered import eliminate
 from mdlgen.backends.lattice.kernels.linear.coupled import couplings_in_box_axes, solve_coupled
 from mdlgen.backends.lattice.kernels.linear.dense import copy
 from mdlgen.backends.lattice.kernels.linear.product import times
+from mdlgen.backends.lattice.kernels.linear.sheets import eliminate_sheets, factor_sheets
 from mdlgen.backends.lattice.kernels.linear.two_colour import colour
 from mdlgen.backends.lattice.kernels.state import (
     CHANGE,
@@ -44,9 +43,9 @@ from mdlgen.backends.lattice.kernels.state import (
     MADE_FOR,
     OF_CHANGE,
     OF_DIRECTION,
+    RESIDUAL,
     SOLVES,
     STALE,
-    STEEPEST,
     WHERE,
 )
 from mdlgen.program.kernel import BORROWS, njit
@@ -61,6 +60,8 @@ MOST_LOOKS, MOST_DOUBLED = 12, 4
 # A factor is worth so many iterations (see integrate.step).
 WORTH = 4.0
 CHORD = 0.02
+# A linear solve ends where what it leaves would change velocities by about this part of the limit.
+SMALL = 0.1
 
 
 @njit(cache=True, error_model="numpy")
@@ -77,13 +78,13 @@ def _make_matrix(work, t, h, lag, renew):
     b[:] = 0.0
     copy(d, matrix.own)
     points_into(work, h, CHORD)
-    couplings_in_box_axes(tables.nodes, motion.r, matrix.couplings)
+    couplings_in_box_axes(work.pool, tables.nodes, motion.r, matrix.couplings)
     in_box_axes(tables.nodes, motion.r, a, b, matrix.offsets[:1])
     a += matrix.inner
     forget(work.condensed)
-    if not factor(a) or not eliminate(a, b, d, matrix.eliminated, matrix.schur):
+    if not factor_sheets(work.pool, matrix) or not eliminate_sheets(work.pool, matrix):
         return False
-    colour(matrix.couplings, b, d, matrix.eliminated)
+    colour(matrix)
     return True
 
 
@@ -130,7 +131,7 @@ def _gradient(work, h, axes, part):
     """Goes that part of the direction, and finds the slope of the function in all unknowns there: the
     vectors' GRADIENT."""
     frozen, matrix, nodes = work.frozen, work.matrix, work.tables.nodes
-    res, resb, own = matrix.res, matrix.resb, matrix.own
+    res, resb, own = frozen.vectors[RESIDUAL], frozen.border[RESIDUAL], matrix.own
     g, gb = frozen.vectors[GRADIENT], frozen.border[GRADIENT]
     g[:] = 0.0
     for i in range(resb.size):
@@ -151,12 +152,22 @@ def _direction(work, axes):
     turn_nodes(work.tables.nodes, axes, product, False)
     look_along(work, product, pb)
     times(matrix.inner, p, product)
-    linear = _dot(p, matrix.res) + _dot(p, frozen.vectors[OF_CHANGE])
+    linear = _dot(p, frozen.vectors[RESIDUAL]) + _dot(p, frozen.vectors[OF_CHANGE])
     square = _dot(p, product)
     for i in range(pb.size):
-        linear += pb[i] * (matrix.resb[i] + _dot(matrix.own[i], frozen.border[CHANGE]))
+        linear += pb[i] * (frozen.border[RESIDUAL, i] + _dot(matrix.own[i], frozen.border[CHANGE]))
         square += pb[i] * _dot(matrix.own[i], pb)
     return linear, square
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _enough(tables, limit):
+    """What a linear solve may leave of its residual's square, measured with the inverse: as much energy as
+    the lightest box has at a small part of the limit of an iteration."""
+    lightest = 1e300
+    for n in range(tables.nodes.size):
+        lightest = min(lightest, tables.bodies[tables.nodes[n]].mass)
+    return lightest / 12.0 * (SMALL * limit) ** 2
 
 
 @njit(cache=True, error_model="numpy")
@@ -166,7 +177,7 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, plain):
     masses and bushings anew; `plain`: a step of Newton's method is taken as it is."""
     tables, matrix, frozen = work.tables, work.matrix, work.frozen
     factored, counters = control.factored, control.counters
-    res, resb, axes = matrix.res, matrix.resb, work.condensed.axes
+    z, zb, axes = matrix.res, matrix.resb, work.condensed.axes
     change, of_change = frozen.vectors[CHANGE], frozen.vectors[OF_CHANGE]
     g, gb = frozen.vectors[GRADIENT], frozen.border[GRADIENT]
     p, pb, changeb = frozen.vectors[DIRECTION], frozen.border[DIRECTION], frozen.border[CHANGE]
@@ -174,12 +185,14 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, plain):
     of_change[:] = 0.0
     changeb[:] = 0.0
     rollers_into(tables.bodies, h, t, work.state.ub, matrix.own)
-    z, zb = frozen.vectors[STEEPEST], frozen.border[STEEPEST]
+    copy(frozen.vectors[RESIDUAL], z)
+    copy(frozen.border[RESIDUAL], zb)
+    enough = _enough(tables, limit)
     before, along, part, gathered = 1e300, 0.0, 0.0, False
     for iteration in range(MOST_ITERATIONS):
         if iteration == 0:
-            copy(g, res)
-            copy(gb, resb)
+            copy(g, z)
+            copy(gb, zb)
         else:
             _gradient(work, h, axes, part)
         part = 0.0
@@ -197,7 +210,7 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, plain):
         copy(z, g)
         copy(zb, gb)
         counters[SOLVES] += 1
-        solve_coupled(matrix.band, matrix.border, matrix.eliminated, matrix.schur, matrix.couplings, z, zb)
+        solve_coupled(work.pool, matrix, enough)
         # conjugate directions, by Polak and Ribiere: they make up for a factor of an earlier state
         square = _dot(g, z) + _dot(gb, zb)
         turn = max(0.0, (square - crossing) / along) if iteration > 0 and not made and along > 0.0 else 0.0
@@ -239,8 +252,8 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, plain):
         ):
             factored[STALE] = 1.0
         before = moved
-    for i in range(res.size):
-        res[i] = -change[i]
-    for i in range(resb.size):
-        resb[i] = -changeb[i]
+    for i in range(z.size):
+        z[i] = -change[i]
+    for i in range(zb.size):
+        zb[i] = -changeb[i]
     return iteration + 1

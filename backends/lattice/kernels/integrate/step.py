@@ -48,9 +48,10 @@ from mdlgen.backends.lattice.kernels.integrate.points import gather
 from mdlgen.backends.lattice.kernels.integrate.points_matrix import points_into
 from mdlgen.backends.lattice.kernels.integrate.tangent import in_box_axes, joints_into, masses, turn_nodes
 from mdlgen.backends.lattice.kernels.linear.band import empty as no_band
-from mdlgen.backends.lattice.kernels.linear.band import factor, solve
+from mdlgen.backends.lattice.kernels.linear.band import solve
 from mdlgen.backends.lattice.kernels.linear.coupled import couplings
 from mdlgen.backends.lattice.kernels.linear.dense import copy
+from mdlgen.backends.lattice.kernels.linear.sheets import factor_sheets
 from mdlgen.backends.lattice.kernels.state import (
     CLOSE,
     FACTORS,
@@ -180,7 +181,7 @@ def _make_factor(work, counts, h, lag, where, chord):
         points_into(work, h, chord)
     in_box_axes(tables.nodes, motion.r, a, matrix.border, matrix.offsets)
     forget(work.condensed)
-    return factor(a)
+    return factor_sheets(work.pool, matrix)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)

@@ -15,9 +15,11 @@ import numpy as np
 
 from mdlgen.backends.lattice.kernels.linear.bordered import solve_bordered
 from mdlgen.backends.lattice.kernels.linear.dense import copy
-from mdlgen.backends.lattice.kernels.linear.two_colour import Colouring, colouring, solve_coloured
-from mdlgen.mechanics.vector import mat, matmul, nine, transpose_matmul
-from mdlgen.program.kernel import njit
+from mdlgen.backends.lattice.kernels.linear.sheets import solve_sheets
+from mdlgen.backends.lattice.kernels.linear.two_colour import FEWEST, Colouring, colouring, solve_coloured
+from mdlgen.backends.lattice.kernels.parallel import AXES, begin, chunks, finish, items_of, take
+from mdlgen.mechanics.vector import mat, matmul, transpose_matmul
+from mdlgen.program.kernel import BORROWS, njit
 
 MOST_ITERATIONS = 200
 # What may be left of the square of the residual, measured with the preconditioner: an iteration of Newton's
@@ -44,26 +46,39 @@ def couplings(pairs: int, label: np.ndarray, border: int) -> Couplings:
         np.zeros((pairs, 2), np.int64),
         np.zeros((pairs, 6, 6)),
         np.zeros((5, 6 * nodes + border)),
-        colouring(label, border),
+        colouring(label, border, pairs),
     )
 
 
-@njit(cache=True, error_model="numpy")
-def couplings_in_box_axes(nodes, r, couplings):
-    """Turns the blocks from global axes to those of their boxes."""
-    part = np.empty(9)
-    for k in range(couplings.many[0]):
+@njit(cache=True, error_model="numpy", **BORROWS)
+def axes_part(nodes, r, couplings, part):
+    """Turns the blocks of some couplings."""
+    low, high = items_of(part, couplings.many[0])
+    for k in range(low, high):
         one, two = mat(r, nodes[couplings.ends[k, 0]]), mat(r, nodes[couplings.ends[k, 1]])
         block = couplings.blocks[k]
         for p in range(0, 6, 3):
             for q in range(0, 6, 3):
-                for i in range(3):
-                    for j in range(3):
-                        part[3 * i + j] = block[q + j, p + i]
-                turned = transpose_matmul(one, matmul(nine(part), two))
+                # rows of the first
+                x = (block[q, p], block[q + 1, p], block[q + 2, p])
+                y = (block[q, p + 1], block[q + 1, p + 1], block[q + 2, p + 1])
+                z = (block[q, p + 2], block[q + 1, p + 2], block[q + 2, p + 2])
+                turned = transpose_matmul(one, matmul((*x, *y, *z), two))
                 for i in range(3):
                     for j in range(3):
                         block[q + j, p + i] = turned[3 * i + j]
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def couplings_in_box_axes(pool, nodes, r, couplings):
+    """Turns the blocks from global axes to those of their boxes."""
+    many = chunks(couplings.many[0])
+    begin(pool, AXES, many)
+    part = take(pool)
+    while part >= 0:
+        axes_part(nodes, r, couplings, part)
+        part = take(pool)
+    finish(pool, many)
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
@@ -89,28 +104,30 @@ def _couple(couplings, p, q):
 
 
 @njit(cache=True, error_model="numpy")
-def solve_coupled(a, b, y, corner, couplings, res, resb):
-    """Solves band, border and couplings in place, as border.solve_bordered does without the last."""
+def solve_coupled(pool, matrix, enough):
+    """Solves band, border and couplings in place, as bordered.solve_bordered does without the last; what may
+    be `enough`: see two_colour.solve_coloured."""
+    couplings, res, resb = matrix.couplings, matrix.res, matrix.resb
     if couplings.many[0] == 0:
-        solve_bordered(a, b, y, corner, res, resb)
+        solve_bordered(matrix.band, matrix.border, matrix.eliminated, matrix.schur, res, resb)
         return
     if couplings.colouring.found[0] == 1:
-        solve_coloured(a, b, y, couplings, res, resb, MOST_ITERATIONS, LEFT)
+        solve_coloured(pool, matrix, MOST_ITERATIONS, LEFT, enough)
         return
     many = res.size
     r, z, p, own, q = couplings.room
     copy(r[:many], res)
     copy(r[many:], resb)
     copy(z, r)
-    solve_bordered(a, b, y, corner, z[:many], z[many:])
+    solve_sheets(pool, matrix)
     copy(p, z)
     copy(own, r)  # what band and border make of p
     res[:] = 0.0
     resb[:] = 0.0
     left = _dot(r, z)
     first = left
-    for _ in range(MOST_ITERATIONS):
-        if not left > LEFT * first:
+    for iteration in range(MOST_ITERATIONS):
+        if not left > (max(LEFT * first, enough) if iteration >= FEWEST else LEFT * first):
             break
         copy(q, own)
         _couple(couplings, p, q)
@@ -125,7 +142,7 @@ def solve_coupled(a, b, y, corner, couplings, res, resb):
         for i in range(resb.size):
             resb[i] += part * p[many + i]
         copy(z, r)
-        solve_bordered(a, b, y, corner, z[:many], z[many:])
+        solve_sheets(pool, matrix)
         after = _dot(r, z)
         turn, left = after / left, after
         for i in range(r.size):

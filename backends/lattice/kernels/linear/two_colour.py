@@ -3,6 +3,10 @@
 Then no two boxes of one colour are coupled but through their own sheet. What the first colour and the rollers
 do is eliminated exactly, a solve with their bands each time, and the method of conjugate gradients looks for
 the second colour alone. It needs half the iterations that it needs for both at once, which are no dearer.
+
+All of it is done sheet by sheet, in jobs that threads share: FIRST and BACK solve for what the first colour
+does where the second moves by p, ACROSS has what that does to the second, STEP goes that way, TURN finds the
+next.
 """
 
 from __future__ import annotations
@@ -11,9 +15,17 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mdlgen.backends.lattice.kernels import parallel
 from mdlgen.backends.lattice.kernels.linear.band import solve
 from mdlgen.backends.lattice.kernels.linear.dense import cholesky, cholesky_solve
-from mdlgen.program.kernel import njit
+from mdlgen.backends.lattice.kernels.parallel import begin, finish, take
+from mdlgen.program.kernel import BORROWS, njit
+
+# Of Pool.given: how far the method goes, how much of the last direction the next one keeps, and whether the
+# first colour starts from the right-hand side.
+LENGTH, KEPT, START = 0, 1, 2
+# What is small is not left as it is: a guess goes on with it, step by step.
+FEWEST = 2
 
 
 class Colouring(NamedTuple):
@@ -24,9 +36,11 @@ class Colouring(NamedTuple):
     of: np.ndarray  # the colour of each sheet, 0 or 1; -1: not known yet
     found: np.ndarray  # (1,) whether two colours are enough
     corner: np.ndarray  # Cholesky factor, (border, border)
+    begins: np.ndarray  # where the couplings of a sheet begin in `own`, (sheets + 1,)
+    own: np.ndarray  # couplings of each sheet, in their order, (2 pairs,)
 
 
-def colouring(label: np.ndarray, border: int) -> Colouring:
+def colouring(label: np.ndarray, border: int, pairs: int) -> Colouring:
     """`label` is the sheet of each node, in rising order."""
     sheets = np.unique(label)
     spans = np.stack([np.searchsorted(label, sheets), np.searchsorted(label, sheets, side="right")], axis=1)
@@ -36,6 +50,8 @@ def colouring(label: np.ndarray, border: int) -> Colouring:
         np.full(len(sheets), -1, np.int64),
         np.zeros(1, np.int64),
         np.zeros((border, border)),
+        np.zeros(len(sheets) + 1, np.int64),
+        np.zeros(2 * pairs, np.int64),
     )
 
 
@@ -64,14 +80,38 @@ def _colour(couplings):
     return True
 
 
-@njit(cache=True, error_model="numpy")
-def colour(couplings, b, d, y):
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _list(couplings):
+    """Lists the couplings of each sheet."""
+    colours, ends, many = couplings.colouring, couplings.ends, couplings.many[0]
+    label, begins, own = colours.label, colours.begins, colours.own
+    for sheet in range(begins.size):
+        begins[sheet] = 0
+    for k in range(many):
+        for end in range(2):
+            begins[label[ends[k, end]] + 1] += 1
+    for sheet in range(1, begins.size):
+        begins[sheet] += begins[sheet - 1]
+    for k in range(many):
+        for end in range(2):
+            sheet = label[ends[k, end]]
+            own[begins[sheet]] = k
+            begins[sheet] += 1
+    for sheet in range(begins.size - 1, 0, -1):
+        begins[sheet] = begins[sheet - 1]
+    begins[0] = 0
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def colour(matrix):
     """Colours the sheets for the couplings that there are, and factors the corner of the first colour, where
-    the band of all is factored: y = A^-1 B."""
+    the band of all is factored and the border eliminated."""
+    couplings, b, d, y = matrix.couplings, matrix.border, matrix.corner, matrix.eliminated
     colours = couplings.colouring
     colours.found[0] = 0
     if couplings.many[0] == 0 or not _colour(couplings):
         return
+    _list(couplings)
     corner = colours.corner
     for i in range(d.shape[0]):
         for j in range(i + 1):
@@ -85,45 +125,30 @@ def colour(couplings, b, d, y):
         colours.found[0] = 1
 
 
-@njit(cache=True, error_model="numpy")
-def _solve_first(a, b, y, colours, x, rollers):
-    """Solves the first colour and the rollers in place."""
-    for sheet in range(colours.of.size):
-        if colours.of[sheet] == 0:
-            begin, end = colours.spans[sheet, 0], colours.spans[sheet, 1]
-            solve(a[begin:end], x[6 * begin : 6 * end])
-            for j in range(rollers.size):
-                v = 0.0
-                for l in range(6 * begin, 6 * end):
-                    v += b[j, l] * x[l]
-                rollers[j] -= v
-    if rollers.size == 0:
-        return
-    cholesky_solve(colours.corner, rollers)
-    for sheet in range(colours.of.size):
-        if colours.of[sheet] == 0:
-            for j in range(rollers.size):
-                v = rollers[j]
-                for l in range(6 * colours.spans[sheet, 0], 6 * colours.spans[sheet, 1]):
-                    x[l] -= y[j, l] * v
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _dot(p, q):
+    """Four sums at a time, since each addition waits for the one before."""
+    one = two = three = four = 0.0
+    whole = p.size - p.size % 4
+    for l in range(0, whole, 4):
+        one += p[l] * q[l]
+        two += p[l + 1] * q[l + 1]
+        three += p[l + 2] * q[l + 2]
+        four += p[l + 3] * q[l + 3]
+    for l in range(whole, p.size):
+        one += p[l] * q[l]
+    return (one + two) + (three + four)
 
 
-@njit(cache=True, error_model="numpy")
-def _solve_second(a, colours, x):
-    for sheet in range(colours.of.size):
-        if colours.of[sheet] == 1:
-            begin, end = colours.spans[sheet, 0], colours.spans[sheet, 1]
-            solve(a[begin:end], x[6 * begin : 6 * end])
-
-
-@njit(cache=True, error_model="numpy")
-def _across(b, couplings, source, p, rollers, q, rollers_q):
-    """Adds to q what the colour `source`, and the rollers if it is the first, do to the other one."""
-    colours, ends, blocks, many = couplings.colouring, couplings.ends, couplings.blocks, couplings.many[0]
-    for k in range(many):
-        one, two = 6 * ends[k, 0], 6 * ends[k, 1]
-        block = blocks[k]
-        if colours.of[colours.label[ends[k, 0]]] == source:
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _across(couplings, sheet, p, q):
+    """Adds to q of a sheet what the other colour does to it where that moves by p."""
+    colours, ends, blocks = couplings.colouring, couplings.ends, couplings.blocks
+    label = colours.label
+    for at in range(colours.begins[sheet], colours.begins[sheet + 1]):
+        k = colours.own[at]
+        one, two, block = 6 * ends[k, 0], 6 * ends[k, 1], blocks[k]
+        if label[ends[k, 1]] == sheet:
             for c in range(6):
                 v = 0.0
                 for i in range(6):
@@ -134,94 +159,221 @@ def _across(b, couplings, source, p, rollers, q, rollers_q):
                 far = p[two + c]
                 for i in range(6):
                     q[one + i] += block[c, i] * far
-    for sheet in range(colours.of.size):
-        if colours.of[sheet] != 1:
-            continue
-        for j in range(rollers.size):
-            v, far = 0.0, rollers[j]
-            for l in range(6 * colours.spans[sheet, 0], 6 * colours.spans[sheet, 1]):
-                if source == 1:
-                    v += b[j, l] * p[l]
-                else:
-                    q[l] += b[j, l] * far
-            rollers_q[j] += v
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
-def _dot(colours, p, q):
-    """Of the second colour."""
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _rows(couplings, size):
+    """Vectors of the nodes: what is left of the second colour, what is solved for, the direction, what the
+    second colour makes of it, what the first does where the second moves."""
+    room = couplings.room
+    return room[0, :size], room[1, :size], room[2, :size], room[3, :size], room[4, :size]
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def first_part(pool, matrix, sheet):
+    """Solves a sheet of the first colour for what the second does to it, or for the right-hand side; what
+    each sheet does to the rollers."""
+    couplings, b = matrix.couplings, matrix.border
+    _, _, p, _, w = _rows(couplings, matrix.res.size)
+    span, start = couplings.colouring.spans[sheet], pool.given[START] != 0.0
+    low, high = 6 * span[0], 6 * span[1]
+    x = p
+    if couplings.colouring.of[sheet] == 0:
+        x = w
+        for l in range(low, high):
+            w[l] = matrix.res[l] if start else 0.0
+        if not start:
+            _across(couplings, sheet, p, w)
+        solve(matrix.band[span[0] : span[1]], w[low:high])
+    elif start:
+        return
+    for j in range(b.shape[0]):
+        pool.shares[sheet, j, 0] = _dot(b[j, low:high], x[low:high])
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def back_part(matrix, sheet):
+    """Takes off a sheet of the first colour what the rollers do to it."""
+    couplings, y = matrix.couplings, matrix.eliminated
+    size, span = matrix.res.size, couplings.colouring.spans[sheet]
+    w, rollers = couplings.room[4, :size], couplings.room[4, size:]
+    if couplings.colouring.of[sheet] != 0:
+        return
+    for j in range(rollers.size):
+        v = rollers[j]
+        for l in range(6 * span[0], 6 * span[1]):
+            w[l] -= y[j, l] * v
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def across_part(pool, matrix, sheet):
+    """What a sheet of the second colour makes of its move, less what the first colour and the rollers do to
+    it then."""
+    couplings, b, size = matrix.couplings, matrix.border, matrix.res.size
+    _, q, p, own, w = _rows(couplings, size)
+    rollers, span = couplings.room[4, size:], couplings.colouring.spans[sheet]
+    low, high = 6 * span[0], 6 * span[1]
+    if couplings.colouring.of[sheet] != 1:
+        return
+    for l in range(low, high):
+        q[l] = 0.0
+    _across(couplings, sheet, w, q)
+    for j in range(rollers.size):
+        far = rollers[j]
+        for l in range(low, high):
+            q[l] += b[j, l] * far
+    for l in range(low, high):
+        q[l] = own[l] - q[l]
+    pool.shares[sheet, 0, 0] = _dot(p[low:high], q[low:high])
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def split_part(pool, matrix, sheet):
+    """Begins the method: what is left of the second colour, and its first direction."""
+    couplings, res, size = matrix.couplings, matrix.res, matrix.res.size
+    r, z, p, own, w = _rows(couplings, size)
+    span = couplings.colouring.spans[sheet]
+    low, high = 6 * span[0], 6 * span[1]
+    if couplings.colouring.of[sheet] != 1:
+        for l in range(low, high):
+            res[l] = w[l]
+        return
+    for l in range(low, high):
+        r[l] = own[l] = z[l]
+        res[l] = 0.0
+    solve(matrix.band[span[0] : span[1]], z[low:high])
+    for l in range(low, high):
+        p[l] = z[l]
+    pool.shares[sheet, 0, 0] = _dot(r[low:high], z[low:high])
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def step_part(pool, matrix, sheet):
+    """Goes in the direction of the method, and solves for what is left of the second colour."""
+    couplings, res = matrix.couplings, matrix.res
+    r, z, p, _, w = _rows(couplings, res.size)
+    span, part = couplings.colouring.spans[sheet], pool.given[LENGTH]
+    low, high = 6 * span[0], 6 * span[1]
+    if couplings.colouring.of[sheet] != 1:
+        for l in range(low, high):
+            res[l] -= part * w[l]
+        return
+    for l in range(low, high):
+        r[l] -= part * z[l]
+        res[l] += part * p[l]
+        z[l] = r[l]
+    solve(matrix.band[span[0] : span[1]], z[low:high])
+    pool.shares[sheet, 0, 0] = _dot(r[low:high], z[low:high])
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def turn_part(pool, matrix, sheet):
+    """The next direction of the method."""
+    couplings = matrix.couplings
+    r, z, p, own, _ = _rows(couplings, matrix.res.size)
+    span, turn = couplings.colouring.spans[sheet], pool.given[KEPT]
+    if couplings.colouring.of[sheet] != 1:
+        return
+    for l in range(6 * span[0], 6 * span[1]):
+        p[l] = z[l] + turn * p[l]
+        own[l] = r[l] + turn * own[l]
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def part_of(pool, matrix, kind, sheet):
+    """Does the part of a sheet in a job of one of these kinds."""
+    if kind == parallel.FIRST:
+        first_part(pool, matrix, sheet)
+    elif kind == parallel.BACK:
+        back_part(matrix, sheet)
+    elif kind == parallel.ACROSS:
+        across_part(pool, matrix, sheet)
+    elif kind == parallel.SPLIT:
+        split_part(pool, matrix, sheet)
+    elif kind == parallel.STEP:
+        step_part(pool, matrix, sheet)
+    elif kind == parallel.TURN:
+        turn_part(pool, matrix, sheet)
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _each(pool, matrix, kind):
+    """Does a job."""
+    many = pool.failed.size
+    begin(pool, kind, many)
+    sheet = take(pool)
+    while sheet >= 0:
+        part_of(pool, matrix, kind, sheet)
+        sheet = take(pool)
+    finish(pool, many)
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _sum(pool, colours):
+    """Of what the sheets of the second colour left."""
     total = 0.0
     for sheet in range(colours.of.size):
         if colours.of[sheet] == 1:
-            for l in range(6 * colours.spans[sheet, 0], 6 * colours.spans[sheet, 1]):
-                total += p[l] * q[l]
+            total += pool.shares[sheet, 0, 0]
     return total
 
 
-@njit(cache=True, error_model="numpy")
-def solve_coloured(a, b, y, couplings, res, resb, most, least):
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _first(pool, matrix, rollers, start):
+    """What the first colour and the rollers do where the second moves, or at the right-hand side, and what
+    that does to the second. `rollers`: what they begin with."""
+    colours = matrix.couplings.colouring
+    pool.given[START] = 1.0 if start else 0.0
+    _each(pool, matrix, parallel.FIRST)
+    if rollers.size > 0:
+        for j in range(rollers.size):
+            if not start:
+                for sheet in range(colours.of.size):
+                    if colours.of[sheet] == 1:
+                        rollers[j] += pool.shares[sheet, j, 0]
+            for sheet in range(colours.of.size):
+                if colours.of[sheet] == 0:
+                    rollers[j] -= pool.shares[sheet, j, 0]
+        cholesky_solve(colours.corner, rollers)
+        _each(pool, matrix, parallel.BACK)
+    _each(pool, matrix, parallel.ACROSS)
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def solve_coloured(pool, matrix, most, least, enough):
     """Solves band, border and couplings in place, where the sheets have two colours.
 
     The method ends after `most` iterations, or where the square of the residual, measured
-    with the preconditioner, is `least` of what it was.
+    with the preconditioner, is `least` of what it was, or after FEWEST of them `enough`.
     """
-    colours, room, size = couplings.colouring, couplings.room, res.size
-    r, z, p, own, w = room[0, :size], room[1, :size], room[2, :size], room[3, :size], room[4, :size]
-    wb = room[4, size:]
-    none = room[3, size:]
-    for l in range(size):
-        r[l], w[l] = res[l], 0.0
+    couplings, res, resb = matrix.couplings, matrix.res, matrix.resb
+    colours, size = couplings.colouring, res.size
+    own, rollers = couplings.room[3], couplings.room[4, size:]
     # the first colour as if the second stood still, and what that does to the second
-    _solve_first(a, b, y, colours, res, resb)
-    none[:] = 0.0
-    _across(b, couplings, 0, res, resb, w, none)
-    for sheet in range(colours.of.size):
-        for l in range(6 * colours.spans[sheet, 0], 6 * colours.spans[sheet, 1]):
-            second = colours.of[sheet] == 1
-            r[l] = r[l] - w[l] if second else 0.0
-            z[l] = p[l] = own[l] = r[l]
-            if second:
-                res[l] = 0.0
-    _solve_second(a, colours, z)
     for l in range(size):
-        p[l] = z[l]
-    left = _dot(colours, r, z)
+        own[l] = res[l]
+    for j in range(resb.size):
+        rollers[j] = resb[j]
+    _first(pool, matrix, rollers, True)
+    for j in range(resb.size):
+        resb[j] = rollers[j]
+    _each(pool, matrix, parallel.SPLIT)
+    left = _sum(pool, colours)
     first = left
-    for _ in range(most):
-        if not left > least * first:
+    for iteration in range(most):
+        if not left > (max(least * first, enough) if iteration >= FEWEST else least * first):
             break
         # what the first colour does where the second moves by p, and what that does to the second
-        for l in range(size):
-            w[l] = 0.0
-        wb[:] = 0.0
-        _across(b, couplings, 1, p, wb, w, wb)
-        _solve_first(a, b, y, colours, w, wb)
-        q = z
-        for l in range(size):
-            q[l] = 0.0
-        _across(b, couplings, 0, w, wb, q, none)
-        for l in range(size):
-            q[l] = own[l] - q[l]
-        along = _dot(colours, p, q)
+        for j in range(resb.size):
+            rollers[j] = 0.0
+        _first(pool, matrix, rollers, False)
+        along = _sum(pool, colours)
         if not along > 0.0:
             break
-        part = left / along
-        for sheet in range(colours.of.size):
-            if colours.of[sheet] == 1:
-                for l in range(6 * colours.spans[sheet, 0], 6 * colours.spans[sheet, 1]):
-                    r[l] -= part * q[l]
-                    res[l] += part * p[l]
-                    z[l] = r[l]
-            else:
-                for l in range(6 * colours.spans[sheet, 0], 6 * colours.spans[sheet, 1]):
-                    res[l] -= part * w[l]
+        pool.given[LENGTH] = left / along
         for j in range(resb.size):
-            resb[j] -= part * wb[j]
-        _solve_second(a, colours, z)
-        after = _dot(colours, r, z)
-        turn, left = after / left, after
-        for sheet in range(colours.of.size):
-            if colours.of[sheet] == 1:
-                for l in range(6 * colours.spans[sheet, 0], 6 * colours.spans[sheet, 1]):
-                    p[l] = z[l] + turn * p[l]
-                    own[l] = r[l] + turn * own[l]
+            resb[j] -= pool.given[LENGTH] * rollers[j]
+        _each(pool, matrix, parallel.STEP)
+        after = _sum(pool, colours)
+        pool.given[KEPT], left = after / left, after
+        _each(pool, matrix, parallel.TURN)

@@ -1,0 +1,110 @@
+"""The band and its border sheet by sheet: nothing in the band couples two sheets, so threads share them."""
+
+from __future__ import annotations
+
+from mdlgen.backends.lattice.kernels import parallel
+from mdlgen.backends.lattice.kernels.linear.band import factor, solve
+from mdlgen.backends.lattice.kernels.linear.dense import cholesky, cholesky_solve
+from mdlgen.backends.lattice.kernels.parallel import begin, finish, take
+from mdlgen.program.kernel import BORROWS, njit
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def factor_part(pool, matrix, sheet):
+    """Factors the band of a sheet."""
+    spans = matrix.couplings.colouring.spans
+    pool.failed[sheet] = 0 if factor(matrix.band[spans[sheet, 0] : spans[sheet, 1]]) else 1
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def factor_sheets(pool, matrix):
+    """Cholesky factor of the band in place, as band.factor."""
+    many = pool.failed.size
+    begin(pool, parallel.FACTOR, many)
+    sheet = take(pool)
+    while sheet >= 0:
+        factor_part(pool, matrix, sheet)
+        sheet = take(pool)
+    finish(pool, many)
+    failed = 0
+    for k in range(many):
+        failed += pool.failed[k]
+    return failed == 0
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def eliminate_part(pool, matrix, sheet):
+    """Rows of Y = A^-1 B in the columns of a sheet, and what they take off the corner."""
+    span, shares = matrix.couplings.colouring.spans[sheet], pool.shares
+    b, y = matrix.border, matrix.eliminated
+    start, end = 6 * span[0], 6 * span[1]
+    for j in range(b.shape[0]):
+        first = start
+        while first < end and b[j, first] == 0.0:
+            first += 1
+        for l in range(start, end):
+            y[j, l] = b[j, l]
+        if first < end:
+            solve(matrix.band[span[0] : span[1]], y[j, start:end], (first - start) // 6)
+        for i in range(j, b.shape[0]):
+            v = 0.0
+            if first < end:
+                for l in range(start, end):
+                    v += b[i, l] * y[j, l]
+            shares[sheet, i, j] = v
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def eliminate_sheets(pool, matrix):
+    """As bordered.eliminate, from the factor of the band."""
+    many, corner, d = pool.failed.size, matrix.schur, matrix.corner
+    begin(pool, parallel.ELIMINATE, many)
+    sheet = take(pool)
+    while sheet >= 0:
+        eliminate_part(pool, matrix, sheet)
+        sheet = take(pool)
+    finish(pool, many)
+    for i in range(d.shape[0]):
+        for j in range(d.shape[0]):
+            v = 0.0
+            if i >= j:
+                for k in range(many):
+                    v += pool.shares[k, i, j]
+            corner[i, j] = d[i, j] - v
+    return cholesky(corner)
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def solve_part(pool, matrix, sheet):
+    """Solves with the band of a sheet, in the second vector of the couplings."""
+    span, b, x = matrix.couplings.colouring.spans[sheet], matrix.border, matrix.couplings.room[1]
+    start, end = 6 * span[0], 6 * span[1]
+    solve(matrix.band[span[0] : span[1]], x[start:end])
+    for j in range(b.shape[0]):
+        v = 0.0
+        for l in range(start, end):
+            v += b[j, l] * x[l]
+        pool.shares[sheet, j, 0] = v
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def solve_sheets(pool, matrix):
+    """As bordered.solve_bordered, in the second vector of the couplings."""
+    many, y = pool.failed.size, matrix.eliminated
+    size = matrix.res.size
+    res, resb = matrix.couplings.room[1, :size], matrix.couplings.room[1, size:]
+    begin(pool, parallel.SOLVE, many)
+    sheet = take(pool)
+    while sheet >= 0:
+        solve_part(pool, matrix, sheet)
+        sheet = take(pool)
+    finish(pool, many)
+    for j in range(resb.size):
+        for k in range(many):
+            resb[j] -= pool.shares[k, j, 0]
+    cholesky_solve(matrix.schur, resb)
+    for j in range(resb.size):
+        v = resb[j]
+        if v != 0.0:
+            for l in range(size):
+                res[l] -= y[j, l] * v
