@@ -88,7 +88,9 @@ def forces_at(tables, mid, first, motion, close):
                     short[POINTS] = 0.0
                     onto(f, pair, short)
             else:
-                touching = _by_sides(tables, pair, motion, f, out, short)
+                one, two = box_of(tables.bodies[pair.a]), box_of(tables.bodies[pair.b])
+                touching = not apart(a, one.half, b, two.half, 0.0)
+                touching = touching and _by_sides(tables, pair, motion, f, out, short)
         else:
             touching = touches(tables, pair, motion, f, out)
         if touching:

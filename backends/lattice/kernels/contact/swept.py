@@ -4,6 +4,7 @@ energy that it makes where it begins before a contact and ends in it."""
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -44,6 +45,15 @@ from mdlgen.program.kernel import BORROWS, njit
 MOST_LOOKS = 64
 # Contacts of which each makes less than this part of the energy that may be made are not looked at.
 LITTLE = 1e-3
+
+
+class Before(NamedTuple):
+    """The middle of the step before: velocities of nodes and of the border there, and which part of the way
+    from there to the middle of this step is in this one."""
+
+    u: np.ndarray  # (nodes, 6)
+    ub: np.ndarray  # (border,)
+    part: float
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -90,25 +100,25 @@ def _clear(bodies, pair, x, r, way):
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _changed(body, b, state, mid, slower):
     """By how much the velocity and the angular velocity of one body have changed from the middle of the step
-    before to the middle of this one; slower: (u, ub) there, and which part of the way is in this step."""
+    before to the middle of this one; slower: see Before."""
     n = body.node
     if n >= 0:
-        u, kept = state.u, slower[0]
+        u, kept = state.u, slower.u
         rate = (u[n, 0] - kept[n, 0], u[n, 1] - kept[n, 1], u[n, 2] - kept[n, 2])
         return rate, (u[n, 3] - kept[n, 3], u[n, 4] - kept[n, 4], u[n, 5] - kept[n, 5])
     rate = spin = (0.0, 0.0, 0.0)
     if body.slide >= 0:
-        faster = state.ub[body.slide] - slower[1][body.slide]
+        faster = state.ub[body.slide] - slower.ub[body.slide]
         rate, spin = scale(faster, way_of(body, vec(mid.motion.x, b))), scale(faster, turn_of(body))
     if body.spin >= 0:
-        spin = add(spin, scale(state.ub[body.spin] - slower[1][body.spin], three(body.axis)))
+        spin = add(spin, scale(state.ub[body.spin] - slower.ub[body.spin], three(body.axis)))
     return rate, spin
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _fastest_at_ends(tables, state, slower, fastest):
     """How fast any place of a free box is at most at either end of a step, in fastest[ENDS]."""
-    u, kept = state.u, slower[0]
+    u, kept = state.u, slower.u
     for n in range(tables.nodes.size):
         b = tables.nodes[n]
         more = sub((u[n, 0], u[n, 1], u[n, 2]), (kept[n, 0], kept[n, 1], kept[n, 2]))
@@ -134,7 +144,7 @@ def _made(work, count, dt, slower, least, rows):
         row = pair.row
         one, spin_one = _changed(bodies[pair.a], pair.a, state, mid, slower)
         two, spin_two = _changed(bodies[pair.b], pair.b, state, mid, slower)
-        part = slower[2]
+        part = slower.part
         if faces:
             faster = (scale(part, one), scale(part, spin_one)), (scale(part, two), scale(part, spin_two))
             kept, law = mid.overlaps[touched[k] - work.search.first], law_of(pair)
@@ -233,8 +243,8 @@ def swept(work, counts, t, dt, allowed, slower, rows):
             return near[at], 0.0
         if not made:
             made = True
-            rates = np.empty_like(x), np.empty_like(x)
-            between, out = Motion(np.empty_like(x), np.empty_like(r), rates[0], rates[1]), np.zeros(OUT)
+            um, wm = np.empty_like(x), np.empty_like(x)
+            between, out = Motion(np.empty_like(x), np.empty_like(r), um, wm), np.zeros(OUT)
         many = max(1, math.ceil(way / band))
         for k in range(1, many + 1):
             h = dt * k / many

@@ -8,7 +8,7 @@ import numpy as np
 
 from mdlgen.backends.lattice.kernels.contact.between import forget_overlaps
 from mdlgen.backends.lattice.kernels.contact.search import look, strayed
-from mdlgen.backends.lattice.kernels.contact.swept import swept
+from mdlgen.backends.lattice.kernels.contact.swept import Before, swept
 from mdlgen.backends.lattice.kernels.integrate.carry import carry, spun
 from mdlgen.backends.lattice.kernels.integrate.damped import overshoot, take_off
 from mdlgen.backends.lattice.kernels.integrate.step import midpoint
@@ -240,7 +240,7 @@ def run(work, t, steps, tolerance, control):
                 counts = int(counters[TOUCHING]), int(counters[CLOSE])
                 # of the way from the middle of the step before, what is in this step
                 inside = dt / (dt + spans[LAST_STEP]) if spans[LAST_STEP] > 0.0 else 0.0
-                deep, made = swept(work, counts, t, dt, allowed, (keep_u, keep_b, inside), stored)
+                deep, made = swept(work, counts, t, dt, allowed, Before(keep_u, keep_b, inside), stored)
             coarse = missed > AGAIN * most or made > AGAIN * allowed
             if not solved or ((coarse or deep >= 0) and level < FINEST):
                 copy(u, keep_u)

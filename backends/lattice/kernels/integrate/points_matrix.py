@@ -5,6 +5,7 @@ from __future__ import annotations
 from mdlgen.backends.lattice.kernels.contact.slopes import Numbers, core, outer, steepness
 from mdlgen.backends.lattice.kernels.integrate.points import law_at, moving, turning_of
 from mdlgen.backends.lattice.kernels.integrate.tangent import blocks
+from mdlgen.backends.lattice.kernels.linear.two_colour import ONE, TWO
 from mdlgen.backends.lattice.kernels.state import (
     A_COUPLE,
     A_DAMPER,
@@ -94,7 +95,7 @@ def points_into(work, h, chord):
         node, other = bodies[pair.a].node, bodies[pair.b].node
         if p != last and node >= 0 and other >= 0:
             coupled = couplings.many[0]
-            couplings.ends[coupled, 0], couplings.ends[coupled, 1] = node, other
+            couplings.ends[coupled, ONE], couplings.ends[coupled, TWO] = node, other
             couplings.blocks[coupled] = 0.0
             couplings.many[0] = coupled + 1
         last = p

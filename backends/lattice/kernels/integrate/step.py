@@ -40,7 +40,12 @@ from mdlgen.backends.lattice.kernels.forces import (
     pair_forces_again,
     place,
 )
-from mdlgen.backends.lattice.kernels.integrate.change import fastest, greatest, greatest_of_free, take_off
+from mdlgen.backends.lattice.kernels.integrate.change import (
+    fastest,
+    greatest,
+    greatest_of_free,
+    take_off,
+)
 from mdlgen.backends.lattice.kernels.integrate.convex import solve_convex
 from mdlgen.backends.lattice.kernels.integrate.mixing import mix
 from mdlgen.backends.lattice.kernels.integrate.momentum import keep

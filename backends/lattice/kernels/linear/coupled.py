@@ -16,7 +16,14 @@ import numpy as np
 from mdlgen.backends.lattice.kernels.linear.bordered import solve_bordered
 from mdlgen.backends.lattice.kernels.linear.dense import copy
 from mdlgen.backends.lattice.kernels.linear.sheets import solve_sheets
-from mdlgen.backends.lattice.kernels.linear.two_colour import FEWEST, Colouring, colouring, solve_coloured
+from mdlgen.backends.lattice.kernels.linear.two_colour import (
+    FEWEST,
+    ONE,
+    TWO,
+    Colouring,
+    colouring,
+    solve_coloured,
+)
 from mdlgen.backends.lattice.kernels.parallel import AXES, begin, chunks, finish, items_of, take
 from mdlgen.mechanics.vector import mat, matmul, transpose_matmul
 from mdlgen.program.kernel import BORROWS, njit
@@ -55,7 +62,7 @@ def axes_part(nodes, r, couplings, part):
     """Turns the blocks of some couplings."""
     low, high = items_of(part, couplings.many[0])
     for k in range(low, high):
-        one, two = mat(r, nodes[couplings.ends[k, 0]]), mat(r, nodes[couplings.ends[k, 1]])
+        one, two = mat(r, nodes[couplings.ends[k, ONE]]), mat(r, nodes[couplings.ends[k, TWO]])
         block = couplings.blocks[k]
         for p in range(0, 6, 3):
             for q in range(0, 6, 3):
@@ -93,7 +100,7 @@ def _dot(a, b):
 def _couple(couplings, p, q):
     """Adds what the blocks make of p to q."""
     for k in range(couplings.many[0]):
-        a, b = 6 * couplings.ends[k, 0], 6 * couplings.ends[k, 1]
+        a, b = 6 * couplings.ends[k, ONE], 6 * couplings.ends[k, TWO]
         block = couplings.blocks[k]
         for c in range(6):
             v, far = 0.0, p[b + c]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from mdlgen.backends.lattice.kernels import parallel
 from mdlgen.backends.lattice.kernels.linear.band import factor, solve
 from mdlgen.backends.lattice.kernels.linear.dense import cholesky, cholesky_solve
+from mdlgen.backends.lattice.kernels.linear.two_colour import BEGIN, END
 from mdlgen.backends.lattice.kernels.parallel import begin, finish, take
 from mdlgen.program.kernel import BORROWS, njit
 
@@ -13,7 +14,7 @@ from mdlgen.program.kernel import BORROWS, njit
 def factor_part(pool, matrix, sheet):
     """Factors the band of a sheet."""
     spans = matrix.couplings.colouring.spans
-    pool.failed[sheet] = 0 if factor(matrix.band[spans[sheet, 0] : spans[sheet, 1]]) else 1
+    pool.failed[sheet] = 0 if factor(matrix.band[spans[sheet, BEGIN] : spans[sheet, END]]) else 1
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -37,7 +38,7 @@ def eliminate_part(pool, matrix, sheet):
     """Rows of Y = A^-1 B in the columns of a sheet, and what they take off the corner."""
     span, shares = matrix.couplings.colouring.spans[sheet], pool.shares
     b, y = matrix.border, matrix.eliminated
-    start, end = 6 * span[0], 6 * span[1]
+    start, end = 6 * span[BEGIN], 6 * span[END]
     for j in range(b.shape[0]):
         first = start
         while first < end and b[j, first] == 0.0:
@@ -45,7 +46,7 @@ def eliminate_part(pool, matrix, sheet):
         for l in range(start, end):
             y[j, l] = b[j, l]
         if first < end:
-            solve(matrix.band[span[0] : span[1]], y[j, start:end], (first - start) // 6)
+            solve(matrix.band[span[BEGIN] : span[END]], y[j, start:end], (first - start) // 6)
         for i in range(j, b.shape[0]):
             v = 0.0
             if first < end:
@@ -78,8 +79,8 @@ def eliminate_sheets(pool, matrix):
 def solve_part(pool, matrix, sheet):
     """Solves with the band of a sheet, in the second vector of the couplings."""
     span, b, x = matrix.couplings.colouring.spans[sheet], matrix.border, matrix.couplings.room[1]
-    start, end = 6 * span[0], 6 * span[1]
-    solve(matrix.band[span[0] : span[1]], x[start:end])
+    start, end = 6 * span[BEGIN], 6 * span[END]
+    solve(matrix.band[span[BEGIN] : span[END]], x[start:end])
     for j in range(b.shape[0]):
         v = 0.0
         for l in range(start, end):

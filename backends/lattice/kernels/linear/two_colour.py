@@ -24,8 +24,11 @@ from mdlgen.program.kernel import BORROWS, njit
 # Of Pool.given: how far the method goes, how much of the last direction the next one keeps, and whether the
 # first colour starts from the right-hand side.
 LENGTH, KEPT, START = 0, 1, 2
+# Columns of Colouring.spans; of Couplings.ends.
+BEGIN, END = 0, 1
+ONE, TWO = 0, 1
 # What is small is not left as it is: a guess goes on with it, step by step.
-FEWEST = 2
+FEWEST = 1
 
 
 class Colouring(NamedTuple):
@@ -69,7 +72,7 @@ def _colour(couplings):
         while grew:
             grew = False
             for k in range(couplings.many[0]):
-                one, two = label[ends[k, 0]], label[ends[k, 1]]
+                one, two = label[ends[k, ONE]], label[ends[k, TWO]]
                 if of[one] < 0 and of[two] >= 0:
                     one, two = two, one
                 if of[one] >= 0 and of[two] < 0:
@@ -118,7 +121,7 @@ def colour(matrix):
             v = d[i, j]
             for sheet in range(colours.of.size):
                 if colours.of[sheet] == 0:
-                    for l in range(6 * colours.spans[sheet, 0], 6 * colours.spans[sheet, 1]):
+                    for l in range(6 * colours.spans[sheet, BEGIN], 6 * colours.spans[sheet, END]):
                         v -= b[i, l] * y[j, l]
             corner[i, j] = v
     if cholesky(corner):
@@ -147,8 +150,8 @@ def _across(couplings, sheet, p, q):
     label = colours.label
     for at in range(colours.begins[sheet], colours.begins[sheet + 1]):
         k = colours.own[at]
-        one, two, block = 6 * ends[k, 0], 6 * ends[k, 1], blocks[k]
-        if label[ends[k, 1]] == sheet:
+        one, two, block = 6 * ends[k, ONE], 6 * ends[k, TWO], blocks[k]
+        if label[ends[k, TWO]] == sheet:
             for c in range(6):
                 v = 0.0
                 for i in range(6):
@@ -176,7 +179,7 @@ def first_part(pool, matrix, sheet):
     couplings, b = matrix.couplings, matrix.border
     _, _, p, _, w = _rows(couplings, matrix.res.size)
     span, start = couplings.colouring.spans[sheet], pool.given[START] != 0.0
-    low, high = 6 * span[0], 6 * span[1]
+    low, high = 6 * span[BEGIN], 6 * span[END]
     x = p
     if couplings.colouring.of[sheet] == 0:
         x = w
@@ -184,7 +187,7 @@ def first_part(pool, matrix, sheet):
             w[l] = matrix.res[l] if start else 0.0
         if not start:
             _across(couplings, sheet, p, w)
-        solve(matrix.band[span[0] : span[1]], w[low:high])
+        solve(matrix.band[span[BEGIN] : span[END]], w[low:high])
     elif start:
         return
     for j in range(b.shape[0]):
@@ -201,7 +204,7 @@ def back_part(matrix, sheet):
         return
     for j in range(rollers.size):
         v = rollers[j]
-        for l in range(6 * span[0], 6 * span[1]):
+        for l in range(6 * span[BEGIN], 6 * span[END]):
             w[l] -= y[j, l] * v
 
 
@@ -212,7 +215,7 @@ def across_part(pool, matrix, sheet):
     couplings, b, size = matrix.couplings, matrix.border, matrix.res.size
     _, q, p, own, w = _rows(couplings, size)
     rollers, span = couplings.room[4, size:], couplings.colouring.spans[sheet]
-    low, high = 6 * span[0], 6 * span[1]
+    low, high = 6 * span[BEGIN], 6 * span[END]
     if couplings.colouring.of[sheet] != 1:
         return
     for l in range(low, high):
@@ -233,7 +236,7 @@ def split_part(pool, matrix, sheet):
     couplings, res, size = matrix.couplings, matrix.res, matrix.res.size
     r, z, p, own, w = _rows(couplings, size)
     span = couplings.colouring.spans[sheet]
-    low, high = 6 * span[0], 6 * span[1]
+    low, high = 6 * span[BEGIN], 6 * span[END]
     if couplings.colouring.of[sheet] != 1:
         for l in range(low, high):
             res[l] = w[l]
@@ -241,7 +244,7 @@ def split_part(pool, matrix, sheet):
     for l in range(low, high):
         r[l] = own[l] = z[l]
         res[l] = 0.0
-    solve(matrix.band[span[0] : span[1]], z[low:high])
+    solve(matrix.band[span[BEGIN] : span[END]], z[low:high])
     for l in range(low, high):
         p[l] = z[l]
     pool.shares[sheet, 0, 0] = _dot(r[low:high], z[low:high])
@@ -253,7 +256,7 @@ def step_part(pool, matrix, sheet):
     couplings, res = matrix.couplings, matrix.res
     r, z, p, _, w = _rows(couplings, res.size)
     span, part = couplings.colouring.spans[sheet], pool.given[LENGTH]
-    low, high = 6 * span[0], 6 * span[1]
+    low, high = 6 * span[BEGIN], 6 * span[END]
     if couplings.colouring.of[sheet] != 1:
         for l in range(low, high):
             res[l] -= part * w[l]
@@ -262,7 +265,7 @@ def step_part(pool, matrix, sheet):
         r[l] -= part * z[l]
         res[l] += part * p[l]
         z[l] = r[l]
-    solve(matrix.band[span[0] : span[1]], z[low:high])
+    solve(matrix.band[span[BEGIN] : span[END]], z[low:high])
     pool.shares[sheet, 0, 0] = _dot(r[low:high], z[low:high])
 
 
@@ -274,7 +277,7 @@ def turn_part(pool, matrix, sheet):
     span, turn = couplings.colouring.spans[sheet], pool.given[KEPT]
     if couplings.colouring.of[sheet] != 1:
         return
-    for l in range(6 * span[0], 6 * span[1]):
+    for l in range(6 * span[BEGIN], 6 * span[END]):
         p[l] = z[l] + turn * p[l]
         own[l] = r[l] + turn * own[l]
 
