@@ -35,7 +35,7 @@ SCENES = {
     "pick": GIVEN,
     "peel": GIVEN,
 }
-COUNTS = {"transport_4x4, three": 3, "transport_4x4, four": 4, "peel": 3}
+COUNTS = {"transport_4x4, three": 3, "transport_4x4, four": 4}
 
 
 @pytest.fixture(autouse=True)

@@ -59,13 +59,18 @@ LEVEL, FLAT = 0.25, 0.1
 MOST_LOOKS, MOST_DOUBLED = 12, 4
 # A factor is worth so many iterations (see integrate.step).
 WORTH = 4.0
-CHORD = 0.02
+# How much of the chord a factor takes (see slopes.steepness): little converges fast, much does not cross to
+# the other side of what is flat; least where each direction is searched.
+LEAST, LITTLE, MUCH = 0.02, 0.05, 0.7
+# How far a solve goes: a step of Newton's method as it comes, with little of the chord or with much; to the
+# end, but that a first direction which is gone along wholly is enough; to the end.
+PLAIN, CAREFUL, SHORT, WHOLE = 0, 1, 2, 3
 # A linear solve ends where what it leaves would change velocities by about this part of the limit.
 SMALL = 0.1
 
 
 @njit(cache=True, error_model="numpy")
-def _make_matrix(work, t, h, lag, renew):
+def _make_matrix(work, h, lag, renew, effort):
     """The matrix of the frozen points, factored; `renew`: masses and bushings too. Returns False where it is
     not regular."""
     tables, matrix, motion = work.tables, work.matrix, work.mid.motion
@@ -77,7 +82,7 @@ def _make_matrix(work, t, h, lag, renew):
     a[:] = 0.0
     b[:] = 0.0
     copy(d, matrix.own)
-    points_into(work, h, CHORD)
+    points_into(work, h, LITTLE if effort == PLAIN else MUCH if effort == CAREFUL else LEAST)
     couplings_in_box_axes(work.pool, tables.nodes, motion.r, matrix.couplings)
     in_box_axes(tables.nodes, motion.r, a, b, matrix.offsets[:1])
     a += matrix.inner
@@ -171,10 +176,10 @@ def _enough(tables, limit):
 
 
 @njit(cache=True, error_model="numpy")
-def solve_convex(work, t, h, lag, counts, limit, control, renew, plain):
+def solve_convex(work, t, h, lag, counts, limit, control, renew, effort):
     """Makes of the residual, in box axes, the change of velocities that is to be taken off. Returns in how
     many iterations, 0: it could not. counts: how many pairs touch, how many are near; `renew`: a factor has
-    masses and bushings anew; `plain`: a step of Newton's method is taken as it is."""
+    masses and bushings anew; `effort`: see PLAIN."""
     tables, matrix, frozen = work.tables, work.matrix, work.frozen
     factored, counters = control.factored, control.counters
     z, zb, axes = matrix.res, matrix.resb, work.condensed.axes
@@ -202,7 +207,7 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, plain):
                 gather(work, counts, h, False)
                 gathered = True
             counters[FACTORS] += 1
-            if not _make_matrix(work, t, h, lag, renew):
+            if not _make_matrix(work, h, lag, renew, effort):
                 return 0
             factored[MADE_FOR], factored[STALE], factored[WHERE] = 2.0 * h, 0.0, INSIDE
             renew = False
@@ -220,7 +225,7 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, plain):
         for i in range(pb.size):
             pb[i] = turn * pb[i] - zb[i]
         moved = greatest(tables, work.mid.motion, p, pb, counters)
-        if plain or (iteration == 0 and moved <= limit):
+        if effort <= CAREFUL or (iteration == 0 and moved <= limit):
             copy(change, p)
             copy(changeb, pb)
             break
@@ -230,6 +235,8 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, plain):
         begin = _dot(g, p) + _dot(gb, pb)
         if not begin < 0.0:
             # a factor of an earlier state may lead up
+            if made and iteration == 0:
+                return 0
             if made:
                 break
             factored[STALE] = 1.0
@@ -243,7 +250,7 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, plain):
             changeb[i] += part * pb[i]
         moved *= part
         rate = moved / before
-        if (iteration == 0 and part == 1.0) or moved <= ROUGH * limit:
+        if (effort == SHORT and iteration == 0 and part == 1.0) or moved <= ROUGH * limit:
             break
         if before < 1e299 and rate < 0.5 and moved * rate / (1.0 - rate) <= ROUGH * limit:
             break

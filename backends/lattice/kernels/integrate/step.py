@@ -46,7 +46,15 @@ from mdlgen.backends.lattice.kernels.integrate.change import (
     greatest_of_free,
     take_off,
 )
-from mdlgen.backends.lattice.kernels.integrate.convex import solve_convex
+from mdlgen.backends.lattice.kernels.integrate.convex import (
+    CAREFUL,
+    LITTLE,
+    MUCH,
+    PLAIN,
+    SHORT,
+    WHOLE,
+    solve_convex,
+)
 from mdlgen.backends.lattice.kernels.integrate.mixing import mix
 from mdlgen.backends.lattice.kernels.integrate.momentum import keep
 from mdlgen.backends.lattice.kernels.integrate.points import gather
@@ -107,11 +115,8 @@ DAMPED, MOST_DAMPED = 1.0, 0.3
 # Forces of sheets on sheets are those before an iteration that changed less than this part of the limit.
 SAME = 1e-3
 # Where contacts stand in the matrix, each iteration is a convex problem for so many steps after one that took
-# more than a few iterations of Newton's method as they come.
-PLAIN, MEMORY = 3, 20.0
-# How much of the chord a factor takes (see slopes.core): little converges fast, much does not cross to the
-# other side of what is flat; the latter is taken twice where an iteration moved more than the one before.
-LITTLE, MUCH = 0.05, 0.7
+# more than a few iterations of Newton's method as they come; it is solved to the end after a few more.
+PLAINLY, SHORTLY, MEMORY = 4, 8, 20.0
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -213,7 +218,7 @@ def midpoint(work, t, dt, tolerance, control):
     h = 0.5 * dt
     lag = min(DAMPED * dt, MOST_DAMPED) * h
     before = 1e300
-    careful, plain = 0, True
+    careful, effort = 0, PLAIN
     counters[THROUGH] = -1.0
     close, where, m = 0, int(factored[WHERE]), 0
     margin, moved, sheets = FAR, 0.0, work.search.regions.size > 0
@@ -256,11 +261,15 @@ def midpoint(work, t, dt, tolerance, control):
         if where == INSIDE:
             turn_nodes(nodes, condensed.axes, res, True)
             renew = iteration == 0 or factored[WHERE] != INSIDE
-            plain = factored[TOUGH] == 0.0 and iteration < PLAIN
+            effort = SHORT if iteration < SHORTLY else WHOLE
+            if factored[TOUGH] == 0.0 and iteration < PLAINLY:
+                effort = CAREFUL if careful > 0 else PLAIN
             factors = counters[FACTORS]
-            inner = solve_convex(work, t + h, h, lag, (count, close), limit, control, renew, plain)
+            inner = solve_convex(work, t + h, h, lag, (count, close), limit, control, renew, effort)
             if inner == 0:
                 break
+            if counters[FACTORS] > factors:
+                careful -= 1
         else:
             if factored[MADE_FOR] != dt or factored[STALE] != 0.0 or factored[WHERE] != where:
                 counters[FACTORS] += 1
@@ -280,7 +289,10 @@ def midpoint(work, t, dt, tolerance, control):
         if where == INSIDE:
             # what is mixed may be small while what is left is not
             found = greatest(tables, mid.motion, res, resb, counters)
-            mix(matrix, iteration > 1 or (iteration > 0 and plain and counters[FACTORS] == factors))
+            mix(
+                matrix,
+                iteration > 1 or (iteration > 0 and effort <= CAREFUL and counters[FACTORS] == factors),
+            )
         keep(tables, mid.touched, count, work.free, mid.motion.x, mid.motion.r, res)
         part = part_of_change(tables, mid.near, close, mid.motion.r, h, res)
         if part < 1.0:
@@ -303,7 +315,7 @@ def midpoint(work, t, dt, tolerance, control):
                 mid.forces[:] = 0.0
                 count, rubbed = _contact_forces(work, close, False)
             release(condensed, m)
-            factored[TOUGH] = MEMORY if iteration >= PLAIN else max(factored[TOUGH] - 1.0, 0.0)
+            factored[TOUGH] = MEMORY if iteration >= PLAINLY else max(factored[TOUGH] - 1.0, 0.0)
             return _done(work, h, (count, close), (lost + rubbed, power, numerical), counters)
         slow = before < 1e299 and (rate >= 1.0 or math.log(limit / change) < (WORTH + m) * math.log(rate))
         if slow and (where != INSIDE or inner == 1):
