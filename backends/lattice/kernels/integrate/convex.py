@@ -193,7 +193,7 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, effort):
     copy(frozen.vectors[RESIDUAL], z)
     copy(frozen.border[RESIDUAL], zb)
     enough = _enough(tables, limit)
-    before, along, part, gathered = 1e300, 0.0, 0.0, False
+    before, along, part, gathered, iteration = 1e300, 0.0, 0.0, False, 0
     for iteration in range(MOST_ITERATIONS):
         if iteration == 0:
             copy(g, z)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import partial
 from itertools import pairwise
 
@@ -270,7 +271,7 @@ def rests(result: Result, _: Result | None, fallen: float = 0.0) -> list[Finding
 
 def sinks(result: Result, _: Result | None) -> list[Finding]:
     """The momentum of a pile that sinks in is the impulse of the floor and of its weight."""
-    _, rate, mass = _sheets(result)
+    rate, mass = _sheets(result)[1:]
     force, time = _on_floor(result), result.time
     pushed = np.concatenate([[0.0], np.cumsum(0.5 * (force[1:] + force[:-1]) * np.diff(time))])
     weight = GRAVITY * mass.sum()
@@ -282,7 +283,7 @@ def sinks(result: Result, _: Result | None) -> list[Finding]:
 
 def passes_on(result: Result, _: Result | None, c: float) -> list[Finding]:
     """Speed of the last sheet by momentum and the quadrature of each impact; the sum of all momenta."""
-    _, rate, mass = _sheets(result)
+    rate, mass = _sheets(result)[1:]
     exact, found = _passed_on(mass, c)[-1], float(rate[-1, -1, 2])
     start = float(mass[0]) * STRUCK
     drift = float(np.abs(rate[..., 2] @ mass / start - 1).max())
@@ -354,7 +355,5 @@ def feeds(result: Result, _: Result | None) -> list[Finding]:
 
 
 def _slip(part: float) -> float:
-    """Where the cubic STEP from -1 to 1 is `part`."""
-    from scipy.optimize import brentq
-
-    return brentq(lambda x: oracle.sign(x, 1.0) - part, 0.0, 1.0)
+    """Where the cubic STEP from -1 to 1, x (3 - x^2)/2, is `part`: of x = 2 sin a it is sin 3a."""
+    return 2.0 * math.sin(math.asin(part) / 3.0)
