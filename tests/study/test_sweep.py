@@ -102,11 +102,11 @@ class TestCase:
         asked = task(INCLINE, SHORT, measures=(("steps", "steps"),))
         case = Case(0, ((FRICTION, "0.2"),))
         good = mdlgen.solve(asked.model(case))
-        monkeypatch.setattr("mdlgen.registry.solve", lambda *_: good.failed("went wrong at 1 ms"))
+        monkeypatch.setattr("mdlgen.registry.solve", lambda *_, **__: good.failed("went wrong at 1 ms"))
         row = perform.perform(asked, case)
         assert (row.kind, row.status, row.measures) == (FAILED, "went wrong at 1 ms", {})
 
-        def broken(*_: object) -> None:
+        def broken(*_: object, **__: object) -> None:
             raise ZeroDivisionError("oh")
 
         monkeypatch.setattr("mdlgen.registry.solve", broken)

@@ -65,8 +65,6 @@ LEAST, LITTLE, MUCH = 0.02, 0.05, 0.7
 # How far a solve goes: a step of Newton's method as it comes, with little of the chord or with much; to the
 # end, but that a first direction which is gone along wholly is enough; to the end.
 PLAIN, CAREFUL, SHORT, WHOLE = 0, 1, 2, 3
-# A linear solve ends where what it leaves would change velocities by about this part of the limit.
-SMALL = 0.1
 
 
 @njit(cache=True, error_model="numpy")
@@ -165,16 +163,6 @@ def _direction(work, axes):
     return linear, square
 
 
-@njit(cache=True, error_model="numpy", **BORROWS)
-def _enough(tables, limit):
-    """What a linear solve may leave of its residual's square, measured with the inverse: as much energy as
-    the lightest box has at a small part of the limit of an iteration."""
-    lightest = 1e300
-    for n in range(tables.nodes.size):
-        lightest = min(lightest, tables.bodies[tables.nodes[n]].mass)
-    return lightest / 12.0 * (SMALL * limit) ** 2
-
-
 @njit(cache=True, error_model="numpy")
 def solve_convex(work, t, h, lag, counts, limit, control, renew, effort):
     """Makes of the residual, in box axes, the change of velocities that is to be taken off. Returns in how
@@ -192,7 +180,6 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, effort):
     rollers_into(tables.bodies, h, t, work.state.ub, matrix.own)
     copy(frozen.vectors[RESIDUAL], z)
     copy(frozen.border[RESIDUAL], zb)
-    enough = _enough(tables, limit)
     before, along, part, gathered, iteration = 1e300, 0.0, 0.0, False, 0
     for iteration in range(MOST_ITERATIONS):
         if iteration == 0:
@@ -215,7 +202,7 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, effort):
         copy(z, g)
         copy(zb, gb)
         counters[SOLVES] += 1
-        solve_coupled(work.pool, matrix, enough)
+        solve_coupled(work.pool, matrix)
         # conjugate directions, by Polak and Ribiere: they make up for a factor of an earlier state
         square = _dot(g, z) + _dot(gb, zb)
         turn = max(0.0, (square - crossing) / along) if iteration > 0 and not made and along > 0.0 else 0.0

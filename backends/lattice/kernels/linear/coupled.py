@@ -17,7 +17,6 @@ from mdlgen.backends.lattice.kernels.linear.bordered import solve_bordered
 from mdlgen.backends.lattice.kernels.linear.dense import copy
 from mdlgen.backends.lattice.kernels.linear.sheets import solve_sheets
 from mdlgen.backends.lattice.kernels.linear.two_colour import (
-    FEWEST,
     ONE,
     TWO,
     Colouring,
@@ -111,15 +110,14 @@ def _couple(couplings, p, q):
 
 
 @njit(cache=True, error_model="numpy")
-def solve_coupled(pool, matrix, enough):
-    """Solves band, border and couplings in place, as bordered.solve_bordered does without the last; what may
-    be `enough`: see two_colour.solve_coloured."""
+def solve_coupled(pool, matrix):
+    """Solves band, border and couplings in place, as bordered.solve_bordered does without the last."""
     couplings, res, resb = matrix.couplings, matrix.res, matrix.resb
     if couplings.many[0] == 0:
         solve_bordered(matrix.band, matrix.border, matrix.eliminated, matrix.schur, res, resb)
         return
     if couplings.colouring.found[0] == 1:
-        solve_coloured(pool, matrix, MOST_ITERATIONS, LEFT, enough)
+        solve_coloured(pool, matrix, MOST_ITERATIONS, LEFT)
         return
     many = res.size
     r, z, p, own, q = couplings.room
@@ -133,8 +131,8 @@ def solve_coupled(pool, matrix, enough):
     resb[:] = 0.0
     left = _dot(r, z)
     first = left
-    for iteration in range(MOST_ITERATIONS):
-        if not left > (max(LEFT * first, enough) if iteration >= FEWEST else LEFT * first):
+    for _ in range(MOST_ITERATIONS):
+        if not left > LEFT * first:
             break
         copy(q, own)
         _couple(couplings, p, q)

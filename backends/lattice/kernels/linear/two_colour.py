@@ -27,8 +27,6 @@ LENGTH, KEPT, START = 0, 1, 2
 # Columns of Colouring.spans; of Couplings.ends.
 BEGIN, END = 0, 1
 ONE, TWO = 0, 1
-# What is small is not left as it is: a guess goes on with it, step by step.
-FEWEST = 1
 
 
 class Colouring(NamedTuple):
@@ -343,11 +341,11 @@ def _first(pool, matrix, rollers, start):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def solve_coloured(pool, matrix, most, least, enough):
+def solve_coloured(pool, matrix, most, least):
     """Solves band, border and couplings in place, where the sheets have two colours.
 
     The method ends after `most` iterations, or where the square of the residual, measured
-    with the preconditioner, is `least` of what it was, or after FEWEST of them `enough`.
+    with the preconditioner, is `least` of what it was.
     """
     couplings, res, resb = matrix.couplings, matrix.res, matrix.resb
     colours, size = couplings.colouring, res.size
@@ -363,8 +361,8 @@ def solve_coloured(pool, matrix, most, least, enough):
     _each(pool, matrix, parallel.SPLIT)
     left = _sum(pool, colours)
     first = left
-    for iteration in range(most):
-        if not left > (max(least * first, enough) if iteration >= FEWEST else least * first):
+    for _ in range(most):
+        if not left > least * first:
             break
         # what the first colour does where the second moves by p, and what that does to the second
         for j in range(resb.size):
