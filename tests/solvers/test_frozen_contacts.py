@@ -150,7 +150,7 @@ def test_changes_make_the_function_least(case: Case) -> None:
     left, leftb = first, firstb
     for _ in range(30):
         matrix.res[:], matrix.resb[:] = left, leftb
-        assert convex.solve_convex(work, H, H, LAG, case.counts, 1e-9, steering, True, convex.WHOLE) > 0
+        assert convex.solve_convex(work, H, H, LAG, case.counts, 1e-9, steering, True, convex.WHOLE) != 0
         whole, wholeb = whole - matrix.res, wholeb - matrix.resb
         g, gb = impulses(case, in_global_axes(work, whole), wholeb)
         tangent.turn_nodes(work.tables.nodes, work.condensed.axes, g, True)

@@ -166,8 +166,8 @@ def _direction(work, axes):
 @njit(cache=True, error_model="numpy")
 def solve_convex(work, t, h, lag, counts, limit, control, renew, effort):
     """Makes of the residual, in box axes, the change of velocities that is to be taken off. Returns in how
-    many iterations, 0: it could not. counts: how many pairs touch, how many are near; `renew`: a factor has
-    masses and bushings anew; `effort`: see PLAIN."""
+    many iterations; 0: it could not, -1: it did not come to its end. counts: how many pairs touch, how many
+    are near; `renew`: a factor has masses and bushings anew; `effort`: see PLAIN."""
     tables, matrix, frozen = work.tables, work.matrix, work.frozen
     factored, counters = control.factored, control.counters
     z, zb, axes = matrix.res, matrix.resb, work.condensed.axes
@@ -180,7 +180,8 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, effort):
     rollers_into(tables.bodies, h, t, work.state.ub, matrix.own)
     copy(frozen.vectors[RESIDUAL], z)
     copy(frozen.border[RESIDUAL], zb)
-    before, along, part, gathered, iteration = 1e300, 0.0, 0.0, False, 0
+    before, along, part, gathered = 1e300, 0.0, 0.0, False
+    iteration, converged = 0, False
     for iteration in range(MOST_ITERATIONS):
         if iteration == 0:
             copy(g, z)
@@ -215,6 +216,7 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, effort):
         if effort <= CAREFUL or (iteration == 0 and moved <= limit):
             copy(change, p)
             copy(changeb, pb)
+            converged = True
             break
         if not gathered:
             gather(work, counts, h, False)
@@ -235,11 +237,12 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, effort):
             change[i] += part * p[i]
         for i in range(pb.size):
             changeb[i] += part * pb[i]
-        moved *= part
+        # a part of a direction may be small while what is left is not: it counts as a whole
         rate = moved / before
-        if (effort == SHORT and iteration == 0 and part == 1.0) or moved <= ROUGH * limit:
-            break
-        if before < 1e299 and rate < 0.5 and moved * rate / (1.0 - rate) <= ROUGH * limit:
+        converged = (effort == SHORT and iteration == 0 and part == 1.0) or moved <= ROUGH * limit
+        if before < 1e299 and part == 1.0 and rate < 0.5:
+            converged = converged or moved * rate / (1.0 - rate) <= ROUGH * limit
+        if converged:
             break
         if before < 1e299 and (
             rate >= 0.7 or math.log(ROUGH * limit / moved) < WORTH * math.log(max(rate, 1e-6))
@@ -250,4 +253,4 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, effort):
         z[i] = -change[i]
     for i in range(zb.size):
         zb[i] = -changeb[i]
-    return iteration + 1
+    return iteration + 1 if converged else -1

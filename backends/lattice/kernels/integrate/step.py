@@ -289,6 +289,8 @@ def midpoint(work, t, dt, tolerance, control):
         if where == INSIDE:
             # what is mixed may be small while what is left is not
             found = greatest(tables, mid.motion, res, resb, counters)
+            if inner < 0:
+                found = max(found, 2.0 * limit)
             mix(
                 matrix,
                 iteration > 1 or (iteration > 0 and effort <= CAREFUL and counters[FACTORS] == factors),
