@@ -29,8 +29,11 @@ run: {duration: 6 ms, print_step: 0.5 ms, step: 0.02 ms}
 
 @pytest.mark.parametrize(("restitution", "share"), [("0.8", "width"), ("0", "pair")])
 def test_both_solvers_slide_alike(restitution: str, share: str) -> None:
-    model = lower(loads(SCENE.replace("REST", restitution).replace("SHARE", share)))
-    fast, exact = (solved(model, solver) for solver in ("lattice", "exudyn"))
+    text = SCENE.replace("REST", restitution).replace("SHARE", share)
+    model = lower(loads(text))
+    # the top sheet lands within one step: of 0.02 ms lattice's is 1.4 um off, of 0.01 ms 0.2 um
+    fast = solved(lower(loads(text, overrides=["run.step=0.01 ms"])), "lattice")
+    exact = solved(model, "exudyn")
     way = [run.sheet_motion(1)[0][-1] - run.sheet_motion(1)[0][0] for run in (fast, exact)]
     # mu g t^2/2 is 35 um off 1.8 mm, beside the time over which both lie on each other again
     assert 1.7 < way[0][0] < 1.8
