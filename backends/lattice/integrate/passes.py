@@ -22,6 +22,7 @@ from mdlgen.backends.lattice.kernels.state import (
     ANEW,
     FASTEST,
     ITERATIONS,
+    RECENT,
     STEPS,
     TOUCHING,
     WORST,
@@ -139,7 +140,8 @@ def one_pass(
     # the guess of a step is the better the finer it is: what is left of it must fall as fast
     part = (ROUND_OFF if flexible(model) else ROUND_OFF_RIGID) * min(1.0, (dt / FIRST_STEP) ** 2)
     tolerance = part * accuracy(model)
-    steering.pace[[MISS_OF, ANEW, FASTEST, MADE_OF]] = miss, float(anew), speed(model), made
+    steering.pace[[MISS_OF, ANEW, MADE_OF]] = miss, float(anew), made
+    steering.pace[[FASTEST, RECENT]] = speed(model)
     status, t, past = integrate.DONE, 0.0, 0.0
     pass_state = PassState(work, steering, recorder)
     stage = pass_state.back(keep, number) if keep is not None else None

@@ -39,6 +39,7 @@ from mdlgen.backends.lattice.kernels.state import (
     MISS,
     NUMERICAL,
     POWER,
+    RECENT,
     STALE,
     STEPS,
     STRAIN,
@@ -69,6 +70,9 @@ FINEST, AGAIN = 12, 4.0
 HARD, EASY = 8, 5
 # What an iteration changes is not asked to be less than this part of the speed: it is near round-off.
 LEAST = 1e-9
+# What moves at less than a part 1/SLOW of the greatest speed so far is solved to less, down to a part STILL:
+# the rule damps nothing, so what a step leaves in what rests would ring on.
+SLOW, STILL = 10.0, 0.03
 # Two rollers with a sheet between them clear each other by a few micrometres and may graze: a force below
 # this part of the greatest is not counted as the nip still acting.
 GRAZE = 0.05
@@ -227,6 +231,7 @@ def run(work, t, steps, tolerance, control):
             # on each other iterations do not come as far
             least = LEAST if search.regions.size == 0 else tolerance
             limit = pace[FASTEST] * max(tolerance * 0.25**level, least)
+            limit *= min(max(STILL, SLOW * pace[RECENT] / pace[FASTEST]), 1.0) if pace[FASTEST] > 0.0 else 1.0
             solved = midpoint(work, t, dt, limit, control)
             missed, fast = _missed(bodies, nodes, u, guess) if solved else (0.0, 0.0)
             most = pace[MISS] * max(fast, pace[FASTEST]) if pace[MISS] > 0.0 else 1e300
@@ -273,7 +278,7 @@ def run(work, t, steps, tolerance, control):
             remember(bodies, pairs, Motion(x, r, mid.motion.u, mid.motion.w))
             counters[STEPS] += 1
             done += size
-            pace[FASTEST] = max(pace[FASTEST], fast)
+            pace[FASTEST], pace[RECENT] = max(pace[FASTEST], fast), fast
             t += dt
             iterations = counters[ITERATIONS] - iterations
             quiet = missed <= most / 6.0 and made <= allowed / 10.0

@@ -68,6 +68,7 @@ from mdlgen.backends.lattice.kernels.linear.sheets import factor_sheets
 from mdlgen.backends.lattice.kernels.state import (
     CLOSE,
     FACTORS,
+    FELL,
     ITERATIONS,
     LOST,
     MADE_FOR,
@@ -108,6 +109,9 @@ FAR = 0.05  # mm: pairs that are closer than this, and what moves in a step, are
 # more of them are still to come at the rate of the last two.
 WORTH = 3.0
 FREE = 1e-5
+# What an iteration left of the change of the one before tells how far the solution is, even in the next step,
+# which may take one iteration only; but where changes do not fall, that is no measure.
+SLOWEST = 0.9
 # Contacts are solved for to this many times the step's own limit in an iteration.
 ROUGH = 100.0
 # Damping of joints, as a part of h for 1 ms of a step, and at most.
@@ -115,7 +119,8 @@ DAMPED, MOST_DAMPED = 1.0, 0.3
 # Forces of sheets on sheets are those before an iteration that changed less than this part of the limit.
 SAME = 1e-3
 # Where contacts stand in the matrix, each iteration is a convex problem for so many steps after one that took
-# more than a few iterations of Newton's method as they come; it is solved to the end after a few more.
+# more than a few iterations of Newton's method as they come; it is solved to the end after a few more. Where
+# that many do not do with contacts apart from the matrix, they stand in it for so many steps.
 PLAINLY, SHORTLY, MEMORY = 4, 8, 20.0
 
 
@@ -243,8 +248,11 @@ def midpoint(work, t, dt, tolerance, control):
         _residual(tables, t + h, h, state, mid, res, resb)
         # what is free converges fast, and keeps its angular momentum as well as the iterations end
         limit = tolerance if count > 0 else FREE * tolerance
+        if (iteration == 0 and factored[TOUGH] > 0.0) or (iteration == SHORTLY and where != INSIDE):
+            release(condensed, m)
+            where = INSIDE
         if iteration == 0:
-            for fewer in range(where):
+            for fewer in range(where if factored[TOUGH] == 0.0 else 0):
                 m = choose(bodies, pairs, mid.touched, count, fewer, condensed, 0, most // 2)
                 if m >= 0:
                     where = fewer
@@ -291,10 +299,8 @@ def midpoint(work, t, dt, tolerance, control):
             found = greatest(tables, mid.motion, res, resb, counters)
             if inner < 0:
                 found = max(found, 2.0 * limit)
-            mix(
-                matrix,
-                iteration > 1 or (iteration > 0 and effort <= CAREFUL and counters[FACTORS] == factors),
-            )
+            # across a new factor, only what the convex problem found is mixed
+            mix(matrix, iteration > 1 if effort > CAREFUL else iteration > 0 and counters[FACTORS] == factors)
         keep(tables, mid.touched, count, work.free, mid.motion.x, mid.motion.r, res)
         part = part_of_change(tables, mid.near, close, mid.motion.r, h, res)
         if part < 1.0:
@@ -309,15 +315,19 @@ def midpoint(work, t, dt, tolerance, control):
             # what is free beside what touches converges as far as it would alone
             change = max(change, greatest_of_free(tables, work.free, res) / FREE)
         rate = change / before
+        if before < 1e299:
+            factored[FELL] = min(rate, SLOWEST)
+        left = factored[FELL] / (1.0 - factored[FELL])
         falls = before < 1e299 and rate < 0.5
-        if dt * moved <= margin and (change <= limit or (falls and change * rate / (1.0 - rate) <= limit)):
+        if dt * moved <= margin and change * (left if falls else max(1.0, left)) <= limit:
             # forces change much with what the last iteration changed: friction, over its smoothing speed
             place(tables, h, t + h, state, mid.motion)
             if not lasting or change > SAME * limit:
                 mid.forces[:] = 0.0
                 count, rubbed = _contact_forces(work, close, False)
             release(condensed, m)
-            factored[TOUGH] = MEMORY if iteration >= PLAINLY else max(factored[TOUGH] - 1.0, 0.0)
+            hard = iteration >= (PLAINLY if where == INSIDE else SHORTLY)
+            factored[TOUGH] = MEMORY if hard else max(factored[TOUGH] - 1.0, 0.0)
             return _done(work, h, (count, close), (lost + rubbed, power, numerical), counters)
         slow = before < 1e299 and (rate >= 1.0 or math.log(limit / change) < (WORTH + m) * math.log(rate))
         if slow and (where != INSIDE or inner == 1):
@@ -325,7 +335,7 @@ def midpoint(work, t, dt, tolerance, control):
         if before < 1e299 and rate > 0.9:
             careful = 2
         before = change
-    factored[MADE_FOR] = 0.0
+    factored[MADE_FOR], factored[TOUGH] = 0.0, MEMORY
     release(condensed, m)
     return False
 
