@@ -70,6 +70,8 @@ def equations(touch: list[tuple[int, int]], seed: int) -> tuple[np.ndarray, Pool
         offsets=none,
         inner=np.zeros((0, 6, 0)),
         own=np.zeros((0, 0)),
+        single_factor=np.zeros(band.shape, np.float32),
+        single_inner=np.zeros((0, 6, 0), np.float32),
     )
     pool = parallel.empty(3, BORDER)
     assert factor_sheets(pool, matrix) and eliminate_sheets(pool, matrix)

@@ -81,6 +81,9 @@ class Matrix(NamedTuple):
     mixing: Floats  # changes of the iteration before: as found, as taken, (2, 6 nodes + border)
     inner: Floats  # the band of masses and bushings alone, in box axes, where contacts stand in the other one
     own: Floats  # and the corner of the rollers alone
+    # in single precision, which is read in half the time: the factor where contacts stand in it, and `inner`
+    single_factor: np.ndarray
+    single_inner: np.ndarray
     offsets: Ints  # how many nodes apart two may be that a joint couples, from 0 on
 
 
@@ -187,17 +190,17 @@ LAST_STEP, BETWEEN = 0, 1
 class Control(NamedTuple):
     """What a run counts and is steered by."""
 
-    factored: Floats  # (5,) MADE_FOR, STALE, WHERE, TOUGH, FELL
+    factored: Floats  # (4,) MADE_FOR, STALE, WHERE, TOUGH
     counters: Floats  # (COUNTERS,)
     energies: Floats  # (4,) DISSIPATED, DRIVEN, THROUGH_DRIVES, DAMPED_NUMERICALLY [N mm]
     history: History
-    pace: Floats  # (6,) LEVEL, MISS, ANEW, FASTEST, MADE, RECENT
+    pace: Floats  # (7,) LEVEL, MISS, ANEW, FASTEST, MADE, RECENT, LOOSE
 
 
 # Of Control.factored: the step that the factor was made for (0: none), whether it is to be made anew, where
-# contacts stand (condensed.APART, PLANES or INSIDE), for how many steps each iteration is a convex problem
-# (see integrate.step), and what the last iteration with it left of the change of the one before.
-MADE_FOR, STALE, WHERE, TOUGH, FELL = 0, 1, 2, 3, 4
+# contacts stand (condensed.APART, PLANES or INSIDE), and for how many steps more they stand INSIDE (see
+# integrate.step).
+MADE_FOR, STALE, WHERE, TOUGH = 0, 1, 2, 3
 # Of Control.counters. WORST names the body, pair or joint of a failure, STRAIN is that of a joint beyond its
 # curve, THROUGH the pair of two sheets that a step would take through each other, or -1; SOLVES counts linear
 # solves of iterations with frozen contacts, GIVEN_UP steps that did not converge.
@@ -207,5 +210,6 @@ COUNTERS = 10
 DISSIPATED, DRIVEN, THROUGH_DRIVES, DAMPED_NUMERICALLY = 0, 1, 2, 3
 # Of Control.pace: how often steps are halved now; what velocities may miss their guess by (0: anything);
 # whether each step has a factor of its own; the greatest speed so far [mm/ms]; which part of the energy that
-# passes through the run contacts may make or lose in one step (0: any); the speed of the last step [mm/ms].
-LEVEL, MISS, ANEW, FASTEST, MADE, RECENT = 0, 1, 2, 3, 4, 5
+# passes through the run contacts may make or lose in one step (0: any); the speed of the last step, and the
+# limit of its iterations were it fast [mm/ms].
+LEVEL, MISS, ANEW, FASTEST, MADE, RECENT, LOOSE = 0, 1, 2, 3, 4, 5, 6

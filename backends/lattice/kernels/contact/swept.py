@@ -16,7 +16,7 @@ from mdlgen.mechanics.frame import Frame, Motion, frame_of, law_of
 from mdlgen.mechanics.impacts import stored_beyond, turning_back
 from mdlgen.mechanics.mesh import BLOCK
 from mdlgen.mechanics.overlap import impact
-from mdlgen.mechanics.pair import BOX_BOX, BOX_CYLINDER, BOX_MESH, BOX_PLANE, pair_force
+from mdlgen.mechanics.pair import BOX_CYLINDER, BOX_MESH, BOX_PLANE, pair_force
 from mdlgen.mechanics.point import (
     AT,
     BETA,
@@ -132,13 +132,19 @@ def _made(work, count, dt, slower, least, rows):
     returns what their damping should have taken and did not. `slower`: see _changed; of two sheets boxes that
     cannot make `least` of energy are not looked at."""
     bodies, pairs, state, mid = work.tables.bodies, work.tables.pairs, work.state, work.mid
-    touched, motion, ends = mid.touched, mid.motion, mid.fastest[ENDS]
-    missed = 0.0
+    touched, motion, ends, first = mid.touched, mid.motion, mid.fastest[ENDS], work.search.first
+    missed = most = 0.0
+    if work.search.regions.size > 0:
+        for n in range(work.tables.nodes.size):
+            most = max(most, ends[work.tables.nodes[n]])
     for k in range(count):
+        # of pairs from `first` on, records are far apart in memory: nearly all do without
+        faces = touched[k] >= first and mid.faces[k, POINTS] == 0.0
+        if faces and 8.0 * dt * mid.faces[k, PRESSING] * most < least:
+            continue
         pair, out = pairs[touched[k]], mid.results[k]
         if not _hits(bodies, pair, work.kept.rows):
             continue
-        faces = pair.kind == BOX_BOX and mid.faces[k, POINTS] == 0.0
         if faces and 4.0 * dt * mid.faces[k, PRESSING] * (ends[pair.a] + ends[pair.b]) < least:
             continue
         row = pair.row
@@ -147,7 +153,7 @@ def _made(work, count, dt, slower, least, rows):
         part = slower.part
         if faces:
             faster = (scale(part, one), scale(part, spin_one)), (scale(part, two), scale(part, spin_two))
-            kept, law = mid.overlaps[touched[k] - work.search.first], law_of(pair)
+            kept, law = mid.overlaps[touched[k] - first], law_of(pair)
             made, less = impact(kept, frame_of(motion, pair.a), frame_of(motion, pair.b), faster, law, dt)
             rows[row] += made
             missed += less
@@ -182,15 +188,16 @@ def _slow(bodies, pair, fastest, dt, little):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _slowest(tables, fastest, dt):
-    """What no two boxes of two sheets go beyond: the stiffness of a pair, times this, is the most energy that
-    it may make where it comes to touch; without an end where a box is so fast that it may cross another."""
-    most, thin = 0.0, 1e300
+def _all_slow(tables, regions, fastest, dt, little):
+    """Whether no two boxes of two sheets need a look, whatever pair they are (see _slow)."""
+    most, thin, stiffest = 0.0, 1e300, 0.0
+    for k in range(regions.size):
+        stiffest = max(stiffest, regions[k].k)
     for n in range(tables.nodes.size):
         b = tables.nodes[n]
         most, thin = max(most, fastest[b]), min(thin, tables.bodies[b].half[2])
     half = dt * most
-    return 0.4 * half * half * math.sqrt(half) if 2.0 * half <= UNSEEN * thin else 1e300
+    return 2.0 * half <= UNSEEN * thin and 0.4 * stiffest * half * half * math.sqrt(half) <= little
 
 
 @njit(cache=True, error_model="numpy")
@@ -216,15 +223,15 @@ def swept(work, counts, t, dt, allowed, slower, rows):
         total = _made(work, count, dt, slower, LITTLE * allowed / max(1, count), rows)
     known = 0
     little = LITTLE * allowed if allowed > 0.0 else 1e300
-    reach = _slowest(tables, mid.fastest[MIDDLE], dt)
+    slow, first = _all_slow(tables, work.search.regions, mid.fastest[MIDDLE], dt, little), work.search.first
     for at in range(close):
+        if slow and near[at] >= first:  # so are all that follow
+            break
         pair = pairs[near[at]]
         touches = known < count and touched[known] == near[at]
         if touches:
             known += 1
-        if pair.kind == BOX_BOX and (
-            pair.k * reach <= little or _slow(bodies, pair, mid.fastest[MIDDLE], dt, little)
-        ):
+        if near[at] >= first and _slow(bodies, pair, mid.fastest[MIDDLE], dt, little):
             continue
         began = Motion(x, r, mid.motion.u, mid.motion.w)
         fast = closing(bodies, pair, meshes, began, dt)

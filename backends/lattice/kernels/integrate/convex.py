@@ -59,16 +59,12 @@ LEVEL, FLAT = 0.25, 0.1
 MOST_LOOKS, MOST_DOUBLED = 12, 4
 # A factor is worth so many iterations (see integrate.step).
 WORTH = 4.0
-# How much of the chord a factor takes (see slopes.steepness): little converges fast, much does not cross to
-# the other side of what is flat; least where each direction is searched.
-LEAST, LITTLE, MUCH = 0.02, 0.05, 0.7
-# How far a solve goes: a step of Newton's method as it comes, with little of the chord or with much; to the
-# end, but that a first direction which is gone along wholly is enough; to the end.
-PLAIN, CAREFUL, SHORT, WHOLE = 0, 1, 2, 3
+# How much of the chord a factor takes (see slopes.steepness): little, since each direction is searched.
+LEAST = 0.05
 
 
 @njit(cache=True, error_model="numpy")
-def _make_matrix(work, h, lag, renew, effort):
+def _make_matrix(work, h, lag, renew):
     """The matrix of the frozen points, factored; `renew`: masses and bushings too. Returns False where it is
     not regular."""
     tables, matrix, motion = work.tables, work.matrix, work.mid.motion
@@ -77,10 +73,11 @@ def _make_matrix(work, h, lag, renew, effort):
         masses(tables.bodies, tables.nodes, motion.r, matrix.inner)
         joints_into(tables, tables.joints, h, lag, motion.x, motion.r, matrix.inner)
         in_box_axes(tables.nodes, motion.r, matrix.inner, b, matrix.offsets)
+        copy(matrix.single_inner, matrix.inner)
     a[:] = 0.0
     b[:] = 0.0
     copy(d, matrix.own)
-    points_into(work, h, LITTLE if effort == PLAIN else MUCH if effort == CAREFUL else LEAST)
+    points_into(work, h, LEAST)
     couplings_in_box_axes(work.pool, tables.nodes, motion.r, matrix.couplings)
     in_box_axes(tables.nodes, motion.r, a, b, matrix.offsets[:1])
     a += matrix.inner
@@ -154,7 +151,7 @@ def _direction(work, axes):
     copy(product, p)
     turn_nodes(work.tables.nodes, axes, product, False)
     look_along(work, product, pb)
-    times(matrix.inner, p, product)
+    times(matrix.single_inner, p, product)
     linear = _dot(p, frozen.vectors[RESIDUAL]) + _dot(p, frozen.vectors[OF_CHANGE])
     square = _dot(p, product)
     for i in range(pb.size):
@@ -164,10 +161,11 @@ def _direction(work, axes):
 
 
 @njit(cache=True, error_model="numpy")
-def solve_convex(work, t, h, lag, counts, limit, control, renew, effort):
+def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
     """Makes of the residual, in box axes, the change of velocities that is to be taken off. Returns in how
     many iterations; 0: it could not, -1: it did not come to its end. counts: how many pairs touch, how many
-    are near; `renew`: a factor has masses and bushings anew; `effort`: see PLAIN."""
+    are near; `renew`: a factor has masses and bushings anew; `whole`: not even a first direction that is gone
+    along wholly is enough."""
     tables, matrix, frozen = work.tables, work.matrix, work.frozen
     factored, counters = control.factored, control.counters
     z, zb, axes = matrix.res, matrix.resb, work.condensed.axes
@@ -195,7 +193,7 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, effort):
                 gather(work, counts, h, False)
                 gathered = True
             counters[FACTORS] += 1
-            if not _make_matrix(work, h, lag, renew, effort):
+            if not _make_matrix(work, h, lag, renew):
                 return 0
             factored[MADE_FOR], factored[STALE], factored[WHERE] = 2.0 * h, 0.0, INSIDE
             renew = False
@@ -213,7 +211,7 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, effort):
         for i in range(pb.size):
             pb[i] = turn * pb[i] - zb[i]
         moved = greatest(tables, work.mid.motion, p, pb, counters)
-        if effort <= CAREFUL or (iteration == 0 and moved <= limit):
+        if iteration == 0 and moved <= limit:
             copy(change, p)
             copy(changeb, pb)
             converged = True
@@ -239,7 +237,7 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, effort):
             changeb[i] += part * pb[i]
         # a part of a direction may be small while what is left is not: it counts as a whole
         rate = moved / before
-        converged = (effort == SHORT and iteration == 0 and part == 1.0) or moved <= ROUGH * limit
+        converged = (not whole and iteration == 0 and part == 1.0) or moved <= ROUGH * limit
         if before < 1e299 and part == 1.0 and rate < 0.5:
             converged = converged or moved * rate / (1.0 - rate) <= ROUGH * limit
         if converged:

@@ -32,6 +32,7 @@ from mdlgen.backends.lattice.kernels.state import (
     ITERATIONS,
     LAST_STEP,
     LEVEL,
+    LOOSE,
     LOST,
     MADE,
     MAX_DEPTH,
@@ -70,8 +71,8 @@ FINEST, AGAIN = 12, 4.0
 HARD, EASY = 8, 5
 # What an iteration changes is not asked to be less than this part of the speed: it is near round-off.
 LEAST = 1e-9
-# What moves at less than a part 1/SLOW of the greatest speed so far is solved to less, down to a part STILL:
-# the rule damps nothing, so what a step leaves in what rests would ring on.
+# Where sheets lie on each other and move at less than a part 1/SLOW of the greatest speed so far, steps are
+# solved to less, down to a part STILL: the rule damps nothing, so what a step leaves in what rests rings on.
 SLOW, STILL = 10.0, 0.03
 # Two rollers with a sheet between them clear each other by a few micrometres and may graze: a force below
 # this part of the greatest is not counted as the nip still acting.
@@ -230,8 +231,9 @@ def run(work, t, steps, tolerance, control):
             # a halved step's guess is the better, and what it may leave must fall as fast; where sheets lie
             # on each other iterations do not come as far
             least = LEAST if search.regions.size == 0 else tolerance
-            limit = pace[FASTEST] * max(tolerance * 0.25**level, least)
-            limit *= min(max(STILL, SLOW * pace[RECENT] / pace[FASTEST]), 1.0) if pace[FASTEST] > 0.0 else 1.0
+            pace[LOOSE] = limit = pace[FASTEST] * max(tolerance * 0.25**level, least)
+            if search.regions.size > 0 and pace[FASTEST] > 0.0:
+                limit *= min(max(STILL, SLOW * pace[RECENT] / pace[FASTEST]), 1.0)
             solved = midpoint(work, t, dt, limit, control)
             missed, fast = _missed(bodies, nodes, u, guess) if solved else (0.0, 0.0)
             most = pace[MISS] * max(fast, pace[FASTEST]) if pace[MISS] > 0.0 else 1e300

@@ -46,15 +46,7 @@ from mdlgen.backends.lattice.kernels.integrate.change import (
     greatest_of_free,
     take_off,
 )
-from mdlgen.backends.lattice.kernels.integrate.convex import (
-    CAREFUL,
-    LITTLE,
-    MUCH,
-    PLAIN,
-    SHORT,
-    WHOLE,
-    solve_convex,
-)
+from mdlgen.backends.lattice.kernels.integrate.convex import solve_convex
 from mdlgen.backends.lattice.kernels.integrate.mixing import mix
 from mdlgen.backends.lattice.kernels.integrate.momentum import keep
 from mdlgen.backends.lattice.kernels.integrate.points import gather
@@ -68,8 +60,8 @@ from mdlgen.backends.lattice.kernels.linear.sheets import factor_sheets
 from mdlgen.backends.lattice.kernels.state import (
     CLOSE,
     FACTORS,
-    FELL,
     ITERATIONS,
+    LOOSE,
     LOST,
     MADE_FOR,
     MIDDLE,
@@ -109,19 +101,21 @@ FAR = 0.05  # mm: pairs that are closer than this, and what moves in a step, are
 # more of them are still to come at the rate of the last two.
 WORTH = 3.0
 FREE = 1e-5
-# What an iteration left of the change of the one before tells how far the solution is, even in the next step,
-# which may take one iteration only; but where changes do not fall, that is no measure.
-SLOWEST = 0.9
 # Contacts are solved for to this many times the step's own limit in an iteration.
 ROUGH = 100.0
 # Damping of joints, as a part of h for 1 ms of a step, and at most.
 DAMPED, MOST_DAMPED = 1.0, 0.3
-# Forces of sheets on sheets are those before an iteration that changed less than this part of the limit.
+# Forces of sheets on sheets are those before an iteration that changed less than this part of the limit that
+# holds where they move.
 SAME = 1e-3
-# Where contacts stand in the matrix, each iteration is a convex problem for so many steps after one that took
-# more than a few iterations of Newton's method as they come; it is solved to the end after a few more. Where
-# that many do not do with contacts apart from the matrix, they stand in it for so many steps.
-PLAINLY, SHORTLY, MEMORY = 4, 8, 20.0
+# Where contacts stand in the matrix, each iteration is a convex problem, which is solved to its end after so
+# many. In scenes of sheets on sheets as many iterations with contacts apart from the matrix, or with those of
+# fixed plates alone in it, are enough: then all stand in it, for so many steps.
+SHORTLY, MEMORY = 8, 200.0
+# How much of the chord a matrix has of contacts with fixed plates (see slopes.steepness): little converges
+# fast, much does not cross to the other side of what is flat, after an iteration that left more than the part
+# ONWARD of the change before.
+LITTLE, MUCH, ONWARD = 0.05, 0.7, 0.9
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -223,13 +217,13 @@ def midpoint(work, t, dt, tolerance, control):
     h = 0.5 * dt
     lag = min(DAMPED * dt, MOST_DAMPED) * h
     before = 1e300
-    careful, effort = 0, PLAIN
+    careful, last = 0, SHORTLY if work.search.regions.size > 0 else MOST_ITERATIONS
     counters[THROUGH] = -1.0
     close, where, m = 0, int(factored[WHERE]), 0
     margin, moved, sheets = FAR, 0.0, work.search.regions.size > 0
     # loads add to the forces, by which the drives' power is counted
     lasting = sheets and tables.loads.size == 0
-    inner, factors = 0, 0.0
+    inner = alike = 0
     for iteration in range(MOST_ITERATIONS):
         place(tables, h, t + h, state, mid.motion)
         if iteration == 0 or margin < dt * moved:
@@ -248,7 +242,7 @@ def midpoint(work, t, dt, tolerance, control):
         _residual(tables, t + h, h, state, mid, res, resb)
         # what is free converges fast, and keeps its angular momentum as well as the iterations end
         limit = tolerance if count > 0 else FREE * tolerance
-        if (iteration == 0 and factored[TOUGH] > 0.0) or (iteration == SHORTLY and where != INSIDE):
+        if where != INSIDE and (iteration == last or (iteration == 0 and factored[TOUGH] > 0.0)):
             release(condensed, m)
             where = INSIDE
         if iteration == 0:
@@ -269,15 +263,10 @@ def midpoint(work, t, dt, tolerance, control):
         if where == INSIDE:
             turn_nodes(nodes, condensed.axes, res, True)
             renew = iteration == 0 or factored[WHERE] != INSIDE
-            effort = SHORT if iteration < SHORTLY else WHOLE
-            if factored[TOUGH] == 0.0 and iteration < PLAINLY:
-                effort = CAREFUL if careful > 0 else PLAIN
-            factors = counters[FACTORS]
-            inner = solve_convex(work, t + h, h, lag, (count, close), limit, control, renew, effort)
+            whole = iteration >= SHORTLY
+            inner = solve_convex(work, t + h, h, lag, (count, close), limit, control, renew, whole)
             if inner == 0:
                 break
-            if counters[FACTORS] > factors:
-                careful -= 1
         else:
             if factored[MADE_FOR] != dt or factored[STALE] != 0.0 or factored[WHERE] != where:
                 counters[FACTORS] += 1
@@ -299,8 +288,8 @@ def midpoint(work, t, dt, tolerance, control):
             found = greatest(tables, mid.motion, res, resb, counters)
             if inner < 0:
                 found = max(found, 2.0 * limit)
-            # across a new factor, only what the convex problem found is mixed
-            mix(matrix, iteration > 1 if effort > CAREFUL else iteration > 0 and counters[FACTORS] == factors)
+            alike += 1
+            mix(matrix, alike > 2)
         keep(tables, mid.touched, count, work.free, mid.motion.x, mid.motion.r, res)
         part = part_of_change(tables, mid.near, close, mid.motion.r, h, res)
         if part < 1.0:
@@ -315,27 +304,23 @@ def midpoint(work, t, dt, tolerance, control):
             # what is free beside what touches converges as far as it would alone
             change = max(change, greatest_of_free(tables, work.free, res) / FREE)
         rate = change / before
-        if before < 1e299:
-            factored[FELL] = min(rate, SLOWEST)
-        left = factored[FELL] / (1.0 - factored[FELL])
         falls = before < 1e299 and rate < 0.5
-        if dt * moved <= margin and change * (left if falls else max(1.0, left)) <= limit:
+        if dt * moved <= margin and (change <= limit or (falls and change * rate / (1.0 - rate) <= limit)):
             # forces change much with what the last iteration changed: friction, over its smoothing speed
             place(tables, h, t + h, state, mid.motion)
-            if not lasting or change > SAME * limit:
+            if not lasting or change > SAME * control.pace[LOOSE]:
                 mid.forces[:] = 0.0
                 count, rubbed = _contact_forces(work, close, False)
             release(condensed, m)
-            hard = iteration >= (PLAINLY if where == INSIDE else SHORTLY)
-            factored[TOUGH] = MEMORY if hard else max(factored[TOUGH] - 1.0, 0.0)
+            factored[TOUGH] = MEMORY if iteration >= last else max(factored[TOUGH] - 1.0, 0.0)
             return _done(work, h, (count, close), (lost + rubbed, power, numerical), counters)
         slow = before < 1e299 and (rate >= 1.0 or math.log(limit / change) < (WORTH + m) * math.log(rate))
         if slow and (where != INSIDE or inner == 1):
             factored[STALE] = 1.0
-        if before < 1e299 and rate > 0.9:
+        if before < 1e299 and rate > ONWARD:
             careful = 2
         before = change
-    factored[MADE_FOR], factored[TOUGH] = 0.0, MEMORY
+    factored[MADE_FOR], factored[TOUGH] = 0.0, MEMORY if sheets else 0.0
     release(condensed, m)
     return False
 
@@ -383,6 +368,8 @@ def empty(system, wide: int) -> tuple[State, Midpoint, Matrix]:
         offsets=system.offsets,
         inner=no_band(nodes, system.reach),
         own=np.zeros((border, border)),
+        single_factor=no_band(nodes, system.reach).astype(np.float32),
+        single_inner=no_band(nodes, system.reach).astype(np.float32),
     )
     return state, mid, matrix
 

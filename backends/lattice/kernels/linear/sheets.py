@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from mdlgen.backends.lattice.kernels import parallel
 from mdlgen.backends.lattice.kernels.linear.band import factor, solve
-from mdlgen.backends.lattice.kernels.linear.dense import cholesky, cholesky_solve
+from mdlgen.backends.lattice.kernels.linear.dense import cholesky, cholesky_solve, copy
 from mdlgen.backends.lattice.kernels.linear.two_colour import BEGIN, END
 from mdlgen.backends.lattice.kernels.parallel import begin, finish, take
 from mdlgen.program.kernel import BORROWS, njit
@@ -35,10 +35,12 @@ def factor_sheets(pool, matrix):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def eliminate_part(pool, matrix, sheet):
-    """Rows of Y = A^-1 B in the columns of a sheet, and what they take off the corner."""
+    """Rows of Y = A^-1 B in the columns of a sheet, and what they take off the corner; its factor in single
+    precision."""
     span, shares = matrix.couplings.colouring.spans[sheet], pool.shares
     b, y = matrix.border, matrix.eliminated
     start, end = 6 * span[BEGIN], 6 * span[END]
+    copy(matrix.single_factor[span[BEGIN] : span[END]], matrix.band[span[BEGIN] : span[END]])
     for j in range(b.shape[0]):
         first = start
         while first < end and b[j, first] == 0.0:

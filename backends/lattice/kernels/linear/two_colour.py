@@ -185,7 +185,7 @@ def first_part(pool, matrix, sheet):
             w[l] = matrix.res[l] if start else 0.0
         if not start:
             _across(couplings, sheet, p, w)
-        solve(matrix.band[span[BEGIN] : span[END]], w[low:high])
+        solve(matrix.single_factor[span[BEGIN] : span[END]], w[low:high])
     elif start:
         return
     for j in range(b.shape[0]):
@@ -242,7 +242,7 @@ def split_part(pool, matrix, sheet):
     for l in range(low, high):
         r[l] = own[l] = z[l]
         res[l] = 0.0
-    solve(matrix.band[span[BEGIN] : span[END]], z[low:high])
+    solve(matrix.single_factor[span[BEGIN] : span[END]], z[low:high])
     for l in range(low, high):
         p[l] = z[l]
     pool.shares[sheet, 0, 0] = _dot(r[low:high], z[low:high])
@@ -263,7 +263,7 @@ def step_part(pool, matrix, sheet):
         r[l] -= part * z[l]
         res[l] += part * p[l]
         z[l] = r[l]
-    solve(matrix.band[span[BEGIN] : span[END]], z[low:high])
+    solve(matrix.single_factor[span[BEGIN] : span[END]], z[low:high])
     pool.shares[sheet, 0, 0] = _dot(r[low:high], z[low:high])
 
 
