@@ -198,7 +198,9 @@ def _closes(work, end, w, y, times_h):
 def _precondition(work, end, h):
     """Factors A + h C M^-1 C^T, of the latter what each cell has alone."""
     tables, film, r = work.tables, work.film, work.mid.motion.r
-    film.ends[:] = film.flow
+    for i in range(film.ends.shape[0]):
+        for j in range(film.ends.shape[1]):
+            film.ends[i, j] = film.flow[i, j]
     for k in range(film.many[0]):
         pair, i = tables.pairs[film.listed[k]], film.head[film.listed[k]]
         while i >= 0:
