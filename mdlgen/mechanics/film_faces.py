@@ -6,11 +6,13 @@ import math
 
 from mdlgen.mechanics.film import NEVER, WIDE, X_DOWN, X_UP, Y_DOWN, Y_UP
 from mdlgen.mechanics.overlap import STEEP
-from mdlgen.mechanics.vector import add, back, dot, rotate, scale, sub
+from mdlgen.mechanics.vector import add, back, cross, dot, rotate, scale, sub
 from mdlgen.program.kernel import BORROWS, njit
 
 # Sides of boxes that have a neighbour may be this part of a box away from it, as in a sheet that is bent.
 SLIT = 0.1
+# A gap is at least this part of that as the step began.
+LEAST = 0.5
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -68,10 +70,11 @@ def _normals(a, b, plane):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def cover(film, cells, pair, box, frames, shapes):
+def cover(film, cells, pair, box, frames, shapes, h):
     """Gives the cells of one box what they have of another body, if it is the nearest so far. pair: its
     number and whether it is a plane; box: number of the box in its sheet; frames: of the box and of the other
-    body; shapes: half lengths of both [mm], and the free sides of the second as a bit mask."""
+    body; shapes: half lengths of both [mm], and the free sides of the second as a bit mask; h: how long ago
+    the step began [ms]."""
     number, plane = pair
     a, b = frames
     half, wide, exposed = shapes
@@ -104,7 +107,9 @@ def cover(film, cells, pair, box, frames, shapes):
         beyond = max(free, joined)
         if beyond >= own.beyond:
             continue
-        own.beyond, own.pair, own.gap = beyond, number, gap
+        v = sub(add(a.v, cross(a.w, sub(at, a.x))), add(b.v, cross(b.w, sub(at, b.x))))
+        # what the guess has gone through in half a step is air that may stop it
+        own.beyond, own.pair, own.gap = beyond, number, max(gap, LEAST * (gap + h * dot(v, way)))
         inside = free <= 0.0 and joined <= SLIT * min(wide[0], wide[1])
         own.inside = 1 if inside else 0
         own.size[0], own.size[1] = size_x, size_y

@@ -166,7 +166,7 @@ class Film(NamedTuple):
     flow: Floats  # matrices of Reynolds' equation, (cells, band)
     factor: Floats  # factors of them,
     ends: Floats  # and of those of the ends of a step
-    vectors: Floats  # (4, cells) PRESSURES, LEFT, ALONG_PRESSURES, PRODUCT
+    vectors: Floats  # (4, cells) PRESSURES, and scratch
     head: Ints  # first cell of each pair, -1: none
     listed: Ints  # pairs that have cells,
     many: Ints  # and how many these are, (1,): none where no air acts
@@ -175,8 +175,7 @@ class Film(NamedTuple):
     off: Floats  # (nodes, 6) velocities to take off at the end of a step
 
 
-# Rows of Film.vectors.
-PRESSURES, LEFT, ALONG_PRESSURES, PRODUCT = 0, 1, 2, 3
+PRESSURES = 0  # row of Film.vectors
 
 
 class Workspace(NamedTuple):

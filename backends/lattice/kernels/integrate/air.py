@@ -1,9 +1,9 @@
 """Air between sheets in a step: its pressures, what they do to bodies, and its part of an iteration.
 
-The gaps are those of the middle of the step as its velocities are guessed, and stay so in the step (see
-mechanics.film). So pressures are linear in the velocities, and their forces the slope of a convex function of
-them: cells of air are points of an iteration with frozen contacts (integrate.points), whose forces change
-together. What one cell would do alone stands in the factored matrix.
+The gaps are those of the middle of the step as its velocities are guessed, but at least half of those as it
+began, and stay so in the step (see mechanics.film). So pressures are linear in the velocities, and their
+forces the slope of a convex function of them: cells of air are points of an iteration with frozen contacts
+(integrate.points), whose forces change together. What one cell would do alone stands in the factored matrix.
 
 At the end of a step velocities are carried to 2 u - v0. What a film stops within a part of a step would ring
 about it, as joints with a damping time do (integrate.damped). So the same is taken off here: Y w, with w
@@ -34,8 +34,9 @@ BLOCK = 15  # all four sides of a plane are free
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def lay(work):
-    """Finds the air of a step: its gaps, areas and matrices at the midpoint. Returns whether any acts."""
+def lay(work, h):
+    """Finds the air of a step: its gaps, areas and matrices at the midpoint, which is h after its begin.
+    Returns whether any acts."""
     tables, film, motion = work.tables, work.film, work.mid.motion
     bodies, pairs, films, cells = tables.bodies, tables.pairs, film.films, film.cells
     film.many[0] = 0
@@ -55,7 +56,7 @@ def lay(work):
         exposed = BLOCK if plane else bodies[other].exposed
         frames = frame_of(motion, own), frame_of(motion, other)
         shapes = three(bodies[own].half), three(bodies[other].half), exposed
-        cover(films[k], cells, (p, plane), own - films[k].body, frames, shapes)
+        cover(films[k], cells, (p, plane), own - films[k].body, frames, shapes, h)
     for k in range(films.size):
         one = films[k]
         assemble(one, cells, film.flow)

@@ -224,7 +224,7 @@ def midpoint(work, t, dt, tolerance, control):
             close = near_pairs(tables, mid.motion, margin, dt, mid.near)
             unsee(condensed)
         if iteration == 0 and work.film.films.size > 0:
-            air = lay(work)
+            air = lay(work, h)
         mid.forces[:] = 0.0
         _stored, lost, numerical = joint_forces(tables.joints, tables.points, mid.motion, mid.forces, lag)
         known = iteration > 0 and where == APART and condensed.looked[UP_TO_DATE] == 1
