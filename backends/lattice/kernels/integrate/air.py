@@ -118,8 +118,7 @@ def air_forces(work):
 @njit(cache=True, error_model="numpy", **BORROWS)
 def damping_of(film, i):
     """What a cell alone damps, as it stands in the factored matrix [N ms/mm]."""
-    own = film.cells[i]
-    return ALONE * own.area * own.area / film.flow[i, 0]
+    return ALONE * film.cells[i].area * film.cells[i].area / film.flow[i, 0]
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -129,15 +128,19 @@ def air_along(film, frozen):
     for k in range(film.many[0]):
         i = film.head[film.listed[k]]
         while i >= 0:
-            q = frozen.points[cells[i].point]
-            cells[i].rate = -dot(three_from(q, ALONG), three(cells[i].normal))
-            i = cells[i].following
+            own = cells[i]
+            own.rate = 0.0
+            if own.point >= 0:
+                own.rate = -dot(three_from(frozen.points[own.point], ALONG), three(own.normal))
+            i = own.following
     _solve(film)
     for k in range(film.many[0]):
         i = film.head[film.listed[k]]
         while i >= 0:
-            frozen.points[cells[i].point][GROWTH] = cells[i].area * x[i]
-            i = cells[i].following
+            own = cells[i]
+            if own.point >= 0:
+                frozen.points[own.point, GROWTH] = own.area * x[i]
+            i = own.following
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)

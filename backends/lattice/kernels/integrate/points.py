@@ -202,69 +202,64 @@ def _of_faces(frozen, p, pair, kept, h, motion):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _of_air(work, p, motion):
+def _of_air(frozen, film, pair, p, motion):
     """Adds the cells of air of a pair, where it has any that are not points yet."""
-    frozen, cells, i = work.frozen, work.film.cells, work.film.head[p]
+    cells, i = film.cells, film.head[p]
     if i < 0 or cells[i].point >= 0:
         return
-    pair = work.tables.pairs[p]
     a, b = frame_of(motion, pair.a), frame_of(motion, pair.b)
     while i >= 0:
         own = cells[i]
         many = _begin(frozen, p, three(own.at), three(own.normal), a, b)
         own.point = many
-        q = frozen.points[many]
-        q[KIND], q[OVER] = AIR, damping_of(work.film, i)
-        for k in range(3):
-            q[START + k] = 0.0
+        if many >= 0:
+            q = frozen.points[many]
+            q[KIND], q[OVER] = AIR, damping_of(film, i)
+            for k in range(3):
+                q[START + k] = 0.0
         i = own.following
-
-
-@njit(cache=True, error_model="numpy")
-def _of_pair(work, p, row, h):
-    """Adds the contact points of a pair that is near; row: of the results, -1: it does not touch."""
-    tables, mid, frozen, motion = work.tables, work.mid, work.frozen, work.mid.motion
-    bodies, pair = tables.bodies, tables.pairs[p]
-    if pair.kind != BOX_BOX:
-        if row >= 0:
-            _of_law(frozen, p, pair, mid.results[row], h, motion)
-        return
-    kept = mid.overlaps[p - work.search.first]
-    a, b = frame_of(motion, pair.a), frame_of(motion, pair.b)
-    if not holds(kept, a, b, MOVED):
-        one, two = box_of(bodies[pair.a]), box_of(bodies[pair.b])
-        if apart(a, one.half, b, two.half, REACH):
-            return
-        find(kept, a, one, b, two, law_of(pair))
-    if kept.state == OTHER:
-        if row >= 0:
-            _of_law(frozen, p, pair, mid.results[row], h, motion)
-    elif kept.count > 0:
-        _of_faces(frozen, p, pair, kept, h, motion)
 
 
 @njit(cache=True, error_model="numpy")
 def gather(work, counts, h, plates):
     """Takes the points of the near pairs at the midpoint, and of air; `counts`: how many touch, how many are
     near; `plates`: of those with fixed plates alone."""
-    tables, mid, frozen, film = work.tables, work.mid, work.frozen, work.film
-    near, motion, air = mid.near, mid.motion, film.many[0]
+    tables, mid, frozen, first, film = work.tables, work.mid, work.frozen, work.search.first, work.film
+    bodies, pairs, near, motion = tables.bodies, tables.pairs, mid.near, mid.motion
     count, close = counts
     frozen.many[0] = known = 0
+    air = film.many[0]
     for k in range(air):
         film.cells[film.head[film.listed[k]]].point = -1
     for at in range(close):
-        p, row = near[at], -1
-        if known < count and mid.touched[known] == p:
-            row = known
+        p = near[at]
+        pair = pairs[p]
+        row = known
+        touching = known < count and mid.touched[known] == p
+        if touching:
             known += 1
-        if plates and not on_fixed_plate(tables.pairs[p], tables.bodies[tables.pairs[p].b]):
+        if plates and not on_fixed_plate(pair, bodies[pair.b]):
             continue
-        _of_pair(work, p, row, h)
         if air > 0:
-            _of_air(work, p, motion)
+            _of_air(frozen, film, pair, p, motion)
+        if pair.kind != BOX_BOX:
+            if touching:
+                _of_law(frozen, p, pair, mid.results[row], h, motion)
+            continue
+        kept = mid.overlaps[p - first]
+        a, b = frame_of(motion, pair.a), frame_of(motion, pair.b)
+        if not holds(kept, a, b, MOVED):
+            one, two = box_of(bodies[pair.a]), box_of(bodies[pair.b])
+            if apart(a, one.half, b, two.half, REACH):
+                continue
+            find(kept, a, one, b, two, law_of(pair))
+        if kept.state == OTHER:
+            if touching:
+                _of_law(frozen, p, pair, mid.results[row], h, motion)
+        elif kept.count > 0:
+            _of_faces(frozen, p, pair, kept, h, motion)
     for k in range(air):
-        _of_air(work, film.listed[k], motion)
+        _of_air(frozen, film, pairs[film.listed[k]], film.listed[k], motion)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
