@@ -46,7 +46,7 @@ SCENES = {
     ],
     # air between sheets
     "pile": [
-        *("piles.cassette.count=3", "piles.cassette.contact.air={viscosity: 18.2 uPa*s}"),
+        "piles.cassette.contact.air={viscosity: 18.2 uPa*s}",
         *("run.duration=6 ms", "run.step=0.1 ms", "run.print_step=0.2 ms"),
     ],
     # meshes; rims, an arm and a slide; two notes with all of these and a profile; measured curves
