@@ -102,6 +102,7 @@ class Contact(_Contact):
         friction: float | str | _Friction | Mapping[str, Any] = ...,
         smoothing: str | None = ...,
         rolling_resistance: float | str = ...,
+        air: Mapping[str, Any] | None = ...,
         share: Literal["width", "pair"] = ...,
     ) -> None: ...
 

@@ -35,7 +35,7 @@ _NAMES: dict[str, Unit] = {
         (_TIME, {"ms": 1.0, "s": 1e3, "us": 1e-3, "µs": 1e-3, "min": 6e4}),
         (_ANGLE, {"rad": 1.0, "mrad": 1e-3, "deg": math.pi / 180.0, "°": math.pi / 180.0}),
         (_FORCE, {"N": 1.0, "mN": 1e-3, "uN": 1e-6, "kN": 1e3}),
-        (_STRESS, {"MPa": 1.0, "Pa": 1e-6, "kPa": 1e-3, "GPa": 1e3}),
+        (_STRESS, {"MPa": 1.0, "Pa": 1e-6, "uPa": 1e-12, "µPa": 1e-12, "kPa": 1e-3, "GPa": 1e3}),
         (_RATE, {"rpm": 2.0 * math.pi / 6e4}),
         (_FREQUENCY, {"Hz": 1e-3, "kHz": 1.0}),
     )

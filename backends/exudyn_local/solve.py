@@ -24,6 +24,7 @@ from mdlgen.backends.exudyn_local.state import SEEN, TOTALS, Coordinates, Work, 
 from mdlgen.backends.exudyn_local.step import choose_steps, cost, given_steps
 from mdlgen.backends.exudyn_local.system import EULER, MM, MS, Pattern, System, build
 from mdlgen.mechanics.arm import AXIAL, INERTIA
+from mdlgen.model.air import refuse_air
 from mdlgen.model.external import refuse_externals
 from mdlgen.model.sheet_pairs import refuse_searched
 from mdlgen.model.tables import Model
@@ -74,6 +75,7 @@ def solve(model: Model, progress: Progress | None = None, step: float | None = N
     """
     refuse_externals(model, "Exudyn")
     refuse_searched(model, "Exudyn")
+    refuse_air(model, "Exudyn", "which it does not have yet")
     started = clock.perf_counter()
     system, pattern = build(model)
     exu = _exudyn()

@@ -235,6 +235,8 @@ def _contacts(scene: Scene) -> Contacts:
         rolling=column(lambda c: c.rolling_resistance),
         share=tuple(scene.contacts[i].share for i, _, _ in rows),
         spread=np.zeros(len(rows)),
+        air_viscosity=column(lambda c: c.air.viscosity if c.air else 0.0),
+        air_roughness=column(lambda c: c.air.roughness if c.air else 0.0),
         name=tuple(scene.contacts[i].name or "" for i, _, _ in rows) if named else (),
     )
 

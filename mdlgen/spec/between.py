@@ -76,6 +76,8 @@ def _modelled(scene: Scene, index: int, names: tuple[str, str], part: MachinePar
     """Raises the error where a contact between two parts, those of an entry, is not modelled; `part` is the
     second one."""
     path, (a, b) = ("contacts", index, "between"), names
+    if scene.contacts[index].air is not None and (message := _without_air(scene, names)):
+        raise fail(message, ("contacts", index, "air"))
     if a in scene.sheets:
         wrong = part.unlike_sheets(b, scene.contacts[index]) if part is not None else None
         if wrong is not None:
@@ -87,6 +89,15 @@ def _modelled(scene: Scene, index: int, names: tuple[str, str], part: MachinePar
     message = part.unlike_others(names) if roller is None else part.unlike_roller(names, roller)
     if message is not None:
         raise fail(message, path)
+
+
+def _without_air(scene: Scene, names: tuple[str, str]) -> str | None:
+    """Why there is no air between two parts; None: there can be."""
+    a, b = names
+    plane = scene.planes.get(b)
+    if a in scene.sheets and (b in scene.sheets or (plane is not None and plane.press is None)):
+        return None
+    return f"air between {a} and {b} is not modelled: it is between two sheets, or a sheet and a fixed plane"
 
 
 def known(name: str, table: Collection[str], kind: str, path: tuple[str | int, ...]) -> None:

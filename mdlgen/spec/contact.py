@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from mdlgen.spec.fields import Name, SpeedScale
 from mdlgen.spec.parameter import is_formula
-from mdlgen.spec.quantities import of_percent, quantity, ratio
+from mdlgen.spec.quantities import default, of_percent, quantity, ratio
 from mdlgen.spec.strict import Strict, fail
 
 Coefficient = Annotated[float, ratio(0.0, 1e3)]
@@ -58,6 +58,19 @@ class Friction(Strict):
         if self.friction_velocity is not None:
             return slow, self.friction_velocity
         return slow, slow if self.static == self.dynamic else 1.5 * slow
+
+
+class Air(Strict):
+    """The air between two faces, as a squeeze film (Reynolds 1886): it holds back what closes or opens."""
+
+    viscosity: Annotated[float, quantity("Pa*s", 0.0, open_low=True)] = Field(
+        description="of the air: 18.2 uPa*s at 20 deg C"
+    )
+    roughness: Annotated[float, quantity("mm", 1e-6, 1.0)] = Field(
+        default=default("10 um"),
+        description="mean gap of faces that touch; the air has it on top of the gap between the faces, and "
+        "flows through it where they press into each other",
+    )
 
 
 def _two(value: Any) -> Any:
@@ -117,6 +130,10 @@ class Contact(Strict):
         "roller relative to the other part. R is its radius; of two rollers 1/R = 1/R1 + 1/R2; on an arc of "
         "radius A 1/R = 1/R1 + 1/A, in its hollow 1/R = 1/R1 - 1/A; of a rim the greatest radius. The couple "
         "rises over `smoothing`, as the angular velocity times R",
+    )
+    air: Air | None = Field(
+        default=None,
+        description="air between two sheets, or a sheet and a plane that is not pressed; none where left out",
     )
     share: Literal["width", "pair"] = Field(
         default="width",

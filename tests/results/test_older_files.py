@@ -33,3 +33,18 @@ def test_a_model_with_a_table_for_each_kind_of_part(tmp_path: Path) -> None:
     read = mdlgen.Result.load(tmp_path).model
     assert [part.name for part in read.planes] == ["pad", "table"]
     assert digest(read) == digest(result.model)
+
+
+def test_contacts_that_know_of_no_air(tmp_path: Path) -> None:
+    result = moving(lower(load(samples() / "stack.yaml")))
+    result.save(tmp_path)
+    with h5py.File(tmp_path / "result.h5", "r+") as file:
+        values = json.loads(bytes(file["model/tables"][()]))
+        contacts = values["map"]["model"]["of"]["contacts"]["of"]
+        for name in ("air_viscosity", "air_roughness"):
+            del file[contacts.pop(name)["array"]]
+        del file["model/tables"]
+        file["model/tables"] = np.bytes_(json.dumps(values).encode())
+    read = mdlgen.Result.load(tmp_path).model
+    assert read.contacts.air_viscosity.tolist() == [0.0] * 5
+    assert digest(read) == digest(result.model)

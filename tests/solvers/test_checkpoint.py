@@ -44,6 +44,11 @@ SCENES = {
         "sheets.note_4.velocity=[3000 mm/s, 500 mm/s, 0 mm/s]",
         *("run.duration=12 ms", "run.step=0.1 ms", "run.print_step=0.4 ms"),
     ],
+    # air between sheets
+    "pile": [
+        "piles.cassette.contact.air={viscosity: 18.2 uPa*s}",
+        *("run.duration=6 ms", "run.step=0.1 ms", "run.print_step=0.2 ms"),
+    ],
     # meshes; rims, an arm and a slide; two notes with all of these and a profile; measured curves
     "pick": ["run.duration=12 ms", "run.step=0.1 ms", "run.print_step=0.4 ms"],
     "peel": ["run.duration=6 ms", "run.step=0.1 ms", "run.print_step=0.2 ms"],

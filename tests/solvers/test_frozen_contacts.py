@@ -177,7 +177,7 @@ def test_a_direction_is_gone_along_to_where_the_function_is_least(times: float, 
     frozen.vectors[DIRECTION] = -times * matrix.res
     linear, square = convex._direction(work, work.condensed.axes)
     begin = -times * float(matrix.res @ matrix.res)
-    part = convex._how_far(frozen, H, begin, linear, square)
+    part = convex._how_far(frozen, H, begin, linear, square, convex.LEVEL)
     slopes = [
         linear + at * square + points.slope(frozen, H, at) for at in (0.0, part, 0.9 * part, 1.1 * part)
     ]

@@ -11,7 +11,7 @@ import pytest
 import mdlgen
 from mdlgen.backends.lattice.arrays import System, build
 from mdlgen.backends.lattice.kernels import entries, forces
-from mdlgen.backends.lattice.kernels.integrate import step
+from mdlgen.backends.lattice.kernels.integrate import room, step
 from mdlgen.mechanics.bushing import bushing, bushing_pair
 from mdlgen.mechanics.frame import Frame, Motion
 from mdlgen.mechanics.vector import exp_rotation
@@ -92,7 +92,7 @@ def into_rollers(system: System, x: np.ndarray, r: np.ndarray) -> np.ndarray:
 def test_what_touches_after_a_step_was_near_before_it() -> None:
     system = build(mdlgen.lower(load(samples() / "transport_4x4.yaml")))
     rng = np.random.default_rng(3)
-    state, mid, _ = step.empty(system, forces.WIDE)
+    state, mid, _ = room.empty(system, forces.WIDE)
     model = mdlgen.lower(load(samples() / "transport_4x4.yaml"))
     count, ahead = len(model.bodies.name), 0.25
     x, r, motion, near = state.x, state.r, mid.motion, mid.near
@@ -134,7 +134,7 @@ def test_a_box_that_takes_the_edge_over_from_its_neighbour_is_looked_at() -> Non
     """Its lowest corner is beside the round and above the face yet. (Its force was not stored.)"""
     model = mdlgen.lower(loads(OVER_AN_EDGE, "over"))
     system = build(model)
-    state, mid, _ = step.empty(system, forces.WIDE)
+    state, mid, _ = room.empty(system, forces.WIDE)
     slope, x, r, count = 0.3, state.x, state.r, len(model.bodies.name)
     x[:count], r[:count] = model.bodies.position, model.bodies.rotation.reshape(-1, 9)
     r[count] = np.eye(3).ravel()

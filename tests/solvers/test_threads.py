@@ -83,8 +83,13 @@ def taken(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     return found
 
 
+AIR = "piles.cassette.contact.air={viscosity: 18.2 uPa*s}"
+
+
 @pytest.mark.usefixtures("shipped")
-@pytest.mark.parametrize("sets", [[], ["run.tolerance=0.1"]], ids=["given step", "chosen step"])
+@pytest.mark.parametrize(
+    "sets", [[], ["run.tolerance=0.1"], [AIR]], ids=["given step", "chosen step", "with air"]
+)
 def test_any_number_finds_the_same_bits(sets: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
     one = lattice.solve(pile(1, *sets))
     assert one.ok, one.status

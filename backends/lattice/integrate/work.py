@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from mdlgen.backends.lattice.arrays import System
+from mdlgen.backends.lattice.integrate.films import films
 from mdlgen.backends.lattice.integrate.record import Recorder
 from mdlgen.backends.lattice.kernels.state import (
     COUNTERS,
@@ -25,9 +26,9 @@ from mdlgen.model.tables import Model
 def start(model: Model, system: System) -> tuple[State, Midpoint, Matrix]:
     """State at the start, and the arrays of a step."""
     from mdlgen.backends.lattice.kernels import forces
-    from mdlgen.backends.lattice.kernels.integrate import step
+    from mdlgen.backends.lattice.kernels.integrate import room
 
-    state, mid, matrix = step.empty(system, forces.WIDE)
+    state, mid, matrix = room.empty(system, forces.WIDE)
     bodies = model.bodies
     count = len(bodies.name)
     state.x[:count], state.r[:count] = bodies.position, bodies.rotation.reshape(-1, 9)
@@ -52,12 +53,13 @@ def arrays(model: Model, system: System) -> Workspace:
     """What a run works on, made for the start."""
     from mdlgen.backends.lattice.kernels import entries, forces, parallel
     from mdlgen.backends.lattice.kernels.contact import condensed
-    from mdlgen.backends.lattice.kernels.integrate import damped, momentum, step
+    from mdlgen.backends.lattice.kernels.integrate import damped, momentum, room
 
     state, mid, matrix = start(model, system)
     entries.look(system.pairs, system.search, state.x)
     system.pairs["beside"] = 0
     entries.remember(system.bodies, system.pairs, Motion(state.x, state.r, mid.motion.u, mid.motion.w))
+    film = films(model, system)
     return Workspace(
         tables=system.tables,
         state=state,
@@ -69,8 +71,9 @@ def arrays(model: Model, system: System) -> Workspace:
         bounds=Bounds(model.pairs.low, model.pairs.high),
         search=system.search,
         damped=damped.empty(system),
-        frozen=step.frozen(system),
+        frozen=room.frozen(system, len(film.cells)),
         pool=parallel.empty(len(matrix.couplings.colouring.spans), system.border),
+        film=film,
     )
 
 

@@ -112,8 +112,9 @@ DEPTH, STIFFNESS, SPRING, GROWTH, RATE, OVER, BETA = 12, 13, 14, 15, 16, 17, 18
 MU_STATIC, MU_DYNAMIC, STICTION, SLIDING, PRESSING = 19, 20, 21, 22, 23
 NOW, ALONG, START, KIND, POINT = 24, 27, 30, 33, 34
 # What a point is: one that presses and rubs; a damper alone; a couple about its normal, of SPRING at most, of
-# a rolling speed of GROWTH times the angular velocity.
-A_PRESSURE, A_DAMPER, A_COUPLE = 0.0, 1.0, 2.0
+# a rolling speed of GROWTH times the angular velocity; a cell of air, whose force has changed by SPRING since
+# the iteration began, and changes by GROWTH along a direction. Alone it would be damped by OVER [N ms/mm].
+A_PRESSURE, A_DAMPER, A_COUPLE, AIR = 0.0, 1.0, 2.0, 3.0
 
 
 class Free(NamedTuple):
@@ -159,6 +160,27 @@ class Damped(NamedTuple):
     off: Floats  # (nodes, 6) velocities to take off
 
 
+class Film(NamedTuple):
+    """Air between sheets, see integrate.air; no films: there is none."""
+
+    films: np.ndarray  # mechanics.film.FILM, one for each contact with air
+    film_of: Ints  # of each contact, -1: none
+    cells: np.ndarray  # mechanics.film.CELL, of all films
+    flow: Floats  # matrices of Reynolds' equation, (cells, band)
+    factor: Floats  # factors of them,
+    ends: Floats  # and of those of the ends of a step
+    vectors: Floats  # (4, cells) PRESSURES, and scratch
+    head: Ints  # first cell of each pair, -1: none
+    listed: Ints  # pairs that have cells,
+    many: Ints  # and how many these are, (1,): none where no air acts
+    push: Floats  # (nodes, 6) what pressures do to boxes
+    place: Floats  # (bodies, 3) where bodies are at the end of a step [mm]
+    off: Floats  # (nodes, 6) velocities to take off at the end of a step
+
+
+PRESSURES = 0  # row of Film.vectors
+
+
 class Workspace(NamedTuple):
     """All arrays of a run."""
 
@@ -174,6 +196,7 @@ class Workspace(NamedTuple):
     damped: Damped
     frozen: Frozen
     pool: Any  # parallel.Pool
+    film: Film
 
 
 class History(NamedTuple):

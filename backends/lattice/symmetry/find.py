@@ -22,13 +22,15 @@ MOVED, TURNED = 1e-3, 1e-2
 
 def find(model: Model, system: System) -> Mirror | None:
     """The plane, or None: there is none, or nothing touches. What is free keeps its momentum to round-off,
-    which one side alone would not.
+    which one side alone would not. Scenes with air between sheets are not halved.
 
     It goes through the middle of the sheets, between boxes, along one of their edges. Everything is compared:
     bodies, what holds and drives them, contacts, loads, and the forces of the joints of a random state.
     """
     if not len(model.pairs) or not model.run.symmetry:
         return None
+    if (model.contacts.air_viscosity > 0.0).any():
+        return None  # air presses across the plane
     for axis in (1, 0):
         normal = model.sheets[0].rotation[:, axis]
         mirror = _plane(model, normal, float(normal @ model.sheets[0].center))

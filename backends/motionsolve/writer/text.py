@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from mdlgen.altair.air import refuse_air
 from mdlgen.altair.parts import refuse_unwritten
 from mdlgen.altair.rolling import refuse_rolling
 from mdlgen.altair.springs import refuse_compressed
@@ -25,6 +26,7 @@ def check(model: Model) -> None:
     refuse_unwritten(model, WRITTEN, "MotionSolve deck")
     refuse_compressed(model, "MotionSolve deck")
     refuse_rolling(model, "MotionSolve deck")
+    refuse_air(model, "MotionSolve deck")
 
 
 def emit(model: Model) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from mdlgen.altair.air import refuse_air
 from mdlgen.altair.parts import refuse_unwritten
 from mdlgen.altair.rolling import refuse_rolling
 from mdlgen.altair.springs import refuse_compressed
@@ -32,6 +33,7 @@ def check(model: Model) -> None:
     refuse_unwritten(model, WRITTEN, who)
     refuse_compressed(model, who)
     refuse_rolling(model, who)
+    refuse_air(model, who)
 
 
 def tables(model: Model) -> dict[str, Any]:

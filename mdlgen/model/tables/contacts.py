@@ -39,6 +39,8 @@ class Contacts(Frozen):
     rolling: Floats  # coefficient of rolling resistance
     share: tuple[str, ...]  # width or pair
     spread: Floats  # of a roller that faces another one: radius of the round its force is spread as [mm]; 0
+    air_viscosity: Floats  # of the air between sheets [N ms/mm^2]; 0: none
+    air_roughness: Floats  # [mm]
     name: tuple[str, ...] = ()  # of the entries that have one, "" of others; none where no entry has
 
     def __len__(self) -> int:

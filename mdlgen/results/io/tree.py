@@ -89,4 +89,6 @@ def _decode(value: Any, file: Any) -> Any:
     held = {key: _decode(item, file) for key, item in value["of"].items()}
     if value["table"] == "Model" and "machine" not in held:  # of an older version, with a table for each kind
         held["machine"] = sum((held.pop(kind, ()) for kind in _FORMER), ())
+    if value["table"] == "Contacts" and "air_viscosity" not in held:  # of an older version
+        held["air_viscosity"] = held["air_roughness"] = np.zeros(len(held["part_a"]))
     return _CLASSES[value["table"]](**held)

@@ -51,12 +51,18 @@ from mdlgen.backends.lattice.kernels.state import (
 from mdlgen.program.kernel import BORROWS, njit
 
 MOST_ITERATIONS = 25
+# Cells of air have much in common that the matrix does not know: it takes more of them, and exact searches.
+MOST_WITH_AIR = 80
+# What closes against air is slow beside all else: an iteration leaves this part of what the step may.
+FINE = 0.02
 # What an iteration of Newton's method leaves, in times what the step's own iterations may leave.
 ROUGH = 0.3
 # A direction is gone along wholly where the slope at its end is less than this part of that at its begin, and
 # else to where it is less than the other part.
 LEVEL, FLAT = 0.25, 0.1
 MOST_LOOKS, MOST_DOUBLED = 12, 4
+# Couplings are solved for to a root mean square of the velocities of this part of the limit.
+ENOUGH = 0.03
 # A factor is worth so many iterations (see integrate.step).
 WORTH = 4.0
 # How much of the chord a factor takes (see slopes.steepness): little, since each direction is searched.
@@ -89,12 +95,12 @@ def _make_matrix(work, h, lag, renew):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _how_far(frozen, h, begin, linear, square):
+def _how_far(frozen, h, begin, linear, square, level):
     """The part of a direction to go along. begin: the slope where it begins; linear + part square: what
-    masses and bushings have of it there."""
+    masses and bushings have of it there; level: see LEVEL."""
     low, high, at_low = 0.0, 1.0, begin
     at_high = linear + square + slope(frozen, h, 1.0)
-    if abs(at_high) <= LEVEL * abs(begin):
+    if abs(at_high) <= level * abs(begin):
         return 1.0
     for _ in range(MOST_DOUBLED):
         if at_high >= 0.0:
@@ -178,9 +184,16 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
     rollers_into(tables.bodies, h, t, work.state.ub, matrix.own)
     copy(frozen.vectors[RESIDUAL], z)
     copy(frozen.border[RESIDUAL], zb)
-    before, along, part, gathered = 1e300, 0.0, 0.0, False
-    iteration, converged = 0, False
-    for iteration in range(MOST_ITERATIONS):
+    before, along, part, gathered, mass = 1e300, 0.0, 0.0, False, 0.0
+    for n in range(tables.nodes.size):
+        mass += tables.bodies[tables.nodes[n]].mass
+    iteration, converged, renewed = 0, False, False
+    air = work.film.many[0] > 0
+    if air:
+        limit *= FINE
+    # the matrix is at least that of the masses
+    enough = mass * (ENOUGH * limit) ** 2
+    for iteration in range(MOST_WITH_AIR if air else MOST_ITERATIONS):
         if iteration == 0:
             copy(g, z)
             copy(gb, zb)
@@ -196,12 +209,12 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
             if not _make_matrix(work, h, lag, renew):
                 return 0
             factored[MADE_FOR], factored[STALE], factored[WHERE] = 2.0 * h, 0.0, INSIDE
-            renew = False
+            renew, renewed = False, True
         crossing = _dot(g, z) + _dot(gb, zb) if iteration > 0 and not made else 0.0
         copy(z, g)
         copy(zb, gb)
         counters[SOLVES] += 1
-        solve_coupled(work.pool, matrix)
+        solve_coupled(work.pool, matrix, enough)
         # conjugate directions, by Polak and Ribiere: they make up for a factor of an earlier state
         square = _dot(g, z) + _dot(gb, zb)
         turn = max(0.0, (square - crossing) / along) if iteration > 0 and not made and along > 0.0 else 0.0
@@ -229,7 +242,7 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
             factored[STALE] = 1.0
             continue
         linear, square = _direction(work, axes)
-        part = _how_far(frozen, h, begin, linear, square)
+        part = _how_far(frozen, h, begin, linear, square, 0.0 if air else LEVEL)
         for i in range(p.size):
             of_change[i] += part * frozen.vectors[OF_DIRECTION, i]
             change[i] += part * p[i]
@@ -242,8 +255,10 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
             converged = converged or moved * rate / (1.0 - rate) <= ROUGH * limit
         if converged:
             break
-        if before < 1e299 and (
-            rate >= 0.7 or math.log(ROUGH * limit / moved) < WORTH * math.log(max(rate, 1e-6))
+        if (
+            before < 1e299
+            and not (air and renewed)
+            and (rate >= 0.7 or math.log(ROUGH * limit / moved) < WORTH * math.log(max(rate, 1e-6)))
         ):
             factored[STALE] = 1.0
         before = moved

@@ -99,7 +99,7 @@ def overshoot(work, before, ahead, dt):
     for n in range(nodes.size):
         for i in range(3):
             end[nodes[n], i] = x[nodes[n], i] + dt * u[n, i]
-    keep(work.tables, work.mid.touched, 0, work.free, end, rm, push)
+    keep(work.tables, work.mid.touched, 0, work.film, work.free, (end, rm), push)
     for n in range(nodes.size):
         for i in range(6):
             off[n, i] = push[6 * n + i]

@@ -9,6 +9,7 @@ import numpy as np
 from mdlgen.backends.lattice.kernels.contact.between import forget_overlaps
 from mdlgen.backends.lattice.kernels.contact.search import look, strayed
 from mdlgen.backends.lattice.kernels.contact.swept import Before, swept
+from mdlgen.backends.lattice.kernels.integrate.air import air_overshoot
 from mdlgen.backends.lattice.kernels.integrate.carry import carry, spun
 from mdlgen.backends.lattice.kernels.integrate.damped import overshoot, take_off
 from mdlgen.backends.lattice.kernels.integrate.step import midpoint
@@ -264,6 +265,9 @@ def run(work, t, steps, tolerance, control):
             if work.damped.joints.size > 0:
                 course = dt / (dt + spans[LAST_STEP]) if spans[LAST_STEP] > 0.0 else 0.0
                 overshoot(work, keep_u, course, dt)
+            if work.film.films.size > 0:
+                course = dt / (dt + spans[LAST_STEP]) if spans[LAST_STEP] > 0.0 else 0.0
+                air_overshoot(work, keep_u, course, dt)
             copy(last_u, keep_u)
             copy(last_b, keep_b)
             _account(bodies, mid, state, t, dt, energies)
@@ -276,6 +280,9 @@ def run(work, t, steps, tolerance, control):
             carry(tables, state, t, dt)
             if work.damped.joints.size > 0:
                 gone = take_off(bodies, nodes, work.damped.off, mid.motion.r, r, state.v, state.l)
+                energies[DISSIPATED] += gone
+            if work.film.films.size > 0:
+                gone = take_off(bodies, nodes, work.film.off, mid.motion.r, r, state.v, state.l)
                 energies[DISSIPATED] += gone
             remember(bodies, pairs, Motion(x, r, mid.motion.u, mid.motion.w))
             counters[STEPS] += 1

@@ -67,14 +67,15 @@ def _top(one_with, part):
 
 
 @njit(cache=True, error_model="numpy")
-def _tie(bodies, pairs, touched, count, free):
-    """Makes one of the parts that touch each other, and marks those that are held or touch something else."""
+def _tie(bodies, pairs, touched, count, film, free):
+    """Makes one of the parts that touch each other, or have air between them, and marks those that are held
+    or touch something else."""
     label, loose, busy, _residual, one_with = free
     for part in range(loose.size):
         one_with[part] = part
         busy[part] = not loose[part]
-    for k in range(count):
-        pair = pairs[touched[k]]
+    for k in range(count + film.many[0]):
+        pair = pairs[touched[k]] if k < count else pairs[film.listed[k - count]]
         one = bodies[pair.a].node
         two = bodies[pair.b].node if pair.kind == BOX_BOX else -1
         if one >= 0 and two >= 0:
@@ -88,12 +89,13 @@ def _tie(bodies, pairs, touched, count, free):
 
 
 @njit(cache=True, error_model="numpy")
-def keep(tables, touched, count, free, x, r, change):
-    """Takes off `change` (6 nodes,), global axes, what it has of momentum beside the residual's; x and r are
+def keep(tables, touched, count, film, free, motion, change):
+    """Takes off `change` (6 nodes,), global axes, what it has of momentum beside the residual's; motion:
     places and rotations of the residual."""
+    x, r = motion
     label, loose, busy, residual, one_with = free
     bodies, pairs, nodes = tables.bodies, tables.pairs, tables.nodes
-    _tie(bodies, pairs, touched, count, free)
+    _tie(bodies, pairs, touched, count, film, free)
     for part in range(loose.size):
         if busy[part] or one_with[part] != part:
             continue

@@ -16,10 +16,13 @@ from __future__ import annotations
 import math
 
 from mdlgen.backends.lattice.kernels.contact.between import MOVED
+from mdlgen.backends.lattice.kernels.integrate.air import air_along, damping_of
+from mdlgen.backends.lattice.kernels.integrate.unknowns import moving, turning_of
 from mdlgen.backends.lattice.kernels.state import (
     A_COUPLE,
     A_DAMPER,
     A_PRESSURE,
+    AIR,
     ALONG,
     ARM_A,
     ARM_B,
@@ -42,7 +45,6 @@ from mdlgen.backends.lattice.kernels.state import (
     STIFFNESS,
 )
 from mdlgen.mechanics import point as law_point
-from mdlgen.mechanics.arm import turn_of, way_of
 from mdlgen.mechanics.frame import LAW_SMOOTHING, box_of, frame_of, law_of
 from mdlgen.mechanics.laws import damped, friction_over_speed, sign_step
 from mdlgen.mechanics.overlap import OTHER, apart, find, holds, plane_of
@@ -80,6 +82,8 @@ def _force(q, v, h):
         return scale(q[SPRING] * q[BETA] * sign_step(-dot(v, n), q[OVER]), n)
     if q[KIND] == A_COUPLE:
         return scale(-q[SPRING] * sign_step(q[GROWTH] * dot(v, n), q[OVER]), n)
+    if q[KIND] == AIR:
+        return scale(q[SPRING], n)
     _spring, _growth, normal, _rate, slip = law_at(q, v, h)
     if q[PRESSING] <= 0.0:
         return scale(normal, n)
@@ -197,14 +201,36 @@ def _of_faces(frozen, p, pair, kept, h, motion):
         _started(q, h)
 
 
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _of_air(frozen, film, pair, p, motion):
+    """Adds the cells of air of a pair, where it has any that are not points yet."""
+    cells, i = film.cells, film.head[p]
+    if i < 0 or cells[i].point >= 0:
+        return
+    a, b = frame_of(motion, pair.a), frame_of(motion, pair.b)
+    while i >= 0:
+        own = cells[i]
+        many = _begin(frozen, p, three(own.at), three(own.normal), a, b)
+        own.point = many
+        if many >= 0:
+            q = frozen.points[many]
+            q[KIND], q[OVER] = AIR, damping_of(film, i)
+            for k in range(3):
+                q[START + k] = 0.0
+        i = own.following
+
+
 @njit(cache=True, error_model="numpy")
 def gather(work, counts, h, plates):
-    """Takes the points of the near pairs at the midpoint; `counts`: how many touch, how many are near;
-    `plates`: of those with fixed plates alone."""
-    tables, mid, frozen, first = work.tables, work.mid, work.frozen, work.search.first
+    """Takes the points of the near pairs at the midpoint, and of air; `counts`: how many touch, how many are
+    near; `plates`: of those with fixed plates alone."""
+    tables, mid, frozen, first, film = work.tables, work.mid, work.frozen, work.search.first, work.film
     bodies, pairs, near, motion = tables.bodies, tables.pairs, mid.near, mid.motion
     count, close = counts
     frozen.many[0] = known = 0
+    air = film.many[0]
+    for k in range(air):
+        film.cells[film.head[film.listed[k]]].point = -1
     for at in range(close):
         p = near[at]
         pair = pairs[p]
@@ -214,6 +240,8 @@ def gather(work, counts, h, plates):
             known += 1
         if plates and not on_fixed_plate(pair, bodies[pair.b]):
             continue
+        if air > 0:
+            _of_air(frozen, film, pair, p, motion)
         if pair.kind != BOX_BOX:
             if touching:
                 _of_law(frozen, p, pair, mid.results[row], h, motion)
@@ -230,37 +258,8 @@ def gather(work, counts, h, plates):
                 _of_law(frozen, p, pair, mid.results[row], h, motion)
         elif kept.count > 0:
             _of_faces(frozen, p, pair, kept, h, motion)
-
-
-@njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)
-def moving(body, arm, x, sign, direction, index, count):
-    """The unknowns of a roller or a pressed plate at x that move a contact point, each with the direction of
-    its velocity there."""
-    if body.slide >= 0:
-        way = add(way_of(body, x), cross(turn_of(body), arm))
-        for i in range(3):
-            direction[count, i] = sign * way[i]
-        index[count] = body.slide
-        count += 1
-    if body.spin >= 0:
-        turn = cross(three(body.axis), arm)
-        for i in range(3):
-            direction[count, i] = sign * turn[i]
-        index[count] = body.spin
-        count += 1
-    return count
-
-
-@njit(cache=True, error_model="numpy", **BORROWS)
-def turning_of(bodies, pair, which, axis):
-    """The unknown of a pair's rollers with a number from 0 to 3, -1: none, and how fast it turns the first
-    body against the second about an axis."""
-    body, sign = bodies[pair.a if which < 2 else pair.b], 1.0 if which < 2 else -1.0
-    if which % 2 == 0:
-        return body.spin, sign * dot(three(body.axis), axis)
-    if body.swings != 2:
-        return -1, 0.0
-    return body.slide, sign * dot(turn_of(body), axis)
+    for k in range(air):
+        _of_air(frozen, film, pairs[film.listed[k]], film.listed[k], motion)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -305,6 +304,8 @@ def look_along(work, change, changeb):
         v = _rate_of(tables.bodies, pair, q, x, change, changeb, work.matrix)
         for i in range(3):
             q[ALONG + i] = v[i]
+    if work.film.many[0] > 0:
+        air_along(work.film, frozen)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -317,6 +318,8 @@ def pull(work, h, part, g, gb):
         q = frozen.points[k]
         for i in range(3):
             q[NOW + i] += part * q[ALONG + i]
+        if q[KIND] == AIR:
+            q[SPRING] += part * q[GROWTH]
         f = scale(h, sub(_force(q, three_from(q, NOW), h), three_from(q, START)))
         if f[0] == 0.0 and f[1] == 0.0 and f[2] == 0.0:
             continue
@@ -361,6 +364,9 @@ def slope(frozen, h, part):
     for k in range(frozen.many[0]):
         q = frozen.points[k]
         way = three_from(q, ALONG)
+        if q[KIND] == AIR:
+            total += (q[SPRING] + part * q[GROWTH]) * dot(three_from(q, NORMAL), way)
+            continue
         f = _force(q, add(three_from(q, NOW), scale(part, way)), h)
         total += dot(sub(f, three_from(q, START)), way)
     return -h * total

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from mdlgen.backends.lattice.kernels.contact.slopes import Numbers, core, outer, steepness
-from mdlgen.backends.lattice.kernels.integrate.points import law_at, moving, turning_of
+from mdlgen.backends.lattice.kernels.integrate.points import law_at
 from mdlgen.backends.lattice.kernels.integrate.tangent import blocks
+from mdlgen.backends.lattice.kernels.integrate.unknowns import moving, turning_of
 from mdlgen.backends.lattice.kernels.linear.two_colour import ONE, TWO
 from mdlgen.backends.lattice.kernels.state import (
     A_COUPLE,
     A_DAMPER,
+    AIR,
     ARM_A,
     ARM_B,
     BETA,
@@ -105,6 +107,8 @@ def points_into(work, h, chord):
             y = q[GROWTH] * dot(three_from(q, NOW), n) / q[OVER]
             growth = h * q[SPRING] * q[GROWTH] * steepness(y, q[OVER], chord)
             _couple_into(bodies, pair, n, growth, matrix)
+        elif q[KIND] == AIR:
+            _point_into(bodies, pair, q, x, outer(scale(h * q[OVER], n), n), coupled, matrix)
         elif q[KIND] == A_DAMPER:
             y = -dot(three_from(q, NOW), n) / q[OVER]
             damping = h * q[SPRING] * q[BETA] * steepness(y, q[OVER], chord)

@@ -14,8 +14,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from mdlgen.backends.lattice.kernels.contact.between import near_forces
 from mdlgen.backends.lattice.kernels.contact.condensed import (
     APART,
@@ -40,6 +38,7 @@ from mdlgen.backends.lattice.kernels.forces import (
     pair_forces_again,
     place,
 )
+from mdlgen.backends.lattice.kernels.integrate.air import air_forces, lay
 from mdlgen.backends.lattice.kernels.integrate.change import (
     fastest,
     greatest,
@@ -52,9 +51,7 @@ from mdlgen.backends.lattice.kernels.integrate.momentum import keep
 from mdlgen.backends.lattice.kernels.integrate.points import gather
 from mdlgen.backends.lattice.kernels.integrate.points_matrix import points_into
 from mdlgen.backends.lattice.kernels.integrate.tangent import in_box_axes, joints_into, masses, turn_nodes
-from mdlgen.backends.lattice.kernels.linear.band import empty as no_band
 from mdlgen.backends.lattice.kernels.linear.band import solve
-from mdlgen.backends.lattice.kernels.linear.coupled import couplings
 from mdlgen.backends.lattice.kernels.linear.dense import copy
 from mdlgen.backends.lattice.kernels.linear.sheets import factor_sheets
 from mdlgen.backends.lattice.kernels.state import (
@@ -66,17 +63,12 @@ from mdlgen.backends.lattice.kernels.state import (
     MADE_FOR,
     MIDDLE,
     NUMERICAL,
-    POINT,
     POWER,
     STALE,
     THROUGH,
     TOUCHING,
     TOUGH,
     WHERE,
-    Frozen,
-    Matrix,
-    Midpoint,
-    State,
 )
 from mdlgen.mechanics.arm import (
     AXIAL,
@@ -88,9 +80,6 @@ from mdlgen.mechanics.arm import (
     turn_of,
     way_of,
 )
-from mdlgen.mechanics.frame import Motion
-from mdlgen.mechanics.overlap import OVERLAP
-from mdlgen.mechanics.point import FACES, MOST_POINTS
 from mdlgen.mechanics.vector import back, dot, mat, rotate, three, vec
 from mdlgen.program.kernel import BORROWS, njit
 
@@ -161,8 +150,8 @@ def _weights(bodies, gravity, f):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _contact_forces(work, close, known):
-    """Adds the forces of contacts to those of the midpoint, where `known` from what the contact solve last
-    evaluated. Returns (how many pairs touch, dissipated power)."""
+    """Adds the forces of contacts and of air to those of the midpoint, where `known` from what the contact
+    solve last evaluated. Returns (how many pairs touch, dissipated power)."""
     mid, condensed = work.mid, work.condensed
     if known:
         again = (condensed.touched, condensed.results, condensed.looked[TOUCHED], condensed.seen)
@@ -175,6 +164,8 @@ def _contact_forces(work, close, known):
         count, _stored, rubbed = pair_forces(
             work.tables, mid.near, close, mid.motion, mid.forces, mid.touched, mid.results
         )
+    if work.film.many[0] > 0:
+        rubbed += air_forces(work)
     return count, rubbed
 
 
@@ -223,7 +214,7 @@ def midpoint(work, t, dt, tolerance, control):
     margin, moved, sheets = FAR, 0.0, work.search.regions.size > 0
     # loads add to the forces, by which the drives' power is counted
     lasting = sheets and tables.loads.size == 0
-    inner = alike = 0
+    inner, alike, air = 0, 0, False
     for iteration in range(MOST_ITERATIONS):
         place(tables, h, t + h, state, mid.motion)
         if iteration == 0 or margin < dt * moved:
@@ -231,6 +222,8 @@ def midpoint(work, t, dt, tolerance, control):
             margin = FAR + 2.0 * dt * moved
             close = near_pairs(tables, mid.motion, margin, dt, mid.near)
             unsee(condensed)
+        if iteration == 0 and work.film.films.size > 0:
+            air = lay(work, h)
         mid.forces[:] = 0.0
         _stored, lost, numerical = joint_forces(tables.joints, tables.points, mid.motion, mid.forces, lag)
         known = iteration > 0 and where == APART and condensed.looked[UP_TO_DATE] == 1
@@ -241,11 +234,13 @@ def midpoint(work, t, dt, tolerance, control):
         clutch_torques(bodies, t + h, state.ub, mid.forces)
         _residual(tables, t + h, h, state, mid, res, resb)
         # what is free converges fast, and keeps its angular momentum as well as the iterations end
-        limit = tolerance if count > 0 else FREE * tolerance
-        if where != INSIDE and (iteration == last or (iteration == 0 and factored[TOUGH] > 0.0)):
+        limit = tolerance if count > 0 or air else FREE * tolerance
+        if air:
+            where = INSIDE
+        elif where != INSIDE and (iteration == last or (iteration == 0 and factored[TOUGH] > 0.0)):
             release(condensed, m)
             where = INSIDE
-        if iteration == 0:
+        if iteration == 0 and not air:
             for fewer in range(where if factored[TOUGH] == 0.0 else 0):
                 m = choose(bodies, pairs, mid.touched, count, fewer, condensed, 0, most // 2)
                 if m >= 0:
@@ -263,7 +258,7 @@ def midpoint(work, t, dt, tolerance, control):
         if where == INSIDE:
             turn_nodes(nodes, condensed.axes, res, True)
             renew = iteration == 0 or factored[WHERE] != INSIDE
-            whole = iteration >= SHORTLY
+            whole = air or iteration >= SHORTLY
             inner = solve_convex(work, t + h, h, lag, (count, close), limit, control, renew, whole)
             if inner == 0:
                 break
@@ -290,7 +285,7 @@ def midpoint(work, t, dt, tolerance, control):
                 found = max(found, 2.0 * limit)
             alike += 1
             mix(matrix, alike > 2)
-        keep(tables, mid.touched, count, work.free, mid.motion.x, mid.motion.r, res)
+        keep(tables, mid.touched, count, work.film, work.free, (mid.motion.x, mid.motion.r), res)
         part = part_of_change(tables, mid.near, close, mid.motion.r, h, res)
         if part < 1.0:
             res *= part
@@ -323,67 +318,3 @@ def midpoint(work, t, dt, tolerance, control):
     factored[MADE_FOR], factored[TOUGH] = 0.0, MEMORY if sheets else 0.0
     release(condensed, m)
     return False
-
-
-def empty(system, wide: int) -> tuple[State, Midpoint, Matrix]:
-    """State, midpoint and matrix of a System, all zero; `wide` numbers hold what a pair does."""
-    bodies, nodes, border = len(system.bodies), len(system.nodes), system.border
-    state = State(
-        x=np.zeros((bodies, 3)),
-        r=np.zeros((bodies, 9)),
-        v=np.zeros((nodes, 3)),
-        l=np.zeros((nodes, 3)),
-        s=np.zeros(border),
-        vb=np.zeros(border),
-        u=np.zeros((nodes, 6)),
-        ub=np.zeros(border),
-    )
-    places, rates = (
-        (np.zeros((bodies, 3)), np.zeros((bodies, 9))),
-        (np.zeros((bodies, 3)), np.zeros((bodies, 3))),
-    )
-    mid = Midpoint(
-        motion=Motion(*places, *rates),
-        forces=np.zeros((bodies, 6)),
-        touched=np.zeros(len(system.pairs), np.int64),
-        results=np.zeros((max(1, len(system.pairs)), wide)),
-        faces=np.zeros((max(1, len(system.pairs)), FACES)),
-        totals=np.zeros(3),
-        near=np.zeros(len(system.pairs), np.int64),
-        overlaps=np.zeros(max(1, len(system.pairs) - system.search.first), OVERLAP),
-        fastest=np.zeros((2, bodies)),
-    )
-    matrix = Matrix(
-        band=no_band(nodes, system.reach),
-        border=np.zeros((border, 6 * nodes)),
-        corner=np.zeros((border, border)),
-        eliminated=np.zeros((border, 6 * nodes)),
-        schur=np.zeros((border, border)),
-        res=np.zeros(6 * nodes),
-        resb=np.zeros(border),
-        direction=np.zeros((4, 3)),
-        unknowns=np.zeros(4, np.int64),
-        couplings=couplings(len(system.pairs) - system.search.first, system.sheets, border),
-        mixing=np.zeros((2, 6 * nodes + border)),
-        offsets=system.offsets,
-        inner=no_band(nodes, system.reach),
-        own=np.zeros((border, border)),
-        single_factor=no_band(nodes, system.reach).astype(np.float32),
-        single_inner=no_band(nodes, system.reach).astype(np.float32),
-    )
-    return state, mid, matrix
-
-
-def frozen(system) -> Frozen:
-    """Room for the points of an iteration with frozen contacts. Boxes of two sheets have four or five points
-    where they overlap, and there is room for many more pairs than overlap; where none is left, points are
-    left out of the iteration, and of nothing else."""
-    nodes, border, listed = len(system.nodes), system.border, system.search.first
-    room = 2 * MOST_POINTS * listed + 2 * (len(system.pairs) - listed)
-    return Frozen(
-        points=np.zeros((room, POINT)),
-        pair=np.zeros(room, np.int64),
-        many=np.zeros(1, np.int64),
-        vectors=np.zeros((6, 6 * nodes)),
-        border=np.zeros((6, border)),
-    )

@@ -110,14 +110,15 @@ def _couple(couplings, p, q):
 
 
 @njit(cache=True, error_model="numpy")
-def solve_coupled(pool, matrix):
-    """Solves band, border and couplings in place, as bordered.solve_bordered does without the last."""
+def solve_coupled(pool, matrix, enough):
+    """Solves band, border and couplings in place, as bordered.solve_bordered does without the last; `enough`: a
+    square of the residual, measured as LEFT, that may be left in any case."""
     couplings, res, resb = matrix.couplings, matrix.res, matrix.resb
     if couplings.many[0] == 0:
         solve_bordered(matrix.band, matrix.border, matrix.eliminated, matrix.schur, res, resb)
         return
     if couplings.colouring.found[0] == 1:
-        solve_coloured(pool, matrix, MOST_ITERATIONS, LEFT)
+        solve_coloured(pool, matrix, MOST_ITERATIONS, LEFT, enough)
         return
     many = res.size
     r, z, p, own, q = couplings.room
@@ -132,7 +133,7 @@ def solve_coupled(pool, matrix):
     left = _dot(r, z)
     first = left
     for _ in range(MOST_ITERATIONS):
-        if not left > LEFT * first:
+        if not left > max(LEFT * first, enough):
             break
         copy(q, own)
         _couple(couplings, p, q)

@@ -1,0 +1,76 @@
+"""Room for what a step works on."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mdlgen.backends.lattice.kernels.linear.band import empty as no_band
+from mdlgen.backends.lattice.kernels.linear.coupled import couplings
+from mdlgen.backends.lattice.kernels.state import POINT, Frozen, Matrix, Midpoint, State
+from mdlgen.mechanics.frame import Motion
+from mdlgen.mechanics.overlap import OVERLAP
+from mdlgen.mechanics.point import FACES, MOST_POINTS
+
+
+def empty(system, wide: int) -> tuple[State, Midpoint, Matrix]:
+    """State, midpoint and matrix of a System, all zero; `wide` numbers hold what a pair does."""
+    bodies, nodes, border = len(system.bodies), len(system.nodes), system.border
+    state = State(
+        x=np.zeros((bodies, 3)),
+        r=np.zeros((bodies, 9)),
+        v=np.zeros((nodes, 3)),
+        l=np.zeros((nodes, 3)),
+        s=np.zeros(border),
+        vb=np.zeros(border),
+        u=np.zeros((nodes, 6)),
+        ub=np.zeros(border),
+    )
+    places, rates = (
+        (np.zeros((bodies, 3)), np.zeros((bodies, 9))),
+        (np.zeros((bodies, 3)), np.zeros((bodies, 3))),
+    )
+    mid = Midpoint(
+        motion=Motion(*places, *rates),
+        forces=np.zeros((bodies, 6)),
+        touched=np.zeros(len(system.pairs), np.int64),
+        results=np.zeros((max(1, len(system.pairs)), wide)),
+        faces=np.zeros((max(1, len(system.pairs)), FACES)),
+        totals=np.zeros(3),
+        near=np.zeros(len(system.pairs), np.int64),
+        overlaps=np.zeros(max(1, len(system.pairs) - system.search.first), OVERLAP),
+        fastest=np.zeros((2, bodies)),
+    )
+    matrix = Matrix(
+        band=no_band(nodes, system.reach),
+        border=np.zeros((border, 6 * nodes)),
+        corner=np.zeros((border, border)),
+        eliminated=np.zeros((border, 6 * nodes)),
+        schur=np.zeros((border, border)),
+        res=np.zeros(6 * nodes),
+        resb=np.zeros(border),
+        direction=np.zeros((4, 3)),
+        unknowns=np.zeros(4, np.int64),
+        couplings=couplings(len(system.pairs) - system.search.first, system.sheets, border),
+        mixing=np.zeros((2, 6 * nodes + border)),
+        offsets=system.offsets,
+        inner=no_band(nodes, system.reach),
+        own=np.zeros((border, border)),
+        single_factor=no_band(nodes, system.reach).astype(np.float32),
+        single_inner=no_band(nodes, system.reach).astype(np.float32),
+    )
+    return state, mid, matrix
+
+
+def frozen(system, cells: int) -> Frozen:
+    """Room for the points of an iteration with frozen contacts, and for so many cells of air. Boxes of two
+    sheets have four or five points where they overlap, and there is room for many more pairs than overlap;
+    where none is left, points are left out of the iteration, and of nothing else."""
+    nodes, border, listed = len(system.nodes), system.border, system.search.first
+    room = 2 * MOST_POINTS * listed + 2 * (len(system.pairs) - listed) + cells
+    return Frozen(
+        points=np.zeros((room, POINT)),
+        pair=np.zeros(room, np.int64),
+        many=np.zeros(1, np.int64),
+        vectors=np.zeros((6, 6 * nodes)),
+        border=np.zeros((6, border)),
+    )

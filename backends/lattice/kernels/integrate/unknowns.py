@@ -1,0 +1,38 @@
+"""Which unknowns of rollers and pressed plates move a contact point, and how."""
+
+from __future__ import annotations
+
+from mdlgen.mechanics.arm import turn_of, way_of
+from mdlgen.mechanics.vector import add, cross, dot, three
+from mdlgen.program.kernel import BORROWS, njit
+
+
+@njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)
+def moving(body, arm, x, sign, direction, index, count):
+    """The unknowns of a roller or a pressed plate at x that move a contact point, each with the direction of
+    its velocity there."""
+    if body.slide >= 0:
+        way = add(way_of(body, x), cross(turn_of(body), arm))
+        for i in range(3):
+            direction[count, i] = sign * way[i]
+        index[count] = body.slide
+        count += 1
+    if body.spin >= 0:
+        turn = cross(three(body.axis), arm)
+        for i in range(3):
+            direction[count, i] = sign * turn[i]
+        index[count] = body.spin
+        count += 1
+    return count
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def turning_of(bodies, pair, which, axis):
+    """The unknown of a pair's rollers with a number from 0 to 3, -1: none, and how fast it turns the first
+    body against the second about an axis."""
+    body, sign = bodies[pair.a if which < 2 else pair.b], 1.0 if which < 2 else -1.0
+    if which % 2 == 0:
+        return body.spin, sign * dot(three(body.axis), axis)
+    if body.swings != 2:
+        return -1, 0.0
+    return body.slide, sign * dot(turn_of(body), axis)
