@@ -111,8 +111,10 @@ def _couple(couplings, p, q):
 
 @njit(cache=True, error_model="numpy")
 def solve_coupled(pool, matrix, enough):
-    """Solves band, border and couplings in place, as bordered.solve_bordered does without the last; `enough`: a
-    square of the residual, measured as LEFT, that may be left in any case."""
+    """Solves band, border and couplings in place, as bordered.solve_bordered does without the last.
+
+    `enough`: a square of the residual, measured as for LEFT, that may be left in any case.
+    """
     couplings, res, resb = matrix.couplings, matrix.res, matrix.resb
     if couplings.many[0] == 0:
         solve_bordered(matrix.band, matrix.border, matrix.eliminated, matrix.schur, res, resb)
