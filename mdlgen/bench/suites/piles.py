@@ -1,4 +1,4 @@
-"""Piles: what sheets that lie on each other cost, at rest and under a feeding roller."""
+"""Piles: what sheets that lie on each other cost, at rest, under a feeding roller, and in a feeder."""
 
 from __future__ import annotations
 
@@ -24,6 +24,8 @@ CREEP = 10.0  # [um/s] that a pile at rest may move by
 STIFFNESS = "100 N/mm^1.5"  # soft enough for that step
 CONTACT = f"{{stiffness: {STIFFNESS}, restitution: 0.5, friction: 0.3, smoothing: 1 mm/s}}"
 LIMIT = 1800.0  # [s]
+# Two notes that are parted by a feeder's rollers, at its own step.
+FEEDER, FEEDER_STEP, FED = "feeder", 0.05, 600.0  # -, [ms], [ms]
 
 
 def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
@@ -54,6 +56,15 @@ def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
             found.append(
                 BenchCase("piles", name, Run(SAMPLE, sets, STEP), measure, repeats=False, limit=LIMIT)
             )
+    if solver != REFERENCE:
+        grid = f"[{GRID[0]},{GRID[1]}]"
+        sets = (
+            *(f"sheets.note_{number}.boxes={grid}" for number in (1, 2)),
+            f"run.duration={duration if quick else FED:g} ms",
+            "require=[]",
+        )
+        run = Run(FEEDER, sets, FEEDER_STEP)
+        found.append(BenchCase("piles", "feeder, two notes", run, parts, repeats=False, limit=LIMIT))
     return found
 
 
@@ -71,6 +82,13 @@ def feeds(result: Result, _: Result | None, count: int) -> list[Finding]:
     notes = [names.index(f"cassette_{number}") for number in (count, count - 1)]
     ways = [float(np.ptp(result.sheet_motion(k)[0][[0, -1], 0])) for k in notes]
     details = _taken(result) | {"fed_mm": ways[0], "next_mm": ways[1]}
+    return [Finding("energy balance, relative", abs(result.energy.balance_error), None, details)]
+
+
+def parts(result: Result, _: Result | None) -> list[Finding]:
+    """The energy balance of a feeder, and where its notes end."""
+    ends = {s.name: float(result.sheet_motion(k)[0][-1, 0]) for k, s in enumerate(result.model.sheets)}
+    details = _taken(result) | {f"{name}_x_mm": x for name, x in ends.items()}
     return [Finding("energy balance, relative", abs(result.energy.balance_error), None, details)]
 
 
