@@ -150,7 +150,7 @@ def test_changes_make_the_function_least(case: Case) -> None:
     left, leftb = first, firstb
     for _ in range(30):
         matrix.res[:], matrix.resb[:] = left, leftb
-        assert convex.solve_convex(work, H, H, LAG, case.counts, 1e-9, steering, True, convex.WHOLE) != 0
+        assert convex.solve_convex(work, H, H, LAG, case.counts, 1e-9, steering, True, True) != 0
         whole, wholeb = whole - matrix.res, wholeb - matrix.resb
         g, gb = impulses(case, in_global_axes(work, whole), wholeb)
         tangent.turn_nodes(work.tables.nodes, work.condensed.axes, g, True)
@@ -173,7 +173,7 @@ def test_a_direction_is_gone_along_to_where_the_function_is_least(times: float, 
         vectors[:] = 0.0
     frozen.vectors[RESIDUAL] = matrix.res
     points.gather(work, case.counts, H, False)
-    assert convex._make_matrix(work, H, LAG, True, convex.WHOLE)
+    assert convex._make_matrix(work, H, LAG, True)
     frozen.vectors[DIRECTION] = -times * matrix.res
     linear, square = convex._direction(work, work.condensed.axes)
     begin = -times * float(matrix.res @ matrix.res)

@@ -125,6 +125,8 @@ class Free(NamedTuple):
     busy: np.ndarray  # (sheets,) whether it touches something now
     residual: Floats  # (6 nodes,)
     one_with: Ints  # (sheets,) which sheet it is one with now
+    cut: np.ndarray  # (sheets,) whether it is one half of a sheet, which hangs on its image
+    normal: Floats  # (3,) of the plane that halves it
 
 
 class Kept(NamedTuple):

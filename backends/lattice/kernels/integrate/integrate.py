@@ -74,7 +74,7 @@ HARD, EASY = 8, 5
 LEAST = 1e-9
 # Where sheets lie on each other and move at less than a part 1/SLOW of the greatest speed so far, steps are
 # solved to less, down to a part STILL: the rule damps nothing, so what a step leaves in what rests rings on.
-SLOW, STILL = 10.0, 0.03
+SLOW, STILL = 10.0, 0.005
 # Two rollers with a sheet between them clear each other by a few micrometres and may graze: a force below
 # this part of the greatest is not counted as the nip still acting.
 GRAZE = 0.05

@@ -3,7 +3,9 @@
 The forces inside a sheet have no sum and no moment, whatever its state; so the linear and the angular
 momentum of a change of velocities are those of the residual that it is to cure. A factor of an earlier state
 does not know how boxes have turned since, and misses that by as much: what it misses is taken off as a motion
-of the whole sheet. Sheets that touch each other and nothing else keep theirs together.
+of the whole sheet. Sheets that touch each other and nothing else keep theirs together. What one half of a
+sheet does to the other, its image in a plane, has no part along the plane, and no moment about its normal:
+so that much of the momentum is kept.
 """
 
 from __future__ import annotations
@@ -12,7 +14,7 @@ import numpy as np
 
 from mdlgen.backends.lattice.kernels.state import Free
 from mdlgen.mechanics.pair import BOX_BOX
-from mdlgen.mechanics.vector import add, back, cross, dot, mat, rotate, scale, sub, vec
+from mdlgen.mechanics.vector import add, back, cross, dot, mat, rotate, scale, sub, three, vec
 from mdlgen.program.kernel import njit
 
 
@@ -22,9 +24,12 @@ def empty(system) -> Free:
     label = system.sheets
     ends = [np.where(joints[end] >= 0, bodies["node"][joints[end]], -1) for end in "ab"]
     loose = np.ones(int(label.max(initial=-1)) + 1, np.bool_)
-    for one, two in (ends, ends[::-1]):
+    cut, image = np.zeros_like(loose), np.isin(np.arange(len(bodies)), system.images["body"])
+    seen = [image[joints[end]] for end in "ab"]
+    for one, two, mirrored in ((*ends, seen[1]), (*ends[::-1], seen[0])):
         held = (one >= 0) & (two < 0)
-        loose[label[one[held]]] = False
+        loose[label[one[held & ~mirrored]]] = False
+        cut[label[one[held & mirrored]]] = True
     parts = len(loose)
     return Free(
         label.astype(np.int64),
@@ -32,6 +37,8 @@ def empty(system) -> Free:
         np.zeros(parts, np.bool_),
         np.zeros(6 * len(nodes)),
         np.arange(parts),
+        cut,
+        system.mirror.normal.copy() if system.mirror is not None else np.zeros(3),
     )
 
 
@@ -70,7 +77,7 @@ def _top(one_with, part):
 def _tie(bodies, pairs, touched, count, film, free):
     """Makes one of the parts that touch each other, or have air between them, and marks those that are held
     or touch something else."""
-    label, loose, busy, _residual, one_with = free
+    label, loose, busy, one_with = free.label, free.loose, free.busy, free.one_with
     for part in range(loose.size):
         one_with[part] = part
         busy[part] = not loose[part]
@@ -93,25 +100,28 @@ def keep(tables, touched, count, film, free, motion, change):
     """Takes off `change` (6 nodes,), global axes, what it has of momentum beside the residual's; motion:
     places and rotations of the residual."""
     x, r = motion
-    label, loose, busy, residual, one_with = free
+    label, loose, busy, residual, one_with = free.label, free.loose, free.busy, free.residual, free.one_with
+    across = three(free.normal)
     bodies, pairs, nodes = tables.bodies, tables.pairs, tables.nodes
     _tie(bodies, pairs, touched, count, film, free)
     for part in range(loose.size):
         if busy[part] or one_with[part] != part:
             continue
-        total = 0.0
+        total, half = 0.0, False
         centre, linear = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
         for n in range(nodes.size):
             if one_with[label[n]] == part:
                 b, k = nodes[n], 6 * n
                 mass = bodies[b].mass
-                total += mass
+                total, half = total + mass, half or free.cut[label[n]]
                 centre = add(centre, scale(mass, vec(x, b)))
                 moved = (change[k], change[k + 1], change[k + 2])
                 wanted = (residual[k], residual[k + 1], residual[k + 2])
                 linear = add(linear, sub(scale(mass, moved), wanted))
         centre = scale(1.0 / total, centre)
         drift = scale(1.0 / total, linear)
+        if half:
+            drift = sub(drift, scale(dot(drift, across), across))
         angular = (0.0, 0.0, 0.0)
         inertia = np.zeros((3, 3))
         for n in range(nodes.size):
@@ -131,6 +141,9 @@ def keep(tables, touched, count, film, free, motion, change):
                 spun = rotate(m, (j[0] * own[0], j[1] * own[1], j[2] * own[2]))
                 angular = add(angular, sub(spun, (residual[k + 3], residual[k + 4], residual[k + 5])))
         turn = _solved(inertia, angular)
+        if half:
+            about = (dot(vec(inertia, 0), across), dot(vec(inertia, 1), across), dot(vec(inertia, 2), across))
+            turn = scale(dot(angular, across) / dot(about, across), across)
         for n in range(nodes.size):
             if one_with[label[n]] == part:
                 k = 6 * n
