@@ -107,7 +107,7 @@ def test_a_scene_along_another_axis() -> None:
         "rollers.motor.axis=x",
         "rollers.idler.axis=x",
         "run.step=0.05 ms",
-        "run.tolerance=1e-6",
+        "run.tolerance=1e-7",
     )
     assert_same(half, whole)
 
