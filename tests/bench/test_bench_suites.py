@@ -74,6 +74,8 @@ def test_the_quick_ladder_has_a_rung_of_each_name():
     "name",
     [
         "pile of masses 1 : 100, light on heavy: laid down",
+        "pile of masses 1 : 100, in turns: laid down",
+        "step 0.001 s: soft pile laid down",
         "sheets struck one by another, masses 100 : 1",
         "step 1e-05 s: pile in free fall, struck",
         "thrown along a pile: middle one of 5",
