@@ -70,8 +70,8 @@ def solve(model: Model, progress: Progress | None = None, step: float | None = N
 
     `step` [ms], or the Model's own, is taken as it is. Without either the step follows from the tolerance and
     the shortest impact in the scene, and is halved until what the tolerance judges is estimated to be within
-    it. Where two runs would take long there is one, and no estimate. A failed
-    run returns a Result with its reason; RefusedError is raised for what the backend cannot represent.
+    it. Where two runs would take long there is one, and no estimate; the step is halved where it fails a
+    check. A failed run returns a Result with its reason; RefusedError is raised for what the backend cannot represent.
     """
     refuse_externals(model, "Exudyn")
     refuse_searched(model, "Exudyn")
@@ -114,7 +114,14 @@ def _refined(
 ) -> Result:
     """Halves the step until what the tolerance judges is estimated within it; fails where it never is."""
     if cost(system, count) > ESTIMATED:
-        return once(count, h)
+        result = once(count, h)
+        # one that came to its end, and fails a check of that, is tried at a finer step
+        while not result.ok and result.time[-1] >= model.run.duration * (1 - 1e-9):
+            if cost(system, 2 * count) > REFINED:
+                break
+            count, h = 2 * count, 0.5 * h
+            result = once(count, h)
+        return result
     # outputs fall on the steps of the coarser run, too
     even = max(1, round(model.run.duration / model.run.print_step)) * 2
     count = even * -(-count // even)
