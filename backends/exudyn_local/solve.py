@@ -71,7 +71,8 @@ def solve(model: Model, progress: Progress | None = None, step: float | None = N
     `step` [ms], or the Model's own, is taken as it is. Without either the step follows from the tolerance and
     the shortest impact in the scene, and is halved until what the tolerance judges is estimated to be within
     it. Where two runs would take long there is one, and no estimate; the step is halved where it fails a
-    check. A failed run returns a Result with its reason; RefusedError is raised for what the backend cannot represent.
+    check. A failed run returns a Result with its reason; RefusedError is raised for what the backend cannot
+    represent.
     """
     refuse_externals(model, "Exudyn")
     refuse_searched(model, "Exudyn")
