@@ -92,7 +92,7 @@ def test_every_other_sheet_is_solved_with_the_rest_eliminated(seed: int) -> None
     assert colouring.own[:8].tolist() == [0, 1, 0, 1, 2, 3, 2, 3]
     right = np.random.default_rng(seed + 10).normal(size=len(whole))
     matrix.res[:], matrix.resb[:] = right[:-BORDER], right[-BORDER:]
-    two_colour.solve_coloured(pool, matrix, 200, 1e-26, 0.0)
+    two_colour.solve_coloured(pool, matrix, 200, 1e-26)
     wanted = np.linalg.solve(whole, right)
     assert np.abs(solved(matrix) - wanted).max() < 1e-9 * np.abs(wanted).max()
 
@@ -102,7 +102,7 @@ def test_sheets_that_all_touch_each_other_are_solved_at_once() -> None:
     assert matrix.couplings.colouring.found[0] == 0
     right = np.random.default_rng(5).normal(size=len(whole))
     matrix.res[:], matrix.resb[:] = right[:-BORDER], right[-BORDER:]
-    coupled.solve_coupled(pool, matrix, 0.0)
+    coupled.solve_coupled(pool, matrix)
     # as far as an iteration of Newton's method needs it
     left = whole @ solved(matrix) - right
     before = right @ np.linalg.solve(whole, right)

@@ -61,8 +61,6 @@ ROUGH = 0.3
 # else to where it is less than the other part.
 LEVEL, FLAT = 0.25, 0.1
 MOST_LOOKS, MOST_DOUBLED = 12, 4
-# Couplings are solved for to a root mean square of the velocities of this part of the limit.
-ENOUGH = 0.03
 # A factor is worth so many iterations (see integrate.step).
 WORTH = 4.0
 # How much of the chord a factor takes (see slopes.steepness): little, since each direction is searched.
@@ -184,15 +182,11 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
     rollers_into(tables.bodies, h, t, work.state.ub, matrix.own)
     copy(frozen.vectors[RESIDUAL], z)
     copy(frozen.border[RESIDUAL], zb)
-    before, along, part, gathered, mass = 1e300, 0.0, 0.0, False, 0.0
-    for n in range(tables.nodes.size):
-        mass += tables.bodies[tables.nodes[n]].mass
+    before, along, part, gathered = 1e300, 0.0, 0.0, False
     iteration, converged, renewed = 0, False, False
     air = work.film.many[0] > 0
     if air:
         limit *= FINE
-    # the matrix is at least that of the masses
-    enough = mass * (ENOUGH * limit) ** 2
     for iteration in range(MOST_WITH_AIR if air else MOST_ITERATIONS):
         if iteration == 0:
             copy(g, z)
@@ -214,7 +208,7 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
         copy(z, g)
         copy(zb, gb)
         counters[SOLVES] += 1
-        solve_coupled(work.pool, matrix, enough)
+        solve_coupled(work.pool, matrix)
         # conjugate directions, by Polak and Ribiere: they make up for a factor of an earlier state
         square = _dot(g, z) + _dot(gb, zb)
         turn = max(0.0, (square - crossing) / along) if iteration > 0 and not made and along > 0.0 else 0.0

@@ -110,17 +110,14 @@ def _couple(couplings, p, q):
 
 
 @njit(cache=True, error_model="numpy")
-def solve_coupled(pool, matrix, enough):
-    """Solves band, border and couplings in place, as bordered.solve_bordered does without the last.
-
-    `enough`: a square of the residual, measured as for LEFT, that may be left in any case.
-    """
+def solve_coupled(pool, matrix):
+    """Solves band, border and couplings in place, as bordered.solve_bordered does without the last."""
     couplings, res, resb = matrix.couplings, matrix.res, matrix.resb
     if couplings.many[0] == 0:
         solve_bordered(matrix.band, matrix.border, matrix.eliminated, matrix.schur, res, resb)
         return
     if couplings.colouring.found[0] == 1:
-        solve_coloured(pool, matrix, MOST_ITERATIONS, LEFT, enough)
+        solve_coloured(pool, matrix, MOST_ITERATIONS, LEFT)
         return
     many = res.size
     r, z, p, own, q = couplings.room
@@ -135,7 +132,7 @@ def solve_coupled(pool, matrix, enough):
     left = _dot(r, z)
     first = left
     for _ in range(MOST_ITERATIONS):
-        if not left > max(LEFT * first, enough):
+        if not left > LEFT * first:
             break
         copy(q, own)
         _couple(couplings, p, q)

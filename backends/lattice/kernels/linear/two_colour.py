@@ -341,11 +341,11 @@ def _first(pool, matrix, rollers, start):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def solve_coloured(pool, matrix, most, least, enough):
+def solve_coloured(pool, matrix, most, least):
     """Solves band, border and couplings in place, where the sheets have two colours.
 
     The method ends after `most` iterations, or where the square of the residual, measured
-    with the preconditioner, is `least` of what it was, or `enough`.
+    with the preconditioner, is `least` of what it was.
     """
     couplings, res, resb = matrix.couplings, matrix.res, matrix.resb
     colours, size = couplings.colouring, res.size
@@ -362,7 +362,7 @@ def solve_coloured(pool, matrix, most, least, enough):
     left = _sum(pool, colours)
     first = left
     for _ in range(most):
-        if not left > max(least * first, enough):
+        if not left > least * first:
             break
         # what the first colour does where the second moves by p, and what that does to the second
         for j in range(resb.size):
