@@ -12,8 +12,22 @@ from mdlgen.backends.lattice.integrate.work import arrays, control
 from mdlgen.backends.lattice.kernels import forces
 from mdlgen.backends.lattice.kernels.contact import between
 from mdlgen.backends.lattice.kernels.contact.condensed import INSIDE
-from mdlgen.backends.lattice.kernels.integrate import convex, points, points_matrix, tangent
-from mdlgen.backends.lattice.kernels.state import DIRECTION, MADE_FOR, RESIDUAL, WHERE, Control, Workspace
+from mdlgen.backends.lattice.kernels.integrate import along, convex, points, points_matrix, tangent
+from mdlgen.backends.lattice.kernels.state import (
+    A_COUPLE,
+    A_DAMPER,
+    A_PRESSURE,
+    DIRECTION,
+    KIND,
+    MADE_FOR,
+    OF_DIRECTION,
+    RESIDUAL,
+    SPRING,
+    START,
+    WHERE,
+    Control,
+    Workspace,
+)
 from mdlgen.model.lower import lower
 from mdlgen.spec.load import loads
 
@@ -83,9 +97,10 @@ def impulses(case: Case, change: np.ndarray, border: np.ndarray) -> tuple[np.nda
     """What the points lose, times h, where velocities change from those of the start (global axes)."""
     work = case.work
     points.gather(work, case.counts, H, False)
-    points.look_along(work, change, border)
+    work.frozen.vectors[OF_DIRECTION], work.frozen.border[DIRECTION] = change, border
+    along.look_along(work)
     g, gb = np.zeros(change.shape), np.zeros(border.shape)
-    points.pull(work, H, 1.0, g, gb)
+    along.pull(work, H, 1.0, g, gb)
     return g, gb
 
 
@@ -94,16 +109,14 @@ def test_the_forces_of_the_points_are_those_of_the_laws(case: Case) -> None:
     work = case.work
     points.gather(work, case.counts, H, False)
     many = int(work.frozen.many[0])
-    assert {points.A_PRESSURE, points.A_DAMPER, points.A_COUPLE} == set(
-        work.frozen.points[:many, points.KIND]
-    )
-    work.frozen.points[:many, points.START : points.START + 3] = 0.0
+    assert {A_PRESSURE, A_DAMPER, A_COUPLE} == set(work.frozen.points[:many, KIND])
+    work.frozen.points[:many, START : START + 3] = 0.0
     g, gb = np.zeros(work.matrix.res.shape), np.zeros(work.matrix.resb.shape)
-    points.pull(work, 1.0, 0.0, g, gb)
+    along.pull(work, 1.0, 0.0, g, gb)
     expected = case.pressing[work.tables.nodes].ravel()
     # what damps in a nip is counted by its change alone
     rows = work.frozen.points[:many]
-    damping = np.abs(rows[rows[:, points.KIND] == points.A_DAMPER, points.SPRING]).sum()
+    damping = np.abs(rows[rows[:, KIND] == A_DAMPER, SPRING]).sum()
     assert -g == pytest.approx(expected, abs=1e-9 * np.abs(expected).max() + 2.0 * damping)
     assert np.abs(expected).max() > 0.1
 
@@ -177,10 +190,8 @@ def test_a_direction_is_gone_along_to_where_the_function_is_least(times: float, 
     frozen.vectors[DIRECTION] = -times * matrix.res
     linear, square = convex._direction(work, work.condensed.axes)
     begin = -times * float(matrix.res @ matrix.res)
-    part = convex._how_far(frozen, H, begin, linear, square, convex.LEVEL)
-    slopes = [
-        linear + at * square + points.slope(frozen, H, at) for at in (0.0, part, 0.9 * part, 1.1 * part)
-    ]
+    part = convex._how_far(work, H, begin, linear, square, convex.LEVEL)
+    slopes = [linear + at * square + along.slope(work, H, at) for at in (0.0, part, 0.9 * part, 1.1 * part)]
     assert slopes[0] == pytest.approx(begin, rel=1e-9)
     allowed = convex.LEVEL if part == 1.0 else convex.FLAT
     assert (

@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+from mdlgen.backends.lattice.kernels.integrate.along import along_part, slope_part
+from mdlgen.backends.lattice.kernels.integrate.convex import product_part
+from mdlgen.backends.lattice.kernels.integrate.damped import left_part
 from mdlgen.backends.lattice.kernels.linear.coupled import axes_part
 from mdlgen.backends.lattice.kernels.linear.sheets import eliminate_part, factor_part, solve_part
 from mdlgen.backends.lattice.kernels.linear.two_colour import part_of
 from mdlgen.backends.lattice.kernels.parallel import (
+    ALONG,
     AXES,
     ELIMINATE,
     FACTOR,
     KIND,
+    OVERSHOOT,
+    PRODUCT,
+    SLOPE,
     SOLVE,
     done,
     take_as_helper,
@@ -29,6 +36,14 @@ def do_part(work, kind, part):
         eliminate_part(pool, matrix, part)
     elif kind == SOLVE:
         solve_part(pool, matrix, part)
+    elif kind == OVERSHOOT:
+        left_part(work, part)
+    elif kind == PRODUCT:
+        product_part(work, part)
+    elif kind == ALONG:
+        along_part(work, part)
+    elif kind == SLOPE:
+        slope_part(work, part)
     else:
         part_of(pool, matrix, kind, part)
 

@@ -50,7 +50,8 @@ class Midpoint(NamedTuple):
     motion: Motion
     forces: Floats  # (bodies, 6) [N, N mm]
     touched: Ints  # pairs that touch
-    results: Floats  # what each of them does, see mechanics.point, (pairs, forces.WIDE)
+    results: Floats  # what each of them does, see mechanics.point, (pairs, forces.WIDE);
+    rows: Ints  # in which of these rows each stands: those without points fill none
     faces: Floats  # of two boxes of two sheets, without points, (pairs, mechanics.point.FACES)
     totals: Floats  # (3,) LOST, POWER, NUMERICAL
     near: Ints  # pairs that may touch
@@ -93,7 +94,9 @@ class Frozen(NamedTuple):
 
     points: Floats  # (room, POINT)
     pair: Ints  # of each, (room,)
+    sheets: np.ndarray  # between which sheets each is, see integrate.active, (room, 2)
     many: Ints  # (1,) how many there are
+    sums: Floats  # what EACH of them add to a slope
     vectors: Floats  # CHANGE to RESIDUAL of the nodes, (6, 6 nodes)
     border: Floats  # the same of the border, (6, border)
 
@@ -111,6 +114,8 @@ NORMAL, SQUARE, ARM_A, ARM_B = 0, 3, 6, 9
 DEPTH, STIFFNESS, SPRING, GROWTH, RATE, OVER, BETA = 12, 13, 14, 15, 16, 17, 18
 MU_STATIC, MU_DYNAMIC, STICTION, SLIDING, PRESSING = 19, 20, 21, 22, 23
 NOW, ALONG, START, KIND, POINT = 24, 27, 30, 33, 34
+# Points of a part of a job.
+EACH = 512
 # What a point is: one that presses and rubs; a damper alone; a couple about its normal, of SPRING at most, of
 # a rolling speed of GROWTH times the angular velocity; a cell of air, whose force has changed by SPRING since
 # the iteration began, and changes by GROWTH along a direction. Alone it would be damped by OVER [N ms/mm].
@@ -158,7 +163,10 @@ class Damped(NamedTuple):
 
     joints: np.ndarray
     band: Floats
+    single: np.ndarray  # its factor in single precision, which is read in half the time
     made: Floats  # (2,) the step that the band was factored for, how many steps ago
+    vectors: Floats  # (2, 6 nodes) PUSH and LEFT
+    place: Floats  # (bodies, 3) where bodies are at the end of a step [mm]
     off: Floats  # (nodes, 6) velocities to take off
 
 

@@ -56,17 +56,19 @@ def near_forces(work, close):
     contact points of two sheets. Returns (how many pairs touch, dissipated power)."""
     tables, mid, first = work.tables, work.mid, work.search.first
     near, motion, f, results, overlaps = mid.near, mid.motion, mid.forces, mid.results, mid.overlaps
-    count = 0
+    count = row = 0
     lost = 0.0
     for at in range(close):
-        pair, out, short = tables.pairs[near[at]], results[count], mid.faces[count]
+        pair, out, short = tables.pairs[near[at]], results[row], mid.faces[count]
         if pair.kind == BOX_BOX:
             touching = _two_boxes(tables, pair, overlaps[near[at] - first], motion, f, out, short)
         else:
             touching = touches(tables, pair, motion, f, out)
         if touching:
             lost += short[DISSIPATED] if pair.kind == BOX_BOX else out[DISSIPATED]
-            mid.touched[count] = near[at]
+            mid.touched[count], mid.rows[count] = near[at], row
+            if pair.kind != BOX_BOX or short[POINTS] > 0.0:
+                row += 1
             count += 1
     return count, lost
 
@@ -76,10 +78,10 @@ def forces_at(tables, mid, first, motion, close):
     """As `near_forces` for a state between steps, without touching what is kept of overlaps: `first` is the
     first of the pairs that have any. Returns (how many pairs touch, stored energy)."""
     near, f, results, overlaps = mid.near, mid.forces, mid.results, mid.overlaps
-    count = 0
+    count = row = 0
     stored = 0.0
     for at in range(close):
-        pair, out, short = tables.pairs[near[at]], results[count], mid.faces[count]
+        pair, out, short = tables.pairs[near[at]], results[row], mid.faces[count]
         if pair.kind == BOX_BOX:
             kept, a, b = overlaps[near[at] - first], frame_of(motion, pair.a), frame_of(motion, pair.b)
             if holds(kept, a, b, MOVED):
@@ -95,6 +97,8 @@ def forces_at(tables, mid, first, motion, close):
             touching = touches(tables, pair, motion, f, out)
         if touching:
             stored += short[STORED] if pair.kind == BOX_BOX else out[STORED]
-            mid.touched[count] = near[at]
+            mid.touched[count], mid.rows[count] = near[at], row
+            if pair.kind != BOX_BOX or short[POINTS] > 0.0:
+                row += 1
             count += 1
     return count, stored

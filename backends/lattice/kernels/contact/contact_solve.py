@@ -80,7 +80,7 @@ def _take(tables, mid, many, condensed, m):
     for b in condensed.rollers:
         forces[b] = 0.0
     for k in range(many):
-        pair, out = pairs[touched[k]], mid.results[k]
+        pair, out = pairs[touched[k]], mid.results[mid.rows[k]]
         if condensed.seen[touched[k]]:
             condensed.touched[count] = touched[k]
             for i in range(OUT + 1 + POINT * int(out[POINTS])):

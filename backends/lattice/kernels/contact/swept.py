@@ -142,7 +142,7 @@ def _made(work, count, dt, slower, least, rows):
         faces = touched[k] >= first and mid.faces[k, POINTS] == 0.0
         if faces and 8.0 * dt * mid.faces[k, PRESSING] * most < least:
             continue
-        pair, out = pairs[touched[k]], mid.results[k]
+        pair, out = pairs[touched[k]], mid.results[mid.rows[k]]
         if not _hits(bodies, pair, work.kept.rows):
             continue
         if faces and 4.0 * dt * mid.faces[k, PRESSING] * (ends[pair.a] + ends[pair.b]) < least:

@@ -14,14 +14,12 @@ from __future__ import annotations
 
 import math
 
+from mdlgen.backends.lattice.kernels import parallel
 from mdlgen.backends.lattice.kernels.contact.condensed import INSIDE, forget
+from mdlgen.backends.lattice.kernels.integrate.active import OUT, all_in, leave, left
+from mdlgen.backends.lattice.kernels.integrate.along import look_along, pull, slope
 from mdlgen.backends.lattice.kernels.integrate.change import greatest
-from mdlgen.backends.lattice.kernels.integrate.points import (
-    gather,
-    look_along,
-    pull,
-    slope,
-)
+from mdlgen.backends.lattice.kernels.integrate.points import gather
 from mdlgen.backends.lattice.kernels.integrate.points_matrix import points_into
 from mdlgen.backends.lattice.kernels.integrate.tangent import (
     in_box_axes,
@@ -34,7 +32,8 @@ from mdlgen.backends.lattice.kernels.linear.coupled import couplings_in_box_axes
 from mdlgen.backends.lattice.kernels.linear.dense import copy
 from mdlgen.backends.lattice.kernels.linear.product import times
 from mdlgen.backends.lattice.kernels.linear.sheets import eliminate_sheets, factor_sheets
-from mdlgen.backends.lattice.kernels.linear.two_colour import colour
+from mdlgen.backends.lattice.kernels.linear.two_colour import BEGIN, END, colour
+from mdlgen.backends.lattice.kernels.parallel import begin, finish, take
 from mdlgen.backends.lattice.kernels.state import (
     CHANGE,
     DIRECTION,
@@ -61,6 +60,8 @@ ROUGH = 0.3
 # else to where it is less than the other part.
 LEVEL, FLAT = 0.25, 0.1
 MOST_LOOKS, MOST_DOUBLED = 12, 4
+# With so many sheets all are solved for.
+FEW = 2
 # A factor is worth so many iterations (see integrate.step).
 WORTH = 4.0
 # How much of the chord a factor takes (see slopes.steepness): little, since each direction is searched.
@@ -93,27 +94,27 @@ def _make_matrix(work, h, lag, renew):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _how_far(frozen, h, begin, linear, square, level):
-    """The part of a direction to go along. begin: the slope where it begins; linear + part square: what
+def _how_far(work, h, falls, linear, square, level):
+    """The part of a direction to go along. falls: the slope where it begins; linear + part square: what
     masses and bushings have of it there; level: see LEVEL."""
-    low, high, at_low = 0.0, 1.0, begin
-    at_high = linear + square + slope(frozen, h, 1.0)
-    if abs(at_high) <= level * abs(begin):
+    low, high, at_low = 0.0, 1.0, falls
+    at_high = linear + square + slope(work, h, 1.0)
+    if abs(at_high) <= level * abs(falls):
         return 1.0
     for _ in range(MOST_DOUBLED):
         if at_high >= 0.0:
             break
         low, at_low = high, at_high
         high *= 2.0
-        at_high = linear + high * square + slope(frozen, h, high)
+        at_high = linear + high * square + slope(work, h, high)
     if at_high <= 0.0:
         return high
     part = high
     for _ in range(MOST_LOOKS):
         part = low - at_low * (high - low) / (at_high - at_low)
         part = min(max(part, low + 0.05 * (high - low)), high - 0.05 * (high - low))
-        found = linear + part * square + slope(frozen, h, part)
-        if abs(found) <= FLAT * abs(begin):
+        found = linear + part * square + slope(work, h, part)
+        if abs(found) <= FLAT * abs(falls):
             break
         if found > 0.0:
             high, at_high = part, found
@@ -147,6 +148,31 @@ def _gradient(work, h, axes, part):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
+def product_part(work, sheet):
+    """What masses and bushings of a sheet make of the direction."""
+    matrix, vectors = work.matrix, work.frozen.vectors
+    span, active = matrix.couplings.colouring.spans[sheet], matrix.couplings.colouring.active
+    low, high = 6 * span[BEGIN], 6 * span[END]
+    if active[sheet] == OUT:
+        vectors[OF_DIRECTION, low:high] = 0.0
+        return
+    inner = matrix.single_inner[span[BEGIN] : span[END]]
+    times(inner, vectors[DIRECTION, low:high], vectors[OF_DIRECTION, low:high])
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _product(work):
+    """The same of all sheets."""
+    pool, many = work.pool, work.pool.failed.size
+    begin(pool, parallel.PRODUCT, many)
+    sheet = take(pool)
+    while sheet >= 0:
+        product_part(work, sheet)
+        sheet = take(pool)
+    finish(pool, many)
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
 def _direction(work, axes):
     """The points look along the direction, and what masses and bushings make of it is worked out. Returns
     what these have of the slope along it where it begins, and for 1 of it more."""
@@ -154,8 +180,8 @@ def _direction(work, axes):
     p, pb, product = frozen.vectors[DIRECTION], frozen.border[DIRECTION], frozen.vectors[OF_DIRECTION]
     copy(product, p)
     turn_nodes(work.tables.nodes, axes, product, False)
-    look_along(work, product, pb)
-    times(matrix.single_inner, p, product)
+    look_along(work)
+    _product(work)
     linear = _dot(p, frozen.vectors[RESIDUAL]) + _dot(p, frozen.vectors[OF_CHANGE])
     square = _dot(p, product)
     for i in range(pb.size):
@@ -187,12 +213,15 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
     air = work.film.many[0] > 0
     if air:
         limit *= FINE
+    colouring = matrix.couplings.colouring
+    all_in(colouring)
     for iteration in range(MOST_WITH_AIR if air else MOST_ITERATIONS):
         if iteration == 0:
             copy(g, z)
             copy(gb, zb)
         else:
             _gradient(work, h, axes, part)
+            left(work, z)
         part = 0.0
         made = factored[MADE_FOR] != 2.0 * h or factored[STALE] != 0.0 or factored[WHERE] != INSIDE
         if made:
@@ -204,6 +233,9 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
                 return 0
             factored[MADE_FOR], factored[STALE], factored[WHERE] = 2.0 * h, 0.0, INSIDE
             renew, renewed = False, True
+            if iteration > 0 and colouring.found[0] == 0:
+                all_in(colouring)
+                _gradient(work, h, axes, 0.0)
         crossing = _dot(g, z) + _dot(gb, zb) if iteration > 0 and not made else 0.0
         copy(z, g)
         copy(zb, gb)
@@ -226,8 +258,10 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
         if not gathered:
             gather(work, counts, h, False)
             gathered = True
-        begin = _dot(g, p) + _dot(gb, pb)
-        if not begin < 0.0:
+        if not air and colouring.found[0] == 1 and colouring.active.size > FEW:
+            leave(work, ROUGH * limit)
+        falls = _dot(g, p) + _dot(gb, pb)
+        if not falls < 0.0:
             # a factor of an earlier state may lead up
             if made and iteration == 0:
                 return 0
@@ -236,7 +270,7 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
             factored[STALE] = 1.0
             continue
         linear, square = _direction(work, axes)
-        part = _how_far(frozen, h, begin, linear, square, 0.0 if air else LEVEL)
+        part = _how_far(work, h, falls, linear, square, 0.0 if air else LEVEL)
         for i in range(p.size):
             of_change[i] += part * frozen.vectors[OF_DIRECTION, i]
             change[i] += part * p[i]

@@ -20,6 +20,9 @@ from mdlgen.backends.lattice.kernels.integrate.momentum import keep
 from mdlgen.backends.lattice.kernels.integrate.tangent import in_box_axes, joints_into, masses
 from mdlgen.backends.lattice.kernels.linear.band import empty as no_band
 from mdlgen.backends.lattice.kernels.linear.band import factor, solve
+from mdlgen.backends.lattice.kernels.linear.dense import copy
+from mdlgen.backends.lattice.kernels.linear.two_colour import BEGIN, END
+from mdlgen.backends.lattice.kernels.parallel import OVERSHOOT, begin, finish, take
 from mdlgen.backends.lattice.kernels.state import Damped
 from mdlgen.mechanics.vector import back, mat, rotate
 from mdlgen.program.kernel import BORROWS, njit
@@ -27,6 +30,9 @@ from mdlgen.program.kernel import BORROWS, njit
 # Steps for which a factor is good: a sheet bends little in so many.
 LASTS = 50
 MADE_FOR, AGE = 0, 1  # of Damped.made
+# Rows of Damped.vectors: the momentum that lacks of a straight course, in box axes, and of that what the
+# dampers leave.
+PUSH, LEFT = 0, 1
 
 
 def empty(system) -> Damped:
@@ -34,8 +40,17 @@ def empty(system) -> Damped:
     joints = system.joints[system.joints["time"] > 0.0].copy()
     joints["k"] = 0.0
     joints["first"] = -1
-    nodes = len(system.nodes) if len(joints) else 0
-    return Damped(joints, no_band(nodes, system.reach if nodes else 0), np.zeros(2), np.zeros((nodes, 6)))
+    nodes, bodies = (len(system.nodes), len(system.bodies)) if len(joints) else (0, 0)
+    band = no_band(nodes, system.reach if nodes else 0)
+    return Damped(
+        joints=joints,
+        band=band,
+        single=band.astype(np.float32),
+        made=np.zeros(2),
+        vectors=np.zeros((2, 6 * nodes)),
+        place=np.zeros((bodies, 3)),
+        off=np.zeros((nodes, 6)),
+    )
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -56,12 +71,35 @@ def _turned(nodes, r, x, inward):
             x[k], x[k + 1], x[k + 2] = part
 
 
+@njit(cache=True, error_model="numpy", **BORROWS)
+def left_part(work, sheet):
+    """What dampers leave of the momentum of a sheet."""
+    span = work.matrix.couplings.colouring.spans[sheet]
+    low, high = span[BEGIN], span[END]
+    push, left = work.damped.vectors[PUSH, 6 * low : 6 * high], work.damped.vectors[LEFT, 6 * low : 6 * high]
+    copy(left, push)
+    solve(work.damped.single[low:high], left)
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _leave(work):
+    """The same of all sheets."""
+    pool, many = work.pool, work.pool.failed.size
+    begin(pool, OVERSHOOT, many)
+    sheet = take(pool)
+    while sheet >= 0:
+        left_part(work, sheet)
+        sheet = take(pool)
+    finish(pool, many)
+
+
 @njit(cache=True, error_model="numpy")
 def overshoot(work, before, ahead, dt):
     """Sets the velocities to take off, Damped.off, of a step that is solved and not carried on yet. `before`
     (nodes, 6) are the velocities in the middle of the step before, `ahead` is dt/(dt + dt')."""
     bodies, nodes = work.tables.bodies, work.tables.nodes
-    joints, band, made, off = work.damped
+    joints, band, made, off = work.damped.joints, work.damped.band, work.damped.made, work.damped.off
+    push, left, end = work.damped.vectors[PUSH], work.damped.vectors[LEFT], work.damped.place
     x, v, l, u = work.state.x, work.state.v, work.state.l, work.state.u
     xm, rm = work.mid.motion.x, work.mid.motion.r
     if made[MADE_FOR] != dt or made[AGE] >= LASTS:
@@ -73,8 +111,8 @@ def overshoot(work, before, ahead, dt):
             made[MADE_FOR] = 0.0
             off[:] = 0.0
             return
+        copy(work.damped.single, band)
     made[AGE] += 1.0
-    push = np.empty(6 * nodes.size)
     for n in range(nodes.size):
         b = nodes[n]
         m, j, mass = mat(rm, b), bodies[b].inertia, bodies[b].mass
@@ -84,8 +122,7 @@ def overshoot(work, before, ahead, dt):
             push[6 * n + i] = mass * (u[n, i] - v[n, i] - ahead * (u[n, i] - before[n, i]))
             push[6 * n + 3 + i] = spin[i] - l[n, i] - ahead * course[i]
     _turned(nodes, rm, push, True)
-    left = push.copy()
-    solve(band, left)
+    _leave(work)
     for n in range(nodes.size):
         j, mass = bodies[nodes[n]].inertia, bodies[nodes[n]].mass
         for i in range(3):
@@ -95,7 +132,7 @@ def overshoot(work, before, ahead, dt):
     # the factor is of an earlier shape, which has other rigid motions; and it is at the end of the step that
     # these velocities are taken off
     work.free.residual[:] = 0.0
-    end = xm.copy()
+    copy(end, xm)
     for n in range(nodes.size):
         for i in range(3):
             end[nodes[n], i] = x[nodes[n], i] + dt * u[n, i]

@@ -85,7 +85,7 @@ def _deep(tables, mid, count):
     """The pair that is deeper than it may be in the middle of a step, or -1."""
     for k in range(count):
         pair = tables.pairs[mid.touched[k]]
-        depth = mid.faces[k, DEPTH] if pair.kind == BOX_BOX else mid.results[k, DEPTH]
+        depth = mid.faces[k, DEPTH] if pair.kind == BOX_BOX else mid.results[mid.rows[k], DEPTH]
         if depth > deepest(tables.bodies, pair):
             return mid.touched[k]
     return -1
@@ -102,10 +102,10 @@ def _watch(tables, mid, count, t, dt, kept):
     for k in range(count):
         pair = tables.pairs[mid.touched[k]]
         marks[pair.mark] = True
-        out = mid.faces[k] if pair.kind == BOX_BOX else mid.results[k]
+        out = mid.faces[k] if pair.kind == BOX_BOX else mid.results[mid.rows[k]]
         rows[pair.row, FORCE_NOW] += out[PRESSING]
         rows[pair.row, DEPTH_NOW] = max(rows[pair.row, DEPTH_NOW], out[DEPTH])
-        points = out if out[POINTS] == 0.0 else mid.results[k]
+        points = out if out[POINTS] == 0.0 else mid.results[mid.rows[k]]
         turning(tables.bodies, pair, points, rows, pair.row, TURNING_NOW)
     for row in range(rows.shape[0]):
         force, depth = rows[row, FORCE_NOW], rows[row, DEPTH_NOW]

@@ -75,9 +75,9 @@ def ledger(tables, state, mid, t, first, energies, rows):
     count, pressed = forces_at(tables, mid, first, motion, close)
     for k in range(count):
         pair = tables.pairs[mid.touched[k]]
-        out = mid.faces[k] if pair.kind == BOX_BOX else mid.results[k]
+        out = mid.faces[k] if pair.kind == BOX_BOX else mid.results[mid.rows[k]]
         rows[pair.row, FORCE_NOW] += out[PRESSING]
         rows[pair.row, DEPTH_NOW] = max(rows[pair.row, DEPTH_NOW], out[DEPTH])
-        points = out if out[POINTS] == 0.0 else mid.results[k]
+        points = out if out[POINTS] == 0.0 else mid.results[mid.rows[k]]
         turning(tables.bodies, pair, points, rows, pair.row, TURNING_NOW)
     energies[KINETIC], energies[ELASTIC], energies[POTENTIAL] = kinetic, elastic + stored + pressed, potential

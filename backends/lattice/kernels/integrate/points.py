@@ -16,8 +16,8 @@ from __future__ import annotations
 import math
 
 from mdlgen.backends.lattice.kernels.contact.between import MOVED
-from mdlgen.backends.lattice.kernels.integrate.air import air_along, damping_of
-from mdlgen.backends.lattice.kernels.integrate.unknowns import moving, turning_of
+from mdlgen.backends.lattice.kernels.integrate.active import of_sheets
+from mdlgen.backends.lattice.kernels.integrate.air import damping_of
 from mdlgen.backends.lattice.kernels.state import (
     A_COUPLE,
     A_DAMPER,
@@ -49,7 +49,7 @@ from mdlgen.mechanics.frame import LAW_SMOOTHING, box_of, frame_of, law_of
 from mdlgen.mechanics.laws import damped, friction_over_speed, sign_step
 from mdlgen.mechanics.overlap import OTHER, apart, find, holds, plane_of
 from mdlgen.mechanics.pair import BOX_BOX, on_fixed_plate
-from mdlgen.mechanics.vector import add, cross, dot, rotate, scale, sub, three, three_from, vec
+from mdlgen.mechanics.vector import add, cross, dot, rotate, scale, sub, three, three_from
 from mdlgen.program.kernel import BORROWS, njit
 
 # How far two faces may be open at a corner that may close in an iteration [mm].
@@ -75,7 +75,7 @@ def law_at(q, v, h):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _force(q, v, h):
+def force_of(q, v, h):
     """Force of a point on the first body at the velocity v; of one that A_COUPLE the couple."""
     n = three_from(q, NORMAL)
     if q[KIND] == A_DAMPER:
@@ -117,7 +117,7 @@ def _begin(frozen, p, where, normal, a, b):
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _started(q, h):
     """Notes what a point does as the iteration begins."""
-    f = _force(q, three_from(q, NOW), h)
+    f = force_of(q, three_from(q, NOW), h)
     for i in range(3):
         q[START + i] = f[i]
 
@@ -244,7 +244,7 @@ def gather(work, counts, h, plates):
             _of_air(frozen, film, pair, p, motion)
         if pair.kind != BOX_BOX:
             if touching:
-                _of_law(frozen, p, pair, mid.results[row], h, motion)
+                _of_law(frozen, p, pair, mid.results[mid.rows[row]], h, motion)
             continue
         kept = mid.overlaps[p - first]
         a, b = frame_of(motion, pair.a), frame_of(motion, pair.b)
@@ -255,118 +255,9 @@ def gather(work, counts, h, plates):
             find(kept, a, one, b, two, law_of(pair))
         if kept.state == OTHER:
             if touching:
-                _of_law(frozen, p, pair, mid.results[row], h, motion)
+                _of_law(frozen, p, pair, mid.results[mid.rows[row]], h, motion)
         elif kept.count > 0:
             _of_faces(frozen, p, pair, kept, h, motion)
     for k in range(air):
         _of_air(frozen, film, pairs[film.listed[k]], film.listed[k], motion)
-
-
-@njit(cache=True, error_model="numpy", **BORROWS)
-def _rate_of(bodies, pair, q, x, change, changeb, matrix):
-    """How the velocity of a point changes where velocities of nodes and of the border change."""
-    one, two = bodies[pair.a].node, bodies[pair.b].node
-    v = (0.0, 0.0, 0.0)
-    if q[KIND] == A_COUPLE:
-        n = three_from(q, NORMAL)
-        turning = 0.0
-        if one >= 0:
-            turning += dot(three_from(change, 6 * one + 3), n)
-        if two >= 0:
-            turning -= dot(three_from(change, 6 * two + 3), n)
-        for which in range(4):
-            unknown, part = turning_of(bodies, pair, which, n)
-            if unknown >= 0:
-                turning += part * changeb[unknown]
-        return scale(turning, n)
-    direction, index = matrix.direction, matrix.unknowns
-    arm, far, many = three_from(q, ARM_A), three_from(q, ARM_B), 0
-    if one >= 0:
-        v = add(three_from(change, 6 * one), cross(three_from(change, 6 * one + 3), arm))
-    else:
-        many = moving(bodies[pair.a], arm, vec(x, pair.a), 1.0, direction, index, many)
-    if two >= 0:
-        v = sub(v, add(three_from(change, 6 * two), cross(three_from(change, 6 * two + 3), far)))
-    else:
-        many = moving(bodies[pair.b], far, vec(x, pair.b), -1.0, direction, index, many)
-    for i in range(many):
-        v = add(v, scale(changeb[index[i]], three_from(direction[i], 0)))
-    return v
-
-
-@njit(cache=True, error_model="numpy", **BORROWS)
-def look_along(work, change, changeb):
-    """Notes how the velocities of all points change with a change of the unknowns, in global axes."""
-    tables, frozen, x = work.tables, work.frozen, work.mid.motion.x
-    for k in range(frozen.many[0]):
-        q = frozen.points[k]
-        pair = tables.pairs[frozen.pair[k]]
-        v = _rate_of(tables.bodies, pair, q, x, change, changeb, work.matrix)
-        for i in range(3):
-            q[ALONG + i] = v[i]
-    if work.film.many[0] > 0:
-        air_along(work.film, frozen)
-
-
-@njit(cache=True, error_model="numpy", **BORROWS)
-def pull(work, h, part, g, gb):
-    """Changes the velocities of all points by that part of the change looked along, and takes off g
-    (6 nodes,), global axes, and gb what their forces have added since the iteration began."""
-    tables, frozen, matrix, x = work.tables, work.frozen, work.matrix, work.mid.motion.x
-    bodies, direction, index = tables.bodies, matrix.direction, matrix.unknowns
-    for k in range(frozen.many[0]):
-        q = frozen.points[k]
-        for i in range(3):
-            q[NOW + i] += part * q[ALONG + i]
-        if q[KIND] == AIR:
-            q[SPRING] += part * q[GROWTH]
-        f = scale(h, sub(_force(q, three_from(q, NOW), h), three_from(q, START)))
-        if f[0] == 0.0 and f[1] == 0.0 and f[2] == 0.0:
-            continue
-        pair = tables.pairs[frozen.pair[k]]
-        one, two = bodies[pair.a].node, bodies[pair.b].node
-        if q[KIND] == A_COUPLE:
-            for i in range(3):
-                if one >= 0:
-                    g[6 * one + 3 + i] -= f[i]
-                if two >= 0:
-                    g[6 * two + 3 + i] += f[i]
-            n = three_from(q, NORMAL)
-            for which in range(4):
-                unknown, part = turning_of(bodies, pair, which, n)
-                if unknown >= 0:
-                    gb[unknown] -= part * dot(f, n)
-            continue
-        arm, far, many = three_from(q, ARM_A), three_from(q, ARM_B), 0
-        if one >= 0:
-            t = cross(arm, f)
-            for i in range(3):
-                g[6 * one + i] -= f[i]
-                g[6 * one + 3 + i] -= t[i]
-        else:
-            many = moving(bodies[pair.a], arm, vec(x, pair.a), 1.0, direction, index, many)
-        if two >= 0:
-            t = cross(far, f)
-            for i in range(3):
-                g[6 * two + i] += f[i]
-                g[6 * two + 3 + i] += t[i]
-        else:
-            many = moving(bodies[pair.b], far, vec(x, pair.b), -1.0, direction, index, many)
-        for i in range(many):
-            gb[index[i]] -= dot(three_from(direction[i], 0), f)
-
-
-@njit(cache=True, error_model="numpy", **BORROWS)
-def slope(frozen, h, part):
-    """What the points add to the slope of the function that is made least, along the change looked along, at
-    that part of it."""
-    total = 0.0
-    for k in range(frozen.many[0]):
-        q = frozen.points[k]
-        way = three_from(q, ALONG)
-        if q[KIND] == AIR:
-            total += (q[SPRING] + part * q[GROWTH]) * dot(three_from(q, NORMAL), way)
-            continue
-        f = _force(q, add(three_from(q, NOW), scale(part, way)), h)
-        total += dot(sub(f, three_from(q, START)), way)
-    return -h * total
+    of_sheets(tables, frozen, work.matrix.couplings.colouring.label)

@@ -6,7 +6,7 @@ import numpy as np
 
 from mdlgen.backends.lattice.kernels.linear.band import empty as no_band
 from mdlgen.backends.lattice.kernels.linear.coupled import couplings
-from mdlgen.backends.lattice.kernels.state import POINT, Frozen, Matrix, Midpoint, State
+from mdlgen.backends.lattice.kernels.state import EACH, POINT, Frozen, Matrix, Midpoint, State
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.overlap import OVERLAP
 from mdlgen.mechanics.point import FACES, MOST_POINTS
@@ -34,6 +34,7 @@ def empty(system, wide: int) -> tuple[State, Midpoint, Matrix]:
         forces=np.zeros((bodies, 6)),
         touched=np.zeros(len(system.pairs), np.int64),
         results=np.zeros((max(1, len(system.pairs)), wide)),
+        rows=np.arange(max(1, len(system.pairs))),
         faces=np.zeros((max(1, len(system.pairs)), FACES)),
         totals=np.zeros(3),
         near=np.zeros(len(system.pairs), np.int64),
@@ -70,7 +71,9 @@ def frozen(system, cells: int) -> Frozen:
     return Frozen(
         points=np.zeros((room, POINT)),
         pair=np.zeros(room, np.int64),
+        sheets=np.zeros((room, 2), np.int32),
         many=np.zeros(1, np.int64),
+        sums=np.zeros(room // EACH + 1),
         vectors=np.zeros((6, 6 * nodes)),
         border=np.zeros((6, border)),
     )

@@ -1,0 +1,197 @@
+"""What contact points whose geometry is frozen make of a change of the velocities: their rates along it,
+their forces and the slope of what is made least."""
+
+from __future__ import annotations
+
+from mdlgen.backends.lattice.kernels import parallel
+from mdlgen.backends.lattice.kernels.integrate.active import rolls, still
+from mdlgen.backends.lattice.kernels.integrate.air import air_along
+from mdlgen.backends.lattice.kernels.integrate.points import force_of
+from mdlgen.backends.lattice.kernels.integrate.unknowns import moving, turning_of
+from mdlgen.backends.lattice.kernels.parallel import begin, finish, take
+from mdlgen.backends.lattice.kernels.state import (
+    A_COUPLE,
+    AIR,
+    ALONG,
+    ARM_A,
+    ARM_B,
+    DIRECTION,
+    EACH,
+    GROWTH,
+    KIND,
+    NORMAL,
+    NOW,
+    OF_DIRECTION,
+    SPRING,
+    START,
+)
+from mdlgen.mechanics.vector import add, cross, dot, scale, sub, three_from, vec
+from mdlgen.program.kernel import BORROWS, njit
+
+# Of Pool.given: the part of a direction, and half of a step [ms].
+PART, HALF = 3, 4
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def parts_of(frozen):
+    """How many parts the points make in a job."""
+    return (frozen.many[0] + EACH - 1) // EACH
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _rate_of(bodies, pair, q, x, change, changeb, matrix):
+    """How the velocity of a point changes where velocities of nodes and of the border change."""
+    one, two = bodies[pair.a].node, bodies[pair.b].node
+    v = (0.0, 0.0, 0.0)
+    if q[KIND] == A_COUPLE:
+        n = three_from(q, NORMAL)
+        turning = 0.0
+        if one >= 0:
+            turning += dot(three_from(change, 6 * one + 3), n)
+        if two >= 0:
+            turning -= dot(three_from(change, 6 * two + 3), n)
+        for which in range(4):
+            unknown, part = turning_of(bodies, pair, which, n)
+            if unknown >= 0:
+                turning += part * changeb[unknown]
+        return scale(turning, n)
+    direction, index = matrix.direction, matrix.unknowns
+    arm, far, many = three_from(q, ARM_A), three_from(q, ARM_B), 0
+    if one >= 0:
+        v = add(three_from(change, 6 * one), cross(three_from(change, 6 * one + 3), arm))
+    else:
+        many = moving(bodies[pair.a], arm, vec(x, pair.a), 1.0, direction, index, many)
+    if two >= 0:
+        v = sub(v, add(three_from(change, 6 * two), cross(three_from(change, 6 * two + 3), far)))
+    else:
+        many = moving(bodies[pair.b], far, vec(x, pair.b), -1.0, direction, index, many)
+    for i in range(many):
+        v = add(v, scale(changeb[index[i]], three_from(direction[i], 0)))
+    return v
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _along(work, k):
+    """Notes how the velocity of a point changes along the direction, in global axes."""
+    tables, frozen, x = work.tables, work.frozen, work.mid.motion.x
+    q, pair = frozen.points[k], tables.pairs[frozen.pair[k]]
+    change, changeb = frozen.vectors[OF_DIRECTION], frozen.border[DIRECTION]
+    v = _rate_of(tables.bodies, pair, q, x, change, changeb, work.matrix)
+    for i in range(3):
+        q[ALONG + i] = v[i]
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def along_part(work, part):
+    """The same of EACH points of a part, but those on rollers and pressed plates, which share scratch."""
+    frozen, active = work.frozen, work.matrix.couplings.colouring.active
+    for k in range(EACH * part, min(EACH * (part + 1), frozen.many[0])):
+        if not (rolls(frozen, k) or still(frozen, active, k)):
+            _along(work, k)
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def look_along(work):
+    """All points note how their velocities change along the direction: that of the nodes is in global axes in
+    the vectors' OF_DIRECTION."""
+    frozen, pool = work.frozen, work.pool
+    many = parts_of(frozen)
+    begin(pool, parallel.ALONG, many)
+    part = take(pool)
+    while part >= 0:
+        along_part(work, part)
+        part = take(pool)
+    finish(pool, many)
+    for k in range(frozen.many[0]):
+        if rolls(frozen, k):
+            _along(work, k)
+    if work.film.many[0] > 0:
+        air_along(work.film, frozen)
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def pull(work, h, part, g, gb):
+    """Changes the velocities of all points by that part of the change looked along, and takes off g
+    (6 nodes,), global axes, and gb what their forces have added since the iteration began."""
+    tables, frozen, matrix, x = work.tables, work.frozen, work.matrix, work.mid.motion.x
+    bodies, direction, index = tables.bodies, matrix.direction, matrix.unknowns
+    active = matrix.couplings.colouring.active
+    for k in range(frozen.many[0]):
+        if still(frozen, active, k):
+            continue
+        q = frozen.points[k]
+        for i in range(3):
+            q[NOW + i] += part * q[ALONG + i]
+        if q[KIND] == AIR:
+            q[SPRING] += part * q[GROWTH]
+        f = scale(h, sub(force_of(q, three_from(q, NOW), h), three_from(q, START)))
+        if f[0] == 0.0 and f[1] == 0.0 and f[2] == 0.0:
+            continue
+        pair = tables.pairs[frozen.pair[k]]
+        one, two = bodies[pair.a].node, bodies[pair.b].node
+        if q[KIND] == A_COUPLE:
+            for i in range(3):
+                if one >= 0:
+                    g[6 * one + 3 + i] -= f[i]
+                if two >= 0:
+                    g[6 * two + 3 + i] += f[i]
+            n = three_from(q, NORMAL)
+            for which in range(4):
+                unknown, part = turning_of(bodies, pair, which, n)
+                if unknown >= 0:
+                    gb[unknown] -= part * dot(f, n)
+            continue
+        arm, far, many = three_from(q, ARM_A), three_from(q, ARM_B), 0
+        if one >= 0:
+            t = cross(arm, f)
+            for i in range(3):
+                g[6 * one + i] -= f[i]
+                g[6 * one + 3 + i] -= t[i]
+        else:
+            many = moving(bodies[pair.a], arm, vec(x, pair.a), 1.0, direction, index, many)
+        if two >= 0:
+            t = cross(far, f)
+            for i in range(3):
+                g[6 * two + i] += f[i]
+                g[6 * two + 3 + i] += t[i]
+        else:
+            many = moving(bodies[pair.b], far, vec(x, pair.b), -1.0, direction, index, many)
+        for i in range(many):
+            gb[index[i]] -= dot(three_from(direction[i], 0), f)
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def slope_part(work, part):
+    """What EACH points of a part add to the slope."""
+    frozen, active = work.frozen, work.matrix.couplings.colouring.active
+    far, h, total = work.pool.given[PART], work.pool.given[HALF], 0.0
+    for k in range(EACH * part, min(EACH * (part + 1), frozen.many[0])):
+        if still(frozen, active, k):
+            continue
+        q = frozen.points[k]
+        way = three_from(q, ALONG)
+        if q[KIND] == AIR:
+            total += (q[SPRING] + far * q[GROWTH]) * dot(three_from(q, NORMAL), way)
+            continue
+        f = force_of(q, add(three_from(q, NOW), scale(far, way)), h)
+        total += dot(sub(f, three_from(q, START)), way)
+    frozen.sums[part] = total
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def slope(work, h, far):
+    """What the points add to the slope of the function that is made least, along the change looked along, at
+    that part of it."""
+    frozen, pool = work.frozen, work.pool
+    many = parts_of(frozen)
+    pool.given[PART], pool.given[HALF] = far, h
+    begin(pool, parallel.SLOPE, many)
+    part = take(pool)
+    while part >= 0:
+        slope_part(work, part)
+        part = take(pool)
+    finish(pool, many)
+    total = 0.0
+    for k in range(many):
+        total += frozen.sums[k]
+    return -h * total
