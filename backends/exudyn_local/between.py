@@ -55,7 +55,7 @@ def _between(body, before, now, part, into):
 
 
 @njit(cache=True, error_model="numpy")
-def _apart(bodies, pair, meshes, x, r, way):
+def _apart(bodies, pair, shapes, x, r, way):
     """Whether a pair is too far apart to meet where it comes closer by `way`."""
     a, b = pair.a, pair.b
     gap = sub(vec(x, a), vec(x, b))
@@ -67,11 +67,11 @@ def _apart(bodies, pair, meshes, x, r, way):
         return height > 2.0 * bodies[b].half[2] + size(bodies[a]) + way
     far = size(bodies[b])
     if pair.kind == BOX_MESH:
-        far = meshes.heads[pair.mesh].reach
+        far = shapes.meshes.heads[pair.mesh].reach
     elif pair.kind != BOX_BOX:
         far = math.hypot(bodies[b].size[RADIUS], 0.5 * bodies[b].size[WIDTH])
     if on_part(pair):
-        return not roller_near(bodies, pair, meshes, x, r, way)
+        return not roller_near(bodies, pair, shapes, x, r, way)
     own = size(bodies[a])
     if pair.kind == CYLINDER_CYLINDER:
         own = math.hypot(bodies[a].size[RADIUS], 0.5 * bodies[a].size[WIDTH])
@@ -79,7 +79,7 @@ def _apart(bodies, pair, meshes, x, r, way):
 
 
 @njit(cache=True, error_model="numpy")
-def passed(bodies, pairs, meshes, before, rates, now, rates_now, t, dt):
+def passed(bodies, pairs, shapes, before, rates, now, rates_now, t, dt):
     """The first pair that was deeper than it may be, or came to another side, in a step of dt from t, or -1;
     from the coordinates `before` at the velocities `rates` to `now`."""
     count = bodies.size
@@ -90,14 +90,14 @@ def passed(bodies, pairs, meshes, before, rates, now, rates_now, t, dt):
     place_all(bodies, Coordinates(now, rates_now, t + dt), last)
     for p in range(pairs.size):
         pair = pairs[p]
-        fast = closing(bodies, pair, meshes, first, dt)
-        fast = max(fast, closing(bodies, pair, meshes, last, dt))
-        way, band = dt * fast, unseen(bodies, pair, meshes)
+        fast = closing(bodies, pair, shapes, first, dt)
+        fast = max(fast, closing(bodies, pair, shapes, last, dt))
+        way, band = dt * fast, unseen(bodies, pair, shapes)
         side = above(bodies, pair, first.x, first.r)
         solid = pair.kind == BOX_MESH and bodies[pair.a].exposed != 0
         if way <= band and side == 0 and not solid:
             continue
-        if _apart(bodies, pair, meshes, first.x, first.r, way):
+        if _apart(bodies, pair, shapes, first.x, first.r, way):
             continue
         if way > MOST_LOOKS * band:
             return p
@@ -111,11 +111,11 @@ def passed(bodies, pairs, meshes, before, rates, now, rates_now, t, dt):
             if side * beyond < 0:
                 return p
             side = beyond
-            if solid and buried(bodies, pair, meshes, last.x, last.r):
+            if solid and buried(bodies, pair, shapes, last.x, last.r):
                 return p
             if way > band:
                 out[:] = 0.0
-                pair_force(bodies, pair, meshes, last, out)
+                pair_force(bodies, pair, shapes, last, out)
                 if out[DEPTH] > deepest(bodies, pair):
                     return p
     return -1

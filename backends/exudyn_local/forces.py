@@ -107,7 +107,7 @@ def bush_forces(tables, bush, q, motion, f):
 def pair_forces(tables, pair, q, motion, f, out):
     """One contact pair into `out`; returns whether it touches."""
     out[:] = 0.0
-    if not pair_force(tables.bodies, pair, tables.meshes, motion, out):
+    if not pair_force(tables.bodies, pair, tables.shapes, motion, out):
         return False
     spread(tables.bodies, pair.a, q, three_from(out, FORCE_A), three_from(out, TORQUE_A), f)
     spread(tables.bodies, pair.b, q, three_from(out, FORCE_B), three_from(out, TORQUE_B), f)

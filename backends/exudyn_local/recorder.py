@@ -196,7 +196,7 @@ class Recorder:
         """Sets the reason where a pair has passed since the last step."""
         tables = self.system
         states = (self._last_q, self._last_v, self._q, self._v)
-        pair = passed(tables.bodies, tables.pairs, tables.meshes, *states, t - step, step)
+        pair = passed(tables.bodies, tables.pairs, tables.shapes, *states, t - step, step)
         if pair >= 0:
             self._too_deep(pair, t, step)
         self._before[:] = self._state

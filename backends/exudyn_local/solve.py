@@ -220,7 +220,7 @@ def _compile(system: System, pattern: Pattern, work: Work) -> None:
     forces(tables, at, 1.0, work)
     jacobian(tables, system.elements, at, 1.0, (1.0, 1.0), False, owner, work, data)
     ledger(tables, at, work, np.zeros((len(system.pairs), SEEN)), np.zeros(TOTALS))
-    passed(system.bodies, system.pairs, system.meshes, q, v, q, v, 0.0, 0.0)
+    passed(system.bodies, system.pairs, system.shapes, q, v, q, v, 0.0, 0.0)
 
 
 def _assemble(exu, model: Model, system: System, pattern: Pattern, work: Work) -> Assembly:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mdlgen.mechanics.frame import Motion
-from mdlgen.mechanics.mesh_tables import Meshes
 from mdlgen.mechanics.point import MOST_POINTS, OUT, POINT
+from mdlgen.mechanics.shapes import Shapes
 from mdlgen.mechanics.turning import TURNING
 from mdlgen.model.tables import Floats
 
@@ -28,7 +28,7 @@ class Tables(NamedTuple):
     bushings: np.ndarray
     points: np.ndarray
     pairs: np.ndarray
-    meshes: Meshes
+    shapes: Shapes
     loads: np.ndarray
     gravity: Floats
 

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from mdlgen.backends.exudyn_local.state import Tables
 from mdlgen.errors import RefusedError
 from mdlgen.mechanics.curve import curve_points
-from mdlgen.mechanics.mesh_tables import Meshes, mesh_tables
 from mdlgen.mechanics.pack import Units, gravity, number, pack_bodies, pack_bushings, pack_loads, pack_pairs
 from mdlgen.mechanics.records import (
     BODIES,
@@ -22,12 +21,10 @@ from mdlgen.mechanics.records import (
     CONTACT,
     CURVE,
     ENDS_OF_JOINT,
-    EXPOSED,
     FRAMES,
-    MOVED,
-    ROLLER,
-    SHAPE,
+    OF_BODY,
 )
+from mdlgen.mechanics.shapes import Shapes, shape_tables
 from mdlgen.mechanics.solved import refuse_unsolved
 from mdlgen.model.meshes import check_balance
 from mdlgen.model.rotations import euler_parameters
@@ -41,14 +38,11 @@ SI = Units(mm=MM, per_mm=PER_MM, g=G, ms=MS, hertz=1e3**1.5, mpa=1e6)
 EULER = 3
 BODY = np.dtype(
     [
-        ("reference", "f8", 7),  # position [m], Euler parameters
-        *SHAPE,
-        *MOVED,
         ("first", "i8"),  # first of a box's 7 coordinates, -1: not free
         ("slide", "i8"),  # coordinate of the slide of a roller or a plate, -1: none
         ("spin", "i8"),  # coordinate of a roller's spin, -1: prescribed
-        EXPOSED,
-        *ROLLER,
+        ("reference", "f8", 7),  # position [m], Euler parameters
+        *OF_BODY,
     ]
 )
 BUSHING = np.dtype([*ENDS_OF_JOINT, *FRAMES, *CONSTANTS, *CURVE])
@@ -76,7 +70,7 @@ class System(NamedTuple):
     elements: Elements
     free: int  # number of coordinates
     points: np.ndarray  # of the curves that bushings follow, mechanics.curve.POINT [Pa]
-    meshes: Meshes  # [m]
+    shapes: Shapes  # [m]
 
     @property
     def tables(self) -> Tables:
@@ -86,7 +80,7 @@ class System(NamedTuple):
             bushings=self.bushings,
             points=self.points,
             pairs=self.pairs,
-            meshes=self.meshes,
+            shapes=self.shapes,
             loads=self.loads,
             gravity=self.gravity,
         )
@@ -123,8 +117,8 @@ def build(model: Model) -> tuple[System, Pattern]:
     loads = pack_loads(model, SI)
     elements, pattern = _pattern(_couplings(bodies, bushings, blocks, pairs, loads), blocks, free)
     points = curve_points(model.curves, SI.mpa)
-    meshes = mesh_tables(model, MM)
-    return System(bodies, bushings, pairs, loads, gravity(model, SI), elements, free, points, meshes), pattern
+    shapes = shape_tables(model, MM)
+    return System(bodies, bushings, pairs, loads, gravity(model, SI), elements, free, points, shapes), pattern
 
 
 def _bodies(model: Model, moving: bool) -> tuple[np.ndarray, int]:

@@ -15,7 +15,6 @@ import numpy as np
 from mdlgen.backends.lattice.kernels.state import Tables
 from mdlgen.backends.lattice.search import Search, plan
 from mdlgen.mechanics.curve import curve_points
-from mdlgen.mechanics.mesh_tables import Meshes, mesh_tables
 from mdlgen.mechanics.pack import (
     gravity,
     number,
@@ -31,12 +30,10 @@ from mdlgen.mechanics.records import (
     CONTACT,
     CURVE,
     ENDS_OF_JOINT,
-    EXPOSED,
     FRAMES,
-    MOVED,
-    ROLLER,
-    SHAPE,
+    OF_BODY,
 )
+from mdlgen.mechanics.shapes import Shapes, shape_tables
 from mdlgen.model.tables import BOX_BOX, BOX_MESH, CYLINDER_MESH, SUPPORT, Floats, Ints, Model
 
 if TYPE_CHECKING:
@@ -47,10 +44,7 @@ BODY = np.dtype(
         ("node", "i8"),  # number of a free box, -1: not free
         ("slide", "i8"),  # number in the border, -1: none
         ("spin", "i8"),
-        *SHAPE,
-        EXPOSED,
-        *MOVED,
-        *ROLLER,
+        *OF_BODY,
     ]
 )
 JOINT = np.dtype(
@@ -95,7 +89,7 @@ class System(NamedTuple):
     mirror: Mirror | None  # the plane that halves it, None: this is the whole
     search: Search  # of boxes of two sheets that are near each other
     marks: int  # how many pairs there can be
-    meshes: Meshes
+    shapes: Shapes
 
     @property
     def reach(self) -> int:
@@ -114,7 +108,7 @@ class System(NamedTuple):
             nodes=self.nodes,
             points=self.points,
             images=self.images,
-            meshes=self.meshes,
+            shapes=self.shapes,
         )
 
 
@@ -142,7 +136,7 @@ def build(model: Model, fold: bool = True) -> System:
         mirror=None,
         search=search,
         marks=marks,
-        meshes=mesh_tables(model),
+        shapes=shape_tables(model),
     )
 
 

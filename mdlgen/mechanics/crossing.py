@@ -50,11 +50,11 @@ def deepest(bodies, pair):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def unseen(bodies, pair, meshes):
+def unseen(bodies, pair, shapes):
     """How far a pair may move towards each other from one state that is looked at to the next: a little less
     than the band beyond `deepest` is wide, which for each of these laws is as wide as that is deep."""
     if pair.kind == BOX_MESH:
-        return meshes.heads[pair.mesh].unseen
+        return shapes.meshes.heads[pair.mesh].unseen
     return UNSEEN * deepest(bodies, pair)
 
 
@@ -71,7 +71,7 @@ def fastest_place(body, rate, spin):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def closing(bodies, pair, meshes, motion, ahead):
+def closing(bodies, pair, shapes, motion, ahead):
     """The greatest speed at which a pair may come closer along what it could cross, in the next `ahead`;
     along a plate or a roller's axis a sheet may be fast."""
     a, b, kind = pair.a, pair.b, pair.kind
@@ -94,10 +94,8 @@ def closing(bodies, pair, meshes, motion, ahead):
         spin = vec(w, b)
         return max(one, two) + turning + math.sqrt(dot(spin, spin)) * size(bodies[b])
     if kind == BOX_MESH:
-        spin = vec(w, b)
-        return (
-            math.sqrt(dot(rate, rate)) + turning + math.sqrt(dot(spin, spin)) * meshes.heads[pair.mesh].reach
-        )
+        spin, reach = vec(w, b), shapes.meshes.heads[pair.mesh].reach
+        return math.sqrt(dot(rate, rate)) + turning + math.sqrt(dot(spin, spin)) * reach
     axis = bodies[b].axis
     along = rate[0] * axis[0] + rate[1] * axis[1] + rate[2] * axis[2]
     across = math.sqrt(max(dot(rate, rate) - along * along, 0.0))
@@ -131,11 +129,12 @@ def above(bodies, pair, x, r):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def buried(bodies, pair, meshes, x, r):
+def buried(bodies, pair, shapes, x, r):
     """Whether the centre of a box with a free side is deeper in a mesh than half of what counts there: the
     sides of a sheet do not know how deep they are."""
     if pair.kind != BOX_MESH or bodies[pair.a].exposed == 0:
         return False
+    meshes = shapes.meshes
     head = meshes.heads[pair.mesh]
     turn = mat(r, pair.b)
     frame, place = matmul(turn, nine(head.axes)), add(vec(x, pair.b), rotate(turn, three(head.place)))

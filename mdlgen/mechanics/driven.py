@@ -16,7 +16,8 @@ from mdlgen.program.kernel import njit
 
 # Of a record's `clutch`.
 SENSE, TORQUE, CREEP = 0, 1, 2
-DRIVEN = [("corners", "i8"), ("drive", "f8", 2 * MOST_CORNERS), ("clutch", "f8", 3)]
+CLUTCH = [("clutch", "f8", 3)]
+DRIVE = [("corners", "i8"), ("drive", "f8", 2 * MOST_CORNERS)]
 
 
 class Clutch(NamedTuple):
@@ -28,8 +29,8 @@ class Clutch(NamedTuple):
 
 
 def drive(row: np.void, roller: RollerPart, time: float = 1.0, torque: float = 1.0) -> None:
-    """Fills the fields of DRIVEN of a body record for a roller; `time` is a millisecond in the solver's
-    units, `torque` a newton millimetre."""
+    """Fills the fields of DRIVE and CLUTCH of a body record for a roller; `time` is a millisecond in the
+    solver's units, `torque` a newton millimetre."""
     corners = roller.corners * (time, 1.0 / time)
     row["corners"] = len(corners)
     row["drive"][: corners.size] = corners.ravel()

@@ -54,6 +54,7 @@ def pack_bodies(model: Model, layout: np.dtype, units: Units = OWN, driven: bool
     for part in model.machine:
         if part.round is not None:
             bodies["size"][part.body] = [mm * length for length in part.round]
+    piece = 0
     for roller in model.rollers:
         row = bodies[roller.body]
         row["axis"] = roller.axis
@@ -62,7 +63,7 @@ def pack_bodies(model: Model, layout: np.dtype, units: Units = OWN, driven: bool
             _press(row, roller.press, roller.loaded_mass + roller.press.carrier_mass, units)
         if driven:
             drive(row, roller, units.ms, mm)
-        rim(row, roller, mm)
+        piece = rim(row, roller, piece)
         arm(row, roller, mm, g, units.ms)
     for plate, spring in model.plates:
         _press(bodies[plate.body], spring, plate.sliding_mass, units)

@@ -86,12 +86,12 @@ def on_part(pair):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def roller_near(bodies, pair, meshes, x, r, more):
+def roller_near(bodies, pair, shapes, x, r, more):
     """Whether a roller and the part that it may meet are closer than `more`, as far as their bounds tell."""
     rb = mat(r, pair.b)
     if pair.kind == CYLINDER_MESH:
-        head = meshes.heads[pair.mesh]
-        return roller_mesh_near(bodies[pair.a], vec(x, pair.a), vec(x, pair.b), rb, head, meshes, more)
+        head = shapes.meshes.heads[pair.mesh]
+        return roller_mesh_near(bodies[pair.a], vec(x, pair.a), vec(x, pair.b), rb, head, shapes.meshes, more)
     at = back(rb, sub(vec(x, pair.a), vec(x, pair.b)))
     if pair.kind == CYLINDER_PLANE:
         return plate_near(bodies[pair.a], at, rb, bodies[pair.b], more)
@@ -99,7 +99,7 @@ def roller_near(bodies, pair, meshes, x, r, more):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _rolling(bodies, pair, meshes, xa, xb, rb):
+def _rolling(bodies, pair, shapes, xa, xb, rb):
     """The axis about which one part of a pair rolls on the other, and the curvature of both together there;
     0 where none of them is a roller."""
     one, two = bodies[pair.a], bodies[pair.b]
@@ -114,23 +114,25 @@ def _rolling(bodies, pair, meshes, xa, xb, rb):
             hollow = at[0] * at[0] + at[1] * at[1] < arc * arc
             curved += -1.0 / arc if hollow else 1.0 / arc
         return three(one.axis), curved
-    rolls = pair.kind == BOX_CYLINDER or (pair.kind == BOX_MESH and meshes.heads[pair.mesh].basis > 0.0)
+    rolls = pair.kind == BOX_CYLINDER or (
+        pair.kind == BOX_MESH and shapes.meshes.heads[pair.mesh].basis > 0.0
+    )
     return three(two.axis), 1.0 / two.size[RADIUS] if rolls else 0.0
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def pair_force(bodies, pair, meshes, motion, out):
+def pair_force(bodies, pair, shapes, motion, out):
     """One contact pair into `out`, which must be zero (see mechanics.point for its columns).
 
     `bodies` are records with half, exposed, axis, size (radius, width), arc, side, ENDS and RIM, `pair` one
-    with kind, a, b, k, shared, law, mesh and beside, `meshes` a mechanics.mesh.Meshes, `motion` the Motion of
-    all bodies. Returns whether it touches.
+    with kind, a, b, k, shared, law, mesh and beside, `shapes` a mechanics.shapes.Shapes, `motion` the Motion
+    of all bodies. Returns whether it touches.
     """
     one, two, kind = bodies[pair.a], bodies[pair.b], pair.kind
     a, b = frame_of(motion, pair.a), frame_of(motion, pair.b)
     law = law_of(pair)
     if kind == CYLINDER_CYLINDER and one.rims + two.rims > 0:
-        rim_rim(out, a, one, b, two, law)
+        rim_rim(out, a, one, b, two, shapes.rims, law)
     elif kind == CYLINDER_CYLINDER:
         cylinder_cylinder(out, a, cylinder_of(one), b, cylinder_of(two), law)
     elif kind == BOX_PLANE:
@@ -138,22 +140,22 @@ def pair_force(bodies, pair, meshes, motion, out):
     elif kind == BOX_GUIDE:
         box_guide(out, a, box_of(one), held_frame(motion, pair.b), guide_of(two, pair.beside), law)
     elif kind == CYLINDER_PLANE:
-        roller_plane(out, one, a, plate_frame(motion, pair.b), three(two.half), law)
+        roller_plane(out, one, shapes.rims, a, plate_frame(motion, pair.b), three(two.half), law)
     elif kind == CYLINDER_GUIDE:
         held = held_frame(motion, pair.b)
-        roller_guide(out, one, a, held, three(two.arc), three(two.half), two.side, law)
+        roller_guide(out, one, shapes.rims, a, held, three(two.arc), three(two.half), two.side, law)
     elif kind == CYLINDER_MESH:
-        roller_mesh(out, one, a, b, meshes.heads[pair.mesh], meshes, law)
+        roller_mesh(out, one, a, b, shapes.meshes.heads[pair.mesh], shapes.meshes, law)
     elif kind == BOX_BOX:
         box_box(out, a, box_of(one), b, box_of(two), law)
     elif kind == BOX_MESH:
-        box_mesh(out, a, box_of(one), b, three(two.axis), meshes.heads[pair.mesh], meshes, law)
+        box_mesh(out, a, box_of(one), b, three(two.axis), shapes.meshes.heads[pair.mesh], shapes.meshes, law)
     elif two.rims > 0:
-        box_rim(out, a, box_of(one), b, two, law)
+        box_rim(out, a, box_of(one), b, two, shapes.rims, law)
     else:
         box_cylinder(out, a, box_of(one), b, cylinder_of(two), law)
     if pair.law[LAW_ROLLING] > 0.0 and out[PRESSING] > 0.0:
-        axis, curved = _rolling(bodies, pair, meshes, a.x, b.x, b.r)
+        axis, curved = _rolling(bodies, pair, shapes, a.x, b.x, b.r)
         if curved > 0.0:
             resist_rolling(out, a.w, b.w, axis, 1.0 / curved, pair.law[LAW_ROLLING], law.smoothing)
     if out[PRESSING] != 0.0:

@@ -9,33 +9,31 @@ import numpy as np
 
 from mdlgen.mechanics.arm import ARM, PRESS
 from mdlgen.mechanics.curve import FOLLOWS
-from mdlgen.mechanics.driven import DRIVEN
+from mdlgen.mechanics.driven import CLUTCH, DRIVE
 from mdlgen.mechanics.edge import ENDS
 from mdlgen.mechanics.frame import LAW
 from mdlgen.mechanics.rim import RIM
 
-# Of a body: its shape.
-SHAPE = [
+# Of a body. What every step reads of every box stands first: there may be thousands.
+OF_BODY = [
     ("mass", "f8"),
     ("inertia", "f8", 3),
     ("half", "f8", 3),  # of a box; of a guide: half of its length, width and thickness
+    ("exposed", "i8"),  # of a box: its side faces without a neighbour, as a bit mask
+    # of a roller, and of what slides
+    ("axis", "f8", 3),
+    *CLUTCH,
+    ("press", "f8", PRESS),  # columns as in mechanics.arm
+    *ARM,
+    ("way", "f8", 3),  # direction of a slide
+    ("size", "f8", 2),  # radius, of a rim the greatest, and width
+    ("carries", "i8"),  # 1: a roller with a mesh on it, whose turn is followed
+    *RIM,
+    # of a plate
     ("arc", "f8", 3),  # of a guide: radius (0: straight), middle angle, half angle
     ("side", "i8"),  # of a guide, that may be touched: as in mechanics.guide
     *ENDS,
-]
-EXPOSED = ("exposed", "i8")  # of a box: its side faces without a neighbour, as a bit mask
-# How a roller or a plate moves.
-MOVED = [
-    ("axis", "f8", 3),
-    ("way", "f8", 3),  # direction of a slide
-    ("press", "f8", PRESS),  # columns as in mechanics.arm
-    *DRIVEN,
-    ("size", "f8", 2),  # radius, of a rim the greatest, and width
-]
-ROLLER = [
-    ("carries", "i8"),  # 1: a roller with a mesh on it, whose turn is followed
-    *RIM,
-    *ARM,
+    *DRIVE,
 ]
 
 # Of a joint: its bodies, and arms in body axes.

@@ -5,10 +5,11 @@ h(phi) and stiffness k(phi), h being the support function (see model.rims). So t
 touches: h'(phi) beside the point below the axis, at the edge of a sector where it is one that touches; and
 the roller bears the torque that a stiffness growing with phi makes. What the sectors store, they give back.
 
-A body record has `rims`, how many pieces its rim has (0: it is round); `blend`, half of the angle over which
-one goes over into the next; and `rim`, of each piece PIECE numbers: angle where it begins, radius, angle of
-the edge that is touched (nan: the arc), stiffness and friction in times those of the contact, and the share
-beta of damping (negative: that of the contact).
+A body record has `rims`, how many pieces its rim has (0: it is round); `rim`, the row of the first one in
+the table of all pieces; and `blend`, half of the angle over which one goes over into the next. A row of the
+table has PIECE numbers: angle where the piece begins, radius, angle of the edge that is touched (nan: the
+arc), stiffness and friction in times those of the contact, and the share beta of damping (negative: that of
+the contact).
 """
 
 from __future__ import annotations
@@ -22,69 +23,80 @@ from mdlgen.mechanics.frame import RADIUS, WIDTH, Cylinder, Sector, scaled
 from mdlgen.mechanics.laws import damping_share
 from mdlgen.mechanics.point import DEPTH, FORCE_A, FORCE_B, STORED, TORQUE_A, TORQUE_B
 from mdlgen.mechanics.vector import back, cross, dot, rotate, scale, sub, three
-from mdlgen.model.rims import MOST_PIECES, TURN, pieces
-from mdlgen.model.tables import RollerPart
+from mdlgen.model.rims import TURN, pieces
+from mdlgen.model.tables import Floats, Model, RimPart, RollerPart
 from mdlgen.program.kernel import njit
 
 # Columns of a piece, as above.
 _BEGIN, _RADIUS, _EDGE, _STIFFNESS, _FRICTION, _DAMPING, PIECE = 0, 1, 2, 3, 4, 5, 6
-RIM = [("rims", "i8"), ("blend", "f8"), ("rim", "f8", PIECE * MOST_PIECES)]
+RIM = [("rims", "i8"), ("rim", "i8"), ("blend", "f8")]
 
 
-def rim(row: np.void, roller: RollerPart, length: float = 1.0) -> None:
-    """Fills the fields of RIM of a body record for a roller; `length` is 1 mm in the solver's units."""
-    part = roller.rim
-    if part is None:
-        return
+def rim(row: np.void, roller: RollerPart, first: int) -> int:
+    """Fills the fields of RIM of a body record for a roller whose pieces begin at the row `first` of the
+    table; returns the row after them."""
+    if roller.rim is None:
+        return first
+    row["rims"], row["rim"], row["blend"] = len(pieces(roller.rim)), first, 0.5 * roller.rim.blend
+    return first + int(row["rims"])
+
+
+def rim_table(model: Model, length: float = 1.0) -> Floats:
+    """The pieces of all rims of a Model, in the order of its rollers, (n, PIECE); `length` is 1 mm in the
+    solver's units."""
+    rims = [_rows(roller.rim, length) for roller in model.rollers if roller.rim is not None]
+    return np.concatenate([np.zeros((0, PIECE)), *rims])
+
+
+def _rows(part: RimPart, length: float) -> Floats:
     beta = damping_share.py_func(part.restitution)  # compiled code is for the solver alone to load
-    made = [
-        (
-            piece.begin,
-            part.radius[piece.sector] * length,
-            piece.edge,
-            part.stiffness[piece.sector],
-            part.friction[piece.sector],
-            beta[piece.sector] if np.isfinite(beta[piece.sector]) else -1.0,
-        )
-        for piece in pieces(part)
-    ]
-    row["rims"], row["blend"] = len(made), 0.5 * part.blend
-    row["rim"][: PIECE * len(made)] = np.array(made).ravel()
+    return np.array(
+        [
+            (
+                piece.begin,
+                part.radius[piece.sector] * length,
+                piece.edge,
+                part.stiffness[piece.sector],
+                part.friction[piece.sector],
+                beta[piece.sector] if np.isfinite(beta[piece.sector]) else -1.0,
+            )
+            for piece in pieces(part)
+        ]
+    )
 
 
 @njit(cache=True, error_model="numpy")
-def _piece(body, i, angle, beta):
-    """Of one piece, at an angle: (h, h', stiffness, friction, share of damping)."""
-    at = PIECE * i
-    radius, edge, own = body.rim[at + _RADIUS], body.rim[at + _EDGE], body.rim[at + _DAMPING]
+def _piece(rims, at, angle, beta):
+    """Of the piece in a row, at an angle: (h, h', stiffness, friction, share of damping)."""
+    radius, edge, own = rims[at, _RADIUS], rims[at, _EDGE], rims[at, _DAMPING]
     damping = own if own >= 0.0 else beta
     if math.isnan(edge):
-        return radius, 0.0, body.rim[at + _STIFFNESS], body.rim[at + _FRICTION], damping
+        return radius, 0.0, rims[at, _STIFFNESS], rims[at, _FRICTION], damping
     away = angle - edge
     return (
         radius * math.cos(away),
         -radius * math.sin(away),
-        body.rim[at + _STIFFNESS],
-        body.rim[at + _FRICTION],
+        rims[at, _STIFFNESS],
+        rims[at, _FRICTION],
         damping,
     )
 
 
 @njit(cache=True, error_model="numpy")
-def profile(body, angle, beta):
-    """At an angle of the rim: (h, h', stiffness and friction in times the contact's, the growth of the former
-    per rad, share of damping); `beta` is the contact's."""
-    count = body.rims
+def profile(body, rims, angle, beta):
+    """At an angle of a body's rim, whose pieces are in the table `rims`: (h, h', stiffness and friction in
+    times the contact's, the growth of the former per rad, share of damping); `beta` is the contact's."""
+    count, first = body.rims, body.rim
     angle = angle - TURN * math.floor(angle / TURN)
     i = count - 1
-    while i > 0 and body.rim[PIECE * i] > angle:
+    while i > 0 and rims[first + i, _BEGIN] > angle:
         i -= 1
-    begin = body.rim[PIECE * i]
-    end = body.rim[PIECE * (i + 1)] if i + 1 < count else TURN
-    h, lever, stiff, rough, damping = _piece(body, i, angle, beta)
+    begin = rims[first + i, _BEGIN]
+    end = rims[first + i + 1, _BEGIN] if i + 1 < count else TURN
+    h, lever, stiff, rough, damping = _piece(rims, first + i, angle, beta)
     behind = angle - begin < end - angle
     j = (i - 1 if behind else i + 1) % count
-    wide = (body.rim[PIECE * (j + 1)] if j + 1 < count else TURN) - body.rim[PIECE * j]
+    wide = (rims[first + j + 1, _BEGIN] if j + 1 < count else TURN) - rims[first + j, _BEGIN]
     # a piece may be narrower than what its ends are blended over
     half = min(body.blend, 0.5 * (end - begin), 0.5 * wide)
     away = angle - begin if behind else end - angle
@@ -94,7 +106,7 @@ def profile(body, angle, beta):
     own, growth = s * s * (3.0 - 2.0 * s), 3.0 * s * (1.0 - s) / half
     if not behind:
         growth = -growth
-    h2, lever2, stiff2, rough2, damping2 = _piece(body, j, angle, beta)
+    h2, lever2, stiff2, rough2, damping2 = _piece(rims, first + j, angle, beta)
     return (
         own * h + (1.0 - own) * h2,
         own * lever + (1.0 - own) * lever2 + growth * (h - h2),
@@ -124,12 +136,12 @@ def _facing(l0, al, half, exposed):
 
 
 @njit(cache=True, error_model="numpy")
-def box_rim(out, a, box, b, body, law):
-    """As `contact.box_cylinder` for a roller b whose record `body` has a rim."""
+def box_rim(out, a, box, b, body, rims, law):
+    """As `contact.box_cylinder` for a roller b whose record `body` has a rim, in the table `rims`."""
     axis = three(body.axis)
     l0, al = back(a.r, sub(b.x, a.x)), back(a.r, axis)
     face = rotate(a.r, _facing(l0, al, box.half, box.exposed))
-    h, lever, stiff, rough, growth, damping = profile(body, _angle(b.r, face), law.beta)
+    h, lever, stiff, rough, growth, damping = profile(body, rims, _angle(b.r, face), law.beta)
     aside = scale(lever, cross(axis, face))
     roller, own = Cylinder(axis, h, body.size[WIDTH]), scaled(law, stiff, rough, damping)
     box_sector(out, a, box, b, roller, Sector(axis, WHOLE, aside, True), own)
@@ -141,16 +153,17 @@ def box_rim(out, a, box, b, body, law):
 
 
 @njit(cache=True, error_model="numpy")
-def _towards(body, r, way, beta):
+def _towards(body, rims, r, way, beta):
     """What `profile` has of a roller along a direction; a round one has its radius, and factors of 1."""
     if body.rims == 0:
         return body.size[RADIUS], 0.0, 1.0, 1.0, 0.0, beta
-    return profile(body, _angle(r, way), beta)
+    return profile(body, rims, _angle(r, way), beta)
 
 
 @njit(cache=True, error_model="numpy")
-def rim_rim(out, a, one, b, two, law):
-    """As `contact.cylinder_cylinder` for two rollers with records `one` and `two`, of which one has a rim.
+def rim_rim(out, a, one, b, two, rims, law):
+    """As `contact.cylinder_cylinder` for two rollers with records `one` and `two`, of which one has a rim, in
+    the table `rims`.
 
     An edge counts as against a flat face, so it comes a little earlier than it would on the other's round.
     """
@@ -161,8 +174,8 @@ def rim_rim(out, a, one, b, two, law):
     if distance <= 0.0:
         return
     way = scale(1.0 / distance, across)
-    h1, lever1, stiff1, rough1, growth1, beta1 = _towards(one, a.r, way, law.beta)
-    h2, lever2, stiff2, rough2, growth2, beta2 = _towards(two, b.r, scale(-1.0, way), law.beta)
+    h1, lever1, stiff1, rough1, growth1, beta1 = _towards(one, rims, a.r, way, law.beta)
+    h2, lever2, stiff2, rough2, growth2, beta2 = _towards(two, rims, b.r, scale(-1.0, way), law.beta)
     own = scaled(law, stiff1 * stiff2, rough1 * rough2, beta1 if one.rims > 0 else beta2)
     rollers = Cylinder(axis, h1, one.size[WIDTH]), Cylinder(other, h2, two.size[WIDTH])
     cylinder_cylinder(out, a, rollers[0], b, rollers[1], own)

@@ -63,10 +63,10 @@ class Face(NamedTuple):
 
 
 @njit(cache=True, error_model="numpy")
-def touch(out, body, a, spot, weight, b, law):
+def touch(out, body, rims, a, spot, weight, b, law):
     """Adds one point of a roller a (a record with its axis, size and RIM) on b, which does not turn.
 
-    weight: the point's part of k.
+    rims: the table of mechanics.rim; weight: the point's part of k.
     """
     at, way, gap, normal, turns = spot
     upright = -dot(way, normal)  # 1 but for a roller that leans
@@ -74,7 +74,8 @@ def touch(out, body, a, spot, weight, b, law):
     radius, lever, stiff, rough, growth, damping = body.size[RADIUS], 0.0, 1.0, 1.0, 0.0, law.beta
     if body.rims > 0:
         own = back(a.r, way)
-        radius, lever, stiff, rough, growth, damping = profile(body, math.atan2(own[1], own[0]), law.beta)
+        angle = math.atan2(own[1], own[0])
+        radius, lever, stiff, rough, growth, damping = profile(body, rims, angle, law.beta)
     depth = radius * upright - gap
     if depth <= 0.0:
         return
@@ -103,7 +104,7 @@ def _inside(at, step, half, low, high):
 
 
 @njit(cache=True, error_model="numpy", **OWNS)
-def roller_plate(out, body, a, b, face, law):
+def roller_plate(out, body, rims, a, b, face, law):
     """Roller a against a Face of a flat plate b."""
     axis = three(body.axis)
     radius, width = body.size[RADIUS], body.size[WIDTH]
@@ -147,7 +148,7 @@ def roller_plate(out, body, a, b, face, law):
             if over > 0.0:
                 weight = 0.5 * (last - first) / (cosine * width)
                 at = add(a.x, scale(u, axis))
-                touch(out, body, a, Spot(at, down, over, normal, 0.0), weight, b, law)
+                touch(out, body, rims, a, Spot(at, down, over, normal, 0.0), weight, b, law)
     # what of the width is beside the plate, and may touch an edge
     for part in range(2):
         first = begin if part == 0 else high
@@ -180,13 +181,14 @@ def roller_plate(out, body, a, b, face, law):
             weight = 0.5 * (last - first) / (cosine * width)
             way = scale(1.0 / away, to)
             at, turned = add(a.x, scale(u, axis)), -1.0 / away
-            touch(out, body, a, Spot(at, way, away, scale(-1.0, way), turned), weight, b, law)
+            touch(out, body, rims, a, Spot(at, way, away, scale(-1.0, way), turned), weight, b, law)
 
 
 @njit(cache=True, error_model="numpy")
-def _end(out, body, a, at, share, b, own, line, law):
+def _end(out, body, rims, a, width, b, own, line, law):
     """A roller against an end of an arc: a line at an angle, from one radius to another; own: the axis of the
-    roller as the guide has it, at: the middle of the width that meets it."""
+    roller as the guide has it, width: the middle of the width that meets it, and its part of the whole."""
+    at, share = width
     angle, near, far = line
     ray = (math.cos(angle), math.sin(angle))
     along = min(max(own[0] * ray[0] + own[1] * ray[1], near), far)
@@ -195,11 +197,11 @@ def _end(out, body, a, at, share, b, own, line, law):
     if away <= 0.0 or away >= body.size[RADIUS]:
         return
     way = rotate(b.r, (x / away, y / away, 0.0))
-    touch(out, body, a, Spot(at, way, away, scale(-1.0, way), -1.0 / away), share, b, law)
+    touch(out, body, rims, a, Spot(at, way, away, scale(-1.0, way), -1.0 / away), share, b, law)
 
 
 @njit(cache=True, error_model="numpy")
-def roller_arc(out, body, a, b, shape, half, side, law):
+def roller_arc(out, body, rims, a, b, shape, half, side, law):
     """Roller a against a guide b that is an arc, of a parallel axis; the rest as in mechanics.guide."""
     radius, middle, angle = shape
     rb = b.r
@@ -218,7 +220,7 @@ def roller_arc(out, body, a, b, shape, half, side, law):
     turn -= 2.0 * math.pi * math.floor(turn / (2.0 * math.pi) + 0.5)
     if abs(turn) > angle:
         for end in (-1.0, 1.0):
-            _end(out, body, a, at, share, b, own, (middle + end * angle, inner, outer), law)
+            _end(out, body, rims, a, (at, share), b, own, (middle + end * angle, inner, outer), law)
         return
     if distance == 0.0:
         return
@@ -229,7 +231,7 @@ def roller_arc(out, body, a, b, shape, half, side, law):
     gap = inner - distance if hollow else distance - outer
     way = away if hollow else scale(-1.0, away)
     turned = 1.0 / distance if hollow else -1.0 / distance
-    touch(out, body, a, Spot(at, way, gap, scale(-1.0, way), turned), share, b, law)
+    touch(out, body, rims, a, Spot(at, way, gap, scale(-1.0, way), turned), share, b, law)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -263,20 +265,20 @@ def guide_near(body, at, rb, other, more):
 
 
 @njit(cache=True, error_model="numpy")
-def roller_plane(out, body, a, b, half, law):
+def roller_plane(out, body, rims, a, b, half, law):
     """Roller a against plane b, of half lengths `half` along its axes, which does not turn."""
     rb = b.r
     n = (rb[2], rb[5], rb[8])
     ways = ((rb[0], rb[3], rb[6]), (rb[1], rb[4], rb[7]), n)
     face = Face(add(b.x, scale(half[2], n)), ways, (half[0], half[1]), 2.0 * half[2], True)
-    roller_plate(out, body, a, b, face, law)
+    roller_plate(out, body, rims, a, b, face, law)
 
 
 @njit(cache=True, error_model="numpy")
-def roller_guide(out, body, a, b, shape, half, side, law):
+def roller_guide(out, body, rims, a, b, shape, half, side, law):
     """Roller a against guide b, which does not move; side: INSIDE, OUTSIDE or BOTH; the rest as in Plate."""
     if shape[ARC_RADIUS] > 0.0:
-        roller_arc(out, body, a, b, shape, half, side, law)
+        roller_arc(out, body, rims, a, b, shape, half, side, law)
         return
     rb = b.r
     sign = 1.0 if side != OUTSIDE else -1.0
@@ -284,4 +286,4 @@ def roller_guide(out, body, a, b, shape, half, side, law):
     ways = ((rb[0], rb[3], rb[6]), (rb[2], rb[5], rb[8]), n)
     both = side == BOTH
     middle = add(b.x, scale(half[2], n)) if both else b.x
-    roller_plate(out, body, a, b, Face(middle, ways, (half[0], half[1]), 2.0 * half[2], both), law)
+    roller_plate(out, body, rims, a, b, Face(middle, ways, (half[0], half[1]), 2.0 * half[2], both), law)

@@ -14,12 +14,9 @@ import numpy as np
 
 from mdlgen.model.tables import Floats, RimPart
 from mdlgen.spec.machine import Roller
-from mdlgen.spec.rim import MOST_SECTORS
 from mdlgen.spec.rim import TURN as TURN
 
 SAG = 0.01  # how far a box that shows a part of a round may be from it [mm]
-# Two sectors where one is given; each at most an arc and two edges.
-MOST_PIECES = 6 * MOST_SECTORS
 _SAME = 1e-9  # rad
 
 

@@ -20,12 +20,15 @@ from mdlgen.mechanics.overlap import OVERLAP
 from mdlgen.mechanics.pair import BOX_BOX, BOX_CYLINDER, BOX_GUIDE, BOX_MESH, BOX_PLANE, CYLINDER_CYLINDER
 from mdlgen.mechanics.point import FACES
 from mdlgen.mechanics.records import LOAD
+from mdlgen.mechanics.rim import PIECE
+from mdlgen.mechanics.shapes import Shapes
 from mdlgen.mechanics.tree import WIDTH
 
 NO_MESHES = Meshes(np.zeros(0, HEAD), np.zeros((0, 12)), np.zeros((0, 3), np.int64), np.zeros((0, WIDTH)))
+NO_RIMS = np.zeros((0, PIECE))
 
 
-def pair_force(bodies: np.ndarray, pair: np.void, meshes: Meshes, motion: Motion, out: np.ndarray) -> bool:
+def pair_force(bodies: np.ndarray, pair: np.void, shapes: Shapes, motion: Motion, out: np.ndarray) -> bool:
     """A pair of the lattice's records. Of one that is not near, as in a run, `out` is zero."""
     tables = Tables(
         bodies=bodies,
@@ -36,7 +39,7 @@ def pair_force(bodies: np.ndarray, pair: np.void, meshes: Meshes, motion: Motion
         nodes=np.zeros(0, np.int64),
         points=np.zeros(0, POINT),
         images=np.zeros(0, IMAGE),
-        meshes=meshes,
+        shapes=shapes,
     )
     mid = Midpoint(
         motion=motion,
@@ -141,4 +144,4 @@ def _press(
         pair[name] = value
     ground = Frame((0.0, 0.0, 0.0), tuple(np.eye(3).ravel()), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     motion = Motion(*(np.array(rows, float) for rows in zip(a, b, ground, strict=True)))
-    pair_force(bodies, pair, meshes, motion, out)
+    pair_force(bodies, pair, Shapes(meshes, NO_RIMS), motion, out)

@@ -79,7 +79,8 @@ def test_the_profile_is_the_support_function_of_the_rim() -> None:
     """Against the farthest of 40000 points of the round, away from the blends between pieces."""
     made = model(f"rollers.feed.rim.sectors={TWO}", "rollers.feed.rim.blend=0.2 deg")
     roller = made.roller("feed")
-    body = build(made).bodies[roller.body]
+    system = build(made)
+    body, rims = system.bodies[roller.body], system.shapes.rims
     rim = roller.rim
     assert rim is not None and rim.name == ("s0", "s1", "g1", "s2", "g2")
     round_ = np.linspace(0.0, 2 * np.pi, 40001)
@@ -95,17 +96,19 @@ def test_the_profile_is_the_support_function_of_the_rim() -> None:
     angles = np.arange(0.5, 360.0, 1.7)
     angles = np.radians(angles[np.abs(angles[:, None] - begins).min(axis=1) > 0.1])
     due = np.array([(points[1] * np.cos(a - points[0])).max() for a in angles])
-    found = np.array([profile(body, a, 0.3) for a in angles])
+    found = np.array([profile(body, rims, a, 0.3) for a in angles])
     assert np.abs(found[:, 0] - due).max() < 1e-6
     assert np.allclose(found[:, 0], [touched(rim, a)[0] for a in angles], rtol=0, atol=1e-6)
 
 
 def test_the_profile_is_smooth_and_its_derivatives_are_right() -> None:
-    body = build(made := model(f"rollers.feed.rim.sectors={TWO}")).bodies[made_body(made)]
+    made = model(f"rollers.feed.rim.sectors={TWO}")
+    system = build(made)
+    body, rims = system.bodies[made_body(made)], system.shapes.rims
     step = 1e-6
     for angle in np.linspace(-7.0, 7.0, 1501):
-        here = profile(body, angle, 0.3)
-        ahead, behind = profile(body, angle + step, 0.3), profile(body, angle - step, 0.3)
+        here = profile(body, rims, angle, 0.3)
+        ahead, behind = profile(body, rims, angle + step, 0.3), profile(body, rims, angle - step, 0.3)
         assert (ahead[0] - behind[0]) / (2 * step) == pytest.approx(here[1], abs=2e-3)
         assert (ahead[2] - behind[2]) / (2 * step) == pytest.approx(here[4], abs=2e-3)
         assert np.abs(np.subtract(ahead, behind))[[0, 2, 3, 5]].max() < 1e-3
@@ -134,7 +137,7 @@ def test_a_turning_rim_gives_back_what_it_stores() -> None:
         c, s = math.cos(angle), math.sin(angle)
         turn = np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
         r[pair["b"]] = (turn @ begin).ravel()
-        pair_force(system.bodies, pair, system.meshes, Motion(x, r, still, still), out)
+        pair_force(system.bodies, pair, system.shapes, Motion(x, r, still, still), out)
     energy, torque = rows[:, 13], rows[:, 10]
     # about the origin nothing comes from nowhere
     arms = np.cross(x[pair["a"]], rows[:, :3]) + np.cross(x[pair["b"]], rows[:, 6:9])

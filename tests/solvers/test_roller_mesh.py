@@ -67,7 +67,7 @@ def law(model: Model, at: np.ndarray) -> np.ndarray:
     x[:-1], r[:-1] = model.bodies.position, model.bodies.rotation.reshape(-1, 9)
     x[int(system.pairs["a"][0])] = at
     still = np.zeros((count, 3))
-    pair_force(system.bodies, system.pairs[0], system.meshes, Motion(x, r, still, still), out)
+    pair_force(system.bodies, system.pairs[0], system.shapes, Motion(x, r, still, still), out)
     return out
 
 

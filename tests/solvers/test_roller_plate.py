@@ -248,7 +248,7 @@ def test_a_rim_on_a_plate_gives_back_what_it_stores(at: tuple[float, float], til
         c, s = math.cos(tilt + turned), math.sin(tilt + turned)
         spin = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])  # about y
         frames[roller] = (spin @ model.bodies.rotation[roller]).ravel()
-        pair_force(system.bodies, system.pairs[0], system.meshes, Motion(place, frames, still, still), out)
+        pair_force(system.bodies, system.pairs[0], system.shapes, Motion(place, frames, still, still), out)
         return float(out[13]), out
 
     stored, out = energy(np.zeros(3), 0.0)

@@ -186,7 +186,8 @@ def _facing(bodies, pair, x, r, gap, reach, reached):
 def near_pairs(tables, motion, margin, ahead, near):
     """Lists pairs in `near` that are closer than `margin` [mm] and what they move against each other in
     `ahead` [ms]; returns how many."""
-    bodies, pairs, meshes = tables.bodies, tables.pairs, tables.meshes
+    bodies, pairs, shapes = tables.bodies, tables.pairs, tables.shapes
+    meshes = shapes.meshes
     x, r, u, w = motion
     count = 0
     for p in range(pairs.size):
@@ -235,7 +236,7 @@ def near_pairs(tables, motion, margin, ahead, near):
             if not mesh_near(head, meshes, vec(x, a), mat(r, a), own, vec(x, b), mat(r, b), reached):
                 continue
         elif on_part(pairs[p]):
-            if not roller_near(bodies, pairs[p], meshes, x, r, margin + ahead * math.sqrt(dot(rate, rate))):
+            if not roller_near(bodies, pairs[p], shapes, x, r, margin + ahead * math.sqrt(dot(rate, rate))):
                 continue
         else:
             reached = margin + ahead * (math.sqrt(dot(rate, rate)) + math.sqrt(dot(spin, spin)) * size)
@@ -272,7 +273,7 @@ def touches(tables, pair, motion, f, out):
     """What one pair does into `out`, and onto f. Returns whether it touches."""
     for i in range(OUT + 1):
         out[i] = 0.0
-    if not pair_force(tables.bodies, pair, tables.meshes, motion, out):
+    if not pair_force(tables.bodies, pair, tables.shapes, motion, out):
         return False
     onto(f, pair, out)
     return True

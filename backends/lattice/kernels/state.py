@@ -27,7 +27,7 @@ class Tables(NamedTuple):
     nodes: Ints  # the body of each free box
     points: np.ndarray  # of curves
     images: np.ndarray  # mirrored boxes
-    meshes: Any  # mechanics.mesh.Meshes
+    shapes: Any  # mechanics.shapes.Shapes
 
 
 class State(NamedTuple):

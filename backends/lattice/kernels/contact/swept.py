@@ -210,7 +210,7 @@ def swept(work, counts, t, dt, allowed, slower, rows):
     for pairs that are slow for what they could cross, which is nearly all of them.
     """
     tables, state, mid = work.tables, work.state, work.mid
-    bodies, pairs, meshes = tables.bodies, tables.pairs, tables.meshes
+    bodies, pairs, shapes = tables.bodies, tables.pairs, tables.shapes
     x, r, touched, near = state.x, state.r, mid.touched, mid.near
     count, close = counts
     made = False
@@ -234,8 +234,8 @@ def swept(work, counts, t, dt, allowed, slower, rows):
         if near[at] >= first and _slow(bodies, pair, mid.fastest[MIDDLE], dt, little):
             continue
         began = Motion(x, r, mid.motion.u, mid.motion.w)
-        fast = closing(bodies, pair, meshes, began, dt)
-        way, band = dt * fast, unseen(bodies, pair, meshes)
+        fast = closing(bodies, pair, shapes, began, dt)
+        way, band = dt * fast, unseen(bodies, pair, shapes)
         side = above(bodies, pair, x, r)
         solid = pair.kind == BOX_MESH and bodies[pair.a].exposed != 0
         enters = False
@@ -261,11 +261,11 @@ def swept(work, counts, t, dt, allowed, slower, rows):
             if side * now < 0:
                 return near[at], 0.0
             side = now
-            if solid and buried(bodies, pair, meshes, between.x, between.r):
+            if solid and buried(bodies, pair, shapes, between.x, between.r):
                 return near[at], 0.0
             if way > band or enters:
                 out[:] = 0.0
-                pair_force(bodies, pair, meshes, between, out)
+                pair_force(bodies, pair, shapes, between, out)
                 if out[DEPTH] > deepest(bodies, pair):
                     return near[at], 0.0
                 if enters and k == many:

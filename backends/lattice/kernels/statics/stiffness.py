@@ -217,7 +217,7 @@ def _move(x, r, b, way, c, amount):
 def contacts_into(tables, touched, count, motion, a, b, d):
     """Adds the contacts that touch to the band a, the border b (border, 6 nodes) and its corner d: minus the
     differences of their forces, made symmetric. `motion` is at rest; its places come back as they were."""
-    bodies, pairs, meshes = tables.bodies, tables.pairs, tables.meshes
+    bodies, pairs, shapes = tables.bodies, tables.pairs, tables.shapes
     x, r = motion.x, motion.r
     out, g, keep = np.empty(OUT), np.empty((2, 14)), np.empty(12)
     own, index = np.empty((14, 14)), np.empty(14, np.int64)
@@ -238,7 +238,7 @@ def contacts_into(tables, touched, count, motion, a, b, d):
             for side in range(2):
                 _move(x, r, body, bodies[body].way, c % 7, _SMALL if side == 0 else -_SMALL)
                 out[:] = 0.0
-                pair_force(bodies, pair, meshes, motion, out)
+                pair_force(bodies, pair, shapes, motion, out)
                 copy(x[body], keep[:3])
                 copy(r[body], keep[3:])
                 for end in range(2):
