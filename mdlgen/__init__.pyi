@@ -175,6 +175,7 @@ class Friction(_Friction):
         dynamic: float | str,
         stiction_velocity: str | None = ...,
         friction_velocity: str | None = ...,
+        sticking: str | None = ...,
     ) -> None: ...
 
 class Graded(_Graded):

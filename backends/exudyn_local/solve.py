@@ -18,15 +18,13 @@ import numpy as np
 
 from mdlgen.backends.exudyn_local.place import owners
 from mdlgen.backends.exudyn_local.recorder import Recorder
+from mdlgen.backends.exudyn_local.scope import check
 from mdlgen.backends.exudyn_local.shipped import PROGRAM, forces, jacobian, ledger, passed
 from mdlgen.backends.exudyn_local.stability import falling
 from mdlgen.backends.exudyn_local.state import SEEN, TOTALS, Coordinates, Work, workspace
 from mdlgen.backends.exudyn_local.step import choose_steps, cost, given_steps
 from mdlgen.backends.exudyn_local.system import EULER, MM, MS, Pattern, System, build
 from mdlgen.mechanics.arm import AXIAL, INERTIA
-from mdlgen.model.air import refuse_air
-from mdlgen.model.external import refuse_externals
-from mdlgen.model.sheet_pairs import refuse_searched
 from mdlgen.model.tables import Model
 from mdlgen.results import audit
 from mdlgen.results.estimates import estimated, open_yet
@@ -74,9 +72,7 @@ def solve(model: Model, progress: Progress | None = None, step: float | None = N
     check. A failed run returns a Result with its reason; RefusedError is raised for what the backend cannot
     represent.
     """
-    refuse_externals(model, "Exudyn")
-    refuse_searched(model, "Exudyn")
-    refuse_air(model, "Exudyn", "which it does not have yet")
+    check(model)
     started = clock.perf_counter()
     system, pattern = build(model)
     exu = _exudyn()

@@ -65,6 +65,7 @@ PAIR = np.dtype(
         ("row", "i8"),  # of the contacts
         ("mark", "i8"),  # its place among the marks of pairs that have touched
         *CONTACT,
+        ("sticking", "f8"),  # of two boxes: k_t for 1 of k [mm^0.5], 0: friction does not stick
     ]
 )
 # A body is seen in the plane normal . x = at; its axes are those of the other one seen there, times `signs`.
@@ -118,7 +119,7 @@ def build(model: Model, fold: bool = True) -> System:
     joints, folded = _joints(model, fold)
     listed, found = _pairs(model)
     pairs, search, marks = plan(model, listed)
-    for name in ("shared", "k", "law"):
+    for name in ("shared", "k", "law", "sticking"):
         search.regions[name] = found[name]
     return System(
         bodies=bodies,
@@ -216,6 +217,7 @@ def _pairs(model: Model) -> tuple[np.ndarray, np.ndarray]:
     pairs, found = pack_pairs(model, PAIR, kept), pack_laws(model, PAIR, searched)
     for records, rows in ((pairs, model.pairs.contact[kept]), (found, searched)):
         records["row"], records["mark"] = rows, np.arange(len(rows))
+        records["sticking"] = model.contacts.sticking[rows] / model.contacts.stiffness[rows]
     return pairs, found
 
 

@@ -33,6 +33,7 @@ REGION = np.dtype(
         ("k", "f8"),
         ("law", "f8", LAW),  # as of a pair
         ("mark", "i8"),  # of the first pair among those of all boxes
+        ("sticking", "f8"),  # as of a pair
     ]
 )
 

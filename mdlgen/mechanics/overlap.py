@@ -169,7 +169,7 @@ def plane_of(kept, owner, other):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def _moves(owner, other, place):
+def moves(owner, other, place):
     """How the owner moves against the other box, in the owner's axes: at a place p by the velocity + the
     angular velocity x p; `place`: of the other box."""
     w, far = back(owner.r, owner.w), back(owner.r, other.w)
@@ -179,7 +179,7 @@ def _moves(owner, other, place):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _closing(kept, rate, spin):
-    """How fast two faces close, from what `_moves` has: at the middle of the owner's face, and its growth
+    """How fast two faces close, from what `moves` has: at the middle of the owner's face, and its growth
     along both of its edges."""
     return kept.side * rate[2], -kept.side * spin[1], kept.side * spin[0]
 
@@ -195,9 +195,9 @@ def impact(kept, a, b, faster, law, dt):
     owner, other = (a, b) if first else (b, a)
     one, two = faster if first else (faster[1], faster[0])
     place, level, lean_p, lean_r = plane_of(kept, owner, other)
-    rate, spin = _moves(owner, other, place)
+    rate, spin = moves(owner, other, place)
     closes, closes_p, closes_r = _closing(kept, rate, spin)
-    rate, spin = _moves(
+    rate, spin = moves(
         Frame(owner.x, owner.r, one[0], one[1]), Frame(other.x, other.r, two[0], two[1]), place
     )
     more, more_p, more_r = _closing(kept, rate, spin)
@@ -229,7 +229,7 @@ def press(out, kept, a, b, law):
     if deepest <= 0.0:
         return False
     way = -kept.side  # of the owner's normal, from the other box to it
-    rate, spin = _moves(owner, other, place)
+    rate, spin = moves(owner, other, place)
     force, torque = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     pressing = stored = lost = rubbing = 0.0
     for corner in range(kept.count):

@@ -237,6 +237,7 @@ def _contacts(scene: Scene) -> Contacts:
         spread=np.zeros(len(rows)),
         air_viscosity=column(lambda c: c.air.viscosity if c.air else 0.0),
         air_roughness=column(lambda c: c.air.roughness if c.air else 0.0),
+        sticking=column(lambda c: c.friction.sticking or 0.0),
         name=tuple(scene.contacts[i].name or "" for i, _, _ in rows) if named else (),
     )
 

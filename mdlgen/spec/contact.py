@@ -32,6 +32,12 @@ class Friction(Strict):
         description="slip speed from which on friction is dynamic; where left out the stiction velocity, or "
         "1.5 times that where the two coefficients differ",
     )
+    sticking: Annotated[float, quantity("N/mm", 0.0, open_low=True)] | None = Field(
+        default=None,
+        description="of two sheets: stiffness along the faces of one pair that sticks. What friction holds "
+        "then gives way by force/stiffness and does not creep, and slides from the limit mu N on; the pair "
+        "shares it as it shares k. Where left out friction rises over the slip speed alone",
+    )
 
     @model_validator(mode="before")
     @classmethod

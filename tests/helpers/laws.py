@@ -11,6 +11,7 @@ import numpy as np
 from mdlgen.backends.lattice.arrays import BODY, IMAGE, JOINT, PAIR
 from mdlgen.backends.lattice.kernels import entries
 from mdlgen.backends.lattice.kernels.forces import WIDE
+from mdlgen.backends.lattice.kernels.integrate.room import sticks
 from mdlgen.backends.lattice.kernels.state import Midpoint, Tables
 from mdlgen.mechanics.curve import POINT
 from mdlgen.mechanics.frame import Box, Cylinder, Frame, Law, Motion, Plate, Vector
@@ -51,6 +52,7 @@ def pair_force(bodies: np.ndarray, pair: np.void, shapes: Shapes, motion: Motion
         near=np.zeros(1, np.int64),
         overlaps=np.zeros(1, OVERLAP),
         fastest=np.zeros((2, len(bodies))),
+        sticks=sticks(0, 0),
     )
     touching = entries.contacts(tables, motion, mid)
     out[:] = mid.results[0, : len(out)]

@@ -35,16 +35,16 @@ def test_a_model_with_a_table_for_each_kind_of_part(tmp_path: Path) -> None:
     assert digest(read) == digest(result.model)
 
 
-def test_contacts_that_know_of_no_air(tmp_path: Path) -> None:
+def test_contacts_that_know_of_no_air_and_do_not_stick(tmp_path: Path) -> None:
     result = moving(lower(load(samples() / "stack.yaml")))
     result.save(tmp_path)
     with h5py.File(tmp_path / "result.h5", "r+") as file:
         values = json.loads(bytes(file["model/tables"][()]))
         contacts = values["map"]["model"]["of"]["contacts"]["of"]
-        for name in ("air_viscosity", "air_roughness"):
+        for name in ("air_viscosity", "air_roughness", "sticking"):
             del file[contacts.pop(name)["array"]]
         del file["model/tables"]
         file["model/tables"] = np.bytes_(json.dumps(values).encode())
     read = mdlgen.Result.load(tmp_path).model
-    assert read.contacts.air_viscosity.tolist() == [0.0] * 5
+    assert read.contacts.air_viscosity.tolist() == read.contacts.sticking.tolist() == [0.0] * 5
     assert digest(read) == digest(result.model)

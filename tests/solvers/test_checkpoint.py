@@ -18,6 +18,7 @@ import pytest
 from machines import MACHINE, OVERRUN
 from nip import FORTH_AND_BACK
 from same import bits
+from stacks import stack
 
 import mdlgen
 import mdlgen.errors
@@ -61,7 +62,12 @@ SCENES = {
     "snatch": ["run.duration=4 ms", "run.step=0.1 ms", "run.print_step=0.1 ms"],
 }
 SHORT = ["run.duration=12 ms", "run.step=0.1 ms", "run.print_step=0.4 ms"]
+# the uppermost note slides, the others stick
+STUCK = stack(3, "[3, 4]").replace(
+    "friction: 0.3}", "friction: {static: 0.3, dynamic: 0.2, sticking: 9 N/mm}}", 2
+)
 MORE = {
+    "sticking": (STUCK, ["sheets.note_2.velocity=[3000 mm/s, 500 mm/s, 0 mm/s]", *SHORT]),
     "one way": (FORTH_AND_BACK, [*OVERRUN, *SHORT]),
     "halved": (MACHINE, ["run.step=0.1 ms", "run.print_step=0.1 ms"]),
 }

@@ -9,6 +9,7 @@ from scipy.spatial.transform import Rotation
 from stacks import ran, stack
 
 import mdlgen
+from mdlgen.backends.lattice.kernels.integrate.room import sticks
 from mdlgen.backends.lattice.kernels.state import Midpoint
 from mdlgen.checks import lints
 from mdlgen.errors import RefusedError
@@ -95,6 +96,7 @@ def test_boxes_that_lean_have_not_crossed_where_a_centre_passes_a_plane():
             near=near,
             overlaps=np.zeros(1, OVERLAP).view(np.recarray),
             fastest=np.zeros((2, count)),
+            sticks=sticks(0, 0),
         )
         return sides.crossed(system.tables, mid, (0, 1), begins, system.search.first, 1.0) >= 0
 

@@ -44,6 +44,16 @@ class State(NamedTuple):
     ub: Floats  # (border,)
 
 
+class Sticks(NamedTuple):
+    """Where friction of two sheets sticks; no pairs: it does nowhere. See contact.sticking."""
+
+    pairs: np.ndarray  # of pairs that are searched, mechanics.stick.STRETCH
+    aside: np.ndarray  # the same while pairs are searched anew
+    head: Ints  # (bodies,) and the first of them that a box is the first of, -1: none
+    following: Ints  # the next one
+    half: Floats  # (1,) half of the step [ms]
+
+
 class Midpoint(NamedTuple):
     """The middle of a step: motion of all bodies, forces and torques on them, contacts, pairs near."""
 
@@ -57,6 +67,7 @@ class Midpoint(NamedTuple):
     near: Ints  # pairs that may touch
     overlaps: np.ndarray  # of pairs that are searched, mechanics.overlap.OVERLAP
     fastest: Floats  # how fast places of free boxes are at most, MIDDLE and ENDS of a step, (2, bodies)
+    sticks: Sticks
 
 
 MIDDLE, ENDS = 0, 1
@@ -120,6 +131,10 @@ EACH = 512
 # a rolling speed of GROWTH times the angular velocity; a cell of air, whose force has changed by SPRING since
 # the iteration began, and changes by GROWTH along a direction. Alone it would be damped by OVER [N ms/mm].
 A_PRESSURE, A_DAMPER, A_COUPLE, AIR = 0.0, 1.0, 2.0, 3.0
+# And a corner that presses and STICKS. In place of friction and its speeds it has the stretch of its spring
+# along the faces as the step begins, of the first body against the second, and the stiffness of that; its
+# PRESSING is the limit of friction itself.
+STICKS, ELONGATION, HOLDING = 4.0, MU_STATIC, SLIDING
 
 
 class Free(NamedTuple):

@@ -18,6 +18,7 @@ from mdlgen.errors import SpecError
 from mdlgen.model.external import refuse_externals
 from mdlgen.model.parameters.run import longest_step
 from mdlgen.model.sheet_pairs import refuse_searched
+from mdlgen.model.sticking import refuse_sticking
 from mdlgen.model.tables import Model
 
 # The smallest step that MotionView writes [s]; a smaller largest step needs a smaller one.
@@ -29,6 +30,7 @@ def check(model: Model) -> None:
     """Raises RefusedError by name for what the script cannot represent."""
     who = "MotionSolve script"
     refuse_externals(model, who)
+    refuse_sticking(model, who)
     refuse_searched(model, who)
     refuse_unwritten(model, WRITTEN, who)
     refuse_compressed(model, who)

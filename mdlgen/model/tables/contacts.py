@@ -41,6 +41,7 @@ class Contacts(Frozen):
     spread: Floats  # of a roller that faces another one: radius of the round its force is spread as [mm]; 0
     air_viscosity: Floats  # of the air between sheets [N ms/mm^2]; 0: none
     air_roughness: Floats  # [mm]
+    sticking: Floats  # of two sheets: stiffness along the faces of one pair that sticks [N/mm]; 0: none
     name: tuple[str, ...] = ()  # of the entries that have one, "" of others; none where no entry has
 
     def __len__(self) -> int:

@@ -91,4 +91,6 @@ def _decode(value: Any, file: Any) -> Any:
         held["machine"] = sum((held.pop(kind, ()) for kind in _FORMER), ())
     if value["table"] == "Contacts" and "air_viscosity" not in held:  # of an older version
         held["air_viscosity"] = held["air_roughness"] = np.zeros(len(held["part_a"]))
+    if value["table"] == "Contacts" and "sticking" not in held:
+        held["sticking"] = np.zeros(len(held["part_a"]))
     return _CLASSES[value["table"]](**held)

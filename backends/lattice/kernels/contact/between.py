@@ -7,6 +7,7 @@ from mdlgen.mechanics.frame import box_of, frame_of, law_of
 from mdlgen.mechanics.overlap import OTHER, UNKNOWN, apart, find, holds, press
 from mdlgen.mechanics.pair import BOX_BOX
 from mdlgen.mechanics.point import DISSIPATED, OUT, POINTS, STORED
+from mdlgen.mechanics.stick import carry_stretch, press_sticking
 from mdlgen.program.kernel import BORROWS, njit
 
 # Part of a box by which its overlap may have moved along it since it was found. With 1e-2 within a step the
@@ -51,16 +52,41 @@ def _two_boxes(tables, pair, kept, motion, f, out, short):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
+def _sticking(tables, mid, k, pair, out, short):
+    """As `_two_boxes` for friction that sticks; k: of the pair among those that are searched."""
+    motion, f, kept, stuck = mid.motion, mid.forces, mid.overlaps[k], mid.sticks.pairs[k]
+    a, b = frame_of(motion, pair.a), frame_of(motion, pair.b)
+    if not holds(kept, a, b, MOVED):
+        one, two = box_of(tables.bodies[pair.a]), box_of(tables.bodies[pair.b])
+        if apart(a, one.half, b, two.half, 0.0):
+            return False
+        find(kept, a, one, b, two, law_of(pair))
+        carry_stretch(stuck, kept, a, b, pair.sticking)
+    if kept.state == OTHER:
+        return _by_sides(tables, pair, motion, f, out, short)
+    if kept.count == 0:
+        return False
+    if not press_sticking(short, kept, stuck, a, b, law_of(pair), pair.sticking, mid.sticks.half[0]):
+        return False
+    short[POINTS] = 0.0
+    onto(f, pair, short)
+    return True
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
 def near_forces(work, close):
     """Adds the forces of the near pairs to those of the midpoint, as forces.pair_forces does, but without the
     contact points of two sheets. Returns (how many pairs touch, dissipated power)."""
     tables, mid, first = work.tables, work.mid, work.search.first
     near, motion, f, results, overlaps = mid.near, mid.motion, mid.forces, mid.results, mid.overlaps
+    sticks = mid.sticks.pairs.size > 0
     count = row = 0
     lost = 0.0
     for at in range(close):
         pair, out, short = tables.pairs[near[at]], results[row], mid.faces[count]
-        if pair.kind == BOX_BOX:
+        if sticks and pair.kind == BOX_BOX and pair.sticking > 0.0:
+            touching = _sticking(tables, mid, near[at] - first, pair, out, short)
+        elif pair.kind == BOX_BOX:
             touching = _two_boxes(tables, pair, overlaps[near[at] - first], motion, f, out, short)
         else:
             touching = touches(tables, pair, motion, f, out)
@@ -85,7 +111,12 @@ def forces_at(tables, mid, first, motion, close):
         if pair.kind == BOX_BOX:
             kept, a, b = overlaps[near[at] - first], frame_of(motion, pair.a), frame_of(motion, pair.b)
             if holds(kept, a, b, MOVED):
-                touching = kept.count > 0 and press(short, kept, a, b, law_of(pair))
+                if mid.sticks.pairs.size > 0 and pair.sticking > 0.0:
+                    stuck, ratio = mid.sticks.pairs[near[at] - first], pair.sticking
+                    touching = kept.count > 0
+                    touching = touching and press_sticking(short, kept, stuck, a, b, law_of(pair), ratio, 0.0)
+                else:
+                    touching = kept.count > 0 and press(short, kept, a, b, law_of(pair))
                 if touching:
                     short[POINTS] = 0.0
                     onto(f, pair, short)

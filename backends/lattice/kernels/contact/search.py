@@ -67,6 +67,7 @@ def look(pairs, search, x):
 def _fill(pair, region, a, b, rough):
     pair.kind, pair.a, pair.b = BOX_BOX, a, b
     pair.row, pair.shared, pair.k = region.row, region.shared, region.k
+    pair.sticking = region.sticking
     for i in range(LAW):
         pair.law[i] = region.law[i] * (rough if i in (LAW_STATIC, LAW_DYNAMIC) else 1.0)
     pair.mark = region.mark + (a - region.a) * region.many_b + (b - region.b)

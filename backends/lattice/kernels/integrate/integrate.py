@@ -8,6 +8,7 @@ import numpy as np
 
 from mdlgen.backends.lattice.kernels.contact.between import forget_overlaps
 from mdlgen.backends.lattice.kernels.contact.search import look, strayed
+from mdlgen.backends.lattice.kernels.contact.sticking import end_of_step, put_back, set_aside
 from mdlgen.backends.lattice.kernels.contact.swept import Before, swept
 from mdlgen.backends.lattice.kernels.integrate.air import air_overshoot
 from mdlgen.backends.lattice.kernels.integrate.carry import carry, spun
@@ -226,8 +227,12 @@ def run(work, t, steps, tolerance, control):
                 control.factored[STALE] = 1.0
             if search.regions.size > 0 and strayed(bodies, search, x, u, dt):
                 forget_overlaps(mid.overlaps)
+                if mid.sticks.pairs.size > 0:
+                    set_aside(mid.sticks)
                 if not look(pairs, search, x):
                     return CROWDED, t
+                if mid.sticks.pairs.size > 0:
+                    energies[DISSIPATED] += put_back(pairs, mid.sticks, search.first)
             iterations = counters[ITERATIONS]
             # a halved step's guess is the better, and what it may leave must fall as fast; where sheets lie
             # on each other iterations do not come as far
@@ -271,6 +276,9 @@ def run(work, t, steps, tolerance, control):
             copy(last_u, keep_u)
             copy(last_b, keep_b)
             _account(bodies, mid, state, t, dt, energies)
+            if mid.sticks.pairs.size > 0:
+                gone = end_of_step(work, int(counters[TOUCHING]), int(counters[CLOSE]))
+                energies[DISSIPATED] += gone
             _watch(tables, mid, int(counters[TOUCHING]), t, dt, work.kept)
             if t == begun:
                 _begun(rows, spans[LAST_STEP] / (spans[LAST_STEP] + dt))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mdlgen.backends.lattice.kernels.contact.between import forces_at
+from mdlgen.backends.lattice.kernels.contact.sticking import energy_of
 from mdlgen.backends.lattice.kernels.forces import joint_forces, near_pairs
 from mdlgen.backends.lattice.kernels.state import (
     DEPTH_NOW,
@@ -73,6 +74,7 @@ def ledger(tables, state, mid, t, first, energies, rows):
     stored, _, _ = joint_forces(tables.joints, tables.points, motion, f)
     close = near_pairs(tables, motion, 0.0, 0.0, mid.near)
     count, pressed = forces_at(tables, mid, first, motion, close)
+    pressed += energy_of(mid.sticks)
     for k in range(count):
         pair = tables.pairs[mid.touched[k]]
         out = mid.faces[k] if pair.kind == BOX_BOX else mid.results[mid.rows[k]]

@@ -18,6 +18,7 @@ import math
 from mdlgen.backends.lattice.kernels.contact.between import MOVED
 from mdlgen.backends.lattice.kernels.integrate.active import of_sheets
 from mdlgen.backends.lattice.kernels.integrate.air import damping_of
+from mdlgen.backends.lattice.kernels.integrate.sticking_points import held_back, stick
 from mdlgen.backends.lattice.kernels.state import (
     A_COUPLE,
     A_DAMPER,
@@ -41,6 +42,7 @@ from mdlgen.backends.lattice.kernels.state import (
     SPRING,
     SQUARE,
     START,
+    STICKS,
     STICTION,
     STIFFNESS,
 )
@@ -49,6 +51,7 @@ from mdlgen.mechanics.frame import LAW_SMOOTHING, box_of, frame_of, law_of
 from mdlgen.mechanics.laws import damped, friction_over_speed, sign_step
 from mdlgen.mechanics.overlap import OTHER, apart, find, holds, plane_of
 from mdlgen.mechanics.pair import BOX_BOX, on_fixed_plate
+from mdlgen.mechanics.stick import carry_stretch, stretch_of
 from mdlgen.mechanics.vector import add, cross, dot, rotate, scale, sub, three, three_from
 from mdlgen.program.kernel import BORROWS, njit
 
@@ -87,6 +90,8 @@ def force_of(q, v, h):
     _spring, _growth, normal, _rate, slip = law_at(q, v, h)
     if q[PRESSING] <= 0.0:
         return scale(normal, n)
+    if q[KIND] == STICKS:
+        return sub(scale(normal, n), held_back(q, slip, h))
     speed = math.sqrt(dot(slip, slip))
     over = friction_over_speed(speed, q[MU_STATIC], q[MU_DYNAMIC], q[STICTION], q[SLIDING])
     return sub(scale(normal, n), scale(q[PRESSING] * over, slip))
@@ -174,8 +179,8 @@ def _of_law(frozen, p, pair, out, h, motion):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _of_faces(frozen, p, pair, kept, h, motion):
-    """Adds the corners of the overlap that is kept of two boxes."""
+def _of_faces(frozen, p, pair, kept, h, motion, sticks, k):
+    """Adds the corners of the overlap that is kept of two boxes, whose stretches are sticks[k]."""
     a, b = frame_of(motion, pair.a), frame_of(motion, pair.b)
     law = law_of(pair)
     first = kept.first != 0
@@ -198,6 +203,9 @@ def _of_faces(frozen, p, pair, kept, h, motion):
         q[MU_STATIC], q[MU_DYNAMIC] = law.mu_static, law.mu_dynamic
         q[STICTION], q[SLIDING] = law.stiction, law.sliding
         q[PRESSING] = law_at(q, three_from(q, NOW), h)[2]
+        if sticks.size > 0 and pair.sticking > 0.0:
+            k_t = pair.sticking * kept.stiffness[corner]
+            stick(q, stretch_of(sticks[k], kept, owner, corner), k_t, law)
         _started(q, h)
 
 
@@ -228,7 +236,7 @@ def gather(work, counts, h, plates):
     bodies, pairs, near, motion = tables.bodies, tables.pairs, mid.near, mid.motion
     count, close = counts
     frozen.many[0] = known = 0
-    air = film.many[0]
+    air, sticks = film.many[0], mid.sticks.pairs
     for k in range(air):
         film.cells[film.head[film.listed[k]]].point = -1
     for at in range(close):
@@ -253,11 +261,13 @@ def gather(work, counts, h, plates):
             if apart(a, one.half, b, two.half, REACH):
                 continue
             find(kept, a, one, b, two, law_of(pair))
+            if sticks.size > 0 and pair.sticking > 0.0:
+                carry_stretch(sticks[p - first], kept, a, b, pair.sticking)
         if kept.state == OTHER:
             if touching:
                 _of_law(frozen, p, pair, mid.results[mid.rows[row]], h, motion)
         elif kept.count > 0:
-            _of_faces(frozen, p, pair, kept, h, motion)
+            _of_faces(frozen, p, pair, kept, h, motion, sticks, p - first)
     for k in range(air):
         _of_air(frozen, film, pairs[film.listed[k]], film.listed[k], motion)
     of_sheets(tables, frozen, work.matrix.couplings.colouring.label)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from mdlgen.backends.lattice.kernels.contact.slopes import Numbers, core, outer, steepness
 from mdlgen.backends.lattice.kernels.integrate.points import law_at
+from mdlgen.backends.lattice.kernels.integrate.sticking_points import holding
 from mdlgen.backends.lattice.kernels.integrate.tangent import blocks
 from mdlgen.backends.lattice.kernels.integrate.unknowns import moving, turning_of
 from mdlgen.backends.lattice.kernels.linear.two_colour import ONE, TWO
@@ -25,6 +26,7 @@ from mdlgen.backends.lattice.kernels.state import (
     SLIDING,
     SPRING,
     SQUARE,
+    STICKS,
     STICTION,
 )
 from mdlgen.mechanics.vector import cross, dot, rotate, scale, three_from, vec
@@ -113,6 +115,12 @@ def points_into(work, h, chord):
             y = -dot(three_from(q, NOW), n) / q[OVER]
             damping = h * q[SPRING] * q[BETA] * steepness(y, q[OVER], chord)
             _point_into(bodies, pair, q, x, outer(scale(damping, n), n), coupled, matrix)
+        elif q[KIND] == STICKS:
+            spring, growth, _normal, rate, slip = law_at(q, three_from(q, NOW), h)
+            rubs = (0.0, 0.0, 1.0, 1.0)
+            numbers = Numbers(spring, growth, 0.0, rate, q[OVER], q[BETA], *rubs, True)
+            t, _, _ = core(numbers, n, n, slip, h, chord, False)
+            _point_into(bodies, pair, q, x, holding(t, q, n, slip, h, chord), coupled, matrix)
         else:
             spring, growth, _normal, rate, slip = law_at(q, three_from(q, NOW), h)
             numbers = Numbers(

@@ -6,15 +6,17 @@ import numpy as np
 
 from mdlgen.backends.lattice.kernels.linear.band import empty as no_band
 from mdlgen.backends.lattice.kernels.linear.coupled import couplings
-from mdlgen.backends.lattice.kernels.state import EACH, POINT, Frozen, Matrix, Midpoint, State
+from mdlgen.backends.lattice.kernels.state import EACH, POINT, Frozen, Matrix, Midpoint, State, Sticks
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.overlap import OVERLAP
 from mdlgen.mechanics.point import FACES, MOST_POINTS
+from mdlgen.mechanics.stick import STRETCH
 
 
 def empty(system, wide: int) -> tuple[State, Midpoint, Matrix]:
     """State, midpoint and matrix of a System, all zero; `wide` numbers hold what a pair does."""
     bodies, nodes, border = len(system.bodies), len(system.nodes), system.border
+    sticking = bool((system.search.regions["sticking"] > 0.0).any())
     state = State(
         x=np.zeros((bodies, 3)),
         r=np.zeros((bodies, 9)),
@@ -40,6 +42,7 @@ def empty(system, wide: int) -> tuple[State, Midpoint, Matrix]:
         near=np.zeros(len(system.pairs), np.int64),
         overlaps=np.zeros(max(1, len(system.pairs) - system.search.first), OVERLAP),
         fastest=np.zeros((2, bodies)),
+        sticks=sticks(len(system.pairs) - system.search.first, bodies) if sticking else sticks(0, 0),
     )
     matrix = Matrix(
         band=no_band(nodes, system.reach),
@@ -60,6 +63,17 @@ def empty(system, wide: int) -> tuple[State, Midpoint, Matrix]:
         single_inner=no_band(nodes, system.reach).astype(np.float32),
     )
     return state, mid, matrix
+
+
+def sticks(pairs: int, bodies: int) -> Sticks:
+    """Stretches of so many pairs that are searched, and of so many bodies."""
+    return Sticks(
+        pairs=np.zeros(pairs, STRETCH),
+        aside=np.zeros(pairs, STRETCH),
+        head=np.full(bodies, -1, np.int64),
+        following=np.full(pairs, -1, np.int64),
+        half=np.zeros(1),
+    )
 
 
 def frozen(system, cells: int) -> Frozen:

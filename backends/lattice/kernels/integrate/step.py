@@ -212,8 +212,9 @@ def midpoint(work, t, dt, tolerance, control):
     counters[THROUGH] = -1.0
     close, where, m = 0, int(factored[WHERE]), 0
     margin, moved, sheets = FAR, 0.0, work.search.regions.size > 0
-    # loads add to the forces, by which the drives' power is counted
-    lasting = sheets and tables.loads.size == 0
+    # loads add to the forces, by which the drives' power is counted; what sticks is where the step ends
+    lasting = sheets and tables.loads.size == 0 and mid.sticks.pairs.size == 0
+    mid.sticks.half[0] = h
     inner, alike, air = 0, 0, False
     for iteration in range(MOST_ITERATIONS):
         place(tables, h, t + h, state, mid.motion)

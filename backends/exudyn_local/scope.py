@@ -1,0 +1,17 @@
+"""What this solver can represent."""
+
+from __future__ import annotations
+
+from mdlgen.model.air import refuse_air
+from mdlgen.model.external import refuse_externals
+from mdlgen.model.sheet_pairs import refuse_searched
+from mdlgen.model.sticking import refuse_sticking
+from mdlgen.model.tables import Model
+
+
+def check(model: Model) -> None:
+    """Raises RefusedError by name for what it cannot."""
+    refuse_externals(model, "Exudyn")
+    refuse_sticking(model, "Exudyn")
+    refuse_searched(model, "Exudyn")
+    refuse_air(model, "Exudyn", "which it does not have yet")

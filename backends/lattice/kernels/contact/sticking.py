@@ -1,0 +1,93 @@
+"""Stretches of pairs whose friction sticks: what a step leaves of them, and what a new search does.
+
+A step begins with the stretches of the last one (mechanics.stick). Iterations leave those as they are, so a
+step that is taken again, shorter, begins with the same. Pairs that a search lists in other places take
+their stretches with them.
+"""
+
+from __future__ import annotations
+
+from mdlgen.mechanics.overlap import OVERLAPS
+from mdlgen.mechanics.stick import end_step, let_go
+from mdlgen.model.tables import BOX_BOX
+from mdlgen.program.kernel import BORROWS, njit
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def end_of_step(work, count, close):
+    """Takes over the stretches that a step ends with. `count`: how many pairs touch in its middle; `close`:
+    how many are near. Returns the energy of the springs that have let go [N mm]."""
+    tables, mid, first = work.tables, work.mid, work.search.first
+    near, overlaps, sticks = mid.near, mid.overlaps, mid.sticks.pairs
+    gone, known = 0.0, 0
+    for at in range(close):
+        p = near[at]
+        touches = known < count and mid.touched[known] == p
+        if touches:
+            known += 1
+        pair = tables.pairs[p]
+        if pair.kind != BOX_BOX or pair.sticking == 0.0:
+            continue
+        stuck, kept = sticks[p - first], overlaps[p - first]
+        if touches and kept.state == OVERLAPS:
+            end_step(stuck, kept, pair.a, pair.b)
+        elif stuck.count > 0:
+            gone += let_go(stuck)
+    return gone
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _copy(to, of):
+    to.a, to.b, to.count, to.first, to.energy = of.a, of.b, of.count, of.first, of.energy
+    for corner in range(of.count):
+        for i in range(2):
+            to.corners[corner, i], to.begun[corner, i] = of.corners[corner, i], of.begun[corner, i]
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def set_aside(sticks):
+    """Takes the stretches of all pairs out of their places, before pairs are searched anew."""
+    sticks.head[:] = -1
+    count = 0
+    for k in range(sticks.pairs.size):
+        stuck = sticks.pairs[k]
+        if stuck.count == 0:
+            continue
+        _copy(sticks.aside[count], stuck)
+        sticks.following[count] = sticks.head[stuck.a]
+        sticks.head[stuck.a] = count
+        count += 1
+        let_go(stuck)
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def put_back(pairs, sticks, first):
+    """Gives the pairs from `first` on, which were searched anew, the stretches that were set aside. Returns
+    the energy of the springs whose pair is none any more [N mm]."""
+    gone = 0.0
+    for b in range(sticks.head.size):
+        k = sticks.head[b]
+        while k >= 0:
+            gone += sticks.aside[k].energy
+            k = sticks.following[k]
+    for p in range(first, pairs.size):
+        pair = pairs[p]
+        if pair.kind != BOX_BOX:
+            break
+        k = sticks.head[pair.a]
+        while k >= 0:
+            if sticks.aside[k].b == pair.b:
+                _copy(sticks.pairs[p - first], sticks.aside[k])
+                gone -= sticks.aside[k].energy
+                break
+            k = sticks.following[k]
+    return max(gone, 0.0)
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def energy_of(sticks):
+    """What all springs store between steps [N mm]."""
+    energy = 0.0
+    for k in range(sticks.pairs.size):
+        energy += sticks.pairs[k].energy
+    return energy
