@@ -47,6 +47,7 @@ def pair_force(bodies: np.ndarray, pair: np.void, shapes: Shapes, motion: Motion
         forces=np.zeros((len(bodies), 6)),
         touched=np.zeros(1, np.int64),
         results=np.zeros((1, WIDE)),
+        rows=np.zeros(1, np.int64),
         faces=np.zeros((1, FACES)),
         totals=np.zeros(3),
         near=np.zeros(1, np.int64),
