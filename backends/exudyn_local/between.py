@@ -8,21 +8,10 @@ import numpy as np
 
 from mdlgen.backends.exudyn_local.place import place_all, place_body
 from mdlgen.backends.exudyn_local.state import Coordinates
-from mdlgen.mechanics.crossing import above, buried, closing, deepest, size, unseen
-from mdlgen.mechanics.frame import ARC_RADIUS, RADIUS, WIDTH, Motion
-from mdlgen.mechanics.guide import inward
-from mdlgen.mechanics.pair import (
-    BOX_BOX,
-    BOX_GUIDE,
-    BOX_MESH,
-    BOX_PLANE,
-    CYLINDER_CYLINDER,
-    on_part,
-    pair_force,
-    roller_near,
-)
+from mdlgen.mechanics.crossing import above, apart, buried, closing, deepest, solid, unseen
+from mdlgen.mechanics.frame import Motion
+from mdlgen.mechanics.pair import pair_force
 from mdlgen.mechanics.point import DEPTH, OUT
-from mdlgen.mechanics.vector import back, dot, mat, sub, vec
 from mdlgen.program.kernel import njit
 
 # Pairs that would have to be looked at more often in a step want a smaller one.
@@ -55,30 +44,6 @@ def _between(body, before, now, part, into):
 
 
 @njit(cache=True, error_model="numpy")
-def _apart(bodies, pair, shapes, x, r, way):
-    """Whether a pair is too far apart to meet where it comes closer by `way`."""
-    a, b = pair.a, pair.b
-    gap = sub(vec(x, a), vec(x, b))
-    if pair.kind == BOX_PLANE:
-        height = abs(dot(gap, (r[b, 2], r[b, 5], r[b, 8])))
-        return height > bodies[b].half[2] + size(bodies[a]) + way
-    if pair.kind == BOX_GUIDE:
-        height = abs(inward(back(mat(r, b), gap), bodies[b].arc[ARC_RADIUS]))
-        return height > 2.0 * bodies[b].half[2] + size(bodies[a]) + way
-    far = size(bodies[b])
-    if pair.kind == BOX_MESH:
-        far = shapes.meshes.heads[pair.mesh].reach
-    elif pair.kind != BOX_BOX:
-        far = math.hypot(bodies[b].size[RADIUS], 0.5 * bodies[b].size[WIDTH])
-    if on_part(pair):
-        return not roller_near(bodies, pair, shapes, x, r, way)
-    own = size(bodies[a])
-    if pair.kind == CYLINDER_CYLINDER:
-        own = math.hypot(bodies[a].size[RADIUS], 0.5 * bodies[a].size[WIDTH])
-    return math.sqrt(dot(gap, gap)) > own + far + way
-
-
-@njit(cache=True, error_model="numpy")
 def passed(bodies, pairs, shapes, before, rates, now, rates_now, t, dt):
     """The first pair that was deeper than it may be, or came to another side, in a step of dt from t, or -1;
     from the coordinates `before` at the velocities `rates` to `now`."""
@@ -94,10 +59,10 @@ def passed(bodies, pairs, shapes, before, rates, now, rates_now, t, dt):
         fast = max(fast, closing(bodies, pair, shapes, last, dt))
         way, band = dt * fast, unseen(bodies, pair, shapes)
         side = above(bodies, pair, first.x, first.r)
-        solid = pair.kind == BOX_MESH and bodies[pair.a].exposed != 0
-        if way <= band and side == 0 and not solid:
+        inside = solid(bodies, pair)
+        if way <= band and side == 0 and not inside:
             continue
-        if _apart(bodies, pair, shapes, first.x, first.r, way):
+        if apart(bodies, pair, shapes, first.x, first.r, way):
             continue
         if way > MOST_LOOKS * band:
             return p
@@ -111,7 +76,7 @@ def passed(bodies, pairs, shapes, before, rates, now, rates_now, t, dt):
             if side * beyond < 0:
                 return p
             side = beyond
-            if solid and buried(bodies, pair, shapes, last.x, last.r):
+            if inside and buried(bodies, pair, shapes, last.x, last.r):
                 return p
             if way > band:
                 out[:] = 0.0

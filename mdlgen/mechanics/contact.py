@@ -11,10 +11,10 @@ from mdlgen.mechanics.frame import Sector
 from mdlgen.mechanics.nip import WHOLE, press
 from mdlgen.mechanics.point import Load, push
 from mdlgen.mechanics.vector import add, back, dot, local, rotate, scale, sub
-from mdlgen.program.kernel import BORROWS, OWNS, njit
+from mdlgen.program.kernel import BORROWS, CALLED, OWNS, njit
 
 
-@njit(cache=True, error_model="numpy", **BORROWS)
+@njit(cache=True, error_model="numpy", **BORROWS, **CALLED)
 def box_cylinder(out, a, box, b, roller, law):
     """Box a against a Cylinder b; out: see mechanics.point."""
     nowhere = (0.0, 0.0, 0.0)
@@ -112,7 +112,7 @@ def face_corner(corner, a, half, facing, b):
     return back(b.r, sub(add(a.x, rotate(a.r, local(p, r, q, sp, sr, side))), b.x))
 
 
-@njit(cache=True, error_model="numpy", **BORROWS)
+@njit(cache=True, error_model="numpy", **BORROWS, **CALLED)
 def cylinder_cylinder(out, a, one, b, two, law):
     """Two parallel Cylinders; k is shared by the part of the narrower one's width that they meet on."""
     gap = sub(a.x, b.x)

@@ -24,7 +24,7 @@ import numpy as np
 from mdlgen.mechanics.contact import clip, face_corners
 from mdlgen.mechanics.point import Load, push
 from mdlgen.mechanics.vector import add, back, dot, local, rotate, scale, sub, transpose_matmul
-from mdlgen.program.kernel import OWNS, njit
+from mdlgen.program.kernel import CALLED, OWNS, njit
 
 # Parts of the boxes' size by which another face must overlap less to own the contact: round-off does not
 # make two parallel faces take turns.
@@ -98,7 +98,7 @@ def shares(points, count, p, r, weights):
     return abs(area)
 
 
-@njit(cache=True, error_model="numpy", **OWNS)
+@njit(cache=True, error_model="numpy", **OWNS, **CALLED)
 def box_box(out, a, one_box, b, two_box, law):
     """Box a against box b of another sheet."""
     half_a, half_b = one_box.half, two_box.half

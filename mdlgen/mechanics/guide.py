@@ -24,7 +24,7 @@ from mdlgen.mechanics.frame import ARC_ANGLE, ARC_MIDDLE, ARC_RADIUS, Cylinder, 
 from mdlgen.mechanics.plate import area_of, box_ends, box_flat, facing
 from mdlgen.mechanics.point import Load, push
 from mdlgen.mechanics.vector import add, back, dot, rotate, scale, sub
-from mdlgen.program.kernel import OWNS, njit
+from mdlgen.program.kernel import CALLED, OWNS, njit
 
 INSIDE, OUTSIDE, BOTH = 1, 2, 3  # sides: left of a line or inside an arc; right or outside; both
 
@@ -60,7 +60,7 @@ def _beyond(i, shape):
     return (-sign * math.sin(at), sign * math.cos(at), 0.0)
 
 
-@njit(cache=True, error_model="numpy", **OWNS)
+@njit(cache=True, error_model="numpy", **OWNS, **CALLED)
 def box_guide(out, a, box, b, plate, law):
     """Box a on guide b, which does not move. A box meets the face of the side that it is on.
 

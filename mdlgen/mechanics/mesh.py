@@ -57,7 +57,7 @@ from mdlgen.mechanics.vector import (
     three,
     transpose_matmul,
 )
-from mdlgen.program.kernel import OWNS, njit
+from mdlgen.program.kernel import CALLED, OWNS, njit
 
 _SPAN = 2.5  # what presses under a round reaches no further than sqrt(5) times its spread
 LOST = 1e30  # what a depth that ends a run is above
@@ -91,7 +91,7 @@ def _nip(both, room, head, meshes, placed, half, sign, exposed, stiff):
     return three(whole[FORCE:]), u, v
 
 
-@njit(cache=True, error_model="numpy", **OWNS)
+@njit(cache=True, error_model="numpy", **OWNS, **CALLED)
 def box_mesh(out, a, box, b, axis, head, meshes, law):
     """Box a on a mesh that moves with body b; axis: of the roller, where b is one."""
     half, exposed = box
@@ -155,7 +155,7 @@ def box_mesh(out, a, box, b, axis, head, meshes, law):
         push(out, spot, out_of, Load(lost, math.inf, 0.0), a, b, law)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **CALLED)
 def mesh_near(head, meshes, xa, ra, half, xb, rb, more):
     """Whether a box that is larger by `more` on all sides may meet a leaf of the mesh's tree."""
     frame = matmul(rb, nine(head.axes))

@@ -17,7 +17,7 @@ from mdlgen.mechanics.edge import HOLDS, LOWER, UPPER, end_of, held, leaning, li
 from mdlgen.mechanics.frame import ARC_RADIUS, Frame
 from mdlgen.mechanics.point import Load, push
 from mdlgen.mechanics.vector import add, back, cross, dot, rotate, scale, sub, vec
-from mdlgen.program.kernel import BORROWS, OWNS, njit
+from mdlgen.program.kernel import BORROWS, CALLED, OWNS, njit
 
 STRAIGHT = (0.0, 0.0, 0.0)
 
@@ -178,7 +178,7 @@ def _near_end(point, half_b, ends, radius, inward, normal, share):
     return weight, scale(1.0 / size, way)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **CALLED)
 def box_plane(out, a, box, b, plate, law):
     """Box a on plane b, whose frame has the plane's own axes, z its normal; see `box_flat`."""
     box_flat(out, a, box, Frame(b.x, as_guide(b.r), b.v, b.w), plate, False, law)

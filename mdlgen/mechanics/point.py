@@ -35,7 +35,7 @@ from typing import NamedTuple
 from mdlgen.mechanics.frame import Vector
 from mdlgen.mechanics.laws import damped, friction_over_speed, sign_step
 from mdlgen.mechanics.vector import add, cross, dot, scale, sub
-from mdlgen.program.kernel import BORROWS, FUSED, njit
+from mdlgen.program.kernel import BORROWS, CALLED, FUSED, njit
 
 # Columns of what a pair adds up: force and torque on the first body and on the second, three each; the force
 # along normals, stored energy, dissipated power, the greatest depth. A longer one has how many points follow.
@@ -89,6 +89,12 @@ class Losses(NamedTuple):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
+def presses(out):
+    """Whether a pair's columns have a force that presses."""
+    return out[PRESSING] != 0.0
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
 def closing(point, normal, a, b):
     """How fast two bodies close at a point along a normal that points to the first."""
     slip = sub(add(a.v, cross(a.w, sub(point, a.x))), add(b.v, cross(b.w, sub(point, b.x))))
@@ -102,7 +108,7 @@ def passing(point, across, slope, a, b):
     return slope * dot(sub(add(a.v, cross(a.w, sub(point, a.x))), b.v), across)
 
 
-@njit(cache=True, error_model="numpy", **BORROWS)
+@njit(cache=True, error_model="numpy", **BORROWS, **CALLED)
 def push(out, point, normal, load, a, b, law):
     """Adds the force of one contact point of bodies a and b (Frames); `normal` points to a."""
     losses = Losses(closing(point, normal, a, b), law.smoothing, normal)
@@ -131,7 +137,7 @@ def push_in_nip(out, point, normal, nip, load, a, b, law):
             out[at + WAY + i] = nip.way[i]
 
 
-@njit(cache=True, error_model="numpy", **BORROWS, **FUSED)
+@njit(cache=True, error_model="numpy", **BORROWS, **CALLED, **FUSED)
 def _push(out, point, normal, losses, load, a, b, law):
     """Adds the force of a point with its Losses; returns where it stands in `out`, 0: nowhere."""
     spring, depth, energy = load

@@ -25,7 +25,7 @@ from mdlgen.mechanics.point import DEPTH, FORCE_A, FORCE_B, STORED, TORQUE_A, TO
 from mdlgen.mechanics.vector import back, cross, dot, rotate, scale, sub, three
 from mdlgen.model.rims import TURN, pieces
 from mdlgen.model.tables import Floats, Model, RimPart, RollerPart
-from mdlgen.program.kernel import njit
+from mdlgen.program.kernel import CALLED, njit
 
 # Columns of a piece, as above.
 _BEGIN, _RADIUS, _EDGE, _STIFFNESS, _FRICTION, _DAMPING, PIECE = 0, 1, 2, 3, 4, 5, 6
@@ -135,7 +135,7 @@ def _facing(l0, al, half, exposed):
     return (0.0, -math.copysign(1.0, l0[1]), 0.0)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **CALLED)
 def box_rim(out, a, box, b, body, rims, law):
     """As `contact.box_cylinder` for a roller b whose record `body` has a rim, in the table `rims`."""
     axis = three(body.axis)
@@ -160,7 +160,7 @@ def _towards(body, rims, r, way, beta):
     return profile(body, rims, _angle(r, way), beta)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **CALLED)
 def rim_rim(out, a, one, b, two, rims, law):
     """As `contact.cylinder_cylinder` for two rollers with records `one` and `two`, of which one has a rim, in
     the table `rims`.

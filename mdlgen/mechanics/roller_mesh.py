@@ -24,7 +24,7 @@ from mdlgen.mechanics.frame import RADIUS, WIDTH
 from mdlgen.mechanics.point import Load, push
 from mdlgen.mechanics.tree import AFTER, COUNT, FIRST, HIGH, LOW, NORMAL, overlaps, span
 from mdlgen.mechanics.vector import add, back, cross, dot, matmul, nine, rotate, scale, sub, three
-from mdlgen.program.kernel import OWNS, njit
+from mdlgen.program.kernel import CALLED, OWNS, njit
 
 SLICES = 8
 MOST_PIECES = 512  # of one slice; what is more counts to the patch of the last
@@ -140,7 +140,7 @@ def _join(pieces, found, radius):
                         pieces[k, _PATCH] = new
 
 
-@njit(cache=True, error_model="numpy", **OWNS)
+@njit(cache=True, error_model="numpy", **OWNS, **CALLED)
 def roller_mesh(out, body, a, b, head, meshes, law):
     """Roller a (a record with its axis and size) on a mesh that moves with body b."""
     frame = matmul(b.r, nine(head.axes))
@@ -181,7 +181,7 @@ def roller_mesh(out, body, a, b, head, meshes, law):
             push(out, point, scale(-1.0, way), Load(spring, depth, energy), a, b, law)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **CALLED)
 def roller_mesh_near(body, xa, xb, rb, head, meshes, more):
     """Whether a roller that is larger by `more` on all sides may meet a leaf of the mesh's tree."""
     radius, half = body.size[RADIUS] + more, 0.5 * body.size[WIDTH] + more

@@ -28,10 +28,12 @@ from mdlgen.mechanics.guide import BOTH, INSIDE, OUTSIDE, inward
 from mdlgen.mechanics.point import FORCE_A, FORCE_B, TORQUE_A, Load, push
 from mdlgen.mechanics.rim import profile
 from mdlgen.mechanics.vector import add, back, cross, dot, rotate, scale, sub, three
-from mdlgen.program.kernel import BORROWS, OWNS, njit
+from mdlgen.program.kernel import BORROWS, CALLED, OWNS, njit
 
 # Cosine of the angle between a roller's axis and a face's normal, above which the roller stands on its end.
 STEEPEST = 0.5
+# How deep a roller may be in a plate, in times its radius: its axis is soon behind the face.
+DEEP_ROLLER = 0.5
 _GAUSS = 1.0 / math.sqrt(3.0)
 
 
@@ -241,7 +243,7 @@ def reach_along(body, way):
     return 0.5 * body.size[WIDTH] * abs(lean) + body.size[RADIUS] * math.sqrt(max(0.0, 1.0 - lean * lean))
 
 
-@njit(cache=True, error_model="numpy", **BORROWS)
+@njit(cache=True, error_model="numpy", **BORROWS, **CALLED)
 def plate_near(body, at, rb, other, more):
     """Whether a roller whose centre is at a place (axes rb) of a plane may come `more` near to it."""
     for i in range(3):
@@ -251,7 +253,7 @@ def plate_near(body, at, rb, other, more):
     return True
 
 
-@njit(cache=True, error_model="numpy", **BORROWS)
+@njit(cache=True, error_model="numpy", **BORROWS, **CALLED)
 def guide_near(body, at, rb, other, more):
     """As plate_near for a guide."""
     half, radius = other.half, other.arc[ARC_RADIUS]
@@ -264,7 +266,7 @@ def guide_near(body, at, rb, other, more):
     return abs(at[1]) <= 2.0 * half[2] + reach_along(body, (rb[1], rb[4], rb[7])) + more
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **CALLED)
 def roller_plane(out, body, rims, a, b, half, law):
     """Roller a against plane b, of half lengths `half` along its axes, which does not turn."""
     rb = b.r
@@ -274,7 +276,7 @@ def roller_plane(out, body, rims, a, b, half, law):
     roller_plate(out, body, rims, a, b, face, law)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **CALLED)
 def roller_guide(out, body, rims, a, b, shape, half, side, law):
     """Roller a against guide b, which does not move; side: INSIDE, OUTSIDE or BOTH; the rest as in Plate."""
     if shape[ARC_RADIUS] > 0.0:

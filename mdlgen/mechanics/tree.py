@@ -13,7 +13,7 @@ import numpy as np
 
 from mdlgen.mechanics.vector import add, cross, dot, scale, sub, three
 from mdlgen.model.tables import Floats, Ints
-from mdlgen.program.kernel import njit
+from mdlgen.program.kernel import CALLED, njit
 
 LEAF = 8  # triangles
 # Columns of the bounds of a node: least and greatest coordinates, least and greatest normals.
@@ -170,7 +170,7 @@ def closest(c, at):
     return add(p, add(scale(vb / total, pq), scale(vc / total, pr)))
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", **CALLED)
 def depth_at(bounds, links, triangles, first, end, at, most):
     """How deep a point is below the nearest triangle, and that one's number; negative: it is outside, or
     farther than `most`.

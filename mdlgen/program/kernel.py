@@ -29,6 +29,8 @@ LOG = logging.getLogger("mdlgen.compiling")
 # its caller, and can make no array; what it calls inherits that, but for what OWNS arrays of its own.
 BORROWS: dict[str, Any] = {"_nrt": False}
 OWNS: dict[str, Any] = {"_nrt": True}
+# What a kernel calls that is put into its callers (forceinline) is put there with it, but for what is CALLED.
+CALLED: dict[str, Any] = {"forceinline": False}
 # A sum of products may be rounded once, where the processor has an instruction for it.
 FUSED: dict[str, Any] = {"fastmath": {"contract"}}
 
@@ -54,10 +56,11 @@ class Kernel:
 
     __name__: str
 
-    def __init__(self, function: Callable[..., Any], options: dict[str, Any]):
+    def __init__(self, function: Callable[..., Any], options: dict[str, Any], text: str = ""):
         functools.update_wrapper(self, function)
         self.py_func = function
         self.options = options
+        self.text = text  # that the function was made from, where no file has it
         self.programs: list[Program] = []  # that have it as an entry
         self._call: Callable[..., Any] = self._first
         self._made: Any = None
@@ -247,7 +250,7 @@ def _numbers(module: Any) -> Iterator[str]:
     for name, kernel in sorted(vars(module).items()):
         if isinstance(kernel, Kernel) and kernel.__module__ == module.__name__:
             options = {key: _plain(value) for key, value in sorted(kernel.options.items())}
-            yield f"{name} {options}\n"
+            yield f"{name} {options}\n{kernel.text}"
             for used in sorted(set(kernel.py_func.__code__.co_names)):
                 value = kernel.py_func.__globals__.get(used)
                 if isinstance(value, (bool, int, float, tuple)):

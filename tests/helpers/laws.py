@@ -18,12 +18,19 @@ from mdlgen.mechanics.frame import Box, Cylinder, Frame, Law, Motion, Plate, Vec
 from mdlgen.mechanics.guide import BOTH, INSIDE, OUTSIDE, upper
 from mdlgen.mechanics.mesh_tables import HEAD, Meshes
 from mdlgen.mechanics.overlap import OVERLAP
-from mdlgen.mechanics.pair import BOX_BOX, BOX_CYLINDER, BOX_GUIDE, BOX_MESH, BOX_PLANE, CYLINDER_CYLINDER
 from mdlgen.mechanics.point import FACES
 from mdlgen.mechanics.records import LOAD
 from mdlgen.mechanics.rim import PIECE
 from mdlgen.mechanics.shapes import Shapes
 from mdlgen.mechanics.tree import WIDTH
+from mdlgen.model.tables.contacts import (
+    BOX_BOX,
+    BOX_CYLINDER,
+    BOX_GUIDE,
+    BOX_MESH,
+    BOX_PLANE,
+    CYLINDER_CYLINDER,
+)
 
 NO_MESHES = Meshes(np.zeros(0, HEAD), np.zeros((0, 12)), np.zeros((0, 3), np.int64), np.zeros((0, WIDTH)))
 NO_RIMS = np.zeros((0, PIECE))

@@ -9,9 +9,7 @@ import pytest
 
 import mdlgen
 from mdlgen.errors import RefusedError
-from mdlgen.mechanics import pair
 from mdlgen.mechanics.solved import WITH_LAW
-from mdlgen.model import tables
 from mdlgen.model.lower import lower
 from mdlgen.paths import samples
 from mdlgen.spec.load import load
@@ -24,9 +22,3 @@ def test_a_contact_of_a_kind_without_a_law_is_refused_by_name(name: str) -> None
     odd = replace(table, kind=np.full(len(table), max(WITH_LAW) + 1))
     with pytest.raises(RefusedError, match=f"no law yet for the contact of {table.part_a[0]}"):
         mdlgen.solve(replace(model, contacts=odd), name)
-
-
-def test_the_kinds_with_a_law_are_those_that_pairs_are_looked_up_by() -> None:
-    names = [name for name in vars(tables) if name.startswith(("BOX_", "CYLINDER_"))]
-    known = {getattr(tables, name) for name in names if getattr(pair, name, None) == getattr(tables, name)}
-    assert known == WITH_LAW

@@ -2,32 +2,16 @@
 
 from __future__ import annotations
 
-import math
-
 from mdlgen.backends.lattice.kernels.image import reflect, reflect_rates
 from mdlgen.mechanics.arm import moved, way_of
 from mdlgen.mechanics.bushing import bushing_pair
 from mdlgen.mechanics.curve import curve_excess
 from mdlgen.mechanics.driven import SENSE, clutch, prescribed, turned
-from mdlgen.mechanics.edge import TAKES
-from mdlgen.mechanics.frame import ARC_RADIUS, RADIUS, WIDTH, Frame
-from mdlgen.mechanics.guide import inward
-from mdlgen.mechanics.mesh import mesh_near
-from mdlgen.mechanics.nip import EASE
-from mdlgen.mechanics.pair import (
-    BOX_BOX,
-    BOX_GUIDE,
-    BOX_MESH,
-    BOX_PLANE,
-    CYLINDER_CYLINDER,
-    on_part,
-    pair_force,
-    roller_near,
-)
+from mdlgen.mechanics.frame import Frame
+from mdlgen.mechanics.pair import near, pair_force
 from mdlgen.mechanics.point import DISSIPATED, FORCE_A, FORCE_B, MOST_POINTS, OUT, POINT, POINTS, STORED
 from mdlgen.mechanics.vector import (
     add,
-    back,
     cross,
     dot,
     exp_rotation,
@@ -36,9 +20,7 @@ from mdlgen.mechanics.vector import (
     nine,
     rotate,
     scale,
-    sub,
     three,
-    transpose_matmul,
     vec,
 )
 from mdlgen.program.kernel import BORROWS, FUSED, njit
@@ -164,99 +146,18 @@ def joint_forces(joints, points, motion, f, lag=0.0):
     return stored, lost, numerical
 
 
-@njit(cache=True, error_model="numpy")
-def _facing(bodies, pair, x, r, gap, reach, reached):
-    """Whether two boxes are closer than `reached`, as far as the axes of the first tell; `reach` is that
-    between their centres."""
-    if dot(gap, gap) > reach * reach:
-        return False
-    one, half, other = mat(r, pair.a), bodies[pair.a].half, bodies[pair.b].half
-    turn = transpose_matmul(one, mat(r, pair.b))
-    for q in range(3):
-        up = gap[0] * one[q] + gap[1] * one[3 + q] + gap[2] * one[6 + q]
-        out = half[q] + reached
-        for i in range(3):
-            out += other[i] * abs(turn[3 * q + i])
-        if abs(up) > out:
-            return False
-    return True
-
-
 @njit(cache=True, error_model="numpy", **BORROWS)
-def near_pairs(tables, motion, margin, ahead, near):
-    """Lists pairs in `near` that are closer than `margin` [mm] and what they move against each other in
+def near_pairs(tables, motion, margin, ahead, found):
+    """Lists pairs in `found` that are closer than `margin` [mm] and what they move against each other in
     `ahead` [ms]; returns how many."""
     bodies, pairs, shapes = tables.bodies, tables.pairs, tables.shapes
-    meshes = shapes.meshes
-    x, r, u, w = motion
     count = 0
     for p in range(pairs.size):
         if pairs[p].kind < 0:  # from here on there is room only
             break
-        a, b = pairs[p].a, pairs[p].b
-        half = bodies[a].half
-        size = math.sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2])
-        gap = sub(vec(x, b), vec(x, a))
-        rate, spin = sub(vec(u, b), vec(u, a)), vec(w, a)
-        if pairs[p].kind == BOX_PLANE:
-            normal = (r[b, 2], r[b, 5], r[b, 8])
-            # along the plate a sheet may be fast
-            closing = abs(dot(rate, normal)) + math.sqrt(dot(spin, spin)) * size
-            out = 0.0  # how far the box reaches along the plate's normal
-            for i in range(3):
-                out += half[i] * abs(normal[0] * r[a, i] + normal[1] * r[a, 3 + i] + normal[2] * r[a, 6 + i])
-            out *= TAKES
-            height = -(gap[0] * normal[0] + gap[1] * normal[1] + gap[2] * normal[2]) - bodies[b].half[2]
-            if height > out + margin + ahead * closing:
-                continue
-        elif pairs[p].kind == BOX_GUIDE:
-            reached = TAKES * size + margin
-            reached += ahead * (math.sqrt(dot(rate, rate)) + math.sqrt(dot(spin, spin)) * size)
-            at, plate = back(mat(r, b), scale(-1.0, gap)), bodies[b].half
-            radius = bodies[b].arc[ARC_RADIUS]
-            if abs(at[2]) > plate[1] + reached or abs(inward(at, radius)) > 2.0 * plate[2] + reached:
-                continue
-            if radius == 0.0 and abs(at[0]) > plate[0] + reached:
-                continue
-        elif pairs[p].kind == BOX_BOX:
-            half, spun = bodies[b].half, vec(w, b)
-            far = math.sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2])
-            turning = math.sqrt(dot(spin, spin)) * size + math.sqrt(dot(spun, spun)) * far
-            reached = margin + ahead * (math.sqrt(dot(rate, rate)) + turning)
-            if not _facing(bodies, pairs[p], x, r, gap, size + far + reached, reached):
-                continue
-        elif pairs[p].kind == BOX_MESH:
-            head, turned = meshes.heads[pairs[p].mesh], vec(w, b)
-            fast = math.sqrt(dot(rate, rate)) + math.sqrt(dot(spin, spin)) * size
-            reached = margin + ahead * (fast + math.sqrt(dot(turned, turned)) * head.reach)
-            wide = size + reached + head.reach
-            if dot(gap, gap) > wide * wide:
-                continue
-            own = three(bodies[a].half)
-            if not mesh_near(head, meshes, vec(x, a), mat(r, a), own, vec(x, b), mat(r, b), reached):
-                continue
-        elif on_part(pairs[p]):
-            if not roller_near(bodies, pairs[p], shapes, x, r, margin + ahead * math.sqrt(dot(rate, rate))):
-                continue
-        else:
-            reached = margin + ahead * (math.sqrt(dot(rate, rate)) + math.sqrt(dot(spin, spin)) * size)
-            reach = size + reached
-            axis = bodies[b].axis
-            along = gap[0] * axis[0] + gap[1] * axis[1] + gap[2] * axis[2]
-            across = gap[0] * gap[0] + gap[1] * gap[1] + gap[2] * gap[2] - along * along
-            radius, width = bodies[b].size[RADIUS], (0.5 + EASE) * bodies[b].size[WIDTH]
-            if pairs[p].kind == CYLINDER_CYLINDER:
-                reach = bodies[a].size[RADIUS] + reached
-                width += 0.5 * bodies[a].size[WIDTH]
-            if abs(along) > width + reach or across > (radius + reach) * (radius + reach):
-                continue
-            if pairs[p].kind != CYLINDER_CYLINDER:  # the axis above or below the face
-                up = gap[0] * r[a, 2] + gap[1] * r[a, 5] + gap[2] * r[a, 8]
-                lean = abs(axis[0] * r[a, 2] + axis[1] * r[a, 5] + axis[2] * r[a, 8])
-                if abs(up) > half[2] + radius + width * lean + reached:
-                    continue
-        near[count] = p
-        count += 1
+        if near(bodies, pairs[p], shapes, motion, margin, ahead):
+            found[count] = p
+            count += 1
     return count
 
 

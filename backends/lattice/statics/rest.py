@@ -27,8 +27,8 @@ from mdlgen.backends.lattice.statics import lying, standing
 from mdlgen.mechanics.arm import FORCE_0
 from mdlgen.mechanics.frame import RADIUS, Motion
 from mdlgen.mechanics.mesh import LOST
-from mdlgen.mechanics.pair import DEEP_ROLLER
 from mdlgen.mechanics.point import DEPTH, PRESSING
+from mdlgen.mechanics.roller_plate import DEEP_ROLLER
 from mdlgen.model import curves
 from mdlgen.model.overlaps.unheld import Unheld
 from mdlgen.model.parts.kinds import kind_of

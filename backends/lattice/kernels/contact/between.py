@@ -5,9 +5,9 @@ from __future__ import annotations
 from mdlgen.backends.lattice.kernels.forces import onto, touches
 from mdlgen.mechanics.frame import box_of, frame_of, law_of
 from mdlgen.mechanics.overlap import OTHER, UNKNOWN, apart, find, holds, press
-from mdlgen.mechanics.pair import BOX_BOX
 from mdlgen.mechanics.point import DISSIPATED, OUT, POINTS, STORED
 from mdlgen.mechanics.stick import carry_stretch, press_sticking
+from mdlgen.model.tables.contacts import BOX_BOX
 from mdlgen.program.kernel import BORROWS, njit
 
 # Part of a box by which its overlap may have moved along it since it was found. With 1e-2 within a step the

@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from mdlgen.backends.lattice.kernels.linear.band import solve_six
-from mdlgen.mechanics.pair import BOX_BOX, on_fixed_plate
+from mdlgen.mechanics.pair import on_fixed_plate
+from mdlgen.model.tables.contacts import BOX_BOX
 from mdlgen.program.kernel import BORROWS, njit
 
 # Where contacts stand: all apart; those with fixed plates in the matrix of the sheet; all of them there.

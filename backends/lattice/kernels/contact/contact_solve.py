@@ -37,9 +37,10 @@ from mdlgen.backends.lattice.kernels.linear.dense import lu
 from mdlgen.mechanics.arm import AXIAL, DAMPING, INERTIA, STIFFNESS, turn_of, way_of
 from mdlgen.mechanics.driven import clutch
 from mdlgen.mechanics.frame import RADIUS
-from mdlgen.mechanics.pair import BOX_BOX, on_fixed_plate
+from mdlgen.mechanics.pair import on_fixed_plate
 from mdlgen.mechanics.point import FORCE_A, FORCE_B, OUT, POINT, POINTS
 from mdlgen.mechanics.vector import back, dot, mat, rotate, vec
+from mdlgen.model.tables.contacts import BOX_BOX
 from mdlgen.program.kernel import BORROWS, njit
 
 MOST_ITERATIONS = 40

@@ -11,9 +11,9 @@ import math
 
 from mdlgen.backends.lattice.kernels.state import MIDDLE
 from mdlgen.mechanics.overlap import OVERLAPS
-from mdlgen.mechanics.pair import BOX_BOX
 from mdlgen.mechanics.point import DEPTH
 from mdlgen.mechanics.vector import back, mat, sub, transpose_matmul, vec
+from mdlgen.model.tables.contacts import BOX_BOX
 from mdlgen.program.kernel import njit
 
 # What two boxes may come closer in one iteration, in half thicknesses of the thinner one.

@@ -11,12 +11,13 @@ import numpy as np
 from mdlgen.backends.lattice.kernels.forces import place_box, place_roller
 from mdlgen.backends.lattice.kernels.state import ENDS, FORCE_NOW, MIDDLE
 from mdlgen.mechanics.arm import turn_of, way_of
-from mdlgen.mechanics.crossing import UNSEEN, above, buried, closing, deepest, fastest_place, unseen
+from mdlgen.mechanics.bounds import fastest_place
+from mdlgen.mechanics.crossing import UNSEEN, above, buried, closing, deepest, solid, unseen
 from mdlgen.mechanics.frame import Frame, Motion, frame_of, law_of
 from mdlgen.mechanics.impacts import stored_beyond, turning_back
 from mdlgen.mechanics.mesh import BLOCK
 from mdlgen.mechanics.overlap import impact
-from mdlgen.mechanics.pair import BOX_CYLINDER, BOX_MESH, BOX_PLANE, pair_force
+from mdlgen.mechanics.pair import pair_force
 from mdlgen.mechanics.point import (
     AT,
     BETA,
@@ -39,6 +40,7 @@ from mdlgen.mechanics.point import (
 )
 from mdlgen.mechanics.point import closing as closing_at
 from mdlgen.mechanics.vector import add, dot, mat, scale, sub, three, three_from, vec
+from mdlgen.model.tables import BOX_CYLINDER, BOX_PLANE
 from mdlgen.program.kernel import BORROWS, njit
 
 # Pairs that would have to be looked at more often in a step want a smaller one.
@@ -237,14 +239,14 @@ def swept(work, counts, t, dt, allowed, slower, rows):
         fast = closing(bodies, pair, shapes, began, dt)
         way, band = dt * fast, unseen(bodies, pair, shapes)
         side = above(bodies, pair, x, r)
-        solid = pair.kind == BOX_MESH and bodies[pair.a].exposed != 0
+        inside = solid(bodies, pair)
         enters = False
         if allowed > 0.0 and not touches:
             half = 0.5 * way
             enters = 0.4 * pair.k * half * half * math.sqrt(half) > little
             enters = enters and _hits(bodies, pair, work.kept.rows)
             enters = enters and not _clear(bodies, pair, x, r, way)
-        if way <= band and side == 0 and not solid and not enters:
+        if way <= band and side == 0 and not inside and not enters:
             continue
         if way > MOST_LOOKS * band:
             return near[at], 0.0
@@ -261,7 +263,7 @@ def swept(work, counts, t, dt, allowed, slower, rows):
             if side * now < 0:
                 return near[at], 0.0
             side = now
-            if solid and buried(bodies, pair, shapes, between.x, between.r):
+            if inside and buried(bodies, pair, shapes, between.x, between.r):
                 return near[at], 0.0
             if way > band or enters:
                 out[:] = 0.0

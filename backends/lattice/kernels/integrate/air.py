@@ -22,8 +22,8 @@ from mdlgen.backends.lattice.kernels.state import (
 from mdlgen.mechanics.film import assemble, factor, solve, times
 from mdlgen.mechanics.film_faces import clear, cover, link
 from mdlgen.mechanics.frame import frame_of
-from mdlgen.mechanics.pair import BOX_BOX, BOX_PLANE
 from mdlgen.mechanics.vector import add, back, cross, dot, mat, rotate, scale, sub, three, three_from, vec
+from mdlgen.model.tables.contacts import BOX_BOX, BOX_PLANE
 from mdlgen.program.kernel import BORROWS, njit
 
 # A cell alone is so many times as stiff as its neighbours make it where they have no pressure.

@@ -6,7 +6,7 @@ import math
 
 from mdlgen.backends.lattice.kernels.state import WORST
 from mdlgen.mechanics.arm import way_of
-from mdlgen.mechanics.crossing import fastest_place
+from mdlgen.mechanics.bounds import fastest_place
 from mdlgen.mechanics.vector import dot, vec
 from mdlgen.program.kernel import BORROWS, njit
 

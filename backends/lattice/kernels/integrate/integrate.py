@@ -58,9 +58,10 @@ from mdlgen.mechanics.crossing import deepest
 from mdlgen.mechanics.curve import overstretched
 from mdlgen.mechanics.driven import SENSE, clutch, prescribed
 from mdlgen.mechanics.frame import Motion
-from mdlgen.mechanics.pair import BOX_BOX, remember
+from mdlgen.mechanics.pair import remember
 from mdlgen.mechanics.point import DEPTH, POINTS, PRESSING
 from mdlgen.mechanics.turning import TURNING, turning
+from mdlgen.model.tables.contacts import BOX_BOX
 from mdlgen.program.kernel import BORROWS, njit
 
 DONE, STOPPED, LEFT, DEEP, STRETCHED, CROWDED = 0, 1, 2, 3, 4, 5

@@ -13,8 +13,8 @@ from __future__ import annotations
 import numpy as np
 
 from mdlgen.backends.lattice.kernels.state import Free
-from mdlgen.mechanics.pair import BOX_BOX
 from mdlgen.mechanics.vector import add, back, cross, dot, mat, rotate, scale, sub, three, vec
+from mdlgen.model.tables.contacts import BOX_BOX
 from mdlgen.program.kernel import njit
 
 

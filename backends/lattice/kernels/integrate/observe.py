@@ -16,10 +16,10 @@ from mdlgen.backends.lattice.kernels.state import (
 from mdlgen.mechanics.arm import AXIAL, FORCE_0, INERTIA, STIFFNESS, hung, way_of
 from mdlgen.mechanics.driven import prescribed
 from mdlgen.mechanics.frame import Motion
-from mdlgen.mechanics.pair import BOX_BOX
 from mdlgen.mechanics.point import DEPTH, POINTS, PRESSING
 from mdlgen.mechanics.turning import turning
 from mdlgen.mechanics.vector import back, dot, mat, rotate, three, vec
+from mdlgen.model.tables.contacts import BOX_BOX
 from mdlgen.program.kernel import njit
 
 

@@ -50,9 +50,10 @@ from mdlgen.mechanics import point as law_point
 from mdlgen.mechanics.frame import LAW_SMOOTHING, box_of, frame_of, law_of
 from mdlgen.mechanics.laws import damped, friction_over_speed, sign_step
 from mdlgen.mechanics.overlap import OTHER, apart, find, holds, plane_of
-from mdlgen.mechanics.pair import BOX_BOX, on_fixed_plate
+from mdlgen.mechanics.pair import on_fixed_plate
 from mdlgen.mechanics.stick import carry_stretch, stretch_of
 from mdlgen.mechanics.vector import add, cross, dot, rotate, scale, sub, three, three_from
+from mdlgen.model.tables.contacts import BOX_BOX
 from mdlgen.program.kernel import BORROWS, njit
 
 # How far two faces may be open at a corner that may close in an iteration [mm].

@@ -1,0 +1,46 @@
+"""How large the bodies of a pair are, and how fast their places."""
+
+from __future__ import annotations
+
+import math
+
+from mdlgen.mechanics.frame import RADIUS, WIDTH
+from mdlgen.mechanics.vector import dot, sub, vec
+from mdlgen.program.kernel import njit
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def size(body):
+    """Half of a box's diagonal."""
+    return math.sqrt(body.half[0] * body.half[0] + body.half[1] * body.half[1] + body.half[2] * body.half[2])
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def round_size(body):
+    """How far the farthest place of a roller is from its centre."""
+    return math.hypot(body.size[RADIUS], 0.5 * body.size[WIDTH])
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def fastest_place(body, rate, spin):
+    """How fast any place of a box is at most, of its velocity and its angular velocity."""
+    return math.sqrt(dot(rate, rate)) + math.sqrt(dot(spin, spin)) * size(body)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def turning(body, motion, k):
+    """How fast body k, a box, moves at most by its angular velocity alone."""
+    spin = vec(motion.w, k)
+    return math.sqrt(dot(spin, spin)) * size(body)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def gap_of(pair, x):
+    """From the centre of the first body of a pair to that of the second."""
+    return sub(vec(x, pair.b), vec(x, pair.a))
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def rate_of(pair, motion):
+    """Velocity of the second body of a pair, as the first one has it."""
+    return sub(vec(motion.u, pair.b), vec(motion.u, pair.a))
