@@ -29,7 +29,8 @@ LOG = logging.getLogger("mdlgen.compiling")
 # its caller, and can make no array; what it calls inherits that, but for what OWNS arrays of its own.
 BORROWS: dict[str, Any] = {"_nrt": False}
 OWNS: dict[str, Any] = {"_nrt": True}
-# What a kernel calls that is put into its callers (forceinline) is put there with it, but for what is CALLED.
+# What says nothing of forceinline has it from the kernel that calls it first, and where sums are rounded goes
+# with that. What is CALLED by kernels that are put into their callers is not put there itself.
 CALLED: dict[str, Any] = {"forceinline": False}
 # A sum of products may be rounded once, where the processor has an instruction for it.
 FUSED: dict[str, Any] = {"fastmath": {"contract"}}
@@ -232,8 +233,8 @@ def _with_kernels(files: Iterable[Path]) -> list[Path]:
 
 @functools.cache
 def sources_digest(rooms: tuple[str, ...]) -> str:
-    """SHA-256 of all kernels of some packages: their sources, however lines end, and the numbers of other
-    modules that they name."""
+    """SHA-256 of all kernels of some packages: their sources, however lines end, the texts of those that
+    no file has, and the numbers of other modules that they name."""
     found = hashlib.sha256()
     for room in rooms:
         for name, path in kernel_sources(room).items():
