@@ -91,6 +91,7 @@ def test_boxes_that_lean_have_not_crossed_where_a_centre_passes_a_plane():
             forces=still,
             touched=near,
             results=np.zeros((1, OUT)),
+            rows=np.zeros(1, np.int64),
             faces=np.zeros((1, FACES)),
             totals=np.zeros(3),
             near=near,

@@ -60,8 +60,9 @@ ROUGH = 0.3
 # else to where it is less than the other part.
 LEVEL, FLAT = 0.25, 0.1
 MOST_LOOKS, MOST_DOUBLED = 12, 4
-# With so many sheets all are solved for.
-FEW = 2
+# With so many sheets all are solved for. Of more those are left out whose direction is below that part of
+# what the step may leave: much less than ROUGH, since what is left in piles at rest makes them rattle.
+FEW, QUIET = 2, 0.03
 # A factor is worth so many iterations (see integrate.step).
 WORTH = 4.0
 # How much of the chord a factor takes (see slopes.steepness): little, since each direction is searched.
@@ -259,7 +260,7 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
             gather(work, counts, h, False)
             gathered = True
         if not air and colouring.found[0] == 1 and colouring.active.size > FEW:
-            leave(work, ROUGH * limit)
+            leave(work, QUIET * limit)
         falls = _dot(g, p) + _dot(gb, pb)
         if not falls < 0.0:
             # a factor of an earlier state may lead up
