@@ -16,9 +16,12 @@ MOVED = 1e-5
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def forget_overlaps(overlaps):
-    """Pairs are others now."""
+def forget_overlaps(pairs, overlaps, first):
+    """Pairs from `first` on, which are searched, are others now. Where none are there is room that nothing
+    has written to, and that takes no memory."""
     for k in range(overlaps.size):
+        if pairs[first + k].kind < 0:
+            break
         overlaps[k].state = UNKNOWN
 
 

@@ -227,7 +227,7 @@ def run(work, t, steps, tolerance, control):
             if pace[ANEW] != 0.0:
                 control.factored[STALE] = 1.0
             if search.regions.size > 0 and strayed(bodies, search, x, u, dt):
-                forget_overlaps(mid.overlaps)
+                forget_overlaps(pairs, mid.overlaps, search.first)
                 if mid.sticks.pairs.size > 0:
                     set_aside(mid.sticks)
                 if not look(pairs, search, x):
