@@ -17,9 +17,11 @@ from mdlgen.backends.lattice.kernels.state import (
     A_COUPLE,
     A_DAMPER,
     A_PRESSURE,
+    ALONG,
     DIRECTION,
     KIND,
     MADE_FOR,
+    NOW,
     OF_DIRECTION,
     RESIDUAL,
     SPRING,
@@ -102,6 +104,20 @@ def impulses(case: Case, change: np.ndarray, border: np.ndarray) -> tuple[np.nda
     g, gb = np.zeros(change.shape), np.zeros(border.shape)
     along.pull(work, H, 1.0, g, gb)
     return g, gb
+
+
+def test_all_points_go_by_the_same_part_of_a_direction(case: Case) -> None:
+    """Those behind a couple of rolling resistance, too."""
+    frozen, draw = case.work.frozen, np.random.default_rng(7)
+    change, border = (draw.normal(0.0, 1e-3, x.shape) for x in (case.work.matrix.res, case.work.matrix.resb))
+    impulses(case, change, border)
+    rows = frozen.points[: int(frozen.many[0])]
+    before = rows[:, NOW : NOW + 3].copy()
+    g, gb = np.zeros(change.shape), np.zeros(border.shape)
+    along.pull(case.work, H, 0.5, g, gb)
+    couples = np.flatnonzero(rows[:, KIND] == A_COUPLE)
+    assert 0 < couples.min() < len(rows) - 1
+    assert rows[:, NOW : NOW + 3] - before == pytest.approx(0.5 * rows[:, ALONG : ALONG + 3], abs=1e-15)
 
 
 def test_the_forces_of_the_points_are_those_of_the_laws(case: Case) -> None:

@@ -105,7 +105,7 @@ class Frozen(NamedTuple):
 
     points: Floats  # (room, POINT)
     pair: Ints  # of each, (room,)
-    sheets: np.ndarray  # between which sheets each is, see integrate.active, (room, 2)
+    rolls: np.ndarray  # whether each is on a body that is an unknown of the border, (room,)
     many: Ints  # (1,) how many there are
     sums: Floats  # what EACH of them add to a slope
     vectors: Floats  # CHANGE to RESIDUAL of the nodes, (6, 6 nodes)

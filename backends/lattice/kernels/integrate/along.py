@@ -4,7 +4,6 @@ their forces and the slope of what is made least."""
 from __future__ import annotations
 
 from mdlgen.backends.lattice.kernels import parallel
-from mdlgen.backends.lattice.kernels.integrate.active import rolls, still
 from mdlgen.backends.lattice.kernels.integrate.air import air_along
 from mdlgen.backends.lattice.kernels.integrate.points import force_of
 from mdlgen.backends.lattice.kernels.integrate.unknowns import moving, turning_of
@@ -84,9 +83,9 @@ def _along(work, k):
 @njit(cache=True, error_model="numpy", **BORROWS)
 def along_part(work, part):
     """The same of EACH points of a part, but those on rollers and pressed plates, which share scratch."""
-    frozen, active = work.frozen, work.matrix.couplings.colouring.active
+    frozen = work.frozen
     for k in range(EACH * part, min(EACH * (part + 1), frozen.many[0])):
-        if not (rolls(frozen, k) or still(frozen, active, k)):
+        if not frozen.rolls[k]:
             _along(work, k)
 
 
@@ -103,7 +102,7 @@ def look_along(work):
         part = take(pool)
     finish(pool, many)
     for k in range(frozen.many[0]):
-        if rolls(frozen, k):
+        if frozen.rolls[k]:
             _along(work, k)
     if work.film.many[0] > 0:
         air_along(work.film, frozen)
@@ -115,10 +114,7 @@ def pull(work, h, part, g, gb):
     (6 nodes,), global axes, and gb what their forces have added since the iteration began."""
     tables, frozen, matrix, x = work.tables, work.frozen, work.matrix, work.mid.motion.x
     bodies, direction, index = tables.bodies, matrix.direction, matrix.unknowns
-    active = matrix.couplings.colouring.active
     for k in range(frozen.many[0]):
-        if still(frozen, active, k):
-            continue
         q = frozen.points[k]
         for i in range(3):
             q[NOW + i] += part * q[ALONG + i]
@@ -137,9 +133,9 @@ def pull(work, h, part, g, gb):
                     g[6 * two + 3 + i] += f[i]
             n = three_from(q, NORMAL)
             for which in range(4):
-                unknown, part = turning_of(bodies, pair, which, n)
+                unknown, turning = turning_of(bodies, pair, which, n)
                 if unknown >= 0:
-                    gb[unknown] -= part * dot(f, n)
+                    gb[unknown] -= turning * dot(f, n)
             continue
         arm, far, many = three_from(q, ARM_A), three_from(q, ARM_B), 0
         if one >= 0:
@@ -163,11 +159,9 @@ def pull(work, h, part, g, gb):
 @njit(cache=True, error_model="numpy", **BORROWS)
 def slope_part(work, part):
     """What EACH points of a part add to the slope."""
-    frozen, active = work.frozen, work.matrix.couplings.colouring.active
+    frozen = work.frozen
     far, h, total = work.pool.given[PART], work.pool.given[HALF], 0.0
     for k in range(EACH * part, min(EACH * (part + 1), frozen.many[0])):
-        if still(frozen, active, k):
-            continue
         q = frozen.points[k]
         way = three_from(q, ALONG)
         if q[KIND] == AIR:

@@ -16,7 +16,6 @@ import math
 
 from mdlgen.backends.lattice.kernels import parallel
 from mdlgen.backends.lattice.kernels.contact.condensed import INSIDE, forget
-from mdlgen.backends.lattice.kernels.integrate.active import OUT, all_in, leave, left
 from mdlgen.backends.lattice.kernels.integrate.along import look_along, pull, slope
 from mdlgen.backends.lattice.kernels.integrate.change import greatest
 from mdlgen.backends.lattice.kernels.integrate.points import gather
@@ -60,9 +59,6 @@ ROUGH = 0.3
 # else to where it is less than the other part.
 LEVEL, FLAT = 0.25, 0.1
 MOST_LOOKS, MOST_DOUBLED = 12, 4
-# With so many sheets all are solved for. Of more those are left out whose direction is below that part of
-# what the step may leave: much less than ROUGH, since what is left in piles at rest makes them rattle.
-FEW, QUIET = 2, 0.03
 # A factor is worth so many iterations (see integrate.step).
 WORTH = 4.0
 # How much of the chord a factor takes (see slopes.steepness): little, since each direction is searched.
@@ -152,11 +148,8 @@ def _gradient(work, h, axes, part):
 def product_part(work, sheet):
     """What masses and bushings of a sheet make of the direction."""
     matrix, vectors = work.matrix, work.frozen.vectors
-    span, active = matrix.couplings.colouring.spans[sheet], matrix.couplings.colouring.active
+    span = matrix.couplings.colouring.spans[sheet]
     low, high = 6 * span[BEGIN], 6 * span[END]
-    if active[sheet] == OUT:
-        vectors[OF_DIRECTION, low:high] = 0.0
-        return
     inner = matrix.single_inner[span[BEGIN] : span[END]]
     times(inner, vectors[DIRECTION, low:high], vectors[OF_DIRECTION, low:high])
 
@@ -214,15 +207,12 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
     air = work.film.many[0] > 0
     if air:
         limit *= FINE
-    colouring = matrix.couplings.colouring
-    all_in(colouring)
     for iteration in range(MOST_WITH_AIR if air else MOST_ITERATIONS):
         if iteration == 0:
             copy(g, z)
             copy(gb, zb)
         else:
             _gradient(work, h, axes, part)
-            left(work, z)
         part = 0.0
         made = factored[MADE_FOR] != 2.0 * h or factored[STALE] != 0.0 or factored[WHERE] != INSIDE
         if made:
@@ -234,9 +224,6 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
                 return 0
             factored[MADE_FOR], factored[STALE], factored[WHERE] = 2.0 * h, 0.0, INSIDE
             renew, renewed = False, True
-            if iteration > 0 and colouring.found[0] == 0:
-                all_in(colouring)
-                _gradient(work, h, axes, 0.0)
         crossing = _dot(g, z) + _dot(gb, zb) if iteration > 0 and not made else 0.0
         copy(z, g)
         copy(zb, gb)
@@ -259,8 +246,6 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
         if not gathered:
             gather(work, counts, h, False)
             gathered = True
-        if not air and colouring.found[0] == 1 and colouring.active.size > FEW:
-            leave(work, QUIET * limit)
         falls = _dot(g, p) + _dot(gb, pb)
         if not falls < 0.0:
             # a factor of an earlier state may lead up

@@ -16,7 +16,6 @@ from __future__ import annotations
 import math
 
 from mdlgen.backends.lattice.kernels.contact.between import MOVED
-from mdlgen.backends.lattice.kernels.integrate.active import of_sheets
 from mdlgen.backends.lattice.kernels.integrate.air import damping_of
 from mdlgen.backends.lattice.kernels.integrate.sticking_points import held_back, stick
 from mdlgen.backends.lattice.kernels.state import (
@@ -229,6 +228,19 @@ def _of_air(frozen, film, pair, p, motion):
         i = own.following
 
 
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _mark_rolling(tables, frozen):
+    """Marks the points on bodies that are unknowns of the border."""
+    bodies, last, rolls = tables.bodies, -1, False
+    for k in range(frozen.many[0]):
+        p = frozen.pair[k]
+        if p != last:
+            one, two = bodies[tables.pairs[p].a], bodies[tables.pairs[p].b]
+            rolls = max(one.slide, one.spin, two.slide, two.spin) >= 0
+            last = p
+        frozen.rolls[k] = rolls
+
+
 @njit(cache=True, error_model="numpy")
 def gather(work, counts, h, plates):
     """Takes the points of the near pairs at the midpoint, and of air; `counts`: how many touch, how many are
@@ -271,4 +283,4 @@ def gather(work, counts, h, plates):
             _of_faces(frozen, p, pair, kept, h, motion, sticks, p - first)
     for k in range(air):
         _of_air(frozen, film, pairs[film.listed[k]], film.listed[k], motion)
-    of_sheets(tables, frozen, work.matrix.couplings.colouring.label)
+    _mark_rolling(tables, frozen)

@@ -85,7 +85,7 @@ def frozen(system, cells: int) -> Frozen:
     return Frozen(
         points=np.zeros((room, POINT)),
         pair=np.zeros(room, np.int64),
-        sheets=np.zeros((room, 2), np.int32),
+        rolls=np.zeros(room, np.bool_),
         many=np.zeros(1, np.int64),
         sums=np.zeros(room // EACH + 1),
         vectors=np.zeros((6, 6 * nodes)),

@@ -36,8 +36,6 @@ class Colouring(NamedTuple):
     label: np.ndarray  # the sheet of each node, by its row in spans
     of: np.ndarray  # the colour of each sheet, 0 or 1; -1: not known yet
     found: np.ndarray  # (1,) whether two colours are enough
-    active: np.ndarray  # (sheets,) which are solved for, see integrate.active; 0: the others stand still
-    stays: np.ndarray  # (sheets,) scratch
     corner: np.ndarray  # Cholesky factor, (border, border)
     begins: np.ndarray  # where the couplings of a sheet begin in `own`, (sheets + 1,)
     own: np.ndarray  # couplings of each sheet, in their order, (2 pairs,)
@@ -52,8 +50,6 @@ def colouring(label: np.ndarray, border: int, pairs: int) -> Colouring:
         np.searchsorted(sheets, label).astype(np.int64),
         np.full(len(sheets), -1, np.int64),
         np.zeros(1, np.int64),
-        np.ones(len(sheets), np.int64),
-        np.zeros(len(sheets), np.bool_),
         np.zeros((border, border)),
         np.zeros(len(sheets) + 1, np.int64),
         np.zeros(2 * pairs, np.int64),
@@ -286,9 +282,7 @@ def turn_part(pool, matrix, sheet):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def part_of(pool, matrix, kind, sheet):
-    """Does the part of a sheet in a job of one of these kinds, where it is active."""
-    if matrix.couplings.colouring.active[sheet] == 0:
-        return
+    """Does the part of a sheet in a job of one of these kinds."""
     if kind == parallel.FIRST:
         first_part(pool, matrix, sheet)
     elif kind == parallel.BACK:
@@ -326,18 +320,6 @@ def _sum(pool, colours):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _hold(pool, matrix):
-    """Sheets that are not active stand still."""
-    colours = matrix.couplings.colouring
-    for sheet in range(colours.active.size):
-        if colours.active[sheet] == 0:
-            low, high = 6 * colours.spans[sheet, BEGIN], 6 * colours.spans[sheet, END]
-            matrix.res[low:high] = 0.0
-            matrix.couplings.room[:, low:high] = 0.0
-            pool.shares[sheet] = 0.0
-
-
-@njit(cache=True, error_model="numpy", **BORROWS)
 def _first(pool, matrix, rollers, start):
     """What the first colour and the rollers do where the second moves, or at the right-hand side, and what
     that does to the second. `rollers`: what they begin with."""
@@ -368,7 +350,6 @@ def solve_coloured(pool, matrix, most, least):
     couplings, res, resb = matrix.couplings, matrix.res, matrix.resb
     colours, size = couplings.colouring, res.size
     own, rollers = couplings.room[3], couplings.room[4, size:]
-    _hold(pool, matrix)
     # the first colour as if the second stood still, and what that does to the second
     for l in range(size):
         own[l] = res[l]
