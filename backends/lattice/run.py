@@ -52,14 +52,16 @@ Report = tuple[float, float, int, int]  # what progress is called with
 DOUBLED, CHECK = MOST_REFINED_RIGID + 1, MOST_REFINED_RIGID + 2
 
 # Rules that leave out what a run does not need, each of which a run can do without.
-FOLDING, FACTORS, SYMMETRY = "folding", "factors", "symmetry"
+FOLDING, FACTORS, SYMMETRY, SLEEP = "folding", "factors", "symmetry", "sleep"
 
 
-def _watch(progress: Progress | None, keep: Checkpointer | None, threads: int, number: int) -> Watch:
+def _watch(
+    progress: Progress | None, keep: Checkpointer | None, threads: int, sleeps: bool, number: int
+) -> Watch:
     """Of the pass of that number."""
     if keep is not None:
         keep.begin(number)
-    return Watch(progress, keep, number, threads=threads)
+    return Watch(progress, keep, number, threads=threads, sleeps=sleeps)
 
 
 @PROGRAM.releases
@@ -79,10 +81,10 @@ def solve(
     reason; RefusedError is raised for what the solver cannot represent.
 
     `without` names rules that are not to be used: FOLDING of equal bushings, keeping of FACTORS over steps,
-    SYMMETRY of both sides. `keep` is given states to go on from, and a run goes on from those that it has, to
-    the same bits. `threads` is how many there may be at the same time, to the same bits as well: each pass
-    has those that the Model asks for, and two passes go on at the same time where there are enough for both;
-    progress is that of the finer one. Left out: those of one pass.
+    SYMMETRY of both sides, SLEEP of sheets at rest. `keep` is given states to go on from, and a run goes on
+    from those that it has, to the same bits. `threads` is how many there may be at the same time, to the same
+    bits as well: each pass has those that the Model asks for, and two passes go on at the same time where
+    there are enough for both; progress is that of the finer one. Left out: those of one pass.
     """
     check(model)
     started = clock.perf_counter()
@@ -104,7 +106,7 @@ def solve(
     begun = clock.perf_counter()
     allowed = processors() if threads is None else threads
     each = min(model.run.threads, allowed) if PROGRAM.loaded else 1
-    watch = partial(_watch, progress, keep, each)
+    watch = partial(_watch, progress, keep, each, SLEEP not in without)
     # numba's code keeps the lock of Python
     together = threads is not None and threads >= 2 * each and threads > 1 and PROGRAM.loaded
     if keep is not None and not (together and threads == 2 * each):

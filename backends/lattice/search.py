@@ -42,6 +42,7 @@ class Search(NamedTuple):
     """What a search needs; no regions: there is none."""
 
     regions: np.ndarray  # REGION, one for each contact of two sheets
+    room: Floats  # pairs that each of them has room for
     first: int  # pairs before are the Model's
     boxes: Ints  # bodies that are searched
     place: Floats  # where bodies were at the last search [mm], (bodies, 3)
@@ -64,7 +65,8 @@ def plan(model: Model, pairs: np.ndarray) -> tuple[np.ndarray, Search, int]:
     radius = np.linalg.norm(half, axis=1)
     regions = np.zeros(len(rows), REGION)
     boxes: set[int] = set()
-    room, marks, size = 0.0, len(pairs), 1.0
+    room: list[float] = []
+    marks, size = len(pairs), 1.0
     for region, row in zip(regions, rows.tolist(), strict=True):
         ends = [sheets[part[row]] for part in (model.contacts.part_a, model.contacts.part_b)]
         for name, sheet in zip("ab", ends, strict=True):
@@ -75,13 +77,14 @@ def plan(model: Model, pairs: np.ndarray) -> tuple[np.ndarray, Search, int]:
         reach = float(radius[one].max() + radius[two].max()) + SKIN
         area = 4.0 * float((half[two, 0] * half[two, 1]).min())
         every = ends[0].count * ends[1].count
-        room += min(every, ends[0].count * (4.0 + ROOM * math.pi * reach**2 / area))
+        room.append(min(every, ends[0].count * (4.0 + ROOM * math.pi * reach**2 / area)))
         marks, size = marks + every, max(size, reach)
-    spare = np.zeros(math.ceil(room), pairs.dtype)
+    spare = np.zeros(math.ceil(sum(room)), pairs.dtype)
     spare["kind"] = EMPTY
     count = len(half)
     search = Search(
         regions=regions,
+        room=np.array(room),
         first=len(pairs),
         boxes=np.array(sorted(boxes), dtype=np.int64),
         place=np.zeros((count, 3)),

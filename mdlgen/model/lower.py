@@ -152,7 +152,14 @@ def _run(scene: Scene) -> RunSettings:
     run = scene.run
     print_step = run.print_step if run.print_step is not None else run.duration / 200
     return RunSettings(
-        run.duration, run.analysis, run.step, run.tolerance, print_step, run.symmetry, run.threads
+        run.duration,
+        run.analysis,
+        run.step,
+        run.tolerance,
+        print_step,
+        run.symmetry,
+        run.threads,
+        run.sleep,
     )
 
 

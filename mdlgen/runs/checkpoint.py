@@ -76,8 +76,8 @@ class Checkpointer:
         self.written = True
         self._last[number] = time.monotonic()
 
-    def load(self, number: int, like: State) -> State | None:
-        """The state of a pass, None where none is kept.
+    def load(self, number: int, like: State, names: tuple[str, ...] = ()) -> State | None:
+        """The state of a pass, None where none is kept; or those of its arrays with the given `names`.
 
         It has some of the arrays of `like`, with their types and shapes; where the first axis there has no
         length it has any. Raises OutputError for a file that does not fit.
@@ -86,7 +86,7 @@ class Checkpointer:
             return None
         path = self._path(number)
         try:
-            return _read(path, like)
+            return _read(path, like, names)
         except (OSError, ValueError, KeyError, zipfile.BadZipFile, EOFError, NotImplementedError) as error:
             raise OutputError(f"{path}: is not a state of this run ({str(error)[:100]})") from None
 
@@ -107,14 +107,14 @@ class Checkpointer:
         return self.folder / f"pass_{number}.npz"
 
 
-def _read(path: Path, like: State) -> State:
+def _read(path: Path, like: State, names: tuple[str, ...]) -> State:
     with zipfile.ZipFile(path) as file:
         # what is not compressed is as large as the file: nothing unfolds
         if any(member.compress_type != zipfile.ZIP_STORED for member in file.infolist()):
             raise ValueError("it is compressed")
     found: State = {}
     with np.load(path, allow_pickle=False) as file:
-        for name in file.files:
+        for name in names or file.files:
             array, wanted = file[name], like[name]
             free = wanted.ndim > 0 and wanted.shape[0] == 0
             if array.dtype != wanted.dtype or array.shape[free:] != wanted.shape[free:]:

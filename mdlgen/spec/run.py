@@ -32,6 +32,10 @@ class Run(Strict):
     symmetry: bool = Field(
         default=True, description="solve one half of a scene that is its own mirror image (lattice)"
     )
+    sleep: bool = Field(
+        default=True,
+        description="leave out sheets on each other that rest, until something moves them (lattice)",
+    )
     threads: Annotated[int, Field(ge=1)] = Field(
         default=1,
         description="threads that share the work of each step of several sheets, at most one for each "

@@ -59,6 +59,7 @@ def pair_force(bodies: np.ndarray, pair: np.void, shapes: Shapes, motion: Motion
         totals=np.zeros(3),
         near=np.zeros(1, np.int64),
         overlaps=np.zeros(1, OVERLAP),
+        spare=np.zeros(1, OVERLAP),
         fastest=np.zeros((2, len(bodies))),
         sticks=sticks(0, 0),
     )

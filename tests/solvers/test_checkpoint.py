@@ -66,8 +66,16 @@ SHORT = ["run.duration=12 ms", "run.step=0.1 ms", "run.print_step=0.4 ms"]
 STUCK = stack(3, "[3, 4]").replace(
     "friction: 0.3}", "friction: {static: 0.3, dynamic: 0.2, sticking: 9 N/mm}}", 2
 )
+FALLS = "  late: {material: paper, size: [67 mm, 127 mm], thickness: 0.1 mm, mass: 0.72 g, boxes: [2, 2], "
+SLEEPY = (
+    STUCK.replace("planes:", FALLS + "center: [0 mm, 0 mm, 3 mm]}\nplanes:")
+    .replace("contacts:", "contacts:\n  - {between: [note_2, late], stiffness: 100 N/mm^1.5, friction: 0.3}")
+    .replace("run: {duration: 20 ms", "run: {duration: 30 ms, step: 0.1 ms, tolerance: 0.01")
+)
 MORE = {
     "sticking": (STUCK, ["sheets.note_2.velocity=[3000 mm/s, 500 mm/s, 0 mm/s]", *SHORT]),
+    # a pile that falls asleep, and wakes as another note falls on it; with friction that sticks
+    "asleep": (SLEEPY, []),
     "one way": (FORTH_AND_BACK, [*OVERRUN, *SHORT]),
     "halved": (MACHINE, ["run.step=0.1 ms", "run.print_step=0.1 ms"]),
 }
@@ -140,7 +148,7 @@ def goes_on(name: str, tmp_path: Path, threads: int) -> None:
     model = scene(name)
     whole = lattice.solve(model)
     assert whole.ok, whole.status
-    assert whole.halved == (name in ("halved", "feeder"))
+    assert whole.halved == (name in ("halved", "feeder", "asleep"))
     cuts = 0
     provenance: Callable[[], dict[str, str]] | None = written_with
     while True:

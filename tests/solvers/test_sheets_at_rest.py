@@ -96,6 +96,7 @@ def test_boxes_that_lean_have_not_crossed_where_a_centre_passes_a_plane():
             totals=np.zeros(3),
             near=near,
             overlaps=np.zeros(1, OVERLAP).view(np.recarray),
+            spare=np.zeros(1, OVERLAP).view(np.recarray),
             fastest=np.zeros((2, count)),
             sticks=sticks(0, 0),
         )

@@ -25,12 +25,22 @@ class Helpers:
     that ends."""
 
     def __init__(self, work: Workspace, threads: int):
+        self._many = threads
+        self._take(work)
+
+    def _take(self, work: Workspace) -> None:
         self._work, self._words = work, work.pool.words
         self._closed = Event()
         self._threads = [
             Thread(target=self._help, name=f"helper {k}", daemon=True)
-            for k in range(1, min(threads, work.pool.failed.size))
+            for k in range(1, min(self._many, work.pool.failed.size))
         ]
+
+    def follow(self, work: Workspace) -> None:
+        """From now on they take parts of the jobs of other arrays."""
+        self.__exit__()
+        self._take(work)
+        self.__enter__()
 
     def _help(self) -> None:
         from mdlgen.backends.lattice.kernels import entries

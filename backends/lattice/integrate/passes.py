@@ -17,6 +17,7 @@ from mdlgen.backends.lattice.integrate.ends import OVERLAPPED, PASSED, reason_of
 from mdlgen.backends.lattice.integrate.helpers import Helpers
 from mdlgen.backends.lattice.integrate.pass_state import PassState, Stage
 from mdlgen.backends.lattice.integrate.record import Recorder, Snapshot
+from mdlgen.backends.lattice.integrate.sleep import Sleep, may_sleep
 from mdlgen.backends.lattice.integrate.work import arrays, control, flexible
 from mdlgen.backends.lattice.kernels.state import (
     ANEW,
@@ -49,7 +50,7 @@ Progress = Callable[[float, float, int, int], None]
 class Watch(NamedTuple):
     """Who follows a pass: what is called as it goes, what keeps it and by which number, and what stops it
     where it goes on at the same time as another one; one of the two is hidden. And how many threads share
-    the work of its steps."""
+    the work of its steps, and whether sheets at rest may sleep."""
 
     progress: Progress | None = None
     keep: Checkpointer | None = None
@@ -57,6 +58,7 @@ class Watch(NamedTuple):
     stop: Event | None = None
     hidden: bool = False
     threads: int = 1
+    sleeps: bool = True
 
     def beside(self, stop: Event) -> Watch:
         """Of a pass that goes on beside another one, which is the one that reports."""
@@ -98,6 +100,13 @@ def division(model: Model, wanted: float) -> Division:
     return Division(outputs, each, dt)
 
 
+def steps_to(left: float, step: float) -> np.ndarray:
+    """The steps over the time that is `left` [ms]: whole ones, after what is left of one that was begun."""
+    whole = math.floor(left / step + 1e-9)
+    first = left - whole * step
+    return np.array(([first] if first > 1e-9 * step else []) + whole * [step])
+
+
 def accuracy(model: Model) -> float:
     """What a step is solved to: a larger tolerance is for what differs from run to run however exact."""
     return min(model.run.tolerance, LOOSEST)
@@ -129,13 +138,13 @@ def one_pass(
 
     run = model.run
     outputs, each, dt = division(model, wanted)
-    progress, keep, number, stop, hidden, threads = watch
+    progress, keep, number, stop, hidden, threads, sleeps = watch
     begun = clock.perf_counter()
-    work = arrays(model, system)
-    state = work.state
+    work = arrays(model, system, sleeps and may_sleep(model, system))
+    state = work.state  # of which places are those of all bodies, whatever sleeps
     steering = control(work)
     counters, energies = steering.counters, steering.energies
-    recorder = Recorder(model, system, state, work.mid, work.kept)
+    recorder = Recorder(model, system, state, work.mid, work.kept, outputs)
     overlaps = unheld(model, system)
     recorder.store(0.0)
     # the guess of a step is the better the finer it is: what is left of it must fall as fast
@@ -144,11 +153,15 @@ def one_pass(
     steering.pace[[MISS_OF, ANEW, MADE_OF]] = miss, float(anew), made
     steering.pace[[FASTEST, RECENT]] = speed(model)
     status, t, past = integrate.DONE, 0.0, 0.0
-    pass_state = PassState(work, steering, recorder)
-    stage = pass_state.back(keep, number) if keep is not None else None
+    sleep, stage = Sleep(model, system, work, steering, recorder), None
+    del work  # sleep has what is worked on
+    if keep is not None:
+        sleep.lie_down(keep, number)
+        stage = PassState(sleep.work, sleep.steering, recorder, sleep).back(keep, number)
     if stage is not None:
         status, t, past = stage.status, stage.t, stage.wall
-        entries.look(system.pairs, system.search, system.search.place.copy())
+        search = sleep.system.search
+        entries.look(sleep.system.pairs, search, search.place.copy())
 
     def show() -> None:
         if keep is not None and not hidden:  # the one beside shows a later part, or a finer one
@@ -157,21 +170,30 @@ def one_pass(
     if stage is not None:
         show()
     todo = range(stage.outputs if stage else 0, 0 if stage and stage.ended else outputs)
-    with Helpers(work, threads):
+    with Helpers(sleep.work, threads) as helpers:
         for output in todo:
-            for taken in range(0, each, MOST_AT_ONCE):
+            fresh, last = True, (output + 1) * run.duration / outputs
+            left = np.full(each, dt)
+            while left.size:
                 if stop is not None and stop.is_set():
                     raise Stopped
-                steps = np.full(min(each - taken, MOST_AT_ONCE), dt)
-                status, t = integrate.run(work, t, steps, tolerance, steering)
-                if taken == 0:
+                began = t
+                status, t = integrate.run(sleep.work, t, left[:MOST_AT_ONCE], tolerance, sleep.steering)
+                if fresh and t > began:
                     recorder.between()
-                if status != integrate.DONE:
+                    fresh = False
+                if status == integrate.WOKEN:
+                    sleep.wake(int(counters[WORST]), t, helpers)
+                    left = steps_to(last - t, dt)
+                elif status == integrate.DONE:
+                    left = left[MOST_AT_ONCE:]
+                else:
                     break
             if status != integrate.DONE:
                 break
-            t = (output + 1) * run.duration / outputs
+            t = last
             recorder.store(t)
+            sleep.look(t, tolerance, helpers)
             passed = system.mirror.passed(state.x, system.nodes) if system.mirror is not None else -1
             if passed >= 0:
                 status = PASSED
@@ -183,15 +205,19 @@ def one_pass(
             show()
             if keep is not None and keep.due(number) and output + 1 < outputs:
                 wall = past + clock.perf_counter() - begun
-                keep.save(number, pass_state.arrays(Stage(status, t, output + 1, wall, False)))
+                at = Stage(status, t, output + 1, wall, False)
+                keep.save(number, PassState(sleep.work, sleep.steering, recorder, sleep).arrays(at))
             if progress is not None:
                 progress(t, run.duration, int(counters[STEPS]), int(counters[TOUCHING]))
     if todo and status in (integrate.LEFT, integrate.DEEP, integrate.STRETCHED):
         recorder.store(t)  # with which its energies balance, or do not
     wall = past + clock.perf_counter() - begun
     if keep is not None and todo and (keep.written or keep.due(number)):
-        keep.save(number, pass_state.arrays(Stage(status, t, todo.stop, wall, True)))
-    reason = None if status == integrate.DONE else reason_of(model, system, status, t, dt, state, counters)
+        at = Stage(status, t, todo.stop, wall, True)
+        keep.save(number, PassState(sleep.work, sleep.steering, recorder, sleep).arrays(at))
+    reason = None
+    if status != integrate.DONE:
+        reason = reason_of(model, sleep.system, status, t, dt, sleep.work.state, counters)
     result = recorder.result("lattice", reason, energies)
     result.step, result.steps = dt, int(counters[STEPS])
     result.rounds, result.wall_s = int(counters[ITERATIONS]), wall

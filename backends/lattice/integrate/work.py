@@ -10,6 +10,7 @@ from mdlgen.backends.lattice.integrate.record import Recorder
 from mdlgen.backends.lattice.kernels.state import (
     COUNTERS,
     ROW,
+    Asleep,
     Bounds,
     Control,
     History,
@@ -49,16 +50,32 @@ def start(model: Model, system: System) -> tuple[State, Midpoint, Matrix]:
     return state, mid, matrix
 
 
-def arrays(model: Model, system: System) -> Workspace:
-    """What a run works on, made for the start."""
+def arrays(model: Model, system: System, sleeps: bool = False) -> Workspace:
+    """What a run works on, made for the start; `sleeps`: sheets may."""
+    from mdlgen.backends.lattice.kernels import entries
+
+    state, mid, matrix = start(model, system)
+    system.pairs["beside"] = 0
+    contacts = len(model.contacts)
+    kept = Kept(np.zeros((contacts, ROW)), np.zeros(system.marks, bool))
+    speeds, nobody = np.zeros(len(model.sheets) if sleeps else 0), np.zeros((0, 6))
+    none = np.zeros(0, np.int64)
+    asleep = Asleep(speeds, none, nobody, nobody.copy(), np.zeros(1), np.zeros(contacts, bool))
+    work = workspace(model, system, (state, mid, matrix), kept, asleep)
+    entries.remember(system.bodies, system.pairs, Motion(state.x, state.r, mid.motion.u, mid.motion.w))
+    return work
+
+
+def workspace(
+    model: Model, system: System, step: tuple[State, Midpoint, Matrix], kept: Kept, asleep: Asleep
+) -> Workspace:
+    """What a run works on from a state, with pairs of boxes of two sheets searched for it."""
     from mdlgen.backends.lattice.kernels import entries, forces, parallel
     from mdlgen.backends.lattice.kernels.contact import condensed
     from mdlgen.backends.lattice.kernels.integrate import damped, momentum, room
 
-    state, mid, matrix = start(model, system)
+    state, mid, matrix = step
     entries.look(system.pairs, system.search, state.x)
-    system.pairs["beside"] = 0
-    entries.remember(system.bodies, system.pairs, Motion(state.x, state.r, mid.motion.u, mid.motion.w))
     film = films(model, system)
     return Workspace(
         tables=system.tables,
@@ -67,13 +84,14 @@ def arrays(model: Model, system: System) -> Workspace:
         matrix=matrix,
         condensed=condensed.empty(system, forces.WIDE),
         free=momentum.empty(system),
-        kept=Kept(np.zeros((len(model.contacts), ROW)), np.zeros(system.marks, bool)),
+        kept=kept,
         bounds=Bounds(model.pairs.low, model.pairs.high),
         search=system.search,
         damped=damped.empty(system),
         frozen=room.frozen(system, len(film.cells)),
         pool=parallel.empty(len(matrix.couplings.colouring.spans), system.border),
         film=film,
+        asleep=asleep,
     )
 
 
@@ -92,6 +110,7 @@ def warm(model: Model, system: System) -> None:
     entries.help(work, 0)
     integrate.run(work, 0.0, np.zeros(0), 1.0, control(work))
     Recorder(model, system, work.state, work.mid, work.kept).store(0.0)
+    entries.PROGRAM.release()  # else the arrays of its last calls stay beside those of the run
 
 
 def flexible(model: Model) -> bool:

@@ -66,6 +66,7 @@ class Midpoint(NamedTuple):
     totals: Floats  # (3,) LOST, POWER, NUMERICAL
     near: Ints  # pairs that may touch
     overlaps: np.ndarray  # of pairs that are searched, mechanics.overlap.OVERLAP
+    spare: np.ndarray  # the same of a pair between steps, (1,)
     fastest: Floats  # how fast places of free boxes are at most, MIDDLE and ENDS of a step, (2, bodies)
     sticks: Sticks
 
@@ -206,6 +207,18 @@ class Film(NamedTuple):
 PRESSURES = 0  # row of Film.vectors
 
 
+class Asleep(NamedTuple):
+    """What sheets do that may sleep, and what those miss that do; see lattice.sleep. None may where there are
+    no `speeds`."""
+
+    speeds: Floats  # (sheets,) how fast places of each were at most since they were last looked at [mm/ms]
+    bodies: Ints  # boxes of sheets that sleep
+    forces: Floats  # forces and torques of all that is awake on them as they fell asleep, (those boxes, 6)
+    missed: Floats  # impulses that they have missed since, (those boxes, 6)
+    may: Floats  # (1,) velocity that a box may miss [mm/ms]
+    rows: np.ndarray  # (contacts,) whether nothing of a contact is awake: what it does stays as it is
+
+
 class Workspace(NamedTuple):
     """All arrays of a run."""
 
@@ -222,6 +235,7 @@ class Workspace(NamedTuple):
     frozen: Frozen
     pool: Any  # parallel.Pool
     film: Film
+    asleep: Asleep
 
 
 class History(NamedTuple):

@@ -14,8 +14,13 @@ SAMPLE = "pile"
 STEP = 0.1  # [ms]
 DURATION, QUICK = 100.0, 20.0  # [ms]
 GRID = (10, 20)
-COUNTS = {"rest": (5, 20), "fed": (5, 20, 100), "shared": (5, 20)}
-NAMES = {"rest": "at rest", "fed": "under a roller", "shared": "under a roller, two threads"}
+COUNTS = {"rest": (5, 20), "awake": (5, 20), "fed": (5, 20, 100), "shared": (5, 20)}
+NAMES = {
+    "rest": "at rest",
+    "awake": "at rest, none asleep",
+    "fed": "under a roller",
+    "shared": "under a roller, two threads",
+}
 TALL = 0.1  # of a note [mm]
 # The middle of the roller over the face of the uppermost note [mm]; for a pile at rest it stands still above.
 ABOVE, AWAY = 12.4, 250.0
@@ -29,29 +34,31 @@ FEEDER, FEEDER_STEP, FED = "feeder", 0.05, 600.0  # -, [ms], [ms]
 
 
 def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
-    """Piles of 5 to 100 notes of 200 boxes at a step that is given, some with two threads that share it; in
-    Exudyn a small one."""
+    """Piles of 5 to 100 notes of 200 boxes at a step that is given, some with two threads that share it, some
+    in which no sheet sleeps; in Exudyn a small one."""
     duration = QUICK if quick or solver == REFERENCE else DURATION
     found = []
     for kind, counts in COUNTS.items():
-        if kind == "shared" and solver == REFERENCE:
+        if kind in ("shared", "awake") and solver == REFERENCE:
             continue
         for count in counts[:1] if quick or solver == REFERENCE else counts:
-            middle = AWAY if kind == "rest" else ABOVE + TALL * count
+            rests = kind in ("rest", "awake")
+            middle = AWAY if rests else ABOVE + TALL * count
             sets = (
                 f"piles.cassette.count={count}",
                 f"sheets.note.boxes=[{GRID[0]},{GRID[1]}]",
                 f"rollers.pick.center=[0 mm, 0 mm, {middle:g} mm]",
-                *(STILL if kind == "rest" else ("rollers.pick.drive={speed: 25 rad/s, ramp: 10 ms}",)),
+                *(STILL if rests else ("rollers.pick.drive={speed: 25 rad/s, ramp: 10 ms}",)),
                 f"piles.cassette.contact={CONTACT}",
                 f"contacts.floor.stiffness={STIFFNESS}",
                 f"contacts.pick.between=[cassette_{count}, pick]",
                 f"probes.lead.sheet=cassette_{count}",
                 f"run.duration={duration:g} ms",
                 *(("run.threads=2",) if kind == "shared" else ()),
+                *(("run.sleep=false",) if kind == "awake" else ()),
                 "require=[]",
             )
-            measure = rests if kind == "rest" else partial(feeds, count=count)
+            measure = creep if rests else partial(feeds, count=count)
             name = f"{count} notes {NAMES[kind]}"
             found.append(
                 BenchCase("piles", name, Run(SAMPLE, sets, STEP), measure, repeats=False, limit=LIMIT)
@@ -68,7 +75,7 @@ def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
     return found
 
 
-def rests(result: Result, _: Result | None) -> list[Finding]:
+def creep(result: Result, _: Result | None) -> list[Finding]:
     """How fast the notes of a pile move at the end, as a part of what they may."""
     notes = range(len(result.model.sheets))
     fastest = max(float(np.linalg.norm(result.sheet_motion(k)[1][-1])) for k in notes)

@@ -91,6 +91,7 @@ class RunSettings:
     print_step: float
     symmetry: bool  # a scene that is its own mirror image may be halved
     threads: int = 1  # that share the work of a step
+    sleep: bool = True  # sheets that rest may be left out
 
 
 @dataclass(frozen=True)

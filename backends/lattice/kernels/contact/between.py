@@ -103,30 +103,45 @@ def near_forces(work, close):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
+def _between_steps(tables, mid, k, pair, motion, out, short):
+    """As `_two_boxes` and `_sticking` for a state between steps; k: of the pair among those that are
+    searched. What is kept stays as it is: where it does not hold, it is found in a record of its own."""
+    kept, f, law = mid.overlaps[k], mid.forces, law_of(pair)
+    a, b = frame_of(motion, pair.a), frame_of(motion, pair.b)
+    if holds(kept, a, b, MOVED):
+        if mid.sticks.pairs.size > 0 and pair.sticking > 0.0:
+            touching = kept.count > 0
+            touching = touching and press_sticking(
+                short, kept, mid.sticks.pairs[k], a, b, law, pair.sticking, 0.0
+            )
+        else:
+            touching = kept.count > 0 and press(short, kept, a, b, law)
+    else:
+        one, two = box_of(tables.bodies[pair.a]), box_of(tables.bodies[pair.b])
+        if apart(a, one.half, b, two.half, 0.0):
+            return False
+        kept = mid.spare[0]
+        find(kept, a, one, b, two, law)
+        if kept.state == OTHER:
+            return _by_sides(tables, pair, motion, f, out, short)
+        touching = kept.count > 0 and press(short, kept, a, b, law)
+    if touching:
+        short[POINTS] = 0.0
+        onto(f, pair, short)
+    return touching
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
 def forces_at(tables, mid, first, motion, close):
     """As `near_forces` for a state between steps, without touching what is kept of overlaps: `first` is the
     first of the pairs that have any. Returns (how many pairs touch, stored energy)."""
-    near, f, results, overlaps = mid.near, mid.forces, mid.results, mid.overlaps
+    near, f, results = mid.near, mid.forces, mid.results
     count = row = 0
     stored = 0.0
     for at in range(close):
         pair, out, short = tables.pairs[near[at]], results[row], mid.faces[count]
         if pair.kind == BOX_BOX:
-            kept, a, b = overlaps[near[at] - first], frame_of(motion, pair.a), frame_of(motion, pair.b)
-            if holds(kept, a, b, MOVED):
-                if mid.sticks.pairs.size > 0 and pair.sticking > 0.0:
-                    stuck, ratio = mid.sticks.pairs[near[at] - first], pair.sticking
-                    touching = kept.count > 0
-                    touching = touching and press_sticking(short, kept, stuck, a, b, law_of(pair), ratio, 0.0)
-                else:
-                    touching = kept.count > 0 and press(short, kept, a, b, law_of(pair))
-                if touching:
-                    short[POINTS] = 0.0
-                    onto(f, pair, short)
-            else:
-                one, two = box_of(tables.bodies[pair.a]), box_of(tables.bodies[pair.b])
-                touching = not apart(a, one.half, b, two.half, 0.0)
-                touching = touching and _by_sides(tables, pair, motion, f, out, short)
+            touching = _between_steps(tables, mid, near[at] - first, pair, motion, out, short)
         else:
             touching = touches(tables, pair, motion, f, out)
         if touching:

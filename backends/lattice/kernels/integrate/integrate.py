@@ -13,6 +13,7 @@ from mdlgen.backends.lattice.kernels.contact.swept import Before, swept
 from mdlgen.backends.lattice.kernels.integrate.air import air_overshoot
 from mdlgen.backends.lattice.kernels.integrate.carry import carry, spun
 from mdlgen.backends.lattice.kernels.integrate.damped import overshoot, take_off
+from mdlgen.backends.lattice.kernels.integrate.sleeping import disturbed, miss, note_speeds
 from mdlgen.backends.lattice.kernels.integrate.step import midpoint
 from mdlgen.backends.lattice.kernels.linear.dense import copy
 from mdlgen.backends.lattice.kernels.state import (
@@ -64,7 +65,7 @@ from mdlgen.mechanics.turning import TURNING, turning
 from mdlgen.model.tables.contacts import BOX_BOX
 from mdlgen.program.kernel import BORROWS, njit
 
-DONE, STOPPED, LEFT, DEEP, STRETCHED, CROWDED = 0, 1, 2, 3, 4, 5
+DONE, STOPPED, LEFT, DEEP, STRETCHED, CROWDED, WOKEN = 0, 1, 2, 3, 4, 5, 6
 # How often a step may be halved.
 DEEPEST = 14
 # How often at most for accuracy, and how much more than wanted a step may miss before it is taken again.
@@ -94,10 +95,12 @@ def _deep(tables, mid, count):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _watch(tables, mid, count, t, dt, kept):
-    """Adds what contacts did in a step from t to a Kept."""
+def _watch(tables, mid, count, t, dt, kept, asleep):
+    """Adds what contacts did in a step from t to a Kept; those of which nothing is awake do as before."""
     rows, marks = kept
     for row in range(rows.shape[0]):
+        if asleep.rows[row]:
+            continue
         rows[row, FORCE_NOW] = rows[row, DEPTH_NOW] = 0.0
         for i in range(TURNING):
             rows[row, TURNING_NOW + i] = 0.0
@@ -145,13 +148,12 @@ def _outside(x, low, high):
 
 
 @njit(cache=True, error_model="numpy")
-def _missed(bodies, nodes, u, guess):
-    """Root mean square over the boxes of what the velocities of a step turned out to be against their guess,
-    and of the velocities themselves."""
-    missed = fast = mass = 0.0
+def _missed(bodies, nodes, u, guess, mass):
+    """Root mean square over the boxes, of that mass with those that sleep, of what the velocities of a step
+    turned out to be against their guess, and of the velocities themselves."""
+    missed = fast = 0.0
     for n in range(nodes.size):
         own = bodies[nodes[n]].mass
-        mass += own
         for i in range(3):
             missed += own * (u[n, i] - guess[n, i]) ** 2
             fast += own * u[n, i] ** 2
@@ -193,7 +195,8 @@ def run(work, t, steps, tolerance, control):
     A step is halved, up to DEEPEST times, where it does not converge, or where the velocities miss their
     guess by more than pace[MISS]. `tolerance` and that are parts of the greatest speed so far. Nor may
     contacts make or lose more in one step than pace[MADE] of the energy that passes through the run: the
-    kinetic energy at that speed, what drives moved either way, what was dissipated. See state.Control.
+    kinetic energy at that speed, what drives moved either way, what was dissipated. See state.Control. Before
+    a step that would move a box that sleeps the status is WOKEN, and the box is counters[WORST].
     """
     tables, state, mid, rows = work.tables, work.state, work.mid, work.kept.rows
     bodies, pairs, nodes, search = tables.bodies, tables.pairs, tables.nodes, work.search
@@ -208,6 +211,8 @@ def run(work, t, steps, tolerance, control):
             rows[row, TURNING_BEGUN + i] = rows[row, TURNING_NOW + i]
     for n in range(nodes.size):
         mass += bodies[nodes[n]].mass
+    for b in work.asleep.bodies:
+        mass += bodies[b].mass
     for whole in steps:
         done = 0
         while done < 1 << DEEPEST:
@@ -242,7 +247,13 @@ def run(work, t, steps, tolerance, control):
             if search.regions.size > 0 and pace[FASTEST] > 0.0:
                 limit *= min(max(STILL, SLOW * pace[RECENT] / pace[FASTEST]), 1.0)
             solved = midpoint(work, t, dt, limit, control)
-            missed, fast = _missed(bodies, nodes, u, guess) if solved else (0.0, 0.0)
+            woken = disturbed(bodies, mid.forces, work.asleep, dt) if solved else -1
+            if woken >= 0:
+                copy(u, keep_u)
+                copy(ub, keep_b)
+                counters[WORST] = woken
+                return WOKEN, t
+            missed, fast = _missed(bodies, nodes, u, guess, mass) if solved else (0.0, 0.0)
             most = pace[MISS] * max(fast, pace[FASTEST]) if pace[MISS] > 0.0 else 1e300
             if solved and search.regions.size > 0:
                 solved = not strayed(bodies, search, x, u, dt)
@@ -274,13 +285,16 @@ def run(work, t, steps, tolerance, control):
             if work.film.films.size > 0:
                 course = dt / (dt + spans[LAST_STEP]) if spans[LAST_STEP] > 0.0 else 0.0
                 air_overshoot(work, keep_u, course, dt)
+            if work.asleep.speeds.size > 0:
+                note_speeds(bodies, nodes, work.free.label, u, work.asleep.speeds)
+                miss(mid.forces, work.asleep, dt)
             copy(last_u, keep_u)
             copy(last_b, keep_b)
             _account(bodies, mid, state, t, dt, energies)
             if mid.sticks.pairs.size > 0:
                 gone = end_of_step(work, int(counters[TOUCHING]), int(counters[CLOSE]))
                 energies[DISSIPATED] += gone
-            _watch(tables, mid, int(counters[TOUCHING]), t, dt, work.kept)
+            _watch(tables, mid, int(counters[TOUCHING]), t, dt, work.kept, work.asleep)
             if t == begun:
                 _begun(rows, spans[LAST_STEP] / (spans[LAST_STEP] + dt))
             # between the middles of the two steps

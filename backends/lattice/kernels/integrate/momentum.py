@@ -23,7 +23,8 @@ def empty(system) -> Free:
     bodies, joints, nodes = system.bodies, system.joints, system.nodes
     label = system.sheets
     ends = [np.where(joints[end] >= 0, bodies["node"][joints[end]], -1) for end in "ab"]
-    loose = np.ones(int(label.max(initial=-1)) + 1, np.bool_)
+    loose = np.zeros(int(label.max(initial=-1)) + 1, np.bool_)
+    loose[label] = True  # a sheet that sleeps has no nodes
     cut, image = np.zeros_like(loose), np.isin(np.arange(len(bodies)), system.images["body"])
     seen = [image[joints[end]] for end in "ab"]
     for one, two, mirrored in ((*ends, seen[1]), (*ends[::-1], seen[0])):

@@ -41,6 +41,7 @@ def empty(system, wide: int) -> tuple[State, Midpoint, Matrix]:
         totals=np.zeros(3),
         near=np.zeros(len(system.pairs), np.int64),
         overlaps=np.zeros(max(1, len(system.pairs) - system.search.first), OVERLAP),
+        spare=np.zeros(1, OVERLAP),
         fastest=np.zeros((2, bodies)),
         sticks=sticks(len(system.pairs) - system.search.first, bodies) if sticking else sticks(0, 0),
     )

@@ -276,7 +276,12 @@ def midpoint(work, t, dt, tolerance, control):
             solve(matrix.band, res)
             columns(matrix.band, condensed, m)
             if not solve_contacts(work, m, where, h, t + h, (close, count), (ROUGH * limit, 0.3 * limit)):
-                break
+                if not sheets:
+                    break
+                # as a convex problem, with all contacts in the matrix, the iteration has a solution
+                release(condensed, m)
+                where, last = INSIDE, iteration
+                continue
         turn_nodes(nodes, condensed.axes, res, False)
         found = 0.0
         if where == INSIDE:

@@ -1,0 +1,91 @@
+"""The part of a System that is awake: sheets that sleep are parts that do not move there.
+
+As with a scene that is halved (symmetry.mirror), the same kernels run on fewer nodes, joints and pairs.
+Bodies keep their numbers, contacts their rows.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mdlgen.backends.lattice.arrays import System, offsets
+from mdlgen.backends.lattice.kernels.contact.search import EMPTY
+from mdlgen.model.tables import Ints, Model
+
+
+class Parts:
+    """Which sheets and which moving parts the contacts of a Model, and its pairs, are of."""
+
+    def __init__(self, model: Model, system: System):
+        number = {sheet.name: k for k, sheet in enumerate(model.sheets)}
+        table = model.contacts
+        ends = (table.part_a, table.part_b)
+        self.sheets = np.array([[number.get(name, -1) for name in end] for end in ends]).reshape(2, -1)
+        self.moves = np.zeros(len(table), bool)
+        pairs = system.pairs[: system.search.first]
+        self.moves[pairs["row"]] = _moves(model, system)[pairs["b"]]
+        count = len(system.bodies)
+        self.sheet_of = np.full(count, -1)  # of each body
+        for k, sheet in enumerate(model.sheets):
+            self.sheet_of[sheet.first : sheet.first + sheet.count] = k
+
+    def lasting(self, asleep: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Contacts of sheets that sleep with each other and with what does not move, (contacts,)."""
+        known = self.sheets >= 0
+        sleeps = known & asleep[np.where(known, self.sheets, 0)]
+        other = ~known[1] & ~self.moves
+        return sleeps[0] & (sleeps[1] | other)
+
+
+def _moves(model: Model, system: System) -> NDArray[np.bool_]:
+    """Bodies that are no boxes of sheets and may move: they slide, swing, turn, or are driven."""
+    bodies = system.bodies
+    moves = (bodies["slide"] >= 0) | (bodies["spin"] >= 0) | (bodies["swings"] > 0)
+    for roller in model.rollers:
+        moves[roller.body] |= roller.speed is not None
+    return moves
+
+
+def awake(system: System, parts: Parts, asleep: NDArray[np.bool_]) -> tuple[System, Ints]:
+    """The System with the sheets that are `asleep` (sheets,) as parts that do not move, in arrays of its own,
+    and which of the pairs before those that are searched it has."""
+    lasting = parts.lasting(asleep)
+    bodies = system.bodies.copy()
+    left = ~asleep[system.sheets]
+    nodes = system.nodes[left]
+    bodies["node"] = -1
+    bodies["node"][nodes] = np.arange(len(nodes))
+    free = [np.where(system.joints[end] >= 0, bodies["node"][system.joints[end]], -1) >= 0 for end in "ab"]
+    joints = system.joints[free[0] | free[1]].copy()
+    search = system.search
+    chosen = np.flatnonzero(~lasting[system.pairs["row"][: search.first]])
+    regions = ~lasting[search.regions["row"]]
+    spare = np.zeros(math.ceil(search.room[regions].sum()), system.pairs.dtype)
+    spare["kind"] = EMPTY
+    met = np.zeros(len(bodies), bool)
+    for region in search.regions[regions]:
+        for end in "ab":
+            met[region[end] : region[end] + region["many_" + end]] = True
+    sleeps = np.append(asleep, False)[parts.sheet_of]  # the last one is of what is no sheet
+    return (
+        system._replace(
+            bodies=bodies,
+            joints=joints,
+            pairs=np.concatenate([system.pairs[chosen], spare]),
+            loads=system.loads[~sleeps[system.loads["body"]]],
+            nodes=nodes,
+            sheets=system.sheets[left],
+            offsets=offsets(bodies, joints),
+            search=search._replace(
+                regions=search.regions[regions],
+                room=search.room[regions],
+                first=len(chosen),
+                boxes=search.boxes[met[search.boxes]],
+                place=np.zeros_like(search.place),
+            ),
+        ),
+        chosen,
+    )

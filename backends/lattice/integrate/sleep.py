@@ -1,0 +1,234 @@
+"""Sheets that sleep: what rests for long is left out of a run until something moves it.
+
+A sheet that lies still costs as much as one that moves: its bushings, contacts and velocities are worked out
+in each step, to no effect. So an island, sheets that touch each other, sleeps where no place of them has been
+faster for a while than what iterations may leave in what rests (kernels.integrate.integrate: STILL). What is
+left of the System takes them for parts that do not move (see awake); forces of contacts among them go on as
+they are, and so do their energies.
+
+What moves may reach them: its contacts with them are worked out as before, and their forces are impulses
+that the boxes miss. Before these would move a box, alone, by that speed, all that sleep and touch its sheet
+wake, at the velocities that they had, and the step is taken again with them.
+
+How long a while is: a sheet that is slower than V for a time W about a turn in its motion is accelerated by
+2 V/W at most, and moves by V T^2/W in a run of T without sleep. With W = T/20 that is 20 V T: V being the
+part STILL of the speed that iterations may leave, a tenth of the run's tolerance times the way of what is
+fastest. A sheet that woke waits twice as long.
+
+Sheets with air on them do not sleep, since a film closes slowly. Nor does an island of which a sheet hangs on
+something, or touches a part that moves.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mdlgen.backends.lattice.arrays import System
+from mdlgen.backends.lattice.integrate.awake import Parts, awake
+from mdlgen.backends.lattice.integrate.helpers import Helpers
+from mdlgen.backends.lattice.integrate.record import Recorder
+from mdlgen.backends.lattice.integrate.work import workspace
+from mdlgen.backends.lattice.kernels.state import (
+    ACTS,
+    FASTEST,
+    STEPS,
+    TIME,
+    Asleep,
+    Control,
+    History,
+    Workspace,
+)
+from mdlgen.mechanics.stick import STRETCH
+from mdlgen.model.tables import BOX_BOX, Model
+from mdlgen.runs.checkpoint import Checkpointer, State
+
+# How long a sheet is still before it sleeps: a part of the run, and steps at least.
+PART, LEAST_STEPS = 0.05, 20
+# What is carried over by body, from the nodes: velocity and angular momentum at the end of the last step, and
+# velocities in its middle and in that of the one before.
+WIDTHS = {"v": 3, "l": 3, "u": 6, "last": 6}
+SHEETS = "sleep.sheets"  # in a checkpoint
+
+
+def may_sleep(model: Model, system: System) -> bool:
+    """Whether sheets of a scene may: those that meet other sheets, without air."""
+    return (
+        model.run.sleep and len(system.search.regions) > 0 and not (model.contacts.air_viscosity > 0.0).any()
+    )
+
+
+class Sleep:
+    """Which sheets of a pass sleep; the System that is awake, what its steps work on and are steered by."""
+
+    def __init__(self, model: Model, system: System, work: Workspace, steering: Control, recorder: Recorder):
+        self.system, self.work, self.steering = system, work, steering
+        self._model, self._whole, self._recorder = model, system, recorder
+        sheets, bodies = len(work.asleep.speeds), len(system.bodies)
+        self._may = np.zeros(sheets, bool)
+        loose = work.free.loose if sheets else self._may
+        self._may[: len(loose)] = loose
+        self._parts = Parts(model, system)
+        self._sheets = np.zeros(sheets, bool)
+        self._since, self._counted = np.zeros(sheets), np.zeros(sheets)
+        self._wait = np.full(sheets, PART * model.run.duration)
+        self._touched = np.zeros(len(model.contacts))
+        self._store = {name: np.zeros((bodies if sheets else 0, width)) for name, width in WIDTHS.items()}
+        self._chosen = np.arange(system.search.first)
+        self._beside = system.pairs["beside"][: system.search.first].copy()
+        self._energies = np.zeros(3)
+        self._stuck = np.zeros(0, STRETCH)
+
+    @property
+    def possible(self) -> bool:
+        """Whether sheets may sleep in this pass."""
+        return bool(self._may.any())
+
+    def look(self, t: float, tolerance: float, helpers: Helpers) -> None:
+        """Puts to sleep what has been still for long enough at the time t [ms]; `tolerance`: of a step."""
+        from mdlgen.backends.lattice.kernels.integrate.integrate import STILL
+
+        if not self.possible:
+            return
+        asleep, rows = self.work.asleep, self.work.kept.rows
+        steps = self.steering.counters[STEPS]
+        asleep.may[0] = STILL * tolerance * self.steering.pace[FASTEST]
+        lively = asleep.speeds >= asleep.may[0]
+        asleep.speeds[:] = 0.0
+        self._since[lively], self._counted[lively] = t, steps
+        touched = rows[:, TIME] > self._touched
+        self._touched[:] = rows[:, TIME]
+        awake = self._may & ~self._sheets
+        awake &= (t - self._since < self._wait) | (steps - self._counted < LEAST_STEPS)
+        one, two = self._parts.sheets
+        awake |= ~self._may
+        awake[one[touched & (one >= 0) & self._parts.moves]] = True
+        still = ~self._island(awake, touched) & ~self._sheets
+        if still.any():
+            self._turn(self._sheets | still, t, helpers)
+
+    def wake(self, body: int, t: float, helpers: Helpers) -> None:
+        """Wakes the sheet of a box, and all that sleep and touch it, each other among them."""
+        woken = np.zeros_like(self._sheets)
+        disturbed = self._parts.sheet_of[body]
+        woken[disturbed] = True
+        self._wait[disturbed] *= 2.0
+        woken = self._island(woken, self.work.kept.rows[:, ACTS] != 0.0) & self._sheets
+        self._since[woken], self._counted[woken] = t, self.steering.counters[STEPS]
+        self._turn(self._sheets & ~woken, t, helpers)
+
+    def _island(self, sheets: NDArray[np.bool_], touching: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """The sheets, and all that touch them or each other, by contacts that are `touching` (contacts,)."""
+        one, two = self._parts.sheets
+        both = touching & (one >= 0) & (two >= 0)
+        one, two, found, count = one[both], two[both], sheets.copy(), -1
+        while count < found.sum():
+            count = found.sum()
+            met = found[one] | found[two]
+            found[one[met]] = found[two[met]] = True
+        return found
+
+    def _turn(self, sheets: NDArray[np.bool_], t: float, helpers: Helpers | None) -> None:
+        """Lets the `sheets` sleep, and no others, from the state at the time t on."""
+        from mdlgen.backends.lattice.kernels import forces
+        from mdlgen.backends.lattice.kernels.integrate import room
+
+        old, nodes = self.work, self.system.nodes
+        last_u = self.steering.history.u
+        for name, array in (("v", old.state.v), ("l", old.state.l), ("u", old.state.u), ("last", last_u)):
+            self._store[name][nodes] = array
+        self._beside[self._chosen] = self.system.pairs["beside"][: len(self._chosen)]
+        stuck = old.mid.sticks.pairs
+        self._stuck = np.concatenate([self._stuck, stuck[stuck["count"] > 0]])
+        energies = self._ledger(t) + self._energies
+
+        self._sheets = sheets
+        self.system, self._chosen = awake(self._whole, self._parts, sheets)
+        self.system.pairs["beside"][: len(self._chosen)] = self._beside[self._chosen]
+        state, mid, matrix = room.empty(self.system, forces.WIDE)
+        v, l, u, last = (self._store[name][self.system.nodes] for name in WIDTHS)
+        state = old.state._replace(v=v, l=l, u=u)
+        mid.motion.x[:], mid.motion.r[:] = state.x, state.r
+        bodies = self._whole.nodes[sheets[self._whole.sheets]]
+        speeds, none = old.asleep.speeds, np.zeros((len(bodies), 6))
+        asleep = Asleep(speeds, bodies, none, none.copy(), old.asleep.may, self._parts.lasting(sheets))
+        self.work = workspace(self._model, self.system, (state, mid, matrix), old.kept, asleep)
+        self._put_back()
+        history = History(last, self.steering.history.ub, self.steering.history.spans)
+        self.steering = self.steering._replace(history=history)
+        self.steering.factored[:] = 0.0
+
+        self._energies = energies - self._ledger(t)
+        asleep.forces[:] = mid.forces[bodies]
+        self._follow(helpers)
+
+    def _follow(self, helpers: Helpers | None) -> None:
+        self._recorder.follow(self.work, self.system, self._energies)
+        if helpers is not None:
+            helpers.follow(self.work)
+
+    def _ledger(self, t: float) -> np.ndarray:
+        """Kinetic, elastic and potential energy of what is awake, of one side; forces on all that sleep."""
+        from mdlgen.backends.lattice.kernels.integrate import observe
+
+        energies, rows = np.zeros(3), np.zeros_like(self.work.kept.rows)
+        first = self.system.search.first
+        observe.ledger(self.work.tables, self.work.state, self.work.mid, t, first, energies, rows)
+        return energies
+
+    def _put_back(self) -> None:
+        """Gives pairs whose friction sticks their stretches."""
+        first, places = self.system.search.first, self.work.mid.sticks.pairs
+        pairs = self.system.pairs[first:]
+        count, many = len(self._whole.bodies), int((pairs["kind"] == BOX_BOX).sum())
+        known = self._stuck["a"] * count + self._stuck["b"]
+        keys = pairs["a"][:many] * count + pairs["b"][:many]
+        order = np.argsort(known)
+        at = np.minimum(np.searchsorted(known[order], keys), max(0, len(known) - 1))
+        if not len(known) or not len(places):
+            return
+        found = known[order][at] == keys
+        places[np.flatnonzero(found)] = self._stuck[order[at[found]]]
+        self._stuck = np.delete(self._stuck, order[at[found]])
+
+    # -- checkpoints
+
+    def carried(self) -> State:
+        """All that it goes on from, besides the state of what is awake."""
+        if not self.possible:
+            return {}
+        return {
+            SHEETS: self._sheets,
+            "sleep.since": self._since,
+            "sleep.counted": self._counted,
+            "sleep.wait": self._wait,
+            "sleep.touched": self._touched,
+            "sleep.beside": self._beside,
+            "sleep.energies": self._energies,
+            "sleep.speeds": self.work.asleep.speeds,
+            "sleep.may": self.work.asleep.may,
+            "sleep.forces": self.work.asleep.forces,
+            "sleep.missed": self.work.asleep.missed,
+            "sleep.stuck": self._stuck,
+            **{f"sleep.{name}": array for name, array in self._store.items()},
+        }
+
+    def lie_down(self, keep: Checkpointer, number: int) -> None:
+        """Lets those sleep that slept where a pass was kept, so that its arrays fit."""
+        if not self.possible:
+            return
+        found = keep.load(number, {SHEETS: self._sheets}, (SHEETS,))
+        if found is not None and found[SHEETS].any():
+            self._turn(found[SHEETS], 0.0, None)
+
+    def restore(self, found: dict[str, Any]) -> None:
+        """Takes over what `carried` gave."""
+        if not self.possible:
+            return
+        self._stuck = found.pop("sleep.stuck")
+        for name, array in self.carried().items():
+            if name in found:
+                array[...] = found[name]
+        self._follow(None)

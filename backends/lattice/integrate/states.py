@@ -1,0 +1,101 @@
+"""Places and velocities of all bodies at the times that a run stores.
+
+There is one array of each from the start, which the result takes as it is: of a pile of a hundred sheets
+they are most of what a run needs. Rotations are kept as Euler parameters, which are worked out of some states
+at a time.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mdlgen.mechanics.frame import Motion
+from mdlgen.model.meshes import carried
+from mdlgen.model.rotations import euler_parameters
+from mdlgen.model.tables import Floats, Model
+
+WIDTHS = {"x": 3, "u": 3, "w": 3, "e": 4}
+TOGETHER = 20_000  # bodies, times states, whose rotations are looked at together
+
+
+class States:
+    """Places x [mm], velocities u, w [mm/ms, rad/ms] and Euler parameters e at `count` times."""
+
+    def __init__(self, model: Model, mirror, room: int):
+        """`mirror` shows the bodies that are not solved for, None: there are none; `room`: times, of which
+        there may be more."""
+        self._model, self._mirror = model, mirror
+        bodies = len(model.bodies.name)
+        self._arrays: dict[str, Floats] = {k: np.empty((room, bodies, n)) for k, n in WIDTHS.items()}
+        self.count = 0
+        # how many states are whole, and the rotations (bodies, 9) of those that follow; both at once, since
+        # another thread may look at what there is
+        self._ready: tuple[int, list[np.ndarray]] = (0, [])
+
+    def add(self, motion: Motion) -> None:
+        """Stores a state."""
+        whole, turned = self._ready
+        x = self._arrays["x"]
+        if self.count == len(x):
+            more = max(8, self.count)
+            blank = {name: np.empty((more, *array.shape[1:])) for name, array in self._arrays.items()}
+            self._arrays = {name: np.concatenate([a, blank[name]]) for name, a in self._arrays.items()}
+        bodies = x.shape[1]
+        for name, array in (("x", motion.x), ("u", motion.u), ("w", motion.w)):
+            self._arrays[name][self.count] = array[:bodies]
+        turned.append(motion.r[:bodies].copy())
+        self.count += 1
+        if len(turned) * bodies >= TOGETHER:
+            self._complete()
+
+    def _complete(self) -> None:
+        """Works out what there is not yet of all states."""
+        whole, turned = self._ready
+        if turned:
+            self._fill({name: array[whole : self.count] for name, array in self._arrays.items()}, turned)
+            self._ready = (self.count, [])
+
+    def _fill(self, states: dict[str, Floats], turned: list[np.ndarray]) -> None:
+        """Fills in the bodies that are not solved for, and Euler parameters: nan where rotations are not
+        finite."""
+        r = np.array(turned)
+        if self._mirror is not None:
+            self._mirror.fill(states["x"], r, states["u"], states["w"])
+        carried(self._model, states["x"], r, states["u"], states["w"])
+        states["e"][:] = np.nan
+        if np.isfinite(r).all():
+            states["e"][:] = euler_parameters(r.reshape(*r.shape[:2], 3, 3))
+
+    def all(self) -> dict[str, Floats]:
+        """The arrays of all states, (times, bodies, width), which are these themselves."""
+        self._complete()
+        found = {name: array[: self.count] for name, array in self._arrays.items()}
+        return found | {"e": _without_jumps(found["e"])}
+
+    def first(self, times: int) -> dict[str, Floats]:
+        """Copies of the arrays of the first states, while the run may go on."""
+        (whole, turned), arrays = self._ready, self._arrays
+        found = {name: array[:times].copy() for name, array in arrays.items()}
+        if times > whole:
+            self._fill({name: array[whole:] for name, array in found.items()}, turned[: times - whole])
+        return found | {"e": _without_jumps(found["e"])}
+
+    def restore(self, arrays: dict[str, Floats]) -> None:
+        """Goes back to what `all` gave."""
+        self.count = len(arrays["x"])
+        room = max(self.count, len(self._arrays["x"]))
+        for name, array in arrays.items():
+            self._arrays[name] = np.empty((room, *array.shape[1:]))
+            self._arrays[name][: self.count] = array
+        self._ready = (self.count, [])
+
+
+def _without_jumps(parameters: np.ndarray) -> np.ndarray:
+    """Euler parameters (t, bodies, 4), in place, with the signs that let them go on from one state to the
+    next; nan for all where some are not finite."""
+    if not np.isfinite(parameters).all():
+        return np.full_like(parameters, np.nan)
+    signs = np.sign(np.einsum("tbi,tbi->tb", parameters[1:], parameters[:-1]))
+    signs[signs == 0] = 1.0
+    parameters[1:] *= np.cumprod(signs, axis=0)[:, :, None]
+    return parameters

@@ -1,0 +1,37 @@
+"""How fast sheets are, and what those that sleep miss (see lattice.sleep)."""
+
+from __future__ import annotations
+
+from mdlgen.mechanics.bounds import fastest_place
+from mdlgen.program.kernel import BORROWS, njit
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def note_speeds(bodies, nodes, label, u, speeds):
+    """Raises the speeds of sheets to those of their fastest places at the velocities u (nodes, 6)."""
+    for n in range(nodes.size):
+        rate, spin = (u[n, 0], u[n, 1], u[n, 2]), (u[n, 3], u[n, 4], u[n, 5])
+        speeds[label[n]] = max(speeds[label[n]], fastest_place(bodies[nodes[n]], rate, spin))
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def disturbed(bodies, forces, asleep, dt):
+    """A box that sleeps and would miss more than it may, with the forces (bodies, 6) for dt; -1: none."""
+    for k in range(asleep.bodies.size):
+        b = asleep.bodies[k]
+        inertia = min(bodies[b].inertia[0], bodies[b].inertia[1], bodies[b].inertia[2])
+        size = bodies[b].half[0] + bodies[b].half[1]
+        for i in range(6):
+            missed = abs(asleep.missed[k, i] + dt * (forces[b, i] - asleep.forces[k, i]))
+            moves = missed / bodies[b].mass if i < 3 else size * missed / inertia
+            if not moves <= asleep.may[0]:
+                return b
+    return -1
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def miss(forces, asleep, dt):
+    """Adds up what boxes that sleep miss of a step of dt."""
+    for k in range(asleep.bodies.size):
+        for i in range(6):
+            asleep.missed[k, i] += dt * (forces[asleep.bodies[k], i] - asleep.forces[k, i])
