@@ -48,7 +48,7 @@ from mdlgen.backends.lattice.kernels.state import (
 from mdlgen.mechanics import point as law_point
 from mdlgen.mechanics.frame import LAW_SMOOTHING, box_of, frame_of, law_of
 from mdlgen.mechanics.laws import damped, friction_over_speed, sign_step
-from mdlgen.mechanics.overlap import OTHER, apart, find, holds, plane_of
+from mdlgen.mechanics.overlap import OTHER, STIFF, apart, find, holds, plane_of
 from mdlgen.mechanics.pair import on_fixed_plate
 from mdlgen.mechanics.stick import carry_stretch, stretch_of
 from mdlgen.mechanics.vector import add, cross, dot, rotate, scale, sub, three, three_from
@@ -193,18 +193,18 @@ def _of_faces(frozen, p, pair, kept, h, motion, sticks, k):
         depth = level + lean_p * along + lean_r * across
         if depth <= -REACH:
             continue
-        at = (along, across, kept.side * (kept.owner[2] - 0.5 * depth))
+        at = (along, across, kept.side * (kept.thick - 0.5 * depth))
         many = _begin(frozen, p, add(owner.x, rotate(owner.r, at)), normal, a, b)
         if many < 0:
             return
         q = frozen.points[many]
-        q[STIFFNESS], q[DEPTH] = kept.stiffness[corner], depth
+        q[STIFFNESS], q[DEPTH] = kept.corners[corner, STIFF], depth
         q[BETA], q[OVER] = law.beta, law.smoothing
         q[MU_STATIC], q[MU_DYNAMIC] = law.mu_static, law.mu_dynamic
         q[STICTION], q[SLIDING] = law.stiction, law.sliding
         q[PRESSING] = law_at(q, three_from(q, NOW), h)[2]
         if sticks.size > 0 and pair.sticking > 0.0:
-            k_t = pair.sticking * kept.stiffness[corner]
+            k_t = pair.sticking * kept.corners[corner, STIFF]
             stick(q, stretch_of(sticks[k], kept, owner, corner), k_t, law)
         _started(q, h)
 
