@@ -36,12 +36,15 @@ REGION = np.dtype(
         ("sticking", "f8"),  # as of a pair
     ]
 )
+# A pair that is searched, in little memory: nearly all that steps read of it.
+LISTED = np.dtype([("a", "i4"), ("b", "i4"), ("region", "i4")])  # boxes, -1: none from here on; its REGION
 
 
 class Search(NamedTuple):
     """What a search needs; no regions: there is none."""
 
     regions: np.ndarray  # REGION, one for each contact of two sheets
+    listed: np.ndarray  # LISTED, pairs from `first` on
     first: int  # pairs before are the Model's
     boxes: Ints  # bodies that are searched
     place: Floats  # where bodies were at the last search [mm], (bodies, 3)
@@ -79,9 +82,11 @@ def plan(model: Model, pairs: np.ndarray) -> tuple[np.ndarray, Search, int]:
         marks, size = marks + every, max(size, reach)
     spare = np.zeros(math.ceil(room), pairs.dtype)
     spare["kind"] = EMPTY
+    listed = np.full(len(spare), EMPTY, LISTED)
     count = len(half)
     search = Search(
         regions=regions,
+        listed=listed,
         first=len(pairs),
         boxes=np.array(sorted(boxes), dtype=np.int64),
         place=np.zeros((count, 3)),

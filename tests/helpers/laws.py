@@ -13,6 +13,7 @@ from mdlgen.backends.lattice.kernels import entries
 from mdlgen.backends.lattice.kernels.forces import WIDE
 from mdlgen.backends.lattice.kernels.integrate.room import sticks
 from mdlgen.backends.lattice.kernels.state import Midpoint, Tables
+from mdlgen.backends.lattice.search import LISTED
 from mdlgen.mechanics.curve import POINT
 from mdlgen.mechanics.frame import Box, Cylinder, Frame, Law, Motion, Plate, Vector
 from mdlgen.mechanics.guide import BOTH, INSIDE, OUTSIDE, upper
@@ -42,6 +43,7 @@ def pair_force(bodies: np.ndarray, pair: np.void, shapes: Shapes, motion: Motion
         bodies=bodies,
         joints=np.zeros(0, JOINT),
         pairs=np.array([pair], PAIR),
+        listed=np.zeros(0, LISTED),
         loads=np.zeros(0, LOAD),
         gravity=np.zeros(3),
         nodes=np.zeros(0, np.int64),

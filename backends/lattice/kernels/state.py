@@ -22,6 +22,7 @@ class Tables(NamedTuple):
     bodies: np.ndarray
     joints: np.ndarray
     pairs: np.ndarray
+    listed: np.ndarray  # lattice.search.LISTED, of the last so many pairs, which are searched
     loads: np.ndarray
     gravity: Floats  # (3,) [mm/ms^2]
     nodes: Ints  # the body of each free box
@@ -105,6 +106,7 @@ class Frozen(NamedTuple):
 
     points: Floats  # (room, POINT)
     pair: Ints  # of each, (room,)
+    ends: np.ndarray  # ENDS_OF_POINT of each
     rolls: np.ndarray  # whether each is on a body that is an unknown of the border, (room,)
     many: Ints  # (1,) how many there are
     sums: Floats  # what EACH of them add to a slope
@@ -112,6 +114,8 @@ class Frozen(NamedTuple):
     border: Floats  # the same of the border, (6, border)
 
 
+# The bodies of a point's pair and their nodes, -1: none.
+ENDS_OF_POINT = np.dtype([("a", "i4"), ("b", "i4"), ("one", "i8"), ("two", "i8")])
 # Rows of Frozen.vectors: the change of velocities, what masses and bushings make of it, the slope of what is
 # made least, the direction that is gone along, what masses and bushings make of that, and the residual as the
 # iteration began.
@@ -141,6 +145,7 @@ class Free(NamedTuple):
     """Sheets that hang on nothing, see momentum.keep."""
 
     label: Ints  # (nodes,) sheet of each node
+    sheet: Ints  # (bodies,) the same of each body, -1: it is not free
     loose: np.ndarray  # (sheets,) whether a sheet hangs on nothing
     busy: np.ndarray  # (sheets,) whether it touches something now
     residual: Floats  # (6 nodes,)

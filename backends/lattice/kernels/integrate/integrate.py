@@ -59,6 +59,7 @@ from mdlgen.mechanics.curve import overstretched
 from mdlgen.mechanics.driven import SENSE, clutch, prescribed
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.pair import remember
+from mdlgen.mechanics.pairs.box_box import deepest as deepest_of_boxes
 from mdlgen.mechanics.point import DEPTH, POINTS, PRESSING
 from mdlgen.mechanics.turning import TURNING, turning
 from mdlgen.model.tables.contacts import BOX_BOX
@@ -85,11 +86,16 @@ GRAZE = 0.05
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _deep(tables, mid, count):
     """The pair that is deeper than it may be in the middle of a step, or -1."""
+    pairs, listed = tables.pairs, tables.listed
+    first = pairs.size - listed.size
     for k in range(count):
-        pair = tables.pairs[mid.touched[k]]
-        depth = mid.faces[k, DEPTH] if pair.kind == BOX_BOX else mid.results[mid.rows[k], DEPTH]
-        if depth > deepest(tables.bodies, pair):
-            return mid.touched[k]
+        p = mid.touched[k]
+        if p >= first:
+            far, depth = deepest_of_boxes(tables.bodies, listed[p - first]), mid.faces[k, DEPTH]
+        else:
+            far, depth = deepest(tables.bodies, pairs[p]), mid.results[mid.rows[k], DEPTH]
+        if depth > far:
+            return p
     return -1
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from mdlgen.backends.lattice.kernels.linear.band import empty as no_band
 from mdlgen.backends.lattice.kernels.linear.coupled import couplings
-from mdlgen.backends.lattice.kernels.state import EACH, POINT, Frozen, Matrix, Midpoint, State, Sticks
+from mdlgen.backends.lattice.kernels.state import EACH, ENDS_OF_POINT, POINT, Frozen, Matrix, Midpoint, State, Sticks
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.overlap import OVERLAP
 from mdlgen.mechanics.point import FACES, MOST_POINTS
@@ -85,6 +85,7 @@ def frozen(system, cells: int) -> Frozen:
     return Frozen(
         points=np.zeros((room, POINT)),
         pair=np.zeros(room, np.int64),
+        ends=np.zeros(room, ENDS_OF_POINT),
         rolls=np.zeros(room, np.bool_),
         many=np.zeros(1, np.int64),
         sums=np.zeros(room // EACH + 1),
