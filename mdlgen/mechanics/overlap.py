@@ -53,7 +53,7 @@ OVERLAP = np.dtype(
         ("turn", "f8", 4),  # and the directions of its faces' edges there
         ("other", "f8", 3),  # half lengths of the other box [mm]
         ("thick", "f8"),  # half the thickness of the box whose face it is [mm]
-        ("corners", "f8", (MOST_CORNERS, 3)),  # in the owner's axes [mm], and the stiffness of each [N/mm^1.5]
+        ("corners", "f8", (MOST_CORNERS, 3)),  # in the owner's axes [mm], and their stiffness [N/mm^1.5]
     ],
     align=True,
 )

@@ -63,7 +63,7 @@ class Midpoint(NamedTuple):
     touched: Ints  # pairs that touch
     results: Floats  # what each of them does, see mechanics.point, (pairs, forces.WIDE);
     rows: Ints  # in which of these rows each stands: those without points fill none
-    faces: Floats  # of two boxes of two sheets, without points, (pairs, mechanics.point.FACES)
+    faces: Floats  # what is read later of two boxes of two sheets, (pairs, FACE)
     totals: Floats  # (3,) LOST, POWER, NUMERICAL
     near: Ints  # pairs that may touch
     overlaps: np.ndarray  # of pairs that are searched, mechanics.overlap.OVERLAP
@@ -72,6 +72,9 @@ class Midpoint(NamedTuple):
 
 
 MIDDLE, ENDS = 0, 1
+# Columns of Midpoint.faces: the force along normals, the greatest depth, friction along the faces by its
+# size, the most it can be, and how many points stand in the results, 0: none are needed.
+FACE_FORCE, FACE_DEPTH, FACE_RUBBING, FACE_GRIP, FACE_POINTS, FACE = 0, 1, 2, 3, 4, 5
 # Of the energies of a state [N mm], see observe.ledger.
 KINETIC, ELASTIC, POTENTIAL = 0, 1, 2
 # Of Midpoint.totals [N mm/ms]: dissipated, put in by loads, dissipated by the numerical damping of joints.

@@ -82,7 +82,13 @@ def _fill(pair, region, a, b, rough):
     pair.sticking = region.sticking
     for i in range(LAW):
         pair.law[i] = region.law[i] * (rough if i in (LAW_STATIC, LAW_DYNAMIC) else 1.0)
-    pair.mark = region.mark + (a - region.a) * region.many_b + (b - region.b)
+    pair.mark = mark_of(region, a, b)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def mark_of(region, a, b):
+    """Place of two boxes among the marks of pairs that have touched."""
+    return region.mark + (a - region.a) * region.many_b + (b - region.b)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)

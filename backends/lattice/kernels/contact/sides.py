@@ -9,9 +9,8 @@ from __future__ import annotations
 
 import math
 
-from mdlgen.backends.lattice.kernels.state import MIDDLE
+from mdlgen.backends.lattice.kernels.state import FACE_DEPTH, FACE_POINTS, MIDDLE
 from mdlgen.mechanics.overlap import OVERLAPS
-from mdlgen.mechanics.point import DEPTH
 from mdlgen.mechanics.vector import back, mat, sub, transpose_matmul, vec
 from mdlgen.program.kernel import njit
 
@@ -84,16 +83,16 @@ def crossed(tables, mid, counts, state, first, h):
     count, close = counts
     for at in range(close):
         touches = known < count and mid.touched[known] == near[at]
-        deep = 0.0
+        deep, lie = 0.0, False
         if touches:
-            deep = mid.faces[known, DEPTH]
+            deep, lie = mid.faces[known, FACE_DEPTH], mid.faces[known, FACE_POINTS] == 0.0
             known += 1
         if near[at] < first:
             continue
         pair = listed[near[at] - first]
         thin = min(bodies[pair.a].half[2], bodies[pair.b].half[2])
         slow = h * (fast[pair.a] + fast[pair.b]) < CLOSER * thin and deep <= thin
-        if slow and mid.overlaps[near[at] - first].state == OVERLAPS:
+        if slow and (lie or mid.overlaps[near[at] - first].state == OVERLAPS):
             continue
         begin, _ = _height(bodies, pair, state.x, state.r)
         middle, over = _height(bodies, pair, motion.x, motion.r)

@@ -10,7 +10,7 @@ import numpy as np
 
 from mdlgen.backends.lattice.kernels.contact.search import law_of_boxes
 from mdlgen.backends.lattice.kernels.forces import place_box, place_roller
-from mdlgen.backends.lattice.kernels.state import ENDS, FORCE_NOW, MIDDLE
+from mdlgen.backends.lattice.kernels.state import ENDS, FACE_FORCE, FACE_POINTS, FORCE_NOW, MIDDLE
 from mdlgen.mechanics.arm import turn_of, way_of
 from mdlgen.mechanics.bounds import fastest_place
 from mdlgen.mechanics.crossing import UNSEEN, above, buried, closing, deepest, solid, unseen
@@ -34,7 +34,6 @@ from mdlgen.mechanics.point import (
     OVER,
     POINT,
     POINTS,
-    PRESSING,
     RATE,
     SPRING,
     STORED,
@@ -143,12 +142,12 @@ def _made(work, count, dt, slower, least, rows):
         for n in range(work.tables.nodes.size):
             most = max(most, ends[work.tables.nodes[n]])
     for k in range(count):
-        faces = touched[k] >= first and mid.faces[k, POINTS] == 0.0
-        if faces and 8.0 * dt * mid.faces[k, PRESSING] * most < least:
+        faces = touched[k] >= first and mid.faces[k, FACE_POINTS] == 0.0
+        if faces and 8.0 * dt * mid.faces[k, FACE_FORCE] * most < least:
             continue
         if faces:
             own = listed[touched[k] - first]
-            if 4.0 * dt * mid.faces[k, PRESSING] * (ends[own.a] + ends[own.b]) < least:
+            if 4.0 * dt * mid.faces[k, FACE_FORCE] * (ends[own.a] + ends[own.b]) < least:
                 continue
             one, two, row = int(own.a), int(own.b), search.regions[own.region].row
         else:
