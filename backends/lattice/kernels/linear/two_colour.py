@@ -164,7 +164,7 @@ def _row(v, block, i, x):
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _across(couplings, sheet, p, q):
     """Adds to q of a sheet what the other colour does to it where that moves by p."""
-    colours, ends, blocks = couplings.colouring, couplings.ends, couplings.blocks
+    colours, ends, blocks = couplings.colouring, couplings.ends, couplings.single
     label = colours.label
     for at in range(colours.begins[sheet], colours.begins[sheet + 1]):
         k = colours.own[at]
