@@ -123,15 +123,15 @@ ENDS_OF_POINT = np.dtype([("a", "i4"), ("b", "i4"), ("one", "i8"), ("two", "i8")
 # made least, the direction that is gone along, what masses and bushings make of that, and the residual as the
 # iteration began.
 CHANGE, OF_CHANGE, GRADIENT, DIRECTION, OF_DIRECTION, RESIDUAL = 0, 1, 2, 3, 4, 5
-# Columns of Frozen.points: normal to the first body, the direction that friction acts square to, arms from
-# both bodies; depth and stiffness of a corner of two faces, of others (stiffness 0) elastic force and its
-# growth; rate, speed over which it damps, share of damping; friction and its speeds; the normal force that
-# limits it; velocity of the first body against the second now, its change along a direction, and the force as
-# the iteration began; what it is.
-NORMAL, SQUARE, ARM_A, ARM_B = 0, 3, 6, 9
-DEPTH, STIFFNESS, SPRING, GROWTH, RATE, OVER, BETA = 12, 13, 14, 15, 16, 17, 18
-MU_STATIC, MU_DYNAMIC, STICTION, SLIDING, PRESSING = 19, 20, 21, 22, 23
-NOW, ALONG, START, KIND, POINT = 24, 27, 30, 33, 34
+# Columns of Frozen.points: arms from both bodies, what it is, its change of velocity along a direction, which
+# stand together since that is looked at more often than all else; velocity of the first body against the
+# second now; normal to the first body, the direction that friction acts square to; depth and stiffness of a
+# corner of two faces, of others (stiffness 0) elastic force and its growth; rate, speed over which it damps,
+# share of damping; friction and its speeds; the normal force that limits it; the force as it began.
+ARM_A, ARM_B, KIND, ALONG, NOW, NORMAL, SQUARE = 0, 3, 6, 7, 10, 13, 16
+DEPTH, STIFFNESS, SPRING, GROWTH, RATE, OVER, BETA = 19, 20, 21, 22, 23, 24, 25
+MU_STATIC, MU_DYNAMIC, STICTION, SLIDING, PRESSING = 26, 27, 28, 29, 30
+START, POINT = 31, 34
 # Points of a part of a job.
 EACH = 512
 # What a point is: one that presses and rubs; a damper alone; a couple about its normal, of SPRING at most, of
