@@ -43,10 +43,10 @@ MOST_CORNERS = 8  # of a rectangle that is cut by another
 # What is read of a pair stands together, and what is small is small: piles of sheets have very many.
 OVERLAP = np.dtype(
     [
-        ("state", "i1"),
-        ("count", "i1"),  # of corners
-        ("first", "i1"),  # whether the first box owns the contact
-        ("side", "i1"),  # of the owner's face along its normal
+        ("state", "i2"),
+        ("count", "i2"),  # of corners
+        ("first", "i2"),  # whether the first box owns the contact
+        ("side", "i2"),  # of the owner's face along its normal
         ("slack", "f8"),  # how far outlines are apart [mm]
         ("smaller", "f8"),  # the least half length of both faces [mm]
         ("place", "f8", 2),  # of the other box along the owner's face when it was found [mm]
@@ -54,8 +54,7 @@ OVERLAP = np.dtype(
         ("other", "f8", 3),  # half lengths of the other box [mm]
         ("thick", "f8"),  # half the thickness of the box whose face it is [mm]
         ("corners", "f8", (MOST_CORNERS, 3)),  # in the owner's axes [mm], and their stiffness [N/mm^1.5]
-    ],
-    align=True,
+    ]
 )
 STIFF = 2  # column of the corners
 STEEP = 0.75  # cosine of the angle between two faces beyond which they do not lie on each other
