@@ -104,6 +104,7 @@ class System(NamedTuple):
             bodies=self.bodies,
             joints=self.joints,
             pairs=self.pairs,
+            listed=self.search.listed,
             loads=self.loads,
             gravity=self.gravity,
             nodes=self.nodes,

@@ -36,6 +36,8 @@ REGION = np.dtype(
         ("sticking", "f8"),  # as of a pair
     ]
 )
+# A pair that is searched, in little memory: nearly all that steps read of it.
+LISTED = np.dtype([("a", "i4"), ("b", "i4"), ("region", "i4")])  # boxes, -1: none from here on; its REGION
 
 
 class Search(NamedTuple):
@@ -43,6 +45,7 @@ class Search(NamedTuple):
 
     regions: np.ndarray  # REGION, one for each contact of two sheets
     room: Floats  # pairs that each of them has room for
+    listed: np.ndarray  # LISTED, pairs from `first` on
     first: int  # pairs before are the Model's
     boxes: Ints  # bodies that are searched
     place: Floats  # where bodies were at the last search [mm], (bodies, 3)
@@ -57,7 +60,7 @@ class Search(NamedTuple):
 def plan(model: Model, pairs: np.ndarray) -> tuple[np.ndarray, Search, int]:
     """The pairs of a Model with room for those that are searched, the search, and how many different pairs
     there can be."""
-    from mdlgen.backends.lattice.kernels.contact.search import EMPTY, SKIN
+    from mdlgen.backends.lattice.kernels.contact.search import SKIN
 
     rows = np.flatnonzero(model.contacts.kind == BOX_BOX)
     sheets = {s.name: s for s in model.sheets}
@@ -79,12 +82,12 @@ def plan(model: Model, pairs: np.ndarray) -> tuple[np.ndarray, Search, int]:
         every = ends[0].count * ends[1].count
         room.append(min(every, ends[0].count * (4.0 + ROOM * math.pi * reach**2 / area)))
         marks, size = marks + every, max(size, reach)
-    spare = np.zeros(math.ceil(sum(room)), pairs.dtype)
-    spare["kind"] = EMPTY
+    spare, listed = space(sum(room), pairs.dtype)
     count = len(half)
     search = Search(
         regions=regions,
         room=np.array(room),
+        listed=listed,
         first=len(pairs),
         boxes=np.array(sorted(boxes), dtype=np.int64),
         place=np.zeros((count, 3)),
@@ -96,3 +99,12 @@ def plan(model: Model, pairs: np.ndarray) -> tuple[np.ndarray, Search, int]:
         cell=np.zeros((count, 3), np.int64),
     )
     return np.concatenate([pairs, spare]), search, marks
+
+
+def space(room: float, pair: np.dtype) -> tuple[np.ndarray, np.ndarray]:
+    """Records of the type `pair`, and rows of LISTED, for so many pairs that are searched."""
+    from mdlgen.backends.lattice.kernels.contact.search import EMPTY
+
+    spare = np.zeros(math.ceil(room), pair)
+    spare["kind"] = EMPTY
+    return spare, np.full(len(spare), EMPTY, LISTED)

@@ -40,21 +40,23 @@ from mdlgen.program.kernel import BORROWS, FUSED, OWNS, njit
 # What a pair may have: nothing yet, outlines that are apart, an overlap, something else.
 UNKNOWN, APART, OVERLAPS, OTHER = 0, 1, 2, 3
 MOST_CORNERS = 8  # of a rectangle that is cut by another
+# What is read of a pair stands together, and what is small is small: piles of sheets have very many.
 OVERLAP = np.dtype(
     [
-        ("state", "i8"),
-        ("count", "i8"),  # of corners
-        ("first", "i8"),  # whether the first box owns the contact
-        ("side", "f8"),  # of the owner's face along its normal
+        ("state", "i2"),
+        ("count", "i2"),  # of corners
+        ("first", "i2"),  # whether the first box owns the contact
+        ("side", "i2"),  # of the owner's face along its normal
         ("slack", "f8"),  # how far outlines are apart [mm]
+        ("smaller", "f8"),  # the least half length of both faces [mm]
         ("place", "f8", 2),  # of the other box along the owner's face when it was found [mm]
         ("turn", "f8", 4),  # and the directions of its faces' edges there
-        ("owner", "f8", 3),  # half lengths of the box whose face it is,
-        ("other", "f8", 3),  # and of the other one [mm]
-        ("corners", "f8", (MOST_CORNERS, 2)),  # in the owner's axes [mm]
-        ("stiffness", "f8", MOST_CORNERS),  # of each [N/mm^1.5]
+        ("other", "f8", 3),  # half lengths of the other box [mm]
+        ("thick", "f8"),  # half the thickness of the box whose face it is [mm]
+        ("corners", "f8", (MOST_CORNERS, 3)),  # in the owner's axes [mm], and their stiffness [N/mm^1.5]
     ]
 )
+STIFF = 2  # column of the corners
 STEEP = 0.75  # cosine of the angle between two faces beyond which they do not lie on each other
 
 
@@ -70,8 +72,7 @@ def holds(kept, a, b, part):
     if kept.state == UNKNOWN or kept.state == OTHER:
         return False
     place, turn = _seen(a, b) if kept.first != 0 else _seen(b, a)
-    wide, smaller = kept.other, min(kept.owner[0], kept.owner[1], kept.other[0], kept.other[1])
-    allowed = max(part * smaller, kept.slack)
+    wide, allowed = kept.other, max(part * kept.smaller, kept.slack)
     for q in range(2):
         moved = abs(place[q] - kept.place[q])
         for i in range(2):
@@ -111,9 +112,11 @@ def find(kept, a, one_box, b, two_box, law):
     if below > above + TIE * reach:
         owner, half, other, wide, kept.first = b, half_b, a, half_a, 0
         place, turn = far, turned
-    kept.side = 1.0 if place[2] >= 0.0 else -1.0
+    side = 1.0 if place[2] >= 0.0 else -1.0
+    kept.side = int(side)
+    kept.smaller, kept.thick = min(half[0], half[1], wide[0], wide[1]), half[2]
     for q in range(3):
-        kept.owner[q], kept.other[q] = half[q], wide[q]
+        kept.other[q] = wide[q]
     for q in range(2):
         kept.place[q] = place[q]
         for i in range(2):
@@ -141,7 +144,7 @@ def find(kept, a, one_box, b, two_box, law):
         kept.state = OTHER
         return
     points = np.empty((12, 3))
-    count, smaller, _ = overlay(points, owner, half, 2, kept.side, other, wide)
+    count, smaller, _ = overlay(points, owner, half, 2, side, other, wide)
     if count < 3 or count > MOST_CORNERS:
         return
     weights = np.empty(12)
@@ -152,7 +155,7 @@ def find(kept, a, one_box, b, two_box, law):
     kept.count, kept.state = count, OVERLAPS
     for corner in range(count):
         kept.corners[corner, 0], kept.corners[corner, 1] = points[corner, 0], points[corner, 1]
-        kept.stiffness[corner] = foundation * weights[corner]
+        kept.corners[corner, STIFF] = foundation * weights[corner]
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -164,7 +167,7 @@ def plane_of(kept, owner, other):
     to = -kept.other[2] if kept.side * normal[2] > 0.0 else kept.other[2]
     p, r, up = place[0] + to * normal[0], place[1] + to * normal[1], place[2] + to * normal[2]
     lean_p, lean_r = normal[0] / normal[2], normal[1] / normal[2]
-    level = kept.owner[2] - kept.side * (up + lean_p * p + lean_r * r)
+    level = kept.thick - kept.side * (up + lean_p * p + lean_r * r)
     return place, level, kept.side * lean_p, kept.side * lean_r
 
 
@@ -207,7 +210,7 @@ def impact(kept, a, b, faster, law, dt):
         depth = level + lean_p * p + lean_r * r
         if depth <= 0.0:
             continue
-        spring = kept.stiffness[corner] * depth * math.sqrt(depth)
+        spring = kept.corners[corner, STIFF] * depth * math.sqrt(depth)
         closing = closes + closes_p * p + closes_r * r
         moved = 0.5 * dt * closing
         made += stored_beyond(spring, depth, 0.4 * spring * depth, moved)
@@ -237,8 +240,8 @@ def press(out, kept, a, b, law):
         depth = level + lean_p * p + lean_r * r
         if depth <= 0.0:
             continue
-        at = (p, r, kept.side * (kept.owner[2] - 0.5 * depth))
-        spring = kept.stiffness[corner] * depth * math.sqrt(depth)
+        at = (p, r, kept.side * (kept.thick - 0.5 * depth))
+        spring = kept.corners[corner, STIFF] * depth * math.sqrt(depth)
         v = add(rate, cross(spin, at))
         closes = -way * v[2]
         speed = math.sqrt(v[0] * v[0] + v[1] * v[1])

@@ -27,7 +27,7 @@ import math
 import numpy as np
 
 from mdlgen.mechanics.laws import damped
-from mdlgen.mechanics.overlap import MOST_CORNERS, moves, plane_of
+from mdlgen.mechanics.overlap import MOST_CORNERS, STIFF, moves, plane_of
 from mdlgen.mechanics.point import (
     DEPTH,
     DISSIPATED,
@@ -98,7 +98,7 @@ def carry_stretch(stuck, kept, a, b, ratio):
                 nearest, least, z_p, z_r = k, far, s_p, s_r
         stuck.now[corner, 0], stuck.now[corner, 1] = z_p, z_r
         if nearest >= 0:
-            energy += 0.5 * ratio * kept.stiffness[corner] * (z_p * z_p + z_r * z_r)
+            energy += 0.5 * ratio * kept.corners[corner, STIFF] * (z_p * z_p + z_r * z_r)
     if energy > stuck.energy:
         less = math.sqrt(stuck.energy / energy)
         for corner in range(kept.count):
@@ -128,12 +128,12 @@ def press_sticking(out, kept, stuck, a, b, law, ratio, h):
         stuck.ended[corner, 0] = stuck.ended[corner, 1] = 0.0
         if depth <= 0.0:
             continue
-        at = (p, r, kept.side * (kept.owner[2] - 0.5 * depth))
-        spring = kept.stiffness[corner] * depth * math.sqrt(depth)
+        at = (p, r, kept.side * (kept.thick - 0.5 * depth))
+        spring = kept.corners[corner, STIFF] * depth * math.sqrt(depth)
         v = add(rate, cross(spin, at))
         closes = -way * v[2]
         normal = damped(spring, closes, law.beta, law.smoothing)
-        k_t = ratio * kept.stiffness[corner]
+        k_t = ratio * kept.corners[corner, STIFF]
         z_p, z_r = stuck.now[corner, 0] + 2.0 * h * v[0], stuck.now[corner, 1] + 2.0 * h * v[1]
         size = math.sqrt(z_p * z_p + z_r * z_r)
         limit = coefficient(math.sqrt(v[0] * v[0] + v[1] * v[1]), law) * normal

@@ -12,7 +12,6 @@ from mdlgen.mechanics.laws import friction_over_speed
 from mdlgen.mechanics.point import (
     COUPLE,
     FORCE,
-    GRIP,
     KIND,
     MU_DYNAMIC,
     MU_STATIC,
@@ -20,13 +19,11 @@ from mdlgen.mechanics.point import (
     OUT,
     POINT,
     POINTS,
-    RUBBING,
     SLIP,
     TORQUE_A,
     TORQUE_B,
 )
 from mdlgen.mechanics.vector import cross, dot, three, three_from
-from mdlgen.model.tables.contacts import BOX_BOX
 from mdlgen.program.kernel import BORROWS, njit
 
 # Columns of what a pair adds: its torque on the first body about the axis of that, on the second about its
@@ -37,15 +34,11 @@ ABOUT_A, ABOUT_B, ALONG, LIMIT, TURNING = 0, 1, 2, 3, 4
 @njit(cache=True, error_model="numpy", **BORROWS)
 def turning(bodies, pair, out, rows, row, first):
     """Adds what a pair turns to the TURNING columns of a row of `rows`, from `first` on; `out` is what
-    pair_force left, with its contact points, or overlap.press of two sheets.
+    pair_force left, with its contact points.
 
     A body that is no roller has no axis, and no torque about it. Of two rollers the surface is that of the
     second; without any, friction counts by its size.
     """
-    if pair.kind == BOX_BOX and out[POINTS] == 0.0:
-        rows[row, first + ALONG] += out[RUBBING]
-        rows[row, first + LIMIT] += out[GRIP]
-        return
     one, two = three(bodies[pair.a].axis), three(bodies[pair.b].axis)
     rows[row, first + ABOUT_A] += dot(three_from(out, TORQUE_A), one)
     rows[row, first + ABOUT_B] += dot(three_from(out, TORQUE_B), two)

@@ -12,13 +12,13 @@ from mdlgen.backends.lattice.arrays import BODY, IMAGE, JOINT, PAIR
 from mdlgen.backends.lattice.kernels import entries
 from mdlgen.backends.lattice.kernels.forces import WIDE
 from mdlgen.backends.lattice.kernels.integrate.room import sticks
-from mdlgen.backends.lattice.kernels.state import Midpoint, Tables
+from mdlgen.backends.lattice.kernels.state import FACE, Midpoint, Tables
+from mdlgen.backends.lattice.search import LISTED
 from mdlgen.mechanics.curve import POINT
 from mdlgen.mechanics.frame import Box, Cylinder, Frame, Law, Motion, Plate, Vector
 from mdlgen.mechanics.guide import BOTH, INSIDE, OUTSIDE, upper
 from mdlgen.mechanics.mesh_tables import HEAD, Meshes
 from mdlgen.mechanics.overlap import OVERLAP
-from mdlgen.mechanics.point import FACES
 from mdlgen.mechanics.records import LOAD
 from mdlgen.mechanics.rim import PIECE
 from mdlgen.mechanics.shapes import Shapes
@@ -42,6 +42,7 @@ def pair_force(bodies: np.ndarray, pair: np.void, shapes: Shapes, motion: Motion
         bodies=bodies,
         joints=np.zeros(0, JOINT),
         pairs=np.array([pair], PAIR),
+        listed=np.zeros(0, LISTED),
         loads=np.zeros(0, LOAD),
         gravity=np.zeros(3),
         nodes=np.zeros(0, np.int64),
@@ -55,7 +56,7 @@ def pair_force(bodies: np.ndarray, pair: np.void, shapes: Shapes, motion: Motion
         touched=np.zeros(1, np.int64),
         results=np.zeros((1, WIDE)),
         rows=np.zeros(1, np.int64),
-        faces=np.zeros((1, FACES)),
+        faces=np.zeros((1, FACE)),
         totals=np.zeros(3),
         near=np.zeros(1, np.int64),
         overlaps=np.zeros(1, OVERLAP),

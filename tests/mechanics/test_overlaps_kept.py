@@ -169,7 +169,7 @@ def test_it_is_found_anew_where_a_box_moved_along_the_other(
         assert holds.py_func(kept[0], a, b, part)
         owner = a if kept[0]["first"] else b
         slack = kept[0]["slack"]
-        smaller = min(kept[0]["owner"][:2].min(), kept[0]["other"][:2].min()) * part
+        smaller = kept[0]["smaller"] * part
         way = np.reshape(owner.r, (3, 3))[:, 0 if along else 2] * 1.01 * max(smaller, slack, allowed)
         moved = b._replace(x=_three(np.add(b.x, way)))
         assert holds.py_func(kept[0], a, moved, part) is not along

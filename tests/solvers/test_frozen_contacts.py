@@ -184,7 +184,7 @@ def test_changes_make_the_function_least(case: Case) -> None:
         g, gb = impulses(case, in_global_axes(work, whole), wholeb)
         tangent.turn_nodes(work.tables.nodes, work.condensed.axes, g, True)
         product = np.zeros_like(whole)
-        convex.times(matrix.inner, whole, product)
+        convex.times(matrix.inner, matrix.offsets, whole, product)
         left, leftb = product + first + g, gb + firstb + matrix.own @ wholeb
     assert steering.factored[[MADE_FOR, WHERE]].tolist() == [2 * H, INSIDE]
     assert np.abs(left).max() < 1e-3 * np.abs(first).max()
@@ -234,5 +234,5 @@ def test_a_product_with_a_band_is_that_of_the_whole_matrix() -> None:
             whole[6 * (n + k) : 6 * (n + k) + 6, 6 * n : 6 * n + 6] = block
             whole[6 * n : 6 * n + 6, 6 * (n + k) : 6 * (n + k) + 6] = block.T
     x, y = draw.normal(size=6 * nodes), np.empty(6 * nodes)
-    times(band, x, y)
+    times(band, np.arange(reach + 1), x, y)
     assert y == pytest.approx(whole @ x, rel=1e-12)

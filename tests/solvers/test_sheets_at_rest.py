@@ -10,12 +10,12 @@ from stacks import ran, stack
 
 import mdlgen
 from mdlgen.backends.lattice.kernels.integrate.room import sticks
-from mdlgen.backends.lattice.kernels.state import Midpoint
+from mdlgen.backends.lattice.kernels.state import FACE, Midpoint
 from mdlgen.checks import lints
 from mdlgen.errors import RefusedError
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.overlap import OVERLAP
-from mdlgen.mechanics.point import FACES, OUT
+from mdlgen.mechanics.point import OUT
 from mdlgen.model import sheet_pairs
 from mdlgen.model.lower import lower
 from mdlgen.model.tables import BOX_BOX
@@ -92,7 +92,7 @@ def test_boxes_that_lean_have_not_crossed_where_a_centre_passes_a_plane():
             touched=near,
             results=np.zeros((1, OUT)),
             rows=np.zeros(1, np.int64),
-            faces=np.zeros((1, FACES)),
+            faces=np.zeros((1, FACE)),
             totals=np.zeros(3),
             near=near,
             overlaps=np.zeros(1, OVERLAP).view(np.recarray),

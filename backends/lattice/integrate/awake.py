@@ -6,13 +6,11 @@ Bodies keep their numbers, contacts their rows.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
 from mdlgen.backends.lattice.arrays import System, offsets
-from mdlgen.backends.lattice.kernels.contact.search import EMPTY
+from mdlgen.backends.lattice.search import space
 from mdlgen.model.tables import Ints, Model
 
 
@@ -63,8 +61,7 @@ def awake(system: System, parts: Parts, asleep: NDArray[np.bool_]) -> tuple[Syst
     search = system.search
     chosen = np.flatnonzero(~lasting[system.pairs["row"][: search.first]])
     regions = ~lasting[search.regions["row"]]
-    spare = np.zeros(math.ceil(search.room[regions].sum()), system.pairs.dtype)
-    spare["kind"] = EMPTY
+    spare, listed = space(float(search.room[regions].sum()), system.pairs.dtype)
     met = np.zeros(len(bodies), bool)
     for region in search.regions[regions]:
         for end in "ab":
@@ -82,6 +79,7 @@ def awake(system: System, parts: Parts, asleep: NDArray[np.bool_]) -> tuple[Syst
             search=search._replace(
                 regions=search.regions[regions],
                 room=search.room[regions],
+                listed=listed,
                 first=len(chosen),
                 boxes=search.boxes[met[search.boxes]],
                 place=np.zeros_like(search.place),

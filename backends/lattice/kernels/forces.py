@@ -9,6 +9,7 @@ from mdlgen.mechanics.curve import curve_excess
 from mdlgen.mechanics.driven import SENSE, clutch, prescribed, turned
 from mdlgen.mechanics.frame import Frame
 from mdlgen.mechanics.pair import near, pair_force
+from mdlgen.mechanics.pairs.box_box import near as near_boxes
 from mdlgen.mechanics.point import DISSIPATED, FORCE_A, FORCE_B, MOST_POINTS, OUT, POINT, POINTS, STORED
 from mdlgen.mechanics.vector import (
     add,
@@ -150,13 +151,17 @@ def joint_forces(joints, points, motion, f, lag=0.0):
 def near_pairs(tables, motion, margin, ahead, found):
     """Lists pairs in `found` that are closer than `margin` [mm] and what they move against each other in
     `ahead` [ms]; returns how many."""
-    bodies, pairs, shapes = tables.bodies, tables.pairs, tables.shapes
-    count = 0
-    for p in range(pairs.size):
-        if pairs[p].kind < 0:  # from here on there is room only
-            break
+    bodies, pairs, listed, shapes = tables.bodies, tables.pairs, tables.listed, tables.shapes
+    count, first = 0, pairs.size - listed.size
+    for p in range(first):
         if near(bodies, pairs[p], shapes, motion, margin, ahead):
             found[count] = p
+            count += 1
+    for k in range(listed.size):
+        if listed[k].a < 0:  # from here on there is room only
+            break
+        if near_boxes(bodies, listed[k], shapes, motion, margin, ahead):
+            found[count] = first + k
             count += 1
     return count
 

@@ -22,6 +22,7 @@ class Tables(NamedTuple):
     bodies: np.ndarray
     joints: np.ndarray
     pairs: np.ndarray
+    listed: np.ndarray  # lattice.search.LISTED, of the last so many pairs, which are searched
     loads: np.ndarray
     gravity: Floats  # (3,) [mm/ms^2]
     nodes: Ints  # the body of each free box
@@ -62,7 +63,7 @@ class Midpoint(NamedTuple):
     touched: Ints  # pairs that touch
     results: Floats  # what each of them does, see mechanics.point, (pairs, forces.WIDE);
     rows: Ints  # in which of these rows each stands: those without points fill none
-    faces: Floats  # of two boxes of two sheets, without points, (pairs, mechanics.point.FACES)
+    faces: Floats  # what is read later of two boxes of two sheets, (pairs, FACE)
     totals: Floats  # (3,) LOST, POWER, NUMERICAL
     near: Ints  # pairs that may touch
     overlaps: np.ndarray  # of pairs that are searched, mechanics.overlap.OVERLAP
@@ -72,6 +73,9 @@ class Midpoint(NamedTuple):
 
 
 MIDDLE, ENDS = 0, 1
+# Columns of Midpoint.faces: the force along normals, the greatest depth, friction along the faces by its
+# size, the most it can be, and how many points stand in the results, 0: none are needed.
+FACE_FORCE, FACE_DEPTH, FACE_RUBBING, FACE_GRIP, FACE_POINTS, FACE = 0, 1, 2, 3, 4, 5
 # Of the energies of a state [N mm], see observe.ledger.
 KINETIC, ELASTIC, POTENTIAL = 0, 1, 2
 # Of Midpoint.totals [N mm/ms]: dissipated, put in by loads, dissipated by the numerical damping of joints.
@@ -106,6 +110,7 @@ class Frozen(NamedTuple):
 
     points: Floats  # (room, POINT)
     pair: Ints  # of each, (room,)
+    ends: np.ndarray  # ENDS_OF_POINT of each
     rolls: np.ndarray  # whether each is on a body that is an unknown of the border, (room,)
     many: Ints  # (1,) how many there are
     sums: Floats  # what EACH of them add to a slope
@@ -113,19 +118,21 @@ class Frozen(NamedTuple):
     border: Floats  # the same of the border, (6, border)
 
 
+# The bodies of a point's pair and their nodes, -1: none.
+ENDS_OF_POINT = np.dtype([("a", "i4"), ("b", "i4"), ("one", "i8"), ("two", "i8")])
 # Rows of Frozen.vectors: the change of velocities, what masses and bushings make of it, the slope of what is
 # made least, the direction that is gone along, what masses and bushings make of that, and the residual as the
 # iteration began.
 CHANGE, OF_CHANGE, GRADIENT, DIRECTION, OF_DIRECTION, RESIDUAL = 0, 1, 2, 3, 4, 5
-# Columns of Frozen.points: normal to the first body, the direction that friction acts square to, arms from
-# both bodies; depth and stiffness of a corner of two faces, of others (stiffness 0) elastic force and its
-# growth; rate, speed over which it damps, share of damping; friction and its speeds; the normal force that
-# limits it; velocity of the first body against the second now, its change along a direction, and the force as
-# the iteration began; what it is.
-NORMAL, SQUARE, ARM_A, ARM_B = 0, 3, 6, 9
-DEPTH, STIFFNESS, SPRING, GROWTH, RATE, OVER, BETA = 12, 13, 14, 15, 16, 17, 18
-MU_STATIC, MU_DYNAMIC, STICTION, SLIDING, PRESSING = 19, 20, 21, 22, 23
-NOW, ALONG, START, KIND, POINT = 24, 27, 30, 33, 34
+# Columns of Frozen.points: arms from both bodies, what it is, its change of velocity along a direction, which
+# stand together since that is looked at more often than all else; velocity of the first body against the
+# second now; normal to the first body, the direction that friction acts square to; depth and stiffness of a
+# corner of two faces, of others (stiffness 0) elastic force and its growth; rate, speed over which it damps,
+# share of damping; friction and its speeds; the normal force that limits it; the force as it began.
+ARM_A, ARM_B, KIND, ALONG, NOW, NORMAL, SQUARE = 0, 3, 6, 7, 10, 13, 16
+DEPTH, STIFFNESS, SPRING, GROWTH, RATE, OVER, BETA = 19, 20, 21, 22, 23, 24, 25
+MU_STATIC, MU_DYNAMIC, STICTION, SLIDING, PRESSING = 26, 27, 28, 29, 30
+START, POINT = 31, 34
 # Points of a part of a job.
 EACH = 512
 # What a point is: one that presses and rubs; a damper alone; a couple about its normal, of SPRING at most, of
@@ -142,6 +149,7 @@ class Free(NamedTuple):
     """Sheets that hang on nothing, see momentum.keep."""
 
     label: Ints  # (nodes,) sheet of each node
+    sheet: Ints  # (bodies,) the same of each body, -1: it is not free
     loose: np.ndarray  # (sheets,) whether a sheet hangs on nothing
     busy: np.ndarray  # (sheets,) whether it touches something now
     residual: Floats  # (6 nodes,)

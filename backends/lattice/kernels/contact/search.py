@@ -4,7 +4,16 @@ from __future__ import annotations
 
 import math
 
-from mdlgen.mechanics.frame import LAW, LAW_DYNAMIC, LAW_STATIC
+from mdlgen.mechanics.frame import (
+    LAW,
+    LAW_BETA,
+    LAW_DYNAMIC,
+    LAW_SLIDING,
+    LAW_SMOOTHING,
+    LAW_STATIC,
+    LAW_STICTION,
+    Law,
+)
 from mdlgen.model.tables import BOX_BOX
 from mdlgen.program.kernel import njit
 
@@ -36,8 +45,9 @@ def look(pairs, search, x):
     if search.regions.size == 0:
         return True
     _sort(search, x)
-    count = search.first
-    for region in search.regions:
+    count, listed = search.first, search.listed
+    for number in range(search.regions.size):
+        region = search.regions[number]
         for a in search.boxes:  # of a half, those of one side
             if not region.a <= a < region.a + region.many_a:
                 continue
@@ -54,12 +64,14 @@ def look(pairs, search, x):
                             if count == pairs.size:
                                 return False
                             _fill(pairs[count], region, a, b, search.rough[a] * search.rough[b])
+                            own = listed[count - search.first]
+                            own.a, own.b, own.region = a, b, number
                             count += 1
                     b = search.following[b]
     for p in range(count, pairs.size):
         if pairs[p].kind == EMPTY:
             break
-        pairs[p].kind = EMPTY
+        pairs[p].kind = listed[p - search.first].a = EMPTY
     return True
 
 
@@ -70,7 +82,32 @@ def _fill(pair, region, a, b, rough):
     pair.sticking = region.sticking
     for i in range(LAW):
         pair.law[i] = region.law[i] * (rough if i in (LAW_STATIC, LAW_DYNAMIC) else 1.0)
-    pair.mark = region.mark + (a - region.a) * region.many_b + (b - region.b)
+    pair.mark = mark_of(region, a, b)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def mark_of(region, a, b):
+    """Place of two boxes among the marks of pairs that have touched."""
+    return region.mark + (a - region.a) * region.many_b + (b - region.b)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def law_of_boxes(search, own):
+    """Law of a pair that is searched, from its row `own` of LISTED: as `_fill` leaves it in the pair itself,
+    which is far away in memory."""
+    region, rough = search.regions[own.region], search.rough[own.a] * search.rough[own.b]
+    row = region.law
+    return Law(
+        region.k,
+        region.shared != 0,
+        row[LAW_BETA],
+        row[LAW_STATIC] * rough,
+        row[LAW_DYNAMIC] * rough,
+        row[LAW_STICTION],
+        row[LAW_SLIDING],
+        row[LAW_SMOOTHING],
+        0.0,
+    )
 
 
 @njit(cache=True, error_model="numpy")

@@ -9,11 +9,9 @@ from __future__ import annotations
 
 import math
 
-from mdlgen.backends.lattice.kernels.state import MIDDLE
+from mdlgen.backends.lattice.kernels.state import FACE_DEPTH, FACE_POINTS, MIDDLE
 from mdlgen.mechanics.overlap import OVERLAPS
-from mdlgen.mechanics.point import DEPTH
 from mdlgen.mechanics.vector import back, mat, sub, transpose_matmul, vec
-from mdlgen.model.tables.contacts import BOX_BOX
 from mdlgen.program.kernel import njit
 
 # What two boxes may come closer in one iteration, in half thicknesses of the thinner one.
@@ -24,18 +22,18 @@ CLOSER = 0.5
 def part_of_change(tables, near, close, r, h, change):
     """The part of a change of velocities (6 nodes,), taken off, that moves no box of the pairs near[:close]
     further to another sheet in h than it may in one iteration; at most 1."""
-    bodies, pairs, nodes = tables.bodies, tables.pairs, tables.nodes
+    bodies, listed, nodes = tables.bodies, tables.listed, tables.nodes
     most, thinnest = 0.0, 1e300
     for n in range(nodes.size):
         square = change[6 * n] ** 2 + change[6 * n + 1] ** 2 + change[6 * n + 2] ** 2
         most, thinnest = max(most, square), min(thinnest, bodies[nodes[n]].half[2])
     if 2.0 * h * math.sqrt(most) <= CLOSER * thinnest:  # no pair needs a look
         return 1.0
-    worst = 0.0
+    worst, first = 0.0, tables.pairs.size - listed.size
     for at in range(close):
-        pair = pairs[near[at]]
-        if pair.kind != BOX_BOX:
+        if near[at] < first:
             continue
+        pair = listed[near[at] - first]
         opens = 0.0
         for end in range(2):
             node = bodies[pair.a if end == 0 else pair.b].node
@@ -80,21 +78,21 @@ def crossed(tables, mid, counts, state, first, h):
     is kept. Where faces lie on each other in the middle, no deeper than half of the thinner box, they can
     have changed sides only where they moved by a quarter of it.
     """
-    bodies, pairs, near, motion = tables.bodies, tables.pairs, mid.near, mid.motion
+    bodies, listed, near, motion = tables.bodies, tables.listed, mid.near, mid.motion
     fast, known = mid.fastest[MIDDLE], 0
     count, close = counts
     for at in range(close):
-        pair = pairs[near[at]]
         touches = known < count and mid.touched[known] == near[at]
-        deep = 0.0
+        deep, lie = 0.0, False
         if touches:
-            deep = mid.faces[known, DEPTH]
+            deep, lie = mid.faces[known, FACE_DEPTH], mid.faces[known, FACE_POINTS] == 0.0
             known += 1
-        if pair.kind != BOX_BOX:
+        if near[at] < first:
             continue
+        pair = listed[near[at] - first]
         thin = min(bodies[pair.a].half[2], bodies[pair.b].half[2])
-        lie = mid.overlaps[near[at] - first].state == OVERLAPS and deep <= thin
-        if lie and h * (fast[pair.a] + fast[pair.b]) < CLOSER * thin:
+        slow = h * (fast[pair.a] + fast[pair.b]) < CLOSER * thin and deep <= thin
+        if slow and (lie or mid.overlaps[near[at] - first].state == OVERLAPS):
             continue
         begin, _ = _height(bodies, pair, state.x, state.r)
         middle, over = _height(bodies, pair, motion.x, motion.r)

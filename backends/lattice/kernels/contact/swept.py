@@ -8,16 +8,18 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mdlgen.backends.lattice.kernels.contact.search import law_of_boxes
 from mdlgen.backends.lattice.kernels.forces import place_box, place_roller
-from mdlgen.backends.lattice.kernels.state import ENDS, FORCE_NOW, MIDDLE
+from mdlgen.backends.lattice.kernels.state import ENDS, FACE_FORCE, FACE_POINTS, FORCE_NOW, MIDDLE
 from mdlgen.mechanics.arm import turn_of, way_of
 from mdlgen.mechanics.bounds import fastest_place
 from mdlgen.mechanics.crossing import UNSEEN, above, buried, closing, deepest, solid, unseen
-from mdlgen.mechanics.frame import Frame, Motion, frame_of, law_of
+from mdlgen.mechanics.frame import Frame, Motion, frame_of
 from mdlgen.mechanics.impacts import stored_beyond, turning_back
 from mdlgen.mechanics.mesh import BLOCK
 from mdlgen.mechanics.overlap import impact
 from mdlgen.mechanics.pair import pair_force
+from mdlgen.mechanics.pairs.box_box import deepest as deepest_of_boxes
 from mdlgen.mechanics.point import (
     AT,
     BETA,
@@ -32,7 +34,6 @@ from mdlgen.mechanics.point import (
     OVER,
     POINT,
     POINTS,
-    PRESSING,
     RATE,
     SPRING,
     STORED,
@@ -134,35 +135,40 @@ def _made(work, count, dt, slower, least, rows):
     returns what their damping should have taken and did not. `slower`: see _changed; of two sheets boxes that
     cannot make `least` of energy are not looked at."""
     bodies, pairs, state, mid = work.tables.bodies, work.tables.pairs, work.state, work.mid
-    touched, motion, ends, first = mid.touched, mid.motion, mid.fastest[ENDS], work.search.first
+    touched, motion, ends, search = mid.touched, mid.motion, mid.fastest[ENDS], work.search
+    listed, first = work.tables.listed, search.first
     missed = most = 0.0
-    if work.search.regions.size > 0:
+    if search.regions.size > 0:
         for n in range(work.tables.nodes.size):
             most = max(most, ends[work.tables.nodes[n]])
     for k in range(count):
-        # of pairs from `first` on, records are far apart in memory: nearly all do without
-        faces = touched[k] >= first and mid.faces[k, POINTS] == 0.0
-        if faces and 8.0 * dt * mid.faces[k, PRESSING] * most < least:
+        faces = touched[k] >= first and mid.faces[k, FACE_POINTS] == 0.0
+        if faces and 8.0 * dt * mid.faces[k, FACE_FORCE] * most < least:
             continue
-        pair, out = pairs[touched[k]], mid.results[mid.rows[k]]
-        if not _hits(bodies, pair, work.kept.rows):
-            continue
-        if faces and 4.0 * dt * mid.faces[k, PRESSING] * (ends[pair.a] + ends[pair.b]) < least:
-            continue
-        row = pair.row
-        one, spin_one = _changed(bodies[pair.a], pair.a, state, mid, slower)
-        two, spin_two = _changed(bodies[pair.b], pair.b, state, mid, slower)
+        if faces:
+            own = listed[touched[k] - first]
+            if 4.0 * dt * mid.faces[k, FACE_FORCE] * (ends[own.a] + ends[own.b]) < least:
+                continue
+            one, two, row = int(own.a), int(own.b), search.regions[own.region].row
+        else:
+            pair = pairs[touched[k]]
+            if not _hits(bodies, pair, work.kept.rows):
+                continue
+            one, two, row = pair.a, pair.b, pair.row
+        rate_one, spin_one = _changed(bodies[one], one, state, mid, slower)
+        rate_two, spin_two = _changed(bodies[two], two, state, mid, slower)
         part = slower.part
         if faces:
-            faster = (scale(part, one), scale(part, spin_one)), (scale(part, two), scale(part, spin_two))
-            kept, law = mid.overlaps[touched[k] - first], law_of(pair)
-            made, less = impact(kept, frame_of(motion, pair.a), frame_of(motion, pair.b), faster, law, dt)
+            faster_one = scale(part, rate_one), scale(part, spin_one)
+            faster = faster_one, (scale(part, rate_two), scale(part, spin_two))
+            kept, law = mid.overlaps[touched[k] - first], law_of_boxes(search, own)
+            made, less = impact(kept, frame_of(motion, one), frame_of(motion, two), faster, law, dt)
             rows[row] += made
             missed += less
             continue
-        still = mat(motion.r, pair.a)
-        a = Frame(vec(motion.x, pair.a), still, one, spin_one)
-        b = Frame(vec(motion.x, pair.b), still, two, spin_two)
+        out, still = mid.results[mid.rows[k]], mat(motion.r, one)
+        a = Frame(vec(motion.x, one), still, rate_one, spin_one)
+        b = Frame(vec(motion.x, two), still, rate_two, spin_two)
         for i in range(int(out[POINTS])):
             at = OUT + 1 + POINT * i
             point, kind = out[at:], out[at + KIND]
@@ -179,14 +185,14 @@ def _made(work, count, dt, slower, least, rows):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def _slow(bodies, pair, fastest, dt, little):
-    """Whether two boxes of two sheets move too little in a step to cross each other unseen, or to make more
-    than `little` of energy where they come to touch."""
-    way = dt * (fastest[pair.a] + fastest[pair.b])
-    if way > UNSEEN * deepest(bodies, pair):
+def _slow(bodies, own, k, fastest, dt, little):
+    """Whether two boxes of two sheets, of their row of LISTED and their stiffness, move too little in a step
+    to cross each other unseen, or to make more than `little` of energy where they come to touch."""
+    way = dt * (fastest[own.a] + fastest[own.b])
+    if way > UNSEEN * deepest_of_boxes(bodies, own):
         return False
     half = 0.5 * way
-    return 0.4 * pair.k * half * half * math.sqrt(half) <= little
+    return 0.4 * k * half * half * math.sqrt(half) <= little
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -213,7 +219,7 @@ def swept(work, counts, t, dt, allowed, slower, rows):
     """
     tables, state, mid = work.tables, work.state, work.mid
     bodies, pairs, shapes = tables.bodies, tables.pairs, tables.shapes
-    x, r, touched, near = state.x, state.r, mid.touched, mid.near
+    x, r, touched, near, listed = state.x, state.r, mid.touched, mid.near, tables.listed
     count, close = counts
     made = False
     between, out = mid.motion, mid.motion.u[0]
@@ -225,16 +231,19 @@ def swept(work, counts, t, dt, allowed, slower, rows):
         total = _made(work, count, dt, slower, LITTLE * allowed / max(1, count), rows)
     known = 0
     little = LITTLE * allowed if allowed > 0.0 else 1e300
-    slow, first = _all_slow(tables, work.search.regions, mid.fastest[MIDDLE], dt, little), work.search.first
+    regions, first = work.search.regions, work.search.first
+    slow = _all_slow(tables, regions, mid.fastest[MIDDLE], dt, little)
     for at in range(close):
         if slow and near[at] >= first:  # so are all that follow
             break
-        pair = pairs[near[at]]
         touches = known < count and touched[known] == near[at]
         if touches:
             known += 1
-        if near[at] >= first and _slow(bodies, pair, mid.fastest[MIDDLE], dt, little):
-            continue
+        if near[at] >= first:
+            own = listed[near[at] - first]
+            if _slow(bodies, own, regions[own.region].k, mid.fastest[MIDDLE], dt, little):
+                continue
+        pair = pairs[near[at]]
         began = Motion(x, r, mid.motion.u, mid.motion.w)
         fast = closing(bodies, pair, shapes, began, dt)
         way, band = dt * fast, unseen(bodies, pair, shapes)

@@ -38,9 +38,9 @@ def parts_of(frozen):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _rate_of(bodies, pair, q, x, change, changeb, matrix):
+def _rate_of(bodies, ends, q, x, change, changeb, matrix):
     """How the velocity of a point changes where velocities of nodes and of the border change."""
-    one, two = bodies[pair.a].node, bodies[pair.b].node
+    one, two = ends.one, ends.two
     v = (0.0, 0.0, 0.0)
     if q[KIND] == A_COUPLE:
         n = three_from(q, NORMAL)
@@ -50,7 +50,7 @@ def _rate_of(bodies, pair, q, x, change, changeb, matrix):
         if two >= 0:
             turning -= dot(three_from(change, 6 * two + 3), n)
         for which in range(4):
-            unknown, part = turning_of(bodies, pair, which, n)
+            unknown, part = turning_of(bodies, ends, which, n)
             if unknown >= 0:
                 turning += part * changeb[unknown]
         return scale(turning, n)
@@ -59,11 +59,11 @@ def _rate_of(bodies, pair, q, x, change, changeb, matrix):
     if one >= 0:
         v = add(three_from(change, 6 * one), cross(three_from(change, 6 * one + 3), arm))
     else:
-        many = moving(bodies[pair.a], arm, vec(x, pair.a), 1.0, direction, index, many)
+        many = moving(bodies[ends.a], arm, vec(x, ends.a), 1.0, direction, index, many)
     if two >= 0:
         v = sub(v, add(three_from(change, 6 * two), cross(three_from(change, 6 * two + 3), far)))
     else:
-        many = moving(bodies[pair.b], far, vec(x, pair.b), -1.0, direction, index, many)
+        many = moving(bodies[ends.b], far, vec(x, ends.b), -1.0, direction, index, many)
     for i in range(many):
         v = add(v, scale(changeb[index[i]], three_from(direction[i], 0)))
     return v
@@ -73,9 +73,9 @@ def _rate_of(bodies, pair, q, x, change, changeb, matrix):
 def _along(work, k):
     """Notes how the velocity of a point changes along the direction, in global axes."""
     tables, frozen, x = work.tables, work.frozen, work.mid.motion.x
-    q, pair = frozen.points[k], tables.pairs[frozen.pair[k]]
+    q, ends = frozen.points[k], frozen.ends[k]
     change, changeb = frozen.vectors[OF_DIRECTION], frozen.border[DIRECTION]
-    v = _rate_of(tables.bodies, pair, q, x, change, changeb, work.matrix)
+    v = _rate_of(tables.bodies, ends, q, x, change, changeb, work.matrix)
     for i in range(3):
         q[ALONG + i] = v[i]
 
@@ -123,8 +123,8 @@ def pull(work, h, part, g, gb):
         f = scale(h, sub(force_of(q, three_from(q, NOW), h), three_from(q, START)))
         if f[0] == 0.0 and f[1] == 0.0 and f[2] == 0.0:
             continue
-        pair = tables.pairs[frozen.pair[k]]
-        one, two = bodies[pair.a].node, bodies[pair.b].node
+        ends = frozen.ends[k]
+        one, two = ends.one, ends.two
         if q[KIND] == A_COUPLE:
             for i in range(3):
                 if one >= 0:
@@ -133,7 +133,7 @@ def pull(work, h, part, g, gb):
                     g[6 * two + 3 + i] += f[i]
             n = three_from(q, NORMAL)
             for which in range(4):
-                unknown, turning = turning_of(bodies, pair, which, n)
+                unknown, turning = turning_of(bodies, ends, which, n)
                 if unknown >= 0:
                     gb[unknown] -= turning * dot(f, n)
             continue
@@ -144,14 +144,14 @@ def pull(work, h, part, g, gb):
                 g[6 * one + i] -= f[i]
                 g[6 * one + 3 + i] -= t[i]
         else:
-            many = moving(bodies[pair.a], arm, vec(x, pair.a), 1.0, direction, index, many)
+            many = moving(bodies[ends.a], arm, vec(x, ends.a), 1.0, direction, index, many)
         if two >= 0:
             t = cross(far, f)
             for i in range(3):
                 g[6 * two + i] += f[i]
                 g[6 * two + 3 + i] += t[i]
         else:
-            many = moving(bodies[pair.b], far, vec(x, pair.b), -1.0, direction, index, many)
+            many = moving(bodies[ends.b], far, vec(x, ends.b), -1.0, direction, index, many)
         for i in range(many):
             gb[index[i]] -= dot(three_from(direction[i], 0), f)
 

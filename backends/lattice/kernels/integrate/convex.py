@@ -76,13 +76,22 @@ def _make_matrix(work, h, lag, renew):
         joints_into(tables, tables.joints, h, lag, motion.x, motion.r, matrix.inner)
         in_box_axes(tables.nodes, motion.r, matrix.inner, b, matrix.offsets)
         copy(matrix.single_inner, matrix.inner)
-    a[:] = 0.0
+    for n in range(a.shape[0]):  # points fill the diagonal blocks alone
+        for c in range(6):
+            for r in range(6):
+                a[n, c, r] = 0.0
     b[:] = 0.0
     copy(d, matrix.own)
     points_into(work, h, LEAST)
     couplings_in_box_axes(work.pool, tables.nodes, motion.r, matrix.couplings)
     in_box_axes(tables.nodes, motion.r, a, b, matrix.offsets[:1])
-    a += matrix.inner
+    for n in range(a.shape[0]):
+        for c in range(6):
+            col, inner = a[n, c], matrix.inner[n, c]
+            for r in range(6):
+                col[r] += inner[r]
+            for r in range(6, col.size):
+                col[r] = inner[r]
     forget(work.condensed)
     if not factor_sheets(work.pool, matrix) or not eliminate_sheets(work.pool, matrix):
         return False
@@ -151,7 +160,7 @@ def product_part(work, sheet):
     span = matrix.couplings.colouring.spans[sheet]
     low, high = 6 * span[BEGIN], 6 * span[END]
     inner = matrix.single_inner[span[BEGIN] : span[END]]
-    times(inner, vectors[DIRECTION, low:high], vectors[OF_DIRECTION, low:high])
+    times(inner, matrix.offsets, vectors[DIRECTION, low:high], vectors[OF_DIRECTION, low:high])
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)

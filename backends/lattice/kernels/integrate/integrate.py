@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from mdlgen.backends.lattice.kernels.contact.between import forget_overlaps
-from mdlgen.backends.lattice.kernels.contact.search import look, strayed
+from mdlgen.backends.lattice.kernels.contact.between import faces_into, forget_overlaps
+from mdlgen.backends.lattice.kernels.contact.search import look, mark_of, strayed
 from mdlgen.backends.lattice.kernels.contact.sticking import end_of_step, put_back, set_aside
 from mdlgen.backends.lattice.kernels.contact.swept import Before, swept
 from mdlgen.backends.lattice.kernels.integrate.air import air_overshoot
@@ -27,6 +27,8 @@ from mdlgen.backends.lattice.kernels.state import (
     DISSIPATED,
     DRIVEN,
     ENDED,
+    FACE_DEPTH,
+    FACE_POINTS,
     FASTEST,
     FORCE_BEGUN,
     FORCE_NOW,
@@ -60,9 +62,9 @@ from mdlgen.mechanics.curve import overstretched
 from mdlgen.mechanics.driven import SENSE, clutch, prescribed
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.pair import remember
-from mdlgen.mechanics.point import DEPTH, POINTS, PRESSING
+from mdlgen.mechanics.pairs.box_box import deepest as deepest_of_boxes
+from mdlgen.mechanics.point import DEPTH, PRESSING
 from mdlgen.mechanics.turning import TURNING, turning
-from mdlgen.model.tables.contacts import BOX_BOX
 from mdlgen.program.kernel import BORROWS, njit
 
 DONE, STOPPED, LEFT, DEEP, STRETCHED, CROWDED, WOKEN = 0, 1, 2, 3, 4, 5, 6
@@ -86,18 +88,24 @@ GRAZE = 0.05
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _deep(tables, mid, count):
     """The pair that is deeper than it may be in the middle of a step, or -1."""
+    pairs, listed = tables.pairs, tables.listed
+    first = pairs.size - listed.size
     for k in range(count):
-        pair = tables.pairs[mid.touched[k]]
-        depth = mid.faces[k, DEPTH] if pair.kind == BOX_BOX else mid.results[mid.rows[k], DEPTH]
-        if depth > deepest(tables.bodies, pair):
-            return mid.touched[k]
+        p = mid.touched[k]
+        if p >= first:
+            far, depth = deepest_of_boxes(tables.bodies, listed[p - first]), mid.faces[k, FACE_DEPTH]
+        else:
+            far, depth = deepest(tables.bodies, pairs[p]), mid.results[mid.rows[k], DEPTH]
+        if depth > far:
+            return p
     return -1
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _watch(tables, mid, count, t, dt, kept, asleep):
+def _watch(tables, search, mid, count, t, dt, kept, asleep):
     """Adds what contacts did in a step from t to a Kept; those of which nothing is awake do as before."""
     rows, marks = kept
+    pairs, listed, regions = tables.pairs, search.listed, search.regions
     for row in range(rows.shape[0]):
         if asleep.rows[row]:
             continue
@@ -105,13 +113,17 @@ def _watch(tables, mid, count, t, dt, kept, asleep):
         for i in range(TURNING):
             rows[row, TURNING_NOW + i] = 0.0
     for k in range(count):
-        pair = tables.pairs[mid.touched[k]]
+        p = mid.touched[k]
+        if p >= search.first and mid.faces[k, FACE_POINTS] == 0.0:
+            own = listed[p - search.first]
+            marks[mark_of(regions[own.region], own.a, own.b)] = True
+            faces_into(rows, regions[own.region].row, mid.faces[k])
+            continue
+        pair, out = pairs[p], mid.results[mid.rows[k]]
         marks[pair.mark] = True
-        out = mid.faces[k] if pair.kind == BOX_BOX else mid.results[mid.rows[k]]
         rows[pair.row, FORCE_NOW] += out[PRESSING]
         rows[pair.row, DEPTH_NOW] = max(rows[pair.row, DEPTH_NOW], out[DEPTH])
-        points = out if out[POINTS] == 0.0 else mid.results[mid.rows[k]]
-        turning(tables.bodies, pair, points, rows, pair.row, TURNING_NOW)
+        turning(tables.bodies, pair, out, rows, pair.row, TURNING_NOW)
     for row in range(rows.shape[0]):
         force, depth = rows[row, FORCE_NOW], rows[row, DEPTH_NOW]
         acts = force > GRAZE * max(rows[row, MAX_FORCE], force)
@@ -294,7 +306,7 @@ def run(work, t, steps, tolerance, control):
             if mid.sticks.pairs.size > 0:
                 gone = end_of_step(work, int(counters[TOUCHING]), int(counters[CLOSE]))
                 energies[DISSIPATED] += gone
-            _watch(tables, mid, int(counters[TOUCHING]), t, dt, work.kept, work.asleep)
+            _watch(tables, search, mid, int(counters[TOUCHING]), t, dt, work.kept, work.asleep)
             if t == begun:
                 _begun(rows, spans[LAST_STEP] / (spans[LAST_STEP] + dt))
             # between the middles of the two steps

@@ -14,7 +14,6 @@ import numpy as np
 
 from mdlgen.backends.lattice.kernels.state import Free
 from mdlgen.mechanics.vector import add, back, cross, dot, mat, rotate, scale, sub, three, vec
-from mdlgen.model.tables.contacts import BOX_BOX
 from mdlgen.program.kernel import njit
 
 
@@ -32,8 +31,11 @@ def empty(system) -> Free:
         loose[label[one[held & ~mirrored]]] = False
         cut[label[one[held & mirrored]]] = True
     parts = len(loose)
+    sheet = np.full(len(bodies), -1, np.int32)
+    sheet[nodes] = label
     return Free(
         label.astype(np.int64),
+        sheet,
         loose,
         np.zeros(parts, np.bool_),
         np.zeros(6 * len(nodes)),
@@ -75,21 +77,28 @@ def _top(one_with, part):
 
 
 @njit(cache=True, error_model="numpy")
-def _tie(bodies, pairs, touched, count, film, free):
+def _tie(tables, touched, count, film, free):
     """Makes one of the parts that touch each other, or have air between them, and marks those that are held
     or touch something else."""
-    label, loose, busy, one_with = free.label, free.loose, free.busy, free.one_with
+    pairs, listed, sheet = tables.pairs, tables.listed, free.sheet
+    loose, busy, one_with, first = free.loose, free.busy, free.one_with, pairs.size - listed.size
+    last = -1, -1
     for part in range(loose.size):
         one_with[part] = part
         busy[part] = not loose[part]
     for k in range(count + film.many[0]):
-        pair = pairs[touched[k]] if k < count else pairs[film.listed[k - count]]
-        one = bodies[pair.a].node
-        two = bodies[pair.b].node if pair.kind == BOX_BOX else -1
+        p = touched[k] if k < count else film.listed[k - count]
+        if p >= first:
+            one, two = int(sheet[listed[p - first].a]), int(sheet[listed[p - first].b])
+        else:
+            one, two = int(sheet[pairs[p].a]), -1
+        if one == last[0] and two == last[1]:  # as of most of the many boxes of two sheets
+            continue
+        last = one, two
         if one >= 0 and two >= 0:
-            one_with[_top(one_with, label[one])] = _top(one_with, label[two])
+            one_with[_top(one_with, one)] = _top(one_with, two)
         elif one >= 0 or two >= 0:
-            busy[label[max(one, two)]] = True
+            busy[max(one, two)] = True
     for part in range(loose.size):
         top = _top(one_with, part)
         one_with[part] = top
@@ -103,8 +112,8 @@ def keep(tables, touched, count, film, free, motion, change):
     x, r = motion
     label, loose, busy, residual, one_with = free.label, free.loose, free.busy, free.residual, free.one_with
     across = three(free.normal)
-    bodies, pairs, nodes = tables.bodies, tables.pairs, tables.nodes
-    _tie(bodies, pairs, touched, count, film, free)
+    bodies, nodes = tables.bodies, tables.nodes
+    _tie(tables, touched, count, film, free)
     for part in range(loose.size):
         if busy[part] or one_with[part] != part:
             continue

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from mdlgen.backends.lattice.kernels.contact.between import forces_at
+from mdlgen.backends.lattice.kernels.contact.between import faces_into, forces_at
 from mdlgen.backends.lattice.kernels.contact.sticking import energy_of
 from mdlgen.backends.lattice.kernels.forces import joint_forces, near_pairs
 from mdlgen.backends.lattice.kernels.state import (
     DEPTH_NOW,
     ELASTIC,
+    FACE_POINTS,
     FORCE_NOW,
     KINETIC,
     POTENTIAL,
@@ -16,7 +17,7 @@ from mdlgen.backends.lattice.kernels.state import (
 from mdlgen.mechanics.arm import AXIAL, FORCE_0, INERTIA, STIFFNESS, hung, way_of
 from mdlgen.mechanics.driven import prescribed
 from mdlgen.mechanics.frame import Motion
-from mdlgen.mechanics.point import DEPTH, POINTS, PRESSING
+from mdlgen.mechanics.point import DEPTH, PRESSING
 from mdlgen.mechanics.turning import turning
 from mdlgen.mechanics.vector import back, dot, mat, rotate, three, vec
 from mdlgen.model.tables.contacts import BOX_BOX
@@ -77,9 +78,11 @@ def ledger(tables, state, mid, t, first, energies, rows):
     pressed += energy_of(mid.sticks)
     for k in range(count):
         pair = tables.pairs[mid.touched[k]]
-        out = mid.faces[k] if pair.kind == BOX_BOX else mid.results[mid.rows[k]]
+        if pair.kind == BOX_BOX and mid.faces[k, FACE_POINTS] == 0.0:
+            faces_into(rows, pair.row, mid.faces[k])
+            continue
+        out = mid.results[mid.rows[k]]
         rows[pair.row, FORCE_NOW] += out[PRESSING]
         rows[pair.row, DEPTH_NOW] = max(rows[pair.row, DEPTH_NOW], out[DEPTH])
-        points = out if out[POINTS] == 0.0 else mid.results[mid.rows[k]]
-        turning(tables.bodies, pair, points, rows, pair.row, TURNING_NOW)
+        turning(tables.bodies, pair, out, rows, pair.row, TURNING_NOW)
     energies[KINETIC], energies[ELASTIC], energies[POTENTIAL] = kinetic, elastic + stored + pressed, potential

@@ -16,6 +16,7 @@ from __future__ import annotations
 import math
 
 from mdlgen.backends.lattice.kernels.contact.between import MOVED
+from mdlgen.backends.lattice.kernels.contact.search import law_of_boxes
 from mdlgen.backends.lattice.kernels.integrate.air import damping_of
 from mdlgen.backends.lattice.kernels.integrate.sticking_points import held_back, stick
 from mdlgen.backends.lattice.kernels.state import (
@@ -48,11 +49,10 @@ from mdlgen.backends.lattice.kernels.state import (
 from mdlgen.mechanics import point as law_point
 from mdlgen.mechanics.frame import LAW_SMOOTHING, box_of, frame_of, law_of
 from mdlgen.mechanics.laws import damped, friction_over_speed, sign_step
-from mdlgen.mechanics.overlap import OTHER, apart, find, holds, plane_of
+from mdlgen.mechanics.overlap import OTHER, STIFF, apart, find, holds, plane_of
 from mdlgen.mechanics.pair import on_fixed_plate
 from mdlgen.mechanics.stick import carry_stretch, stretch_of
 from mdlgen.mechanics.vector import add, cross, dot, rotate, scale, sub, three, three_from
-from mdlgen.model.tables.contacts import BOX_BOX
 from mdlgen.program.kernel import BORROWS, njit
 
 # How far two faces may be open at a corner that may close in an iteration [mm].
@@ -179,10 +179,10 @@ def _of_law(frozen, p, pair, out, h, motion):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _of_faces(frozen, p, pair, kept, h, motion, sticks, k):
-    """Adds the corners of the overlap that is kept of two boxes, whose stretches are sticks[k]."""
-    a, b = frame_of(motion, pair.a), frame_of(motion, pair.b)
-    law = law_of(pair)
+def _of_faces(frozen, p, kept, a, b, law, h, sticking):
+    """Adds the corners of the overlap that is kept of two boxes (Frames); sticking: their stretches, where
+    there are any, and k_t for 1 of k."""
+    stuck, ratio = sticking
     first = kept.first != 0
     owner, other = (a, b) if first else (b, a)
     _, level, lean_p, lean_r = plane_of(kept, owner, other)
@@ -193,19 +193,19 @@ def _of_faces(frozen, p, pair, kept, h, motion, sticks, k):
         depth = level + lean_p * along + lean_r * across
         if depth <= -REACH:
             continue
-        at = (along, across, kept.side * (kept.owner[2] - 0.5 * depth))
+        at = (along, across, kept.side * (kept.thick - 0.5 * depth))
         many = _begin(frozen, p, add(owner.x, rotate(owner.r, at)), normal, a, b)
         if many < 0:
             return
         q = frozen.points[many]
-        q[STIFFNESS], q[DEPTH] = kept.stiffness[corner], depth
+        q[STIFFNESS], q[DEPTH] = kept.corners[corner, STIFF], depth
         q[BETA], q[OVER] = law.beta, law.smoothing
         q[MU_STATIC], q[MU_DYNAMIC] = law.mu_static, law.mu_dynamic
         q[STICTION], q[SLIDING] = law.stiction, law.sliding
         q[PRESSING] = law_at(q, three_from(q, NOW), h)[2]
-        if sticks.size > 0 and pair.sticking > 0.0:
-            k_t = pair.sticking * kept.stiffness[corner]
-            stick(q, stretch_of(sticks[k], kept, owner, corner), k_t, law)
+        if stuck.size > 0 and ratio > 0.0:
+            k_t = ratio * kept.corners[corner, STIFF]
+            stick(q, stretch_of(stuck[0], kept, owner, corner), k_t, law)
         _started(q, h)
 
 
@@ -229,15 +229,20 @@ def _of_air(frozen, film, pair, p, motion):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _mark_rolling(tables, frozen):
-    """Marks the points on bodies that are unknowns of the border."""
-    bodies, last, rolls = tables.bodies, -1, False
+def _note_ends(tables, frozen):
+    """Notes the bodies and nodes of each point, and whether one of them is an unknown of the border."""
+    bodies, pairs, listed, last = tables.bodies, tables.pairs, tables.listed, -1
+    first, a, b, one, two, rolls = pairs.size - listed.size, 0, 0, -1, -1, False
     for k in range(frozen.many[0]):
-        p = frozen.pair[k]
+        p, ends = frozen.pair[k], frozen.ends[k]
         if p != last:
-            one, two = bodies[tables.pairs[p].a], bodies[tables.pairs[p].b]
-            rolls = max(one.slide, one.spin, two.slide, two.spin) >= 0
-            last = p
+            if p >= first:
+                a, b, rolls = int(listed[p - first].a), int(listed[p - first].b), False
+            else:
+                a, b = pairs[p].a, pairs[p].b
+                rolls = max(bodies[a].slide, bodies[a].spin, bodies[b].slide, bodies[b].spin) >= 0
+            one, two, last = bodies[a].node, bodies[b].node, p
+        ends.a, ends.b, ends.one, ends.two = a, b, one, two
         frozen.rolls[k] = rolls
 
 
@@ -245,42 +250,43 @@ def _mark_rolling(tables, frozen):
 def gather(work, counts, h, plates):
     """Takes the points of the near pairs at the midpoint, and of air; `counts`: how many touch, how many are
     near; `plates`: of those with fixed plates alone."""
-    tables, mid, frozen, first, film = work.tables, work.mid, work.frozen, work.search.first, work.film
+    tables, mid, frozen, search, film = work.tables, work.mid, work.frozen, work.search, work.film
     bodies, pairs, near, motion = tables.bodies, tables.pairs, mid.near, mid.motion
     count, close = counts
+    first = search.first
     frozen.many[0] = known = 0
     air, sticks = film.many[0], mid.sticks.pairs
     for k in range(air):
         film.cells[film.head[film.listed[k]]].point = -1
     for at in range(close):
         p = near[at]
-        pair = pairs[p]
         row = known
         touching = known < count and mid.touched[known] == p
         if touching:
             known += 1
-        if plates and not on_fixed_plate(pair, bodies[pair.b]):
+        if plates and (p >= first or not on_fixed_plate(pairs[p], bodies[pairs[p].b])):
             continue
         if air > 0:
-            _of_air(frozen, film, pair, p, motion)
-        if pair.kind != BOX_BOX:
+            _of_air(frozen, film, pairs[p], p, motion)
+        if p < first:
             if touching:
-                _of_law(frozen, p, pair, mid.results[mid.rows[row]], h, motion)
+                _of_law(frozen, p, pairs[p], mid.results[mid.rows[row]], h, motion)
             continue
-        kept = mid.overlaps[p - first]
-        a, b = frame_of(motion, pair.a), frame_of(motion, pair.b)
+        own, kept = search.listed[p - first], mid.overlaps[p - first]
+        a, b, law = frame_of(motion, own.a), frame_of(motion, own.b), law_of_boxes(search, own)
+        ratio = search.regions[own.region].sticking
         if not holds(kept, a, b, MOVED):
-            one, two = box_of(bodies[pair.a]), box_of(bodies[pair.b])
+            one, two = box_of(bodies[own.a]), box_of(bodies[own.b])
             if apart(a, one.half, b, two.half, REACH):
                 continue
-            find(kept, a, one, b, two, law_of(pair))
-            if sticks.size > 0 and pair.sticking > 0.0:
-                carry_stretch(sticks[p - first], kept, a, b, pair.sticking)
+            find(kept, a, one, b, two, law)
+            if sticks.size > 0 and ratio > 0.0:
+                carry_stretch(sticks[p - first], kept, a, b, ratio)
         if kept.state == OTHER:
             if touching:
-                _of_law(frozen, p, pair, mid.results[mid.rows[row]], h, motion)
+                _of_law(frozen, p, pairs[p], mid.results[mid.rows[row]], h, motion)
         elif kept.count > 0:
-            _of_faces(frozen, p, pair, kept, h, motion, sticks, p - first)
+            _of_faces(frozen, p, kept, a, b, law, h, (sticks[p - first : p - first + 1], ratio))
     for k in range(air):
         _of_air(frozen, film, pairs[film.listed[k]], film.listed[k], motion)
-    _mark_rolling(tables, frozen)
+    _note_ends(tables, frozen)

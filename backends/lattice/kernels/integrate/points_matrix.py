@@ -36,22 +36,22 @@ ZERO = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _point_into(bodies, pair, q, x, t, coupled, matrix):
+def _point_into(bodies, ends, q, x, t, coupled, matrix):
     """Adds a matrix of the velocity at one point to band, border and corner, and to the couplings."""
     a, b, d = matrix.band, matrix.border, matrix.corner
     direction, index = matrix.direction, matrix.unknowns
-    node, other = bodies[pair.a].node, bodies[pair.b].node
+    node, other = ends.one, ends.two
     arm, far, many = three_from(q, ARM_A), three_from(q, ARM_B), 0
     if node >= 0:
         blocks(a, node, 0, 1.0, t, arm, arm, ZERO)
     else:
-        many = moving(bodies[pair.a], arm, vec(x, pair.a), 1.0, direction, index, many)
+        many = moving(bodies[ends.a], arm, vec(x, ends.a), 1.0, direction, index, many)
     if other >= 0:
         blocks(a, other, 0, 1.0, t, far, far, ZERO)
         if node >= 0:
             blocks(matrix.couplings.blocks, coupled, 0, -1.0, t, arm, far, ZERO)
     else:
-        many = moving(bodies[pair.b], far, vec(x, pair.b), -1.0, direction, index, many)
+        many = moving(bodies[ends.b], far, vec(x, ends.b), -1.0, direction, index, many)
     for i in range(many):
         v = rotate(t, three_from(direction[i], 0))
         for j in range(many):
@@ -64,21 +64,21 @@ def _point_into(bodies, pair, q, x, t, coupled, matrix):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _couple_into(bodies, pair, axis, growth, matrix):
+def _couple_into(bodies, ends, axis, growth, matrix):
     """Adds the couple of rolling resistance of a box, or a roller, against a roller or a part that does not
     turn."""
     a, b, d = matrix.band, matrix.border, matrix.corner
-    node = bodies[pair.a].node
+    node = ends.one
     if node >= 0:
         for c in range(3):
             for k in range(3):
                 a[node, 3 + c, 3 + k] += growth * axis[c] * axis[k]
     for one in range(4):
-        i, turning = turning_of(bodies, pair, one, axis)
+        i, turning = turning_of(bodies, ends, one, axis)
         if i < 0:
             continue
         for two in range(4):
-            j, other = turning_of(bodies, pair, two, axis)
+            j, other = turning_of(bodies, ends, two, axis)
             if j >= 0:
                 d[i, j] += growth * turning * other
         if node >= 0:
@@ -94,9 +94,8 @@ def points_into(work, h, chord):
     bodies, couplings = tables.bodies, matrix.couplings
     couplings.many[0], last = 0, -1
     for k in range(frozen.many[0]):
-        q, p = frozen.points[k], frozen.pair[k]
-        pair = tables.pairs[p]
-        node, other = bodies[pair.a].node, bodies[pair.b].node
+        q, p, ends = frozen.points[k], frozen.pair[k], frozen.ends[k]
+        node, other = ends.one, ends.two
         if p != last and node >= 0 and other >= 0:
             coupled = couplings.many[0]
             couplings.ends[coupled, ONE], couplings.ends[coupled, TWO] = node, other
@@ -108,19 +107,19 @@ def points_into(work, h, chord):
         if q[KIND] == A_COUPLE:
             y = q[GROWTH] * dot(three_from(q, NOW), n) / q[OVER]
             growth = h * q[SPRING] * q[GROWTH] * steepness(y, q[OVER], chord)
-            _couple_into(bodies, pair, n, growth, matrix)
+            _couple_into(bodies, ends, n, growth, matrix)
         elif q[KIND] == AIR:
-            _point_into(bodies, pair, q, x, outer(scale(h * q[OVER], n), n), coupled, matrix)
+            _point_into(bodies, ends, q, x, outer(scale(h * q[OVER], n), n), coupled, matrix)
         elif q[KIND] == A_DAMPER:
             y = -dot(three_from(q, NOW), n) / q[OVER]
             damping = h * q[SPRING] * q[BETA] * steepness(y, q[OVER], chord)
-            _point_into(bodies, pair, q, x, outer(scale(damping, n), n), coupled, matrix)
+            _point_into(bodies, ends, q, x, outer(scale(damping, n), n), coupled, matrix)
         elif q[KIND] == STICKS:
             spring, growth, _normal, rate, slip = law_at(q, three_from(q, NOW), h)
             rubs = (0.0, 0.0, 1.0, 1.0)
             numbers = Numbers(spring, growth, 0.0, rate, q[OVER], q[BETA], *rubs, True)
             t, _, _ = core(numbers, n, n, slip, h, chord, False)
-            _point_into(bodies, pair, q, x, holding(t, q, n, slip, h, chord), coupled, matrix)
+            _point_into(bodies, ends, q, x, holding(t, q, n, slip, h, chord), coupled, matrix)
         else:
             spring, growth, _normal, rate, slip = law_at(q, three_from(q, NOW), h)
             numbers = Numbers(
@@ -137,4 +136,4 @@ def points_into(work, h, chord):
                 True,
             )
             t, _, _ = core(numbers, n, three_from(q, SQUARE), slip, h, chord, False)
-            _point_into(bodies, pair, q, x, t, coupled, matrix)
+            _point_into(bodies, ends, q, x, t, coupled, matrix)

@@ -6,10 +6,20 @@ import numpy as np
 
 from mdlgen.backends.lattice.kernels.linear.band import empty as no_band
 from mdlgen.backends.lattice.kernels.linear.coupled import couplings
-from mdlgen.backends.lattice.kernels.state import EACH, POINT, Frozen, Matrix, Midpoint, State, Sticks
+from mdlgen.backends.lattice.kernels.state import (
+    EACH,
+    ENDS_OF_POINT,
+    FACE,
+    POINT,
+    Frozen,
+    Matrix,
+    Midpoint,
+    State,
+    Sticks,
+)
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.overlap import OVERLAP
-from mdlgen.mechanics.point import FACES, MOST_POINTS
+from mdlgen.mechanics.point import MOST_POINTS
 from mdlgen.mechanics.stick import STRETCH
 
 
@@ -37,7 +47,7 @@ def empty(system, wide: int) -> tuple[State, Midpoint, Matrix]:
         touched=np.zeros(len(system.pairs), np.int64),
         results=np.zeros((max(1, len(system.pairs)), wide)),
         rows=np.arange(max(1, len(system.pairs))),
-        faces=np.zeros((max(1, len(system.pairs)), FACES)),
+        faces=np.zeros((max(1, len(system.pairs)), FACE)),
         totals=np.zeros(3),
         near=np.zeros(len(system.pairs), np.int64),
         overlaps=np.zeros(max(1, len(system.pairs) - system.search.first), OVERLAP),
@@ -86,6 +96,7 @@ def frozen(system, cells: int) -> Frozen:
     return Frozen(
         points=np.zeros((room, POINT)),
         pair=np.zeros(room, np.int64),
+        ends=np.zeros(room, ENDS_OF_POINT),
         rolls=np.zeros(room, np.bool_),
         many=np.zeros(1, np.int64),
         sums=np.zeros(room // EACH + 1),

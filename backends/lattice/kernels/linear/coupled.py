@@ -40,6 +40,7 @@ class Couplings(NamedTuple):
     many: np.ndarray  # (1,)
     ends: np.ndarray  # nodes, (pairs, 2)
     blocks: np.ndarray  # rows of the first, columns of the second, column by column, (pairs, 6, 6)
+    single: np.ndarray  # the same in single precision, which is read in half the time
     room: np.ndarray  # vectors of all unknowns, (5, 6 nodes + border)
     colouring: Colouring  # of the sheets
 
@@ -51,6 +52,7 @@ def couplings(pairs: int, label: np.ndarray, border: int) -> Couplings:
         np.zeros(1, np.int64),
         np.zeros((pairs, 2), np.int64),
         np.zeros((pairs, 6, 6)),
+        np.zeros((pairs, 6, 6), np.float32),
         np.zeros((5, 6 * nodes + border)),
         colouring(label, border, pairs),
     )
@@ -62,7 +64,7 @@ def axes_part(nodes, r, couplings, part):
     low, high = items_of(part, couplings.many[0])
     for k in range(low, high):
         one, two = mat(r, nodes[couplings.ends[k, ONE]]), mat(r, nodes[couplings.ends[k, TWO]])
-        block = couplings.blocks[k]
+        block, single = couplings.blocks[k], couplings.single[k]
         for p in range(0, 6, 3):
             for q in range(0, 6, 3):
                 # rows of the first
@@ -72,7 +74,7 @@ def axes_part(nodes, r, couplings, part):
                 turned = transpose_matmul(one, matmul((*x, *y, *z), two))
                 for i in range(3):
                     for j in range(3):
-                        block[q + j, p + i] = turned[3 * i + j]
+                        block[q + j, p + i] = single[q + j, p + i] = turned[3 * i + j]
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)

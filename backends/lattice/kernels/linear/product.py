@@ -2,36 +2,38 @@
 
 from __future__ import annotations
 
-from mdlgen.backends.lattice.kernels.linear.band import PAD
 from mdlgen.program.kernel import BORROWS, njit
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False, **BORROWS)
-def times(a, x, y):
-    """y = A x, of a band as linear.band has it before it is factored, with whole diagonal blocks."""
-    nodes, blocks = a.shape[0], (a.shape[2] - PAD) // 6
+def times(a, offsets, x, y):
+    """y = A x, of a band as linear.band has it before it is factored, with whole diagonal blocks. `offsets`:
+    how many nodes apart two may be whose block is not zero, from 0 on."""
+    nodes = a.shape[0]
     y[:] = 0.0
     for j in range(nodes):
         base, col = 6 * j, a[j]
-        end = 6 * min(blocks, nodes - j)
         x0, x1, x2, x3, x4, x5 = x[base], x[base + 1], x[base + 2], x[base + 3], x[base + 4], x[base + 5]
         for i in range(6):
             y[base + i] += col[0, i] * x0 + col[1, i] * x1 + col[2, i] * x2
             y[base + i] += col[3, i] * x3 + col[4, i] * x4 + col[5, i] * x5
-        c0, c1, c2 = col[0, 6:end], col[1, 6:end], col[2, 6:end]
-        c3, c4, c5 = col[3, 6:end], col[4, 6:end], col[5, 6:end]
-        out, far = y[base + 6 : base + end], x[base + 6 : base + end]
         s0 = s1 = s2 = s3 = s4 = s5 = 0.0
-        for r in range(end - 6):
-            out[r] += x0 * c0[r] + x1 * c1[r] + x2 * c2[r] + x3 * c3[r] + x4 * c4[r] + x5 * c5[r]
-        for r in range(end - 6):
-            v = far[r]
-            s0 += c0[r] * v
-            s1 += c1[r] * v
-            s2 += c2[r] * v
-            s3 += c3[r] * v
-            s4 += c4[r] * v
-            s5 += c5[r] * v
+        for offset in offsets[1:]:
+            if j + offset >= nodes:
+                break
+            begin = 6 * offset
+            c0, c1, c2 = col[0, begin : begin + 6], col[1, begin : begin + 6], col[2, begin : begin + 6]
+            c3, c4, c5 = col[3, begin : begin + 6], col[4, begin : begin + 6], col[5, begin : begin + 6]
+            out, far = y[base + begin : base + begin + 6], x[base + begin : base + begin + 6]
+            for r in range(6):
+                v = far[r]
+                s0 += c0[r] * v
+                s1 += c1[r] * v
+                s2 += c2[r] * v
+                s3 += c3[r] * v
+                s4 += c4[r] * v
+                s5 += c5[r] * v
+                out[r] += x0 * c0[r] + x1 * c1[r] + x2 * c2[r] + x3 * c3[r] + x4 * c4[r] + x5 * c5[r]
         y[base] += s0
         y[base + 1] += s1
         y[base + 2] += s2
