@@ -17,6 +17,7 @@ import numpy as np
 
 from mdlgen.backends.lattice.kernels import parallel
 from mdlgen.backends.lattice.kernels.linear.band import solve
+from mdlgen.backends.lattice.kernels.linear.block import column, row, six
 from mdlgen.backends.lattice.kernels.linear.dense import cholesky, cholesky_solve
 from mdlgen.backends.lattice.kernels.parallel import begin, finish, take
 from mdlgen.program.kernel import BORROWS, njit
@@ -141,26 +142,6 @@ def _dot(p, q):
     return (one + two) + (three + four)
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
-def _six(v, at):
-    """Six numbers of a vector."""
-    return v[at], v[at + 1], v[at + 2], v[at + 3], v[at + 4], v[at + 5]
-
-
-@njit(cache=True, error_model="numpy", forceinline=True)
-def _column(block, c, x):
-    """A column of a block times x."""
-    col = block[c]
-    return col[0] * x[0] + col[1] * x[1] + col[2] * x[2] + col[3] * x[3] + col[4] * x[4] + col[5] * x[5]
-
-
-@njit(cache=True, error_model="numpy", forceinline=True)
-def _row(v, block, i, x):
-    """v, and a row of a block times x."""
-    v = v + block[0, i] * x[0] + block[1, i] * x[1] + block[2, i] * x[2]
-    return v + block[3, i] * x[3] + block[4, i] * x[4] + block[5, i] * x[5]
-
-
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _across(couplings, sheet, p, q):
     """Adds to q of a sheet what the other colour does to it where that moves by p."""
@@ -171,17 +152,17 @@ def _across(couplings, sheet, p, q):
         one, two, block = 6 * ends[k, ONE], 6 * ends[k, TWO], blocks[k]
         # all six sums before one is written: what was just written is slow to read
         if label[ends[k, TWO]] == sheet:
-            x = _six(p, one)
-            v0, v1, v2 = _column(block, 0, x), _column(block, 1, x), _column(block, 2, x)
-            v3, v4, v5 = _column(block, 3, x), _column(block, 4, x), _column(block, 5, x)
-            q0, q1, q2, q3, q4, q5 = _six(q, two)
+            x = six(p, one)
+            v0, v1, v2 = column(block, 0, x), column(block, 1, x), column(block, 2, x)
+            v3, v4, v5 = column(block, 3, x), column(block, 4, x), column(block, 5, x)
+            q0, q1, q2, q3, q4, q5 = six(q, two)
             q[two], q[two + 1], q[two + 2] = q0 + v0, q1 + v1, q2 + v2
             q[two + 3], q[two + 4], q[two + 5] = q3 + v3, q4 + v4, q5 + v5
         else:
-            x = _six(p, two)
-            q0, q1, q2, q3, q4, q5 = _six(q, one)
-            q0, q1, q2 = _row(q0, block, 0, x), _row(q1, block, 1, x), _row(q2, block, 2, x)
-            q3, q4, q5 = _row(q3, block, 3, x), _row(q4, block, 4, x), _row(q5, block, 5, x)
+            x = six(p, two)
+            q0, q1, q2, q3, q4, q5 = six(q, one)
+            q0, q1, q2 = row(q0, block, 0, x), row(q1, block, 1, x), row(q2, block, 2, x)
+            q3, q4, q5 = row(q3, block, 3, x), row(q4, block, 4, x), row(q5, block, 5, x)
             q[one], q[one + 1], q[one + 2] = q0, q1, q2
             q[one + 3], q[one + 4], q[one + 5] = q3, q4, q5
 
