@@ -12,7 +12,7 @@ from mdlgen.backends.lattice.integrate.work import arrays, control
 from mdlgen.backends.lattice.kernels import forces
 from mdlgen.backends.lattice.kernels.contact import between
 from mdlgen.backends.lattice.kernels.contact.condensed import INSIDE
-from mdlgen.backends.lattice.kernels.integrate import along, convex, points, points_matrix, tangent
+from mdlgen.backends.lattice.kernels.integrate import along, convex, points, points_matrix, step, tangent
 from mdlgen.backends.lattice.kernels.state import (
     A_COUPLE,
     A_DAMPER,
@@ -26,6 +26,7 @@ from mdlgen.backends.lattice.kernels.state import (
     RESIDUAL,
     SPRING,
     START,
+    TOUGH,
     WHERE,
     Control,
     Workspace,
@@ -236,3 +237,32 @@ def test_a_product_with_a_band_is_that_of_the_whole_matrix() -> None:
     x, y = draw.normal(size=6 * nodes), np.empty(6 * nodes)
     times(band, np.arange(reach + 1), x, y)
     assert y == pytest.approx(whole @ x, rel=1e-12)
+
+
+def test_contacts_that_have_no_solution_apart_from_the_matrix_stand_in_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """In the same step, which is not given up, and for some more. Sheets do not touch each other yet."""
+    lifted = ["sheets.top.center=[2 mm, 1 mm, 0.12 mm]", "rollers.over.center=[1 mm, 0 mm, 6.17 mm]"]
+    model = lower(loads(SCENE, overrides=lifted))
+    work = arrays(model, build(model))
+    steering = control(work)
+    solve, calls = step.solve_contacts, []
+
+    def fails(*args: Any) -> bool:
+        calls.append(args)
+        return len(calls) > 1 and solve(*args)
+
+    monkeypatch.setattr(step, "solve_contacts", fails)
+    assert step.midpoint(work, 0.0, 0.02, 1e-5, steering)
+    assert len(calls) == 1
+    assert steering.factored[WHERE] == INSIDE and steering.factored[TOUGH] > 0.0
+    found = work.state.u.copy()
+    # as with the condensed system, which has a solution here
+    monkeypatch.setattr(step, "solve_contacts", solve)
+    work = arrays(model, build(model))
+    steering = control(work)
+    assert step.midpoint(work, 0.0, 0.02, 1e-5, steering)
+    assert steering.factored[WHERE] != INSIDE
+    assert np.abs(work.state.u).max() > 1e-4
+    assert work.state.u == pytest.approx(found, abs=2e-5)
