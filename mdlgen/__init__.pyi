@@ -389,6 +389,7 @@ class Run(_Run):
         print_step: str | None = ...,
         prune: bool = ...,
         symmetry: bool = ...,
+        sleep: bool = ...,
         threads: int = ...,
         margin: str = ...,
     ) -> None: ...

@@ -121,7 +121,8 @@ def test_what_comes_down_on_it_wakes_it(solve: Solve, sets: tuple[str, ...]) -> 
     assert apart(result, awake) < 0.02 * travel
     pile = [s.first for s in result.model.sheets if s.name != "late"]
     assert np.abs(result.position - awake.position)[-1, pile].max() < 1e-3 * travel
-    assert result.energy.balance_error == pytest.approx(awake.energy.balance_error, abs=3e-3)
+    # from 0.3 to 1 % at this step, with sleep and without, where starts differ in the sixth digit
+    assert abs(result.energy.balance_error) < 0.012
 
 
 def test_forces_go_on_while_a_pile_sleeps(solve: Solve) -> None:
@@ -175,6 +176,16 @@ def test_a_step_that_is_chosen_has_its_estimate(solve: Solve) -> None:
     assert turns and result.error_estimate is not None
     assert result.error_estimate <= result.model.run.tolerance
     assert apart(result, awake) < result.model.run.tolerance * 12.7
+
+
+@pytest.mark.parametrize("between", ["0.7 ms", "1.3 ms", "1.7 ms"])
+def test_what_rests_does_not_tremble_while_something_falls(solve: Solve, between: str) -> None:
+    """What a step may leave goes with the speed of an island, not of the scene alone; at three steps."""
+    result, turns = solve(*FALLING, "run.duration=80 ms", f"run.print_step={between}")
+    quiet = (result.time > 20.0) & (result.time < 55.0)
+    weight = G * MASS * NOTES
+    assert floor_force(result)[quiet] == pytest.approx(weight, rel=2e-3)
+    assert turns and turns[0][0] < 40.0
 
 
 def test_threads_give_the_same_bits(solve: Solve) -> None:

@@ -17,7 +17,7 @@ from mdlgen.backends.lattice.integrate.ends import OVERLAPPED, PASSED, reason_of
 from mdlgen.backends.lattice.integrate.helpers import Helpers
 from mdlgen.backends.lattice.integrate.pass_state import PassState, Stage
 from mdlgen.backends.lattice.integrate.record import Recorder, Snapshot
-from mdlgen.backends.lattice.integrate.sleep import Sleep, may_sleep
+from mdlgen.backends.lattice.integrate.sleep import Sleep
 from mdlgen.backends.lattice.integrate.work import arrays, control, flexible
 from mdlgen.backends.lattice.kernels.state import (
     ANEW,
@@ -140,7 +140,7 @@ def one_pass(
     outputs, each, dt = division(model, wanted)
     progress, keep, number, stop, hidden, threads, sleeps = watch
     begun = clock.perf_counter()
-    work = arrays(model, system, sleeps and may_sleep(model, system))
+    work = arrays(model, system)
     state = work.state  # of which places are those of all bodies, whatever sleeps
     steering = control(work)
     counters, energies = steering.counters, steering.energies
@@ -151,9 +151,9 @@ def one_pass(
     part = (ROUND_OFF if flexible(model) else ROUND_OFF_RIGID) * min(1.0, (dt / FIRST_STEP) ** 2)
     tolerance = part * accuracy(model)
     steering.pace[[MISS_OF, ANEW, MADE_OF]] = miss, float(anew), made
-    steering.pace[[FASTEST, RECENT]] = speed(model)
+    steering.pace[[FASTEST, RECENT]] = work.asleep.now[:] = speed(model)
     status, t, past = integrate.DONE, 0.0, 0.0
-    sleep, stage = Sleep(model, system, work, steering, recorder), None
+    sleep, stage = Sleep(model, system, work, steering, recorder, sleeps), None
     del work  # sleep has what is worked on
     if keep is not None:
         sleep.lie_down(keep, number)

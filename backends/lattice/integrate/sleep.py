@@ -36,7 +36,6 @@ from mdlgen.backends.lattice.kernels.state import (
     FASTEST,
     STEPS,
     TIME,
-    Asleep,
     Control,
     History,
     Workspace,
@@ -50,26 +49,31 @@ PART, LEAST_STEPS = 0.05, 20
 # What is carried over by body, from the nodes: velocity and angular momentum at the end of the last step, and
 # velocities in its middle and in that of the one before.
 WIDTHS = {"v": 3, "l": 3, "u": 6, "last": 6}
-SHEETS = "sleep.sheets"  # in a checkpoint
-
-
-def may_sleep(model: Model, system: System) -> bool:
-    """Whether sheets of a scene may: those that meet other sheets, without air."""
-    return (
-        model.run.sleep and len(system.search.regions) > 0 and not (model.contacts.air_viscosity > 0.0).any()
-    )
+# What a checkpoint has: which sheets sleep, and of Asleep.
+SHEETS = "sleep.sheets"
+OF_STEPS = ("speeds", "now", "islands", "forces", "missed", "may")
 
 
 class Sleep:
     """Which sheets of a pass sleep; the System that is awake, what its steps work on and are steered by."""
 
-    def __init__(self, model: Model, system: System, work: Workspace, steering: Control, recorder: Recorder):
+    def __init__(
+        self,
+        model: Model,
+        system: System,
+        work: Workspace,
+        steering: Control,
+        recorder: Recorder,
+        sleeps: bool,
+    ):
+        """`sleeps`: sheets may."""
         self.system, self.work, self.steering = system, work, steering
         self._model, self._whole, self._recorder = model, system, recorder
         sheets, bodies = len(work.asleep.speeds), len(system.bodies)
         self._may = np.zeros(sheets, bool)
-        loose = work.free.loose if sheets else self._may
-        self._may[: len(loose)] = loose
+        self._air = model.contacts.air_viscosity > 0.0
+        if sheets and sleeps and model.run.sleep and not self._air.any():
+            self._may[: len(work.free.loose)] = work.free.loose
         self._parts = Parts(model, system)
         self._sheets = np.zeros(sheets, bool)
         self._since, self._counted = np.zeros(sheets), np.zeros(sheets)
@@ -81,16 +85,12 @@ class Sleep:
         self._energies = np.zeros(3)
         self._stuck = np.zeros(0, STRETCH)
 
-    @property
-    def possible(self) -> bool:
-        """Whether sheets may sleep in this pass."""
-        return bool(self._may.any())
-
     def look(self, t: float, tolerance: float, helpers: Helpers) -> None:
-        """Puts to sleep what has been still for long enough at the time t [ms]; `tolerance`: of a step."""
-        from mdlgen.backends.lattice.kernels.integrate.integrate import STILL
+        """Finds islands, and puts to sleep what has been still for long enough at the time t [ms];
+        `tolerance`: of a step."""
+        from mdlgen.backends.lattice.kernels.integrate.sleeping import STILL
 
-        if not self.possible:
+        if not len(self._sheets):
             return
         asleep, rows = self.work.asleep, self.work.kept.rows
         steps = self.steering.counters[STEPS]
@@ -100,35 +100,38 @@ class Sleep:
         self._since[lively], self._counted[lively] = t, steps
         touched = rows[:, TIME] > self._touched
         self._touched[:] = rows[:, TIME]
+        touched |= self._air
+        islands = asleep.islands[:] = self._islands(touched)
         awake = self._may & ~self._sheets
         awake &= (t - self._since < self._wait) | (steps - self._counted < LEAST_STEPS)
         one, two = self._parts.sheets
         awake |= ~self._may
         awake[one[touched & (one >= 0) & self._parts.moves]] = True
-        still = ~self._island(awake, touched) & ~self._sheets
+        still = ~np.isin(islands, islands[awake]) & ~self._sheets
         if still.any():
             self._turn(self._sheets | still, t, helpers)
 
     def wake(self, body: int, t: float, helpers: Helpers) -> None:
         """Wakes the sheet of a box, and all that sleep and touch it, each other among them."""
-        woken = np.zeros_like(self._sheets)
         disturbed = self._parts.sheet_of[body]
-        woken[disturbed] = True
         self._wait[disturbed] *= 2.0
-        woken = self._island(woken, self.work.kept.rows[:, ACTS] != 0.0) & self._sheets
+        islands = self._islands(self.work.kept.rows[:, ACTS] != 0.0)
+        woken = (islands == islands[disturbed]) & self._sheets
         self._since[woken], self._counted[woken] = t, self.steering.counters[STEPS]
+        self.work.asleep.now[woken] = self.steering.pace[FASTEST]  # until it is known
         self._turn(self._sheets & ~woken, t, helpers)
 
-    def _island(self, sheets: NDArray[np.bool_], touching: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """The sheets, and all that touch them or each other, by contacts that are `touching` (contacts,)."""
+    def _islands(self, touching: NDArray[np.bool_]) -> NDArray[np.int64]:
+        """Of each sheet the first one of its island, by contacts that are `touching` (contacts,)."""
         one, two = self._parts.sheets
         both = touching & (one >= 0) & (two >= 0)
-        one, two, found, count = one[both], two[both], sheets.copy(), -1
-        while count < found.sum():
-            count = found.sum()
-            met = found[one] | found[two]
-            found[one[met]] = found[two[met]] = True
-        return found
+        one, two, found = one[both], two[both], np.arange(len(self._sheets))
+        while True:
+            before, least = found.copy(), np.minimum(found[one], found[two])
+            np.minimum.at(found, one, least)
+            np.minimum.at(found, two, least)
+            if (found == before).all():
+                return found
 
     def _turn(self, sheets: NDArray[np.bool_], t: float, helpers: Helpers | None) -> None:
         """Lets the `sheets` sleep, and no others, from the state at the time t on."""
@@ -152,8 +155,8 @@ class Sleep:
         state = old.state._replace(v=v, l=l, u=u)
         mid.motion.x[:], mid.motion.r[:] = state.x, state.r
         bodies = self._whole.nodes[sheets[self._whole.sheets]]
-        speeds, none = old.asleep.speeds, np.zeros((len(bodies), 6))
-        asleep = Asleep(speeds, bodies, none, none.copy(), old.asleep.may, self._parts.lasting(sheets))
+        none, rows = np.zeros((len(bodies), 6)), self._parts.lasting(sheets)
+        asleep = old.asleep._replace(bodies=bodies, forces=none, missed=none.copy(), rows=rows)
         self.work = workspace(self._model, self.system, (state, mid, matrix), old.kept, asleep)
         self._put_back()
         history = History(last, self.steering.history.ub, self.steering.history.spans)
@@ -197,7 +200,7 @@ class Sleep:
 
     def carried(self) -> State:
         """All that it goes on from, besides the state of what is awake."""
-        if not self.possible:
+        if not len(self._sheets):
             return {}
         return {
             SHEETS: self._sheets,
@@ -207,17 +210,14 @@ class Sleep:
             "sleep.touched": self._touched,
             "sleep.beside": self._beside,
             "sleep.energies": self._energies,
-            "sleep.speeds": self.work.asleep.speeds,
-            "sleep.may": self.work.asleep.may,
-            "sleep.forces": self.work.asleep.forces,
-            "sleep.missed": self.work.asleep.missed,
+            **{f"sleep.{name}": getattr(self.work.asleep, name) for name in OF_STEPS},
             "sleep.stuck": self._stuck,
             **{f"sleep.{name}": array for name, array in self._store.items()},
         }
 
     def lie_down(self, keep: Checkpointer, number: int) -> None:
         """Lets those sleep that slept where a pass was kept, so that its arrays fit."""
-        if not self.possible:
+        if not len(self._sheets):
             return
         found = keep.load(number, {SHEETS: self._sheets}, (SHEETS,))
         if found is not None and found[SHEETS].any():
@@ -225,7 +225,7 @@ class Sleep:
 
     def restore(self, found: dict[str, Any]) -> None:
         """Takes over what `carried` gave."""
-        if not self.possible:
+        if not len(self._sheets):
             return
         self._stuck = found.pop("sleep.stuck")
         for name, array in self.carried().items():

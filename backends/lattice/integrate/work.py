@@ -50,17 +50,27 @@ def start(model: Model, system: System) -> tuple[State, Midpoint, Matrix]:
     return state, mid, matrix
 
 
-def arrays(model: Model, system: System, sleeps: bool = False) -> Workspace:
-    """What a run works on, made for the start; `sleeps`: sheets may."""
+def arrays(model: Model, system: System) -> Workspace:
+    """What a run works on, made for the start."""
     from mdlgen.backends.lattice.kernels import entries
 
     state, mid, matrix = start(model, system)
     system.pairs["beside"] = 0
     contacts = len(model.contacts)
     kept = Kept(np.zeros((contacts, ROW)), np.zeros(system.marks, bool))
-    speeds, nobody = np.zeros(len(model.sheets) if sleeps else 0), np.zeros((0, 6))
-    none = np.zeros(0, np.int64)
-    asleep = Asleep(speeds, none, nobody, nobody.copy(), np.zeros(1), np.zeros(contacts, bool))
+    sheets = len(model.sheets)
+    meet, nobody = sheets if len(system.search.regions) else 0, np.zeros((0, 6))
+    asleep = Asleep(
+        speeds=np.zeros(meet),
+        now=np.zeros(meet),
+        islands=np.zeros(meet, np.int64),
+        strict=np.ones(sheets),
+        bodies=np.zeros(0, np.int64),
+        forces=nobody,
+        missed=nobody.copy(),
+        may=np.zeros(1),
+        rows=np.zeros(contacts, bool),
+    )
     work = workspace(model, system, (state, mid, matrix), kept, asleep)
     entries.remember(system.bodies, system.pairs, Motion(state.x, state.r, mid.motion.u, mid.motion.w))
     return work

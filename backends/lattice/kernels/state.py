@@ -216,10 +216,13 @@ PRESSURES = 0  # row of Film.vectors
 
 
 class Asleep(NamedTuple):
-    """What sheets do that may sleep, and what those miss that do; see lattice.sleep. None may where there are
-    no `speeds`."""
+    """How fast sheets on each other are, and what those miss that sleep; see integrate.sleep. No `speeds`: no
+    sheets of the scene meet."""
 
     speeds: Floats  # (sheets,) how fast places of each were at most since they were last looked at [mm/ms]
+    now: Floats  # (sheets,) and in the last step
+    islands: Ints  # (sheets,) the first of those that each sheet touched, at one or more removes
+    strict: Floats  # (all sheets,) how many times less than else a step may leave in each
     bodies: Ints  # boxes of sheets that sleep
     forces: Floats  # forces and torques of all that is awake on them as they fell asleep, (those boxes, 6)
     missed: Floats  # impulses that they have missed since, (those boxes, 6)

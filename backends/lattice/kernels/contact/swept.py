@@ -161,7 +161,7 @@ def _made(work, count, dt, slower, least, rows):
         if faces:
             faster_one = scale(part, rate_one), scale(part, spin_one)
             faster = faster_one, (scale(part, rate_two), scale(part, spin_two))
-            kept, law = mid.overlaps[touched[k] - first], law_of_boxes(search, own)
+            kept, law = mid.overlaps[touched[k] - first], law_of_boxes(search, listed[touched[k] - first])
             made, less = impact(kept, frame_of(motion, one), frame_of(motion, two), faster, law, dt)
             rows[row] += made
             missed += less

@@ -12,14 +12,17 @@ from mdlgen.program.kernel import BORROWS, njit
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def greatest(tables, motion, res, resb, counters):
-    """The greatest change of a velocity [mm/ms], of turning times a box's size."""
-    bodies, nodes = tables.bodies, tables.nodes
+def greatest(work, res, resb, counters):
+    """The greatest change of a velocity [mm/ms], of turning times a box's size; that of a sheet of which a
+    step may leave less counts that many times."""
+    bodies, nodes, motion = work.tables.bodies, work.tables.nodes, work.mid.motion
+    label, strict = work.free.label, work.asleep.strict
     change = 0.0
     for n in range(nodes.size):
         size = bodies[nodes[n]].half[0] + bodies[nodes[n]].half[1]
+        times = strict[label[n]]
         for i in range(6):
-            moved = abs(res[6 * n + i]) if i < 3 else size * abs(res[6 * n + i])
+            moved = times * (abs(res[6 * n + i]) if i < 3 else size * abs(res[6 * n + i]))
             if moved > change:
                 change = moved
                 counters[WORST] = nodes[n]

@@ -246,7 +246,7 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
             p[i] = turn * p[i] - z[i]
         for i in range(pb.size):
             pb[i] = turn * pb[i] - zb[i]
-        moved = greatest(tables, work.mid.motion, p, pb, counters)
+        moved = greatest(work, p, pb, counters)
         if iteration == 0 and moved <= limit:
             copy(change, p)
             copy(changeb, pb)

@@ -13,7 +13,13 @@ from mdlgen.backends.lattice.kernels.contact.swept import Before, swept
 from mdlgen.backends.lattice.kernels.integrate.air import air_overshoot
 from mdlgen.backends.lattice.kernels.integrate.carry import carry, spun
 from mdlgen.backends.lattice.kernels.integrate.damped import overshoot, take_off
-from mdlgen.backends.lattice.kernels.integrate.sleeping import disturbed, miss, note_speeds
+from mdlgen.backends.lattice.kernels.integrate.sleeping import (
+    be_strict,
+    disturbed,
+    miss,
+    note_speeds,
+    part_of,
+)
 from mdlgen.backends.lattice.kernels.integrate.step import midpoint
 from mdlgen.backends.lattice.kernels.linear.dense import copy
 from mdlgen.backends.lattice.kernels.state import (
@@ -77,9 +83,6 @@ FINEST, AGAIN = 12, 4.0
 HARD, EASY = 8, 5
 # What an iteration changes is not asked to be less than this part of the speed: it is near round-off.
 LEAST = 1e-9
-# Where sheets lie on each other and move at less than a part 1/SLOW of the greatest speed so far, steps are
-# solved to less, down to a part STILL: the rule damps nothing, so what a step leaves in what rests rings on.
-SLOW, STILL = 10.0, 0.005
 # Two rollers with a sheet between them clear each other by a few micrometres and may graze: a force below
 # this part of the greatest is not counted as the nip still acting.
 GRAZE = 0.05
@@ -257,7 +260,9 @@ def run(work, t, steps, tolerance, control):
             least = LEAST if search.regions.size == 0 else tolerance
             pace[LOOSE] = limit = pace[FASTEST] * max(tolerance * 0.25**level, least)
             if search.regions.size > 0 and pace[FASTEST] > 0.0:
-                limit *= min(max(STILL, SLOW * pace[RECENT] / pace[FASTEST]), 1.0)
+                part = part_of(pace[RECENT], pace[FASTEST])
+                be_strict(work.asleep, pace[FASTEST], part)
+                limit *= part
             solved = midpoint(work, t, dt, limit, control)
             woken = disturbed(bodies, mid.forces, work.asleep, dt) if solved else -1
             if woken >= 0:
@@ -298,7 +303,7 @@ def run(work, t, steps, tolerance, control):
                 course = dt / (dt + spans[LAST_STEP]) if spans[LAST_STEP] > 0.0 else 0.0
                 air_overshoot(work, keep_u, course, dt)
             if work.asleep.speeds.size > 0:
-                note_speeds(bodies, nodes, work.free.label, u, work.asleep.speeds)
+                note_speeds(bodies, nodes, work.free.label, u, work.asleep)
                 miss(mid.forces, work.asleep, dt)
             copy(last_u, keep_u)
             copy(last_b, keep_b)

@@ -286,7 +286,7 @@ def midpoint(work, t, dt, tolerance, control):
         found = 0.0
         if where == INSIDE:
             # what is mixed may be small while what is left is not
-            found = greatest(tables, mid.motion, res, resb, counters)
+            found = greatest(work, res, resb, counters)
             if inner < 0:
                 found = max(found, 2.0 * limit)
             alike += 1
@@ -296,7 +296,7 @@ def midpoint(work, t, dt, tolerance, control):
         if part < 1.0:
             res *= part
             resb *= part
-        change = max(found, greatest(tables, mid.motion, res, resb, counters))
+        change = max(found, greatest(work, res, resb, counters))
         take_off(state, res, resb)
         if not change < 1e30:
             break
