@@ -2,7 +2,7 @@
 
 A sheet that lies still costs as much as one that moves: its bushings, contacts and velocities are worked out
 in each step, to no effect. So an island, sheets that touch each other, sleeps where no place of them has been
-faster for a while than what iterations may leave in what rests (kernels.integrate.integrate: STILL). What is
+faster for a while than what iterations may leave in what rests (kernels.integrate.sleeping: STILL). What is
 left of the System takes them for parts that do not move (see awake); forces of contacts among them go on as
 they are, and so do their energies.
 
