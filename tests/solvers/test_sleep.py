@@ -125,6 +125,28 @@ def test_what_comes_down_on_it_wakes_it(solve: Solve, sets: tuple[str, ...]) -> 
     assert abs(result.energy.balance_error) < 0.012
 
 
+@pytest.mark.parametrize("restitution", [0.3, 0.9])
+def test_a_sheet_that_sleeps_in_the_air_is_struck_as_one_that_does_not(
+    solve: Solve, restitution: float
+) -> None:
+    """Without weight: the same to round-off, and momentum goes over whole."""
+    sets = (
+        "gravity=[0 m/s^2, 0 m/s^2, 0 m/s^2]",
+        "planes.floor.center=[0 mm, 0 mm, -65 mm]",
+        *("piles.cassette.count=2", "piles.cassette.jitter=0 mm", "piles.cassette.gap=3 mm"),
+        f"piles.cassette.contact.restitution={restitution}",
+        "sheets.cassette_2.velocity=[0 mm/s, 0 mm/s, -100 mm/s]",
+        "run.duration=60 ms",
+    )
+    result, turns = solve(*sets)
+    assert [names for _, names in turns[:2]] == [("cassette_1",), ()]
+    awake, _ = solve(*sets, sleep=False)
+    assert apart(result, awake) < 1e-12
+    speeds = [float(result.sheet_motion(k)[1][-1, 2]) for k in range(2)]
+    assert sum(speeds) == pytest.approx(-0.1, rel=1e-9)
+    assert speeds[0] < speeds[1]
+
+
 def test_forces_go_on_while_a_pile_sleeps(solve: Solve) -> None:
     """Each sheet bears those above it; statistics count the time."""
     result, turns = solve()

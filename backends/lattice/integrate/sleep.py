@@ -155,8 +155,11 @@ class Sleep:
         state = old.state._replace(v=v, l=l, u=u)
         mid.motion.x[:], mid.motion.r[:] = state.x, state.r
         bodies = self._whole.nodes[sheets[self._whole.sheets]]
-        none, rows = np.zeros((len(bodies), 6)), self._parts.lasting(sheets)
-        asleep = old.asleep._replace(bodies=bodies, forces=none, missed=none.copy(), rows=rows)
+        # nothing that is awake touched them as they fell asleep; what slept before goes on missing
+        none, missed = np.zeros((len(bodies), 6)), np.zeros((len(self._whole.bodies), 6))
+        missed[old.asleep.bodies] = old.asleep.missed
+        rows = self._parts.lasting(sheets)
+        asleep = old.asleep._replace(bodies=bodies, forces=none, missed=missed[bodies], rows=rows)
         self.work = workspace(self._model, self.system, (state, mid, matrix), old.kept, asleep)
         self._put_back()
         history = History(last, self.steering.history.ub, self.steering.history.spans)
@@ -164,7 +167,6 @@ class Sleep:
         self.steering.factored[:] = 0.0
 
         self._energies = energies - self._ledger(t)
-        asleep.forces[:] = mid.forces[bodies]
         self._follow(helpers)
 
     def _follow(self, helpers: Helpers | None) -> None:
@@ -173,7 +175,7 @@ class Sleep:
             helpers.follow(self.work)
 
     def _ledger(self, t: float) -> np.ndarray:
-        """Kinetic, elastic and potential energy of what is awake, of one side; forces on all that sleep."""
+        """Kinetic, elastic and potential energy of what is awake, of one side."""
         from mdlgen.backends.lattice.kernels.integrate import observe
 
         energies, rows = np.zeros(3), np.zeros_like(self.work.kept.rows)
