@@ -20,7 +20,8 @@ from mdlgen.__main__ import MANY
 from mdlgen.program import build
 from mdlgen.program.file import Unfit
 from mdlgen.program.kernel import Kernel, alone
-from mdlgen.program.ship import Program
+from mdlgen.program.layout import Misfit
+from mdlgen.program.ship import Entry, Program
 
 pytest.register_assert_rewrite("motionview_cases")  # so that a failing check of a helper shows its values
 
@@ -43,6 +44,28 @@ def _shared_runs(tmp_path_factory: pytest.TempPathFactory) -> None:
     """Workers read the results of each other's runs; see ran.solved."""
     if os.environ.get("PYTEST_XDIST_WORKER"):
         ran.folder = tmp_path_factory.getbasetemp().parent / "ran"
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _shipped_alone() -> Iterator[None]:
+    """What a solver calls has arguments that its program knows: numba would compile for minutes otherwise."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Entry, "_other", _shipped_call)
+        yield
+
+
+def _shipped_call(entry: Any, args: tuple[Any, ...]) -> Any:
+    """As Entry._other, but that nothing is left to numba."""
+    why = []
+    for call in entry._calls:
+        try:
+            found = call(*args)
+        except Misfit as error:
+            why.append(str(error))
+            continue
+        entry._best = call
+        return found
+    raise AssertionError(f"the shipped program has no {entry._kernel.__name__} for: {'; '.join(why)}")
 
 
 @pytest.fixture(scope="module")

@@ -86,7 +86,7 @@ def plan(model: Model, pairs: np.ndarray) -> tuple[np.ndarray, Search, int]:
     count = len(half)
     search = Search(
         regions=regions,
-        room=np.array(room),
+        room=np.array(room, dtype=np.float64),
         listed=listed,
         first=len(pairs),
         boxes=np.array(sorted(boxes), dtype=np.int64),
