@@ -3,8 +3,8 @@
 The difference of two runs is the error of the coarser one where errors fall with the step; in contact they
 often do with its first power only. So the estimate is the difference times a safety factor. A third run shows
 how errors fall: where differences do not, they say little, and where they grow, or are a large part of the
-scale, there is no estimate. The factors come from a study of random scenes
-(`tests/results/test_estimates_study.py`).
+scale, there is no estimate. Those of a trajectory that stay far below the least that is estimated of it may
+grow. The factors come from a study of random scenes (`tests/results/test_estimates_study.py`).
 """
 
 from __future__ import annotations
@@ -82,6 +82,8 @@ def between(runs: Sequence[Result], judged: bool = False) -> dict[str, Estimate]
         most = MOST * (last.judged or last.scale) / last.scale
         value = rule(times * last.value, earlier and times * earlier, safety, judged, most)
         least = result.model.run.tolerance * _floor(last, touching, result.model)
+        if value is None and judged and times * STILL * max(last.value, earlier or 0.0) <= least:
+            value = least
         found[name] = Estimate(
             None if value is None else max(value, least), last.scale, last.unit, last.judged
         )
@@ -184,6 +186,16 @@ def open_yet(result: Result) -> bool:
     """Whether two runs leave open that `run.tolerance` is met, which a third one may show."""
     worst, tolerance = result.error_estimate, result.model.run.tolerance
     return len(result.coarser) == 1 and worst is not None and worst > tolerance >= worst / SAFETY
+
+
+def unlike(result: Result, coarser: Result) -> str | None:
+    """What `run.tolerance` judges that another run has so differently that the error is not estimated, and by
+    how much; None: nothing."""
+    for found in differences(result, coarser, judged=True).values():
+        part = found.value * found.scale / (found.judged or found.scale)
+        if SAFETY * part > MOST:
+            return f"{found.name} by {100.0 * part:.0f} %"
+    return None
 
 
 def estimated(result: Result, coarser: Sequence[Result]) -> Result:

@@ -182,6 +182,22 @@ def test_the_rule(last: float, before: float | None, judged: bool, expected: flo
     )
 
 
+@pytest.mark.parametrize(("last", "before", "known"), [(6.0, 2.0, True), (7.0, 2.0, False)])
+def test_differences_far_below_the_least_that_is_estimated_may_grow(
+    last: float, before: float, known: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The least is a quarter of the tolerance where a sheet that bends touches something. Found where notes
+    that feed differed by 5e-5 and 1e-4 of their way, at a tolerance of 0.02, and no step was fine enough."""
+    monkeypatch.setattr(estimates, "FACETS", 1.0)
+    model = small_model()
+    travel = differences(moving(model), moving(model))["sheets.note.position"].scale
+    least = estimates.FLUTTERING * model.run.tolerance
+    unit = travel * least / (4.0 * 6.5)  # so that six and a half of them are a quarter of the least
+    runs = [moving(model, shift=shift * unit) for shift in (0.0, last, last + before)]
+    found = estimates.between(runs)["sheets.note.position"]
+    assert found.value == (pytest.approx(least) if known else None)
+
+
 @pytest.mark.parametrize(("boxes", "times"), [([3, 5], 4.0), ([8, 5], 1.0)])
 def test_estimates_where_boxes_cannot_follow_a_roller(
     boxes: list[int], times: float, monkeypatch: pytest.MonkeyPatch
