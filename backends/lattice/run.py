@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 import time as clock
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from queue import SimpleQueue
 from threading import Event, Thread
@@ -55,6 +56,10 @@ SMALLER = "give a smaller run.step, or leave it out, so that a step is found who
 # Numbers by which states of passes are kept: first those of the first step, halved so many times, or of the
 # step that is given, doubled so many times; then of twice the first step; of a check at a step of its own.
 DOUBLED, CHECK = MOST_REFINED_RIGID + 1, MOST_REFINED_RIGID + 2
+
+# States, stored times by bodies, of a run that is only compared with another one: those of a pile of a
+# hundred sheets would take as much memory as half of what its steps work on.
+COMPARED = 1_000_000
 
 # Rules that leave out what a run does not need, each of which a run can do without.
 FOLDING, FACTORS, SYMMETRY, SLEEP = "folding", "factors", "symmetry", "sleep"
@@ -141,9 +146,10 @@ def _given(
     """A run of that number at a step that is given, `compared` with one at twice that step."""
     made = MADE * accuracy(model) / 1e-3
     h = division(model, wanted).step
+    thinned = _thinned(model)
 
     def again(times: int, on: System, seen: Watch) -> Result:
-        return one_pass(model, on, times * h, seen, made=times * times * made)
+        return one_pass(thinned, on, times * h, seen, made=times * times * made)
 
     first = partial(one_pass, model, system, wanted, watch(number), made=made, anew=anew)
     if not compared:
@@ -157,6 +163,16 @@ def _given(
         if not result.ok:
             return result
         return _compared(result, [], lambda n: coarse.result() if n == 2 else again(n, system, watch(2)))
+
+
+def _thinned(model: Model) -> Model:
+    """The Model with so many stored times that COMPARED states are enough, each of which it has anyway."""
+    outputs = max(1, round(model.run.duration / model.run.print_step))
+    least = math.ceil(outputs * len(model.bodies.name) / COMPARED)
+    each = next(k for k in range(least, outputs + 1) if outputs % k == 0) if least <= outputs else 1
+    if each == 1 or each > 4 * least:
+        return model
+    return replace(model, run=replace(model.run, print_step=each * model.run.print_step))
 
 
 def _compared(result: Result, before: list[Result], again: Callable[[int], Result]) -> Result:

@@ -82,7 +82,7 @@ def plan(model: Model, pairs: np.ndarray) -> tuple[np.ndarray, Search, int]:
         every = ends[0].count * ends[1].count
         room.append(min(every, ends[0].count * (4.0 + ROOM * math.pi * reach**2 / area)))
         marks, size = marks + every, max(size, reach)
-    spare, listed = space(sum(room), pairs.dtype)
+    every, listed = with_room(pairs, sum(room))
     count = len(half)
     search = Search(
         regions=regions,
@@ -98,13 +98,22 @@ def plan(model: Model, pairs: np.ndarray) -> tuple[np.ndarray, Search, int]:
         following=np.full(count, -1, np.int64),
         cell=np.zeros((count, 3), np.int64),
     )
-    return np.concatenate([pairs, spare]), search, marks
+    return every, search, marks
 
 
-def space(room: float, pair: np.dtype) -> tuple[np.ndarray, np.ndarray]:
-    """Records of the type `pair`, and rows of LISTED, for so many pairs that are searched."""
+def with_room(pairs: np.ndarray, room: float) -> tuple[np.ndarray, np.ndarray]:
+    """The pairs with room for so many that are searched, and rows of LISTED for these: none yet. What stands
+    behind the first that is EMPTY is not written to, and takes no memory."""
     from mdlgen.backends.lattice.kernels.contact.search import EMPTY
 
-    spare = np.zeros(math.ceil(room), pair)
-    spare["kind"] = EMPTY
-    return spare, np.full(len(spare), EMPTY, LISTED)
+    many = math.ceil(room)
+    every, listed = np.zeros(len(pairs) + many, pairs.dtype), np.zeros(many, LISTED)
+    every[: len(pairs)] = pairs
+    every["kind"][len(pairs) : len(pairs) + 1] = EMPTY
+    listed["a"][:1] = EMPTY
+    return every, listed
+
+
+def many_searched(search: Search) -> int:
+    """How many pairs the last search found."""
+    return int(np.argmax(np.append(search.listed["a"] < 0, True)))

@@ -116,22 +116,25 @@ class Kernel:
         return self.dispatcher._numba_type_
 
 
-def intrinsic(function: Callable[..., Any]) -> Intrinsic:
-    """Makes an Intrinsic of a function, which is as for `numba.extending.intrinsic`."""
-    return Intrinsic(function)
+def intrinsic(function: Callable[..., Any], plain: Callable[..., Any] | None = None) -> Intrinsic:
+    """Makes an Intrinsic of a function, which is as for `numba.extending.intrinsic`; `plain` does the same in
+    Python."""
+    return Intrinsic(function, plain)
 
 
 class Intrinsic:
-    """What kernels call that LLVM knows and Python does not: atomic operations."""
+    """What kernels call that LLVM knows and Python does not: atomic operations, vectors."""
 
-    def __init__(self, function: Callable[..., Any]):
+    def __init__(self, function: Callable[..., Any], plain: Callable[..., Any] | None):
         functools.update_wrapper(self, function)
-        self._function = function
+        self._function, self._plain = function, plain
         self._made: Any = None
 
     def __call__(self, *args: Any) -> Any:
-        """No kernel that runs as Python may come here."""
-        raise NotImplementedError(f"{self._function.__name__} is for compiled code only")
+        """What it does in Python; where that is not known no kernel that runs as Python may come here."""
+        if self._plain is None:
+            raise NotImplementedError(f"{self._function.__name__} is for compiled code only")
+        return self._plain(*args)
 
     @property
     def _numba_type_(self) -> Any:

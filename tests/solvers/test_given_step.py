@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
 import mdlgen
+from mdlgen.backends.lattice import run
 from mdlgen.backends.lattice.run import UNKNOWN
 from mdlgen.model.lower import lower
 from mdlgen.paths import samples
@@ -63,3 +67,18 @@ def test_a_step_that_does_is_taken_as_it_is() -> None:
     assert result.ok and result.step == pytest.approx(0.02)
     assert result.error_estimate is not None and result.error_estimate < 0.01
     assert way_of(result) == pytest.approx(exact, rel=5e-3)
+
+
+def test_a_run_that_is_only_compared_stores_no_more_than_it_must(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Times that both have, by which estimates are much the same; a prime number of them is not divided."""
+    whole = thrown(0.02, 1)
+    monkeypatch.setattr(run, "COMPARED", 210)
+    thin = thrown(0.02, 1)
+    assert len(whole.coarser[0].time) == len(whole.time) == len(thin.time) == 41
+    assert thin.coarser[0].time == pytest.approx(thin.time[::4], abs=1e-9)
+    assert np.array_equal(thin.position, whole.position)
+    known = whole.error_estimate, thin.error_estimate
+    assert None not in known and 0.3 < known[0] / known[1] < 3.0
+    model = whole.model
+    odd = replace(model, run=replace(model.run, duration=18.5))
+    assert run._thinned(odd) is odd

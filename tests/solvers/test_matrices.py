@@ -34,6 +34,25 @@ def test_the_band_is_factored_and_solved(nodes: int, reach: int) -> None:
     assert not band.factor(packed)
 
 
+@pytest.mark.parametrize("precision", [np.float64, np.float32])
+def test_a_factor_in_vectors_is_that_in_python(precision: type) -> None:
+    """And what is behind the last row that counts stays zero."""
+    rng = np.random.default_rng(1)
+    nodes, reach = 30, 11
+    plain = band.empty(nodes, reach).astype(precision)
+    for j in range(nodes):
+        rows = 6 * min(reach + 1, nodes - j)
+        plain[j, :, :rows] = rng.normal(size=(6, rows))
+        plain[j, range(6), range(6)] += 12.0 * (reach + 1)
+    vectors = plain.copy()
+    assert band.factor(plain) and band.factor.dispatcher(vectors)
+    counts = np.tril(np.ones((6, 6), bool)).T
+    near = 20.0 * float(np.finfo(precision).eps)
+    assert np.allclose(vectors[:, :, :6][:, counts], plain[:, :, :6][:, counts], rtol=0, atol=near)
+    assert np.allclose(vectors[:, :, 6:], plain[:, :, 6:], rtol=0, atol=near)
+    assert not vectors[:, :, 6 * (reach + 1) :].any() and not vectors[-1, :, 6:].any()
+
+
 @pytest.mark.parametrize("nodes, reach", [(1, 0), (5, 1), (30, 7)])
 def test_six_columns_of_the_inverse_are_those_of_six_solves(nodes: int, reach: int) -> None:
     rng = np.random.default_rng(nodes)

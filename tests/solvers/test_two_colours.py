@@ -98,6 +98,27 @@ def test_every_other_sheet_is_solved_with_the_rest_eliminated(seed: int) -> None
     assert np.abs(solved(matrix) - wanted).max() < 1e-9 * np.abs(wanted).max()
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_no_more_is_left_of_a_sheet_than_is_enough(seed: int) -> None:
+    """And the method ends there: with a tenth of what it began with it goes a few times, with all not once,
+    and the second colour stays as it was."""
+    whole, pool, matrix = equations([(0, 1), (1, 2)], seed)
+    colouring = matrix.couplings.colouring
+    right = np.random.default_rng(seed + 10).normal(size=len(whole))
+    wanted = np.linalg.solve(whole, right)
+    left = []
+    for enough in (0.0, 1e-4, 1e-2, 1e30):
+        matrix.res[:], matrix.resb[:] = right[:-BORDER], right[-BORDER:]
+        colouring.enough[:] = enough
+        two_colour.solve_coloured(pool, matrix, 200, 1e-26)
+        missed = solved(matrix) - wanted
+        left.append(float(missed @ whole @ missed))
+        assert enough == 1e30 or left[-1] <= 10.0 * enough + 1e-16
+        second = matrix.res[6 * NODES : 12 * NODES]
+        assert second.any() == (enough < 1e30)
+    assert left == sorted(left) and left[1] > 1e3 * left[0]
+
+
 def test_sheets_that_all_touch_each_other_are_solved_at_once() -> None:
     whole, pool, matrix = equations([(0, 1), (1, 2), (2, 0)], 1)
     assert matrix.couplings.colouring.found[0] == 0

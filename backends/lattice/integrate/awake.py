@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mdlgen.backends.lattice.arrays import System, offsets
-from mdlgen.backends.lattice.search import space
+from mdlgen.backends.lattice.search import with_room
 from mdlgen.model.tables import Ints, Model
 
 
@@ -61,7 +61,7 @@ def awake(system: System, parts: Parts, asleep: NDArray[np.bool_]) -> tuple[Syst
     search = system.search
     chosen = np.flatnonzero(~lasting[system.pairs["row"][: search.first]])
     regions = ~lasting[search.regions["row"]]
-    spare, listed = space(float(search.room[regions].sum()), system.pairs.dtype)
+    pairs, listed = with_room(system.pairs[chosen], float(search.room[regions].sum()))
     met = np.zeros(len(bodies), bool)
     for region in search.regions[regions]:
         for end in "ab":
@@ -71,7 +71,7 @@ def awake(system: System, parts: Parts, asleep: NDArray[np.bool_]) -> tuple[Syst
         system._replace(
             bodies=bodies,
             joints=joints,
-            pairs=np.concatenate([system.pairs[chosen], spare]),
+            pairs=pairs,
             loads=system.loads[~sleeps[system.loads["body"]]],
             nodes=nodes,
             sheets=system.sheets[left],

@@ -29,7 +29,7 @@ class PassState:
     which a pass that has ended does not need."""
 
     def __init__(self, work: Workspace, control: Control, recorder: Recorder, sleep: Sleep):
-        few = (control, work.search.place, work.tables.pairs["beside"])
+        few = (control, work.search.place, work.tables.pairs["beside"][: work.search.first])
         carried = (work.mid, work.matrix, work.condensed, work.free, work.damped[1:])
         self._state = dict(_leaves("state", work.state)) | dict(_leaves("few", few))
         self._work = dict(_leaves("work", carried))

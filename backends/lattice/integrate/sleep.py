@@ -40,8 +40,9 @@ from mdlgen.backends.lattice.kernels.state import (
     History,
     Workspace,
 )
+from mdlgen.backends.lattice.search import many_searched
 from mdlgen.mechanics.stick import STRETCH
-from mdlgen.model.tables import BOX_BOX, Model
+from mdlgen.model.tables import Model
 from mdlgen.runs.checkpoint import Checkpointer, State
 
 # How long a sheet is still before it sleeps: a part of the run, and steps at least.
@@ -156,10 +157,10 @@ class Sleep:
         mid.motion.x[:], mid.motion.r[:] = state.x, state.r
         bodies = self._whole.nodes[sheets[self._whole.sheets]]
         # nothing that is awake touched them as they fell asleep; what slept before goes on missing
-        none, missed = np.zeros((len(bodies), 6)), np.zeros((len(self._whole.bodies), 6))
+        missed = np.zeros((len(self._whole.bodies), 6))
         missed[old.asleep.bodies] = old.asleep.missed
         rows = self._parts.lasting(sheets)
-        asleep = old.asleep._replace(bodies=bodies, forces=none, missed=missed[bodies], rows=rows)
+        asleep = old.asleep._replace(bodies=bodies, missed=missed[bodies], rows=rows)
         self.work = workspace(self._model, self.system, (state, mid, matrix), old.kept, asleep)
         self._put_back()
         history = History(last, self.steering.history.ub, self.steering.history.spans)
@@ -187,7 +188,7 @@ class Sleep:
         """Gives pairs whose friction sticks their stretches."""
         first, places = self.system.search.first, self.work.mid.sticks.pairs
         pairs = self.system.pairs[first:]
-        count, many = len(self._whole.bodies), int((pairs["kind"] == BOX_BOX).sum())
+        count, many = len(self._whole.bodies), many_searched(self.system.search)
         known = self._stuck["a"] * count + self._stuck["b"]
         keys = pairs["a"][:many] * count + pairs["b"][:many]
         order = np.argsort(known)

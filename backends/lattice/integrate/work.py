@@ -55,19 +55,18 @@ def arrays(model: Model, system: System) -> Workspace:
     from mdlgen.backends.lattice.kernels import entries
 
     state, mid, matrix = start(model, system)
-    system.pairs["beside"] = 0
+    system.pairs["beside"][: system.search.first] = 0
     contacts = len(model.contacts)
     kept = Kept(np.zeros((contacts, ROW)), np.zeros(system.marks, bool))
     sheets = len(model.sheets)
-    meet, nobody = sheets if len(system.search.regions) else 0, np.zeros((0, 6))
+    meet = sheets if len(system.search.regions) else 0
     asleep = Asleep(
         speeds=np.zeros(meet),
         now=np.zeros(meet),
         islands=np.zeros(meet, np.int64),
         strict=np.ones(sheets),
         bodies=np.zeros(0, np.int64),
-        forces=nobody,
-        missed=nobody.copy(),
+        missed=np.zeros((0, 6)),
         may=np.zeros(1),
         rows=np.zeros(contacts, bool),
     )

@@ -224,7 +224,6 @@ class Asleep(NamedTuple):
     islands: Ints  # (sheets,) the first of those that each sheet touched, at one or more removes
     strict: Floats  # (all sheets,) how many times less than else a step may leave in each
     bodies: Ints  # boxes of sheets that sleep
-    forces: Floats  # forces and torques of all that is awake on them as they fell asleep, (those boxes, 6)
     missed: Floats  # impulses that they have missed since, (those boxes, 6)
     may: Floats  # (1,) velocity that a box may miss [mm/ms]
     rows: np.ndarray  # (contacts,) whether nothing of a contact is awake: what it does stays as it is

@@ -68,10 +68,8 @@ def look(pairs, search, x):
                             own.a, own.b, own.region = a, b, number
                             count += 1
                     b = search.following[b]
-    for p in range(count, pairs.size):
-        if pairs[p].kind == EMPTY:
-            break
-        pairs[p].kind = listed[p - search.first].a = EMPTY
+    if count < pairs.size:  # what stands behind is not read
+        pairs[count].kind = listed[count - search.first].a = EMPTY
     return True
 
 

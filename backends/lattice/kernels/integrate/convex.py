@@ -55,6 +55,9 @@ MOST_WITH_AIR = 80
 FINE = 0.02
 # What an iteration of Newton's method leaves, in times what the step's own iterations may leave.
 ROUGH = 0.3
+# A linear solve leaves this part of what the step may, in the root mean square over a sheet, where that comes
+# before the end that it has by itself: in what rests a residual is little from the start.
+SOLVED = 0.03
 # A direction is gone along wholly where the slope at its end is less than this part of that at its begin, and
 # else to where it is less than the other part.
 LEVEL, FLAT = 0.25, 0.1
@@ -193,6 +196,19 @@ def _direction(work, axes):
     return linear, square
 
 
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _say_enough(work, limit):
+    """Sets what linear solves may leave in each sheet, as the square of its residual that they have: its mass
+    times the square of the velocity which they may leave. Of some sheets a step may leave less."""
+    bodies, nodes, colours = work.tables.bodies, work.tables.nodes, work.matrix.couplings.colouring
+    for sheet in range(colours.enough.size):
+        low, high = colours.spans[sheet, BEGIN], colours.spans[sheet, END]
+        rate, mass = SOLVED * limit / work.asleep.strict[work.free.label[low]], 0.0
+        for n in range(low, high):
+            mass += bodies[nodes[n]].mass
+        colours.enough[sheet] = mass * rate * rate
+
+
 @njit(cache=True, error_model="numpy")
 def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
     """Makes of the residual, in box axes, the change of velocities that is to be taken off. Returns in how
@@ -216,6 +232,7 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
     air = work.film.many[0] > 0
     if air:
         limit *= FINE
+    _say_enough(work, limit)
     for iteration in range(MOST_WITH_AIR if air else MOST_ITERATIONS):
         if iteration == 0:
             copy(g, z)

@@ -324,7 +324,7 @@ def run(work, t, steps, tolerance, control):
             if work.film.films.size > 0:
                 gone = take_off(bodies, nodes, work.film.off, mid.motion.r, r, state.v, state.l)
                 energies[DISSIPATED] += gone
-            remember(bodies, pairs, Motion(x, r, mid.motion.u, mid.motion.w))
+            remember(bodies, pairs[: search.first], Motion(x, r, mid.motion.u, mid.motion.w))
             counters[STEPS] += 1
             done += size
             pace[FASTEST], pace[RECENT] = max(pace[FASTEST], fast), fast

@@ -52,7 +52,7 @@ def disturbed(bodies, forces, asleep, dt):
         inertia = min(bodies[b].inertia[0], bodies[b].inertia[1], bodies[b].inertia[2])
         size = bodies[b].half[0] + bodies[b].half[1]
         for i in range(6):
-            missed = abs(asleep.missed[k, i] + dt * (forces[b, i] - asleep.forces[k, i]))
+            missed = abs(asleep.missed[k, i] + dt * forces[b, i])
             moves = missed / bodies[b].mass if i < 3 else size * missed / inertia
             if not moves <= asleep.may[0]:
                 return b
@@ -64,4 +64,4 @@ def miss(forces, asleep, dt):
     """Adds up what boxes that sleep miss of a step of dt."""
     for k in range(asleep.bodies.size):
         for i in range(6):
-            asleep.missed[k, i] += dt * (forces[asleep.bodies[k], i] - asleep.forces[k, i])
+            asleep.missed[k, i] += dt * forces[asleep.bodies[k], i]

@@ -1,9 +1,11 @@
 """A symmetric band of 6 x 6 blocks: Cholesky factors and solves, on one thread and without allocation.
 
 Block column j holds rows j ... j + reach as an array (6 columns, 6 (reach + 1) + PAD rows); rows stand
-together in memory, so that the inner loops run over them. PAD rows of zeros let these loops run in whole
-vectors: what is left over at the end of a short loop costs as much as its middle. Only the lower half of the
-diagonal blocks counts. A factor has the inverse of its pivots on the diagonal.
+together in memory, so that the inner loops run over them, eight at a time in a factor. PAD rows of zeros let
+these loops run in whole vectors: what is left over at the end of a short loop costs as much as its middle.
+Only the lower half of the diagonal blocks counts. A factor has the inverses of its diagonal blocks in their
+place: a solve waits for less then, since six numbers of a block follow from six at once, and not one from
+another.
 """
 
 from __future__ import annotations
@@ -12,6 +14,7 @@ import math
 
 import numpy as np
 
+from mdlgen.backends.lattice.kernels.linear.eight import EIGHT, take_off, times_triangle
 from mdlgen.program.kernel import BORROWS, njit
 
 PAD = 16
@@ -23,46 +26,62 @@ def empty(nodes: int, reach: int) -> np.ndarray:
     return np.zeros((nodes, 6, 6 * (reach + 1) + PAD))
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False, **BORROWS)
+@njit(cache=True, error_model="numpy", boundscheck=False, forceinline=True)
+def _diagonal(col):
+    """The inverse of the Cholesky factor of a column's diagonal block, a lower triangle, in its place.
+    Returns False where a pivot is not positive."""
+    for c in range(6):
+        pivot = col[c, c]
+        for l in range(c):
+            pivot -= col[l, c] * col[l, c]
+        if not pivot > 0.0:
+            return False
+        inverse = 1.0 / math.sqrt(pivot)
+        col[c, c] = inverse
+        for r in range(c + 1, 6):
+            v = col[c, r]
+            for l in range(c):
+                v -= col[l, r] * col[l, c]
+            col[c, r] = v * inverse
+    for c in range(6):
+        for r in range(c + 1, 6):
+            v = 0.0
+            for l in range(c, r):
+                v -= col[l, r] * col[c, l]
+            col[c, r] = v * col[r, r]
+    return True
+
+
+@njit(cache=True, error_model="numpy", boundscheck=False, **BORROWS)
 def factor(a):
     """Cholesky factor in place. Returns False where a pivot is not positive."""
     nodes, blocks = a.shape[0], (a.shape[2] - PAD) // 6
-    height = _VECTOR * ((6 * blocks + _VECTOR - 1) // _VECTOR)
     for j in range(nodes):
         col = a[j]
-        # the six columns themselves; what stands above their diagonal is worked on and never read
-        for c in range(6):
-            mine = col[c]
-            for l in range(c):
-                f, other = col[l, c], col[l]
-                for r in range(height):
-                    mine[r] -= f * other[r]
-            pivot = mine[c]
-            if not pivot > 0.0:
-                return False
-            pivot = 1.0 / math.sqrt(pivot)
-            for r in range(height):
-                mine[r] *= pivot
-        # what they take off the columns behind, two at a time, so that each entry is read once for both
+        if not _diagonal(col):
+            return False
+        for at in range(6, 6 * blocks, EIGHT):
+            times_triangle(col, at)
+        # what they take off the columns behind
         for block in range(1, min(blocks, nodes - j)):
-            begin = 6 * block
             target = a[j + block]
-            length = _VECTOR * ((6 * (blocks - block) + _VECTOR - 1) // _VECTOR)
-            end = begin + length
-            s0, s1, s2 = col[0, begin:end], col[1, begin:end], col[2, begin:end]
-            s3, s4, s5 = col[3, begin:end], col[4, begin:end], col[5, begin:end]
-            for c in range(0, 6, 2):
-                f0, f1, f2, f3, f4, f5 = s0[c], s1[c], s2[c], s3[c], s4[c], s5[c]
-                g0, g1, g2 = s0[c + 1], s1[c + 1], s2[c + 1]
-                g3, g4, g5 = s3[c + 1], s4[c + 1], s5[c + 1]
-                one, two = target[c], target[c + 1]
-                for r in range(length):
-                    v0, v1, v2, v3, v4, v5 = s0[r], s1[r], s2[r], s3[r], s4[r], s5[r]
-                    one[r] -= f0 * v0 + f1 * v1 + f2 * v2 + f3 * v3 + f4 * v4 + f5 * v5
-                    two[r] -= g0 * v0 + g1 * v1 + g2 * v2 + g3 * v3 + g4 * v4 + g5 * v5
-        for c in range(6):
-            col[c, c] = 1.0 / col[c, c]
+            for to in range(0, 6 * (blocks - block), EIGHT):
+                take_off(col, 6 * block + to, 6 * block, target, to)
     return True
+
+
+@njit(cache=True, error_model="numpy", boundscheck=False, forceinline=True)
+def _forward(col, x, base):
+    """The inverse of a diagonal block times six numbers of x, which become that."""
+    x0, x1, x2, x3, x4, x5 = x[base], x[base + 1], x[base + 2], x[base + 3], x[base + 4], x[base + 5]
+    c0, c1, c2, c3, c4, c5 = col[0], col[1], col[2], col[3], col[4], col[5]
+    y5 = (c0[5] * x0 + c1[5] * x1) + (c2[5] * x2 + c3[5] * x3) + (c4[5] * x4 + c5[5] * x5)
+    y4 = (c0[4] * x0 + c1[4] * x1) + (c2[4] * x2 + c3[4] * x3) + c4[4] * x4
+    y3 = (c0[3] * x0 + c1[3] * x1) + (c2[3] * x2 + c3[3] * x3)
+    y2 = (c0[2] * x0 + c1[2] * x1) + c2[2] * x2
+    y0, y1 = c0[0] * x0, c0[1] * x0 + c1[1] * x1
+    x[base], x[base + 1], x[base + 2], x[base + 3], x[base + 4], x[base + 5] = y0, y1, y2, y3, y4, y5
+    return y0, y1, y2, y3, y4, y5
 
 
 @njit(
@@ -75,12 +94,7 @@ def factor(a):
 )
 def _down(col, x, base, length):
     """Forward step of one block column."""
-    for c in range(6):
-        v = x[base + c] * col[c, c]
-        x[base + c] = v
-        for r in range(c + 1, 6):
-            x[base + r] -= v * col[c, r]
-    x0, x1, x2, x3, x4, x5 = x[base], x[base + 1], x[base + 2], x[base + 3], x[base + 4], x[base + 5]
+    x0, x1, x2, x3, x4, x5 = _forward(col, x, base)
     end = 6 + length
     c0, c1, c2 = col[0, 6:end], col[1, 6:end], col[2, 6:end]
     c3, c4, c5 = col[3, 6:end], col[4, 6:end], col[5, 6:end]
@@ -99,14 +113,8 @@ def _down(col, x, base, length):
 )
 def _down_two(col, x, y, base, length):
     """The same for two right-hand sides."""
-    for c in range(6):
-        v, w = x[base + c] * col[c, c], y[base + c] * col[c, c]
-        x[base + c], y[base + c] = v, w
-        for r in range(c + 1, 6):
-            x[base + r] -= v * col[c, r]
-            y[base + r] -= w * col[c, r]
-    x0, x1, x2, x3, x4, x5 = x[base], x[base + 1], x[base + 2], x[base + 3], x[base + 4], x[base + 5]
-    y0, y1, y2, y3, y4, y5 = y[base], y[base + 1], y[base + 2], y[base + 3], y[base + 4], y[base + 5]
+    x0, x1, x2, x3, x4, x5 = _forward(col, x, base)
+    y0, y1, y2, y3, y4, y5 = _forward(col, y, base)
     end = 6 + length
     c0, c1, c2 = col[0, 6:end], col[1, 6:end], col[2, 6:end]
     c3, c4, c5 = col[3, 6:end], col[4, 6:end], col[5, 6:end]
@@ -140,17 +148,16 @@ def _up(col, x, base, length):
         s3 += c3[r] * v
         s4 += c4[r] * v
         s5 += c5[r] * v
-    x[base] -= s0
-    x[base + 1] -= s1
-    x[base + 2] -= s2
-    x[base + 3] -= s3
-    x[base + 4] -= s4
-    x[base + 5] -= s5
-    for c in range(5, -1, -1):
-        v = x[base + c]
-        for r in range(c + 1, 6):
-            v -= col[c, r] * x[base + r]
-        x[base + c] = v * col[c, c]
+    x0, x1, x2 = x[base] - s0, x[base + 1] - s1, x[base + 2] - s2
+    x3, x4, x5 = x[base + 3] - s3, x[base + 4] - s4, x[base + 5] - s5
+    # times the inverse of the diagonal block, the other way
+    d0, d1, d2, d3, d4, d5 = col[0], col[1], col[2], col[3], col[4], col[5]
+    x[base] = (d0[0] * x0 + d0[1] * x1) + (d0[2] * x2 + d0[3] * x3) + (d0[4] * x4 + d0[5] * x5)
+    x[base + 1] = (d1[1] * x1 + d1[2] * x2) + (d1[3] * x3 + d1[4] * x4) + d1[5] * x5
+    x[base + 2] = (d2[2] * x2 + d2[3] * x3) + (d2[4] * x4 + d2[5] * x5)
+    x[base + 3] = (d3[3] * x3 + d3[4] * x4) + d3[5] * x5
+    x[base + 4] = d4[4] * x4 + d4[5] * x5
+    x[base + 5] = d5[5] * x5
 
 
 @njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)

@@ -40,6 +40,7 @@ class Colouring(NamedTuple):
     corner: np.ndarray  # Cholesky factor, (border, border)
     begins: np.ndarray  # where the couplings of a sheet begin in `own`, (sheets + 1,)
     own: np.ndarray  # couplings of each sheet, in their order, (2 pairs,)
+    enough: np.ndarray  # square of the residual that may be left of a sheet, (sheets,)
 
 
 def colouring(label: np.ndarray, border: int, pairs: int) -> Colouring:
@@ -54,6 +55,7 @@ def colouring(label: np.ndarray, border: int, pairs: int) -> Colouring:
         np.zeros((border, border)),
         np.zeros(len(sheets) + 1, np.int64),
         np.zeros(2 * pairs, np.int64),
+        np.zeros(len(sheets)),
     )
 
 
@@ -325,6 +327,15 @@ def _sum(pool, colours):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
+def _enough(pool, colours):
+    """Whether what is left of each sheet of the second colour is as little as it may be."""
+    for sheet in range(colours.of.size):
+        if colours.of[sheet] == 1 and not pool.shares[sheet, 0, 0] <= colours.enough[sheet]:
+            return False
+    return True
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
 def _first(pool, matrix, rollers, start):
     """What the first colour and the rollers do where the second moves, or at the right-hand side, and what
     that does to the second. `rollers`: what they begin with."""
@@ -350,7 +361,7 @@ def solve_coloured(pool, matrix, most, least):
     """Solves band, border and couplings in place, where the sheets have two colours.
 
     The method ends after `most` iterations, or where the square of the residual, measured
-    with the preconditioner, is `least` of what it was.
+    with the preconditioner, is `least` of what it was, or in each sheet no more than enough.
     """
     couplings, res, resb = matrix.couplings, matrix.res, matrix.resb
     colours, size = couplings.colouring, res.size
@@ -367,7 +378,7 @@ def solve_coloured(pool, matrix, most, least):
     left = _sum(pool, colours)
     first = left
     for _ in range(most):
-        if not left > least * first:
+        if not left > least * first or _enough(pool, colours):
             break
         # what the first colour does where the second moves by p, and what that does to the second
         for j in range(resb.size):
