@@ -48,10 +48,8 @@ SHORT = 0.25
 
 Report = tuple[float, float, int, int]  # what progress is called with
 
-# Why a run at a step that is given is no result where one at twice that step is none, or quite another one,
-# and what to do.
-UNKNOWN = "its error is not known: a run at twice its step"
-SMALLER = "give a smaller run.step, or leave it out, so that a step is found whose error is known"
+# Of a run at a step that is given, where one at twice that step is none, or quite another one.
+UNKNOWN = "the error is not known: a run at twice the step"
 
 # Numbers by which states of passes are kept: first those of the first step, halved so many times, or of the
 # step that is given, doubled so many times; then of twice the first step; of a check at a step of its own.
@@ -180,20 +178,20 @@ def _compared(result: Result, before: list[Result], again: Callable[[int], Resul
 
     `again(times)` runs at so many times its step: at twice where there is none, and once more coarsely where
     two leave open whether the tolerance is met, since three show how errors fall. Where there is none, and
-    that at twice its step fails or differs by a large part, nothing shows how far off the result is, and it
-    is a failed one.
+    that at twice its step fails or differs by a large part, nothing shows how far off the result is, which it
+    says.
     """
     found = [run for run in before if _ended(run)]
     for run in found:
         run.coarser = ()
     found = found if before else [again(2)]
     if not before and not found[0].ok:
-        return estimated(result.failed(f"{UNKNOWN} fails ({found[0].status}); {SMALLER}"), [])
+        return replace(estimated(result, []), error_unknown=f"{UNKNOWN} fails: {found[0].status}")
     if not found or not _ended(found[0]):
         return estimated(result, [])
     result = estimated(result, found[:2])
     if not before and result.error_estimate is None and (what := unlike(result, found[0])):
-        return result.failed(f"{UNKNOWN} differs, in {what}; {SMALLER}")
+        return replace(result, error_unknown=f"{UNKNOWN} differs from it in {what}")
     if open_yet(result) and result.model.run.duration / result.step >= 16:
         third = again(4)
         result = estimated(result, [found[0], third]) if _ended(third) else result

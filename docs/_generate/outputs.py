@@ -37,6 +37,7 @@ SUMMARY: dict[str, tuple[str, str]] = {
     "halved": ("", "true where one half of a symmetric scene was solved and mirrored"),
     "error_estimate": ("", "the greatest estimate of those that `run.tolerance` judges; null if not known"),
     "error_estimate_of": ("", "name of that estimate"),
+    "error_unknown": ("", "why the error may be of any size; null: nothing says so"),
     "tolerance": ("", "`run.tolerance`"),
     "energy.kinetic": ("N mm", "kinetic energy at the end"),
     "energy.elastic": ("N mm", "elastic energy at the end, of joints, contacts and springs"),

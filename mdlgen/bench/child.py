@@ -74,6 +74,7 @@ def perform(task: Job) -> Outcome:
         boxes=sum(sheet.count for sheet in model.sheets),
         repeats=len(results),
         estimate=last.error_estimate,
+        unknown=last.error_unknown,
     )
 
 

@@ -26,13 +26,14 @@ class Outcome:
     repeats: int = 0
     estimate: float | None = None  # the solver's own, relative to max(travel, sheet length / 10)
     estimating: float | None = None  # what the runs for it took beside the wall time, median [s]
+    unknown: str = ""  # why its error may be of any size, where the solver says so
     iterations: int | None = None  # of Newton, a linear solve each, where the solver counts them
 
 
 @dataclass(frozen=True)
 class BenchRow:
-    """`status` is ok, failed (the solver says why) or wrong (it said ok, but the error is above the
-    tolerance). A row that is ok carries an error."""
+    """`status` is ok, failed (the solver says why, or that its error is not known) or wrong (it said ok, but
+    the error is above the tolerance). A row that is ok carries an error."""
 
     suite: str
     case: str
@@ -72,10 +73,13 @@ def rows(case: BenchCase, solver: str, outcome: Outcome) -> list[BenchRow]:
     """The rows of one case: one per finding, or one with the reason of a failure."""
     if outcome.status != OK:
         return [_row(case, solver, outcome, Finding("", math.nan), FAILED, outcome.status)]
-    return [_row(case, solver, outcome, finding, *_judged(finding)) for finding in outcome.findings]
+    unknown = outcome.unknown
+    return [_row(case, solver, outcome, finding, *_judged(finding, unknown)) for finding in outcome.findings]
 
 
-def _judged(finding: Finding) -> tuple[str, str | None]:
+def _judged(finding: Finding, unknown: str) -> tuple[str, str | None]:
+    if unknown and not (finding.tolerance is None or finding.error <= finding.tolerance):
+        return FAILED, unknown
     if not math.isfinite(finding.error):
         return WRONG, "the error is not finite"
     if finding.tolerance is not None and finding.error > finding.tolerance:

@@ -178,6 +178,11 @@ def run(
             f"{result.error_estimate:.3g}, above run.tolerance {model.run.tolerance:g}; the files in "
             f"{folder} hold this result; give a smaller run.step"
         )
+    if result.error_unknown:
+        raise AccuracyError(
+            f"{request.spec}: {result.error_unknown}; the files in {folder} hold this result; give a smaller "
+            "run.step, or leave it out, so that a step is found whose error is known"
+        )
     missed = [row["requirement"] for row in summary["verdict"]["requirements"] if not row["passed"]]
     if missed:
         raise RequirementError(

@@ -231,6 +231,8 @@ def summary_text(record: dict[str, Any]) -> str:
         lines.append(
             f"error estimate {record['error_estimate']:.2g}{worst}, tolerance {record['tolerance']:g}"
         )
+    elif record.get("error_unknown"):
+        lines.append(record["error_unknown"])
     elif record["error_estimate_of"]:
         lines.append(f"no error estimate: none for {record['error_estimate_of']}")
     unknown = [name for name, value in record["estimates"].items() if value is None]

@@ -99,6 +99,8 @@ class Result:
     # the worst of the estimates that run.tolerance judges, None where there is none, and its name
     error_estimate: float | None = None
     error_estimate_of: str | None = None
+    # why the error may be of any size, as a run at twice the step that is given shows; empty: it does not
+    error_unknown: str = ""
     checks: bool = False  # whether it was asked for to check a run at twice its step
     estimates: dict[str, Estimate] = field(default_factory=dict)  # see `results.estimates.complete`
     coarser: tuple[Result, ...] = field(default=(), repr=False)  # runs from which these follow, then none

@@ -57,6 +57,7 @@ def summary(result: Result, without: Collection[str] = ()) -> dict[str, Any]:
         "halved": result.halved,
         "error_estimate": result.error_estimate,
         "error_estimate_of": result.error_estimate_of,
+        "error_unknown": result.error_unknown or None,
         "tolerance": model.run.tolerance,
         "energy": {
             "kinetic": energy.kinetic,

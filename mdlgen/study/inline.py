@@ -114,6 +114,8 @@ def _ran(model: Model, expressions: Sequence[tuple[str, Expression]], solver: st
         record["measures"] = measured(result, expressions)
     except ValueError as error:
         return {**record, "kind": FAILED, "status": f"measure {error}"}
+    if result.error_unknown:
+        return {**record, "kind": INACCURATE, "status": result.error_unknown}
     if good:
         return {**record, "kind": OK, "status": "ok"}
     status = f"the error estimate of {result.error_estimate_of} is {estimate:.3g}, above run.tolerance"

@@ -27,7 +27,7 @@ SCENES = {
     # a third one is needed; one at twice the first step as well
     "transport_4x4": ["sheets.note.boxes=[3,5]", "run.duration=6 ms"],
     "transport_4x4, three": ["sheets.note.boxes=[3,5]", "run.duration=12 ms"],
-    "transport_4x4, four": ["sheets.note.boxes=[3,5]", "run.duration=6 ms", "run.tolerance=6e-4"],
+    "transport_4x4, four": ["sheets.note.boxes=[3,5]", "run.duration=7 ms"],
     "verify/flip": ["run.duration=20 ms"],
     # a step that is given; pairs that a search finds, meshes, a rim and an arm
     "transport_tilted": ["sheets.note.boxes=[3,5]", *GIVEN],

@@ -52,7 +52,7 @@ PART, LEAST_STEPS = 0.05, 20
 WIDTHS = {"v": 3, "l": 3, "u": 6, "last": 6}
 # What a checkpoint has: which sheets sleep, and of Asleep.
 SHEETS = "sleep.sheets"
-OF_STEPS = ("speeds", "now", "islands", "forces", "missed", "may")
+OF_STEPS = ("speeds", "now", "islands", "missed", "may")
 
 
 class Sleep:

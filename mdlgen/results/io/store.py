@@ -24,7 +24,7 @@ TURNS = ("contact_torque", "contact_friction")  # which files of older versions 
 # of a Result, beside its states: what the tables of the file hold
 STORED = (
     "model", "solver", "status", "touched", "energy", "step", "steps", "rounds", "halved", "error_estimate",
-    "error_estimate_of", "estimates", "versions", "source",
+    "error_estimate_of", "error_unknown", "estimates", "versions", "source",
 )  # fmt: skip
 TOOK = ("wall_s", "estimate_s", "build_s", "compile_s")  # which differ from run to run
 STATISTICS = ("max_depth", "mean_depth", "max_force", "mean_force", "last_force_at")

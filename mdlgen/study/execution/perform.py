@@ -82,6 +82,8 @@ def _run(task: Task, case: Case, begun: Callable[[], None] | None) -> dict[str, 
             f"{tolerance:g}; give a smaller run.step"
         )
         return {**record, "kind": INACCURATE, "status": status}
+    if result.error_unknown:
+        return {**record, "kind": INACCURATE, "status": f"{result.error_unknown}; give a smaller run.step"}
     return {**record, "kind": OK, "status": "ok"}
 
 
