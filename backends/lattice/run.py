@@ -25,6 +25,7 @@ from mdlgen.backends.lattice.symmetry.find import find
 from mdlgen.backends.lattice.symmetry.mirror import halve
 from mdlgen.model.tables import Model
 from mdlgen.processors import processors
+from mdlgen.results import audit
 from mdlgen.results.estimates import estimated, open_yet, unlike
 from mdlgen.results.result import Result
 from mdlgen.runs.checkpoint import Checkpointer
@@ -186,7 +187,8 @@ def _compared(result: Result, before: list[Result], again: Callable[[int], Resul
         run.coarser = ()
     found = found if before else [again(2)]
     if not before and not found[0].ok:
-        return replace(estimated(result, []), error_unknown=f"{UNKNOWN} fails: {found[0].status}")
+        why = found[0].status.partition(f"; {audit.ADVICE}")[0]
+        return replace(estimated(result, []), error_unknown=f"{UNKNOWN} fails: {why}")
     if not found or not _ended(found[0]):
         return estimated(result, [])
     result = estimated(result, found[:2])

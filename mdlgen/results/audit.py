@@ -20,6 +20,7 @@ GAIN, LOSS, LOSS_RIGID = 0.02, 0.05, 0.01
 # How much finer a step is advised where none was given.
 FINER = 4.0
 LEAST = 1e-12  # [N mm]
+ADVICE = "leave out run.step"  # where one was given
 
 
 def scale(model: Model, dissipated: float, driven: float, most: float, moved: float) -> float:
@@ -62,5 +63,5 @@ def reason(model: Model, energy: Energy, step: float, loss: float | None = None)
     message = f"{abs(off) * energy.scale:.3g} N mm of energy {whence}, {100 * abs(off):.3g} % of "
     message += f"{energy.scale:.3g} N mm; allowed are {100 * most:g} %; "
     if model.run.step is not None:
-        return message + "leave out run.step, so that a step is found that keeps the energy"
+        return message + f"{ADVICE}, so that a step is found that keeps the energy"
     return message + f"give a run.step of {step / FINER:.2g} ms"

@@ -34,7 +34,7 @@ FILES = ["result.h5", "series.csv", "summary.json"]
 PROMISED = {
     "scene", "solver", "status", "t_end_ms", "steps", "step_ms", "wall_s", "compile_s", "build_s", "pairs",
     "error_estimate", "tolerance", "energy", "events", "sheets", "rollers", "guides", "meshes", "probes",
-    "verdict", "versions", "error_estimate_of", "estimates", "estimate_scales", "planes",
+    "verdict", "versions", "error_estimate_of", "error_unknown", "estimates", "estimate_scales", "planes",
 }  # fmt: skip
 WORK = {"iterations", "rounds", "estimate_s", "halved"}  # what a run and the estimate of its error took
 STRIP = """

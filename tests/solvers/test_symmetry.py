@@ -91,7 +91,8 @@ def test_a_roller_in_the_plane(sets: tuple[str, ...]) -> None:
     )
     for name in ("motor", "idler"):  # what has no contact stands aside
         text = re.sub(rf"({name}_\w+: {{center: \[)0 mm", r"\g<1>200 mm", text)
-    half, whole = solved(text, "rollers.middle.center=[12 mm, 3 mm, 5 mm]", "run.tolerance=1e-7", *sets)
+    # with 1e-7 iterations have to come as near as round-off, and by chance one side's step is halved
+    half, whole = solved(text, "rollers.middle.center=[12 mm, 3 mm, 5 mm]", "run.tolerance=1e-6", *sets)
     assert half.statistics.max_force[0] > 0.05
     assert_same(half, whole)
 

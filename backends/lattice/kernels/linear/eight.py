@@ -1,8 +1,8 @@
 """Eight rows of six columns at once, in the vectors of the processor.
 
 What a factor does most are sums over the columns of a block, in loops of a few dozen rows. A compiler that
-is not told that columns do not overlap looks at that before each such loop, which takes as long as the loop.
-So these sums are written in LLVM's vectors: all is loaded before anything is stored.
+does not know that columns do not overlap looks at that before each such loop, which takes as long as the
+loop. So these sums are written in LLVM's vectors: all is loaded before anything is stored.
 
 Arrays are (6 columns, rows), rows together in memory, with room behind the last row that counts.
 """
