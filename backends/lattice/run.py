@@ -148,9 +148,16 @@ def _given(
     thinned = _thinned(model)
 
     def again(times: int, on: System, seen: Watch) -> Result:
-        return one_pass(thinned, on, times * h, seen, made=times * times * made)
+        return alone(one_pass(thinned, on, times * h, seen, made=times * times * made))
 
-    first = partial(one_pass, model, system, wanted, watch(number), made=made, anew=anew)
+    def alone(result: Result) -> Result:
+        if not together:
+            PROGRAM.release()  # else the arrays of this pass stay beside those of what follows
+        return result
+
+    def first() -> Result:
+        return alone(one_pass(model, system, wanted, watch(number), made=made, anew=anew))
+
     if not compared:
         return first()
     if not together:

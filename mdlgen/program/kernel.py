@@ -10,6 +10,7 @@ import hashlib
 import importlib
 import logging
 import os
+import re
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from itertools import count
@@ -230,8 +231,12 @@ def _folder_of(package: str) -> Path:
     return Path(str(importlib.import_module(package).__file__)).parent
 
 
+_MAKES_CODE = re.compile(rb"@njit|@intrinsic|= intrinsic\(")
+
+
 def _with_kernels(files: Iterable[Path]) -> list[Path]:
-    return [path for path in files if b"@njit" in path.read_bytes()]
+    """Those with kernels, or with what kernels call that is compiled."""
+    return [path for path in files if _MAKES_CODE.search(path.read_bytes())]
 
 
 @functools.cache

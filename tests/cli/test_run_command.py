@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -19,6 +20,7 @@ from mdlgen.backend import Backend
 from mdlgen.cli import shell
 from mdlgen.model.tables import Model
 from mdlgen.paths import samples
+from mdlgen.results.io.store import load
 from mdlgen.results.result import Result
 
 FOUR = samples() / "transport_4x4.yaml"
@@ -98,6 +100,22 @@ def test_a_missed_tolerance_is_exit_5_and_keeps_the_files(
     assert record["error_estimate"] == pytest.approx(1 / 70, rel=1e-9)
     monkeypatch.setattr(registry, "solver", lambda name: Backend(solve=Fake(error=0.01).solve))
     assert mdl("run", FOUR, *SMALL, "-o", "d", "--check-step").code == 0
+
+
+def test_an_error_that_is_not_known_is_exit_5_and_keeps_the_files(
+    mdl: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    why = "the error is not known: a run at twice the step fails: 5 % of energy got lost"
+
+    def solve(model: Model, *_: object, **__: object) -> Result:
+        return replace(moving(model), error_estimate_of="sheets.note.position", error_unknown=why)
+
+    monkeypatch.setattr(registry, "solver", lambda name: Backend(solve=solve))
+    ended = mdl("run", FOUR, *SMALL, "-o", "d")
+    assert ended.code == 5 and f"{why}; the files in d hold this result" in ended.err
+    assert f"\n{why}\n" in ended.out and why in (tmp_path / "d" / "report.html").read_text("utf-8")
+    assert json.loads((tmp_path / "d" / "summary.json").read_text())["error_unknown"] == why
+    assert load(tmp_path / "d").error_unknown == why
 
 
 def test_an_unknown_solver_is_refused_before_anything_runs(mdl: Run, tmp_path: Path) -> None:
