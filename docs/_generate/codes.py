@@ -14,8 +14,8 @@ EXITS = (
     ("4", "a solver failed; the reason is printed and nothing is written"),
     (
         "5",
-        "an accuracy check failed: `run.tolerance` was missed, `verify` found a difference, or `compare "
-        "--within` a larger one",
+        "an accuracy check failed: `run.tolerance` was missed, the error of a given step is not known, "
+        "`verify` found a difference, or `compare --within` a larger one",
     ),
     ("6", "a run is right, and misses what its scene requires; its results are written"),
     ("130", "interrupted by Ctrl-C"),
