@@ -78,10 +78,10 @@ def rows(case: BenchCase, solver: str, outcome: Outcome) -> list[BenchRow]:
 
 
 def _judged(finding: Finding, unknown: str) -> tuple[str, str | None]:
-    if unknown and not (finding.tolerance is None or finding.error <= finding.tolerance):
-        return FAILED, unknown
     if not math.isfinite(finding.error):
         return WRONG, "the error is not finite"
+    if unknown and finding.tolerance is not None and finding.error > finding.tolerance:
+        return FAILED, unknown
     if finding.tolerance is not None and finding.error > finding.tolerance:
         return WRONG, f"the solver said ok, but the error {finding.error:.3g} is above {finding.tolerance:g}"
     return OK, None
