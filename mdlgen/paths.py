@@ -12,11 +12,14 @@ import tempfile
 import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import BinaryIO
 
 from platformdirs import user_cache_dir
 
 from mdlgen.errors import OutputError
 
+# What is written to a file: all of it, or what writes it into a stream that is open.
+Content = str | bytes | Callable[[BinaryIO], None]
 # Of a text that is read whole: some four sheets of 10,000 boxes.
 MOST_BYTES = 200_000_000
 # What a file is called until it is complete, and after how long one is left over [s].
@@ -143,7 +146,7 @@ def check_folder(folder: Path) -> None:
         raise OutputError(f"{folder}: cannot be a folder: {error}") from None
 
 
-def write_together(files: Mapping[Path, str | bytes]) -> None:
+def write_together(files: Mapping[Path, Content]) -> None:
     """Write several files: all of them, or none. Raises OutputError.
 
     All are complete as temporary files before the first is renamed. Those of one folder stand in a note there
@@ -225,17 +228,19 @@ def _follow(note: Path) -> None:
         note.unlink()
 
 
-def _stage(path: Path, content: str | bytes) -> Path:
+def _stage(path: Path, content: Content) -> Path:
     """A complete temporary file beside `path`."""
     if path.is_symlink():
         raise OutputError(f"{path}: is a symbolic link; name the file itself")
     if path.is_dir():
         raise OutputError(f"{path}: is a folder; name a file")
-    data = content.encode("utf-8") if isinstance(content, str) else content
     handle, temporary = tempfile.mkstemp(TEMPORARY, f".{path.name}.", path.parent)
     try:
         with os.fdopen(handle, "wb") as stream:
-            stream.write(data)
+            if callable(content):
+                content(stream)
+            else:
+                stream.write(content.encode("utf-8") if isinstance(content, str) else content)
             stream.flush()
             os.fsync(stream.fileno())
         os.chmod(temporary, 0o666 & ~_umask())

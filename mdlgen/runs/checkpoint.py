@@ -7,17 +7,17 @@ that has no checkpoint is run again.
 
 from __future__ import annotations
 
-import io
 import time
 import zipfile
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from threading import Event, Lock
 
 import numpy as np
 
 from mdlgen.errors import OutputError
-from mdlgen.paths import write_together
+from mdlgen.paths import Content, write_together
 from mdlgen.results.result import Result
 
 State = dict[str, np.ndarray]
@@ -57,9 +57,9 @@ class Checkpointer:
         """Writes the state of a pass, in place of the one before. Raises OutputError."""
         if self.folder is None:
             return
-        stream = io.BytesIO()
-        np.savez(stream, allow_pickle=False, **state)  # pyright: ignore[reportArgumentType]
-        files: dict[Path, str | bytes] = {self._path(number): stream.getvalue()}
+        # into the file as it is: a second copy in memory may not fit
+        write = partial(np.savez, allow_pickle=False, **state)  # pyright: ignore[reportArgumentType]
+        files: dict[Path, Content] = {self._path(number): write}
         if self.folder.is_symlink():
             raise OutputError(f"{self.folder}: is a symbolic link; name the folder itself")
         with self.lock:

@@ -23,7 +23,7 @@ from stacks import stack
 import mdlgen
 import mdlgen.errors
 from mdlgen.backends.lattice import run as lattice
-from mdlgen.backends.lattice.kernels import entries
+from mdlgen.backends.lattice.kernels import entries, forces
 from mdlgen.errors import OutputError
 from mdlgen.model.tables import Model
 from mdlgen.paths import samples
@@ -206,6 +206,20 @@ def test_a_run_that_failed_says_so_again(tmp_path: Path) -> None:
     assert bits(hdf5(again)) == bits(hdf5(first))
 
 
+def test_room_for_pairs_is_not_kept(tmp_path: Path) -> None:
+    """A pile has room for so many pairs that writing all of it would take more memory than a machine has."""
+    model = mdlgen.lower(
+        mdlgen.load(
+            samples() / "pile.yaml", ["piles.cassette.count=20", "run.duration=2 ms", "run.step=0.1 ms"]
+        )
+    )
+    system = lattice.build(model, fold=True)
+    room = 2 * len(system.pairs) * forces.WIDE * 8  # bytes, for what each does in a step and in a solve
+    with pytest.raises(Cut):
+        lattice.solve(model, keep=Cutting(tmp_path / "c", written_with, 3))
+    assert (tmp_path / "c" / "pass_0.npz").stat().st_size < 0.1 * room
+
+
 def test_what_a_run_reads_does_not_change_in_it() -> None:
     """Else it would have to be kept too."""
     model = scene("transport_4x4")
@@ -241,13 +255,13 @@ def test_a_damaged_state_is_refused(tmp_path: Path, what: str) -> None:
     elif what == "compressed":
         np.savez_compressed(path, **state)
     elif what == "pickle":
-        state["state.0"] = np.array([{}], dtype=object)
+        state["state.x"] = np.array([{}], dtype=object)
         np.savez(path, **state)
     elif what == "other shape":
-        state["state.0"] = state["state.0"][:-1]
+        state["state.x"] = state["state.x"][:-1]
         np.savez(path, **state)
     elif what == "other type":
-        state["state.0"] = state["state.0"].astype(np.float32)
+        state["state.x"] = state["state.x"].astype(np.float32)
         np.savez(path, **state)
     else:
         del state["stored.u"]

@@ -10,6 +10,7 @@ import numpy as np
 from mdlgen.backends.lattice.integrate.record import Recorder
 from mdlgen.backends.lattice.integrate.sleep import Sleep
 from mdlgen.backends.lattice.kernels.state import Control, Workspace
+from mdlgen.backends.lattice.search import many_searched
 from mdlgen.errors import OutputError
 from mdlgen.runs.checkpoint import Checkpointer, State
 
@@ -24,21 +25,44 @@ class Stage(NamedTuple):
     ended: bool
 
 
+# What a step works out before it reads it. There is room for far more pairs than there are: more than memory.
+SCRATCH = {
+    *(f"mid.{name}" for name in ("results", "touched", "rows", "faces", "near", "spare")),
+    *(f"mid.sticks.{name}" for name in ("aside", "head", "following")),
+    *("matrix.couplings.room", "condensed.results", "condensed.touched"),
+}
+
+
 class PassState:
-    """Writes and reads a pass: the state, what it counts and is steered by, and the work arrays of a step,
-    which a pass that has ended does not need."""
+    """Writes and reads a pass: the state, what it counts and is steered by, and what a step takes over from
+    the one before, which a pass that has ended does not need."""
 
     def __init__(self, work: Workspace, control: Control, recorder: Recorder, sleep: Sleep):
         few = (control, work.search.place, work.tables.pairs["beside"][: work.search.first])
-        carried = (work.mid, work.matrix, work.condensed, work.free, work.damped[1:])
         self._state = dict(_leaves("state", work.state)) | dict(_leaves("few", few))
-        self._work = dict(_leaves("work", carried))
-        self._recorder, self._sleep = recorder, sleep
+        carried = {"mid": work.mid, "matrix": work.matrix, "condensed": work.condensed, "free": work.free}
+        carried["damped"] = work.damped[1:]
+        self._recorder, self._sleep, self._search = recorder, sleep, work.search
+        every = dict(leaf for name, value in carried.items() for leaf in _leaves(name, value))
+        self._work = {name: array for name, array in every.items() if name not in SCRATCH}
+
+    def _rows(self) -> dict[str, int]:
+        """How many rows are in use of arrays that have room."""
+        searched, work = many_searched(self._search), self._work
+        coupled = int(work["matrix.couplings.many"][0])
+        couplings = dict.fromkeys(("ends", "blocks", "single"), coupled) | {"colouring.own": 2 * coupled}
+        slots = np.flatnonzero(work["condensed.owner"] >= 0)
+        return {
+            **{f"matrix.couplings.{name}": rows for name, rows in couplings.items()},
+            **dict.fromkeys(("mid.overlaps", "mid.sticks.pairs"), searched),
+            "condensed.cols": int(slots[-1]) + 1 if slots.size else 0,
+        }
 
     def arrays(self, stage: Stage) -> State:
         """The pass as it is now."""
         stored = {f"stored.{name}": array for name, array in self._recorder.arrays().items()}
-        work = {} if stage.ended else self._work
+        rows = self._rows()
+        work = {name: array[: rows.get(name)] for name, array in self._work.items() if not stage.ended}
         return {
             **self._state,
             **work,
@@ -54,7 +78,8 @@ class PassState:
         like = {f"stored.{name}": array for name, array in (stored | fixed).items()}
         asleep = self._sleep.carried()
         like |= asleep | {name: array[:0] for name, array in asleep.items() if array.dtype.names}
-        found = keep.load(number, {**self._state, **self._work, **like, "stage": np.zeros(5)})
+        with_room = {name: self._work[name][:0] for name in self._rows()}
+        found = keep.load(number, {**self._state, **self._work, **with_room, **like, "stage": np.zeros(5)})
         if found is None:
             return None
         try:
@@ -62,9 +87,10 @@ class PassState:
             self._recorder.restore({name: found.pop(f"stored.{name}") for name in stored})
             self._sleep.restore(found)
             for name, array in (self._state if ended else {**self._state, **self._work}).items():
-                if array.shape != found[name].shape:
+                rows = len(found[name]) if name in with_room else None
+                if array[:rows].shape != found[name].shape:
                     raise ValueError(name)
-                array[...] = found[name]
+                array[:rows] = found[name]
         except (KeyError, ValueError) as error:
             raise OutputError(f"{keep.folder}: is not a state of this run ({error})") from None
         return Stage(int(status), t, int(outputs), wall, bool(ended))
@@ -72,7 +98,8 @@ class PassState:
 
 def _leaves(name: str, value: Any) -> Iterator[tuple[str, np.ndarray]]:
     if isinstance(value, tuple):
-        for k, item in enumerate(value):
-            yield from _leaves(f"{name}.{k}", item)
+        parts = getattr(value, "_fields", range(len(value)))
+        for part, item in zip(parts, value, strict=True):
+            yield from _leaves(f"{name}.{part}", item)
     else:
         yield name, value
