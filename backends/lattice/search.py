@@ -34,6 +34,7 @@ REGION = np.dtype(
         ("law", "f8", LAW),  # as of a pair
         ("mark", "i8"),  # of the first pair among those of all boxes
         ("sticking", "f8"),  # as of a pair
+        ("least", "f8"),  # half length of a box of both sheets, along their faces [mm]
     ]
 )
 # A pair that is searched, in little memory: nearly all that steps read of it.
@@ -79,6 +80,7 @@ def plan(model: Model, pairs: np.ndarray) -> tuple[np.ndarray, Search, int]:
         one, two = (slice(s.first, s.first + s.count) for s in ends)
         reach = float(radius[one].max() + radius[two].max()) + SKIN
         area = 4.0 * float((half[two, 0] * half[two, 1]).min())
+        region["least"] = min(half[one, :2].min(), half[two, :2].min())
         every = ends[0].count * ends[1].count
         room.append(min(every, ends[0].count * (4.0 + ROOM * math.pi * reach**2 / area)))
         marks, size = marks + every, max(size, reach)

@@ -4,12 +4,12 @@ Boxes of two sheets that lie on each other move across their faces by what their
 by what slides. Which corners the overlap has (mechanics.facing), and what each stands for, follows from the
 latter alone, and costs ten times as much as the force of them. So it is kept with the pair, in the axes of
 the face that owns the contact; the depth of a corner, its place and its normal are those of the boxes as they
-stand. It is found anew where a corner of the other face may have moved along the owner by more than a stated
-part of the smaller of half its lengths, seen from where it was found.
+stand. It is found anew where a corner of the other face may have moved along the owner by more than the part
+MOVED of the least half length of both, seen from where it was found.
 
 Faces whose outlines are apart have none, nor have boxes that are clear of each other when they are looked at.
-What is not face on face - a side of a box may own the contact, a box may stand on its edge - is left to
-`facing.box_box` each time.
+What is not face on face - a side of a box owns the contact, since it overlaps by less than the faces do, or a
+box stands on its edge - is left to `facing.box_box` each time.
 """
 
 from __future__ import annotations
@@ -43,20 +43,28 @@ MOST_CORNERS = 8  # of a rectangle that is cut by another
 # What is read of a pair stands together, and what is small is small: piles of sheets have very many.
 OVERLAP = np.dtype(
     [
-        ("state", "i2"),
-        ("count", "i2"),  # of corners
-        ("first", "i2"),  # whether the first box owns the contact
-        ("side", "i2"),  # of the owner's face along its normal
-        ("slack", "f8"),  # how far outlines are apart [mm]
-        ("smaller", "f8"),  # the least half length of both faces [mm]
-        ("place", "f8", 2),  # of the other box along the owner's face when it was found [mm]
-        ("turn", "f8", 4),  # and the directions of its faces' edges there
-        ("other", "f8", 3),  # half lengths of the other box [mm]
+        ("place", "f4", 2),  # of the other box along the owner's face when it was found [mm]
+        ("turn", "f4", 4),  # and the directions of its faces' edges there
+        ("wide", "f4", 2),  # half lengths of the other box along them [mm]
+        ("allowed", "f4"),  # how far its corners may have moved along the owner's face since [mm]
+        ("most", "f4"),  # depth up to which faces own the contact [mm]
+        ("look", "i4"),  # for who keeps it: when it was last seen to hold
+        ("state", "i1"),
+        ("count", "i1"),  # of corners
+        ("first", "i1"),  # whether the first box owns the contact
+        ("side", "i1"),  # of the owner's face along its normal
+        ("behind", "f8"),  # half the thickness of the other box [mm]
         ("thick", "f8"),  # half the thickness of the box whose face it is [mm]
         ("corners", "f8", (MOST_CORNERS, 3)),  # in the owner's axes [mm], and their stiffness [N/mm^1.5]
     ]
 )
 STIFF = 2  # column of the corners
+# Part of the least half length of both faces that one may have moved along the other since their overlap was
+# found. With 1e-2 within a step the error of notes that slide under a pad no longer falls with the step.
+MOVED = 1e-5
+# What two boxes do by the overlap that is kept: nothing, press, or what facing.box_box makes of their sides.
+CLEAR, PRESSES, BY_SIDES = 0, 1, 2
+EVER = 1e30
 STEEP = 0.75  # cosine of the angle between two faces beyond which they do not lie on each other
 
 
@@ -67,12 +75,13 @@ def _seen(owner, other):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS, **FUSED)
-def holds(kept, a, b, part):
-    """Whether what is kept of two boxes (Frames) still is what they have."""
+def holds(kept, a, b, more):
+    """Whether what is kept of two boxes (Frames) still is what they have, and will be while they move along
+    each other by less than `more` [mm]."""
     if kept.state == UNKNOWN or kept.state == OTHER:
         return False
     place, turn = _seen(a, b) if kept.first != 0 else _seen(b, a)
-    wide, allowed = kept.other, max(part * kept.smaller, kept.slack)
+    wide, allowed = kept.wide, kept.allowed - more
     for q in range(2):
         moved = abs(place[q] - kept.place[q])
         for i in range(2):
@@ -114,18 +123,17 @@ def find(kept, a, one_box, b, two_box, law):
         place, turn = far, turned
     side = 1.0 if place[2] >= 0.0 else -1.0
     kept.side = int(side)
-    kept.smaller, kept.thick = min(half[0], half[1], wide[0], wide[1]), half[2]
-    for q in range(3):
-        kept.other[q] = wide[q]
+    kept.behind, kept.thick, kept.most = wide[2], half[2], EVER
     for q in range(2):
-        kept.place[q] = place[q]
+        kept.place[q], kept.wide[q] = place[q], wide[q]
         for i in range(2):
             kept.turn[2 * q + i] = turn[3 * q + i]
-    kept.count, kept.state, kept.slack = 0, APART, 0.0
+    allowed = MOVED * min(half[0], half[1], wide[0], wide[1])
+    kept.count, kept.state, kept.allowed = 0, APART, allowed
     if abs(turn[8]) < STEEP:
         kept.state = OTHER
         return
-    # how deep a side would have to be to own the contact: no less than boxes may be in each other
+    # a side may own the contact where it overlaps by less than the faces do
     apart = False
     thin, narrow, gap = min(half_a[2], half_b[2]), 1e300, 0.0
     for q in range(2):
@@ -138,18 +146,17 @@ def find(kept, a, one_box, b, two_box, law):
             apart = True
         narrow = min(narrow, spread, across)
     if apart:
-        kept.slack = gap
+        kept.allowed = max(allowed, 0.999 * gap)
         return
-    if one_box.exposed + two_box.exposed > 0 and narrow < 2.0 * thin:
-        kept.state = OTHER
-        return
+    sides = one_box.exposed + two_box.exposed > 0 and narrow < 2.0 * thin
+    if sides:
+        kept.most = 0.999 * narrow
     points = np.empty((12, 3))
     count, smaller, _ = overlay(points, owner, half, 2, side, other, wide)
-    if count < 3 or count > MOST_CORNERS:
-        return
     weights = np.empty(12)
-    area = shares(points, count, 0, 1, weights)
+    area = shares(points, count, 0, 1, weights) if 3 <= count <= MOST_CORNERS else 0.0
     if area <= 1e-12 * smaller:
+        kept.state = OTHER if sides else APART
         return
     foundation = law.k / smaller if law.shared else law.k / area
     kept.count, kept.state = count, OVERLAPS
@@ -164,7 +171,7 @@ def plane_of(kept, owner, other):
     middle of the owner's face, growth of depth along both of its edges."""
     normal = back(owner.r, (other.r[2], other.r[5], other.r[8]))
     place = back(owner.r, sub(other.x, owner.x))
-    to = -kept.other[2] if kept.side * normal[2] > 0.0 else kept.other[2]
+    to = -kept.behind if kept.side * normal[2] > 0.0 else kept.behind
     p, r, up = place[0] + to * normal[0], place[1] + to * normal[1], place[2] + to * normal[2]
     lean_p, lean_r = normal[0] / normal[2], normal[1] / normal[2]
     level = kept.thick - kept.side * (up + lean_p * p + lean_r * r)
@@ -222,7 +229,8 @@ def impact(kept, a, b, faster, law, dt):
 @njit(cache=True, error_model="numpy", **BORROWS, **FUSED)
 def press(out, kept, a, b, law):
     """The contact of two boxes (Frames) by the overlap that is kept, into `out` (see mechanics.point), worked
-    out in the owner's axes and without its points. Returns whether boxes touch; only then `out` is set."""
+    out in the owner's axes and without its points. Returns CLEAR, PRESSES or BY_SIDES; `out` is set where
+    they press."""
     first = kept.first != 0
     owner, other = (a, b) if first else (b, a)
     place, level, lean_p, lean_r = plane_of(kept, owner, other)
@@ -230,7 +238,9 @@ def press(out, kept, a, b, law):
     for corner in range(kept.count):
         deepest = max(deepest, level + lean_p * kept.corners[corner, 0] + lean_r * kept.corners[corner, 1])
     if deepest <= 0.0:
-        return False
+        return CLEAR
+    if deepest > kept.most:
+        return BY_SIDES
     way = -kept.side  # of the owner's normal, from the other box to it
     rate, spin = moves(owner, other, place)
     force, torque = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
@@ -262,4 +272,4 @@ def press(out, kept, a, b, law):
         out[TORQUE_A + i], out[TORQUE_B + i] = on_a[i], on_b[i]
     out[PRESSING], out[STORED], out[DISSIPATED], out[DEPTH] = pressing, stored, lost, deepest
     out[RUBBING], out[GRIP] = rubbing, law.mu_static * pressing
-    return pressing != 0.0
+    return PRESSES if pressing != 0.0 else CLEAR

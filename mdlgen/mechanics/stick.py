@@ -27,7 +27,7 @@ import math
 import numpy as np
 
 from mdlgen.mechanics.laws import damped
-from mdlgen.mechanics.overlap import MOST_CORNERS, STIFF, moves, plane_of
+from mdlgen.mechanics.overlap import BY_SIDES, CLEAR, MOST_CORNERS, PRESSES, STIFF, moves, plane_of
 from mdlgen.mechanics.point import (
     DEPTH,
     DISSIPATED,
@@ -117,7 +117,9 @@ def press_sticking(out, kept, stuck, a, b, law, ratio, h):
     for corner in range(kept.count):
         deepest = max(deepest, level + lean_p * kept.corners[corner, 0] + lean_r * kept.corners[corner, 1])
     if deepest <= 0.0:
-        return False
+        return CLEAR
+    if deepest > kept.most:
+        return BY_SIDES
     way = -kept.side  # of the owner's normal, from the other box to it
     rate, spin = moves(owner, other, place)
     force, torque = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
@@ -161,7 +163,7 @@ def press_sticking(out, kept, stuck, a, b, law, ratio, h):
         out[TORQUE_A + i], out[TORQUE_B + i] = on_a[i], on_b[i]
     out[PRESSING], out[STORED], out[DISSIPATED], out[DEPTH] = pressing, stored, lost, deepest
     out[RUBBING], out[GRIP] = rubbing, law.mu_static * pressing
-    return pressing != 0.0
+    return PRESSES if pressing != 0.0 else CLEAR
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)

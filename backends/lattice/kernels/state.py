@@ -55,6 +55,16 @@ class Sticks(NamedTuple):
     half: Floats  # (1,) half of the step [ms]
 
 
+class Drift(NamedTuple):
+    """How far sheets have moved, and when overlaps of their boxes were looked at; see contact.drift."""
+
+    ends: Ints  # (regions, 2) the sheets of each, -1: it sleeps
+    moved: Floats  # (sheets,) places of each at most, added up over steps [mm]
+    rates: Floats  # (sheets,) how fast they are at most in an iteration [mm/ms]
+    looked: Floats  # (regions,) what both had moved together at the last look [mm]
+    looks: Ints  # (regions,) how many looks there were
+
+
 class Midpoint(NamedTuple):
     """The middle of a step: motion of all bodies, forces and torques on them, contacts, pairs near."""
 
@@ -70,6 +80,7 @@ class Midpoint(NamedTuple):
     spare: np.ndarray  # the same of a pair between steps, (1,)
     fastest: Floats  # how fast places of free boxes are at most, MIDDLE and ENDS of a step, (2, bodies)
     sticks: Sticks
+    drift: Drift
 
 
 MIDDLE, ENDS = 0, 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from mdlgen.backends.lattice.kernels.contact.drift import LEFT, look_ahead
 from mdlgen.backends.lattice.kernels.contact.search import law_of_boxes
 from mdlgen.backends.lattice.kernels.forces import onto, touches
 from mdlgen.backends.lattice.kernels.state import (
@@ -15,16 +16,25 @@ from mdlgen.backends.lattice.kernels.state import (
     TURNING_NOW,
 )
 from mdlgen.mechanics.frame import box_of, frame_of, law_of
-from mdlgen.mechanics.overlap import OTHER, UNKNOWN, apart, find, holds, press
+from mdlgen.mechanics.overlap import (
+    APART,
+    BY_SIDES,
+    CLEAR,
+    MOVED,
+    OTHER,
+    OVERLAPS,
+    PRESSES,
+    UNKNOWN,
+    apart,
+    find,
+    holds,
+    press,
+)
 from mdlgen.mechanics.point import DEPTH, DISSIPATED, GRIP, POINTS, PRESSING, RUBBING, STORED
 from mdlgen.mechanics.stick import carry_stretch, press_sticking
 from mdlgen.mechanics.turning import ALONG, LIMIT
 from mdlgen.model.tables.contacts import BOX_BOX
 from mdlgen.program.kernel import BORROWS, njit
-
-# Part of a box by which its overlap may have moved along it since it was found. With 1e-2 within a step the
-# error of notes that slide under a pad no longer falls with the step.
-MOVED = 1e-5
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -38,45 +48,47 @@ def forget_overlaps(pairs, overlaps, first):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _two_boxes(tables, search, mid, p, out):
-    """What two boxes of two sheets, pair p, do into `out` and onto the forces. Returns whether they touch."""
-    motion, f, k = mid.motion, mid.forces, p - search.first
+def look_at(work, k, a, b, gap):
+    """Sees to it that what is kept of the k-th pair that is searched is what its boxes (Frames) have. Returns
+    False where that is not known, since they are clear of each other by more than `gap` [mm]."""
+    tables, search, mid = work.tables, work.search, work.mid
     own, kept = search.listed[k], mid.overlaps[k]
-    a, b = frame_of(motion, own.a), frame_of(motion, own.b)
-    if not holds(kept, a, b, MOVED):
+    known = kept.state == OVERLAPS or kept.state == APART
+    if known and kept.look == mid.drift.looks[own.region]:
+        return True
+    if not known or not holds(kept, a, b, LEFT * MOVED * search.regions[own.region].least):
         one, two = box_of(tables.bodies[own.a]), box_of(tables.bodies[own.b])
-        if apart(a, one.half, b, two.half, 0.0):
+        if apart(a, one.half, b, two.half, gap):
             return False
         find(kept, a, one, b, two, law_of_boxes(search, own))
-    if kept.state == OTHER:
-        return touches(tables, tables.pairs[p], motion, f, out)
-    if kept.count == 0 or not press(out, kept, a, b, law_of_boxes(search, own)):
-        return False
-    out[POINTS] = 0.0
-    onto(f, own, out)
+        ratio = search.regions[own.region].sticking
+        if mid.sticks.pairs.size > 0 and ratio > 0.0:
+            carry_stretch(mid.sticks.pairs[k], kept, a, b, ratio)
+    kept.look = mid.drift.looks[own.region]
     return True
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _sticking(tables, search, mid, p, out):
-    """As `_two_boxes` for friction that sticks."""
-    motion, f, k = mid.motion, mid.forces, p - search.first
-    own, kept, stuck = search.listed[k], mid.overlaps[k], mid.sticks.pairs[k]
-    ratio, law = search.regions[own.region].sticking, law_of_boxes(search, own)
-    a, b = frame_of(motion, own.a), frame_of(motion, own.b)
-    if not holds(kept, a, b, MOVED):
-        one, two = box_of(tables.bodies[own.a]), box_of(tables.bodies[own.b])
-        if apart(a, one.half, b, two.half, 0.0):
-            return False
-        find(kept, a, one, b, two, law)
-        carry_stretch(stuck, kept, a, b, ratio)
-    if kept.state == OTHER:
-        return touches(tables, tables.pairs[p], motion, f, out)
-    if kept.count == 0 or not press_sticking(out, kept, stuck, a, b, law, ratio, mid.sticks.half[0]):
+def _two_boxes(work, p, out):
+    """What two boxes of two sheets, pair p, do into `out` and onto the forces. Returns whether they touch."""
+    tables, search, mid, k = work.tables, work.search, work.mid, p - work.search.first
+    own, kept = search.listed[k], mid.overlaps[k]
+    a, b = frame_of(mid.motion, own.a), frame_of(mid.motion, own.b)
+    if not look_at(work, k, a, b, 0.0):
         return False
-    out[POINTS] = 0.0
-    onto(f, own, out)
-    return True
+    if kept.state == OVERLAPS:
+        law, ratio = law_of_boxes(search, own), search.regions[own.region].sticking
+        if mid.sticks.pairs.size > 0 and ratio > 0.0:
+            does = press_sticking(out, kept, mid.sticks.pairs[k], a, b, law, ratio, mid.sticks.half[0])
+        else:
+            does = press(out, kept, a, b, law)
+        if does == PRESSES:
+            out[POINTS] = 0.0
+            onto(mid.forces, own, out)
+            return True
+        if does == BY_SIDES:
+            kept.state = OTHER
+    return kept.state == OTHER and touches(tables, tables.pairs[p], mid.motion, mid.forces, out)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -96,23 +108,22 @@ def faces_into(rows, row, face):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def near_forces(work, close):
-    """Adds the forces of the near pairs to those of the midpoint, as forces.pair_forces does, but without the
-    contact points of two sheets. Returns (how many pairs touch, dissipated power)."""
+def near_forces(work, close, h):
+    """Adds the forces of the near pairs to those of the midpoint, h [ms] after the state, as
+    forces.pair_forces does, but without the contact points of two sheets. Returns (how many pairs touch,
+    dissipated power)."""
     tables, mid, search = work.tables, work.mid, work.search
     near, results = mid.near, mid.results
-    sticks = mid.sticks.pairs.size > 0
     count = row = 0
     lost = 0.0
+    look_ahead(work, h)
     for at in range(close):
         p, out = near[at], results[row]
         faces = p >= search.first
         if not faces:
             touching = touches(tables, tables.pairs[p], mid.motion, mid.forces, out)
-        elif sticks and search.regions[search.listed[p - search.first].region].sticking > 0.0:
-            touching = _sticking(tables, search, mid, p, out)
         else:
-            touching = _two_boxes(tables, search, mid, p, out)
+            touching = _two_boxes(work, p, out)
         if touching:
             lost += out[DISSIPATED]
             mid.touched[count], mid.rows[count] = p, row
@@ -127,29 +138,27 @@ def near_forces(work, close):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _between_steps(tables, mid, k, pair, motion, out):
-    """As `_two_boxes` and `_sticking` for a state between steps; k: of the pair among those that are
-    searched. What is kept stays as it is: where it does not hold, it is found in a record of its own."""
-    kept, law = mid.overlaps[k], law_of(pair)
+    """As `_two_boxes` for a state between steps; k: of the pair among those that are searched. What is kept
+    stays as it is: where it does not hold, it is found in a record of its own."""
+    kept, law, kept_on = mid.overlaps[k], law_of(pair), True
     a, b = frame_of(motion, pair.a), frame_of(motion, pair.b)
-    if holds(kept, a, b, MOVED):
-        touching = kept.count > 0
-        if touching and mid.sticks.pairs.size > 0 and pair.sticking > 0.0:
-            touching = press_sticking(out, kept, mid.sticks.pairs[k], a, b, law, pair.sticking, 0.0)
-        elif touching:
-            touching = press(out, kept, a, b, law)
-    else:
+    if not holds(kept, a, b, 0.0):
         one, two = box_of(tables.bodies[pair.a]), box_of(tables.bodies[pair.b])
         if apart(a, one.half, b, two.half, 0.0):
             return False
-        kept = mid.spare[0]
+        kept, kept_on = mid.spare[0], False
         find(kept, a, one, b, two, law)
-        if kept.state == OTHER:
-            return touches(tables, pair, motion, mid.forces, out)
-        touching = kept.count > 0 and press(out, kept, a, b, law)
-    if touching:
+    does = BY_SIDES if kept.state == OTHER else CLEAR
+    if kept.state == OVERLAPS and kept_on and mid.sticks.pairs.size > 0 and pair.sticking > 0.0:
+        does = press_sticking(out, kept, mid.sticks.pairs[k], a, b, law, pair.sticking, 0.0)
+    elif kept.state == OVERLAPS:
+        does = press(out, kept, a, b, law)
+    if does == BY_SIDES:
+        return touches(tables, pair, motion, mid.forces, out)
+    if does == PRESSES:
         out[POINTS] = 0.0
         onto(mid.forces, pair, out)
-    return touching
+    return does == PRESSES
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from mdlgen.backends.lattice.kernels.contact.between import faces_into, forget_overlaps
+from mdlgen.backends.lattice.kernels.contact.drift import add_step
 from mdlgen.backends.lattice.kernels.contact.search import look, mark_of, strayed
 from mdlgen.backends.lattice.kernels.contact.sticking import end_of_step, put_back, set_aside
 from mdlgen.backends.lattice.kernels.contact.swept import Before, swept
@@ -317,6 +318,8 @@ def run(work, t, steps, tolerance, control):
             # between the middles of the two steps
             spans[BETWEEN] = 0.5 * (spans[LAST_STEP] + dt)
             spans[LAST_STEP] = dt
+            if search.regions.size > 0:
+                add_step(work, dt)
             carry(tables, state, t, dt)
             if work.damped.joints.size > 0:
                 gone = take_off(bodies, nodes, work.damped.off, mid.motion.r, r, state.v, state.l)

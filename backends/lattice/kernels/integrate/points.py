@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 
-from mdlgen.backends.lattice.kernels.contact.between import MOVED
+from mdlgen.backends.lattice.kernels.contact.between import look_at
 from mdlgen.backends.lattice.kernels.contact.search import law_of_boxes
 from mdlgen.backends.lattice.kernels.integrate.air import damping_of
 from mdlgen.backends.lattice.kernels.integrate.sticking_points import held_back, stick
@@ -29,6 +29,7 @@ from mdlgen.backends.lattice.kernels.state import (
     ARM_B,
     BETA,
     DEPTH,
+    FACE_POINTS,
     GROWTH,
     KIND,
     MU_DYNAMIC,
@@ -47,11 +48,11 @@ from mdlgen.backends.lattice.kernels.state import (
     STIFFNESS,
 )
 from mdlgen.mechanics import point as law_point
-from mdlgen.mechanics.frame import LAW_SMOOTHING, box_of, frame_of, law_of
+from mdlgen.mechanics.frame import LAW_SMOOTHING, frame_of, law_of
 from mdlgen.mechanics.laws import damped, friction_over_speed, sign_step
-from mdlgen.mechanics.overlap import OTHER, STIFF, apart, find, holds, plane_of
+from mdlgen.mechanics.overlap import OVERLAPS, STIFF, plane_of
 from mdlgen.mechanics.pair import on_fixed_plate
-from mdlgen.mechanics.stick import carry_stretch, stretch_of
+from mdlgen.mechanics.stick import stretch_of
 from mdlgen.mechanics.vector import add, cross, dot, rotate, scale, sub, three, three_from
 from mdlgen.program.kernel import BORROWS, njit
 
@@ -268,24 +269,14 @@ def gather(work, counts, h, plates):
             continue
         if air > 0:
             _of_air(frozen, film, pairs[p], p, motion)
-        if p < first:
+        if p < first or (touching and mid.faces[row, FACE_POINTS] > 0.0):
             if touching:
                 _of_law(frozen, p, pairs[p], mid.results[mid.rows[row]], h, motion)
             continue
         own, kept = search.listed[p - first], mid.overlaps[p - first]
-        a, b, law = frame_of(motion, own.a), frame_of(motion, own.b), law_of_boxes(search, own)
-        ratio = search.regions[own.region].sticking
-        if not holds(kept, a, b, MOVED):
-            one, two = box_of(bodies[own.a]), box_of(bodies[own.b])
-            if apart(a, one.half, b, two.half, REACH):
-                continue
-            find(kept, a, one, b, two, law)
-            if sticks.size > 0 and ratio > 0.0:
-                carry_stretch(sticks[p - first], kept, a, b, ratio)
-        if kept.state == OTHER:
-            if touching:
-                _of_law(frozen, p, pairs[p], mid.results[mid.rows[row]], h, motion)
-        elif kept.count > 0:
+        a, b = frame_of(motion, own.a), frame_of(motion, own.b)
+        if look_at(work, p - first, a, b, REACH) and kept.state == OVERLAPS:
+            law, ratio = law_of_boxes(search, own), search.regions[own.region].sticking
             _of_faces(frozen, p, kept, a, b, law, h, (sticks[p - first : p - first + 1], ratio))
     for k in range(air):
         _of_air(frozen, film, pairs[film.listed[k]], film.listed[k], motion)

@@ -11,6 +11,7 @@ from mdlgen.backends.lattice.kernels.state import (
     ENDS_OF_POINT,
     FACE,
     POINT,
+    Drift,
     Frozen,
     Matrix,
     Midpoint,
@@ -54,6 +55,7 @@ def empty(system, wide: int) -> tuple[State, Midpoint, Matrix]:
         spare=np.zeros(1, OVERLAP),
         fastest=np.zeros((2, bodies)),
         sticks=sticks(len(system.pairs) - system.search.first, bodies) if sticking else sticks(0, 0),
+        drift=drift(system),
     )
     matrix = Matrix(
         band=no_band(nodes, system.reach),
@@ -84,6 +86,21 @@ def sticks(pairs: int, bodies: int) -> Sticks:
         head=np.full(bodies, -1, np.int64),
         following=np.full(pairs, -1, np.int64),
         half=np.zeros(1),
+    )
+
+
+def drift(system) -> Drift:
+    """Sheets of which no overlaps were looked at."""
+    sheets, regions = int(system.sheets.max(initial=-1)) + 1, system.search.regions
+    label = np.full(len(system.bodies), -1, np.int64)
+    label[system.nodes] = system.sheets
+    parts = [[label[r[end] : r[end] + r["many_" + end]].max(initial=-1) for end in "ab"] for r in regions]
+    return Drift(
+        ends=np.array(parts, np.int64).reshape(-1, 2),
+        moved=np.zeros(sheets),
+        rates=np.zeros(sheets),
+        looked=np.full(len(regions), -np.inf),
+        looks=np.zeros(len(regions), np.int64),
     )
 
 

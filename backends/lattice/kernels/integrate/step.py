@@ -149,9 +149,9 @@ def _weights(bodies, gravity, f):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _contact_forces(work, close, known):
-    """Adds the forces of contacts and of air to those of the midpoint, where `known` from what the contact
-    solve last evaluated. Returns (how many pairs touch, dissipated power)."""
+def _contact_forces(work, close, h, known):
+    """Adds the forces of contacts and of air to those of the midpoint, h [ms] after the state, where `known`
+    from what the contact solve last evaluated. Returns (how many pairs touch, dissipated power)."""
     mid, condensed = work.mid, work.condensed
     if known:
         again = (condensed.touched, condensed.results, condensed.looked[TOUCHED], condensed.seen)
@@ -159,7 +159,7 @@ def _contact_forces(work, close, known):
             work.tables, mid.near, close, again, mid.motion, mid.forces, mid.touched, mid.results
         )
     elif work.search.regions.size > 0:
-        count, rubbed = near_forces(work, close)
+        count, rubbed = near_forces(work, close, h)
     else:
         count, _stored, rubbed = pair_forces(
             work.tables, mid.near, close, mid.motion, mid.forces, mid.touched, mid.results
@@ -229,7 +229,7 @@ def midpoint(work, t, dt, tolerance, control):
         _stored, lost, numerical = joint_forces(tables.joints, tables.points, mid.motion, mid.forces, lag)
         known = iteration > 0 and where == APART and condensed.looked[UP_TO_DATE] == 1
         known = known and not sheets
-        count, rubbed = _contact_forces(work, close, known)
+        count, rubbed = _contact_forces(work, close, h, known)
         power = other_forces(tables, 1.0, mid.motion, mid.forces)
         _weights(bodies, tables.gravity, mid.forces)
         clutch_torques(bodies, t + h, state.ub, mid.forces)
@@ -311,7 +311,7 @@ def midpoint(work, t, dt, tolerance, control):
             place(tables, h, t + h, state, mid.motion)
             if not lasting or change > SAME * control.pace[LOOSE]:
                 mid.forces[:] = 0.0
-                count, rubbed = _contact_forces(work, close, False)
+                count, rubbed = _contact_forces(work, close, h, False)
             release(condensed, m)
             factored[TOUGH] = MEMORY if iteration >= last else max(factored[TOUGH] - 1.0, 0.0)
             return _done(work, h, (count, close), (lost + rubbed, power, numerical), counters)
