@@ -71,10 +71,14 @@ class Case(NamedTuple):
     pressing: np.ndarray  # forces of contacts on all bodies
 
 
-@pytest.fixture
-def case() -> Case:
-    """The scene as it begins, with random velocities, its contact forces evaluated."""
-    model = lower(loads(SCENE))
+STICKS = "contacts.3.friction={static: 0.3, dynamic: 0.2, sticking: 50 N/mm}"
+
+
+@pytest.fixture(params=[[], [STICKS]], ids=["slides", "sticks"])
+def case(request: pytest.FixtureRequest) -> Case:
+    """The scene as it begins, with random velocities, its contact forces evaluated. Friction of the notes is
+    smoothed, or sticks."""
+    model = lower(loads(SCENE, overrides=request.param))
     system = build(model)
     work = arrays(model, system)
     draw = np.random.default_rng(1)
@@ -84,7 +88,7 @@ def case() -> Case:
     forces.place(work.tables, 0.0, 0.0, state, mid.motion)
     close = forces.near_pairs(work.tables, mid.motion, 0.05, 2 * H, mid.near)
     mid.forces[:] = 0.0
-    count, _ = between.near_forces(work, close)
+    count, _ = between.near_forces(work, close, 0.0)
     work.condensed.axes[:] = mid.motion.r
     assert count > 8
     return Case(work, control(work), (count, close), mid.forces.copy())
@@ -101,7 +105,7 @@ def impulses(case: Case, change: np.ndarray, border: np.ndarray) -> tuple[np.nda
     work = case.work
     points.gather(work, case.counts, H, False)
     work.frozen.vectors[OF_DIRECTION], work.frozen.border[DIRECTION] = change, border
-    along.look_along(work)
+    along.look_along(work, H)
     g, gb = np.zeros(change.shape), np.zeros(border.shape)
     along.pull(work, H, 1.0, g, gb)
     return g, gb
@@ -128,6 +132,9 @@ def test_the_forces_of_the_points_are_those_of_the_laws(case: Case) -> None:
     many = int(work.frozen.many[0])
     assert {A_PRESSURE, A_DAMPER, A_COUPLE} == set(work.frozen.points[:many, KIND])
     work.frozen.points[:many, START : START + 3] = 0.0
+    assert work.frozen.many[1] > 8
+    work.frozen.patches["begun"] = 0.0
+    along.slope(work, H, 0.0, False)
     g, gb = np.zeros(work.matrix.res.shape), np.zeros(work.matrix.resb.shape)
     along.pull(work, 1.0, 0.0, g, gb)
     expected = case.pressing[work.tables.nodes].ravel()
@@ -205,10 +212,12 @@ def test_a_direction_is_gone_along_to_where_the_function_is_least(times: float, 
     points.gather(work, case.counts, H, False)
     assert convex._make_matrix(work, H, LAG, True)
     frozen.vectors[DIRECTION] = -times * matrix.res
-    linear, square = convex._direction(work, work.condensed.axes)
+    linear, square = convex._direction(work, work.condensed.axes, H)
     begin = -times * float(matrix.res @ matrix.res)
     part = convex._how_far(work, H, begin, linear, square, convex.LEVEL)
-    slopes = [linear + at * square + along.slope(work, H, at) for at in (0.0, part, 0.9 * part, 1.1 * part)]
+    slopes = [
+        linear + at * square + along.slope(work, H, at, False) for at in (0.0, part, 0.9 * part, 1.1 * part)
+    ]
     assert slopes[0] == pytest.approx(begin, rel=1e-9)
     allowed = convex.LEVEL if part == 1.0 else convex.FLAT
     assert (

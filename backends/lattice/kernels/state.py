@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mdlgen.mechanics.frame import Motion
+from mdlgen.mechanics.overlap import MOST_CORNERS
 from mdlgen.mechanics.turning import TURNING
 
 Floats = np.ndarray
@@ -120,11 +121,12 @@ class Frozen(NamedTuple):
     integrate.points and integrate.convex."""
 
     points: Floats  # (room, POINT)
-    pair: Ints  # of each, (room,)
+    patches: np.ndarray  # PATCH
+    pair: Ints  # of each point, (room,)
     ends: np.ndarray  # ENDS_OF_POINT of each
     rolls: np.ndarray  # whether each is on a body that is an unknown of the border, (room,)
-    many: Ints  # (1,) how many there are
-    sums: Floats  # what EACH of them add to a slope
+    many: Ints  # (2,) how many points and patches there are
+    sums: Floats  # what each part of them adds to a slope
     vectors: Floats  # CHANGE to RESIDUAL of the nodes, (6, 6 nodes)
     border: Floats  # the same of the border, (6, border)
 
@@ -137,23 +139,47 @@ ENDS_OF_POINT = np.dtype([("a", "i4"), ("b", "i4"), ("one", "i8"), ("two", "i8")
 CHANGE, OF_CHANGE, GRADIENT, DIRECTION, OF_DIRECTION, RESIDUAL = 0, 1, 2, 3, 4, 5
 # Columns of Frozen.points: arms from both bodies, what it is, its change of velocity along a direction, which
 # stand together since that is looked at more often than all else; velocity of the first body against the
-# second now; normal to the first body, the direction that friction acts square to; depth and stiffness of a
-# corner of two faces, of others (stiffness 0) elastic force and its growth; rate, speed over which it damps,
-# share of damping; friction and its speeds; the normal force that limits it; the force as it began.
+# second now; normal to the first body, the direction that friction acts square to; elastic force and its
+# growth; rate, speed over which it damps, share of damping; friction and its speeds; the normal force that
+# limits it; the force as it began.
 ARM_A, ARM_B, KIND, ALONG, NOW, NORMAL, SQUARE = 0, 3, 6, 7, 10, 13, 16
-DEPTH, STIFFNESS, SPRING, GROWTH, RATE, OVER, BETA = 19, 20, 21, 22, 23, 24, 25
-MU_STATIC, MU_DYNAMIC, STICTION, SLIDING, PRESSING = 26, 27, 28, 29, 30
-START, POINT = 31, 34
-# Points of a part of a job.
-EACH = 512
+SPRING, GROWTH, RATE, OVER, BETA = 19, 20, 21, 22, 23
+MU_STATIC, MU_DYNAMIC, STICTION, SLIDING, PRESSING = 24, 25, 26, 27, 28
+START, POINT = 29, 32
+# Points, and patches, of a part of a job.
+EACH, EACH_PATCH = 512, 128
 # What a point is: one that presses and rubs; a damper alone; a couple about its normal, of SPRING at most, of
 # a rolling speed of GROWTH times the angular velocity; a cell of air, whose force has changed by SPRING since
 # the iteration began, and changes by GROWTH along a direction. Alone it would be damped by OVER [N ms/mm].
 A_PRESSURE, A_DAMPER, A_COUPLE, AIR = 0.0, 1.0, 2.0, 3.0
-# And a corner that presses and STICKS. In place of friction and its speeds it has the stretch of its spring
-# along the faces as the step begins, of the first body against the second, and the stiffness of that; its
-# PRESSING is the limit of friction itself.
-STICKS, ELONGATION, HOLDING = 4.0, MU_STATIC, SLIDING
+
+# Columns of the corners of a PATCH: place along and across the owner's face [mm], stiffness, depth if it did
+# not close, and the force at which friction slides, for 1 of its coefficient where it does not stick.
+LENGTHWISE, ACROSS, STIFF, DEPTH_AT_REST, GRIP, CORNER = 0, 1, 2, 3, 4, 5
+# What integrate.patches has of two boxes.
+PATCH = np.dtype(
+    [
+        ("a", "i4"),  # boxes and region, as of the pair (lattice.search.LISTED),
+        ("b", "i4"),
+        ("region", "i4"),
+        ("pair", "i4"),  # and which of those that are searched it is
+        ("owner", "i4"),  # the body whose face owns the contact, and the other one
+        ("other", "i4"),
+        ("one", "i4"),  # nodes of the owner and the other, -1: none
+        ("two", "i4"),
+        ("coupled", "i4"),  # the coupling of these, -1: none
+        ("count", "i2"),  # of corners
+        ("side", "i2"),  # of the owner's face along its normal
+        ("ratio", "f8"),  # k_t for 1 of k, 0: friction does not stick [mm^0.5]
+        ("high", "f8"),  # where all corners are along the owner's normal [mm]
+        ("place", "f8", 3),  # of the other box in the owner's axes [mm]
+        ("now", "f8", 6),  # rate and spin of the owner against the other box at the owner's middle,
+        ("along", "f8", 6),  # and how they change along a direction
+        ("begun", "f8", 6),  # force and torque on the owner as the iteration began,
+        ("does", "f8", 6),  # and where they were evaluated last
+        ("corners", "f8", (MOST_CORNERS, CORNER)),
+    ]
+)
 
 
 class Free(NamedTuple):

@@ -174,3 +174,28 @@ def core(numbers, n, square, slip, h, chord, whole):
         secant + p[2] * n[2] - s[2] * square[2] + less * d[2] * d[2],
     )
     return t, damping, phi
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def holding(t, pulled, limit, k_t, n, h, chord):
+    """Adds to t, a 3 x 3 matrix, what friction that sticks loses as velocities grow, times h: a spring k_t
+    along the faces that is `pulled` by a force, beyond its limit where it slides. n: the normal; chord: see
+    steepness."""
+    size = math.sqrt(pulled[0] * pulled[0] + pulled[1] * pulled[1] + pulled[2] * pulled[2])
+    growth = less = 2.0 * h * h * k_t
+    if size > limit:
+        growth *= limit / size
+        less = chord * growth
+    i = 1.0 / size if size > 0.0 else 0.0
+    across, along = outer(scale(growth, n), n), outer(scale((less - growth) * i * i, pulled), pulled)
+    return (
+        t[0] + growth - across[0] + along[0],
+        t[1] - across[1] + along[1],
+        t[2] - across[2] + along[2],
+        t[3] - across[3] + along[3],
+        t[4] + growth - across[4] + along[4],
+        t[5] - across[5] + along[5],
+        t[6] - across[6] + along[6],
+        t[7] - across[7] + along[7],
+        t[8] + growth - across[8] + along[8],
+    )

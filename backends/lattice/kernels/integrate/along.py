@@ -1,10 +1,11 @@
-"""What contact points whose geometry is frozen make of a change of the velocities: their rates along it,
-their forces and the slope of what is made least."""
+"""What contact points and patches whose geometry is frozen make of a change of the velocities: their rates
+along it, their forces and the slope of what is made least."""
 
 from __future__ import annotations
 
 from mdlgen.backends.lattice.kernels import parallel
 from mdlgen.backends.lattice.kernels.integrate.air import air_along
+from mdlgen.backends.lattice.kernels.integrate.patches import patches_along, patches_slope, pull_patches
 from mdlgen.backends.lattice.kernels.integrate.points import force_of
 from mdlgen.backends.lattice.kernels.integrate.unknowns import moving, turning_of
 from mdlgen.backends.lattice.kernels.parallel import begin, finish, take
@@ -16,6 +17,7 @@ from mdlgen.backends.lattice.kernels.state import (
     ARM_B,
     DIRECTION,
     EACH,
+    EACH_PATCH,
     GROWTH,
     KIND,
     NORMAL,
@@ -33,8 +35,15 @@ PART, HALF = 3, 4
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def parts_of(frozen):
-    """How many parts the points make in a job."""
-    return (frozen.many[0] + EACH - 1) // EACH
+    """How many parts the points make in a job, and points and patches together."""
+    points = (frozen.many[0] + EACH - 1) // EACH
+    return points, points + (frozen.many[1] + EACH_PATCH - 1) // EACH_PATCH
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _patches_of(frozen, part):
+    """The first of the patches of a part behind those of points, and the first behind them."""
+    return part * EACH_PATCH, min((part + 1) * EACH_PATCH, frozen.many[1])
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -82,19 +91,26 @@ def _along(work, k):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def along_part(work, part):
-    """The same of EACH points of a part, but those on rollers and pressed plates, which share scratch."""
+    """The same of EACH points of a part, but those on rollers and pressed plates, which share scratch; or of
+    EACH_PATCH patches, with what they add to the slope at its end."""
     frozen = work.frozen
+    points, _ = parts_of(frozen)
+    if part >= points:
+        low, high = _patches_of(frozen, part - points)
+        frozen.sums[part] = patches_along(work, low, high, work.pool.given[HALF])
+        return
     for k in range(EACH * part, min(EACH * (part + 1), frozen.many[0])):
         if not frozen.rolls[k]:
             _along(work, k)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def look_along(work):
-    """All points note how their velocities change along the direction: that of the nodes is in global axes in
-    the vectors' OF_DIRECTION."""
+def look_along(work, h):
+    """All points and patches note how their velocities change along the direction: that of the nodes is in
+    global axes in the vectors' OF_DIRECTION. What patches add to the slope at its end is known then."""
     frozen, pool = work.frozen, work.pool
-    many = parts_of(frozen)
+    pool.given[HALF] = h
+    _, many = parts_of(frozen)
     begin(pool, parallel.ALONG, many)
     part = take(pool)
     while part >= 0:
@@ -110,10 +126,12 @@ def look_along(work):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def pull(work, h, part, g, gb):
-    """Changes the velocities of all points by that part of the change looked along, and takes off g
-    (6 nodes,), global axes, and gb what their forces have added since the iteration began."""
+    """Changes the velocities of all points and patches by that part of the change looked along, where the
+    slope was looked at last, and takes off g (6 nodes,), global axes, and gb what their forces have added
+    since the iteration began."""
     tables, frozen, matrix, x = work.tables, work.frozen, work.matrix, work.mid.motion.x
     bodies, direction, index = tables.bodies, matrix.direction, matrix.unknowns
+    pull_patches(work, h, part, g)
     for k in range(frozen.many[0]):
         q = frozen.points[k]
         for i in range(3):
@@ -158,9 +176,14 @@ def pull(work, h, part, g, gb):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def slope_part(work, part):
-    """What EACH points of a part add to the slope."""
+    """What EACH points of a part, or EACH_PATCH patches, add to the slope."""
     frozen = work.frozen
     far, h, total = work.pool.given[PART], work.pool.given[HALF], 0.0
+    points, _ = parts_of(frozen)
+    if part >= points:
+        low, high = _patches_of(frozen, part - points)
+        frozen.sums[part] = patches_slope(work, low, high, h, far)
+        return
     for k in range(EACH * part, min(EACH * (part + 1), frozen.many[0])):
         q = frozen.points[k]
         way = three_from(q, ALONG)
@@ -173,11 +196,12 @@ def slope_part(work, part):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def slope(work, h, far):
-    """What the points add to the slope of the function that is made least, along the change looked along, at
-    that part of it."""
+def slope(work, h, far, looked):
+    """What points and patches add to the slope of the function that is made least, along the change looked
+    along, at that part of it; `looked`: at its end, where patches have just been looked along."""
     frozen, pool = work.frozen, work.pool
-    many = parts_of(frozen)
+    points, every = parts_of(frozen)
+    many = points if looked else every
     pool.given[PART], pool.given[HALF] = far, h
     begin(pool, parallel.SLOPE, many)
     part = take(pool)
@@ -186,6 +210,6 @@ def slope(work, h, far):
         part = take(pool)
     finish(pool, many)
     total = 0.0
-    for k in range(many):
+    for k in range(every):
         total += frozen.sums[k]
     return -h * total

@@ -107,7 +107,7 @@ def _how_far(work, h, falls, linear, square, level):
     """The part of a direction to go along. falls: the slope where it begins; linear + part square: what
     masses and bushings have of it there; level: see LEVEL."""
     low, high, at_low = 0.0, 1.0, falls
-    at_high = linear + square + slope(work, h, 1.0)
+    at_high = linear + square + slope(work, h, 1.0, True)
     if abs(at_high) <= level * abs(falls):
         return 1.0
     for _ in range(MOST_DOUBLED):
@@ -115,14 +115,14 @@ def _how_far(work, h, falls, linear, square, level):
             break
         low, at_low = high, at_high
         high *= 2.0
-        at_high = linear + high * square + slope(work, h, high)
+        at_high = linear + high * square + slope(work, h, high, False)
     if at_high <= 0.0:
         return high
     part = high
     for _ in range(MOST_LOOKS):
         part = low - at_low * (high - low) / (at_high - at_low)
         part = min(max(part, low + 0.05 * (high - low)), high - 0.05 * (high - low))
-        found = linear + part * square + slope(work, h, part)
+        found = linear + part * square + slope(work, h, part, False)
         if abs(found) <= FLAT * abs(falls):
             break
         if found > 0.0:
@@ -179,14 +179,14 @@ def _product(work):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _direction(work, axes):
+def _direction(work, axes, h):
     """The points look along the direction, and what masses and bushings make of it is worked out. Returns
     what these have of the slope along it where it begins, and for 1 of it more."""
     frozen, matrix = work.frozen, work.matrix
     p, pb, product = frozen.vectors[DIRECTION], frozen.border[DIRECTION], frozen.vectors[OF_DIRECTION]
     copy(product, p)
     turn_nodes(work.tables.nodes, axes, product, False)
-    look_along(work)
+    look_along(work, h)
     _product(work)
     linear = _dot(p, frozen.vectors[RESIDUAL]) + _dot(p, frozen.vectors[OF_CHANGE])
     square = _dot(p, product)
@@ -281,7 +281,7 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
                 break
             factored[STALE] = 1.0
             continue
-        linear, square = _direction(work, axes)
+        linear, square = _direction(work, axes, h)
         part = _how_far(work, h, falls, linear, square, 0.0 if air else LEVEL)
         for i in range(p.size):
             of_change[i] += part * frozen.vectors[OF_DIRECTION, i]

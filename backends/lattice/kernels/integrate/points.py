@@ -4,8 +4,8 @@ granted while it looks for the velocities.
 Within an iteration boxes move by little. So a point keeps its normal, its arms and its part of the stiffness;
 its depth grows with the rate at which it closes, and its friction has the limit that its normal force had as
 the iteration began. Such forces are the slope of a convex function of the velocities, which has one least
-value, and a search along any direction that leads down finds it (see integrate.convex). Corners of two faces
-that are open, but by less than REACH, are points, too: they may close.
+value, and a search along any direction that leads down finds it (see integrate.convex). What boxes of two
+sheets do face on face are patches (integrate.patches).
 
 What is wrong in all this costs iterations and no accuracy: an iteration begins with the forces as the laws
 have them, and adds what the points make of the change.
@@ -16,9 +16,8 @@ from __future__ import annotations
 import math
 
 from mdlgen.backends.lattice.kernels.contact.between import look_at
-from mdlgen.backends.lattice.kernels.contact.search import law_of_boxes
 from mdlgen.backends.lattice.kernels.integrate.air import damping_of
-from mdlgen.backends.lattice.kernels.integrate.sticking_points import held_back, stick
+from mdlgen.backends.lattice.kernels.integrate.patches import REACH, begin_patch
 from mdlgen.backends.lattice.kernels.state import (
     A_COUPLE,
     A_DAMPER,
@@ -28,7 +27,6 @@ from mdlgen.backends.lattice.kernels.state import (
     ARM_A,
     ARM_B,
     BETA,
-    DEPTH,
     FACE_POINTS,
     GROWTH,
     KIND,
@@ -43,21 +41,15 @@ from mdlgen.backends.lattice.kernels.state import (
     SPRING,
     SQUARE,
     START,
-    STICKS,
     STICTION,
-    STIFFNESS,
 )
 from mdlgen.mechanics import point as law_point
 from mdlgen.mechanics.frame import LAW_SMOOTHING, frame_of, law_of
 from mdlgen.mechanics.laws import damped, friction_over_speed, sign_step
-from mdlgen.mechanics.overlap import OVERLAPS, STIFF, plane_of
+from mdlgen.mechanics.overlap import OVERLAPS
 from mdlgen.mechanics.pair import on_fixed_plate
-from mdlgen.mechanics.stick import stretch_of
-from mdlgen.mechanics.vector import add, cross, dot, rotate, scale, sub, three, three_from
+from mdlgen.mechanics.vector import add, cross, dot, scale, sub, three, three_from
 from mdlgen.program.kernel import BORROWS, njit
-
-# How far two faces may be open at a corner that may close in an iteration [mm].
-REACH = 0.003
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -66,16 +58,9 @@ def law_at(q, v, h):
     velocity v of the first body against the second."""
     n, square = three_from(q, NORMAL), three_from(q, SQUARE)
     rate = -dot(v, n)
-    more = h * (rate - q[RATE])
-    if q[STIFFNESS] > 0.0:
-        depth = max(q[DEPTH] + more, 0.0)
-        growth = q[STIFFNESS] * math.sqrt(depth)
-        spring = growth * depth
-        growth *= 1.5
-    else:
-        spring, growth = max(q[SPRING] + q[GROWTH] * more, 0.0), q[GROWTH]
+    spring = max(q[SPRING] + q[GROWTH] * h * (rate - q[RATE]), 0.0)
     normal = damped(spring, rate, q[BETA], q[OVER])
-    return spring, growth, normal, rate, sub(v, scale(dot(v, square), square))
+    return spring, q[GROWTH], normal, rate, sub(v, scale(dot(v, square), square))
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -91,8 +76,6 @@ def force_of(q, v, h):
     _spring, _growth, normal, _rate, slip = law_at(q, v, h)
     if q[PRESSING] <= 0.0:
         return scale(normal, n)
-    if q[KIND] == STICKS:
-        return sub(scale(normal, n), held_back(q, slip, h))
     speed = math.sqrt(dot(slip, slip))
     over = friction_over_speed(speed, q[MU_STATIC], q[MU_DYNAMIC], q[STICTION], q[SLIDING])
     return sub(scale(normal, n), scale(q[PRESSING] * over, slip))
@@ -111,7 +94,7 @@ def _begin(frozen, p, where, normal, a, b):
         q[NORMAL + i] = q[SQUARE + i] = normal[i]
         q[ARM_A + i], q[ARM_B + i], q[NOW + i], q[ALONG + i] = arm[i], far[i], v[i], 0.0
     q[RATE] = -dot(v, normal)
-    q[STIFFNESS] = q[DEPTH] = q[SPRING] = q[GROWTH] = q[PRESSING] = 0.0
+    q[SPRING] = q[GROWTH] = q[PRESSING] = 0.0
     q[KIND], q[BETA], q[OVER] = A_PRESSURE, 0.0, 1.0
     q[MU_STATIC] = q[MU_DYNAMIC] = 0.0
     q[STICTION] = q[SLIDING] = 1.0
@@ -180,37 +163,6 @@ def _of_law(frozen, p, pair, out, h, motion):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _of_faces(frozen, p, kept, a, b, law, h, sticking):
-    """Adds the corners of the overlap that is kept of two boxes (Frames); sticking: their stretches, where
-    there are any, and k_t for 1 of k."""
-    stuck, ratio = sticking
-    first = kept.first != 0
-    owner, other = (a, b) if first else (b, a)
-    _, level, lean_p, lean_r = plane_of(kept, owner, other)
-    to_a = -kept.side if first else kept.side
-    normal = (to_a * owner.r[2], to_a * owner.r[5], to_a * owner.r[8])
-    for corner in range(kept.count):
-        along, across = kept.corners[corner, 0], kept.corners[corner, 1]
-        depth = level + lean_p * along + lean_r * across
-        if depth <= -REACH:
-            continue
-        at = (along, across, kept.side * (kept.thick - 0.5 * depth))
-        many = _begin(frozen, p, add(owner.x, rotate(owner.r, at)), normal, a, b)
-        if many < 0:
-            return
-        q = frozen.points[many]
-        q[STIFFNESS], q[DEPTH] = kept.corners[corner, STIFF], depth
-        q[BETA], q[OVER] = law.beta, law.smoothing
-        q[MU_STATIC], q[MU_DYNAMIC] = law.mu_static, law.mu_dynamic
-        q[STICTION], q[SLIDING] = law.stiction, law.sliding
-        q[PRESSING] = law_at(q, three_from(q, NOW), h)[2]
-        if stuck.size > 0 and ratio > 0.0:
-            k_t = ratio * kept.corners[corner, STIFF]
-            stick(q, stretch_of(stuck[0], kept, owner, corner), k_t, law)
-        _started(q, h)
-
-
-@njit(cache=True, error_model="numpy", **BORROWS)
 def _of_air(frozen, film, pair, p, motion):
     """Adds the cells of air of a pair, where it has any that are not points yet."""
     cells, i = film.cells, film.head[p]
@@ -249,14 +201,14 @@ def _note_ends(tables, frozen):
 
 @njit(cache=True, error_model="numpy")
 def gather(work, counts, h, plates):
-    """Takes the points of the near pairs at the midpoint, and of air; `counts`: how many touch, how many are
-    near; `plates`: of those with fixed plates alone."""
+    """Takes the points and the patches of the near pairs at the midpoint, and points of air; `counts`: how
+    many touch, how many are near; `plates`: of those with fixed plates alone."""
     tables, mid, frozen, search, film = work.tables, work.mid, work.frozen, work.search, work.film
     bodies, pairs, near, motion = tables.bodies, tables.pairs, mid.near, mid.motion
     count, close = counts
     first = search.first
-    frozen.many[0] = known = 0
-    air, sticks = film.many[0], mid.sticks.pairs
+    frozen.many[0] = frozen.many[1] = known = 0
+    air = film.many[0]
     for k in range(air):
         film.cells[film.head[film.listed[k]]].point = -1
     for at in range(close):
@@ -273,11 +225,10 @@ def gather(work, counts, h, plates):
             if touching:
                 _of_law(frozen, p, pairs[p], mid.results[mid.rows[row]], h, motion)
             continue
-        own, kept = search.listed[p - first], mid.overlaps[p - first]
+        own = search.listed[p - first]
         a, b = frame_of(motion, own.a), frame_of(motion, own.b)
-        if look_at(work, p - first, a, b, REACH) and kept.state == OVERLAPS:
-            law, ratio = law_of_boxes(search, own), search.regions[own.region].sticking
-            _of_faces(frozen, p, kept, a, b, law, h, (sticks[p - first : p - first + 1], ratio))
+        if look_at(work, p - first, a, b, REACH) and mid.overlaps[p - first].state == OVERLAPS:
+            begin_patch(work, p - first, h)
     for k in range(air):
         _of_air(frozen, film, pairs[film.listed[k]], film.listed[k], motion)
     _note_ends(tables, frozen)

@@ -1,10 +1,11 @@
-"""What the points of an iteration with frozen contacts lose as velocities grow: their part of its matrix."""
+"""What points and patches of an iteration with frozen contacts lose as velocities grow: their part of its
+matrix."""
 
 from __future__ import annotations
 
 from mdlgen.backends.lattice.kernels.contact.slopes import Numbers, core, outer, steepness
+from mdlgen.backends.lattice.kernels.integrate.patches import ZERO, patches_into
 from mdlgen.backends.lattice.kernels.integrate.points import law_at
-from mdlgen.backends.lattice.kernels.integrate.sticking_points import holding
 from mdlgen.backends.lattice.kernels.integrate.tangent import blocks
 from mdlgen.backends.lattice.kernels.integrate.unknowns import moving, turning_of
 from mdlgen.backends.lattice.kernels.linear.two_colour import ONE, TWO
@@ -26,13 +27,10 @@ from mdlgen.backends.lattice.kernels.state import (
     SLIDING,
     SPRING,
     SQUARE,
-    STICKS,
     STICTION,
 )
 from mdlgen.mechanics.vector import cross, dot, rotate, scale, three_from, vec
 from mdlgen.program.kernel import BORROWS, njit
-
-ZERO = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -88,21 +86,28 @@ def _couple_into(bodies, ends, axis, growth, matrix):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def points_into(work, h, chord):
-    """Adds what the forces of all points lose as velocities grow, times h, to band, border and corner; what
-    couples boxes of two sheets goes to the couplings. `chord`: see slopes.steepness."""
+    """Adds what the forces of all points and patches lose as velocities grow, times h, to band, border and
+    corner; what couples boxes of two sheets goes to the couplings. `chord`: see slopes.steepness."""
     tables, frozen, matrix, x = work.tables, work.frozen, work.matrix, work.mid.motion.x
-    bodies, couplings = tables.bodies, matrix.couplings
-    couplings.many[0], last = 0, -1
+    bodies, couplings, first = tables.bodies, matrix.couplings, work.search.first
+    couplings.many[0] = 0
+    patches_into(work, h, chord)
+    last, coupled, at = -1, -1, 0
     for k in range(frozen.many[0]):
         q, p, ends = frozen.points[k], frozen.pair[k], frozen.ends[k]
         node, other = ends.one, ends.two
-        if p != last and node >= 0 and other >= 0:
-            coupled = couplings.many[0]
-            couplings.ends[coupled, ONE], couplings.ends[coupled, TWO] = node, other
-            couplings.blocks[coupled] = 0.0
-            couplings.many[0] = coupled + 1
+        if p != last:
+            # cells of air, and no other points, may be of a pair that has a patch
+            while at < frozen.many[1] and frozen.patches[at].pair + first < p:
+                at += 1
+            if at < frozen.many[1] and frozen.patches[at].pair + first == p:
+                coupled = frozen.patches[at].coupled
+            elif node >= 0 and other >= 0:
+                coupled = couplings.many[0]
+                couplings.ends[coupled, ONE], couplings.ends[coupled, TWO] = node, other
+                couplings.blocks[coupled] = 0.0
+                couplings.many[0] = coupled + 1
         last = p
-        coupled = couplings.many[0] - 1
         n = three_from(q, NORMAL)
         if q[KIND] == A_COUPLE:
             y = q[GROWTH] * dot(three_from(q, NOW), n) / q[OVER]
@@ -114,12 +119,6 @@ def points_into(work, h, chord):
             y = -dot(three_from(q, NOW), n) / q[OVER]
             damping = h * q[SPRING] * q[BETA] * steepness(y, q[OVER], chord)
             _point_into(bodies, ends, q, x, outer(scale(damping, n), n), coupled, matrix)
-        elif q[KIND] == STICKS:
-            spring, growth, _normal, rate, slip = law_at(q, three_from(q, NOW), h)
-            rubs = (0.0, 0.0, 1.0, 1.0)
-            numbers = Numbers(spring, growth, 0.0, rate, q[OVER], q[BETA], *rubs, True)
-            t, _, _ = core(numbers, n, n, slip, h, chord, False)
-            _point_into(bodies, ends, q, x, holding(t, q, n, slip, h, chord), coupled, matrix)
         else:
             spring, growth, _normal, rate, slip = law_at(q, three_from(q, NOW), h)
             numbers = Numbers(

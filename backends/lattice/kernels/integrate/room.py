@@ -8,8 +8,10 @@ from mdlgen.backends.lattice.kernels.linear.band import empty as no_band
 from mdlgen.backends.lattice.kernels.linear.coupled import couplings
 from mdlgen.backends.lattice.kernels.state import (
     EACH,
+    EACH_PATCH,
     ENDS_OF_POINT,
     FACE,
+    PATCH,
     POINT,
     Drift,
     Frozen,
@@ -105,18 +107,20 @@ def drift(system) -> Drift:
 
 
 def frozen(system, cells: int) -> Frozen:
-    """Room for the points of an iteration with frozen contacts, and for so many cells of air. Boxes of two
-    sheets have four or five points where they overlap, and there is room for many more pairs than overlap;
-    where none is left, points are left out of the iteration, and of nothing else."""
+    """Room for the points of an iteration with frozen contacts, for so many cells of air, and for patches of
+    all pairs that are searched. Where there is none for a point, it is left out of the iteration, and of
+    nothing else."""
     nodes, border, listed = len(system.nodes), system.border, system.search.first
-    room = 2 * MOST_POINTS * listed + 2 * (len(system.pairs) - listed) + cells
+    searched = len(system.pairs) - listed
+    room = 2 * MOST_POINTS * listed + 2 * searched + cells
     return Frozen(
         points=np.zeros((room, POINT)),
+        patches=np.zeros(searched, PATCH),
         pair=np.zeros(room, np.int64),
         ends=np.zeros(room, ENDS_OF_POINT),
         rolls=np.zeros(room, np.bool_),
-        many=np.zeros(1, np.int64),
-        sums=np.zeros(room // EACH + 1),
+        many=np.zeros(2, np.int64),
+        sums=np.zeros(room // EACH + searched // EACH_PATCH + 2),
         vectors=np.zeros((6, 6 * nodes)),
         border=np.zeros((6, border)),
     )

@@ -1,0 +1,241 @@
+"""Patches of an iteration whose geometry is frozen: where the faces of two boxes of two sheets lie on each
+other.
+
+A patch is for all corners of an overlap what integrate.points has for one contact point. The owner of the
+contact (mechanics.overlap) moves against the other box by a rate and a spin, in its own axes, and what the
+corners do adds up to a force and a torque about its middle. So an iteration reads and writes few numbers for
+each of many thousand pairs.
+
+A corner keeps its place and its stiffness; its depth grows with the rate at which it closes, and its friction
+has the limit that its normal force had as the iteration began, or is a spring up to there (mechanics.stick).
+"""
+
+from __future__ import annotations
+
+import math
+
+from mdlgen.backends.lattice.kernels.contact.search import law_of_boxes
+from mdlgen.backends.lattice.kernels.contact.slopes import Numbers, core, holding
+from mdlgen.backends.lattice.kernels.integrate.tangent import blocks
+from mdlgen.backends.lattice.kernels.linear.two_colour import ONE, TWO
+from mdlgen.backends.lattice.kernels.state import (
+    ACROSS,
+    DEPTH_AT_REST,
+    GRIP,
+    LENGTHWISE,
+    OF_DIRECTION,
+    STIFF,
+)
+from mdlgen.mechanics.frame import frame_of
+from mdlgen.mechanics.laws import damped, friction_over_speed
+from mdlgen.mechanics.overlap import STIFF as KEPT_STIFF
+from mdlgen.mechanics.overlap import moves, plane_of
+from mdlgen.mechanics.stick import coefficient
+from mdlgen.mechanics.vector import add, back, cross, mat, rotate, scale, sub, three, three_from, vec
+from mdlgen.program.kernel import BORROWS, njit
+
+# How far two faces may be open at a corner that may close in an iteration [mm].
+REACH = 0.003
+ZERO = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _pressed(corner, law, rate, h):
+    """Elastic force of a corner that closes at a rate, and its growth with depth."""
+    depth = corner[DEPTH_AT_REST] + h * rate
+    if depth <= 0.0:
+        return 0.0, 0.0
+    growth = corner[STIFF] * math.sqrt(depth)
+    return growth * depth, 1.5 * growth
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _evaluate(q, law, h, far, sticks):
+    """Force and torque on the owner of a patch where it has gone so far along the direction, into its `does`.
+    sticks: stretches of all pairs that are searched, where any stick."""
+    rate = add(three(q.now), scale(far, three(q.along)))
+    spin = add(three_from(q.now, 3), scale(far, three_from(q.along, 3)))
+    force, torque = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    for k in range(q.count):
+        corner = q.corners[k]
+        at = (corner[LENGTHWISE], corner[ACROSS], q.high)
+        v = add(rate, cross(spin, at))
+        closes = q.side * v[2]
+        spring, _ = _pressed(corner, law, closes, h)
+        normal, x, y = damped(spring, closes, law.beta, law.smoothing), 0.0, 0.0
+        if corner[GRIP] > 0.0 and q.ratio > 0.0:
+            k_t, stretch = q.ratio * corner[STIFF], sticks[q.pair].now[k]
+            x, y = k_t * (stretch[0] + 2.0 * h * v[0]), k_t * (stretch[1] + 2.0 * h * v[1])
+            size = math.sqrt(x * x + y * y)
+            if size > corner[GRIP]:
+                x, y = corner[GRIP] / size * x, corner[GRIP] / size * y
+        elif corner[GRIP] > 0.0:
+            speed = math.sqrt(v[0] * v[0] + v[1] * v[1])
+            over = friction_over_speed(speed, law.mu_static, law.mu_dynamic, law.stiction, law.sliding)
+            x, y = corner[GRIP] * over * v[0], corner[GRIP] * over * v[1]
+        f = (-x, -y, -q.side * normal)
+        force, torque = add(force, f), add(torque, cross(at, f))
+    for i in range(3):
+        q.does[i], q.does[3 + i] = force[i], torque[i]
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def begin_patch(work, k, h):
+    """Makes a patch of what is kept of the k-th pair that is searched, where its faces are near enough."""
+    frozen, motion, search, bodies = work.frozen, work.mid.motion, work.search, work.tables.bodies
+    own, kept, many = search.listed[k], work.mid.overlaps[k], frozen.many[1]
+    first = kept.first != 0
+    one, two = (int(own.a), int(own.b)) if first else (int(own.b), int(own.a))
+    owner, other = frame_of(motion, one), frame_of(motion, two)
+    place, level, lean_p, lean_r = plane_of(kept, owner, other)
+    nearest = -REACH
+    for i in range(kept.count):
+        nearest = max(nearest, level + lean_p * kept.corners[i, 0] + lean_r * kept.corners[i, 1])
+    if nearest <= -REACH or many == frozen.patches.size:
+        return
+    law, ratio = law_of_boxes(search, own), search.regions[own.region].sticking
+    rate, spin = moves(owner, other, place)
+    q = frozen.patches[many]
+    frozen.many[1] = many + 1
+    q.a, q.b, q.region, q.pair, q.coupled = own.a, own.b, own.region, k, -1
+    q.owner, q.other, q.one, q.two = one, two, bodies[one].node, bodies[two].node
+    q.count, q.side, q.ratio = kept.count, kept.side, ratio if work.mid.sticks.pairs.size > 0 else 0.0
+    q.high = kept.side * (kept.thick - 0.5 * max(nearest, 0.0))
+    for i in range(3):
+        q.place[i], q.now[i], q.now[3 + i] = place[i], rate[i], spin[i]
+        q.along[i] = q.along[3 + i] = 0.0
+    for i in range(kept.count):
+        corner, p, r = q.corners[i], kept.corners[i, 0], kept.corners[i, 1]
+        v = add(rate, cross(spin, (p, r, q.high)))
+        closes = q.side * v[2]
+        corner[LENGTHWISE], corner[ACROSS], corner[STIFF] = p, r, kept.corners[i, KEPT_STIFF]
+        corner[DEPTH_AT_REST] = level + lean_p * p + lean_r * r - h * closes
+        spring, _ = _pressed(corner, law, closes, h)
+        corner[GRIP] = damped(spring, closes, law.beta, law.smoothing)
+        if q.ratio > 0.0:
+            corner[GRIP] *= coefficient(math.sqrt(v[0] * v[0] + v[1] * v[1]), law)
+    _evaluate(q, law, h, 0.0, work.mid.sticks.pairs)
+    for i in range(6):
+        q.begun[i] = q.does[i]
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _slope_of(work, q, h, far):
+    """Evaluates a patch; what it adds to the slope."""
+    _evaluate(q, law_of_boxes(work.search, q), h, far, work.mid.sticks.pairs)
+    total = 0.0
+    for i in range(6):
+        total += (q.does[i] - q.begun[i]) * q.along[i]
+    return total
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def patches_along(work, low, high, h):
+    """Patches from `low` on, before `high`, note how they move along the direction, and are evaluated at its
+    end; what they add to the slope there."""
+    frozen, r, total = work.frozen, work.mid.motion.r, 0.0
+    change = frozen.vectors[OF_DIRECTION]
+    for k in range(low, high):
+        q = frozen.patches[k]
+        axes = mat(r, q.owner)
+        v = w = far = (0.0, 0.0, 0.0)
+        if q.one >= 0:
+            v, w = three_from(change, 6 * q.one), three_from(change, 6 * q.one + 3)
+        if q.two >= 0:
+            v = sub(v, three_from(change, 6 * q.two))
+            far = back(axes, three_from(change, 6 * q.two + 3))
+        # the other box has its velocity at its own middle
+        rate, spin = add(back(axes, v), cross(far, three(q.place))), sub(back(axes, w), far)
+        for i in range(3):
+            q.along[i], q.along[3 + i] = rate[i], spin[i]
+        total += _slope_of(work, q, h, 1.0)
+    return total
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def patches_slope(work, low, high, h, far):
+    """What patches add to the slope at that part of the direction."""
+    total = 0.0
+    for k in range(low, high):
+        total += _slope_of(work, work.frozen.patches[k], h, far)
+    return total
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def pull_patches(work, h, part, g):
+    """As along.pull, with patches that were evaluated there last."""
+    frozen, r = work.frozen, work.mid.motion.r
+    for k in range(frozen.many[1]):
+        q = frozen.patches[k]
+        for i in range(6):
+            q.now[i] += part * q.along[i]
+        force = scale(h, sub(three(q.does), three(q.begun)))
+        torque = scale(h, sub(three_from(q.does, 3), three_from(q.begun, 3)))
+        axes = mat(r, q.owner)
+        on_other = rotate(axes, sub(cross(three(q.place), force), torque))
+        force, torque = rotate(axes, force), rotate(axes, torque)
+        if q.one >= 0:
+            for i in range(3):
+                g[6 * q.one + i] -= force[i]
+                g[6 * q.one + 3 + i] -= torque[i]
+        if q.two >= 0:
+            for i in range(3):
+                g[6 * q.two + i] += force[i]
+                g[6 * q.two + 3 + i] -= on_other[i]
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def patches_into(work, h, chord):
+    """Adds what patches lose as velocities grow, times h, to the diagonal blocks of the band, and couples
+    their boxes. `chord`: see slopes.steepness."""
+    frozen, matrix, motion = work.frozen, work.matrix, work.mid.motion
+    couplings, sticks = matrix.couplings, work.mid.sticks.pairs
+    for j in range(frozen.many[1]):
+        q, law = frozen.patches[j], law_of_boxes(work.search, frozen.patches[j])
+        first, node, other = q.owner == q.a, int(q.one), int(q.two)
+        if node >= 0 and other >= 0:
+            # as of all points of a pair, rows are of its first box
+            q.coupled = couplings.many[0]
+            couplings.ends[q.coupled, ONE] = node if first else other
+            couplings.ends[q.coupled, TWO] = other if first else node
+            couplings.blocks[q.coupled] = 0.0
+            couplings.many[0] += 1
+        axes = mat(motion.r, q.owner)
+        n = scale(-float(q.side), (axes[2], axes[5], axes[8]))
+        between = sub(vec(motion.x, q.other), vec(motion.x, q.owner))
+        for k in range(q.count):
+            corner = q.corners[k]
+            at = (corner[LENGTHWISE], corner[ACROSS], q.high)
+            v = add(three(q.now), cross(three_from(q.now, 3), at))
+            closes = q.side * v[2]
+            spring, growth = _pressed(corner, law, closes, h)
+            slip, rubs = rotate(axes, (v[0], v[1], 0.0)), corner[GRIP] if q.ratio == 0.0 else 0.0
+            if spring == 0.0 and corner[GRIP] == 0.0:
+                continue
+            numbers = Numbers(
+                spring,
+                growth,
+                rubs,
+                closes,
+                law.smoothing,
+                law.beta,
+                law.mu_static,
+                law.mu_dynamic,
+                law.stiction,
+                law.sliding,
+                True,
+            )
+            t, _, _ = core(numbers, n, n, slip, h, chord, False)
+            if q.ratio > 0.0 and corner[GRIP] > 0.0:
+                k_t, stretch = q.ratio * corner[STIFF], sticks[q.pair].now[k]
+                pulled = (k_t * (stretch[0] + 2.0 * h * v[0]), k_t * (stretch[1] + 2.0 * h * v[1]), 0.0)
+                t = holding(t, rotate(axes, pulled), corner[GRIP], k_t, n, h, chord)
+            arm = rotate(axes, at)
+            far = sub(arm, between)
+            if node >= 0:
+                blocks(matrix.band, node, 0, 1.0, t, arm, arm, ZERO)
+            if other >= 0:
+                blocks(matrix.band, other, 0, 1.0, t, far, far, ZERO)
+            if q.coupled >= 0:
+                one, two = (arm, far) if first else (far, arm)
+                blocks(couplings.blocks, int(q.coupled), 0, -1.0, t, one, two, ZERO)
