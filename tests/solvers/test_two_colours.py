@@ -75,7 +75,7 @@ def equations(touch: list[tuple[int, int]], seed: int) -> tuple[np.ndarray, Pool
         single_inner=np.zeros((0, 6, 0), np.float32),
     )
     pool = parallel.empty(3, BORDER)
-    assert factor_sheets(pool, matrix) and eliminate_sheets(pool, matrix)
+    assert factor_sheets(pool, matrix, False) and eliminate_sheets(pool, matrix)
     two_colour.colour(matrix)
     return whole, pool, matrix
 

@@ -59,7 +59,7 @@ class Pool(NamedTuple):
     """What the threads of a run share besides what they work on."""
 
     words: np.ndarray  # (WORDS,)
-    given: np.ndarray  # numbers that the parts of a job take, (5,)
+    given: np.ndarray  # numbers that the parts of a job take, (6,)
     shares: np.ndarray  # what parts of sheets add to sums, (sheets, border + 1, border + 1)
     failed: np.ndarray  # whether a part of a sheet failed, (sheets,)
 
@@ -68,7 +68,7 @@ def empty(sheets: int, border: int) -> Pool:
     """A pool without helpers."""
     return Pool(
         np.zeros(WORDS, np.int64),
-        np.zeros(5),
+        np.zeros(6),
         np.zeros((sheets, border + 1, border + 1)),
         np.zeros(sheets, np.int64),
     )

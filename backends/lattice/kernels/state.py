@@ -129,6 +129,7 @@ class Frozen(NamedTuple):
     sums: Floats  # what each part of them adds to a slope
     vectors: Floats  # CHANGE to RESIDUAL of the nodes, (6, 6 nodes)
     border: Floats  # the same of the border, (6, border)
+    block: Floats  # (1, 6, 6) scratch: what a patch loses as its owner moves against the other box
 
 
 # The bodies of a point's pair and their nodes, -1: none.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mdlgen.backends.lattice.kernels.contact.drift import LEFT, look_ahead
+from mdlgen.backends.lattice.kernels.contact.fetch import hint
 from mdlgen.backends.lattice.kernels.contact.search import law_of_boxes
 from mdlgen.backends.lattice.kernels.forces import onto, touches
 from mdlgen.backends.lattice.kernels.state import (
@@ -35,6 +36,9 @@ from mdlgen.mechanics.stick import carry_stretch, press_sticking
 from mdlgen.mechanics.turning import ALONG, LIMIT
 from mdlgen.model.tables.contacts import BOX_BOX
 from mdlgen.program.kernel import BORROWS, njit
+
+# How many pairs ahead overlaps are asked for.
+AHEAD = 6
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -118,6 +122,8 @@ def near_forces(work, close, h):
     lost = 0.0
     look_ahead(work, h)
     for at in range(close):
+        if at + AHEAD < close and near[at + AHEAD] >= search.first:
+            hint(mid.overlaps, near[at + AHEAD] - search.first)
         p, out = near[at], results[row]
         faces = p >= search.first
         if not faces:

@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 
 from mdlgen.backends.lattice.kernels.contact.search import law_of_boxes
-from mdlgen.backends.lattice.kernels.contact.slopes import Numbers, core, holding
+from mdlgen.backends.lattice.kernels.contact.slopes import Numbers, core, hat_left, hat_right, holding
 from mdlgen.backends.lattice.kernels.integrate.tangent import blocks
 from mdlgen.backends.lattice.kernels.linear.two_colour import ONE, TWO
 from mdlgen.backends.lattice.kernels.state import (
@@ -184,12 +184,78 @@ def pull_patches(work, h, part, g):
                 g[6 * q.two + 3 + i] -= on_other[i]
 
 
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _part(block, row, column):
+    """Nine numbers of a block, row by row; it stands column by column."""
+    c0, c1, c2 = block[column], block[column + 1], block[column + 2]
+    return (
+        *(c0[row], c1[row], c2[row]),
+        *(c0[row + 1], c1[row + 1], c2[row + 1]),
+        *(c0[row + 2], c1[row + 2], c2[row + 2]),
+    )
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _add_part(block, row, column, sign, t):
+    for r in range(3):
+        for c in range(3):
+            block[column + c, row + r] += sign * t[3 * r + c]
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _sum(s, t):
+    return (
+        *(s[0] + t[0], s[1] + t[1], s[2] + t[2]),
+        *(s[3] + t[3], s[4] + t[4], s[5] + t[5]),
+        *(s[6] + t[6], s[7] + t[7], s[8] + t[8]),
+    )
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _turned(t):
+    return (t[0], t[3], t[6], t[1], t[4], t[7], t[2], t[5], t[8])
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _spread(matrix, q, own, between):
+    """Adds the matrix `own` (6, 6) of what moves the owner of a patch against the other box to their blocks:
+    the other one moves it by v + w x (its middle as seen from that of the other)."""
+    first, band, couplings = q.owner == q.a, matrix.band, matrix.couplings.blocks
+    a, c, d = _part(own, 0, 0), _part(own, 0, 3), _part(own, 3, 3)
+    right = _sum(hat_right(a, between), c)
+    low = _sum(hat_right(_turned(c), between), d)
+    if q.one >= 0:
+        block = band[q.one]
+        _add_part(block, 0, 0, 1.0, a)
+        _add_part(block, 0, 3, 1.0, c)
+        _add_part(block, 3, 0, 1.0, _turned(c))
+        _add_part(block, 3, 3, 1.0, d)
+    if q.two >= 0:
+        block = band[q.two]
+        _add_part(block, 0, 0, 1.0, a)
+        _add_part(block, 0, 3, 1.0, right)
+        _add_part(block, 3, 0, 1.0, _turned(right))
+        _add_part(block, 3, 3, 1.0, low)
+        _add_part(block, 3, 3, -1.0, hat_left(between, right))
+    if q.coupled >= 0:
+        block = couplings[q.coupled]
+        _add_part(block, 0, 0, -1.0, a)
+        if first:
+            _add_part(block, 0, 3, -1.0, right)
+            _add_part(block, 3, 0, -1.0, _turned(c))
+            _add_part(block, 3, 3, -1.0, low)
+        else:
+            _add_part(block, 3, 0, -1.0, _turned(right))
+            _add_part(block, 0, 3, -1.0, c)
+            _add_part(block, 3, 3, -1.0, _turned(low))
+
+
 @njit(cache=True, error_model="numpy", **BORROWS)
 def patches_into(work, h, chord):
     """Adds what patches lose as velocities grow, times h, to the diagonal blocks of the band, and couples
     their boxes. `chord`: see slopes.steepness."""
     frozen, matrix, motion = work.frozen, work.matrix, work.mid.motion
-    couplings, sticks = matrix.couplings, work.mid.sticks.pairs
+    couplings, sticks, own = matrix.couplings, work.mid.sticks.pairs, frozen.block
     for j in range(frozen.many[1]):
         q, law = frozen.patches[j], law_of_boxes(work.search, frozen.patches[j])
         first, node, other = q.owner == q.a, int(q.one), int(q.two)
@@ -202,7 +268,7 @@ def patches_into(work, h, chord):
             couplings.many[0] += 1
         axes = mat(motion.r, q.owner)
         n = scale(-float(q.side), (axes[2], axes[5], axes[8]))
-        between = sub(vec(motion.x, q.other), vec(motion.x, q.owner))
+        own[:] = 0.0
         for k in range(q.count):
             corner = q.corners[k]
             at = (corner[LENGTHWISE], corner[ACROSS], q.high)
@@ -231,11 +297,5 @@ def patches_into(work, h, chord):
                 pulled = (k_t * (stretch[0] + 2.0 * h * v[0]), k_t * (stretch[1] + 2.0 * h * v[1]), 0.0)
                 t = holding(t, rotate(axes, pulled), corner[GRIP], k_t, n, h, chord)
             arm = rotate(axes, at)
-            far = sub(arm, between)
-            if node >= 0:
-                blocks(matrix.band, node, 0, 1.0, t, arm, arm, ZERO)
-            if other >= 0:
-                blocks(matrix.band, other, 0, 1.0, t, far, far, ZERO)
-            if q.coupled >= 0:
-                one, two = (arm, far) if first else (far, arm)
-                blocks(couplings.blocks, int(q.coupled), 0, -1.0, t, one, two, ZERO)
+            blocks(own, 0, 0, 1.0, t, arm, arm, ZERO)
+        _spread(matrix, q, own[0], sub(vec(motion.x, q.other), vec(motion.x, q.owner)))

@@ -15,7 +15,8 @@ from __future__ import annotations
 
 import math
 
-from mdlgen.backends.lattice.kernels.contact.between import look_at
+from mdlgen.backends.lattice.kernels.contact.between import AHEAD, look_at
+from mdlgen.backends.lattice.kernels.contact.fetch import hint
 from mdlgen.backends.lattice.kernels.integrate.air import damping_of
 from mdlgen.backends.lattice.kernels.integrate.patches import REACH, begin_patch
 from mdlgen.backends.lattice.kernels.state import (
@@ -212,6 +213,8 @@ def gather(work, counts, h, plates):
     for k in range(air):
         film.cells[film.head[film.listed[k]]].point = -1
     for at in range(close):
+        if at + AHEAD < close and near[at + AHEAD] >= first:
+            hint(mid.overlaps, near[at + AHEAD] - first)
         p = near[at]
         row = known
         touching = known < count and mid.touched[known] == p

@@ -123,4 +123,5 @@ def frozen(system, cells: int) -> Frozen:
         sums=np.zeros(room // EACH + searched // EACH_PATCH + 2),
         vectors=np.zeros((6, 6 * nodes)),
         border=np.zeros((6, border)),
+        block=np.zeros((1, 6, 6)),
     )

@@ -181,7 +181,7 @@ def _make_factor(work, counts, h, lag, where, chord):
         points_into(work, h, chord)
     in_box_axes(tables.nodes, motion.r, a, matrix.border, matrix.offsets)
     forget(work.condensed)
-    return factor_sheets(work.pool, matrix)
+    return factor_sheets(work.pool, matrix, False)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)

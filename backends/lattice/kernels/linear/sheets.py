@@ -9,18 +9,38 @@ from mdlgen.backends.lattice.kernels.linear.two_colour import BEGIN, END
 from mdlgen.backends.lattice.kernels.parallel import begin, finish, take
 from mdlgen.program.kernel import BORROWS, njit
 
+# Of Pool.given: whether masses and bushings are yet to be added.
+INNER = 5
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _add_inner(a, inner):
+    """Adds a band to one of which the diagonal blocks alone are known."""
+    for n in range(a.shape[0]):
+        for c in range(6):
+            col, own = a[n, c], inner[n, c]
+            for r in range(6):
+                col[r] += own[r]
+            for r in range(6, col.size):
+                col[r] = own[r]
+
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def factor_part(pool, matrix, sheet):
     """Factors the band of a sheet."""
-    spans = matrix.couplings.colouring.spans
-    pool.failed[sheet] = 0 if factor(matrix.band[spans[sheet, BEGIN] : spans[sheet, END]]) else 1
+    span = matrix.couplings.colouring.spans[sheet]
+    a = matrix.band[span[BEGIN] : span[END]]
+    if pool.given[INNER] != 0.0:
+        _add_inner(a, matrix.inner[span[BEGIN] : span[END]])
+    pool.failed[sheet] = 0 if factor(a) else 1
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def factor_sheets(pool, matrix):
-    """Cholesky factor of the band in place, as band.factor."""
+def factor_sheets(pool, matrix, inner):
+    """Cholesky factor of the band in place, as band.factor; `inner`: of its diagonal blocks and the band of
+    masses and bushings together."""
     many = pool.failed.size
+    pool.given[INNER] = 1.0 if inner else 0.0
     begin(pool, parallel.FACTOR, many)
     sheet = take(pool)
     while sheet >= 0:
