@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from cutting import Cut, Cutting, written_with
 from machines import MACHINE, OVERRUN
 from nip import FORTH_AND_BACK
 from same import bits
@@ -23,13 +24,13 @@ from stacks import stack
 import mdlgen
 import mdlgen.errors
 from mdlgen.backends.lattice import run as lattice
-from mdlgen.backends.lattice.kernels import entries, forces
+from mdlgen.backends.lattice.kernels import entries
 from mdlgen.errors import OutputError
 from mdlgen.model.tables import Model
 from mdlgen.paths import samples
 from mdlgen.results.io.store import hdf5, read
 from mdlgen.results.result import Result
-from mdlgen.runs.checkpoint import Checkpointer, State
+from mdlgen.runs.checkpoint import Checkpointer
 from mdlgen.runs.provenance import digest
 from mdlgen.spec.load import loads
 
@@ -86,28 +87,6 @@ def scene(name: str) -> Model:
         text, sets = MORE[name]
         return mdlgen.lower(loads(text, name, sets))
     return mdlgen.lower(mdlgen.load(samples() / f"{name}.yaml", SCENES[name]))
-
-
-class Cut(Exception):
-    """A run is cut off."""
-
-
-def written_with() -> dict[str, str]:
-    return {"run.json": "{}"}
-
-
-class Cutting(Checkpointer):
-    """Keeps a state at every stored time, and cuts off after some."""
-
-    def __init__(self, folder: Path, provenance: Callable[[], dict[str, str]] | None, after: int):
-        super().__init__(folder, 0.0, provenance)
-        self.left = after
-
-    def save(self, number: int, state: State) -> None:
-        super().save(number, state)
-        self.left -= 1
-        if self.left == 0:
-            raise Cut
 
 
 @pytest.mark.parametrize("name", [*SCENES, *MORE])
@@ -204,20 +183,6 @@ def test_a_run_that_failed_says_so_again(tmp_path: Path) -> None:
     assert first.time[-1] > 6.0
     assert again.status == first.status
     assert bits(hdf5(again)) == bits(hdf5(first))
-
-
-def test_room_for_pairs_is_not_kept(tmp_path: Path) -> None:
-    """A pile has room for so many pairs that writing all of it would take more memory than a machine has."""
-    model = mdlgen.lower(
-        mdlgen.load(
-            samples() / "pile.yaml", ["piles.cassette.count=20", "run.duration=2 ms", "run.step=0.1 ms"]
-        )
-    )
-    system = lattice.build(model, fold=True)
-    room = 2 * len(system.pairs) * forces.WIDE * 8  # bytes, for what each does in a step and in a solve
-    with pytest.raises(Cut):
-        lattice.solve(model, keep=Cutting(tmp_path / "c", written_with, 3))
-    assert (tmp_path / "c" / "pass_0.npz").stat().st_size < 0.1 * room
 
 
 def test_what_a_run_reads_does_not_change_in_it() -> None:

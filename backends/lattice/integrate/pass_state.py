@@ -9,7 +9,7 @@ import numpy as np
 
 from mdlgen.backends.lattice.integrate.record import Recorder
 from mdlgen.backends.lattice.integrate.sleep import Sleep
-from mdlgen.backends.lattice.kernels.state import Control, Workspace
+from mdlgen.backends.lattice.kernels.state import MANY, Control, Workspace
 from mdlgen.backends.lattice.search import many_searched
 from mdlgen.errors import OutputError
 from mdlgen.runs.checkpoint import Checkpointer, State
@@ -55,6 +55,7 @@ class PassState:
         return {
             **{f"matrix.couplings.{name}": rows for name, rows in couplings.items()},
             **dict.fromkeys(("mid.overlaps", "mid.sticks.pairs"), searched),
+            "mid.drift.listed": int(work["mid.drift.list_holds"][MANY]),
             "condensed.cols": int(slots[-1]) + 1 if slots.size else 0,
         }
 

@@ -148,15 +148,21 @@ def joint_forces(joints, points, motion, f, lag=0.0):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def near_pairs(tables, motion, margin, ahead, found):
-    """Lists pairs in `found` that are closer than `margin` [mm] and what they move against each other in
-    `ahead` [ms]; returns how many."""
-    bodies, pairs, listed, shapes = tables.bodies, tables.pairs, tables.listed, tables.shapes
-    count, first = 0, pairs.size - listed.size
-    for p in range(first):
+def near_of_model(tables, motion, margin, ahead, found):
+    """Lists the Model's pairs as `near_pairs` does, without those that are searched."""
+    bodies, pairs, shapes, count = tables.bodies, tables.pairs, tables.shapes, 0
+    for p in range(pairs.size - tables.listed.size):
         if near(bodies, pairs[p], shapes, motion, margin, ahead):
             found[count] = p
             count += 1
+    return count
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def near_of_search(tables, motion, margin, ahead, found):
+    """Lists those that are searched alone."""
+    bodies, listed, shapes, count = tables.bodies, tables.listed, tables.shapes, 0
+    first = tables.pairs.size - listed.size
     for k in range(listed.size):
         if listed[k].a < 0:  # from here on there is room only
             break
@@ -164,6 +170,14 @@ def near_pairs(tables, motion, margin, ahead, found):
             found[count] = first + k
             count += 1
     return count
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def near_pairs(tables, motion, margin, ahead, found):
+    """Lists pairs in `found` that are closer than `margin` [mm] and what they move against each other in
+    `ahead` [ms]; returns how many."""
+    count = near_of_model(tables, motion, margin, ahead, found)
+    return count + near_of_search(tables, motion, margin, ahead, found[count:])
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)

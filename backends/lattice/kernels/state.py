@@ -64,6 +64,14 @@ class Drift(NamedTuple):
     rates: Floats  # (sheets,) how fast they are at most in an iteration [mm/ms]
     looked: Floats  # (regions,) what both had moved together at the last look [mm]
     looks: Ints  # (regions,) how many looks there were
+    listed: Ints  # pairs that are searched and were near when they were listed,
+    list_moved: Floats  # (regions,) what both had moved together then [mm]
+    list_holds: Floats  # (3,) MANY, MARGIN, SLACK of the list
+
+
+# Of Drift.list_holds: how many pairs are in the list, the margin that they were near by, and how much nearer
+# pairs may have come since, -1: not at all [mm].
+MANY, MARGIN, SLACK = 0, 1, 2
 
 
 class Midpoint(NamedTuple):

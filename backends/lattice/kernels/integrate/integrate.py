@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from mdlgen.backends.lattice.kernels.contact.between import faces_into, forget_overlaps
-from mdlgen.backends.lattice.kernels.contact.drift import add_step
+from mdlgen.backends.lattice.kernels.contact.drift import add_step, list_anew
 from mdlgen.backends.lattice.kernels.contact.search import look, mark_of, strayed
 from mdlgen.backends.lattice.kernels.contact.sticking import end_of_step, put_back, set_aside
 from mdlgen.backends.lattice.kernels.contact.swept import Before, swept
@@ -251,6 +251,7 @@ def run(work, t, steps, tolerance, control):
                 forget_overlaps(pairs, mid.overlaps, search.first)
                 if mid.sticks.pairs.size > 0:
                     set_aside(mid.sticks)
+                list_anew(mid.drift)
                 if not look(pairs, search, x):
                     return CROWDED, t
                 if mid.sticks.pairs.size > 0:

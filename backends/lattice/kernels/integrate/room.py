@@ -103,6 +103,9 @@ def drift(system) -> Drift:
         rates=np.zeros(sheets),
         looked=np.full(len(regions), -np.inf),
         looks=np.zeros(len(regions), np.int64),
+        listed=np.zeros(len(system.pairs) - system.search.first, np.int64),
+        list_moved=np.zeros(len(regions)),
+        list_holds=np.array([0.0, 0.0, -1.0]),
     )
 
 

@@ -28,11 +28,11 @@ from mdlgen.backends.lattice.kernels.contact.condensed import (
     unsee,
 )
 from mdlgen.backends.lattice.kernels.contact.contact_solve import solve_contacts
+from mdlgen.backends.lattice.kernels.contact.drift import list_near
 from mdlgen.backends.lattice.kernels.contact.sides import crossed, part_of_change
 from mdlgen.backends.lattice.kernels.forces import (
     clutch_torques,
     joint_forces,
-    near_pairs,
     other_forces,
     pair_forces,
     pair_forces_again,
@@ -221,7 +221,7 @@ def midpoint(work, t, dt, tolerance, control):
         if iteration == 0 or margin < dt * moved:
             # what the guess did not know of may move further than it said
             margin = FAR + 2.0 * dt * moved
-            close = near_pairs(tables, mid.motion, margin, dt, mid.near)
+            close = list_near(work, margin, h, mid.near)
             unsee(condensed)
         if iteration == 0 and work.film.films.size > 0:
             air = lay(work, h)
