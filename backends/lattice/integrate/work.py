@@ -107,7 +107,7 @@ def workspace(
 def control(work: Workspace) -> Control:
     """Counts and settings of a run before its first step."""
     history = History(work.state.u.copy(), work.state.ub.copy(), np.zeros(2))
-    return Control(np.zeros(4), np.zeros(COUNTERS), np.zeros(4), history, np.zeros(7))
+    return Control(np.zeros(5), np.zeros(COUNTERS), np.zeros(4), history, np.zeros(7))
 
 
 def warm(model: Model, system: System) -> None:

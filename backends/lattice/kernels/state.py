@@ -308,7 +308,7 @@ LAST_STEP, BETWEEN = 0, 1
 class Control(NamedTuple):
     """What a run counts and is steered by."""
 
-    factored: Floats  # (4,) MADE_FOR, STALE, WHERE, TOUGH
+    factored: Floats  # (5,) MADE_FOR, STALE, WHERE, TOUGH, SPENT
     counters: Floats  # (COUNTERS,)
     energies: Floats  # (4,) DISSIPATED, DRIVEN, THROUGH_DRIVES, DAMPED_NUMERICALLY [N mm]
     history: History
@@ -316,9 +316,9 @@ class Control(NamedTuple):
 
 
 # Of Control.factored: the step that the factor was made for (0: none), whether it is to be made anew, where
-# contacts stand (condensed.APART, PLANES or INSIDE), and for how many steps more they stand INSIDE (see
-# integrate.step).
-MADE_FOR, STALE, WHERE, TOUGH = 0, 1, 2, 3
+# contacts stand (condensed.APART, PLANES or INSIDE), for how many steps more they stand INSIDE (see
+# integrate.step), and how many linear solves beyond one for each step it has served there.
+MADE_FOR, STALE, WHERE, TOUGH, SPENT = 0, 1, 2, 3, 4
 # Of Control.counters. WORST names the body, pair or joint of a failure, STRAIN is that of a joint beyond its
 # curve, THROUGH the pair of two sheets that a step would take through each other, or -1; SOLVES counts linear
 # solves of iterations with frozen contacts, GIVEN_UP steps that did not converge.

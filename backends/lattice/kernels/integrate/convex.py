@@ -43,6 +43,7 @@ from mdlgen.backends.lattice.kernels.state import (
     OF_DIRECTION,
     RESIDUAL,
     SOLVES,
+    SPENT,
     STALE,
     WHERE,
 )
@@ -63,8 +64,12 @@ SOLVED = 0.01
 # else to where it is less than the other part.
 LEVEL, FLAT = 0.25, 0.1
 MOST_LOOKS, MOST_DOUBLED = 12, 4
-# A factor is worth so many iterations (see integrate.step).
-WORTH = 4.0
+# A first direction that is gone along wholly is enough for one of the step's own iterations where it moves by
+# less than so many times what the step may leave: beyond, more of them take less than another evaluation.
+FIRST = 10.0
+# A factor is worth so many iterations (see integrate.step). One that has served so many solves beyond one for
+# each step is made anew: what would be saved by that is not known, and has been spent by then.
+WORTH, SPEND = 4.0, 8.0
 # How much of the chord a factor takes (see slopes.steepness): little, since each direction is searched.
 LEAST = 0.05
 
@@ -227,6 +232,9 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
     if air:
         limit *= FINE
     _say_enough(work, limit)
+    begins = renew
+    if begins and factored[SPENT] >= SPEND and not air:
+        factored[STALE] = 1.0
     for iteration in range(MOST_WITH_AIR if air else MOST_ITERATIONS):
         if iteration == 0:
             copy(g, z)
@@ -243,11 +251,13 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
             if not _make_matrix(work, h, lag, renew):
                 return 0
             factored[MADE_FOR], factored[STALE], factored[WHERE] = 2.0 * h, 0.0, INSIDE
+            factored[SPENT] = 0.0
             renew, renewed = False, True
         crossing = _dot(g, z) + _dot(gb, zb) if iteration > 0 and not made else 0.0
         copy(z, g)
         copy(zb, gb)
         counters[SOLVES] += 1
+        factored[SPENT] += 0.0 if begins and iteration == 0 else 1.0
         solve_coupled(work.pool, matrix)
         # conjugate directions, by Polak and Ribiere: they make up for a factor of an earlier state
         square = _dot(g, z) + _dot(gb, zb)
@@ -284,7 +294,8 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
             changeb[i] += part * pb[i]
         # a part of a direction may be small while what is left is not: it counts as a whole
         rate = moved / before
-        converged = (not whole and iteration == 0 and part == 1.0) or moved <= ROUGH * limit
+        first = not whole and iteration == 0 and part == 1.0 and moved <= FIRST * limit
+        converged = first or moved <= ROUGH * limit
         if before < 1e299 and part == 1.0 and rate < 0.5:
             converged = converged or moved * rate / (1.0 - rate) <= ROUGH * limit
         if converged:
