@@ -55,24 +55,30 @@ def factor_sheets(pool, matrix, inner):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def eliminate_part(pool, matrix, sheet):
-    """Rows of Y = A^-1 B in the columns of a sheet, and what they take off the corner; its factor in single
-    precision."""
+    """Rows of Y = A^-1 B in the columns of a sheet, and what they take off the corner; which numbers of it
+    the rollers reach; its factor in single precision."""
     span, shares = matrix.couplings.colouring.spans[sheet], pool.shares
+    reached = matrix.couplings.colouring.reached
     b, y = matrix.border, matrix.eliminated
     start, end = 6 * span[BEGIN], 6 * span[END]
     copy(matrix.single_factor[span[BEGIN] : span[END]], matrix.band[span[BEGIN] : span[END]])
     for j in range(b.shape[0]):
-        first = start
+        first, last = start, end
         while first < end and b[j, first] == 0.0:
             first += 1
+        while last > first and b[j, last - 1] == 0.0:
+            last -= 1
+        reached[sheet, j, BEGIN], reached[sheet, j, END] = first, last
+    for j in range(b.shape[0]):
+        first, last = reached[sheet, j]
         for l in range(start, end):
             y[j, l] = b[j, l]
-        if first < end:
+        if first < last:
             solve(matrix.band[span[BEGIN] : span[END]], y[j, start:end], (first - start) // 6)
         for i in range(j, b.shape[0]):
             v = 0.0
-            if first < end:
-                for l in range(start, end):
+            if first < last:
+                for l in range(reached[sheet, i, BEGIN], reached[sheet, i, END]):
                     v += b[i, l] * y[j, l]
             shares[sheet, i, j] = v
 

@@ -41,6 +41,7 @@ class Colouring(NamedTuple):
     begins: np.ndarray  # where the couplings of a sheet begin in `own`, (sheets + 1,)
     own: np.ndarray  # couplings of each sheet, in their order, (2 pairs,)
     enough: np.ndarray  # square of the residual that may be left of a sheet, (sheets,)
+    reached: np.ndarray  # first number of a sheet that each roller reaches, and the first behind them
 
 
 def colouring(label: np.ndarray, border: int, pairs: int) -> Colouring:
@@ -56,6 +57,7 @@ def colouring(label: np.ndarray, border: int, pairs: int) -> Colouring:
         np.zeros(len(sheets) + 1, np.int64),
         np.zeros(2 * pairs, np.int64),
         np.zeros(len(sheets)),
+        np.zeros((len(sheets), border, 2), np.int64),
     )
 
 
@@ -122,7 +124,7 @@ def colour(matrix):
             v = d[i, j]
             for sheet in range(colours.of.size):
                 if colours.of[sheet] == 0:
-                    for l in range(6 * colours.spans[sheet, BEGIN], 6 * colours.spans[sheet, END]):
+                    for l in range(colours.reached[sheet, i, BEGIN], colours.reached[sheet, i, END]):
                         v -= b[i, l] * y[j, l]
             corner[i, j] = v
     if cholesky(corner):
@@ -196,6 +198,7 @@ def first_part(pool, matrix, sheet):
     elif start:
         return
     for j in range(b.shape[0]):
+        low, high = couplings.colouring.reached[sheet, j]
         pool.shares[sheet, j, 0] = _dot(b[j, low:high], x[low:high])
 
 
@@ -208,7 +211,9 @@ def back_part(matrix, sheet):
     if couplings.colouring.of[sheet] != 0:
         return
     for j in range(rollers.size):
-        v = rollers[j]
+        v, reached = rollers[j], couplings.colouring.reached[sheet, j]
+        if reached[BEGIN] == reached[END]:
+            continue
         for l in range(6 * span[BEGIN], 6 * span[END]):
             w[l] -= y[j, l] * v
 
@@ -227,8 +232,8 @@ def across_part(pool, matrix, sheet):
         q[l] = 0.0
     _across(couplings, sheet, w, q)
     for j in range(rollers.size):
-        far = rollers[j]
-        for l in range(low, high):
+        far, reached = rollers[j], couplings.colouring.reached[sheet, j]
+        for l in range(reached[BEGIN], reached[END]):
             q[l] += b[j, l] * far
     for l in range(low, high):
         q[l] = own[l] - q[l]
