@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from mdlgen.backends.lattice.kernels.contact.press_job import press_part
 from mdlgen.backends.lattice.kernels.integrate.along import along_part, slope_part
 from mdlgen.backends.lattice.kernels.integrate.convex import product_part
 from mdlgen.backends.lattice.kernels.integrate.damped import left_part
+from mdlgen.backends.lattice.kernels.integrate.points import patches_part
 from mdlgen.backends.lattice.kernels.linear.coupled import axes_part
 from mdlgen.backends.lattice.kernels.linear.sheets import eliminate_part, factor_part, solve_part
 from mdlgen.backends.lattice.kernels.linear.two_colour import part_of
@@ -15,6 +17,8 @@ from mdlgen.backends.lattice.kernels.parallel import (
     FACTOR,
     KIND,
     OVERSHOOT,
+    PATCHES,
+    PRESS,
     PRODUCT,
     SLOPE,
     SOLVE,
@@ -44,6 +48,10 @@ def do_part(work, kind, part):
         along_part(work, part)
     elif kind == SLOPE:
         slope_part(work, part)
+    elif kind == PRESS:
+        press_part(work, part)
+    elif kind == PATCHES:
+        patches_part(work, part)
     else:
         part_of(pool, matrix, kind, part)
 

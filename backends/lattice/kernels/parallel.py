@@ -40,7 +40,7 @@ from mdlgen.program.kernel import BORROWS, intrinsic, njit
 
 # Kinds of jobs, see jobs.do_part.
 FACTOR, ELIMINATE, SOLVE, FIRST, BACK, ACROSS, SPLIT, STEP, TURN = range(9)
-AXES, OVERSHOOT, PRODUCT, ALONG, SLOPE = range(9, 14)
+AXES, OVERSHOOT, PRODUCT, ALONG, SLOPE, PRESS, PATCHES = range(9, 16)
 
 # Words of a pool, in lines of the processor's cache by who writes them: the number of the job, times MOST,
 # and how many of its parts are left to take, with its kind; how many parts helpers have done; of the thread
@@ -55,11 +55,15 @@ CHUNK = 64  # items of a part, where these are small
 PATIENCE = 2000
 
 
+# Of Pool.given: half of a step [ms].
+HALF = 4
+
+
 class Pool(NamedTuple):
     """What the threads of a run share besides what they work on."""
 
     words: np.ndarray  # (WORDS,)
-    given: np.ndarray  # numbers that the parts of a job take, (6,)
+    given: np.ndarray  # numbers that the parts of a job take, (8,)
     shares: np.ndarray  # what parts of sheets add to sums, (sheets, border + 1, border + 1)
     failed: np.ndarray  # whether a part of a sheet failed, (sheets,)
 
@@ -68,7 +72,7 @@ def empty(sheets: int, border: int) -> Pool:
     """A pool without helpers."""
     return Pool(
         np.zeros(WORDS, np.int64),
-        np.zeros(6),
+        np.zeros(8),
         np.zeros((sheets, border + 1, border + 1)),
         np.zeros(sheets, np.int64),
     )

@@ -87,6 +87,10 @@ class Midpoint(NamedTuple):
     near: Ints  # pairs that may touch
     overlaps: np.ndarray  # of pairs that are searched, mechanics.overlap.OVERLAP
     spare: np.ndarray  # the same of a pair between steps, (1,)
+    does: Ints  # what each near pair of two boxes does (contact.press_job), (pairs,)
+    beforehand: (
+        Floats  # and its forces, where threads have worked them out, (pairs, FACES of mechanics.point)
+    )
     fastest: Floats  # how fast places of free boxes are at most, MIDDLE and ENDS of a step, (2, bodies)
     sticks: Sticks
     drift: Drift

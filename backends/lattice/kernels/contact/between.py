@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
-from mdlgen.backends.lattice.kernels.contact.drift import LEFT, look_ahead
-from mdlgen.backends.lattice.kernels.contact.fetch import hint
+from mdlgen.backends.lattice.kernels.contact.drift import look_ahead
+from mdlgen.backends.lattice.kernels.contact.press_job import (
+    TO_FIND,
+    ask_for,
+    is_known,
+    press_beforehand,
+    pressed,
+)
 from mdlgen.backends.lattice.kernels.contact.search import law_of_boxes
 from mdlgen.backends.lattice.kernels.forces import onto, touches
+from mdlgen.backends.lattice.kernels.parallel import HELPERS
 from mdlgen.backends.lattice.kernels.state import (
     DEPTH_NOW,
     FACE_DEPTH,
@@ -18,10 +25,8 @@ from mdlgen.backends.lattice.kernels.state import (
 )
 from mdlgen.mechanics.frame import box_of, frame_of, law_of
 from mdlgen.mechanics.overlap import (
-    APART,
     BY_SIDES,
     CLEAR,
-    MOVED,
     OTHER,
     OVERLAPS,
     PRESSES,
@@ -36,9 +41,6 @@ from mdlgen.mechanics.stick import carry_stretch, press_sticking
 from mdlgen.mechanics.turning import ALONG, LIMIT
 from mdlgen.model.tables.contacts import BOX_BOX
 from mdlgen.program.kernel import BORROWS, njit
-
-# How many pairs ahead overlaps are asked for.
-AHEAD = 6
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -55,44 +57,44 @@ def forget_overlaps(pairs, overlaps, first):
 def look_at(work, k, a, b, gap):
     """Sees to it that what is kept of the k-th pair that is searched is what its boxes (Frames) have. Returns
     False where that is not known, since they are clear of each other by more than `gap` [mm]."""
+    if is_known(work, k, a, b):
+        return True
     tables, search, mid = work.tables, work.search, work.mid
     own, kept = search.listed[k], mid.overlaps[k]
-    known = kept.state == OVERLAPS or kept.state == APART
-    if known and kept.look == mid.drift.looks[own.region]:
-        return True
-    if not known or not holds(kept, a, b, LEFT * MOVED * search.regions[own.region].least):
-        one, two = box_of(tables.bodies[own.a]), box_of(tables.bodies[own.b])
-        if apart(a, one.half, b, two.half, gap):
-            return False
-        find(kept, a, one, b, two, law_of_boxes(search, own))
-        ratio = search.regions[own.region].sticking
-        if mid.sticks.pairs.size > 0 and ratio > 0.0:
-            carry_stretch(mid.sticks.pairs[k], kept, a, b, ratio)
+    one, two, ratio = (
+        box_of(tables.bodies[own.a]),
+        box_of(tables.bodies[own.b]),
+        search.regions[own.region].sticking,
+    )
+    if apart(a, one.half, b, two.half, gap):
+        return False
+    find(kept, a, one, b, two, law_of_boxes(search, own))
+    ratio = search.regions[own.region].sticking
+    if mid.sticks.pairs.size > 0 and ratio > 0.0:
+        carry_stretch(mid.sticks.pairs[k], kept, a, b, ratio)
     kept.look = mid.drift.looks[own.region]
     return True
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _two_boxes(work, p, out):
-    """What two boxes of two sheets, pair p, do into `out` and onto the forces. Returns whether they touch."""
-    tables, search, mid, k = work.tables, work.search, work.mid, p - work.search.first
-    own, kept = search.listed[k], mid.overlaps[k]
-    a, b = frame_of(mid.motion, own.a), frame_of(mid.motion, own.b)
-    if not look_at(work, k, a, b, 0.0):
-        return False
-    if kept.state == OVERLAPS:
-        law, ratio = law_of_boxes(search, own), search.regions[own.region].sticking
-        if mid.sticks.pairs.size > 0 and ratio > 0.0:
-            does = press_sticking(out, kept, mid.sticks.pairs[k], a, b, law, ratio, mid.sticks.half[0])
-        else:
-            does = press(out, kept, a, b, law)
-        if does == PRESSES:
-            out[POINTS] = 0.0
-            onto(mid.forces, own, out)
-            return True
-        if does == BY_SIDES:
-            kept.state = OTHER
-    return kept.state == OTHER and touches(tables, tables.pairs[p], mid.motion, mid.forces, out)
+def _two_boxes(work, at, known, out):
+    """What two boxes of two sheets, a near pair, do into `out` and onto the forces; `known`: see press_job,
+    where it was worked out before. Returns BY_SIDES where `out` has their points."""
+    tables, mid, p = work.tables, work.mid, work.mid.near[at]
+    k, does = p - work.search.first, known
+    own = work.search.listed[k]
+    if does == TO_FIND:
+        a, b = frame_of(mid.motion, own.a), frame_of(mid.motion, own.b)
+        if not look_at(work, k, a, b, 0.0):
+            return CLEAR
+        does = BY_SIDES if mid.overlaps[k].state == OTHER else pressed(work, k, a, b, out)
+    if does == BY_SIDES:
+        mid.overlaps[k].state = OTHER
+        return BY_SIDES if touches(tables, tables.pairs[p], mid.motion, mid.forces, out) else CLEAR
+    if does == PRESSES:
+        out[POINTS] = 0.0
+        onto(mid.forces, own, out)
+    return does
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -116,27 +118,37 @@ def near_forces(work, close, h):
     """Adds the forces of the near pairs to those of the midpoint, h [ms] after the state, as
     forces.pair_forces does, but without the contact points of two sheets. Returns (how many pairs touch,
     dissipated power)."""
-    tables, mid, search = work.tables, work.mid, work.search
+    tables, mid, first = work.tables, work.mid, work.search.first
     near, results = mid.near, mid.results
-    count = row = 0
+    count = row = begins = 0
     lost = 0.0
     look_ahead(work, h)
+    while begins < close and near[begins] < first:
+        begins += 1
+    shared = work.pool.words[HELPERS] > 0
+    if shared:
+        press_beforehand(work, begins, close)
     for at in range(close):
-        if at + AHEAD < close and near[at + AHEAD] >= search.first:
-            hint(mid.overlaps, near[at + AHEAD] - search.first)
         p, out = near[at], results[row]
-        faces = p >= search.first
-        if not faces:
+        if p < first:
             touching = touches(tables, tables.pairs[p], mid.motion, mid.forces, out)
         else:
-            touching = _two_boxes(work, p, out)
+            known = TO_FIND
+            if shared:
+                known = mid.does[at]
+                if known == PRESSES:
+                    out = mid.beforehand[at]
+            else:
+                ask_for(work, at, close)
+            mid.does[at] = _two_boxes(work, at, known, out)
+            touching = mid.does[at] != CLEAR
         if touching:
             lost += out[DISSIPATED]
             mid.touched[count], mid.rows[count] = p, row
-            if faces:
+            if p >= first:
                 _note(mid.faces[count], out)
             # what has no points leaves its row to the next
-            if not faces or out[POINTS] > 0.0:
+            if p < first or out[POINTS] > 0.0:
                 row += 1
             count += 1
     return count, lost

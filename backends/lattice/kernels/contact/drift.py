@@ -21,7 +21,7 @@ from mdlgen.program.kernel import BORROWS, njit
 LEFT = 0.5
 # How much nearer pairs may come before they are listed anew [mm], where a step takes no more of it than the
 # other part.
-SPARE, SLOW = 0.05, 0.2
+SPARE, SLOW = 0.01, 0.2
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)

@@ -8,7 +8,7 @@ from mdlgen.backends.lattice.kernels.integrate.air import air_along
 from mdlgen.backends.lattice.kernels.integrate.patches import patches_along, patches_slope, pull_patches
 from mdlgen.backends.lattice.kernels.integrate.points import force_of
 from mdlgen.backends.lattice.kernels.integrate.unknowns import moving, turning_of
-from mdlgen.backends.lattice.kernels.parallel import begin, finish, take
+from mdlgen.backends.lattice.kernels.parallel import HALF, begin, finish, take
 from mdlgen.backends.lattice.kernels.state import (
     A_COUPLE,
     AIR,
@@ -29,8 +29,8 @@ from mdlgen.backends.lattice.kernels.state import (
 from mdlgen.mechanics.vector import add, cross, dot, scale, sub, three_from, vec
 from mdlgen.program.kernel import BORROWS, njit
 
-# Of Pool.given: the part of a direction, and half of a step [ms].
-PART, HALF = 3, 4
+# Of Pool.given: the part of a direction.
+PART = 3
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)

@@ -28,8 +28,8 @@ from mdlgen.backends.lattice.kernels.state import (
 )
 from mdlgen.mechanics.frame import frame_of
 from mdlgen.mechanics.laws import damped, friction_over_speed
+from mdlgen.mechanics.overlap import OVERLAPS, moves, plane_of
 from mdlgen.mechanics.overlap import STIFF as KEPT_STIFF
-from mdlgen.mechanics.overlap import moves, plane_of
 from mdlgen.mechanics.stick import coefficient
 from mdlgen.mechanics.vector import add, back, cross, mat, rotate, scale, sub, three, three_from, vec
 from mdlgen.program.kernel import BORROWS, njit
@@ -80,10 +80,14 @@ def _evaluate(q, law, h, far, sticks):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def begin_patch(work, k, h):
-    """Makes a patch of what is kept of the k-th pair that is searched, where its faces are near enough."""
-    frozen, motion, search, bodies = work.frozen, work.mid.motion, work.search, work.tables.bodies
-    own, kept, many = search.listed[k], work.mid.overlaps[k], frozen.many[1]
+def begin_patch(work, q, k, h):
+    """Makes of a PATCH that of what is kept of the k-th pair that is searched; without corners where its
+    faces are not near enough."""
+    motion, search, bodies = work.mid.motion, work.search, work.tables.bodies
+    own, kept = search.listed[k], work.mid.overlaps[k]
+    q.pair, q.count, q.coupled = k, 0, -1
+    if kept.state != OVERLAPS:
+        return
     first = kept.first != 0
     one, two = (int(own.a), int(own.b)) if first else (int(own.b), int(own.a))
     owner, other = frame_of(motion, one), frame_of(motion, two)
@@ -91,13 +95,11 @@ def begin_patch(work, k, h):
     nearest = -REACH
     for i in range(kept.count):
         nearest = max(nearest, level + lean_p * kept.corners[i, 0] + lean_r * kept.corners[i, 1])
-    if nearest <= -REACH or many == frozen.patches.size:
+    if nearest <= -REACH:
         return
     law, ratio = law_of_boxes(search, own), search.regions[own.region].sticking
     rate, spin = moves(owner, other, place)
-    q = frozen.patches[many]
-    frozen.many[1] = many + 1
-    q.a, q.b, q.region, q.pair, q.coupled = own.a, own.b, own.region, k, -1
+    q.a, q.b, q.region = own.a, own.b, own.region
     q.owner, q.other, q.one, q.two = one, two, bodies[one].node, bodies[two].node
     q.count, q.side, q.ratio = kept.count, kept.side, ratio if work.mid.sticks.pairs.size > 0 else 0.0
     q.high = kept.side * (kept.thick - 0.5 * max(nearest, 0.0))
@@ -137,6 +139,8 @@ def patches_along(work, low, high, h):
     change = frozen.vectors[OF_DIRECTION]
     for k in range(low, high):
         q = frozen.patches[k]
+        if q.count == 0:
+            continue
         axes = mat(r, q.owner)
         v = w = far = (0.0, 0.0, 0.0)
         if q.one >= 0:
@@ -157,7 +161,8 @@ def patches_slope(work, low, high, h, far):
     """What patches add to the slope at that part of the direction."""
     total = 0.0
     for k in range(low, high):
-        total += _slope_of(work, work.frozen.patches[k], h, far)
+        if work.frozen.patches[k].count > 0:
+            total += _slope_of(work, work.frozen.patches[k], h, far)
     return total
 
 
@@ -167,6 +172,8 @@ def pull_patches(work, h, part, g):
     frozen, r = work.frozen, work.mid.motion.r
     for k in range(frozen.many[1]):
         q = frozen.patches[k]
+        if q.count == 0:
+            continue
         for i in range(6):
             q.now[i] += part * q.along[i]
         force = scale(h, sub(three(q.does), three(q.begun)))
@@ -257,7 +264,10 @@ def patches_into(work, h, chord):
     frozen, matrix, motion = work.frozen, work.matrix, work.mid.motion
     couplings, sticks, own = matrix.couplings, work.mid.sticks.pairs, frozen.block
     for j in range(frozen.many[1]):
-        q, law = frozen.patches[j], law_of_boxes(work.search, frozen.patches[j])
+        q = frozen.patches[j]
+        if q.count == 0:
+            continue
+        law = law_of_boxes(work.search, q)
         first, node, other = q.owner == q.a, int(q.one), int(q.two)
         if node >= 0 and other >= 0:
             # as of all points of a pair, rows are of its first box

@@ -15,10 +15,12 @@ from __future__ import annotations
 
 import math
 
-from mdlgen.backends.lattice.kernels.contact.between import AHEAD, look_at
-from mdlgen.backends.lattice.kernels.contact.fetch import hint
+from mdlgen.backends.lattice.kernels import parallel
+from mdlgen.backends.lattice.kernels.contact.between import look_at
+from mdlgen.backends.lattice.kernels.contact.press_job import FIRST_NEAR, NEAR, ask_for, is_known
 from mdlgen.backends.lattice.kernels.integrate.air import damping_of
 from mdlgen.backends.lattice.kernels.integrate.patches import REACH, begin_patch
+from mdlgen.backends.lattice.kernels.parallel import HALF, begin, chunks, finish, items_of, take
 from mdlgen.backends.lattice.kernels.state import (
     A_COUPLE,
     A_DAMPER,
@@ -28,7 +30,6 @@ from mdlgen.backends.lattice.kernels.state import (
     ARM_A,
     ARM_B,
     BETA,
-    FACE_POINTS,
     GROWTH,
     KIND,
     MU_DYNAMIC,
@@ -47,10 +48,13 @@ from mdlgen.backends.lattice.kernels.state import (
 from mdlgen.mechanics import point as law_point
 from mdlgen.mechanics.frame import LAW_SMOOTHING, frame_of, law_of
 from mdlgen.mechanics.laws import damped, friction_over_speed, sign_step
-from mdlgen.mechanics.overlap import OVERLAPS
+from mdlgen.mechanics.overlap import BY_SIDES
 from mdlgen.mechanics.pair import on_fixed_plate
 from mdlgen.mechanics.vector import add, cross, dot, scale, sub, three, three_from
 from mdlgen.program.kernel import BORROWS, njit
+
+# In place of how many corners a patch has: its overlap is yet to be found.
+TO_FIND_CORNERS = -1
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -200,23 +204,57 @@ def _note_ends(tables, frozen):
         frozen.rolls[k] = rolls
 
 
+@njit(cache=True, error_model="numpy", **BORROWS)
+def patches_part(work, part):
+    """Makes patches of the near pairs of a part whose overlaps are known (contact.press_job)."""
+    pool, mid, first, frozen = work.pool, work.mid, work.search.first, work.frozen
+    begins, close, h = int(pool.given[FIRST_NEAR]), int(pool.given[NEAR]), pool.given[HALF]
+    low, high = items_of(part, close - begins)
+    for slot in range(low, high):
+        at = begins + slot
+        ask_for(work, at, close)
+        k, q = mid.near[at] - first, frozen.patches[slot]
+        own = work.search.listed[k]
+        q.pair, q.count = k, 0
+        if mid.does[at] == BY_SIDES:
+            continue
+        if is_known(work, k, frame_of(mid.motion, own.a), frame_of(mid.motion, own.b)):
+            begin_patch(work, q, k, h)
+        else:
+            q.count = TO_FIND_CORNERS
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _patches(work, begins, close, h):
+    """Makes them of all near pairs that are searched, from `begins` on."""
+    pool, many = work.pool, chunks(close - begins)
+    pool.given[FIRST_NEAR], pool.given[NEAR], pool.given[HALF] = begins, close, h
+    begin(pool, parallel.PATCHES, many)
+    part = take(pool)
+    while part >= 0:
+        patches_part(work, part)
+        part = take(pool)
+    finish(pool, many)
+
+
 @njit(cache=True, error_model="numpy")
 def gather(work, counts, h, plates):
     """Takes the points and the patches of the near pairs at the midpoint, and points of air; `counts`: how
     many touch, how many are near; `plates`: of those with fixed plates alone."""
-    tables, mid, frozen, search, film = work.tables, work.mid, work.frozen, work.search, work.film
+    tables, mid, frozen, film = work.tables, work.mid, work.frozen, work.film
     bodies, pairs, near, motion = tables.bodies, tables.pairs, mid.near, mid.motion
     count, close = counts
-    first = search.first
-    frozen.many[0] = frozen.many[1] = known = 0
-    air = film.many[0]
+    first, air = work.search.first, film.many[0]
+    frozen.many[0] = frozen.many[1] = known = begins = 0
+    while begins < close and near[begins] < first:
+        begins += 1
+    if not plates:
+        frozen.many[1] = close - begins
+        _patches(work, begins, close, h)
     for k in range(air):
         film.cells[film.head[film.listed[k]]].point = -1
     for at in range(close):
-        if at + AHEAD < close and near[at + AHEAD] >= first:
-            hint(mid.overlaps, near[at + AHEAD] - first)
-        p = near[at]
-        row = known
+        p, row = near[at], known
         touching = known < count and mid.touched[known] == p
         if touching:
             known += 1
@@ -224,14 +262,15 @@ def gather(work, counts, h, plates):
             continue
         if air > 0:
             _of_air(frozen, film, pairs[p], p, motion)
-        if p < first or (touching and mid.faces[row, FACE_POINTS] > 0.0):
-            if touching:
-                _of_law(frozen, p, pairs[p], mid.results[mid.rows[row]], h, motion)
-            continue
-        own = search.listed[p - first]
-        a, b = frame_of(motion, own.a), frame_of(motion, own.b)
-        if look_at(work, p - first, a, b, REACH) and mid.overlaps[p - first].state == OVERLAPS:
-            begin_patch(work, p - first, h)
+        if p >= first and frozen.patches[at - begins].count == TO_FIND_CORNERS:
+            own = work.search.listed[p - first]
+            a, b = frame_of(motion, own.a), frame_of(motion, own.b)
+            if look_at(work, p - first, a, b, REACH):
+                begin_patch(work, frozen.patches[at - begins], p - first, h)
+            else:
+                frozen.patches[at - begins].count = 0
+        if touching and (p < first or mid.does[at] == BY_SIDES):
+            _of_law(frozen, p, pairs[p], mid.results[mid.rows[row]], h, motion)
     for k in range(air):
         _of_air(frozen, film, pairs[film.listed[k]], film.listed[k], motion)
     _note_ends(tables, frozen)

@@ -100,7 +100,10 @@ def points_into(work, h, chord):
             # cells of air, and no other points, may be of a pair that has a patch
             while at < frozen.many[1] and frozen.patches[at].pair + first < p:
                 at += 1
-            if at < frozen.many[1] and frozen.patches[at].pair + first == p:
+            patch = (
+                at < frozen.many[1] and frozen.patches[at].pair + first == p and frozen.patches[at].count > 0
+            )
+            if patch:
                 coupled = frozen.patches[at].coupled
             elif node >= 0 and other >= 0:
                 coupled = couplings.many[0]

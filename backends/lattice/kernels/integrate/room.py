@@ -22,7 +22,7 @@ from mdlgen.backends.lattice.kernels.state import (
 )
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.overlap import OVERLAP
-from mdlgen.mechanics.point import MOST_POINTS
+from mdlgen.mechanics.point import FACES, MOST_POINTS
 from mdlgen.mechanics.stick import STRETCH
 
 
@@ -55,6 +55,8 @@ def empty(system, wide: int) -> tuple[State, Midpoint, Matrix]:
         near=np.zeros(len(system.pairs), np.int64),
         overlaps=np.zeros(max(1, len(system.pairs) - system.search.first), OVERLAP),
         spare=np.zeros(1, OVERLAP),
+        does=np.zeros(len(system.pairs), np.int64),
+        beforehand=np.zeros((len(system.pairs), FACES)),
         fastest=np.zeros((2, bodies)),
         sticks=sticks(len(system.pairs) - system.search.first, bodies) if sticking else sticks(0, 0),
         drift=drift(system),
