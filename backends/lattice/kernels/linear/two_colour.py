@@ -212,10 +212,9 @@ def back_part(matrix, sheet):
         return
     for j in range(rollers.size):
         v, reached = rollers[j], couplings.colouring.reached[sheet, j]
-        if reached[BEGIN] == reached[END]:
-            continue
-        for l in range(6 * span[BEGIN], 6 * span[END]):
-            w[l] -= y[j, l] * v
+        if reached[BEGIN] < reached[END]:
+            for l in range(6 * span[BEGIN], 6 * span[END]):
+                w[l] -= y[j, l] * v
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -365,8 +364,8 @@ def _first(pool, matrix, rollers, start):
 def solve_coloured(pool, matrix, most, least):
     """Solves band, border and couplings in place, where the sheets have two colours.
 
-    The method ends after `most` iterations, or where the square of the residual, measured
-    with the preconditioner, is `least` of what it was, or in each sheet no more than enough.
+    The method ends after `most` iterations, or where the square of the residual, measured with the
+    preconditioner, is `least` of what it was, or in each sheet no more than enough.
     """
     couplings, res, resb = matrix.couplings, matrix.res, matrix.resb
     colours, size = couplings.colouring, res.size
