@@ -50,13 +50,14 @@ def slope(points: list[tuple[float, float]]) -> float:
 
 def fits(rows: list[BenchRow]) -> dict[str, Any]:
     """Plain data: `order` per case and solver, `wall_at_equal_error` per line, the `least_error` of each that
-    does not come to it, `growth` per solver, what each rule `saves` per solver, and the estimates of errors
-    that are not honest."""
+    does not come to it, `growth` per solver, that of `piles` per solver and kind, what each rule `saves` per
+    solver, and the estimates of errors that are not honest."""
     return {
         "order": _orders(rows),
         "wall_at_equal_error": _equal(rows),
         "least_error": _short(rows),
         "growth": _growth(rows),
+        "piles": _piles(rows),
         "saves": _saves(rows),
         "estimates_off": _off(rows),
     }
@@ -138,3 +139,21 @@ def _growth(rows: list[BenchRow]) -> dict[str, float]:
         if row.suite == "scaling" and row.status == OK and row.boxes and row.wall_s:
             groups.setdefault(row.solver, []).append((row.boxes, row.wall_s))
     return {solver: slope(points) for solver, points in groups.items() if len(points) > 1}
+
+
+def _piles(rows: list[BenchRow]) -> dict[str, dict[str, float]]:
+    """How many times as long a step of a pile takes with as many notes as the one before it in its kind has,
+    per solver and kind; `notes` is how many times as many these are."""
+    found: dict[str, dict[str, float]] = {}
+    last: dict[str, tuple[int, float]] = {}
+    for row in rows:
+        count, _, kind = row.case.partition(" notes ")
+        if row.suite != "piles" or row.status != OK or not kind or not row.wall_s or not row.steps:
+            continue
+        notes, step = int(count), row.wall_s / row.steps
+        label = f"{row.solver}: {kind}"
+        if label in last:
+            before, time = last[label]
+            found[f"{label}, {before} to {notes} notes"] = {"notes": notes / before, "times": step / time}
+        last[label] = notes, step
+    return found

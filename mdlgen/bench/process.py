@@ -7,6 +7,7 @@ import pickle
 import signal
 import subprocess
 import sys
+from pathlib import Path
 
 from mdlgen.bench.child import Job
 from mdlgen.bench.row import Outcome
@@ -16,16 +17,22 @@ THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_
 STARTING = 30.0
 
 
-def run(task: Job) -> Outcome:
-    """The outcome of a task; a crash, a hang or an internal error is one with its reason."""
+def run(task: Job, checkout: Path | None = None) -> Outcome:
+    """The outcome of a task; a crash, a hang or an internal error is one with its reason. `checkout`: a
+    folder with another state of mdlgen, which runs it."""
+    first = [] if checkout is None else [str(checkout.resolve())]
     limit = task.case.limit * max(1, task.repeats) + STARTING
     try:
         done = subprocess.run(
-            [sys.executable, "-m", "mdlgen.bench.child"],
+            [sys.executable, "-P", "-m", "mdlgen.bench.child"],
             input=pickle.dumps(task),
             capture_output=True,
             timeout=limit,
-            env={**os.environ, **dict.fromkeys(THREADS, "1"), "PYTHONPATH": os.pathsep.join(sys.path)},
+            env={
+                **os.environ,
+                **dict.fromkeys(THREADS, "1"),
+                "PYTHONPATH": os.pathsep.join([*first, *sys.path]),
+            },
             check=False,
         )
     except subprocess.TimeoutExpired:

@@ -23,6 +23,8 @@ from mdlgen.errors import OutputError, SpecError
 Say = Callable[[str], None]
 # A scene of a moment that has every kind of force: compiles a solver before the first clock starts.
 WARM = Run("transport_4x4", ("run.duration=0.1 ms",), 0.05)
+# What the name of a solver of another state of mdlgen ends with.
+BESIDE = ", beside"
 # A reference is finer than what is measured; it may take this long [s].
 REFERENCE_LIMIT = 1800.0
 
@@ -68,11 +70,13 @@ def bench(
     repeats: int = 3,
     say: Say = lambda text: None,
     peers: bool | None = None,
+    beside: Path | None = None,
 ) -> Bench:
     """Run `suites` (all where empty) with `solvers` (all that there are); `say` is called with what is run.
 
     `peers` says whether other tools run `transport` too; None: where they are installed and no solver is
-    chosen.
+    chosen. `beside` is a folder with another state of mdlgen: it runs each case of our solvers, too, right
+    after this one.
 
     Writes bench.json, bench.md and bench.png into `folder`. Raises SpecError for a suite or solver that
     there is not, OutputError for files that cannot be written.
@@ -96,7 +100,13 @@ def bench(
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise OutputError(f"{folder}: cannot make this folder: {error.strerror or error}") from None
+    if beside is not None and not (beside / "mdlgen" / "__init__.py").is_file():
+        raise SpecError(
+            f"{beside}: is not a folder with another state of mdlgen: it has no mdlgen/__init__.py"
+        )
     compiled = {name: _warm(name, say) for name in names if name not in PEERS}
+    for name in compiled if beside is not None else ():
+        _warm(name, say, beside)
     found = Bench(machine(), versions() | peer_versions(), compiled)
     references = References(folder, say)
     try:
@@ -104,6 +114,9 @@ def bench(
             step = "" if case.run.step is None else f" at {case.run.step:g} ms"
             say(f"{count}/{len(plan)} {case.suite}, {name}: {case.name}{step}")
             made = rows(case, name, _outcome(case, name, references, repeats))
+            if beside is not None and name not in PEERS:
+                other = _outcome(case, name, references, repeats, beside)
+                made += [replace(row, solver=f"{name}{BESIDE}") for row in rows(case, name, other)]
             found.rows += made
             for row in made:
                 if row.status != OK:
@@ -135,18 +148,20 @@ def write(found: Bench, folder: Path) -> None:
     paths.write_together(files)
 
 
-def _warm(solver: str, say: Say) -> float | None:
+def _warm(solver: str, say: Say, checkout: Path | None = None) -> float | None:
     """Compile time [s] of a solver in a new process, before anything is measured."""
-    say(f"{solver}: compiling, or loading what is compiled")
+    say(f"{solver}{BESIDE if checkout else ''}: compiling, or loading what is compiled")
     case = BenchCase("warm", "compile", WARM, _nothing)
-    return process.run(Job(case, solver, registry.SOLVERS[solver], 1, None)).compiled
+    return process.run(Job(case, solver, registry.SOLVERS[solver], 1, None), checkout).compiled
 
 
 def _nothing(result: Any, reference: Any) -> list:
     return []
 
 
-def _outcome(case: BenchCase, solver: str, references: References, repeats: int) -> Outcome:
+def _outcome(
+    case: BenchCase, solver: str, references: References, repeats: int, checkout: Path | None = None
+) -> Outcome:
     kept = None
     if case.reference is not None:
         kept, reason = references.file(case, case.reference)
@@ -154,7 +169,7 @@ def _outcome(case: BenchCase, solver: str, references: References, repeats: int)
             return Outcome(f"no reference: {reason}")
     module = {**registry.SOLVERS, **PEERS}[solver]
     task = Job(case, solver, module, repeats if case.repeats else 1, kept)
-    return process.run(task)
+    return process.run(task, checkout)
 
 
 @dataclass

@@ -79,6 +79,10 @@ def _together(found: Bench) -> list[str]:
             f"- {solver}: wall time grows with the boxes at a fixed aspect to the power {power:.2f}"
             for solver, power in record["growth"].items()
         ),
+        *(
+            f"- {label}: a step takes {growth['times']:.3g} times as long"
+            for label, growth in record["piles"].items()
+        ),
         *(f"- {rule}: saves {100 * part:.0f} % of the wall time" for rule, part in record["saves"].items()),
         *(f"- not honest: {line}" for line in record["estimates_off"]),
     ]

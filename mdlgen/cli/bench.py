@@ -56,6 +56,14 @@ def bench(
             "`peers` is installed and no solver is chosen.",
         ),
     ] = None,
+    beside: Annotated[
+        Path | None,
+        typer.Option(
+            "--beside",
+            metavar="FOLDER",
+            help="A checkout of another state of mdlgen, which runs each case, too, right after this one.",
+        ),
+    ] = None,
     page: Annotated[
         Path | None,
         typer.Option(
@@ -84,7 +92,7 @@ def bench(
     shown = "" if page is None else pages.check_page(suites or ())
     check_folder(output)
     heard = (lambda _: None) if quiet else say
-    found = run_bench(suites or (), output, solver or (), quick, repeat, heard, peers)
+    found = run_bench(suites or (), output, solver or (), quick, repeat, heard, peers, beside)
     if as_json:
         echo_json(found.json())
     elif not quiet:

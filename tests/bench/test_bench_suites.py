@@ -17,6 +17,7 @@ from mdlgen.bench.suites import SUITES, cases, stability
 from mdlgen.bench.suites.elastica import drop
 from mdlgen.bench.suites.ladder import piles
 from mdlgen.bench.table import markdown
+from mdlgen.errors import SpecError
 
 STRIP = Run("cantilever", ("sheets.note.boxes=[1,10]",))
 
@@ -63,6 +64,32 @@ def test_growth_is_of_the_whole_wall_time():
         done = Outcome("ok", [Finding("q", 0.0)], 0.05, boxes, wall=1e-3 * boxes**1.5, boxes=boxes)
         made += rows(case, "lattice", done)
     assert fits(made)["growth"] == {"lattice": pytest.approx(1.5)}
+
+
+def test_growth_of_piles_is_that_of_a_step():
+    made = []
+    for count, wall, steps in ((5, 1.0, 100), (20, 10.0, 200)):
+        case = BenchCase("piles", f"{count} notes at rest", STRIP, drop)
+        done = Outcome("ok", [Finding("q", 0.0)], 0.1, steps, wall=wall, boxes=count)
+        made += rows(case, "lattice", done)
+    growth = fits(made)["piles"]
+    assert growth == {"lattice: at rest, 5 to 20 notes": {"notes": 4.0, "times": pytest.approx(5.0)}}
+    text = markdown(Bench({"cpu": "x", "cores": 1, "python": "3"}, {}, {}, made))
+    assert "lattice: at rest, 5 to 20 notes: a step takes 5 times as long" in text
+
+
+def test_another_state_runs_each_case_too(tmp_path):
+    """Here a state that refuses all scenes."""
+    other = tmp_path / "other" / "mdlgen"
+    other.mkdir(parents=True)
+    (other / "__init__.py").write_text("raise SystemExit('an old state')")
+    found = bench(["flight"], tmp_path / "out", ["lattice"], quick=True, repeats=1, beside=tmp_path / "other")
+    own = [row for row in found.rows if row.solver == "lattice"]
+    beside = [row for row in found.rows if row.solver == "lattice, beside"]
+    assert own and all(row.status == "ok" for row in own)
+    assert beside and all("an old state" in (row.reason or "") for row in beside)
+    with pytest.raises(SpecError, match="another state"):
+        bench(["flight"], tmp_path / "out", ["lattice"], quick=True, repeats=1, beside=tmp_path)
 
 
 def test_the_quick_ladder_has_a_rung_of_each_name():
