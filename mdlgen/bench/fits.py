@@ -71,8 +71,8 @@ def _equal(rows: list[BenchRow]) -> dict[str, dict[str, Any]]:
         if at is not None:
             found[label] = {"error": EQUAL_ERROR, "wall_s": at}
     for label, at in found.items():
-        boxes = label.partition(", ")[2]
-        peers = [other for other in found if other.partition(", ")[2] == boxes]
+        boxes = label.rpartition(", ")[2]
+        peers = [other for other in found if other.rpartition(", ")[2] == boxes]
         at["fastest"] = min(peers, key=lambda other: found[other]["wall_s"])
         at["times_fastest"] = at["wall_s"] / found[at["fastest"]]["wall_s"]
     return found

@@ -41,12 +41,13 @@ class Bench:
     @property
     def wrong(self) -> list[BenchRow]:
         """Rows whose solver said ok, but whose error is above its tolerance."""
-        return [row for row in self.rows if row.status == WRONG]
+        return [row for row in self.rows if row.status == WRONG and not row.solver.endswith(BESIDE)]
 
     @property
     def failed(self) -> list[BenchRow]:
         """Rows that failed where a failure is no answer: the ladder's rungs may end in one, and a peer."""
-        ours = [row for row in self.rows if row.suite != "stability" and row.solver not in PEERS]
+        others = (*PEERS, *(f"{name}{BESIDE}" for name in registry.SOLVERS))
+        ours = [row for row in self.rows if row.suite != "stability" and row.solver not in others]
         return [row for row in ours if row.status == FAILED]
 
     def json(self) -> dict[str, Any]:
@@ -76,7 +77,7 @@ def bench(
 
     `peers` says whether other tools run `transport` too; None: where they are installed and no solver is
     chosen. `beside` is a folder with another state of mdlgen: it runs each case of our solvers, too, right
-    after this one.
+    after this one, with its own samples and measures; its rows fail nothing.
 
     Writes bench.json, bench.md and bench.png into `folder`. Raises SpecError for a suite or solver that
     there is not, OutputError for files that cannot be written.
@@ -106,7 +107,8 @@ def bench(
         )
     compiled = {name: _warm(name, say) for name in names if name not in PEERS}
     for name in compiled if beside is not None else ():
-        _warm(name, say, beside)
+        if _warm(name, say, beside) is None:
+            raise SpecError(f"{beside}: this state of mdlgen does not run a case of this one with {name}")
     found = Bench(machine(), versions() | peer_versions(), compiled)
     references = References(folder, say)
     try:

@@ -61,7 +61,8 @@ def bench(
         typer.Option(
             "--beside",
             metavar="FOLDER",
-            help="A checkout of another state of mdlgen, which runs each case, too, right after this one.",
+            help="A checkout of another state of mdlgen, which runs each case, too, right after this one, "
+            "with its own samples and measures.",
         ),
     ] = None,
     page: Annotated[

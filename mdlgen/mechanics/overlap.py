@@ -51,7 +51,7 @@ OVERLAP = np.dtype(
         ("look", "i4"),  # for who keeps it: when it was last seen to hold
         ("state", "i1"),
         ("count", "i1"),  # of corners
-        ("first", "i1"),  # whether the first box owns the contact
+        ("first", "i1"),  # whether the first box owns the contact, or parts outlines that are apart
         ("side", "i1"),  # of the owner's face along its normal
         ("behind", "f8"),  # half the thickness of the other box [mm]
         ("thick", "f8"),  # half the thickness of the box whose face it is [mm]
@@ -86,7 +86,7 @@ def holds(kept, a, b, more):
         moved = abs(place[q] - kept.place[q])
         for i in range(2):
             moved += wide[i] * abs(turn[3 * q + i] - kept.turn[2 * q + i])
-        if moved > allowed:
+        if not moved <= allowed:  # nor where it is not a number
             return False
     return True
 
@@ -104,6 +104,15 @@ def apart(a, half_a, b, half_b, more):
         if abs(dot(gap, normal)) >= spread + more:
             return True
     return False
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _seen_from(kept, place, turn, wide):
+    """Notes where a box with these half lengths was in the axes of the other one."""
+    for q in range(2):
+        kept.place[q], kept.wide[q] = place[q], wide[q]
+        for i in range(2):
+            kept.turn[2 * q + i] = turn[3 * q + i]
 
 
 @njit(cache=True, error_model="numpy", **OWNS)
@@ -124,10 +133,7 @@ def find(kept, a, one_box, b, two_box, law):
     side = 1.0 if place[2] >= 0.0 else -1.0
     kept.side = int(side)
     kept.behind, kept.thick, kept.most = wide[2], half[2], EVER
-    for q in range(2):
-        kept.place[q], kept.wide[q] = place[q], wide[q]
-        for i in range(2):
-            kept.turn[2 * q + i] = turn[3 * q + i]
+    _seen_from(kept, place, turn, wide)
     allowed = MOVED * min(half[0], half[1], wide[0], wide[1])
     kept.count, kept.state, kept.allowed = 0, APART, allowed
     if abs(turn[8]) < STEEP:
@@ -135,22 +141,29 @@ def find(kept, a, one_box, b, two_box, law):
         return
     # a side may own the contact where it overlaps by less than the faces do
     apart = False
-    thin, narrow, gap = min(half_a[2], half_b[2]), 1e300, 0.0
+    thin, narrow, gap, beside = min(half_a[2], half_b[2]), 1e300, 0.0, 0.0
     for q in range(2):
         spread, across = half[q] - abs(place[q]), wide[q] - abs(back(other.r, sub(owner.x, other.x))[q])
         for i in range(3):
             spread += abs(turn[3 * q + i]) * wide[i]
             across += abs(turn[3 * i + q]) * half[i]
         if spread <= GRAZE * half[q] or across <= GRAZE * wide[q]:
-            gap = max(gap, -min(spread, across))
+            gap, beside = max(gap, -spread), max(beside, -across)
             apart = True
         narrow = min(narrow, spread, across)
     if apart:
-        kept.allowed = max(allowed, 0.999 * gap)
+        thick = wide[2]
+        if beside > gap:  # it closes by what the one moves in the axes of the other box
+            kept.first = 1 - kept.first
+            place, turn = _seen(other, owner)
+            _seen_from(kept, place, turn, half)
+            gap, thick = beside, half[2]
+        # faces that lean reach as far out as they are thick
+        kept.allowed = max(allowed, 0.999 * gap - thick)
         return
     sides = one_box.exposed + two_box.exposed > 0 and narrow < 2.0 * thin
     if sides:
-        kept.most = 0.999 * narrow
+        kept.most = max(0.999 * narrow - allowed, 0.0)
     points = np.empty((12, 3))
     count, smaller, _ = overlay(points, owner, half, 2, side, other, wide)
     weights = np.empty(12)

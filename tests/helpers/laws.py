@@ -12,13 +12,14 @@ from mdlgen.backends.lattice.arrays import BODY, IMAGE, JOINT, PAIR
 from mdlgen.backends.lattice.kernels import entries
 from mdlgen.backends.lattice.kernels.forces import WIDE
 from mdlgen.backends.lattice.kernels.integrate.room import sticks
-from mdlgen.backends.lattice.kernels.state import FACE, Midpoint, Tables
+from mdlgen.backends.lattice.kernels.state import FACE, Drift, Midpoint, Tables
 from mdlgen.backends.lattice.search import LISTED
 from mdlgen.mechanics.curve import POINT
 from mdlgen.mechanics.frame import Box, Cylinder, Frame, Law, Motion, Plate, Vector
 from mdlgen.mechanics.guide import BOTH, INSIDE, OUTSIDE, upper
 from mdlgen.mechanics.mesh_tables import HEAD, Meshes
 from mdlgen.mechanics.overlap import OVERLAP
+from mdlgen.mechanics.point import FACES
 from mdlgen.mechanics.records import LOAD
 from mdlgen.mechanics.rim import PIECE
 from mdlgen.mechanics.shapes import Shapes
@@ -34,6 +35,12 @@ from mdlgen.model.tables.contacts import (
 
 NO_MESHES = Meshes(np.zeros(0, HEAD), np.zeros((0, 12)), np.zeros((0, 3), np.int64), np.zeros((0, WIDTH)))
 NO_RIMS = np.zeros((0, PIECE))
+
+
+def no_drift() -> Drift:
+    """Of no sheets."""
+    none, few = np.zeros(0), np.zeros(0, np.int64)
+    return Drift(few.reshape(0, 2), none, none, none, few, few, none, np.zeros(3))
 
 
 def pair_force(bodies: np.ndarray, pair: np.void, shapes: Shapes, motion: Motion, out: np.ndarray) -> bool:
@@ -61,8 +68,11 @@ def pair_force(bodies: np.ndarray, pair: np.void, shapes: Shapes, motion: Motion
         near=np.zeros(1, np.int64),
         overlaps=np.zeros(1, OVERLAP),
         spare=np.zeros(1, OVERLAP),
+        does=np.zeros(1, np.int64),
+        beforehand=np.zeros((1, FACES)),
         fastest=np.zeros((2, len(bodies))),
         sticks=sticks(0, 0),
+        drift=no_drift(),
     )
     touching = entries.contacts(tables, motion, mid)
     out[:] = mid.results[0, : len(out)]

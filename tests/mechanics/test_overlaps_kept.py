@@ -208,3 +208,30 @@ def test_sides_own_the_contact_where_they_overlap_less_than_faces() -> None:
             faces += 1
             assert pressed[:OUT] == pytest.approx(whole[:OUT], abs=1e-9 * np.abs(whole).max() + 1e-15)
     assert faces > 100 and sides > 50
+
+
+def test_outlines_that_are_apart_are_so_while_it_is_said() -> None:
+    """Of boxes at any angle to each other, long ones too, that slide and turn over each other: where what is
+    kept still holds, the law of two boxes has nothing."""
+    near = held = 0
+    for seed in range(1500):
+        draw = np.random.default_rng(seed)
+        halves = [(*draw.uniform(0.5, 1.0 if seed % 2 else 8.0, 2), 0.05) for _ in range(2)]
+        turn = Rotation.from_rotvec([0, 0, draw.uniform(-np.pi, np.pi)]).as_matrix()
+        far = draw.normal(0, 1, 2)
+        place = far / np.linalg.norm(far) * draw.uniform(1.0, 1.5) * sum(max(half[:2]) for half in halves)
+        a, b = frame(draw, np.zeros(3), np.eye(3)), frame(draw, np.array([*place, 0.099]), turn)
+        kept = found((a, Box(halves[0], 0), b, Box(halves[1], 0), law(True)))
+        if kept[0]["state"] != APART:
+            continue
+        for _ in range(4):
+            way, angle = draw.normal(0, 1, 2), draw.normal(0, 0.05)
+            way *= draw.uniform(0.5, 1.5) * max(kept[0]["allowed"], 0.01) / np.linalg.norm(way)
+            turned = Rotation.from_rotvec([0, 0, angle]).as_matrix() @ turn
+            moved = frame(draw, np.array([*(place + way), 0.099]), turned)
+            whole = np.zeros(WIDE)
+            box_box.py_func(whole, a, Box(halves[0], 0), moved, Box(halves[1], 0), law(True))
+            holding = holds.py_func(kept[0], a, moved, 0.0)
+            held, near = held + holding, near + bool(whole[POINTS])
+            assert not (holding and whole[POINTS])
+    assert held > 500 and near > 100

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from laws import no_drift
 from papers import HINGED_PAPER
 from scipy.spatial.transform import Rotation
 from stacks import ran, stack
@@ -15,7 +16,7 @@ from mdlgen.checks import lints
 from mdlgen.errors import RefusedError
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.overlap import OVERLAP
-from mdlgen.mechanics.point import OUT
+from mdlgen.mechanics.point import FACES, OUT
 from mdlgen.model import sheet_pairs
 from mdlgen.model.lower import lower
 from mdlgen.model.tables import BOX_BOX
@@ -97,8 +98,11 @@ def test_boxes_that_lean_have_not_crossed_where_a_centre_passes_a_plane():
             near=near,
             overlaps=np.zeros(1, OVERLAP).view(np.recarray),
             spare=np.zeros(1, OVERLAP).view(np.recarray),
+            does=np.zeros(1, np.int64),
+            beforehand=np.zeros((1, FACES)),
             fastest=np.zeros((2, count)),
             sticks=sticks(0, 0),
+            drift=no_drift(),
         )
         return sides.crossed(system.tables, mid, (0, 1), begins, system.search.first, 1.0) >= 0
 

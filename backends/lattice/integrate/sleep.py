@@ -160,7 +160,8 @@ class Sleep:
         missed = np.zeros((len(self._whole.bodies), 6))
         missed[old.asleep.bodies] = old.asleep.missed
         rows = self._parts.lasting(sheets)
-        asleep = old.asleep._replace(bodies=bodies, missed=missed[bodies], rows=rows)
+        strict = np.ones_like(old.asleep.strict)  # until a step finds it
+        asleep = old.asleep._replace(bodies=bodies, missed=missed[bodies], rows=rows, strict=strict)
         self.work = workspace(self._model, self.system, (state, mid, matrix), old.kept, asleep)
         self._put_back()
         history = History(last, self.steering.history.ub, self.steering.history.spans)

@@ -62,10 +62,10 @@ class Drift(NamedTuple):
     ends: Ints  # (regions, 2) the sheets of each, -1: it sleeps
     moved: Floats  # (sheets,) places of each at most, added up over steps [mm]
     rates: Floats  # (sheets,) how fast they are at most in an iteration [mm/ms]
-    looked: Floats  # (regions,) what both had moved together at the last look [mm]
+    looked: Floats  # (regions,) what both had moved together before the step of the last look, at least [mm]
     looks: Ints  # (regions,) how many looks there were
     listed: Ints  # pairs that are searched and were near when they were listed,
-    list_moved: Floats  # (regions,) what both had moved together then [mm]
+    list_moved: Floats  # (regions,) what both had moved together before, at least [mm]
     list_holds: Floats  # (3,) MANY, MARGIN, SLACK of the list
 
 

@@ -61,11 +61,7 @@ def look_at(work, k, a, b, gap):
         return True
     tables, search, mid = work.tables, work.search, work.mid
     own, kept = search.listed[k], mid.overlaps[k]
-    one, two, ratio = (
-        box_of(tables.bodies[own.a]),
-        box_of(tables.bodies[own.b]),
-        search.regions[own.region].sticking,
-    )
+    one, two = box_of(tables.bodies[own.a]), box_of(tables.bodies[own.b])
     if apart(a, one.half, b, two.half, gap):
         return False
     find(kept, a, one, b, two, law_of_boxes(search, own))

@@ -17,8 +17,9 @@ from mdlgen.backends.lattice.kernels.state import MANY, MARGIN, SLACK
 from mdlgen.mechanics.overlap import MOVED
 from mdlgen.program.kernel import BORROWS, njit
 
-# The part of what boxes may move that is left after a look.
-LEFT = 0.5
+# The part of what boxes may move that two sheets may move together until the next look. A look sees to it
+# that twice that is left: a step may be taken again from its state, the other way.
+LEFT = 1.0 / 3.0
 # How much nearer pairs may come before they are listed anew [mm], where a step takes no more of it than the
 # other part.
 SPARE, SLOW = 0.01, 0.2
@@ -48,7 +49,6 @@ def look_ahead(work, h):
             if sheet >= 0:
                 was, now = was + drift.moved[sheet], now + h * drift.rates[sheet]
         if not was + now - drift.looked[k] <= LEFT * MOVED * regions[k].least:
-            # the step may be taken again from the state, the other way
             drift.looked[k] = was - now
             drift.looks[k] += 1
 
@@ -90,8 +90,9 @@ def list_near(work, margin, h, found):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def list_anew(drift):
-    """Pairs that are searched are others now."""
+    """Pairs that are searched are others now, or a step was given up that may have left anything."""
     drift.list_holds[SLACK] = -1.0
+    drift.looked[:] = -math.inf
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)

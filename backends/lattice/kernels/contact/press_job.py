@@ -36,7 +36,7 @@ def is_known(work, k, a, b):
         return False
     if kept.look == looks[own.region]:
         return True
-    if not holds(kept, a, b, LEFT * MOVED * work.search.regions[own.region].least):
+    if not holds(kept, a, b, 2.0 * LEFT * MOVED * work.search.regions[own.region].least):
         return False
     kept.look = looks[own.region]
     return True

@@ -297,6 +297,7 @@ def run(work, t, steps, tolerance, control):
                 if not solved:
                     counters[GIVEN_UP] += 1
                     spans[BETWEEN] = 0.0
+                    list_anew(mid.drift)
                 continue
             if work.damped.joints.size > 0:
                 course = dt / (dt + spans[LAST_STEP]) if spans[LAST_STEP] > 0.0 else 0.0

@@ -95,7 +95,7 @@ def begin_patch(work, q, k, h):
     nearest = -REACH
     for i in range(kept.count):
         nearest = max(nearest, level + lean_p * kept.corners[i, 0] + lean_r * kept.corners[i, 1])
-    if nearest <= -REACH:
+    if nearest <= -REACH or nearest > kept.most:
         return
     law, ratio = law_of_boxes(search, own), search.regions[own.region].sticking
     rate, spin = moves(owner, other, place)
