@@ -105,10 +105,13 @@ def bench(
         raise SpecError(
             f"{beside}: is not a folder with another state of mdlgen: it has no mdlgen/__init__.py"
         )
-    compiled = {name: _warm(name, say) for name in names if name not in PEERS}
+    compiled = {name: _warm(name, say).compiled for name in names if name not in PEERS}
     for name in compiled if beside is not None else ():
-        if _warm(name, say, beside) is None:
-            raise SpecError(f"{beside}: this state of mdlgen does not run a case of this one with {name}")
+        why = _warm(name, say, beside).status
+        if why != OK:
+            raise SpecError(
+                f"{beside}: that state of mdlgen does not run a case of this one with {name}: {why}"
+            )
     found = Bench(machine(), versions() | peer_versions(), compiled)
     references = References(folder, say)
     try:
@@ -150,11 +153,11 @@ def write(found: Bench, folder: Path) -> None:
     paths.write_together(files)
 
 
-def _warm(solver: str, say: Say, checkout: Path | None = None) -> float | None:
-    """Compile time [s] of a solver in a new process, before anything is measured."""
+def _warm(solver: str, say: Say, checkout: Path | None = None) -> Outcome:
+    """Has a solver compiled in a new process, before anything is measured."""
     say(f"{solver}{BESIDE if checkout else ''}: compiling, or loading what is compiled")
     case = BenchCase("warm", "compile", WARM, _nothing)
-    return process.run(Job(case, solver, registry.SOLVERS[solver], 1, None), checkout).compiled
+    return process.run(Job(case, solver, registry.SOLVERS[solver], 1, None), checkout)
 
 
 def _nothing(result: Any, reference: Any) -> list:

@@ -79,17 +79,23 @@ def test_growth_of_piles_is_that_of_a_step():
 
 
 def test_another_state_runs_each_case_too(tmp_path):
-    """Here a state that refuses all scenes."""
-    other = tmp_path / "other" / "mdlgen"
-    other.mkdir(parents=True)
-    (other / "__init__.py").write_text("raise SystemExit('an old state')")
-    found = bench(["flight"], tmp_path / "out", ["lattice"], quick=True, repeats=1, beside=tmp_path / "other")
+    """Here this one itself, one that refuses all, and none."""
+    root = Path(mdlgen.__file__).resolve().parents[1]
+    (tmp_path / "old" / "mdlgen").mkdir(parents=True)
+    (tmp_path / "old" / "mdlgen" / "__init__.py").write_text("raise SystemExit('an old state')\n")
+    run = {"solvers": ["lattice"], "quick": True, "repeats": 1}
+    with pytest.raises(SpecError, match=r"does not run a case of this one with lattice: .*an old state"):
+        bench(["flight"], tmp_path / "out", beside=tmp_path / "old", **run)
+    with pytest.raises(SpecError, match="is not a folder with another state"):
+        bench(["flight"], tmp_path / "out", beside=tmp_path, **run)
+    found = bench(["flight"], tmp_path / "out", beside=root, **run)
     own = [row for row in found.rows if row.solver == "lattice"]
     beside = [row for row in found.rows if row.solver == "lattice, beside"]
-    assert own and all(row.status == "ok" for row in own)
-    assert beside and all("an old state" in (row.reason or "") for row in beside)
-    with pytest.raises(SpecError, match="another state"):
-        bench(["flight"], tmp_path / "out", ["lattice"], quick=True, repeats=1, beside=tmp_path)
+    assert [(row.case, row.quantity, row.error) for row in own] == [
+        (row.case, row.quantity, row.error) for row in beside
+    ]
+    found.rows[:] = [replace(row, status=status) for row in beside for status in ("wrong", "failed")]
+    assert found.wrong == found.failed == [], "another state fails nothing"
 
 
 def test_the_quick_ladder_has_a_rung_of_each_name():
