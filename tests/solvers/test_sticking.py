@@ -221,13 +221,13 @@ def test_two_free_sheets_keep_their_momenta_and_their_energy() -> None:
 
 
 def test_results_converge_with_the_step() -> None:
-    """Where a sheet that slides comes to rest."""
+    """Where a sheet that slides comes to rest; which step it sticks in makes the fall uneven."""
     ends = []
-    for step in ("0.1 ms", "0.05 ms", "0.025 ms", "0.0125 ms"):
+    for step in ("0.1 ms", "0.05 ms", "0.025 ms", "0.0125 ms", "0.00625 ms"):
         text = slope(3.0, more="velocity: [20 mm/s, 5 mm/s, 0 mm/s]", run=f"step: {step}")
         ends.append(middle(solved(text), "top")[-1, :2])
     misses = [float(np.linalg.norm(end - ends[-1])) for end in ends[:-1]]
-    assert misses[0] < 1e-4 and misses[2] < 0.7 * misses[1] < 0.5 * misses[0]
+    assert misses[0] < 1e-5 and misses[2] < misses[1] < 0.2 * misses[0] and misses[3] < 0.1 * misses[2]
 
 
 def test_stretches_stay_where_pairs_are_searched_anew() -> None:
