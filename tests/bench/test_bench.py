@@ -216,7 +216,9 @@ def test_an_unknown_suite_or_solver_is_named(tmp_path):
 
 
 def test_an_interrupt_leaves_the_rows_so_far(tmp_path, monkeypatch):
-    monkeypatch.setattr(process, "run", lambda task: Outcome("ok", [Finding("q", 0.0, 1.0)], 0.1, 1, 1.0))
+    monkeypatch.setattr(
+        process, "run", lambda task, checkout=None: Outcome("ok", [Finding("q", 0.0, 1.0)], 0.1, 1, 1.0)
+    )
 
     def say(text: str) -> None:
         if text.startswith("2/"):

@@ -95,7 +95,7 @@ def test_the_cases_of_a_peer_are_the_scene_of_ours_and_share_its_reference(solve
 
 
 def test_peers_run_transport_alone_and_after_ours(tmp_path, monkeypatch):
-    monkeypatch.setattr(process, "run", lambda task: Outcome("ok", [], 0.1, 1, 1.0))
+    monkeypatch.setattr(process, "run", lambda task, checkout=None: Outcome("ok", [], 0.1, 1, 1.0))
     monkeypatch.setattr("mdlgen.bench.run.installed", lambda: True)
     heard: list[str] = []
     bench(["impact", "transport"], tmp_path, quick=True, say=heard.append)
@@ -105,7 +105,7 @@ def test_peers_run_transport_alone_and_after_ours(tmp_path, monkeypatch):
 
 
 def test_where_mujoco_is_not_installed_that_is_said(tmp_path, monkeypatch):
-    monkeypatch.setattr(process, "run", lambda task: Outcome("ok", [], 0.1, 1, 1.0))
+    monkeypatch.setattr(process, "run", lambda task, checkout=None: Outcome("ok", [], 0.1, 1, 1.0))
     monkeypatch.setattr("mdlgen.bench.run.installed", lambda: False)
     heard: list[str] = []
     bench(["transport"], tmp_path, quick=True, say=heard.append)
@@ -122,14 +122,14 @@ def _missing(name: str) -> None:
 
 
 def test_no_peers_leaves_them_out(tmp_path, monkeypatch):
-    monkeypatch.setattr(process, "run", lambda task: Outcome("ok", [], 0.1, 1, 1.0))
+    monkeypatch.setattr(process, "run", lambda task, checkout=None: Outcome("ok", [], 0.1, 1, 1.0))
     heard: list[str] = []
     bench(["transport"], tmp_path, quick=True, say=heard.append, peers=False)
     assert not [line for line in heard if any(name in line for name in PEERS)]
 
 
 def test_a_peer_that_fails_is_no_failure_of_the_bench(tmp_path, monkeypatch):
-    monkeypatch.setattr(process, "run", lambda task: Outcome("stopped at 3 ms"))
+    monkeypatch.setattr(process, "run", lambda task, checkout=None: Outcome("stopped at 3 ms"))
     found = bench(["transport"], tmp_path, ["exudyn-script"], quick=True)
     assert [row.status for row in found.rows] == ["failed"] and not found.failed
 
