@@ -129,7 +129,8 @@ def test_what_comes_down_on_it_wakes_it(solve: Solve, sets: tuple[str, ...]) -> 
 def test_a_sheet_that_sleeps_in_the_air_is_struck_as_one_that_does_not(
     solve: Solve, restitution: float
 ) -> None:
-    """Without weight: the same but for where overlaps were found, and momentum goes over whole."""
+    """Without weight: the same to round-off until it is struck, then but for where overlaps were found, which
+    goes by how sheets moved before; and momentum goes over whole."""
     sets = (
         "gravity=[0 m/s^2, 0 m/s^2, 0 m/s^2]",
         "planes.floor.center=[0 mm, 0 mm, -65 mm]",
@@ -141,6 +142,9 @@ def test_a_sheet_that_sleeps_in_the_air_is_struck_as_one_that_does_not(
     result, turns = solve(*sets)
     assert [names for _, names in turns[:2]] == [("cassette_1",), ()]
     awake, _ = solve(*sets, sleep=False)
+    before = result.time < turns[1][0]
+    assert before.sum() > 20
+    assert float(np.abs(result.position - awake.position)[before].max()) < 1e-12
     assert apart(result, awake) < 1e-6
     speeds = [float(result.sheet_motion(k)[1][-1, 2]) for k in range(2)]
     assert sum(speeds) == pytest.approx(-0.1, rel=1e-9)
