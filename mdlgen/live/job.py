@@ -152,7 +152,8 @@ def _perform(job: Job, send: Send, cancelled: Callable[[], bool]) -> None:
         return
     result.source = job.text
     body = finished(result, job.draft)
-    send({"kind": "ended", "how": "draft" if job.draft else "full", "status": result.status}, body)
+    how, took = "draft" if job.draft else "full", round(result.wall_s + result.estimate_s, 4)
+    send({"kind": "ended", "how": how, "status": result.status, "solved_s": took}, body)
 
 
 def draft_step(model: Model) -> float:

@@ -48,7 +48,7 @@ class Session:
         self.errors: list[dict[str, Any]] = []
         self.controls: list[dict[str, Any]] = []
         self.body: bytes = b""  # of the run that is shown, as JSON
-        self._shown: dict[str, Any] = {"number": 0, "kind": None, "status": ""}
+        self._shown: dict[str, Any] = {"number": 0, "kind": None, "status": "", "solved_s": None}
         self._scene = file.stem
         self._progress: dict[str, Any] | None = None
         self._word = ""
@@ -276,7 +276,7 @@ class Session:
             failed = record["status"] != "ok"
             self.errors = [_plain(f"the run failed: {record['status']}")] if failed else []
             self._drafted = self._drawing = newest and record["how"] == DRAFT
-            self._show(record["how"], record["status"], body)
+            self._show(record["how"], record["status"], body, record["solved_s"])
         elif record["kind"] == "refused" and newest:
             self.errors = record["errors"]
             self._todo = []
@@ -285,9 +285,9 @@ class Session:
             self._todo = []
         self._go_on()
 
-    def _show(self, kind: str, status: str, body: bytes) -> None:
+    def _show(self, kind: str, status: str, body: bytes, solved_s: float | None = None) -> None:
         number = self._shown["number"] + bool(body)
-        self._shown = {"number": number, "kind": kind, "status": status}
+        self._shown = {"number": number, "kind": kind, "status": status, "solved_s": solved_s}
         self.body = body or self.body
 
     def _list(self, controls: list[dict[str, Any]]) -> None:

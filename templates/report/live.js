@@ -170,7 +170,7 @@ function heard(next) {
   if (progress) bar.value = progress.time / progress.end;
   const doing = { preparing: "preparing the solver, once on this machine", compiling: "compiling the solver, once on this machine (some minutes)" }[word];
   get("far").textContent = progress ? `${progress.time.toFixed(1)} of ${number(progress.end)} ms` : "";
-  const what = doing ?? (busy ? "running" : errors.length ? "the last run that was right is shown" : "up to date");
+  const what = doing ?? (busy ? "running" : errors.length ? "the last run that was right is shown" : run.solved_s === null ? "up to date" : `up to date, solved in ${number(run.solved_s)} s`);
   write("status", `${next.file}: ${what}${run.kind === "draft" ? "; a draft at a coarse step is shown" : ""}`);
   if (listed !== next.controls) { listed = next.controls; ask("controls").then((found) => { list(found); show(session.turned, session.errors); }); }
   if (written !== next.text) { written = next.text; ask("text").then(({ text }) => numberLines(text)); }
