@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from mdlgen.lints import contacts, cost, damping, idle, missing, parameters, planes, sheets, start, ways
+from mdlgen.lints import air, contacts, cost, damping, idle, missing, parameters, planes, sheets, start, ways
 from mdlgen.lints.lint import Lint
 from mdlgen.model.once import Once
 from mdlgen.model.tables import Model
@@ -52,4 +52,6 @@ CHECKS: tuple[Callable[[Model], Iterator[Lint]], ...] = (
     ways.apart,
     planes.sinks,
     planes.crosswise,
+    air.no_gas,
+    air.still,
 )

@@ -19,6 +19,7 @@ BACKEND = Backend(
         (
             ("transport_4x4.yaml", _SHORT),
             ("pick.yaml", _SHORT),
+            ("landing.yaml", _SHORT),
             ("cantilever.yaml", _FEW),
             ("verify/tension.yaml", ()),
         ),

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from mdlgen.backends.exudyn_local.place import place_all
-from mdlgen.backends.exudyn_local.system import EULER
+from mdlgen.backends.exudyn_local.air import air_forces
+from mdlgen.backends.exudyn_local.place import place_all, spread
 from mdlgen.mechanics.arm import (
     DAMPING,
     FORCE_0,
@@ -11,7 +11,6 @@ from mdlgen.mechanics.arm import (
     STIFFNESS,
     moved,
     torque_of,
-    turn_of,
     way_of,
 )
 from mdlgen.mechanics.bushing import bushing
@@ -42,34 +41,6 @@ from mdlgen.program.kernel import njit
 
 # Either way of a time the speed of a drive is taken for its growth [s].
 INSTANT = 1e-7
-
-
-@njit(cache=True, error_model="numpy", forceinline=True)
-def spread(bodies, body, q, force, torque, f):
-    """Adds a force and a torque at a body's centre to the generalised forces."""
-    n = bodies[body].first
-    if n >= 0:
-        ref = bodies[body].reference
-        e0, e1, e2, e3 = (
-            ref[EULER] + q[n + EULER],
-            ref[EULER + 1] + q[n + EULER + 1],
-            ref[EULER + 2] + q[n + EULER + 2],
-            ref[EULER + 3] + q[n + EULER + 3],
-        )
-        for i in range(3):
-            f[n + i] += force[i]
-        a, b, c = torque
-        f[n + EULER] += 2 * (-e1 * a - e2 * b - e3 * c)
-        f[n + EULER + 1] += 2 * (e0 * a + e3 * b - e2 * c)
-        f[n + EULER + 2] += 2 * (-e3 * a + e0 * b + e1 * c)
-        f[n + EULER + 3] += 2 * (e2 * a - e1 * b + e0 * c)
-        return
-    if bodies[body].slide >= 0:
-        ref = bodies[body].reference
-        at = moved(bodies[body], (ref[0], ref[1], ref[2]), q[bodies[body].slide])
-        f[bodies[body].slide] += dot(force, way_of(bodies[body], at)) + dot(torque, turn_of(bodies[body]))
-    if bodies[body].spin >= 0:
-        f[bodies[body].spin] += dot(torque, three(bodies[body].axis))
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -166,4 +137,5 @@ def forces(tables, at, level, work):
             touching += 1
     for i in range(loads.size):
         load_forces(bodies, loads[i], q, motion.r, f, level)
+    air_forces(tables, at, motion, f)
     return touching

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from mdlgen.backends.exudyn_local.air import air_forces
 from mdlgen.backends.exudyn_local.forces import INSTANT, bush_forces, pair_forces
 from mdlgen.backends.exudyn_local.place import place_all
 from mdlgen.backends.exudyn_local.state import DRIVING, ELASTIC, KINETIC, LOST, POTENTIAL, WIDE
@@ -101,5 +102,6 @@ def ledger(tables, at, work, pair_out, totals):
         arm = rotate(mat(r, body), three(load.local))
         rate = add(vec(u, body), cross(vec(w, body), arm))
         driven += dot(three(load.force), rate) + dot(three(load.moment), vec(w, body))
+    lost += air_forces(tables, at, motion, f)
     totals[KINETIC], totals[ELASTIC], totals[POTENTIAL] = kinetic, elastic, potential
     totals[LOST], totals[DRIVING] = lost, driven

@@ -1,4 +1,5 @@
-"""Places and velocities of all bodies at the solver's coordinates, and whose coordinate each is."""
+"""Places and velocities of all bodies at the solver's coordinates, whose coordinate each is, and what forces
+at bodies are along them."""
 
 from __future__ import annotations
 
@@ -7,10 +8,12 @@ import numpy as np
 from mdlgen.backends.exudyn_local.system import EULER, System
 from mdlgen.mechanics.arm import (
     moved,
+    turn_of,
     way_of,
 )
 from mdlgen.mechanics.driven import prescribed, turned
 from mdlgen.mechanics.vector import (
+    dot,
     exp_rotation,
     mat,
     matmul,
@@ -87,6 +90,34 @@ def place_all(bodies, at, motion):
     """The Motion of all bodies at some Coordinates."""
     for body in range(bodies.size):
         place_body(bodies, body, at, motion)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def spread(bodies, body, q, force, torque, f):
+    """Adds a force and a torque at a body's centre to the generalised forces."""
+    n = bodies[body].first
+    if n >= 0:
+        ref = bodies[body].reference
+        e0, e1, e2, e3 = (
+            ref[EULER] + q[n + EULER],
+            ref[EULER + 1] + q[n + EULER + 1],
+            ref[EULER + 2] + q[n + EULER + 2],
+            ref[EULER + 3] + q[n + EULER + 3],
+        )
+        for i in range(3):
+            f[n + i] += force[i]
+        a, b, c = torque
+        f[n + EULER] += 2 * (-e1 * a - e2 * b - e3 * c)
+        f[n + EULER + 1] += 2 * (e0 * a + e3 * b - e2 * c)
+        f[n + EULER + 2] += 2 * (-e3 * a + e0 * b + e1 * c)
+        f[n + EULER + 3] += 2 * (e2 * a - e1 * b + e0 * c)
+        return
+    if bodies[body].slide >= 0:
+        ref = bodies[body].reference
+        at = moved(bodies[body], (ref[0], ref[1], ref[2]), q[bodies[body].slide])
+        f[bodies[body].slide] += dot(force, way_of(bodies[body], at)) + dot(torque, turn_of(bodies[body]))
+    if bodies[body].spin >= 0:
+        f[bodies[body].spin] += dot(torque, three(bodies[body].axis))
 
 
 @njit(cache=True, error_model="numpy")

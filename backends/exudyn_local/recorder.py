@@ -106,6 +106,11 @@ class Recorder:
         """Pairs that touch at the state last observed."""
         return int((self._pairs[:, PRESSING] > 0).sum())
 
+    @property
+    def begun(self) -> Coordinates:
+        """The state as the last step ended."""
+        return Coordinates(self._last_q, self._last_v, self.time)
+
     def store(self, q: np.ndarray, v: np.ndarray, t: float) -> None:
         """Observe and store one state outside the stepping (the start, or a static result)."""
         self._q[:], self._v[:] = q, v

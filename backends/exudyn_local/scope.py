@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from mdlgen.model.air import refuse_air
 from mdlgen.model.external import refuse_externals
 from mdlgen.model.sheet_pairs import refuse_searched
 from mdlgen.model.sticking import refuse_sticking
@@ -14,4 +13,3 @@ def check(model: Model) -> None:
     refuse_externals(model, "Exudyn")
     refuse_sticking(model, "Exudyn")
     refuse_searched(model, "Exudyn")
-    refuse_air(model, "Exudyn", "which it does not have yet")

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from mdlgen.backends.exudyn_local.air import air_slopes, begin_air, lay_air
 from mdlgen.backends.exudyn_local.between import passed, set_limits
 from mdlgen.backends.exudyn_local.forces import forces
 from mdlgen.backends.exudyn_local.jacobian import jacobian
@@ -36,5 +37,8 @@ def overstretched(points, bushings, x, r):
 PROGRAM = Program(
     Path(__file__).with_name("exudyn.program"),
     (LAWS, "mdlgen.backends.exudyn_local"),
-    (forces, jacobian, ledger, begin, overstretched, passed, set_limits, set_owners, set_thickness),
+    (
+        *(forces, jacobian, air_slopes, ledger, begin, begin_air, lay_air),
+        *(overstretched, passed, set_limits, set_owners, set_thickness),
+    ),
 )

@@ -16,10 +16,20 @@ from typing import Any
 
 import numpy as np
 
+from mdlgen.backends.exudyn_local.films import LAG, entries_of
 from mdlgen.backends.exudyn_local.place import owners
 from mdlgen.backends.exudyn_local.recorder import Recorder
 from mdlgen.backends.exudyn_local.scope import check
-from mdlgen.backends.exudyn_local.shipped import PROGRAM, forces, jacobian, ledger, passed
+from mdlgen.backends.exudyn_local.shipped import (
+    PROGRAM,
+    air_slopes,
+    begin_air,
+    forces,
+    jacobian,
+    lay_air,
+    ledger,
+    passed,
+)
 from mdlgen.backends.exudyn_local.stability import falling
 from mdlgen.backends.exudyn_local.state import SEEN, TOTALS, Coordinates, Work, workspace
 from mdlgen.backends.exudyn_local.step import choose_steps, cost, given_steps
@@ -162,7 +172,7 @@ def _once(
     """One run of `count` steps of h [s], or a static one of as many steps of the load, where h is 0."""
     started = clock.perf_counter()
     recorder = Recorder(model, system, progress)
-    assembly = _assemble(exu, model, system, pattern, work)
+    assembly = _assemble(exu, model, system, pattern, work, recorder)
     static = model.run.analysis == "static"
     if not static:
         recorder.plan(h)
@@ -216,10 +226,16 @@ def _compile(system: System, pattern: Pattern, work: Work) -> None:
     forces(tables, at, 1.0, work)
     jacobian(tables, system.elements, at, 1.0, (1.0, 1.0), False, owner, work, data)
     ledger(tables, at, work, np.zeros((len(system.pairs), SEEN)), np.zeros(TOTALS))
+    if system.film.cells.size:
+        begin_air(tables, at, work.motion)
+        lay_air(tables, at, 0.0, work.motion)
+        air_slopes(tables, at, 1.0, work.motion, *entries_of(system.film))
     passed(system.bodies, system.pairs, system.shapes, q, v, q, v, 0.0, 0.0)
 
 
-def _assemble(exu, model: Model, system: System, pattern: Pattern, work: Work) -> Assembly:
+def _assemble(
+    exu, model: Model, system: System, pattern: Pattern, work: Work, recorder: Recorder
+) -> Assembly:
     from exudyn.itemInterface import (
         Mass1D,
         Node1D,
@@ -272,6 +288,14 @@ def _assemble(exu, model: Model, system: System, pattern: Pattern, work: Work) -
                 node = mbs.AddNode(Node1D(referenceCoordinates=[0.0], initialVelocities=[rate]))
                 mbs.AddObject(Mass1D(mass=mass, nodeNumber=node))
                 nodes.append(node)
+    cells = system.film.cells.size
+    if cells:
+        begin_air(system.tables, Coordinates(q, v, 0.0), work.motion)
+        for pressure, area in zip(v[free - cells :].tolist(), system.film.areas.tolist(), strict=True):
+            node = mbs.AddNode(Node1D(referenceCoordinates=[0.0], initialVelocities=[pressure]))
+            mbs.AddObject(Mass1D(mass=LAG * area, nodeNumber=node))
+            nodes.append(node)
+    entries, values = entries_of(system.film)
     f = work.forces
     tables = system.tables
     owner = owners(system)
@@ -284,7 +308,18 @@ def _assemble(exu, model: Model, system: System, pattern: Pattern, work: Work) -
         np.zeros_like(q),
     )  # the same at each call: compiled code looks at them once
 
+    laid = [0.0]  # time at whose gaps the air is
+
+    def lay(t: float) -> None:
+        """The gaps of a step that ends at t, before its first iteration."""
+        if cells and t != laid[0]:
+            begun = recorder.begun
+            guess = Coordinates(begun.q + (t - begun.t) * begun.v, begun.v, t)
+            lay_air(tables, guess, t - begun.t, work.motion)
+            laid[0] = t
+
     def force(mbs, t, itemNumber, q, q_t):
+        lay(t)
         here[:] = state.GetODE2Coordinates(copy=False)
         if not static:
             rates[:] = state.GetODE2Coordinates_t(copy=False)
@@ -292,13 +327,18 @@ def _assemble(exu, model: Model, system: System, pattern: Pattern, work: Work) -
         return f
 
     def tangent(mbs, t, itemNumber, q, q_t, fODE2, fODE2_t):
+        lay(t)
         at = Coordinates(np.array(q), rest.copy() if static else np.array(q_t), t)
         by = (fODE2, 0.0 if static else fODE2_t)
         jacobian(tables, system.elements, at, t if static else 1.0, by, static, owner, work, data)
         if not np.isfinite(data).all():
             # a factor of it would end the whole process; a singular one is a step that did not converge
             data[:] = 0.0
-        return exu.MatrixContainer(csr_matrix((data, pattern.indices, pattern.indptr), shape=(free, free)))
+        matrix = csr_matrix((data, pattern.indices, pattern.indptr), shape=(free, free))
+        if cells:
+            many = air_slopes(tables, at, by[1], work.motion, entries, values)
+            matrix += csr_matrix((values[:many], entries[:, :many]), shape=(free, free))
+        return exu.MatrixContainer(matrix)
 
     if nodes:
         mbs.AddObject(

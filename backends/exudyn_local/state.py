@@ -13,6 +13,7 @@ from mdlgen.mechanics.turning import TURNING
 from mdlgen.model.tables import Floats
 
 if TYPE_CHECKING:
+    from mdlgen.backends.exudyn_local.films import Film
     from mdlgen.backends.exudyn_local.system import System
 
 # Of the energies at a state [J, W]: kinetic, elastic, potential, dissipated power, power of drives and loads.
@@ -31,6 +32,7 @@ class Tables(NamedTuple):
     shapes: Shapes
     loads: np.ndarray
     gravity: Floats
+    film: Film
 
 
 class Coordinates(NamedTuple):

@@ -1,7 +1,8 @@
 """The Model as arrays in SI units, in the order in which the solver numbers its coordinates.
 
 A free box has seven coordinates (position, Euler parameters); a free roller one for its spin; a pressed
-roller or plate one for its slide. Everything else is prescribed. Row -1 of the body arrays is the ground.
+roller or plate one for its slide; a cell of air between sheets one for its pressure, see air.py. Everything
+else is prescribed. Row -1 of the body arrays is the ground.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from mdlgen.backends.exudyn_local.films import Film, film_of
 from mdlgen.backends.exudyn_local.state import Tables
 from mdlgen.errors import RefusedError
 from mdlgen.mechanics.curve import curve_points
@@ -71,6 +73,7 @@ class System(NamedTuple):
     free: int  # number of coordinates
     points: np.ndarray  # of the curves that bushings follow, mechanics.curve.POINT [Pa]
     shapes: Shapes  # [m]
+    film: Film
 
     @property
     def tables(self) -> Tables:
@@ -83,6 +86,7 @@ class System(NamedTuple):
             shapes=self.shapes,
             loads=self.loads,
             gravity=self.gravity,
+            film=self.film,
         )
 
 
@@ -112,13 +116,16 @@ def build(model: Model) -> tuple[System, Pattern]:
     check(model)
     moving = model.run.analysis == "transient"
     bodies, free = _bodies(model, moving)
+    film = film_of(model, free, SI)
+    free += len(film.cells)
     bushings, blocks = _bushings(model)
     pairs = pack_pairs(model, PAIR, np.arange(len(model.pairs)), SI)
     loads = pack_loads(model, SI)
     elements, pattern = _pattern(_couplings(bodies, bushings, blocks, pairs, loads), blocks, free)
     points = curve_points(model.curves, SI.mpa)
     shapes = shape_tables(model, MM)
-    return System(bodies, bushings, pairs, loads, gravity(model, SI), elements, free, points, shapes), pattern
+    system = System(bodies, bushings, pairs, loads, gravity(model, SI), elements, free, points, shapes, film)
+    return system, pattern
 
 
 def _bodies(model: Model, moving: bool) -> tuple[np.ndarray, int]:

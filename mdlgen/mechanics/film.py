@@ -44,6 +44,7 @@ FILM = np.dtype(
         ("acts", "i8"),  # whether any of its cells can close
         ("viscosity", "f8"),  # [N ms/mm^2]
         ("roughness", "f8"),  # [mm]
+        ("wide", "f8"),  # gaps that are wider count as open: the air there is not lubrication any more [mm]
     ]
 )
 CELL = np.dtype(
@@ -68,8 +69,6 @@ CELL = np.dtype(
 SIDES = 4
 X_UP, X_DOWN, Y_UP, Y_DOWN = 0, 1, 2, 3
 NEVER = 1e9  # mm: there is no edge that way
-# Gaps that are wider [mm] count as open: the air there is not lubrication any more.
-WIDE = 2.0
 # An edge is at least this part of a cell away from its middle.
 NEAREST = 1e-3
 

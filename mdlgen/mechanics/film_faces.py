@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from mdlgen.mechanics.film import NEVER, WIDE, X_DOWN, X_UP, Y_DOWN, Y_UP
+from mdlgen.mechanics.film import NEVER, X_DOWN, X_UP, Y_DOWN, Y_UP
 from mdlgen.mechanics.overlap import STEEP
 from mdlgen.mechanics.vector import add, back, cross, dot, rotate, scale, sub
 from mdlgen.program.kernel import BORROWS, njit
@@ -98,7 +98,7 @@ def cover(film, cells, pair, box, frames, shapes, h):
         i, j = k % film.parts_x, k // film.parts_x
         at = add(a.x, rotate(a.r, ((i + 0.5) * size_x - half[0], (j + 0.5) * size_y - half[1], top)))
         gap = dot(sub(level, at), other) / dot(way, other)
-        if gap > WIDE:
+        if gap > film.wide:
             continue
         x, y = first_x + i, first_y + j
         own = cells[film.cell + (y * film.width + x if film.across == 0 else x * film.width + y)]

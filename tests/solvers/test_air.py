@@ -12,11 +12,13 @@ import numpy as np
 import pytest
 
 import mdlgen
+from mdlgen.checks import lints
 from mdlgen.errors import RefusedError, SpecError
 from mdlgen.model.lower import lower
 from mdlgen.model.rotations import turns
+from mdlgen.paths import samples
 from mdlgen.results.result import Result
-from mdlgen.spec.load import loads
+from mdlgen.spec.load import load, loads
 
 VISCOSITY = 18.2e-9  # [N ms/mm^2]
 SQUARE = 0.4217  # of L^4
@@ -42,8 +44,8 @@ run: {{{run}}}
 """
 
 
-def solved(text: str) -> Result:
-    result = mdlgen.solve(lower(loads(text)), "lattice")
+def solved(text: str, solver: str = "lattice") -> Result:
+    result = mdlgen.solve(lower(loads(text)), solver)
     assert result.ok, result.status
     return result
 
@@ -54,17 +56,18 @@ def heights(result: Result, sheet: int) -> np.ndarray:
     return result.position[:, part.first : part.first + part.count, 2].mean(axis=1)
 
 
-def sinking(boxes: str, step: str = "0.1 ms") -> Result:
+def sinking(boxes: str, step: str = "0.1 ms", solver: str = "lattice") -> Result:
     """A stiff square of 30 mm and 0.72 g that ten times its weight presses through 0.1 mm of air."""
     sheet = f"size: [30 mm, 30 mm], mass: 0.72 g, boxes: {boxes}, center: [0 mm, 0 mm, 0.15 mm]"
     run = f"duration: 20 ms, print_step: 0.5 ms, step: {step}"
     contact = f"between: [note, table], {AIR}"
-    return solved(scene([("note", sheet)], [contact], run, gravity=98.1, bend=STIFF, parts=TABLE))
+    return solved(scene([("note", sheet)], [contact], run, gravity=98.1, bend=STIFF, parts=TABLE), solver)
 
 
+@pytest.mark.parametrize("solver", ["lattice", "exudyn"])
 @pytest.mark.parametrize("boxes", ["[1, 1]", "[4, 4]", "[8, 8]", "[5, 10]", "[10, 20]"])
-def test_a_note_sinks_through_its_air_as_the_closed_form_on_any_grid(boxes) -> None:
-    result = sinking(boxes)
+def test_a_note_sinks_through_its_air_as_the_closed_form_on_any_grid(boxes, solver) -> None:
+    result = sinking(boxes, solver=solver)
     h, force = heights(result, 0) - 0.05, 0.72 * 98.1e-3
     t = result.time - 0.72 * 0.1**3 / (SQUARE * 30.0**4 * VISCOSITY)
     exact = (0.1**-2 + 2.0 * force * t / (SQUARE * 30.0**4 * VISCOSITY)) ** -0.5
@@ -83,10 +86,12 @@ def test_the_step_hardly_matters() -> None:
 
 
 PAIR = "duration: 1 ms, print_step: 0.05 ms, step: 0.01 ms"
+# What Exudyn loses to the air is summed up from powers at the ends of its steps.
+FINER = PAIR.replace("0.01", "0.005")
 
 
-def approaching(low: str, top: str, more: str = "") -> Result:
-    return solved(approaching_text(low, top, more))
+def approaching(low: str, top: str, more: str = "", solver: str = "lattice") -> Result:
+    return solved(approaching_text(low, top, more, PAIR if solver == "lattice" else FINER), solver)
 
 
 def approaching_text(low: str, top: str, more: str = "", run: str = PAIR) -> str:
@@ -101,11 +106,12 @@ def approaching_text(low: str, top: str, more: str = "", run: str = PAIR) -> str
     return scene(sheets, [f"between: [low, top], {AIR}"], run, gravity=0.0, bend=STIFF)
 
 
+@pytest.mark.parametrize("solver", ["lattice", "exudyn"])
 @pytest.mark.parametrize(("low", "top"), [("[4, 4]", "[4, 4]"), ("[8, 8]", "[3, 5]"), ("[3, 5]", "[10, 20]")])
-def test_two_plates_stop_each_other_as_the_closed_form_whichever_carries_the_air(low, top) -> None:
+def test_two_plates_stop_each_other_as_the_closed_form_whichever_carries_the_air(low, top, solver) -> None:
     """With half of the mass m' and c V/h^3 the speed is v0 - c/(2 m') (1/h^2 - 1/h0^2): the gap ends where
     that is 0."""
-    result = approaching(low, top)
+    result = approaching(low, top, solver=solver)
     gap = heights(result, 1) - heights(result, 0) - 0.1
     c, mass = SQUARE * 60.0**4 * VISCOSITY, 0.25
     end = (0.3**-2.0 + 2.0 * mass / c) ** -0.5
@@ -136,16 +142,18 @@ def momenta(result: Result) -> tuple[np.ndarray, np.ndarray]:
     return (mass * v).sum(axis=1), (np.cross(x, mass * v) + own).sum(axis=1)
 
 
-def test_momenta_are_kept_where_sheets_slide_askew_over_a_part_of_each_other() -> None:
-    more = "turn: 23 deg, center: [21 mm, 17 mm, 0.13 mm]"
-    run = "duration: 1 ms, print_step: 0.1 ms, step: 0.05 ms"
-    text = approaching_text("[5, 6]", "[6, 5]", more, run).replace(
-        "[0 m/s, 0 m/s, -0.1", "[1 m/s, 0 m/s, -0.1"
-    )
-    linear, angular = momenta(solved(text))
+@pytest.mark.parametrize(("solver", "gap"), [("lattice", 0.03), ("exudyn", 0.2)])
+def test_momenta_are_kept_where_sheets_slide_askew_over_a_part_of_each_other(solver, gap) -> None:
+    """In Exudyn from further apart: its energies do not balance where air stops a sheet within a step."""
+    more = f"turn: 23 deg, center: [21 mm, 17 mm, {0.1 + gap} mm]"
+    run = f"duration: 1 ms, print_step: 0.1 ms, step: {0.05 if solver == 'lattice' else 0.005} ms"
+    text = approaching_text("[5, 6]", "[6, 5]", more, run)
+    assert "velocity: [0 m/s, 0 m/s, -1 m/s]" in text
+    text = text.replace("velocity: [0 m/s, 0 m/s, -1 m/s]", "velocity: [1 m/s, 0 m/s, -1 m/s]")
+    linear, angular = momenta(solved(text, solver))
     assert np.abs(linear - linear[0]).max() < 1e-12
-    # of 10 N mm ms
-    assert np.abs(angular - angular[0]).max() < 1e-6
+    # of 10 N mm ms; Exudyn's rule keeps it to the square of its step
+    assert np.abs(angular - angular[0]).max() < (1e-6 if solver == "lattice" else 1e-4)
 
 
 @pytest.mark.parametrize("place", ["[20 mm, 0 mm, 0.4 mm]", "[21 mm, 17 mm, 0.4 mm]"])
@@ -199,6 +207,36 @@ def test_a_note_with_air_over_all_of_its_table_needs_no_finer_step() -> None:
     assert np.abs(slow[5:]).max() < 1e-3
 
 
+def test_the_solvers_agree_on_a_note_that_lands() -> None:
+    """samples/landing.yaml: what is solved for with the velocities, and what has coordinates of its own."""
+    model = lower(load(samples() / "landing.yaml", ("run.step=0.05 ms",)))
+    ours, theirs = (mdlgen.solve(model, solver) for solver in ("lattice", "exudyn"))
+    assert ours.ok and theirs.ok
+    fall = ours.position[0] - ours.position[-1]
+    assert fall[:, 2].max() > 0.4
+    assert theirs.position[-1] == pytest.approx(ours.position[-1], abs=1e-4)
+    assert theirs.energy.dissipated == pytest.approx(ours.energy.dissipated, rel=2e-3)
+    assert theirs.energy.balance_error < 1e-4
+
+
+def test_the_solvers_agree_on_a_pile_that_is_fed() -> None:
+    """Three notes, of which a roller takes the upper one along: contacts, friction and two films at once."""
+    sets = (
+        *("piles.cassette.count=3", "rollers.pick.center=[0 mm, 0 mm, 12.7 mm]", "require=[]"),
+        *("contacts.pick.between=[cassette_3, pick]", "probes.lead.sheet=cassette_3"),
+        *("run.duration=4 ms", "run.step=0.0125 ms", "piles.cassette.contact.air={viscosity: 18.2 uPa*s}"),
+    )
+    model = lower(load(samples() / "pile.yaml", sets))
+    assert (model.contacts.air_viscosity > 0.0).sum() == 2
+    ours, theirs = (mdlgen.solve(model, solver) for solver in ("lattice", "exudyn"))
+    assert ours.ok and theirs.ok
+    boxes = sum(sheet.count for sheet in model.sheets)
+    ways = (result.position[-1, :boxes] - result.position[0, :boxes] for result in (ours, theirs))
+    first, second = ways
+    assert first[-12:, 0].min() > 0.1  # of the upper note
+    assert second == pytest.approx(first, abs=1e-3)
+
+
 def test_what_has_no_air_is_said_in_one_line() -> None:
     roller = "rollers: {r: {center: [0 mm, 0 mm, 20 mm], axis: y, radius: 5 mm, width: 5 mm, mass: 1 g}}"
     sheet = "size: [30 mm, 30 mm], mass: 0.7 g, boxes: [2, 2], center: [0 mm, 0 mm, 0.15 mm]"
@@ -219,6 +257,18 @@ def test_what_has_no_air_is_said_in_one_line() -> None:
     for output in ("motionview", "motionsolve", "msolve"):
         with pytest.raises(RefusedError, match=r"note and table has air"):
             mdlgen.emit(model, output)
-    with pytest.raises(RefusedError, match=r"Exudyn: the contact of note and table has air"):
-        mdlgen.solve(model, "exudyn")
     assert math.isclose(float(model.contacts.air_roughness[0]), 1e-5)
+
+
+def found(*sets: str) -> list[tuple[str, str]]:
+    """Lints of samples/landing.yaml."""
+    return [(lint.code, lint.where) for lint in lints(lower(load(samples() / "landing.yaml", sets)))]
+
+
+def test_a_viscosity_that_no_gas_has_and_air_where_nothing_moves() -> None:
+    assert found() == []
+    assert found("contacts.landing.air.viscosity=18.2 Pa*s") == [("W136", "contacts.landing.air.viscosity")]
+    # helium and neon are no findings, nor is steam
+    for gas in (19.9, 31.7, 12.3):
+        assert found(f"contacts.landing.air.viscosity={gas} uPa*s") == []
+    assert ("W137", "contacts.landing.air") in found("run.analysis=static")

@@ -1,0 +1,170 @@
+"""Air between sheets: each cell of a film has a coordinate of its own, whose rate is the pressure there.
+
+Hardly a mass moves along it (films.LAG), so that Reynolds' equation of mechanics.film holds at the end of
+each step:
+
+    F_i = s/A_ii (a_i q_i - sum_j A_ij p_j) = 0
+
+with s the area of a whole cell, which makes it a force as those of all other coordinates are. The solver so
+has a sparse matrix: a cell knows its neighbours and the two boxes that it is between, where forces of
+pressures that were solved for beforehand would couple all boxes of two sheets.
+
+Gaps are those at the end of a step as its first velocities have them, but at least half of those as it began
+(mechanics.film_faces), and stay so in its iterations: F is linear then, and does not jump where faces come to
+touch.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mdlgen.backends.exudyn_local.place import place_all, spread
+from mdlgen.mechanics.film import assemble, factor, solve
+from mdlgen.mechanics.film_faces import clear, cover, link
+from mdlgen.mechanics.frame import frame_of
+from mdlgen.mechanics.vector import add, cross, dot, scale, sub, three, vec
+from mdlgen.model.tables import BOX_BOX, BOX_PLANE
+from mdlgen.program.kernel import njit
+
+ALL_FREE = 15  # sides of a plane, as a bit mask
+BOX = 7  # generalised coordinates of one
+
+
+@njit(cache=True, error_model="numpy")
+def lay_air(tables, at, h, motion):
+    """Sets the gaps and matrices of all films to those at Coordinates that come h after the begin of a step
+    at the velocities that they have."""
+    film, pairs = tables.film, tables.pairs
+    place_all(tables.bodies, at, motion)
+    film.many[0] = 0
+    for k in range(film.films.size):
+        clear(film.films[k], film.cells, film.head)
+    for p in range(film.film_of.size):
+        pair, k = pairs[p], film.film_of[p]
+        if k < 0 or (pair.kind != BOX_BOX and pair.kind != BOX_PLANE):
+            continue
+        own, other = (pair.a, pair.b) if film.films[k].carrier == 0 else (pair.b, pair.a)
+        plane = pair.kind == BOX_PLANE
+        exposed = ALL_FREE if plane else tables.bodies[other].exposed
+        frames = frame_of(motion, own), frame_of(motion, other)
+        shapes = three(tables.bodies[own].half), three(tables.bodies[other].half), exposed
+        cover(film.films[k], film.cells, (p, plane), own - film.films[k].body, frames, shapes, h)
+    for k in range(film.films.size):
+        one = film.films[k]
+        assemble(one, film.cells, film.flow)
+        if one.acts != 0:
+            film.many[0] = link(one, film.cells, film.head, film.listed, film.many[0])
+        else:  # its pressures are none
+            for i in range(one.cell, one.cell + one.cells):
+                film.flow[i, 0] = 1.0
+
+
+@njit(cache=True, error_model="numpy")
+def _rates(tables, motion):
+    """Sets how fast the faces of all cells close."""
+    film = tables.film
+    for k in range(film.many[0]):
+        pair, i = tables.pairs[film.listed[k]], film.head[film.listed[k]]
+        a, b = frame_of(motion, pair.a), frame_of(motion, pair.b)
+        while i >= 0:
+            at, n = three(film.cells[i].at), three(film.cells[i].normal)
+            v = sub(add(a.v, cross(a.w, sub(at, a.x))), add(b.v, cross(b.w, sub(at, b.x))))
+            film.cells[i].rate = -dot(v, n)
+            i = film.cells[i].following
+
+
+@njit(cache=True, error_model="numpy")
+def begin_air(tables, at, motion):
+    """Sets the pressures in the rates of the coordinates `at` to those of a state."""
+    film = tables.film
+    lay_air(tables, at, 0.0, motion)
+    _rates(tables, motion)
+    p = np.zeros(film.cells.size)
+    for i in range(p.size):
+        p[i] = film.cells[i].area * film.cells[i].rate
+        for k in range(film.flow.shape[1]):
+            film.factor[i, k] = film.flow[i, k]
+    for k in range(film.films.size):
+        one = film.films[k]
+        if one.acts != 0:
+            factor(film.factor, one.cell, one.cells, one.width)
+            solve(one, film.factor, p)
+    for i in range(p.size):
+        at.v[film.first[0] + i] = p[i]
+
+
+@njit(cache=True, error_model="numpy")
+def air_forces(tables, at, motion, f):
+    """Adds to the generalised forces what the air does, and what its own equations lack. Returns the power
+    that it takes."""
+    film, power = tables.film, 0.0
+    q, v, _ = at
+    cells, first, flow = film.cells, film.first[0], film.flow
+    _rates(tables, motion)
+    for k in range(film.many[0]):
+        pair, i = tables.pairs[film.listed[k]], film.head[film.listed[k]]
+        while i >= 0:
+            p, place = v[first + i], three(cells[i].at)
+            push = scale(cells[i].area * p, three(cells[i].normal))
+            spread(tables.bodies, pair.a, q, push, cross(sub(place, vec(motion.x, pair.a)), push), f)
+            back = scale(-1.0, push)
+            spread(tables.bodies, pair.b, q, back, cross(sub(place, vec(motion.x, pair.b)), back), f)
+            f[first + i] += film.areas[i] / flow[i, 0] * cells[i].area * cells[i].rate
+            power += cells[i].area * p * cells[i].rate
+            i = cells[i].following
+    for k in range(film.films.size):
+        one = film.films[k]
+        for j in range(one.cells):
+            i = one.cell + j
+            f[first + i] -= film.areas[i] * v[first + i]
+            for side in range(1, min(one.width, one.cells - 1 - j) + 1 if one.acts != 0 else 1):
+                if flow[i, side] == 0.0:
+                    continue
+                for row, other in ((i, i + side), (i + side, i)):
+                    f[first + row] -= film.areas[row] / flow[row, 0] * flow[i, side] * v[first + other]
+    return power
+
+
+@njit(cache=True, error_model="numpy")
+def air_slopes(tables, at, by_v, motion, entries, values):
+    """What the air adds to the jacobian, -by_v dF/dv: rows and columns into `entries`, (2, n), and `values`.
+    Returns how many; entries of the same place add up."""
+    film = tables.film
+    cells, first, flow, many = film.cells, film.first[0], film.flow, 0
+    place_all(tables.bodies, at, motion)
+    way = np.zeros(at.v.size)
+    for k in range(film.many[0]):
+        pair, i = tables.pairs[film.listed[k]], film.head[film.listed[k]]
+        while i >= 0:
+            n, place = three(cells[i].normal), three(cells[i].at)
+            for side in range(2):
+                body, push = (pair.a, n) if side == 0 else (pair.b, scale(-1.0, n))
+                start = tables.bodies[body].first
+                if start < 0:
+                    continue
+                for m in range(BOX):
+                    way[start + m] = 0.0
+                spread(tables.bodies, body, at.q, push, cross(sub(place, vec(motion.x, body)), push), way)
+                for m in range(BOX):
+                    value = by_v * cells[i].area * way[start + m]
+                    entries[0, many], entries[1, many], values[many] = start + m, first + i, -value
+                    many += 1
+                    # what pushes it is what a gap opens by
+                    value *= film.areas[i] / flow[i, 0]
+                    entries[0, many], entries[1, many], values[many] = first + i, start + m, value
+                    many += 1
+            i = cells[i].following
+    for k in range(film.films.size):
+        one = film.films[k]
+        for j in range(one.cells):
+            i = one.cell + j
+            entries[0, many], entries[1, many], values[many] = first + i, first + i, by_v * film.areas[i]
+            many += 1
+            for side in range(1, min(one.width, one.cells - 1 - j) + 1 if one.acts != 0 else 1):
+                if flow[i, side] == 0.0:
+                    continue
+                for row, column in ((i, i + side), (i + side, i)):
+                    entries[0, many], entries[1, many] = first + row, first + column
+                    values[many] = by_v * film.areas[row] / flow[row, 0] * flow[i, side]
+                    many += 1
+    return many
