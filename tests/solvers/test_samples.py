@@ -37,6 +37,9 @@ PIECES = {
     ("verify/incline", "exudyn"): ("run.duration=100 ms",),
     ("verify/slide", "exudyn"): ("run.duration=100 ms",),
     ("pile", "exudyn"): ("run.duration=1 ms",),
+    # what tests/solvers/test_spring_plate.py and tests/solvers/test_roller_plate.py look at in Exudyn, too
+    ("spring_plate", "exudyn"): ("run.duration=15 ms",),
+    ("pick", "exudyn"): ("run.tolerance=0.01",),
     # the Model of transport_4x4 (tests/model/test_nips.py), which it runs as a whole below
     ("transport_nips", "exudyn"): ("run.duration=5 ms",),
 }
