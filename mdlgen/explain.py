@@ -175,12 +175,13 @@ SCENE = {
         "x; along says which side is meant."
     ),
     "W136": (
-        "Gases have viscosities of 8 to 50 uPa s, air at 20 deg C 18.2. A film with one of another size holds "
-        "sheets apart, or lets them fall, as no air does. Probably the prefix of its unit is wrong or left out."
+        "Gases have viscosities of 8 to 50 uPa s, air at 20 deg C 18.2. A film with one of another size "
+        "holds sheets apart, or lets them fall, as no air does. Probably the prefix of its unit is wrong or "
+        "left out."
     ),
     "W137": (
-        "The air between two sheets pushes them while its gap changes. A static analysis looks for a state in "
-        "which nothing moves, so that its air does nothing."
+        "The air between two sheets pushes them while its gap changes. A static analysis looks for a state "
+        "in which nothing moves, so that its air does nothing."
     ),
 }
 

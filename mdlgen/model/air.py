@@ -12,6 +12,7 @@ def refuse_air(model: Model, who: str, why: str) -> None:
         if value > 0.0:
             one, two = model.contacts.part_a[row], model.contacts.part_b[row]
             raise RefusedError(
-                f"{who}: the contact of {one} and {two} has air, {why}; run it with lattice, or leave it out",
+                f"{who}: the contact of {one} and {two} has air, {why}; "
+                f"leave it out there: --set contacts.{model.contacts.called(row)}.air=null",
                 ("contacts", int(model.contacts.entry[row]), "air"),
             )

@@ -53,6 +53,7 @@ RATTLING: dict[str, tuple[str, ...]] = {
     "feeder_one": ("run.duration=20 ms",),
     "feeder_window": (),
     "guide_joint": (),
+    "landing": (),
     "peel": ("run.duration=4 ms",),
     "pick": (),
     "pile": ("run.duration=5 ms",),
@@ -65,6 +66,7 @@ RATTLING: dict[str, tuple[str, ...]] = {
 # What exudyn runs: it takes a second for each millisecond.
 EXUDYN = {
     "cantilever": (),
+    "landing": ("run.duration=10 ms", "run.step=0.1 ms"),
     "transport_4x2": ("run.duration=4 ms", "run.step=0.1 ms"),
     "pick": ("run.duration=2 ms", "run.step=0.1 ms"),
 }

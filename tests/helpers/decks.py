@@ -7,6 +7,7 @@ from functools import cache
 from typing import Any
 
 import pytest
+from unsaid import UNSAID
 
 import mdlgen
 from mdlgen.backends import motionsolve
@@ -28,7 +29,10 @@ FOUR = "transport_4x4.yaml"
 SHORT_SPRING = 'rollers.counter_1_left.press.free_length="0.003 mm"'
 CASES: dict[str, tuple[str, ...]] = {
     **{
-        path.relative_to(samples()).with_suffix("").as_posix(): (path.relative_to(samples()).as_posix(),)
+        path.relative_to(samples()).with_suffix("").as_posix(): (
+            path.relative_to(samples()).as_posix(),
+            *UNSAID.get(path.stem, ()),
+        )
         for path in sorted(samples().rglob("*.yaml"))
     },
     "surface": (FOUR, SMALL, "sheets.note.surface=true"),

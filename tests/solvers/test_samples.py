@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import ran
+from unsaid import UNSAID
 
 import mdlgen
 from mdlgen.paths import samples
@@ -57,8 +58,8 @@ def test_sample_runs(name, solver):
 def test_sample_has_a_text_and_a_header(name):
     path = samples() / f"{name}.yaml"
     assert path.read_text().startswith("# ")
-    # a text with loads is refused
-    text = mdlgen.emit(mdlgen.lower(mdlgen.load(path, ["loads=[]"])), "motionview")
+    # a text with loads is refused, or with air
+    text = mdlgen.emit(mdlgen.lower(mdlgen.load(path, ["loads=[]", *UNSAID.get(name, ())])), "motionview")
     assert text.rstrip().endswith("*EndMDL()")
 
 

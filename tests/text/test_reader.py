@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from places import GOLDEN
 from readings import model
+from unsaid import UNSAID
 
 import mdlgen
 from mdlgen.backends.motionview.reader import Report, lint, read, values
@@ -27,7 +28,9 @@ def test_golden_texts_read_clean(file: Path) -> None:
     "sample", sorted(p.relative_to(samples()) for p in samples().rglob("*.yaml")), ids=str
 )
 def test_sample_texts_read_clean(sample: Path) -> None:
-    overrides = ["sheets.note.boxes=[2,3]"] if str(sample).startswith("transport") else []
+    overrides = (
+        ["sheets.note.boxes=[2,3]"] if str(sample).startswith("transport") else UNSAID.get(sample.stem, ())
+    )
     lowered = mdlgen.lower(mdlgen.load(samples() / sample, overrides=overrides))
     reading = read(mdlgen.emit(lowered, "motionview"), sample.name)
     found = reading.values

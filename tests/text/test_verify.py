@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from mutations import mutations, omissions
 from places import RICH
+from unsaid import UNSAID
 from verified import SMALL, check, emitted
 
 from mdlgen.errors import MdlgenError, RefusedError, SpecError
@@ -25,6 +26,7 @@ SAMPLES = sorted(samples().rglob("*.yaml"))
 # Grids in place of those of large samples: fewer boxes are written in the same way. transport_4x4 stays.
 FEW = ("sheets.note.boxes=[4, 6]",)
 COARSE = {
+    **UNSAID,
     "feeder_one": ("sheets.note_1.boxes=[4, 6]",),
     "feeder": ("sheets.note_1.boxes=[4, 3]", "sheets.note_2.boxes=[3, 2]"),
     **dict.fromkeys(("tilt_correction", "transport_4x2", "transport_nips", "transport_tilted"), FEW),
