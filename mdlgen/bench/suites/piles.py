@@ -29,8 +29,9 @@ CREEP = 10.0  # [um/s] that a pile at rest may move by
 STIFFNESS = "100 N/mm^1.5"  # soft enough for that step
 CONTACT = f"{{stiffness: {STIFFNESS}, restitution: 0.5, friction: 0.3, smoothing: 1 mm/s}}"
 LIMIT = 1800.0  # [s]
-# Two notes that are parted by a feeder's rollers, at its own step.
+# Two notes that are parted by a feeder's rollers, at its own step, and with air between them at longer ones.
 FEEDER, FEEDER_STEP, FED = "feeder", 0.05, 600.0  # -, [ms], [ms]
+AIR, AIR_STEPS = "contacts.6.air={viscosity: 18.2 uPa*s}", (0.1, 0.2)  # of both notes; [ms]
 
 
 def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
@@ -70,8 +71,12 @@ def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
             f"run.duration={duration if quick else FED:g} ms",
             "require=[]",
         )
-        run = Run(FEEDER, sets, FEEDER_STEP)
-        found.append(BenchCase("piles", "feeder, two notes", run, parts, repeats=False, limit=LIMIT))
+        runs = {"feeder, two notes": Run(FEEDER, sets, FEEDER_STEP)}
+        for step in AIR_STEPS[1:] if quick else AIR_STEPS:
+            runs[f"feeder, two notes, air, {step:g} ms"] = Run(FEEDER, (*sets, AIR), step)
+        found += [
+            BenchCase("piles", name, run, parts, repeats=False, limit=LIMIT) for name, run in runs.items()
+        ]
     return found
 
 
