@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from mdlgen.backends.lattice.kernels.integrate.mixing import DEPTH, ROWS
 from mdlgen.backends.lattice.kernels.linear.band import empty as no_band
 from mdlgen.backends.lattice.kernels.linear.coupled import couplings
 from mdlgen.backends.lattice.kernels.state import (
@@ -72,7 +73,9 @@ def empty(system, wide: int) -> tuple[State, Midpoint, Matrix]:
         direction=np.zeros((4, 3)),
         unknowns=np.zeros(4, np.int64),
         couplings=couplings(len(system.pairs) - system.search.first, system.sheets, border),
-        mixing=np.zeros((2, 6 * nodes + border)),
+        mixing=np.zeros((ROWS, 6 * nodes + border)),
+        gram=np.zeros((DEPTH, DEPTH)),
+        parts=np.zeros((2, DEPTH)),
         offsets=system.offsets,
         inner=no_band(nodes, system.reach),
         own=np.zeros((border, border)),

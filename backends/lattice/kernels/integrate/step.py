@@ -289,8 +289,8 @@ def midpoint(work, t, dt, tolerance, control):
             found = greatest(work, res, resb, counters)
             if inner < 0:
                 found = max(found, 2.0 * limit)
+            mix(matrix, state, alike)
             alike += 1
-            mix(matrix, alike > 2)
         keep(tables, mid.touched, count, work.film, work.free, (mid.motion.x, mid.motion.r), res)
         part = part_of_change(tables, mid.near, close, mid.motion.r, h, res)
         if part < 1.0:
