@@ -19,14 +19,11 @@ from __future__ import annotations
 import numpy as np
 
 from mdlgen.backends.exudyn_local.place import place_all, spread
-from mdlgen.mechanics.film import assemble, factor, solve
-from mdlgen.mechanics.film_faces import clear, cover, link
-from mdlgen.mechanics.frame import frame_of
-from mdlgen.mechanics.vector import add, cross, dot, scale, sub, three, vec
-from mdlgen.model.tables import BOX_BOX, BOX_PLANE
+from mdlgen.mechanics.film import factor, solve
+from mdlgen.mechanics.film_pairs import clear_films, close_rates, cover_pair, link_films, may_have_air
+from mdlgen.mechanics.vector import cross, scale, sub, three, vec
 from mdlgen.program.kernel import njit
 
-ALL_FREE = 15  # sides of a plane, as a bit mask
 BOX = 7  # generalised coordinates of one
 
 
@@ -36,41 +33,16 @@ def lay_air(tables, at, h, motion):
     at the velocities that they have."""
     film, pairs = tables.film, tables.pairs
     place_all(tables.bodies, at, motion)
-    film.many[0] = 0
-    for k in range(film.films.size):
-        clear(film.films[k], film.cells, film.head)
+    clear_films(film)
     for p in range(film.film_of.size):
-        pair, k = pairs[p], film.film_of[p]
-        if k < 0 or (pair.kind != BOX_BOX and pair.kind != BOX_PLANE):
-            continue
-        own, other = (pair.a, pair.b) if film.films[k].carrier == 0 else (pair.b, pair.a)
-        plane = pair.kind == BOX_PLANE
-        exposed = ALL_FREE if plane else tables.bodies[other].exposed
-        frames = frame_of(motion, own), frame_of(motion, other)
-        shapes = three(tables.bodies[own].half), three(tables.bodies[other].half), exposed
-        cover(film.films[k], film.cells, (p, plane), own - film.films[k].body, frames, shapes, h)
+        if film.film_of[p] >= 0 and may_have_air(pairs[p]):
+            cover_pair(film, film.film_of[p], tables.bodies, pairs[p], p, motion, h)
+    link_films(film)
     for k in range(film.films.size):
         one = film.films[k]
-        assemble(one, film.cells, film.flow)
-        if one.acts != 0:
-            film.many[0] = link(one, film.cells, film.head, film.listed, film.many[0])
-        else:  # its pressures are none
+        if one.acts == 0:  # its pressures are none
             for i in range(one.cell, one.cell + one.cells):
                 film.flow[i, 0] = 1.0
-
-
-@njit(cache=True, error_model="numpy")
-def _rates(tables, motion):
-    """Sets how fast the faces of all cells close."""
-    film = tables.film
-    for k in range(film.many[0]):
-        pair, i = tables.pairs[film.listed[k]], film.head[film.listed[k]]
-        a, b = frame_of(motion, pair.a), frame_of(motion, pair.b)
-        while i >= 0:
-            at, n = three(film.cells[i].at), three(film.cells[i].normal)
-            v = sub(add(a.v, cross(a.w, sub(at, a.x))), add(b.v, cross(b.w, sub(at, b.x))))
-            film.cells[i].rate = -dot(v, n)
-            i = film.cells[i].following
 
 
 @njit(cache=True, error_model="numpy")
@@ -78,7 +50,7 @@ def begin_air(tables, at, motion):
     """Sets the pressures in the rates of the coordinates `at` to those of a state."""
     film = tables.film
     lay_air(tables, at, 0.0, motion)
-    _rates(tables, motion)
+    close_rates(film, tables.pairs, motion)
     p = np.zeros(film.cells.size)
     for i in range(p.size):
         p[i] = film.cells[i].area * film.cells[i].rate
@@ -100,7 +72,7 @@ def air_forces(tables, at, motion, f):
     film, power = tables.film, 0.0
     q, v, _ = at
     cells, first, flow = film.cells, film.first[0], film.flow
-    _rates(tables, motion)
+    close_rates(film, tables.pairs, motion)
     for k in range(film.many[0]):
         pair, i = tables.pairs[film.listed[k]], film.head[film.listed[k]]
         while i >= 0:

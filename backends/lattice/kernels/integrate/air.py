@@ -19,18 +19,15 @@ from mdlgen.backends.lattice.kernels.state import (
     GROWTH,
     PRESSURES,
 )
-from mdlgen.mechanics.film import assemble, factor, solve, times
-from mdlgen.mechanics.film_faces import clear, cover, link
-from mdlgen.mechanics.frame import frame_of
+from mdlgen.mechanics.film import factor, solve, times
+from mdlgen.mechanics.film_pairs import clear_films, close_rates, cover_pair, link_films, may_have_air
 from mdlgen.mechanics.vector import add, back, cross, dot, mat, rotate, scale, sub, three, three_from, vec
-from mdlgen.model.tables.contacts import BOX_BOX, BOX_PLANE
 from mdlgen.program.kernel import BORROWS, njit
 
 # A cell alone is so many times as stiff as its neighbours make it where they have no pressure.
 ALONE = 2.0
 # The ends of a step: iterations at most, and what they leave of the residual, squared.
 MOST_ITERATIONS, ENOUGH = 60, 1e-12
-BLOCK = 15  # all four sides of a plane are free
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -38,35 +35,22 @@ def lay(work, h):
     """Finds the air of a step: its gaps, areas and matrices at the midpoint, which is h after its begin.
     Returns whether any acts."""
     tables, film, motion = work.tables, work.film, work.mid.motion
-    bodies, pairs, films, cells = tables.bodies, tables.pairs, film.films, film.cells
-    film.many[0] = 0
-    for k in range(films.size):
-        clear(films[k], cells, film.head)
-    for p in range(pairs.size):
-        pair = pairs[p]
+    clear_films(film)
+    for p in range(tables.pairs.size):
+        pair = tables.pairs[p]
         if pair.kind < 0:
             break
-        if pair.kind != BOX_BOX and pair.kind != BOX_PLANE:
-            continue
-        k = film.film_of[pair.row]
-        if k < 0:
-            continue
-        own, other = (pair.a, pair.b) if films[k].carrier == 0 else (pair.b, pair.a)
-        plane = pair.kind == BOX_PLANE
-        exposed = BLOCK if plane else bodies[other].exposed
-        frames = frame_of(motion, own), frame_of(motion, other)
-        shapes = three(bodies[own].half), three(bodies[other].half), exposed
-        cover(films[k], cells, (p, plane), own - films[k].body, frames, shapes, h)
-    for k in range(films.size):
-        one = films[k]
-        assemble(one, cells, film.flow)
+        if may_have_air(pair) and film.film_of[pair.row] >= 0:
+            cover_pair(film, film.film_of[pair.row], tables.bodies, pair, p, motion, h)
+    link_films(film)
+    for k in range(film.films.size):
+        one = film.films[k]
         if one.acts == 0:
             continue
         for i in range(one.cell, one.cell + one.cells):
             for j in range(one.width + 1):
                 film.factor[i, j] = film.flow[i, j]
         factor(film.factor, one.cell, one.cells, one.width)
-        film.many[0] = link(one, cells, film.head, film.listed, film.many[0])
     return film.many[0] > 0
 
 
@@ -88,14 +72,7 @@ def air_forces(work):
     """Adds what air does to the forces of the midpoint. Returns the power that it takes."""
     tables, film, motion, f = work.tables, work.film, work.mid.motion, work.mid.forces
     cells, x, lost = film.cells, film.vectors[PRESSURES], 0.0
-    for k in range(film.many[0]):
-        pair, i = tables.pairs[film.listed[k]], film.head[film.listed[k]]
-        a, b = frame_of(motion, pair.a), frame_of(motion, pair.b)
-        while i >= 0:
-            at, n = three(cells[i].at), three(cells[i].normal)
-            v = sub(add(a.v, cross(a.w, sub(at, a.x))), add(b.v, cross(b.w, sub(at, b.x))))
-            cells[i].rate = -dot(v, n)
-            i = cells[i].following
+    close_rates(film, tables.pairs, motion)
     _solve(film)
     for k in range(film.many[0]):
         pair, i = tables.pairs[film.listed[k]], film.head[film.listed[k]]
