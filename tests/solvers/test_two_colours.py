@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from matrices import bare_matrix
 
 from mdlgen.backends.lattice.kernels import parallel
-from mdlgen.backends.lattice.kernels.linear import coupled, two_colour
+from mdlgen.backends.lattice.kernels.linear import colouring, coupled, two_colour
 from mdlgen.backends.lattice.kernels.linear.band import PAD
 from mdlgen.backends.lattice.kernels.linear.sheets import eliminate_sheets, factor_sheets
 from mdlgen.backends.lattice.kernels.parallel import Pool
@@ -55,28 +56,11 @@ def equations(touch: list[tuple[int, int]], seed: int) -> tuple[np.ndarray, Pool
         for block in range(min(reach + 1, NODES - n % NODES)):
             rows, columns = slice(6 * (n + block), 6 * (n + block) + 6), slice(6 * n, 6 * n + 6)
             band[n, :, 6 * block : 6 * block + 6] = whole[rows, columns].T
-    none = np.zeros(0)
-    matrix = Matrix(
-        band=band,
-        border=across,
-        corner=whole[size:, size:].copy(),
-        eliminated=np.zeros((BORDER, size)),
-        schur=np.zeros((BORDER, BORDER)),
-        res=np.zeros(size),
-        resb=np.zeros(BORDER),
-        direction=none,
-        unknowns=none,
-        couplings=made,
-        mixing=none,
-        offsets=none,
-        inner=np.zeros((0, 6, 0)),
-        own=np.zeros((0, 0)),
-        single_factor=np.zeros_like(band),  # as the couplings
-        single_inner=np.zeros((0, 6, 0), np.float32),
-    )
+    matrix = bare_matrix(band, made, across, whole[size:, size:].copy(), np.zeros((0, 6, 0)))
     pool = parallel.empty(3, BORDER)
+    colouring.colour(made)
     assert factor_sheets(pool, matrix, False) and eliminate_sheets(pool, matrix)
-    two_colour.colour(matrix)
+    assert two_colour.corner_of_first(matrix)
     return whole, pool, matrix
 
 
@@ -124,7 +108,7 @@ def test_sheets_that_all_touch_each_other_are_solved_at_once() -> None:
     assert matrix.couplings.colouring.found[0] == 0
     right = np.random.default_rng(5).normal(size=len(whole))
     matrix.res[:], matrix.resb[:] = right[:-BORDER], right[-BORDER:]
-    coupled.solve_coupled(pool, matrix)
+    coupled.solve_coupled(pool, matrix, coupled.LEFT)
     # as far as an iteration of Newton's method needs it
     left = whole @ solved(matrix) - right
     before = right @ np.linalg.solve(whole, right)

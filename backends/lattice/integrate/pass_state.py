@@ -30,7 +30,7 @@ SCRATCH = {
     *(f"mid.{name}" for name in ("results", "touched", "rows", "faces", "near", "spare")),
     *("mid.does", "mid.beforehand"),
     *(f"mid.sticks.{name}" for name in ("aside", "head", "following")),
-    *("matrix.couplings.room", "condensed.results", "condensed.touched"),
+    *("matrix.couplings.room", "matrix.couplings.through", "condensed.results", "condensed.touched"),
 }
 
 

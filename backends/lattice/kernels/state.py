@@ -119,7 +119,7 @@ class Matrix(NamedTuple):
     direction: Floats  # (4, 3) scratch: how a pair's rollers move a point
     unknowns: Ints  # (4,) scratch: which unknowns these are
     couplings: Any  # coupled.Couplings
-    mixing: Floats  # changes and velocities of the last iterations, see integrate.mixing (ROWS, 6 nodes + border)
+    mixing: Floats  # changes and velocities of iterations (mixing.ROWS, 6 nodes + border)
     gram: Floats  # (DEPTH, DEPTH) scratch: products of how the changes differed
     parts: Floats  # (2, DEPTH) scratch: how much of each is mixed, and its scale
     inner: Floats  # the band of masses and bushings alone, in box axes, where contacts stand in the other one

@@ -27,11 +27,13 @@ from mdlgen.backends.lattice.kernels.integrate.tangent import (
     rollers_into,
     turn_nodes,
 )
-from mdlgen.backends.lattice.kernels.linear.coupled import couplings_in_box_axes, solve_coupled
+from mdlgen.backends.lattice.kernels.linear.colouring import BEGIN, END, colour
+from mdlgen.backends.lattice.kernels.linear.coupled import LEFT, couplings_in_box_axes, solve_coupled
 from mdlgen.backends.lattice.kernels.linear.dense import copy
+from mdlgen.backends.lattice.kernels.linear.in_series import in_series
 from mdlgen.backends.lattice.kernels.linear.product import times
 from mdlgen.backends.lattice.kernels.linear.sheets import eliminate_sheets, factor_sheets
-from mdlgen.backends.lattice.kernels.linear.two_colour import BEGIN, END, colour
+from mdlgen.backends.lattice.kernels.linear.two_colour import corner_of_first
 from mdlgen.backends.lattice.kernels.parallel import begin, finish, take
 from mdlgen.backends.lattice.kernels.state import (
     CHANGE,
@@ -52,6 +54,9 @@ from mdlgen.program.kernel import BORROWS, njit
 MOST_ITERATIONS = 25
 # Cells of air have much in common that the matrix does not know: it takes more of them, and exact searches.
 MOST_WITH_AIR = 80
+# The matrix has of air what each cell does alone, so much of a direction is wrong anyhow: then a linear solve
+# leaves more (see coupled.LEFT).
+LEFT_WITH_AIR = 1e-2
 # What closes against air is slow beside all else: an iteration leaves this part of what the step may.
 FINE = 0.02
 # What an iteration of Newton's method leaves, in times what the step's own iterations may leave.
@@ -92,13 +97,17 @@ def _make_matrix(work, h, lag, renew):
     b[:] = 0.0
     copy(d, matrix.own)
     points_into(work, h, LEAST)
-    couplings_in_box_axes(work.pool, tables.nodes, motion.r, matrix.couplings)
+    couplings = matrix.couplings
+    if colour(couplings) and work.film.many[0] > 0:
+        in_series(tables.bodies, tables.nodes, motion, matrix)
+        in_box_axes(tables.nodes, motion.r, couplings.beside, b[:0], matrix.offsets[:1])
+        couplings.colouring.series[0] = 1
+    couplings_in_box_axes(work.pool, tables.nodes, motion.r, couplings)
     in_box_axes(tables.nodes, motion.r, a, b, matrix.offsets[:1])
     forget(work.condensed)
     if not factor_sheets(work.pool, matrix, True) or not eliminate_sheets(work.pool, matrix):
         return False
-    colour(matrix)
-    return True
+    return corner_of_first(matrix)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -258,7 +267,7 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
         copy(zb, gb)
         counters[SOLVES] += 1
         factored[SPENT] += 0.0 if begins and iteration == 0 else 1.0
-        solve_coupled(work.pool, matrix)
+        solve_coupled(work.pool, matrix, LEFT_WITH_AIR if air else LEFT)
         # conjugate directions, by Polak and Ribiere: they make up for a factor of an earlier state
         square = _dot(g, z) + _dot(gb, zb)
         turn = max(0.0, (square - crossing) / along) if iteration > 0 and not made and along > 0.0 else 0.0

@@ -20,8 +20,8 @@ from mdlgen.backends.lattice.kernels.integrate.momentum import keep
 from mdlgen.backends.lattice.kernels.integrate.tangent import in_box_axes, joints_into, masses
 from mdlgen.backends.lattice.kernels.linear.band import empty as no_band
 from mdlgen.backends.lattice.kernels.linear.band import factor, solve
+from mdlgen.backends.lattice.kernels.linear.colouring import BEGIN, END
 from mdlgen.backends.lattice.kernels.linear.dense import copy
-from mdlgen.backends.lattice.kernels.linear.two_colour import BEGIN, END
 from mdlgen.backends.lattice.kernels.parallel import OVERSHOOT, begin, finish, take
 from mdlgen.backends.lattice.kernels.state import Damped
 from mdlgen.mechanics.vector import back, mat, rotate

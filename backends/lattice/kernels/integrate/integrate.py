@@ -82,6 +82,9 @@ FINEST, AGAIN = 12, 4.0
 # Steps that take more iterations than the one are halved, and doubled again where they take less than the
 # other.
 HARD, EASY = 8, 5
+# With air a step takes as many where it is a hundred times as short: friction and the normal forces that it
+# wedges go back and forth there, and a film passes that on at any step.
+HARD_WITH_AIR, EASY_WITH_AIR = 14, 8
 # What an iteration changes is not asked to be less than this part of the speed: it is near round-off.
 LEAST = 1e-9
 # Two rollers with a sheet between them clear each other by a few micrometres and may graze: a force below
@@ -336,9 +339,11 @@ def run(work, t, steps, tolerance, control):
             t += dt
             iterations = counters[ITERATIONS] - iterations
             quiet = missed <= most / 6.0 and made <= allowed / 10.0
-            if (missed > most or made > allowed or iterations > HARD) and level < FINEST:
+            air = work.film.many[0] > 0
+            hard, easy = (HARD_WITH_AIR, EASY_WITH_AIR) if air else (HARD, EASY)
+            if (missed > most or made > allowed or iterations > hard) and level < FINEST:
                 pace[LEVEL] = level + 1
-            elif level > 0 and quiet and iterations < EASY and done % (2 * size) == 0:
+            elif level > 0 and quiet and iterations < easy and done % (2 * size) == 0:
                 pace[LEVEL] = level - 1
             outside = _outside(x, work.bounds.low, work.bounds.high)
             if deep >= 0 or outside >= 0:

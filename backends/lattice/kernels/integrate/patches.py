@@ -17,7 +17,7 @@ import math
 from mdlgen.backends.lattice.kernels.contact.search import law_of_boxes
 from mdlgen.backends.lattice.kernels.contact.slopes import Numbers, core, hat_left, hat_right, holding
 from mdlgen.backends.lattice.kernels.integrate.tangent import blocks
-from mdlgen.backends.lattice.kernels.linear.two_colour import ONE, TWO
+from mdlgen.backends.lattice.kernels.linear.colouring import ONE, TWO
 from mdlgen.backends.lattice.kernels.state import (
     ACROSS,
     DEPTH_AT_REST,

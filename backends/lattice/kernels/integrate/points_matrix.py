@@ -8,7 +8,7 @@ from mdlgen.backends.lattice.kernels.integrate.patches import ZERO, patches_into
 from mdlgen.backends.lattice.kernels.integrate.points import law_at
 from mdlgen.backends.lattice.kernels.integrate.tangent import blocks
 from mdlgen.backends.lattice.kernels.integrate.unknowns import moving, turning_of
-from mdlgen.backends.lattice.kernels.linear.two_colour import ONE, TWO
+from mdlgen.backends.lattice.kernels.linear.colouring import ONE, TWO
 from mdlgen.backends.lattice.kernels.state import (
     A_COUPLE,
     A_DAMPER,

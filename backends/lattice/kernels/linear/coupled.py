@@ -14,15 +14,10 @@ from typing import NamedTuple
 import numpy as np
 
 from mdlgen.backends.lattice.kernels.linear.bordered import solve_bordered
+from mdlgen.backends.lattice.kernels.linear.colouring import ONE, TWO, Colouring, colouring
 from mdlgen.backends.lattice.kernels.linear.dense import copy
 from mdlgen.backends.lattice.kernels.linear.sheets import solve_sheets
-from mdlgen.backends.lattice.kernels.linear.two_colour import (
-    ONE,
-    TWO,
-    Colouring,
-    colouring,
-    solve_coloured,
-)
+from mdlgen.backends.lattice.kernels.linear.two_colour import solve_coloured
 from mdlgen.backends.lattice.kernels.parallel import AXES, begin, chunks, finish, items_of, take
 from mdlgen.mechanics.vector import mat, matmul, transpose_matmul
 from mdlgen.program.kernel import BORROWS, njit
@@ -41,6 +36,8 @@ class Couplings(NamedTuple):
     ends: np.ndarray  # nodes, (pairs, 2)
     blocks: np.ndarray  # rows of the first, columns of the second, column by column, (pairs, 6, 6)
     single: np.ndarray  # the same in single precision, which is read in half the time
+    beside: np.ndarray  # of each node, what stands beside the band, (nodes, 6, 6); see in_series
+    through: np.ndarray  # (nodes, 2) scratch: stiffness of the contacts at each face
     room: np.ndarray  # vectors of all unknowns, (5, 6 nodes + border)
     colouring: Colouring  # of the sheets
 
@@ -53,6 +50,8 @@ def couplings(pairs: int, label: np.ndarray, border: int) -> Couplings:
         np.zeros((pairs, 2), np.int64),
         np.zeros((pairs, 6, 6)),
         np.zeros((pairs, 6, 6), np.float32),
+        np.zeros((nodes, 6, 6)),
+        np.zeros((nodes, 2)),
         np.zeros((5, 6 * nodes + border)),
         colouring(label, border, pairs),
     )
@@ -112,14 +111,15 @@ def _couple(couplings, p, q):
 
 
 @njit(cache=True, error_model="numpy")
-def solve_coupled(pool, matrix):
-    """Solves band, border and couplings in place, as bordered.solve_bordered does without the last."""
+def solve_coupled(pool, matrix, least):
+    """Solves band, border and couplings in place, as bordered.solve_bordered does without the last; `least`:
+    see LEFT."""
     couplings, res, resb = matrix.couplings, matrix.res, matrix.resb
     if couplings.many[0] == 0:
         solve_bordered(matrix.band, matrix.border, matrix.eliminated, matrix.schur, res, resb)
         return
     if couplings.colouring.found[0] == 1:
-        solve_coloured(pool, matrix, MOST_ITERATIONS, LEFT)
+        solve_coloured(pool, matrix, MOST_ITERATIONS, least)
         return
     many = res.size
     r, z, p, own, q = couplings.room
@@ -134,7 +134,7 @@ def solve_coupled(pool, matrix):
     left = _dot(r, z)
     first = left
     for _ in range(MOST_ITERATIONS):
-        if not left > LEFT * first:
+        if not left > least * first:
             break
         copy(q, own)
         _couple(couplings, p, q)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from mdlgen.backends.lattice.kernels import parallel
 from mdlgen.backends.lattice.kernels.linear.band import factor, solve
+from mdlgen.backends.lattice.kernels.linear.colouring import BEGIN, END
 from mdlgen.backends.lattice.kernels.linear.dense import cholesky, cholesky_solve, copy
-from mdlgen.backends.lattice.kernels.linear.two_colour import BEGIN, END
 from mdlgen.backends.lattice.kernels.parallel import begin, finish, take
 from mdlgen.program.kernel import BORROWS, njit
 

@@ -11,13 +11,10 @@ next.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
-import numpy as np
-
 from mdlgen.backends.lattice.kernels import parallel
 from mdlgen.backends.lattice.kernels.linear.band import solve
 from mdlgen.backends.lattice.kernels.linear.block import column, row, six
+from mdlgen.backends.lattice.kernels.linear.colouring import BEGIN, END, ONE, TWO
 from mdlgen.backends.lattice.kernels.linear.dense import cholesky, cholesky_solve
 from mdlgen.backends.lattice.kernels.parallel import begin, finish, take
 from mdlgen.program.kernel import BORROWS, njit
@@ -25,100 +22,16 @@ from mdlgen.program.kernel import BORROWS, njit
 # Of Pool.given: how far the method goes, how much of the last direction the next one keeps, and whether the
 # first colour starts from the right-hand side.
 LENGTH, KEPT, START = 0, 1, 2
-# Columns of Colouring.spans; of Couplings.ends.
-BEGIN, END = 0, 1
-ONE, TWO = 0, 1
-
-
-class Colouring(NamedTuple):
-    """Which sheet has which colour, and the rollers' corner beside the first."""
-
-    spans: np.ndarray  # first node of a sheet and the first behind it, (sheets, 2)
-    label: np.ndarray  # the sheet of each node, by its row in spans
-    of: np.ndarray  # the colour of each sheet, 0 or 1; -1: not known yet
-    found: np.ndarray  # (1,) whether two colours are enough
-    corner: np.ndarray  # Cholesky factor, (border, border)
-    begins: np.ndarray  # where the couplings of a sheet begin in `own`, (sheets + 1,)
-    own: np.ndarray  # couplings of each sheet, in their order, (2 pairs,)
-    enough: np.ndarray  # square of the residual that may be left of a sheet, (sheets,)
-    reached: np.ndarray  # first number of a sheet that each roller reaches, and the first behind them
-
-
-def colouring(label: np.ndarray, border: int, pairs: int) -> Colouring:
-    """`label` is the sheet of each node, in rising order."""
-    sheets = np.unique(label)
-    spans = np.stack([np.searchsorted(label, sheets), np.searchsorted(label, sheets, side="right")], axis=1)
-    return Colouring(
-        spans.astype(np.int64),
-        np.searchsorted(sheets, label).astype(np.int64),
-        np.full(len(sheets), -1, np.int64),
-        np.zeros(1, np.int64),
-        np.zeros((border, border)),
-        np.zeros(len(sheets) + 1, np.int64),
-        np.zeros(2 * pairs, np.int64),
-        np.zeros(len(sheets)),
-        np.zeros((len(sheets), border, 2), np.int64),
-    )
-
-
-@njit(cache=True, error_model="numpy")
-def _colour(couplings):
-    """Gives the sheets colours. Returns False where two are too few: three that all touch each other."""
-    label, of, ends = couplings.colouring.label, couplings.colouring.of, couplings.ends
-    for sheet in range(of.size):
-        of[sheet] = -1
-    for first in range(of.size):
-        if of[first] >= 0:
-            continue
-        of[first] = 0
-        grew = True
-        while grew:
-            grew = False
-            for k in range(couplings.many[0]):
-                one, two = label[ends[k, ONE]], label[ends[k, TWO]]
-                if of[one] < 0 and of[two] >= 0:
-                    one, two = two, one
-                if of[one] >= 0 and of[two] < 0:
-                    of[two] = 1 - of[one]
-                    grew = True
-                elif of[one] >= 0 and of[one] == of[two]:
-                    return False
-    return True
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _list(couplings):
-    """Lists the couplings of each sheet."""
-    colours, ends, many = couplings.colouring, couplings.ends, couplings.many[0]
-    label, begins, own = colours.label, colours.begins, colours.own
-    for sheet in range(begins.size):
-        begins[sheet] = 0
-    for k in range(many):
-        for end in range(2):
-            begins[label[ends[k, end]] + 1] += 1
-    for sheet in range(1, begins.size):
-        begins[sheet] += begins[sheet - 1]
-    for k in range(many):
-        for end in range(2):
-            sheet = label[ends[k, end]]
-            own[begins[sheet]] = k
-            begins[sheet] += 1
-    for sheet in range(begins.size - 1, 0, -1):
-        begins[sheet] = begins[sheet - 1]
-    begins[0] = 0
-
-
-@njit(cache=True, error_model="numpy", **BORROWS)
-def colour(matrix):
-    """Colours the sheets for the couplings that there are, and factors the corner of the first colour, where
-    the band of all is factored and the border eliminated."""
-    couplings, b, d, y = matrix.couplings, matrix.border, matrix.corner, matrix.eliminated
-    colours = couplings.colouring
-    colours.found[0] = 0
-    if couplings.many[0] == 0 or not _colour(couplings):
-        return
-    _list(couplings)
+def corner_of_first(matrix):
+    """Factors the corner of the first colour, where the band of all is factored and the border eliminated.
+    Where it is not positive all sheets are solved at once; returns False where contacts stand in series."""
+    b, d, y, colours = matrix.border, matrix.corner, matrix.eliminated, matrix.couplings.colouring
     corner = colours.corner
+    if colours.found[0] == 0:
+        return True
     for i in range(d.shape[0]):
         for j in range(i + 1):
             v = d[i, j]
@@ -128,7 +41,9 @@ def colour(matrix):
                         v -= b[i, l] * y[j, l]
             corner[i, j] = v
     if cholesky(corner):
-        colours.found[0] = 1
+        return True
+    colours.found[0] = 0
+    return colours.series[0] == 0
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -169,6 +84,20 @@ def _across(couplings, sheet, p, q):
             q3, q4, q5 = row(q3, block, 3, x), row(q4, block, 4, x), row(q5, block, 5, x)
             q[one], q[one + 1], q[one + 2] = q0, q1, q2
             q[one + 3], q[one + 4], q[one + 5] = q3, q4, q5
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _beside(couplings, span, p, q):
+    """Adds to q of a sheet what stands beside its band."""
+    for n in range(span[BEGIN], span[END]):
+        block, i = couplings.beside[n], 6 * n
+        x = six(p, i)
+        q[i] += column(block, 0, x)
+        q[i + 1] += column(block, 1, x)
+        q[i + 2] += column(block, 2, x)
+        q[i + 3] += column(block, 3, x)
+        q[i + 4] += column(block, 4, x)
+        q[i + 5] += column(block, 5, x)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -222,20 +151,23 @@ def across_part(pool, matrix, sheet):
     """What a sheet of the second colour makes of its move, less what the first colour and the rollers do to
     it then."""
     couplings, b, size = matrix.couplings, matrix.border, matrix.res.size
+    colours = couplings.colouring
     _, q, p, own, w = _rows(couplings, size)
-    rollers, span = couplings.room[4, size:], couplings.colouring.spans[sheet]
+    rollers, span = couplings.room[4, size:], colours.spans[sheet]
     low, high = 6 * span[BEGIN], 6 * span[END]
-    if couplings.colouring.of[sheet] != 1:
+    if colours.of[sheet] != 1:
         return
     for l in range(low, high):
         q[l] = 0.0
     _across(couplings, sheet, w, q)
     for j in range(rollers.size):
-        far, reached = rollers[j], couplings.colouring.reached[sheet, j]
+        far, reached = rollers[j], colours.reached[sheet, j]
         for l in range(reached[BEGIN], reached[END]):
             q[l] += b[j, l] * far
     for l in range(low, high):
         q[l] = own[l] - q[l]
+    if colours.series[0] == 1 and pool.given[START] == 0.0:
+        _beside(couplings, span, p, q)
     pool.shares[sheet, 0, 0] = _dot(p[low:high], q[low:high])
 
 
