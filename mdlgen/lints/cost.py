@@ -1,11 +1,11 @@
 """What a run costs, before it is run, and lints of what makes it cost so much.
 
-Counted are boxes, pairs of bodies by what they are of, and steps. Fitted to the samples and to some of them
-on other grids and at other tolerances, on one core of some 3 GHz, with all that the solver lattice runs: the
-coarser runs from which the error is estimated, too. Of 19 transient samples processor time was 0.54 to 2.0
-times what is said here. On other grids and at other tolerances it was 0.2 to 5 times: the step is halved
-until the estimate is within the tolerance, and how often is not known ahead. Where two processors run two
-passes at a time, a run takes about two thirds of it.
+Counted are boxes, pairs of bodies by what they are of, cells of air, and steps. Fitted to the samples and
+to some of them on other grids and at other tolerances, on one core of some 3 GHz, with all that the solver
+lattice runs: the coarser runs from which the error is estimated, too. Of 19 transient samples processor
+time was 0.54 to 2.0 times what is said here. On other grids and at other tolerances it was 0.2 to 5 times:
+the step is halved until the estimate is within the tolerance, and how often is not known ahead. Where two
+processors run two passes at a time, a run takes about two thirds of it.
 """
 
 from __future__ import annotations
@@ -14,7 +14,10 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from mdlgen.lints.lint import Lint
+from mdlgen.mechanics.film_grid import film_grids
 from mdlgen.model.parts.kinds import KINDS
 from mdlgen.model.tables import BOX_BOX, Model
 
@@ -25,6 +28,7 @@ PASSES = 1.8  # what the coarser runs add to the last one
 STEP, BOX, BAND = 6e-6, 0.03e-6, 2.1e-9
 PAIR, CURVED, LAID = 0.26e-6, 1.06e-6, 0.8e-6  # with a roller or a plane, a guide or a mesh, another sheet
 MOST_LAID = 4  # of such pairs a box touches so many at a time
+AIR = 6e-6  # each cell of a film, between 1 and 15 as it is between free sheets or in a nip
 STATIC_BOX, STATIC_BAND = 4e-5, 1e-7  # [s], of a static run
 # The step of blocks, or without contacts, at a tolerance of 1e-3 [ms]; it goes with the tolerance's root.
 FIRST_STEP, PARTS_AT_LEAST, HALVED = 0.2, 20, 2.0
@@ -61,6 +65,7 @@ class _Size:
     plain: int  # pairs
     curved: int
     laid: int
+    cells: int  # of all films of air
     contact: bool  # of sheets of more than one box
     pressed: bool  # a plate
 
@@ -69,7 +74,7 @@ class _Size:
         steps = max(self.duration / (self.step or self._step()), self.outputs, 1.0)
         laid = min(self.laid, MOST_LAID * self.boxes)
         each = STEP + BOX * self.boxes + BAND * self.band
-        each += PAIR * self.plain + CURVED * self.curved + LAID * laid
+        each += PAIR * self.plain + CURVED * self.curved + LAID * laid + AIR * self.cells
         return Cost(START + PASSES * steps * each, math.ceil(steps))
 
     def _step(self) -> float:
@@ -114,6 +119,7 @@ def _size(model: Model) -> _Size:
         plain=len(kinds) - curved - laid,
         curved=curved,
         laid=laid + beside,
+        cells=len(film_grids(model).cells),
         contact=len(model.pairs) + beside > 0 and max(counts.values()) > 1,
         pressed=any(plane.press is not None for plane in model.planes),
     )
@@ -140,6 +146,10 @@ def costly(model: Model) -> Iterator[Lint]:
         pairs = {name: math.ceil(getattr(size, name) * part) for name in ("plain", "curved", "laid")}
         fewer = replace(size, boxes=boxes, band=size.band * part**2, **pairs)
         others.append((fewer, f"sheets.{largest.name}.boxes", f"{USUAL_BOXES} boxes"))
+    if size.cells:
+        table = model.contacts
+        row = int(np.flatnonzero(table.air_viscosity > 0.0)[0])
+        others.append((replace(size, cells=0), f"contacts.{table.called(row)}.air", "no air"))
     best, where, instead = min(others, key=lambda other: other[0].cost().seconds)
     if best.cost().seconds * MANY_TIMES <= whole:
         yield Lint(

@@ -29,8 +29,8 @@ CREEP = 10.0  # [um/s] that a pile at rest may move by
 STIFFNESS = "100 N/mm^1.5"  # soft enough for that step
 CONTACT = f"{{stiffness: {STIFFNESS}, restitution: 0.5, friction: 0.3, smoothing: 1 mm/s}}"
 LIMIT = 1800.0  # [s]
-# Two notes that are parted by a feeder's rollers, at its own step; and the begin of that, at a longer one,
-# with air between them and without.
+# Two notes that are parted by a feeder's rollers, at its own step; the begin of that at a longer one, with
+# air and without; and all of it with air.
 FEEDER, FEEDER_STEP, FED = "feeder", 0.05, 600.0  # -, [ms], [ms]
 AIR = "contacts.6.air={viscosity: 18.2 uPa*s}"
 
@@ -78,6 +78,8 @@ def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
             f"feeder, first {duration:g} ms": Run(FEEDER, begin, STEP),
             f"feeder, first {duration:g} ms, air": Run(FEEDER, (*begin, AIR), STEP),
         }
+        if not quick:
+            runs["feeder, two notes, air"] = Run(FEEDER, (*whole, AIR), STEP)
         found += [
             BenchCase("piles", name, run, parts, repeats=False, limit=LIMIT) for name, run in runs.items()
         ]
