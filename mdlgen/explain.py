@@ -164,9 +164,9 @@ SCENE = {
     ),
     "W134": (
         "The run is long, and one value makes it at least four times as long as with a usual one: a step, a"
-        " time between outputs or a tolerance that is very small, very many boxes, or a duration of more "
-        "than a second. Often its unit is wrong. What a run takes is estimated from boxes, pairs and steps,"
-        " mostly within a factor of 2."
+        " time between outputs or a tolerance that is very small, very many boxes, air between sheets, or a "
+        "duration of more than a second. Often its unit is wrong. What a run takes is estimated from boxes, "
+        "pairs and steps, mostly within a factor of 2."
     ),
     "W135": (
         "A plane stands across the plane of a sheet, as a stop does, and is more than twice as tall as wide, "
