@@ -15,7 +15,7 @@ NODES, BORDER = 4, 2
 SIZE = 6 * NODES + BORDER
 
 
-def _left(grows: list[float], iterations: int, mixes: bool = True) -> float:
+def _left(grows: list[float], iterations: int, depth: int = DEPTH) -> float:
     """How far velocities are from the solution after so many iterations, each of which takes off what a
     linear map makes of it: all but a part of some motions, which are given."""
     rng = np.random.default_rng(5)
@@ -37,8 +37,8 @@ def _left(grows: list[float], iterations: int, mixes: bool = True) -> float:
         u = np.concatenate([state.u.ravel(), state.ub])
         change = (u - solution) - back @ (u - solution)
         matrix.res[:], matrix.resb[:] = change[:-BORDER], change[-BORDER:]
-        if mixes:
-            mix(matrix, state, iteration)
+        if depth:
+            mix(matrix, state, iteration, depth)
         state.u -= matrix.res.reshape(NODES, 6)
         state.ub -= matrix.resb
     u = np.concatenate([state.u.ravel(), state.ub])
@@ -52,14 +52,20 @@ def test_motions_that_come_back_larger_end(grows: list[float]) -> None:
     """One iteration more for each of them, and one for the rest; so many motions are mixed."""
     assert len(grows) <= DEPTH
     assert _left(grows, len(grows) + 2) < 1e-4
-    assert _left(grows, len(grows) + 2, mixes=False) > 0.3
+    assert _left(grows, len(grows) + 2, depth=0) > 0.3
+
+
+def test_of_two_motions_that_come_back_one_is_mixed_away() -> None:
+    """With one iteration before, as where there is no air."""
+    assert _left([-1.5], 4, depth=1) < 1e-4
+    assert _left([-1.5, 0.95], 6, depth=1) > 10.0 * _left([-1.5, 0.95], 6)
 
 
 def test_what_falls_by_itself_stays_as_it_is() -> None:
-    assert _left([0.0], 1, mixes=False) < 1e-12
+    assert _left([0.0], 1, depth=0) < 1e-12
     assert _left([0.0], 4) < 1e-12
 
 
 def test_more_motions_than_are_mixed_still_fall() -> None:
     grows = [-1.2, -1.1, -1.05, 0.9, 0.95, 0.8, -0.9]
-    assert _left(grows, 25) < 1e-4 < _left(grows, 25, mixes=False)
+    assert _left(grows, 25) < 1e-4 < _left(grows, 25, depth=0)

@@ -17,6 +17,8 @@ from mdlgen.program.kernel import BORROWS, njit
 
 # Iterations that are mixed, beside the present one.
 DEPTH = 5
+# One alone is mixed within these bounds.
+LEAST_MIXED, MOST_MIXED = -5.0, 0.9
 # What turning counts in the mixing of changes [mm^2].
 TURNS = 10.0
 # What is so much alike, as a part of a change squared, is not told from round-off.
@@ -62,12 +64,12 @@ def _note(matrix, state, last):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def mix(matrix, state, many):
-    """Mixes a change, that is to be taken off the velocities, with those of `many` iterations before it,
-    whose convex problems were alike."""
+def mix(matrix, state, many, depth):
+    """Mixes a change, that is to be taken off the velocities, with those of the last `depth` of `many`
+    iterations before it, whose convex problems were alike."""
     res, resb, mixing = matrix.res, matrix.resb, matrix.mixing
     gram, (parts, scales) = matrix.gram, matrix.parts
-    size, kept = res.size, min(many, DEPTH)
+    size, kept = res.size, min(many, depth)
     # before the first there is nothing: the row is filled again before it is used
     _note(matrix, state, (many - 1) % DEPTH)
     if kept == 0:
@@ -77,18 +79,22 @@ def mix(matrix, state, many):
         gram[i, i] = 1.0
         parts[i] = 0.0
     for i in range(kept):
-        size_i = _dot(mixing[DIFFERENCES + i], mixing[DIFFERENCES + i], size)
-        scales[i] = 1.0 / math.sqrt(size_i) if size_i > 0.0 else 0.0
-    for i in range(kept):
-        parts[i] = scales[i] * _dot(mixing[DIFFERENCES + i], mixing[FOUND], size)
+        own = mixing[DIFFERENCES + (many - 1 - i) % DEPTH]
+        square = _dot(own, own, size)
+        scales[i] = 1.0 / math.sqrt(square) if square > 0.0 else 0.0
+        parts[i] = scales[i] * _dot(own, mixing[FOUND], size)
         gram[i, i] += ALIKE
         for j in range(i):
-            gram[i, j] = scales[i] * scales[j] * _dot(mixing[DIFFERENCES + i], mixing[DIFFERENCES + j], size)
+            other = mixing[DIFFERENCES + (many - 1 - j) % DEPTH]
+            gram[i, j] = scales[i] * scales[j] * _dot(own, other, size)
     if not cholesky(gram):
         return
     cholesky_solve(gram, parts)
     for k in range(kept):
-        part, less, moved = scales[k] * parts[k], mixing[DIFFERENCES + k], mixing[DIFFERENCES + DEPTH + k]
+        row = DIFFERENCES + (many - 1 - k) % DEPTH
+        part, less, moved = scales[k] * parts[k], mixing[row], mixing[row + DEPTH]
+        if depth == 1:
+            part = min(max(part, LEAST_MIXED), MOST_MIXED)
         for i in range(size):
             res[i] += part * (moved[i] - less[i])
         for i in range(resb.size):

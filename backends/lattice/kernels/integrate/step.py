@@ -46,7 +46,7 @@ from mdlgen.backends.lattice.kernels.integrate.change import (
     take_off,
 )
 from mdlgen.backends.lattice.kernels.integrate.convex import solve_convex
-from mdlgen.backends.lattice.kernels.integrate.mixing import mix
+from mdlgen.backends.lattice.kernels.integrate.mixing import DEPTH, mix
 from mdlgen.backends.lattice.kernels.integrate.momentum import keep
 from mdlgen.backends.lattice.kernels.integrate.points import gather
 from mdlgen.backends.lattice.kernels.integrate.points_matrix import points_into
@@ -289,7 +289,8 @@ def midpoint(work, t, dt, tolerance, control):
             found = greatest(work, res, resb, counters)
             if inner < 0:
                 found = max(found, 2.0 * limit)
-            mix(matrix, state, alike)
+            # without air, steps that do not resolve contacts would end where they are halved otherwise
+            mix(matrix, state, alike, DEPTH if air else 1 if alike > 1 else 0)
             alike += 1
         keep(tables, mid.touched, count, work.film, work.free, (mid.motion.x, mid.motion.r), res)
         part = part_of_change(tables, mid.near, close, mid.motion.r, h, res)
