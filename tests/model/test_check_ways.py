@@ -179,3 +179,17 @@ def test_check_says_what_a_run_takes() -> None:
     )
     answer: Any = json.loads(CliRunner().invoke(app, ["check", file, "--json"]).stdout)
     assert answer["cost"]["steps"] == 12000 and 10.0 < answer["cost"]["seconds"] < 30.0
+
+
+def test_air_counts() -> None:
+    film = "contacts.6.air={viscosity: 18.2 uPa*s}"
+    grids = [f"sheets.note_{k}.boxes=[40,40]" for k in (1, 2)]
+    plain, with_air = (cost(lower(load(samples() / "feeder.yaml", sets))) for sets in (grids, [*grids, film]))
+    assert plain and with_air and plain.steps == with_air.steps
+    assert with_air.seconds > 1.3 * plain.seconds
+
+
+def test_air_is_named_where_it_makes_a_run_long() -> None:
+    assert ("W134", "contacts.landing.air") in [
+        (hit.code, hit.where) for hit in found("landing", "run.duration=5 s", "run.step=30 us")
+    ]
