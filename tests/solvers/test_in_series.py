@@ -85,7 +85,7 @@ def equations(stiff: float, series: bool, shift: float) -> tuple[np.ndarray, Poo
     for n in range(2 * BOXES):
         own = slice(6 * n, 6 * n + 6)
         band[n, :, :6] = contacts[own, own].T
-    masses = np.zeros((2 * BOXES, 6, 12 + PAD))
+    masses = np.zeros((2 * BOXES, 6, 12))
     for n in range(2 * BOXES):
         for block in range(min(2, BOXES - n % BOXES)):
             i, j = 6 * (n % BOXES), 6 * (n % BOXES + block)

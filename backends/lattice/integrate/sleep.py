@@ -37,7 +37,6 @@ from mdlgen.backends.lattice.kernels.state import (
     STEPS,
     TIME,
     Control,
-    History,
     Workspace,
 )
 from mdlgen.backends.lattice.search import many_searched
@@ -49,7 +48,7 @@ from mdlgen.runs.checkpoint import Checkpointer, State
 PART, LEAST_STEPS = 0.05, 20
 # What is carried over by body, from the nodes: velocity and angular momentum at the end of the last step, and
 # velocities in its middle and in that of the one before.
-WIDTHS = {"v": 3, "l": 3, "u": 6, "last": 6}
+WIDTHS = {"v": 3, "l": 3, "u": 6, "last": 6, "earlier": 6}
 # What a checkpoint has: which sheets sleep, and of Asleep.
 SHEETS = "sleep.sheets"
 OF_STEPS = ("speeds", "now", "islands", "missed", "may")
@@ -140,8 +139,9 @@ class Sleep:
         from mdlgen.backends.lattice.kernels.integrate import room
 
         old, nodes = self.work, self.system.nodes
-        last_u = self.steering.history.u
-        for name, array in (("v", old.state.v), ("l", old.state.l), ("u", old.state.u), ("last", last_u)):
+        history = self.steering.history
+        moves = (old.state.v, old.state.l, old.state.u, history.u, history.earlier)
+        for name, array in zip(WIDTHS, moves, strict=True):
             self._store[name][nodes] = array
         self._beside[self._chosen] = self.system.pairs["beside"][: len(self._chosen)]
         stuck = old.mid.sticks.pairs
@@ -152,7 +152,7 @@ class Sleep:
         self.system, self._chosen = awake(self._whole, self._parts, sheets)
         self.system.pairs["beside"][: len(self._chosen)] = self._beside[self._chosen]
         state, mid, matrix = room.empty(self.system, forces.WIDE)
-        v, l, u, last = (self._store[name][self.system.nodes] for name in WIDTHS)
+        v, l, u, last, earlier = (self._store[name][self.system.nodes] for name in WIDTHS)
         state = old.state._replace(v=v, l=l, u=u)
         mid.motion.x[:], mid.motion.r[:] = state.x, state.r
         bodies = self._whole.nodes[sheets[self._whole.sheets]]
@@ -164,8 +164,7 @@ class Sleep:
         asleep = old.asleep._replace(bodies=bodies, missed=missed[bodies], rows=rows, strict=strict)
         self.work = workspace(self._model, self.system, (state, mid, matrix), old.kept, asleep)
         self._put_back()
-        history = History(last, self.steering.history.ub, self.steering.history.spans)
-        self.steering = self.steering._replace(history=history)
+        self.steering = self.steering._replace(history=history._replace(u=last, earlier=earlier))
         self.steering.factored[:] = 0.0
 
         self._energies = energies - self._ledger(t)

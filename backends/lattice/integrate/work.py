@@ -9,6 +9,7 @@ from mdlgen.backends.lattice.integrate.films import films
 from mdlgen.backends.lattice.integrate.record import Recorder
 from mdlgen.backends.lattice.kernels.state import (
     COUNTERS,
+    GUESSES,
     ROW,
     Asleep,
     Bounds,
@@ -106,7 +107,8 @@ def workspace(
 
 def control(work: Workspace) -> Control:
     """Counts and settings of a run before its first step."""
-    history = History(work.state.u.copy(), work.state.ub.copy(), np.zeros(2))
+    u, ub = work.state.u.copy(), work.state.ub.copy()
+    history = History(u, ub, u.copy(), np.zeros(3), np.zeros((len(work.free.loose), GUESSES)))
     return Control(np.zeros(5), np.zeros(COUNTERS), np.zeros(4), history, np.zeros(7))
 
 

@@ -122,12 +122,17 @@ class Matrix(NamedTuple):
     mixing: Floats  # changes and velocities of iterations (mixing.ROWS, 6 nodes + border)
     gram: Floats  # (DEPTH, DEPTH) scratch: products of how the changes differed
     parts: Floats  # (2, DEPTH) scratch: how much of each is mixed, and its scale
-    inner: Floats  # the band of masses and bushings alone, in box axes, where contacts stand in the other one
+    # masses and bushings alone, in box axes, where contacts stand in the band: of each column the blocks of
+    # `offsets` alone, (nodes, 6, 6 offsets)
+    inner: Floats
     own: Floats  # and the corner of the rollers alone
     # in single precision, which is read in half the time: the factor where contacts stand in it, and `inner`
     single_factor: np.ndarray
     single_inner: np.ndarray
     offsets: Ints  # how many nodes apart two may be that a joint couples, from 0 on
+    # which block of a column is of two nodes so many apart, (reach + 1,): in the band, and in `inner`
+    slots: Ints
+    inner_slots: Ints
 
 
 class Frozen(NamedTuple):
@@ -301,14 +306,21 @@ class Workspace(NamedTuple):
 
 
 class History(NamedTuple):
-    """What the velocities of a step are guessed from: those of the step before the last, and SPANS."""
+    """What the velocities of a step are guessed from (integrate.guess): those of the step before the last,
+    and of the one before that."""
 
     u: Floats  # (nodes, 6)
     ub: Floats  # (border,)
-    spans: Floats  # (2,) size of the last step; from its middle to that of the one before, 0: there is none
+    earlier: Floats  # (nodes, 6)
+    spans: Floats  # (3,) LAST_STEP, BETWEEN, EARLIER [ms]
+    missed: Floats  # (sheets, GUESSES) squares of what each guess has missed in a sheet
 
 
-LAST_STEP, BETWEEN = 0, 1
+# Of History.spans: size of the last step; from its middle to that of the one before, and from there to that
+# of the one before that, 0: there is none.
+LAST_STEP, BETWEEN, EARLIER = 0, 1, 2
+# Columns of History.missed.
+HALF, LINE, PARABOLA, GUESSES = 0, 1, 2, 3
 
 
 class Control(NamedTuple):

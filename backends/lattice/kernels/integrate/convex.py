@@ -87,8 +87,8 @@ def _make_matrix(work, h, lag, renew):
     a, b, d = matrix.band, matrix.border, matrix.corner
     if renew:
         masses(tables.bodies, tables.nodes, motion.r, matrix.inner)
-        joints_into(tables, tables.joints, h, lag, motion.x, motion.r, matrix.inner)
-        in_box_axes(tables.nodes, motion.r, matrix.inner, b, matrix.offsets)
+        joints_into(tables, tables.joints, h, lag, motion.x, motion.r, matrix.inner, matrix.inner_slots)
+        in_box_axes(tables.nodes, motion.r, matrix.inner, b, matrix.offsets, matrix.inner_slots)
         copy(matrix.single_inner, matrix.inner)
     for n in range(a.shape[0]):  # points fill the diagonal blocks alone
         for c in range(6):
@@ -100,10 +100,10 @@ def _make_matrix(work, h, lag, renew):
     couplings = matrix.couplings
     if colour(couplings) and work.film.many[0] > 0:
         in_series(tables.bodies, tables.nodes, motion, matrix)
-        in_box_axes(tables.nodes, motion.r, couplings.beside, b[:0], matrix.offsets[:1])
+        in_box_axes(tables.nodes, motion.r, couplings.beside, b[:0], matrix.offsets[:1], matrix.slots)
         couplings.colouring.series[0] = 1
     couplings_in_box_axes(work.pool, tables.nodes, motion.r, couplings)
-    in_box_axes(tables.nodes, motion.r, a, b, matrix.offsets[:1])
+    in_box_axes(tables.nodes, motion.r, a, b, matrix.offsets[:1], matrix.slots)
     forget(work.condensed)
     if not factor_sheets(work.pool, matrix, True) or not eliminate_sheets(work.pool, matrix):
         return False

@@ -104,8 +104,9 @@ def overshoot(work, before, ahead, dt):
     xm, rm = work.mid.motion.x, work.mid.motion.r
     if made[MADE_FOR] != dt or made[AGE] >= LASTS:
         masses(bodies, nodes, rm, band)
-        joints_into(work.tables, joints, 0.5 * dt, 0.0, xm, rm, band)
-        in_box_axes(nodes, rm, band, np.zeros((0, 6 * nodes.size)), work.matrix.offsets)
+        joints_into(work.tables, joints, 0.5 * dt, 0.0, xm, rm, band, work.matrix.slots)
+        border = np.zeros((0, 6 * nodes.size))
+        in_box_axes(nodes, rm, band, border, work.matrix.offsets, work.matrix.slots)
         made[MADE_FOR], made[AGE] = dt, 0.0
         if not factor(band):  # never: masses are positive, dampers not negative
             made[MADE_FOR] = 0.0

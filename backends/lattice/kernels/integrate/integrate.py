@@ -14,6 +14,7 @@ from mdlgen.backends.lattice.kernels.contact.swept import Before, swept
 from mdlgen.backends.lattice.kernels.integrate.air import air_overshoot
 from mdlgen.backends.lattice.kernels.integrate.carry import carry, spun
 from mdlgen.backends.lattice.kernels.integrate.damped import overshoot, take_off
+from mdlgen.backends.lattice.kernels.integrate.guess import add_to_history, forget, guess_velocities
 from mdlgen.backends.lattice.kernels.integrate.sleeping import (
     be_strict,
     disturbed,
@@ -26,7 +27,6 @@ from mdlgen.backends.lattice.kernels.linear.dense import copy
 from mdlgen.backends.lattice.kernels.state import (
     ACTS,
     ANEW,
-    BETWEEN,
     CLOSE,
     DAMPED_NUMERICALLY,
     DEPTH_NOW,
@@ -221,7 +221,7 @@ def run(work, t, steps, tolerance, control):
     bodies, pairs, nodes, search = tables.bodies, tables.pairs, tables.nodes, work.search
     x, r, u, ub = state.x, state.r, state.u, state.ub
     counters, energies, pace = control.counters, control.energies, control.pace
-    last_u, last_b, spans = control.history
+    spans = control.history.spans
     keep_u, keep_b, guess = u.copy(), ub.copy(), u.copy()
     mass, stored, begun = 0.0, np.zeros(rows.shape[0]), t
     for row in range(rows.shape[0]):
@@ -240,13 +240,8 @@ def run(work, t, steps, tolerance, control):
             dt = whole / (1 << level)
             copy(keep_u, u)
             copy(keep_b, ub)
-            if spans[BETWEEN] > 0.0:
-                ahead = 0.5 * (dt + spans[LAST_STEP]) / spans[BETWEEN]
-                for n in range(u.shape[0]):
-                    for i in range(6):
-                        u[n, i] += ahead * (u[n, i] - last_u[n, i])
-                for i in range(ub.size):
-                    ub[i] += ahead * (ub[i] - last_b[i])
+            # how far off a guess by a line is tells how fast velocities change, where steps go by that
+            guess_velocities(work, control.history, dt, pace[MISS] == 0.0)
             copy(guess, u)
             if pace[ANEW] != 0.0:
                 control.factored[STALE] = 1.0
@@ -299,7 +294,7 @@ def run(work, t, steps, tolerance, control):
                 pace[LEVEL] = min(level + max(1, halvings), DEEPEST if level >= FINEST else FINEST)
                 if not solved:
                     counters[GIVEN_UP] += 1
-                    spans[BETWEEN] = 0.0
+                    forget(control.history)
                     list_anew(mid.drift)
                 continue
             if work.damped.joints.size > 0:
@@ -311,8 +306,6 @@ def run(work, t, steps, tolerance, control):
             if work.asleep.speeds.size > 0:
                 note_speeds(bodies, nodes, work.free.label, u, work.asleep)
                 miss(mid.forces, work.asleep, dt)
-            copy(last_u, keep_u)
-            copy(last_b, keep_b)
             _account(bodies, mid, state, t, dt, energies)
             if mid.sticks.pairs.size > 0:
                 gone = end_of_step(work, int(counters[TOUCHING]), int(counters[CLOSE]))
@@ -320,9 +313,7 @@ def run(work, t, steps, tolerance, control):
             _watch(tables, search, mid, int(counters[TOUCHING]), t, dt, work.kept, work.asleep)
             if t == begun:
                 _begun(rows, spans[LAST_STEP] / (spans[LAST_STEP] + dt))
-            # between the middles of the two steps
-            spans[BETWEEN] = 0.5 * (spans[LAST_STEP] + dt)
-            spans[LAST_STEP] = dt
+            add_to_history(work, control.history, dt, keep_u, keep_b)
             if search.regions.size > 0:
                 add_step(work, dt)
             carry(tables, state, t, dt)

@@ -77,10 +77,12 @@ def empty(system, wide: int) -> tuple[State, Midpoint, Matrix]:
         gram=np.zeros((DEPTH, DEPTH)),
         parts=np.zeros((2, DEPTH)),
         offsets=system.offsets,
-        inner=no_band(nodes, system.reach),
+        slots=np.arange(system.reach + 1),
+        inner_slots=np.searchsorted(system.offsets, np.arange(system.reach + 1)),
+        inner=np.zeros((nodes, 6, 6 * len(system.offsets))),
         own=np.zeros((border, border)),
         single_factor=no_band(nodes, system.reach).astype(np.float32),
-        single_inner=no_band(nodes, system.reach).astype(np.float32),
+        single_inner=np.zeros((nodes, 6, 6 * len(system.offsets)), np.float32),
     )
     return state, mid, matrix
 

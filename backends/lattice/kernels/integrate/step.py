@@ -175,11 +175,11 @@ def _make_factor(work, counts, h, lag, where, chord):
     tables, matrix, motion = work.tables, work.matrix, work.mid.motion
     a = matrix.band
     masses(tables.bodies, tables.nodes, motion.r, a)
-    joints_into(tables, tables.joints, h, lag, motion.x, motion.r, a)
+    joints_into(tables, tables.joints, h, lag, motion.x, motion.r, a, matrix.slots)
     if where == PLANES:
         gather(work, counts, h, True)
         points_into(work, h, chord)
-    in_box_axes(tables.nodes, motion.r, a, matrix.border, matrix.offsets)
+    in_box_axes(tables.nodes, motion.r, a, matrix.border, matrix.offsets, matrix.slots)
     forget(work.condensed)
     return factor_sheets(work.pool, matrix, False)
 

@@ -97,9 +97,9 @@ def masses(bodies, nodes, r, a):
 
 
 @njit(cache=True, error_model="numpy")
-def joints_into(tables, joints, h, lag, x, r, a):
+def joints_into(tables, joints, h, lag, x, r, a, slots):
     """Adds h (C + lag K) + h^2 K of all joints, where K of a joint that follows a curve is its slope now, and
-    `lag` is less the damping time that a joint has itself."""
+    `lag` is less the damping time that a joint has itself. `slots`: see state.Matrix."""
     bodies, points, images = tables.bodies, tables.points, tables.images
     last = x.shape[0] - 1
     for i in range(joints.size):
@@ -146,9 +146,9 @@ def joints_into(tables, joints, h, lag, x, r, a):
             blocks(a, nb, 0, 1.0, t, qb, qb, g)
         if na >= 0 and nb >= 0:
             if nb > na:
-                blocks(a, na, 6 * (nb - na), -1.0, t, qb, qa, g)
+                blocks(a, na, 6 * slots[nb - na], -1.0, t, qb, qa, g)
             else:
-                blocks(a, nb, 6 * (na - nb), -1.0, t, qa, qb, g)
+                blocks(a, nb, 6 * slots[na - nb], -1.0, t, qa, qb, g)
 
 
 @njit(cache=True, error_model="numpy")
@@ -164,16 +164,17 @@ def rollers_into(bodies, h, t, ub, d):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def in_box_axes(nodes, r, a, b, offsets):
-    """Turns the band and the border from global axes to those of the boxes; `offsets`: see state.Matrix."""
+def in_box_axes(nodes, r, a, b, offsets, slots):
+    """Turns the band and the border from global axes to those of the boxes; `offsets`, `slots`: see
+    state.Matrix."""
     for n in range(nodes.size):
         mine = mat(r, nodes[n])
         for offset in offsets:
             if n + offset >= nodes.size:
                 break
-            other = mat(r, nodes[n + offset])
+            other, slot = mat(r, nodes[n + offset]), slots[offset]
             for p in range(0, 6, 3):
-                for q in range(6 * offset, 6 * offset + 6, 3):
+                for q in range(6 * slot, 6 * slot + 6, 3):
                     # stored column by column: a[n, c, r]
                     part = (
                         a[n, p, q],

@@ -1,4 +1,4 @@
-"""The product of a symmetric band of 6 x 6 blocks and a vector."""
+"""The product of a symmetric matrix of few 6 x 6 blocks and a vector."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ from mdlgen.program.kernel import BORROWS, njit
 
 @njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False, **BORROWS)
 def times(a, offsets, x, y):
-    """y = A x, of a band as linear.band has it before it is factored, with whole diagonal blocks. `offsets`:
-    how many nodes apart two may be whose block is not zero, from 0 on."""
+    """y = A x, of a symmetric matrix by the block columns of its lower half, with whole diagonal blocks.
+    `offsets`: how many nodes apart two may be whose block is not zero, from 0 on; of each column `a` has the
+    blocks of these alone, (nodes, 6 columns, 6 offsets rows)."""
     nodes = a.shape[0]
     y[:] = 0.0
     for j in range(nodes):
@@ -18,13 +19,13 @@ def times(a, offsets, x, y):
             y[base + i] += col[0, i] * x0 + col[1, i] * x1 + col[2, i] * x2
             y[base + i] += col[3, i] * x3 + col[4, i] * x4 + col[5, i] * x5
         s0 = s1 = s2 = s3 = s4 = s5 = 0.0
-        for offset in offsets[1:]:
-            if j + offset >= nodes:
+        for k in range(1, offsets.size):
+            if j + offsets[k] >= nodes:
                 break
-            begin = 6 * offset
-            c0, c1, c2 = col[0, begin : begin + 6], col[1, begin : begin + 6], col[2, begin : begin + 6]
-            c3, c4, c5 = col[3, begin : begin + 6], col[4, begin : begin + 6], col[5, begin : begin + 6]
-            out, far = y[base + begin : base + begin + 6], x[base + begin : base + begin + 6]
+            low, high, at = 6 * k, 6 * k + 6, base + 6 * offsets[k]
+            c0, c1, c2 = col[0, low:high], col[1, low:high], col[2, low:high]
+            c3, c4, c5 = col[3, low:high], col[4, low:high], col[5, low:high]
+            out, far = y[at : at + 6], x[at : at + 6]
             for r in range(6):
                 v = far[r]
                 s0 += c0[r] * v

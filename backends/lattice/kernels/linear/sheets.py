@@ -14,15 +14,19 @@ INNER = 5
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _add_inner(a, inner):
-    """Adds a band to one of which the diagonal blocks alone are known."""
+def _add_inner(a, inner, offsets):
+    """Adds masses and bushings (state.Matrix) to a band of which the diagonal blocks alone are known."""
     for n in range(a.shape[0]):
         for c in range(6):
             col, own = a[n, c], inner[n, c]
             for r in range(6):
                 col[r] += own[r]
             for r in range(6, col.size):
-                col[r] = own[r]
+                col[r] = 0.0
+            for k in range(1, offsets.size):
+                at = 6 * offsets[k]
+                for r in range(6):
+                    col[at + r] = own[6 * k + r]
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -31,7 +35,7 @@ def factor_part(pool, matrix, sheet):
     span = matrix.couplings.colouring.spans[sheet]
     a = matrix.band[span[BEGIN] : span[END]]
     if pool.given[INNER] != 0.0:
-        _add_inner(a, matrix.inner[span[BEGIN] : span[END]])
+        _add_inner(a, matrix.inner[span[BEGIN] : span[END]], matrix.offsets)
     pool.failed[sheet] = 0 if factor(a) else 1
 
 

@@ -1,0 +1,101 @@
+"""The velocities that a step begins its iterations with, guessed from those of the steps before.
+
+What moves smoothly goes on along a parabola, and is met ten times as well by that as by a line. What flutters
+from step to step is missed by a parabola half as far again as by a line, and by half of a line's way less far
+than by all of it. So each sheet goes on by that of the three which would have missed its last steps by least.
+A guess costs or saves iterations, and has no part in where they end.
+"""
+
+from __future__ import annotations
+
+from mdlgen.backends.lattice.kernels.state import (
+    BETWEEN,
+    EARLIER,
+    GUESSES,
+    HALF,
+    LAST_STEP,
+    LINE,
+    PARABOLA,
+)
+from mdlgen.program.kernel import BORROWS, njit
+
+# What a step counts, as a part of the one after it.
+REMEMBERED = 0.5
+# What a parabola misses is less than this part of what the others do, as squares, or it was by chance.
+SMOOTH = 0.5
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _ways(spans, dt):
+    """What a guess adds to the velocity of the last step for the middle of the next one, of dt [ms]: on a
+    line so much of how the last two differ; on a parabola so much of that, and of how the two before do."""
+    if spans[BETWEEN] == 0.0:
+        return 0.0, (0.0, 0.0)
+    ahead, between, earlier = 0.5 * (dt + spans[LAST_STEP]), spans[BETWEEN], spans[EARLIER]
+    line = ahead / between
+    if earlier == 0.0:
+        return line, (line, 0.0)
+    bend = ahead * (ahead + between) / (between + earlier)
+    return line, (line + bend / between, -bend / earlier)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _best(missed):
+    """Which guess has missed a sheet by least."""
+    best = LINE if missed[LINE] <= missed[HALF] else HALF
+    return PARABOLA if missed[PARABOLA] < SMOOTH * missed[best] else best
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def guess_velocities(work, history, dt, any_way):
+    """Makes of the velocities of the last step, state.u and state.ub, those in the middle of the next one, of
+    dt [ms], along lines where a sheet may not go `any_way`."""
+    u, ub, label = work.state.u, work.state.ub, work.free.label
+    line, parabola = _ways(history.spans, dt)
+    sheet, way = -1, (line, 0.0)
+    for n in range(u.shape[0]):
+        if any_way and label[n] != sheet:
+            sheet = label[n]
+            best = _best(history.missed[sheet])
+            way = parabola if best == PARABOLA else (line if best == LINE else 0.5 * line, 0.0)
+        for i in range(6):
+            last = history.u[n, i]
+            u[n, i] += way[0] * (u[n, i] - last) + way[1] * (last - history.earlier[n, i])
+    for i in range(ub.size):
+        ub[i] += line * (ub[i] - history.ub[i])
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def add_to_history(work, history, dt, last, last_b):
+    """Notes what guesses have missed of a step of dt [ms] that was taken, and goes on to the next one; `last`
+    (nodes, 6), `last_b` (border,): velocities of the step before."""
+    bodies, nodes, label, u = work.tables.bodies, work.tables.nodes, work.free.label, work.state.u
+    missed, spans = history.missed, history.spans
+    line, parabola = _ways(spans, dt)
+    for sheet in range(missed.shape[0]):
+        for k in range(GUESSES):
+            missed[sheet, k] *= REMEMBERED
+    for n in range(nodes.size):
+        size = bodies[nodes[n]].half[0] + bodies[nodes[n]].half[1]
+        half = straight = bent = 0.0
+        for i in range(6):
+            before, square = history.u[n, i], 1.0 if i < 3 else size * size
+            new, old, older = u[n, i] - last[n, i], last[n, i] - before, before - history.earlier[n, i]
+            half += square * (new - 0.5 * line * old) ** 2
+            straight += square * (new - line * old) ** 2
+            bent += square * (new - parabola[0] * old - parabola[1] * older) ** 2
+            history.earlier[n, i], history.u[n, i] = before, last[n, i]
+        missed[label[n], HALF] += half
+        missed[label[n], LINE] += straight
+        missed[label[n], PARABOLA] += bent
+    for i in range(last_b.size):
+        history.ub[i] = last_b[i]
+    spans[EARLIER] = spans[BETWEEN]
+    spans[BETWEEN] = 0.5 * (spans[LAST_STEP] + dt)
+    spans[LAST_STEP] = dt
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def forget(history):
+    """Nothing is guessed of the next step: it begins with the velocities of the last one."""
+    history.spans[BETWEEN] = 0.0
