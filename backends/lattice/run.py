@@ -185,9 +185,9 @@ def _compared(result: Result, before: list[Result], again: Callable[[int], Resul
     """The result with its estimate, from the runs `before` at twice its step, four times its step, ...
 
     `again(times)` runs at so many times its step: at twice where there is none, and once more coarsely where
-    two leave open whether the tolerance is met, since three show how errors fall. Where there is none, and
-    that at twice its step fails or differs by a large part, nothing shows how far off the result is, which it
-    says.
+    two leave open whether the tolerance is met, or differ by a large part, since three show how errors fall.
+    Where there is none, and that at twice its step fails or differs by a large part that does not fall,
+    nothing shows how far off the result is, which it says.
     """
     found = [run for run in before if _ended(run)]
     for run in found:
@@ -199,11 +199,12 @@ def _compared(result: Result, before: list[Result], again: Callable[[int], Resul
     if not found or not _ended(found[0]):
         return estimated(result, [])
     result = estimated(result, found[:2])
-    if not before and result.error_estimate is None and (what := unlike(result, found[0])):
-        return replace(result, error_unknown=f"{UNKNOWN} differs from it in {what}")
-    if open_yet(result) and result.model.run.duration / result.step >= 16:
+    what = None if before or result.error_estimate is not None else unlike(result, found[0])
+    if (open_yet(result) or what) and result.model.run.duration / result.step >= 16:
         third = again(4)
         result = estimated(result, [found[0], third]) if _ended(third) else result
+    if what and result.error_estimate is None:
+        return replace(result, error_unknown=f"{UNKNOWN} differs from it in {what}")
     return result
 
 

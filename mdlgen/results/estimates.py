@@ -35,7 +35,9 @@ FALLS, GROWS = 1.25, 0.5
 # Times the greater of two differences that do not fall.
 STILL = 4.0
 # An error of more than this part of the scale is not estimated: such differences do not say how large it is.
-MOST = 0.25
+# Of trajectories that tolerances judge two runs alone say less: where steps do not resolve a contact, both
+# may be wrong by more than they differ.
+MOST, MOST_OF_TWO = 0.25, 0.05
 # Parts of the tolerance below which nothing is estimated. Without contacts: of trajectories; of forces and
 # peaks. With contacts, whose first touch may fall into another step: of trajectories; of forces and peaks.
 # What run.tolerance judges is a trajectory, slides and arms too: a floor above 1 would fail a run by itself.
@@ -79,7 +81,8 @@ def between(runs: Sequence[Result], judged: bool = False) -> dict[str, Estimate]
         judged = last.judged is not None
         asked = judged and result.checks
         safety, times = (1.0, 1.0) if asked else (_safety(last), faceted)
-        most = MOST * (last.judged or last.scale) / last.scale
+        part = MOST_OF_TWO if last.judged is not None and len(runs) == 2 else MOST
+        most = part * (last.judged or last.scale) / last.scale
         value = rule(times * last.value, earlier and times * earlier, safety, judged, most)
         least = result.model.run.tolerance * _floor(last, touching, result.model)
         if value is None and judged and times * STILL * max(last.value, earlier or 0.0) <= least:
@@ -189,11 +192,11 @@ def open_yet(result: Result) -> bool:
 
 
 def unlike(result: Result, coarser: Result) -> str | None:
-    """What `run.tolerance` judges that another run has so differently that the error is not estimated, and by
-    how much; None: nothing."""
+    """What `run.tolerance` judges that another run has so differently that the two alone do not say how large
+    the error is, and by how much; None: nothing."""
     for found in differences(result, coarser, judged=True).values():
         part = found.value * found.scale / (found.judged or found.scale)
-        if SAFETY * part > MOST:
+        if SAFETY * part > MOST_OF_TWO:
             return f"{found.name} by {100.0 * part:.0f} %"
     return None
 

@@ -198,6 +198,26 @@ def test_differences_far_below_the_least_that_is_estimated_may_grow(
     assert found.value == (pytest.approx(least) if known else None)
 
 
+@pytest.mark.parametrize(
+    ("part", "before", "known"),
+    [(0.02, None, True), (0.03, None, False), (0.03, 3.0, True), (0.03, 0.3, False), (0.26, 3.0, False)],
+)
+def test_a_large_difference_says_something_where_a_third_run_shows_that_it_falls(
+    part: float, before: float | None, known: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As parts of the scale, and in times that. Piles at a step that does not resolve their contacts were
+    found off by 2.5 times what two runs made of it."""
+    monkeypatch.setattr(estimates, "FACETS", 1.0)
+    model = small_model()
+    travel = differences(moving(model), moving(model))["sheets.note.position"].scale
+    shifts = [0.0, part, *([] if before is None else [part + before * part])]
+    runs = [moving(model, shift=shift * travel) for shift in shifts]
+    found = estimates.between(runs)["sheets.note.position"]
+    assert (found.value is not None) == known
+    different = estimates.unlike(runs[0], runs[1])
+    assert (different is not None) == (part > 0.025)
+
+
 @pytest.mark.parametrize(("boxes", "times"), [([3, 5], 4.0), ([8, 5], 1.0)])
 def test_estimates_where_boxes_cannot_follow_a_roller(
     boxes: list[int], times: float, monkeypatch: pytest.MonkeyPatch

@@ -48,7 +48,8 @@ def way_of(result: Result) -> float:
 
 def test_a_step_that_does_not_resolve_its_contacts_says_that_its_error_is_not_known() -> None:
     """Whether such a run keeps its energy is a matter of chance: of forty piles at a step of 1 ms sixteen
-    did, one with a way that is wrong by 70 %. A run at twice the step fails for most of them."""
+    did, one with a way that is wrong by 70 %. A run at twice the step fails for most of them, or differs by
+    so much that a third one has to show that differences fall."""
     exact = THROWN * TIME - 0.5 * MU * 9.81e-3 * TIME**2
     unknown = 0
     for seed in range(1, 21):
@@ -56,10 +57,9 @@ def test_a_step_that_does_not_resolve_its_contacts_says_that_its_error_is_not_kn
         known = result.error_estimate
         assert (known is None) == (not result.ok or bool(result.error_unknown)), seed
         if known is not None:
-            # from two runs alone: of sixty such piles five had an estimate, one was off by 1.5 times that;
-            # with sums rounded in another way two by 1.7 times, which was 1.5 % of the way
-            most = max(1.5 * known * max(exact, LENGTH / 10.0), 0.03 * exact)
-            assert abs(way_of(result) - exact) <= most, seed
+            # from three runs: of sixty such piles four have one, of which one is off by 1.3 times that; where
+            # iterations begin in another way none has one
+            assert abs(way_of(result) - exact) <= 1.5 * known * max(exact, LENGTH / 10.0), seed
         if result.error_unknown:
             unknown += 1
             assert result.error_unknown.startswith(UNKNOWN) and result.error_estimate is None
