@@ -30,6 +30,9 @@ def test_the_band_is_factored_and_solved(nodes: int, reach: int) -> None:
     assert band.factor(packed)
     band.solve(packed, found)
     assert np.abs(full @ found - wanted).max() < 1e-12 * np.abs(wanted).max() * nodes
+    single, short = wanted.copy(), np.zeros(size, np.float32)
+    band.solve_single(packed.astype(np.float32), single, short)
+    assert np.abs(single - found).max() < 1e-5 * np.abs(found).max()
     packed[0, 0, 0] = -1.0
     assert not band.factor(packed)
 

@@ -30,7 +30,13 @@ SCRATCH = {
     *(f"mid.{name}" for name in ("results", "touched", "rows", "faces", "near", "spare")),
     *("mid.does", "mid.beforehand"),
     *(f"mid.sticks.{name}" for name in ("aside", "head", "following")),
-    *("matrix.couplings.room", "matrix.couplings.through", "condensed.results", "condensed.touched"),
+    *(
+        "matrix.couplings.room",
+        "matrix.couplings.short",
+        "matrix.couplings.through",
+        "condensed.results",
+        "condensed.touched",
+    ),
 }
 
 

@@ -21,7 +21,7 @@ DEPTH = 5
 LEAST_MIXED, MOST_MIXED = -5.0, 0.9
 # What turning counts in the mixing of changes [mm^2].
 TURNS = 10.0
-# What is so much alike, as a part of a change squared, is not told from round-off.
+# What is so much alike, as a part of a change squared, is not distinguished from round-off.
 ALIKE = 1e-10
 # Rows of Matrix.mixing: the change and the velocities of the iteration before, and how changes and velocities
 # differed from one to the next.

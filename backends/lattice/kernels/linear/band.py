@@ -139,7 +139,8 @@ def _up(col, x, base, length):
     c0, c1, c2 = col[0, 6:end], col[1, 6:end], col[2, 6:end]
     c3, c4, c5 = col[3, 6:end], col[4, 6:end], col[5, 6:end]
     behind = x[base + 6 : base + end]
-    s0 = s1 = s2 = s3 = s4 = s5 = 0.0
+    # zeros of the precision of x: with others, sums of single precision would be made in double
+    s0 = s1 = s2 = s3 = s4 = s5 = x[base] - x[base]
     for r in range(length):
         v = behind[r]
         s0 += c0[r] * v
@@ -177,6 +178,17 @@ def solve(a, x, first=0):
         _down(a[j], x, 6 * j, length if j < short else min(length, 6 * (nodes - j) - 6))
     for j in range(nodes - 1, -1, -1):
         _up(a[j], x, 6 * j, length if j < short else min(length, 6 * (nodes - j) - 6))
+
+
+@njit(cache=True, error_model="numpy", boundscheck=False, **BORROWS)
+def solve_single(a, x, short):
+    """As solve, with a factor in single precision and in that precision: to turn what is read into double
+    would take longer than to work with it. `short`: scratch, as long as x."""
+    for i in range(x.size):
+        short[i] = x[i]
+    solve(a, short)
+    for i in range(x.size):
+        x[i] = short[i]
 
 
 @njit(cache=True, error_model="numpy", boundscheck=False, **BORROWS)

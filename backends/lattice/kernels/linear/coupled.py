@@ -35,10 +35,13 @@ class Couplings(NamedTuple):
     many: np.ndarray  # (1,)
     ends: np.ndarray  # nodes, (pairs, 2)
     blocks: np.ndarray  # rows of the first, columns of the second, column by column, (pairs, 6, 6)
-    single: np.ndarray  # the same in single precision, which is read in half the time
+    # the same in single precision, which is read in half the time, for what the second does to the first and,
+    # with rows for columns, for what the first does to the second, (pairs, 2, 6, 6)
+    single: np.ndarray
     beside: np.ndarray  # of each node, what stands beside the band, (nodes, 6, 6); see in_series
     through: np.ndarray  # (nodes, 2) scratch: stiffness of the contacts at each face
     room: np.ndarray  # vectors of all unknowns, (5, 6 nodes + border)
+    short: np.ndarray  # scratch of single precision, (6 nodes,)
     colouring: Colouring  # of the sheets
 
 
@@ -49,10 +52,11 @@ def couplings(pairs: int, label: np.ndarray, border: int) -> Couplings:
         np.zeros(1, np.int64),
         np.zeros((pairs, 2), np.int64),
         np.zeros((pairs, 6, 6)),
-        np.zeros((pairs, 6, 6), np.float32),
+        np.zeros((pairs, 2, 6, 6), np.float32),
         np.zeros((nodes, 6, 6)),
         np.zeros((nodes, 2)),
         np.zeros((5, 6 * nodes + border)),
+        np.zeros(6 * nodes, np.float32),
         colouring(label, border, pairs),
     )
 
@@ -73,7 +77,8 @@ def axes_part(nodes, r, couplings, part):
                 turned = transpose_matmul(one, matmul((*x, *y, *z), two))
                 for i in range(3):
                     for j in range(3):
-                        block[q + j, p + i] = single[q + j, p + i] = turned[3 * i + j]
+                        block[q + j, p + i] = turned[3 * i + j]
+                        single[ONE, q + j, p + i] = single[TWO, p + i, q + j] = turned[3 * i + j]
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)

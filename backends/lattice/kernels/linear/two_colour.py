@@ -12,8 +12,8 @@ next.
 from __future__ import annotations
 
 from mdlgen.backends.lattice.kernels import parallel
-from mdlgen.backends.lattice.kernels.linear.band import solve
-from mdlgen.backends.lattice.kernels.linear.block import column, row, six
+from mdlgen.backends.lattice.kernels.linear.band import solve_single
+from mdlgen.backends.lattice.kernels.linear.block import add_product, column, six
 from mdlgen.backends.lattice.kernels.linear.colouring import BEGIN, END, ONE, TWO
 from mdlgen.backends.lattice.kernels.linear.dense import cholesky, cholesky_solve
 from mdlgen.backends.lattice.kernels.parallel import begin, finish, take
@@ -68,22 +68,11 @@ def _across(couplings, sheet, p, q):
     label = colours.label
     for at in range(colours.begins[sheet], colours.begins[sheet + 1]):
         k = colours.own[at]
-        one, two, block = 6 * ends[k, ONE], 6 * ends[k, TWO], blocks[k]
-        # all six sums before one is written: what was just written is slow to read
+        one, two = 6 * ends[k, ONE], 6 * ends[k, TWO]
         if label[ends[k, TWO]] == sheet:
-            x = six(p, one)
-            v0, v1, v2 = column(block, 0, x), column(block, 1, x), column(block, 2, x)
-            v3, v4, v5 = column(block, 3, x), column(block, 4, x), column(block, 5, x)
-            q0, q1, q2, q3, q4, q5 = six(q, two)
-            q[two], q[two + 1], q[two + 2] = q0 + v0, q1 + v1, q2 + v2
-            q[two + 3], q[two + 4], q[two + 5] = q3 + v3, q4 + v4, q5 + v5
+            add_product(blocks[k, TWO], p, one, q, two)
         else:
-            x = six(p, two)
-            q0, q1, q2, q3, q4, q5 = six(q, one)
-            q0, q1, q2 = row(q0, block, 0, x), row(q1, block, 1, x), row(q2, block, 2, x)
-            q3, q4, q5 = row(q3, block, 3, x), row(q4, block, 4, x), row(q5, block, 5, x)
-            q[one], q[one + 1], q[one + 2] = q0, q1, q2
-            q[one + 3], q[one + 4], q[one + 5] = q3, q4, q5
+            add_product(blocks[k, ONE], p, two, q, one)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -123,7 +112,7 @@ def first_part(pool, matrix, sheet):
             w[l] = matrix.res[l] if start else 0.0
         if not start:
             _across(couplings, sheet, p, w)
-        solve(matrix.single_factor[span[BEGIN] : span[END]], w[low:high])
+        solve_single(matrix.single_factor[span[BEGIN] : span[END]], w[low:high], couplings.short[low:high])
     elif start:
         return
     for j in range(b.shape[0]):
@@ -185,7 +174,7 @@ def split_part(pool, matrix, sheet):
     for l in range(low, high):
         r[l] = own[l] = z[l]
         res[l] = 0.0
-    solve(matrix.single_factor[span[BEGIN] : span[END]], z[low:high])
+    solve_single(matrix.single_factor[span[BEGIN] : span[END]], z[low:high], couplings.short[low:high])
     for l in range(low, high):
         p[l] = z[l]
     pool.shares[sheet, 0, 0] = _dot(r[low:high], z[low:high])
@@ -206,7 +195,7 @@ def step_part(pool, matrix, sheet):
         r[l] -= part * z[l]
         res[l] += part * p[l]
         z[l] = r[l]
-    solve(matrix.single_factor[span[BEGIN] : span[END]], z[low:high])
+    solve_single(matrix.single_factor[span[BEGIN] : span[END]], z[low:high], couplings.short[low:high])
     pool.shares[sheet, 0, 0] = _dot(r[low:high], z[low:high])
 
 
