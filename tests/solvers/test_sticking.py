@@ -247,7 +247,8 @@ def test_stretches_stay_where_pairs_are_searched_anew() -> None:
 def test_halves_of_a_scene_are_the_whole() -> None:
     text = stack(3, "[4, 6]").replace("friction: 0.3}", f"friction: {PILE}}}", 2)
     text = text.replace("name: stack", "name: stack\ngravity: [1 m/s^2, 0 m/s^2, -9.81 m/s^2]")
-    run = "run={{duration: 10 ms, print_step: 1 ms, step: 0.1 ms, symmetry: {}}}"
+    # both end where iterations end, which is closer the less these may leave
+    run = "run={{duration: 10 ms, print_step: 1 ms, step: 0.1 ms, tolerance: 1e-5, symmetry: {}}}"
     half, whole = (solved(text, (run.format(rule),)) for rule in ("true", "false"))
     assert half.halved and not whole.halved
     assert np.abs(half.position - whole.position).max() < 1e-8
