@@ -81,7 +81,7 @@ def between(runs: Sequence[Result], judged: bool = False) -> dict[str, Estimate]
         judged = last.judged is not None
         asked = judged and result.checks
         safety, times = (1.0, 1.0) if asked else (_safety(last), faceted)
-        part = MOST_OF_TWO if last.judged is not None and len(runs) == 2 else MOST
+        part = MOST_OF_TWO if judged and not asked and len(runs) == 2 else MOST
         most = part * (last.judged or last.scale) / last.scale
         value = rule(times * last.value, earlier and times * earlier, safety, judged, most)
         least = result.model.run.tolerance * _floor(last, touching, result.model)
@@ -194,10 +194,10 @@ def open_yet(result: Result) -> bool:
 def unlike(result: Result, coarser: Result) -> str | None:
     """What `run.tolerance` judges that another run has so differently that the two alone do not say how large
     the error is, and by how much; None: nothing."""
-    for found in differences(result, coarser, judged=True).values():
-        part = found.value * found.scale / (found.judged or found.scale)
-        if SAFETY * part > MOST_OF_TWO:
-            return f"{found.name} by {100.0 * part:.0f} %"
+    known = between([result, coarser], judged=True)
+    for name, found in differences(result, coarser, judged=True).items():
+        if known[name].judged is not None and known[name].value is None:
+            return f"{name} by {100.0 * found.value * found.scale / (found.judged or found.scale):.1f} %"
     return None
 
 

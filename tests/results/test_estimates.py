@@ -216,6 +216,25 @@ def test_a_large_difference_says_something_where_a_third_run_shows_that_it_falls
     assert (found.value is not None) == known
     different = estimates.unlike(runs[0], runs[1])
     assert (different is not None) == (part > 0.025)
+    # what a run that checks another one reports is the difference itself
+    checks = [replace(runs[0], checks=True), runs[1]]
+    assert (estimates.between(checks)["sheets.note.position"].value is not None) == (part < 0.25)
+
+
+def test_what_has_no_estimate_of_two_runs_is_named() -> None:
+    """Where boxes cannot follow a roller estimates are four times that, so they end at smaller ones:
+    one of 1 % had none there, and nothing was said of it."""
+    model = small_model()
+    travel = differences(moving(model), moving(model))["sheets.note.position"].scale
+    for part in (0.004, 0.01, 0.02, 0.05):
+        runs = [moving(model, shift=shift * travel) for shift in (0.0, part)]
+        for times in (1.0, 4.0):
+            with pytest.MonkeyPatch.context() as patch:
+                patch.setattr(estimates, "facets", lambda _: [True])
+                patch.setattr(estimates, "FACETS", times)
+                known = estimates.between(runs)["sheets.note.position"].value
+                assert (known is None) == (times * part > 0.025)
+                assert (estimates.unlike(*runs) is None) == (known is not None)
 
 
 @pytest.mark.parametrize(("boxes", "times"), [([3, 5], 4.0), ([8, 5], 1.0)])

@@ -47,7 +47,7 @@ from mdlgen.runs.checkpoint import Checkpointer, State
 # How long a sheet is still before it sleeps: a part of the run, and steps at least.
 PART, LEAST_STEPS = 0.05, 20
 # What is carried over by body, from the nodes: velocity and angular momentum at the end of the last step, and
-# velocities in its middle and in that of the one before.
+# velocities in its middle and in those of the two before.
 WIDTHS = {"v": 3, "l": 3, "u": 6, "last": 6, "earlier": 6}
 # What a checkpoint has: which sheets sleep, and of Asleep.
 SHEETS = "sleep.sheets"
