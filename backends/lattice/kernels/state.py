@@ -245,6 +245,7 @@ class Damped(NamedTuple):
     joints: np.ndarray
     band: Floats
     single: np.ndarray  # its factor in single precision, which is read in half the time
+    short: np.ndarray  # (6 nodes,) scratch of that precision
     made: Floats  # (2,) the step that the band was factored for, how many steps ago
     vectors: Floats  # (2, 6 nodes) PUSH and LEFT
     place: Floats  # (bodies, 3) where bodies are at the end of a step [mm]

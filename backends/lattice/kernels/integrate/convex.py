@@ -18,6 +18,7 @@ from mdlgen.backends.lattice.kernels import parallel
 from mdlgen.backends.lattice.kernels.contact.condensed import INSIDE, forget
 from mdlgen.backends.lattice.kernels.integrate.along import look_along, pull, slope
 from mdlgen.backends.lattice.kernels.integrate.change import greatest
+from mdlgen.backends.lattice.kernels.integrate.momentum import let_go
 from mdlgen.backends.lattice.kernels.integrate.points import gather
 from mdlgen.backends.lattice.kernels.integrate.points_matrix import points_into
 from mdlgen.backends.lattice.kernels.integrate.tangent import (
@@ -72,6 +73,10 @@ MOST_LOOKS, MOST_DOUBLED = 12, 4
 # A first direction that is gone along wholly is enough for one of the step's own iterations where it moves by
 # less than so many times what the step may leave: beyond, more of them take less than another evaluation.
 FIRST = 10.0
+# A factor may have contacts that held a sheet in an earlier state, and have let it go since: then changes are
+# little that should not be. So where a sheet would move by more than FIRST, were it free, what is left of its
+# momentum must fall to this part, or the factor is made anew.
+HELD = 0.5
 # A factor is worth so many iterations (see integrate.step). One that has served so many solves beyond one for
 # each step is made anew: what would be saved by that is not known, and has been spent by then.
 WORTH, SPEND = 4.0, 8.0
@@ -205,6 +210,16 @@ def _direction(work, axes, h):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
+def _held(work, h, axes, part, loose):
+    """Whether a change that goes on by that part of the direction holds what would move by `loose` if it were
+    free (see momentum.let_go)."""
+    g = work.frozen.vectors[GRADIENT]
+    _gradient(work, h, axes, part)
+    turn_nodes(work.tables.nodes, axes, g, False)
+    return let_go(work, g, work.frozen.border[GRADIENT]) <= HELD * loose
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
 def _say_enough(work, limit):
     """Sets what linear solves may leave in each sheet, as the square of its residual that they have: its mass
     times the square of the velocity which they may leave. Of some sheets a step may leave less."""
@@ -238,6 +253,8 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
     before, along, part, gathered = 1e300, 0.0, 0.0, False
     iteration, converged, renewed = 0, False, False
     air = work.film.many[0] > 0
+    loose = let_go(work, work.free.residual, frozen.border[RESIDUAL])
+    doubtful = not air and loose > FIRST * limit
     if air:
         limit *= FINE
     _say_enough(work, limit)
@@ -277,7 +294,7 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
         for i in range(pb.size):
             pb[i] = turn * pb[i] - zb[i]
         moved = greatest(work, p, pb, counters)
-        if iteration == 0 and moved <= limit:
+        if iteration == 0 and moved <= limit and (made or not doubtful):
             copy(change, p)
             copy(changeb, pb)
             converged = True
@@ -307,6 +324,9 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
         converged = first or moved <= ROUGH * limit
         if before < 1e299 and part == 1.0 and rate < 0.5:
             converged = converged or moved * rate / (1.0 - rate) <= ROUGH * limit
+        if converged and doubtful and not renewed and not _held(work, h, axes, part, loose):
+            converged, part, before, factored[STALE] = False, 0.0, 1e300, 1.0
+            continue
         if converged:
             break
         if (

@@ -19,7 +19,7 @@ import numpy as np
 from mdlgen.backends.lattice.kernels.integrate.momentum import keep
 from mdlgen.backends.lattice.kernels.integrate.tangent import in_box_axes, joints_into, masses
 from mdlgen.backends.lattice.kernels.linear.band import empty as no_band
-from mdlgen.backends.lattice.kernels.linear.band import factor, solve
+from mdlgen.backends.lattice.kernels.linear.band import factor, solve_single
 from mdlgen.backends.lattice.kernels.linear.colouring import BEGIN, END
 from mdlgen.backends.lattice.kernels.linear.dense import copy
 from mdlgen.backends.lattice.kernels.parallel import OVERSHOOT, begin, finish, take
@@ -46,6 +46,7 @@ def empty(system) -> Damped:
         joints=joints,
         band=band,
         single=band.astype(np.float32),
+        short=np.zeros(6 * nodes, np.float32),
         made=np.zeros(2),
         vectors=np.zeros((2, 6 * nodes)),
         place=np.zeros((bodies, 3)),
@@ -78,7 +79,7 @@ def left_part(work, sheet):
     low, high = span[BEGIN], span[END]
     push, left = work.damped.vectors[PUSH, 6 * low : 6 * high], work.damped.vectors[LEFT, 6 * low : 6 * high]
     copy(left, push)
-    solve(work.damped.single[low:high], left)
+    solve_single(work.damped.single[low:high], left, work.damped.short[6 * low : 6 * high])
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)

@@ -1,9 +1,10 @@
 """The velocities that a step begins its iterations with, guessed from those of the steps before.
 
-What moves smoothly goes on along a parabola, and is met ten times as well by that as by a line. What flutters
-from step to step is missed by a parabola half as far again as by a line, and by half of a line's way less far
-than by all of it. So each sheet goes on by that of the three which would have missed its last steps by least.
-A guess costs or saves iterations, and has no part in where they end.
+Three guesses are tried on the steps that were taken: a line through the last two velocities, half of the
+way along it, and a parabola through the last three. Of smooth motion a parabola misses a tenth of what a line
+does. Of motion that flutters from step to step it misses half as much again, and half of a line's way misses
+least. Each sheet goes on by the guess that has missed its last steps by least. A guess costs or saves
+iterations, and has no part in where they end.
 """
 
 from __future__ import annotations

@@ -10,8 +10,11 @@ so that much of the momentum is kept.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
+from mdlgen.backends.lattice.kernels.linear.colouring import BEGIN, END
 from mdlgen.backends.lattice.kernels.state import Free
 from mdlgen.mechanics.vector import add, back, cross, dot, mat, rotate, scale, sub, three, vec
 from mdlgen.program.kernel import njit
@@ -161,3 +164,39 @@ def keep(tables, touched, count, film, free, motion, change):
                 for i in range(3):
                     change[k + i] -= off[i]
                     change[k + 3 + i] -= turn[i]
+
+
+@njit(cache=True, error_model="numpy")
+def let_go(work, push, pushb):
+    """The greatest change of the velocity [mm/ms] of a loose sheet as a whole, or of a roller, by momentum of
+    the nodes, `push` (6 nodes,) in global axes, and of the border, pushb (border,), if nothing held it. That
+    of a sheet of which a step may leave less counts that many times."""
+    bodies, nodes, free = work.tables.bodies, work.tables.nodes, work.free
+    spans, own, x = work.matrix.couplings.colouring.spans, work.matrix.own, work.mid.motion.x
+    across, change = three(free.normal), 0.0
+    for row in range(spans.shape[0]):
+        low, high = spans[row, BEGIN], spans[row, END]
+        sheet = free.label[low]
+        if not free.loose[sheet]:
+            continue
+        total = inertia = 0.0
+        centre = linear = angular = (0.0, 0.0, 0.0)
+        first = vec(x, nodes[low])
+        for n in range(low, high):
+            k, mass, arm = 6 * n, bodies[nodes[n]].mass, sub(vec(x, nodes[n]), first)
+            force = (push[k], push[k + 1], push[k + 2])
+            total, inertia = total + mass, inertia + mass * dot(arm, arm)
+            centre, linear = add(centre, scale(mass, arm)), add(linear, force)
+            angular = add(angular, add(cross(arm, force), (push[k + 3], push[k + 4], push[k + 5])))
+        centre = scale(1.0 / total, centre)
+        inertia -= total * dot(centre, centre)
+        angular = sub(angular, cross(centre, linear))
+        if free.cut[sheet]:
+            linear = sub(linear, scale(dot(linear, across), across))
+            angular = scale(dot(angular, across), across)
+        turns = dot(angular, angular) / (inertia * total) if inertia > 0.0 else 0.0
+        moves = max(dot(linear, linear) / (total * total), turns)
+        change = max(change, work.asleep.strict[sheet] * math.sqrt(moves))
+    for i in range(pushb.size):
+        change = max(change, abs(pushb[i]) / own[i, i])
+    return change

@@ -289,8 +289,9 @@ def midpoint(work, t, dt, tolerance, control):
             found = greatest(work, res, resb, counters)
             if inner < 0:
                 found = max(found, 2.0 * limit)
-            # without air, steps that do not resolve contacts would end where they are halved otherwise
-            mix(matrix, state, alike, DEPTH if air else 1 if alike > 1 else 0)
+            # without air, steps that do not resolve contacts would end where they are halved otherwise: more
+            # are mixed where a step goes back and forth between states that friction wedges
+            mix(matrix, state, alike, DEPTH if air or alike > SHORTLY else 1 if alike > 1 else 0)
             alike += 1
         keep(tables, mid.touched, count, work.film, work.free, (mid.motion.x, mid.motion.r), res)
         part = part_of_change(tables, mid.near, close, mid.motion.r, h, res)

@@ -1,0 +1,135 @@
+"""A factor of an earlier state, with contacts that held sheets in it and have let them go since."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mdlgen.backends.lattice.arrays import build
+from mdlgen.backends.lattice.integrate.work import arrays, control
+from mdlgen.backends.lattice.kernels import forces
+from mdlgen.backends.lattice.kernels.contact import between
+from mdlgen.backends.lattice.kernels.integrate import convex, momentum, tangent
+from mdlgen.backends.lattice.kernels.state import FACTORS, Control, Workspace
+from mdlgen.model.lower import lower
+from mdlgen.spec.load import loads
+
+pytestmark = pytest.mark.usefixtures("as_python")
+
+H, LAG = 0.05, 1e-3  # half of a step, and the numerical damping of joints [ms]
+LIMIT = 1e-3  # what a step may leave [mm/ms]
+SLIDES = 0.05  # how fast one note is against the other [mm/ms]
+ASIDE, LOW, TOP = range(3)  # sheets, by their names
+
+SCENE = """
+name: pair
+materials: {p: {E_md: 3000 MPa, E_cd: 1500 MPa, D_md: 0.4 N*mm, D_cd: 0.24 N*mm}}
+sheets:
+  low: {material: p, size: [40 mm, 20 mm], thickness: 0.1 mm, mass: 0.1 g, boxes: [4, 2]}
+  top: {material: p, size: [40 mm, 20 mm], thickness: 0.1 mm, mass: 0.1 g, boxes: [4, 2],
+    center: [2 mm, 1 mm, 0.097 mm], turn: 2 deg}
+  aside: {material: p, size: [40 mm, 20 mm], thickness: 0.1 mm, mass: 1 g, boxes: [4, 2],
+    center: [100 mm, 0 mm, 0 mm]}
+contacts:
+  - {between: [low, top], stiffness: 2000 N/mm^1.5, restitution: 0.2, friction: 0.3, smoothing: 1 mm/s}
+run: {duration: 10 ms}
+"""
+
+
+def _see(work: Workspace) -> tuple[int, int]:
+    """Evaluates contacts where the notes are. Returns how many pairs touch, how many are near."""
+    mid = work.mid
+    forces.place(work.tables, 0.0, 0.0, work.state, mid.motion)
+    close = forces.near_pairs(work.tables, mid.motion, 0.05, 2 * H, mid.near)
+    mid.forces[:] = 0.0
+    count, _ = between.near_forces(work, close, 0.0)
+    work.condensed.axes[:] = mid.motion.r
+    return count, close
+
+
+def _solve(work: Workspace, steering: Control, momenta: np.ndarray) -> np.ndarray:
+    """The change of velocities (nodes, 6), global axes, for momenta (nodes, 6) that are left of a step."""
+    res, nodes, axes = work.matrix.res, work.tables.nodes, work.condensed.axes
+    work.free.residual[:] = res[:] = momenta.ravel()
+    work.matrix.resb[:] = 0.0
+    tangent.turn_nodes(nodes, axes, res, True)
+    counts = _see(work)
+    assert counts[0] > 4
+    assert convex.solve_convex(work, H, H, LAG, counts, LIMIT, steering, True, False) > 0
+    change = res.copy()
+    tangent.turn_nodes(nodes, axes, change, False)
+    return change.reshape(-1, 6)
+
+
+@pytest.fixture
+def lifted() -> tuple[Workspace, Control]:
+    """Two notes with the factor of when they were pressed together by 3 um; they have come apart to 0.02 um
+    since."""
+    model = lower(loads(SCENE))
+    work = arrays(model, build(model))
+    steering = control(work)
+    _solve(work, steering, 0.1 * LIMIT * _mass(work)[:, None] * np.eye(6)[2])
+    assert steering.counters[FACTORS] == 1
+    top = work.tables.nodes[work.free.label == TOP]
+    work.state.x[top, 2] += 0.003 - 2e-5
+    return work, steering
+
+
+def _mass(work: Workspace) -> np.ndarray:
+    return work.tables.bodies["mass"][work.tables.nodes]
+
+
+def _momenta(work: Workspace) -> np.ndarray:
+    """One note slides on the other. A note that touches nothing moves too, which any factor knows, and which
+    is most of what there is to gain."""
+    label, velocities = work.free.label, np.zeros((len(work.free.label), 6))
+    velocities[:, 0] = np.array([0.0, -SLIDES, SLIDES])[label]
+    velocities[:, 2] = np.where(label == ASIDE, 8.0 * LIMIT, 0.0)
+    return _mass(work)[:, None] * velocities
+
+
+def _slid(work: Workspace, change: np.ndarray) -> float:
+    """How much of the sliding a change takes off."""
+    label = work.free.label
+    return float(change[label == TOP, 0].mean() - change[label == LOW, 0].mean()) / (2.0 * SLIDES)
+
+
+def test_what_contacts_have_let_go_moves(lifted: tuple[Workspace, Control]) -> None:
+    """By its momentum: hardly any friction is left to hold it."""
+    work, steering = lifted
+    change = _solve(work, steering, _momenta(work))
+    assert _slid(work, change) == pytest.approx(1.0, abs=0.02)
+    assert steering.counters[FACTORS] > 1
+
+
+def test_an_old_factor_alone_would_hold_it(
+    lifted: tuple[Workspace, Control], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The change is little, gone along wholly, and wrong."""
+    monkeypatch.setattr(convex, "HELD", np.inf)
+    work, steering = lifted
+    change = _solve(work, steering, _momenta(work))
+    assert np.abs(change[:, :3]).max() < convex.FIRST * LIMIT
+    assert _slid(work, change) < 0.2
+    assert steering.counters[FACTORS] == 1
+
+
+def test_what_would_move_by_its_momentum_were_it_free(lifted: tuple[Workspace, Control]) -> None:
+    """Along any way and about any axis, whatever boxes do against each other; the strictest sheet counts."""
+    work, _ = lifted
+    mass, label, x = _mass(work), work.free.label, work.mid.motion.x[work.tables.nodes]
+    draw = np.random.default_rng(3)
+    none = np.zeros(0)
+    drift = draw.normal(size=3)
+    momenta = np.zeros((len(mass), 6))
+    momenta[label == TOP, :3] = mass[label == TOP, None] * drift
+    pull = draw.normal(size=3)
+    momenta[np.flatnonzero(label == TOP)[[0, -1]], :3] += [pull, -pull]  # no sum, but a moment
+    found = momentum.let_go(work, momenta.ravel(), none)
+    arm = x[label == TOP] - x[label == TOP].mean(axis=0)
+    inertia = (mass[label == TOP] * (arm**2).sum(axis=1)).sum()
+    moment = np.linalg.norm(np.cross(arm[0] - arm[-1], pull))
+    turn = moment / np.sqrt(inertia * mass[label == TOP].sum())
+    assert found == pytest.approx(max(float(np.linalg.norm(drift)), float(turn)), rel=1e-9)
+    work.asleep.strict[TOP] = 3.0
+    assert momentum.let_go(work, momenta.ravel(), none) == pytest.approx(3.0 * found, rel=1e-9)
