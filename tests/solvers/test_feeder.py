@@ -72,7 +72,9 @@ def test_where_notes_stop_does_not_depend_on_the_step() -> None:
     than its momentum says left it 25 um short."""
     grids = [f"sheets.note_{k}.boxes=[10,20]" for k in (1, 2)]
     model = lower(load(samples() / "feeder.yaml", (*grids, "run.duration=30 ms", "require=[]")))
-    ends = [place(solver("lattice").solve(model, step=step), 0, 30.0) for step in (0.05, 0.0455, 0.025)]
+    found = [solver("lattice").solve(model, step=step) for step in (0.05, 0.0455, 0.025)]
+    assert [result.status for result in found] == ["ok"] * 3
+    ends = [place(result, 0, 30.0) for result in found]
     assert max(ends) - min(ends) < 5e-3
 
 
