@@ -10,7 +10,7 @@ from mdlgen.backends.lattice.integrate.work import arrays, control
 from mdlgen.backends.lattice.kernels import forces
 from mdlgen.backends.lattice.kernels.contact import between
 from mdlgen.backends.lattice.kernels.integrate import convex, momentum, tangent
-from mdlgen.backends.lattice.kernels.state import FACTORS, Control, Workspace
+from mdlgen.backends.lattice.kernels.state import BEFORE, FACTORS, GRADIENT, Control, Workspace
 from mdlgen.model.lower import lower
 from mdlgen.spec.load import loads
 
@@ -105,12 +105,33 @@ def test_an_old_factor_alone_would_hold_it(
     lifted: tuple[Workspace, Control], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The change is little, gone along wholly, and wrong."""
-    monkeypatch.setattr(convex, "HELD", np.inf)
+    monkeypatch.setattr(convex, "CURED", np.inf)
     work, steering = lifted
     change = _solve(work, steering, _momenta(work))
     assert np.abs(change[:, :3]).max() < convex.FIRST * LIMIT
     assert _slid(work, change) < 0.2
     assert steering.counters[FACTORS] == 1
+
+
+@pytest.mark.parametrize(("left", "cured"), [(0.4, True), (0.9, False)])
+def test_each_sheet_counts_by_itself(
+    left: float, cured: bool, lifted: tuple[Workspace, Control], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Beside one that had more momentum, and has lost it."""
+    work, _ = lifted
+    nodes, axes, label = work.tables.nodes, work.condensed.axes, work.free.label
+    velocities = np.zeros((len(label), 6))
+    velocities[:, 0] = np.array([1.0, 0.02, 0.02])[label]
+    before = _mass(work)[:, None] * velocities
+    after = before * np.array([0.0, left, 0.1])[label][:, None]
+
+    def leaves(*_: object) -> None:
+        work.frozen.vectors[GRADIENT] = after.ravel()
+        tangent.turn_nodes(nodes, axes, work.frozen.vectors[GRADIENT], True)
+
+    monkeypatch.setattr(convex, "_gradient", leaves)
+    momentum.let_go(work, before.ravel(), np.zeros(0), work.free.lets[BEFORE])
+    assert convex._cured(work, H, axes, 1.0, convex.FIRST * LIMIT) is cured
 
 
 @pytest.mark.parametrize("sheet", [LOW, TOP])
@@ -123,14 +144,16 @@ def test_what_would_move_by_its_momentum_were_it_free(sheet: int, lifted: tuple[
     moves, turns = np.zeros((2, len(mass), 6))
     moves[own, :3] = mass[own, None] * drift
     turns[own[[0, -1]], :3] = [pull, -pull]
-    none = np.zeros(0)
-    assert momentum.let_go(work, moves.ravel(), none) == pytest.approx(np.linalg.norm(drift), rel=1e-9)
+    none, into = np.zeros(0), np.zeros(3)
+    found = momentum.let_go(work, moves.ravel(), none, into)
+    assert found == into[sheet] == pytest.approx(np.linalg.norm(drift), rel=1e-9)
     x = work.mid.motion.x[work.tables.nodes[own]]
     arm = x - x.mean(axis=0)
     inertia = (mass[own] * (arm**2).sum(axis=1)).sum()
     moment = np.linalg.norm(np.cross(arm[0] - arm[-1], pull))
     turn = moment / np.sqrt(inertia * mass[own].sum())
-    found = momentum.let_go(work, turns.ravel(), none)
-    assert found == pytest.approx(float(turn), rel=1e-9)
+    found = momentum.let_go(work, turns.ravel(), none, into)
+    assert found == into[sheet] == pytest.approx(float(turn), rel=1e-9)
+    assert np.delete(into, sheet) == pytest.approx(0.0, abs=1e-12)
     work.asleep.strict[sheet] = 3.0
-    assert momentum.let_go(work, turns.ravel(), none) == pytest.approx(3.0 * found, rel=1e-9)
+    assert momentum.let_go(work, turns.ravel(), none, into) == pytest.approx(3.0 * found, rel=1e-9)

@@ -213,6 +213,11 @@ class Free(NamedTuple):
     one_with: Ints  # (sheets,) which sheet it is one with now
     cut: np.ndarray  # (sheets,) whether it is one half of a sheet, which hangs on its image
     normal: Floats  # (3,) of the plane that halves it
+    lets: Floats  # (2, sheets + border) BEFORE and AFTER: see momentum.let_go
+
+
+# Rows of Free.lets: of the residual that an iteration begins with, and of what its change leaves.
+BEFORE, AFTER = 0, 1
 
 
 class Kept(NamedTuple):

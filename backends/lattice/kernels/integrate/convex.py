@@ -37,6 +37,8 @@ from mdlgen.backends.lattice.kernels.linear.sheets import eliminate_sheets, fact
 from mdlgen.backends.lattice.kernels.linear.two_colour import corner_of_first
 from mdlgen.backends.lattice.kernels.parallel import begin, finish, take
 from mdlgen.backends.lattice.kernels.state import (
+    AFTER,
+    BEFORE,
     CHANGE,
     DIRECTION,
     FACTORS,
@@ -73,10 +75,10 @@ MOST_LOOKS, MOST_DOUBLED = 12, 4
 # A first direction that is gone along wholly is enough for one of the step's own iterations where it moves by
 # less than so many times what the step may leave: beyond, more of them take less than another evaluation.
 FIRST = 10.0
-# A factor may have contacts that held a sheet in an earlier state, and have let it go since: then changes are
-# little that should not be. So where a sheet would move by more than FIRST, were it free, what is left of its
-# momentum must fall to this part, or the factor is made anew.
-HELD = 0.5
+# A factor may have contacts that held a sheet in an earlier state and no longer do: a change is then too
+# small. So where what is left of its momentum would move a sheet by more than FIRST if nothing held it, a
+# change must leave less than this part of it, or the factor is made anew.
+CURED = 0.5
 # A factor is worth so many iterations (see integrate.step). One that has served so many solves beyond one for
 # each step is made anew: what would be saved by that is not known, and has been spent by then.
 WORTH, SPEND = 4.0, 8.0
@@ -210,13 +212,17 @@ def _direction(work, axes, h):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _held(work, h, axes, part, loose):
-    """Whether a change that goes on by that part of the direction holds what would move by `loose` if it were
-    free (see momentum.let_go)."""
-    g = work.frozen.vectors[GRADIENT]
+def _cured(work, h, axes, part, least):
+    """Whether a change that goes on by that part of the direction takes enough of the momentum of each sheet
+    and roller that would move by more than `least` if it were free (see momentum.let_go)."""
+    g, lets = work.frozen.vectors[GRADIENT], work.free.lets
     _gradient(work, h, axes, part)
     turn_nodes(work.tables.nodes, axes, g, False)
-    return let_go(work, g, work.frozen.border[GRADIENT]) <= HELD * loose
+    let_go(work, g, work.frozen.border[GRADIENT], lets[AFTER])
+    for k in range(lets.shape[1]):
+        if lets[BEFORE, k] > least and lets[AFTER, k] > CURED * lets[BEFORE, k]:
+            return False
+    return True
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -253,8 +259,9 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
     before, along, part, gathered = 1e300, 0.0, 0.0, False
     iteration, converged, renewed = 0, False, False
     air = work.film.many[0] > 0
-    loose = let_go(work, work.free.residual, frozen.border[RESIDUAL])
-    doubtful = not air and loose > FIRST * limit
+    least = FIRST * limit
+    moves = let_go(work, work.free.residual, frozen.border[RESIDUAL], work.free.lets[BEFORE])
+    doubtful = not air and moves > least
     if air:
         limit *= FINE
     _say_enough(work, limit)
@@ -324,7 +331,7 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
         converged = first or moved <= ROUGH * limit
         if before < 1e299 and part == 1.0 and rate < 0.5:
             converged = converged or moved * rate / (1.0 - rate) <= ROUGH * limit
-        if converged and doubtful and not renewed and not _held(work, h, axes, part, loose):
+        if converged and doubtful and not renewed and not _cured(work, h, axes, part, least):
             converged, part, before, factored[STALE] = False, 0.0, 1e300, 1.0
             continue
         if converged:

@@ -45,6 +45,7 @@ def empty(system) -> Free:
         np.arange(parts),
         cut,
         system.mirror.normal.copy() if system.mirror is not None else np.zeros(3),
+        np.zeros((2, len(np.unique(label)) + system.border)),
     )
 
 
@@ -167,16 +168,18 @@ def keep(tables, touched, count, film, free, motion, change):
 
 
 @njit(cache=True, error_model="numpy")
-def let_go(work, push, pushb):
-    """The greatest change of the velocity [mm/ms] of a loose sheet as a whole, or of a roller, by momentum of
-    the nodes, `push` (6 nodes,) in global axes, and of the border, pushb (border,), if nothing held it. That
-    of a sheet of which a step may leave less counts that many times."""
+def let_go(work, push, pushb, into):
+    """What momentum of the nodes, `push` (6 nodes,) in global axes, and of the border, pushb (border,), would
+    change of velocities if nothing held a sheet, as a whole, or a roller: `into` (sheets + border,), by the
+    velocities that are changed [mm/ms, rad/ms of what turns]. Of a sheet that hangs on something it is zero;
+    that of a sheet of which a step may leave less counts that many times. Returns the greatest."""
     bodies, nodes, free = work.tables.bodies, work.tables.nodes, work.free
     spans, own, x = work.matrix.couplings.colouring.spans, work.matrix.own, work.mid.motion.x
-    across, change = three(free.normal), 0.0
+    across, greatest = three(free.normal), 0.0
     for row in range(spans.shape[0]):
         low, high = spans[row, BEGIN], spans[row, END]
         sheet = free.label[low]
+        into[row] = 0.0
         if not free.loose[sheet]:
             continue
         total = inertia = 0.0
@@ -196,7 +199,9 @@ def let_go(work, push, pushb):
             angular = scale(dot(angular, across), across)
         turns = dot(angular, angular) / (inertia * total) if inertia > 0.0 else 0.0
         moves = max(dot(linear, linear) / (total * total), turns)
-        change = max(change, work.asleep.strict[sheet] * math.sqrt(moves))
+        into[row] = work.asleep.strict[sheet] * math.sqrt(moves)
+        greatest = max(greatest, into[row])
     for i in range(pushb.size):
-        change = max(change, abs(pushb[i]) / own[i, i])
-    return change
+        into[spans.shape[0] + i] = abs(pushb[i]) / own[i, i]
+        greatest = max(greatest, into[spans.shape[0] + i])
+    return greatest
