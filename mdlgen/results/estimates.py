@@ -37,7 +37,7 @@ STILL = 4.0
 # An error of more than this part of the scale is not estimated: such differences do not say how large it is.
 # Of trajectories that tolerances judge two runs alone say less: where steps do not resolve a contact, both
 # may be wrong by more than they differ.
-MOST, MOST_OF_TWO = 0.25, 0.05
+MOST, MOST_OF_TWO = 0.25, 0.02
 # Parts of the tolerance below which nothing is estimated. Without contacts: of trajectories; of forces and
 # peaks. With contacts, whose first touch may fall into another step: of trajectories; of forces and peaks.
 # What run.tolerance judges is a trajectory, slides and arms too: a floor above 1 would fail a run by itself.

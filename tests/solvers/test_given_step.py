@@ -57,8 +57,8 @@ def test_a_step_that_does_not_resolve_its_contacts_says_that_its_error_is_not_kn
         known = result.error_estimate
         assert (known is None) == (not result.ok or bool(result.error_unknown)), seed
         if known is not None:
-            # from three runs: of sixty such piles four have one, of which one is off by 1.3 times that; where
-            # iterations begin in another way none has one
+            # from three runs: of sixty such piles three have one, and are off by less; where iterations go on
+            # in another way one of four was off by 1.3 times that
             assert abs(way_of(result) - exact) <= 1.5 * known * max(exact, LENGTH / 10.0), seed
         if result.error_unknown:
             unknown += 1
