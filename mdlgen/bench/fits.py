@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from mdlgen.bench.row import OK, BenchRow
+from mdlgen.bench.suites.piles import LANDING, NAMES
 from mdlgen.bench.suites.skip import BUT, EVERY
 
 # The error at which solvers are compared: 0.04 % of the travel, which lies among the errors of both of ours.
@@ -143,17 +145,24 @@ def _growth(rows: list[BenchRow]) -> dict[str, float]:
 
 def _piles(rows: list[BenchRow]) -> dict[str, dict[str, float]]:
     """How many times as long a step of a pile takes with as many notes as the one before it in its kind has,
-    per solver and kind; `notes` is how many times as many these are."""
-    found: dict[str, dict[str, float]] = {}
-    last: dict[str, tuple[int, float]] = {}
+    per solver and kind; `notes` is how many times as many these are. Of piles of which none sleeps, once more
+    without the first milliseconds, in which the notes land."""
+    taken: dict[str, dict[int, tuple[float, int]]] = {}
     for row in rows:
         count, _, kind = row.case.partition(" notes ")
-        if row.suite != "piles" or row.status != OK or not kind or not row.wall_s or not row.steps:
-            continue
-        notes, step = int(count), row.wall_s / row.steps
-        label = f"{row.solver}: {kind}"
-        if label in last:
-            before, time = last[label]
-            found[f"{label}, {before} to {notes} notes"] = {"notes": notes / before, "times": step / time}
-        last[label] = notes, step
+        if row.suite == "piles" and row.status == OK and kind and row.wall_s and row.steps:
+            taken.setdefault(f"{row.solver}: {kind}", {})[int(count)] = row.wall_s, row.steps
+    for label, whole in list(taken.items()):
+        landing = taken.get(label.replace(NAMES["awake"], NAMES["lands"]), {})
+        if label.endswith(NAMES["awake"]) and landing:
+            taken[f"{label}, without the first {LANDING:g} ms"] = {
+                notes: (wall - landing[notes][0], steps - landing[notes][1])
+                for notes, (wall, steps) in whole.items()
+                if notes in landing and wall > landing[notes][0] and steps > landing[notes][1]
+            }
+    found = {}
+    for label, times in taken.items():
+        for (before, (wall, steps)), (notes, (longer, more)) in pairwise(times.items()):
+            growth = (longer / more) / (wall / steps)
+            found[f"{label}, {before} to {notes} notes"] = {"notes": notes / before, "times": growth}
     return found

@@ -16,6 +16,7 @@ from mdlgen.bench.run import Bench, bench
 from mdlgen.bench.suites import SUITES, cases, stability
 from mdlgen.bench.suites.elastica import drop
 from mdlgen.bench.suites.ladder import piles
+from mdlgen.bench.suites.piles import NAMES
 from mdlgen.bench.table import markdown
 from mdlgen.errors import SpecError
 
@@ -76,6 +77,21 @@ def test_growth_of_piles_is_that_of_a_step():
     assert growth == {"lattice: at rest, 5 to 20 notes": {"notes": 4.0, "times": pytest.approx(5.0)}}
     text = markdown(Bench({"cpu": "x", "cores": 1, "python": "3"}, {}, {}, made))
     assert "lattice: at rest, 5 to 20 notes: a step takes 5 times as long" in text
+
+
+def test_growth_of_piles_is_found_without_their_landing_too():
+    made = []
+    for kind, steps, walls in (("lands", 100, (2.0, 20.0)), ("awake", 500, (6.0, 38.0))):
+        for count, wall in zip((5, 20), walls, strict=True):
+            case = BenchCase("piles", f"{count} notes {NAMES[kind]}", STRIP, drop)
+            done = Outcome("ok", [Finding("q", 0.0)], 0.1, steps, wall=wall, boxes=count)
+            made += rows(case, "lattice", done)
+    growth = {label: found["times"] for label, found in fits(made)["piles"].items()}
+    assert growth == {
+        "lattice: at rest, none asleep, first 20 ms, 5 to 20 notes": pytest.approx(10.0),
+        "lattice: at rest, none asleep, 5 to 20 notes": pytest.approx(38.0 / 6.0),
+        "lattice: at rest, none asleep, without the first 20 ms, 5 to 20 notes": pytest.approx(18.0 / 4.0),
+    }
 
 
 def test_another_state_runs_each_case_too(tmp_path):

@@ -14,9 +14,11 @@ SAMPLE = "pile"
 STEP = 0.1  # [ms]
 DURATION, QUICK = 100.0, 20.0  # [ms]
 GRID = (10, 20)
-COUNTS = {"rest": (5, 20), "awake": (5, 20), "fed": (5, 20, 100), "shared": (5, 20)}
+LANDING = 20.0  # [ms], in which notes that touch sink into each other by their weights
+COUNTS = {"rest": (5, 20), "lands": (5, 20), "awake": (5, 20), "fed": (5, 20, 100), "shared": (5, 20)}
 NAMES = {
     "rest": "at rest",
+    "lands": f"at rest, none asleep, first {LANDING:g} ms",
     "awake": "at rest, none asleep",
     "fed": "under a roller",
     "shared": "under a roller, two threads",
@@ -41,10 +43,10 @@ def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
     duration = QUICK if quick or solver == REFERENCE else DURATION
     found = []
     for kind, counts in COUNTS.items():
-        if kind in ("shared", "awake") and solver == REFERENCE:
+        if (kind in ("shared", "lands", "awake") and solver == REFERENCE) or (kind == "lands" and quick):
             continue
         for count in counts[:1] if quick or solver == REFERENCE else counts:
-            rests = kind in ("rest", "awake")
+            rests, awake = kind in ("rest", "lands", "awake"), kind in ("lands", "awake")
             middle = AWAY if rests else ABOVE + TALL * count
             sets = (
                 f"piles.cassette.count={count}",
@@ -55,12 +57,12 @@ def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
                 f"contacts.floor.stiffness={STIFFNESS}",
                 f"contacts.pick.between=[cassette_{count}, pick]",
                 f"probes.lead.sheet=cassette_{count}",
-                f"run.duration={duration:g} ms",
+                f"run.duration={LANDING if kind == 'lands' else duration:g} ms",
                 *(("run.threads=2",) if kind == "shared" else ()),
-                *(("run.sleep=false",) if kind == "awake" else ()),
+                *(("run.sleep=false",) if awake else ()),
                 "require=[]",
             )
-            measure = creep if rests else partial(feeds, count=count)
+            measure = balance if kind == "lands" else creep if rests else partial(feeds, count=count)
             name = f"{count} notes {NAMES[kind]}"
             found.append(
                 BenchCase("piles", name, Run(SAMPLE, sets, STEP), measure, repeats=False, limit=LIMIT)
@@ -92,6 +94,11 @@ def creep(result: Result, _: Result | None) -> list[Finding]:
     fastest = max(float(np.linalg.norm(result.sheet_motion(k)[1][-1])) for k in notes)
     details = _taken(result) | {"creep_um_per_s": 1e6 * fastest}
     return [Finding(f"creep, of {CREEP:g} um/s", 1e6 * fastest / CREEP, None, details)]
+
+
+def balance(result: Result, _: Result | None) -> list[Finding]:
+    """The energy balance of a pile."""
+    return [Finding("energy balance, relative", abs(result.energy.balance_error), None, _taken(result))]
 
 
 def feeds(result: Result, _: Result | None, count: int) -> list[Finding]:
