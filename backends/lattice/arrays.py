@@ -12,7 +12,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from mdlgen.backends.lattice.kernels.state import Tables
+from mdlgen.backends.lattice.kernels.state import (
+    OWN,
+    OWN_INERTIA,
+    OWN_MASS,
+    OWN_REACH,
+    OWN_SIZE,
+    Tables,
+)
 from mdlgen.backends.lattice.search import Search, plan
 from mdlgen.mechanics.curve import curve_points
 from mdlgen.mechanics.pack import (
@@ -98,6 +105,11 @@ class System(NamedTuple):
         return int(self.offsets[-1])
 
     @property
+    def moving(self) -> Ints:
+        """Bodies that turn or slide: rollers and pressed plates."""
+        return np.flatnonzero((self.bodies["axis"] != 0.0).any(axis=1) | (self.bodies["slide"] >= 0))
+
+    @property
     def tables(self) -> Tables:
         """What compiled code takes first."""
         return Tables(
@@ -108,10 +120,33 @@ class System(NamedTuple):
             loads=self.loads,
             gravity=self.gravity,
             nodes=self.nodes,
+            boxes=boxes_of(self.bodies, self.nodes),
+            moving=self.moving,
+            thinnest=thinnest_of(self.bodies, self.search.regions),
             points=self.points,
             images=self.images,
             shapes=self.shapes,
         )
+
+
+def boxes_of(bodies: np.ndarray, nodes: Ints) -> Floats:
+    """What steps ask of free boxes most often, see state.Tables."""
+    own = bodies[nodes]
+    boxes = np.zeros((len(nodes), OWN))
+    boxes[:, OWN_MASS], boxes[:, OWN_SIZE] = own["mass"], own["half"][:, 0] + own["half"][:, 1]
+    boxes[:, OWN_REACH] = np.sqrt((own["half"] ** 2).sum(axis=1))
+    boxes[:, OWN_INERTIA:] = own["inertia"]
+    return boxes
+
+
+def thinnest_of(bodies: np.ndarray, regions: np.ndarray) -> float:
+    """Half thickness of the thinnest box of the sheets of all regions; where there are none, as if no two
+    boxes could come through each other."""
+    half, least = bodies["half"][:, 2], 1e300
+    for first, many in (("a", "many_a"), ("b", "many_b")):
+        for row in regions:
+            least = min(least, float(half[row[first] : row[first] + row[many]].min()))
+    return least
 
 
 def build(model: Model, fold: bool = True) -> System:

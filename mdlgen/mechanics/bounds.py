@@ -22,9 +22,9 @@ def round_size(body):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def fastest_place(body, rate, spin):
-    """How fast any place of a box is at most, of its velocity and its angular velocity."""
-    return math.sqrt(dot(rate, rate)) + math.sqrt(dot(spin, spin)) * size(body)
+def fastest_place(far, rate, spin):
+    """How fast any place of a box is at most, of its velocity and its angular velocity; `far`: its size."""
+    return math.sqrt(dot(rate, rate)) + math.sqrt(dot(spin, spin)) * far
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)

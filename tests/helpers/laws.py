@@ -12,7 +12,7 @@ from mdlgen.backends.lattice.arrays import BODY, IMAGE, JOINT, PAIR
 from mdlgen.backends.lattice.kernels import entries
 from mdlgen.backends.lattice.kernels.forces import WIDE
 from mdlgen.backends.lattice.kernels.integrate.room import sticks
-from mdlgen.backends.lattice.kernels.state import FACE, Drift, Midpoint, Tables
+from mdlgen.backends.lattice.kernels.state import FACE, OWN, Drift, Midpoint, Tables
 from mdlgen.backends.lattice.search import LISTED
 from mdlgen.mechanics.curve import POINT
 from mdlgen.mechanics.frame import Box, Cylinder, Frame, Law, Motion, Plate, Vector
@@ -53,6 +53,9 @@ def pair_force(bodies: np.ndarray, pair: np.void, shapes: Shapes, motion: Motion
         loads=np.zeros(0, LOAD),
         gravity=np.zeros(3),
         nodes=np.zeros(0, np.int64),
+        boxes=np.zeros((0, OWN)),
+        moving=np.zeros(0, np.int64),
+        thinnest=1e300,
         points=np.zeros(0, POINT),
         images=np.zeros(0, IMAGE),
         shapes=shapes,
@@ -69,6 +72,7 @@ def pair_force(bodies: np.ndarray, pair: np.void, shapes: Shapes, motion: Motion
         overlaps=np.zeros(1, OVERLAP),
         spare=np.zeros(1, OVERLAP),
         does=np.zeros(1, np.int64),
+        lies=np.zeros(1, np.bool_),
         beforehand=np.zeros((1, FACES)),
         fastest=np.zeros((2, len(bodies))),
         sticks=sticks(0, 0),

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from mdlgen.backends.lattice.kernels.integrate.guess import add_to_history, forget, guess_velocities
-from mdlgen.backends.lattice.kernels.state import GUESSES, History
+from mdlgen.backends.lattice.kernels.state import GUESSES, OWN, OWN_SIZE, History
 
 # Sheets of two boxes: one goes along a parabola, one along a line, one back and forth from step to step; and
 # a roller, along a line.
@@ -27,10 +27,10 @@ class Motion:
     def __init__(self) -> None:
         draw = np.random.default_rng(1)
         self.shape = draw.normal(size=(4, 6, 6))
-        bodies = np.zeros(6, np.dtype([("half", "f8", 3)]))
-        bodies["half"] = 3.0
+        boxes = np.zeros((6, OWN))
+        boxes[:, OWN_SIZE] = 6.0
         self.work: Any = SimpleNamespace(
-            tables=SimpleNamespace(bodies=np.rec.array(bodies), nodes=np.arange(6)),
+            tables=SimpleNamespace(boxes=boxes),
             state=SimpleNamespace(u=np.zeros((6, 6)), ub=np.zeros(1)),
             free=SimpleNamespace(label=LABEL),
         )

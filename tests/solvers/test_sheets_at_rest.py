@@ -99,6 +99,7 @@ def test_boxes_that_lean_have_not_crossed_where_a_centre_passes_a_plane():
             overlaps=np.zeros(1, OVERLAP).view(np.recarray),
             spare=np.zeros(1, OVERLAP).view(np.recarray),
             does=np.zeros(1, np.int64),
+            lies=np.zeros(1, np.bool_),
             beforehand=np.zeros((1, FACES)),
             fastest=np.zeros((2, count)),
             sticks=sticks(0, 0),

@@ -149,7 +149,8 @@ def test_what_would_move_by_its_momentum_were_it_free(sheet: int, lifted: tuple[
     assert found == into[sheet] == pytest.approx(np.linalg.norm(drift), rel=1e-9)
     x = work.mid.motion.x[work.tables.nodes[own]]
     arm = x - x.mean(axis=0)
-    inertia = (mass[own] * (arm**2).sum(axis=1)).sum()
+    about = work.tables.bodies["inertia"][work.tables.nodes[own]]
+    inertia = (mass[own] * (arm**2).sum(axis=1)).sum() + 0.5 * about.sum()
     moment = np.linalg.norm(np.cross(arm[0] - arm[-1], pull))
     turn = moment / np.sqrt(inertia * mass[own].sum())
     found = momentum.let_go(work, turns.ravel(), none, into)
@@ -157,3 +158,15 @@ def test_what_would_move_by_its_momentum_were_it_free(sheet: int, lifted: tuple[
     assert np.delete(into, sheet) == pytest.approx(0.0, abs=1e-12)
     work.asleep.strict[sheet] = 3.0
     assert momentum.let_go(work, turns.ravel(), none, into) == pytest.approx(3.0 * found, rel=1e-9)
+
+
+def test_a_sheet_of_one_box_would_turn_by_its_own_inertia() -> None:
+    model = lower(loads(SCENE, overrides=["sheets.aside.boxes=[1, 1]"]))
+    work = arrays(model, build(model))
+    row = int(np.flatnonzero(work.free.label == ASIDE)[0])
+    turns, into = np.zeros((len(work.free.label), 6)), np.zeros(3)
+    turns[row, 3:] = [0.0, 0.0, 2e-3]  # [N mm ms]
+    mass, a, b, c = 1.0, 40.0, 20.0, 0.1  # [N ms^2/mm, mm], the first of which is a gram
+    inertia = mass * (a**2 + b**2 + c**2) / 12  # of a plate, by distances from its centre
+    found = momentum.let_go(work, turns.ravel(), np.zeros(0), into)
+    assert found == into[ASIDE] == pytest.approx(2e-3 / np.sqrt(inertia * mass), rel=1e-9)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mdlgen.backends.lattice.kernels.image import reflect, reflect_rates
+from mdlgen.backends.lattice.kernels.state import OWN_MASS
 from mdlgen.mechanics.arm import moved, way_of
 from mdlgen.mechanics.bushing import bushing_pair
 from mdlgen.mechanics.curve import curve_excess
@@ -83,10 +84,8 @@ def place(tables, h, t, state, motion):
     x, r, u, ub = state.x, state.r, state.u, state.ub
     for n in range(nodes.size):
         place_box(nodes[n], h, (u[n, 0], u[n, 1], u[n, 2]), (u[n, 3], u[n, 4], u[n, 5]), x, r, motion)
-    for b in range(bodies.size - 1):
+    for b in tables.moving:
         body = bodies[b]
-        if body.slide < 0 and body.axis[0] == 0.0 and body.axis[1] == 0.0 and body.axis[2] == 0.0:
-            continue  # neither a roller nor a pressed plate
         rate = ub[body.slide] if body.slide >= 0 else 0.0
         turning = ub[body.spin] if body.spin >= 0 else 0.0
         place_roller(body, b, h, t, rate, turning, x, r, motion)
@@ -241,9 +240,10 @@ def pair_forces_again(tables, near, close, known, motion, f, touched, results):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def clutch_torques(bodies, t, ub, f):
+def clutch_torques(tables, t, ub, f):
     """Adds the torques of clutches on the rollers that turn at the rates ub, at a time."""
-    for b in range(bodies.size - 1):
+    bodies = tables.bodies
+    for b in tables.moving:
         if bodies[b].clutch[SENSE] != 0.0:
             torque, _, _ = clutch(bodies[b], ub[bodies[b].spin], t)
             for i in range(3):
@@ -253,13 +253,12 @@ def clutch_torques(bodies, t, ub, f):
 @njit(cache=True, error_model="numpy", **BORROWS)
 def other_forces(tables, level, motion, f):
     """Adds weights and loads, both times `level`. Returns the power of the loads."""
-    bodies, loads, gravity = tables.bodies, tables.loads, tables.gravity
+    loads, nodes, gravity = tables.loads, tables.nodes, tables.gravity
     r, u, w = motion.r, motion.u, motion.w
     power = 0.0
-    for b in range(bodies.size - 1):
-        if bodies[b].node >= 0:
-            for i in range(3):
-                f[b, i] += level * bodies[b].mass * gravity[i]
+    for n in range(nodes.size):
+        for i in range(3):
+            f[nodes[n], i] += level * tables.boxes[n, OWN_MASS] * gravity[i]
     for k in range(loads.size):
         b = loads[k].body
         force, moment = scale(level, three(loads[k].force)), scale(level, three(loads[k].moment))

@@ -27,9 +27,18 @@ class Tables(NamedTuple):
     loads: np.ndarray
     gravity: Floats  # (3,) [mm/ms^2]
     nodes: Ints  # the body of each free box
+    boxes: Floats  # and what is asked of it most often, OWN_MASS to OWN_INERTIA, (nodes, OWN)
+    moving: Ints  # bodies that turn or slide: rollers and pressed plates
+    thinnest: float  # half thickness of the thinnest box of sheets that may touch each other [mm]
     points: np.ndarray  # of curves
     images: np.ndarray  # mirrored boxes
     shapes: Any  # mechanics.shapes.Shapes
+
+
+# Columns of Tables.boxes, which stand close together: a record of a body takes eleven lines of a processor's
+# cache. Mass [N ms^2/mm]; half length and half width together, half the diagonal [mm]; three moments of
+# inertia [N mm ms^2].
+OWN_MASS, OWN_SIZE, OWN_REACH, OWN_INERTIA, OWN = 0, 1, 2, 3, 6
 
 
 class State(NamedTuple):
@@ -88,6 +97,7 @@ class Midpoint(NamedTuple):
     overlaps: np.ndarray  # of pairs that are searched, mechanics.overlap.OVERLAP
     spare: np.ndarray  # the same of a pair between steps, (1,)
     does: Ints  # what each near pair of two boxes does (contact.press_job), (pairs,)
+    lies: np.ndarray  # and whether a face of one lies over the other, (pairs,)
     beforehand: (
         Floats  # and its forces, where threads have worked them out, (pairs, FACES of mechanics.point)
     )
@@ -144,7 +154,8 @@ class Frozen(NamedTuple):
     pair: Ints  # of each point, (room,)
     ends: np.ndarray  # ENDS_OF_POINT of each
     rolls: np.ndarray  # whether each is on a body that is an unknown of the border, (room,)
-    many: Ints  # (2,) how many points and patches there are
+    many: Ints  # (3,) how many points, patches, and patches with corners there are
+    lying: Ints  # numbers of the patches that have corners, rising, (patches,)
     sums: Floats  # what each part of them adds to a slope
     vectors: Floats  # CHANGE to RESIDUAL of the nodes, (6, 6 nodes)
     border: Floats  # the same of the border, (6, border)

@@ -42,7 +42,7 @@ def near(bodies, pair, shapes, motion, margin, ahead):
     """Along the roller's axis, across it, and whether the axis is above or below the face."""
     a, b, r, own = pair.a, pair.b, motion.r, bodies[pair.a]
     gap = gap_of(pair, motion.x)
-    reached = margin + ahead * fastest_place(own, rate_of(pair, motion), vec(motion.w, a))
+    reached = margin + ahead * fastest_place(size(own), rate_of(pair, motion), vec(motion.w, a))
     reach = size(own) + reached
     axis = bodies[b].axis
     along = gap[0] * axis[0] + gap[1] * axis[1] + gap[2] * axis[2]

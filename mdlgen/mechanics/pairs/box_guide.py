@@ -52,7 +52,7 @@ def near(bodies, pair, shapes, motion, margin, ahead):
     """By the box's bounding sphere, in the guide's axes."""
     a, b = pair.a, pair.b
     reached = TAKES * size(bodies[a]) + margin
-    reached += ahead * fastest_place(bodies[a], rate_of(pair, motion), vec(motion.w, a))
+    reached += ahead * fastest_place(size(bodies[a]), rate_of(pair, motion), vec(motion.w, a))
     at, half = back(mat(motion.r, b), scale(-1.0, gap_of(pair, motion.x))), bodies[b].half
     radius = bodies[b].arc[ARC_RADIUS]
     if abs(at[2]) > half[1] + reached or abs(inward(at, radius)) > 2.0 * half[2] + reached:

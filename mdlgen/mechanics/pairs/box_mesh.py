@@ -37,7 +37,7 @@ def near(bodies, pair, shapes, motion, margin, ahead):
     """Of most pairs their bounding spheres tell; of others the tree of the mesh."""
     a, b, x, r, own = pair.a, pair.b, motion.x, motion.r, bodies[pair.a]
     head, gap, spin = shapes.meshes.heads[pair.mesh], gap_of(pair, motion.x), vec(motion.w, pair.b)
-    fast = fastest_place(own, rate_of(pair, motion), vec(motion.w, a))
+    fast = fastest_place(size(own), rate_of(pair, motion), vec(motion.w, a))
     reached = margin + ahead * (fast + math.sqrt(dot(spin, spin)) * head.reach)
     wide = size(own) + reached + head.reach
     if dot(gap, gap) > wide * wide:

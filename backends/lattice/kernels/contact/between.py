@@ -137,6 +137,7 @@ def near_forces(work, close, h):
             else:
                 ask_for(work, at, close)
             mid.does[at] = _two_boxes(work, at, known, out)
+            mid.lies[at] = mid.overlaps[p - first].state == OVERLAPS
             touching = mid.does[at] != CLEAR
         if touching:
             lost += out[DISSIPATED]

@@ -85,7 +85,7 @@ def empty(system, wide: int) -> Condensed:
         rank=np.full(most, -1, np.int64),
         kept=np.zeros(3, np.int64),
         stood=np.zeros(most, np.int64),
-        rollers=np.flatnonzero((system.bodies["axis"] != 0.0).any(axis=1) | (system.bodies["slide"] >= 0)),
+        rollers=system.moving,
         growth=np.zeros((size, size)),
         w=np.zeros((size, size)),
         part=np.zeros((size, size)),

@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 
 from mdlgen.backends.lattice.kernels.state import FACE_DEPTH, FACE_POINTS, MIDDLE
-from mdlgen.mechanics.overlap import OVERLAPS
 from mdlgen.mechanics.vector import back, mat, sub, transpose_matmul, vec
 from mdlgen.program.kernel import njit
 
@@ -22,12 +21,10 @@ CLOSER = 0.5
 def part_of_change(tables, near, close, r, h, change):
     """The part of a change of velocities (6 nodes,), taken off, that moves no box of the pairs near[:close]
     further to another sheet in h than it may in one iteration; at most 1."""
-    bodies, listed, nodes = tables.bodies, tables.listed, tables.nodes
-    most, thinnest = 0.0, 1e300
-    for n in range(nodes.size):
-        square = change[6 * n] ** 2 + change[6 * n + 1] ** 2 + change[6 * n + 2] ** 2
-        most, thinnest = max(most, square), min(thinnest, bodies[nodes[n]].half[2])
-    if 2.0 * h * math.sqrt(most) <= CLOSER * thinnest:  # no pair needs a look
+    bodies, listed, most = tables.bodies, tables.listed, 0.0
+    for n in range(tables.nodes.size):
+        most = max(most, change[6 * n] ** 2 + change[6 * n + 1] ** 2 + change[6 * n + 2] ** 2)
+    if 2.0 * h * math.sqrt(most) <= CLOSER * tables.thinnest:  # no pair needs a look
         return 1.0
     worst, first = 0.0, tables.pairs.size - listed.size
     for at in range(close):
@@ -81,6 +78,10 @@ def crossed(tables, mid, counts, state, first, h):
     bodies, listed, near, motion = tables.bodies, tables.listed, mid.near, mid.motion
     fast, known = mid.fastest[MIDDLE], 0
     count, close = counts
+    most, thinnest = 0.0, tables.thinnest
+    for b in tables.nodes:
+        most = max(most, fast[b])
+    calm = 2.0 * h * most < CLOSER * thinnest  # so each pair is slow, whatever boxes it is of
     for at in range(close):
         touches = known < count and mid.touched[known] == near[at]
         deep, lie = 0.0, False
@@ -89,10 +90,13 @@ def crossed(tables, mid, counts, state, first, h):
             known += 1
         if near[at] < first:
             continue
+        lie = lie or mid.lies[at]
+        if calm and lie and deep <= thinnest:
+            continue
         pair = listed[near[at] - first]
         thin = min(bodies[pair.a].half[2], bodies[pair.b].half[2])
         slow = h * (fast[pair.a] + fast[pair.b]) < CLOSER * thin and deep <= thin
-        if slow and (lie or mid.overlaps[near[at] - first].state == OVERLAPS):
+        if slow and lie:
             continue
         begin, _ = _height(bodies, pair, state.x, state.r)
         middle, over = _height(bodies, pair, motion.x, motion.r)

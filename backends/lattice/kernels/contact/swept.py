@@ -10,7 +10,7 @@ import numpy as np
 
 from mdlgen.backends.lattice.kernels.contact.search import law_of_boxes
 from mdlgen.backends.lattice.kernels.forces import place_box, place_roller
-from mdlgen.backends.lattice.kernels.state import ENDS, FACE_FORCE, FACE_POINTS, FORCE_NOW, MIDDLE
+from mdlgen.backends.lattice.kernels.state import ENDS, FACE_FORCE, FACE_POINTS, FORCE_NOW, MIDDLE, OWN_REACH
 from mdlgen.mechanics.arm import turn_of, way_of
 from mdlgen.mechanics.bounds import fastest_place
 from mdlgen.mechanics.crossing import UNSEEN, above, buried, closing, deepest, solid, unseen
@@ -126,7 +126,7 @@ def _fastest_at_ends(tables, state, slower, fastest):
         b = tables.nodes[n]
         more = sub((u[n, 0], u[n, 1], u[n, 2]), (kept[n, 0], kept[n, 1], kept[n, 2]))
         spin = sub((u[n, 3], u[n, 4], u[n, 5]), (kept[n, 3], kept[n, 4], kept[n, 5]))
-        fastest[ENDS, b] = fastest[MIDDLE, b] + fastest_place(tables.bodies[b], more, spin)
+        fastest[ENDS, b] = fastest[MIDDLE, b] + fastest_place(tables.boxes[n, OWN_REACH], more, spin)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -219,14 +219,13 @@ def _slow(bodies, own, k, fastest, dt, little):
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _all_slow(tables, regions, fastest, dt, little):
     """Whether no two boxes of two sheets need a look, whatever pair they are (see _slow)."""
-    most, thin, stiffest = 0.0, 1e300, 0.0
+    most, stiffest = 0.0, 0.0
     for k in range(regions.size):
         stiffest = max(stiffest, regions[k].k)
-    for n in range(tables.nodes.size):
-        b = tables.nodes[n]
-        most, thin = max(most, fastest[b]), min(thin, tables.bodies[b].half[2])
+    for b in tables.nodes:
+        most = max(most, fastest[b])
     half = dt * most
-    return 2.0 * half <= UNSEEN * thin and 0.4 * stiffest * half * half * math.sqrt(half) <= little
+    return 2.0 * half <= UNSEEN * tables.thinnest and 0.4 * stiffest * half * half * math.sqrt(half) <= little
 
 
 @njit(cache=True, error_model="numpy")

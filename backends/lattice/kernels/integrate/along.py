@@ -37,13 +37,13 @@ PART = 3
 def parts_of(frozen):
     """How many parts the points make in a job, and points and patches together."""
     points = (frozen.many[0] + EACH - 1) // EACH
-    return points, points + (frozen.many[1] + EACH_PATCH - 1) // EACH_PATCH
+    return points, points + (frozen.many[2] + EACH_PATCH - 1) // EACH_PATCH
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _patches_of(frozen, part):
-    """The first of the patches of a part behind those of points, and the first behind them."""
-    return part * EACH_PATCH, min((part + 1) * EACH_PATCH, frozen.many[1])
+    """The first of the patches with corners of a part behind those of points, and the first behind them."""
+    return part * EACH_PATCH, min((part + 1) * EACH_PATCH, frozen.many[2])
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)

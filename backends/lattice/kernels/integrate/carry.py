@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from mdlgen.backends.lattice.kernels.forces import turn_roller
 from mdlgen.backends.lattice.kernels.image import reflect
+from mdlgen.backends.lattice.kernels.state import OWN_INERTIA
 from mdlgen.mechanics.arm import AXIAL, moved
 from mdlgen.mechanics.driven import clutch, prescribed
-from mdlgen.mechanics.vector import back, exp_rotation, mat, matmul, rotate, vec
+from mdlgen.mechanics.vector import back, exp_rotation, mat, matmul, rotate, three_from, vec
 from mdlgen.program.kernel import BORROWS, njit
 
 
@@ -35,7 +36,7 @@ def carry(tables, state, t, dt):
         b = nodes[n]
         m = matmul(exp_rotation((0.5 * dt * u[n, 3], 0.5 * dt * u[n, 4], 0.5 * dt * u[n, 5])), mat(r, b))
         spin = back(m, (u[n, 3], u[n, 4], u[n, 5]))
-        j = bodies[b].inertia
+        j = three_from(tables.boxes[n], OWN_INERTIA)
         p = rotate(m, (j[0] * spin[0], j[1] * spin[1], j[2] * spin[2]))
         m = matmul(exp_rotation((dt * u[n, 3], dt * u[n, 4], dt * u[n, 5])), mat(r, b))
         for i in range(9):
@@ -45,7 +46,7 @@ def carry(tables, state, t, dt):
             v[n, i] = 2.0 * u[n, i] - v[n, i]
             l[n, i] = 2.0 * p[i] - l[n, i]
     reflect(images, x, r)
-    for k in range(bodies.size - 1):
+    for k in tables.moving:
         slide, spin_at = bodies[k].slide, bodies[k].spin
         if bodies[k].rims > 0 or bodies[k].carries != 0:
             turning = ub[spin_at] if spin_at >= 0 else ub[slide] if bodies[k].swings == 2 else 0.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from mdlgen.backends.lattice.kernels.state import WORST
+from mdlgen.backends.lattice.kernels.state import OWN_REACH, OWN_SIZE, WORST
 from mdlgen.mechanics.arm import way_of
 from mdlgen.mechanics.bounds import fastest_place
 from mdlgen.mechanics.vector import dot, vec
@@ -16,10 +16,11 @@ def greatest(work, res, resb, counters):
     """The greatest change of a velocity [mm/ms], of turning times a box's size; that of a sheet of which a
     step may leave less counts that many times."""
     bodies, nodes, motion = work.tables.bodies, work.tables.nodes, work.mid.motion
+    boxes = work.tables.boxes
     label, strict = work.free.label, work.asleep.strict
     change = 0.0
     for n in range(nodes.size):
-        size = bodies[nodes[n]].half[0] + bodies[nodes[n]].half[1]
+        size = boxes[n, OWN_SIZE]
         times = strict[label[n]]
         for i in range(6):
             moved = times * (abs(res[6 * n + i]) if i < 3 else size * abs(res[6 * n + i]))
@@ -28,7 +29,7 @@ def greatest(work, res, resb, counters):
                 counters[WORST] = nodes[n]
     for i in range(resb.size):
         change = max(change, abs(resb[i]))
-    for k in range(bodies.size - 1):
+    for k in work.tables.moving:
         if bodies[k].swings > 0:
             way = way_of(bodies[k], vec(motion.x, k))
             change = max(change, math.sqrt(dot(way, way)) * abs(resb[bodies[k].slide]))
@@ -38,12 +39,11 @@ def greatest(work, res, resb, counters):
 @njit(cache=True, error_model="numpy", **BORROWS)
 def greatest_of_free(tables, free, res):
     """The same of boxes whose sheets hang on nothing and touch nothing (see momentum.keep) alone."""
-    bodies, nodes = tables.bodies, tables.nodes
     change = 0.0
-    for n in range(nodes.size):
+    for n in range(tables.nodes.size):
         if free.busy[free.one_with[free.label[n]]]:
             continue
-        size = bodies[nodes[n]].half[0] + bodies[nodes[n]].half[1]
+        size = tables.boxes[n, OWN_SIZE]
         for i in range(6):
             change = max(change, abs(res[6 * n + i]) if i < 3 else size * abs(res[6 * n + i]))
     return change
@@ -55,7 +55,7 @@ def fastest(tables, u, found):
     for n in range(tables.nodes.size):
         b = tables.nodes[n]
         rate, spin = (u[n, 0], u[n, 1], u[n, 2]), (u[n, 3], u[n, 4], u[n, 5])
-        found[b] = fastest_place(tables.bodies[b], rate, spin)
+        found[b] = fastest_place(tables.boxes[n, OWN_REACH], rate, spin)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)

@@ -46,6 +46,7 @@ from mdlgen.backends.lattice.kernels.state import (
     MADE_FOR,
     OF_CHANGE,
     OF_DIRECTION,
+    OWN_MASS,
     RESIDUAL,
     SOLVES,
     SPENT,
@@ -229,12 +230,12 @@ def _cured(work, h, axes, part, least):
 def _say_enough(work, limit):
     """Sets what linear solves may leave in each sheet, as the square of its residual that they have: its mass
     times the square of the velocity which they may leave. Of some sheets a step may leave less."""
-    bodies, nodes, colours = work.tables.bodies, work.tables.nodes, work.matrix.couplings.colouring
+    boxes, colours = work.tables.boxes, work.matrix.couplings.colouring
     for sheet in range(colours.enough.size):
         low, high = colours.spans[sheet, BEGIN], colours.spans[sheet, END]
         rate, mass = SOLVED * limit / work.asleep.strict[work.free.label[low]], 0.0
         for n in range(low, high):
-            mass += bodies[nodes[n]].mass
+            mass += boxes[n, OWN_MASS]
         colours.enough[sheet] = mass * rate * rate
 
 
@@ -253,15 +254,17 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
     change[:] = 0.0
     of_change[:] = 0.0
     changeb[:] = 0.0
-    rollers_into(tables.bodies, h, t, work.state.ub, matrix.own)
+    rollers_into(tables, h, t, work.state.ub, matrix.own)
     copy(frozen.vectors[RESIDUAL], z)
     copy(frozen.border[RESIDUAL], zb)
     before, along, part, gathered = 1e300, 0.0, 0.0, False
     iteration, converged, renewed = 0, False, False
     air = work.film.many[0] > 0
     least = FIRST * limit
-    moves = let_go(work, work.free.residual, frozen.border[RESIDUAL], work.free.lets[BEFORE])
-    doubtful = not air and moves > least
+    doubtful = False
+    if not air:
+        moves = let_go(work, work.free.residual, frozen.border[RESIDUAL], work.free.lets[BEFORE])
+        doubtful = moves > least
     if air:
         limit *= FINE
     _say_enough(work, limit)

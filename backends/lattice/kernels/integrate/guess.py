@@ -16,6 +16,7 @@ from mdlgen.backends.lattice.kernels.state import (
     HALF,
     LAST_STEP,
     LINE,
+    OWN_SIZE,
     PARABOLA,
 )
 from mdlgen.program.kernel import BORROWS, njit
@@ -70,14 +71,14 @@ def guess_velocities(work, history, dt, any_way):
 def add_to_history(work, history, dt, last, last_b):
     """Notes what guesses have missed of a step of dt [ms] that was taken, and goes on to the next one; `last`
     (nodes, 6), `last_b` (border,): velocities of the step before."""
-    bodies, nodes, label, u = work.tables.bodies, work.tables.nodes, work.free.label, work.state.u
+    boxes, label, u = work.tables.boxes, work.free.label, work.state.u
     missed, spans = history.missed, history.spans
     line, parabola = _ways(spans, dt)
     for sheet in range(missed.shape[0]):
         for k in range(GUESSES):
             missed[sheet, k] *= REMEMBERED
-    for n in range(nodes.size):
-        size = bodies[nodes[n]].half[0] + bodies[nodes[n]].half[1]
+    for n in range(label.size):
+        size = boxes[n, OWN_SIZE]
         half = straight = bent = 0.0
         for i in range(6):
             before, square = history.u[n, i], 1.0 if i < 3 else size * size

@@ -51,6 +51,7 @@ from mdlgen.backends.lattice.kernels.state import (
     MAX_FORCE,
     MISS,
     NUMERICAL,
+    OWN_MASS,
     POWER,
     RECENT,
     STALE,
@@ -100,7 +101,10 @@ def _deep(tables, mid, count):
     for k in range(count):
         p = mid.touched[k]
         if p >= first:
-            far, depth = deepest_of_boxes(tables.bodies, listed[p - first]), mid.faces[k, FACE_DEPTH]
+            depth = mid.faces[k, FACE_DEPTH]
+            if depth <= tables.thinnest:
+                continue
+            far = deepest_of_boxes(tables.bodies, listed[p - first])
         else:
             far, depth = deepest(tables.bodies, pairs[p]), mid.results[mid.rows[k], DEPTH]
         if depth > far:
@@ -167,12 +171,12 @@ def _outside(x, low, high):
 
 
 @njit(cache=True, error_model="numpy")
-def _missed(bodies, nodes, u, guess, mass):
+def _missed(boxes, u, guess, mass):
     """Root mean square over the boxes, of that mass with those that sleep, of what the velocities of a step
     turned out to be against their guess, and of the velocities themselves."""
     missed = fast = 0.0
-    for n in range(nodes.size):
-        own = bodies[nodes[n]].mass
+    for n in range(boxes.shape[0]):
+        own = boxes[n, OWN_MASS]
         for i in range(3):
             missed += own * (u[n, i] - guess[n, i]) ** 2
             fast += own * u[n, i] ** 2
@@ -180,12 +184,12 @@ def _missed(bodies, nodes, u, guess, mass):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _account(bodies, mid, state, t, dt, energies):
+def _account(tables, mid, state, t, dt, energies):
     """Adds what a step dissipated, what drives and loads put in, how much that moved either way, and what
     the numerical damping of joints had of what was dissipated."""
-    f, ub, vb = mid.forces, state.ub, state.vb
+    bodies, f, ub, vb = tables.bodies, mid.forces, state.ub, state.vb
     lost, driving = mid.totals[LOST], mid.totals[POWER]
-    for b in range(bodies.size - 1):
+    for b in tables.moving:
         if bodies[b].clutch[SENSE] != 0.0:
             spin, before = ub[bodies[b].spin], vb[bodies[b].spin]
             torque, _, shaft = clutch(bodies[b], spin, t + 0.5 * dt)
@@ -270,7 +274,7 @@ def run(work, t, steps, tolerance, control):
                 copy(ub, keep_b)
                 counters[WORST] = woken
                 return WOKEN, t
-            missed, fast = _missed(bodies, nodes, u, guess, mass) if solved else (0.0, 0.0)
+            missed, fast = _missed(tables.boxes, u, guess, mass) if solved else (0.0, 0.0)
             most = pace[MISS] * max(fast, pace[FASTEST]) if pace[MISS] > 0.0 else 1e300
             if solved and search.regions.size > 0:
                 solved = not strayed(bodies, search, x, u, dt)
@@ -304,9 +308,9 @@ def run(work, t, steps, tolerance, control):
                 course = dt / (dt + spans[LAST_STEP]) if spans[LAST_STEP] > 0.0 else 0.0
                 air_overshoot(work, keep_u, course, dt)
             if work.asleep.speeds.size > 0:
-                note_speeds(bodies, nodes, work.free.label, u, work.asleep)
+                note_speeds(tables.boxes, work.free.label, u, work.asleep)
                 miss(mid.forces, work.asleep, dt)
-            _account(bodies, mid, state, t, dt, energies)
+            _account(tables, mid, state, t, dt, energies)
             if mid.sticks.pairs.size > 0:
                 gone = end_of_step(work, int(counters[TOUCHING]), int(counters[CLOSE]))
                 energies[DISSIPATED] += gone

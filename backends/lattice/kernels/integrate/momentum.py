@@ -15,8 +15,8 @@ import math
 import numpy as np
 
 from mdlgen.backends.lattice.kernels.linear.colouring import BEGIN, END
-from mdlgen.backends.lattice.kernels.state import Free
-from mdlgen.mechanics.vector import add, back, cross, dot, mat, rotate, scale, sub, three, vec
+from mdlgen.backends.lattice.kernels.state import OWN_INERTIA, OWN_MASS, Free
+from mdlgen.mechanics.vector import add, back, cross, dot, mat, rotate, scale, sub, three, three_from, vec
 from mdlgen.program.kernel import njit
 
 
@@ -169,11 +169,14 @@ def keep(tables, touched, count, film, free, motion, change):
 
 @njit(cache=True, error_model="numpy")
 def let_go(work, push, pushb, into):
-    """What momentum of the nodes, `push` (6 nodes,) in global axes, and of the border, pushb (border,), would
-    change of velocities if nothing held a sheet, as a whole, or a roller: `into` (sheets + border,), by the
-    velocities that are changed [mm/ms, rad/ms of what turns]. Of a sheet that hangs on something it is zero;
-    that of a sheet of which a step may leave less counts that many times. Returns the greatest."""
-    bodies, nodes, free = work.tables.bodies, work.tables.nodes, work.free
+    """How fast momentum that is left would move each sheet, and each roller, if it were free.
+
+    push (6 nodes,): momentum of the nodes, in global axes; pushb (border,): that of what slides and turns.
+    into (sheets + border,): speeds of the sheets as rigid bodies [mm/ms], of slides [mm/ms], of arms and
+    spins [rad/ms]; zero of a sheet that hangs on something; that of a sheet of which a step may leave less
+    counts that many times. Returns the greatest of them.
+    """
+    boxes, nodes, free = work.tables.boxes, work.tables.nodes, work.free
     spans, own, x = work.matrix.couplings.colouring.spans, work.matrix.own, work.mid.motion.x
     across, greatest = three(free.normal), 0.0
     for row in range(spans.shape[0]):
@@ -186,9 +189,12 @@ def let_go(work, push, pushb, into):
         centre = linear = angular = (0.0, 0.0, 0.0)
         first = vec(x, nodes[low])
         for n in range(low, high):
-            k, mass, arm = 6 * n, bodies[nodes[n]].mass, sub(vec(x, nodes[n]), first)
+            k, mass, arm = 6 * n, boxes[n, OWN_MASS], sub(vec(x, nodes[n]), first)
             force = (push[k], push[k + 1], push[k + 2])
-            total, inertia = total + mass, inertia + mass * dot(arm, arm)
+            about = three_from(boxes[n], OWN_INERTIA)
+            # its own polar moment about its centre: half of the three about axes together
+            inertia += mass * dot(arm, arm) + 0.5 * (about[0] + about[1] + about[2])
+            total += mass
             centre, linear = add(centre, scale(mass, arm)), add(linear, force)
             angular = add(angular, add(cross(arm, force), (push[k + 3], push[k + 4], push[k + 5])))
         centre = scale(1.0 / total, centre)

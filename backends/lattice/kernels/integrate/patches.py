@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import math
 
+from mdlgen.backends.lattice.kernels.contact.fetch import hint_first
 from mdlgen.backends.lattice.kernels.contact.search import law_of_boxes
 from mdlgen.backends.lattice.kernels.contact.slopes import Numbers, core, hat_left, hat_right, holding
 from mdlgen.backends.lattice.kernels.integrate.tangent import blocks
@@ -36,6 +37,8 @@ from mdlgen.program.kernel import BORROWS, njit
 
 # How far two faces may be open at a corner that may close in an iteration [mm].
 REACH = 0.003
+# How many patches ahead one is asked for.
+AHEAD = 4
 ZERO = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
@@ -131,16 +134,22 @@ def _slope_of(work, q, h, far):
     return total
 
 
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _lying(frozen, at):
+    """A patch with corners, by its number among these; the one AHEAD of it is asked for."""
+    if at + AHEAD < frozen.many[2]:
+        hint_first(frozen.patches, frozen.lying[at + AHEAD])
+    return frozen.patches[frozen.lying[at]]
+
+
 @njit(cache=True, error_model="numpy", **BORROWS)
 def patches_along(work, low, high, h):
-    """Patches from `low` on, before `high`, note how they move along the direction, and are evaluated at its
-    end; what they add to the slope there."""
+    """Patches with corners, from `low` on, before `high`, note how they move along the direction, and are
+    evaluated at its end; what they add to the slope there."""
     frozen, r, total = work.frozen, work.mid.motion.r, 0.0
     change = frozen.vectors[OF_DIRECTION]
-    for k in range(low, high):
-        q = frozen.patches[k]
-        if q.count == 0:
-            continue
+    for at in range(low, high):
+        q = _lying(frozen, at)
         axes = mat(r, q.owner)
         v = w = far = (0.0, 0.0, 0.0)
         if q.one >= 0:
@@ -160,9 +169,8 @@ def patches_along(work, low, high, h):
 def patches_slope(work, low, high, h, far):
     """What patches add to the slope at that part of the direction."""
     total = 0.0
-    for k in range(low, high):
-        if work.frozen.patches[k].count > 0:
-            total += _slope_of(work, work.frozen.patches[k], h, far)
+    for at in range(low, high):
+        total += _slope_of(work, _lying(work.frozen, at), h, far)
     return total
 
 
@@ -170,10 +178,8 @@ def patches_slope(work, low, high, h, far):
 def pull_patches(work, h, part, g):
     """As along.pull, with patches that were evaluated there last."""
     frozen, r = work.frozen, work.mid.motion.r
-    for k in range(frozen.many[1]):
-        q = frozen.patches[k]
-        if q.count == 0:
-            continue
+    for at in range(frozen.many[2]):
+        q = _lying(frozen, at)
         for i in range(6):
             q.now[i] += part * q.along[i]
         force = scale(h, sub(three(q.does), three(q.begun)))
@@ -263,10 +269,8 @@ def patches_into(work, h, chord):
     their boxes. `chord`: see slopes.steepness."""
     frozen, matrix, motion = work.frozen, work.matrix, work.mid.motion
     couplings, sticks, own = matrix.couplings, work.mid.sticks.pairs, frozen.block
-    for j in range(frozen.many[1]):
-        q = frozen.patches[j]
-        if q.count == 0:
-            continue
+    for number in range(frozen.many[2]):
+        q = _lying(frozen, number)
         law = law_of_boxes(work.search, q)
         first, node, other = q.owner == q.a, int(q.one), int(q.two)
         if node >= 0 and other >= 0:

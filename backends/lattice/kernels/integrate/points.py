@@ -245,7 +245,8 @@ def gather(work, counts, h, plates):
     bodies, pairs, near, motion = tables.bodies, tables.pairs, mid.near, mid.motion
     count, close = counts
     first, air = work.search.first, film.many[0]
-    frozen.many[0] = frozen.many[1] = known = begins = 0
+    frozen.many[:] = 0
+    known = begins = 0
     while begins < close and near[begins] < first:
         begins += 1
     if not plates:
@@ -262,13 +263,18 @@ def gather(work, counts, h, plates):
             continue
         if air > 0:
             _of_air(frozen, film, pairs[p], p, motion)
-        if p >= first and frozen.patches[at - begins].count == TO_FIND_CORNERS:
-            own = work.search.listed[p - first]
-            a, b = frame_of(motion, own.a), frame_of(motion, own.b)
-            if look_at(work, p - first, a, b, REACH):
-                begin_patch(work, frozen.patches[at - begins], p - first, h)
-            else:
-                frozen.patches[at - begins].count = 0
+        if p >= first:
+            patch = frozen.patches[at - begins]
+            if patch.count == TO_FIND_CORNERS:
+                own = work.search.listed[p - first]
+                a, b = frame_of(motion, own.a), frame_of(motion, own.b)
+                if look_at(work, p - first, a, b, REACH):
+                    begin_patch(work, patch, p - first, h)
+                else:
+                    patch.count = 0
+            if patch.count > 0:
+                frozen.lying[frozen.many[2]] = at - begins
+                frozen.many[2] += 1
         if touching and (p < first or mid.does[at] == BY_SIDES):
             _of_law(frozen, p, pairs[p], mid.results[mid.rows[row]], h, motion)
     for k in range(air):

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from mdlgen.backends.lattice.kernels.state import OWN_REACH
 from mdlgen.mechanics.bounds import fastest_place
 from mdlgen.program.kernel import BORROWS, njit
 
@@ -12,13 +13,13 @@ SLOW, STILL = 10.0, 0.005
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def note_speeds(bodies, nodes, label, u, asleep):
+def note_speeds(boxes, label, u, asleep):
     """Speeds of sheets are those of their fastest places at the velocities u (nodes, 6)."""
     now, speeds = asleep.now, asleep.speeds
     now[:] = 0.0
-    for n in range(nodes.size):
+    for n in range(label.size):
         rate, spin = (u[n, 0], u[n, 1], u[n, 2]), (u[n, 3], u[n, 4], u[n, 5])
-        now[label[n]] = max(now[label[n]], fastest_place(bodies[nodes[n]], rate, spin))
+        now[label[n]] = max(now[label[n]], fastest_place(boxes[n, OWN_REACH], rate, spin))
     for sheet in range(now.size):
         speeds[sheet] = max(speeds[sheet], now[sheet])
 

@@ -63,6 +63,8 @@ from mdlgen.backends.lattice.kernels.state import (
     MADE_FOR,
     MIDDLE,
     NUMERICAL,
+    OWN_INERTIA,
+    OWN_MASS,
     POWER,
     STALE,
     THROUGH,
@@ -80,7 +82,7 @@ from mdlgen.mechanics.arm import (
     turn_of,
     way_of,
 )
-from mdlgen.mechanics.vector import back, dot, mat, rotate, three, vec
+from mdlgen.mechanics.vector import back, dot, mat, rotate, three, three_from, vec
 from mdlgen.program.kernel import BORROWS, njit
 
 # Newton iterations of one step before it is given up.
@@ -110,19 +112,19 @@ LITTLE, MUCH, ONWARD = 0.05, 0.7, 0.9
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _residual(tables, t, h, state, mid, res, resb):
     """Residual of the step's equations into res (6 nodes,) and resb (border,); t is in the middle."""
-    bodies, nodes, gravity = tables.bodies, tables.nodes, tables.gravity
+    bodies, boxes, nodes, gravity = tables.bodies, tables.boxes, tables.nodes, tables.gravity
     v, l, s, vb, u, ub = state.v, state.l, state.s, state.vb, state.u, state.ub
     xm, rm, f = mid.motion.x, mid.motion.r, mid.forces
     for n in range(nodes.size):
         b = nodes[n]
         m = mat(rm, b)
         spin = back(m, (u[n, 3], u[n, 4], u[n, 5]))
-        j = bodies[b].inertia
+        j = three_from(boxes[n], OWN_INERTIA)
         p = rotate(m, (j[0] * spin[0], j[1] * spin[1], j[2] * spin[2]))
         for i in range(3):
-            res[6 * n + i] = bodies[b].mass * (u[n, i] - v[n, i]) - h * f[b, i]
+            res[6 * n + i] = boxes[n, OWN_MASS] * (u[n, i] - v[n, i]) - h * f[b, i]
             res[6 * n + 3 + i] = p[i] - l[n, i] - h * f[b, 3 + i]
-    for k in range(bodies.size - 1):
+    for k in tables.moving:
         p = bodies[k].press
         slide, spin_at = bodies[k].slide, bodies[k].spin
         if slide >= 0:
@@ -139,9 +141,10 @@ def _residual(tables, t, h, state, mid, res, resb):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _weights(bodies, gravity, f):
+def _weights(tables, f):
     """Weight of what slides, and of rollers on arms, on top of the forces on them."""
-    for k in range(bodies.size - 1):
+    bodies, gravity = tables.bodies, tables.gravity
+    for k in tables.moving:
         if bodies[k].slide >= 0:
             mass = bodies[k].press[INERTIA] if bodies[k].swings == 0 else bodies[k].mass
             for i in range(3):
@@ -231,8 +234,8 @@ def midpoint(work, t, dt, tolerance, control):
         known = known and not sheets
         count, rubbed = _contact_forces(work, close, h, known)
         power = other_forces(tables, 1.0, mid.motion, mid.forces)
-        _weights(bodies, tables.gravity, mid.forces)
-        clutch_torques(bodies, t + h, state.ub, mid.forces)
+        _weights(tables, mid.forces)
+        clutch_torques(tables, t + h, state.ub, mid.forces)
         _residual(tables, t + h, h, state, mid, res, resb)
         # what is free converges fast, and keeps its angular momentum as well as the iterations end
         limit = tolerance if count > 0 or air else FREE * tolerance

@@ -152,10 +152,11 @@ def joints_into(tables, joints, h, lag, x, r, a, slots):
 
 
 @njit(cache=True, error_model="numpy")
-def rollers_into(bodies, h, t, ub, d):
+def rollers_into(tables, h, t, ub, d):
     """Sets the corner to the rollers' own: masses, springs and dampers of slides, clutches at t."""
+    bodies = tables.bodies
     d[:] = 0.0
-    for k in range(bodies.size - 1):
+    for k in tables.moving:
         p = bodies[k].press
         if bodies[k].slide >= 0:
             d[bodies[k].slide, bodies[k].slide] = p[INERTIA] + h * p[DAMPING] + h * h * p[STIFFNESS]
