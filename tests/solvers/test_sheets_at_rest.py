@@ -114,6 +114,24 @@ def test_boxes_that_lean_have_not_crossed_where_a_centre_passes_a_plane():
     assert through(60.0, 0.01, -0.25, -0.35)
 
 
+def test_a_thin_note_that_sleeps_limits_how_far_a_change_may_move_another_one():
+    from mdlgen.backends.lattice.arrays import build
+    from mdlgen.backends.lattice.kernels.contact import search, sides
+
+    model = lower(loads(stack(2, "[1, 1]"), overrides=["sheets.note_0.thickness=0.02 mm"]))
+    system = build(model)
+    assert search.look(system.pairs, system.search, model.bodies.position)
+    system.bodies["node"] = -1
+    system.bodies["node"][1] = 0
+    tables = system._replace(nodes=np.array([1]), sheets=np.array([1])).tables
+    assert tables.thinnest == pytest.approx(0.01)
+    near, h, falls = np.array([system.search.first]), 1.0, np.array([0.0, 0.0, 0.01, 0.0, 0.0, 0.0])
+    upright = np.tile(np.eye(3).ravel(), (len(system.bodies), 1))
+    # by its own half thickness alone this change would need no look at the pair
+    assert 2.0 * h * falls[2] < sides.CLOSER * 0.05
+    assert sides.part_of_change(tables, near, 1, upright, h, falls) == pytest.approx(sides.CLOSER)
+
+
 def test_notes_in_one_place_end_with_a_reason():
     scene = stack(2, "[1, 1]").replace("center: [0 mm, 0 mm, 0.15 mm]", "center: [0 mm, 0 mm, 0.05 mm]")
     result = mdlgen.solve(lower(loads(scene)), "lattice")
