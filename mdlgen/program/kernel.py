@@ -8,6 +8,7 @@ from __future__ import annotations
 import functools
 import hashlib
 import importlib
+import inspect
 import logging
 import os
 import re
@@ -108,7 +109,7 @@ class Kernel:
         if self._made is None:
             with _lock:
                 if self._made is None:
-                    self._made = _dispatcher(self.py_func, self.options)
+                    self._made = _dispatcher(self)
         return self._made
 
     @property
@@ -148,11 +149,12 @@ class Intrinsic:
         return self._made
 
 
-def _dispatcher(function: Callable[..., Any], options: dict[str, Any]) -> Any:
+def _dispatcher(kernel: Kernel) -> Any:
     """A dispatcher whose code is kept in our folder; the settings of numba are afterwards as they were."""
     numba = importlib.import_module("numba")
     settings = importlib.import_module("numba.core.config").__dict__  # made at run time
-    folder = _folder(function) if options.get("cache") else None
+    function, options = kernel.py_func, kernel.options
+    folder = _folder(kernel) if options.get("cache") else None
     if folder is None:
         return numba.njit(**{**options, "cache": False})(function)
     before = settings["CACHE_DIR"]
@@ -195,20 +197,74 @@ class _Unfailing:
             LOG.debug("compiled code is not kept: %s", error.strerror)
 
 
-@functools.cache
-def _room_folder(room: str) -> Path | None:
-    rooms = (LAWS,) if room == LAWS else (LAWS, room)
-    return paths.cache(f"compiled/{room}_{sources_digest(rooms)[:16]}")
-
-
-def _folder(function: Callable[..., Any]) -> Path | None:
-    """Where numba keeps a kernel: a folder for exactly these laws and the sources of the kernel's room.
+def _folder(kernel: Kernel) -> Path | None:
+    """Where numba keeps a kernel: a folder for exactly what it is compiled from.
 
     numba notices that a function's own file has changed, but not a file whose functions it calls: a solver
-    would go on with an older law without a word.
+    would go on with an older law without a word. A kernel whose sources have not changed is not compiled
+    again after a change of others.
     """
+    function = kernel.py_func
     package = function.__module__.rpartition(".")[0]
-    return _room_folder(room_of(package)) if package else None
+    if not package:
+        return None
+    found = hashlib.sha256(f"{_options(kernel)}\n{kernel.text}".encode())
+    todo, seen = [function], set[Callable[..., Any]]()
+    while todo:
+        one = todo.pop()
+        if one in seen:
+            continue
+        seen.add(one)
+        lines, called = _compiled_from(one)
+        found.update("\n".join(lines).encode())
+        todo += called
+    for room in sorted({LAWS, room_of(package)}):
+        found.update("\n".join(_shapes(room)).encode())
+    return paths.cache(f"compiled/{function.__module__}.{function.__name__}_{found.hexdigest()[:16]}")
+
+
+@functools.cache
+def _compiled_from(function: Callable[..., Any]) -> tuple[list[str], list[Callable[..., Any]]]:
+    """What a kernel is compiled from by itself: its source and the plain values that it names; and the
+    functions of the kernels that it calls."""
+    lines, called = [f"{function.__module__}.{function.__qualname__}", _source(function)], []
+    for used in sorted(_names(function.__code__)):
+        value = function.__globals__.get(used)
+        if isinstance(value, Kernel):
+            lines.append(f"{_options(value)}\n{value.text}")
+            called.append(value.py_func)
+        elif isinstance(value, Intrinsic):
+            lines.append(_source(value.__wrapped__))  # pyright: ignore[reportAttributeAccessIssue]
+        elif isinstance(value, (bool, int, float, str, tuple)):
+            lines.append(f"{used}={value!r}")
+    return lines, called
+
+
+def _names(code: Any) -> set[str]:
+    inner = (_names(part) for part in code.co_consts if hasattr(part, "co_names"))
+    return set(code.co_names).union(*inner)
+
+
+def _source(function: Any) -> str:
+    try:
+        return inspect.getsource(function)
+    except OSError:  # its text stands with the kernel
+        return ""
+
+
+@functools.cache
+def _shapes(room: str) -> list[str]:
+    """Fields of the tuples of a room: compiled code has them by their places."""
+    found: list[str] = []
+    for module in kernel_sources(room):
+        for name, value in sorted(vars(importlib.import_module(module)).items()):
+            if isinstance(value, type) and hasattr(value, "_fields"):
+                found.append(f"{name}{value._fields}")  # pyright: ignore[reportAttributeAccessIssue]
+    return found
+
+
+def _options(kernel: Kernel) -> dict[str, Any]:
+    return {key: _plain(value) for key, value in sorted(kernel.options.items())}
 
 
 @functools.cache
@@ -258,8 +314,7 @@ def _numbers(module: Any) -> Iterator[str]:
     """Plain values that the kernels of a module name, most of which other modules state."""
     for name, kernel in sorted(vars(module).items()):
         if isinstance(kernel, Kernel) and kernel.__module__ == module.__name__:
-            options = {key: _plain(value) for key, value in sorted(kernel.options.items())}
-            yield f"{name} {options}\n{kernel.text}"
+            yield f"{name} {_options(kernel)}\n{kernel.text}"
             for used in sorted(set(kernel.py_func.__code__.co_names)):
                 value = kernel.py_func.__globals__.get(used)
                 if isinstance(value, (bool, int, float, tuple)):
