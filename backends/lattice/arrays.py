@@ -110,6 +110,17 @@ class System(NamedTuple):
         return np.flatnonzero((self.bodies["axis"] != 0.0).any(axis=1) | (self.bodies["slide"] >= 0))
 
     @property
+    def runs(self) -> Ints:
+        """Joints of one sheet that follow each other: the first, the end, and the number of the sheet."""
+        sheet = np.full(len(self.bodies), -1, np.int64)
+        sheet[self.nodes] = self.sheets
+        of = np.maximum(sheet[self.joints["a"]], sheet[self.joints["b"]])  # one end may be fixed
+        of = np.maximum(of, 0)
+        begins = np.flatnonzero(np.diff(of, prepend=-1))
+        ends = np.append(begins, len(of))[1:]
+        return np.stack([begins, ends, of[begins]], axis=1)
+
+    @property
     def tables(self) -> Tables:
         """What compiled code takes first."""
         return Tables(
@@ -122,6 +133,7 @@ class System(NamedTuple):
             nodes=self.nodes,
             boxes=boxes_of(self.bodies, self.nodes),
             moving=self.moving,
+            runs=self.runs,
             thinnest=thinnest_of(self.bodies, self.search.regions),
             points=self.points,
             images=self.images,

@@ -17,7 +17,7 @@ from mdlgen.backends.lattice.arrays import System, build
 from mdlgen.backends.lattice.integrate.beside import Beside, Stopped, own
 from mdlgen.backends.lattice.integrate.ends import unbalanced
 from mdlgen.backends.lattice.integrate.passes import FIRST_STEP, Progress, Watch, accuracy, division, one_pass
-from mdlgen.backends.lattice.integrate.work import flexible, start, warm
+from mdlgen.backends.lattice.integrate.work import arrays, flexible, warm
 from mdlgen.backends.lattice.kernels.entries import PROGRAM
 from mdlgen.backends.lattice.scope import check
 from mdlgen.backends.lattice.statics.rest import rest
@@ -100,7 +100,7 @@ def solve(
     system = build(model, fold=FOLDING not in without)
     compiled = clock.perf_counter()
     if model.run.analysis == "static":
-        result = rest(model, system, *start(model, system)[:2])
+        result = rest(model, system, arrays(model, system))
         # what a run at rest calls is compiled, or loaded, as it goes: all but its wall time
         result.build_s = compiled - started
         result.compile_s = clock.perf_counter() - compiled - result.wall_s

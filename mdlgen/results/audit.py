@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from mdlgen.model.tables import Model
     from mdlgen.results.result import Energy
 
@@ -23,21 +25,32 @@ LEAST = 1e-12  # [N mm]
 ADVICE = "leave out run.step"  # where one was given
 
 
-def scale(model: Model, dissipated: float, driven: float, most: float, moved: float) -> float:
-    """What an imbalance is relative to [N mm].
+def scale(
+    model: Model,
+    dissipated: float,
+    driven: float,
+    most: float,
+    moved: float,
+    of: Collection[str] | None = None,
+) -> float:
+    """What an imbalance of the parts `of` is relative to [N mm], None: of all.
 
     The greatest of what was dissipated, what drives and loads moved either way, kinetic and elastic energy
     together at any time, the work of gravity, and the work that is `unseen` over the part that may be gained.
     """
-    return max(abs(dissipated), driven, most, abs(moved), unseen(model) / GAIN, LEAST)
+    return max(abs(dissipated), driven, most, abs(moved), unseen(model, of) / GAIN, LEAST)
 
 
-def unseen(model: Model) -> float:
-    """Work [N mm] that lifts all sheets by `run.tolerance` times a tenth of their length: positions that are
-    so far off are within the tolerance, and boxes that come to rest make or lose less than that."""
+def unseen(model: Model, of: Collection[str] | None = None) -> float:
+    """Work [N mm] that lifts the sheets `of`, None: all, by `run.tolerance` times a tenth of their length.
+
+    Positions that are so far off are within the tolerance, and boxes that come to rest make or lose less.
+    """
     free = ~model.bodies.fixed
     weight = 0.0
     for sheet in model.sheets:
+        if of is not None and sheet.name not in of:
+            continue
         boxes = slice(sheet.first, sheet.first + sheet.count)
         weight += float(model.bodies.mass[boxes] @ free[boxes]) * max(sheet.size) / 10.0
     return model.run.tolerance * weight * float(np.linalg.norm(model.gravity))
@@ -60,7 +73,8 @@ def reason(model: Model, energy: Energy, step: float, loss: float | None = None)
     if off <= GAIN and (loss is None or off >= -loss):
         return None
     whence, most = ("came from nowhere", GAIN) if off > 0.0 else ("got lost", loss or 0.0)
-    message = f"{abs(off) * energy.scale:.3g} N mm of energy {whence}, {100 * abs(off):.3g} % of "
+    where = f" in {', '.join(energy.of[:3])}" if energy.of else ""
+    message = f"{abs(off) * energy.scale:.3g} N mm of energy {whence}{where}, {100 * abs(off):.3g} % of "
     message += f"{energy.scale:.3g} N mm; allowed are {100 * most:g} %; "
     if model.run.step is not None:
         return message + f"{ADVICE}, so that a step is found that keeps the energy"

@@ -62,6 +62,8 @@ class Energy:
     # what the damping took that a solver adds to joints, beside `dissipated`; None: the solver does not have
     # it apart, and it is a part of balance_error
     numerical: float | None = None
+    # parts that may ever touch each other have a balance of their own: those of the worst one, none: all
+    of: tuple[str, ...] = ()
 
 
 @dataclass

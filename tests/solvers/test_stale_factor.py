@@ -156,7 +156,7 @@ def test_what_would_move_by_its_momentum_were_it_free(sheet: int, lifted: tuple[
     found = momentum.let_go(work, turns.ravel(), none, into)
     assert found == into[sheet] == pytest.approx(float(turn), rel=1e-9)
     assert np.delete(into, sheet) == pytest.approx(0.0, abs=1e-12)
-    work.asleep.strict[sheet] = 3.0
+    work.islands.strict[sheet] = 3.0
     assert momentum.let_go(work, turns.ravel(), none, into) == pytest.approx(3.0 * found, rel=1e-9)
 
 

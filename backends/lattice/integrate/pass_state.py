@@ -48,6 +48,7 @@ class PassState:
         few = (control, work.search.place, work.tables.pairs["beside"][: work.search.first])
         self._state = dict(_leaves("state", work.state)) | dict(_leaves("few", few))
         carried = {"mid": work.mid, "matrix": work.matrix, "condensed": work.condensed, "free": work.free}
+        carried["islands"] = work.islands
         carried["damped"] = work.damped[1:]
         self._recorder, self._sleep, self._search = recorder, sleep, work.search
         every = dict(leaf for name, value in carried.items() for leaf in _leaves(name, value))

@@ -23,7 +23,6 @@ from mdlgen.backends.lattice.kernels.state import (
     ANEW,
     FASTEST,
     ITERATIONS,
-    RECENT,
     STEPS,
     TOUCHING,
     WORST,
@@ -144,14 +143,14 @@ def one_pass(
     state = work.state  # of which places are those of all bodies, whatever sleeps
     steering = control(work)
     counters, energies = steering.counters, steering.energies
-    recorder = Recorder(model, system, state, work.mid, work.kept, outputs)
+    recorder = Recorder(model, system, work, outputs)
     overlaps = unheld(model, system)
     recorder.store(0.0)
     # the guess of a step is the better the finer it is: what is left of it must fall as fast
     part = (ROUND_OFF if flexible(model) else ROUND_OFF_RIGID) * min(1.0, (dt / FIRST_STEP) ** 2)
     tolerance = part * accuracy(model)
     steering.pace[[MISS_OF, ANEW, MADE_OF]] = miss, float(anew), made
-    steering.pace[[FASTEST, RECENT]] = work.asleep.now[:] = speed(model)
+    steering.pace[FASTEST] = speed(model)
     status, t, past = integrate.DONE, 0.0, 0.0
     sleep, stage = Sleep(model, system, work, steering, recorder, sleeps), None
     del work  # sleep has what is worked on

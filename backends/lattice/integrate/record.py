@@ -7,26 +7,29 @@ from typing import NamedTuple
 import numpy as np
 
 from mdlgen.backends.lattice.arrays import System
+from mdlgen.backends.lattice.integrate.islands import groups
 from mdlgen.backends.lattice.integrate.states import WIDTHS, States
 from mdlgen.backends.lattice.kernels.state import (
     ACTS,
     DEPTH_NOW,
     DEPTH_TIME,
+    DISSIPATED,
+    DRIVEN,
+    ELASTIC,
     ENDED,
     FORCE_BEGUN,
     FORCE_NOW,
     FORCE_TIME,
+    KINETIC,
     MAX_DEPTH,
     MAX_FORCE,
     POTENTIAL,
     PRESSES,
+    THROUGH_DRIVES,
     TIME,
     TURNING_BEGUN,
     TURNING_NOW,
     TURNS,
-    Kept,
-    Midpoint,
-    State,
     Workspace,
 )
 from mdlgen.mechanics.frame import Motion
@@ -47,49 +50,43 @@ class Snapshot(NamedTuple):
     rows: np.ndarray
     marks: np.ndarray
     work: np.ndarray
-    energies: tuple[tuple[float, float, float], tuple[float, float, float], float]  # first, last, most
+    # of groups of parts: first and last, (groups, 3), and the most of kinetic and elastic together, (groups,)
+    energies: tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 class Recorder:
     """Stores states of a run; `kept` is what the compiled code adds up."""
 
-    def __init__(
-        self, model: Model, system: System, state: State, mid: Midpoint, kept: Kept, outputs: int = 0
-    ):
-        self.model, self.system, self.kept = model, system, kept
-        self.tables, self.first, self.state, self.mid = system.tables, system.search.first, state, mid
-        self._asleep = np.zeros(3)
+    def __init__(self, model: Model, system: System, work: Workspace, outputs: int = 0):
+        self.model, self.system, self.kept, self.work = model, system, work.kept, work
+        self._asleep = np.zeros((groups(work), 3))
         self._states = States(model, system.mirror, outputs + 1)
         self._forces: list[np.ndarray] = []
         self._times: list[float] = []
-        self._first: tuple[float, float, float] | None = None
-        self._last = (0.0, 0.0, 0.0)
-        self._most = 0.0
+        self._energies = np.zeros((2, groups(work), 3))  # first and last
+        self._most = np.zeros(groups(work))
 
-    def follow(self, work: Workspace, awake: System, asleep: np.ndarray) -> None:
-        """From now on steps work on these arrays, of what is awake of the System; `asleep` (3,): energies of
-        what is not."""
-        self.tables, self.first, self.state, self.mid = work.tables, awake.search.first, work.state, work.mid
-        self._asleep = asleep
+    def follow(self, work: Workspace, asleep: np.ndarray) -> None:
+        """From now on steps work on these arrays, of what is awake of the System; `asleep` (groups, 3):
+        energies of what is not."""
+        self.work, self._asleep = work, asleep
 
     def store(self, t: float) -> None:
         """The state at the end of a step."""
         from mdlgen.backends.lattice.kernels.integrate import observe
 
-        energies, rows = np.zeros(3), np.zeros_like(self.kept.rows)
-        observe.ledger(self.tables, self.state, self.mid, t, self.first, energies, rows)
+        energies, rows = np.zeros_like(self._asleep), np.zeros_like(self.kept.rows)
+        observe.ledger(self.work, t, energies, rows)
         energies += self._asleep
         if self.system.mirror is not None:
             energies *= 2.0
-        kinetic, elastic, potential = energies.tolist()
-        now = (kinetic, elastic, potential)
-        if self._first is None:
-            self._first = now
-        self._last = now
-        self._most = max(self._most, kinetic + elastic)
+        if not self._times:
+            self._energies[0] = energies
+        self._energies[1] = energies
+        self._most = np.maximum(self._most, energies[:, KINETIC] + energies[:, ELASTIC])
         self._times.append(t)
-        motion = self.mid.motion
-        self._states.add(Motion(self.state.x, self.state.r, motion.u, motion.w))
+        state, motion = self.work.state, self.work.mid.motion
+        self._states.add(Motion(state.x, state.r, motion.u, motion.w))
         if t == 0.0:
             self.kept.rows[:, NOW] = rows[:, NOW]
             # what presses as a run begins may be gone in the middle of its first step
@@ -104,12 +101,11 @@ class Recorder:
 
     def arrays(self) -> dict[str, np.ndarray]:
         """All that it has stored, and what the compiled code added up."""
-        first = self._first or (0.0, 0.0, 0.0)
         return {
             **self._states.all(),
             "f": np.array(self._forces).reshape(len(self._times), len(self.model.contacts), len(NOW)),
             "times": np.array(self._times),
-            "energies": np.array([*first, *self._last, self._most]),
+            "energies": np.concatenate([self._energies.ravel(), self._most]),
             "rows": self.kept.rows,
             "marks": self.kept.marks,
         }
@@ -119,15 +115,15 @@ class Recorder:
         self._states.restore({name: arrays[name] for name in WIDTHS})
         self._forces = list(arrays["f"])
         self._times = arrays["times"].tolist()
-        first, last, (self._most,) = np.split(arrays["energies"], (3, 6))
-        self._first, self._last = tuple(first.tolist()), tuple(last.tolist())
+        energies, self._most = np.split(arrays["energies"], (self._energies.size,))
+        self._energies[:] = energies.reshape(self._energies.shape)
         self.kept.rows[:], self.kept.marks[:] = arrays["rows"], arrays["marks"]
 
     def snapshot(self, work: np.ndarray) -> Snapshot:
         """How far it is now; it stays as it is while the run goes on."""
-        assert self._first is not None
         rows, marks = self.kept
-        energies = (self._first, self._last, self._most)
+        first, last = self._energies.copy()
+        energies = (first, last, self._most.copy())
         return Snapshot(len(self._times), rows.copy(), marks.copy(), work.copy(), energies)
 
     def result(self, solver: str, reason: str | None, work: np.ndarray) -> Result:
@@ -172,20 +168,39 @@ class Recorder:
                 last_force_at=np.where(rows[:, ACTS] != 0, np.nan, rows[:, ENDED]),
             ),
             touched=touched,
-            energy=_balance(self.model, snapshot),
+            energy=_balance(self.model, self.work, snapshot),
             versions=_versions(),
             halved=mirror is not None,
         )
 
 
-def _balance(model: Model, snapshot: Snapshot) -> Energy:
-    lost, driven, through, numerical = (float(v) for v in snapshot.work)
+def _balance(model: Model, work: Workspace, snapshot: Snapshot) -> Energy:
+    """Energies of all, with the balance of the group in which most is missing or too much."""
     first, last, most = snapshot.energies
-    kinetic, elastic, potential = last
-    change = sum(last) - sum(first)
-    scale = audit.scale(model, lost, through, most, potential - first[POTENTIAL])
-    balance = float((change + lost - driven) / scale)
-    return Energy(kinetic, elastic, lost - numerical, driven, balance, scale, numerical)
+    lost, driven, through, numerical = snapshot.work.sum(axis=0).tolist()
+    kinetic, elastic, _ = last.sum(axis=0).tolist()
+    worst, scale, of = 0.0, 0.0, ()
+    for group in range(len(last)):
+        own, moved = snapshot.work[group], float(last[group, POTENTIAL] - first[group, POTENTIAL])
+        names = _names(model, work, group)
+        size = audit.scale(
+            model, float(own[DISSIPATED]), float(own[THROUGH_DRIVES]), float(most[group]), moved, names
+        )
+        change = float(last[group].sum() - first[group].sum())
+        off = (change + float(own[DISSIPATED]) - float(own[DRIVEN])) / size
+        if not of or abs(off) > abs(worst):
+            worst, scale, of = off, size, names
+    return Energy(
+        kinetic, elastic, lost - numerical, driven, worst, scale, numerical, of if len(last) > 1 else ()
+    )
+
+
+def _names(model: Model, work: Workspace, group: int) -> tuple[str, ...]:
+    """The parts of a group."""
+    part, found = work.islands.part, work.islands.group
+    named = {sheet.name: k for k, sheet in enumerate(model.sheets)}
+    named |= {p.name: int(part[p.body]) for p in model.machine if part[p.body] >= 0}
+    return tuple(name for name, k in named.items() if work.islands.answers[k] and found[k] == group)
 
 
 def _versions() -> dict[str, str]:

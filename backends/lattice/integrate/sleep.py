@@ -2,7 +2,7 @@
 
 A sheet that lies still costs as much as one that moves: its bushings, contacts and velocities are worked out
 in each step, to no effect. So an island, sheets that touch each other, sleeps where no place of them has been
-faster for a while than what iterations may leave in what rests (kernels.integrate.sleeping: STILL). What is
+faster for a while than what iterations may leave in what rests (kernels.integrate.islands: STILL). What is
 left of the System takes them for parts that do not move (see awake); forces of contacts among them go on as
 they are, and so do their energies.
 
@@ -29,6 +29,7 @@ from numpy.typing import NDArray
 from mdlgen.backends.lattice.arrays import System
 from mdlgen.backends.lattice.integrate.awake import Parts, awake
 from mdlgen.backends.lattice.integrate.helpers import Helpers
+from mdlgen.backends.lattice.integrate.islands import groups
 from mdlgen.backends.lattice.integrate.record import Recorder
 from mdlgen.backends.lattice.integrate.work import workspace
 from mdlgen.backends.lattice.kernels.state import (
@@ -51,7 +52,7 @@ PART, LEAST_STEPS = 0.05, 20
 WIDTHS = {"v": 3, "l": 3, "u": 6, "last": 6, "earlier": 6}
 # What a checkpoint has: which sheets sleep, and of Asleep.
 SHEETS = "sleep.sheets"
-OF_STEPS = ("speeds", "now", "islands", "missed", "may")
+OF_STEPS = ("speeds", "missed", "may")
 
 
 class Sleep:
@@ -82,13 +83,13 @@ class Sleep:
         self._store = {name: np.zeros((bodies if sheets else 0, width)) for name, width in WIDTHS.items()}
         self._chosen = np.arange(system.search.first)
         self._beside = system.pairs["beside"][: system.search.first].copy()
-        self._energies = np.zeros(3)
+        self._energies = np.zeros((groups(work), 3))
         self._stuck = np.zeros(0, STRETCH)
 
     def look(self, t: float, tolerance: float, helpers: Helpers) -> None:
         """Finds islands, and puts to sleep what has been still for long enough at the time t [ms];
         `tolerance`: of a step."""
-        from mdlgen.backends.lattice.kernels.integrate.sleeping import STILL
+        from mdlgen.backends.lattice.kernels.integrate.islands import STILL
 
         if not len(self._sheets):
             return
@@ -101,7 +102,7 @@ class Sleep:
         touched = rows[:, TIME] > self._touched
         self._touched[:] = rows[:, TIME]
         touched |= self._air
-        islands = asleep.islands[:] = self._islands(touched)
+        islands = self._islands(touched)
         awake = self._may & ~self._sheets
         awake &= (t - self._since < self._wait) | (steps - self._counted < LEAST_STEPS)
         one, two = self._parts.sheets
@@ -118,7 +119,6 @@ class Sleep:
         islands = self._islands(self.work.kept.rows[:, ACTS] != 0.0)
         woken = (islands == islands[disturbed]) & self._sheets
         self._since[woken], self._counted[woken] = t, self.steering.counters[STEPS]
-        self.work.asleep.now[woken] = self.steering.pace[FASTEST]  # until it is known
         self._turn(self._sheets & ~woken, t, helpers)
 
     def _islands(self, touching: NDArray[np.bool_]) -> NDArray[np.int64]:
@@ -160,9 +160,9 @@ class Sleep:
         missed = np.zeros((len(self._whole.bodies), 6))
         missed[old.asleep.bodies] = old.asleep.missed
         rows = self._parts.lasting(sheets)
-        strict = np.ones_like(old.asleep.strict)  # until a step finds it
-        asleep = old.asleep._replace(bodies=bodies, missed=missed[bodies], rows=rows, strict=strict)
-        self.work = workspace(self._model, self.system, (state, mid, matrix), old.kept, asleep)
+        asleep = old.asleep._replace(bodies=bodies, missed=missed[bodies], rows=rows)
+        step = state, mid, matrix
+        self.work = workspace(self._model, self.system, step, old.kept, old.islands, asleep)
         self._put_back()
         self.steering = self.steering._replace(history=history._replace(u=last, earlier=earlier))
         self.steering.factored[:] = 0.0
@@ -171,17 +171,16 @@ class Sleep:
         self._follow(helpers)
 
     def _follow(self, helpers: Helpers | None) -> None:
-        self._recorder.follow(self.work, self.system, self._energies)
+        self._recorder.follow(self.work, self._energies)
         if helpers is not None:
             helpers.follow(self.work)
 
     def _ledger(self, t: float) -> np.ndarray:
-        """Kinetic, elastic and potential energy of what is awake, of one side."""
+        """Kinetic, elastic and potential energy of what is awake, of one side, (groups, 3)."""
         from mdlgen.backends.lattice.kernels.integrate import observe
 
-        energies, rows = np.zeros(3), np.zeros_like(self.work.kept.rows)
-        first = self.system.search.first
-        observe.ledger(self.work.tables, self.work.state, self.work.mid, t, first, energies, rows)
+        energies, rows = np.zeros_like(self._energies), np.zeros_like(self.work.kept.rows)
+        observe.ledger(self.work, t, energies, rows)
         return energies
 
     def _put_back(self) -> None:

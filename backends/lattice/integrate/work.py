@@ -6,6 +6,7 @@ import numpy as np
 
 from mdlgen.backends.lattice.arrays import System
 from mdlgen.backends.lattice.integrate.films import films
+from mdlgen.backends.lattice.integrate.islands import groups, islands
 from mdlgen.backends.lattice.integrate.record import Recorder
 from mdlgen.backends.lattice.kernels.state import (
     COUNTERS,
@@ -15,6 +16,7 @@ from mdlgen.backends.lattice.kernels.state import (
     Bounds,
     Control,
     History,
+    Islands,
     Kept,
     Matrix,
     Midpoint,
@@ -63,21 +65,23 @@ def arrays(model: Model, system: System) -> Workspace:
     meet = sheets if len(system.search.regions) else 0
     asleep = Asleep(
         speeds=np.zeros(meet),
-        now=np.zeros(meet),
-        islands=np.zeros(meet, np.int64),
-        strict=np.ones(sheets),
         bodies=np.zeros(0, np.int64),
         missed=np.zeros((0, 6)),
         may=np.zeros(1),
         rows=np.zeros(contacts, bool),
     )
-    work = workspace(model, system, (state, mid, matrix), kept, asleep)
+    work = workspace(model, system, (state, mid, matrix), kept, islands(model, system), asleep)
     entries.remember(system.bodies, system.pairs, Motion(state.x, state.r, mid.motion.u, mid.motion.w))
     return work
 
 
 def workspace(
-    model: Model, system: System, step: tuple[State, Midpoint, Matrix], kept: Kept, asleep: Asleep
+    model: Model,
+    system: System,
+    step: tuple[State, Midpoint, Matrix],
+    kept: Kept,
+    islands: Islands,
+    asleep: Asleep,
 ) -> Workspace:
     """What a run works on from a state, with pairs of boxes of two sheets searched for it."""
     from mdlgen.backends.lattice.kernels import entries, forces, parallel
@@ -101,6 +105,7 @@ def workspace(
         frozen=room.frozen(system, len(film.cells)),
         pool=parallel.empty(len(matrix.couplings.colouring.spans), system.border),
         film=film,
+        islands=islands,
         asleep=asleep,
     )
 
@@ -109,7 +114,8 @@ def control(work: Workspace) -> Control:
     """Counts and settings of a run before its first step."""
     u, ub = work.state.u.copy(), work.state.ub.copy()
     history = History(u, ub, u.copy(), np.zeros(3), np.zeros((len(work.free.loose), GUESSES)))
-    return Control(np.zeros(5), np.zeros(COUNTERS), np.zeros(4), history, np.zeros(7))
+    energies = np.zeros((groups(work), 4))
+    return Control(np.zeros(5), np.zeros(COUNTERS), energies, history, np.zeros(7))
 
 
 def warm(model: Model, system: System) -> None:
@@ -120,7 +126,7 @@ def warm(model: Model, system: System) -> None:
     work = arrays(model, system)
     entries.help(work, 0)
     integrate.run(work, 0.0, np.zeros(0), 1.0, control(work))
-    Recorder(model, system, work.state, work.mid, work.kept).store(0.0)
+    Recorder(model, system, work).store(0.0)
     entries.PROGRAM.release()  # else the arrays of its last calls stay beside those of the run
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from mdlgen.backends.lattice.kernels.image import reflect, reflect_rates
-from mdlgen.backends.lattice.kernels.state import OWN_MASS
+from mdlgen.backends.lattice.kernels.state import LOST, NUMERICAL, OWN_MASS
 from mdlgen.mechanics.arm import moved, way_of
 from mdlgen.mechanics.bushing import bushing_pair
 from mdlgen.mechanics.curve import curve_excess
@@ -144,6 +144,17 @@ def joint_forces(joints, points, motion, f, lag=0.0):
             _add(f, b, force, torque_b)
             stored += part * energy
     return stored, lost, numerical
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def joint_forces_of_sheets(tables, motion, f, lag, spent):
+    """Adds the forces of all joints as joint_forces does. What each of tables.runs dissipates, and how much
+    of that is due to `lag`, goes into spent (runs, 2)."""
+    runs = tables.runs
+    for k in range(runs.shape[0]):
+        own = tables.joints[runs[k, 0] : runs[k, 1]]
+        _stored, lost, numerical = joint_forces(own, tables.points, motion, f, lag)
+        spent[k, LOST], spent[k, NUMERICAL] = lost, numerical
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)

@@ -29,12 +29,14 @@ class Tables(NamedTuple):
     nodes: Ints  # the body of each free box
     boxes: Floats  # and what is asked of it most often, OWN_MASS to OWN_INERTIA, (nodes, OWN)
     moving: Ints  # bodies that turn or slide: rollers and pressed plates
+    runs: Ints  # joints of one sheet that follow each other: the first, the end, and SHEET, (runs, 3)
     thinnest: float  # half thickness of the thinnest box of sheets that may touch each other [mm]
     points: np.ndarray  # of curves
     images: np.ndarray  # mirrored boxes
     shapes: Any  # mechanics.shapes.Shapes
 
 
+SHEET = 2  # column of Tables.runs
 # Columns of Tables.boxes, which stand close together: a record of a body takes eleven lines of a processor's
 # cache. Mass [N ms^2/mm]; half length and half width together, half the diagonal [mm]; three moments of
 # inertia [N mm ms^2].
@@ -92,7 +94,8 @@ class Midpoint(NamedTuple):
     results: Floats  # what each of them does, see mechanics.point, (pairs, forces.WIDE);
     rows: Ints  # in which of these rows each stands: those without points fill none
     faces: Floats  # what is read later of two boxes of two sheets, (pairs, FACE)
-    totals: Floats  # (3,) LOST, POWER, NUMERICAL
+    totals: Floats  # (2,) what contacts and air have LOST, and POWER
+    spent: Floats  # what the joints of each of Tables.runs have LOST, and NUMERICAL of it, (runs, 2)
     near: Ints  # pairs that may touch
     overlaps: np.ndarray  # of pairs that are searched, mechanics.overlap.OVERLAP
     spare: np.ndarray  # the same of a pair between steps, (1,)
@@ -108,12 +111,14 @@ class Midpoint(NamedTuple):
 
 MIDDLE, ENDS = 0, 1
 # Columns of Midpoint.faces: the force along normals, the greatest depth, friction along the faces by its
-# size, the most it can be, and how many points stand in the results, 0: none are needed.
-FACE_FORCE, FACE_DEPTH, FACE_RUBBING, FACE_GRIP, FACE_POINTS, FACE = 0, 1, 2, 3, 4, 5
+# size, the most it can be, how many points stand in the results, 0: none are needed; the energy that is
+# stored and the power that is dissipated.
+FACE_FORCE, FACE_DEPTH, FACE_RUBBING, FACE_GRIP, FACE_POINTS, FACE_STORED, FACE_LOST, FACE = range(8)
 # Of the energies of a state [N mm], see observe.ledger.
 KINETIC, ELASTIC, POTENTIAL = 0, 1, 2
-# Of Midpoint.totals [N mm/ms]: dissipated, put in by loads, dissipated by the numerical damping of joints.
-LOST, POWER, NUMERICAL = 0, 1, 2
+# Of Midpoint.totals and Midpoint.spent [N mm/ms]: dissipated, put in by loads; dissipated by the numerical
+# damping of joints.
+LOST, POWER, NUMERICAL = 0, 1, 1
 
 
 class Matrix(NamedTuple):
@@ -219,7 +224,8 @@ class Free(NamedTuple):
     label: Ints  # (nodes,) sheet of each node
     sheet: Ints  # (bodies,) the same of each body, -1: it is not free
     loose: np.ndarray  # (sheets,) whether a sheet hangs on nothing
-    busy: np.ndarray  # (sheets,) whether it touches something now
+    busy: np.ndarray  # (sheets,) whether it, or a sheet that it touches, touches what is no sheet now
+    alone: np.ndarray  # (sheets,) whether it hangs on nothing and touches nothing now
     residual: Floats  # (6 nodes,)
     one_with: Ints  # (sheets,) which sheet it is one with now
     cut: np.ndarray  # (sheets,) whether it is one half of a sheet, which hangs on its image
@@ -289,14 +295,33 @@ class Film(NamedTuple):
 PRESSURES = 0  # row of Film.vectors
 
 
+class Islands(NamedTuple):
+    """Parts, which are sheets and bodies that turn or slide, and the islands of those that touch; see
+    integrate.islands."""
+
+    part: Ints  # (bodies,) of each body, sheets by their numbers first; -1: it does not move
+    of_border: Ints  # (border,) of each unknown of the border
+    of_row: Ints  # (contacts,) of each contact: one of its parts that answers forces, -1: none does
+    answers: np.ndarray  # (parts,) whether forces move a part, from here on (parts,)
+    mass: Floats  # of a sheet; of what turns or slides, that of a place on its rim [g]
+    least: Floats  # the least speed that a part is measured by [mm/ms]
+    top: Ints  # which part stands for its island
+    speed: Floats  # greatest of its island in the last step [mm/ms]
+    given: Floats  # greatest speed of driven surfaces that touch it [mm/ms]
+    energy: Floats  # of an island, at the part that stands for it [N mm]
+    scale: Floats  # speed by which a step of it is measured [mm/ms]
+    strict: Floats  # how many times less than in the fastest island a step may leave in it
+    sums: Floats  # scratch
+    # parts that may ever touch each other share a group, which has an energy balance of its own
+    group: Ints  # (parts,)
+    group_of_row: Ints  # (contacts,)
+
+
 class Asleep(NamedTuple):
     """How fast sheets on each other are, and what those miss that sleep; see integrate.sleep. No `speeds`: no
     sheets of the scene meet."""
 
     speeds: Floats  # (sheets,) how fast places of each were at most since they were last looked at [mm/ms]
-    now: Floats  # (sheets,) and in the last step
-    islands: Ints  # (sheets,) the first of those that each sheet touched, at one or more removes
-    strict: Floats  # (all sheets,) how many times less than else a step may leave in each
     bodies: Ints  # boxes of sheets that sleep
     missed: Floats  # impulses that they have missed since, (those boxes, 6)
     may: Floats  # (1,) velocity that a box may miss [mm/ms]
@@ -319,6 +344,7 @@ class Workspace(NamedTuple):
     frozen: Frozen
     pool: Any  # parallel.Pool
     film: Film
+    islands: Islands
     asleep: Asleep
 
 
@@ -345,9 +371,9 @@ class Control(NamedTuple):
 
     factored: Floats  # (5,) MADE_FOR, STALE, WHERE, TOUGH, SPENT
     counters: Floats  # (COUNTERS,)
-    energies: Floats  # (4,) DISSIPATED, DRIVEN, THROUGH_DRIVES, DAMPED_NUMERICALLY [N mm]
+    energies: Floats  # (groups, 4) DISSIPATED, DRIVEN, THROUGH_DRIVES, DAMPED_NUMERICALLY [N mm]
     history: History
-    pace: Floats  # (7,) LEVEL, MISS, ANEW, FASTEST, MADE, RECENT, LOOSE
+    pace: Floats  # (7,) LEVEL, MISS, ANEW, FASTEST, MADE, LOOSE, FLOOR
 
 
 # Of Control.factored: the step that the factor was made for (0: none), whether it is to be made anew, where
@@ -361,8 +387,8 @@ STEPS, ITERATIONS, FACTORS, TOUCHING, WORST, STRAIN, THROUGH, CLOSE, SOLVES, GIV
 COUNTERS = 10
 # Of Control.energies; the third adds up what drives and loads moved either way.
 DISSIPATED, DRIVEN, THROUGH_DRIVES, DAMPED_NUMERICALLY = 0, 1, 2, 3
-# Of Control.pace: how often steps are halved now; what velocities may miss their guess by (0: anything);
-# whether each step has a factor of its own; the greatest speed so far [mm/ms]; which part of the energy that
-# passes through the run contacts may make or lose in one step (0: any); the speed of the last step, and the
-# limit of its iterations were it fast [mm/ms].
-LEVEL, MISS, ANEW, FASTEST, MADE, RECENT, LOOSE = 0, 1, 2, 3, 4, 5, 6
+# Of Control.pace: how often steps are halved now; what velocities may miss their guess by, relative to the
+# speed of an island (0: anything); whether each step has a factor of its own; the greatest speed so far
+# [mm/ms]; which part of the energy of an island its contacts may make or lose in one step (0: any); what
+# iterations may leave in the fastest island, and the round-off of velocities in this step [mm/ms].
+LEVEL, MISS, ANEW, FASTEST, MADE, LOOSE, FLOOR = 0, 1, 2, 3, 4, 5, 6

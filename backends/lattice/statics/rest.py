@@ -8,6 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from mdlgen.backends.lattice.arrays import System, partner
+from mdlgen.backends.lattice.integrate.islands import groups
 from mdlgen.backends.lattice.integrate.record import Recorder
 from mdlgen.backends.lattice.kernels.state import (
     ACTS,
@@ -17,11 +18,11 @@ from mdlgen.backends.lattice.kernels.state import (
     FORCE_TIME,
     MAX_DEPTH,
     MAX_FORCE,
-    ROW,
     TIME,
     Kept,
     Midpoint,
     State,
+    Workspace,
 )
 from mdlgen.backends.lattice.statics import lying, standing
 from mdlgen.mechanics.arm import FORCE_0
@@ -45,11 +46,12 @@ MOST = 200_000
 TETHER = 1e-9
 
 
-def rest(model: Model, system: System, state: State, mid: Midpoint) -> Result:
-    """The Result of a Model at rest, from its start."""
+def rest(model: Model, system: System, work: Workspace) -> Result:
+    """The Result of a Model at rest, from its start, at which the arrays of `work` are."""
     from mdlgen.backends.lattice.kernels import entries
     from mdlgen.backends.lattice.kernels.linear.band import PAD
 
+    state, mid, kept = work.state, work.mid, work.kept
     x, r, s = place = (state.x, state.r, state.s)
     state.v[:] = 0.0
     state.l[:] = 0.0
@@ -99,7 +101,6 @@ def rest(model: Model, system: System, state: State, mid: Midpoint) -> Result:
     falls(0.0)
     begun = clock.perf_counter()
     reason = _parts(model, balanced, load, place)
-    kept = Kept(np.zeros((len(model.contacts), ROW)), np.zeros(len(system.pairs), bool))
     if reason is None:
         reason = _stretched(model, system, x, r) or _touch(model, system, state, mid, kept)
         reason = reason or lying.slides(model, found, kept.rows[:, FORCE_NOW], load, x, r)
@@ -107,9 +108,9 @@ def rest(model: Model, system: System, state: State, mid: Midpoint) -> Result:
     if reason is None and (ways := falls(1.0)) > 0:
         reason = standing.reason(ways, standing.begins(stable))
     wall = clock.perf_counter() - begun
-    recorder = Recorder(model, system, state, mid, kept)
+    recorder = Recorder(model, system, work)
     recorder.store(0.0)
-    result = recorder.result("lattice", reason, np.zeros(4))
+    result = recorder.result("lattice", reason, np.zeros((groups(work), 4)))
     result.wall_s, result.steps = wall, 0
     return result
 

@@ -18,8 +18,10 @@ from mdlgen.backends.lattice.kernels.state import (
     FACE_DEPTH,
     FACE_FORCE,
     FACE_GRIP,
+    FACE_LOST,
     FACE_POINTS,
     FACE_RUBBING,
+    FACE_STORED,
     FORCE_NOW,
     TURNING_NOW,
 )
@@ -98,6 +100,7 @@ def _note(face, out):
     """Keeps what is read later of two boxes that touch; of those with points RUBBING and GRIP are not."""
     face[FACE_FORCE], face[FACE_DEPTH], face[FACE_POINTS] = out[PRESSING], out[DEPTH], out[POINTS]
     face[FACE_RUBBING], face[FACE_GRIP] = out[RUBBING], out[GRIP]
+    face[FACE_STORED], face[FACE_LOST] = out[STORED], out[DISSIPATED]
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)

@@ -108,7 +108,7 @@ def empty(system, wide: int) -> Condensed:
         seen=np.zeros(pairs, np.bool_),
         looked=np.zeros(3, np.int64),
         touched=np.zeros(pairs, np.int64),
-        results=np.zeros((max(1, pairs), wide)),
+        results=np.zeros((pairs + 1, wide)),
         pair=np.zeros((6, 6)),
         direction=np.zeros((4, 6)),
         which=np.zeros(4, np.int64),

@@ -117,9 +117,11 @@ def _impulses(tables, xm, h, t, ub, condensed, m, p):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _begin(tables, x, h, ub, condensed, m, res, resb):
-    """Sets z to zero, z0 to what the residual changes, and the measures of both, with rollers at x."""
-    bodies, nodes = tables.bodies, tables.nodes
+def _begin(work, h, m):
+    """Sets z to zero, z0 to what the residual changes, and the measures of both."""
+    bodies, nodes, x, ub = work.tables.bodies, work.tables.nodes, work.state.x, work.state.ub
+    condensed, islands, res, resb = work.condensed, work.islands, work.matrix.res, work.matrix.resb
+    strict, label = islands.strict, work.free.label
     z, z0, own, measure = condensed.z, condensed.z0, condensed.own, condensed.measure
     for i in range(m):
         n = condensed.chosen[i]
@@ -127,16 +129,17 @@ def _begin(tables, x, h, ub, condensed, m, res, resb):
         for c in range(6):
             z[6 * i + c] = 0.0
             z0[6 * i + c] = -res[6 * n + c]
-            measure[6 * i + c] = 1.0 if c < 3 else size
+            measure[6 * i + c] = strict[label[n]] * (1.0 if c < 3 else size)
     for b in condensed.rollers:
         slide, spin, p = bodies[b].slide, bodies[b].spin, bodies[b].press
+        times = strict[islands.part[b]]
         if slide >= 0:
             own[slide] = 1.0 / (p[INERTIA] + h * p[DAMPING] + h * h * p[STIFFNESS])
             way = way_of(bodies[b], vec(x, b))
-            measure[6 * m + slide] = math.sqrt(dot(way, way))
+            measure[6 * m + slide] = times * math.sqrt(dot(way, way))
         if spin >= 0:
             own[spin] = 1.0 / p[AXIAL]
-            measure[6 * m + spin] = bodies[b].size[RADIUS]
+            measure[6 * m + spin] = times * bodies[b].size[RADIUS]
     for i in range(ub.size):
         z[6 * m + i] = 0.0
         z0[6 * m + i] = -own[i] * resb[i]
@@ -237,7 +240,7 @@ def solve_contacts(work, m, where, h, t, seen, limits):
     if many == 0:
         return True
     _mine(bodies, pairs, mid.near[:near], where, condensed)
-    _begin(tables, state.x, h, ub, condensed, m, res, resb)
+    _begin(work, h, m)
     count = _take(tables, mid, touching, condensed, m)
     _impulses(tables, xm, h, t, ub, condensed, m, condensed.p0)
     for i in range(many):

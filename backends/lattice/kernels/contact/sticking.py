@@ -7,6 +7,7 @@ their stretches with them.
 
 from __future__ import annotations
 
+from mdlgen.backends.lattice.kernels.state import DISSIPATED, ELASTIC
 from mdlgen.mechanics.overlap import OVERLAPS
 from mdlgen.mechanics.stick import end_step, let_go
 from mdlgen.model.tables import BOX_BOX
@@ -14,12 +15,12 @@ from mdlgen.program.kernel import BORROWS, njit
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def end_of_step(work, count, close):
+def end_of_step(work, count, close, energies):
     """Takes over the stretches that a step ends with. `count`: how many pairs touch in its middle; `close`:
-    how many are near. Returns the energy of the springs that have let go [N mm]."""
+    how many are near. The springs that are released dissipate their energy: energies (groups, 4)."""
     tables, mid, first = work.tables, work.mid, work.search.first
     near, overlaps, sticks = mid.near, mid.overlaps, mid.sticks.pairs
-    gone, known = 0.0, 0
+    known = 0
     for at in range(close):
         p = near[at]
         touches = known < count and mid.touched[known] == p
@@ -32,8 +33,7 @@ def end_of_step(work, count, close):
         if touches and kept.state == OVERLAPS:
             end_step(stuck, kept, pair.a, pair.b)
         elif stuck.count > 0:
-            gone += let_go(stuck)
-    return gone
+            energies[work.islands.group_of_row[pair.row], DISSIPATED] += let_go(stuck)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -61,14 +61,14 @@ def set_aside(sticks):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def put_back(pairs, sticks, first):
-    """Gives the pairs from `first` on, which were searched anew, the stretches that were set aside. Returns
-    the energy of the springs whose pair is none any more [N mm]."""
-    gone = 0.0
+def put_back(pairs, sticks, first, islands, energies):
+    """Gives the pairs from `first` on, which were searched again, the stretches that were set aside. The
+    springs whose pair is none any more dissipate their energy: energies (groups, 4)."""
     for b in range(sticks.head.size):
         k = sticks.head[b]
         while k >= 0:
-            gone += sticks.aside[k].energy
+            group = islands.group[max(islands.part[b], 0)]
+            energies[group, DISSIPATED] += sticks.aside[k].energy
             k = sticks.following[k]
     for p in range(first, pairs.size):
         pair = pairs[p]
@@ -78,16 +78,14 @@ def put_back(pairs, sticks, first):
         while k >= 0:
             if sticks.aside[k].b == pair.b:
                 _copy(sticks.pairs[p - first], sticks.aside[k])
-                gone -= sticks.aside[k].energy
+                energies[islands.group_of_row[pair.row], DISSIPATED] -= sticks.aside[k].energy
                 break
             k = sticks.following[k]
-    return max(gone, 0.0)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def energy_of(sticks):
-    """What all springs store between steps [N mm]."""
-    energy = 0.0
+def energy_into(sticks, listed, regions, groups, energies):
+    """Adds what all springs store between steps to energies (groups, 3) [N mm]; `groups`: of each contact."""
     for k in range(sticks.pairs.size):
-        energy += sticks.pairs[k].energy
-    return energy
+        if sticks.pairs[k].count > 0:
+            energies[groups[regions[listed[k].region].row], ELASTIC] += sticks.pairs[k].energy

@@ -48,6 +48,9 @@ from mdlgen.program.kernel import BORROWS, njit
 MOST_LOOKS = 64
 # Contacts of which each makes less than this part of the energy that may be made are not looked at.
 LITTLE = 1e-3
+# What contacts do beyond what is known of the middle of a step [N mm]: energy that they store, either way,
+# and that their damping misses; in the end MISSES has both.
+STORES, MISSES = 0, 1
 
 
 class Before(NamedTuple):
@@ -152,15 +155,15 @@ def _faces_make_little(work, dt, least):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _made(work, count, dt, slower, least, rows):
-    """Adds to `rows` (contacts,) the energy that contacts store in a step beyond the work done on them;
-    returns what their damping should have taken and did not. `slower`: see _changed; of two sheets boxes that
-    cannot make `least` of energy are not looked at."""
+def _made(work, count, dt, slower, may, rows):
+    """Adds to `rows` (contacts, STORES and MISSES) the energy that contacts store in a step beyond the work
+    done on them, and what their damping should have taken and did not. `slower`: see _changed; `may`: of each
+    contact, and the least. Boxes of two sheets that cannot make LITTLE of it together are left out."""
     bodies, pairs, state, mid = work.tables.bodies, work.tables.pairs, work.state, work.mid
     touched, motion, ends, search = mid.touched, mid.motion, mid.fastest[ENDS], work.search
     listed, first = work.tables.listed, search.first
-    missed = 0.0
-    every = _faces_make_little(work, dt, least)
+    allowed, share = may[0], LITTLE / max(1, count)
+    every = _faces_make_little(work, dt, share * may[1])
     for k in range(count):
         faces = touched[k] >= first and mid.faces[k, FACE_POINTS] == 0.0
         if faces and every:
@@ -168,6 +171,7 @@ def _made(work, count, dt, slower, least, rows):
         if faces:
             own = listed[touched[k] - first]
             region, together = search.regions[own.region], ends[own.a] + ends[own.b]
+            least = share * allowed[region.row]
             if 4.0 * dt * mid.faces[k, FACE_FORCE] * together < least or _little(region, together, dt, least):
                 continue
             one, two, row = int(own.a), int(own.b), search.regions[own.region].row
@@ -184,8 +188,8 @@ def _made(work, count, dt, slower, least, rows):
             faster = faster_one, (scale(part, rate_two), scale(part, spin_two))
             kept, law = mid.overlaps[touched[k] - first], law_of_boxes(search, listed[touched[k] - first])
             made, less = impact(kept, frame_of(motion, one), frame_of(motion, two), faster, law, dt)
-            rows[row] += made
-            missed += less
+            rows[row, STORES] += made
+            rows[row, MISSES] += less
             continue
         out, still = mid.results[mid.rows[k]], mat(motion.r, one)
         a = Frame(vec(motion.x, one), still, rate_one, spin_one)
@@ -197,12 +201,12 @@ def _made(work, count, dt, slower, least, rows):
             if growth <= 0.0 or kind == COUPLE:
                 continue
             depth, energy = 1.5 * force / growth, 0.6 * force * force / growth
-            rows[row] += stored_beyond(force, depth, energy, 0.5 * dt * point[RATE])
+            rows[row, STORES] += stored_beyond(force, depth, energy, 0.5 * dt * point[RATE])
             place = three_from(point, LINE if kind == OF_NIP else AT)
             normal = three_from(point, WAY if kind == OF_NIP else NORMAL)
             faster = part * closing_at(place, normal, a, b)
-            missed += force * dt * turning_back(point[RATE], faster, point[BETA], point[OVER])
-    return missed
+            less = turning_back(point[RATE], faster, point[BETA], point[OVER])
+            rows[row, MISSES] += force * dt * less
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -229,10 +233,11 @@ def _all_slow(tables, regions, fastest, dt, little):
 
 
 @njit(cache=True, error_model="numpy")
-def swept(work, counts, t, dt, allowed, slower, rows):
-    """What the near pairs do in a step from t, beyond what is known of its middle: (the first that comes
-    deeper than it may, or to another side, or -1; the energy that contacts make or lose in it, where
-    `allowed` is above zero). `counts`: how many pairs touch in the middle, how many are near.
+def swept(work, counts, t, dt, may, slower, rows):
+    """What the near pairs do in a step from t, beyond what is known of its middle: returns the first that
+    comes deeper than it may, or to another side, or -1. The energy that each contact makes or loses goes into
+    rows[:, MISSES] (contacts, 2). `may`: how much each may make (contacts,), 0 for any, and the least of
+    these. `counts`: how many pairs touch in the middle, how many are near.
 
     The states between are looked at as often as a pair could cross unseen, by the law of the contact: none
     for pairs that are slow for what they could cross, which is nearly all of them.
@@ -241,16 +246,16 @@ def swept(work, counts, t, dt, allowed, slower, rows):
     bodies, pairs, shapes = tables.bodies, tables.pairs, tables.shapes
     x, r, touched, near, listed = state.x, state.r, mid.touched, mid.near, tables.listed
     count, close = counts
-    made = False
+    made, (allowed, least) = False, may
     between, out = mid.motion, mid.motion.u[0]
     rows[:] = 0.0
-    total = 0.0
-    if allowed > 0.0:
+    asked = least > 0.0
+    if asked:
         if work.search.regions.size > 0:
             _fastest_at_ends(tables, state, slower, mid.fastest)
-        total = _made(work, count, dt, slower, LITTLE * allowed / max(1, count), rows)
+        _made(work, count, dt, slower, may, rows)
     known = 0
-    little = LITTLE * allowed if allowed > 0.0 else 1e300
+    little = LITTLE * least if asked else 1e300
     regions, first = work.search.regions, work.search.first
     slow = _all_slow(tables, regions, mid.fastest[MIDDLE], dt, little)
     for at in range(close):
@@ -261,7 +266,9 @@ def swept(work, counts, t, dt, allowed, slower, rows):
             known += 1
         if near[at] >= first:
             own = listed[near[at] - first]
-            if _slow(bodies, own, regions[own.region].k, mid.fastest[MIDDLE], dt, little):
+            region = regions[own.region]
+            little = LITTLE * allowed[region.row] if asked else 1e300
+            if _slow(bodies, own, region.k, mid.fastest[MIDDLE], dt, little):
                 continue
         pair = pairs[near[at]]
         began = Motion(x, r, mid.motion.u, mid.motion.w)
@@ -270,15 +277,15 @@ def swept(work, counts, t, dt, allowed, slower, rows):
         side = above(bodies, pair, x, r)
         inside = solid(bodies, pair)
         enters = False
-        if allowed > 0.0 and not touches:
+        if asked and not touches:
             half = 0.5 * way
-            enters = 0.4 * pair.k * half * half * math.sqrt(half) > little
+            enters = 0.4 * pair.k * half * half * math.sqrt(half) > LITTLE * allowed[pair.row]
             enters = enters and _hits(bodies, pair, work.kept.rows)
             enters = enters and not _clear(bodies, pair, x, r, way)
         if way <= band and side == 0 and not inside and not enters:
             continue
         if way > MOST_LOOKS * band:
-            return near[at], 0.0
+            return near[at]
         if not made:
             made = True
             um, wm = np.empty_like(x), np.empty_like(x)
@@ -290,17 +297,17 @@ def swept(work, counts, t, dt, allowed, slower, rows):
             _place(tables, state, pair.b, h, t, between)
             now = above(bodies, pair, between.x, between.r)
             if side * now < 0:
-                return near[at], 0.0
+                return near[at]
             side = now
             if inside and buried(bodies, pair, shapes, between.x, between.r):
-                return near[at], 0.0
+                return near[at]
             if way > band or enters:
                 out[:] = 0.0
                 pair_force(bodies, pair, shapes, between, out)
                 if out[DEPTH] > deepest(bodies, pair):
-                    return near[at], 0.0
+                    return near[at]
                 if enters and k == many:
-                    rows[pair.row] += out[STORED]
-    for row in range(rows.size):
-        total += abs(rows[row])
-    return -1, total
+                    rows[pair.row, STORES] += out[STORED]
+    for row in range(rows.shape[0]):
+        rows[row, MISSES] += abs(rows[row, STORES])
+    return -1

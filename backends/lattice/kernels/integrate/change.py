@@ -4,48 +4,56 @@ from __future__ import annotations
 
 import math
 
-from mdlgen.backends.lattice.kernels.state import OWN_REACH, OWN_SIZE, WORST
+from mdlgen.backends.lattice.kernels.state import FLOOR, OWN_REACH, OWN_SIZE, WORST
 from mdlgen.mechanics.arm import way_of
 from mdlgen.mechanics.bounds import fastest_place
+from mdlgen.mechanics.frame import RADIUS
 from mdlgen.mechanics.vector import dot, vec
 from mdlgen.program.kernel import BORROWS, njit
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def greatest(work, res, resb, counters):
-    """The greatest change of a velocity [mm/ms], of turning times a box's size; that of a sheet of which a
-    step may leave less counts that many times."""
+def greatest(work, res, resb, control):
+    """The greatest change of a velocity [mm/ms], of turning times the size of a box or the radius of a
+    roller, times `strict` of its part. Round-off, which is below pace[FLOOR], is no change."""
     bodies, nodes, motion = work.tables.bodies, work.tables.nodes, work.mid.motion
-    boxes = work.tables.boxes
-    label, strict = work.free.label, work.asleep.strict
+    boxes, islands, floor = work.tables.boxes, work.islands, control.pace[FLOOR]
+    label, strict = work.free.label, islands.strict
     change = 0.0
     for n in range(nodes.size):
         size = boxes[n, OWN_SIZE]
         times = strict[label[n]]
         for i in range(6):
-            moved = times * (abs(res[6 * n + i]) if i < 3 else size * abs(res[6 * n + i]))
-            if moved > change:
-                change = moved
-                counters[WORST] = nodes[n]
-    for i in range(resb.size):
-        change = max(change, abs(resb[i]))
+            moved = abs(res[6 * n + i]) if i < 3 else size * abs(res[6 * n + i])
+            if times * moved > change and moved > floor:
+                change = times * moved
+                control.counters[WORST] = nodes[n]
     for k in work.tables.moving:
-        if bodies[k].swings > 0:
-            way = way_of(bodies[k], vec(motion.x, k))
-            change = max(change, math.sqrt(dot(way, way)) * abs(resb[bodies[k].slide]))
+        body, moved = bodies[k], 0.0
+        if body.slide >= 0:
+            way = way_of(body, vec(motion.x, k))
+            moved = math.sqrt(dot(way, way)) * abs(resb[body.slide])
+        if body.spin >= 0:
+            moved = max(moved, body.size[RADIUS] * abs(resb[body.spin]))
+        if moved > floor:
+            change = max(change, strict[islands.part[k]] * moved)
     return change
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def greatest_of_free(tables, free, res):
-    """The same of boxes whose sheets hang on nothing and touch nothing (see momentum.keep) alone."""
+def greatest_of_free(work, res, floor):
+    """The same of boxes whose sheets hang on nothing and touch nothing alone: a contact is solved for to what
+    the step may leave, so no iteration brings sheets that touch to less."""
+    tables, free, strict = work.tables, work.free, work.islands.strict
     change = 0.0
     for n in range(tables.nodes.size):
-        if free.busy[free.one_with[free.label[n]]]:
+        if not free.alone[free.label[n]]:
             continue
         size = tables.boxes[n, OWN_SIZE]
         for i in range(6):
-            change = max(change, abs(res[6 * n + i]) if i < 3 else size * abs(res[6 * n + i]))
+            moved = abs(res[6 * n + i]) if i < 3 else size * abs(res[6 * n + i])
+            if moved > floor:
+                change = max(change, strict[free.label[n]] * moved)
     return change
 
 

@@ -233,7 +233,7 @@ def _say_enough(work, limit):
     boxes, colours = work.tables.boxes, work.matrix.couplings.colouring
     for sheet in range(colours.enough.size):
         low, high = colours.spans[sheet, BEGIN], colours.spans[sheet, END]
-        rate, mass = SOLVED * limit / work.asleep.strict[work.free.label[low]], 0.0
+        rate, mass = SOLVED * limit / work.islands.strict[work.free.label[low]], 0.0
         for n in range(low, high):
             mass += boxes[n, OWN_MASS]
         colours.enough[sheet] = mass * rate * rate
@@ -303,7 +303,7 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
             p[i] = turn * p[i] - z[i]
         for i in range(pb.size):
             pb[i] = turn * pb[i] - zb[i]
-        moved = greatest(work, p, pb, counters)
+        moved = greatest(work, p, pb, control)
         if iteration == 0 and moved <= limit and (made or not doubtful):
             copy(change, p)
             copy(changeb, pb)

@@ -23,7 +23,7 @@ from mdlgen.backends.lattice.kernels.linear.band import factor, solve_single
 from mdlgen.backends.lattice.kernels.linear.colouring import BEGIN, END
 from mdlgen.backends.lattice.kernels.linear.dense import copy
 from mdlgen.backends.lattice.kernels.parallel import OVERSHOOT, begin, finish, take
-from mdlgen.backends.lattice.kernels.state import Damped
+from mdlgen.backends.lattice.kernels.state import DISSIPATED, Damped
 from mdlgen.mechanics.vector import back, mat, rotate
 from mdlgen.program.kernel import BORROWS, njit
 
@@ -145,12 +145,13 @@ def overshoot(work, before, ahead, dt):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def take_off(bodies, nodes, off, rm, r, v, l):
-    """Takes the velocities `off` from those that were carried on. Returns the energy that goes with them
-    [N mm]; rm are the rotations in the middle of the step, r at its end."""
-    gone = 0.0
+def take_off(work, off, energies):
+    """Takes the velocities `off` from those that were carried on. The energy that goes with them is
+    dissipated: energies (groups, 4)."""
+    bodies, nodes, islands, label = work.tables.bodies, work.tables.nodes, work.islands, work.free.label
+    rm, r, v, l = work.mid.motion.r, work.state.r, work.state.v, work.state.l
     for n in range(nodes.size):
-        b = nodes[n]
+        b, gone = nodes[n], 0.0
         mass, j = bodies[b].mass, bodies[b].inertia
         less = _momentum(mat(rm, b), j, (off[n, 3], off[n, 4], off[n, 5]))
         m = mat(r, b)
@@ -163,4 +164,4 @@ def take_off(bodies, nodes, off, rm, r, v, l):
                 for i in range(3):
                     v[n, i] -= off[n, i]
                     l[n, i] -= less[i]
-    return gone
+        energies[islands.group[label[n]], DISSIPATED] += gone

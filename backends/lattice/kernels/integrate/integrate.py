@@ -11,32 +11,34 @@ from mdlgen.backends.lattice.kernels.contact.drift import add_step, list_anew
 from mdlgen.backends.lattice.kernels.contact.search import look, mark_of, strayed
 from mdlgen.backends.lattice.kernels.contact.sticking import end_of_step, put_back, set_aside
 from mdlgen.backends.lattice.kernels.contact.swept import Before, swept
+from mdlgen.backends.lattice.kernels.integrate.account import account
 from mdlgen.backends.lattice.kernels.integrate.air import air_overshoot
-from mdlgen.backends.lattice.kernels.integrate.carry import carry, spun
+from mdlgen.backends.lattice.kernels.integrate.carry import carry
 from mdlgen.backends.lattice.kernels.integrate.damped import overshoot, take_off
 from mdlgen.backends.lattice.kernels.integrate.guess import add_to_history, forget, guess_velocities
-from mdlgen.backends.lattice.kernels.integrate.sleeping import (
+from mdlgen.backends.lattice.kernels.integrate.islands import (
     be_strict,
-    disturbed,
-    miss,
-    note_speeds,
-    part_of,
+    greatest_scale,
+    made_too_much,
+    may_make,
+    measure,
+    missed_guess,
+    round_off,
 )
+from mdlgen.backends.lattice.kernels.integrate.sleeping import disturbed, miss, note_speeds
 from mdlgen.backends.lattice.kernels.integrate.step import midpoint
 from mdlgen.backends.lattice.kernels.linear.dense import copy
 from mdlgen.backends.lattice.kernels.state import (
     ACTS,
     ANEW,
     CLOSE,
-    DAMPED_NUMERICALLY,
     DEPTH_NOW,
     DEPTH_TIME,
-    DISSIPATED,
-    DRIVEN,
     ENDED,
     FACE_DEPTH,
     FACE_POINTS,
     FASTEST,
+    FLOOR,
     FORCE_BEGUN,
     FORCE_NOW,
     FORCE_TIME,
@@ -45,29 +47,22 @@ from mdlgen.backends.lattice.kernels.state import (
     LAST_STEP,
     LEVEL,
     LOOSE,
-    LOST,
     MADE,
     MAX_DEPTH,
     MAX_FORCE,
     MISS,
-    NUMERICAL,
     OWN_MASS,
-    POWER,
-    RECENT,
     STALE,
     STEPS,
     STRAIN,
-    THROUGH_DRIVES,
     TIME,
     TOUCHING,
     TURNING_BEGUN,
     TURNING_NOW,
     WORST,
 )
-from mdlgen.mechanics.arm import AXIAL, DAMPING, speeding
 from mdlgen.mechanics.crossing import deepest
 from mdlgen.mechanics.curve import overstretched
-from mdlgen.mechanics.driven import SENSE, clutch, prescribed
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.pair import remember
 from mdlgen.mechanics.pairs.box_box import deepest as deepest_of_boxes
@@ -86,8 +81,6 @@ HARD, EASY = 8, 5
 # With air a step takes as many where it is a hundred times as short: friction and the normal forces that it
 # wedges go back and forth there, and a film passes that on at any step.
 HARD_WITH_AIR, EASY_WITH_AIR = 14, 8
-# What an iteration changes is not asked to be less than this part of the speed: it is near round-off.
-LEAST = 1e-9
 # Two rollers with a sheet between them clear each other by a few micrometres and may graze: a force below
 # this part of the greatest is not counted as the nip still acting.
 GRAZE = 0.05
@@ -170,45 +163,13 @@ def _outside(x, low, high):
     return -1
 
 
-@njit(cache=True, error_model="numpy")
-def _missed(boxes, u, guess, mass):
-    """Root mean square over the boxes, of that mass with those that sleep, of what the velocities of a step
-    turned out to be against their guess, and of the velocities themselves."""
-    missed = fast = 0.0
-    for n in range(boxes.shape[0]):
-        own = boxes[n, OWN_MASS]
-        for i in range(3):
-            missed += own * (u[n, i] - guess[n, i]) ** 2
-            fast += own * u[n, i] ** 2
-    return (math.sqrt(missed / mass), math.sqrt(fast / mass)) if mass > 0.0 else (0.0, 0.0)
-
-
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _account(tables, mid, state, t, dt, energies):
-    """Adds what a step dissipated, what drives and loads put in, how much that moved either way, and what
-    the numerical damping of joints had of what was dissipated."""
-    bodies, f, ub, vb = tables.bodies, mid.forces, state.ub, state.vb
-    lost, driving = mid.totals[LOST], mid.totals[POWER]
-    for b in tables.moving:
-        if bodies[b].clutch[SENSE] != 0.0:
-            spin, before = ub[bodies[b].spin], vb[bodies[b].spin]
-            torque, _, shaft = clutch(bodies[b], spin, t + 0.5 * dt)
-            lost += torque * (shaft - spin)
-            driving += torque * shaft
-            ahead, after = 2.0 * spin - before, spun(bodies[b], spin, before, t, dt)
-            lost += 0.5 * bodies[b].press[AXIAL] * (ahead * ahead - after * after) / dt
-        elif bodies[b].corners > 0:
-            rate = prescribed(bodies[b], t + 0.5 * dt)
-            axis = bodies[b].axis
-            driving -= rate * (f[b, 3] * axis[0] + f[b, 4] * axis[1] + f[b, 5] * axis[2])
-            if bodies[b].swings == 2:
-                driving -= speeding(bodies[b], t + 0.5 * dt, 0.5 * dt) * ub[bodies[b].slide]
-        if bodies[b].slide >= 0:
-            lost += bodies[b].press[DAMPING] * ub[bodies[b].slide] ** 2
-    energies[DISSIPATED] += dt * lost
-    energies[DRIVEN] += dt * driving
-    energies[THROUGH_DRIVES] += dt * abs(driving)
-    energies[DAMPED_NUMERICALLY] += dt * mid.totals[NUMERICAL]
+def _speed(work, mass):
+    """Root mean square speed of all sheets, of that mass with those that sleep; 0 where there is none."""
+    boxes, u, moving = work.tables.boxes, work.state.u, 0.0
+    for n in range(boxes.shape[0]):
+        moving += boxes[n, OWN_MASS] * (u[n, 0] * u[n, 0] + u[n, 1] * u[n, 1] + u[n, 2] * u[n, 2])
+    return math.sqrt(moving / mass) if mass > 0.0 else 0.0
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
@@ -216,10 +177,9 @@ def run(work, t, steps, tolerance, control):
     """Takes the steps `steps` (n,) [ms] from time t. Returns (status, time reached).
 
     A step is halved, up to DEEPEST times, where it does not converge, or where the velocities miss their
-    guess by more than pace[MISS]. `tolerance` and that are parts of the greatest speed so far. Nor may
-    contacts make or lose more in one step than pace[MADE] of the energy that passes through the run: the
-    kinetic energy at that speed, what drives moved either way, what was dissipated. See state.Control. Before
-    a step that would move a box that sleeps the status is WOKEN, and the box is counters[WORST].
+    guess by more than pace[MISS]. `tolerance` and that are relative to the speed of each island. Nor may the
+    contacts of an island make or lose more in one step than pace[MADE] of its energy. See integrate.islands.
+    Before a step that would move a box that sleeps the status is WOKEN, and the box is counters[WORST].
     """
     tables, state, mid, rows = work.tables, work.state, work.mid, work.kept.rows
     bodies, pairs, nodes, search = tables.bodies, tables.pairs, tables.nodes, work.search
@@ -227,7 +187,7 @@ def run(work, t, steps, tolerance, control):
     counters, energies, pace = control.counters, control.energies, control.pace
     spans = control.history.spans
     keep_u, keep_b, guess = u.copy(), ub.copy(), u.copy()
-    mass, stored, begun = 0.0, np.zeros(rows.shape[0]), t
+    mass, stored, allowed, begun = 0.0, np.zeros((rows.shape[0], 2)), np.zeros(rows.shape[0]), t
     for row in range(rows.shape[0]):
         rows[row, FORCE_BEGUN] = rows[row, FORCE_NOW]
         for i in range(TURNING):
@@ -236,6 +196,9 @@ def run(work, t, steps, tolerance, control):
         mass += bodies[nodes[n]].mass
     for b in work.asleep.bodies:
         mass += bodies[b].mass
+    driven = np.zeros(energies.shape[0])
+    if counters[STEPS] == 0.0:
+        measure(work, t, 0)
     for whole in steps:
         done = 0
         while done < 1 << DEEPEST:
@@ -257,16 +220,14 @@ def run(work, t, steps, tolerance, control):
                 if not look(pairs, search, x):
                     return CROWDED, t
                 if mid.sticks.pairs.size > 0:
-                    energies[DISSIPATED] += put_back(pairs, mid.sticks, search.first)
+                    put_back(pairs, mid.sticks, search.first, work.islands, energies)
             iterations = counters[ITERATIONS]
             # a halved step's guess is the better, and what it may leave must fall as fast; where sheets lie
             # on each other iterations do not come as far
-            least = LEAST if search.regions.size == 0 else tolerance
-            pace[LOOSE] = limit = pace[FASTEST] * max(tolerance * 0.25**level, least)
-            if search.regions.size > 0 and pace[FASTEST] > 0.0:
-                part = part_of(pace[RECENT], pace[FASTEST])
-                be_strict(work.asleep, pace[FASTEST], part)
-                limit *= part
+            finer = 0.25**level if search.regions.size == 0 else 1.0
+            greatest, pace[FLOOR] = greatest_scale(work.islands), round_off(work, 0.5 * dt)
+            pace[LOOSE] = limit = max(greatest * tolerance * finer, pace[FLOOR])
+            be_strict(work.islands, greatest, limit / pace[FLOOR])
             solved = midpoint(work, t, dt, limit, control)
             woken = disturbed(bodies, mid.forces, work.asleep, dt) if solved else -1
             if woken >= 0:
@@ -274,27 +235,28 @@ def run(work, t, steps, tolerance, control):
                 copy(ub, keep_b)
                 counters[WORST] = woken
                 return WOKEN, t
-            missed, fast = _missed(tables.boxes, u, guess, mass) if solved else (0.0, 0.0)
-            most = pace[MISS] * max(fast, pace[FASTEST]) if pace[MISS] > 0.0 else 1e300
+            missed = missed_guess(work, guess, pace[FLOOR]) if solved else 0.0
+            most = pace[MISS] if pace[MISS] > 0.0 else 1e300
             if solved and search.regions.size > 0:
                 solved = not strayed(bodies, search, x, u, dt)
             deep = _deep(tables, mid, int(counters[TOUCHING])) if solved else -1
-            moving = 0.5 * mass * max(fast, pace[FASTEST]) ** 2
-            through = max(energies[THROUGH_DRIVES], abs(energies[DISSIPATED]), moving)
-            made, allowed = 0.0, pace[MADE] * through
+            made = 0.0
             if solved and deep < 0:
+                least = may_make(work.islands, pace[MADE], allowed)
                 counts = int(counters[TOUCHING]), int(counters[CLOSE])
                 # of the way from the middle of the step before, what is in this step
                 inside = dt / (dt + spans[LAST_STEP]) if spans[LAST_STEP] > 0.0 else 0.0
-                deep, made = swept(work, counts, t, dt, allowed, Before(keep_u, keep_b, inside), stored)
-            coarse = missed > AGAIN * most or made > AGAIN * allowed
+                before = Before(keep_u, keep_b, inside)
+                deep = swept(work, counts, t, dt, (allowed, least), before, stored)
+                made = made_too_much(work.islands, stored, allowed) if pace[MADE] > 0.0 else 0.0
+            coarse = missed > AGAIN * most or made > AGAIN
             if not solved or ((coarse or deep >= 0) and level < FINEST):
                 copy(u, keep_u)
                 copy(ub, keep_b)
                 if level == DEEPEST:
                     return STOPPED, t
                 # what is made of energy goes with the step to the power of 5/2, or 3
-                halvings = math.ceil(math.log2(made / allowed) / 2.5) if made > AGAIN * allowed else 1
+                halvings = math.ceil(math.log2(made) / 2.5) if made > AGAIN else 1
                 pace[LEVEL] = min(level + max(1, halvings), DEEPEST if level >= FINEST else FINEST)
                 if not solved:
                     counters[GIVEN_UP] += 1
@@ -307,13 +269,13 @@ def run(work, t, steps, tolerance, control):
             if work.film.films.size > 0:
                 course = dt / (dt + spans[LAST_STEP]) if spans[LAST_STEP] > 0.0 else 0.0
                 air_overshoot(work, keep_u, course, dt)
+            measure(work, t + 0.5 * dt, int(counters[TOUCHING]))
             if work.asleep.speeds.size > 0:
                 note_speeds(tables.boxes, work.free.label, u, work.asleep)
                 miss(mid.forces, work.asleep, dt)
-            _account(tables, mid, state, t, dt, energies)
+            account(work, t, dt, int(counters[TOUCHING]), energies, driven)
             if mid.sticks.pairs.size > 0:
-                gone = end_of_step(work, int(counters[TOUCHING]), int(counters[CLOSE]))
-                energies[DISSIPATED] += gone
+                end_of_step(work, int(counters[TOUCHING]), int(counters[CLOSE]), energies)
             _watch(tables, search, mid, int(counters[TOUCHING]), t, dt, work.kept, work.asleep)
             if t == begun:
                 _begun(rows, spans[LAST_STEP] / (spans[LAST_STEP] + dt))
@@ -322,21 +284,19 @@ def run(work, t, steps, tolerance, control):
                 add_step(work, dt)
             carry(tables, state, t, dt)
             if work.damped.joints.size > 0:
-                gone = take_off(bodies, nodes, work.damped.off, mid.motion.r, r, state.v, state.l)
-                energies[DISSIPATED] += gone
+                take_off(work, work.damped.off, energies)
             if work.film.films.size > 0:
-                gone = take_off(bodies, nodes, work.film.off, mid.motion.r, r, state.v, state.l)
-                energies[DISSIPATED] += gone
+                take_off(work, work.film.off, energies)
             remember(bodies, pairs[: search.first], Motion(x, r, mid.motion.u, mid.motion.w))
             counters[STEPS] += 1
             done += size
-            pace[FASTEST], pace[RECENT] = max(pace[FASTEST], fast), fast
+            pace[FASTEST] = max(pace[FASTEST], _speed(work, mass))
             t += dt
             iterations = counters[ITERATIONS] - iterations
-            quiet = missed <= most / 6.0 and made <= allowed / 10.0
+            quiet = missed <= most / 6.0 and made <= 0.1
             air = work.film.many[0] > 0
             hard, easy = (HARD_WITH_AIR, EASY_WITH_AIR) if air else (HARD, EASY)
-            if (missed > most or made > allowed or iterations > hard) and level < FINEST:
+            if (missed > most or made > 1.0 or iterations > hard) and level < FINEST:
                 pace[LEVEL] = level + 1
             elif level > 0 and quiet and iterations < easy and done % (2 * size) == 0:
                 pace[LEVEL] = level - 1

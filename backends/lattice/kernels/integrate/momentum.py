@@ -41,6 +41,7 @@ def empty(system) -> Free:
         sheet,
         loose,
         np.zeros(parts, np.bool_),
+        np.zeros(parts, np.bool_),
         np.zeros(6 * len(nodes)),
         np.arange(parts),
         cut,
@@ -89,7 +90,7 @@ def _tie(tables, touched, count, film, free):
     last = -1, -1
     for part in range(loose.size):
         one_with[part] = part
-        busy[part] = not loose[part]
+        busy[part], free.alone[part] = not loose[part], loose[part]
     for k in range(count + film.many[0]):
         p = touched[k] if k < count else film.listed[k - count]
         if p >= first:
@@ -99,6 +100,10 @@ def _tie(tables, touched, count, film, free):
         if one == last[0] and two == last[1]:  # as of most of the many boxes of two sheets
             continue
         last = one, two
+        if one >= 0:
+            free.alone[one] = False
+        if two >= 0:
+            free.alone[two] = False
         if one >= 0 and two >= 0:
             one_with[_top(one_with, one)] = _top(one_with, two)
         elif one >= 0 or two >= 0:
@@ -205,9 +210,10 @@ def let_go(work, push, pushb, into):
             angular = scale(dot(angular, across), across)
         turns = dot(angular, angular) / (inertia * total) if inertia > 0.0 else 0.0
         moves = max(dot(linear, linear) / (total * total), turns)
-        into[row] = work.asleep.strict[sheet] * math.sqrt(moves)
+        into[row] = work.islands.strict[sheet] * math.sqrt(moves)
         greatest = max(greatest, into[row])
     for i in range(pushb.size):
-        into[spans.shape[0] + i] = abs(pushb[i]) / own[i, i]
+        part = work.islands.of_border[i]
+        into[spans.shape[0] + i] = work.islands.strict[part] * abs(pushb[i]) / own[i, i]
         greatest = max(greatest, into[spans.shape[0] + i])
     return greatest

@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 from mdlgen.backends.lattice.kernels.contact.between import faces_into, forces_at
-from mdlgen.backends.lattice.kernels.contact.sticking import energy_of
+from mdlgen.backends.lattice.kernels.contact.sticking import energy_into
 from mdlgen.backends.lattice.kernels.forces import joint_forces, near_pairs
 from mdlgen.backends.lattice.kernels.state import (
     DEPTH_NOW,
     ELASTIC,
     FACE_POINTS,
+    FACE_STORED,
     FORCE_NOW,
     KINETIC,
     POTENTIAL,
+    SHEET,
     TURNING_NOW,
 )
 from mdlgen.mechanics.arm import AXIAL, FORCE_0, INERTIA, STIFFNESS, hung, way_of
 from mdlgen.mechanics.driven import prescribed
 from mdlgen.mechanics.frame import Motion
-from mdlgen.mechanics.point import DEPTH, PRESSING
+from mdlgen.mechanics.point import DEPTH, PRESSING, STORED
 from mdlgen.mechanics.turning import turning
 from mdlgen.mechanics.vector import back, dot, mat, rotate, three, vec
 from mdlgen.model.tables.contacts import BOX_BOX
@@ -25,19 +27,22 @@ from mdlgen.program.kernel import njit
 
 
 @njit(cache=True, error_model="numpy")
-def ledger(tables, state, mid, t, first, energies, rows):
+def ledger(work, t, energies, rows):
     """Velocities of all bodies at the end of a step, at time t, into those of the midpoint's motion; kinetic,
-    elastic and potential energy; adds to each row of the contacts its normal force, FORCE_NOW, and what it
-    turns, TURNING_NOW, and has its greatest depth in DEPTH_NOW. `first`: of the pairs that are searched."""
-    bodies, gravity, nodes = tables.bodies, tables.gravity, tables.nodes
+    elastic and potential energy into energies (groups, 3); adds to each row of the contacts its normal force,
+    FORCE_NOW, and what it turns, TURNING_NOW, and has its greatest depth in DEPTH_NOW."""
+    tables, state, mid, islands = work.tables, work.state, work.mid, work.islands
+    bodies, gravity, nodes, label = tables.bodies, tables.gravity, tables.nodes, work.free.label
+    first, groups, regions = work.search.first, islands.group_of_row, work.search.regions
     x, r, v, l, s, vb = state.x, state.r, state.v, state.l, state.s, state.vb
     u, w, f = mid.motion.u, mid.motion.w, mid.forces
     u[:] = 0.0
     w[:] = 0.0
     f[:] = 0.0
-    kinetic = elastic = potential = 0.0
+    energies[:] = 0.0
     for n in range(nodes.size):
-        b = nodes[n]
+        b, group = nodes[n], islands.group[label[n]]
+        kinetic = potential = 0.0
         m = mat(r, b)
         j = bodies[b].inertia
         own = back(m, (l[n, 0], l[n, 1], l[n, 2]))
@@ -47,9 +52,11 @@ def ledger(tables, state, mid, t, first, energies, rows):
             u[b, i], w[b, i] = v[n, i], spin[i]
             kinetic += 0.5 * mass * v[n, i] * v[n, i] + 0.5 * l[n, i] * spin[i]
             potential -= mass * gravity[i] * x[b, i]
+        energies[group, KINETIC] += kinetic
+        energies[group, POTENTIAL] += potential
     for b in range(bodies.size - 1):
         slide, spin_at, p = bodies[b].slide, bodies[b].spin, bodies[b].press
-        rate = 0.0
+        rate = kinetic = elastic = potential = 0.0
         if slide >= 0:
             way = way_of(bodies[b], vec(x, b))
             kinetic += 0.5 * p[INERTIA] * vb[slide] * vb[slide]
@@ -71,18 +78,26 @@ def ledger(tables, state, mid, t, first, energies, rows):
             rate += vb[slide]
         for i in range(3):
             w[b, i] += rate * bodies[b].axis[i]
+        if slide >= 0 or spin_at >= 0:
+            own = energies[islands.group[islands.part[b]]]
+            own[KINETIC], own[ELASTIC] = own[KINETIC] + kinetic, own[ELASTIC] + elastic
+            own[POTENTIAL] += potential
     motion = Motion(x, r, u, w)
-    stored, _, _ = joint_forces(tables.joints, tables.points, motion, f)
+    for k in range(tables.runs.shape[0]):
+        joints = tables.joints[tables.runs[k, 0] : tables.runs[k, 1]]
+        stored, _, _ = joint_forces(joints, tables.points, motion, f)
+        energies[islands.group[tables.runs[k, SHEET]], ELASTIC] += stored
     close = near_pairs(tables, motion, 0.0, 0.0, mid.near)
-    count, pressed = forces_at(tables, mid, first, motion, close)
-    pressed += energy_of(mid.sticks)
+    count, _ = forces_at(tables, mid, first, motion, close)
+    energy_into(mid.sticks, tables.listed, regions, groups, energies)
     for k in range(count):
         pair = tables.pairs[mid.touched[k]]
         if pair.kind == BOX_BOX and mid.faces[k, FACE_POINTS] == 0.0:
+            energies[groups[pair.row], ELASTIC] += mid.faces[k, FACE_STORED]
             faces_into(rows, pair.row, mid.faces[k])
             continue
         out = mid.results[mid.rows[k]]
+        energies[groups[pair.row], ELASTIC] += out[STORED]
         rows[pair.row, FORCE_NOW] += out[PRESSING]
         rows[pair.row, DEPTH_NOW] = max(rows[pair.row, DEPTH_NOW], out[DEPTH])
         turning(tables.bodies, pair, out, rows, pair.row, TURNING_NOW)
-    energies[KINETIC], energies[ELASTIC], energies[POTENTIAL] = kinetic, elastic + stored + pressed, potential

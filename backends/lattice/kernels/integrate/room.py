@@ -49,10 +49,11 @@ def empty(system, wide: int) -> tuple[State, Midpoint, Matrix]:
         motion=Motion(*places, *rates),
         forces=np.zeros((bodies, 6)),
         touched=np.zeros(len(system.pairs), np.int64),
-        results=np.zeros((max(1, len(system.pairs)), wide)),
+        results=np.zeros((len(system.pairs) + 1, wide)),  # a loop takes the row behind the last one
         rows=np.arange(max(1, len(system.pairs))),
         faces=np.zeros((max(1, len(system.pairs)), FACE)),
-        totals=np.zeros(3),
+        totals=np.zeros(2),
+        spent=np.zeros((len(system.runs), 2)),
         near=np.zeros(len(system.pairs), np.int64),
         overlaps=np.zeros(max(1, len(system.pairs) - system.search.first), OVERLAP),
         spare=np.zeros(1, OVERLAP),

@@ -32,7 +32,7 @@ from mdlgen.backends.lattice.kernels.contact.drift import list_near
 from mdlgen.backends.lattice.kernels.contact.sides import crossed, part_of_change
 from mdlgen.backends.lattice.kernels.forces import (
     clutch_torques,
-    joint_forces,
+    joint_forces_of_sheets,
     other_forces,
     pair_forces,
     pair_forces_again,
@@ -57,12 +57,12 @@ from mdlgen.backends.lattice.kernels.linear.sheets import factor_sheets
 from mdlgen.backends.lattice.kernels.state import (
     CLOSE,
     FACTORS,
+    FLOOR,
     ITERATIONS,
     LOOSE,
     LOST,
     MADE_FOR,
     MIDDLE,
-    NUMERICAL,
     OWN_INERTIA,
     OWN_MASS,
     POWER,
@@ -192,7 +192,7 @@ def _done(work, h, counts, totals, counters):
     """Ends a step whose velocities are found; `counts`: how many pairs touch, how many are near. Returns
     whether no sheet went through another."""
     mid, search = work.mid, work.search
-    mid.totals[LOST], mid.totals[POWER], mid.totals[NUMERICAL] = totals
+    mid.totals[LOST], mid.totals[POWER] = totals
     counters[TOUCHING], counters[CLOSE] = counts
     if search.regions.size > 0:
         fastest(work.tables, work.state.u, mid.fastest[MIDDLE])
@@ -229,7 +229,7 @@ def midpoint(work, t, dt, tolerance, control):
         if iteration == 0 and work.film.films.size > 0:
             air = lay(work, h)
         mid.forces[:] = 0.0
-        _stored, lost, numerical = joint_forces(tables.joints, tables.points, mid.motion, mid.forces, lag)
+        joint_forces_of_sheets(tables, mid.motion, mid.forces, lag, mid.spent)
         known = iteration > 0 and where == APART and condensed.looked[UP_TO_DATE] == 1
         known = known and not sheets
         count, rubbed = _contact_forces(work, close, h, known)
@@ -289,7 +289,7 @@ def midpoint(work, t, dt, tolerance, control):
         found = 0.0
         if where == INSIDE:
             # what is mixed may be small while what is left is not
-            found = greatest(work, res, resb, counters)
+            found = greatest(work, res, resb, control)
             if inner < 0:
                 found = max(found, 2.0 * limit)
             # without air, steps that do not resolve contacts would end where they are halved otherwise: more
@@ -301,14 +301,14 @@ def midpoint(work, t, dt, tolerance, control):
         if part < 1.0:
             res *= part
             resb *= part
-        change = max(found, greatest(work, res, resb, counters))
+        change = max(found, greatest(work, res, resb, control))
         take_off(state, res, resb)
         if not change < 1e30:
             break
         moved += change
         if count > 0:
             # what is free beside what touches converges as far as it would alone
-            change = max(change, greatest_of_free(tables, work.free, res) / FREE)
+            change = max(change, greatest_of_free(work, res, control.pace[FLOOR]) / FREE)
         rate = change / before
         falls = before < 1e299 and rate < 0.5
         if dt * moved <= margin and (change <= limit or (falls and change * rate / (1.0 - rate) <= limit)):
@@ -319,7 +319,7 @@ def midpoint(work, t, dt, tolerance, control):
                 count, rubbed = _contact_forces(work, close, h, False)
             release(condensed, m)
             factored[TOUGH] = MEMORY if iteration >= last else max(factored[TOUGH] - 1.0, 0.0)
-            return _done(work, h, (count, close), (lost + rubbed, power, numerical), counters)
+            return _done(work, h, (count, close), (rubbed, power), counters)
         slow = before < 1e299 and (rate >= 1.0 or math.log(limit / change) < (WORTH + m) * math.log(rate))
         if slow and (where != INSIDE or inner == 1):
             factored[STALE] = 1.0

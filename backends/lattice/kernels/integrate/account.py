@@ -1,0 +1,107 @@
+"""What a step dissipates and what drives and loads put in, for each group of parts.
+
+A group has all parts that may ever touch each other, so energy passes between no two of them, and each has a
+balance of its own: what one group loses cannot hide what another one gains.
+"""
+
+from __future__ import annotations
+
+from mdlgen.backends.lattice.kernels.integrate.carry import spun
+from mdlgen.backends.lattice.kernels.state import (
+    DAMPED_NUMERICALLY,
+    DISSIPATED,
+    DRIVEN,
+    FACE_LOST,
+    FACE_POINTS,
+    LOST,
+    NUMERICAL,
+    POWER,
+    SHEET,
+    THROUGH_DRIVES,
+)
+from mdlgen.mechanics.arm import AXIAL, DAMPING, speeding
+from mdlgen.mechanics.driven import SENSE, clutch, prescribed
+from mdlgen.mechanics.point import DISSIPATED as OF_PAIR
+from mdlgen.mechanics.point import TORQUE_A, TORQUE_B
+from mdlgen.mechanics.vector import add, cross, dot, mat, rotate, three, three_from, vec
+from mdlgen.program.kernel import BORROWS, njit
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _loads(work, driven):
+    """Power of the loads, by groups [N mm/ms]."""
+    loads, motion, islands = work.tables.loads, work.mid.motion, work.islands
+    for k in range(loads.size):
+        b, force, moment = loads[k].body, three(loads[k].force), three(loads[k].moment)
+        arm, w = rotate(mat(motion.r, b), three(loads[k].local)), vec(motion.w, b)
+        power = dot(force, add(vec(motion.u, b), cross(w, arm))) + dot(moment, w)
+        driven[islands.group[max(islands.part[b], 0)]] += power
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _contacts(work, t, dt, count, energies, driven):
+    """What contacts and air dissipate, and what they take from drives that answer no force. t: the middle of
+    the step [ms]."""
+    tables, mid, film, islands = work.tables, work.mid, work.film, work.islands
+    bodies, pairs, listed = tables.bodies, tables.pairs, tables.listed
+    first = pairs.size - listed.size
+    for k in range(count):
+        p = mid.touched[k]
+        if p >= first and mid.faces[k, FACE_POINTS] == 0.0:
+            group = islands.group_of_row[work.search.regions[listed[p - first].region].row]
+            energies[group, DISSIPATED] += dt * mid.faces[k, FACE_LOST]
+            continue
+        out, group = mid.results[mid.rows[k]], islands.group_of_row[pairs[p].row]
+        energies[group, DISSIPATED] += dt * out[OF_PAIR]
+        for b, torque in ((pairs[p].a, TORQUE_A), (pairs[p].b, TORQUE_B)):
+            if islands.part[b] >= 0 and not islands.answers[islands.part[b]]:
+                about = dot(three_from(out, torque), three(bodies[b].axis))
+                driven[group] -= prescribed(bodies[b], t) * about
+    for k in range(film.many[0]):
+        group, i = islands.group_of_row[pairs[film.listed[k]].row], film.head[film.listed[k]]
+        while i >= 0:
+            own = film.cells[i]
+            energies[group, DISSIPATED] += dt * own.area * own.pressure * own.rate
+            i = own.following
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def account(work, t, dt, count, energies, driven):
+    """Adds to the energies (groups, 4) what a step from t dissipated, what drives and loads put in, how much
+    that moved either way, and what numerical damping of joints had of it. `count`: how many pairs touch;
+    driven (groups,): scratch."""
+    tables, mid, state, islands = work.tables, work.mid, work.state, work.islands
+    bodies, f, ub, vb = tables.bodies, mid.forces, state.ub, state.vb
+    driven[:] = 0.0
+    for k in range(tables.runs.shape[0]):
+        group = islands.group[tables.runs[k, SHEET]]
+        energies[group, DISSIPATED] += dt * mid.spent[k, LOST]
+        energies[group, DAMPED_NUMERICALLY] += dt * mid.spent[k, NUMERICAL]
+    several = energies.shape[0] > 1
+    if several:
+        _loads(work, driven)
+        _contacts(work, t + 0.5 * dt, dt, count, energies, driven)
+    else:
+        energies[0, DISSIPATED] += dt * mid.totals[LOST]
+        driven[0] += mid.totals[POWER]
+    for b in tables.moving:
+        group = islands.group[islands.part[b]]
+        lost = 0.0
+        if bodies[b].clutch[SENSE] != 0.0:
+            spin, before = ub[bodies[b].spin], vb[bodies[b].spin]
+            torque, _, shaft = clutch(bodies[b], spin, t + 0.5 * dt)
+            lost += torque * (shaft - spin)
+            driven[group] += torque * shaft
+            ahead, after = 2.0 * spin - before, spun(bodies[b], spin, before, t, dt)
+            lost += 0.5 * bodies[b].press[AXIAL] * (ahead * ahead - after * after) / dt
+        elif bodies[b].corners > 0 and (islands.answers[islands.part[b]] or not several):
+            rate, axis = prescribed(bodies[b], t + 0.5 * dt), bodies[b].axis
+            driven[group] -= rate * (f[b, 3] * axis[0] + f[b, 4] * axis[1] + f[b, 5] * axis[2])
+            if bodies[b].swings == 2:
+                driven[group] -= speeding(bodies[b], t + 0.5 * dt, 0.5 * dt) * ub[bodies[b].slide]
+        if bodies[b].slide >= 0:
+            lost += bodies[b].press[DAMPING] * ub[bodies[b].slide] ** 2
+        energies[group, DISSIPATED] += dt * lost
+    for group in range(driven.size):
+        energies[group, DRIVEN] += dt * driven[group]
+        energies[group, THROUGH_DRIVES] += dt * abs(driven[group])

@@ -1,0 +1,230 @@
+"""Islands: parts that touch, and the speed and energy by which a step of each is measured.
+
+A part is a sheet, or a body that turns or slides. Parts that touch form an island, since a motion passes from
+one to the other. What is fixed or driven passes none: two sheets on one plate are two islands. A driven
+surface counts with its speed where it touches, because it gives that speed to the sheet.
+
+What iterations may leave in a part, what its guess may miss and what its contacts may make of energy are
+parts of the speed and the energy of its island in the last step. So no fast body elsewhere, and no earlier
+motion, makes a step of a slow one coarser.
+"""
+
+from __future__ import annotations
+
+import math
+
+from mdlgen.backends.lattice.kernels.contact.swept import MISSES
+from mdlgen.backends.lattice.kernels.state import (
+    FACE_POINTS,
+    FACE_STORED,
+    OWN_INERTIA,
+    OWN_MASS,
+)
+from mdlgen.mechanics.arm import AXIAL, INERTIA, way_of
+from mdlgen.mechanics.driven import prescribed
+from mdlgen.mechanics.frame import RADIUS
+from mdlgen.mechanics.point import STORED
+from mdlgen.mechanics.vector import back, dot, mat, three_from, vec
+from mdlgen.program.kernel import BORROWS, njit
+
+# Where sheets may lie on each other, iterations follow a part down to 1/SLOW of its least speed, and leave
+# STILL of it at least: the midpoint rule damps nothing, so what they leave in a pile at rest would ring on.
+SLOW, STILL = 10.0, 0.005
+# Velocities are not resolved below so many units in the last place of a box's coordinates over half of the
+# step: a relative place is a sum of two coordinates and two arms, each of them rounded twice.
+UNITS = 8.0
+EPSILON = 2.220446049250313e-16  # of a double
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _top(top, part):
+    while top[part] != part:
+        part = top[part]
+    return part
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _speeds_of_sheets(work):
+    """Kinetic energies of sheets, and the root mean square speeds of all their matter."""
+    boxes, nodes, label = work.tables.boxes, work.tables.nodes, work.free.label
+    r, u, islands = work.mid.motion.r, work.state.u, work.islands
+    for n in range(nodes.size):
+        j = three_from(boxes[n], OWN_INERTIA)
+        w = back(mat(r, nodes[n]), (u[n, 3], u[n, 4], u[n, 5]))
+        square = u[n, 0] * u[n, 0] + u[n, 1] * u[n, 1] + u[n, 2] * u[n, 2]
+        turning = j[0] * w[0] * w[0] + j[1] * w[1] * w[1] + j[2] * w[2] * w[2]
+        islands.energy[label[n]] += 0.5 * (boxes[n, OWN_MASS] * square + turning)
+    for n in range(nodes.size):
+        part = label[n]
+        if islands.mass[part] > 0.0:
+            islands.speed[part] = math.sqrt(2.0 * islands.energy[part] / islands.mass[part])
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _speeds_of_moving(work, t):
+    """The same of bodies that turn or slide: speeds are those of the rim and of the slide together."""
+    bodies, x, ub, islands = work.tables.bodies, work.mid.motion.x, work.state.ub, work.islands
+    for b in work.tables.moving:
+        body, part = bodies[b], islands.part[b]
+        turns = ub[body.spin] if body.spin >= 0 else prescribed(body, t)
+        speed = abs(turns) * body.size[RADIUS]
+        if body.spin >= 0:
+            islands.energy[part] += 0.5 * body.press[AXIAL] * turns * turns
+        if body.slide >= 0:
+            way, rate = way_of(body, vec(x, b)), ub[body.slide]
+            speed += abs(rate) * math.sqrt(dot(way, way))
+            islands.energy[part] += 0.5 * body.press[INERTIA] * rate * rate
+        islands.speed[part] = speed
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _join(islands, one, two):
+    """Two parts, -1 for what does not move, touch each other."""
+    if one < 0 or two < 0:
+        return
+    if islands.answers[one] and islands.answers[two]:
+        islands.top[_top(islands.top, one)] = _top(islands.top, two)
+    elif islands.answers[one]:
+        islands.given[one] = max(islands.given[one], islands.speed[two])
+    else:
+        islands.given[two] = max(islands.given[two], islands.speed[one])
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _join_touching(work, count):
+    """Parts of the pairs that touch, and of those with air between them; adds what contacts store."""
+    tables, mid, film, islands = work.tables, work.mid, work.film, work.islands
+    pairs, listed, part = tables.pairs, tables.listed, islands.part
+    first = pairs.size - listed.size
+    last = -2, -2
+    for k in range(count + film.many[0]):
+        p = mid.touched[k] if k < count else film.listed[k - count]
+        if p >= first:
+            one, two = part[listed[p - first].a], part[listed[p - first].b]
+        else:
+            one, two = part[pairs[p].a], part[pairs[p].b]
+        if k < count and max(one, two) >= 0:
+            stored = 0.0
+            if p < first or mid.faces[k, FACE_POINTS] > 0.0:
+                stored = mid.results[mid.rows[k], STORED]
+            else:
+                stored = mid.faces[k, FACE_STORED]
+            islands.energy[one if one >= 0 else two] += stored
+        if one == last[0] and two == last[1]:  # as of most of the many boxes of two sheets
+            continue
+        last = one, two
+        _join(islands, one, two)
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def measure(work, t, count):
+    """Finds the islands, speeds and energies of the step that was taken last, or of the start; t: its middle
+    [ms], `count`: how many pairs touched in it."""
+    islands = work.islands
+    top, speed, energy = islands.top, islands.speed, islands.energy
+    for part in range(top.size):
+        top[part] = part
+        speed[part] = energy[part] = islands.given[part] = 0.0
+    _speeds_of_sheets(work)
+    _speeds_of_moving(work, t)
+    _join_touching(work, count)
+    scale, least = islands.scale, islands.least
+    for part in range(top.size):
+        top[part] = _top(top, part)
+        scale[part] = 0.0
+    for part in range(top.size):
+        own = max(speed[part], islands.given[part])
+        scale[top[part]] = max(scale[top[part]], own)
+    for part in range(top.size):
+        speed[part] = scale[top[part]]
+    for part in range(top.size):
+        scale[part] = max(speed[part], least[part])
+        energy[part] += 0.5 * islands.mass[part] * scale[part] * scale[part]
+        if top[part] != part:
+            energy[top[part]] += energy[part]
+    if work.search.regions.size > 0:
+        for part in range(top.size):
+            low = max(STILL * least[part], min(SLOW * speed[part], least[part]))
+            scale[part] = max(speed[part], low)
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def greatest_scale(islands):
+    """The greatest speed by which a part is measured [mm/ms]."""
+    found = 0.0
+    for part in range(islands.scale.size):
+        if islands.answers[part]:
+            found = max(found, islands.scale[part])
+    return found
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def be_strict(islands, greatest, most):
+    """Has a step leave as much less in each part as its island is slower than the `greatest` scale, down to
+    1/`most`, which is round-off."""
+    for part in range(islands.scale.size):
+        slower = greatest / islands.scale[part] if islands.scale[part] > 0.0 else 1.0
+        islands.strict[part] = max(1.0, min(slower, most))
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def round_off(work, h):
+    """The velocity [mm/ms] below which changes are round-off of places, h [ms] being half of the step.
+
+    A change of the velocities moves places by h of it. What is stiff answers an error e of places by e/h,
+    what is soft by less. So changes do not fall below that in double precision, at any mass and stiffness.
+    """
+    tables, x, u = work.tables, work.state.x, work.state.u
+    far = fast = 0.0
+    for n in range(tables.nodes.size):
+        b = tables.nodes[n]
+        for i in range(3):
+            far, fast = max(far, abs(x[b, i])), max(fast, abs(u[n, i]))
+    for b in tables.moving:
+        for i in range(3):
+            far = max(far, abs(x[b, i]))
+    return UNITS * EPSILON * (far / h + fast)
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def missed_guess(work, guess, floor):
+    """By how much the velocities of a step missed their guess, relative to the scale of the sheet for which
+    that is the most: root mean squares by mass. What is below `floor` is none."""
+    boxes, u, label, islands = work.tables.boxes, work.state.u, work.free.label, work.islands
+    sums, found = islands.sums, 0.0
+    sums[:] = 0.0
+    for n in range(boxes.shape[0]):
+        for i in range(3):
+            sums[label[n]] += boxes[n, OWN_MASS] * (u[n, i] - guess[n, i]) ** 2
+    for part in range(sums.size):
+        if islands.mass[part] > 0.0 and sums[part] > islands.mass[part] * floor * floor:
+            found = max(found, math.sqrt(sums[part] / islands.mass[part]) / islands.scale[part])
+    return found
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def may_make(islands, part, allowed):
+    """Sets what contacts may make or lose of energy in a step [N mm], (contacts,): that part of the energy of
+    their islands. Returns the least of them."""
+    least = 1e300
+    for row in range(allowed.size):
+        of = islands.of_row[row]
+        allowed[row] = part * islands.energy[islands.top[of]] if of >= 0 else 1e300
+        least = min(least, allowed[row])
+    return least
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def made_too_much(islands, made, allowed):
+    """How many times more energy than they may the contacts of an island `made` in a step (contacts,
+    swept.MISSES), at most."""
+    sums, found = islands.sums, 0.0
+    sums[:] = 0.0
+    for row in range(made.shape[0]):
+        if islands.of_row[row] >= 0:
+            sums[islands.top[islands.of_row[row]]] += made[row, MISSES]
+    for row in range(made.shape[0]):
+        of = islands.of_row[row]
+        if of >= 0 and sums[islands.top[of]] > 0.0:
+            found = max(found, sums[islands.top[of]] / allowed[row])
+    return found
