@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -19,7 +20,9 @@ from mdlgen.cli.shell import (
     reports_errors,
     say,
 )
-from mdlgen.errors import AccuracyError
+from mdlgen.errors import AccuracyError, SpecError
+
+CAMPAIGN, AUTO = "campaign", "auto"
 
 
 @app.command()
@@ -30,7 +33,7 @@ def bench(
         typer.Argument(
             metavar="SUITE ...",
             help="transport, elastica, impact, friction, flight, scaling, skip, feeder, piles, stability, "
-            "validation: all if left out.",
+            "validation: all if left out; or campaign, scenes drawn at random.",
             autocompletion=completion.suites,
         ),
     ] = None,
@@ -70,8 +73,22 @@ def bench(
         typer.Option(
             "--page",
             metavar="FILE",
-            help="Write the page of one suite too: stability or validation.",
+            help="Write the page of one suite too: stability, validation or campaign.",
         ),
+    ] = None,
+    count: Annotated[int, typer.Option("--count", min=1, help="campaign: how many scenes.")] = 100,
+    seed: Annotated[int, typer.Option("--seed", min=0, help="campaign: what they are drawn from.")] = 1,
+    only: Annotated[
+        list[int] | None,
+        typer.Option("--only", metavar="N", min=1, help="campaign: the scene of this number alone."),
+    ] = None,
+    kind: Annotated[
+        list[str] | None,
+        typer.Option("--kind", metavar="KIND", help="campaign: of the scenes those of this kind alone."),
+    ] = None,
+    workers: Annotated[
+        int | None,
+        typer.Option("--workers", min=1, help="campaign: processes; one for each processor if left out."),
     ] = None,
     as_json: Json = False,
     quiet: Quiet = False,
@@ -84,7 +101,14 @@ def bench(
     Example: mdlgen bench impact friction --solver exudyn
 
     Example: mdlgen bench stability --repeat 1 --page samples/stability.md
+
+    Example: mdlgen bench campaign --count 1000 --seed 1
     """
+    if CAMPAIGN in (suites or ()):
+        _check_alone(suites or (), bool(quick or peers or beside or len(solver or ()) > 1))
+        drawn = {"only": only or (), "kinds": kind or (), "workers": workers, "solver": (solver or [AUTO])[0]}
+        _campaign(count, seed, output, drawn, page, as_json, quiet)
+        return
     from mdlgen.bench import page as pages
     from mdlgen.bench.run import bench as run_bench
     from mdlgen.bench.table import markdown
@@ -109,4 +133,43 @@ def bench(
     if found.failed:
         row = found.failed[0]
         say(f"{len(found.failed)} failed: {row.case}, {row.solver}: {row.reason}")
+        raise typer.Exit(SOLVER_FAILED)
+
+
+def _check_alone(suites: Sequence[str], others: bool) -> None:
+    """Raises SpecError where a campaign is asked for with other suites or with their options."""
+    if list(suites) != [CAMPAIGN]:
+        raise SpecError("campaign runs alone: mdlgen bench campaign")
+    if others:
+        raise SpecError("campaign takes one --solver, and none of --quick, --peers and --beside")
+
+
+def _campaign(
+    count: int, seed: int, output: Path, drawn: dict[str, Any], page: Path | None, as_json: bool, quiet: bool
+) -> None:
+    """Scenes drawn at random; exit code 5 where an error is far above its estimate, 4 where a scene has no
+    result."""
+    from mdlgen.bench.campaign import report
+    from mdlgen.bench.campaign.counts import counts
+    from mdlgen.bench.campaign.finer import FAR
+    from mdlgen.bench.campaign.run import campaign
+    from mdlgen.paths import check_folder
+
+    check_folder(output)
+    heard = (lambda _: None) if quiet else say
+    found = campaign(count, seed, output, say=heard, **drawn)
+    if as_json:
+        echo_json(found.json())
+    elif not quiet:
+        typer.echo(report.table(found), nl=False)
+        typer.echo(f"wrote {output}")
+    if page is not None:
+        paths.write_atomic(page, report.page(found))
+        if not quiet:
+            say(f"wrote {page}")
+    made = counts(found.rows)
+    if made.wrong:
+        raise AccuracyError(f"{made.wrong} quantities are above {FAR:g} times their estimate")
+    if made.none:
+        say(f"{made.none} of {made.scenes} scenes have no result")
         raise typer.Exit(SOLVER_FAILED)

@@ -1,0 +1,98 @@
+"""A scene of a campaign, which its seed and its number alone decide."""
+
+from __future__ import annotations
+
+import tempfile
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from mdlgen import paths
+from mdlgen.bench.campaign.draw import Data, Draw
+from mdlgen.bench.campaign.kinds import KINDS
+from mdlgen.errors import MdlgenError
+
+if TYPE_CHECKING:
+    from mdlgen.model.tables import Model
+
+# A scene that the spec rejects is drawn again so often.
+TRIES = 20
+
+
+@dataclass(frozen=True)
+class DrawnScene:
+    """A scene as text, with the mesh files that it names."""
+
+    seed: int
+    number: int
+    kind: str
+    text: str  # YAML
+    files: dict[str, str] = field(default_factory=dict)  # path from the scene's folder -> text
+    rejected: tuple[str, ...] = ()  # why earlier draws of it were rejected
+
+    @property
+    def name(self) -> str:
+        return f"{self.kind}_{self.seed}_{self.number}"
+
+    def write(self, folder: Path) -> Path:
+        """The files of the scene, for `mdlgen run`. Raises OutputError."""
+        for name, text in self.files.items():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            paths.write_atomic(folder / name, text)
+        paths.write_atomic(folder / f"{self.name}.yaml", self.text)
+        return folder / f"{self.name}.yaml"
+
+    def model(self) -> Model:
+        """The scene, lowered. Raises SpecError."""
+        from mdlgen.model.lower import lower
+        from mdlgen.spec.load import loads
+
+        if not self.files:
+            return lower(loads(self.text, self.name))
+        with tempfile.TemporaryDirectory() as folder:
+            file = self.write(Path(folder))
+            return lower(loads(self.text, self.name, folder=file.parent))
+
+
+def drawn(seed: int, number: int, kind: str = "") -> DrawnScene:
+    """The scene of that number, of a kind that is drawn where it is not given; one that the spec rejects is
+    drawn again. Raises SpecError where all of TRIES draws are rejected."""
+    rejected: list[str] = []
+    while True:
+        scene = _once(seed, number, kind, len(rejected), tuple(rejected))
+        try:
+            scene.model()
+        except MdlgenError as error:
+            rejected.append(f"{scene.kind}: {error}")
+            if len(rejected) == TRIES:
+                raise
+            continue
+        return scene
+
+
+def _once(seed: int, number: int, kind: str, again: int, rejected: tuple[str, ...]) -> DrawnScene:
+    """A draw; each time that it is drawn `again` has numbers of its own."""
+    from mdlgen.spec.source import text_of_data
+
+    own = list(KINDS).index(kind) + 1 if kind else 0
+    draw = Draw([seed, number, again, own])
+    kind = kind or list(KINDS)[draw.weighted([share for share, _ in KINDS.values()])]
+    made = dict(KINDS[kind][1](draw))
+    name = f"{kind}_{seed}_{number}"
+    files = {_own(path, name): text for path, text in made.pop("files", {}).items()}
+    for mesh in made.get("meshes", {}).values():
+        mesh["file"] = _own(mesh["file"], name)
+    data: Data = {"name": name, **{key: made[key] for key in ORDER if key in made}}
+    return DrawnScene(seed, number, kind, text_of_data(data), files, rejected)
+
+
+def _own(path: str, name: str) -> str:
+    """The name of a mesh file that several scenes may have in one folder."""
+    head, _, suffix = path.rpartition(".")
+    return f"{head.rpartition('/')[0]}/{name}.{suffix}"
+
+
+# Keys of a scene in the order in which they are written.
+ORDER = (
+    *("materials", "sheets", "piles", "nips", "rollers", "planes", "guides", "meshes", "contacts", "run"),
+)

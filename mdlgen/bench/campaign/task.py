@@ -1,0 +1,26 @@
+"""What the process that runs scenes is asked, and its first answer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Task:
+    """One scene; `fine`: to be compared with finer steps as well."""
+
+    seed: int
+    number: int
+    fine: bool
+    solver: str = "auto"
+    kind: str = ""  # empty: drawn
+    compile: bool = False  # prepares the solver alone
+
+
+@dataclass(frozen=True)
+class Begun:
+    """What is sent before a scene is run: the limit of time counts from here."""
+
+    kind: str
+    boxes: int
+    rejected: tuple[str, ...]
