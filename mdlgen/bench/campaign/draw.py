@@ -49,7 +49,8 @@ def rounded(value: float, digits: int = DIGITS) -> float:
 
 def mm(value: float, decimals: int = 3) -> str:
     """A length as text; places have decimals, not significant digits, so that parts that touch do."""
-    return f"{round(value, decimals) + 0.0:g} mm" if decimals <= 3 else f"{value + 0.0:.{decimals}f} mm"
+    text = f"{round(value, decimals) + 0.0:.{decimals}f}".rstrip("0").rstrip(".")
+    return f"{text} mm"
 
 
 def place(x: float, y: float, z: float, decimals: int = 3) -> list[str]:

@@ -19,7 +19,7 @@ from mdlgen.processors import processors
 Say = Callable[[str], None]
 # One scene in so many is compared with finer steps.
 TENTH = 10
-# Wall time for the run of one scene [s].
+# Processor time for the run of one scene [s].
 LIMIT = 60.0
 # Rows after which campaign.json is written, so that little is lost where a campaign is interrupted.
 OFTEN = 20
@@ -41,7 +41,7 @@ def campaign(
     """Run the scenes 1 to `count` of a seed, or those of the numbers `only`; `kinds` leaves out others.
 
     `workers` processes run one scene each at a time (None: one for each processor), for at most `limit` [s]
-    of wall time. One scene in ten is compared with finer steps, unless `finer` is false. Writes campaign.json
+    of processor time. One scene in ten is compared with finer steps, unless `finer` is false. Writes campaign.json
     and campaign.md into `folder`, and into `folder`/scenes the scenes that have no result or an inaccurate
     one, or that `only` names. Raises SpecError for a solver that there is not, OutputError for files that
     cannot be written.
@@ -55,9 +55,9 @@ def campaign(
     except OSError as error:
         raise OutputError(f"{folder}: cannot make this folder: {error.strerror or error}") from None
     found = Campaign(seed, len(numbers), limit, dict(machine()), versions())
-    tasks = [Task(seed, number, finer and number % TENTH == 0, solver) for number in numbers]
+    tasks = [Task(seed, number, finer and number % TENTH == 0, solver, limit=limit) for number in numbers]
     try:
-        with Workers(workers or processors(), limit, solver) as pool:
+        with Workers(workers or processors(), solver) as pool:
             for row in pool.rows(tasks):
                 found.rows.append(row)
                 say(_progress(row, len(found.rows), len(numbers)))

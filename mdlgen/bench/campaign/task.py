@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+# Limit of the runs at finer steps, relative to that of the scene: they have 8 and 16 times its steps.
+FINER = 10.0
+
 
 @dataclass(frozen=True)
 class Task:
@@ -14,6 +17,7 @@ class Task:
     fine: bool
     solver: str = "auto"
     kind: str = ""  # empty: drawn
+    limit: float = 60.0  # of processor time of its run [s]; its finer runs have FINER times that
     compile: bool = False  # prepares the solver alone
 
 

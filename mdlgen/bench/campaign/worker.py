@@ -7,6 +7,7 @@ standard error.
 from __future__ import annotations
 
 import contextlib
+import math
 import os
 import pickle
 import sys
@@ -16,7 +17,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from mdlgen.bench.campaign.row import INACCURATE, NONE, OK, CampaignRow
-from mdlgen.bench.campaign.task import Begun, Task
+from mdlgen.bench.campaign.task import FINER, Begun, Task
 from mdlgen.errors import MdlgenError
 
 if TYPE_CHECKING:
@@ -57,6 +58,7 @@ def perform(task: Task) -> Iterator[Begun | CampaignRow]:
         return
     boxes = sum(sheet.count for sheet in model.sheets)
     yield Begun(scene.kind, boxes, scene.rejected)
+    _allow(task.limit)
     row = CampaignRow(task.number, scene.kind, NONE, boxes=boxes, rejected=scene.rejected)
     wall, cpu = time.perf_counter(), time.process_time()
     try:
@@ -75,11 +77,24 @@ def perform(task: Task) -> Iterator[Begun | CampaignRow]:
         from mdlgen.bench.campaign.finer import Finer, finer
         from mdlgen.registry import solver
 
+        _allow(FINER * task.limit)
         try:
             found = finer(result, lambda step: solver(result.solver).solve(model, step=step))
         except Exception as error:
             found = Finer(failed=f"internal error: {type(error).__name__}: {error}")
         yield replace(row, finer=found)
+
+
+def _allow(seconds: float) -> None:
+    """Has the system end this process after so much more processor time, where it can: other programs that
+    run at the same time then decide nothing."""
+    try:
+        import resource
+    except ImportError:  # not on Windows, where the parent's limit of wall time counts
+        return
+    _, most = resource.getrlimit(resource.RLIMIT_CPU)
+    wanted = math.ceil(time.process_time() + seconds)
+    resource.setrlimit(resource.RLIMIT_CPU, (wanted if most < 0 else min(wanted, most), most))
 
 
 def judged(row: CampaignRow, result: Result) -> CampaignRow:

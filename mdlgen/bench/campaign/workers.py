@@ -16,12 +16,13 @@ from queue import Empty, SimpleQueue
 from threading import Lock, Thread, Timer
 
 from mdlgen.bench.campaign.row import NONE, CampaignRow, Finer
-from mdlgen.bench.campaign.task import Begun, Task
+from mdlgen.bench.campaign.task import FINER, Begun, Task
 from mdlgen.bench.process import STARTING, THREADS
 from mdlgen.errors import OutputError
 
-# Limit of the runs at finer steps, relative to that of the scene: they have 8 and 16 times its steps.
-FINER = 10.0
+# Wall time that a scene may take, relative to its limit of processor time: other programs may run at the same
+# time, and a process that waits for ever takes no processor time.
+WALL = 5.0 if hasattr(signal, "SIGXCPU") else 1.0
 # Preparing a solver may compile it, which takes minutes [s].
 COMPILING = 1800.0
 
@@ -63,6 +64,11 @@ class _Process:
         finally:
             timer.cancel()
 
+    @property
+    def exceeded(self) -> bool:
+        """Whether the system ended it because it took too much processor time."""
+        return hasattr(signal, "SIGXCPU") and self.process.returncode == -signal.SIGXCPU
+
     def ended(self) -> str:
         """Ends it, and says how it ended."""
         self._wait()
@@ -95,10 +101,10 @@ class _Process:
 
 
 class Workers:
-    """`count` processes, started when they are needed; `limit` [s] of wall time for each scene."""
+    """`count` processes, started when they are needed."""
 
-    def __init__(self, count: int, limit: float, solver: str = "auto"):
-        self._count, self._limit, self._solver = count, limit, solver
+    def __init__(self, count: int, solver: str = "auto"):
+        self._count, self._solver = count, solver
         self._slots: list[_Process | None] = [None] * count
         self._lock = Lock()
         self._closed = False
@@ -139,24 +145,24 @@ class Workers:
             said = process.next(limit)
             if isinstance(said, Begun):
                 row = replace(row, kind=said.kind, boxes=said.boxes, rejected=said.rejected)
-                limit = self._limit
-                said = process.next(limit)
+                limit = task.limit
+                said = process.next(WALL * limit)
             assert isinstance(said, CampaignRow)
             row = said
             if not (task.fine and row.status != NONE and not row.chaotic and row.step_ms):
                 return row
-            limit = FINER * self._limit
-            said = process.next(limit)
+            limit = FINER * task.limit
+            said = process.next(WALL * limit)
             assert isinstance(said, CampaignRow)
             return said
         except (EOFError, OSError):
             why = process.ended()
             self._slots[slot] = None
-            why = f"above {limit:g} s; stopped" if process.late else why
+            late = process.late or process.exceeded
+            why = f"above {limit:g} s; stopped" if late else why
             if row.status != NONE:  # the run is there, and a finer one is not
                 return replace(row, finer=Finer(failed=f"at finer steps: {why}"))
-            spent = limit if process.late else None
-            return replace(row, reason=why, stopped=process.late, wall_s=spent, cpu_s=spent)
+            return replace(row, reason=why, stopped=late, cpu_s=limit if late else None)
 
     def _process(self, slot: int) -> _Process:
         """The process of a slot, its solver loaded; a new one where there is none."""

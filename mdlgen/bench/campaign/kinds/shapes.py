@@ -33,6 +33,25 @@ def _folds(draw: Draw, one: Drawn, most: float) -> Data:
     return {"folds": folds}
 
 
+def _hangs(one: Drawn, folds: list[Data]) -> float:
+    """How far a folded sheet reaches below its middle, which is level [mm]: both parts of it rise at a fold
+    of a positive angle."""
+    half = (one.length if folds[0]["along"] == "x" else one.width) / 2
+    creases = [
+        (float(f["at"].removesuffix(" mm")), math.radians(float(f["angle"].removesuffix(" deg"))))
+        for f in folds
+    ]
+    depth = 0.0
+    for side in (-1.0, 1.0):
+        own = sorted((abs(at), angle) for at, angle in creases if at * side >= 0.0)
+        height = slope = 0.0
+        for (at, angle), end in zip(own, [*(at for at, _ in own[1:]), half], strict=True):
+            slope += angle
+            height += (end - at) * math.sin(slope)
+            depth = max(depth, -height)
+    return depth
+
+
 def _falls(draw: Draw, one: Drawn, shape: Data, depth: float) -> Data:
     """A sheet of that shape, which reaches `depth` [mm] below its centre, falls on a plate."""
     gap = draw.log(0.2, 5.0)
@@ -69,9 +88,7 @@ def folded(draw: Draw) -> Data:
     """A sheet with one or two creases (8 to 60 deg) falls on a plate in the same way."""
     one = sheet(draw, fewest=8, strip=0.0)
     shape = _folds(draw, one, 60.0)
-    steep = sum(abs(float(fold["angle"].removesuffix(" deg"))) for fold in shape["folds"])
-    depth = max(one.length, one.width) * min(1.0, math.sin(math.radians(min(90.0, steep))))
-    return _falls(draw, one, shape, depth)
+    return _falls(draw, one, shape, _hangs(one, shape["folds"]))
 
 
 def worn(draw: Draw) -> Data:
