@@ -41,10 +41,10 @@ def campaign(
     """Run the scenes 1 to `count` of a seed, or those of the numbers `only`; `kinds` leaves out others.
 
     `workers` processes run one scene each at a time (None: one for each processor), for at most `limit` [s]
-    of processor time. One scene in ten is compared with finer steps, unless `finer` is false. Writes campaign.json
-    and campaign.md into `folder`, and into `folder`/scenes the scenes that have no result or an inaccurate
-    one, or that `only` names. Raises SpecError for a solver that there is not, OutputError for files that
-    cannot be written.
+    of processor time. One scene in ten is compared with finer steps, unless `finer` is false. Writes
+    campaign.json and campaign.md into `folder`, and into `folder`/scenes the scenes that have no result or an
+    inaccurate one, or that `only` names. Raises SpecError for a solver that there is not, OutputError for
+    files that cannot be written.
     """
     registry.check_solver(solver)
     numbers = list(only) or list(range(1, count + 1))

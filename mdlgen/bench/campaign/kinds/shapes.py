@@ -37,19 +37,21 @@ def _hangs(one: Drawn, folds: list[Data]) -> float:
     """How far a folded sheet reaches below its middle, which is level [mm]: both parts of it rise at a fold
     of a positive angle."""
     half = (one.length if folds[0]["along"] == "x" else one.width) / 2
-    creases = [
-        (float(f["at"].removesuffix(" mm")), math.radians(float(f["angle"].removesuffix(" deg"))))
-        for f in folds
-    ]
+    creases = [(_number(fold["at"]), math.radians(_number(fold["angle"]))) for fold in folds]
     depth = 0.0
     for side in (-1.0, 1.0):
         own = sorted((abs(at), angle) for at, angle in creases if at * side >= 0.0)
         height = slope = 0.0
-        for (at, angle), end in zip(own, [*(at for at, _ in own[1:]), half], strict=True):
+        ends = [*(at for at, _ in own[1:]), half]
+        for (at, angle), end in zip(own, ends, strict=False):
             slope += angle
             height += (end - at) * math.sin(slope)
             depth = max(depth, -height)
     return depth
+
+
+def _number(quantity: str) -> float:
+    return float(quantity.partition(" ")[0])
 
 
 def _falls(draw: Draw, one: Drawn, shape: Data, depth: float) -> Data:
@@ -77,7 +79,7 @@ def curled(draw: Draw) -> Data:
     one = sheet(draw, fewest=8, strip=0.0)
     shape = _curl(draw)
     size = one.length if shape["curl"]["along"] == "x" else one.width
-    radius = float(shape["curl"]["radius"].removesuffix(" mm"))
+    radius = _number(shape["curl"]["radius"])
     # the middle of the outline stays at the centre; edges rise with a positive radius
     turn = min(0.5 * size / abs(radius), math.pi)
     depth = abs(radius) * (1.0 - math.cos(turn))
