@@ -22,19 +22,16 @@ import pytest
 from scenes import SCENES, Path_, paths
 
 import mdlgen
+from mdlgen.bench.campaign.finer import ABOVE, FAR, against, ended
 from mdlgen.errors import MdlgenError
 from mdlgen.model.tables import Model
 from mdlgen.registry import solver
-from mdlgen.results.estimates import complete
-from mdlgen.results.quantities import differences
 from mdlgen.results.result import Result
 
 COUNT = int(os.environ.get("MDLGEN_ESTIMATES", "0"))
 SEED = int(os.environ.get("MDLGEN_ESTIMATES_SEED", "0"))
 # A scene whose finest run would take longer than this is left out [s], as is one of more steps.
 MOST_TIME, MOST_STEPS = 15.0 if COUNT > 20 else 4.0, 3e5
-# The two finer runs agree where they differ by less than this part of the error, or of the estimate.
-AGREE = 0.3
 FACTORS = (0.3, 0.5, 0.8, 1.25, 2.0, 3.0)
 
 
@@ -83,20 +80,15 @@ def study(count: int) -> tuple[list[tuple[float, int, str, str]], int, int, int]
     unknown = apart = there = 0
     for seed, model, result in scenes():
         eighth, sixteenth = (solver("lattice").solve(model, step=result.step / k) for k in (8, 16))
-        if not eighth.ok or not sixteenth.ok:
+        if not ended(eighth) or not ended(sixteenth):
             continue
-        estimates = complete(result)
-        errors, finer = differences(sixteenth, result), differences(sixteenth, eighth)
-        for name, estimate in estimates.items():
-            if estimate.value is None or name not in errors:
+        for each in against(result, eighth, sixteenth):
+            if each.times is None:
                 unknown += 1
-                continue
-            error = errors[name].reported * errors[name].scale / estimate.scale
-            left = finer[name].reported * finer[name].scale / estimate.scale
-            if left > AGREE * max(error, estimate.value):
+            elif not each.agree:
                 apart += 1
-                continue
-            found.append((error / estimate.value, seed, model.name, name))
+            else:
+                found.append((each.times, seed, model.name, each.name))
         there += 1
         if there == count:
             break
@@ -109,8 +101,8 @@ def test_errors_are_what_is_estimated() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         found, unknown, apart, there = study(COUNT)
-    above = [row for row in found if row[0] > 1.5]
-    far = [row for row in found if row[0] > 3.0]
+    above = [row for row in found if row[0] > ABOVE]
+    far = [row for row in found if row[0] > FAR]
     print(
         f"\n{there} scenes, {len(found)} quantities: {len(above)} above 1.5 times their estimate "
         f"({100 * len(above) / max(1, len(found)):.2f} %), {len(far)} above 3 times; {unknown} without an "

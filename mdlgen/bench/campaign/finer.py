@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from mdlgen.bench.campaign.row import Finer
+from mdlgen.bench.campaign.row import INACCURATE, OK, Finer
 from mdlgen.results.estimates import complete
 from mdlgen.results.quantities import differences
 from mdlgen.results.result import Result
@@ -44,13 +44,13 @@ def finer(result: Result, again: Callable[[float], Result]) -> Finer:
     """Compares a result with `again(step)` at an eighth of its step. Where an error is above its estimate, a
     run at a sixteenth shows whether the eighth is fine enough to say so."""
     eighth = again(result.step / 8.0)
-    if not eighth.ok:
+    if not ended(eighth):
         return Finer(failed=f"at an eighth of the step: {eighth.status}")
     found = list(against(result, eighth))
     apart: tuple[str, ...] = ()
     if any(_above(each) for each in found):
         sixteenth = again(result.step / 16.0)
-        if sixteenth.ok:
+        if ended(sixteenth):
             found = list(against(result, eighth, sixteenth))
             apart = tuple(each.name for each in found if _above(each) and not each.agree)
     return Finer(
@@ -61,6 +61,11 @@ def finer(result: Result, again: Callable[[float], Result]) -> Finer:
         ),
         apart=apart,
     )
+
+
+def ended(run: Result) -> bool:
+    """Whether a run came to its end; at a step that is given its own error may be unknown."""
+    return run.status in (OK, INACCURATE)
 
 
 def _above(each: Compared) -> bool:

@@ -8,8 +8,9 @@ from collections.abc import Iterable
 from mdlgen.bench.campaign.counts import Counts, counts, grouped
 from mdlgen.bench.campaign.draw import RANGES
 from mdlgen.bench.campaign.finer import ABOVE, FAR
+from mdlgen.bench.campaign.found import Campaign
 from mdlgen.bench.campaign.kinds import KINDS
-from mdlgen.bench.campaign.row import INACCURATE, NONE, Campaign, CampaignRow
+from mdlgen.bench.campaign.row import INACCURATE, NONE, CampaignRow
 from mdlgen.bench.campaign.sheets import SHARES, STOCKS
 from mdlgen.bench.table import time
 from mdlgen.errors import printable

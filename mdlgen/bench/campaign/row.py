@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 from typing import Any
 
 # With a result (exit code 0 of `mdlgen run`); with one whose error is above the tolerance or unknown (5);
@@ -48,23 +48,3 @@ class CampaignRow:
         from mdlgen.results.summary import plain
 
         return plain(asdict(self))
-
-
-@dataclass
-class Campaign:
-    """The rows of a campaign, by number, and what they were drawn and run with."""
-
-    seed: int
-    count: int
-    limit: float  # [s] for each scene
-    machine: dict[str, Any] = field(default_factory=dict)
-    versions: dict[str, str] = field(default_factory=dict)
-    rows: list[CampaignRow] = field(default_factory=list)
-
-    def json(self) -> dict[str, Any]:
-        """What campaign.json holds."""
-        from mdlgen.bench.campaign.counts import counts
-
-        head = {"seed": self.seed, "count": self.count, "limit_s": self.limit}
-        machine = {"machine": self.machine, "versions": self.versions}
-        return {**head, **machine, "counts": counts(self.rows).json(), "rows": [r.json() for r in self.rows]}

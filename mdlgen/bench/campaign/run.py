@@ -7,13 +7,15 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from mdlgen import paths, registry
+from mdlgen.bench.campaign.found import Campaign
+from mdlgen.bench.campaign.kinds import KINDS
 from mdlgen.bench.campaign.report import table
-from mdlgen.bench.campaign.row import NONE, OK, Campaign, CampaignRow
+from mdlgen.bench.campaign.row import NONE, OK, CampaignRow
 from mdlgen.bench.campaign.scene import drawn
 from mdlgen.bench.campaign.task import Task
 from mdlgen.bench.campaign.workers import Workers
 from mdlgen.bench.machine import machine, versions
-from mdlgen.errors import MdlgenError, OutputError
+from mdlgen.errors import MdlgenError, OutputError, SpecError, did_you_mean
 from mdlgen.processors import processors
 
 Say = Callable[[str], None]
@@ -43,10 +45,14 @@ def campaign(
     `workers` processes run one scene each at a time (None: one for each processor), for at most `limit` [s]
     of processor time. One scene in ten is compared with finer steps, unless `finer` is false. Writes
     campaign.json and campaign.md into `folder`, and into `folder`/scenes the scenes that have no result or an
-    inaccurate one, or that `only` names. Raises SpecError for a solver that there is not, OutputError for
-    files that cannot be written.
+    inaccurate one, or that `only` names. Raises SpecError for a solver or a kind that there is not,
+    OutputError for files that cannot be written.
     """
     registry.check_solver(solver)
+    for kind in kinds:
+        if kind not in KINDS:
+            close = did_you_mean(kind[:40], KINDS)
+            raise SpecError(f"there is no kind {kind[:40]!r}{close or ';'} there are: {', '.join(KINDS)}")
     numbers = list(only) or list(range(1, count + 1))
     if kinds:
         numbers = [number for number in numbers if drawn(seed, number).kind in kinds]

@@ -74,7 +74,7 @@ def nip(
     )
     if draw.chance(0.2):
         upper["drive"] = drive.data
-    between = draw.contact("", "", stiff=30.0, speed=drive.speed)
+    between = draw.contact("", "", stiff=stiff, speed=drive.speed)
     del between["between"]
     made: Data = {
         "at": place(x, y, 0.0),
@@ -171,11 +171,9 @@ def arms(draw: Draw) -> Data:
                 **spring,
             },
         }
-    contacts = [
-        draw.contact("note", "motor_*", stiff=stiff, speed=drive.speed),
-        draw.contact("note", "idler_*", stiff=stiff, speed=drive.speed),
-        *(draw.contact(f"motor_{k + 1}", f"idler_{k + 1}", speed=drive.speed) for k in range(len(lanes))),
-    ]
+    pairs = [("note", "motor_*"), ("note", "idler_*")]
+    pairs += [(f"motor_{k + 1}", f"idler_{k + 1}") for k in range(len(lanes))]
+    contacts = [draw.contact(first, second, stiff=stiff, speed=drive.speed) for first, second in pairs]
     scene: Data = {
         "materials": {one.stock: one.material},
         "sheets": {"note": one.at(0.0, 0.0, 0.0)},

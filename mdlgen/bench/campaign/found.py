@@ -1,0 +1,27 @@
+"""What a campaign found, with what it was drawn and run with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from mdlgen.bench.campaign.counts import counts
+from mdlgen.bench.campaign.row import CampaignRow
+
+
+@dataclass
+class Campaign:
+    """The rows of a campaign, by number, and what they were drawn and run with."""
+
+    seed: int
+    count: int
+    limit: float  # [s] for each scene
+    machine: dict[str, Any] = field(default_factory=dict)
+    versions: dict[str, str] = field(default_factory=dict)
+    rows: list[CampaignRow] = field(default_factory=list)
+
+    def json(self) -> dict[str, Any]:
+        """What campaign.json holds."""
+        head = {"seed": self.seed, "count": self.count, "limit_s": self.limit}
+        machine = {"machine": self.machine, "versions": self.versions}
+        return {**head, **machine, "counts": counts(self.rows).json(), "rows": [r.json() for r in self.rows]}
