@@ -10,6 +10,8 @@ from mdlgen.bench.campaign.sheets import Drawn
 
 # Digits behind the point of the ends of guides: faces within 1e-6 mm of each other continue each other.
 EXACT = 7
+# Greatest friction of a guide.
+SMOOTH = 0.5
 
 
 def _paper(draw: Draw) -> Drawn:
@@ -32,11 +34,14 @@ def _arc(x: float, up: int, radius: float, angle: float, gap: tuple[float, float
     }
 
 
-def _stiff(one: Drawn, radius: float) -> float:
-    """Least stiffness of guides [N/mm^1.5] that hold a sheet bent to a radius [mm] within half of its
-    thickness: its bending force, D width / radius^2, rises to some 10 times as its edge arrives."""
+def _guided(draw: Draw, one: Drawn, guides: list[str], radius: float, drive: Drive) -> Data:
+    """Contact of a sheet with guides that bend it to a radius [mm]; guides are smooth. They hold it within
+    half of its thickness: its bending force, D width / radius^2, rises to some 10 times as its edge
+    arrives."""
     bending = one.modulus * one.thick**3 / 12.0 * one.width / radius**2
-    return min(10.0 * bending / (one.thick / 2) ** 1.5, 0.5 * RANGES["stiffness"].high)
+    stiff = min(10.0 * bending / (one.thick / 2) ** 1.5, 0.5 * RANGES["stiffness"].high)
+    friction = draw.value("friction", None, SMOOTH)
+    return draw.contact("note", guides, stiff=stiff, speed=drive.speed, friction=friction)
 
 
 def _line(start: tuple[float, float], end: tuple[float, float], side: str, width: str) -> Data:
@@ -81,7 +86,7 @@ def arc(draw: Draw) -> Data:
         "sheets": {"note": one.at(0.0, 0.0, 0.0)},
         "nips": nips,
         "guides": guides,
-        "contacts": [draw.contact("note", ["outer", "inner"], stiff=_stiff(one, radius), speed=drive.speed)],
+        "contacts": [_guided(draw, one, ["outer", "inner"], radius, drive)],
         "run": draw.run(drive.lasts(max(5.0, path)), **keys),
     }
 
@@ -120,9 +125,7 @@ def channel(draw: Draw) -> Data:
         "sheets": {"note": one.at(0.0, 0.0, 0.0)},
         "nips": nips,
         "guides": guides,
-        "contacts": [
-            draw.contact("note", ["outer*", "inner*"], stiff=_stiff(one, radius), speed=drive.speed)
-        ],
+        "contacts": [_guided(draw, one, ["outer*", "inner*"], radius, drive)],
         "run": draw.run(drive.lasts(max(5.0, path)), **keys),
     }
 
@@ -154,6 +157,6 @@ def funnel(draw: Draw) -> Data:
         "sheets": {"note": one.at(0.0, 0.0, 0.0)},
         "nips": nips,
         "guides": guides,
-        "contacts": [draw.contact("note", ["floor*", "roof*"], stiff=_stiff(one, 40.0), speed=drive.speed)],
+        "contacts": [_guided(draw, one, ["floor*", "roof*"], 40.0, drive)],
         "run": draw.run(drive.lasts(max(5.0, path))),
     }

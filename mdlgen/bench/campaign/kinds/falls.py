@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 
-from mdlgen.bench.campaign import solids
+from mdlgen.bench.campaign import parts, solids
 from mdlgen.bench.campaign.draw import Data, Draw, mm, place, rounded
+from mdlgen.bench.campaign.parts import plate
 from mdlgen.bench.campaign.sheets import Drawn, sheet
 
 GRAVITY = 9.81e-3  # [mm/ms^2]
@@ -31,7 +32,10 @@ def flat(draw: Draw) -> Data:
     inclined one (up to 25 deg)."""
     one = sheet(draw)
     gap = draw.log(0.2, 15.0)
-    size = [rounded(side * draw.of(draw.even(0.4, 0.95), draw.even(1.1, 3.0), 3.0)) for side in _sides(one)]
+    size = [
+        rounded(side * draw.of(draw.even(0.4, 0.95), draw.even(1.1, 3.0), 3.0))
+        for side in (one.length, one.width)
+    ]
     slope = draw.even(2.0, 25.0) * draw.sign() if draw.chance(0.25) else 0.0
     up = math.sin(math.radians(slope)), math.cos(math.radians(slope))
     away = one.thick / 2 + gap
@@ -40,24 +44,20 @@ def flat(draw: Draw) -> Data:
         turned = {"rotation": ["0 deg", f"{slope:g} deg", "0 deg"]}
     elif draw.chance(0.4):
         turned = {"turn": f"{draw.even(-30.0, 30.0):g} deg"}
-    plate = {
+    table = {
         "center": place(-5.0 * up[0], 0.0, -5.0 * up[1], 6),
         "normal": [rounded(up[0], 9), 0, rounded(up[1], 9)] if slope else "z",
-        "size": [mm(size[0]), mm(size[1]), "10 mm"],
+        "size": [mm(rounded(size[0])), mm(rounded(size[1])), "10 mm"],
         "mass": "100 g",
     }
     note = {**one.at(away * up[0], 0.0, away * up[1]), **turned}
     return {
         "materials": {one.stock: one.material},
         "sheets": {"note": note},
-        "planes": {"table": plate},
+        "planes": {"table": table},
         "contacts": [draw.contact("note", "table")],
         "run": falling(draw, gap),
     }
-
-
-def _sides(one: Drawn) -> tuple[float, float]:
-    return one.length, one.width
 
 
 def tilted(draw: Draw) -> Data:
@@ -80,18 +80,9 @@ def tilted(draw: Draw) -> Data:
     return {
         "materials": {one.stock: one.material},
         "sheets": {"note": note},
-        "planes": {"table": _table(2.5 * one.length, 2.5 * one.width)},
+        "planes": {"table": plate(2.5 * one.length, 2.5 * one.width)},
         "contacts": [draw.contact("note", "table")],
         "run": falling(draw, gap + one.length / 4 * abs(math.sin(math.radians(about_y)))),
-    }
-
-
-def _table(length: float, width: float, x: float = 0.0) -> Data:
-    return {
-        "center": place(x, 0.0, -5.0),
-        "normal": "z",
-        "size": [mm(rounded(length)), mm(rounded(width)), "10 mm"],
-        "mass": "100 g",
     }
 
 
@@ -101,8 +92,7 @@ def edge(draw: Draw) -> Data:
     one = sheet(draw)
     gap = draw.log(0.1, 8.0)
     beyond = draw.even(0.2, 0.8) * one.length
-    table = _table(1.5 * one.length, 1.5 * one.width)
-    table["center"] = place(-0.75 * one.length, 0.0, -5.0)
+    table = plate(1.5 * one.length, 1.5 * one.width, -0.75 * one.length)
     if draw.chance(0.5):
         table["edge_radius"] = mm(draw.log(0.3, 3.0))
     turned: Data = {"turn": f"{draw.even(-30.0, 30.0):g} deg"} if draw.chance(0.4) else {}
@@ -156,13 +146,8 @@ def roller(draw: Draw) -> Data:
     one = sheet(draw, fewest=4)
     radius, gap = draw.log(4.0, 25.0), draw.log(0.2, 8.0)
     speed = draw.value("speed", 0.1, 1.5)
-    part: Data = {
-        "center": place(rounded(one.length * draw.even(-0.25, 0.25)), 0.0, -radius),
-        "axis": "y",
-        "radius": mm(radius),
-        "width": mm(rounded(one.width * draw.even(0.3, 1.3))),
-        "mass": f"{rounded(draw.even(1.2e-3, 3e-3) * math.pi * radius**2 * one.width):g} g",
-    }
+    x = rounded(one.length * draw.even(-0.25, 0.25))
+    part = parts.roller(draw, x, 0.0, -radius, radius, rounded(one.width * draw.even(0.3, 1.3)))
     driven = draw.chance(0.6)
     if driven:
         part["drive"] = {"speed": f"{rounded(draw.sign() * 1e3 * speed / radius):g} rad/s"}

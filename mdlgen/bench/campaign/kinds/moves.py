@@ -4,18 +4,11 @@ from __future__ import annotations
 
 import math
 
-from mdlgen.bench.campaign.draw import Data, Draw, mm, place, rounded
+from mdlgen.bench.campaign import parts
+from mdlgen.bench.campaign.draw import Data, Draw, mm, rounded
 from mdlgen.bench.campaign.kinds.falls import lowest
+from mdlgen.bench.campaign.parts import plate
 from mdlgen.bench.campaign.sheets import sheet
-
-
-def _table(length: float, width: float, x: float) -> Data:
-    return {
-        "center": place(x, 0.0, -5.0),
-        "normal": "z",
-        "size": [mm(rounded(length)), mm(rounded(width)), "10 mm"],
-        "mass": "100 g",
-    }
 
 
 def thrown(draw: Draw) -> Data:
@@ -44,7 +37,7 @@ def thrown(draw: Draw) -> Data:
     return {
         "materials": {one.stock: one.material},
         "sheets": {"note": note},
-        "planes": {"table": _table(600.0, 600.0, 100.0)},
+        "planes": {"table": plate(600.0, 600.0, 100.0)},
         "contacts": [draw.contact("note", "table")],
         "run": draw.run(min(fall, 80.0) + draw.log(10.0, 60.0), **keys),
     }
@@ -58,7 +51,7 @@ def slide(draw: Draw) -> Data:
     if draw.chance(1 / 3):
         after = one.length / 2 + draw.even(0.1, 0.6) * speed * duration
     start = -one.length - 20.0
-    table = _table(after - start, 2.0 * max(one.width, one.length), (after + start) / 2)
+    table = plate(after - start, 2.0 * max(one.width, one.length), (after + start) / 2)
     note = one.at(
         0.0,
         0.0,
@@ -92,17 +85,11 @@ def wall(draw: Draw) -> Data:
         velocity=[f"{speed:g} m/s", "0 m/s", "0 m/s"],
         turn=f"{turn:g} deg",
     )
-    stop = {
-        "center": place(reach + gap + 5.0, 0.0, height / 2 - 2.0),
-        "normal": "-x",
-        "along": "y",
-        "size": [mm(rounded(2.0 * max(one.width, one.length))), mm(height), "10 mm"],
-        "mass": "100 g",
-    }
+    stop = parts.wall(reach + gap, 2.0 * max(one.width, one.length), height, -2.0)
     return {
         "materials": {one.stock: one.material},
         "sheets": {"note": note},
-        "planes": {"table": _table(600.0, 400.0, 100.0), "wall": stop},
+        "planes": {"table": plate(600.0, 400.0, 100.0), "wall": stop},
         "contacts": [draw.contact("note", "table"), draw.contact("note", "wall")],
         "run": draw.run(gap / speed + draw.log(10.0, 80.0), **keys),
     }
@@ -112,7 +99,7 @@ def slip(draw: Draw) -> Data:
     """A sheet lies on a table, 45 to 75 % of its length beyond the rounded edge, and slips off or stays."""
     one = sheet(draw, fewest=4)
     beyond = draw.even(0.45, 0.75) * one.length
-    table = _table(2.0 * one.length, 1.5 * one.width, -one.length)
+    table = plate(2.0 * one.length, 1.5 * one.width, -one.length)
     table["edge_radius"] = mm(draw.log(0.5, 4.0))
     moves: Data = {}
     if draw.chance(0.3):

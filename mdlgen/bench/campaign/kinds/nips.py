@@ -5,19 +5,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from mdlgen.bench.campaign.draw import RANGES, Data, Draw, mm, place, rounded
+from mdlgen.bench.campaign import parts
+from mdlgen.bench.campaign.draw import RANGES, Data, Draw, place, rounded
 from mdlgen.bench.campaign.sheets import Drawn, sheet
 
-# Rollers are solid plastic to aluminium [g/mm^3].
-DENSITY = (1.0e-3, 2.8e-3)
 # Part of the thickness that each roller of a nip may be pressed in: above a half they meet through the sheet
 # (lint W105).
 DEEP = 0.45
-
-
-def mass(draw: Draw, radius: float, width: float) -> str:
-    """Mass of a solid roller [mm]."""
-    return f"{rounded(draw.even(*DENSITY) * math.pi * radius**2 * width):g} g"
 
 
 def grip(draw: Draw, thick: float) -> tuple[float, float]:
@@ -64,8 +58,8 @@ def nip(
     def roller(size: float, **keys: object) -> Data:
         contact = draw.contact("", "", stiff=stiff, speed=drive.speed)
         del contact["between"]
-        made: Data = {"radius": mm(size), "width": mm(width), "mass": mass(draw, size, width)}
-        return {**made, **keys, "contact": contact}
+        mass = draw.even(*parts.DENSITY) * math.pi * size**2 * width
+        return {**parts.cylinder(size, width, mass), **keys, "contact": contact}
 
     # a stiffer spring would lose its force on the path from the other roller to the sheet
     soft = min(2.0, 0.5 * force / one.thick)
@@ -88,13 +82,7 @@ def nip(
 
 def table(draw: Draw, one: Drawn, length: float, x: float) -> Data:
     """A plate under the path of the sheet."""
-    down = one.thick / 2 + draw.log(0.1, 2.0)
-    return {
-        "center": place(x, 0.0, -5.0 - down),
-        "normal": "z",
-        "size": [mm(rounded(length)), mm(rounded(2.0 * one.width)), "10 mm"],
-        "mass": "100 g",
-    }
+    return parts.plate(length, 2.0 * one.width, x, -one.thick / 2 - draw.log(0.1, 2.0))
 
 
 def _transport(draw: Draw, count: int) -> Data:
@@ -151,19 +139,14 @@ def arms(draw: Draw) -> Data:
     width = rounded(draw.even(0.1, 0.25) * one.width)
     # behind the roller, as trailing arms are, above it
     reach, rise = draw.even(15.0, 40.0), draw.even(2.0, 15.0)
-    lower, upper = f"{mass(draw, radius[0], width)}", f"{mass(draw, radius[1], width)}"
     spring = {"stiffness": f"{draw.log(10.0, 300.0):g} N*mm/rad"} if draw.chance(0.7) else {}
     rollers: Data = {}
     for k, y in enumerate(lanes, 1):
         high = radius[1] + one.thick / 2
-        rollers[f"motor_{k}"] = {
-            "center": place(x, y, -radius[0] - one.thick / 2),
-            **{"axis": "y", "radius": mm(radius[0]), "width": mm(width), "mass": lower},
-            "drive": drive.data,
-        }
+        motor = parts.roller(draw, x, y, -radius[0] - one.thick / 2, radius[0], width)
+        rollers[f"motor_{k}"] = {**motor, "drive": drive.data}
         rollers[f"idler_{k}"] = {
-            "center": place(x, y, high),
-            **{"axis": "y", "radius": mm(radius[1]), "width": mm(width), "mass": upper},
+            **parts.roller(draw, x, y, high, radius[1], width),
             "arm": {
                 "pivot": place(x - reach, y, high + rise),
                 "mass": f"{draw.log(1.0, 10.0):g} g",
@@ -198,11 +181,7 @@ def pick(draw: Draw) -> Data:
     # above the horizontal through the roller's lowest point; lower pivots lock where they stand ahead
     high = one.thick + radius
     part = {
-        "center": place(x, 0.0, high),
-        "axis": "y",
-        "radius": mm(radius),
-        "width": mm(width),
-        "mass": mass(draw, radius, width),
+        **parts.roller(draw, x, 0.0, high, radius, width),
         "drive": drive.data,
         "arm": {
             "pivot": place(x - side * reach, 0.0, high + draw.even(0.0, 10.0)),
@@ -216,13 +195,11 @@ def pick(draw: Draw) -> Data:
         draw.contact("note", "table", stiff=100.0, speed=drive.speed, friction=draw.even(0.1, 0.5)),
         draw.contact("pick", "table", stiff=100.0, speed=drive.speed),
     ]
-    plate: Data = {"center": place(one.length, 0.0, -5.0), "normal": "z"}
-    plate["size"] = [mm(rounded(5.0 * one.length)), mm(rounded(2.0 * one.width)), "10 mm"]
     return {
         "materials": {one.stock: one.material},
         "sheets": {"note": one.at(0.0, 0.0, one.thick / 2)},
         "rollers": {"pick": part},
-        "planes": {"table": plate},
+        "planes": {"table": parts.plate(5.0 * one.length, 2.0 * one.width, one.length)},
         "contacts": contacts,
         "run": draw.run(drive.lasts(draw.even(0.2, 1.2) * one.length)),
     }
@@ -236,13 +213,7 @@ def gate(draw: Draw) -> Data:
     x = rounded(one.length * draw.even(-0.3, 0.2))
     gap = max(draw.log(1.0, 20.0), x + max(radius) + 1.0 - one.length / 2)
     height = draw.even(5.0, 30.0)
-    stop = {
-        "center": place(one.length / 2 + gap + 5.0, 0.0, height / 2 - 3.0),
-        "normal": "-x",
-        "along": "y",
-        "size": [mm(rounded(1.5 * one.width)), mm(height), "10 mm"],
-        "mass": "100 g",
-    }
+    stop = parts.wall(one.length / 2 + gap, 1.5 * one.width, height, -3.0)
     held = draw.of("pressed", "fixed")
     return {
         "materials": {one.stock: one.material},

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 
+from mdlgen.bench.campaign import parts
 from mdlgen.bench.campaign.draw import RANGES, Data, Draw, mm, place, rounded
-from mdlgen.bench.campaign.kinds.nips import Drive, driven, mass
+from mdlgen.bench.campaign.kinds.nips import Drive, driven
 from mdlgen.bench.campaign.sheets import Drawn, sheet
 
 # Factor by which a force that is applied at once deflects more than at rest (lint W122).
@@ -40,25 +41,6 @@ def _pressed(draw: Draw, thick: float) -> tuple[float, float]:
     return min(force, 0.8 * most), min(SUDDEN * force / deep, 0.8 * RANGES["stiffness"].high)
 
 
-def _roller(draw: Draw, x: float, z: float, radius: float, width: float) -> Data:
-    return {
-        "center": place(x, 0.0, z),
-        "axis": "y",
-        "radius": mm(radius),
-        "width": mm(width),
-        "mass": mass(draw, radius, width),
-    }
-
-
-def _plate(length: float, width: float, x: float) -> Data:
-    return {
-        "center": place(x, 0.0, -5.0),
-        "normal": "z",
-        "size": [mm(rounded(length)), mm(rounded(width)), "10 mm"],
-        "mass": "100 g",
-    }
-
-
 def feed(draw: Draw) -> Data:
     """A pressed pick roller (0.5 to 3 N, less for thin sheets) drives the top of a pile of 2 to 8 sheets on a
     table."""
@@ -67,9 +49,11 @@ def feed(draw: Draw) -> Data:
     drive = driven(draw, None, 1.0)
     force, stiff = _pressed(draw, one.thick)
     radius, width = draw.log(6.0, 15.0), rounded(draw.even(0.2, 0.6) * one.width)
-    pick = _roller(draw, one.length * draw.even(0.0, 0.3), count * one.thick + radius, radius, width)
+    pick = parts.roller(
+        draw, one.length * draw.even(0.0, 0.3), 0.0, count * one.thick + radius, radius, width
+    )
     pick["drive"] = drive.data
-    pick["press"] = _spring(draw, "-z", force)
+    pick["press"] = parts.spring(draw, "-z", force)
     contacts = [
         draw.contact("pile_*", "pick", stiff=stiff, speed=drive.speed, friction=draw.even(0.6, 1.2)),
         draw.contact("pile_*", "table", stiff=stiff, speed=drive.speed, friction=draw.even(0.2, 0.6)),
@@ -80,23 +64,12 @@ def feed(draw: Draw) -> Data:
         "sheets": {"note": one.at(0.0, 0.0, one.thick / 2)},
         "piles": {"pile": _pile(draw, count, stiff, speed=drive.speed)},
         "rollers": {"pick": pick},
-        "planes": {"table": _plate(4.0 * one.length, 2.0 * one.width, 0.5 * one.length)},
+        "planes": {"table": parts.plate(4.0 * one.length, 2.0 * one.width, 0.5 * one.length)},
         "contacts": contacts,
         "run": draw.run(
             drive.lasts(draw.even(0.1, 0.6) * one.length), **({"margin": "40 mm"} if draw.chance(0.5) else {})
         ),
     }
-
-
-def _spring(draw: Draw, direction: str, force: float) -> Data:
-    made: Data = {
-        "direction": direction,
-        "stiffness": f"{draw.log(0.05, 0.5):g} N/mm",
-        "preload": f"{rounded(force):g} N",
-    }
-    if draw.chance(0.6):
-        made["damping_ratio"] = draw.of(0.05, 0.1, 0.3)
-    return made
 
 
 def retard(draw: Draw) -> Data:
@@ -110,16 +83,15 @@ def retard(draw: Draw) -> Data:
     lead = one.length / 2
     top = count * one.thick
     beyond = draw.even(2.0, 10.0)  # from the leading edge to the feed roller
-    pick = _roller(draw, lead - radius - 2.0 - draw.even(0.0, 0.3) * lead, top + radius, radius, width)
-    pick |= {"drive": drive.data, "press": _spring(draw, "-z", force)}
+    pick = parts.roller(
+        draw, lead - radius - 2.0 - draw.even(0.0, 0.3) * lead, 0.0, top + radius, radius, width
+    )
+    pick |= {"drive": drive.data, "press": parts.spring(draw, "-z", force)}
     faster = Drive(rounded(drive.speed * draw.even(1.0, 1.1)), drive.ramp)
     x = lead + max(beyond, radius / 4)
-    # the sheets meet the feed roller below its middle, at the height of the upper face of the pile
-    feed_roller = {
-        **_roller(draw, max(x, lead + beyond), top + radius - one.thick / 2, radius, width),
-        "drive": {**faster.data, "direction": "+x"},
-    }
-    x = lead + max(beyond, radius / 4)
+    # sheets meet the feed roller below its middle, at the height of the upper face of the pile
+    feed_roller = parts.roller(draw, x, 0.0, top + radius - one.thick / 2, radius, width)
+    feed_roller["drive"] = faster.data
     low = top - one.thick / 2
     rubber = draw.even(0.5, 0.8)
     contacts = [
@@ -136,11 +108,11 @@ def retard(draw: Draw) -> Data:
         "sheets": {"note": one.at(0.0, 0.0, one.thick / 2)},
         "piles": {"pile": _pile(draw, count, stiff, speed=drive.speed)},
         "rollers": {"pick": pick, "feed": feed_roller},
-        "planes": {"table": _plate(2.0 * one.length, 1.5 * one.width, end - one.length)},
+        "planes": {"table": parts.plate(2.0 * one.length, 1.5 * one.width, end - one.length)},
         "contacts": contacts,
         "run": draw.run(drive.lasts(draw.even(0.3, 1.0) * one.length), margin="60 mm"),
     }
-    spring = _spring(draw, "z", force)
+    spring = parts.spring(draw, "z", force)
     if draw.chance(0.5):
         length = rounded(min(1.2 * radius, 2.0 * (x - end) - 0.5))
         scene["planes"]["retard"] = {
@@ -152,7 +124,7 @@ def retard(draw: Draw) -> Data:
         }
     else:
         small = rounded(min(radius, x - end - 0.5))
-        lower = {**_roller(draw, x, low - small, small, width), "press": spring}
+        lower = {**parts.roller(draw, x, 0.0, low - small, small, width), "press": spring}
         if draw.chance(0.6):
             back = math.copysign(rounded(draw.even(SLOW, FAST) * 1e3 / small), -1.0)
             lower["drive"] = {"speed": f"{back:g} rad/s"}
@@ -174,7 +146,7 @@ def stack(draw: Draw) -> Data:
         "materials": {one.stock: one.material},
         "sheets": {"note": one.at(0.0, 0.0, one.thick / 2 + draw.of(0.0, gap), **moves)},
         "piles": {"pile": _pile(draw, count, 100.0, gap)},
-        "planes": {"table": _plate(6.0 * one.length, 3.0 * one.width, one.length)},
+        "planes": {"table": parts.plate(6.0 * one.length, 3.0 * one.width, one.length)},
         "contacts": [draw.contact("pile_*", "table", stiff=100.0)],
         "run": draw.run(math.sqrt(2.0 * count * gap / 9.81e-3) + draw.log(15.0, 100.0)),
     }

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 
-from mdlgen.bench.campaign.draw import Data, Draw, mm, place, rounded
+from mdlgen.bench.campaign.draw import Data, Draw, mm, rounded
 from mdlgen.bench.campaign.kinds.falls import falling
 from mdlgen.bench.campaign.kinds.nips import driven, nip, table, transported
+from mdlgen.bench.campaign.parts import plate
 from mdlgen.bench.campaign.sheets import Drawn, sheet
 
 
@@ -58,8 +59,6 @@ def _falls(draw: Draw, one: Drawn, shape: Data, depth: float) -> Data:
     """A sheet of that shape, which reaches `depth` [mm] below its centre, falls on a plate."""
     gap = draw.log(0.2, 5.0)
     side = 3.0 * max(one.length, one.width)
-    plate: Data = {"center": place(0.0, 0.0, -5.0), "normal": "z"}
-    plate["size"] = [mm(rounded(side)), mm(rounded(side)), "10 mm"]
     moves: Data = {}
     if draw.chance(0.4):
         moves["velocity"] = [f"{draw.log(0.1, 1.5):g} m/s", "0 m/s", "0 m/s"]
@@ -67,7 +66,7 @@ def _falls(draw: Draw, one: Drawn, shape: Data, depth: float) -> Data:
     return {
         "materials": {one.stock: one.material},
         "sheets": {"note": one.at(0.0, 0.0, height, shape=shape, **moves)},
-        "planes": {"table": plate},
+        "planes": {"table": plate(side, side)},
         "contacts": [draw.contact("note", "table")],
         "run": falling(draw, gap),
     }
