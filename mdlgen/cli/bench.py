@@ -77,19 +77,25 @@ def bench(
         ),
     ] = None,
     count: Annotated[int, typer.Option("--count", min=1, help="campaign: how many scenes.")] = 100,
-    seed: Annotated[int, typer.Option("--seed", min=0, help="campaign: what they are drawn from.")] = 1,
+    seed: Annotated[int, typer.Option("--seed", min=0, help="campaign: seed of the generator.")] = 1,
     only: Annotated[
         list[int] | None,
-        typer.Option("--only", metavar="N", min=1, help="campaign: the scene of this number alone."),
+        typer.Option("--only", metavar="N", min=1, help="campaign: only the scene of this number."),
     ] = None,
     kind: Annotated[
         list[str] | None,
-        typer.Option("--kind", metavar="KIND", help="campaign: of the scenes those of this kind alone."),
+        typer.Option("--kind", metavar="KIND", help="campaign: only scenes of this kind."),
     ] = None,
     workers: Annotated[
         int | None,
         typer.Option("--workers", min=1, help="campaign: processes; one for each processor if left out."),
     ] = None,
+    finer: Annotated[
+        bool,
+        typer.Option(
+            "--finer/--no-finer", help="campaign: compare one scene in ten with an eighth of its step."
+        ),
+    ] = True,
     as_json: Json = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
@@ -106,8 +112,9 @@ def bench(
     """
     if CAMPAIGN in (suites or ()):
         _check_alone(suites or (), bool(quick or peers or beside or len(solver or ()) > 1))
-        drawn = {"only": only or (), "kinds": kind or (), "workers": workers, "solver": (solver or [AUTO])[0]}
-        _campaign(count, seed, output, drawn, page, as_json, quiet)
+        chosen = {"only": only or (), "kinds": kind or (), "solver": (solver or [AUTO])[0]}
+        options = {**chosen, "workers": workers, "finer": finer}
+        _campaign(count, seed, output, options, page, as_json, quiet)
         return
     from mdlgen.bench import page as pages
     from mdlgen.bench.run import bench as run_bench
@@ -145,9 +152,15 @@ def _check_alone(suites: Sequence[str], others: bool) -> None:
 
 
 def _campaign(
-    count: int, seed: int, output: Path, drawn: dict[str, Any], page: Path | None, as_json: bool, quiet: bool
+    count: int,
+    seed: int,
+    output: Path,
+    options: dict[str, Any],
+    page: Path | None,
+    as_json: bool,
+    quiet: bool,
 ) -> None:
-    """Scenes drawn at random; exit code 5 where an error is far above its estimate, 4 where a scene has no
+    """Runs scenes drawn at random. Exit code 5: an error is far above its estimate; 4: a scene has no
     result."""
     from mdlgen.bench.campaign import report
     from mdlgen.bench.campaign.counts import counts
@@ -157,7 +170,7 @@ def _campaign(
 
     check_folder(output)
     heard = (lambda _: None) if quiet else say
-    found = campaign(count, seed, output, say=heard, **drawn)
+    found = campaign(count, seed, output, say=heard, **options)
     if as_json:
         echo_json(found.json())
     elif not quiet:

@@ -1,1 +1,1 @@
-"""Scenes drawn at random: how many have a result, how many are inaccurate, and why the rest have none."""
+"""A campaign runs scenes that are drawn at random, and counts results, inaccurate results and failures."""

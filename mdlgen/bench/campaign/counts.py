@@ -1,4 +1,4 @@
-"""What the rows of a campaign come to."""
+"""Counts of the rows of a campaign."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ PARTS = re.compile(r"\b(note|pile_#|(?:nip|motor|idler|pile)(?:_#)*(?:_upper|_lo
 
 @dataclass(frozen=True)
 class Counts:
-    """Scenes by what became of them, their times [s], and the quantities that were compared."""
+    """Scenes by outcome, their times [s], and the quantities that were compared."""
 
     scenes: int
     ok: int
@@ -44,7 +44,7 @@ class Counts:
 
 
 def counts(rows: Sequence[CampaignRow]) -> Counts:
-    """All numbers of the table."""
+    """Returns all numbers of the table."""
     times = [row.cpu_s for row in rows if row.cpu_s is not None]
     median, part, most = (float(np.quantile(times, q)) for q in (0.5, 0.95, 1.0)) if times else (None,) * 3
     finer = [row.finer for row in rows if row.finer is not None]
@@ -72,13 +72,13 @@ def counts(rows: Sequence[CampaignRow]) -> Counts:
 
 
 def alike(reason: str) -> str:
-    """A reason without its numbers and names of parts, up to its first advice."""
+    """Returns a reason without numbers, names of parts and advice, to group by."""
     first = NUMBER.sub("#", reason.partition(";")[0]).replace("\n", " ")
     return PARTS.sub("..", first)[:160]
 
 
 def grouped(rows: Sequence[CampaignRow], status: str) -> dict[str, list[CampaignRow]]:
-    """The rows of a status by their reasons, the most frequent first."""
+    """Returns the rows of a status by reason, the most frequent first."""
     groups: dict[str, list[CampaignRow]] = {}
     for row in rows:
         if row.status == status:

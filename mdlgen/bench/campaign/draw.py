@@ -1,4 +1,4 @@
-"""Random numbers for scenes, in the ranges that the manual lists, rounded to what a user would write."""
+"""Random values for scenes, in the ranges that the manual lists, rounded as a user would write them."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def place(x: float, y: float, z: float, decimals: int = 3) -> list[str]:
 
 
 class Draw:
-    """Draws from one generator, whose seed is all that decides a scene."""
+    """Draws values from one generator. Its seed alone determines a scene."""
 
     def __init__(self, seed: Sequence[int]):
         self._random = np.random.default_rng(list(seed))

@@ -1,4 +1,4 @@
-"""The true error of a run: against runs of the same scene at an eighth and a sixteenth of its step."""
+"""Compares the error of a run with its estimate, by runs at an eighth and a sixteenth of its step."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ class Compared:
 
 
 def against(result: Result, fine: Result, finest: Result | None = None) -> Iterator[Compared]:
-    """Each estimated quantity of a result with its error, which is the difference to the last of the finer
-    runs; they `agree` where these differ by little."""
+    """Yields each quantity of a result with its error over its estimate. The error is the difference from the
+    finest run. Two finer runs `agree` where their difference is below AGREE."""
     last = fine if finest is None else finest
     errors = differences(last, result)
     between = {} if finest is None else differences(finest, fine)
@@ -42,7 +42,7 @@ def against(result: Result, fine: Result, finest: Result | None = None) -> Itera
 
 def finer(result: Result, again: Callable[[float], Result]) -> Finer:
     """Compares a result with `again(step)` at an eighth of its step. Where an error is above its estimate, a
-    run at a sixteenth shows whether the eighth is fine enough to say so."""
+    run at a sixteenth checks that the eighth is fine enough."""
     eighth = again(result.step / 8.0)
     if not ended(eighth):
         return Finer(failed=f"at an eighth of the step: {eighth.status}")
@@ -64,7 +64,7 @@ def finer(result: Result, again: Callable[[float], Result]) -> Finer:
 
 
 def ended(run: Result) -> bool:
-    """Whether a run came to its end; at a step that is given its own error may be unknown."""
+    """Returns whether a run is complete. The error of a run at a given step may be unknown."""
     return run.status in (OK, INACCURATE)
 
 

@@ -1,4 +1,4 @@
-"""What a campaign found, with what it was drawn and run with."""
+"""The result of a campaign: its rows, seed, machine and versions."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from mdlgen.bench.campaign.row import CampaignRow
 
 @dataclass
 class Campaign:
-    """The rows of a campaign, by number, and what they were drawn and run with."""
+    """The rows of a campaign, sorted by number, with its seed, limit, machine and versions."""
 
     seed: int
     count: int
@@ -21,7 +21,7 @@ class Campaign:
     rows: list[CampaignRow] = field(default_factory=list)
 
     def json(self) -> dict[str, Any]:
-        """What campaign.json holds."""
+        """The content of campaign.json."""
         head = {"seed": self.seed, "count": self.count, "limit_s": self.limit}
         machine = {"machine": self.machine, "versions": self.versions}
         return {**head, **machine, "counts": counts(self.rows).json(), "rows": [r.json() for r in self.rows]}

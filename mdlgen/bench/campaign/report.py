@@ -1,4 +1,4 @@
-"""A campaign as text: what the command prints, and the page of the manual."""
+"""A campaign as text: the output of the command, and the page of the manual."""
 
 from __future__ import annotations
 
@@ -20,34 +20,37 @@ LISTED = 12
 
 HEAD = """# Random scenes
 
-`mdlgen bench campaign --count 1000 --seed 1` draws scenes at random, runs each with default settings and
-counts what became of them. The seed and the number of a scene decide it: `--only 17` runs scene 17 again, and
-`-o DIR` writes its file into `DIR/scenes`, as it does with each scene that has no result or an inaccurate
-one. This page is written by `mdlgen bench campaign --count 1000 --seed N --page docs/validation/campaign.md`;
-each release takes another seed.
+`mdlgen bench campaign --count 1000 --seed 1` draws scenes at random and runs each with default settings. It
+counts results, inaccurate results and failures. Seed and number determine a scene: `--seed 1 --only 17` runs
+scene 17 again. `-o DIR` names the folder of the output. `DIR/scenes` holds the file of each scene without a
+result or with an inaccurate one, and of scenes that `--only` names. `campaign.json` holds all rows.
+
+The command `mdlgen bench campaign --count 1000 --seed N --page docs/validation/campaign.md` writes this page.
+Each release uses another seed.
 """
 
 GENERATOR = """## How scenes are drawn
 
-Each scene has a kind, drawn by its share. A scene that `mdlgen check` does not accept is drawn again, which
-the table counts. Values are rounded to three digits. Unless a kind says otherwise, they are drawn from these
-ranges, uniformly or uniformly in the logarithm:
+The kind of a scene is drawn by its share. A scene that `mdlgen check` does not accept is drawn again; the
+table counts these. Values have three digits. Their ranges are below, if the kind does not say otherwise.
+Values are uniform, or uniform in their logarithm:
 """
 
-SHEETS = """A sheet is paper, board or a card. It has 1 to 300 boxes, drawn uniformly in the logarithm, of
-about equal sides; a tenth of the sheets have one row of boxes. Sheets between rollers have 12 boxes or more,
-8 mm long at most. Half of the sheets have the layout `edge_to_edge`, a quarter each `center_to_center` and
-`plate`. Bending stiffness is 0.6 to 1.2 times E s^3/12, or left out (a tenth). Three in ten name a damping.
-Forces that press a roller are lower where they would press it more than 0.45 of the thickness into the sheet.
-Rollers are solid and of 1 to 2.8 g/cm^3. A fifth of the contacts leave out `restitution`, a third
-`smoothing`.
+SHEETS = """A sheet is paper, board or a card. Its boxes are about square. A tenth of the sheets have one row
+of boxes. Sheets between rollers have at least 12 boxes, of 8 mm at most along x. Half of the sheets have the
+layout `edge_to_edge`, a quarter `center_to_center`, a quarter `plate`. Bending stiffness is 0.6 to 1.2 times
+E s^3/12; a tenth of the materials leave it out. Three in ten materials have a damping.
+
+The force of a nip is limited so that no roller is pressed in by more than 0.45 of the thickness. Rollers are
+solid, with a density of 1 to 2.8 g/cm^3. A fifth of the contacts leave out `restitution`, a third leave out
+`smoothing`. The friction of guides is 0.5 at most.
 """
 
 KINDS_HEAD = "Kinds, with their share of the scenes:"
 
 
 def table(found: Campaign) -> str:
-    """What the command prints."""
+    """The output of the command."""
     return "\n".join([*_head(found), "", *_body(found), ""])
 
 

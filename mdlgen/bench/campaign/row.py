@@ -1,30 +1,30 @@
-"""A row of a campaign: what became of one scene."""
+"""A row of a campaign: the outcome of one scene."""
 
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 from typing import Any
 
-# With a result (exit code 0 of `mdlgen run`); with one whose error is above the tolerance or unknown (5);
-# none.
+# The result of `mdlgen run` has exit code 0; its error is above the tolerance or unknown (exit code 5); there
+# is no result.
 OK, INACCURATE, NONE = "ok", "inaccurate", "none"
 
 
 @dataclass(frozen=True)
 class Finer:
-    """Quantities of a run compared with runs at an eighth of its step, and at a sixteenth where one is above
-    its estimate by more than ABOVE."""
+    """Errors of a run relative to their estimates, from a run at an eighth of its step. Where one is above
+    ABOVE, a run at a sixteenth checks the eighth."""
 
     compared: int = 0  # that have an estimate
     unknown: int = 0  # that have none
     above: tuple[tuple[str, float], ...] = ()  # name, error over estimate, of those above ABOVE
-    apart: tuple[str, ...] = ()  # above, but the two finer runs do not agree how large the error is
+    apart: tuple[str, ...] = ()  # those of `above` on which the two finer runs do not agree
     failed: str = ""  # why there is no finer run
 
 
 @dataclass(frozen=True)
 class CampaignRow:
-    """What became of a scene; `reason` says why it has no result, or why that is inaccurate."""
+    """The outcome of a scene; `reason` says why it has no result, or why its result is inaccurate."""
 
     number: int
     kind: str

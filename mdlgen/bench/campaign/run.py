@@ -23,7 +23,7 @@ Say = Callable[[str], None]
 TENTH = 10
 # Processor time for the run of one scene [s].
 LIMIT = 60.0
-# Rows after which campaign.json is written, so that little is lost where a campaign is interrupted.
+# Rows between two writes of campaign.json; a campaign that is killed loses fewer.
 OFTEN = 20
 
 
@@ -40,7 +40,7 @@ def campaign(
     finer: bool = True,
     say: Say = lambda text: None,
 ) -> Campaign:
-    """Run the scenes 1 to `count` of a seed, or those of the numbers `only`; `kinds` leaves out others.
+    """Run the scenes 1 to `count` of a seed, or the numbers in `only`. `kinds` selects some of them.
 
     `workers` processes run one scene each at a time (None: one for each processor), for at most `limit` [s]
     of processor time. One scene in ten is compared with finer steps, unless `finer` is false. Writes
@@ -71,7 +71,7 @@ def campaign(
                     _write_scene(seed, row, folder / "scenes")
                 if len(found.rows) % OFTEN == 0:
                     write(found, folder)
-    finally:  # what was run is worth keeping when someone interrupts it
+    finally:  # an interrupted campaign keeps its rows
         found.rows.sort(key=lambda row: row.number)
         write(found, folder)
     return found

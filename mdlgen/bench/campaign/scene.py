@@ -1,4 +1,4 @@
-"""A scene of a campaign, which its seed and its number alone decide."""
+"""A scene of a campaign. Its seed and its number alone determine it."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def drawn(seed: int, number: int, kind: str = "") -> DrawnScene:
 
 
 def _once(seed: int, number: int, kind: str, again: int, rejected: tuple[str, ...]) -> DrawnScene:
-    """A draw; each time that it is drawn `again` has numbers of its own."""
+    """Draws a scene. Each repeated draw (`again`) has its own random numbers."""
     from mdlgen.spec.source import text_of_data
 
     own = list(KINDS).index(kind) + 1 if kind else 0

@@ -1,4 +1,4 @@
-"""What the process that runs scenes is asked, and its first answer."""
+"""Messages to and from a process that runs scenes."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ FINER = 10.0
 
 @dataclass(frozen=True)
 class Task:
-    """One scene; `fine`: to be compared with finer steps as well."""
+    """Asks for one scene. `fine`: compare it with finer steps as well."""
 
     seed: int
     number: int
@@ -23,7 +23,7 @@ class Task:
 
 @dataclass(frozen=True)
 class Begun:
-    """What is sent before a scene is run: the limit of time counts from here."""
+    """Answers that a scene is drawn and its run begins; limits count from here."""
 
     kind: str
     boxes: int

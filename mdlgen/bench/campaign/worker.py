@@ -1,7 +1,7 @@
-"""The process that draws and runs scenes of a campaign, one after the other.
+"""A process that draws and runs scenes of a campaign, one after the other.
 
-Tasks come pickled on standard input, rows go pickled to standard output; whatever a solver prints goes to
-standard error.
+It reads pickled tasks from standard input and writes pickled rows to standard output. Output of a solver goes
+to standard error.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def main() -> None:
 
 
 def perform(task: Task) -> Iterator[Begun | CampaignRow]:
-    """Yields Begun, then the row; of a task that is `fine` the row twice, the second time compared."""
+    """Yields Begun, then the row. A `fine` task yields the row again, with its errors compared."""
     from mdlgen.bench.campaign.scene import drawn
 
     try:
@@ -63,14 +63,13 @@ def perform(task: Task) -> Iterator[Begun | CampaignRow]:
     wall, cpu = time.perf_counter(), time.process_time()
     try:
         result = _solve(model, task.solver)
-    except Exception as error:  # an internal error is a finding of the campaign
+    except Exception as error:  # the campaign reports internal errors
         wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
         known = isinstance(error, MdlgenError)
         reason = f"refused: {error}" if known else f"internal error: {type(error).__name__}: {error}"
         yield replace(row, reason=reason, wall_s=wall, cpu_s=cpu)
         return
     wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
-    # compiling, or loading what is compiled, belongs to the machine and not to the scene
     row = judged(replace(row, wall_s=wall, cpu_s=cpu), result)
     yield row
     if task.fine and row.status != NONE and not row.chaotic and result.step > 0.0:
@@ -86,8 +85,8 @@ def perform(task: Task) -> Iterator[Begun | CampaignRow]:
 
 
 def _allow(seconds: float) -> None:
-    """Has the system end this process after so much more processor time, where it can: other programs that
-    run at the same time then decide nothing."""
+    """Sets the time after which the system ends this process [s]. It counts processor time, so that other
+    programs do not matter."""
     try:
         import resource
     except ImportError:  # not on Windows, where the parent's limit of wall time counts
@@ -98,7 +97,7 @@ def _allow(seconds: float) -> None:
 
 
 def judged(row: CampaignRow, result: Result) -> CampaignRow:
-    """The row of a result, by its status and, as `mdlgen run` does, by its estimate."""
+    """Returns the row of a result, judged by status and estimate as `mdlgen run` does."""
     estimate, tolerance = result.error_estimate, result.model.run.tolerance
     row = replace(
         row,
@@ -124,7 +123,7 @@ def _solve(model: Model, solver: str) -> Result:
 
 
 def _compile(solver: str) -> None:
-    """Loads what a solver is compiled to, before the first clock starts."""
+    """Loads the compiled code of a solver before the first measurement."""
     from mdlgen import registry
     from mdlgen.bench.run import WARM
 

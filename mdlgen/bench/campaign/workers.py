@@ -1,4 +1,4 @@
-"""Processes that run the scenes of a campaign: one that dies or takes too long costs one row."""
+"""Processes that run scenes of a campaign. If one crashes or exceeds its limit, one scene has no result."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from mdlgen.bench.campaign.task import FINER, Begun, Task
 from mdlgen.bench.process import STARTING, THREADS
 from mdlgen.errors import OutputError
 
-# Wall time that a scene may take, relative to its limit of processor time: other programs may run at the same
-# time, and a process that waits for ever takes no processor time.
+# Limit of wall time relative to that of processor time. It ends a process that waits forever, and leaves room
+# for other programs. Where the system cannot limit processor time, wall time is the limit.
 WALL = 5.0 if hasattr(signal, "SIGXCPU") else 1.0
 # Preparing a solver may compile it, which takes minutes [s].
 COMPILING = 1800.0
@@ -48,7 +48,7 @@ class _Process:
         self.process.stdin.flush()
 
     def next(self, limit: float) -> object:
-        """What it says next, within a limit [s]. Raises EOFError where it ends before."""
+        """Returns its next message within a limit [s]. Raises EOFError if it ends first."""
         assert self.process.stdout is not None
 
         def stop() -> None:
@@ -66,11 +66,11 @@ class _Process:
 
     @property
     def exceeded(self) -> bool:
-        """Whether the system ended it because it took too much processor time."""
+        """Whether the system ended it at its limit of processor time."""
         return hasattr(signal, "SIGXCPU") and self.process.returncode == -signal.SIGXCPU
 
     def ended(self) -> str:
-        """Ends it, and says how it ended."""
+        """Ends the process and returns how it ended."""
         self._wait()
         code = self.process.returncode
         self.log.seek(0, os.SEEK_END)
@@ -84,7 +84,7 @@ class _Process:
         return f"the process was ended by signal {-code}"
 
     def close(self) -> None:
-        """Ends it, whatever it does."""
+        """Ends the process at once."""
         self.process.kill()
         self._wait()
         self.log.close()
@@ -110,7 +110,7 @@ class Workers:
         self._closed = False
 
     def rows(self, tasks: Sequence[Task]) -> Iterator[CampaignRow]:
-        """The rows, as they are done. Raises OutputError where no process can be started."""
+        """Yields the rows in the order in which they finish. Raises OutputError where no process starts."""
         todo, done = deque(tasks), SimpleQueue[CampaignRow | Exception]()
         for slot in range(min(self._count, len(tasks))):
             Thread(target=self._work, args=(slot, todo, done), daemon=True).start()
@@ -137,7 +137,7 @@ class Workers:
             done.put(error)
 
     def _row(self, slot: int, task: Task) -> CampaignRow:
-        """The row of a scene, whatever becomes of its process."""
+        """Returns the row of a scene, also where its process crashes."""
         row = CampaignRow(task.number, task.kind, NONE)
         process, limit = self._process(slot), STARTING
         try:
@@ -165,7 +165,7 @@ class Workers:
             return replace(row, reason=why, stopped=late, cpu_s=limit if late else None)
 
     def _process(self, slot: int) -> _Process:
-        """The process of a slot, its solver loaded; a new one where there is none."""
+        """Returns the process of a slot, with its solver loaded. Starts one if needed."""
         with self._lock:
             if self._closed:
                 raise OSError("closed")
@@ -179,7 +179,7 @@ class Workers:
         return found
 
     def close(self) -> None:
-        """Ends the processes, whatever they do."""
+        """Ends all processes at once."""
         self._closed = True
         for process in self._slots:
             if process is not None:

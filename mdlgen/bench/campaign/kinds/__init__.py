@@ -1,5 +1,4 @@
-"""Kinds of scenes: each a function that draws one, with its share of a campaign. Its docstring is what the
-manual says of it."""
+"""Kinds of scenes: a function draws a scene of each kind. The manual shows its docstring and its share."""
 
 from __future__ import annotations
 
