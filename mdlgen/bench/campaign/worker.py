@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 
 from mdlgen.bench.campaign.row import INACCURATE, NONE, OK, CampaignRow
 from mdlgen.bench.campaign.task import FINER, Begun, Task
+from mdlgen.bench.process import STARTING
 from mdlgen.errors import MdlgenError
 
 if TYPE_CHECKING:
@@ -49,6 +50,7 @@ def perform(task: Task) -> Iterator[Begun | CampaignRow]:
     """Yields Begun, then the row. A `fine` task yields the row again, with its errors compared."""
     from mdlgen.bench.campaign.scene import drawn
 
+    _allow(STARTING)  # the limit of the scene before may be near
     try:
         scene = drawn(task.seed, task.number, task.kind)
         model = scene.model()
