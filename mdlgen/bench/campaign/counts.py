@@ -13,7 +13,8 @@ from mdlgen.bench.campaign.finer import FAR
 from mdlgen.bench.campaign.row import INACCURATE, NONE, OK, CampaignRow
 
 NUMBER = re.compile(r"[-+]?\d+\.?\d*(e[-+]?\d+)?")
-PARTS = re.compile(r"\b(note|pile_#|(?:nip|motor|idler|pile)(?:_#)*(?:_upper|_lower)?)\b")
+# Names that scenes give to parts which they have several of.
+PARTS = re.compile(r"\b(?:note|pile|nip|motor|idler)(?:_(?:#|upper|lower))*(?!\w)")
 
 
 @dataclass(frozen=True)
@@ -74,7 +75,7 @@ def counts(rows: Sequence[CampaignRow]) -> Counts:
 def alike(reason: str) -> str:
     """Returns a reason without numbers, names of parts and advice, to group by."""
     first = NUMBER.sub("#", reason.partition(";")[0]).replace("\n", " ")
-    return PARTS.sub("..", first)[:160]
+    return PARTS.sub("X", first)[:160]
 
 
 def grouped(rows: Sequence[CampaignRow], status: str) -> dict[str, list[CampaignRow]]:
