@@ -96,11 +96,11 @@ def _finer(made: Counts) -> list[str]:
     if not made.finer_scenes and not made.finer_failed:
         return ["No scene was compared with a finer step."]
     return [
-        f"{made.finer_scenes} scenes ran again at an eighth of the step; {made.finer_failed} more failed there. "
-        f"{made.compared} quantities have an estimate, {made.unknown} have none. {made.above} "
+        f"{made.finer_scenes} scenes ran again at an eighth of the step; {made.finer_failed} more failed "
+        f"there. {made.compared} quantities have an estimate, {made.unknown} have none. {made.above} "
         f"({_part(made.above, made.compared)}) are above {ABOVE:g} times their estimate, {made.far} above "
-        f"{FAR:g} times. For {made.apart} of the {made.above} a run at a sixteenth does not agree with the one "
-        f"at an eighth. Where both agree, {made.wrong} are above {FAR:g} times."
+        f"{FAR:g} times. For {made.apart} of the {made.above} a run at a sixteenth does not agree with the "
+        f"one at an eighth. Where both agree, {made.wrong} are above {FAR:g} times."
     ]
 
 
