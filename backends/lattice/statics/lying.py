@@ -1,7 +1,8 @@
 """Sheets that lie on a plane at rest: friction holds each where it lies.
 
 At rest a contact has its normal force alone. What would push a sheet along the plane is held at one of its
-boxes, by springs along the plane and about its normal; what they hold must be less than friction can.
+boxes, by springs along the plane and about its normal, in the face that lies there. What they hold, a force
+and a couple, must be within the limit surface of all contacts of the sheet (see limit).
 
 Where a sheet slopes over an edge, friction turns the force of the edge towards the plate's normal (see
 mechanics.edge). Such a force has no potential, and the symmetric stiffness of a balance would miss that. So
@@ -17,6 +18,8 @@ import numpy as np
 
 from mdlgen.backends.lattice.arrays import JOINT, System
 from mdlgen.backends.lattice.kernels.state import Midpoint
+from mdlgen.backends.lattice.statics.limit import Limit, limit
+from mdlgen.backends.lattice.statics.pressure import grips
 from mdlgen.mechanics.edge import HOLDS
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.records import LOAD
@@ -27,6 +30,8 @@ from mdlgen.model.tables import BOX_PLANE, GROUND, Floats, Model, PlanePart, She
 GIVES = 1e-4
 # Of that load: a force along the plane below this is none.
 NONE = 1e-6
+# A sheet that turns about a centre further off than this many times the reach of its contacts slides.
+FAR = 10.0
 
 
 # Balances that are found anew for what friction adds at edges, and its change, of the load, that ends them.
@@ -41,15 +46,27 @@ class Hold(NamedTuple):
     box: int
     stiffness: float
 
-    def pulls(self, model: Model, x: Floats, r: Floats) -> float:
-        """What it holds [N] with bodies at x (n, 3), their rotations r (n, 9): the force along the plane, and
-        the couple about its normal over half of the sheet's shorter side."""
+    def foot(self, model: Model) -> Floats:
+        """Where the box is held (3,), in its own axes: below its middle, in the face of the plane, where
+        friction acts."""
+        bodies = model.bodies
+        normal = bodies.rotation[self.plane.body][:, 2]
+        high = float((bodies.position[self.box] - bodies.position[self.plane.body]) @ normal)
+        return -(high - 0.5 * self.plane.size[2]) * (normal @ bodies.rotation[self.box])
+
+    def pulls(self, model: Model, x: Floats, r: Floats) -> tuple[Floats, Floats]:
+        """What it holds with bodies at x (n, 3), their rotations r (n, 9): the force along the plane [N] and
+        the couple about its normal [N mm], (3,), and where (3,)."""
         axes, own = model.bodies.rotation[self.plane.body], r[self.box].reshape(3, 3)
-        turn = vectors(axes.T @ own @ model.bodies.rotation[self.box].T @ axes)
+        first, foot = model.bodies.rotation[self.box], self.foot(model)
+        turn = vectors(axes.T @ own @ first.T @ axes)
+        place = x[self.box] + own @ foot
         # in the frame halfway, as of any bushing
-        moved = (x[self.box] - model.bodies.position[self.box]) @ axes @ matrices(0.5 * turn)
-        couple = _arm(model, self.box) ** 2 * abs(float(turn[2]))
-        return self.stiffness * (float(np.hypot(*moved[:2])) + couple / (0.5 * min(self.sheet.size)))
+        halfway = matrices(0.5 * turn)
+        moved = (place - model.bodies.position[self.box] - first @ foot) @ axes @ halfway
+        moved[2] = 0.0
+        force = self.stiffness * (halfway @ moved)
+        return np.array([*force[:2], self.stiffness * _arm(model, self.box) ** 2 * float(turn[2])]), place
 
 
 def _arm(model: Model, box: int) -> float:
@@ -88,25 +105,54 @@ def held(model: Model, system: System, found: list[Hold]) -> System:
     for joint, hold in zip(joints, found, strict=True):
         axes, own = model.bodies.rotation[hold.plane.body], model.bodies.rotation[hold.box]
         joint["a"], joint["b"], joint["first"] = GROUND, hold.box, -1
-        joint["ra"] = model.bodies.position[hold.box]
+        foot = hold.foot(model)
+        joint["ra"], joint["rb"] = model.bodies.position[hold.box] + own @ foot, foot
         joint["fa"], joint["fb"] = axes.ravel(), (own.T @ axes).ravel()
         k = hold.stiffness
         joint["k"] = k, k, 0.0, 0.0, 0.0, k * _arm(model, hold.box) ** 2
     return system._replace(joints=np.concatenate([system.joints, joints]))
 
 
-def slides(model: Model, found: list[Hold], forces: Floats, load: float, x: Floats, r: Floats) -> str | None:
-    """A reason where friction does not hold what it should; `forces` of the contacts (rows,) [N]."""
-    table = model.contacts
+def slides(
+    model: Model, systems: tuple[System, System], found: list[Hold], load: float, place: tuple, mid: Midpoint
+) -> str | None:
+    """A reason where friction does not hold what it should; `systems`: with what friction adds at edges, and
+    without; `place`: x (n, 3), r (n, 9), ...; `mid` is room to work in."""
+    x, r = place[:2]
     for hold in found:
-        mine = np.array([hold.sheet.name in ends for ends in zip(table.part_a, table.part_b, strict=True)])
-        most, pulled = float(table.mu_static[mine] @ forces[mine]), hold.pulls(model, x, r)
-        if pulled > most + NONE * load:
-            return (
-                f"sheet {hold.sheet.name} slides on plane {hold.plane.name}: {pulled:.3g} N pull it along, "
-                f"and friction holds {most:.3g} N"
-            )
+        pulled, origin = hold.pulls(model, x, r)
+        axes = model.bodies.rotation[hold.plane.body]
+        every = grips(model, systems, hold.sheet, (axes, origin), (x, r), mid)
+        middle = every.middle()
+        pulled[2] -= middle[0] * pulled[1] - middle[1] * pulled[0]
+        here = every.at(middle)
+        length = here.reach()
+        force = float(np.hypot(*pulled[:2]))
+        if force + abs(pulled[2]) / length <= NONE * load:
+            continue
+        most = limit(here, pulled)
+        if (1.0 - most.part) * (force + abs(pulled[2]) / length) > NONE * load:
+            return _gives_way(hold, pulled, most, origin + axes[:, :2] @ middle, length, axes)
     return None
+
+
+def _gives_way(hold: Hold, pulled: Floats, most: Limit, middle: Floats, length: float, axes: Floats) -> str:
+    """How a sheet gives way to a force and a couple about the `middle` (3,) of its contacts."""
+    force, couple = float(np.hypot(*pulled[:2])), abs(float(pulled[2]))
+    speed, turns = float(np.hypot(*most.twist[:2])), float(most.twist[2])
+    if speed > FAR * length * abs(turns):
+        return (
+            f"sheet {hold.sheet.name} slides on plane {hold.plane.name}: {force:.3g} N pull it along, "
+            f"and friction holds {most.part * force:.3g} N, {most.part:.3g} of it"
+        )
+    # where the rigid motion has no speed
+    centre = middle + axes[:, :2] @ (np.array([-most.twist[1], most.twist[0]]) / turns)
+    at = ", ".join(f"{value + 0.0:.3g}" for value in centre.round(3))
+    return (
+        f"sheet {hold.sheet.name} turns on plane {hold.plane.name} about ({at}) mm: {force:.3g} N and "
+        f"{couple:.3g} N mm about the middle of its contacts pull it along, and friction holds "
+        f"{most.part:.3g} of that, {most.part * force:.3g} N and {most.part * couple:.3g} N mm"
+    )
 
 
 class Grip:

@@ -103,7 +103,7 @@ def rest(model: Model, system: System, work: Workspace) -> Result:
     reason = _parts(model, balanced, load, place)
     if reason is None:
         reason = _stretched(model, system, x, r) or _touch(model, system, state, mid, kept)
-        reason = reason or lying.slides(model, found, kept.rows[:, FORCE_NOW], load, x, r)
+        reason = reason or lying.slides(model, (system, grip.system), found, load, place, mid)
         reason = reason or _outside(model, x) or Unheld(model).found(x, r, 0.0)
     if reason is None and (ways := falls(1.0)) > 0:
         reason = standing.reason(ways, standing.begins(stable))
