@@ -250,14 +250,22 @@ probes: {{tip: {{sheet: n, edge: x_max}}}}
 
 
 def hangs(
-    out: float, length: float, thick: float = 0.1, bend: float = 0.4, size: float = 5.0, mu: float = 0.5
+    out: float,
+    length: float,
+    thick: float = 0.1,
+    bend: float = 0.4,
+    size: float = 5.0,
+    mu: float = 0.5,
+    aside: tuple[float, float] = (0.0, 0.0),
 ):
-    """A strip of 80 g/m^2 at 0.1 mm of which `out` is beyond the edge of a table; boxes of a size [mm]."""
+    """A strip of 80 g/m^2 at 0.1 mm of which `out` is beyond the edge of a table; boxes of a size [mm];
+    `aside`: parts of the weight over the edge and along it."""
     text = HANGS.format(
         bend=bend, length=length, thick=thick, mass=80e-6 * length * 20 * thick / 0.1, mu=mu,
         boxes=round(length / size), middle=out - 0.5 * length, high=0.5 * thick,
     )  # fmt: skip
-    return mdlgen.solve(lower(loads(text)), "lattice")
+    lean = f"gravity: [{9.81 * aside[0]!r} m/s^2, {9.81 * aside[1]!r} m/s^2, -9.81 m/s^2]"
+    return mdlgen.solve(lower(loads(f"{text}{lean}\n")), "lattice")
 
 
 @pytest.mark.parametrize(
@@ -299,6 +307,24 @@ def test_the_sag_comes_to_the_elastica_on_finer_grids() -> None:
 def test_a_sheet_with_more_over_the_edge_than_on_the_table_falls() -> None:
     result = hangs(130, 200)
     assert not result.ok
+
+
+@pytest.mark.parametrize(
+    "aside, stands",
+    [
+        ((0.0, 0.49), True),
+        ((0.0, 0.502), False),
+        ((-0.42, 0.0), True),
+        ((0.42, 0.0), True),
+        ((0.51, 0.0), False),
+    ],
+)
+def test_a_sheet_over_an_edge_slides_at_its_friction(aside: tuple[float, float], stands: bool) -> None:
+    """Along the edge all of 0.5 is left; over it the edge pushes outwards, which takes a part."""
+    result = hangs(60, 200, aside=aside)
+    assert result.ok == stands, result.status
+    if not stands:
+        assert "slides on plane table" in result.status or "turns on plane table" in result.status
 
 
 def test_what_friction_cannot_hold_slides() -> None:

@@ -109,6 +109,17 @@ def test_a_leaning_contact_holds_what_its_cone_does(lean: float, turn: float, fr
         assert np.linalg.norm(whole - pressing * normal) == pytest.approx(friction * pressing, rel=1e-9)
 
 
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_a_leaning_contact_holds_less_downhill(way: float) -> None:
+    """What friction turned to the vertical already holds a part: tan(atan mu - lean) one way, + the other."""
+    lean, friction = 0.2, 0.5
+    normal = np.array([math.sin(lean), 0.0, math.cos(lean)])
+    centre, shape = cone(np.array([0.0, 0.0, 1.0]), normal, friction)
+    found = limit(Grips(np.zeros((1, 2)), centre[None], shape[None]), np.array([way, 0.0, 0.0]))
+    assert found.part == pytest.approx(math.tan(math.atan(friction) - way * lean), rel=1e-6)
+    assert found.twist == pytest.approx([way, 0.0, 0.0], abs=1e-6)
+
+
 # -- sheets on planes
 
 STRIP = """

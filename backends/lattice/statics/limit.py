@@ -4,7 +4,7 @@ A contact at the place r holds a force t in a convex set K of the plane: a disc 
 lies flat, an ellipse where its normal leans. All contacts together hold the wrenches (F, M) = sum (t, r x t),
 Coulomb's limit surface, which is convex. So the part of a wrench w that they hold is
 
-    min over all twists q = (v, omega) with w.q = 1 of  sum max over t in K of  t.(v + omega x r),
+    min over all twists q = (v, omega) with w.q = 1 of  sum max over t in K of  -t.(v + omega x r),
 
 the least of what friction would dissipate in a rigid motion over what w would do in it (Goyal, Ruina and
 Papadopoulos 1991, "Planar sliding with dry friction"). Each twist gives a part that is not too small and a
@@ -41,7 +41,7 @@ class Grips(NamedTuple):
         return self._replace(place=self.place - origin)
 
     def answer(self, twist: Floats) -> tuple[float, Floats]:
-        """What friction dissipates at a twist (v_x, v_y, omega), and the wrench (F_x, F_y, M) that does."""
+        """The most power of forces in these sets at a twist (v_x, v_y, omega), and the wrench of those."""
         x, y = self.place.T
         rate = np.stack([twist[0] - twist[2] * y, twist[1] + twist[2] * x], axis=1)
         along = np.einsum("nij,nj->ni", self.shape, rate)
@@ -91,7 +91,8 @@ def cone(force: Floats, normal: Floats, friction: float) -> tuple[Floats, Floats
 
 
 def limit(grips: Grips, wrench: Floats) -> Limit:
-    """Which part of a wrench (F_x, F_y, M) [N, N mm] about the origin contacts hold; above 1: it stands."""
+    """Which part of a wrench (F_x, F_y, M) [N, N mm] that pulls, about the origin, contacts hold with one
+    against it; above 1: it stands."""
     from scipy.optimize import linprog
 
     # a length and a force of the contacts as units: forces and couples count alike
@@ -101,7 +102,7 @@ def limit(grips: Grips, wrench: Floats) -> Limit:
     size = float(np.linalg.norm(wrench * unit))
     if power == 0.0:
         return Limit(0.0, wrench * unit * unit / size**2, 0.0)
-    wanted = wrench * unit / size
+    wanted = -wrench * unit / size
     scaled = Grips(grips.place / length, grips.centre / power, grips.shape / power)
     twists = [sign * axis for axis in np.eye(3) for sign in (1.0, -1.0)] + [wanted]
     known = [scaled.answer(twist)[1] for twist in twists]
@@ -134,4 +135,4 @@ def limit(grips: Grips, wrench: Floats) -> Limit:
             high, best = most, twist
         known.append(answer)
     times = power / size
-    return Limit(times * high, best * unit / size, times * max(0.0, high - low))
+    return Limit(times * high, -best * unit / size, times * max(0.0, high - low))
