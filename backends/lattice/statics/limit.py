@@ -6,10 +6,10 @@ Coulomb's limit surface, which is convex. So the part of a wrench w that they ho
 
     min over all twists q = (v, omega) with w.q = 1 of  sum max over t in K of  -t.(v + omega x r),
 
-the least of what friction would dissipate in a rigid motion over what w would do in it (Goyal, Ruina and
-Papadopoulos 1991, "Planar sliding with dry friction"). Each twist gives a part that is not too small and a
-wrench on the surface. What these wrenches have between them is held, a part that is not too large. The twist
-that shows most comes of the linear program of the latter, until both differ by less than CLOSE.
+the power that friction dissipates in a rigid motion over the power of w (Goyal, Ruina and Papadopoulos
+1991, "Planar sliding with dry friction"). Each twist yields an upper bound of that part, and a wrench on the
+surface. The convex hull of these wrenches is held: a linear program finds how far w reaches in it, a lower
+bound. The dual of the program is the next twist. The search ends where both differ by less than CLOSE.
 """
 
 from __future__ import annotations
@@ -24,8 +24,9 @@ from mdlgen.model.tables import Floats
 CLOSE = 1e-7
 # Twists: 20 to 60 are enough for CLOSE.
 MOST = 300
-# Cosine of the steepest contact that friction holds along the plane, over that of its own cone: at 1 its
-# ellipse becomes a parabola.
+# A contact that leans by 90 degrees less the angle of friction may hold any force along the plane: its
+# ellipse becomes a parabola. One that is closer to that than this part of the cone's cosine squared counts as
+# a wall, which holds nothing along the plane beyond its own force.
 STEEP = 0.05
 
 
