@@ -114,14 +114,15 @@ def solve(
     result = backend.solve(model, progress, **options)
     result.ran_at = _now()
     # a static run has no step, and a failed one nothing to compare
-    if not check_step or not result.ok or result.step <= 0.0:
+    if not check_step or not result.usable or result.step <= 0.0:
         return result
-    from mdlgen.results.estimates import estimated
+    from mdlgen.results.estimates import NOT_KNOWN, estimated, marked
 
     finer = backend.solve(model, progress, step=result.step / 2, **options)
-    if not finer.ok:
-        return finer.failed(f"at half the step ({result.step / 2:.6g} ms): {finer.status}")
+    if not finer.usable:
+        half = f"a run at half the step ({result.step / 2:.6g} ms) ended early: {finer.status}"
+        return marked(replace(result, error_estimate=None, error_unknown=f"{NOT_KNOWN}: {half}"))
     # kernels are compiled once, for the first of the two
     compile_s = result.compile_s + finer.compile_s
     checked = replace(finer, checks=True, compile_s=compile_s, ran_at=_now())
-    return estimated(checked, (result, *result.coarser)[:2])
+    return marked(estimated(checked, (result, *result.coarser)[:2]))

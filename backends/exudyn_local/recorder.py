@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import time as clock
 from collections.abc import Callable
 
 import numpy as np
@@ -36,7 +38,8 @@ GRAZE = 0.05
 class Recorder:
     """Called after every step of the solver; turns SI into the Model's units when the result is made."""
 
-    def __init__(self, model: Model, system: System, progress: Callable | None):
+    def __init__(self, model: Model, system: System, progress: Callable | None, until: float = math.inf):
+        self._until = until  # when `run.limit` is over, of time.perf_counter [s]
         self.model, self.system, self.progress = model, system, progress
         # the same at each step, so that compiled code looks at them once
         self._tables = system.tables
@@ -97,6 +100,10 @@ class Recorder:
             self._watch(t, step)
         if self.reason is None:
             self._between(t, step)
+        if self.reason is None and clock.perf_counter() > self._until:
+            limit = 1e-3 * (self.model.run.limit or 0.0)
+            self.reason = f"run.limit of {limit:g} s of wall time was over at {t / MS:.6g} ms"
+            self._store(t)
         if self.progress is not None and self.steps % 20 == 0:
             self.progress(t / MS, self.model.run.duration, self.steps, self.touching)
         return self.reason is None

@@ -7,6 +7,7 @@ chosen.
 
 from __future__ import annotations
 
+import math
 import sys
 import time as clock
 from collections.abc import Callable, Sequence
@@ -37,7 +38,7 @@ from mdlgen.backends.exudyn_local.step import choose_steps, cost, given_steps
 from mdlgen.backends.exudyn_local.system import MM, MS, Pattern, System, build
 from mdlgen.model.tables import Model
 from mdlgen.results import audit
-from mdlgen.results.estimates import estimated, open_yet
+from mdlgen.results.estimates import NOT_KNOWN, by_finer, estimated, marked, open_yet
 from mdlgen.results.result import Result
 
 # Spectral radius of the generalised-alpha rule: 1 would keep the noise of contact changes, 0 damps most.
@@ -52,6 +53,8 @@ UNSTABLE = "the balance is unstable"
 # second.
 ESTIMATED, REFINED = 6.0, 30.0
 MOST_REFINED = 5
+# A step that is given is compared with twice that step where a run has so many of them, else with half.
+FEWEST = 4
 # Relative to the load of one step; what counts is our own check of the residual at the end.
 STATIC_TOLERANCE = 1e-8
 # A step may shrink to this part of the wanted one before the run fails.
@@ -78,23 +81,51 @@ def solve(model: Model, progress: Progress | None = None, step: float | None = N
     work = workspace(system)
     _compile(system, pattern, work)
     compile_s = clock.perf_counter() - compiled
-    once = partial(_once, exu, model, system, pattern, work, progress)
     build_s = clock.perf_counter() - started - compile_s
     begun, wanted = clock.perf_counter(), step or model.run.step
+    until = math.inf if model.run.limit is None else begun + 1e-3 * model.run.limit
+    once = partial(_once, exu, model, system, pattern, work, progress, until)
     if model.run.analysis == "static":
         result = once(LOAD_STEPS[0], 0.0)
         if result.status.startswith(UNSTABLE):
             result = once(LOAD_STEPS[1], 0.0)
     elif wanted is None:
-        result = _refined(model, system, once, *choose_steps(model, system, work))
+        result = _refined(model, system, once, until, *choose_steps(model, system, work))
     else:
         count, h = given_steps(model, wanted)
         result = once(count, h)
-        if result.ok and step is None and count >= 4 and cost(system, count) <= ESTIMATED:
-            result = _estimated(result, [once(*given_steps(model, 2 * result.step))])
+        if step is None:
+            result = _compared(model, system, once, until, result)
     result.estimate_s = clock.perf_counter() - begun - result.wall_s - result.build_s
     result.build_s, result.compile_s = result.build_s + build_s, compile_s
     return result
+
+
+def _compared(
+    model: Model, system: System, once: Callable[[int, float], Result], until: float, result: Result
+) -> Result:
+    """The run at a step that is given, with its estimate from one at twice that step, or at half of it where
+    there are few; where two runs would take long, or `run.limit` is near, its error is not known."""
+    if not result.ok:
+        return result
+    count = round(model.run.duration / result.step)
+    few = count < FEWEST
+    seconds = cost(system, (2 if few else 1) * count)
+    if seconds > ESTIMATED:
+        why = f"a second run, to compare with, would take some {seconds:.0f} s"
+        return marked(replace(estimated(result, []), error_unknown=f"{NOT_KNOWN}: {why}"))
+    if clock.perf_counter() + (2.0 if few else 0.5) * result.wall_s > until:
+        return marked(replace(estimated(result, []), error_unknown=f"{NOT_KNOWN}: {_limit(model)}"))
+    other = once(*given_steps(model, (0.5 if few else 2.0) * result.step))
+    if not other.ok:
+        which = "half" if few else "twice"
+        why = f"a run at {which} the step fails: {other.status}"
+        return marked(replace(estimated(result, []), error_unknown=f"{NOT_KNOWN}: {why}"))
+    return marked(by_finer(result, other) if few else _estimated(result, [other]))
+
+
+def _limit(model: Model) -> str:
+    return f"run.limit of {1e-3 * (model.run.limit or 0.0):g} s left no time for another run"
 
 
 def _estimated(result: Result, coarser: Sequence[Result]) -> Result:
@@ -105,18 +136,25 @@ def _estimated(result: Result, coarser: Sequence[Result]) -> Result:
 
 
 def _refined(
-    model: Model, system: System, once: Callable[[int, float], Result], count: int, h: float
+    model: Model, system: System, once: Callable[[int, float], Result], until: float, count: int, h: float
 ) -> Result:
-    """Halves the step until what the tolerance judges is estimated within it; fails where it never is."""
+    """Halves the step until what the tolerance judges is estimated within it; where it never is, the finest
+    complete run is the result, with its estimate."""
+
+    def affords(last: Result) -> bool:
+        """Whether there is time for a run at half the step."""
+        took = 2.0 * last.wall_s
+        return cost(system, 2 * last.steps) <= REFINED and clock.perf_counter() + took <= until
+
     if cost(system, count) > ESTIMATED:
         result = once(count, h)
         # one that came to its end, and fails a check of that, is tried at a finer step
         while not result.ok and result.time[-1] >= model.run.duration * (1 - 1e-9):
-            if cost(system, 2 * count) > REFINED:
+            if not affords(result):
                 break
             count, h = 2 * count, 0.5 * h
             result = once(count, h)
-        return result
+        return _compared(model, system, once, until, result)
     # outputs fall on the steps of the coarser run, too
     even = max(1, round(model.run.duration / model.run.print_step)) * 2
     count = even * -(-count // even)
@@ -125,26 +163,33 @@ def _refined(
     result = _estimated(once(count, h), before)
     if open_yet(result) and count % 4 == 0 and count >= 16:
         result = _estimated(result, [*before, once(count // 4, 4.0 * h)])
+    why = f"the step was halved {MOST_REFINED} times"
     for _ in range(MOST_REFINED):
-        near = result.error_estimate is not None and result.error_estimate <= model.run.tolerance
         early = [r.steps > 0 and r.time[-1] < model.run.duration * (1 - 1e-9) for r in (before[0], result)]
-        if near or all(early) or cost(system, 2 * count) > REFINED:
+        if marked(result).ok or all(early):
+            break
+        if not affords(result):
+            why = f"a run at half the step of {result.step:.3g} ms would take long"
             break
         count, h, before = 2 * count, 0.5 * h, [result, *before[:1]]
         result = _estimated(once(count, h), before)
-    if result.ok and not (result.error_estimate is not None and result.error_estimate <= model.run.tolerance):
-        off = (
-            f"a run at twice the step failed ({before[0].status})"
-            if not result.coarser
-            else f"there is no estimate of {result.error_estimate_of}"
-            if result.error_estimate is None
-            else f"the estimate of {result.error_estimate_of} is {result.error_estimate:.3g}"
-        )
-        result = result.failed(
-            f"the tolerance of {model.run.tolerance:.3g} was not reached at a step of {result.step:.3g} ms: "
-            f"{off}; a larger run.tolerance or a run.step of your own ends the search"
-        )
-    return result
+    return _best([result, *before], why)
+
+
+def _best(runs: list[Result], why: str) -> Result:
+    """The finest complete one of runs, the last first, after a search for a step that ended."""
+    last = runs[0]
+    k = next((k for k, run in enumerate(runs) if run.ok), 0)
+    best = runs[k]
+    if not best.ok or (k == 0 and marked(best).ok):
+        return marked(best)
+    if k > 0:
+        early = f"a run at half the step ended early: {last.status}"
+        best = replace(estimated(best, []), error_unknown=f"{NOT_KNOWN}: {early}")
+    elif not best.coarser and not best.error_unknown:
+        early = f"a run at twice the step fails: {runs[1].status}"
+        best = replace(estimated(best, []), error_unknown=f"{NOT_KNOWN}: {early}")
+    return marked(replace(best, search_ended=why))
 
 
 def _once(
@@ -154,12 +199,14 @@ def _once(
     pattern: Pattern,
     work: Work,
     progress: Progress | None,
+    until: float,
     count: int,
     h: float,
 ) -> Result:
-    """One run of `count` steps of h [s], or a static one of as many steps of the load, where h is 0."""
+    """One run of `count` steps of h [s], or a static one of as many steps of the load, where h is 0. It ends
+    at `until`, of `time.perf_counter` [s]."""
     started = clock.perf_counter()
-    recorder = Recorder(model, system, progress)
+    recorder = Recorder(model, system, progress, until)
     assembly = assemble(exu, model, system, pattern, work, recorder)
     static = model.run.analysis == "static"
     if not static:

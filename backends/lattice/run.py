@@ -7,15 +7,20 @@ import math
 import time as clock
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 from queue import SimpleQueue
 from threading import Event, Thread
 
-import numpy as np
-
 from mdlgen.backends.lattice.arrays import System, build
+from mdlgen.backends.lattice.compared import (
+    UNKNOWN,
+    compared_with_coarser,
+    compared_with_finer,
+    ended,
+    in_time,
+)
 from mdlgen.backends.lattice.integrate.beside import Beside, Stopped, own
-from mdlgen.backends.lattice.integrate.ends import unbalanced
+from mdlgen.backends.lattice.integrate.ends import limit_of, unbalanced
+from mdlgen.backends.lattice.integrate.limit import Deadline
 from mdlgen.backends.lattice.integrate.passes import FIRST_STEP, Progress, Watch, accuracy, division, one_pass
 from mdlgen.backends.lattice.integrate.work import arrays, flexible, warm
 from mdlgen.backends.lattice.kernels.entries import PROGRAM
@@ -25,8 +30,8 @@ from mdlgen.backends.lattice.symmetry.find import find
 from mdlgen.backends.lattice.symmetry.mirror import halve
 from mdlgen.model.tables import Model
 from mdlgen.processors import processors
-from mdlgen.results import audit
-from mdlgen.results.estimates import estimated, open_yet, unlike
+from mdlgen.results import chaos
+from mdlgen.results.estimates import NOT_KNOWN, SAME_STEPS, estimated, marked
 from mdlgen.results.result import Result
 from mdlgen.runs.checkpoint import Checkpointer
 
@@ -38,9 +43,6 @@ MISS = 1e-3
 # Energy that contacts may make or lose in one step by its length alone, as a part of what passes through the
 # run, at a tolerance of 1e-3; else the step is halved.
 MADE = 5e-5
-# What a scene without contacts may gain, as a part of the tolerance; its step is halved until it does not.
-FREE_GAIN = 1e-3
-
 # Two runs that end early end at the same time where it differs by less than this part of the duration.
 SAME_END = 0.01
 
@@ -49,12 +51,13 @@ SHORT = 0.25
 
 Report = tuple[float, float, int, int]  # what progress is called with
 
-# Of a run at a step that is given, where one at twice that step is none, or quite another one.
-UNKNOWN = "the error is not known: a run at twice the step"
-
 # Numbers by which states of passes are kept: first those of the first step, halved so many times, or of the
-# step that is given, doubled so many times; then of twice the first step; of a check at a step of its own.
-DOUBLED, CHECK = MOST_REFINED_RIGID + 1, MOST_REFINED_RIGID + 2
+# step that is given, doubled so many times; then of twice the first step; of a check at a step of its own; of
+# a run at finer steps than were given; of one from a start that is moved.
+DOUBLED, CHECK, FINER, MOVED = (MOST_REFINED_RIGID + k for k in (1, 2, 3, 4))
+
+# A step that is given is compared with twice that step where the run has so many of them.
+FEWEST = 4
 
 # States, stored times by bodies, of a run that is only compared with another one: those of a pile of a
 # hundred sheets would take as much memory as half of what its steps work on.
@@ -64,13 +67,24 @@ COMPARED = 1_000_000
 FOLDING, FACTORS, SYMMETRY, SLEEP = "folding", "factors", "symmetry", "sleep"
 
 
-def _watch(
-    progress: Progress | None, keep: Checkpointer | None, threads: int, sleeps: bool, number: int
-) -> Watch:
-    """Of the pass of that number."""
-    if keep is not None:
-        keep.begin(number)
-    return Watch(progress, keep, number, threads=threads, sleeps=sleeps)
+class Watches:
+    """Who follows the passes of a run, each by its number; all have until the same time."""
+
+    def __init__(self, progress: Progress | None, keep: Checkpointer | None, threads: int, sleeps: bool):
+        self._keep = keep
+        self._of_all = Watch(progress, keep, threads=threads, sleeps=sleeps)
+        self.deadline = Deadline()
+
+    def until(self, deadline: Deadline) -> Watches:
+        """The same, with a time at which all passes end."""
+        self.deadline = deadline
+        self._of_all = self._of_all._replace(deadline=deadline)
+        return self
+
+    def __call__(self, number: int) -> Watch:
+        if self._keep is not None:
+            self._keep.begin(number)
+        return self._of_all._replace(number=number)
 
 
 @PROGRAM.releases
@@ -86,8 +100,9 @@ def solve(
 
     `step` [ms], or the Model's own, is taken as it is, and estimates come of a run at twice the step.
     Without either the step follows from the tolerance: the run is repeated at half the step until what it
-    judges is estimated to be within it (see `results.estimates`). A failed run returns a Result with its
-    reason; RefusedError is raised for what the solver cannot represent.
+    judges is estimated to be within it (see `results.estimates`); where it never is, the finest complete run
+    is the result, marked as inaccurate. With the argument `step` nothing is compared. A failed run returns a
+    Result with its reason; RefusedError is raised for what the solver cannot represent.
 
     `without` names rules that are not to be used: FOLDING of equal bushings, keeping of FACTORS over steps,
     SYMMETRY of both sides, SLEEP of sheets at rest. `keep` is given states to go on from, and a run goes on
@@ -113,9 +128,10 @@ def solve(
     build_s = clock.perf_counter() - started - compile_s
     wanted = step or model.run.step
     begun = clock.perf_counter()
+    deadline = Deadline.of(model)
     allowed = processors() if threads is None else threads
     each = min(model.run.threads, allowed) if PROGRAM.loaded else 1
-    watch = partial(_watch, progress, keep, each, SLEEP not in without)
+    watch = Watches(progress, keep, each, SLEEP not in without).until(deadline)
     # numba's code keeps the lock of Python
     together = threads is not None and threads >= 2 * each and threads > 1 and PROGRAM.loaded
     if keep is not None and not (together and threads == 2 * each):
@@ -123,10 +139,9 @@ def solve(
     if wanted is None:
         result = Search(model, system, watch).result(together)
     else:
-        compared = step is None and model.run.duration / wanted >= 4
         anew = FACTORS in without
         number = 0 if step is None else CHECK
-        result = _given(model, system, wanted, watch, number, anew, compared, together)
+        result = _given(model, system, wanted, watch, number, anew, step is None, together)
     result.estimate_s = clock.perf_counter() - begun - result.wall_s
     result.build_s, result.compile_s = build_s, compile_s
     return result
@@ -136,18 +151,19 @@ def _given(
     model: Model,
     system: System,
     wanted: float,
-    watch: Callable[[int], Watch],
+    watch: Watches,
     number: int,
     anew: bool,
     compared: bool,
     together: bool,
 ) -> Result:
-    """A run of that number at a step that is given, `compared` with one at twice that step."""
+    """A run of that number at a step that is given, `compared` with one at twice that step, or at half of the
+    steps that it takes where there is none of so few steps, or both are divided to the same."""
     made = MADE * accuracy(model) / 1e-3
     h = division(model, wanted).step
-    thinned = _thinned(model)
+    thinned, begun = _thinned(model), clock.perf_counter()
 
-    def again(times: int, on: System, seen: Watch) -> Result:
+    def again(times: float, on: System, seen: Watch) -> Result:
         return alone(one_pass(thinned, on, times * h, seen, made=times * times * made))
 
     def alone(result: Result) -> Result:
@@ -158,17 +174,30 @@ def _given(
     def first() -> Result:
         return alone(one_pass(model, system, wanted, watch(number), made=made, anew=anew))
 
-    if not compared:
-        return first()
-    if not together:
-        result = first()
-        return _compared(result, [], lambda n: again(n, system, watch(n // 2))) if result.ok else result
-    seen, beside = watch(1), own(system)
-    with Beside(lambda stop: again(2, beside, seen.beside(stop)), seen.leave) as coarse:
-        result = first()
+    def judged(result: Result, coarse: Callable[[], Result]) -> Result:
+        """By a run at twice the step, or a finer one."""
         if not result.ok:
             return result
-        return _compared(result, [], lambda n: coarse.result() if n == 2 else again(n, system, watch(2)))
+        late, took = watch.deadline, clock.perf_counter() - begun
+        if few or not late.allows(0.5 * took):
+            result = estimated(result, [])
+        else:
+            result = compared_with_coarser(
+                result, [], lambda n: coarse() if n == 2 else again(n, system, watch(n // 2))
+            )
+        if (few or result.error_unknown.endswith(SAME_STEPS)) and late.allows(2.0 * took):
+            finer = 0.5 * model.run.duration / result.steps
+            result = compared_with_finer(result, again(finer / h, system, watch(FINER)))
+        return marked(in_time(result, late))
+
+    few = model.run.duration / wanted < FEWEST
+    if not compared:
+        return first()
+    if not together or few:
+        return judged(first(), lambda: again(2, system, watch(1)))
+    seen, beside = watch(1), own(system)
+    with Beside(lambda stop: again(2, beside, seen.beside(stop)), seen.leave) as coarse:
+        return judged(first(), coarse.result)
 
 
 def _thinned(model: Model) -> Model:
@@ -181,50 +210,19 @@ def _thinned(model: Model) -> Model:
     return replace(model, run=replace(model.run, print_step=each * model.run.print_step))
 
 
-def _compared(result: Result, before: list[Result], again: Callable[[int], Result]) -> Result:
-    """The result with its estimate, from the runs `before` at twice its step, four times its step, ...
-
-    `again(times)` runs at so many times its step: at twice where there is none, and once more coarsely where
-    two leave open whether the tolerance is met, or differ by a large part, since three show how errors fall.
-    Where there is none, and that at twice its step fails or differs by a large part that does not fall,
-    nothing shows how far off the result is, which it says.
-    """
-    found = [run for run in before if _ended(run)]
-    for run in found:
-        run.coarser = ()
-    found = found if before else [again(2)]
-    if not before and not found[0].ok:
-        why = found[0].status.partition(f"; {audit.ADVICE}")[0]
-        return replace(estimated(result, []), error_unknown=f"{UNKNOWN} fails: {why}")
-    if not found or not _ended(found[0]):
-        return estimated(result, [])
-    result = estimated(result, found[:2])
-    what = None if before or result.error_estimate is not None else unlike(result, found[0])
-    if (open_yet(result) or what) and result.model.run.duration / result.step >= 16:
-        third = again(4)
-        result = estimated(result, [found[0], third]) if _ended(third) else result
-    if what and result.error_estimate is None:
-        return replace(result, error_unknown=f"{UNKNOWN} differs from it in {what}")
-    return result
-
-
-def _ended(run: Result) -> bool:
-    """Whether a run came to its end; one whose energies do not balance still shows how errors fall."""
-    finite = all(np.isfinite(a).all() for a in (run.position, run.velocity, run.spin))
-    return finite and bool(run.time[-1] >= run.model.run.duration * (1.0 - 1e-9))
-
-
 class Search:
-    """Halves the step until estimates are within the tolerance; fails where they never are.
+    """Halves the step until estimates are within the tolerance.
 
-    A run that ends early has its reason from the physics of the scene or from its step: it is reported where
-    the next finer run ends at the same time, and its energies balance.
+    Where they never are the finest run that is complete is the result, with its estimate. A run that ends
+    early has its reason from the physics of the scene or from its step: it is reported where the next finer
+    run ends at the same time, and its energies balance.
     """
 
-    def __init__(self, model: Model, system: System, watch: Callable[[int], Watch]):
+    def __init__(self, model: Model, system: System, watch: Watches):
         self._model, self._system, self._watch = model, system, watch
         self._flexible = flexible(model)
         self._runs: list[Result] = []  # the last one first
+        self._late = watch.deadline
 
     def result(self, together: bool) -> Result:
         """The last run; `together`: two passes at the same time, where both are needed or likely to be."""
@@ -234,39 +232,41 @@ class Search:
         elif self._flexible:
             finer = self._three()
             if finer is None:
-                return self._runs[0]
+                return self._done()
             ready.append(finer)
         else:
             ready.append(self._two())
         for k in range(len(self._runs), 1 + (MOST_REFINED if self._flexible else MOST_REFINED_RIGID)):
+            if not ready and self._stops():
+                break
             if (
                 together and not ready
             ):  # what estimates need of the runs before, while compiled code is at work
                 Thread(target=_strains, args=(self._runs[:2],), daemon=True).start()
             run = ready.pop() if ready else self._once(0.5 * self._runs[0].step, k, self._watch(k))
             if self._ends(run, k, self._watch(DOUBLED)):
-                return self._runs[0]
-        return self._failed()
+                return self._done()
+        return self._best()
 
-    def _once(self, h: float, halved: int, seen: Watch, on: System | None = None) -> Result:
+    def _once(
+        self, h: float, halved: int, seen: Watch, on: System | None = None, of: Model | None = None
+    ) -> Result:
         fine = accuracy(self._model) / 1e-3 * 0.25**halved
         miss = 0.0 if self._flexible else MISS * fine
-        return one_pass(self._model, self._system if on is None else on, h, seen, miss, MADE * fine)
+        return one_pass(of or self._model, self._system if on is None else on, h, seen, miss, MADE * fine)
 
     def _ends(self, run: Result, k: int, seen: Watch, on: System | None = None) -> bool:
         """Whether the search ends with the run at the first step halved `k` times, which becomes the last
         one."""
         before, model = self._runs[:2], self._model
-        enough = False
         if run.ok and before[0].ok:
             h = run.step
-            run = _compared(run, before, lambda n: self._once(n * h, k - n // 2, seen, on))
-            near = run.error_estimate is not None and run.error_estimate <= model.run.tolerance
-            free = not len(model.pairs)
-            enough = near and not (free and run.energy.balance_error > FREE_GAIN * model.run.tolerance)
+            run = compared_with_coarser(run, before, lambda n: self._once(n * h, k - n // 2, seen, on))
         same = abs(run.time[-1] - before[0].time[-1]) <= SAME_END * model.run.duration
         self._runs.insert(0, run)
-        return enough or (not _ended(run) and same and unbalanced(run) is None)
+        if run.ok and before[0].ok:
+            return marked(run).ok
+        return not ended(run) and same and not self._late.over and unbalanced(run) is None
 
     def _two(self) -> Result:
         """The second pass beside the first one: rigid blocks seldom need a third."""
@@ -290,7 +290,8 @@ class Search:
                 self._runs.append(self._once(h, 0, coarse.beside(stop), beside))
             finally:
                 first.set()
-            if self._runs[0].wall_s < SHORT:
+            took = self._runs[0].wall_s
+            if took < SHORT or not third.deadline.allows(4.0 * took):
                 return None  # what comes after the run has more use for this processor
             followed = third.beside(stop)._replace(progress=lambda *report: reports.put(report))
             return self._once(0.5 * finer, 2, followed, beside)
@@ -323,19 +324,50 @@ class Search:
         side.raises(Stopped)
         return None
 
-    def _failed(self) -> Result:
-        result = self._runs[0]
-        if not result.ok:
-            return result
-        why = f"{result.error_estimate_of} does not come closer as steps are halved"
-        if not result.coarser:
-            why = "a run at twice the step failed"
-        elif result.error_estimate is not None:
-            why = f"the estimate of {result.error_estimate_of} is {result.error_estimate:.3g}"
-        return result.failed(
-            f"the tolerance of {self._model.run.tolerance:.3g} was not reached at a step of "
-            f"{result.step:.3g} ms: {why}; a larger run.tolerance or a run.step of your own ends the search"
-        )
+    def _stops(self) -> bool:
+        """Whether a run at half the step would not end in time, and there is one that is complete."""
+        if any(run.ok for run in self._runs):
+            return not self._late.allows(2.0 * self._runs[0].wall_s)
+        return self._late.over
+
+    def _done(self) -> Result:
+        """The last run, with which the search ended."""
+        return marked(self._runs[0])
+
+    def _best(self) -> Result:
+        """The finest run that is complete, where the search ended without one within the tolerance; without
+        any the last one, or the one that came furthest in the time that there was."""
+        runs, late = self._runs, limit_of(self._model) if self._model.run.limit is not None else ""
+        stopped = late and self._stops()
+        complete = [k for k, run in enumerate(runs) if run.ok]
+        if not complete:
+            return max(runs, key=lambda run: float(run.time[-1])) if stopped else runs[0]
+        k = complete[0]
+        before = [run for run in runs[k + 1 :] if ended(run)]
+        best = compared_with_coarser(runs[k], before, None) if before else estimated(runs[k], [])
+        why = f"no step below {best.step:.3g} ms was tried"
+        if stopped:
+            why = f"{late} left no time for a finer step"
+            if not before:
+                best = replace(best, error_unknown=f"{NOT_KNOWN}: {late} left no time for another run")
+        elif k > 0:
+            best = replace(
+                best, error_unknown=f"{NOT_KNOWN}: a run at half the step ended early: {runs[0].status}"
+            )
+        elif not before:
+            best = replace(best, error_unknown=f"{UNKNOWN} failed: {runs[1].status}")
+        return marked(self._chaos(replace(best, search_ended=why), before, len(runs) - 1 - k))
+
+    def _chaos(self, best: Result, before: list[Result], halved: int) -> Result:
+        """The result with whether it is chaotic, which a run from a start that is moved a little shows."""
+        name = best.error_estimate_of
+        if not before or name is None or chaos.falls([best, *before[:3]], name):
+            return best
+        if not self._late.allows(best.wall_s):
+            return best
+        model = chaos.moved(self._model)
+        other = self._once(best.step, halved, self._watch(MOVED), build(model, fold=True), model)
+        return replace(best, chaotic=chaos.chaos(best, before[0], other))
 
 
 def _strains(runs: list[Result]) -> None:

@@ -7,7 +7,7 @@ import sys
 import time
 from pathlib import Path
 from threading import Thread
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -35,6 +35,7 @@ from mdlgen.errors import AccuracyError, RequirementError, SpecError
 
 if TYPE_CHECKING:
     from mdlgen.model.tables import Model
+    from mdlgen.results.result import Result
     from mdlgen.runs.checkpoint import Checkpointer
 
 # Compiled code comes back for a moment some thousand times a second: how long it waits for what another
@@ -150,12 +151,12 @@ def run(
         if checkpointer.written:
             say(f"mdlgen run --resume {folder} goes on with this run")
         raise
-    if not result.ok:
+    if not len(result.time):  # a static run that found no rest
         if checkpointer.written:
             checkpointer.drop()
             with contextlib.suppress(OSError):  # the folder is empty where it was made for what was kept
                 folder.rmdir()
-        say(f"{request.spec}: the run failed: {result.status}; nothing was written into {folder}")
+        say(f"{request.spec}: the run failed: {result.status}; there is no state to write into {folder}")
         raise typer.Exit(SOLVER_FAILED)
     from mdlgen.report.html.page import page
     from mdlgen.report.text import summary_text
@@ -170,24 +171,35 @@ def run(
     elif not quiet:
         typer.echo(summary_text(summary))
         typer.echo(f"wrote {folder}")
-    if request.check_step and result.error_estimate is None and not quiet:
+    if request.check_step and result.usable and result.step <= 0.0 and not quiet:
         say("a static run has no step: --check-step compared nothing")
-    if result.error_estimate is not None and not result.error_estimate <= model.run.tolerance:
-        raise AccuracyError(
-            f"{request.spec}: the error estimate of {result.error_estimate_of} is "
-            f"{result.error_estimate:.3g}, above run.tolerance {model.run.tolerance:g}; the files in "
-            f"{folder} hold this result; give a smaller run.step"
-        )
-    if result.error_unknown:
-        raise AccuracyError(
-            f"{request.spec}: {result.error_unknown}; the files in {folder} hold this result; give a smaller "
-            "run.step, or leave it out, so that a step is found whose error is known"
-        )
-    missed = [row["requirement"] for row in summary["verdict"]["requirements"] if not row["passed"]]
+    _judge(result, summary, str(request.spec), folder)
+
+
+def _judge(result: Result, summary: dict[str, Any], spec: str, folder: Path) -> None:
+    """Ends the command by what the run is: the exit codes of DESIGN. Raises AccuracyError, RequirementError.
+
+    A run that ended early: 4. A requirement that is missed: 6, but where the run is inaccurate and the miss is
+    within its error. Every other inaccurate run: 5.
+    """
+    from mdlgen.results.mark import chaotic
+
+    if not result.usable:
+        say(f"{spec}: {summary['mark']}; the files in {folder} hold what there is up to then")
+        raise typer.Exit(SOLVER_FAILED)
+    rows = [row for row in summary["verdict"]["requirements"] if not row["passed"]]
+    missed = [row["requirement"] for row in rows if result.ok or not row["doubtful"]]
     if missed:
-        raise RequirementError(
-            f"{request.spec}: {len(missed)} of {len(model.require)} requirements missed: {'; '.join(missed)}"
-        )
+        many = len(summary["verdict"]["requirements"])
+        also = "" if result.ok else f"; {summary['mark']}"
+        what = f"{len(missed)} of {many} requirements missed: {'; '.join(missed)}"
+        raise RequirementError(f"{spec}: {what}{also}")
+    if not result.ok:
+        advice = "give a smaller run.step, or leave it out, so that a step is searched"
+        if result.model.run.step is None:
+            advice = "a larger run.tolerance, a smaller run.step or more damping of the material may help"
+        advice = chaotic(result, spec) or advice
+        raise AccuracyError(f"{spec}: {summary['mark']}; the files in {folder} hold this result; {advice}")
 
 
 def _check_single(spec: Path | None, resume: Path | None, others: bool) -> None:

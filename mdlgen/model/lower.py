@@ -160,6 +160,7 @@ def _run(scene: Scene) -> RunSettings:
         run.symmetry,
         run.threads,
         run.sleep,
+        run.limit,
     )
 
 

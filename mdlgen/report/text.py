@@ -10,8 +10,9 @@ from mdlgen.lints.cost import Cost
 from mdlgen.lints.smoothing import lines as smoothing_lines
 from mdlgen.model.parts.kinds import KINDS
 from mdlgen.report.overview import UNITS
+from mdlgen.results.result import INACCURATE, OK
 from mdlgen.results.verdict import outcomes_of
-from mdlgen.results.wording import number, numbers
+from mdlgen.results.wording import number, numbers, percent
 
 FIGURES = 4
 
@@ -193,8 +194,12 @@ def summary_text(record: dict[str, Any]) -> str:
     estimating = record["estimate_s"]
     # what takes less than a millisecond is no run, but the clock between two readings
     more = f"and {estimating:.2g} s more for the estimate of the error, " if estimating > 1e-3 else ""
-    lines = [
-        f"{record['scene']} ({record['solver']}): {record['status']}, {record['t_end_ms']:.6g} ms, {steps}",
+    # what may be wrong stands first
+    lines = [record["mark"]] if record.get("mark") else []
+    lines += [record["chaotic"]["in_words"]] if record.get("chaotic") else []
+    status = record["status"] if record["status"] in (OK, INACCURATE) else "ended early"
+    lines += [
+        f"{record['scene']} ({record['solver']}): {status}, {record['t_end_ms']:.6g} ms, {steps}",
         f"solved in {record['wall_s']:.3g} s, {more}"
         f"after {record['build_s']:.2g} s to build and {record['compile_s']:.2g} s to compile",
         f"pairs: {pairs['possible']} possible, {pairs['kept']} kept{_searched(pairs)}, "
@@ -228,8 +233,10 @@ def summary_text(record: dict[str, Any]) -> str:
         lines += _plates(plates)
     if record["error_estimate"] is not None:
         worst = f" ({record['error_estimate_of']})" if record["error_estimate_of"] else ""
+        below = "below " if record.get("error_below") else ""
         lines.append(
-            f"error estimate {record['error_estimate']:.2g}{worst}, tolerance {record['tolerance']:g}"
+            f"error estimate {below}{percent(record['error_estimate'])}{worst}, "
+            f"tolerance {percent(record['tolerance'])}"
         )
     elif record.get("error_unknown"):
         lines.append(record["error_unknown"])

@@ -16,6 +16,8 @@ from typing import TYPE_CHECKING
 
 from mdlgen.model.nips import facets
 from mdlgen.results.quantities import Difference, differences
+from mdlgen.results.result import INACCURATE, OK
+from mdlgen.results.wording import percent
 
 if TYPE_CHECKING:
     from mdlgen.model.tables import Model
@@ -46,6 +48,9 @@ FREE, FREE_PEAKS, TOUCHING, TOUCHING_PEAKS = 1e-6, 1e-3, 1e-2, 3.0
 FLUTTERING = 0.25
 # Of the root mean square over all alike of a scene: one of them may agree by accident.
 ALIKE = 0.5
+# How a result says that its error may be of any size.
+NOT_KNOWN = "the error is not known"
+SAME_STEPS = "the solver divided the steps of all runs to the same, so that nothing was compared"
 # Of what is estimated of a pair's greatest force: a mean over the time in contact changes with short touches.
 OF_GREATEST = 0.25
 
@@ -58,6 +63,9 @@ class Estimate:
     scale: float
     unit: str
     judged: float | None = None  # scale by which run.tolerance judges it; None: it does not
+    # whether the two runs agree to less than the value, which is then the least that is estimated of such a
+    # quantity: the error is below it, and how far is not known
+    below: bool = False
 
 
 def between(runs: Sequence[Result], judged: bool = False) -> dict[str, Estimate]:
@@ -87,9 +95,8 @@ def between(runs: Sequence[Result], judged: bool = False) -> dict[str, Estimate]
         least = result.model.run.tolerance * _floor(last, touching, result.model)
         if value is None and judged and times * STILL * max(last.value, earlier or 0.0) <= least:
             value = least
-        found[name] = Estimate(
-            None if value is None else max(value, least), last.scale, last.unit, last.judged
-        )
+        found[name] = Estimate(value, last.scale, last.unit, last.judged)
+        found[name] = _at_least(found[name], least)
     return _pooled(found)
 
 
@@ -128,16 +135,20 @@ def _pooled(estimates: dict[str, Estimate]) -> dict[str, Estimate]:
         if found.value is not None:
             groups.setdefault(_alike(name), []).append(found.value**2)
     least = {kind: ALIKE * (sum(squares) / len(squares)) ** 0.5 for kind, squares in groups.items()}
-    pooled = _raised(estimates, lambda name: least[_alike(name)])
+    pooled = _raised(estimates, lambda name: least.get(_alike(name), 0.0))
     return _raised(pooled, partial(_related, pooled))
 
 
 def _raised(estimates: dict[str, Estimate], least: Callable[[str], float]) -> dict[str, Estimate]:
     """None is below what is the least of it by its name."""
-    return {
-        name: found if found.value is None else replace(found, value=max(found.value, least(name)))
-        for name, found in estimates.items()
-    }
+    return {name: _at_least(found, least(name)) for name, found in estimates.items()}
+
+
+def _at_least(estimate: Estimate, least: float) -> Estimate:
+    """The same, or the least value where that is as much: the error is below it."""
+    if estimate.value is None or estimate.value > least:
+        return estimate
+    return replace(estimate, value=least, below=True) if least > 0.0 else estimate
 
 
 def _alike(name: str) -> str:
@@ -185,6 +196,19 @@ def headline(estimates: Mapping[str, Estimate]) -> tuple[float | None, str | Non
     return worst, of
 
 
+def taken(result: Result, coarser: Result) -> bool:
+    """Whether a run took so many more steps than another that the two can be compared.
+
+    A solver divides steps that do not converge. Where both runs are divided to the same steps their
+    difference says nothing. The error of the finer one is at most SAFETY times the difference of the two
+    where the steps of the coarser are at least 1 + 1 / SAFETY times as long, if errors fall with the first
+    power of the step. A run without a count of steps is taken as it is.
+    """
+    if not result.steps or not coarser.steps:
+        return True
+    return result.steps >= (1.0 + 1.0 / SAFETY) * coarser.steps
+
+
 def open_yet(result: Result) -> bool:
     """Whether two runs leave open that `run.tolerance` is met, which a third one may show."""
     worst, tolerance = result.error_estimate, result.model.run.tolerance
@@ -202,9 +226,77 @@ def unlike(result: Result, coarser: Result) -> str | None:
 
 
 def estimated(result: Result, coarser: Sequence[Result]) -> Result:
-    """The same result with its headline, and with the coarser runs from which `complete` finds the rest."""
-    value, name = headline(between([result, *coarser], judged=True))
-    return replace(result, error_estimate=value, error_estimate_of=name, coarser=tuple(coarser), estimates={})
+    """The same result with its headline, and with the coarser runs from which `complete` finds the rest.
+
+    Only those runs are compared that took longer steps, see `taken`. Where there is none, nothing is known of
+    the error, which `error_unknown` says.
+    """
+    runs = [result]
+    for run in coarser:
+        if taken(runs[-1], run):
+            runs.append(run)
+    known = between(runs, judged=True)
+    value, name = headline(known)
+    same = f"{NOT_KNOWN}: {SAME_STEPS}" if coarser and len(runs) == 1 else ""
+    return replace(
+        result,
+        error_estimate=value,
+        error_estimate_of=name,
+        error_below=name is not None and known[name].below,
+        error_unknown=same,
+        coarser=tuple(runs[1:]),
+        estimates={},
+    )
+
+
+def by_finer(result: Result, finer: Result) -> Result:
+    """The same result with its headline, from a run at finer steps: their difference is the error of the
+    result, but for what is left in the finer one. Where that took as many steps nothing is known."""
+    if not taken(finer, result):
+        return replace(estimated(result, []), error_unknown=f"{NOT_KNOWN}: {SAME_STEPS}")
+    known = between([result, finer], judged=True)
+    value, name = headline(known)
+    below = name is not None and known[name].below
+    return replace(
+        result,
+        error_estimate=value,
+        error_estimate_of=name,
+        error_below=below,
+        error_unknown="",
+        coarser=(finer,),
+        estimates={},
+    )
+
+
+def marked(result: Result) -> Result:
+    """A complete run with its status: OK where its error is known to be within `run.tolerance`, else
+    INACCURATE, with the reason where there is no estimate."""
+    if not result.usable:
+        return result
+    known = result.error_estimate
+    if known is None and not result.error_unknown:
+        why = f"{result.error_estimate_of} does not come closer as steps are halved"
+        if len(result.coarser) == 1:
+            why = f"{result.error_estimate_of} of two runs differs by much, and no third run was compared"
+        elif not result.coarser:
+            why = "nothing was compared"
+        result = replace(result, error_unknown=f"{NOT_KNOWN}: {why}")
+    within = known is not None and known <= result.model.run.tolerance and not result.error_unknown
+    return replace(result, status=OK if within else INACCURATE)
+
+
+def accuracy(result: Result) -> str:
+    """How accurate a complete run is, in a line: its estimate compared with the tolerance, or why that is not
+    known."""
+    tolerance = f"run.tolerance {percent(result.model.run.tolerance)}"
+    if result.error_unknown or result.error_estimate is None:
+        text = result.error_unknown or "no error estimate"
+    else:
+        below = "below " if result.error_below else ""
+        above = "above" if result.error_estimate > result.model.run.tolerance else "within"
+        text = f"the error estimate of {result.error_estimate_of} is {below}{percent(result.error_estimate)}"
+        text += f", {above} {tolerance}"
+    return f"{text}; {result.search_ended}" if result.search_ended else text
 
 
 def complete(result: Result) -> dict[str, Estimate]:

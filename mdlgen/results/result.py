@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
 
 PARTIAL = "partial:"
+OK, INACCURATE = "ok", "inaccurate"
 
 
 @dataclass
@@ -66,16 +67,30 @@ class Energy:
     of: tuple[str, ...] = ()
 
 
+@dataclass(frozen=True)
+class Chaos:
+    """How far two runs part that differ in the places of all sheets at the start alone."""
+
+    quantity: str  # that run.tolerance judges, by its name
+    start_mm: float  # by which the starts differ
+    apart: float  # root mean square over the run, in `unit`
+    step_apart: float  # the same of the run at twice the step
+    unit: str
+    sheet: str = ""  # whose start a sweep may vary
+
+
 @dataclass
 class Result:
     """States at the stored times and statistics over all steps.
 
-    A failed run has a `status` that says why, and the states up to where it failed.
+    `status` is "ok", where the error is known to be within `run.tolerance`; "inaccurate", where the run is
+    complete and its error estimate is above that, or is not known; else the reason of a failure, with the
+    states up to there.
     """
 
     model: Model
     solver: str
-    status: str  # "ok", or the reason
+    status: str  # OK, INACCURATE, or the reason of a failure
     time: Floats  # [ms], (t,)
     position: Floats  # centres [mm], (t, bodies, 3)
     rotation: Floats  # Euler parameters, scalar first, (t, bodies, 4)
@@ -101,8 +116,13 @@ class Result:
     # the worst of the estimates that run.tolerance judges, None where there is none, and its name
     error_estimate: float | None = None
     error_estimate_of: str | None = None
-    # why the error may be of any size, as a run at twice the step that is given shows; empty: it does not
-    error_unknown: str = ""
+    error_below: bool = False  # the estimate is a least value: the error is below it
+    error_unknown: str = ""  # why the error may be of any size; empty: nothing says so
+    search_ended: str = ""  # why no finer step was tried, where the estimate is above the tolerance
+    chaotic: Chaos | None = None  # where two runs part whose starts nearly agree
+    # by how much the value of each requirement may be wrong, in its unit, inf where that is not known; of an
+    # event the number of times by which a run at another step differs
+    doubts: dict[str, float] = field(default_factory=dict)
     checks: bool = False  # whether it was asked for to check a run at twice its step
     estimates: dict[str, Estimate] = field(default_factory=dict)  # see `results.estimates.complete`
     coarser: tuple[Result, ...] = field(default=(), repr=False)  # runs from which these follow, then none
@@ -128,7 +148,14 @@ class Result:
 
     @property
     def ok(self) -> bool:
-        return self.status == "ok"
+        """Whether the run is complete and its error is within the tolerance."""
+        return self.status == OK
+
+    @property
+    def usable(self) -> bool:
+        """Whether the run is complete: there is a result to show and to compare, whose error may be above the
+        tolerance or unknown."""
+        return self.status in (OK, INACCURATE)
 
     @property
     def partial(self) -> bool:
@@ -166,10 +193,10 @@ class Result:
     def verdict(self) -> list[Outcome]:
         """What became of each requirement of the scene: `passed`, `value`, `margin`, `unit`; `str` of one is
         the line that `mdlgen run` prints."""
-        from mdlgen.results.summary import plain, summary
-        from mdlgen.results.verdict import judge
+        from mdlgen.results.summary import summary
+        from mdlgen.results.verdict import outcomes_of
 
-        return judge(self, plain(summary(self, without=("estimates", "verdict"))))
+        return outcomes_of(summary(self))
 
     def report(self, path: str | Path) -> Path:
         """Write the page of this run, report.html, to a file; its path. Raises OutputError."""

@@ -14,13 +14,14 @@ from mdlgen.model.tables import Floats
 from mdlgen.results.compare import travel
 from mdlgen.results.estimates import complete
 from mdlgen.results.losses import driven, kinetic
+from mdlgen.results.mark import chaotic, mark
 from mdlgen.results.result import Result
 from mdlgen.results.summary_of_parts import of_part
 from mdlgen.results.tension import Tension
 from mdlgen.results.torques import (
     over_time,
 )
-from mdlgen.results.verdict import verdict
+from mdlgen.results.verdict import doubts, verdict
 from mdlgen.results.way import at_the_end
 from mdlgen.units import PER_SECOND
 from mdlgen.version import version
@@ -39,6 +40,8 @@ def summary(result: Result, without: Collection[str] = ()) -> dict[str, Any]:
         "scene": model.name,
         "solver": result.solver,
         "status": result.status,
+        "mark": mark(result),
+        "duration_ms": model.run.duration,
         "t_end_ms": result.time[-1] if len(result.time) else 0.0,
         "steps": result.steps,
         "step_ms": result.step,
@@ -57,7 +60,10 @@ def summary(result: Result, without: Collection[str] = ()) -> dict[str, Any]:
         "halved": result.halved,
         "error_estimate": result.error_estimate,
         "error_estimate_of": result.error_estimate_of,
+        "error_below": result.error_below,
         "error_unknown": result.error_unknown or None,
+        "search_ended": result.search_ended or None,
+        "chaotic": None if result.chaotic is None else _chaotic(result),
         "tolerance": model.run.tolerance,
         "energy": {
             "kinetic": energy.kinetic,
@@ -75,17 +81,37 @@ def summary(result: Result, without: Collection[str] = ()) -> dict[str, Any]:
         "probes": {p.name: _probe(result, k) for k, p in enumerate(model.probes)},
         "versions": versions(result),
     }
+    judges = not {"verdict", "events", "bearing"} & set(without) and len(result.time) > 0
+    if judges and model.require and not result.doubts:  # before the coarser runs are released
+        others = [(run, plain(summary(run, without=("estimates", "verdict")))) for run in result.coarser[:1]]
+        result.doubts = doubts(result, plain(record), others)
     if "estimates" not in without:
         estimates = complete(result)
         record["estimates"] = {name: found.value for name, found in estimates.items()}
         record["estimate_scales"] = {
             name: {"scale": found.scale, "unit": found.unit} for name, found in estimates.items()
         }
-    if not {"verdict", "events", "bearing"} & set(without) and len(result.time):
+        record["estimates_below"] = [name for name, found in estimates.items() if found.below]
+    if judges:
         record["verdict"] = verdict(result, plain(record))
     if model.tension is not None:
         record["strain"] = strain(result) if len(result.time) else None
     return plain(record)
+
+
+def _chaotic(result: Result) -> dict[str, Any]:
+    """How far two runs part whose starts nearly agree, and what half the step changes."""
+    found = result.chaotic
+    assert found is not None, "asked only where it is"
+    length = found.unit == "mm"
+    names = {"apart_mm" if length else "apart_rad": found.apart}
+    names["step_apart_mm" if length else "step_apart_rad"] = found.step_apart
+    return {
+        "quantity": found.quantity,
+        "start_mm": found.start_mm,
+        **names,
+        "in_words": chaotic(result, "SPEC"),
+    }
 
 
 def versions(result: Result) -> dict[str, str]:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +13,8 @@ from mdlgen.errors import SpecError, did_you_mean
 from mdlgen.model.parts.kinds import KINDS
 from mdlgen.model.tables import Floats, PlanePart, RollerPart
 from mdlgen.results.drag import drags
+from mdlgen.results.estimates import SAFETY_REST
+from mdlgen.results.result import OK
 from mdlgen.results.slide import slide
 from mdlgen.results.torques import contact_torque, drive_power, drive_torque, grips
 from mdlgen.results.way import way_of
@@ -53,9 +55,12 @@ class Outcome:
     unit: str
     margin: float | None
     of: str | None = None  # the sheet that is worst, of a measure that every sheet has
+    doubtful: bool = False  # whether the error of the run could turn it round
 
     def __str__(self) -> str:
         verdict = "pass" if self.passed else "FAIL"
+        if self.doubtful:
+            verdict += ", but within the error"
         if self.value is None:
             return f"{verdict}  {self.requirement}: not known"
         if self.margin is None:
@@ -71,7 +76,8 @@ class Outcome:
 
 def verdict(result: Result, record: Mapping[str, Any]) -> dict[str, Any]:
     """What `verdict` in summary.json holds, from a summary: whether all passed (None: nothing is required),
-    each requirement with its value and margin, and notable events in words. Raises SpecError."""
+    each requirement with its value and margin, and whether the error of the run could turn it round, and
+    notable events in words. Raises SpecError."""
     outcomes = judge(result, record)
     return {
         "passed": all(o.passed for o in outcomes) if outcomes else None,
@@ -82,6 +88,7 @@ def verdict(result: Result, record: Mapping[str, Any]) -> dict[str, Any]:
                 "value": o.value,
                 "unit": o.unit,
                 "margin": o.margin,
+                "doubtful": o.doubtful,
                 **({"of": o.of} if o.of else {}),
             }
             for o in outcomes
@@ -117,7 +124,14 @@ def in_words(event: Mapping[str, Any]) -> str:
 
 
 def judge(result: Result, record: Mapping[str, Any]) -> list[Outcome]:
-    """The outcome of each requirement. Raises SpecError for a measure that the run has not."""
+    """The outcome of each requirement, with the doubt that `doubts` has found; of a run that ended early none
+    is known. Raises SpecError for a measure that the run has not."""
+    if not result.usable:
+        return [Outcome(text, False, None, "", None) for text in result.model.require]
+    return [_with_doubt(found, result) for found in _judged(result, record)]
+
+
+def _judged(result: Result, record: Mapping[str, Any]) -> list[Outcome]:
     found: list[Outcome] = []
     for k, wanted in enumerate(map(requirement, result.model.require)):
         try:
@@ -125,6 +139,34 @@ def judge(result: Result, record: Mapping[str, Any]) -> list[Outcome]:
         except ValueError as error:
             raise SpecError(f"{wanted.text!r}: {error}", ("require", k)) from None
     return found
+
+
+def doubts(
+    result: Result, record: Mapping[str, Any], others: Sequence[tuple[Result, Mapping[str, Any]]]
+) -> dict[str, float]:
+    """By how much each value may be wrong: SAFETY_REST times the difference to the first of the runs at other
+    steps, each with its record; of an event the number of times by which they differ. inf where a complete
+    run has no other to compare with and its error is not known; none where that was not asked for."""
+    if not result.usable or not result.model.require:
+        return {}
+    if not others:
+        unknown = result.status != OK
+        return dict.fromkeys(result.model.require, math.inf) if unknown else {}
+    found = {}
+    for one, other in zip(_judged(result, record), _judged(*others[0]), strict=True):
+        if one.value is None or other.value is None:
+            found[one.requirement] = math.inf
+            continue
+        apart = abs(one.value - other.value)
+        found[one.requirement] = apart if one.margin is None else SAFETY_REST * apart
+    return found
+
+
+def _with_doubt(found: Outcome, result: Result) -> Outcome:
+    doubt = result.doubts.get(found.requirement, 0.0)
+    if found.margin is None:  # an event, which happened or did not; or a value that is not known
+        return replace(found, doubtful=found.value is not None and doubt > 0.0 and doubt >= found.value)
+    return replace(found, doubtful=doubt > 0.0 and doubt >= abs(found.margin))
 
 
 def _event(wanted: Requirement, record: Mapping[str, Any]) -> Outcome:

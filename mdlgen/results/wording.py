@@ -16,3 +16,8 @@ def numbers(values: Sequence[float | None], figures: int, unknown: str) -> list[
     """Components of a vector, of which one that is round-off of the others is 0; `unknown` is for None."""
     small = ROUND_OFF * max((abs(v) for v in values if v is not None), default=0.0)
     return [unknown if v is None else "0" if abs(v) < small else number(v, figures) for v in values]
+
+
+def percent(part: float) -> str:
+    """A part of something, in percent."""
+    return f"{100.0 * part:.2g} %"

@@ -25,6 +25,11 @@ class Run(Strict):
         "blocks, relative to the travel, or to a tenth of the sheet's length if that is more; of slides and "
         "arms relative to their range, or to the same lengths if these are more",
     )
+    limit: Time | None = Field(
+        default=None,
+        description="wall time after which the run ends with what there is: the best complete pass, whose "
+        "error may then be above the tolerance, or the part so far; none where left out",
+    )
     print_step: Time | None = Field(
         default=None, description="time between outputs; duration / 200 where left out"
     )

@@ -19,7 +19,7 @@ from mdlgen.results import audit
 from mdlgen.results.result import Result
 
 # How a halved run ends, beside those of kernels.integrate.integrate.
-PASSED, OVERLAPPED = -1, -2
+PASSED, OVERLAPPED, LIMITED = -1, -2, -3
 
 
 def reason_of(
@@ -29,6 +29,8 @@ def reason_of(
     from mdlgen.backends.lattice.kernels.integrate import integrate
 
     names = model.bodies.name
+    if status == LIMITED:
+        return limited(model, t)
     if status == integrate.STOPPED and counters[THROUGH] >= 0:
         one, two = (names[int(system.pairs[end][int(counters[THROUGH])])] for end in "ab")
         return (
@@ -66,6 +68,17 @@ def reason_of(
     at = ", ".join(f"{value:.4g}" for value in state.x[body])
     bounds, advice = model.bounds_of(body)
     return f"{model.called(body)} left {bounds} at {t:.6g} ms (it is at {at} mm); {advice}"
+
+
+def limited(model: Model, t: float) -> str:
+    """The reason of a pass that `run.limit` ended at a time [ms]."""
+    return f"{limit_of(model)} of wall time was over at {t:.6g} ms"
+
+
+def limit_of(model: Model) -> str:
+    """How `run.limit` is named."""
+    assert model.run.limit is not None, "asked only where there is one"
+    return f"run.limit of {1e-3 * model.run.limit:g} s"
 
 
 def unheld(model: Model, system: System) -> Unheld:

@@ -13,11 +13,13 @@ import numpy as np
 
 from mdlgen.backends.lattice.arrays import System
 from mdlgen.backends.lattice.integrate.beside import Stopped
-from mdlgen.backends.lattice.integrate.ends import OVERLAPPED, PASSED, reason_of, unbalanced, unheld
+from mdlgen.backends.lattice.integrate.ends import LIMITED, OVERLAPPED, PASSED, reason_of, unbalanced, unheld
 from mdlgen.backends.lattice.integrate.helpers import Helpers
+from mdlgen.backends.lattice.integrate.limit import Calls, Cut, Deadline
 from mdlgen.backends.lattice.integrate.pass_state import PassState, Stage
 from mdlgen.backends.lattice.integrate.record import Recorder, Snapshot
 from mdlgen.backends.lattice.integrate.sleep import Sleep
+from mdlgen.backends.lattice.integrate.slow import Slow
 from mdlgen.backends.lattice.integrate.work import arrays, control, flexible
 from mdlgen.backends.lattice.kernels.state import (
     ANEW,
@@ -49,7 +51,7 @@ Progress = Callable[[float, float, int, int], None]
 class Watch(NamedTuple):
     """Who follows a pass: what is called as it goes, what keeps it and by which number, and what stops it
     where it goes on at the same time as another one; one of the two is hidden. And how many threads share
-    the work of its steps, and whether sheets at rest may sleep."""
+    the work of its steps, whether sheets at rest may sleep, and when the time of the run is over."""
 
     progress: Progress | None = None
     keep: Checkpointer | None = None
@@ -58,6 +60,7 @@ class Watch(NamedTuple):
     hidden: bool = False
     threads: int = 1
     sleeps: bool = True
+    deadline: Deadline = Deadline()
 
     def beside(self, stop: Event) -> Watch:
         """Of a pass that goes on beside another one, which is the one that reports."""
@@ -137,7 +140,7 @@ def one_pass(
 
     run = model.run
     outputs, each, dt = division(model, wanted)
-    progress, keep, number, stop, hidden, threads, sleeps = watch
+    progress, keep, number, stop, hidden, threads, sleeps, deadline = watch
     begun = clock.perf_counter()
     work = arrays(model, system)
     state = work.state  # of which places are those of all bodies, whatever sleeps
@@ -169,23 +172,30 @@ def one_pass(
     if stage is not None:
         show()
     todo = range(stage.outputs if stage else 0, 0 if stage and stage.ended else outputs)
-    with Helpers(sleep.work, threads) as helpers:
+    calls, slow = Calls(MOST_AT_ONCE), Slow(model, sleep.steering, None if hidden else progress)
+    with Helpers(sleep.work, threads) as helpers, Cut(deadline, lambda: sleep.work):
         for output in todo:
             fresh, last = True, (output + 1) * run.duration / outputs
             left = np.full(each, dt)
             while left.size:
                 if stop is not None and stop.is_set():
                     raise Stopped
-                began = t
-                status, t = integrate.run(sleep.work, t, left[:MOST_AT_ONCE], tolerance, sleep.steering)
+                began, many, since = t, calls.many, clock.perf_counter()
+                status, t = integrate.run(sleep.work, t, left[:many], tolerance, sleep.steering)
+                took = clock.perf_counter() - since
+                calls.took(min(many, left.size), took)
+                slow.tell(t, left[0], took)
                 if fresh and t > began:
                     recorder.between()
                     fresh = False
+                if deadline.over and (status != integrate.DONE or left.size > many):
+                    status = LIMITED
+                    break
                 if status == integrate.WOKEN:
                     sleep.wake(int(counters[WORST]), t, helpers)
                     left = steps_to(last - t, dt)
                 elif status == integrate.DONE:
-                    left = left[MOST_AT_ONCE:]
+                    left = left[many:]
                 else:
                     break
             if status != integrate.DONE:
@@ -208,7 +218,11 @@ def one_pass(
                 keep.save(number, PassState(sleep.work, sleep.steering, recorder, sleep).arrays(at))
             if progress is not None:
                 progress(t, run.duration, int(counters[STEPS]), int(counters[TOUCHING]))
-    if todo and status in (integrate.LEFT, integrate.DEEP, integrate.STRETCHED):
+            if deadline.over and output + 1 < outputs:
+                status = LIMITED
+                break
+    within = (integrate.LEFT, integrate.DEEP, integrate.STRETCHED, LIMITED)
+    if todo and status in within and t > recorder.last:
         recorder.store(t)  # with which its energies balance, or do not
     wall = past + clock.perf_counter() - begun
     if keep is not None and todo and (keep.written or keep.due(number)):

@@ -95,6 +95,11 @@ class Recorder:
         # are at its end; at the start as it begins
         self._forces.append(self.kept.rows[:, NOW])
 
+    @property
+    def last(self) -> float:
+        """The time that was stored last [ms]."""
+        return self._times[-1]
+
     def between(self) -> None:
         """The step after the last state that is stored has been taken: forces there lie between both."""
         self._forces[-1] = self.kept.rows[:, BEGUN]

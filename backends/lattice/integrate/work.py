@@ -24,7 +24,7 @@ from mdlgen.backends.lattice.kernels.state import (
     Workspace,
 )
 from mdlgen.mechanics.frame import Motion
-from mdlgen.model.tables import Model
+from mdlgen.model.tables import Floats, Model
 
 
 def start(model: Model, system: System) -> tuple[State, Midpoint, Matrix]:
@@ -99,7 +99,7 @@ def workspace(
         condensed=condensed.empty(system, forces.WIDE),
         free=momentum.empty(system),
         kept=kept,
-        bounds=Bounds(model.pairs.low, model.pairs.high),
+        bounds=Bounds(_own(model.pairs.low), _own(model.pairs.high)),
         search=system.search,
         damped=damped.empty(system),
         frozen=room.frozen(system, len(film.cells)),
@@ -108,6 +108,13 @@ def workspace(
         islands=islands,
         asleep=asleep,
     )
+
+
+def _own(array: Floats) -> Floats:
+    """The same in an array of its own, which compiled code may only read, as it may the Model's."""
+    shown = array.copy().view()
+    shown.flags.writeable = False
+    return shown
 
 
 def control(work: Workspace) -> Control:

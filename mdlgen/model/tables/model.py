@@ -92,6 +92,7 @@ class RunSettings:
     symmetry: bool  # a scene that is its own mirror image may be halved
     threads: int = 1  # that share the work of a step
     sleep: bool = True  # sheets that rest may be left out
+    limit: float | None = None  # wall time after which a run ends with what there is; None: none
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,8 @@ TURNS = ("contact_torque", "contact_friction")  # which files of older versions 
 # of a Result, beside its states: what the tables of the file hold
 STORED = (
     "model", "solver", "status", "touched", "energy", "step", "steps", "rounds", "halved", "error_estimate",
-    "error_estimate_of", "error_unknown", "estimates", "versions", "source",
+    "error_estimate_of", "error_below", "error_unknown", "search_ended", "chaotic", "doubts", "estimates",
+    "versions", "source",
 )  # fmt: skip
 TOOK = ("wall_s", "estimate_s", "build_s", "compile_s")  # which differ from run to run
 STATISTICS = ("max_depth", "mean_depth", "max_force", "mean_force", "last_force_at")
@@ -34,11 +35,12 @@ def save(result: Result, folder: Path, also: Mapping[str, bytes] | None = None) 
     """Write summary.json, series.csv and result.h5 into `folder`, and the files `also` (name -> bytes).
     Returns what summary.json holds.
 
-    Raises OutputError, and leaves what was there, where one of them cannot be written; and for a failed run,
-    which leaves nothing. A part of a run says in its status that it is one.
+    A run that ended early leaves what there is up to then, and says so in its status; a run before it in the
+    folder is replaced. Raises OutputError, and leaves what was there, where a file cannot be written; and for
+    a failed run without a state, as a static one is.
     """
-    if not result.ok and not result.partial:
-        raise OutputError(f"{folder}: nothing written, the run failed: {result.status}")
+    if not len(result.time):
+        raise OutputError(f"{folder}: nothing written, there is no state: {result.status}")
     message = summary(result)
     files: dict[Path, str | bytes] = {
         folder / "summary.json": json.dumps(message, indent=2, allow_nan=False) + "\n",

@@ -11,12 +11,13 @@ import numpy as np
 from mdlgen.model import tables
 from mdlgen.model.parts.kinds import KINDS
 from mdlgen.results.estimates import Estimate
-from mdlgen.results.result import Energy
+from mdlgen.results.result import Chaos, Energy
 
 # What may stand in a file; a name is looked up here and nowhere else.
 _CLASSES = {
     **{name: kind for name, kind in vars(tables).items() if isinstance(kind, type) and is_dataclass(kind)},
     **{kind.part.__name__: kind.part for kind in KINDS},
+    "Chaos": Chaos,
     "Energy": Energy,
     "Estimate": Estimate,
 }

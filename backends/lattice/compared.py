@@ -1,0 +1,80 @@
+"""A run compared with others at other steps: its estimate, or why its error is not known."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from mdlgen.backends.lattice.integrate.ends import limit_of
+from mdlgen.backends.lattice.integrate.limit import Deadline
+from mdlgen.results import audit
+from mdlgen.results.estimates import NOT_KNOWN, by_finer, estimated, open_yet, unlike
+from mdlgen.results.result import Result
+
+# Of a run at a step that is given, where one at twice that step is none, or quite another one.
+UNKNOWN = f"{NOT_KNOWN}: a run at twice the step"
+FINER = f"{NOT_KNOWN}: a run at finer steps"
+
+
+def compared_with_coarser(
+    result: Result, before: list[Result], again: Callable[[int], Result] | None
+) -> Result:
+    """The result with its estimate, from the runs `before` at twice its step, four times its step, ...
+
+    `again(times)` runs at so many times its step: at twice where there is none, and once more coarsely where
+    two leave open whether the tolerance is met, or differ by a large part, since three show how errors fall;
+    None: no other is made. Where there is none, and that at twice its step fails or differs by a large part
+    that does not fall, nothing shows how far off the result is, which it says.
+    """
+    found = [run for run in before if ended(run)]
+    for run in found:
+        run.coarser = ()
+    if not before and again is not None:
+        found = [again(2)]
+        if not found[0].ok:
+            return replace(estimated(result, []), error_unknown=f"{UNKNOWN} fails: {reason(found[0])}")
+    if not found or not ended(found[0]):
+        return estimated(result, [])
+    result = estimated(result, found[:2])
+    if result.error_unknown:
+        return result
+    what = None if before or result.error_estimate is not None else unlike(result, found[0])
+    if again is not None and (open_yet(result) or what) and result.model.run.duration / result.step >= 16:
+        third = again(4)
+        result = estimated(result, [found[0], third]) if ended(third) else result
+    if what and result.error_estimate is None:
+        return replace(result, error_unknown=f"{UNKNOWN} differs from it in {what}")
+    return result
+
+
+def compared_with_finer(result: Result, finer: Result) -> Result:
+    """The result with its estimate from a run at finer steps."""
+    if not ended(finer):
+        return replace(estimated(result, []), error_unknown=f"{FINER} fails: {reason(finer)}")
+    result = by_finer(result, finer)
+    if result.error_estimate is not None or result.error_unknown:
+        return result
+    what = unlike(result, finer)
+    return replace(result, error_unknown=f"{FINER} differs from it in {what}") if what else result
+
+
+def in_time(result: Result, deadline: Deadline) -> Result:
+    """A complete run, which says so where `run.limit` left no time to compare it with another one."""
+    late = result.model.run.limit is not None and not deadline.allows(0.5 * result.wall_s)
+    if result.error_estimate is not None or result.error_unknown or not late:
+        return result
+    why = f"{limit_of(result.model)} left no time for another run"
+    return replace(result, error_unknown=f"{NOT_KNOWN}: {why}")
+
+
+def ended(run: Result) -> bool:
+    """Whether a run came to its end; one whose energies do not balance still shows how errors fall."""
+    finite = all(np.isfinite(a).all() for a in (run.position, run.velocity, run.spin))
+    return finite and bool(run.time[-1] >= run.model.run.duration * (1.0 - 1e-9))
+
+
+def reason(run: Result) -> str:
+    """Why a run failed, without advice on the step, which the one that it is compared with has."""
+    return run.status.partition(f"; {audit.ADVICE}")[0]

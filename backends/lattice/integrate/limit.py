@@ -1,0 +1,82 @@
+"""The bound of wall time of a run, `run.limit`: no pass goes on long after it."""
+
+from __future__ import annotations
+
+import math
+import time as clock
+from collections.abc import Callable
+from threading import Event, Thread
+from typing import Any, NamedTuple
+
+from mdlgen.backends.lattice.kernels.state import Workspace
+from mdlgen.model.tables import Model
+
+# How long a call of compiled code is meant to take [s]: between two the clock is read.
+CALL = 0.25
+# How often bounds are withdrawn of what a pass works on, once the time is over [s].
+AGAIN = 0.05
+
+
+class Deadline(NamedTuple):
+    """When the wall time of a run is over, as `time.perf_counter` has it [s]; inf: it has no limit."""
+
+    at: float = math.inf
+
+    @classmethod
+    def of(cls, model: Model) -> Deadline:
+        """From now on."""
+        limit = model.run.limit
+        return cls() if limit is None else cls(clock.perf_counter() + 1e-3 * limit)
+
+    @property
+    def over(self) -> bool:
+        return clock.perf_counter() >= self.at
+
+    def allows(self, seconds: float) -> bool:
+        """Whether what takes so long would end in time."""
+        return clock.perf_counter() + seconds <= self.at
+
+
+class Cut:
+    """Ends a call of compiled code soon after a deadline, within one step as it is divided.
+
+    Compiled code asks nothing; but after each step that it takes it ends where a body is out of its bounds.
+    So bounds that hold nothing are written over those of the arrays that a pass works on, `work()`, in a
+    thread of its own; they are in arrays of their own, see `work.workspace`.
+    """
+
+    def __init__(self, deadline: Deadline, work: Callable[[], Workspace]):
+        self._deadline, self._work, self._ended = deadline, work, Event()
+        self._thread = Thread(target=self._wait, daemon=True)
+
+    def _wait(self) -> None:
+        if self._ended.wait(max(0.0, self._deadline.at - clock.perf_counter())):
+            return
+        while not self._ended.wait(AGAIN):
+            base = self._work().bounds.low.base
+            assert base is not None, "what a pass works on has bounds of its own"
+            base[:] = math.inf
+
+    def __enter__(self) -> Cut:
+        if self._deadline.at < math.inf:
+            self._thread.start()
+        return self
+
+    def __exit__(self, *_: Any) -> None:
+        self._ended.set()
+        if self._thread.is_alive():
+            self._thread.join()
+
+
+class Calls:
+    """How many steps compiled code takes in one call, so that it takes about as long as CALL."""
+
+    def __init__(self, most: int):
+        self.most = self.many = most
+
+    def took(self, many: int, seconds: float) -> None:
+        """A call that took so many steps took so long."""
+        if seconds > 2.0 * CALL:
+            self.many = max(1, int(many * CALL / seconds))
+        elif seconds < 0.5 * CALL:
+            self.many = min(2 * self.many, self.most)
