@@ -54,7 +54,7 @@ def perform(task: Job) -> Outcome:
     except MdlgenError as error:
         return Outcome(f"refused: {error}")
     last = results[-1]
-    failed = [result for result in results if not result.ok]
+    failed = [result for result in results if not result.usable]
     findings = []
     if not failed:
         reference = states(task.reference, model) if task.reference else None

@@ -87,7 +87,7 @@ class Runs:
         if step is not None:
             model = replace(model, run=replace(model.run, step=step))
         result = registry.solve(model, self.solver)
-        if not result.ok:
+        if not result.usable:
             raise Failed(f"with {self.fit} = {value:.6g} the run failed: {result.status}")
         if self.times is not None and self.step is None:
             self.step = result.step

@@ -121,6 +121,7 @@ def _perform(job: Job, send: Send, cancelled: Callable[[], bool]) -> None:
     from mdlgen.live.drawn import begun, finished
     from mdlgen.model.lower import lower
     from mdlgen.processors import processors
+    from mdlgen.results.mark import mark
     from mdlgen.runs.checkpoint import Checkpointer
 
     # the file alone may be right where a value that was turned is not
@@ -147,13 +148,14 @@ def _perform(job: Job, send: Send, cancelled: Callable[[], bool]) -> None:
             result = registry.solve(model, name, reporter, False, keep, processors())
     if cancelled():
         raise Cancelled
-    if job.draft and not result.ok:  # the full run says whether it is the step
+    if job.draft and not result.usable:  # the full run says whether it is the step
         send({"kind": "ended", "how": "no draft"}, b"")
         return
     result.source = job.text
     body = finished(result, job.draft)
     how, took = "draft" if job.draft else "full", round(result.wall_s + result.estimate_s, 4)
-    send({"kind": "ended", "how": how, "status": result.status, "solved_s": took}, body)
+    wrong = None if job.draft and result.usable else mark(result)
+    send({"kind": "ended", "how": how, "status": result.status, "mark": wrong, "solved_s": took}, body)
 
 
 def draft_step(model: Model) -> float:

@@ -273,8 +273,8 @@ class Session:
         newest = (self._job.text, dict(self._job.turned)) == (self.text, self.turned)
         self._job, self._progress, self._word = None, None, ""
         if record["kind"] == "ended" and record["how"] in (DRAFT, FULL):
-            failed = record["status"] != "ok"
-            self.errors = [_plain(f"the run failed: {record['status']}")] if failed else []
+            # the page shows what there is in any case; `mark` says what is wrong with it
+            self.errors = [_plain(record["mark"])] if record["mark"] else []
             self._drafted = self._drawing = newest and record["how"] == DRAFT
             self._show(record["how"], record["status"], body, record["solved_s"])
         elif record["kind"] == "refused" and newest:

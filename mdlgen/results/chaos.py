@@ -76,7 +76,7 @@ def in_words(found: Chaos) -> str:
     """What a reader should know of such a run."""
     grown = ""
     if found.unit == "mm":
-        grown = f", {found.apart / found.start_mm:.2g} times as far: a start that is {KNOWN_START:g} mm off "
+        grown = f", {found.apart / found.start_mm:,.0f} times as far: a start that is {KNOWN_START:g} mm off "
         grown += "changes more than run.tolerance allows"
     return (
         f"chaotic: two runs whose starts differ by {found.start_mm:g} mm part by {found.apart:.2g} "

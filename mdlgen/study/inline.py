@@ -103,20 +103,16 @@ def _row(
 
 def _ran(model: Model, expressions: Sequence[tuple[str, Expression]], solver: str) -> dict[str, Any]:
     from mdlgen import registry
+    from mdlgen.results.estimates import accuracy
 
     result = registry.solve(model, solver, threads=1)
     record: dict[str, Any] = {"solver": result.solver, "error_estimate": result.error_estimate}
-    if not result.ok:
+    if not result.usable:
         return {**record, "kind": FAILED, "status": result.status}
-    estimate = result.error_estimate
-    good = estimate is None or estimate <= model.run.tolerance
     try:
         record["measures"] = measured(result, expressions)
     except ValueError as error:
         return {**record, "kind": FAILED, "status": f"measure {error}"}
-    if result.error_unknown:
-        return {**record, "kind": INACCURATE, "status": result.error_unknown}
-    if good:
+    if result.ok:
         return {**record, "kind": OK, "status": "ok"}
-    status = f"the error estimate of {result.error_estimate_of} is {estimate:.3g}, above run.tolerance"
-    return {**record, "kind": INACCURATE, "status": status}
+    return {**record, "kind": INACCURATE, "status": accuracy(result)}

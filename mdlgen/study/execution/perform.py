@@ -65,8 +65,9 @@ def _run(task: Task, case: Case, begun: Callable[[], None] | None) -> dict[str, 
         result = registry.solve(model, task.solver, progress, task.check_step, threads=1)
     times = {name: getattr(result, name) for name in ("wall_s", "estimate_s", "build_s", "compile_s")}
     record = {"solver": result.solver, "error_estimate": result.error_estimate, "times": times}
-    if not result.ok:
+    if not result.usable:
         return {**record, "kind": FAILED, "status": result.status}
+    from mdlgen.results.estimates import accuracy
     from mdlgen.study.design.measure import measured
 
     try:
@@ -75,15 +76,8 @@ def _run(task: Task, case: Case, begun: Callable[[], None] | None) -> dict[str, 
         return {**record, "kind": FAILED, "status": f"measure {error}"}
     if task.keep:
         record["files"] = _files(task, case, result)
-    estimate, tolerance = result.error_estimate, model.run.tolerance
-    if estimate is not None and not estimate <= tolerance:
-        status = (
-            f"the error estimate of {result.error_estimate_of} is {estimate:.3g}, above run.tolerance "
-            f"{tolerance:g}; give a smaller run.step"
-        )
-        return {**record, "kind": INACCURATE, "status": status}
-    if result.error_unknown:
-        return {**record, "kind": INACCURATE, "status": f"{result.error_unknown}; give a smaller run.step"}
+    if not result.ok:
+        return {**record, "kind": INACCURATE, "status": accuracy(result)}
     return {**record, "kind": OK, "status": "ok"}
 
 
