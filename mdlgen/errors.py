@@ -1,8 +1,8 @@
 """What can go wrong, one class per exit code.
 
-Exit codes: 0 done, 2 bad spec, 3 input/output, 4 solver failed, 5 accuracy check failed, 6 a requirement of
-the scene missed, 130 interrupted. A solver that fails is not an exception but a Result with a reason; the
-command line turns it into exit code 4.
+Exit codes: 0 done, 2 bad spec, 3 input/output, 4 no usable result, 5 a result whose error is above the
+tolerance or unknown, 6 a requirement of the scene missed, 130 interrupted. A solver that fails is not an
+exception but a Result with a reason; the command line turns it into exit code 4.
 """
 
 from __future__ import annotations
@@ -103,7 +103,7 @@ class OutputError(MdlgenError):
 
 
 class AccuracyError(MdlgenError):
-    """A result exists but missed the accuracy that was asked for."""
+    """There is a result; its error is above what was asked for, or is not known."""
 
     exit_code = 5
 

@@ -11,13 +11,21 @@ EXITS = (
     ("1", "an internal error; `-v` shows the traceback. Please report it"),
     ("2", "a mistake in a scene, a value or a call; a MotionView text with errors (`lint`)"),
     ("3", "a file that cannot be read or written"),
-    ("4", "a solver failed; the reason is printed and nothing is written"),
+    (
+        "4",
+        "no usable result: a run ended early, or its energies do not balance; what there is up to then is "
+        "written and marked",
+    ),
     (
         "5",
-        "an accuracy check failed: `run.tolerance` was missed, the error of a given step is not known, "
-        "`verify` found a difference, or `compare --within` a larger one",
+        "a result whose error is above `run.tolerance`, or is not known: it is written, with status "
+        "`inaccurate`; or `verify` found a difference, or `compare --within` a larger one",
     ),
-    ("6", "a run is right, and misses what its scene requires; its results are written"),
+    (
+        "6",
+        "a run misses what its scene requires; its results are written. An inaccurate run that misses it "
+        "within its error ends with 5",
+    ),
     ("130", "interrupted by Ctrl-C"),
 )
 

@@ -17,7 +17,13 @@ PARTS = [kind.table for kind in KINDS]
 SUMMARY: dict[str, tuple[str, str]] = {
     "scene": ("", "name of the scene"),
     "solver": ("", "`lattice` or `exudyn`"),
-    "status": ("", "`ok`, or the reason of a run that was cut off"),
+    "status": (
+        "",
+        "`ok`; `inaccurate`: the run is complete, its error is above `run.tolerance` or is not known; else "
+        "why the run ended early, or was cut off",
+    ),
+    "mark": ("", "one line that says what is wrong with a run that is not `ok`; null: nothing"),
+    "duration_ms": ("ms", "`run.duration`"),
     "t_end_ms": ("ms", "time at the end of the run"),
     "steps": ("", "time steps taken"),
     "step_ms": ("ms", "nominal time step"),
@@ -37,6 +43,14 @@ SUMMARY: dict[str, tuple[str, str]] = {
     "halved": ("", "true where one half of a symmetric scene was solved and mirrored"),
     "error_estimate": ("", "the greatest estimate of those that `run.tolerance` judges; null if not known"),
     "error_estimate_of": ("", "name of that estimate"),
+    "error_below": ("", "whether the estimate is a least value: the error is below it"),
+    "search_ended": ("", "why no finer step was tried, of an inaccurate run whose step was searched"),
+    "chaotic": (
+        "",
+        "of a run that no step brings within the tolerance, else null: `quantity`, `start_mm` by which the "
+        "starts of two runs differ, `apart_mm` by which they part, `step_apart_mm` by which half the step "
+        "changes it (of an arm `apart_rad`), and `in_words` with the command of a sweep",
+    ),
     "error_unknown": ("", "why the error may be of any size; null: nothing says so"),
     "tolerance": ("", "`run.tolerance`"),
     "energy.kinetic": ("N mm", "kinetic energy at the end"),
@@ -67,13 +81,15 @@ SUMMARY: dict[str, tuple[str, str]] = {
     ),
     "events": ("", "list of [events](events.md)"),
     "estimates.QUANTITY": ("", "error estimate of each quantity, relative to its scale; null if not known"),
+    "estimates_below": ("", "names of the estimates that are least values: the error is below them"),
     "estimate_scales.QUANTITY.scale": ("", "scale of that estimate"),
     "estimate_scales.QUANTITY.unit": ("", "unit of the scale"),
     "strain": ("", "elongation over flexible length, of a clamped strip under edge stress"),
     "verdict.passed": ("", "whether all that `require` asks for is there; null: it asks for nothing"),
     "verdict.requirements": (
         "",
-        "`requirement`, `passed`, `value`, `unit`, `margin` (below zero: what is missing) of each",
+        "`requirement`, `passed`, `value`, `unit`, `margin` (below zero: what is missing) of each; "
+        "`doubtful`: whether the error of the run could turn it round",
     ),
     "verdict.events": ("", "jams, double feeds, stubs and large slips in words"),
     "versions.PACKAGE": ("", "versions of mdlgen, Python, numpy and the solver"),

@@ -141,7 +141,7 @@ def run(
         say(f"{folder} holds a run that was cut off; this one takes its place (--resume {folder} goes on)")
     # a solver may talk on standard output, which is kept for results
     try:
-        with progress_bar(quiet, request.check_step) as progress, solver_output(verbose):
+        with progress_bar(quiet, request.check_step, verbose) as progress, solver_output(verbose):
             asked = request.solver, progress, request.check_step, checkpointer, processors()
             result = beside(lambda: registry.solve(model, *asked))
     except KeyboardInterrupt:
@@ -177,10 +177,10 @@ def run(
 
 
 def _judge(result: Result, summary: dict[str, Any], spec: str, folder: Path) -> None:
-    """Ends the command by what the run is: the exit codes of DESIGN. Raises AccuracyError, RequirementError.
+    """Ends the command by what the run is. Raises AccuracyError, RequirementError.
 
-    A run that ended early: 4. A requirement that is missed: 6, but where the run is inaccurate and the miss is
-    within its error. Every other inaccurate run: 5.
+    A run that ended early: exit code 4. A requirement that is missed: 6, unless the run is inaccurate and the
+    miss is within its error. Every other inaccurate run: 5.
     """
     from mdlgen.results.mark import chaotic
 

@@ -6,6 +6,7 @@ import contextlib
 import functools
 import os
 import sys
+import time
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from threading import Event, Lock, Thread
@@ -15,6 +16,7 @@ import typer
 from typer.core import TyperGroup
 
 from mdlgen.cli import completion
+from mdlgen.cli.heard import compiling, slow
 from mdlgen.errors import MdlgenError, SpecError, printable
 
 if TYPE_CHECKING:
@@ -263,6 +265,8 @@ def _located(error: MdlgenError, spec: Path | None) -> MdlgenError:
 PREPARING = "preparing the solver, once on this machine"
 COMPILING = "compiling the solver, once on this machine (some minutes)"
 ABOUT = 290
+# Seconds between two lines about what holds a run up.
+BETWEEN = 5.0
 
 
 @contextlib.contextmanager
@@ -289,33 +293,13 @@ def count(quiet: bool, what: str) -> Iterator[Callable[[int, int], None] | None]
 
 
 @contextlib.contextmanager
-def compiling(report: Callable[[int], None]) -> Iterator[None]:
-    """Calls `report` with how many parts of a solver have been compiled, as they are; with 0 where its
-    program is being prepared."""
-    import logging
-
-    class Handler(logging.Handler):
-        def emit(self, record: logging.LogRecord) -> None:
-            report(getattr(record, "parts", 0))
-
-    log, handler = logging.getLogger("mdlgen.compiling"), Handler()
-    before = log.level, log.propagate
-    log.setLevel(logging.INFO)
-    log.propagate = False
-    log.addHandler(handler)
-    try:
-        yield
-    finally:
-        log.removeHandler(handler)
-        log.level, log.propagate = before
-
-
-@contextlib.contextmanager
-def progress_bar(quiet: bool, twice: bool) -> Iterator[Callable[[float, float, int, int], None] | None]:
+def progress_bar(
+    quiet: bool, twice: bool, verbose: bool = False
+) -> Iterator[Callable[[float, float, int, int], None] | None]:
     """A progress bar on a terminal: time, steps, pairs that touch, rate, time left; and what is compiled
-    before.
+    before; where a run is slow, it names the step and the body that hold it up.
 
-    Elsewhere a line says that something is compiled.
+    Elsewhere a line says that something is compiled; with `verbose`, from time to time what holds it up.
     """
     if quiet:
         yield None
@@ -329,7 +313,15 @@ def progress_bar(quiet: bool, twice: bool) -> Iterator[Callable[[float, float, i
                 said.add(text)
                 say(text)
 
-        with compiling(line):
+        told = time.monotonic()
+
+        def held_up(text: str) -> None:
+            nonlocal told
+            if time.monotonic() - told >= BETWEEN:
+                told = time.monotonic()
+                say(text)
+
+        with compiling(line), slow(held_up) if verbose else contextlib.nullcontext():
             yield None
         return
     from rich.console import Console
@@ -345,21 +337,27 @@ def progress_bar(quiet: bool, twice: bool) -> Iterator[Callable[[float, float, i
         tasks: list[Any] = []
         parts: list[Any] = []
         waiting: list[Any] = []
-        last = 0.0
+        last, held = 0.0, ""
 
-        def progress(time: float, end: float, steps: int, touching: int) -> None:
-            nonlocal last
+        def held_up(text: str) -> None:
+            nonlocal held
+            held = text
+
+        def progress(at: float, end: float, steps: int, touching: int) -> None:
+            nonlocal last, held
             while waiting:
                 bar.remove_task(waiting.pop())
-            if not tasks or time < last:
+            if not tasks or at < last:
                 name = "half the step" if tasks else "first run" if twice else "run"
                 tasks.append(bar.add_task(name, total=end, message=""))
-            last = time
-            message = f"{time:.2f} of {end:g} ms, step {steps}, {touching} pairs touch"
+            last = at
+            message = f"{at:.2f} of {end:g} ms, step {steps}, {touching} pairs touch"
             speed = bar.tasks[-1].speed
             if speed:
                 message += f", {speed:.3g} ms a second"
-            bar.update(tasks[-1], completed=time, message=message)
+            if held:
+                message, held = f"{message}; {held}", ""
+            bar.update(tasks[-1], completed=at, message=message)
 
         def compiled(done: int) -> None:
             if done == 0:
@@ -369,5 +367,5 @@ def progress_bar(quiet: bool, twice: bool) -> Iterator[Callable[[float, float, i
                 parts.append(bar.add_task(COMPILING, total=ABOUT, message=""))
             bar.update(parts[0], completed=done, message=f"{done} parts")
 
-        with compiling(compiled):
+        with compiling(compiled), slow(held_up):
             yield progress
