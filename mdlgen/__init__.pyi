@@ -386,6 +386,7 @@ class Run(_Run):
         analysis: Literal["transient", "static"] = ...,
         step: str | None = ...,
         tolerance: float | str = ...,
+        limit: str | None = ...,
         print_step: str | None = ...,
         prune: bool = ...,
         symmetry: bool = ...,
