@@ -102,6 +102,7 @@ def solve(
 ) -> Result:
     """Run a Model; see `mdlgen.solve`. `checkpointer` writes states, of a solver that can; `threads` are how
     many it may use, where it has use for them; left out: as many as the Model says."""
+    from mdlgen.results.estimates import marked
     from mdlgen.results.required import check
 
     check(model)
@@ -112,11 +113,13 @@ def solve(
     if threads is not None and backend.capabilities.threads > 1:
         options["threads"] = threads
     result = backend.solve(model, progress, **options)
+    if result.error_estimate is not None or result.error_unknown:
+        result = marked(result)
     result.ran_at = _now()
     # a static run has no step, and a failed one nothing to compare
     if not check_step or not result.usable or result.step <= 0.0:
         return result
-    from mdlgen.results.estimates import NOT_KNOWN, estimated, marked
+    from mdlgen.results.estimates import NOT_KNOWN, estimated
 
     finer = backend.solve(model, progress, step=result.step / 2, **options)
     if not finer.usable:

@@ -9,6 +9,8 @@ from copy import deepcopy
 from functools import lru_cache
 from pathlib import Path
 
+from asked import as_asked
+
 import mdlgen
 from mdlgen.model.tables import Model
 from mdlgen.paths import samples
@@ -31,7 +33,7 @@ def solved(model: Model, solver: str = "auto") -> Result:
     result = _held.pop(key, None) or _read(key)
     if result is None:
         result = mdlgen.solve(model, solver)
-        assert result.ok, result.status
+        assert as_asked(result), result.status
         _write(key, result)
     _held[key] = result
     if len(_held) > MOST:
@@ -58,7 +60,7 @@ def _write(key: str, result: Result) -> None:
 def ran(sample: str, *overrides: str) -> Result:
     """The result of a sample."""
     result = mdlgen.solve(mdlgen.lower(mdlgen.load(samples() / f"{sample}.yaml", overrides)))
-    assert result.ok, result.status
+    assert as_asked(result), result.status
     return result
 
 

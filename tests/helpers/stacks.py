@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from asked import as_asked
 from papers import HINGED_PAPER
 
 import mdlgen
@@ -37,5 +38,5 @@ run: {{duration: 20 ms, print_step: 1 ms}}
 
 def ran(model: Model, solver: str) -> Result:
     result = mdlgen.solve(model, solver)
-    assert result.ok, result.status
+    assert as_asked(result), result.status
     return result

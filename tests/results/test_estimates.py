@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from asked import as_asked
 from synthetic import moving, small_model
 
 import mdlgen
@@ -60,7 +61,7 @@ def swung(model: Model, result: Result) -> np.ndarray:
 def test_an_arm_that_swings_is_within_its_estimate(stiffness: float, step: str | None) -> None:
     model = arm(stiffness) if step is None else arm(stiffness, step=step)
     result = mdlgen.solve(model, "lattice")
-    assert result.ok, result.status
+    assert as_asked(result), result.status
     record = result.summary()
     name, value = "rollers.a.angle", record["estimates"]["rollers.a.angle"]
     from mdlgen.results.quantities import swing
@@ -85,7 +86,7 @@ def test_a_tumbling_block_is_within_the_estimate_of_its_orientation(step: str) -
     model = lower(load("samples/verify/flip.yaml", [f"run.step={step}"]))
     result = mdlgen.solve(model, "lattice")
     exact = mdlgen.solve(lower(load("samples/verify/flip.yaml", ["run.step=0.0125 ms"])), "lattice")
-    assert result.ok and exact.ok
+    assert as_asked(result) and as_asked(exact)
     at = [int(np.argmin(np.abs(exact.time - t))) for t in result.time]
     turned = angles(result.rotation[:, 0], exact.rotation[at, 0])
     found = estimates.complete(result)["sheets.block.orientation"]
@@ -111,14 +112,14 @@ def test_a_run_that_ends_early_for_its_step_is_tried_at_a_finer_one() -> None:
         "run": {"duration": "40 ms"},
     }
     result = mdlgen.solve(lowered(scene), "lattice")
-    assert result.ok, result.status
+    assert as_asked(result), result.status
     restitution = float(result.model.contacts.restitution[0])
     # e of Eq. 11 with a sharp s is c_R (oracles of the impact)
     assert float(result.velocity[-1, 0, 2]) == pytest.approx(restitution, rel=0.01)
     # what ends early whatever the step does so, with the reason of the physics
     far = {"n": {**BLOCK, **thrown, "velocity": ["0 m/s", "0 m/s", "1 m/s"]}}
     away = mdlgen.solve(lowered({**scene, "sheets": far}), "lattice")
-    assert away.ok  # nothing that it could meet: it may go where it goes
+    assert as_asked(away)  # nothing that it could meet: it may go where it goes
 
 
 def test_the_estimates_of_a_run_are_stored_and_read_back(tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import ran
+from asked import as_asked
 from papers import HINGED_PAPER
 
 import mdlgen
@@ -49,7 +50,7 @@ def solved(text: str, solver: str, *overrides: str) -> Result:
 @lru_cache
 def transport(name: str) -> Result:
     result = mdlgen.solve(lower(load(samples() / f"{name}.yaml")), "lattice")
-    assert result.ok, result.status
+    assert as_asked(result), result.status
     return result
 
 

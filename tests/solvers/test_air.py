@@ -10,6 +10,7 @@ import math
 
 import numpy as np
 import pytest
+from asked import as_asked
 
 import mdlgen
 from mdlgen.checks import lints
@@ -46,7 +47,7 @@ run: {{{run}}}
 
 def solved(text: str, solver: str = "lattice") -> Result:
     result = mdlgen.solve(lower(loads(text)), solver)
-    assert result.ok, result.status
+    assert as_asked(result), result.status
     return result
 
 
@@ -211,7 +212,7 @@ def test_the_solvers_agree_on_a_note_that_lands() -> None:
     """samples/landing.yaml: what is solved for with the velocities, and what has coordinates of its own."""
     model = lower(load(samples() / "landing.yaml", ("run.step=0.05 ms",)))
     ours, theirs = (mdlgen.solve(model, solver) for solver in ("lattice", "exudyn"))
-    assert ours.ok and theirs.ok
+    assert as_asked(ours) and as_asked(theirs)
     fall = ours.position[0] - ours.position[-1]
     assert fall[:, 2].max() > 0.4
     assert theirs.position[-1] == pytest.approx(ours.position[-1], abs=1e-4)
@@ -229,7 +230,7 @@ def test_the_solvers_agree_on_a_pile_that_is_fed() -> None:
     model = lower(load(samples() / "pile.yaml", sets))
     assert (model.contacts.air_viscosity > 0.0).sum() == 2
     ours, theirs = (mdlgen.solve(model, solver) for solver in ("lattice", "exudyn"))
-    assert ours.ok and theirs.ok
+    assert as_asked(ours) and as_asked(theirs)
     boxes = sum(sheet.count for sheet in model.sheets)
     ways = (result.position[-1, :boxes] - result.position[0, :boxes] for result in (ours, theirs))
     first, second = ways

@@ -6,6 +6,7 @@ import threading
 from typing import Any
 
 import pytest
+from asked import as_asked
 from machines import MACHINE
 from same import bits
 
@@ -75,7 +76,7 @@ def test_two_at_once_find_the_same_bits(name: str, third: bool, passes: list[str
     halved = ["run.step=0.1 ms", "run.print_step=0.1 ms"]
     model = mdlgen.lower(loads(MACHINE, name, halved)) if name == "halved" else model_of(name)
     one = lattice.solve(model)
-    assert one.ok, one.status
+    assert as_asked(one), one.status
     assert len(set(passes)) == 1
     count = len(passes)
     two = lattice.solve(model, threads=2)
@@ -137,7 +138,7 @@ def test_a_third_pass_stops_where_two_are_enough(monkeypatch: pytest.MonkeyPatch
 
     monkeypatch.setattr(lattice, "one_pass", watched)
     result = lattice.solve(model_of("transport_4x4"), threads=2)
-    assert result.ok and result.step == 0.1
+    assert as_asked(result) and result.step == 0.1
     assert ended == ["stopped"]
 
 

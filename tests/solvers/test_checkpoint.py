@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from asked import as_asked
 from cutting import Cut, Cutting, written_with
 from machines import MACHINE, OVERRUN
 from nip import FORTH_AND_BACK
@@ -126,7 +127,7 @@ def goes_on(name: str, tmp_path: Path, threads: int) -> None:
     """Cuts a run off, again and again, until it has come to its end."""
     model = scene(name)
     whole = lattice.solve(model)
-    assert whole.ok, whole.status
+    assert as_asked(whole), whole.status
     assert whole.halved == (name in ("halved", "feeder", "asleep"))
     cuts = 0
     provenance: Callable[[], dict[str, str]] | None = written_with

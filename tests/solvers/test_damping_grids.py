@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
+from asked import as_asked
 from damped import AREA, LENGTH, WIDTH, decrement, strip
 from scipy.optimize import brentq
 
@@ -85,7 +86,7 @@ def swung(m: Model, beam: Beam) -> tuple[float, float]:
     velocity, spin = m.bodies.velocity.copy(), m.bodies.spin.copy()
     velocity[:count, 2], spin[:count, 0] = scale * shape, scale * slope
     result = mdlgen.solve(replace(m, bodies=replace(m.bodies, velocity=velocity, spin=spin)), "lattice")
-    assert result.ok, result.status
+    assert as_asked(result), result.status
     lift = (result.position[:, :count, 2] - m.bodies.position[:count, 2]) @ (m.bodies.mass[:count] * shape)
     return decrement(result, lift)
 

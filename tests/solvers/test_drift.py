@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from asked import as_asked
 
 import mdlgen
 from mdlgen.backends.lattice import run as lattice
@@ -73,7 +74,7 @@ def test_what_is_known_holds(sets: list[str], monkeypatch: pytest.MonkeyPatch) -
         assert np.isfinite(work.mid.fastest[MIDDLE]).all()
 
     result = lattice.one_pass(model, system, STEP, Watch(progress=look, sleeps=False))
-    assert result.ok, result.status
+    assert as_asked(result), result.status
     assert steps == 300 and known > 10_000
     looks = kept[0].mid.drift.looks
     # what rests is looked at in few of its steps, what slides in each

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import ran
+from asked import as_asked
 from scipy.spatial.transform import Rotation
 
 import mdlgen
@@ -170,7 +171,7 @@ def test_a_block_falls_on_an_edge(solver, angle, off, c):
     middle = axis + (0.02 + 0.02 + 2.5) * normal - off * along
     center = "[" + ", ".join(f"{x:.12g} mm" for x in middle) + "]"
     result = mdlgen.solve(lower(loads(BLOCK.format(center=center, angle=angle, c=c, edge=SHARP))), solver)
-    assert result.ok, result.status
+    assert as_asked(result), result.status
     m, inertia = 10.0, 10.0 / 12 * (40.0**2 + 5.0**2)
     arm = np.cross(off * along - 2.5 * normal, normal)
     impulse = (1 + c) * math.cos(a) / (1 / m + arm @ arm / inertia)
@@ -236,7 +237,7 @@ def test_a_leading_edge_stubs_or_climbs_as_the_round_has_it(h, mu, radius):
     result, found = meets(h, mu, radius)
     lead = result.anchor_motion(0)[0][-1]
     if climbed(h, mu, radius):
-        assert result.ok and not found
+        assert as_asked(result) and not found
         assert lead[0] > 8.0 and lead[2] > h - 0.1  # it has gone on, over the face
         return
     (stub, *_) = found
@@ -255,14 +256,14 @@ def test_a_stub_is_a_row_of_the_page():
 )
 def test_both_solvers_stub_and_climb_alike(h, mu, radius):
     result, found = meets(h, mu, radius, "exudyn", 5)
-    assert result.ok, result.status
+    assert as_asked(result), result.status
     assert bool(found) != climbed(h, mu, radius)
 
 
 @pytest.mark.parametrize("solver", ["lattice", "exudyn"])
 def test_a_sheet_that_comes_below_a_plate_passes_under_it(solver):
     result, found = meets(1.3, 0.3, 0.1, solver)
-    assert result.ok and not found
+    assert as_asked(result) and not found
     assert result.anchor_motion(0)[0][-1, 0] > 8.0 and result.contact_force[:, -1].max() < 0.1
 
 
@@ -297,7 +298,7 @@ def whole() -> float:
     model, result, found = joint(0.0, 0.0)
     first, second = model.guides
     assert first.ends == 0b1110 and second.ends == 0b1101  # neither has an edge at the joint
-    assert result.ok and not found
+    assert as_asked(result) and not found
     return float(result.sheet_motion(0)[1][-1, 0])
 
 
@@ -314,7 +315,7 @@ def test_flush_faces_are_passed_as_one():
 @pytest.mark.parametrize(("gap", "step"), [(0.0, -0.3), (1.0, -0.3), (1.0, 0.0), (0.0, 0.01)])
 def test_a_step_down_a_gap_and_a_step_within_the_round_are_no_edge(gap, step):
     _model, result, found = joint(gap, step)
-    assert result.ok and not found, (result.status, found)
+    assert as_asked(result) and not found, (result.status, found)
     assert float(result.sheet_motion(0)[1][-1, 0]) == pytest.approx(whole(), abs=0.02)
 
 
@@ -322,7 +323,7 @@ def test_a_step_down_a_gap_and_a_step_within_the_round_are_no_edge(gap, step):
 def test_a_step_up_stubs(gap):
     # a strip that bounces back from an end flutters: its own step, which is not judged
     _model, result, found = joint(gap, 0.3, "run.step=0.01 ms")
-    assert result.ok, result.status
+    assert as_asked(result), result.status
     assert [(e["sheet"], e["part"]) for e in found] == [("n", "g2")]
     assert found[0]["below_mm"] == pytest.approx(0.3, abs=0.02)
 
@@ -366,7 +367,7 @@ def test_a_heavy_plank_slides_off_an_edge_with_the_normal_of_its_own_face(solver
     middle = np.array([-0.02, 0.0, -0.02]) + (0.02 - sunk + 0.2) * normal
     center = "[" + ", ".join(f"{x:.12g} mm" for x in middle) + "]"
     result = mdlgen.solve(lower(loads(OVER.format(center=center, angle=angle, edge=SHARP))), solver)
-    assert result.ok, result.status
+    assert as_asked(result), result.status
     time = result.time[-1]
     rate = result.velocity[-1, 0]
     assert rate @ along == pytest.approx(9.81e-3 * math.sin(a) * time, rel=0.02)

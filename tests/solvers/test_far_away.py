@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from asked import as_asked
 
 import mdlgen
 from mdlgen.model.lower import lower
@@ -17,7 +18,7 @@ FLOOR = "floor: {center: [0 mm, 0 mm, -5 mm], normal: z, size: [200 mm, 200 mm, 
 
 def ran(text: str, *sets: str) -> Result:
     result = mdlgen.solve(lower(loads(text, overrides=list(sets))), "lattice")
-    assert result.ok, result.status
+    assert as_asked(result), result.status
     return result
 
 

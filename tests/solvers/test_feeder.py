@@ -6,6 +6,7 @@ import functools
 
 import numpy as np
 import pytest
+from asked import as_asked
 
 import mdlgen
 from mdlgen.model.lower import lower
@@ -26,7 +27,7 @@ FED = 260.0  # ms: the rubber has gone by for 50 ms
 @functools.cache
 def run(name: str, *overrides: str, by: str = "lattice") -> Result:
     result = mdlgen.solve(lower(load(samples() / f"{name}.yaml", overrides)), by)
-    assert result.ok, result.status
+    assert as_asked(result), result.status
     return result
 
 

@@ -7,6 +7,7 @@ import time
 
 import numpy as np
 import pytest
+from asked import as_asked
 
 import mdlgen
 from mdlgen.model.lower import lower
@@ -65,7 +66,7 @@ def test_what_cannot_fold_is_not_looked_at(monkeypatch: pytest.MonkeyPatch) -> N
     """Normals within a right angle of their mean: a strip bent by half a turn."""
     made = lower(loads(strip(0.49)))
     result = mdlgen.solve(made, "lattice")
-    assert result.ok, result.status
+    assert as_asked(result), result.status
     folds = Folds(made)
     monkeypatch.setattr(folds, "_meet", lambda *_: pytest.fail("it was looked at"))
     places, turns = result.position[-1], _rotations(result)
@@ -93,7 +94,7 @@ def test_a_strip_that_is_rolled_up_by_more_than_a_turn_lies_in_itself(
 ) -> None:
     """A moment alone bends it into a circle of L/(2 pi turns), which beyond one turn is in itself."""
     result = mdlgen.solve(lower(loads(strip(turns))), solver)
-    assert result.ok != meets, result.status
+    assert as_asked(result) != meets, result.status
     if meets:
         assert "sheet n lies in itself" in result.status
         names = [word.strip(",;") for word in result.status.split() if word.startswith("n_")]
@@ -107,7 +108,7 @@ def test_a_run_ends_where_a_sheet_comes_into_itself(solver: str) -> None:
     """The same in time: a moment of two turns rolls it up, and it ends before it is through itself."""
     run = "duration: 60 ms, print_step: 0.25 ms, step: 0.05 ms, margin: 200 mm"
     result = mdlgen.solve(lower(loads(strip(1.6, run, boxes=20))), solver)
-    assert not result.ok
+    assert not as_asked(result)
     assert "sheet n lies in itself at" in result.status and "box n_" in result.status
     assert 1.0 < result.time[-1] < 60.0
 

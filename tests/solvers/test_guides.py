@@ -7,6 +7,7 @@ import re
 
 import numpy as np
 import pytest
+from asked import as_asked
 from laws import box_guide
 from papers import on_paper
 
@@ -48,7 +49,7 @@ run: {{duration: {time} ms, tolerance: 2e-4}}
 
 def block(**values) -> mdlgen.Result:
     result = lattice(lower(loads(BLOCK.format(**{"mu": 0, "c_R": 0, **values}))))
-    assert result.ok, result.status
+    assert as_asked(result), result.status
     return result
 
 
@@ -148,7 +149,7 @@ def test_a_block_slides_through_a_hollow_and_loses_as_on_a_capstan(axis):
     made = lower(loads(BLOCK.format(guide=guide, mu=0.3, c_R=0, time=16, **sheet)))
     assert made.sheets[0].count == 1
     result = lattice(made)
-    assert result.ok, result.status
+    assert as_asked(result), result.status
     place = result.position[:, 0] - [0.0, 0.0, 20.0]
     angle = np.unwrap(np.arctan2(place @ way, -place[:, 2]))
     speed = np.linalg.norm(result.velocity[:, 0], axis=1)
@@ -184,7 +185,7 @@ def test_a_round_guide_is_a_roller_that_stands_still(solver):
         "drive: {speed: 0 rad/s}}"
     )
     one, two = (mdlgen.solve(lower(loads(DRAPED.format(part=part))), solver) for part in (guide, roller))
-    assert one.ok and two.ok, (one.status, two.status)
+    assert as_asked(one) and as_asked(two), (one.status, two.status)
     assert two.statistics.max_force[0] > 1e-4
     # the sum over boxes goes another way; what is the same otherwise stays so to 1e-7 of a flexible run
     away = float(np.abs(one.position[:, :12] - two.position[:, :12]).max())
@@ -208,7 +209,7 @@ def test_a_straight_guide_is_a_plane():
     )
     text = re.sub(r"guides:\n  way: .*", plane, BLOCK.format(guide=line, **values))
     two = lattice(lower(loads(text)))
-    assert two.ok and one.time[-1] == two.time[-1]
+    assert as_asked(two) and one.time[-1] == two.time[-1]
     assert one.contact_force.max() > 0.1
     assert one.position[-1, 0] == pytest.approx(two.position[-1, 0], abs=1e-5)
 
@@ -226,7 +227,7 @@ def channel(boxes, step, solver="lattice"):
     damped = "materials.paper.damping={time: 0.05 ms}"
     model = lower(load(CHANNEL, [f"sheets.note.boxes=[{boxes},1]", f"run.step={step} ms", damped]))
     result = mdlgen.solve(model, solver)
-    assert result.ok, result.status
+    assert as_asked(result), result.status
     lead, record = result.anchor_motion(0)[0], series(result)
     assert lead[-1, 2] == pytest.approx(19.5, abs=0.1)  # it is there
     last = [result.time >= result.time[-1] - span for span in (3.0 + 1e-9, 12.0, 24.0)]
@@ -252,7 +253,7 @@ def test_exit_speed_and_guide_force_of_a_channel_converge_and_the_solvers_agree(
 def test_a_run_ends_where_a_guide_does_not_hold_a_box(solver):
     made = lower(load(CHANNEL, ["contacts.0.stiffness=0.001 N/mm^1.5", "sheets.note.boxes=[10,1]"]))
     result = mdlgen.solve(made, solver)
-    assert not result.ok and "into guide guide_" in result.status
+    assert not as_asked(result) and "into guide guide_" in result.status
 
 
 # -- text and deck

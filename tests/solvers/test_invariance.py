@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from asked import as_asked
 from scipy.spatial.transform import Rotation
 
 import mdlgen
@@ -124,7 +125,7 @@ def moved(spec: Spec, turn: Floats, shift: Floats) -> Spec:
 
 def run(spec: Spec) -> Result:
     result = mdlgen.solve(mdlgen.lower(mdlgen.loads(json.dumps(spec))), "lattice")
-    assert result.ok, result.status
+    assert as_asked(result), result.status
     return result
 
 

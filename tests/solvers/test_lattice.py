@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from asked import as_asked
 from papers import on_paper
 
 import mdlgen
@@ -40,7 +41,7 @@ def model(name: str, *overrides: str) -> Model:
 
 def run(made: Model, step: float | None = None) -> Result:
     result = mdlgen.solve(made, "lattice") if step is None else _fixed(made, step)
-    assert result.ok, result.status
+    assert as_asked(result), result.status
     return result
 
 
@@ -95,7 +96,7 @@ def test_what_spins_takes_no_more_iterations_than_what_rests() -> None:
     """A strip of short, stiff boxes: in axes that are half a step behind, stiff directions would be taken for
     soft ones."""
     result = run(model("verify/flip", "sheets.block.boxes=[400, 1]", "run.duration=0.5 ms"), 0.1)
-    assert result.ok, result.status
+    assert as_asked(result), result.status
     assert result.steps == 5 and result.iterations <= 3 * result.steps
     _, angular = momentum(result)
     assert np.abs(angular - angular[0]).max() < 1e-9 * np.abs(angular[0]).max()
@@ -160,7 +161,7 @@ def test_transport_agrees_with_the_reference_solver() -> None:
     scene = ["sheets.note.boxes=[5,10]", "run.duration=10 ms", "run.print_step=0.5 ms"]
     fast = run(model("transport_4x4", *scene))
     slow = mdlgen.solve(model("transport_4x4", *scene, "run.step=25 us"), "exudyn")
-    assert slow.ok, slow.status
+    assert as_asked(slow), slow.status
     away = compare(slow, fast)
     travel = float(np.linalg.norm(slow.position[-1, 0] - slow.position[0, 0]))
     assert away.position_rms_mm < 1e-3 * travel
@@ -182,7 +183,7 @@ def test_a_strip_swings_as_the_reference_solver_has_it() -> None:
     ]
     fast = run(model("cantilever", *scene, "run.tolerance=1e-4"))
     slow = mdlgen.solve(model("cantilever", *scene, "run.step=50 us"), "exudyn")
-    assert slow.ok
+    assert as_asked(slow)
     assert travel(slow)[2] < -5.0  # mm: it has fallen
     assert compare(slow, fast).relative < 1e-3
 
@@ -210,7 +211,7 @@ def test_a_loaded_sheet_rests_where_the_reference_solver_has_it() -> None:
     load = "loads=[{sheet: note, edge: y_max, force: [0.002 N, 0 N, 0.004 N]}]"
     made = model("cantilever", "sheets.note.boxes=[3,6]", load, "gravity=[1 m/s^2, 0 m/s^2, -3 m/s^2]")
     fast, slow = run(made), mdlgen.solve(made, "exudyn")
-    assert slow.ok
+    assert as_asked(slow)
     assert np.abs(fast.position - slow.position).max() < 1e-4 * 127
 
 
@@ -230,13 +231,13 @@ def test_auto_takes_the_fast_solver_where_it_can() -> None:
 def test_a_box_that_leaves_its_bounds_ends_the_run_by_name() -> None:
     scene = ["sheets.note.boxes=[2,3]", "run.margin=0.1 mm", "rollers.motor_1_left.drive.speed=-186.7 rad/s"]
     result = mdlgen.solve(model("transport_4x4", *scene, "run.step=0.1 ms"), "lattice")
-    assert not result.ok and "left the bounds" in result.status and "box note_" in result.status
+    assert not as_asked(result) and "left the bounds" in result.status and "box note_" in result.status
 
 
 def test_a_run_that_cannot_converge_says_where() -> None:
     scene = ["sheets.note.boxes=[2,3]", "rollers.motor_1_left.drive.speed=1e7 rad/s", "run.duration=5 ms"]
     result = mdlgen.solve(model("transport_4x4", *scene), "lattice")
-    assert not result.ok and " ms" in result.status
+    assert not as_asked(result) and " ms" in result.status
 
 
 def test_a_block_that_loses_energy_unseen_has_failed(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -245,12 +246,12 @@ def test_a_block_that_loses_energy_unseen_has_failed(monkeypatch: pytest.MonkeyP
     made = thrown(1.0, 1.0).model()
     # a step of the user's own is halved where a contact would begin and end within it
     result = _fixed(made, 0.2)
-    assert result.ok and result.velocity[-1, 0, 2] == pytest.approx(1.0, abs=2e-3)
+    assert as_asked(result) and result.velocity[-1, 0, 2] == pytest.approx(1.0, abs=2e-3)
     assert _fixed(made, 0.002).ok
     # an elastic impact in two steps: the rule takes a fifth of the speed away
     monkeypatch.setattr(solver, "MADE", 0.0)
     result = _fixed(made, 0.2)
-    assert not result.ok and "energy" in result.status
+    assert not as_asked(result) and "energy" in result.status
 
 
 def test_a_tolerance_that_is_not_reached_is_a_failure(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -260,7 +261,7 @@ def test_a_tolerance_that_is_not_reached_is_a_failure(monkeypatch: pytest.Monkey
     monkeypatch.setattr(solver, "first_step", lambda _: 0.25)
     scene = ["sheets.note.boxes=[2,3]", "run.duration=5 ms", "run.tolerance=1e-9"]
     result = mdlgen.solve(model("transport_4x4", *scene), "lattice")
-    assert not result.ok and "tolerance of 1e-09 was not reached" in result.status
+    assert not as_asked(result) and "tolerance of 1e-09 was not reached" in result.status
     assert result.error_estimate is not None and result.error_estimate > 1e-9
 
 
@@ -268,7 +269,7 @@ def test_momentum_is_kept_after_a_touch() -> None:
     # the factor is of a sheet that has bent and turned since
     case = flight.cases("lattice", "lattice", quick=True)[0]
     result = mdlgen.solve(case.run.model(), "lattice")
-    assert result.ok, result.status
+    assert as_asked(result), result.status
     for finding in flight.drift(result, None):
         assert finding.tolerance is not None and finding.error <= finding.tolerance, finding
 
@@ -281,5 +282,5 @@ def test_forces_are_those_of_the_stored_times() -> None:
     result = mdlgen.solve(lower(load(samples() / "verify" / "drop.yaml", sets)), "lattice")
     depth = np.maximum(5.0 - result.position[:, 0, 2], 0.0)
     force, peak = 1000.0 * depth**1.5, result.contact_force.max()
-    assert result.ok and np.count_nonzero(force) > 5
+    assert as_asked(result) and np.count_nonzero(force) > 5
     assert np.abs(result.contact_force[1:-1, 0] - force[1:-1]).max() < 0.03 * peak

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import ran
+from asked import as_asked
 from unsaid import UNSAID
 
 import mdlgen
@@ -137,7 +138,7 @@ def test_a_tilted_note_leaves_straight():
     """
     scene = mdlgen.load(samples() / "tilt_correction.yaml", ["run.step=0.05 ms", "run.tolerance=0.01"])
     result = mdlgen.solve(mdlgen.lower(scene))
-    assert result.ok, result.status
+    assert as_asked(result), result.status
     assert abs(result.summary()["sheets"]["note"]["yaw_deg"]) <= 0.1
     left, right = (scene.rollers[f"motor_2_{side}"].drive.speed for side in ("left", "right"))
     assert left + right == pytest.approx(2 * 0.186)
@@ -152,7 +153,7 @@ def test_the_window_of_a_feeder(reach, friction, outcome):
     sets = [f"rollers.feed.center.2={10.2 - reach} mm", f"contacts.2.friction={friction}", "run.step=0.05 ms"]
     model = mdlgen.lower(mdlgen.load(samples() / "feeder_window.yaml", sets))
     result = mdlgen.solve(model)
-    assert result.ok, result.status
+    assert as_asked(result), result.status
     kinds = {event["kind"] for event in result.summary()["events"]}
     found = "double feed" if "double_feed" in kinds else "jam" if "jam" in kinds else "one note"
     # the force of three contacts in series, and that of the pad with its spring

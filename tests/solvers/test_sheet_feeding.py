@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from asked import as_asked
 from papers import HINGED_PAPER
 
 import mdlgen
@@ -54,7 +55,7 @@ contacts:
 run: {{duration: {time} ms, print_step: 0.5 ms{step}}}
 """
     result = mdlgen.solve(lower(loads(text, "feeding")), "lattice")
-    assert result.ok, result.status
+    assert as_asked(result), result.status
     return result
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from asked import as_asked
 from same import bits
 
 from mdlgen.backends.lattice import run as lattice
@@ -66,7 +67,7 @@ def solve(monkeypatch: pytest.MonkeyPatch) -> Solve:
         model = lower(loads(SCENE, "pile", [*sets, f"run.sleep={str(sleep).lower()}"]))
         # with a step of its own a run has one pass
         result = lattice.solve(model, step=model.run.step if step else None)
-        assert result.ok, result.status
+        assert as_asked(result), result.status
         return result, turns.copy()
 
     return solved

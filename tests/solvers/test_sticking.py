@@ -10,6 +10,7 @@ import math
 
 import numpy as np
 import pytest
+from asked import as_asked
 from stacks import stack
 
 import mdlgen
@@ -53,7 +54,7 @@ run: {{{", ".join(f"{k}: {v}" for k, v in asked.items())}}}
 
 def solved(text: str, sets: tuple[str, ...] = ()) -> Result:
     result = mdlgen.solve(lower(loads(text, overrides=list(sets))), "lattice")
-    assert result.ok, result.status
+    assert as_asked(result), result.status
     return result
 
 
@@ -171,7 +172,7 @@ def test_a_pile_at_rest_does_not_creep(count, boxes) -> None:
     from mdlgen.paths import samples
 
     result = mdlgen.solve(lower(mdlgen.load(samples() / "pile.yaml", pile(count, boxes))), "lattice")
-    assert result.ok, result.status
+    assert as_asked(result), result.status
     places = [middle(result, sheet.name)[:, :2] for sheet in result.model.sheets]
     moved = [place[-1] - place[50] for place in places]
     assert np.abs(moved).max() < 5e-8, "1 nm/s for 50 ms"

@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 import pytest
+from asked import as_asked
 from machines import MACHINE
 from nip import FORTH_AND_BACK
 
@@ -21,7 +22,7 @@ def solved(text: str, *sets: str) -> tuple[mdlgen.Result, mdlgen.Result]:
         for rule in ("true", "false")
     ]
     for result in results:
-        assert result.ok, result.status
+        assert as_asked(result), result.status
     return results[0], results[1]
 
 
@@ -213,7 +214,7 @@ def test_a_sheet_that_rolls_over_the_plane_is_reported() -> None:
     """Its halves would not see the roller of the other side, nor each other; solved whole it meets itself."""
     model = mdlgen.lower(mdlgen.loads(ROLLED))
     result = mdlgen.solve(model, "lattice")
-    assert not result.ok
+    assert not as_asked(result)
     assert result.status.startswith("box note_0_1 has passed the plane of the scene's symmetry at 1.7 ms")
     whole = mdlgen.solve(mdlgen.lower(mdlgen.loads(ROLLED, ["run.symmetry=false"])), "lattice")
     assert whole.status.startswith("sheet note lies in itself at 1.7 ms, box note_0_2 in box note_0_13")
