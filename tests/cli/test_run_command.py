@@ -36,7 +36,8 @@ class Fake:
 
     def solve(self, model: Model, progress: object = None, step: float | None = None) -> Result:
         print("a solver that talks")
-        return moving(model, shift=0.0 if step else self.error).failed(self.status)
+        found = moving(model, shift=0.0 if step else self.error).failed(self.status)
+        return replace(found, steps=200 if step else 100)
 
 
 def test_run_writes_all_files(mdl: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -66,26 +67,32 @@ def test_pictures_are_drawn_when_asked_for_and_anew_where_there_are_some(
     assert (tmp_path / "d" / "report.png").read_bytes() == new and (tmp_path / "d" / "strain.png").exists()
 
 
-def test_a_failed_run_writes_nothing(mdl: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(
-        registry, "solver", lambda name: Backend(solve=Fake(status="Newton at 3 ms in box note_1_1").solve)
-    )
-    ended = mdl("run", FOUR, *SMALL, "-o", "d")
-    assert (ended.code, ended.out) == (4, "")
-    *lints, reason = ended.err.splitlines()
-    assert "Newton at 3 ms in box note_1_1" in reason and all(lint.startswith("W104 ") for lint in lints)
-    assert files(tmp_path) == [] and not (tmp_path / "d").exists()
-
-
-def test_a_failed_run_leaves_the_old_result(
+def test_a_run_that_ends_early_is_written_and_marked(
     mdl: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """What there is up to then takes the place of the run before; text and page begin with the mark."""
     monkeypatch.setattr(registry, "solver", lambda name: Backend(solve=Fake().solve))
     mdl("run", FOUR, *SMALL, "-o", "d")
-    old = {n: (tmp_path / n).read_bytes() for n in files(tmp_path)}
-    monkeypatch.setattr(registry, "solver", lambda name: Backend(solve=Fake(status="no").solve))
-    assert mdl("run", FOUR, *SMALL, "-o", "d").code == 4
-    assert {n: (tmp_path / n).read_bytes() for n in files(tmp_path)} == old
+    why = "Newton at 3 ms in box note_1_1"
+
+    def solve(model: Model, *_: object, **__: object) -> Result:
+        whole = moving(model)
+        names = ("time", "position", "rotation", "velocity", "spin", "contact_force")
+        part = {name: getattr(whole, name)[:4] for name in names}
+        return replace(whole, **part, contact_torque=None, contact_friction=None, status=why)
+
+    monkeypatch.setattr(registry, "solver", lambda name: Backend(solve=solve))
+    ended = mdl("run", FOUR, *SMALL, "--set", 'require=["no jam"]', "-o", "d")
+    record = json.loads((tmp_path / "d" / "summary.json").read_text())
+    mark = f"ended early, at {record['t_end_ms']:.6g} of {record['duration_ms']:g} ms: {why}"
+    assert ended.code == 4 and ended.out.splitlines()[0] == mark == record["mark"]
+    assert "FAIL  no jam: not known" in ended.out
+    assert f"{mark}; the files in d hold what there is up to then" in ended.err
+    page = (tmp_path / "d" / "report.html").read_text("utf-8")
+    assert 0 < page.index(why) < page.index("<nav")
+    assert load(tmp_path / "d").status == why and record["status"] == why
+    assert len((tmp_path / "d" / "series.csv").read_text().splitlines()) == 5
+    assert mdl("report", "d").code == 0 and why in (tmp_path / "d" / "report.html").read_text("utf-8")
 
 
 def test_a_missed_tolerance_is_exit_5_and_keeps_the_files(
@@ -95,9 +102,11 @@ def test_a_missed_tolerance_is_exit_5_and_keeps_the_files(
     monkeypatch.setattr(registry, "solver", lambda name: Backend(solve=Fake(error=1.0).solve))
     ended = mdl("run", FOUR, *SMALL, "-o", "d", "--check-step")
     assert ended.code == 5
-    assert "above run.tolerance 0.001" in ended.err and "d" in ended.err
+    assert "is 1.4 %, above run.tolerance 0.1 %" in ended.err and "files in d hold" in ended.err
+    assert ended.out.startswith("inaccurate: the error estimate of rollers.counter_1_left.slide is 1.4 %")
     record = json.loads((tmp_path / "d" / "summary.json").read_text())
     assert record["error_estimate"] == pytest.approx(1 / 70, rel=1e-9)
+    assert record["status"] == "inaccurate" and load(tmp_path / "d").usable
     monkeypatch.setattr(registry, "solver", lambda name: Backend(solve=Fake(error=0.01).solve))
     assert mdl("run", FOUR, *SMALL, "-o", "d", "--check-step").code == 0
 
@@ -116,6 +125,36 @@ def test_an_error_that_is_not_known_is_exit_5_and_keeps_the_files(
     assert f"\n{why}\n" in ended.out and why in (tmp_path / "d" / "report.html").read_text("utf-8")
     assert json.loads((tmp_path / "d" / "summary.json").read_text())["error_unknown"] == why
     assert load(tmp_path / "d").error_unknown == why
+
+
+@pytest.mark.parametrize(
+    ("limit", "error", "code", "verdict"),
+    [
+        (10.0, 0.0, 0, "pass  "),
+        (0.03, 0.01, 0, "pass, but within the error  "),
+        (10.0, 1.0, 5, "pass  "),
+        (3.0, 1.0, 5, "pass, but within the error  "),
+        (-3.0, 1.0, 5, "FAIL, but within the error  "),
+        (-10.0, 1.0, 6, "FAIL  "),
+        (-0.03, 0.01, 6, "FAIL, but within the error  "),
+    ],
+)
+def test_a_requirement_is_judged_with_the_error_of_the_run(
+    limit: float, error: float, code: int, verdict: str,
+    mdl: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    """The sheet goes along x alone; a coarser run has it aside along y by the error, of which the tolerance
+    allows 0.07 mm. The margin of doubt is four times that."""
+    monkeypatch.setattr(registry, "solver", lambda name: Backend(solve=Fake(error=error).solve))
+    text = f"sheets.note.travel.y below {limit} mm"
+    require = f'require=["{text}"]'
+    ended = mdl("run", FOUR, *SMALL, "--set", require, "-o", "d", "--check-step")
+    assert ended.code == code, ended.err
+    assert f"\n{verdict}{text}" in ended.out
+    row = json.loads((tmp_path / "d" / "summary.json").read_text())["verdict"]["requirements"][0]
+    assert row["doubtful"] == ("within the error" in verdict)
+    assert ("but within the error" in (tmp_path / "d" / "report.html").read_text("utf-8")) == row["doubtful"]
+    assert load(tmp_path / "d").verdict[0].doubtful == row["doubtful"]
 
 
 def test_an_unknown_solver_is_refused_before_anything_runs(mdl: Run, tmp_path: Path) -> None:

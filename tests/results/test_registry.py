@@ -41,7 +41,7 @@ class TestRegistry:
                 asked.append(step)
                 # an error that is proportional to the step
                 h = step or 0.05
-                return replace(moving(model, shift=h), step=h)
+                return replace(moving(model, shift=h), step=h, steps=round(10.0 / h))
 
         monkeypatch.setattr(registry, "solver", lambda name: Backend(solve=Fake().solve))
         found = mdlgen.solve(model, check_step=True)
@@ -49,10 +49,30 @@ class TestRegistry:
         assert found.step == 0.025
         assert found.error_estimate == pytest.approx(0.025 / scale(found), rel=1e-9)
 
-    def test_check_step_keeps_a_failure(self, model: Model, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_check_step_keeps_the_run_where_the_finer_one_fails(
+        self, model: Model, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
         class Fake:
             def solve(self, model: Model, progress: object = None, step: float | None = None) -> Result:
                 return moving(model).failed("no") if step else moving(model)
 
         monkeypatch.setattr(registry, "solver", lambda name: Backend(solve=Fake().solve))
-        assert mdlgen.solve(model, check_step=True).status == "at half the step (0.025 ms): no"
+        found = mdlgen.solve(model, check_step=True)
+        assert found.status == "inaccurate" and found.usable and not found.ok
+        assert found.error_unknown.endswith("a run at half the step (0.025 ms) ended early: no")
+
+    def test_runs_of_the_same_steps_are_not_compared(
+        self, model: Model, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """A solver that divides the steps of both runs to the same 100 shows nothing, however near they are."""
+        taken = {None: 100, 0.025: 100}
+
+        class Fake:
+            def solve(self, model: Model, progress: object = None, step: float | None = None) -> Result:
+                return replace(moving(model), step=step or 0.05, steps=taken[step])
+
+        monkeypatch.setattr(registry, "solver", lambda name: Backend(solve=Fake().solve))
+        found = mdlgen.solve(model, check_step=True)
+        assert found.status == "inaccurate" and "nothing was compared" in found.error_unknown
+        taken[0.025] = 150
+        assert mdlgen.solve(model, check_step=True).ok

@@ -34,6 +34,7 @@ FILES = ["result.h5", "series.csv", "summary.json"]
 PROMISED = {
     "scene", "solver", "status", "t_end_ms", "steps", "step_ms", "wall_s", "compile_s", "build_s", "pairs",
     "error_estimate", "tolerance", "energy", "events", "sheets", "rollers", "guides", "meshes", "probes",
+    "mark", "duration_ms", "error_below", "search_ended", "chaotic", "estimates_below",
     "verdict", "versions", "error_estimate_of", "error_unknown", "estimates", "estimate_scales", "planes",
 }  # fmt: skip
 WORK = {"iterations", "rounds", "estimate_s", "halved"}  # what a run and the estimate of its error took
@@ -278,11 +279,26 @@ class TestFiles:
         for one in (result, static):
             assert figure(one).startswith(b"\x89PNG\r\n\x1a\n")
 
-    def test_a_failed_run_leaves_the_old_files(self, result: Result, tmp_path: Path) -> None:
+    def test_a_failed_run_is_written_and_marked(self, result: Result, tmp_path: Path) -> None:
+        result.save(tmp_path)
+        part = slice(0, len(result.time) // 2)
+        names = ("time", "position", "rotation", "velocity", "spin", "contact_force")
+        early = replace(result, **{name: getattr(result, name)[part] for name in names}, status="it blew up")
+        early.contact_torque = early.contact_friction = None
+        early.save(tmp_path)
+        assert sorted(p.name for p in tmp_path.iterdir()) == FILES
+        record = json.loads((tmp_path / "summary.json").read_text("utf-8"))
+        end, duration = early.time[-1], result.model.run.duration
+        assert record["mark"] == f"ended early, at {end:.6g} of {duration:g} ms: it blew up"
+        assert record["status"] == "it blew up" and record["t_end_ms"] == end < duration
+        again = store.load(tmp_path)
+        assert again.status == "it blew up" and not again.usable and len(again.time) == len(early.time)
+
+    def test_a_failed_run_without_a_state_leaves_the_old_files(self, result: Result, tmp_path: Path) -> None:
         result.save(tmp_path)
         old = {p.name: p.read_bytes() for p in tmp_path.iterdir()}
         with pytest.raises(OutputError, match="it blew up"):
-            result.failed("it blew up").save(tmp_path)
+            replace(result, time=np.zeros(0), status="it blew up").save(tmp_path)
         assert {p.name: p.read_bytes() for p in tmp_path.iterdir()} == old
 
     def test_old_files_stay_where_one_cannot_be_written(self, result: Result, tmp_path: Path) -> None:
