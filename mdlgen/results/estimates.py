@@ -20,7 +20,6 @@ from mdlgen.results.result import INACCURATE, OK
 from mdlgen.results.wording import percent
 
 if TYPE_CHECKING:
-    from mdlgen.model.tables import Model
     from mdlgen.results.result import Result
 
 # Of the last difference: for two runs that judge a trajectory; for what the tolerance does not judge, forces,
@@ -46,6 +45,9 @@ MOST, MOST_OF_TWO = 0.25, 0.02
 FREE, FREE_PEAKS, TOUCHING, TOUCHING_PEAKS = 1e-6, 1e-3, 1e-2, 3.0
 # The same of trajectories where sheets that bend touch something: they flutter.
 FLUTTERING = 0.25
+# The same from two runs alone: both may miss what a nip does by more than they differ, and no third one shows
+# it. An arm that presses a sheet was off by 0.62 of the tolerance where two runs differed by 0.12 of it.
+FLUTTERING_OF_TWO = 0.75
 # Of the root mean square over all alike of a scene: one of them may agree by accident.
 ALIKE = 0.5
 # How a result says that its error may be of any size.
@@ -92,7 +94,7 @@ def between(runs: Sequence[Result], judged: bool = False) -> dict[str, Estimate]
         part = MOST_OF_TWO if judged and not asked and len(runs) == 2 else MOST
         most = part * (last.judged or last.scale) / last.scale
         value = rule(times * last.value, earlier and times * earlier, safety, judged, most)
-        least = result.model.run.tolerance * _floor(last, touching, result.model)
+        least = result.model.run.tolerance * _floor(last, touching, runs)
         if value is None and judged and times * STILL * max(last.value, earlier or 0.0) <= least:
             value = least
         found[name] = Estimate(value, last.scale, last.unit, last.judged)
@@ -104,10 +106,13 @@ def _safety(of: Difference) -> float:
     return SAFETY if of.judged is not None or of.kind == "contacts.force" else SAFETY_REST
 
 
-def _floor(of: Difference, touching: bool, model: Model) -> float:
+def _floor(of: Difference, touching: bool, runs: Sequence[Result]) -> float:
+    result = runs[0]
     if of.judged is not None or of.kind in ("probes.displacement", "rollers.omega"):
-        bends = any(sheet.count > 1 for sheet in model.sheets)
-        return (FLUTTERING if bends else TOUCHING) if touching else FREE
+        bends = any(sheet.count > 1 for sheet in result.model.sheets)
+        # of one that checks another the difference itself is asked for
+        flutters = FLUTTERING_OF_TWO if len(runs) == 2 and not result.checks else FLUTTERING
+        return (flutters if bends else TOUCHING) if touching else FREE
     return TOUCHING_PEAKS if touching else FREE_PEAKS
 
 

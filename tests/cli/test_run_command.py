@@ -143,10 +143,10 @@ def test_a_requirement_is_judged_with_the_error_of_the_run(
     limit: float, error: float, code: int, verdict: str,
     mdl: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
 ) -> None:  # fmt: skip
-    """The sheet goes along x alone; a coarser run has it aside along y by the error, of which the tolerance
+    """The sheet goes along x; a coarser run has it lifted by the error, of which the tolerance
     allows 0.07 mm. The margin of doubt is four times that."""
     monkeypatch.setattr(registry, "solver", lambda name: Backend(solve=Fake(error=error).solve))
-    text = f"sheets.note.travel.y below {limit} mm"
+    text = f"sheets.note.travel.z below {limit} mm"
     require = f'require=["{text}"]'
     ended = mdl("run", FOUR, *SMALL, "--set", require, "-o", "d", "--check-step")
     assert ended.code == code, ended.err

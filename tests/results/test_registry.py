@@ -64,7 +64,7 @@ class TestRegistry:
     def test_runs_of_the_same_steps_are_not_compared(
         self, model: Model, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        """A solver that divides the steps of both runs to the same 100 shows nothing, however near they are."""
+        """A solver that divides the steps of both runs to the same 100 shows nothing."""
         taken = {None: 100, 0.025: 100}
 
         class Fake:

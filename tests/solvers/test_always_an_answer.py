@@ -29,8 +29,8 @@ def turned(result: Result) -> np.ndarray:
 
 @pytest.mark.parametrize("step", [10.0, 15.0, 16.0, 20.0, 30.0, 60.0])
 def test_a_step_that_the_solver_divides_is_compared_with_finer_ones(step: float) -> None:
-    """Steps of 10 and 20 ms are both divided to the same 135, so that the two agree to 1e-9, while the turn is
-    off by degrees."""
+    """Steps of 10 and 20 ms are both divided to the same 135. The two agree to 1e-9, and the turn is off
+    by degrees."""
     result = mdlgen.solve(case("short_step", f"run.step={step} ms"), "lattice")
     exact = mdlgen.solve(case("short_step", "run.step=0.01 ms"), "lattice")
     off = float(np.linalg.norm(turned(result) - turned(exact)))
