@@ -112,7 +112,7 @@ def _compared(
     few = count < FEWEST
     seconds = cost(system, (2 if few else 1) * count)
     if seconds > ESTIMATED:
-        why = f"a second run, to compare with, would take some {seconds:.0f} s"
+        why = f"a second run, to compare with, would take some {seconds:.0f} s; --check-step makes it"
         return marked(replace(estimated(result, []), error_unknown=f"{NOT_KNOWN}: {why}"))
     if clock.perf_counter() + (2.0 if few else 0.5) * result.wall_s > until:
         return marked(replace(estimated(result, []), error_unknown=f"{NOT_KNOWN}: {_limit(model)}"))
