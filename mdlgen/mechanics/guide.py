@@ -21,11 +21,13 @@ import numpy as np
 from mdlgen.mechanics.contact import box_sector, clip, face_corners
 from mdlgen.mechanics.edge import HOLDS, UPPER, held, leaning
 from mdlgen.mechanics.frame import ARC_ANGLE, ARC_MIDDLE, ARC_RADIUS, Cylinder, Sector, scaled
-from mdlgen.mechanics.plate import area_of, box_ends, box_flat, facing
+from mdlgen.mechanics.plate import box_ends, box_flat, corner_areas, facing
 from mdlgen.mechanics.point import Load, push
 from mdlgen.mechanics.vector import add, back, dot, rotate, scale, sub
 from mdlgen.program.kernel import CALLED, OWNS, njit
 
+# Cosine of the angle of a sheet to a plate beyond which the sheet's middle plane does not tell the side.
+UPRIGHT = 0.3
 INSIDE, OUTSIDE, BOTH = 1, 2, 3  # sides: left of a line or inside an arc; right or outside; both
 
 
@@ -60,6 +62,28 @@ def _beyond(i, shape):
     return (-sign * math.sin(at), sign * math.cos(at), 0.0)
 
 
+@njit(cache=True, error_model="numpy")
+def _side(at, upright, plate):
+    """Which face of an arc a box at a place meets: 1.0 the hollow one, -1.0 the round one.
+
+    That is by where the nearest place of the arc is from the middle plane of the sheet, whose normal is
+    `upright` (guide's axes): a box that leaves an arc has its centre beyond the arc's end, where the radius
+    says nothing. A box that is upright to the arc has the face of the side that its centre is on.
+    """
+    radius, middle, angle = plate.shape
+    turn = math.atan2(at[1], at[0]) - middle
+    turn -= 2.0 * math.pi * math.floor(turn / (2.0 * math.pi) + 0.5)
+    turn = middle + min(max(turn, -angle), angle)
+    inside = plate.top - plate.half[2]
+    normal = (-math.cos(turn), -math.sin(turn), 0.0)
+    near = scale(inside - radius, normal)
+    near = (near[0], near[1], min(max(at[2], -plate.half[1]), plate.half[1]))
+    lie = dot(upright, normal)
+    if abs(lie) > UPRIGHT:
+        return 1.0 if dot(upright, sub(near, at)) * lie < 0.0 else -1.0
+    return 1.0 if inward(at, radius) >= inside else -1.0
+
+
 @njit(cache=True, error_model="numpy", **OWNS, **CALLED)
 def box_guide(out, a, box, b, plate, law):
     """Box a on guide b, which does not move. A box meets the face of the side that it is on.
@@ -87,7 +111,7 @@ def box_guide(out, a, box, b, plate, law):
     away = math.sqrt(at[0] * at[0] + at[1] * at[1])
     if away == 0.0:
         return
-    sign = 1.0 if height >= top - half_b[2] else -1.0
+    sign = _side(at, back(rb, (ra[2], ra[5], ra[8])), plate)
     normal = (-sign * at[0] / away, -sign * at[1] / away, 0.0)
     look = back(ra, rotate(rb, normal))
     tilted = back(rb, facing(look, ra))
@@ -118,7 +142,11 @@ def _hollow(out, a, half, b, plate, look, tilted, law):
     count = _covered(points, shape, half_b)
     if count < 3:
         return
-    share = law.k / count * (area_of(points, count) / area if law.shared else 1.0)
+    areas = np.empty(12)
+    over = corner_areas(points, count, areas)
+    if over <= 0.0:
+        return
+    share = law.k / (area if law.shared else over)
     for i in range(count):
         point = (points[i, 0], points[i, 1], points[i, 2])
         depth = top - inward(point, shape[ARC_RADIUS])
@@ -126,7 +154,7 @@ def _hollow(out, a, half, b, plate, look, tilted, law):
             continue
         away = math.sqrt(point[0] * point[0] + point[1] * point[1])
         normal = (-point[0] / away, -point[1] / away, 0.0)
-        weight, way = share, normal
+        weight, way = share * areas[i], normal
         for j in range(2):
             if ends & (1 << j) == 0:
                 continue

@@ -28,15 +28,37 @@ def as_guide(rb):
     return (rb[0], rb[2], -rb[1], rb[3], rb[5], -rb[4], rb[6], rb[8], -rb[7])
 
 
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _triangle(a, b, c):
+    """Area of a triangle."""
+    turn = cross(sub(b, a), sub(c, a))
+    return 0.5 * math.sqrt(dot(turn, turn))
+
+
 @njit(cache=True, error_model="numpy", **BORROWS)
-def area_of(points, count):
-    """Of a flat polygon."""
-    x = y = z = 0.0
-    first = vec(points, 0)
+def corner_areas(points, count, areas):
+    """Area of a flat polygon; writes the part of it that each corner represents into `areas` (count).
+
+    A corner represents half of the two triangles that its edges make with the centroid. A corner that a cut
+    adds begins with no area, so that no corner of a box on a plate begins or ends with a force.
+    """
+    whole, center, first = 0.0, (0.0, 0.0, 0.0), vec(points, 0)
     for i in range(1, count - 1):
-        turn = cross(sub(vec(points, i), first), sub(vec(points, i + 1), first))
-        x, y, z = x + turn[0], y + turn[1], z + turn[2]
-    return 0.5 * math.sqrt(x * x + y * y + z * z)
+        one, two = vec(points, i), vec(points, i + 1)
+        part = _triangle(first, one, two)
+        whole += part
+        center = add(center, scale(part / 3.0, add(first, add(one, two))))
+    for i in range(count):
+        areas[i] = 0.0
+    if whole <= 0.0:
+        return 0.0
+    center = scale(1.0 / whole, center)
+    for i in range(count):
+        j = i + 1 if i + 1 < count else 0
+        part = 0.5 * _triangle(center, vec(points, i), vec(points, j))
+        areas[i] += part
+        areas[j] += part
+    return whole
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -112,9 +134,11 @@ def box_flat(out, a, box, b, plate, covered, law):
         count = clip(points, count, way, half_b[axis])
         count = clip(points, count, scale(-1.0, way), half_b[axis])
     if count >= 3:
-        share = law.k / count
-        if covered:
-            share *= area_of(points, count) / area
+        areas = np.empty(12)
+        over = corner_areas(points, count, areas)
+        if over <= 0.0:
+            count = 0
+        share = law.k / (area if covered else over)
         inward = back(rb, facing(look, ra))
         if not covered and ends != 0:
             share *= _drawn(points, count, half_b, ends, radius)
@@ -122,9 +146,9 @@ def box_flat(out, a, box, b, plate, covered, law):
             depth = sign * (top - points[i, 1]) if sign > 0.0 else points[i, 1] - bottom
             if depth <= 0.0 or depth > thick:
                 continue
-            weight, way = share, normal
+            weight, way = share * areas[i], normal
             if ends != 0:
-                weight, way = _near_end(points[i], half_b, ends, radius, inward, normal, share)
+                weight, way = _near_end(points[i], half_b, ends, radius, inward, normal, weight)
                 depth *= sign * way[1]
                 way = held(way, normal, edge[HOLDS] * law.mu_static)
             spring = weight * depth * math.sqrt(depth)
