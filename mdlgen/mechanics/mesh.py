@@ -30,6 +30,7 @@ import numpy as np
 from mdlgen.mechanics.mesh_pressure import (
     DEEPEST,
     ENERGY,
+    EVER,
     FIRST_U,
     FIRST_V,
     FORCE,
@@ -38,10 +39,12 @@ from mdlgen.mechanics.mesh_pressure import (
     SECOND_V,
     SUMS,
     TOO_DEEP,
+    TORQUE,
+    Side,
     gather,
 )
 from mdlgen.mechanics.mesh_side import Placed, meet_sides
-from mdlgen.mechanics.point import PRESSING, Load, Nip, passing, push, push_in_nip
+from mdlgen.mechanics.point import PRESSING, Load, Nip, passing, push, push_in_nip, turn
 from mdlgen.mechanics.tree import overlaps
 from mdlgen.mechanics.vector import (
     add,
@@ -86,9 +89,21 @@ def _nip(both, room, head, meshes, placed, half, sign, exposed, stiff):
     wide = (half[0] + 0.5 * (grown[0] + grown[1]), half[1] + 0.5 * (grown[2] + grown[3]), half[2])
     whole[:] = 0.0
     moved = Placed(add(placed.middle, rotate(placed.axes, aside)), placed.axes, placed.frame)
-    gather(whole, room, head, meshes, moved, wide, 2, sign, stiff)
+    gather(whole, room, head, meshes, moved, wide, Side(2, sign, 0.0, 0.0, EVER), stiff)
     u, v = whole[FIRST_U] / whole[IN_ALL] + aside[0], whole[FIRST_V] / whole[IN_ALL] + aside[1]
     return three(whole[FORCE:]), u, v
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _side_of(head, half, q, sign, exposed):
+    """A Side of a box: all of a broad face, or what a face of a block presses on alone."""
+    if exposed != BLOCK:
+        return Side(q, sign, 0.0, 0.0, EVER)
+    if head.basis > 0.0:
+        return Side(q, sign, 1.0, 1.0, half[q])
+    # pressures of two faces are the same where depths go with the power 2/3 of the areas
+    p, r = (q + 1) % 3, (q + 2) % 3
+    return Side(q, sign, (half[q] / half[p]) ** (2.0 / 3.0), (half[q] / half[r]) ** (2.0 / 3.0), half[q])
 
 
 @njit(cache=True, error_model="numpy", **OWNS, **CALLED)
@@ -112,13 +127,16 @@ def box_mesh(out, a, box, b, axis, head, meshes, law):
         p, r = (q + 1) % 3, (q + 2) % 3
         stiff = law.k / head.basis if head.basis > 0.0 else law.k / (4.0 * half[p] * half[r])
         sums[:] = 0.0
-        gather(sums, room, head, meshes, placed, half, q, sign, stiff)
+        gather(sums, room, head, meshes, placed, half, _side_of(head, half, q, sign, exposed), stiff)
         fx, fy, fz = three(sums[FORCE:])
         force = math.sqrt(fx * fx + fy * fy + fz * fz)
         if sums[TOO_DEEP] > 0.0 and (lost == 0.0 or sums[TOO_DEEP] < lost):
             lost, spot = sums[TOO_DEEP], add(a.x, rotate(ra, local(p, r, q, 0.0, 0.0, sign * half[q])))
             out_of = rotate(ra, local(p, r, q, 0.0, 0.0, -sign))
+        torque = rotate(frame, scale(over, three(sums[TORQUE:])))
         if force <= 0.0 or over <= 0.0:
+            if exposed == BLOCK:
+                turn(out, torque)
             continue
         normal = rotate(frame, (fx / force, fy / force, fz / force))
         u, v = sums[FIRST_U] / sums[IN_ALL], sums[FIRST_V] / sums[IN_ALL]
@@ -137,6 +155,8 @@ def box_mesh(out, a, box, b, axis, head, meshes, law):
             wide = math.sqrt(5.0 * ((du * seen[p]) ** 2 + (dv * seen[r]) ** 2))
             if wide > 0.0:
                 pressed = passing(line, across, 2.0 * sums[DEEPEST] / wide, a, b)
+        # four forces along one direction are all of the force, but not all of its torque
+        turn(out, sub(torque, cross(sub(middle, a.x), rotate(frame, scale(over, three(sums[FORCE:]))))))
         for corner in range(4):
             at_u = u + (du if corner % 2 == 0 else -du)
             at_v = v + (dv if corner < 2 else -dv)

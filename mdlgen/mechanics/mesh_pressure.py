@@ -10,20 +10,40 @@ from mdlgen.mechanics.frame import Vector
 from mdlgen.mechanics.mesh_side import ramp
 from mdlgen.mechanics.mesh_tables import BEYOND
 from mdlgen.mechanics.tree import AFTER, AREA, COUNT, FIRST, LEAST, MOST, NORMAL, THICK, span
-from mdlgen.mechanics.vector import dot, scale
+from mdlgen.mechanics.vector import add, cross, dot, scale, vec
 from mdlgen.program.kernel import njit
 
 STEEP, GENTLE = 0.4, 0.6  # cosines of the angles between which the law of broad faces ends
-# Columns of what presses on a face: its force along the file's axes (3) and in all; moments of that in the
-# face, of first and of second order; energy; greatest depth; what would be the force of what is too deep.
-FORCE, IN_ALL, FIRST_U, FIRST_V, SECOND_U, SECOND_V = 0, 3, 4, 5, 6, 7
-ENERGY, DEEPEST, TOO_DEEP, SUMS = 8, 9, 10, 11
+EVER = 1e300
+# Columns of what presses on a face: its force along the file's axes (3), the torque of that about the box's
+# middle (3), and the sum of its parts; moments of these in the face, of first and of second order, and with
+# their depth; energy; greatest depth; what would be the force of what is too deep.
+FORCE, TORQUE, IN_ALL, FIRST_U, FIRST_V, SECOND_U, SECOND_V, FIRST_Z = 0, 3, 6, 7, 8, 9, 10, 11
+ENERGY, DEEPEST, TOO_DEEP, SUMS = 12, 13, 14, 15
+# Dunavant's rule of degree 5 on a triangle: two groups of three points, each near a corner or the middle of a
+# side, and the centroid; barycentric coordinate of the one and of the two others, and the weight of a point.
+_NEAR = (0.797426985353087, 0.101286507323456, 0.125939180544827)
+_SIDE = (0.059715871789770, 0.470142064105115, 0.132394152788506)
+_CENTROID = 0.225
+
+
+class Side(NamedTuple):
+    """A face of a box: its axis q and on which side it is; of a block how fast the region in which the face
+    is the one that presses narrows with depth, along p and along r, and how deep it is: 0, 0 and EVER for a
+    face that goes on over its sides."""
+
+    q: int
+    sign: float
+    narrows_p: float
+    narrows_r: float
+    most: float
 
 
 class Face(NamedTuple):
     """A face of a box as the mesh's file sees it: its normal and the directions of both sides; the box's
-    middle along these three, along the normal less its half length; half lengths of both sides; stiffness per
-    area, whether the pressure is linear in depth, and whether depth is looked at in the middles of triangles.
+    middle along these three, along the normal with its half length; half lengths of both sides and along the
+    normal; stiffness per area, whether the pressure is linear in depth, and whether depth is looked at in the middles of triangles;
+    the rest as of a Side.
     """
 
     way: Vector
@@ -32,9 +52,26 @@ class Face(NamedTuple):
     where: Vector
     half_along: float
     half_across: float
+    half: float
     stiffness: float
     linear: bool
     middles: bool
+    narrows_along: float
+    narrows_across: float
+    most: float
+
+
+class Element(NamedTuple):
+    """A triangle as a face sees it: the stiffness of its pressure per true area, whether that is linear in
+    depth; the depth from which on it is too deep; the part of its normal into the face, and those along and
+    across it, in times of how the region narrows there."""
+
+    stiffness: float
+    linear: bool
+    deepest: float
+    cosine: float
+    leans_along: float
+    leans_across: float
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -43,13 +80,22 @@ def _part(cosine):
     return ramp(cosine, STEEP, GENTLE)
 
 
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _turning(cosine):
+    """Growth of `_part` with the cosine, over `_part`."""
+    s = (cosine - STEEP) / (GENTLE - STEEP)
+    return 6.0 * (1.0 - s) / (s * (3.0 - 2.0 * s) * (GENTLE - STEEP)) if 0.0 < s < 1.0 else 0.0
+
+
 @njit(cache=True, error_model="numpy")
-def _cut(points, kept, count, axis, sign, limit):
-    """Cuts a polygon by sign times a coordinate <= limit into `kept`; returns its number of points."""
+def _cut(points, kept, count, axis, sign, narrows, limit):
+    """Cuts a polygon by sign times a coordinate + narrows times the depth <= limit into `kept`; returns its
+    number of points."""
     found = 0
     for i in range(count):
         j = i + 1 if i + 1 < count else 0
-        d1, d2 = limit - sign * points[i, axis], limit - sign * points[j, axis]
+        d1 = limit - sign * points[i, axis] - narrows * points[i, 2]
+        d2 = limit - sign * points[j, axis] - narrows * points[j, 2]
         if d1 >= 0.0:
             for k in range(3):
                 kept[found, k] = points[i, k]
@@ -63,20 +109,24 @@ def _cut(points, kept, count, axis, sign, limit):
 
 
 @njit(cache=True, error_model="numpy")
-def _over(room, u, v, z, hp, hr):
-    """What of a triangle with corners at u, v (depths z) lies over a face of half lengths hp, hr and below
-    it: its points in room[which]. Returns (which, how many)."""
+def _over(room, u, v, z, face):
+    """What of a triangle with corners at u, v (depths z) lies over a Face and below it: its points in
+    room[which]. Returns (which, how many)."""
     for k in range(3):
         room[0, k, 0], room[0, k, 1], room[0, k, 2] = u[k], v[k], z[k]
     which, count = 0, 3
-    for plane in range(5):
-        axis, side = plane // 2, 1.0 if plane % 2 == 1 else -1.0
-        limit = hp if axis == 0 else hr if axis == 1 else 0.0
+    for plane in range(6):
+        axis, side, narrows = plane // 2, 1.0 if plane % 2 == 1 else -1.0, 0.0
+        limit = 0.0 if plane == 4 else face.most
+        if axis == 0:
+            limit, narrows = face.half_along, face.narrows_along
+        elif axis == 1:
+            limit, narrows = face.half_across, face.narrows_across
         beyond = False
         for k in range(count):
-            beyond = beyond or side * room[which, k, axis] > limit
+            beyond = beyond or side * room[which, k, axis] + narrows * room[which, k, 2] > limit
         if beyond:
-            count = _cut(room[which], room[1 - which], count, axis, side, limit)
+            count = _cut(room[which], room[1 - which], count, axis, side, narrows, limit)
             which = 1 - which
         if count < 3:
             return which, 0
@@ -84,104 +134,112 @@ def _over(room, u, v, z, hp, hr):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def _press(sums, area, u, v, depth, thick, stiff, linear):
-    """Adds what an area does at a depth; returns its force."""
-    if depth <= 0.0 or depth > BEYOND * thick:
-        return 0.0
-    force = area * stiff * depth * (1.0 if linear else math.sqrt(depth))
-    if depth > thick:
+def _stored(element, u, v):
+    """Energy of a place over its force and depth, in times of what a pressure of this power stores: that of
+    a pressure in a region of a block has a share along its sides (see mechanics.mesh)."""
+    along = element.leans_along if u > 0.0 else -element.leans_along
+    return element.cosine - along - (element.leans_across if v > 0.0 else -element.leans_across)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _press(sums, area, u, v, depth, element):
+    """Adds what an area of an Element does at a depth."""
+    if depth <= 0.0 or depth > BEYOND * element.deepest:
+        return
+    force = area * element.stiffness * depth * (1.0 if element.linear else math.sqrt(depth))
+    if depth > element.deepest:
         sums[TOO_DEEP] += force
-        return 0.0
+        return
+    sums[IN_ALL] += force
     sums[FIRST_U] += force * u
     sums[FIRST_V] += force * v
+    sums[FIRST_Z] += force * depth
     sums[SECOND_U] += force * u * u
     sums[SECOND_V] += force * v * v
-    sums[ENERGY] += force * depth * (0.5 if linear else 0.4)
-    sums[DEEPEST] = max(sums[DEEPEST], depth)
-    return force
+    sums[ENERGY] += force * depth * (0.5 if element.linear else 0.4) * _stored(element, u, v)
 
 
 @njit(cache=True, error_model="numpy")
-def _press_linear(sums, area, us, vs, zs, thick, stiff):
-    """Adds what a triangle does whose pressure is linear in depth: integrals of products of linear functions
-    are exact, so a face that is cut in another way has the same. us, vs, zs: places and depths of its
-    corners. Returns its force."""
-    u0, u1, u2 = us
-    v0, v1, v2 = vs
-    z0, z1, z2 = zs
-    deepest = max(z0, z1, z2)
-    if deepest > thick:
-        third, force = area / 3.0, 0.0
-        for u, v, z in ((u0, v0, z0), (u1, v1, z1), (u2, v2, z2)):
-            force += _press(sums, third, u, v, z, thick, stiff, True)
-        return force
-    z, u, v = z0 + z1 + z2, u0 + u1 + u2, v0 + v1 + v2
-    zu, zv = z0 * u0 + z1 * u1 + z2 * u2, z0 * v0 + z1 * v1 + z2 * v2
-    uu, vv = u0 * u0 + u1 * u1 + u2 * u2, v0 * v0 + v1 * v1 + v2 * v2
-    zuu, zvv = z0 * u0 * u0 + z1 * u1 * u1 + z2 * u2 * u2, z0 * v0 * v0 + z1 * v1 * v1 + z2 * v2 * v2
-    part = area * stiff
-    sums[FIRST_U] += part / 12.0 * (z * u + zu)
-    sums[FIRST_V] += part / 12.0 * (z * v + zv)
-    sums[SECOND_U] += part / 60.0 * (z * (u * u + uu) + 2.0 * (u * zu + zuu))
-    sums[SECOND_V] += part / 60.0 * (z * (v * v + vv) + 2.0 * (v * zv + zvv))
-    sums[ENERGY] += part / 24.0 * (z * z + z0 * z0 + z1 * z1 + z2 * z2)
-    sums[DEEPEST] = max(sums[DEEPEST], deepest)
-    return part / 3.0 * z
+def _press_all(sums, area, one, two, three, element):
+    """Adds what a triangle (its corners) does, by a rule that is exact up to the fifth power of places."""
+    u = (one[0] + two[0] + three[0]) / 3.0
+    v = (one[1] + two[1] + three[1]) / 3.0
+    z = (one[2] + two[2] + three[2]) / 3.0
+    _press(sums, _CENTROID * area, u, v, z, element)
+    for rule in (_NEAR, _SIDE):
+        own, other, weight = rule
+        more = own - other
+        _press(
+            sums,
+            weight * area,
+            3.0 * other * u + more * one[0],
+            3.0 * other * v + more * one[1],
+            3.0 * other * z + more * one[2],
+            element,
+        )
+        _press(
+            sums,
+            weight * area,
+            3.0 * other * u + more * two[0],
+            3.0 * other * v + more * two[1],
+            3.0 * other * z + more * two[2],
+            element,
+        )
+        _press(
+            sums,
+            weight * area,
+            3.0 * other * u + more * three[0],
+            3.0 * other * v + more * three[1],
+            3.0 * other * z + more * three[2],
+            element,
+        )
+    sums[DEEPEST] = max(sums[DEEPEST], min(max(one[2], two[2], three[2]), element.deepest))
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _size(one, two, three):
+    """Area of a triangle by its corners."""
+    a0, a1, a2 = two[0] - one[0], two[1] - one[1], two[2] - one[2]
+    b0, b1, b2 = three[0] - one[0], three[1] - one[1], three[2] - one[2]
+    x, y, z = a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0
+    return 0.5 * math.sqrt(x * x + y * y + z * z)
 
 
 @njit(cache=True, error_model="numpy")
-def _piece(sums, points, count, scale, thick, stiff, linear, middles):
-    """Adds what a polygon does; depths and areas are true after `scale`, the cosine of its angle to the face.
-    Returns its force.
-
-    Where depth is looked at in points these are its centroid, alone or with its corners: what a corner more
-    that is hardly apart from the next one changes is as small as their distance.
-    """
-    force, whole, cu, cv, cz = 0.0, 0.0, 0.0, 0.0, 0.0
-    part = _part(scale) / scale
+def _piece(sums, points, count, element, middles):
+    """Adds what a polygon does: the triangles that its sides make with its centroid, so that a corner more
+    that is hardly apart from the next one changes as little as their distance; or its centroid alone."""
+    first, whole, center = vec(points, 0), 0.0, (0.0, 0.0, 0.0)
     for i in range(1, count - 1):
-        a0, a1 = points[i, 0] - points[0, 0], points[i, 1] - points[0, 1]
-        b0, b1 = points[i + 1, 0] - points[0, 0], points[i + 1, 1] - points[0, 1]
-        area = 0.5 * part * abs(a0 * b1 - a1 * b0)
-        if linear and not middles:
-            us = (points[0, 0], points[i, 0], points[i + 1, 0])
-            vs = (points[0, 1], points[i, 1], points[i + 1, 1])
-            zs = (points[0, 2] * scale, points[i, 2] * scale, points[i + 1, 2] * scale)
-            force += _press_linear(sums, area, us, vs, zs, thick, stiff)
-        else:
-            whole += area
-            cu += area / 3.0 * (points[0, 0] + points[i, 0] + points[i + 1, 0])
-            cv += area / 3.0 * (points[0, 1] + points[i, 1] + points[i + 1, 1])
-            cz += area / 3.0 * (points[0, 2] + points[i, 2] + points[i + 1, 2])
+        one, two = vec(points, i), vec(points, i + 1)
+        area = _size(first, one, two)
+        whole += area
+        center = add(center, scale(area / 3.0, add(first, add(one, two))))
     if whole <= 0.0:
-        return force
-    cu, cv, cz = cu / whole, cv / whole, cz / whole
+        return
+    center = scale(1.0 / whole, center)
     if middles:
-        return _press(sums, whole, cu, cv, cz * scale, thick, stiff, linear)
-    force = _press(sums, whole / 3.0, cu, cv, cz * scale, thick, stiff, linear)
+        _press(sums, whole, center[0], center[1], center[2], element)
+        sums[DEEPEST] = max(sums[DEEPEST], min(center[2], element.deepest))
+        return
     for i in range(count):
-        j = i + 1 if i + 1 < count else 0
-        a0, a1 = points[i, 0] - cu, points[i, 1] - cv
-        b0, b1 = points[j, 0] - cu, points[j, 1] - cv
-        third = 0.5 / 3.0 * part * abs(a0 * b1 - a1 * b0)
-        force += _press(sums, third, points[i, 0], points[i, 1], points[i, 2] * scale, thick, stiff, linear)
-        force += _press(sums, third, points[j, 0], points[j, 1], points[j, 2] * scale, thick, stiff, linear)
-    return force
+        one, two = vec(points, i), vec(points, i + 1 if i + 1 < count else 0)
+        _press_all(sums, _size(center, one, two), center, one, two, element)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _element(sums, room, triangles, t, face):
     """Adds what one triangle does to a Face."""
-    way, along, across, where, hp, hr, stiff, linear, middles = face
-    cosine = -(
-        way[0] * triangles[t, NORMAL] + way[1] * triangles[t, NORMAL + 1] + way[2] * triangles[t, NORMAL + 2]
-    )
-    if cosine <= STEEP:
+    way, along, across, where = face.way, face.along, face.across, face.where
+    hp, hr, block = face.half_along, face.half_across, face.most < EVER
+    normal = (triangles[t, NORMAL], triangles[t, NORMAL + 1], triangles[t, NORMAL + 2])
+    cosine = -dot(way, normal)
+    if cosine <= STEEP and not block:
         return
     z0 = where[0] - (way[0] * triangles[t, 0] + way[1] * triangles[t, 1] + way[2] * triangles[t, 2])
     z1 = where[0] - (way[0] * triangles[t, 3] + way[1] * triangles[t, 4] + way[2] * triangles[t, 5])
     z2 = where[0] - (way[0] * triangles[t, 6] + way[1] * triangles[t, 7] + way[2] * triangles[t, 8])
-    if z0 <= 0.0 and z1 <= 0.0 and z2 <= 0.0:
+    if (z0 <= 0.0 and z1 <= 0.0 and z2 <= 0.0) or min(z0, z1, z2) >= face.most:
         return
     u0 = along[0] * triangles[t, 0] + along[1] * triangles[t, 1] + along[2] * triangles[t, 2] - where[1]
     u1 = along[0] * triangles[t, 3] + along[1] * triangles[t, 4] + along[2] * triangles[t, 5] - where[1]
@@ -193,48 +251,72 @@ def _element(sums, room, triangles, t, face):
     v2 = across[0] * triangles[t, 6] + across[1] * triangles[t, 7] + across[2] * triangles[t, 8] - where[2]
     if min(v0, v1, v2) > hr or max(v0, v1, v2) < -hr:
         return
-    thick, force = triangles[t, THICK], 0.0
-    inside = max(abs(u0), abs(u1), abs(u2)) <= hp and max(abs(v0), abs(v1), abs(v2)) <= hr
+    part = 1.0 if block else _part(cosine)
+    element = Element(
+        part * face.stiffness,
+        face.linear,
+        triangles[t, THICK] / cosine if cosine > STEEP else EVER,
+        cosine,
+        face.narrows_along * dot(along, normal),
+        face.narrows_across * dot(across, normal),
+    )
+    before = (sums[IN_ALL], sums[FIRST_U], sums[FIRST_V], sums[FIRST_Z], sums[ENERGY])
+    by_u, by_v = face.narrows_along, face.narrows_across
+    inside = (
+        max(abs(u0) + by_u * z0, abs(u1) + by_u * z1, abs(u2) + by_u * z2) <= hp
+        and max(abs(v0) + by_v * z0, abs(v1) + by_v * z1, abs(v2) + by_v * z2) <= hr
+        and max(z0, z1, z2) <= face.most
+    )
     if inside and min(z0, z1, z2) >= 0.0:
-        area = _part(cosine) * triangles[t, AREA]
-        u, v, z = (u0 + u1 + u2) / 3.0, (v0 + v1 + v2) / 3.0, (z0 + z1 + z2) / 3.0
-        if middles:
-            force = _press(sums, area, u, v, z * cosine, thick, stiff, linear)
-        elif linear:
-            z0, z1, z2 = z0 * cosine, z1 * cosine, z2 * cosine
-            force = _press_linear(sums, area, (u0, u1, u2), (v0, v1, v2), (z0, z1, z2), thick, stiff)
+        if face.middles:
+            u, v, z = (u0 + u1 + u2) / 3.0, (v0 + v1 + v2) / 3.0, (z0 + z1 + z2) / 3.0
+            _press(sums, triangles[t, AREA], u, v, z, element)
+            sums[DEEPEST] = max(sums[DEEPEST], min(z, element.deepest))
         else:
-            force = _press(sums, area / 3.0, u, v, z * cosine, thick, stiff, linear)
-            corner = 2.0 / 9.0 * area
-            force += _press(sums, corner, u0, v0, z0 * cosine, thick, stiff, linear)
-            force += _press(sums, corner, u1, v1, z1 * cosine, thick, stiff, linear)
-            force += _press(sums, corner, u2, v2, z2 * cosine, thick, stiff, linear)
+            _press_all(sums, triangles[t, AREA], (u0, v0, z0), (u1, v1, z1), (u2, v2, z2), element)
     else:
-        which, count = _over(room, (u0, u1, u2), (v0, v1, v2), (z0, z1, z2), hp, hr)
-        force = _piece(sums, room[which], count, cosine, thick, stiff, linear, middles)
-    sums[FORCE] += force * triangles[t, NORMAL]
-    sums[FORCE + 1] += force * triangles[t, NORMAL + 1]
-    sums[FORCE + 2] += force * triangles[t, NORMAL + 2]
-    sums[IN_ALL] += force
+        which, count = _over(room, (u0, u1, u2), (v0, v1, v2), (z0, z1, z2), face)
+        if count < 3:
+            return
+        _piece(sums, room[which], count, element, face.middles)
+    force, at_u, at_v = sums[IN_ALL] - before[0], sums[FIRST_U] - before[1], sums[FIRST_V] - before[2]
+    # the pressure acts on the triangle itself, which is that deep below the face
+    at = add(
+        scale(force * face.half - (sums[FIRST_Z] - before[3]), way),
+        add(scale(at_u, along), scale(at_v, across)),
+    )
+    torque = cross(at, normal)
+    if not block:
+        # what of the law acts changes as the box turns
+        torque = add(torque, scale((sums[ENERGY] - before[4]) * _turning(cosine), cross(way, normal)))
+    for i in range(3):
+        sums[FORCE + i] += force * normal[i]
+        sums[TORQUE + i] += torque[i]
 
 
 @njit(cache=True, error_model="numpy")
-def gather(sums, room, head, meshes, placed, half, q, sign, stiff):
-    """Adds up what presses on the face q (on the side `sign`) of a box, into its sums."""
+def gather(sums, room, head, meshes, placed, half, side, stiff):
+    """Adds up what presses on a Side of a box, into its sums."""
     bounds, links, triangles = meshes.bounds, meshes.links, meshes.triangles
     middle, axes = placed.middle, placed.axes
+    q, sign, narrows_p, narrows_r, most = side
     p, r = (q + 1) % 3, (q + 2) % 3
     way = scale(sign, (axes[q], axes[3 + q], axes[6 + q]))
     along, across = (axes[p], axes[3 + p], axes[6 + p]), (axes[r], axes[3 + r], axes[6 + r])
     where = (half[q] + dot(way, middle), dot(along, middle), dot(across, middle))
-    far = BEYOND * head.most / STEEP
+    block = most < EVER
+    far = min(BEYOND * head.most / STEEP, most)
     linear, middles = head.basis > 0.0, head.middles != 0
-    face = Face(way, along, across, where, half[p], half[r], stiff, linear, middles)
+    face = Face(
+        way, along, across, where, half[p], half[r], half[q], stiff, linear, middles, narrows_p, narrows_r, most
+    )
     n = head.first
     while n < head.end:
-        facing = 0.0  # the least that a normal has along the face's
-        for i in range(3):
-            facing += min(way[i] * bounds[n, LEAST + i], way[i] * bounds[n, MOST + i])
+        facing = -1.0  # the least that a normal has along the face's
+        if not block:
+            facing = 0.0
+            for i in range(3):
+                facing += min(way[i] * bounds[n, LEAST + i], way[i] * bounds[n, MOST + i])
         away, reach = span(bounds, n, way)
         apart = facing > -STEEP or away - reach > where[0] or away + reach < where[0] - far
         if not apart:

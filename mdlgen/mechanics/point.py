@@ -194,6 +194,14 @@ def push_without_friction(out, point, normal, spring, force, a, b):
     out[DISSIPATED] += (force - spring) * own
 
 
+@njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)
+def turn(out, torque):
+    """Adds an elastic couple that the first body has of the second, whose energy other points count."""
+    for i in range(3):
+        out[TORQUE_A + i] += torque[i]
+        out[TORQUE_B + i] -= torque[i]
+
+
 @njit(cache=True, error_model="numpy", **BORROWS)
 def resist_rolling(out, wa, wb, axis, radius, f, v_s):
     """Adds the couple that resists the turning of two bodies against each other about an axis: f N R, N their
