@@ -266,7 +266,9 @@ def line(out, a, box, end, plate, b, law):
     height = dot(gap, up)
     if height > reach or height < -thick - reach:
         return
-    inner = add(point, scale(-0.5 * thick, add(up, away)))
+    # inside of the end, abreast of the box: a sheet that leans along the end lies otherwise farther along it
+    abreast = scale(min(max(dot(gap, along), -length), length), along)
+    inner = add(add(point, abreast), scale(-0.5 * thick, add(up, away)))
     for lower in range(2):
         normal, radius = (up, edge[UPPER]) if lower == 0 else (scale(-1.0, up), edge[LOWER])
         corner = point if lower == 0 else sub(point, scale(thick, up))

@@ -90,8 +90,10 @@ def _nip(both, room, head, meshes, placed, half, sign, exposed, stiff):
     whole[:] = 0.0
     moved = Placed(add(placed.middle, rotate(placed.axes, aside)), placed.axes, placed.frame)
     gather(whole, room, head, meshes, moved, wide, Side(2, sign, 0.0, 0.0, EVER), stiff)
-    u, v = whole[FIRST_U] / whole[IN_ALL] + aside[0], whole[FIRST_V] / whole[IN_ALL] + aside[1]
-    return three(whole[FORCE:]), u, v
+    force = three(whole[FORCE:])
+    if dot(force, force) <= 0.0:  # all that is more is too deep
+        return three(own[FORCE:]), u, v
+    return force, whole[FIRST_U] / whole[IN_ALL] + aside[0], whole[FIRST_V] / whole[IN_ALL] + aside[1]
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)

@@ -308,7 +308,19 @@ def gather(sums, room, head, meshes, placed, half, side, stiff):
     far = min(BEYOND * head.most / STEEP, most)
     linear, middles = head.basis > 0.0, head.middles != 0
     face = Face(
-        way, along, across, where, half[p], half[r], half[q], stiff, linear, middles, narrows_p, narrows_r, most
+        way,
+        along,
+        across,
+        where,
+        half[p],
+        half[r],
+        half[q],
+        stiff,
+        linear,
+        middles,
+        narrows_p,
+        narrows_r,
+        most,
     )
     n = head.first
     while n < head.end:
