@@ -4,8 +4,9 @@ The axes of a guide: z lies across the paper, along its width. Of a straight gui
 its normal, and the origin is its middle; of an arc the origin lies on its axis, and angles are counted from x
 to y. Where both sides may be touched, a box is on the side that its centre is on.
 
-A flat or hollow face meets the corners of that part of the box's face that lies over the guide. They share k,
-so that a box over a straight guide gives k z^1.5, and one whose corners are all z deep in a hollow does, too:
+A flat or hollow face meets the corners of that part of the box's face that lies over the guide. They share k
+by the area that each represents, so that a corner that comes over the guide begins without a force. A box
+over a straight guide so gives k z^1.5, and one whose corners are all z deep in a hollow does, too:
 no point of a flat face is deeper in a hollow than the deepest corner. A round face is met as a roller that
 does not turn (`box_sector`). With `share: width` k goes with the part of the box's face, or of its width,
 that the guide covers: where a sheet passes from one guide to the next, both together count as one. At free

@@ -1,24 +1,30 @@
 """Contact of a box with a mesh: a closed surface of triangles, fixed or on a roller.
 
-The two broad faces of a box meet what of the triangles lies over them. A triangle is cut to the box, and the
-depth of what is left is looked at in its corners (`at: nodes`) or in its middle (`at: centres`), as the paper
-has it for contact between meshes (section 3.1): with the area that this stands for it gives a force along the
-triangle's normal (with corners, the middle counts, too; a pressure that is linear in depth is integrated
-exactly),
+A box has a pressure inside, which grows with the depth h below its face and is 0 on it:
 
-    fixed:      dF = (k/A) z^1.5 dA, A the area of the box's face: a box flat on a plate has k z^1.5, and one
-                that a plate covers in part has that part of it, as with a guide;
-    on a roller: dF = K z dA, K = 3 k/(4 w sqrt(2 R)), R and w of the roller: the elastic foundation that
-                gives k z^1.5 under a cylinder (mechanics.contact).
+    fixed:       p = k/A h^1.5, A the area of the face: a box flat on a plate has k z^1.5, and one that a
+                 plate covers in part has that part of it, as with a guide;
+    on a roller: p = K h, K = 3 k/(4 w sqrt(2 R)), R and w of the roller: the elastic foundation that gives
+                 k z^1.5 under a cylinder (mechanics.contact).
 
-Both are pressures, so neither the number of triangles nor that of boxes changes what a sheet feels. A
-pressure over many triangles acts as four equal forces with its sum, its middle and its spread. Where a sheet
-ends, nothing takes over from the box at its edge: it has what is over it. On a roller these forces are one
-nip (mechanics.point). Its contact line lies along the axis through the middle of what presses on the box
-and, where that comes near another box, on the face as if the sheet went on flat.
+It acts on the triangles that are inside, along their normals: dF = p n dA, where they are. So force and
+torque are the gradient of the stored energy, the integral of p over the part of the mesh that is in the box.
+Neither the number of triangles nor that of boxes changes the force.
 
-The outer sides of a sheet meet what leans against them (mechanics.mesh_side). A block of one box has
-six broad faces.
+A block of one box has six faces. At each place the face with the least pressure is the one that acts, so that
+the pressure is 0 on all of the surface and continuous inside: no edge or corner of a mesh that comes in, and
+no edge of the block, begins with a force. Along its edges a flat face so has less than k z^1.5, by 0.6 of the
+depth times the ratio of both faces' pressures there (`_side_of`). A box of a sheet is thin: its two broad
+faces go on beyond its sides and its thickness, since its neighbours do, and act on triangles that face them
+by less than 53 to 66 deg; where a sheet ends, nothing takes over at its edge.
+
+With `at: nodes` pressures are integrated over triangles, with `at: centres` they are those in their middles,
+as the paper has both for contact between meshes (section 3.1). What presses on a face acts as four equal
+forces with its sum, its middle and its spread, and a couple that is the rest of the torque. On a roller these
+forces are one nip (mechanics.point). Its contact line lies along the axis through the middle of what presses
+on the box and, where that comes near another box, on the face as if the sheet went on flat.
+
+The outer sides of a sheet meet what leans against them (mechanics.mesh_side).
 """
 
 from __future__ import annotations

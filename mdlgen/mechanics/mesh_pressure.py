@@ -1,5 +1,9 @@
-"""Pressure of the triangles of a mesh on one face of a box: each is cut to the face, and what is left of it
-pressed by its depth (see mechanics.mesh for the laws)."""
+"""Pressure of the triangles of a mesh on one face of a box: each is cut to the region of the face, and its
+rest is pressed by its depth (see mechanics.mesh for the laws).
+
+Force and torque of a triangle are integrals of the pressure along its normal, at the triangle itself. They
+are sums over Dunavant's points, which all triangles of a polygon about its centroid have: 7 for each.
+"""
 
 from __future__ import annotations
 
@@ -40,10 +44,10 @@ class Side(NamedTuple):
 
 
 class Face(NamedTuple):
-    """A face of a box as the mesh's file sees it: its normal and the directions of both sides; the box's
+    """A face of a box in the axes of the mesh's file: its normal and the directions of both sides; the box's
     middle along these three, along the normal with its half length; half lengths of both sides and along the
-    normal; stiffness per area, whether the pressure is linear in depth, and whether depth is looked at in the middles of triangles;
-    the rest as of a Side.
+    normal; stiffness per area; whether the pressure is linear in depth; whether the depth is evaluated in the
+    middles of triangles only; the rest as of a Side.
     """
 
     way: Vector
