@@ -44,7 +44,7 @@ K = 300.0  # [N/mm^1.5]
 DEEP = 0.08  # greatest depth of a state [mm]
 # How far a state goes: place [mm], rotation [rad], velocity [mm/ms], angular velocity [rad/ms].
 WAY = (0.04, 0.01, 0.01, 0.003)
-# Of the greatest force of a state. A way of 2^-26 of those changes z^1.5 by less than a ten thousandth of that.
+# Of the greatest force. A way of 2^-26 of those changes z^1.5 by less than a ten thousandth of that.
 JUMP = 1e-4
 SHEET, ROLLER, OTHER = (3.35, 3.175, 0.05), (7.5, 5.0), (5.0, 8.0)
 
@@ -75,9 +75,19 @@ def about(random: np.random.Generator, places: list[float], wide: float) -> Floa
     return np.where(random.random(COUNT) < 0.7, near, random.uniform(-wide, wide, COUNT))
 
 
+def around(
+    random: np.random.Generator,
+    along: tuple[list[float], float],
+    across: tuple[list[float], float],
+    height: float,
+) -> Floats:
+    """Places of the first bodies (n, 3), clear of the second ones."""
+    return np.stack([about(random, *along), about(random, *across), np.full(COUNT, height)], axis=1)
+
+
 def law(random: np.random.Generator, kind: int) -> tuple[np.ndarray, np.ndarray]:
-    """Records with the law, some with neither friction nor damping. Pairs share k: with `share: pair` a box has
-    all of it as soon as it is over an end."""
+    """Records with the law, some with neither friction nor damping. Pairs share k: with `share: pair` a box
+    has all of it as soon as it is over an end."""
     bodies, pairs = records(COUNT)
     pairs["kind"], pairs["k"], pairs["shared"] = kind, K, 1
     beta, mu = random.choice([0.0, 0.6], COUNT), random.choice([0.0, 0.4], COUNT)
@@ -104,8 +114,7 @@ def box_cylinder(random: np.random.Generator, folder: Path) -> Setup:
     bodies, pairs = law(random, BOX_CYLINDER)
     boxes(bodies, random, SHEET)
     rollers(bodies, 1, np.array([0.0, 1.0, 0.0]), ROLLER)
-    places = [about(random, [SHEET[0]], 5.0), about(random, [SHEET[1] + 2.5, abs(SHEET[1] - 2.5)], 6.0)]
-    x = np.stack([*places, np.full(COUNT, 12.0)], axis=1)
+    x = around(random, ([SHEET[0]], 5.0), ([SHEET[1] + 2.5, SHEET[1] - 2.5], 6.0), 12.0)
     return Setup(bodies, pairs, NOTHING, moving(random, x, turned(random, 0.1)), rest(COUNT))
 
 
@@ -114,11 +123,7 @@ def box_plane(random: np.random.Generator, folder: Path) -> Setup:
     boxes(bodies, random, SHEET)
     bodies["half"][1::2], bodies["ends"][1::2] = (20.0, 15.0, 1.0), random.choice([0, 15], COUNT)
     bodies["edge"][1::2] = (0.1, 0.1, 0.0)
-    x = np.stack(
-        [about(random, [20.0, 20.0 + SHEET[0], 20.0 - SHEET[0]], 24.0), about(random, [15.0, 18.2], 19.0)]
-        + [np.full(COUNT, 8.0)],
-        axis=1,
-    )
+    x = around(random, ([20.0, 23.35, 16.65], 24.0), ([15.0, 18.2], 19.0), 8.0)
     return Setup(bodies, pairs, NOTHING, moving(random, x, turned(random, 0.3)), rest(COUNT))
 
 
@@ -149,10 +154,7 @@ def box_guide(random: np.random.Generator, folder: Path) -> Setup:
     bodies, pairs = law(random, BOX_GUIDE)
     boxes(bodies, random, SHEET)
     b = plates(bodies, random, arc=False)
-    x = np.stack(
-        [about(random, [20.0, 23.35, 16.65], 24.0), about(random, [15.0, 18.2], 19.0), np.full(COUNT, 8.0)],
-        axis=1,
-    )
+    x = around(random, ([20.0, 23.35, 16.65], 24.0), ([15.0, 18.2], 19.0), 8.0)
     return Setup(bodies, pairs, NOTHING, moving(random, x, turned(random, 0.3)), b)
 
 
@@ -160,9 +162,7 @@ def box_arc(random: np.random.Generator, folder: Path) -> Setup:
     bodies, pairs = law(random, BOX_GUIDE)
     boxes(bodies, random, SHEET)
     b = plates(bodies, random, arc=True)
-    x = np.stack(
-        [about(random, [0.0, 3.35], 4.0), about(random, [0.0, 15.0, 18.2], 19.0), np.full(COUNT, 6.0)], axis=1
-    )
+    x = around(random, ([0.0, 3.35], 4.0), ([0.0, 15.0, 18.2], 19.0), 6.0)
     return Setup(bodies, pairs, NOTHING, moving(random, x, turned(random, 0.2)), b)
 
 
@@ -171,9 +171,7 @@ def box_box(random: np.random.Generator, folder: Path) -> Setup:
     bodies["exposed"][1::2] = random.choice([0, 1, 2, 4, 8, 5, 10], COUNT)
     boxes(bodies, random, SHEET)
     bodies["half"][1::2] = (2.5, 4.0, 0.1)
-    x = np.stack(
-        [about(random, [5.85, 0.85], 6.5), about(random, [7.2, 0.8], 8.0), np.full(COUNT, 4.0)], axis=1
-    )
+    x = around(random, ([5.85, 0.85], 6.5), ([7.2, 0.8], 8.0), 4.0)
     return Setup(bodies, pairs, NOTHING, moving(random, x, turned(random, 0.1)), rest(COUNT))
 
 
@@ -195,8 +193,7 @@ def block_mesh(random: np.random.Generator, folder: Path) -> Setup:
     boxes(bodies, random, (6.0, 4.0, 2.0))
     bodies["exposed"][:-1:2] = 15
     shapes, _ = meshed(folder, brick(40.0, 30.0, 6.0))
-    x = np.stack([about(random, [20.0, 26.0, 14.0], 26.0), about(random, [15.0, 19.0], 19.0)], axis=1)
-    x = np.concatenate([x, np.full((COUNT, 1), 14.0)], axis=1)
+    x = around(random, ([20.0, 26.0, 14.0], 26.0), ([15.0, 19.0], 19.0), 14.0)
     return Setup(bodies, pairs, shapes, moving(random, x, turned(random, 0.9)), rest(COUNT))
 
 
@@ -208,7 +205,7 @@ def block_lobe(random: np.random.Generator, folder: Path) -> Setup:
     shapes, _ = meshed(folder, flats(7.5, 5.0, 60, 6.0), ", on: r")
     b = rest(COUNT)
     b.r[:] = Rotation.from_rotvec(np.outer(random.uniform(-3, 3, COUNT), [0.0, 1.0, 0.0])).as_matrix()
-    x = np.stack([about(random, [6.0], 8.0), about(random, [6.5, 1.5], 7.0), np.full(COUNT, 17.0)], axis=1)
+    x = around(random, ([6.0], 8.0), ([6.5, 1.5], 7.0), 17.0)
     return Setup(bodies, pairs, shapes, moving(random, x, turned(random, 0.6)), b)
 
 
@@ -230,7 +227,7 @@ def cylinder_cylinder(random: np.random.Generator, folder: Path) -> Setup:
     bodies, pairs = law(random, CYLINDER_CYLINDER)
     rollers(bodies, 0, np.array([0.0, 1.0, 0.0]), OTHER)
     rollers(bodies, 1, np.array([0.0, 1.0, 0.0]), ROLLER)
-    x = np.stack([about(random, [0.0], 8.0), about(random, [6.5, 1.5], 7.0), np.full(COUNT, 15.0)], axis=1)
+    x = around(random, ([0.0], 8.0), ([6.5, 1.5], 7.0), 15.0)
     a = moving(random, x, rest(COUNT).r)
     return Setup(bodies, pairs, NOTHING, a, rest(COUNT))
 
@@ -239,9 +236,7 @@ def cylinder_plane(random: np.random.Generator, folder: Path) -> Setup:
     bodies, pairs = law(random, CYLINDER_PLANE)
     rollers(bodies, 0, axes_of(random), OTHER)
     bodies["half"][1::2] = (20.0, 15.0, 1.0)
-    x = np.stack(
-        [about(random, [20.0], 26.0), about(random, [15.0, 19.0, 11.0], 19.0), np.full(COUNT, 15.0)], axis=1
-    )
+    x = around(random, ([20.0], 26.0), ([15.0, 19.0, 11.0], 19.0), 15.0)
     return Setup(bodies, pairs, NOTHING, moving(random, x, rest(COUNT).r), rest(COUNT))
 
 
@@ -254,9 +249,7 @@ def cylinder_guide(random: np.random.Generator, folder: Path) -> Setup:
     bodies, pairs = law(random, CYLINDER_GUIDE)
     rollers(bodies, 0, axes_of(random), OTHER)
     b = plates(bodies, random, arc=False)
-    x = np.stack(
-        [about(random, [20.0], 26.0), about(random, [15.0, 19.0, 11.0], 19.0), np.full(COUNT, 15.0)], axis=1
-    )
+    x = around(random, ([20.0], 26.0), ([15.0, 19.0, 11.0], 19.0), 15.0)
     return Setup(bodies, pairs, NOTHING, moving(random, x, rest(COUNT).r), b)
 
 
@@ -264,9 +257,7 @@ def cylinder_arc(random: np.random.Generator, folder: Path) -> Setup:
     bodies, pairs = law(random, CYLINDER_GUIDE)
     rollers(bodies, 0, np.array([0.0, 1.0, 0.0]), OTHER)
     b = plates(bodies, random, arc=True)
-    x = np.stack(
-        [about(random, [0.0], 6.0), about(random, [15.0, 19.0, 11.0], 19.0), np.full(COUNT, 9.0)], axis=1
-    )
+    x = around(random, ([0.0], 6.0), ([15.0, 19.0, 11.0], 19.0), 9.0)
     return Setup(bodies, pairs, NOTHING, moving(random, x, rest(COUNT).r), b)
 
 
@@ -274,9 +265,7 @@ def cylinder_mesh(random: np.random.Generator, folder: Path) -> Setup:
     bodies, pairs = law(random, CYLINDER_MESH)
     rollers(bodies, 0, axes_of(random), OTHER)
     shapes, _ = meshed(folder, brick(40.0, 30.0, 6.0))
-    x = np.stack(
-        [about(random, [20.0], 26.0), about(random, [15.0, 19.0, 11.0], 19.0), np.full(COUNT, 15.0)], axis=1
-    )
+    x = around(random, ([20.0], 26.0), ([15.0, 19.0, 11.0], 19.0), 15.0)
     return Setup(bodies, pairs, shapes, moving(random, x, rest(COUNT).r), rest(COUNT))
 
 
@@ -330,9 +319,8 @@ def along(made: Setup, way: tuple[Floats, ...], part: Floats) -> Floats:
 
 def size_of(change: Floats, reach: float) -> Floats:
     """Of forces and torques, the latter over a length [N]."""
-    return np.abs(change).reshape(-1, 4, 3).max(axis=2).max(
-        axis=1, initial=0.0, where=np.array([1, 0, 1, 0], bool)
-    ) + (np.abs(change.reshape(-1, 4, 3)[:, 1::2]).max(axis=(1, 2)) / reach)
+    parts = np.abs(change).reshape(-1, 4, 3)
+    return parts[:, ::2].max(axis=(1, 2)) + parts[:, 1::2].max(axis=(1, 2)) / reach
 
 
 def jumps(made: Setup, random: np.random.Generator) -> tuple[Floats, Floats]:

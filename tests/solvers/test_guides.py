@@ -104,6 +104,25 @@ def test_corners_in_a_hollow_share_the_stiffness(angle):
     assert out[15] == pytest.approx(0.01, rel=1e-9)
 
 
+@pytest.mark.parametrize("slope", [0.05, 0.3, 0.8])
+def test_a_box_that_leaves_a_hollow_does_not_meet_the_face_behind(slope):
+    """Its centre goes beyond the end, and farther from the axis than the plate: its rear is still inside."""
+    radius, end = 20.0, 0.5 - math.pi / 2
+    plate = Plate((radius, -math.pi / 2, 0.5), (0.0, 20.0, 0.5), 0.0, 0, ZERO, 0)
+    c, s = math.cos(0.5 - slope), math.sin(0.5 - slope)
+    axes, half = (c, 0.0, -s, s, 0.0, c, 0.0, -1.0, 0.0), (2.0, 3.0, 0.05)
+    at, before = [radius * math.cos(end), radius * math.sin(end)], 0.0
+    for way in np.linspace(0.0, 1.99, 200):
+        # its face is 0.01 mm below the end of the arc
+        place = (at[0] + way * c - 0.04 * s, at[1] + way * s + 0.04 * c, 0.0)
+        out = np.zeros(OUT)
+        law = Law(K, True, *PLAIN)
+        box_guide(out, Frame(place, axes, ZERO, ZERO), Box(half, 0), Frame(ZERO, EYE, ZERO, ZERO), plate, law)
+        assert out[15] < 0.011 and out[12] < K * 0.01**1.5
+        assert abs(out[12] - before) < 0.1 * K * 0.01**1.5 or way == 0.0
+        before = out[12]
+
+
 @pytest.mark.parametrize("angle", [-0.6, 0.0, 0.9])
 def test_a_box_on_a_round_face_has_the_law_of_a_pair(angle):
     away = 20.0 + HALF[1] - 0.01
