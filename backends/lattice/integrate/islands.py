@@ -47,7 +47,7 @@ def islands(model: Model, system: System) -> Islands:
                 way = np.cross(body["turn"], model.bodies.position[b] - body["pivot"])
             mass[k] += body["press"][INERTIA] / float(way @ way)
     ends = _ends(model, part, answers)
-    group = _groups(system, ends, answers)
+    group = _groups(ends, answers)
     return Islands(
         part=part,
         of_border=of_border,
@@ -85,12 +85,10 @@ def _ends(model: Model, part: Ints, answers: np.ndarray) -> Ints:
     return found
 
 
-def _groups(system: System, ends: Ints, answers: np.ndarray) -> Ints:
-    """Of each part the number of its group, which contacts with pairs join; 0 of what answers nothing."""
-    rows = np.zeros(ends.shape[1], bool)
-    rows[system.pairs["row"][: system.search.first]] = True
-    rows[system.search.regions["row"]] = True
-    one, two = ends[:, rows & (ends >= 0).all(axis=0)]
+def _groups(ends: Ints, answers: np.ndarray) -> Ints:
+    """Of each part the number of its group, which contacts join, with pairs in reach or not; 0 of what
+    answers nothing."""
+    one, two = ends[:, (ends >= 0).all(axis=0)]
     first = np.arange(len(answers))
     while True:
         before, least = first.copy(), np.minimum(first[one], first[two])
