@@ -12,6 +12,7 @@ from mdlgen import registry
 from mdlgen.backend import Backend
 from mdlgen.errors import SpecError
 from mdlgen.model.tables import Model
+from mdlgen.report.text import summary_text
 from mdlgen.results.compare import scale
 from mdlgen.results.result import Result
 
@@ -75,4 +76,9 @@ class TestRegistry:
         found = mdlgen.solve(model, check_step=True)
         assert found.status == "inaccurate" and "nothing was compared" in found.error_unknown
         taken[0.025] = 150
-        assert mdlgen.solve(model, check_step=True).ok
+        found = mdlgen.solve(model, check_step=True)
+        # both agree: what is known is that the error is below the least that is estimated
+        assert found.ok and found.error_below and found.error_estimate == 0.25 * model.run.tolerance
+        record = found.summary()
+        assert record["error_below"] and "sheets.note.position" in record["estimates_below"]
+        assert "error estimate below 0.025 % (" in summary_text(record)

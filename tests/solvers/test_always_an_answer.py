@@ -108,3 +108,26 @@ def test_a_limit_that_is_not_met_changes_nothing() -> None:
     plain = mdlgen.solve(case("short_step", "run.step=0.1 ms"), "lattice")
     other = mdlgen.solve(case("short_step", "run.step=0.1 ms", "run.limit=60 s"), "lattice")
     assert np.array_equal(plain.position, other.position) and plain.status == other.status == "ok"
+
+
+def test_a_slow_pass_names_its_step_and_the_body_that_holds_it_up(caplog: pytest.LogCaptureFixture) -> None:
+    """Only where the step is halved many times; how far it is, in any case."""
+    from mdlgen.backends.lattice.arrays import build
+    from mdlgen.backends.lattice.integrate.slow import EVERY, HALVED, Slow
+    from mdlgen.backends.lattice.integrate.work import arrays, control
+    from mdlgen.backends.lattice.kernels.state import LEVEL, WORST
+
+    model = case("thrown")
+    steering = control(arrays(model, build(model)))
+    seen: list[float] = []
+    slow = Slow(model, steering, lambda at, *_: seen.append(at))
+    caplog.set_level("INFO", "mdlgen.slow")
+    slow.tell(1.0, 0.1, 0.5 * EVERY)
+    assert not seen
+    slow.tell(2.0, 0.1, EVERY)
+    assert seen == [2.0] and not caplog.messages
+    steering.pace[LEVEL], steering.counters[WORST] = HALVED, 3
+    slow.tell(3.0, 0.16, EVERY)
+    assert seen == [2.0, 3.0]
+    body = model.bodies.name[3]
+    assert caplog.messages == [f"steps of 0.01 ms at 3 ms: the velocity of {body} converges slowly"]
