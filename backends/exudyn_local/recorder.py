@@ -49,6 +49,7 @@ class Recorder:
         self.steps = 0
         self.time = 0.0  # [s]
         self.reason: str | None = None
+        self.left: np.ndarray | None = None  # places of all bodies where one has left its bounds [mm]
         self._due = np.zeros(0)  # times at which a state is stored [s]
         self._work = workspace(system)
         self._pairs = np.zeros((len(system.pairs), SEEN))
@@ -200,6 +201,7 @@ class Recorder:
         beyond = (x < self._low) | (x > self._high)
         if np.count_nonzero(beyond):
             out = np.flatnonzero(beyond.any(axis=1))
+            self.left = x / MM
             at = ", ".join(f"{value:.4g}" for value in x[out[0]] * PER_MM)
             name, (bounds, advice) = self.model.called(int(out[0])), self.model.bounds_of(int(out[0]))
             self.reason = f"{name} left {bounds} at {t / MS:.6g} ms (it is at {at} mm); {advice}"

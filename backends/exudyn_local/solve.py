@@ -2,7 +2,7 @@
 
 Exudyn's own success flag is not trusted: the end time must be reached, the state finite, Newton converged
 (an exception otherwise), the energy kept, and the boxes within the bounds from which the contacts were
-chosen.
+chosen. A run in which a body leaves these is begun again with a wider margin.
 """
 
 from __future__ import annotations
@@ -12,7 +12,6 @@ import sys
 import time as clock
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -37,6 +36,7 @@ from mdlgen.backends.exudyn_local.state import SEEN, TOTALS, Coordinates, Work, 
 from mdlgen.backends.exudyn_local.step import choose_steps, cost, given_steps
 from mdlgen.backends.exudyn_local.system import MM, MS, Pattern, System, build
 from mdlgen.model.tables import Model
+from mdlgen.model.wider import wider
 from mdlgen.results import audit
 from mdlgen.results.estimates import NOT_KNOWN, by_finer, estimated, marked, open_yet
 from mdlgen.results.result import Result
@@ -84,7 +84,7 @@ def solve(model: Model, progress: Progress | None = None, step: float | None = N
     build_s = clock.perf_counter() - started - compile_s
     begun, wanted = clock.perf_counter(), step or model.run.step
     until = math.inf if model.run.limit is None else begun + 1e-3 * model.run.limit
-    once = partial(_once, exu, model, system, pattern, work, progress, until)
+    once = _Runs(exu, model, (system, pattern, work), progress, until).once
     if model.run.analysis == "static":
         result = once(LOAD_STEPS[0], 0.0)
         if result.status.startswith(UNSTABLE):
@@ -192,6 +192,32 @@ def _best(runs: list[Result], why: str) -> Result:
     return marked(replace(best, search_ended=why))
 
 
+class _Runs:
+    """Runs of one scene; those that follow one that needed a wider margin have it from their start."""
+
+    def __init__(
+        self,
+        exu: Any,
+        model: Model,
+        built: tuple[System, Pattern, Work],
+        progress: Progress | None,
+        until: float,
+    ):
+        self._exu, self._model, self._built = exu, model, built
+        self._progress, self._until = progress, until
+
+    def once(self, count: int, h: float) -> Result:
+        """One run of `count` steps of h [s], or a static one of as many steps of the load, where h is 0."""
+        while True:
+            watch = self._progress, self._until
+            result, left = _once(self._exu, self._model, *self._built, *watch, count, h)
+            wide = None if left is None else wider(self._model, left)
+            if wide is None:
+                return result
+            system, pattern = build(wide)
+            self._model, self._built = wide, (system, pattern, workspace(system))
+
+
 def _once(
     exu: Any,
     model: Model,
@@ -202,9 +228,10 @@ def _once(
     until: float,
     count: int,
     h: float,
-) -> Result:
+) -> tuple[Result, np.ndarray | None]:
     """One run of `count` steps of h [s], or a static one of as many steps of the load, where h is 0. It ends
-    at `until`, of `time.perf_counter` [s]."""
+    at `until`, of `time.perf_counter` [s]. With it the places of all bodies (bodies, 3) [mm] where one has
+    left its bounds."""
     started = clock.perf_counter()
     recorder = Recorder(model, system, progress, until)
     assembly = assemble(exu, model, system, pattern, work, recorder)
@@ -240,7 +267,7 @@ def _once(
     result.wall_s, result.build_s = wall, begun - started
     result.step, result.steps = h / MS, recorder.steps
     result.versions = {"exudyn": exu.config.Version() if hasattr(exu.config, "Version") else exu.__version__}
-    return result
+    return result, recorder.left
 
 
 def _exudyn():

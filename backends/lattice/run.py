@@ -29,6 +29,7 @@ from mdlgen.backends.lattice.statics.rest import rest
 from mdlgen.backends.lattice.symmetry.find import find
 from mdlgen.backends.lattice.symmetry.mirror import halve
 from mdlgen.model.tables import Model
+from mdlgen.model.wider import wider
 from mdlgen.processors import processors
 from mdlgen.results import chaos
 from mdlgen.results.estimates import NOT_KNOWN, SAME_STEPS, estimated, marked
@@ -116,6 +117,9 @@ def solve(
     compiled = clock.perf_counter()
     if model.run.analysis == "static":
         result = rest(model, system, arrays(model, system))
+        while (wide := wider(model, result.position[-1])) is not None and wide is not model:
+            model, system = wide, build(wide, fold=FOLDING not in without)
+            result = rest(model, system, arrays(model, system))
         # what a run at rest calls is compiled, or loaded, as it goes: all but its wall time
         result.build_s = compiled - started
         result.compile_s = clock.perf_counter() - compiled - result.wall_s

@@ -40,6 +40,8 @@ SUMMARY: dict[str, tuple[str, str]] = {
         "contacts of two sheets with too many pairs to list; they are found as it runs",
     ),
     "pairs.touched": ("", "pairs that touched in the run, of those kept and those found"),
+    "pairs.margin_mm": ("mm", "margin that the pairs were chosen with: the widest one that the run needed"),
+    "pairs.margin_given_mm": ("mm", "`run.margin`, the first one; null in files of an older version"),
     "halved": ("", "true where one half of a symmetric scene was solved and mirrored"),
     "error_estimate": ("", "the greatest estimate of those that `run.tolerance` judges; null if not known"),
     "error_estimate_of": ("", "name of that estimate"),

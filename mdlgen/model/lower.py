@@ -161,6 +161,7 @@ def _run(scene: Scene) -> RunSettings:
         run.threads,
         run.sleep,
         run.limit,
+        run.margin,
     )
 
 

@@ -187,6 +187,17 @@ def _searched(pairs: dict[str, Any]) -> str:
     return f" and those of sheets in {count} contact{many}, found as it runs" if count else ""
 
 
+def _widened(pairs: dict[str, Any]) -> str:
+    """What is said of a margin that a run had to widen, empty where it had not."""
+    margin, given = pairs.get("margin_mm"), pairs.get("margin_given_mm")
+    if margin is None or given is None or margin <= given:
+        return ""
+    return (
+        f"a body left the bounds of run.margin {given:g} mm; the run continued with {margin:g} mm. A list of "
+        f"pairs in a text needs it too: mdlgen mdl .. --set run.margin={margin:g}mm"
+    )
+
+
 def summary_text(record: dict[str, Any]) -> str:
     """What `mdlgen run` prints of a summary."""
     pairs = record["pairs"]
@@ -205,6 +216,8 @@ def summary_text(record: dict[str, Any]) -> str:
         f"pairs: {pairs['possible']} possible, {pairs['kept']} kept{_searched(pairs)}, "
         f"{pairs['touched']} touched",
     ]
+    if widened := _widened(pairs):
+        lines.append(widened)
     lines += [str(outcome) for outcome in outcomes_of(record)]
     happened = record.get("verdict", {}).get("events", [])
     lines += happened[:MOST_EVENTS]

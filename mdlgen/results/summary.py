@@ -56,6 +56,8 @@ def summary(result: Result, without: Collection[str] = ()) -> dict[str, Any]:
             "kept": len(model.pairs),
             "searched": len(model.pairs.searched),
             "touched": result.touched,
+            "margin_mm": model.pairs.margin,
+            "margin_given_mm": model.run.margin,
         },
         "halved": result.halved,
         "error_estimate": result.error_estimate,

@@ -20,6 +20,7 @@ from mdlgen.backends.lattice.integrate.pass_state import PassState, Stage
 from mdlgen.backends.lattice.integrate.record import Recorder, Snapshot
 from mdlgen.backends.lattice.integrate.sleep import Sleep
 from mdlgen.backends.lattice.integrate.slow import Slow
+from mdlgen.backends.lattice.integrate.widen import begins_again
 from mdlgen.backends.lattice.integrate.work import arrays, control, flexible
 from mdlgen.backends.lattice.kernels.state import (
     ANEW,
@@ -124,6 +125,7 @@ def speed(model: Model) -> float:
     return max(known, max(own, default=0.0) * (0.1 if known > 0.0 else 1.0))
 
 
+@begins_again
 def one_pass(
     model: Model,
     system: System,
@@ -157,8 +159,7 @@ def one_pass(
     status, t, past = integrate.DONE, 0.0, 0.0
     sleep, stage = Sleep(model, system, work, steering, recorder, sleeps), None
     del work  # sleep has what is worked on
-    if keep is not None:
-        sleep.lie_down(keep, number)
+    if keep is not None and sleep.lie_down(keep, number):
         stage = PassState(sleep.work, sleep.steering, recorder, sleep).back(keep, number)
     if stage is not None:
         status, t, past = stage.status, stage.t, stage.wall
@@ -194,6 +195,8 @@ def one_pass(
                 if status == integrate.WOKEN:
                     sleep.wake(int(counters[WORST]), t, helpers)
                     left = steps_to(last - t, dt)
+                elif status == integrate.LEFT and sleep.widen(helpers):
+                    status, left = integrate.DONE, steps_to(last - t, dt)
                 elif status == integrate.DONE:
                     left = left[many:]
                 else:
@@ -203,7 +206,8 @@ def one_pass(
             t = last
             recorder.store(t)
             sleep.look(t, tolerance, helpers)
-            passed = system.mirror.passed(state.x, system.nodes) if system.mirror is not None else -1
+            mirror = sleep.system.mirror
+            passed = mirror.passed(state.x, system.nodes) if mirror is not None else -1
             if passed >= 0:
                 status = PASSED
                 counters[WORST] = passed

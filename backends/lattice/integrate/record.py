@@ -30,6 +30,7 @@ from mdlgen.backends.lattice.kernels.state import (
     TURNING_BEGUN,
     TURNING_NOW,
     TURNS,
+    Kept,
     Workspace,
 )
 from mdlgen.mechanics.frame import Motion
@@ -46,6 +47,8 @@ BEGUN = [FORCE_BEGUN, *range(TURNING_BEGUN, TURNING_BEGUN + TURNING)]
 class Snapshot(NamedTuple):
     """How far a recorder is: what a result up to there is made from, besides the stored states."""
 
+    model: Model
+    system: System
     times: int  # how many are stored
     rows: np.ndarray
     marks: np.ndarray
@@ -70,6 +73,10 @@ class Recorder:
         """From now on steps work on these arrays, of what is awake of the System; `asleep` (groups, 3):
         energies of what is not."""
         self.work, self._asleep = work, asleep
+
+    def widen(self, model: Model, system: System, kept: Kept) -> None:
+        """From now on the pairs are those of this Model, of which `system` is the whole that is solved."""
+        self.model, self.system, self.kept = model, system, kept
 
     def store(self, t: float) -> None:
         """The state at the end of a step."""
@@ -129,7 +136,9 @@ class Recorder:
         rows, marks = self.kept
         first, last = self._energies.copy()
         energies = (first, last, self._most.copy())
-        return Snapshot(len(self._times), rows.copy(), marks.copy(), work.copy(), energies)
+        return Snapshot(
+            self.model, self.system, len(self._times), rows.copy(), marks.copy(), work.copy(), energies
+        )
 
     def result(self, solver: str, reason: str | None, work: np.ndarray) -> Result:
         """The Result in mm, N, g, ms."""
@@ -143,9 +152,9 @@ class Recorder:
         self, snapshot: Snapshot, solver: str, reason: str | None, held: dict[str, np.ndarray]
     ) -> Result:
         rows, marks = snapshot.rows, snapshot.marks
-        mirror, touched = self.system.mirror, int(marks.sum())
+        mirror, touched = snapshot.system.mirror, int(marks.sum())
         if mirror is not None:
-            touched = mirror.touched(self.system, marks)
+            touched = mirror.touched(snapshot.system, marks)
             summed = (MAX_FORCE, FORCE_TIME, FORCE_NOW)  # depths and times hold for both sides
             columns = enumerate(rows.T)
             rows = np.array([(mirror.sums if k in summed else mirror.largest)(c) for k, c in columns]).T
@@ -154,7 +163,7 @@ class Recorder:
         forces = np.array(self._forces[: snapshot.times])
         forces = forces if mirror is None else mirror.acts(forces)
         return Result(
-            model=self.model,
+            model=snapshot.model,
             solver=solver,
             status=reason or "ok",
             time=np.array(self._times[: snapshot.times]),
@@ -173,15 +182,15 @@ class Recorder:
                 last_force_at=np.where(rows[:, ACTS] != 0, np.nan, rows[:, ENDED]),
             ),
             touched=touched,
-            energy=_balance(self.model, self.work, snapshot),
+            energy=_balance(snapshot, self.work),
             versions=_versions(),
             halved=mirror is not None,
         )
 
 
-def _balance(model: Model, work: Workspace, snapshot: Snapshot) -> Energy:
+def _balance(snapshot: Snapshot, work: Workspace) -> Energy:
     """Energies of all, with the balance of the group in which most is missing or too much."""
-    first, last, most = snapshot.energies
+    model, (first, last, most) = snapshot.model, snapshot.energies
     lost, driven, through, numerical = snapshot.work.sum(axis=0).tolist()
     kinetic, elastic, _ = last.sum(axis=0).tolist()
     worst, scale, of = 0.0, 0.0, ()

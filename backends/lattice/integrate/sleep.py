@@ -31,6 +31,7 @@ from mdlgen.backends.lattice.integrate.awake import Parts, awake
 from mdlgen.backends.lattice.integrate.helpers import Helpers
 from mdlgen.backends.lattice.integrate.islands import groups
 from mdlgen.backends.lattice.integrate.record import Recorder
+from mdlgen.backends.lattice.integrate.widen import besides, carried_over, marks_of, places, system_of
 from mdlgen.backends.lattice.integrate.work import workspace
 from mdlgen.backends.lattice.kernels.state import (
     ACTS,
@@ -41,8 +42,10 @@ from mdlgen.backends.lattice.kernels.state import (
     Workspace,
 )
 from mdlgen.backends.lattice.search import many_searched
+from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.stick import STRETCH
 from mdlgen.model.tables import Model
+from mdlgen.model.wider import wider, with_margin
 from mdlgen.runs.checkpoint import Checkpointer, State
 
 # How long a sheet is still before it sleeps: a part of the run, and steps at least.
@@ -50,7 +53,8 @@ PART, LEAST_STEPS = 0.05, 20
 # What is carried over by body, from the nodes: velocity and angular momentum at the end of the last step, and
 # velocities in its middle and in those of the two before.
 WIDTHS = {"v": 3, "l": 3, "u": 6, "last": 6, "earlier": 6}
-# What a checkpoint has: which sheets sleep, and of Asleep.
+# What a checkpoint has: the margin of the pairs, which sheets sleep, and of Asleep.
+MARGIN = "margin"
 SHEETS = "sleep.sheets"
 OF_STEPS = ("speeds", "missed", "may")
 
@@ -120,6 +124,31 @@ class Sleep:
         woken = (islands == islands[disturbed]) & self._sheets
         self._since[woken], self._counted[woken] = t, self.steering.counters[STEPS]
         self._turn(self._sheets & ~woken, t, helpers)
+
+    def widen(self, helpers: Helpers) -> bool:
+        """Chooses pairs with a wider margin, where a body has left its bounds; whether that helps. Raises
+        UnhalvedError."""
+        model = wider(self._model, self.work.state.x[: len(self._model.bodies.name)])
+        if model is not None:
+            self._widen(model, helpers)
+        return model is not None
+
+    def _widen(self, model: Model, helpers: Helpers | None) -> None:
+        """Goes on with the pairs of a Model that has those of this one and more."""
+        whole = system_of(model, self._whole)
+        at, motion = places(self._whole, whole), self.work.mid.motion
+        self._beside[self._chosen] = self.system.pairs["beside"][: len(self._chosen)]
+        state = self.work.state
+        self._beside = besides(whole, self._beside, at, Motion(state.x, state.r, motion.u, motion.w))
+        marks = marks_of(self.work.kept.marks, self._model, model)
+        self._model, self._whole, self._parts = model, whole, Parts(model, whole)
+        self.system, self._chosen = whole, np.arange(whole.search.first)
+        if self._sheets.any():
+            self.system, self._chosen = awake(whole, self._parts, self._sheets)
+        self.system.pairs["beside"][: len(self._chosen)] = self._beside[self._chosen]
+        self.work = carried_over(model, self.work, self.system, marks)
+        self._recorder.widen(model, whole, self.work.kept)
+        self._follow(helpers)
 
     def _islands(self, touching: NDArray[np.bool_]) -> NDArray[np.int64]:
         """Of each sheet the first one of its island, by contacts that are `touching` (contacts,)."""
@@ -202,9 +231,11 @@ class Sleep:
 
     def carried(self) -> State:
         """All that it goes on from, besides the state of what is awake."""
+        margin = np.array([self._model.pairs.margin])
         if not len(self._sheets):
-            return {}
+            return {MARGIN: margin}
         return {
+            MARGIN: margin,
             SHEETS: self._sheets,
             "sleep.since": self._since,
             "sleep.counted": self._counted,
@@ -217,13 +248,22 @@ class Sleep:
             **{f"sleep.{name}": array for name, array in self._store.items()},
         }
 
-    def lie_down(self, keep: Checkpointer, number: int) -> None:
-        """Lets those sleep that slept where a pass was kept, so that its arrays fit."""
+    def lie_down(self, keep: Checkpointer, number: int) -> bool:
+        """Takes the margin that a pass had where it was kept, and lets those sleep that slept there, so that
+        its arrays fit. False where it was begun again since, with a wider margin."""
+        own = self._model.pairs.margin
+        kept = keep.load(number, {MARGIN: np.zeros(1)}, (MARGIN,))
+        margin = own if kept is None else float(kept[MARGIN][0])
+        if margin < own:
+            return False
+        if margin > own:
+            self._widen(with_margin(self._model, margin), None)
         if not len(self._sheets):
-            return
+            return True
         found = keep.load(number, {SHEETS: self._sheets}, (SHEETS,))
         if found is not None and found[SHEETS].any():
             self._turn(found[SHEETS], 0.0, None)
+        return True
 
     def restore(self, found: dict[str, Any]) -> None:
         """Takes over what `carried` gave."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import groupby
 
 from mdlgen.altair.edges import edge_note
+from mdlgen.altair.margin import margin_note
 from mdlgen.altair.recorded import MOST_SUMMED, unrecorded
 from mdlgen.backends.motionsolve.writer.rows import Deck
 from mdlgen.backends.motionsolve.writer.units import number
@@ -57,6 +58,7 @@ def _contacts(model: Model) -> list[str]:
     lines = [
         f"Contacts : {pairs.possible} pairs possible, {len(pairs)} kept: those that can meet in the run, "
         f"with a margin of {number(pairs.margin)} mm",
+        *margin_note(model),
         "  MotionSolve gives every pair the full stiffness. In the local run of mdlgen, share width lets",
         "  the boxes under one part share it by the width that each covers; share pair gives it to each too.",
         *edge_note(model),

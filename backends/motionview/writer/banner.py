@@ -6,6 +6,7 @@ import math
 
 from mdlgen.altair.curves import TEXT_BEYOND
 from mdlgen.altair.edges import edge_note
+from mdlgen.altair.margin import margin_note
 from mdlgen.backends.motionview.writer import script
 from mdlgen.backends.motionview.writer.forms import unverified
 from mdlgen.backends.motionview.writer.scene_rows import SceneView
@@ -114,6 +115,7 @@ def _contacts(model: Model, scene: SceneView) -> list[str]:
         lines += [
             "  Pairs are kept for the sheets where they start : to move or turn one beyond the margin,",
             "  write the text anew, or write it with prune: false in the run, which keeps every pair.",
+            *margin_note(model),
         ]
     for kind, parts in (("rollers", scene.rollers), ("plates", scene.planes)):
         if any(part.pressed for part in parts):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mdlgen.altair.edges import edge_note
+from mdlgen.altair.margin import margin_note
 from mdlgen.backends.motionview.writer import script
 from mdlgen.backends.motionview.writer.banner import SHARE, curve_lines, share_lines, sheet_lines, target_line
 from mdlgen.backends.motionview.writer.forms import unverified_system
@@ -67,6 +68,7 @@ def _contacts(model: Model, system: SystemView) -> list[str]:
         lines += [
             f"  With parts of the scene {len(scene.pairs) - external} of {possible} are kept: those that can",
             f"  meet in its run, with a margin of {number(pairs.margin)} mm; prune: false keeps every pair.",
+            *margin_note(model),
         ]
     if external:
         lines.append(f"  With bodies of your model all {external} stand here: where those are is not known.")

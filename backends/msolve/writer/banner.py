@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mdlgen.altair.edges import edge_note
+from mdlgen.altair.margin import margin_note
 from mdlgen.altair.recorded import MOST_SUMMED, unrecorded
 from mdlgen.model.tables import Model
 
@@ -44,7 +45,7 @@ def _contacts(model: Model) -> list[str]:
     lines = [
         "Contacts: MotionSolve gives each pair of boxes and parts the full stiffness. Left to MotionSolve is",
         f"normal_trans_vel, which no keyword of Contact is known to set; the local run has {shown} mm/s.",
-        *(line.strip() for line in edge_note(model)),
+        *(line.strip() for line in (*edge_note(model), *margin_note(model))),
     ]
     for row in unrecorded(model):
         by, on = model.contacts.part_a[row], model.contacts.part_b[row]

@@ -93,6 +93,7 @@ class RunSettings:
     threads: int = 1  # that share the work of a step
     sleep: bool = True  # sheets that rest may be left out
     limit: float | None = None  # wall time after which a run ends with what there is; None: none
+    margin: float | None = None  # that pairs are chosen with at first [mm]; None: of an older file
 
 
 @dataclass(frozen=True)
@@ -207,7 +208,8 @@ class Model(Frozen):
                 )
         return (
             "the bounds from which its contacts were chosen",
-            f"set run.prune: false, or a run.margin above {self.pairs.margin:g} mm",
+            f"a run.margin above {self.pairs.margin:g} mm would keep more pairs than the limit; set "
+            "run.prune: false and raise it by --limit pairs=..",
         )
 
     def sheet_of(self, body: int) -> SheetPart | None:
