@@ -6,16 +6,17 @@ All of it is read from the stored states, so times are those of stored states (`
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from mdlgen.model.rotations import turns
-from mdlgen.model.tables import BOX_CYLINDER, Floats, Ints, Model, RollerPart
-from mdlgen.results.contact_line import ContactLine, chosen, contact_line, of_row
+from mdlgen.model.tables import Floats, Model, RollerPart
+from mdlgen.results.contact_line import contact_line
+from mdlgen.results.held import holds
 from mdlgen.results.stacked import stacked
+from mdlgen.results.stays import SHORT, Stay, intervals, stays_at_meshes, stays_of
 from mdlgen.results.stubs import stops
 from mdlgen.units import PER_SECOND
 
@@ -23,30 +24,9 @@ if TYPE_CHECKING:
     from mdlgen.results.result import Result
 
 KINDS = ("enter", "leave", "slip", "gap", "wait", "jam", "double_feed", "stub")
-# A force below this part of a contact's greatest is a graze, as in the solvers' account of nips.
-GRAZE = 0.05
-# A sheet that bounces off for a shorter time has not left [ms], and one that touches for a shorter time
-# only grazes.
-SHORT = 1.0
-# A sheet that is slower than this part of the surface of a driven nip, for longer than this, waits; it is
-# jammed where the run ends so.
-JAM_PART, JAM_TIME = 0.1, 5.0
 # A sheet that is slower than this [mm/ms] stands: smoothed friction lets what waits under a force creep.
 # One that is slower than this part of another one is held back while that one is fed.
 STANDS, HELD_PART = 0.01, 0.1
-
-
-@dataclass(frozen=True)
-class Stay:
-    """A sheet at a roller, from one stored time to another."""
-
-    sheet: int
-    roller: RollerPart
-    first: int  # stored states
-    last: int
-    leaves: bool  # before the end of the run
-    at: Ints  # the stored states at which it touches
-    line: ContactLine  # at these
 
 
 def events(result: Result) -> list[dict[str, Any]]:
@@ -60,8 +40,9 @@ def events(result: Result) -> list[dict[str, Any]]:
     """
     if len(result.time) < 2:
         return []
-    stays, together = _stays(result), stacked(result)
-    found = [event for stay in stays for event in _stay_events(result, stay, together)]
+    stays, together = stays_of(result), stacked(result)
+    found = [event for stay in stays for event in _stay_events(result, stay)]
+    found += _holds(result, [*stays, *stays_at_meshes(result)], together)
     found += _gaps(result, stays)
     found += _double_feeds(result, [*stays, *_beyond(result, stays, together)])
     found += _stubs(result)
@@ -90,22 +71,6 @@ def _stubs(result: Result) -> list[dict[str, Any]]:
     return found
 
 
-def _stays(result: Result) -> list[Stay]:
-    model, time = result.model, result.time
-    sheets = {sheet.name: k for k, sheet in enumerate(model.sheets)}
-    found = []
-    for row in np.flatnonzero(model.contacts.kind == BOX_CYLINDER).tolist():
-        force = result.contact_force[:, row]
-        touching = force > GRAZE * force.max()
-        sheet, roller = sheets[model.contacts.part_a[row]], model.roller(model.contacts.part_b[row])
-        for first, last in intervals(time, touching, SHORT):
-            at = np.flatnonzero(touching[first : last + 1]) + first
-            states, lines = of_row(result, row)
-            line = chosen(lines, np.searchsorted(states, at))
-            found.append(Stay(sheet, roller, first, last, last + 1 < len(time), at, line))
-    return found
-
-
 def _beyond(result: Result, stays: list[Stay], together: np.ndarray | None) -> list[Stay]:
     """Sheets that do not touch a roller and lie over or under one that does, one stay for all such states."""
     found: list[Stay] = []
@@ -128,30 +93,28 @@ def _beyond(result: Result, stays: list[Stay], together: np.ndarray | None) -> l
     return found
 
 
-def intervals(time: Floats, holds: np.ndarray, short: float) -> list[tuple[int, int]]:
-    """First and last state of each time in which something holds, but for breaks shorter than `short` and
-    what then lasts less than that, unless it is cut off by the start or the end."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], holds, [False]]).astype(int)))
-    runs = [(int(a), int(b) - 1) for a, b in edges.reshape(-1, 2)]
-    joined: list[tuple[int, int]] = []
-    for first, last in runs:
-        if joined and time[first] - time[joined[-1][1]] <= short:
-            joined[-1] = (joined[-1][0], last)
-        else:
-            joined.append((first, last))
-    end = len(time) - 1
-    step = float(time[-1] - time[0]) / end  # it holds from some time before the first to some after the last
-    return [(a, b) for a, b in joined if time[b] - time[a] + step >= short or a == 0 or b == end]
-
-
 def _event(result: Result, kind: str, at: int, stay: Stay, **numbers: Any) -> dict[str, Any]:
     name = result.model.sheets[stay.sheet].name
     record = {"time_ms": float(result.time[at]), "kind": kind, "sheet": name, "roller": stay.roller.name}
     return record | numbers
 
 
-def _stay_events(result: Result, stay: Stay, together: np.ndarray | None) -> list[dict[str, Any]]:
-    """Entering, leaving, slip, waits and jams."""
+def _holds(result: Result, stays: list[Stay], together: np.ndarray | None) -> list[dict[str, Any]]:
+    """Waits and jams."""
+    found = []
+    for stay in stays:
+        for hold in holds(result, stay, together):
+            numbers: dict[str, Any] = {
+                "duration_ms": hold.duration,
+                "part_of_surface_speed": hold.part,
+                "held_by": list(hold.by),
+            }
+            found.append(_event(result, "jam" if hold.jammed else "wait", hold.first, stay, **numbers))
+    return found
+
+
+def _stay_events(result: Result, stay: Stay) -> list[dict[str, Any]]:
+    """Entering, leaving and slip."""
 
     def speed(at: int) -> float:
         return float(np.linalg.norm(result.sheet_velocity(stay.sheet, at))) * PER_SECOND
@@ -174,50 +137,7 @@ def _stay_events(result: Result, stay: Stay, together: np.ndarray | None) -> lis
         fast = float(np.linalg.norm(surface, axis=1).mean())
         numbers["part_of_surface_speed"] = float(slip.mean()) / fast if fast > 0.0 else None
     found.append(_event(result, "slip", int(stay.at[known][worst]), stay, **numbers))
-    return found + _waits(result, stay, together)
-
-
-def _waits(result: Result, stay: Stay, together: np.ndarray | None) -> list[dict[str, Any]]:
-    """Where a driven roller presses a sheet on another one and the sheet does not follow: a jam where that
-    lasts to the end of the run, or else a wait."""
-    roller, line = stay.roller, stay.line
-    if not roller.speed:
-        return []
-    surface = np.linalg.norm(line.roller, axis=1)
-    fastest = abs(roller.speed) * roller.radius
-    squared = np.maximum(surface, JAM_PART * fastest) ** 2
-    along = np.einsum("tk,tk->t", line.sheet, line.roller) / squared
-    slow = (surface > JAM_PART * fastest) & (along < JAM_PART) & (line.share > 0.0)
-    slow &= _opposed(result, stay, together)
-    held = np.zeros(len(result.time), bool)
-    held[stay.at[slow]] = True
-    part = np.zeros(len(result.time))
-    part[stay.at] = along
-    found = []
-    for first, last in intervals(result.time, held, SHORT):
-        lasts = float(result.time[last] - result.time[first])
-        if lasts > JAM_TIME:
-            inside = held[first : last + 1]
-            numbers = {
-                "duration_ms": lasts,
-                "part_of_surface_speed": float(part[first : last + 1][inside].mean()),
-            }
-            kind = "wait" if last + 1 < len(result.time) else "jam"
-            found.append(_event(result, kind, first, stay, **numbers))
     return found
-
-
-def _opposed(result: Result, stay: Stay, together: np.ndarray | None) -> np.ndarray:
-    """Whether the sheet, or one that it lies on, touches a roller that faces this one, at the states of a
-    stay."""
-    held = np.zeros(len(stay.at), bool)
-    for other in result.model.rollers:
-        if other is stay.roller or not _faces(stay.roller, other):
-            continue
-        for sheet in [stay.sheet] if together is None else range(len(result.model.sheets)):
-            pressed = _force(result, sheet, other.name)[stay.at] > 0.0
-            held |= pressed if together is None else pressed & together[stay.at, stay.sheet, sheet]
-    return held
 
 
 def _faces(roller: RollerPart, other: RollerPart) -> bool:
@@ -228,14 +148,6 @@ def _faces(roller: RollerPart, other: RollerPart) -> bool:
     parallel = abs(float(roller.axis @ other.axis)) > 1.0 - 1e-9
     near = across < roller.radius + other.radius + max(roller.radius, other.radius)
     return parallel and near and along < 0.5 * (roller.width + other.width)
-
-
-def _force(result: Result, sheet: int, roller: str) -> Floats:
-    """Normal force of a sheet on a roller [N], (t,)."""
-    model, name = result.model, result.model.sheets[sheet].name
-    sides = zip(model.contacts.part_a, model.contacts.part_b, strict=True)
-    rows = [k for k, pair in enumerate(sides) if pair == (name, roller)]
-    return result.contact_force[:, rows].sum(axis=1)
 
 
 def _gaps(result: Result, stays: list[Stay]) -> list[dict[str, Any]]:

@@ -93,7 +93,7 @@ def verdict(result: Result, record: Mapping[str, Any]) -> dict[str, Any]:
             }
             for o in outcomes
         ],
-        "events": [in_words(event) for event in record.get("events", ()) if _is_notable(event)],
+        "events": [in_words(event) for event in _notable(record.get("events", ()))],
     }
 
 
@@ -102,10 +102,25 @@ def outcomes_of(record: Mapping[str, Any]) -> list[Outcome]:
     return [Outcome(**row) for row in record.get("verdict", {}).get("requirements", ())]
 
 
-def _is_notable(event: Mapping[str, Any]) -> bool:
-    if event["kind"] == "slip":
-        return LARGE_SLIP < abs(event.get("part_of_surface_speed") or 0.0) <= 1.0
-    return event["kind"] in NOTABLE
+def _notable(events: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """Those that a reader sees in any case. A jam or a wait at a roller says why a sheet slips there."""
+    held = [event for event in events if event["kind"] in ("jam", "wait")]
+
+    def explained(slip: Mapping[str, Any]) -> bool:
+        at = slip["time_ms"]
+        return any(
+            (event["sheet"], event["roller"]) == (slip["sheet"], slip["roller"])
+            and event["time_ms"] <= at <= event["time_ms"] + event["duration_ms"]
+            for event in held
+        )
+
+    def told(event: Mapping[str, Any]) -> bool:
+        if event["kind"] != "slip":
+            return event["kind"] in NOTABLE
+        large = LARGE_SLIP < abs(event.get("part_of_surface_speed") or 0.0) <= 1.0
+        return large and not explained(event)
+
+    return [event for event in events if told(event)]
 
 
 def in_words(event: Mapping[str, Any]) -> str:
@@ -118,6 +133,8 @@ def in_words(event: Mapping[str, Any]) -> str:
         part = f"{100.0 * abs(event['part_of_surface_speed']):.0f} % of the surface's speed"
         return f"{text}, {part}, most at {event['time_ms']:.4g} ms"
     text += f" from {event['time_ms']:.4g} ms"
+    if event.get("held_by"):
+        text += f", held by {', '.join(event['held_by'])}"
     if "way_mm" in event:
         text += f", the slower one goes {event['way_mm']:.3g} mm"
     return text
@@ -172,7 +189,7 @@ def _with_doubt(found: Outcome, result: Result) -> Outcome:
 def _event(wanted: Requirement, record: Mapping[str, Any]) -> Outcome:
     count = 0
     for event in record["events"]:
-        parts = {event.get(key) for key in ("sheet", "roller", "other", "part")}
+        parts = {event.get(key) for key in ("sheet", "roller", "other", "part")} | {*event.get("held_by", ())}
         count += event["kind"] == wanted.event and (wanted.part is None or wanted.part in parts)
     return Outcome(wanted.text, count == 0, float(count), "", None)
 

@@ -15,8 +15,10 @@ from papers import HINGED_PAPER
 import mdlgen
 from mdlgen.model.lower import lower
 from mdlgen.paths import samples
-from mdlgen.results.events import JAM_PART, JAM_TIME, SHORT, events, intervals
+from mdlgen.results.events import events
+from mdlgen.results.held import JAM_END, JAM_LONG, JAM_PART, WAIT
 from mdlgen.results.result import Result
+from mdlgen.results.stays import SHORT, intervals
 from mdlgen.spec.load import load, loads
 
 Event = dict[str, Any]
@@ -124,6 +126,7 @@ def test_a_stopped_roller_makes_a_jam(solver: str) -> None:
     (jam,) = of(found, "jam")
     assert (jam["sheet"], jam["roller"]) == ("a", "motor")
     assert jam["time_ms"] < 1.0 and jam["duration_ms"] > 18.0 and abs(jam["part_of_surface_speed"]) < 0.02
+    assert jam["held_by"] == ["idler"]
     (slip,) = of(found, "slip", "motor")
     assert slip["max_mm_per_s"] == pytest.approx(750, rel=0.02)
     assert slip["part_of_surface_speed"] == pytest.approx(1.0, abs=0.02)
@@ -134,8 +137,10 @@ def test_a_stopped_roller_makes_a_jam(solver: str) -> None:
 def test_a_jam_lasts_longer_than_a_stated_time_and_is_of_a_roller_that_turns() -> None:
     free = events(solved(NIP, "lattice"))
     assert not of(free, "jam")
-    short = f"run.duration={JAM_TIME} ms"
-    assert not of(events(solved(NIP, "lattice", *STOPPED, short)), "jam")
+    short = events(solved(NIP, "lattice", *STOPPED, f"run.duration={JAM_END - 0.5} ms"))
+    assert not of(short, "jam") and of(short, "wait")
+    shorter = events(solved(NIP, "lattice", *STOPPED, f"run.duration={WAIT} ms"))
+    assert not of(shorter, "jam") and not of(shorter, "wait")
     stands = (*STOPPED, "rollers.motor.drive={speed: 0 rad/s}")
     assert not of(events(solved(NIP, "lattice", *stands)), "jam")
     # stopped for the first 8 ms alone
@@ -145,6 +150,11 @@ def test_a_jam_lasts_longer_than_a_stated_time_and_is_of_a_roller_that_turns() -
     # the idler takes the sheet along by its friction: 75 mm/s are reached after a tenth of a millisecond
     assert 7.0 < wait["time_ms"] + wait["duration_ms"] < 8.0 + 1.0 and JAM_PART == 0.1
     assert not of(found, "jam")  # it went on
+    # and where that took longer than a sensor waits for a sheet
+    ends, begins = JAM_LONG + 5.0, JAM_LONG + 6.0
+    late = later.replace("8 ms,", f"{ends} ms,").replace("9 ms,", f"{begins} ms,")
+    found = events(solved(NIP, "lattice", *STOPPED, late, f"run.duration={JAM_LONG + 20.0} ms"))
+    assert of(found, "jam") and not of(found, "wait")
 
 
 def test_the_gap_between_two_sheets_is_reported_where_the_second_enters() -> None:
@@ -190,3 +200,87 @@ def test_what_ends_at_its_start_has_no_events() -> None:
     result = solved(NIP, "lattice", "run.duration=1 ms")
     result.time = result.time[:1]
     assert events(result) == []
+
+
+# Cards on a table, under a roller that drives the upper one against a gate: as ../shared/cases/jam_at_a_gate.
+GATE = """
+name: gate
+materials: {pvc: {E_md: 2500 MPa, E_cd: 2500 MPa, D_md: 5.6 N*mm, D_cd: 5.6 N*mm}}
+sheets:
+  card: {material: pvc, size: [60 mm, 40 mm], thickness: 0.5 mm, density: 1.3 g/cm^3, boxes: [3, 2],
+    layout: plate, center: [0 mm, 0 mm, 0.25 mm]}
+piles: {deck: {of: card, count: 2, contact: {stiffness: 2000 N/mm^1.5, friction: 0.3}}}
+rollers:
+  pick: {center: [10 mm, 0 mm, 11 mm], axis: y, radius: 10 mm, width: 20 mm, mass: 20 g,
+    drive: {surface_speed: 150 mm/s, direction: DIRECTION, ramp: 5 ms},
+    press: {direction: -z, stiffness: 0.2 N/mm, preload: 1 N, damping_ratio: 0.3}}
+planes:
+  tray: {center: [60 mm, 0 mm, -5 mm], normal: z, size: [300 mm, 80 mm, 10 mm]}
+  gate: {center: [35.1 mm, 0 mm, 6 mm], normal: -x, size: [10 mm, 60 mm, 10 mm]}
+contacts:
+  - {between: ["deck_*", pick], stiffness: 300 N/mm^1.5, friction: 0.9, smoothing: 5 mm/s}
+  - {between: ["deck_*", tray], stiffness: 300 N/mm^1.5, friction: 0.25}
+  - {between: ["deck_*", gate], stiffness: 300 N/mm^1.5, friction: 0.2}
+run: {duration: 60 ms, print_step: 0.5 ms, tolerance: 0.01}
+require: [no jam]
+"""
+
+
+@lru_cache
+def gate(direction: str, *overrides: str) -> Result:
+    result = mdlgen.solve(lower(loads(GATE.replace("DIRECTION", direction), "gate", overrides)), "lattice")
+    assert result.ok, result.status
+    return result
+
+
+def test_a_card_at_a_gate_is_jammed() -> None:
+    """One roller alone holds it there, and slips."""
+    result = gate("+x")
+    (jam,) = of(events(result), "jam")
+    assert (jam["sheet"], jam["roller"]) == ("deck_2", "pick")
+    assert jam["duration_ms"] > 45.0 and sorted(jam["held_by"]) == ["deck_1", "gate"]
+    found = result.summary()["verdict"]
+    assert not found["passed"]
+    (told,) = found["events"]  # and no slip of the same card there
+    assert told.startswith("jam of deck_2 at pick from ") and "held by " in told and "gate" in told
+    at_the_gate = gate("+x", "require=[no jam at gate, no jam at tray]").summary()["verdict"]["requirements"]
+    assert [row["passed"] for row in at_the_gate] == [False, True]
+
+
+def test_a_card_that_is_driven_away_from_the_gate_is_not_jammed() -> None:
+    """It goes, and the card below it stays or goes with it: neither is held."""
+    result = gate("-x")
+    assert result.summary()["sheets"]["deck_2"]["travel_mm"][0] < -3.0
+    assert not of(events(result), "jam") and not of(events(result), "wait")
+
+
+def test_where_the_drive_stands_nothing_is_jammed() -> None:
+    """It brings the card to the gate, stops, and presses on."""
+    stops = "rollers.pick.drive={profile: [[0 ms, -15 rad/s], [8 ms, -15 rad/s], [9 ms, 0 rad/s]]}"
+    found = events(gate("+x", stops))
+    assert not of(found, "jam")
+
+
+def test_a_sheet_that_only_creeps_up_to_speed_is_not_jammed() -> None:
+    """A weak roller speeds it up by its friction, through a tenth of its own speed long after 50 ms."""
+    weak = ("rollers.pick.press.preload=0.02 N", "run.duration=40 ms", "piles.deck.count=1")
+    fast = "rollers.pick.drive={surface_speed: 3 m/s, direction: -x, ramp: 5 ms}"
+    result = gate("-x", *weak, fast, "contacts.1.friction=0", "contacts.0.friction=0.03")
+    speed = abs(result.summary()["sheets"]["deck_1"]["speed_mm_per_s"][0])
+    assert 50.0 < speed < 300.0
+    assert not of(events(result), "jam") and not of(events(result), "wait")
+
+
+def test_a_roller_that_turns_against_a_sheet_that_goes_does_not_jam_it() -> None:
+    """The idler is driven against the sheet's way, at a low friction: the motor takes the sheet through."""
+    retard = ("rollers.idler.drive={speed: 50 rad/s}", "contacts.1.friction=0.1", "run.duration=30 ms")
+    found = events(solved(NIP, "lattice", *retard))
+    assert not of(found, "jam") and not of(found, "wait")
+    (slip,) = of(found, "slip", "idler")
+    assert slip["part_of_surface_speed"] > 1.0
+
+
+def test_a_clamped_sheet_that_a_roller_rubs_is_not_jammed() -> None:
+    clamped = "sheets.a.clamp={edge: x_min}"
+    found = events(solved(NIP, "lattice", clamped, "contacts.0.friction=0.2"))
+    assert of(found, "slip", "motor") and not of(found, "jam") and not of(found, "wait")

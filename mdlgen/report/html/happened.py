@@ -37,11 +37,11 @@ def _slips(event: Mapping[str, Any]) -> str:
 
 
 def _waits(event: Mapping[str, Any]) -> str:
-    what = "is jammed to the end of the run" if event["kind"] == "jam" else "waits"
+    what = "is jammed" if event["kind"] == "jam" else "waits"
     part = 100.0 * event["part_of_surface_speed"]
-    return (
-        f"{event['sheet']} {what}, {shown(event['duration_ms'])} ms, at {part:.2g} % of the surface's speed"
-    )
+    by = f", held by {', '.join(event['held_by'])}" if event.get("held_by") else ""
+    time = shown(event["duration_ms"])
+    return f"{event['sheet']} {what}, {time} ms, at {part:.2g} % of the surface's speed{by}"
 
 
 def _gap(event: Mapping[str, Any]) -> str:

@@ -67,6 +67,7 @@ def _counts(events: Sequence[Mapping[str, Any]]) -> dict[str, Value]:
     found: dict[str, Value] = {f"events.{kind}": 0.0 for kind in KINDS}
     for event in events:
         who = {str(event[part]) for part in ("sheet", "roller", "other", "part") if part in event}
+        who |= {*event.get("held_by", ())}
         for name in (f"events.{event['kind']}", *(f"events.{event['kind']}.{part}" for part in who)):
             found[name] = float(found.get(name) or 0.0) + 1.0  # pyright: ignore[reportArgumentType]
     return found
