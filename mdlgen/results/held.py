@@ -19,8 +19,9 @@ JAM_PART = 0.1
 # It is jammed where that lasts for so long at the end of a run, or for so long at any time; less is a wait,
 # above the last of these [ms]. A sensor of a machine that counts a late sheet as a jam allows some 50 ms.
 JAM_END, JAM_LONG, WAIT = 10.0, 50.0, 5.0
-# A sheet is on its way that is so many times as fast in the second half of such a time as in the first one
-# (3 where it speeds up evenly from rest), and faster than this part of the surface: less is creep.
+# A sheet is on its way that is faster than CREEPS, as a part of the surface, and in the second half of such a
+# time GAINS times as fast as in the first one (3 where it speeds up evenly from rest), or gains CREEPS in
+# JAM_END: at that rate it reaches JAM_PART within ten times JAM_END.
 GAINS, CREEPS = 1.5, 0.01
 
 
@@ -56,7 +57,7 @@ def holds(result: Result, stay: Stay, together: np.ndarray | None) -> list[Hold]
     for first, last in intervals(time, held, SHORT):
         lasts = float(time[last] - time[first])
         at = np.flatnonzero(held[first : last + 1]) + first
-        if lasts <= WAIT or _gains(goes[at]):
+        if lasts <= WAIT or _gains(time[at], goes[at]):
             continue
         long = lasts >= (JAM_LONG if last + 1 < len(time) else JAM_END)
         excused = long and (_below_another(result, stay, at, together) or _rim_to_come(result, stay, at))
@@ -72,13 +73,14 @@ def _is_fixed(result: Result, sheet: int) -> bool:
     return part.clamp is not None or any(anchor.sheet == sheet for anchor in model.supports)
 
 
-def _gains(speed: Floats) -> bool:
+def _gains(time: Floats, speed: Floats) -> bool:
     """Whether the speed of a sheet, as a part of the surface's, grows: by the medians of both halves."""
     half = len(speed) // 2
     if half == 0:
         return False
     before, after = float(np.median(speed[:half])), float(np.median(speed[half:]))
-    return after > max(CREEPS, GAINS * before)
+    fast = (after - before) * JAM_END > CREEPS * 0.5 * float(time[-1] - time[0])
+    return after > CREEPS and (fast or after > GAINS * before)
 
 
 def _below_another(result: Result, stay: Stay, at: np.ndarray, together: np.ndarray | None) -> bool:

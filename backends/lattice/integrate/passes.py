@@ -16,6 +16,7 @@ from mdlgen.backends.lattice.integrate.beside import Stopped
 from mdlgen.backends.lattice.integrate.ends import LIMITED, OVERLAPPED, PASSED, reason_of, unbalanced, unheld
 from mdlgen.backends.lattice.integrate.helpers import Helpers
 from mdlgen.backends.lattice.integrate.limit import Calls, Cut, Deadline
+from mdlgen.backends.lattice.integrate.looks import Looks
 from mdlgen.backends.lattice.integrate.pass_state import PassState, Stage
 from mdlgen.backends.lattice.integrate.record import Recorder, Snapshot
 from mdlgen.backends.lattice.integrate.sleep import Sleep
@@ -33,6 +34,7 @@ from mdlgen.backends.lattice.kernels.state import (
 from mdlgen.backends.lattice.kernels.state import MADE as MADE_OF
 from mdlgen.backends.lattice.kernels.state import MISS as MISS_OF
 from mdlgen.errors import SpecError
+from mdlgen.model.overlaps.unheld import Unheld
 from mdlgen.model.tables import Model
 from mdlgen.results.result import Result
 from mdlgen.runs.checkpoint import Checkpointer
@@ -103,13 +105,6 @@ def division(model: Model, wanted: float) -> Division:
     return Division(outputs, each, dt)
 
 
-def steps_to(left: float, step: float) -> np.ndarray:
-    """The steps over the time that is `left` [ms]: whole ones, after what is left of one that was begun."""
-    whole = math.floor(left / step + 1e-9)
-    first = left - whole * step
-    return np.array(([first] if first > 1e-9 * step else []) + whole * [step])
-
-
 def accuracy(model: Model) -> float:
     """What a step is solved to: a larger tolerance is for what differs from run to run however exact."""
     return min(model.run.tolerance, LOOSEST)
@@ -141,11 +136,12 @@ def one_pass(
     from mdlgen.backends.lattice.kernels.integrate import integrate
 
     run = model.run
-    outputs, each, dt = division(model, wanted)
+    divided = division(model, wanted)
+    outputs, _, dt = divided
+    looks = Looks(run.duration, outputs, divided.each)
     progress, keep, number, stop, hidden, threads, sleeps, deadline = watch
     begun = clock.perf_counter()
     work = arrays(model, system)
-    state = work.state  # of which places are those of all bodies, whatever sleeps
     steering = control(work)
     counters, energies = steering.counters, steering.energies
     recorder = Recorder(model, system, work, outputs)
@@ -170,50 +166,55 @@ def one_pass(
         if keep is not None and not hidden:  # the one beside shows a later part, or a finer one
             keep.part = partial(_part, recorder, recorder.snapshot(energies), dt, int(counters[STEPS]))
 
+    calls, slow = Calls(MOST_AT_ONCE), Slow(model, sleep.steering, None if hidden else progress)
+
+    def advance(t: float, goal: int, steps: int, fresh: bool) -> tuple[int, float]:
+        """Takes so many steps up to that one; `fresh`: the first one follows a state that was stored."""
+        status, left = integrate.DONE, np.full(steps, dt)
+        while left.size:
+            if stop is not None and stop.is_set():
+                raise Stopped
+            began, many, since = t, calls.many, clock.perf_counter()
+            status, t = integrate.run(sleep.work, t, left[:many], tolerance, sleep.steering)
+            took = clock.perf_counter() - since
+            calls.took(min(many, left.size), took)
+            slow.tell(t, left[0], took)
+            if fresh and t > began:
+                recorder.between()
+                fresh = False
+            if deadline.over and (status != integrate.DONE or left.size > many):
+                return LIMITED, t
+            if status == integrate.WOKEN:
+                sleep.wake(int(counters[WORST]), t, helpers)
+                status, left = integrate.DONE, looks.left(goal, t, dt)
+            elif status == integrate.LEFT and sleep.widen(helpers):
+                status, left = integrate.DONE, looks.left(goal, t, dt)
+            elif status == integrate.DONE:
+                left = left[many:]
+            else:
+                break
+        return status, t
+
     if stage is not None:
         show()
     todo = range(stage.outputs if stage else 0, 0 if stage and stage.ended else outputs)
-    calls, slow = Calls(MOST_AT_ONCE), Slow(model, sleep.steering, None if hidden else progress)
     with Helpers(sleep.work, threads) as helpers, Cut(deadline, lambda: sleep.work):
         for output in todo:
-            fresh, last = True, (output + 1) * run.duration / outputs
-            left = np.full(each, dt)
-            while left.size:
-                if stop is not None and stop.is_set():
-                    raise Stopped
-                began, many, since = t, calls.many, clock.perf_counter()
-                status, t = integrate.run(sleep.work, t, left[:many], tolerance, sleep.steering)
-                took = clock.perf_counter() - since
-                calls.took(min(many, left.size), took)
-                slow.tell(t, left[0], took)
-                if fresh and t > began:
-                    recorder.between()
-                    fresh = False
-                if deadline.over and (status != integrate.DONE or left.size > many):
-                    status = LIMITED
-                    break
-                if status == integrate.WOKEN:
-                    sleep.wake(int(counters[WORST]), t, helpers)
-                    left = steps_to(last - t, dt)
-                elif status == integrate.LEFT and sleep.widen(helpers):
-                    status, left = integrate.DONE, steps_to(last - t, dt)
-                elif status == integrate.DONE:
-                    left = left[many:]
-                else:
+            begins, stops = output * divided.each, looks.stops(output)
+            for goal, before in zip(stops, [begins, *stops], strict=False):
+                status, t = advance(t, goal, goal - before, before == begins)
+                stored = status == integrate.DONE and goal == stops[-1]
+                if stored:
+                    recorder.store((output + 1) * run.duration / outputs)
+                if status == integrate.DONE and looks.due(goal):
+                    t = looks.time(goal)
+                    sleep.look(t, tolerance, helpers)
+                    status = _seen(sleep, system, overlaps, t)
+                    if status != integrate.DONE and not stored:
+                        recorder.store(t)
+                if status != integrate.DONE:
                     break
             if status != integrate.DONE:
-                break
-            t = last
-            recorder.store(t)
-            sleep.look(t, tolerance, helpers)
-            mirror = sleep.system.mirror
-            passed = mirror.passed(state.x, system.nodes) if mirror is not None else -1
-            if passed >= 0:
-                status = PASSED
-                counters[WORST] = passed
-                break
-            if overlaps.found(state.x, state.r, t) is not None:
-                status = OVERLAPPED
                 break
             show()
             if keep is not None and keep.due(number) and output + 1 < outputs:
@@ -249,6 +250,18 @@ def one_pass(
     ):
         return result
     return result.failed(wrong if result.ok else f"{result.status}; and {wrong}")
+
+
+def _seen(sleep: Sleep, system: System, overlaps: Unheld, t: float) -> int:
+    """DONE, or why a pass cannot go on from its state at the time t."""
+    from mdlgen.backends.lattice.kernels.integrate import integrate
+
+    state, mirror = sleep.work.state, sleep.system.mirror
+    passed = mirror.passed(state.x, system.nodes) if mirror is not None else -1
+    if passed >= 0:
+        sleep.steering.counters[WORST] = passed
+        return PASSED
+    return integrate.DONE if overlaps.found(state.x, state.r, t) is None else OVERLAPPED
 
 
 def _part(recorder: Recorder, snapshot: Snapshot, dt: float, steps: int) -> Result:

@@ -15,7 +15,8 @@ import numpy as np
 
 from mdlgen.backends.lattice.arrays import System, build
 from mdlgen.backends.lattice.integrate.films import films
-from mdlgen.backends.lattice.kernels.state import MANY, Bounds, Kept, Workspace
+from mdlgen.backends.lattice.integrate.work import bounds_of
+from mdlgen.backends.lattice.kernels.state import MANY, Kept, Workspace
 from mdlgen.backends.lattice.symmetry.find import find
 from mdlgen.backends.lattice.symmetry.mirror import halve
 from mdlgen.mechanics.frame import Motion
@@ -120,7 +121,7 @@ def carried_over(model: Model, work: Workspace, system: System, marks: np.ndarra
         seen=np.zeros(many, np.bool_),
         looked=np.zeros_like(work.condensed.looked),  # a step lists its pairs before it reads them
         touched=np.zeros(many, np.int64),
-        results=np.zeros((max(1, many), forces.WIDE)),
+        results=np.zeros((many + 1, forces.WIDE)),
     )
     entries.look(system.pairs, system.search, work.search.place.copy())
     film = films(model, system)
@@ -129,7 +130,7 @@ def carried_over(model: Model, work: Workspace, system: System, marks: np.ndarra
         mid=work.mid._replace(**{name: getattr(blank, name) for name in OF_PAIRS}),
         condensed=condensed,
         kept=Kept(work.kept.rows, marks),
-        bounds=Bounds(model.pairs.low, model.pairs.high),
+        bounds=bounds_of(model),
         search=system.search,
         frozen=room.frozen(system, len(film.cells)),
         pool=parallel.empty(len(work.matrix.couplings.colouring.spans), system.border),

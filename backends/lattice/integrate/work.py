@@ -99,7 +99,7 @@ def workspace(
         condensed=condensed.empty(system, forces.WIDE),
         free=momentum.empty(system),
         kept=kept,
-        bounds=Bounds(_own(model.pairs.low), _own(model.pairs.high)),
+        bounds=bounds_of(model),
         search=system.search,
         damped=damped.empty(system),
         frozen=room.frozen(system, len(film.cells)),
@@ -108,6 +108,11 @@ def workspace(
         islands=islands,
         asleep=asleep,
     )
+
+
+def bounds_of(model: Model) -> Bounds:
+    """Where the bodies of a Model may be, in arrays of their own (see limit.Cut)."""
+    return Bounds(_own(model.pairs.low), _own(model.pairs.high))
 
 
 def _own(array: Floats) -> Floats:
