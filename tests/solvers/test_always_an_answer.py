@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 
 import mdlgen
+from mdlgen.backends.lattice import run as lattice
 from mdlgen.model.tables import Model
 from mdlgen.results import chaos
+from mdlgen.results.quantities import differences
 from mdlgen.results.result import Result
 
 CASES = Path(__file__).parents[1] / "cases"
@@ -47,6 +49,15 @@ def test_a_step_that_is_fine_is_within_the_tolerance() -> None:
     half = float(np.linalg.norm(result.model.bodies.half[0]))
     off = half * float(np.linalg.norm(turned(result) - turned(exact))) / 6.0  # of a tenth of the length
     assert off < 2.0 * result.error_estimate
+
+
+def test_two_runs_that_agree_by_accident_do_not_hide_an_error() -> None:
+    """Runs at 0.2 and 0.1 ms differ by 0.12 of the tolerance, and the finer one is off by 0.62 of it."""
+    result = mdlgen.solve(case("arms"), "lattice")
+    exact = lattice.solve(result.model, step=result.step / 8)
+    found = differences(result, exact, judged=True)["sheets.n.position"]
+    assert result.ok and result.error_estimate is not None
+    assert 0.2 * result.model.run.tolerance < found.value < result.error_estimate
 
 
 def test_one_rule_ends_the_search() -> None:
