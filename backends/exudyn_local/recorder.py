@@ -273,7 +273,8 @@ class Recorder:
             self._most,
             float(self._totals[POTENTIAL] - self._first[POTENTIAL]),
         )
-        scale = audit.scale(self.model, *(to_nmm * energy for energy in passed))
+        lost, through, most, moved = (to_nmm * energy for energy in passed)
+        scale = audit.scale(self.model, lost, through, most, moved)
         return Energy(
             kinetic=self._totals[KINETIC] * to_nmm,
             elastic=self._totals[ELASTIC] * to_nmm,
