@@ -55,7 +55,8 @@ def _impact(speed: float, contact: str = "") -> Result:
 def test_a_fast_body_elsewhere_changes_no_impact(speed: float, contact: str) -> None:
     result = _impact(speed, contact)
     assert result.ok
-    x, _, z = result.velocity[-1, 0]
+    first = next(sheet.first for sheet in result.model.sheets if sheet.name == "n")
+    x, _, z = result.velocity[-1, first]
     assert (x, z) == pytest.approx(AFTER, abs=NEAR)
 
 
@@ -123,4 +124,4 @@ def test_parts_that_may_touch_form_groups() -> None:
         model = lower(loads(text.replace("run:", contact + "run:")))
         found = islands(model, build(model))
         assert len(set(found.group[found.answers].tolist())) == groups
-        assert found.least[:2] == pytest.approx([0.01 * 30 / 6, 0.01 * 20 / 6])
+        assert found.least[:2] == pytest.approx([0.01 * 20 / 6, 0.01 * 30 / 6])  # f, n

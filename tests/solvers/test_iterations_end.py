@@ -59,7 +59,7 @@ run: {duration: 20 ms, margin: 40 mm}
 """
 
 
-@pytest.mark.parametrize("mass", [2.0, 0.1])
+@pytest.mark.parametrize("mass", [2.0, 20.0])
 def test_blocks_that_collide_in_free_flight_take_no_more_iterations_than_others(mass: float) -> None:
     result = solve(lower(loads(BLOCKS % mass)), "lattice")
     assert result.ok
