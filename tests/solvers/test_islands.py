@@ -124,4 +124,4 @@ def test_parts_that_may_touch_form_groups() -> None:
         model = lower(loads(text.replace("run:", contact + "run:")))
         found = islands(model, build(model))
         assert len(set(found.group[found.answers].tolist())) == groups
-        assert found.least[:2] == pytest.approx([0.01 * 20 / 6, 0.01 * 30 / 6])  # f, n
+        assert found.least[:2] == pytest.approx([0.1 * 20 / 6, 0.1 * 30 / 6])  # f, n

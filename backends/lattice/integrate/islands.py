@@ -11,16 +11,15 @@ from mdlgen.mechanics.frame import RADIUS
 from mdlgen.model.tables import Ints, Model
 
 # Least distance that a part is measured by, relative to the length of a sheet, the radius of a roller or the
-# thickness of a plate. Estimates are relative to ten times that at least (see results.estimates). With ten
-# times as much, samples/pile.yaml lost 0.25 % of its energy at a step at which it loses 0.07 %.
-LEAST_WAY = 0.01
+# thickness of a plate: the least that `run.tolerance` is relative to (see results.estimates).
+LEAST_WAY = 0.1
 
 
 def islands(model: Model, system: System) -> Islands:
     """Parts of a Model before the first step.
 
     The least speed of a part is the one that takes it over LEAST_WAY of its size in the time of the run: an
-    error of that speed times `run.tolerance` stays within a tenth of the tolerance.
+    error of that speed times `run.tolerance` stays within the tolerance.
     """
     sheets, moving, bodies = len(model.sheets), system.moving, system.bodies
     parts = sheets + len(moving)
