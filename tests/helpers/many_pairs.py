@@ -81,6 +81,7 @@ def _tables(bodies: np.ndarray, pairs: np.ndarray, shapes: Shapes) -> Tables:
         nodes=np.zeros(0, np.int64),
         boxes=np.zeros((0, OWN)),
         moving=np.zeros(0, np.int64),
+        runs=np.zeros((0, 3), np.int64),
         thinnest=1e300,
         points=np.zeros(0, POINT),
         images=np.zeros(0, IMAGE),
@@ -96,7 +97,8 @@ def _middle(bodies: int, pairs: int, motion: Motion) -> Midpoint:
         results=_room(pairs),
         rows=np.zeros(1, np.int64),
         faces=np.zeros((1, FACE)),
-        totals=np.zeros(3),
+        totals=np.zeros(2),
+        spent=np.zeros((0, 2)),
         near=np.zeros(pairs, np.int64),
         overlaps=np.zeros(1, OVERLAP),
         spare=np.zeros(1, OVERLAP),
@@ -114,4 +116,4 @@ _rooms: dict[int, Floats] = {}
 
 def _room(pairs: int) -> Floats:
     """One for all calls of that many pairs: each fills what it reads."""
-    return _rooms.setdefault(pairs, np.zeros((pairs, WIDE)))
+    return _rooms.setdefault(pairs, np.zeros((pairs + 1, WIDE)))

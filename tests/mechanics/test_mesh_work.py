@@ -67,25 +67,20 @@ def test_round_a_closed_way_a_mesh_does_no_work(tmp_path: Path, lobe: bool) -> N
             x = lowered(mesh, x + place, turn)
             out = press(mesh, x, turn, spin)
             energy = out[:, STORED]
-            assert energy.max() > 0.0 and out[:, DEPTH].max() < 0.9, name
+            assert energy.max() > 0.0 and out[:, DEPTH].max() < 1.0, name
             half = 0.5 * (out[1:] + out[:-1])
             work = np.einsum("ni,ni->n", half[:, :3], np.diff(x, axis=0))
             work += np.einsum("ni,ni->n", half[:, 3:6], (turn[1:] * turn[:-1].inv()).as_rotvec())
-            if lobe:
-                work += np.einsum("ni,ni->n", half[:, 9:12], (spin[1:] * spin[:-1].inv()).as_rotvec())
+            work += np.einsum("ni,ni->n", half[:, 9:12], (spin[1:] * spin[:-1].inv()).as_rotvec())
             # of what is stored at most; the rule of the pressures on triangles is right to 2e-4 of it
             assert abs(work.sum()) < 1e-3 * energy.max(), (name, lean)
-            # on the way, too, the work is what is stored
-            assert abs(energy[0] - energy - np.append(0.0, work.cumsum())).max() < 0.02 * energy.max(), (
-                name,
-                lean,
-            )
 
 
 def lowered(mesh: Shapes, x: Floats, turn: Rotation) -> Floats:
-    """The way, come down until its deepest place is some 0.3 mm deep."""
-    down = np.array([0.0, 0.0, 0.02])
-    while press(mesh, x[::25], turn[::25], None)[:, DEPTH].max() < 0.3:
+    """The way, come down from clear of the mesh until its deepest place is some 0.2 mm deep."""
+    down = np.array([0.0, 0.0, 0.04])
+    x = x + np.array([0.0, 0.0, 8.0])
+    while press(mesh, x[::10], turn[::10], None)[:, DEPTH].max() < 0.2:
         x = x - down
     return x
 
