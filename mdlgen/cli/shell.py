@@ -313,12 +313,12 @@ def progress_bar(
                 said.add(text)
                 say(text)
 
-        told = time.monotonic()
+        said = time.monotonic()
 
         def held_up(text: str) -> None:
-            nonlocal told
-            if time.monotonic() - told >= BETWEEN:
-                told = time.monotonic()
+            nonlocal said
+            if time.monotonic() - said >= BETWEEN:
+                said = time.monotonic()
                 say(text)
 
         with compiling(line), slow(held_up) if verbose else contextlib.nullcontext():

@@ -114,13 +114,13 @@ def _notable(events: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
             for event in held
         )
 
-    def told(event: Mapping[str, Any]) -> bool:
+    def listed(event: Mapping[str, Any]) -> bool:
         if event["kind"] != "slip":
             return event["kind"] in NOTABLE
         large = LARGE_SLIP < abs(event.get("part_of_surface_speed") or 0.0) <= 1.0
         return large and not explained(event)
 
-    return [event for event in events if told(event)]
+    return [event for event in events if listed(event)]
 
 
 def in_words(event: Mapping[str, Any]) -> str:

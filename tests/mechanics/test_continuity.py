@@ -55,7 +55,7 @@ STILL = {
     "box_cylinder": 60,  # 0.05, where a free edge comes to the contact line
     "box_plane": 25,  # 0.02, at corners of a plate, where two free ends meet
     "box_guide": 15,  # 0.03, the same
-    "box_arc": 65,  # 0.3, the round face alone, where the end of the arc is oblique to the box
+    "box_arc": 100,  # 0.3, the round face where the end of the arc is oblique to the box; its long sides
     "box_box": 170,  # 2, where a side takes the contact over from the face
     "sheet_lobe": 30,  # 0.06
     "cylinder_plane": 45,  # 0.25, rollers that stand askew over an edge
@@ -158,9 +158,9 @@ def plates(bodies: np.ndarray, random: np.random.Generator, arc: bool) -> States
         return b
     bodies["arc"][1::2] = (20.0, 0.3, 0.5)
     round_ = (side == OUTSIDE) | ((side == BOTH) & (random.random(COUNT) < 0.5))
-    foot = np.where(round_, 0.5, -0.5) * np.pi  # the angle of the place that is touched
+    base = np.where(round_, 0.5, -0.5) * np.pi  # the angle of the place that is touched
     off = random.choice([-0.5, 0.5, 0.0], COUNT) + 0.02 * random.normal(size=COUNT)
-    spin = Rotation.from_rotvec(np.outer(foot - 0.3 - off, [0.0, 0.0, 1.0])).as_matrix()
+    spin = Rotation.from_rotvec(np.outer(base - 0.3 - off, [0.0, 0.0, 1.0])).as_matrix()
     b.r[:] = b.r @ spin
     b.x[:, 2] = np.where(round_, -20.0, 20.0)
     return b

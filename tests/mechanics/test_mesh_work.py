@@ -80,7 +80,7 @@ def lowered(mesh: Shapes, x: Floats, turn: Rotation) -> Floats:
     """The way, come down from clear of the mesh until its deepest place is some 0.2 mm deep."""
     down = np.array([0.0, 0.0, 0.04])
     x = x + np.array([0.0, 0.0, 8.0])
-    while press(mesh, x[::10], turn[::10], None)[:, DEPTH].max() < 0.2:
+    while press(mesh, x[::3], turn[::3], None)[:, DEPTH].max() < 0.2:
         x = x - down
     return x
 

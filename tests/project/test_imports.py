@@ -96,9 +96,9 @@ def test_compiled_code_is_kept_in_one_place_whoever_imports_it_first(first: str)
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.split() == [
-        "mdlgen.backends.lattice.kernels",
-        "mdlgen.backends.lattice.kernels",
-        "mdlgen.mechanics",
+        "mdlgen.backends.lattice.kernels.linear.band.factor",
+        "mdlgen.backends.lattice.kernels.integrate.integrate.run",
+        "mdlgen.mechanics.pairs.box_plane",
     ]
 
 

@@ -241,8 +241,8 @@ def test_a_card_at_a_gate_is_jammed() -> None:
     assert jam["duration_ms"] > 45.0 and sorted(jam["held_by"]) == ["deck_1", "gate"]
     found = result.summary()["verdict"]
     assert not found["passed"]
-    (told,) = found["events"]  # and no slip of the same card there
-    assert told.startswith("jam of deck_2 at pick from ") and "held by " in told and "gate" in told
+    (said,) = found["events"]  # and no slip of the same card there
+    assert said.startswith("jam of deck_2 at pick from ") and "held by " in said and "gate" in said
     at_the_gate = gate("+x", "require=[no jam at gate, no jam at tray]").summary()["verdict"]["requirements"]
     assert [row["passed"] for row in at_the_gate] == [False, True]
 

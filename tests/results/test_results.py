@@ -87,7 +87,14 @@ class TestSummary:
     def test_is_the_promised_object(self, result: Result) -> None:
         record = summary(result)
         assert set(record) == PROMISED | WORK
-        assert set(record["pairs"]) == {"possible", "kept", "searched", "touched"}
+        assert set(record["pairs"]) == {
+            "possible",
+            "kept",
+            "searched",
+            "touched",
+            "margin_mm",
+            "margin_given_mm",
+        }
         assert set(record["sheets"]["note"]) == {
             "travel_mm", "speed_mm_per_s", "yaw_deg", "way_mm", "mean_speed_mm_per_s", "skew_deg",
             "boxes", "bushings", "strain", "curvature", "twist", "tension", "energy",

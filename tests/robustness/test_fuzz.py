@@ -372,7 +372,9 @@ def solved(spec: Path) -> None:
     # 5: it ran, and its files stand, but missed its tolerance; 6: or what the scene requires
     assert ended in (0, 2, 4, 5, 6), err
     assert ended == 0 or one_line(err, spec), err
-    assert (folder / "d" / "summary.json").exists() == (ended in (0, 5, 6))
+    # 4: what there is up to where it ended early, if it began
+    written = (folder / "d" / "summary.json").exists()
+    assert written == (ended in (0, 5, 6)) or ended == 4
 
 
 @pytest.mark.filterwarnings("error")

@@ -116,20 +116,6 @@ def test_an_edge_presses_along_the_normal_of_the_face_that_slides_over_it():
             assert out[15] == pytest.approx(0.01, rel=1e-9)
 
 
-def test_an_edge_is_the_same_all_along_a_sheet_that_leans():
-    """A sheet that leans along the end is above the plate here, and below it farther along the end."""
-    plate = Plate(STRAIGHT, PLATE, PLATE[2], 15, (0.1, 0.1, 0.0), 0)
-    axes = tuple(Rotation.from_rotvec([0.05, -0.3, 0.0]).as_matrix().ravel().tolist())
-    pushes = []
-    for y in (0.0, -60.0, 90.0):
-        out = np.zeros(OUT + 1 + POINT * MOST_POINTS)
-        frame = Frame((0.2, y, 0.0), axes, ZERO, ZERO)
-        box_plane(out, frame, Box(HALF, 0), TABLE, plate, Law(K, True, *PLAIN))
-        pushes.append(out[:6])
-    assert pushes[0][2] > 0.0
-    assert pushes[1] == pytest.approx(pushes[0], rel=1e-9) and pushes[2] == pytest.approx(pushes[0], rel=1e-9)
-
-
 def test_a_joint_of_boxes_hands_the_edge_on():
     """Two boxes in a row over an edge: together they have what one has, wherever their joint is."""
     slope = 0.3

@@ -27,6 +27,7 @@ from mdlgen.spec.load import load, loads
 pytestmark = pytest.mark.usefixtures("as_python")
 
 STATIC = "run.analysis=static"
+ASIDE = (((0, 0.49), True), ((0, 0.502), False), ((-0.42, 0), True), ((0.42, 0), True), ((0.51, 0), False))
 SMOOTH = ("contacts.0.friction=0", "run.prune=false")
 ELASTICA = 76.5308  # mm, heavy elastica of the sample
 FLOOR = (
@@ -310,16 +311,7 @@ def test_a_sheet_with_more_over_the_edge_than_on_the_table_falls() -> None:
     assert not as_asked(result)
 
 
-@pytest.mark.parametrize(
-    "aside, stands",
-    [
-        ((0.0, 0.49), True),
-        ((0.0, 0.502), False),
-        ((-0.42, 0.0), True),
-        ((0.42, 0.0), True),
-        ((0.51, 0.0), False),
-    ],
-)
+@pytest.mark.parametrize(("aside", "stands"), ASIDE)
 def test_a_sheet_over_an_edge_slides_at_its_friction(aside: tuple[float, float], stands: bool) -> None:
     """Along the edge all of 0.5 is left; over it the edge pushes outwards, which takes a part."""
     result = hangs(60, 200, aside=aside)

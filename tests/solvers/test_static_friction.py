@@ -233,7 +233,7 @@ run: {{analysis: static}}
     "long, lean, stands", [(10, 6, True), (5.4, 5, True), (4.6, 5, False), (4, 6, False)]
 )
 def test_a_high_block_on_a_slope_tips_over_its_edge(long: float, lean: float, stands: bool) -> None:
-    """Friction acts at its foot: it stands where its length over its height is above the slope."""
+    """Friction acts at its base: it stands where its length over its height is above the slope."""
     result = mdlgen.solve(lower(loads(BLOCK.format(long=long, lean=float(lean)))), "lattice")
     assert result.ok == stands, result.status
 

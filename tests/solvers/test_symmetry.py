@@ -109,7 +109,7 @@ def test_a_scene_along_another_axis() -> None:
         "rollers.motor.axis=x",
         "rollers.idler.axis=x",
         "run.step=0.05 ms",
-        "run.tolerance=1e-7",
+        "run.tolerance=3e-8",
     )
     assert_same(half, whole)
 

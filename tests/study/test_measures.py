@@ -182,7 +182,7 @@ class TestMeasures:
         [
             ("sheets.note.yaw_degg", "did you mean 'sheets.note.yaw_deg'?"),
             ("slip=1 - sheets.note.travl_mm.x", "did you mean 'sheets.note.travel_mm.x'?"),
-            ("zzz", "it has t_end_ms, steps"),
+            ("zzz", "it has mark, duration_ms, t_end_ms, steps"),
             ("1 - sheets.note.travel_mm", "is a vector; write sheets.note.travel_mm.x"),
             ("wall_s", "times.csv has it"),
             ("solver", "there is no number 'solver'"),

@@ -46,7 +46,7 @@ class Hold(NamedTuple):
     box: int
     stiffness: float
 
-    def foot(self, model: Model) -> Floats:
+    def base(self, model: Model) -> Floats:
         """Where the box is held (3,), in its own axes: below its middle, in the face of the plane, where
         friction acts."""
         bodies = model.bodies
@@ -58,12 +58,12 @@ class Hold(NamedTuple):
         """What it holds with bodies at x (n, 3), their rotations r (n, 9): the force along the plane [N] and
         the couple about its normal [N mm], (3,), and where (3,)."""
         axes, own = model.bodies.rotation[self.plane.body], r[self.box].reshape(3, 3)
-        first, foot = model.bodies.rotation[self.box], self.foot(model)
+        first, base = model.bodies.rotation[self.box], self.base(model)
         turn = vectors(axes.T @ own @ first.T @ axes)
-        place = x[self.box] + own @ foot
+        place = x[self.box] + own @ base
         # in the frame halfway, as of any bushing
         halfway = matrices(0.5 * turn)
-        moved = (place - model.bodies.position[self.box] - first @ foot) @ axes @ halfway
+        moved = (place - model.bodies.position[self.box] - first @ base) @ axes @ halfway
         moved[2] = 0.0
         force = self.stiffness * (halfway @ moved)
         return np.array([*force[:2], self.stiffness * _arm(model, self.box) ** 2 * float(turn[2])]), place
@@ -105,8 +105,8 @@ def held(model: Model, system: System, found: list[Hold]) -> System:
     for joint, hold in zip(joints, found, strict=True):
         axes, own = model.bodies.rotation[hold.plane.body], model.bodies.rotation[hold.box]
         joint["a"], joint["b"], joint["first"] = GROUND, hold.box, -1
-        foot = hold.foot(model)
-        joint["ra"], joint["rb"] = model.bodies.position[hold.box] + own @ foot, foot
+        base = hold.base(model)
+        joint["ra"], joint["rb"] = model.bodies.position[hold.box] + own @ base, base
         joint["fa"], joint["fb"] = axes.ravel(), (own.T @ axes).ravel()
         k = hold.stiffness
         joint["k"] = k, k, 0.0, 0.0, 0.0, k * _arm(model, hold.box) ** 2

@@ -20,7 +20,7 @@ AXES = "xyz"
 # They differ from run to run of the same case; a study keeps them apart from its table.
 TIMES = ("wall_s", "estimate_s", "compile_s", "build_s")
 BEARING = ("strain", "curvature", "twist", "tension")
-LEFT_OUT = ("error_estimate_of", "estimate_scales")
+LEFT_OUT = ("error_estimate_of", "estimate_scales", "estimates_below")
 MOST = 200  # measures
 _NAMED = re.compile(r"\s*([A-Za-z]\w{0,62})\s*=(?!=)(.*)", re.ASCII | re.DOTALL)
 _PIECE = re.compile(r"[A-Za-z_]\w*(?:\.\w+)*", re.ASCII)
