@@ -313,12 +313,12 @@ def progress_bar(
                 said.add(text)
                 say(text)
 
-        said = time.monotonic()
+        reported = time.monotonic()
 
         def held_up(text: str) -> None:
-            nonlocal said
-            if time.monotonic() - said >= BETWEEN:
-                said = time.monotonic()
+            nonlocal reported
+            if time.monotonic() - reported >= BETWEEN:
+                reported = time.monotonic()
                 say(text)
 
         with compiling(line), slow(held_up) if verbose else contextlib.nullcontext():
