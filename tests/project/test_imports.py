@@ -98,7 +98,7 @@ def test_compiled_code_is_kept_in_one_place_whoever_imports_it_first(first: str)
     assert done.stdout.split() == [
         "mdlgen.backends.lattice.kernels.linear.band.factor",
         "mdlgen.backends.lattice.kernels.integrate.integrate.run",
-        "mdlgen.mechanics.pairs.box_plane",
+        "mdlgen.mechanics.plate.box_plane",
     ]
 
 
