@@ -22,14 +22,16 @@ from mdlgen.spec.load import loads
 STEPS = 1500  # of a way: half of them change no sum by more than a tenth of what is allowed
 HALF = (6.0, 4.0, 2.0)
 NO_LOSSES = (0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0)  # columns as in mechanics.frame
-# Places on a brick of 40 x 30 x 6 mm, and on a lobe of the radius 7.5 mm with two flats.
+# Places on a brick of 40 x 30 x 6 mm, and on a lobe of the radius 7.5 mm with two flats; and from where the
+# block comes there.
+DOWN, ALONG = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
 BRICK = {
-    "face": (4.0, 3.0, 5.0),
-    "edge": (20.0, 2.0, 4.9),
-    "corner": (20.0, 15.0, 4.9),
-    "end": (25.9, 0.0, 0.0),
+    "face": ((4.0, 3.0, 5.0), DOWN),
+    "edge": ((20.0, 2.0, 4.9), DOWN),
+    "corner": ((20.0, 15.0, 4.9), DOWN),
+    "end": ((25.9, 0.0, 0.0), ALONG),
 }
-LOBE = {"round": (0.0, 0.0, 9.4), "cap": (1.0, 2.5, 9.3), "flat": (6.2, 1.0, 6.0)}
+LOBE = {"round": ((0.0, 0.0, 9.4), DOWN), "cap": ((1.0, 2.5, 9.3), DOWN), "flat": ((6.2, 1.0, 6.0), DOWN)}
 
 
 def shapes(folder: Path, lobe: bool) -> Shapes:
@@ -59,13 +61,13 @@ def test_round_a_closed_way_a_mesh_does_no_work(tmp_path: Path, lobe: bool) -> N
     """In place and rotation, over faces, edges and corners, and by a roller that turns."""
     random, mesh = np.random.default_rng(11), shapes(tmp_path, lobe)
     places, closed = LOBE if lobe else BRICK, 0
-    for name, place in places.items():
+    for name, (place, clear) in places.items():
         for lean in (0.0, 0.3, 0.9):
             x, turn = ways(random, 0.12, 0.15, Rotation.from_rotvec([0.3 * lean, lean, 0.2]))
             spin = Rotation.from_rotvec(
                 0.05 * np.outer(np.sin(np.linspace(0, 2 * np.pi, STEPS + 1)), [0, 1, 0])
             )
-            x = lowered(mesh, x + place, turn)
+            x = brought_near(mesh, x + place, turn, np.array(clear))
             out = press(mesh, x, turn, spin)
             energy = out[:, STORED]
             assert energy.max() > 0.0, name
@@ -83,12 +85,18 @@ def test_round_a_closed_way_a_mesh_does_no_work(tmp_path: Path, lobe: bool) -> N
     assert closed >= 3 * len(places) - 2
 
 
-def lowered(mesh: Shapes, x: Floats, turn: Rotation) -> Floats:
-    """The way, come down from clear of the mesh until its deepest place is some 0.2 mm deep."""
-    down = np.array([0.0, 0.0, 0.04])
-    x = x + np.array([0.0, 0.0, 8.0])
-    while press(mesh, x, turn, None)[:, DEPTH].max() < 0.2:
-        x = x - down
+def brought_near(mesh: Shapes, x: Floats, turn: Rotation, clear: Floats) -> Floats:
+    """The way, come from 8 mm towards the mesh until its deepest place is some 0.2 mm deep."""
+    x, some = x + 8.0 * clear, slice(None, None, 25)
+    for step in (0.2, 0.02):
+        # coming back by a step after the coarse ones
+        for _ in range(int(16.0 / step)):
+            if press(mesh, x[some], turn[some], None)[:, DEPTH].max() > (0.0 if step > 0.1 else 0.2):
+                break
+            x = x - step * clear
+        else:
+            pytest.fail("the way does not meet the mesh")
+        x = x + 0.2 * clear if step > 0.1 else x
     return x
 
 
