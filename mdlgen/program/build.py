@@ -1,9 +1,10 @@
 """Makes the shipped programs: `python -m mdlgen.program.build`; with `--check` it says whether they fit.
 
-Each entry is compiled by numba in a process of its own, for the types that it has in some small scenes, and
-not optimised. What numba gives of it (`inspect_llvm`) is linked into one module for all entries, of which
-only what they call is kept, with a wrapper for each that takes its arguments as words. LLVM optimises that
-without vector instructions, which is for the machine that it will run on, and divides it into two parts.
+Each entry is compiled by numba, for the types that it has in some small scenes, and not optimised; each
+program in a process of its own. What numba gives of it (`inspect_llvm`) is linked into one module for all
+entries, of which only what they call is kept, with a wrapper for each that takes its arguments as words. LLVM
+optimises that without vector instructions, which is for the machine that it will run on, and divides it into
+two parts.
 
 It stands above what it makes, so it knows that by name only.
 """
@@ -17,10 +18,10 @@ import os
 import re
 import subprocess
 import sys
-import tempfile
 import warnings
 from typing import Any
 
+from mdlgen import paths
 from mdlgen.program import file
 from mdlgen.program.emit import SMALL
 from mdlgen.program.file import Head, Unfit, Variant
@@ -110,18 +111,20 @@ def main() -> None:
     wanted = parser.parse_args()
     if wanted.check:
         sys.exit(_check())
-    for name in _shipped():
-        with tempfile.TemporaryDirectory() as folder:
-            surroundings = {
-                **os.environ,
-                "MDLGEN_NUMBA": "1",
-                "MDLGEN_CACHE": folder,
-                "NUMBA_OPT": "0",
-                "NUMBA_CPU_NAME": "generic",
-                "NUMBA_CPU_FEATURES": "",
-            }
-            code = f"from mdlgen.program import build; build.make({name!r})"
-            subprocess.run([sys.executable, "-c", code], env=surroundings, check=True)
+    surroundings = {
+        **os.environ,
+        "MDLGEN_NUMBA": "1",
+        # pieces are kept for the next time; what is made of them does not depend on that
+        "MDLGEN_CACHE": str(paths.cache("made")),
+        "NUMBA_OPT": "0",
+        "NUMBA_CPU_NAME": "generic",
+        "NUMBA_CPU_FEATURES": "",
+    }
+    code = "from mdlgen.program import build; build.make({!r})"
+    made = [
+        subprocess.Popen([sys.executable, "-c", code.format(name)], env=surroundings) for name in _shipped()
+    ]
+    sys.exit(max([one.wait() for one in made]))
 
 
 def _shipped() -> dict[str, Any]:
@@ -154,6 +157,8 @@ def make(name: str) -> None:
     shipped = _shipped()[name]
     program: Program = importlib.import_module(shipped.module).PROGRAM
     types = watched(program)
+    for kernel in program.entries:
+        kernel.dispatcher._cache.disable()  # what numba has kept of machine code it has no text of
     _play(name, shipped.scenes)
     if missing := [entry for entry, found in types.items() if not found]:
         sys.exit(f"{program.path.name}: no scene calls {', '.join(missing)}")

@@ -5,6 +5,7 @@ numba is imported where a kernel that no program has is called from Python, and 
 
 from __future__ import annotations
 
+import dis
 import functools
 import hashlib
 import importlib
@@ -66,7 +67,7 @@ class Kernel:
         self.text = text  # that the function was made from, where no file has it
         self.programs: list[Program] = []  # that have it as an entry
         self._call: Callable[..., Any] = self._first
-        self._made: Any = None
+        self._made: dict[bool, Any] = {}
 
     def __call__(self, *args: Any) -> Any:
         """Calls the compiled code; all arguments by their places."""
@@ -105,17 +106,41 @@ class Kernel:
 
     @property
     def dispatcher(self) -> Any:
-        """numba's own object for this function."""
-        if self._made is None:
+        """numba's own object for this function, for calls from Python."""
+        return self._dispatcher(True)
+
+    @property
+    def piece(self) -> Any:
+        """numba's own object for this function, for calls from other kernels; see mdlgen.program.pieces."""
+        return self._dispatcher(False)
+
+    def _dispatcher(self, whole: bool) -> Any:
+        if whole not in self._made:
             with _lock:
-                if self._made is None:
-                    self._made = _dispatcher(self)
-        return self._made
+                if whole not in self._made:
+                    self._made[whole] = _dispatcher(self, whole)
+        return self._made[whole]
+
+    @property
+    def full_name(self) -> str:
+        """No other kernel has this name."""
+        return f"{self.__module__}.{self.__name__}"
+
+    @functools.cached_property
+    def own_digest(self) -> str:
+        """Of what the function itself is compiled from, where the kernels that it calls are names."""
+        return _own_digest(self)
+
+    @functools.cached_property
+    def digest(self) -> str:
+        """Of all that the function is compiled from."""
+        below = (f"{one.full_name} {one.digest}" for one in _compiled_from(self.py_func)[1])
+        return hashlib.sha256("\n".join([self.own_digest, *below]).encode()).hexdigest()[:16]
 
     @property
     def _numba_type_(self) -> Any:
         # by this numba knows a kernel among the globals of a function that it compiles
-        return self.dispatcher._numba_type_
+        return self.piece._numba_type_
 
 
 def intrinsic(function: Callable[..., Any], plain: Callable[..., Any] | None = None) -> Intrinsic:
@@ -149,24 +174,39 @@ class Intrinsic:
         return self._made
 
 
-def _dispatcher(kernel: Kernel) -> Any:
+def _dispatcher(kernel: Kernel, whole: bool) -> Any:
     """A dispatcher whose code is kept in our folder; the settings of numba are afterwards as they were."""
     numba = importlib.import_module("numba")
     settings = importlib.import_module("numba.core.config").__dict__  # made at run time
-    function, options = kernel.py_func, kernel.options
-    folder = _folder(kernel) if options.get("cache") else None
+    pieces = importlib.import_module("mdlgen.program.pieces")
+    function = kernel.py_func
+    options = {
+        **kernel.options,
+        "cache": False,
+        "pipeline_class": pieces.compiler_of(kernel.full_name, whole),
+    }
+    made = numba.njit(**options)(function)
+    folder = _folder(kernel, whole) if kernel.options.get("cache") else None
     if folder is None:
-        return numba.njit(**{**options, "cache": False})(function)
+        return made
     before = settings["CACHE_DIR"]
     settings["CACHE_DIR"] = str(folder)
     try:
-        made = numba.njit(**options)(function)
+        if whole:
+            kept = pieces.WholeCache(function)
+        else:
+            kept = pieces.PieceCache(function, lambda name: _called(kernel, name))
+        made._cache = _Unfailing(kept)
     except RuntimeError:  # numba finds no place there
-        return numba.njit(**{**options, "cache": False})(function)
+        return made
     finally:
         settings["CACHE_DIR"] = before
-    made._cache = _Unfailing(made._cache)
     return made
+
+
+def _called(kernel: Kernel, name: str) -> Any:
+    """numba's object for what a kernel calls by that name, if there is such a one."""
+    return next((one.piece for one in _compiled_from(kernel.py_func)[1] if one.full_name == name), None)
 
 
 class _Unfailing:
@@ -197,42 +237,38 @@ class _Unfailing:
             LOG.debug("compiled code is not kept: %s", error.strerror)
 
 
-def _folder(kernel: Kernel) -> Path | None:
+def _folder(kernel: Kernel, whole: bool) -> Path | None:
     """Where numba keeps a kernel: a folder for exactly what it is compiled from.
 
     numba notices that a function's own file has changed, but not a file whose functions it calls: a solver
-    would go on with an older law without a word. A kernel whose sources have not changed is not compiled
-    again after a change of others.
+    would go on with an older law without a word.
     """
-    function = kernel.py_func
-    package = function.__module__.rpartition(".")[0]
-    if not package:
+    if "." not in kernel.__module__:
         return None
+    if whole:
+        return paths.cache(f"compiled/{kernel.full_name}_{kernel.digest}")
+    return paths.cache(f"pieces/{kernel.full_name}_{kernel.own_digest}")
+
+
+def _own_digest(kernel: Kernel) -> str:
     found = hashlib.sha256(f"{_options(kernel)}\n{kernel.text}".encode())
-    todo, seen = [function], set[Callable[..., Any]]()
-    while todo:
-        one = todo.pop()
-        if one in seen:
-            continue
-        seen.add(one)
-        lines, called = _compiled_from(one)
-        found.update("\n".join(lines).encode())
-        todo += called
-    for room in sorted({LAWS, room_of(package)}):
+    lines, called = _compiled_from(kernel.py_func)
+    found.update("\n".join([*lines, *(one.full_name for one in called)]).encode())
+    package = kernel.py_func.__module__.rpartition(".")[0]
+    for room in sorted({LAWS, room_of(package)} if package else ()):
         found.update("\n".join(_shapes(room)).encode())
-    return paths.cache(f"compiled/{function.__module__}.{function.__name__}_{found.hexdigest()[:16]}")
+    return found.hexdigest()[:16]
 
 
 @functools.cache
-def _compiled_from(function: Callable[..., Any]) -> tuple[list[str], list[Callable[..., Any]]]:
+def _compiled_from(function: Callable[..., Any]) -> tuple[list[str], list[Kernel]]:
     """What a kernel is compiled from by itself: its source and the plain values that it names; and the
-    functions of the kernels that it calls."""
+    kernels that it calls."""
     lines, called = [f"{function.__module__}.{function.__qualname__}", _source(function)], []
     for used in sorted(_names(function.__code__)):
         value = function.__globals__.get(used)
         if isinstance(value, Kernel):
-            lines.append(f"{_options(value)}\n{value.text}")
-            called.append(value.py_func)
+            called.append(value)
         elif isinstance(value, Intrinsic):
             lines.append(_source(value.__wrapped__))  # pyright: ignore[reportAttributeAccessIssue]
         elif isinstance(value, (bool, int, float, str, tuple)):
@@ -241,8 +277,10 @@ def _compiled_from(function: Callable[..., Any]) -> tuple[list[str], list[Callab
 
 
 def _names(code: Any) -> set[str]:
+    """Globals that some code reads; co_names has attributes, too."""
     inner = (_names(part) for part in code.co_consts if hasattr(part, "co_names"))
-    return set(code.co_names).union(*inner)
+    own = {one.argval for one in dis.get_instructions(code) if one.opname in ("LOAD_GLOBAL", "LOAD_NAME")}
+    return own.union(*inner)
 
 
 def _source(function: Any) -> str:
