@@ -213,7 +213,7 @@ def test_memory_stays_flat(tmp_path: Path, made: bytes) -> None:
 
 
 def test_memory_stays_flat_over_many_runs(tmp_path: Path) -> None:
-    """A hundred runs leave less than a thirtieth of what they held one by one."""
+    """Of 200 runs each leaves less than a thirtieth of what it held: memory grows by steps of some MB."""
     if PROGRAM.why_not() is not None:
         pytest.skip("numba compiles, since the program does not fit")
     sets = ["sheets.note.boxes=[2, 3]", "run.duration=4 ms", "run.step=0.1 ms", "run.print_step=1 ms"]
@@ -223,7 +223,7 @@ def test_memory_stays_flat_over_many_runs(tmp_path: Path) -> None:
         "def most(runs):\n"
         "    assert all(mdlgen.solve(made, 'lattice').ok for _ in range(runs))\n"
         "    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss\n"
-        "before, after = most(30), most(100)\n"
+        "before, after = most(30), most(200)\n"
         "tracemalloc.start()\n"
         "most(1)\n"
         "print([after - before, tracemalloc.get_traced_memory()[1] / 1024])"
@@ -231,7 +231,7 @@ def test_memory_stays_flat_over_many_runs(tmp_path: Path) -> None:
     cache = str(paths.user_cache())
     grown, held = answer(python(code, tmp_path, Path(cache), PYTHONPATH=os.pathsep.join(sys.path)))
     assert held > 500
-    assert grown < 100 * held / 30, "kB"
+    assert grown < 200 * held / 30, "kB"
 
 
 def test_arguments_are_forgotten_as_a_solver_ends(tmp_path: Path, made: bytes) -> None:
