@@ -19,24 +19,28 @@ from typing import Any, Literal, cast
 import llvmlite.binding as llvm
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile
 from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import Compiler, CompileResult
+from numba.core.compiler import Compiler, CompileResult, Flags
 from numba.core.compiler_machinery import register_pass
 from numba.core.environment import lookup_environment
 from numba.core.funcdesc import default_mangler
+from numba.core.targetconfig import ConfigStack
 from numba.core.typed_passes import NativeLowering
 
-# LLVM's names of kernels begin so,
-OWN = "_ZN6mdlgen"
+# LLVM's names of what numba compiles begin so,
+COMPILED = "_ZN"
 # and those of what a function keeps for Python.
 ENVIRONMENT = "_ZN08NumbaEnv"
+# Options that a kernel which does not set them has from the kernel that calls it first.
+INHERITED = ("nrt", "fastmath", "error_model", "forceinline")
 
 
 class Piece(JITCodeLibrary):
     """LLVM's code of a kernel for some types, and the pieces that it calls; no machine code."""
 
-    def __init__(self, codegen: Any, name: str, types: tuple[Any, ...], result: Any):
+    def __init__(self, codegen: Any, name: str, signature: tuple[tuple[Any, ...], Any], flags: Any):
         super().__init__(codegen, name)
-        self.types, self.result = types, str(result)
+        self.types, self.result = signature[0], str(signature[1])
+        self.passed_on = {option: getattr(flags, option) for option in INHERITED}
         self.calls: list[Piece] = []
 
     def add_linking_library(self, library: Any) -> None:
@@ -114,7 +118,8 @@ class Whole(JITCodeLibrary):
         super()._verify_declare_only_symbols()
         # LLVM would call address 0 without a word
         missing = [one.name for one in self._final_module.functions if one.is_declaration]
-        assert not (own := [name for name in missing if name.startswith(OWN)]), f"{self.name} lacks {own}"
+        missing = [name for name in missing if name.startswith(COMPILED)]
+        assert not missing, f"{self.name} lacks {missing}"
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
@@ -128,7 +133,8 @@ class _Lowered(NativeLowering):
         state.flags.no_cfunc_wrapper = True
         if not pipeline.whole:
             state.flags.no_cpython_wrapper = True
-            state.library = Piece(codegen, name, tuple(state.args), state.return_type)
+            signature = tuple(state.args), state.return_type
+            state.library = Piece(codegen, name, signature, state.flags)
             state.flags.no_compile = True
             super().run_pass(state)
             state.library._ensure_finalized()
@@ -173,8 +179,9 @@ class _Compiler(Compiler):
 
 
 def _mangled(name: str, types: Any, *, abi_tags: Any = (), uid: Any = None) -> str:
-    """A name with `uid` in place of types, which numba knows by numbers that differ in each process."""
-    return default_mangler(name, (), abi_tags=abi_tags, uid=uid)
+    """A name with `uid` in place of types, which numba knows by numbers that differ in each process, and
+    without options, some of which a kernel has from the one that calls it first."""
+    return default_mangler(name, (), uid=uid)
 
 
 def compiler_of(kernel: str, whole: bool) -> Any:
@@ -199,6 +206,12 @@ class PieceCache(WholeCache):
         self._impl_class = lambda function: _Kept(function, called)
         super().__init__(function)
 
+    def _index_key(self, sig: Any, codegen: Any) -> Any:
+        """With the options that it inherits here."""
+        top = ConfigStack.top_or_none()
+        inherited = [str(getattr(top, option)) for option in INHERITED] if top is not None else []
+        return super()._index_key(sig, codegen), tuple(inherited)
+
 
 class _Kept(CompileResultCacheImpl):
     def __init__(self, function: Callable[..., Any], called: Callable[[str], Any]):
@@ -211,18 +224,23 @@ class _Kept(CompileResultCacheImpl):
         calls = [(one.name, one.types, one.result) for one in piece.calls]
         code = piece._final_module.as_bitcode()
         cres.fndesc.typemap = cres.fndesc.calltypes = None
-        return piece.name, code, calls, cres.fndesc, cres.environment, cres.signature, cres.reload_init
+        known = cres.fndesc, cres.environment, cres.signature, cres.reload_init
+        return piece.name, piece.passed_on, code, calls, *known
 
     def rebuild(self, target_context: Any, payload: Any) -> Any:
         """The piece, with all that it calls; None where one of these returns another type than it did."""
-        name, code, calls, fndesc, environment, signature, reload_init = payload
+        name, passed_on, code, calls, fndesc, environment, signature, reload_init = payload
         for again in reload_init:
             again()
-        piece = Piece(target_context.codegen(), name, signature.args, signature.return_type)
+        flags = Flags()
+        for option, value in passed_on.items():
+            setattr(flags, option, value)
+        piece = Piece(target_context.codegen(), name, (signature.args, signature.return_type), flags)
         for one, types, result in calls:
             if (dispatcher := self._called(one)) is None:
                 return None
-            dispatcher.compile(types)
+            with ConfigStack().enter(flags):
+                dispatcher.compile(types)
             piece.calls.append(dispatcher.overloads[types].library)
             if piece.calls[-1].result != result:
                 return None
