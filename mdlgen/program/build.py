@@ -1,10 +1,10 @@
 """Makes the shipped programs: `python -m mdlgen.program.build`; with `--check` it says whether they fit.
 
-Each entry is compiled by numba, for the types that it has in some small scenes, and not optimised; each
-program in a process of its own. What numba gives of it (`inspect_llvm`) is linked into one module for all
-entries, of which only what they call is kept, with a wrapper for each that takes its arguments as words. LLVM
-optimises that without vector instructions, which is for the machine that it will run on, and divides it into
-two parts.
+A process for each program has numba compile its entries, for the types that they have in some small scenes,
+without optimisation. The texts of the entries (`inspect_llvm`) are linked into one module, and unused
+functions are removed. Each entry gets a wrapper that takes its arguments as words. LLVM optimises the module
+without vector instructions, because these depend on the machine that it will run on, and divides it into two
+parts.
 
 It stands above what it makes, so it knows that by name only.
 """
@@ -30,14 +30,14 @@ from mdlgen.program.layout import described, words
 from mdlgen.program.parts import split
 from mdlgen.program.ship import Program
 
-# What a program may call of the system it runs on.
+# Functions of the operating system that a program may call.
 SYSTEM = (
     *("malloc", "free", "memcpy", "memmove", "memset"),
     *("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh"),
     *("exp", "exp2", "expm1", "log", "log2", "log10", "log1p", "pow", "sqrt", "hypot", "cbrt"),
     *("floor", "ceil", "trunc", "rint", "round", "fmod", "ldexp", "frexp", "fma"),
 )
-# Of a program, which are made into machine code at the same time.
+# The number of parts of a program. They are made into machine code at the same time.
 PARTS = 2
 # numba's memory: an array is counted by those who hold it, each of which is of the same thread.
 MEMORY = """
@@ -114,7 +114,7 @@ def main() -> None:
     surroundings = {
         **os.environ,
         "MDLGEN_NUMBA": "1",
-        # pieces are kept for the next time; what is made of them does not depend on that
+        # keeps pieces for the next time
         "MDLGEN_CACHE": str(paths.cache("made")),
         "NUMBA_OPT": "0",
         "NUMBA_CPU_NAME": "generic",
@@ -124,11 +124,12 @@ def main() -> None:
     made = [
         subprocess.Popen([sys.executable, "-c", code.format(name)], env=surroundings) for name in _shipped()
     ]
-    sys.exit(max([one.wait() for one in made]))
+    codes = [one.wait() for one in made]  # negative where a signal ended it
+    sys.exit(any(codes))
 
 
 def _shipped() -> dict[str, Any]:
-    """What comes with each solver that has a program (`mdlgen.backend.Shipped`), by the solver's name."""
+    """The `mdlgen.backend.Shipped` of each solver that has a program, by the solver's name."""
     registry = importlib.import_module("mdlgen.registry")
     found = {name: registry.solver(name).shipped for name in registry.AUTO}
     return {name: shipped for name, shipped in found.items() if shipped is not None}
@@ -158,7 +159,7 @@ def make(name: str) -> None:
     program: Program = importlib.import_module(shipped.module).PROGRAM
     types = watched(program)
     for kernel in program.entries:
-        kernel.dispatcher._cache.disable()  # what numba has kept of machine code it has no text of
+        kernel.dispatcher._cache.disable()  # numba has no text of cached code
     _play(name, shipped.scenes)
     if missing := [entry for entry, found in types.items() if not found]:
         sys.exit(f"{program.path.name}: no scene calls {', '.join(missing)}")
@@ -166,7 +167,7 @@ def make(name: str) -> None:
     print(f"{program.path.name}: {size / 1e6:.2f} MB, {len(types)} entries")
 
 
-# Of an entry: the types of its arguments as JSON, numba's signature, and the kernel.
+# The types of an entry's arguments as JSON, with numba's signature and the kernel; by the entry's name.
 Types = dict[str, dict[str, tuple[Any, Kernel]]]
 
 

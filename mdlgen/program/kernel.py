@@ -106,12 +106,12 @@ class Kernel:
 
     @property
     def dispatcher(self) -> Any:
-        """numba's own object for this function, for calls from Python."""
+        """numba's object for this function, for calls from Python."""
         return self._dispatcher(True)
 
     @property
     def piece(self) -> Any:
-        """numba's own object for this function, for calls from other kernels; see mdlgen.program.pieces."""
+        """numba's object for this function, for calls from other kernels; see mdlgen.program.pieces."""
         return self._dispatcher(False)
 
     def _dispatcher(self, whole: bool) -> Any:
@@ -123,17 +123,17 @@ class Kernel:
 
     @property
     def full_name(self) -> str:
-        """No other kernel has this name."""
+        """Module and name; no other kernel has the same."""
         return f"{self.__module__}.{self.__name__}"
 
     @functools.cached_property
     def own_digest(self) -> str:
-        """Of what the function itself is compiled from, where the kernels that it calls are names."""
+        """Digest of the function's own source, options and values, and of the names of called kernels."""
         return _own_digest(self)
 
     @functools.cached_property
     def digest(self) -> str:
-        """Of all that the function is compiled from."""
+        """Digest of the function and of all kernels below it."""
         below = (f"{one.full_name} {one.digest}" for one in _compiled_from(self.py_func)[1])
         return hashlib.sha256("\n".join([self.own_digest, *below]).encode()).hexdigest()[:16]
 
@@ -205,7 +205,7 @@ def _dispatcher(kernel: Kernel, whole: bool) -> Any:
 
 
 def _called(kernel: Kernel, name: str) -> Any:
-    """numba's object for what a kernel calls by that name, if there is such a one."""
+    """numba's object for the kernel of that name that a kernel calls, or None."""
     return next((one.piece for one in _compiled_from(kernel.py_func)[1] if one.full_name == name), None)
 
 
@@ -262,8 +262,7 @@ def _own_digest(kernel: Kernel) -> str:
 
 @functools.cache
 def _compiled_from(function: Callable[..., Any]) -> tuple[list[str], list[Kernel]]:
-    """What a kernel is compiled from by itself: its source and the plain values that it names; and the
-    kernels that it calls."""
+    """The source of a kernel and the plain values that it names; and the kernels that it calls."""
     lines, called = [f"{function.__module__}.{function.__qualname__}", _source(function)], []
     for used in sorted(_names(function.__code__)):
         value = function.__globals__.get(used)
@@ -277,7 +276,7 @@ def _compiled_from(function: Callable[..., Any]) -> tuple[list[str], list[Kernel
 
 
 def _names(code: Any) -> set[str]:
-    """Globals that some code reads; co_names has attributes, too."""
+    """Names of the globals that some code reads. `co_names` would add names of attributes."""
     inner = (_names(part) for part in code.co_consts if hasattr(part, "co_names"))
     own = {one.argval for one in dis.get_instructions(code) if one.opname in ("LOAD_GLOBAL", "LOAD_NAME")}
     return own.union(*inner)

@@ -1,12 +1,12 @@
-"""How numba compiles kernels: each by itself once, and machine code only for those that Python calls.
+"""How numba compiles kernels: each one separately and once. Machine code is made only for calls from Python.
 
-numba makes machine code of every function, with a copy of all that it calls, and optimises each of these
-copies: a kernel ten calls below another one is optimised ten times. Here a kernel that others call is a
-Piece, LLVM's code of its own with the names of what it calls. What Python calls is a Whole: all pieces below
-it are put together and optimised once.
+numba itself makes machine code of every function, with a copy of all functions that it calls, and optimises
+each copy. A kernel that is ten calls below another one is then optimised ten times. Here a kernel that other
+kernels call is a Piece: its own LLVM code, which calls other pieces by name. A kernel that Python calls is a
+Whole: all pieces below it are linked and optimised once.
 
-Pieces are kept on disk one by one. A piece names what it calls, and has nothing else of that. So after a
-change in a kernel only its own piece is compiled again, and those of its callers where it returns another
+The cache keeps each piece separately. A piece contains no code of the kernels that it calls. So after a
+change in a kernel numba compiles its piece again, and a caller's piece only where the kernel returns another
 type.
 """
 
@@ -26,16 +26,16 @@ from numba.core.funcdesc import default_mangler
 from numba.core.targetconfig import ConfigStack
 from numba.core.typed_passes import NativeLowering
 
-# LLVM's names of what numba compiles begin so,
+# LLVM names of compiled functions begin with this,
 COMPILED = "_ZN"
-# and those of what a function keeps for Python.
+# and those of the environments that functions keep for Python.
 ENVIRONMENT = "_ZN08NumbaEnv"
-# Options that a kernel which does not set them has from the kernel that calls it first.
+# Options that a kernel inherits from its first caller where it does not set them.
 INHERITED = ("nrt", "fastmath", "error_model", "forceinline")
 
 
 class Piece(JITCodeLibrary):
-    """LLVM's code of a kernel for some types, and the pieces that it calls; no machine code."""
+    """LLVM code of a kernel for some types, and the pieces that it calls. It has no machine code."""
 
     def __init__(self, codegen: Any, name: str, signature: tuple[tuple[Any, ...], Any], flags: Any):
         super().__init__(codegen, name)
@@ -44,19 +44,19 @@ class Piece(JITCodeLibrary):
         self.calls: list[Piece] = []
 
     def add_linking_library(self, library: Any) -> None:
-        """A piece stays where it is; what numba has of its own is put into this one."""
+        """Notes a piece that this one calls. A function of numba is linked into this piece."""
         if isinstance(library, Piece):
             self.calls.append(library)
         else:
             super().add_linking_library(library)
 
     def finalize(self) -> None:
-        """After this nothing is added."""
+        """Links and shortens the code. Nothing can be added after that."""
         for library in dict.fromkeys(self._linking_libraries):
             self._reload_init.update(library._reload_init)
             self._final_module.link_in(library._get_module_for_linking(), preserve=True)
         for thing in self._final_module.functions:
-            # numba numbers its own functions, and types, in each process anew: they stay in their piece
+            # the names of numba's own functions have numbers that differ between processes: keep them inside
             if thing.linkage == llvm.Linkage.linkonce_odr and not thing.name.startswith("NRT_"):
                 thing.linkage = "internal"
         _shorten(self._final_module, self._codegen._tm)
@@ -65,11 +65,11 @@ class Piece(JITCodeLibrary):
         self._finalized = True
 
     def _get_module_for_linking(self) -> Any:
-        # as it is: what LLVM may leave out is left out where nothing that is linked so far calls it
+        # unchanged: LLVM drops a linkonce function if no function that is linked before it calls it
         return self._final_module
 
     def below(self) -> Iterator[Piece]:
-        """This piece and all that it calls, each once."""
+        """This piece and all pieces below it, each once."""
         found: dict[Piece, None] = {}
         todo = [self]
         while todo:
@@ -81,8 +81,8 @@ class Piece(JITCodeLibrary):
 
 
 def _shorten(module: Any, target: Any) -> None:
-    """Removes what numba writes of a function and nothing reads, most of a module; it also holds addresses
-    of this process, which no disk can keep."""
+    """Removes unused code, which is most of a module. It contains addresses of this process, so that numba
+    would not cache the module."""
     manager = llvm.create_new_module_pass_manager()
     manager.add_sroa_pass()
     manager.add_instruction_combine_pass()
@@ -100,14 +100,14 @@ class Whole(JITCodeLibrary):
         self.pieces: dict[Piece, None] = {}
 
     def add_linking_library(self, library: Any) -> None:
-        """With what it calls."""
+        """Adds a library; of a piece also all pieces below it."""
         for part in library.below() if isinstance(library, Piece) else (library,):
             if isinstance(part, Piece):
                 self.pieces[part] = None
             super().add_linking_library(part)
 
     def _optimize_final_module(self) -> None:
-        # a piece need not stay where it is put into all of its callers
+        # LLVM may remove a piece after it has inlined all calls of it
         for piece in self.pieces:
             for one in piece.get_defined_functions():
                 if one.linkage == llvm.Linkage.external:
@@ -116,7 +116,7 @@ class Whole(JITCodeLibrary):
 
     def _verify_declare_only_symbols(self) -> None:
         super()._verify_declare_only_symbols()
-        # LLVM would call address 0 without a word
+        # LLVM gives no error for a missing function: the code would call address 0
         missing = [one.name for one in self._final_module.functions if one.is_declaration]
         missing = [name for name in missing if name.startswith(COMPILED)]
         assert not missing, f"{self.name} lacks {missing}"
@@ -124,7 +124,7 @@ class Whole(JITCodeLibrary):
 
 @register_pass(mutates_CFG=True, analysis_only=False)
 class _Lowered(NativeLowering):
-    """To LLVM's code, in a Piece; or to machine code."""
+    """Lowers a kernel to LLVM code, in a Piece, or to machine code, in a Whole."""
 
     _name = "mdlgen_lowered"
 
@@ -152,13 +152,13 @@ class _Lowered(NativeLowering):
 
 
 def _stand_in() -> Any:
-    """What numba knows a piece by, where it has the address of machine code otherwise: never called."""
+    """An object in place of machine code. It is a key for numba, which never calls it."""
     return [].append
 
 
 class _Compiler(Compiler):
-    """numba's, with the pass above. It names a function by the kernel and its types, so that it has the same
-    name in each process."""
+    """numba's compiler with the pass above. A function gets its name from the kernel and its types, so that
+    the name is the same in each process."""
 
     kernel: str
     whole: bool
@@ -179,8 +179,8 @@ class _Compiler(Compiler):
 
 
 def _mangled(name: str, types: Any, *, abi_tags: Any = (), uid: Any = None) -> str:
-    """A name with `uid` in place of types, which numba knows by numbers that differ in each process, and
-    without options, some of which a kernel has from the one that calls it first."""
+    """The name with `uid`, without types and options. numba writes types as numbers that differ between
+    processes, and a kernel inherits options from its first caller."""
     return default_mangler(name, (), uid=uid)
 
 
@@ -190,8 +190,8 @@ def compiler_of(kernel: str, whole: bool) -> Any:
 
 
 class WholeCache(FunctionCache):
-    """Keeps machine code of a kernel in a folder for exactly what that is compiled from; where it stands in
-    which version of a file says no more."""
+    """Keeps the machine code of a kernel. The name of its folder has the digest of its sources, so that the
+    date of the file and the line of the kernel do not count."""
 
     def __init__(self, function: Callable[..., Any]):
         super().__init__(function)
@@ -199,15 +199,15 @@ class WholeCache(FunctionCache):
 
 
 class PieceCache(WholeCache):
-    """Keeps the pieces of a kernel; `called` finds numba's dispatcher of what they call by its name, or
-    None."""
+    """Keeps the pieces of a kernel. `called` returns numba's dispatcher for the name of a kernel that they
+    call, or None."""
 
     def __init__(self, function: Callable[..., Any], called: Callable[[str], Any]):
         self._impl_class = lambda function: _Kept(function, called)
         super().__init__(function)
 
     def _index_key(self, sig: Any, codegen: Any) -> Any:
-        """With the options that it inherits here."""
+        """numba's key, and the options that the kernel inherits from its caller."""
         top = ConfigStack.top_or_none()
         inherited = [str(getattr(top, option)) for option in INHERITED] if top is not None else []
         return super()._index_key(sig, codegen), tuple(inherited)
@@ -219,7 +219,7 @@ class _Kept(CompileResultCacheImpl):
         self._called = called
 
     def reduce(self, cres: Any) -> Any:
-        """A piece for the disk."""
+        """The parts of a piece that the cache keeps."""
         piece = cast("Piece", cres.library)
         calls = [(one.name, one.types, one.result) for one in piece.calls]
         code = piece._final_module.as_bitcode()
@@ -228,7 +228,7 @@ class _Kept(CompileResultCacheImpl):
         return piece.name, piece.passed_on, code, calls, *known
 
     def rebuild(self, target_context: Any, payload: Any) -> Any:
-        """The piece, with all that it calls; None where one of these returns another type than it did."""
+        """The piece with all pieces below it; None if a kernel that it calls now returns another type."""
         name, passed_on, code, calls, fndesc, environment, signature, reload_init = payload
         for again in reload_init:
             again()

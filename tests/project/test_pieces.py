@@ -1,4 +1,4 @@
-"""numba compiles a kernel by itself: after a change in one only that is compiled again."""
+"""numba compiles each kernel separately: after a change in one kernel it compiles only that one again."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ print(*sorted(set(compiled)))
 
 
 def called(folder: Path, result: str) -> tuple[float, list[str]]:
-    """What a process gets from `outer` where `inner` returns that, and what numba compiled for it."""
+    """The value of `outer` in a new process if `inner` returns `result`, and what numba compiled."""
     rooms = folder / "kernels"
     rooms.mkdir(exist_ok=True)
     (rooms / "__init__.py").write_text("")
@@ -71,9 +71,9 @@ def called(folder: Path, result: str) -> tuple[float, list[str]]:
 
 
 def test_after_a_change_one_piece_is_compiled_again(tmp_path: Path) -> None:
-    """And machine code of what Python calls; a caller only where a kernel returns another type.
+    """It is `inner`, and `outer`, which Python calls; `middle` only where `inner` returns another type.
 
-    What is compiled again has options from `middle`, which is not compiled then.
+    `inner` inherits options from `middle`, also where numba does not compile `middle` again.
     """
     assert called(tmp_path, "x * x") == (15.5, ["beside", "inner", "middle", "outer"])
     assert called(tmp_path, "x * x") == (15.5, [])

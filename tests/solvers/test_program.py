@@ -249,7 +249,7 @@ def test_arguments_are_forgotten_as_a_solver_ends(tmp_path: Path, made: bytes) -
 
 
 def test_a_users_own_numba_stays_as_it_was(tmp_path: Path) -> None:
-    """Neither a setting nor a patch is left behind: what a user keeps, lies beside the user's file."""
+    """No setting and no patch is left: numba keeps the code of a user's file beside that file."""
     package(tmp_path, None)
     (tmp_path / "own.py").write_text(
         "from numba import njit\n@njit(cache=True)\ndef twice(x):\n    return 2 * x\n"
