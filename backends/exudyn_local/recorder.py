@@ -21,6 +21,7 @@ from mdlgen.backends.exudyn_local.state import (
     workspace,
 )
 from mdlgen.backends.exudyn_local.system import MM, MS, PER_MM, System
+from mdlgen.mechanics.pair import before_an_end
 from mdlgen.mechanics.point import DEPTH, OUT, PRESSING
 from mdlgen.mechanics.turning import ABOUT_A, ABOUT_B, ALONG, LIMIT, TURNING
 from mdlgen.model import curves
@@ -70,7 +71,6 @@ class Recorder:
         self._low, self._high = model.pairs.low * MM, model.pairs.high * MM
         self._last_stored = -1
         self._deepest = np.empty(len(system.pairs))
-        set_limits(system.bodies, system.pairs, self._deepest)
         self._unheld = Unheld(model)
 
     def plan(self, h: float) -> None:
@@ -143,7 +143,8 @@ class Recorder:
         off = self._off(now)
         self.gained, self.vanished = max(self.gained, off), min(self.vanished, off)
         self._contacts(step, t)
-        begin(self.system.bodies, self.system.pairs, at, self._work.motion)
+        set_limits(self.system.bodies, self.system.pairs, self._deepest)  # as pairs stood in the step
+        begin(self.system.bodies, self.system.pairs, self.system.shapes, at, self._work.motion)
 
     def _contacts(self, step: float, t: float) -> None:
         if not self._pairs.size:
@@ -219,7 +220,8 @@ class Recorder:
         one, two = (int(side[pair]) for side in (self.model.pairs.a, self.model.pairs.b))
         rate = self._work.motion.u
         way = step / MM * float(np.linalg.norm(rate[one] - rate[two]))
-        self.reason = f"{self.model.too_deep(one, two)} at {t / MS:.6g} ms; {self.model.held_by(one, way)}"
+        deep = self.model.too_deep(one, two, before_an_end(self.system.pairs[pair]))
+        self.reason = f"{deep} at {t / MS:.6g} ms; {self.model.held_by(one, way)}"
 
     def result(self, solver: str, reason: str | None) -> Result:
         """The Result in mm, N, g, ms."""

@@ -22,10 +22,10 @@ _overstretched, _remember = curve.overstretched, pair.remember
 
 
 @njit(cache=True, error_model="numpy")
-def begin(bodies, pairs, at, motion):
-    """Notes which sides of boxes stand before which ends of plates, for what begins at a state."""
+def begin(bodies, pairs, shapes, at, motion):
+    """Notes what pairs remember, for what begins at a state."""
     place_all(bodies, at, motion)
-    _remember(bodies, pairs, motion)
+    _remember(bodies, pairs, shapes, motion)
 
 
 @njit(cache=True, error_model="numpy")

@@ -45,6 +45,7 @@ FACES = 0.35  # cosine of the angle to an end at which a side may come to stand 
 # face, and 1 where friction holds what is on them (a static analysis).
 UPPER, LOWER, HOLDS = 0, 1, 2
 ENDS = [("ends", "i8"), ("edge", "f8", 3)]
+EVER = 1e300
 _GAUSS = 1.0 / math.sqrt(3.0)
 
 
@@ -246,6 +247,10 @@ def _pressed(out, a, box, face, edge, end, b, law, grip):
         depth = sign * at[q] + half[q] + radius
         if depth <= 0.0:
             continue
+        free = min(EVER if inner_low else half[r] + at[r], EVER if inner_high else half[r] - at[r])
+        if depth - 2.0 * half[q] - radius > free:
+            # the edge is beyond the box, and nearer to its free side: that side came in over the plate's face
+            continue
         spring = share * _passes(at[r], half[r], inner_low, inner_high, radius) * depth * math.sqrt(depth)
         if spring <= 0.0:
             continue
@@ -293,6 +298,13 @@ def line(out, a, box, end, plate, b, law):
         _pressed(out, a, box, (q, sign), (axis, radius), seen, b, law, edge[HOLDS] * law.mu_static)
 
 
+@njit(cache=True, error_model="numpy", forceinline=True)
+def deepest_at(thick, half, beside):
+    """How deep a box (half lengths) may be in a plate of this half thickness. A box may be as deep as that. A
+    side that stands before an end may be further in, by half of the box: behind it comes the next box."""
+    return thick if beside == 0 else max(thick, min(half[0], half[1]))
+
+
 @njit(cache=True, error_model="numpy")
 def stands(a, box, b, plate):
     """Which outer sides of box a stand before which end of plate b, with what was known (see the module)."""
@@ -319,15 +331,16 @@ def stands(a, box, b, plate):
         first, last = _station(a, half, p, sign, end)
         if last - first <= 1e-9:
             continue
-        inside, above, below, deep, over = -1e300, 1e300, -1e300, 0.0, False
+        inside, above, below, over, before = -1e300, 1e300, -1e300, False, False
         for corner in range(4):
             t, face = first if corner % 2 == 0 else last, 1.0 if corner < 2 else -1.0
             _at, u, h = _corner(a, half, p, sign, t, face, end)
             inside, above, below = max(inside, u), min(above, h), max(below, h)
             depth, along, _down = rounded(u, h, thick, edge)
-            if depth > deep:
-                deep, over = depth, along == 0.0
+            over = over or (depth > 0.0 and along == 0.0)
+            before = before or (depth > 0.0 and along != 0.0)
         clear = below <= 0.0 or above >= thick
-        if not clear and (inside <= 0.0 or (known > 0 and not over)):
+        # of a twisted side one corner may be over the top of the round while another stands far below it
+        if not clear and (inside <= 0.0 or (known > 0 and (before or not over))):
             found |= (which + 1) << (3 * side)
     return found

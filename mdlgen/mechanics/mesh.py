@@ -16,7 +16,9 @@ the pressure is 0 on all of the surface and continuous inside: no edge or corner
 no edge of the block, begins with a force. Along its edges a flat face so has less than k z^1.5, by 0.6 of the
 depth times the ratio of both faces' pressures there (`_side_of`). A box of a sheet is thin: its two broad
 faces go on beyond its sides and its thickness, since its neighbours do, and act on triangles that face them
-by less than 53 to 66 deg; where a sheet ends, nothing takes over at its edge.
+by less than 53 to 66 deg; where a sheet ends, nothing takes over at its edge. What came in through one of
+them does not press on the other (mechanics.mesh_pressure). On a sharp edge a sheet may be deeper than half of
+its thickness, and both faces look the same then: so a pair remembers which one pressed alone (`met_face`).
 
 With `at: nodes` pressures are integrated over triangles, with `at: centres` they are those in their middles,
 as the paper has both for contact between meshes (section 3.1). What presses on a face acts as four equal
@@ -71,10 +73,15 @@ from mdlgen.program.kernel import CALLED, OWNS, njit
 _SPAN = 2.5  # what presses under a round reaches no further than sqrt(5) times its spread
 LOST = 1e30  # what a depth that ends a run is above
 BLOCK = 15  # all four sides of a box are outer ones
+# A box that is thinner than this part of its shorter side is a sheet of one box, not a block. A convention:
+# the theory of thin plates holds up to there.
+THIN = 0.1
+# A pair remembers which broad face of its box pressed alone.
+NEITHER, UPPER, LOWER = 0, 1, 2
 
 
 @njit(cache=True, error_model="numpy")
-def _nip(both, room, head, meshes, placed, half, sign, exposed, stiff):
+def _nip(both, room, head, meshes, placed, half, side, exposed, stiff):
     """What presses on a broad face that goes on over the sides that are not exposed: its force along the
     file's axes and its middle in the face (force, u, v). The first of `both` sums has what presses on the
     box itself, the second is room."""
@@ -95,7 +102,7 @@ def _nip(both, room, head, meshes, placed, half, sign, exposed, stiff):
     wide = (half[0] + 0.5 * (grown[0] + grown[1]), half[1] + 0.5 * (grown[2] + grown[3]), half[2])
     whole[:] = 0.0
     moved = Placed(add(placed.middle, rotate(placed.axes, aside)), placed.axes, placed.frame)
-    gather(whole, room, head, meshes, moved, wide, Side(2, sign, 0.0, 0.0, EVER), stiff)
+    gather(whole, room, head, meshes, moved, wide, side, stiff)
     force = three(whole[FORCE:])
     if dot(force, force) <= 0.0:  # all that is more is too deep
         return three(own[FORCE:]), u, v
@@ -103,39 +110,85 @@ def _nip(both, room, head, meshes, placed, half, sign, exposed, stiff):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def _side_of(head, half, q, sign, exposed):
-    """A Side of a box: all of a broad face, or what a face of a block presses on alone."""
-    if exposed != BLOCK:
-        return Side(q, sign, 0.0, 0.0, EVER)
+def _is_block(box):
+    """A block has six faces that press, a box of a sheet has two."""
+    half = box.half
+    return box.exposed == BLOCK and half[2] > THIN * min(half[0], half[1])
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _broad(half, sign, met, deep):
+    """A broad face as a Side. deep: the depth at the face that was `met`, -1 for that face itself."""
+    if met == NEITHER:
+        return Side(2, sign, 0.0, 0.0, EVER, half[2], False)
+    through = -EVER if deep < 0.0 else max(half[2], deep)
+    return Side(2, sign, 0.0, 0.0, EVER, through, deep >= 0.0)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _side_of(head, half, q, sign):
+    """What a face of a block presses on alone, as a Side."""
     if head.basis > 0.0:
-        return Side(q, sign, 1.0, 1.0, half[q])
+        return Side(q, sign, 1.0, 1.0, half[q], 0.0, False)
     # pressures of two faces are the same where depths go with the power 2/3 of the areas
     p, r = (q + 1) % 3, (q + 2) % 3
-    return Side(q, sign, (half[q] / half[p]) ** (2.0 / 3.0), (half[q] / half[r]) ** (2.0 / 3.0), half[q])
+    of_p, of_r = (half[q] / half[p]) ** (2.0 / 3.0), (half[q] / half[r]) ** (2.0 / 3.0)
+    return Side(q, sign, of_p, of_r, half[q], 0.0, False)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _placed(a, b, head):
+    """A box in the axes of the mesh's file."""
+    frame = matmul(b.r, nine(head.axes))
+    place = add(b.x, rotate(b.r, three(head.place)))
+    return Placed(back(frame, sub(a.x, place)), transpose_matmul(frame, a.r), frame)
 
 
 @njit(cache=True, error_model="numpy", **OWNS, **CALLED)
-def box_mesh(out, a, box, b, axis, head, meshes, law):
-    """Box a on a mesh that moves with body b; axis: of the roller, where b is one."""
+def met_face(a, box, b, head, meshes, met):
+    """The broad face of a sheet's box that presses alone now, if `met` was the one before. A mesh that is
+    thick everywhere needs no memory."""
+    half, placed = box.half, _placed(a, b, head)
+    if head.thin == 0 or _is_block(box):
+        return NEITHER
+    bounds, links = meshes.bounds, meshes.links
+    if not overlaps(bounds, links, head.first, head.end, placed.middle, placed.axes, half):
+        return NEITHER
+    sums, room, deep, pressed = np.empty(SUMS), np.empty((2, 12, 3)), -1.0, NEITHER
+    for turned in range(2):
+        upper = (turned == 0) == (met != LOWER)
+        sums[:] = 0.0
+        gather(sums, room, head, meshes, placed, half, _broad(half, 1.0 if upper else -1.0, met, deep), 1.0)
+        deep = sums[DEEPEST]
+        if sums[IN_ALL] > 0.0:
+            pressed += UPPER if upper else LOWER
+    return pressed if pressed != UPPER + LOWER else NEITHER
+
+
+@njit(cache=True, error_model="numpy", **OWNS, **CALLED)
+def box_mesh(out, a, box, b, axis, head, meshes, law, met):
+    """Box a on a mesh that moves with body b; axis: of the roller, where b is one; met: see met_face."""
     half, exposed = box
-    ra = a.r
-    frame = matmul(b.r, nine(head.axes))
-    place = add(b.x, rotate(b.r, three(head.place)))
-    middle, axes = back(frame, sub(a.x, place)), transpose_matmul(frame, ra)
-    if not overlaps(meshes.bounds, meshes.links, head.first, head.end, middle, axes, half):
+    ra, placed, block = a.r, _placed(a, b, head), _is_block(box)
+    frame, bounds, links = placed.frame, meshes.bounds, meshes.links
+    if not overlaps(bounds, links, head.first, head.end, placed.middle, placed.axes, half):
         return
-    placed, over = Placed(middle, axes, frame), 1.0
-    if exposed != 0 and exposed != BLOCK:
+    over, deep = 1.0, -1.0
+    if exposed != 0 and not block:
         over = meet_sides(out, a, box, placed, head, meshes, b, law)
     both, room = np.zeros((2, SUMS)), np.empty((2, 12, 3))
     sums = both[0]  # of the box itself
     lost, spot, out_of = 0.0, a.x, (0.0, 0.0, 0.0)
-    for face in range(6 if exposed == BLOCK else 2):
+    for face in range(6 if block else 2):
         q, sign = (2 + face // 2) % 3, 1.0 if face % 2 == 0 else -1.0
+        if not block and met == LOWER:  # what pressed before comes first
+            sign = -sign
+        side = _side_of(head, half, q, sign) if block else _broad(half, sign, met, deep)
         p, r = (q + 1) % 3, (q + 2) % 3
         stiff = law.k / head.basis if head.basis > 0.0 else law.k / (4.0 * half[p] * half[r])
         sums[:] = 0.0
-        gather(sums, room, head, meshes, placed, half, _side_of(head, half, q, sign, exposed), stiff)
+        gather(sums, room, head, meshes, placed, half, side, stiff)
+        deep = sums[DEEPEST]
         fx, fy, fz = three(sums[FORCE:])
         force = math.sqrt(fx * fx + fy * fy + fz * fz)
         if sums[TOO_DEEP] > 0.0 and (lost == 0.0 or sums[TOO_DEEP] < lost):
@@ -143,7 +196,7 @@ def box_mesh(out, a, box, b, axis, head, meshes, law):
             out_of = rotate(ra, local(p, r, q, 0.0, 0.0, -sign))
         torque = rotate(frame, scale(over, three(sums[TORQUE:])))
         if force <= 0.0 or over <= 0.0:
-            if exposed == BLOCK:
+            if block:
                 turn(out, torque)
             continue
         normal = rotate(frame, (fx / force, fy / force, fz / force))
@@ -154,7 +207,7 @@ def box_mesh(out, a, box, b, axis, head, meshes, law):
         middle = add(a.x, rotate(ra, local(p, r, q, u, v, sign * half[q])))
         if head.basis > 0.0:
             sides = exposed if q == 2 else BLOCK
-            (fx, fy, fz), line_u, line_v = _nip(both, room, head, meshes, placed, half, sign, sides, stiff)
+            (fx, fy, fz), line_u, line_v = _nip(both, room, head, meshes, placed, half, side, sides, stiff)
             line = add(a.x, rotate(ra, local(p, r, q, line_u, line_v, sign * half[q])))
             way = rotate(frame, scale(1.0 / math.sqrt(fx * fx + fy * fy + fz * fz), (fx, fy, fz)))
             across = cross(axis, way)

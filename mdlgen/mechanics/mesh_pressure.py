@@ -13,8 +13,8 @@ from typing import NamedTuple
 from mdlgen.mechanics.frame import Vector
 from mdlgen.mechanics.mesh_side import ramp
 from mdlgen.mechanics.mesh_tables import BEYOND
-from mdlgen.mechanics.tree import AFTER, AREA, COUNT, FIRST, LEAST, MOST, NORMAL, THICK, span
-from mdlgen.mechanics.vector import add, cross, dot, scale, vec
+from mdlgen.mechanics.tree import AFTER, AREA, COUNT, FIRST, LEAST, MOST, NORMAL, THICK, behind, span
+from mdlgen.mechanics.vector import add, cross, dot, scale, three, vec
 from mdlgen.program.kernel import njit
 
 STEEP, GENTLE = 0.4, 0.6  # cosines of the angles between which the law of broad faces ends
@@ -34,13 +34,15 @@ _CENTROID = 0.225
 class Side(NamedTuple):
     """A face of a box: its axis q and on which side it is; of a block how fast the region in which the face
     is the one that presses narrows with depth, along p and along r, and how deep it is: 0, 0 and EVER for a
-    face that goes on over its sides."""
+    face that goes on over its sides. `through` and `taken` are for such a face, see `_by_the_other`."""
 
     q: int
     sign: float
     narrows_p: float
     narrows_r: float
     most: float
+    through: float
+    taken: bool
 
 
 class Face(NamedTuple):
@@ -63,6 +65,8 @@ class Face(NamedTuple):
     narrows_along: float
     narrows_across: float
     most: float
+    through: float
+    taken: bool
 
 
 class Element(NamedTuple):
@@ -231,9 +235,44 @@ def _piece(sums, points, count, element, middles):
         _press_all(sums, _size(center, one, two), center, one, two, element)
 
 
+@njit(cache=True, error_model="numpy")
+def _middle(points, count):
+    """The mean of a polygon's points, and their greatest depth."""
+    u = v = z = deepest = 0.0
+    for i in range(count):
+        u, v, z, deepest = u + points[i, 0], v + points[i, 1], z + points[i, 2], max(deepest, points[i, 2])
+    return (u / count, v / count, z / count), deepest
+
+
+@njit(cache=True, error_model="numpy")
+def _by_the_other(meshes, head, t, face, u, v, z, deepest):
+    """Whether triangle t, as a broad face sees it, came in through the other face; then it does not press
+    here. u, v, z: its middle; deepest: the greatest depth of its points.
+
+    A sheet lies on a sharp edge. The lower side of the edge looks at the upper face of the sheet, and is deep
+    below it. Above that place the part is thin: its upper side is below the upper face of the sheet, or
+    above it by no more than `through` less the thickness of the box. `through` is half of the thickness
+    where no face has met the part before. Where the other one has (`taken`), it is how deep the part is
+    there; and this face then meets only what is nearer to it than to the far side of the part.
+    """
+    thick = 2.0 * face.half
+    if head.thin == 0 or deepest <= thick - face.through:
+        return False
+    at = add(scale(face.where[0] - z, face.way), scale(u + face.where[1], face.along))
+    at = add(at, scale(v + face.where[2], face.across))
+    bounds, links, triangles = meshes.bounds, meshes.links, meshes.triangles
+    far = max(2.0 * z, z + face.through)
+    wall, by = behind(bounds, links, triangles, head.first, head.end, at, face.way, far)
+    if by < 0 or dot(face.way, three(triangles[by, NORMAL:])) <= STEEP:
+        return False  # the other face has nothing of that triangle
+    # what is as deep as the other face has it anywhere is that, up to round-off
+    return z - wall > (1.0 - 1e-6) * thick - face.through or (face.taken and 2.0 * z > wall)
+
+
 @njit(cache=True, error_model="numpy", forceinline=True)
-def _element(sums, room, triangles, t, face):
+def _element(sums, room, head, meshes, t, face):
     """Adds what one triangle does to a Face."""
+    triangles = meshes.triangles
     way, along, across, where = face.way, face.along, face.across, face.where
     hp, hr, block = face.half_along, face.half_across, face.most < EVER
     normal = (triangles[t, NORMAL], triangles[t, NORMAL + 1], triangles[t, NORMAL + 2])
@@ -272,8 +311,10 @@ def _element(sums, room, triangles, t, face):
         and max(z0, z1, z2) <= face.most
     )
     if inside and min(z0, z1, z2) >= 0.0:
+        u, v, z = (u0 + u1 + u2) / 3.0, (v0 + v1 + v2) / 3.0, (z0 + z1 + z2) / 3.0
+        if not block and _by_the_other(meshes, head, t, face, u, v, z, max(z0, z1, z2)):
+            return
         if face.middles:
-            u, v, z = (u0 + u1 + u2) / 3.0, (v0 + v1 + v2) / 3.0, (z0 + z1 + z2) / 3.0
             _press(sums, triangles[t, AREA], u, v, z, element)
             sums[DEEPEST] = max(sums[DEEPEST], min(z, element.deepest))
         else:
@@ -281,6 +322,9 @@ def _element(sums, room, triangles, t, face):
     else:
         which, count = _over(room, (u0, u1, u2), (v0, v1, v2), (z0, z1, z2), face)
         if count < 3:
+            return
+        (u, v, z), deepest = _middle(room[which], count)
+        if not block and _by_the_other(meshes, head, t, face, u, v, z, deepest):
             return
         _piece(sums, room[which], count, element, face.middles)
     force, at_u, at_v = sums[IN_ALL] - before[0], sums[FIRST_U] - before[1], sums[FIRST_V] - before[2]
@@ -301,9 +345,9 @@ def _element(sums, room, triangles, t, face):
 @njit(cache=True, error_model="numpy")
 def gather(sums, room, head, meshes, placed, half, side, stiff):
     """Adds up what presses on a Side of a box, into its sums."""
-    bounds, links, triangles = meshes.bounds, meshes.links, meshes.triangles
+    bounds, links = meshes.bounds, meshes.links
     middle, axes = placed.middle, placed.axes
-    q, sign, narrows_p, narrows_r, most = side
+    q, sign, narrows_p, narrows_r, most, through, taken = side
     p, r = (q + 1) % 3, (q + 2) % 3
     way = scale(sign, (axes[q], axes[3 + q], axes[6 + q]))
     along, across = (axes[p], axes[3 + p], axes[6 + p]), (axes[r], axes[3 + r], axes[6 + r])
@@ -325,6 +369,8 @@ def gather(sums, room, head, meshes, placed, half, side, stiff):
         narrows_p,
         narrows_r,
         most,
+        through,
+        taken,
     )
     n = head.first
     while n < head.end:
@@ -345,5 +391,5 @@ def gather(sums, room, head, meshes, placed, half, side, stiff):
             n = links[n, AFTER]
             continue
         for t in range(links[n, FIRST], links[n, FIRST] + links[n, COUNT]):
-            _element(sums, room, triangles, t, face)
+            _element(sums, room, head, meshes, t, face)
         n += 1

@@ -12,6 +12,7 @@ from mdlgen.model.meshes import origin
 from mdlgen.model.tables import Floats, Ints, Model
 
 DEEPEST = 1.0  # mm: what is deeper in a part is about to come out at its other side, or is lost
+SHARP = 1e-6  # cosine beyond which an edge is less than square; rounded files have square ones a little less
 BEYOND = 1.5  # how far beyond that depth a contact is still seen, so that a run can end
 HEAD = np.dtype(
     [
@@ -22,6 +23,7 @@ HEAD = np.dtype(
         ("basis", "f8"),  # 4/3 w sqrt(2 R) of the roller that it is on, 0: fixed
         ("middles", "i8"),  # depth is looked at in the middles of elements
         ("most", "f8"),  # DEEPEST
+        ("thin", "i8"),  # whether it is thinner than twice that anywhere, or has a sharp edge
         ("edge", "f8"),  # radius of its edges, 0: sharp
         ("reach", "f8"),  # greatest distance from the body's centre
         ("unseen", "f8"),  # how far a box may move from one state that is looked at to the next
@@ -42,18 +44,19 @@ def mesh_tables(model: Model, mm: float = 1.0) -> Meshes:
     """The meshes of a Model for compiled code; `mm` is a millimetre in the solver's unit."""
     heads = np.zeros(len(model.meshes), HEAD)
     bounds, links, triangles = [np.zeros((0, 12))], [np.zeros((0, 3), np.int64)], [np.zeros((0, WIDTH))]
-    built: dict[tuple[str, float], tuple[int, int, float]] = {}
+    built: dict[tuple[str, float], tuple[int, int, float, bool]] = {}
     for head, mesh in zip(heads, model.meshes, strict=True):
         if (mesh.file, mesh.scale) not in built:
             box, link, table = build_tree(mesh.corners * mm, mesh.triangles, DEEPEST * mm)
             before, shift = sum(map(len, links)), sum(map(len, triangles))
             link[:, FIRST] += shift
             link[:, AFTER] += before
-            built[mesh.file, mesh.scale] = before, before + len(link), _unseen(table)
+            thin = bool((table[:, THICK] < DEEPEST * mm).any()) or _sharp(mesh.corners, mesh.triangles)
+            built[mesh.file, mesh.scale] = before, before + len(link), _unseen(table), thin
             bounds.append(box)
             links.append(link)
             triangles.append(table)
-        head["first"], head["end"], head["unseen"] = built[mesh.file, mesh.scale]
+        head["first"], head["end"], head["unseen"], head["thin"] = built[mesh.file, mesh.scale]
         body = mesh.body
         if mesh.on >= 0:
             roller = model.rollers[mesh.on]
@@ -68,6 +71,18 @@ def mesh_tables(model: Model, mm: float = 1.0) -> Meshes:
             float(np.linalg.norm(place + mesh.corners @ (turn.T @ mesh.axes).T, axis=1).max()) * mm
         )
     return Meshes(heads, np.concatenate(bounds), np.concatenate(links), np.concatenate(triangles))
+
+
+def _sharp(corners: Floats, triangles: Ints) -> bool:
+    """Whether two triangles of a closed surface meet at less than 90 deg, inside or outside."""
+    one, two, three = (corners[triangles[:, k]] for k in range(3))
+    normals = np.cross(two - one, three - one)
+    sides = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    order = np.lexsort(sides.T)
+    owners, same = order // 3, (np.diff(sides[order], axis=0) == 0).all(axis=1)
+    pairs = normals[owners[:-1][same]], normals[owners[1:][same]]
+    sizes = np.linalg.norm(pairs[0], axis=1) * np.linalg.norm(pairs[1], axis=1)
+    return bool((np.einsum("ni,ni->n", *pairs) < -SHARP * sizes).any())
 
 
 def _unseen(table: Floats) -> float:

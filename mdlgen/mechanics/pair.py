@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from mdlgen.mechanics.by_kind import KINDS, by_kind
 from mdlgen.mechanics.edge import stands
 from mdlgen.mechanics.frame import ARC_RADIUS, LAW_ROLLING, LAW_SMOOTHING, box_of, held_frame
@@ -16,10 +18,13 @@ from mdlgen.program.kernel import BORROWS, njit
 
 # Kinds of contacts that have a law.
 WITH_LAW = frozenset(KINDS)
+_ON_PLATES = frozenset(kind for kind, module in KINDS.items() if getattr(module, "ON_PLATE", False))
 
 near = by_kind(__name__, "near", inline=True)
 on_plate = by_kind(__name__, "ON_PLATE", otherwise=False, inline=True)
 _force, _plate = by_kind(__name__, "force", inline=True), by_kind(__name__, "plate", inline=True)
+_notes = by_kind(__name__, "NOTES", otherwise=False, inline=True)
+_noted = by_kind(__name__, "noted", inline=True)
 _rolling = by_kind(__name__, "rolling", otherwise=((0.0, 0.0, 0.0), 0.0))
 
 
@@ -27,6 +32,11 @@ _rolling = by_kind(__name__, "rolling", otherwise=((0.0, 0.0, 0.0), 0.0))
 def on_fixed_plate(pair, other):
     """Whether the other part, of that record, is a plate that does not move."""
     return on_plate(pair) and other.slide < 0
+
+
+def before_an_end(pair: np.void) -> bool:
+    """Whether a pair is of a box of which a side stands before an end of a plate."""
+    return int(pair["kind"]) in _ON_PLATES and int(pair["beside"]) != 0
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -43,12 +53,15 @@ def pair_force(bodies, pair, shapes, motion, out):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def remember(bodies, pairs, motion):
-    """Notes for all pairs of a box and a plate which outer sides of the box stand before which end of the
-    plate, at the places that a step, or a run, begins with (see mechanics.edge)."""
+def remember(bodies, pairs, shapes, motion):
+    """Notes what pairs remember of the places that a step, or a run, begins with: of a box and a plate which
+    outer sides of the box stand before which end of the plate (see mechanics.edge), of others what their kind
+    notes."""
     for p in range(pairs.size):
         if pairs[p].kind < 0:  # from here on there is room only
             break
+        if _notes(pairs[p]):
+            pairs[p].beside = _noted(bodies, pairs[p], shapes, motion)
         if not on_plate(pairs[p]):
             continue
         a, b = pairs[p].a, pairs[p].b

@@ -47,7 +47,9 @@ BODIES = [("kind", "i8"), ("a", "i8"), ("b", "i8")]
 CONTACT = [
     ("shared", "i8"),
     ("mesh", "i8"),  # number of it
-    ("beside", "i8"),  # sides of the box that stand before ends of a plate, see mechanics.edge
+    # what it remembers: sides of the box that stand before ends of a plate (mechanics.edge), or which of its
+    # faces presses alone on a mesh (mechanics.mesh)
+    ("beside", "i8"),
     ("spread", "f8"),  # radius of the round that a roller's force is spread as, 0: its own
     ("k", "f8"),
     ("law", "f8", LAW),  # columns as in mechanics.frame

@@ -102,20 +102,21 @@ def set_thickness(bounds, links, triangles, most):
             at = middle
             if k < 3:
                 at = add(scale(0.2, middle), scale(0.8, (c[3 * k], c[3 * k + 1], c[3 * k + 2])))
-            thick = _behind(bounds, links, triangles, at, scale(-1.0, normal), thick)
+            thick, _ = behind(bounds, links, triangles, 0, links.shape[0], at, scale(-1.0, normal), thick)
         triangles[t, THICK] = 0.5 * thick
 
 
 @njit(cache=True, error_model="numpy")
-def _behind(bounds, links, triangles, at, way, far):
-    """Distance from a point of the surface along `way` to where it leaves the part, or `far`."""
-    found, n = far, 0
-    end = add(at, scale(far, way))
-    while n < links.shape[0]:
+def behind(bounds, links, triangles, first, end, at, way, far):
+    """Distance from a point of the surface along `way` to where it leaves the part, and by which triangle;
+    `far` and -1 where that is farther."""
+    found, by, n = far, -1, first
+    last = add(at, scale(far, way))
+    while n < end:
         box = bounds[n]
         apart = False
         for i in range(3):
-            low, high = min(at[i], end[i]), max(at[i], end[i])
+            low, high = min(at[i], last[i]), max(at[i], last[i])
             apart = apart or high < box[LOW + i] or low > box[HIGH + i]
         if apart:
             n = links[n, AFTER]
@@ -136,9 +137,9 @@ def _behind(bounds, links, triangles, at, way, far):
                 side = sub((c[l], c[l + 1], c[l + 2]), p)
                 inside = inside and dot(cross(side, sub(hit, p)), normal) >= -1e-9 * dot(side, side)
             if inside:
-                found = distance
+                found, by = distance, t
         n += 1
-    return found
+    return found, by
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)

@@ -125,13 +125,21 @@ def box_guide(out: np.ndarray, a: Frame, box: Box, b: Frame, plate: Plate, law: 
 
 
 def box_mesh(
-    out: np.ndarray, a: Frame, box: Box, b: Frame, axis: Vector, mesh: int, meshes: Meshes, law: Law
+    out: np.ndarray,
+    a: Frame,
+    box: Box,
+    b: Frame,
+    axis: Vector,
+    mesh: int,
+    meshes: Meshes,
+    law: Law,
+    met: int = 0,
 ) -> None:
-    """`mesh`: the number of it in the tables."""
+    """`mesh`: the number of it in the tables; met: what the pair remembers."""
     bodies = _bodies()
     _box(bodies[0], box)
     bodies[1]["axis"] = axis
-    _press(out, BOX_MESH, bodies, a, b, law, meshes, mesh=mesh)
+    _press(out, BOX_MESH, bodies, a, b, law, meshes, mesh=mesh, beside=met)
 
 
 def _bodies() -> np.ndarray:

@@ -43,11 +43,12 @@ def pushed(place, turn=0.0, edge=(0.1, 0.1, 0.0), exposed=2, beside=0, half=HALF
     return out
 
 
-def remembered(place, edge, exposed=2, beside=0):
-    """The sides of a box that stand before ends of the plate, with what was known."""
+def remembered(place, edge, exposed=2, beside=0, twist=0.0):
+    """The sides of a box, turned about x, that stand before ends of the plate, with what was known."""
     plate = Plate(STRAIGHT, PLATE, PLATE[2], 15, edge, beside)
     axes = TABLE._replace(r=as_guide(EYE))
-    return stands(Frame(place, EYE, ZERO, ZERO), Box(HALF, exposed), axes, plate)
+    turned = tuple(Rotation.from_rotvec([twist, 0.0, 0.0]).as_matrix().ravel().tolist())
+    return stands(Frame(place, turned, ZERO, ZERO), Box(HALF, exposed), axes, plate)
 
 
 def before_the_end(h, edge):
@@ -101,6 +102,28 @@ def test_a_side_remembers_whether_it_came_from_above_or_from_the_end():
         assert pushed(place, edge=edge)[12] == 0.0
     # a side that has a neighbour in its sheet catches on nothing
     assert remembered(inside, edge, 0, 0) == 0
+
+
+@pytest.mark.parametrize("twist", [-0.03, 0.03, 0.1])
+def test_a_twisted_side_stands_before_an_end_until_all_of_it_is_over(twist):
+    """One corner comes over the round while another is up to 1 mm below the face: the side is not let in."""
+    edge, high = (0.1, 0.1, 0.0), HALF[1] * abs(math.sin(twist))
+    beside = before_the_end(0.3, edge)
+    climbs = (0.09 - HALF[0], 0.0, HALF[2] - 0.02 - high)  # its highest corner is 0.02 mm below the face
+    assert remembered(climbs, edge, 2, beside, twist) == beside
+    level = (0.09 - HALF[0], 0.0, HALF[2] - 0.02)
+    assert remembered(level, edge, 2, beside) == 0
+
+
+@pytest.mark.parametrize("deep", [0.03, 0.05, 0.12])
+@pytest.mark.parametrize("from_the_end", [0.2, 0.3, 0.4])
+def test_a_side_that_comes_in_over_the_face_does_not_meet_the_end(deep, from_the_end):
+    """A sheet stands on the plate, deeper than the edge is round and nearer to the end than the middle of the
+    end is high. The end looks at its broad face, but it has the force that it has far away."""
+    edge, upright = (0.02, 0.02, 0.0), math.pi / 2  # its leading side looks down
+    near, far = (pushed((x + HALF[2], 0.0, HALF[0] - deep), upright, edge) for x in (from_the_end, 60.0))
+    assert far[12] > 0.0
+    assert near[:6] == pytest.approx(far[:6], rel=1e-6, abs=1e-9)
 
 
 def test_an_edge_presses_along_the_normal_of_the_face_that_slides_over_it():

@@ -12,6 +12,7 @@ from mdlgen.backends.lattice.kernels.state import (
     WORST,
     State,
 )
+from mdlgen.mechanics.pair import before_an_end
 from mdlgen.model.curves import overstretched
 from mdlgen.model.overlaps.unheld import Unheld
 from mdlgen.model.tables import Floats, Model
@@ -50,7 +51,8 @@ def reason_of(
             state.u[np.flatnonzero(system.nodes == int(system.pairs[end][pair])), :3].sum(0) for end in "ab"
         ]
         way = dt * float(np.linalg.norm(rates[0] - rates[1]))
-        return f"{model.too_deep(box, plate)} at {t:.6g} ms; {model.held_by(box, way)}"
+        deep = model.too_deep(box, plate, before_an_end(system.pairs[pair]))
+        return f"{deep} at {t:.6g} ms; {model.held_by(box, way)}"
     if status == OVERLAPPED:
         return unheld(model, system).found(state.x, state.r, t) or "two parts overlap"
     if status == PASSED:

@@ -103,7 +103,7 @@ def besides(whole: System, beside: np.ndarray, at: Ints, motion: Motion) -> np.n
     from mdlgen.backends.lattice.kernels import entries
 
     pairs = whole.pairs[: whole.search.first].copy()
-    entries.remember(whole.bodies, pairs, motion)
+    entries.remember(whole.bodies, pairs, whole.tables.shapes, motion)
     pairs["beside"][at] = beside
     return pairs["beside"].copy()
 

@@ -71,7 +71,8 @@ def arrays(model: Model, system: System) -> Workspace:
         rows=np.zeros(contacts, bool),
     )
     work = workspace(model, system, (state, mid, matrix), kept, islands(model, system), asleep)
-    entries.remember(system.bodies, system.pairs, Motion(state.x, state.r, mid.motion.u, mid.motion.w))
+    motion = Motion(state.x, state.r, mid.motion.u, mid.motion.w)
+    entries.remember(system.bodies, system.pairs, system.tables.shapes, motion)
     return work
 
 

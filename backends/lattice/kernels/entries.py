@@ -29,9 +29,9 @@ def look(pairs, search, x):
 
 
 @njit(cache=True, error_model="numpy")
-def remember(bodies, pairs, motion):
+def remember(bodies, pairs, shapes, motion):
     """See mechanics.pair.remember."""
-    _remember(bodies, pairs, motion)
+    _remember(bodies, pairs, shapes, motion)
 
 
 @njit(cache=True, error_model="numpy")

@@ -62,7 +62,7 @@ def rest(model: Model, system: System, work: Workspace) -> Result:
     found = lying.holds(model, loose, load)
     grip = lying.Grip(lying.held(model, system, found))
     tables = grip.system.tables
-    entries.remember(tables.bodies, system.pairs, Motion(x, r, still, still))
+    entries.remember(tables.bodies, system.pairs, tables.shapes, Motion(x, r, still, still))
     size = (system.border, 6 * (system.reach + 1) + PAD)
     held = (TETHER if len(found) < len(loose) else 0.0, _reach(model))
 

@@ -22,6 +22,8 @@ and, where others of that name are not enough,
   none; without it, always 0;
 - `buried(bodies, pair, shapes, x, r)`: whether the first one's centre is deeper in the second one than it may
   be; asked for where SOLID is true;
+- `noted(bodies, pair, shapes, motion)`: what the pair remembers, as its `beside`, of the places that a step
+  begins with; asked for where NOTES is true;
 - `plate(bodies, pair, motion)`: the second one as Frame and Plate, in the axes of a guide; asked for where
   ON_PLATE is true.
 

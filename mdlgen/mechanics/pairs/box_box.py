@@ -13,6 +13,12 @@ from mdlgen.model.tables.contacts import BOX_BOX
 from mdlgen.program.kernel import BORROWS, njit
 
 KIND = BOX_BOX
+# How deep a corner of a face may be, in half thicknesses of the thinner box. At 2 the law may take the boxes
+# to have changed sides, as it looks at the middles of their faces. The corner of a box that tilts is deeper
+# than its middle; so it may go half of the way from 1 to 2.
+PRESSED = 1.5
+# How far two boxes may move towards each other between two looks, in the same measure: less than is left.
+UNSEEN = 0.8 * (2.0 - PRESSED)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)
@@ -54,8 +60,14 @@ def apart(bodies, pair, shapes, x, r, way):
 
 @njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)
 def deepest(bodies, pair):
-    """Half of the thickness of the thinner one."""
-    return min(bodies[pair.a].half[2], bodies[pair.b].half[2])
+    """A part of the thickness of the thinner one."""
+    return PRESSED * min(bodies[pair.a].half[2], bodies[pair.b].half[2])
+
+
+@njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)
+def unseen(bodies, pair, shapes):
+    """Less than what is left of the thickness beyond `deepest`."""
+    return UNSEEN * min(bodies[pair.a].half[2], bodies[pair.b].half[2])
 
 
 @njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)

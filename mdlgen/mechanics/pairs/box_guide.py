@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from mdlgen.mechanics.bounds import fastest_place, gap_of, rate_of, size, turning
-from mdlgen.mechanics.edge import TAKES
+from mdlgen.mechanics.edge import TAKES, deepest_at
 from mdlgen.mechanics.frame import (
     ARC_ANGLE,
     ARC_MIDDLE,
@@ -70,8 +70,8 @@ def apart(bodies, pair, shapes, x, r, way):
 
 @njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)
 def deepest(bodies, pair):
-    """Half of the guide's thickness."""
-    return bodies[pair.b].half[2]
+    """Half of the guide's thickness, or more before an end."""
+    return deepest_at(bodies[pair.b].half[2], bodies[pair.a].half, pair.beside)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)

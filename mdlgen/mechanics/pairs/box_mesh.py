@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 
 from mdlgen.mechanics.bounds import fastest_place, gap_of, rate_of, size, turning
-from mdlgen.mechanics.frame import RADIUS, box_of, frame_of, law_of
-from mdlgen.mechanics.mesh import LOST, box_mesh, mesh_near
+from mdlgen.mechanics.frame import RADIUS, box_of, frame_of, held_frame, law_of
+from mdlgen.mechanics.mesh import LOST, box_mesh, mesh_near, met_face
 from mdlgen.mechanics.point import presses
 from mdlgen.mechanics.tree import THICK, depth_at
 from mdlgen.mechanics.vector import add, back, dot, mat, matmul, nine, rotate, sub, three, vec
 from mdlgen.model.tables.contacts import BOX_MESH
 from mdlgen.program.kernel import BORROWS, njit
 
-KIND, SOLID = BOX_MESH, True
+KIND, SOLID, NOTES = BOX_MESH, True, True
 
 
 @njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)
@@ -21,8 +21,17 @@ def force(bodies, pair, shapes, motion, out):
     """See mechanics.pairs; so are the others."""
     a, b, meshes = frame_of(motion, pair.a), frame_of(motion, pair.b), shapes.meshes
     axis, head = three(bodies[pair.b].axis), meshes.heads[pair.mesh]
-    box_mesh(out, a, box_of(bodies[pair.a]), b, axis, head, meshes, law_of(pair))
+    box_mesh(out, a, box_of(bodies[pair.a]), b, axis, head, meshes, law_of(pair), pair.beside)
     return presses(out)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)
+def noted(bodies, pair, shapes, motion):
+    """The broad face that presses alone."""
+    head, box = shapes.meshes.heads[pair.mesh], box_of(bodies[pair.a])
+    return met_face(
+        held_frame(motion, pair.a), box, held_frame(motion, pair.b), head, shapes.meshes, pair.beside
+    )
 
 
 @njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)

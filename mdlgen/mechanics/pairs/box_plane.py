@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from mdlgen.mechanics.bounds import gap_of, rate_of, size, turning
-from mdlgen.mechanics.edge import TAKES
+from mdlgen.mechanics.edge import TAKES, deepest_at
 from mdlgen.mechanics.frame import Frame, Plate, box_of, frame_of, held_frame, law_of, plate_frame
 from mdlgen.mechanics.plate import STRAIGHT, as_guide, box_plane
 from mdlgen.mechanics.point import presses
@@ -60,8 +60,8 @@ def apart(bodies, pair, shapes, x, r, way):
 
 @njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)
 def deepest(bodies, pair):
-    """Half of the plane's thickness."""
-    return bodies[pair.b].half[2]
+    """Half of the plane's thickness, or more before an end."""
+    return deepest_at(bodies[pair.b].half[2], bodies[pair.a].half, pair.beside)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)

@@ -181,12 +181,19 @@ class Model(Frozen):
         kind = next((part.kind for part in self.machine if part.body == body), "box")
         return f"{kind} {self.bodies.name[body]}"
 
-    def too_deep(self, one: int, other: int) -> str:
-        """What is said of a box or a roller that is too deep in another part."""
+    def too_deep(self, one: int, other: int, beside: bool = False) -> str:
+        """What is said of a box or a roller that is too deep in another part; beside: it came by its end."""
         rollers = {roller.body for roller in self.rollers}
         if {one, other} <= rollers:
             return f"{self.called(one)} and {self.called(other)} overlap by more than the smaller radius"
+        sheets = {part.body for part in self.machine}.isdisjoint({one, other})
+        if sheets:
+            return (
+                f"{self.called(one)} is more than three quarters of its thickness into {self.called(other)}"
+            )
         size = "radius" if rollers & {one, other} else "thickness"
+        if beside:
+            return f"half of {self.called(one)} is past the end of {self.called(other)}"
         return f"{self.called(one)} is more than half of its {size} into {self.called(other)}"
 
     def held_by(self, one: int, way: float) -> str:

@@ -13,13 +13,13 @@ from mdlgen.backends.lattice.kernels.forces import place_box, place_roller
 from mdlgen.backends.lattice.kernels.state import ENDS, FACE_FORCE, FACE_POINTS, FORCE_NOW, MIDDLE, OWN_REACH
 from mdlgen.mechanics.arm import turn_of, way_of
 from mdlgen.mechanics.bounds import fastest_place
-from mdlgen.mechanics.crossing import UNSEEN, above, buried, closing, deepest, solid, unseen
+from mdlgen.mechanics.crossing import above, buried, closing, deepest, solid, unseen
 from mdlgen.mechanics.frame import LAW_SMOOTHING, Frame, Motion, frame_of
 from mdlgen.mechanics.impacts import stored_beyond, turning_back
 from mdlgen.mechanics.mesh import BLOCK
 from mdlgen.mechanics.overlap import impact
 from mdlgen.mechanics.pair import pair_force
-from mdlgen.mechanics.pairs.box_box import deepest as deepest_of_boxes
+from mdlgen.mechanics.pairs.box_box import UNSEEN
 from mdlgen.mechanics.point import (
     AT,
     BETA,
@@ -214,7 +214,7 @@ def _slow(bodies, own, k, fastest, dt, little):
     """Whether two boxes of two sheets, of their row of LISTED and their stiffness, move too little in a step
     to cross each other unseen, or to make more than `little` of energy where they come to touch."""
     way = dt * (fastest[own.a] + fastest[own.b])
-    if way > UNSEEN * deepest_of_boxes(bodies, own):
+    if way > UNSEEN * min(bodies[own.a].half[2], bodies[own.b].half[2]):
         return False
     half = 0.5 * way
     return 0.4 * k * half * half * math.sqrt(half) <= little

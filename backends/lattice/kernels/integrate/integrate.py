@@ -287,7 +287,7 @@ def run(work, t, steps, tolerance, control):
                 take_off(work, work.damped.off, energies)
             if work.film.films.size > 0:
                 take_off(work, work.film.off, energies)
-            remember(bodies, pairs[: search.first], Motion(x, r, mid.motion.u, mid.motion.w))
+            remember(bodies, pairs[: search.first], tables.shapes, Motion(x, r, mid.motion.u, mid.motion.w))
             counters[STEPS] += 1
             done += size
             pace[FASTEST] = max(pace[FASTEST], _speed(work, mass))
