@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 import ran
 from asked import as_asked
+from edges import HALF, PLATE, TABLE, ZERO, K, before_the_end, pushed
 from scipy.spatial.transform import Rotation
 
 import mdlgen
 from mdlgen.errors import SpecError
-from mdlgen.mechanics.edge import stands
 from mdlgen.mechanics.frame import Box, Frame, Law, Plate
-from mdlgen.mechanics.plate import STRAIGHT, as_guide, box_plane
-from mdlgen.mechanics.point import MOST_POINTS, OUT, POINT
+from mdlgen.mechanics.plate import STRAIGHT, box_plane
+from mdlgen.mechanics.point import OUT
 from mdlgen.model.lower import lower
 from mdlgen.paths import samples
 from mdlgen.report.html.page import page
@@ -26,34 +26,6 @@ from mdlgen.results.result import Result
 from mdlgen.spec.load import load, loads
 
 pytestmark = pytest.mark.usefixtures("as_python")
-
-ZERO, EYE = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
-PLAIN = (0.0, 0.0, 0.0, 1.0, 1.0, 1.0)
-HALF, PLATE = (1.7, 5.0, 0.05), (100.0, 150.0, 0.5)  # a box of a sheet; a plate of 1 mm from x = 0 on
-K = 100.0
-TABLE = Frame((100.0, 0.0, -0.5), EYE, ZERO, ZERO)
-
-
-def pushed(place, turn=0.0, edge=(0.1, 0.1, 0.0), exposed=2, beside=0, half=HALF):
-    """What a box, turned about y, gets of the plate."""
-    out = np.zeros(OUT + 1 + POINT * MOST_POINTS)
-    axes = tuple(Rotation.from_rotvec([0.0, turn, 0.0]).as_matrix().ravel().tolist())
-    plate = Plate(STRAIGHT, PLATE, PLATE[2], 15, edge, beside)
-    box_plane(out, Frame(place, axes, ZERO, ZERO), Box(half, exposed), TABLE, plate, Law(K, True, *PLAIN))
-    return out
-
-
-def remembered(place, edge, exposed=2, beside=0, twist=0.0):
-    """The sides of a box, turned about x, that stand before ends of the plate, with what was known."""
-    plate = Plate(STRAIGHT, PLATE, PLATE[2], 15, edge, beside)
-    axes = TABLE._replace(r=as_guide(EYE))
-    turned = tuple(Rotation.from_rotvec([twist, 0.0, 0.0]).as_matrix().ravel().tolist())
-    return stands(Frame(place, turned, ZERO, ZERO), Box(HALF, exposed), axes, plate)
-
-
-def before_the_end(h, edge):
-    """What is remembered of a leading side whose lower corner is h below the face, 0.01 mm before the end."""
-    return remembered((-HALF[0] - 0.01, 0.0, HALF[2] - h), edge)
 
 
 # -- the law
@@ -83,47 +55,6 @@ def test_the_normal_on_a_round_is_that_of_its_height_whatever_the_penetration(h,
     out = pushed((surface + depth - HALF[0], 0.0, HALF[2] - h), edge=edge, beside=before_the_end(h, edge))
     assert out[12] > 0.0
     assert math.degrees(math.atan2(-out[0], out[2])) == pytest.approx(math.degrees(angle), abs=3.0)
-
-
-def test_a_side_remembers_whether_it_came_from_above_or_from_the_end():
-    edge = (0.02, 0.02, 0.0)
-    beside = before_the_end(0.05, edge)
-    assert beside != 0
-    inside = (0.08 - HALF[0], 0.0, HALF[2] - 0.05)  # deeper past the end than below the face
-    stubbed, lying = pushed(inside, edge=edge, beside=beside), pushed(inside, edge=edge)
-    assert stubbed[0] < 0.0 and abs(stubbed[2]) < 1e-9 * abs(stubbed[0])
-    assert lying[2] > 0.0 and abs(lying[0]) < 1e-9 * lying[2]
-    kept = remembered(inside, edge, 2, beside)
-    assert kept == beside
-    # above the face, and below the plate, it is free
-    for height in (HALF[2] + 0.001, -1.0 - HALF[2] - 0.001):
-        place = (0.08 - HALF[0], 0.0, height)
-        assert remembered(place, edge, 2, beside) == 0
-        assert pushed(place, edge=edge)[12] == 0.0
-    # a side that has a neighbour in its sheet catches on nothing
-    assert remembered(inside, edge, 0, 0) == 0
-
-
-@pytest.mark.parametrize("twist", [-0.03, 0.03, 0.1])
-def test_a_twisted_side_stands_before_an_end_until_all_of_it_is_over(twist):
-    """One corner comes over the round while another is up to 1 mm below the face: the side is not let in."""
-    edge, high = (0.1, 0.1, 0.0), HALF[1] * abs(math.sin(twist))
-    beside = before_the_end(0.3, edge)
-    climbs = (0.09 - HALF[0], 0.0, HALF[2] - 0.02 - high)  # its highest corner is 0.02 mm below the face
-    assert remembered(climbs, edge, 2, beside, twist) == beside
-    level = (0.09 - HALF[0], 0.0, HALF[2] - 0.02)
-    assert remembered(level, edge, 2, beside) == 0
-
-
-@pytest.mark.parametrize("deep", [0.03, 0.05, 0.12])
-@pytest.mark.parametrize("from_the_end", [0.2, 0.3, 0.4])
-def test_a_side_that_comes_in_over_the_face_does_not_meet_the_end(deep, from_the_end):
-    """A sheet stands on the plate, deeper than the edge is round and nearer to the end than the middle of the
-    end is high. The end looks at its broad face, but it has the force that it has far away."""
-    edge, upright = (0.02, 0.02, 0.0), math.pi / 2  # its leading side looks down
-    near, far = (pushed((x + HALF[2], 0.0, HALF[0] - deep), upright, edge) for x in (from_the_end, 60.0))
-    assert far[12] > 0.0
-    assert near[:6] == pytest.approx(far[:6], rel=1e-6, abs=1e-9)
 
 
 def test_an_edge_presses_along_the_normal_of_the_face_that_slides_over_it():

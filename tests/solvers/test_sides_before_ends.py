@@ -1,0 +1,51 @@
+"""Outer sides of a sheet that stand before an end of a plate, and those that come in over its face."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from edges import HALF, before_the_end, pushed, remembered
+
+pytestmark = pytest.mark.usefixtures("as_python")
+
+
+def test_a_side_remembers_whether_it_came_from_above_or_from_the_end():
+    edge = (0.02, 0.02, 0.0)
+    beside = before_the_end(0.05, edge)
+    assert beside != 0
+    inside = (0.08 - HALF[0], 0.0, HALF[2] - 0.05)  # deeper past the end than below the face
+    stubbed, lying = pushed(inside, edge=edge, beside=beside), pushed(inside, edge=edge)
+    assert stubbed[0] < 0.0 and abs(stubbed[2]) < 1e-9 * abs(stubbed[0])
+    assert lying[2] > 0.0 and abs(lying[0]) < 1e-9 * lying[2]
+    kept = remembered(inside, edge, 2, beside)
+    assert kept == beside
+    # above the face, and below the plate, it is free
+    for height in (HALF[2] + 0.001, -1.0 - HALF[2] - 0.001):
+        place = (0.08 - HALF[0], 0.0, height)
+        assert remembered(place, edge, 2, beside) == 0
+        assert pushed(place, edge=edge)[12] == 0.0
+    # a side that has a neighbour in its sheet catches on nothing
+    assert remembered(inside, edge, 0, 0) == 0
+
+
+@pytest.mark.parametrize("twist", [-0.03, 0.03, 0.1])
+def test_a_twisted_side_stands_before_an_end_until_all_of_it_is_over(twist):
+    """One corner comes over the round while another is up to 1 mm below the face: the side is not let in."""
+    edge, high = (0.1, 0.1, 0.0), HALF[1] * abs(math.sin(twist))
+    beside = before_the_end(0.3, edge)
+    climbs = (0.09 - HALF[0], 0.0, HALF[2] - 0.02 - high)  # its highest corner is 0.02 mm below the face
+    assert remembered(climbs, edge, 2, beside, twist) == beside
+    level = (0.09 - HALF[0], 0.0, HALF[2] - 0.02)
+    assert remembered(level, edge, 2, beside) == 0
+
+
+@pytest.mark.parametrize("deep", [0.03, 0.05, 0.12])
+@pytest.mark.parametrize("from_the_end", [0.2, 0.3, 0.4])
+def test_a_side_that_comes_in_over_the_face_does_not_meet_the_end(deep, from_the_end):
+    """A sheet stands on the plate, deeper than the edge is round and nearer to the end than the middle of the
+    end is high. The end looks at its broad face, but it has the force that it has far away."""
+    edge, upright = (0.02, 0.02, 0.0), math.pi / 2  # its leading side looks down
+    near, far = (pushed((x + HALF[2], 0.0, HALF[0] - deep), upright, edge) for x in (from_the_end, 60.0))
+    assert far[12] > 0.0
+    assert near[:6] == pytest.approx(far[:6], rel=1e-6, abs=1e-9)
