@@ -8,6 +8,7 @@ import gc
 import os
 import sys
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -99,6 +100,18 @@ def _by_names(value: Any) -> Any:
     if isinstance(value, tuple) and hasattr(value, "_fields"):
         return type(value)(*map(_by_names, value))
     return value
+
+
+@functools.cache
+def _before_a_release() -> list[str]:
+    """Names of the tests in release.txt."""
+    lines = Path(__file__).with_name("release.txt").read_text().splitlines()
+    return [line for line in lines if line and not line.startswith("#")]
+
+
+def pytest_itemcollected(item: pytest.Item) -> None:
+    if item.nodeid in _before_a_release():
+        item.add_marker(pytest.mark.release)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

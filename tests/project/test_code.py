@@ -98,3 +98,11 @@ def test_no_file_is_long() -> None:
     counts = {file: len(text.splitlines()) for file, text in sources(*FOLDERS).items()}
     generated = {file for file in counts if Path(file).parts[:2] == ("tests", "golden")}
     assert {f: n for f, n in counts.items() if n > MOST_LINES and f not in generated} == {}
+
+
+def test_the_list_of_a_release_names_tests_once() -> None:
+    names = [line for line in (ROOT / "tests/release.txt").read_text("utf-8").splitlines() if "::" in line]
+    assert len(names) == len(set(names)) > 0
+    for name in names:
+        file, test = name.split("::")
+        assert f"def {test.split('[')[0]}(" in (ROOT / file).read_text("utf-8"), name
