@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from mdlgen.backends.lattice.integrate.ends import limit_of
 from mdlgen.backends.lattice.integrate.limit import Deadline
+from mdlgen.model.tables import Model
 from mdlgen.results import audit
 from mdlgen.results.estimates import NOT_KNOWN, by_finer, estimated, open_yet, unlike
 from mdlgen.results.result import Result
@@ -16,6 +18,19 @@ from mdlgen.results.result import Result
 # Of a run at a step that is given, where one at twice that step is none, or quite another one.
 UNKNOWN = f"{NOT_KNOWN}: a run at twice the step"
 FINER = f"{NOT_KNOWN}: a run at finer steps"
+# States, stored times by bodies, of a run that is only compared with another one: those of a pile of a
+# hundred sheets would take as much memory as half of what its steps work on.
+COMPARED = 1_000_000
+
+
+def thinned(model: Model) -> Model:
+    """The Model with so many stored times that COMPARED states are enough, each of which it has anyway."""
+    outputs = max(1, round(model.run.duration / model.run.print_step))
+    least = math.ceil(outputs * len(model.bodies.name) / COMPARED)
+    each = next(k for k in range(least, outputs + 1) if outputs % k == 0) if least <= outputs else 1
+    if each == 1 or each > 4 * least:
+        return model
+    return replace(model, run=replace(model.run, print_step=each * model.run.print_step))
 
 
 def compared_with_coarser(

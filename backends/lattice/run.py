@@ -17,6 +17,7 @@ from mdlgen.backends.lattice.compared import (
     compared_with_finer,
     ended,
     in_time,
+    thinned,
 )
 from mdlgen.backends.lattice.integrate.beside import Beside, Stopped, own
 from mdlgen.backends.lattice.integrate.ends import limit_of, unbalanced
@@ -54,15 +55,14 @@ Report = tuple[float, float, int, int]  # what progress is called with
 
 # Numbers by which states of passes are kept: first those of the first step, halved so many times, or of the
 # step that is given, doubled so many times; then of twice the first step; of a check at a step of its own; of
-# a run at finer steps than were given; of one from a start that is moved.
-DOUBLED, CHECK, FINER, MOVED = (MOST_REFINED_RIGID + k for k in (1, 2, 3, 4))
+# a run at finer steps than were given; of one from a start that is moved, at the last step, and before it.
+DOUBLED, CHECK, FINER, MOVED, MOVED_EARLY = (MOST_REFINED_RIGID + k for k in (1, 2, 3, 4, 5))
+# How often the step was halved when it is first asked whether a motion is chaotic: four runs show whether
+# their differences fall, and half of the way to MOST_REFINED has a fifth of the cost.
+ASKED = 3
 
 # A step that is given is compared with twice that step where the run has so many of them.
 FEWEST = 4
-
-# States, stored times by bodies, of a run that is only compared with another one: those of a pile of a
-# hundred sheets would take as much memory as half of what its steps work on.
-COMPARED = 1_000_000
 
 # Rules that leave out what a run does not need, each of which a run can do without.
 FOLDING, FACTORS, SYMMETRY, SLEEP = "folding", "factors", "symmetry", "sleep"
@@ -165,10 +165,10 @@ def _given(
     steps that it takes where there is none of so few steps, or both are divided to the same."""
     made = MADE * accuracy(model) / 1e-3
     h = division(model, wanted).step
-    thinned, begun = _thinned(model), clock.perf_counter()
+    fewer, begun = thinned(model), clock.perf_counter()
 
     def again(times: float, on: System, seen: Watch) -> Result:
-        return alone(one_pass(thinned, on, times * h, seen, made=times * times * made))
+        return alone(one_pass(fewer, on, times * h, seen, made=times * times * made))
 
     def alone(result: Result) -> Result:
         if not together:
@@ -202,16 +202,6 @@ def _given(
     seen, beside = watch(1), own(system)
     with Beside(lambda stop: again(2, beside, seen.beside(stop)), seen.leave) as coarse:
         return judged(first(), coarse.result)
-
-
-def _thinned(model: Model) -> Model:
-    """The Model with so many stored times that COMPARED states are enough, each of which it has anyway."""
-    outputs = max(1, round(model.run.duration / model.run.print_step))
-    least = math.ceil(outputs * len(model.bodies.name) / COMPARED)
-    each = next(k for k in range(least, outputs + 1) if outputs % k == 0) if least <= outputs else 1
-    if each == 1 or each > 4 * least:
-        return model
-    return replace(model, run=replace(model.run, print_step=each * model.run.print_step))
 
 
 class Search:
@@ -248,7 +238,7 @@ class Search:
             ):  # what estimates need of the runs before, while compiled code is at work
                 Thread(target=_strains, args=(self._runs[:2],), daemon=True).start()
             run = ready.pop() if ready else self._once(0.5 * self._runs[0].step, k, self._watch(k))
-            if self._ends(run, k, self._watch(DOUBLED)):
+            if self._ends(run, k, self._watch(DOUBLED)) or (k == ASKED and self._parts(k)):
                 return self._done()
         return self._best()
 
@@ -362,6 +352,27 @@ class Search:
             best = replace(best, error_unknown=f"{UNKNOWN} failed: {runs[1].status}")
         return marked(self._chaos(replace(best, search_ended=why), before, len(runs) - 1 - k))
 
+    def _parts(self, k: int) -> bool:
+        """Whether a run from a start that is moved parts from the last run, halved `k` times, by as much as
+        half the step changes: no finer step will do. The last run says so then."""
+        runs = self._runs[:4]
+        name, late = runs[0].error_estimate_of, self._late
+        if not all(run.ok for run in runs) or name is None or chaos.falls(runs, name):
+            return False
+        if not late.allows(runs[0].wall_s):
+            return False
+        found = chaos.chaos(runs[0], runs[1], self._moved(runs[0].step, k, MOVED_EARLY))
+        if found is None or chaos.ALIKE * found.apart < found.step_apart:
+            return False
+        why = f"no step below {runs[0].step:.3g} ms was tried"
+        self._runs[0] = replace(runs[0], search_ended=why, chaotic=found)
+        return True
+
+    def _moved(self, step: float, halved: int, number: int) -> Result:
+        """A run at this step from a start that is moved."""
+        model = chaos.moved(self._model)
+        return self._once(step, halved, self._watch(number), build(model, fold=True), model)
+
     def _chaos(self, best: Result, before: list[Result], halved: int) -> Result:
         """The result with whether it is chaotic, which a run from a start that is moved a little shows."""
         name = best.error_estimate_of
@@ -369,8 +380,7 @@ class Search:
             return best
         if not self._late.allows(best.wall_s):
             return best
-        model = chaos.moved(self._model)
-        other = self._once(best.step, halved, self._watch(MOVED), build(model, fold=True), model)
+        other = self._moved(best.step, halved, MOVED)
         return replace(best, chaotic=chaos.chaos(best, before[0], other))
 
 

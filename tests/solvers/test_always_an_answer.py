@@ -80,6 +80,17 @@ def test_a_sheet_that_is_thrown_keeps_its_best_run_and_says_that_it_is_chaotic()
     assert 'mdlgen sweep SPEC --over "sheets.n.center.0=' in record["chaotic"]["in_words"]
 
 
+def test_a_search_ends_where_the_motion_is_chaotic() -> None:
+    """After three halvings starts that differ by 1e-9 mm part by as much as half the step changes;
+    two finer steps are left out."""
+    result = mdlgen.solve(case("retard"), "lattice")
+    found = result.chaotic
+    assert result.status == "inaccurate" and found is not None
+    assert found.apart > 0.5 * found.step_apart > 1e5 * found.start_mm
+    assert result.step > 2.0 * lattice.first_step(result.model) / 2**lattice.MOST_REFINED
+    assert "was tried" in result.search_ended
+
+
 def test_a_moved_start_strains_no_joint() -> None:
     model = case("thrown")
     moved = chaos.moved(model).bodies.position - model.bodies.position

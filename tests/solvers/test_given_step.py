@@ -9,7 +9,7 @@ import pytest
 from asked import as_asked
 
 import mdlgen
-from mdlgen.backends.lattice import run
+from mdlgen.backends.lattice import compared
 from mdlgen.backends.lattice.compared import UNKNOWN
 from mdlgen.model.lower import lower
 from mdlgen.paths import samples
@@ -80,7 +80,7 @@ def test_a_step_that_does_is_taken_as_it_is() -> None:
 def test_a_run_that_is_only_compared_stores_no_more_than_it_must(monkeypatch: pytest.MonkeyPatch) -> None:
     """Times that both have, by which estimates are much the same; a prime number of them is not divided."""
     whole = thrown(0.02, 1)
-    monkeypatch.setattr(run, "COMPARED", 210)
+    monkeypatch.setattr(compared, "COMPARED", 210)
     thin = thrown(0.02, 1)
     assert len(whole.coarser[0].time) == len(whole.time) == len(thin.time) == 41
     assert thin.coarser[0].time == pytest.approx(thin.time[::4], abs=1e-9)
@@ -89,4 +89,4 @@ def test_a_run_that_is_only_compared_stores_no_more_than_it_must(monkeypatch: py
     assert None not in known and 0.3 < known[0] / known[1] < 3.0
     model = whole.model
     odd = replace(model, run=replace(model.run, duration=18.5))
-    assert run._thinned(odd) is odd
+    assert compared.thinned(odd) is odd
