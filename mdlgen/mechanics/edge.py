@@ -68,6 +68,18 @@ def leaning(sine):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
+def hands_over(a, exposed, way):
+    """Within how many radii of the end of a plate the corners of a face begin to hand over to its edge; `way`
+    looks out of the plate. An outer side of box a there has 1: the edge takes it by how far it is on the
+    round (`_passes`). A side with a neighbour has 2: on the round the edge has it alone.
+    """
+    one = a.r[0] * way[0] + a.r[3] * way[1] + a.r[6] * way[2]
+    two = a.r[1] * way[0] + a.r[4] * way[1] + a.r[7] * way[2]
+    p, along = (0, one) if abs(one) > abs(two) else (1, two)
+    return 1.0 if exposed & (1 << (2 * p + (1 if along > 0.0 else 0))) != 0 else 2.0
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
 def held(normal, up, grip):
     """A normal turned to that of the plate by atan(grip) at most: what friction holds in a static analysis,
     where nothing slides."""

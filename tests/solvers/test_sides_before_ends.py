@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 from edges import HALF, before_the_end, pushed, remembered
+from scipy.spatial.transform import Rotation
 
 pytestmark = pytest.mark.usefixtures("as_python")
 
@@ -49,3 +51,20 @@ def test_a_side_that_comes_in_over_the_face_does_not_meet_the_end(deep, from_the
     near, far = (pushed((x + HALF[2], 0.0, HALF[0] - deep), upright, edge) for x in (from_the_end, 60.0))
     assert far[12] > 0.0
     assert near[:6] == pytest.approx(far[:6], rel=1e-6, abs=1e-9)
+
+
+@pytest.mark.parametrize("slope", [0.12, 0.2, 0.3])
+@pytest.mark.parametrize("radius", [0.1, 0.4])
+def test_a_free_side_that_slides_out_over_an_end_is_held_all_the_way(slope, radius):
+    """A box slopes down beyond the end, its lowest corners 0.01 mm below the face. They hand over to the edge
+    while they are on its round: the force falls from that of the face as the round does, and is nowhere 0."""
+    turned = Rotation.from_rotvec([0.0, -slope, 0.0])
+
+    def lift(inset: float) -> float:
+        corner = turned.apply([-HALF[0], 0.0, -HALF[2]])
+        place = np.array([inset, 0.0, -0.01]) - corner
+        return float(pushed(tuple(place), -slope, (radius, 0.1, 0.0), exposed=1)[2])
+
+    forces = [lift(part * radius) for part in (0.2, 0.4, 0.6, 0.8, 1.0, 1.2, 1.6, 2.0, 3.0)]
+    assert forces[0] > 0.0 and (np.diff(forces[:5]) > 0.0).all()
+    assert forces[4:] == pytest.approx([forces[-1]] * 5, rel=1e-6)
