@@ -94,6 +94,15 @@ def face_corners(points, a, half, facing, b):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
+def outer(facing, exposed):
+    """A direction in box axes without its parts along sides that have a neighbour, which are no faces. Of a
+    part above 0 the side is the one below 0, which looks against it."""
+    x = facing[0] if exposed & (1 if facing[0] > 0.0 else 2) != 0 else 0.0
+    y = facing[1] if exposed & (4 if facing[1] > 0.0 else 8) != 0 else 0.0
+    return (x, y, facing[2])
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
 def looking(facing):
     """The axis of a box that is closest to a direction in box axes."""
     if abs(facing[2]) >= max(abs(facing[0]), abs(facing[1])):

@@ -19,7 +19,7 @@ import math
 
 import numpy as np
 
-from mdlgen.mechanics.contact import box_sector, clip, face_corners
+from mdlgen.mechanics.contact import box_sector, clip, face_corners, outer
 from mdlgen.mechanics.edge import HOLDS, UPPER, hands_over, held, leaning
 from mdlgen.mechanics.frame import ARC_ANGLE, ARC_MIDDLE, ARC_RADIUS, Cylinder, Sector, scaled
 from mdlgen.mechanics.plate import box_ends, box_flat, corner_areas, facing
@@ -114,7 +114,7 @@ def box_guide(out, a, box, b, plate, law):
         return
     sign = _side(at, back(rb, (ra[2], ra[5], ra[8])), plate)
     normal = (-sign * at[0] / away, -sign * at[1] / away, 0.0)
-    look = back(ra, rotate(rb, normal))
+    look = outer(back(ra, rotate(rb, normal)), box.exposed)
     tilted = back(rb, facing(look, ra))
     if sign < 0.0:
         part = 1.0

@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from mdlgen.mechanics.contact import clip, face_corner, face_corners, looking
+from mdlgen.mechanics.contact import clip, face_corner, face_corners, looking, outer
 from mdlgen.mechanics.edge import HOLDS, LOWER, UPPER, end_of, hands_over, held, leaning, line, stub
 from mdlgen.mechanics.frame import ARC_RADIUS, Frame
 from mdlgen.mechanics.point import Load, push
@@ -115,7 +115,7 @@ def box_flat(out, a, box, b, plate, covered, law):
     if abs(upright[1]) > 0.3:
         sign = 1.0 if dot(upright, sub(near, at)) * upright[1] < 0.0 else -1.0
     normal, radius = (0.0, sign, 0.0), edge[UPPER] if sign > 0.0 else edge[LOWER]
-    look = back(ra, rotate(rb, normal))
+    look = outer(back(ra, rotate(rb, normal)), box.exposed)
     if inside:
         for corner in range(4):
             at = face_corner(corner, a, half, look, b)

@@ -17,10 +17,11 @@ K = 100.0
 TABLE = Frame((100.0, 0.0, -0.5), EYE, ZERO, ZERO)
 
 
-def pushed(place, turn=0.0, edge=(0.1, 0.1, 0.0), exposed=2, beside=0, half=HALF):
-    """What a box, turned about y, gets of the plate."""
+def pushed(place, turn=0.0, edge=(0.1, 0.1, 0.0), exposed=2, beside=0, half=HALF, yaw=0.0):
+    """What a box, turned about z and then about y, gets of the plate."""
     out = np.zeros(OUT + 1 + POINT * MOST_POINTS)
-    axes = tuple(Rotation.from_rotvec([0.0, turn, 0.0]).as_matrix().ravel().tolist())
+    turned = Rotation.from_rotvec([0.0, turn, 0.0]) * Rotation.from_rotvec([0.0, 0.0, yaw])
+    axes = tuple(turned.as_matrix().ravel().tolist())
     plate = Plate(STRAIGHT, PLATE, PLATE[2], 15, edge, beside)
     box_plane(out, Frame(place, axes, ZERO, ZERO), Box(half, exposed), TABLE, plate, Law(K, True, *PLAIN))
     return out

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from edges import HALF, before_the_end, pushed, remembered
+from edges import HALF, K, before_the_end, pushed, remembered
 from scipy.spatial.transform import Rotation
 
 pytestmark = pytest.mark.usefixtures("as_python")
@@ -68,3 +68,17 @@ def test_a_free_side_that_slides_out_over_an_end_is_held_all_the_way(slope, radi
     forces = [lift(part * radius) for part in (0.2, 0.4, 0.6, 0.8, 1.0, 1.2, 1.6, 2.0, 3.0)]
     assert forces[0] > 0.0 and (np.diff(forces[:5]) > 0.0).all()
     assert forces[4:] == pytest.approx([forces[-1]] * 5, rel=1e-6)
+
+
+@pytest.mark.parametrize("yaw", [-0.3, 0.3])
+def test_a_side_with_a_neighbour_is_no_face_of_a_steep_box(yaw):
+    """A box of a sheet bends over an end, askew. Beyond some 46 deg its side, the joint to the next box,
+    looks down more than its broad face does; the force of the plate does not know."""
+    forces = []
+    for slope in (0.80, 0.82):
+        turned = Rotation.from_rotvec([0.0, -slope, 0.0]) * Rotation.from_rotvec([0.0, 0.0, yaw])
+        lower = turned.apply([[x * HALF[0], y * HALF[1], -HALF[2]] for x in (-1, 1) for y in (-1, 1)])
+        corner = lower[lower[:, 2].argmin()]  # 0.3 mm beyond the end, and 0.05 mm below the face at the end
+        place = np.array([-0.3, 0.0, -0.05 - 0.3 * math.tan(slope)]) - corner
+        forces.append(pushed(tuple(place), -slope, (0.02, 0.02, 0.0), exposed=0, yaw=yaw)[:3])
+    assert np.abs(forces[1] - forces[0]).max() < 0.02 * K * 0.05**1.5
