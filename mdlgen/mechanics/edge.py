@@ -70,8 +70,8 @@ def leaning(sine):
 @njit(cache=True, error_model="numpy", forceinline=True)
 def hands_over(a, exposed, way):
     """Within how many radii of the end of a plate the corners of a face begin to hand over to its edge; `way`
-    looks out of the plate. An outer side of box a there has 1: the edge takes it by how far it is on the
-    round (`_passes`). A side with a neighbour has 2: on the round the edge has it alone.
+    looks from the middle of box a to that end. An outer side there has 1: the edge takes it by how far it is
+    on the round (`_passes`). A side with a neighbour has 2: on the round the edge has it alone.
     """
     one = a.r[0] * way[0] + a.r[3] * way[1] + a.r[6] * way[2]
     two = a.r[1] * way[0] + a.r[4] * way[1] + a.r[7] * way[2]

@@ -138,7 +138,7 @@ def _hollow(out, a, box, b, plate, look, tilted, law):
     box), in box and guide's axes."""
     shape, half_b, top, ends, edge = plate.shape, plate.half, plate.top, plate.ends, plate.edge
     half, exposed = box
-    rb = b.r
+    rb, middle = b.r, back(b.r, sub(a.x, b.x))
     points = np.empty((12, 3))
     area = face_corners(points, a, half, look, b)
     count = _covered(points, shape, half_b)
@@ -162,7 +162,7 @@ def _hollow(out, a, box, b, plate, look, tilted, law):
                 continue
             beyond = _beyond(j, shape)
             lean = dot(tilted, beyond)
-            over = hands_over(a, exposed, rotate(rb, beyond))
+            over = hands_over(a, exposed, rotate(rb, scale(-dot(middle, beyond), beyond)))
             part = over - max(-dot(point, beyond), 0.0) / max(edge[UPPER], 1e-300)
             if lean > 0.0 and part > 0.0:
                 weight *= 1.0 - leaning(lean) * min(part, 1.0)

@@ -142,10 +142,10 @@ def box_flat(out, a, box, b, plate, covered, law):
         inward = back(rb, facing(look, ra))
         x, z = (rb[0], rb[3], rb[6]), (rb[2], rb[5], rb[8])
         overs = (
-            hands_over(a, box.exposed, x),
-            hands_over(a, box.exposed, scale(-1.0, x)),
-            hands_over(a, box.exposed, z),
-            hands_over(a, box.exposed, scale(-1.0, z)),
+            hands_over(a, box.exposed, scale(half_b[0] - at[0], x)),
+            hands_over(a, box.exposed, scale(-half_b[0] - at[0], x)),
+            hands_over(a, box.exposed, scale(half_b[1] - at[2], z)),
+            hands_over(a, box.exposed, scale(-half_b[1] - at[2], z)),
         )
         if not covered and ends != 0:
             share *= _drawn(points, count, half_b, ends, radius)

@@ -118,7 +118,8 @@ def test_a_box_that_leaves_a_hollow_does_not_meet_the_face_behind(slope):
         out = np.zeros(OUT)
         law = Law(K, True, *PLAIN)
         box_guide(out, Frame(place, axes, ZERO, ZERO), Box(half, 0), Frame(ZERO, EYE, ZERO, ZERO), plate, law)
-        assert out[15] < 0.011 and out[12] < K * 0.01**1.5
+        # along the normal of the arc it is deeper by the slope
+        assert out[15] < 0.0101 / math.cos(slope) and out[12] < K * 0.01**1.5
         assert abs(out[12] - before) < 0.1 * K * 0.01**1.5 or way == 0.0
         before = out[12]
 
