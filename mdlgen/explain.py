@@ -107,8 +107,9 @@ SCENE = {
         "A pressed roller begins in balance with the sheet that it touches. That sheet, and those below it, "
         "begin where the scene puts them and sink into each other and into the plate as the run begins. A "
         "constant force F on a contact F = k z^1.5 is stopped at the depth (2.5 F/(n k))^(2/3), 1.84 times "
-        "that at rest; n is 1.5 times the number of boxes under the roller. Where that depth is half of a "
-        "thickness the run ends. Give a stiffer contact or less preload; a finer step changes nothing."
+        "that at rest; n is 1.5 times the number of boxes under the roller. The run ends where "
+        "it is three quarters of a thickness. Give a stiffer contact or less preload; a finer step changes "
+        "nothing."
     ),
     "W123": (
         "Two driven rollers are at one sheet, and their surfaces move it opposite ways. Probably one turns "

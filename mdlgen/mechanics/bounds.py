@@ -8,6 +8,10 @@ from mdlgen.mechanics.frame import RADIUS, WIDTH
 from mdlgen.mechanics.vector import dot, sub, vec
 from mdlgen.program.kernel import njit
 
+# How far two bodies may move between two looks at them: this part of the band that they must not cross. It is
+# less than 1, since speeds are those at the begin of a step; a convention.
+UNSEEN = 0.8
+
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def size(body):

@@ -95,8 +95,8 @@ def face_corners(points, a, half, facing, b):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def outer(facing, exposed):
-    """A direction in box axes without its parts along sides that have a neighbour, which are no faces. Of a
-    part above 0 the side is the one below 0, which looks against it."""
+    """A direction in the axes of a box, without components for which the box has no free face. The face that
+    looks against a positive component is on the negative side. A side with a neighbour is no face."""
     x = facing[0] if exposed & (1 if facing[0] > 0.0 else 2) != 0 else 0.0
     y = facing[1] if exposed & (4 if facing[1] > 0.0 else 8) != 0 else 0.0
     return (x, y, facing[2])

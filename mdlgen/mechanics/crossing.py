@@ -8,11 +8,9 @@ next. States that are not further apart than `unseen` cannot miss the part of th
 
 from __future__ import annotations
 
+from mdlgen.mechanics.bounds import UNSEEN
 from mdlgen.mechanics.by_kind import by_kind
 from mdlgen.program.kernel import BORROWS, njit
-
-# Of what is deepest.
-UNSEEN = 0.8
 
 deepest, closing, apart = (by_kind(__name__, name) for name in ("deepest", "closing", "apart"))
 above = by_kind(__name__, "above", otherwise=0)

@@ -246,14 +246,14 @@ def _middle(points, count):
 
 @njit(cache=True, error_model="numpy")
 def _by_the_other(meshes, head, t, face, u, v, z, deepest):
-    """Whether triangle t, as a broad face sees it, came in through the other face; then it does not press
-    here. u, v, z: its middle; deepest: the greatest depth of its points.
+    """Triangle t looks at a broad face of a box: whether it came in through the other face. Then it does not
+    press here. u, v, z: its middle; deepest: the greatest depth of its points.
 
-    A sheet lies on a sharp edge. The lower side of the edge looks at the upper face of the sheet, and is deep
-    below it. Above that place the part is thin: its upper side is below the upper face of the sheet, or
-    above it by no more than `through` less the thickness of the box. `through` is half of the thickness
-    where no face has met the part before. Where the other one has (`taken`), it is how deep the part is
-    there; and this face then meets only what is nearer to it than to the far side of the part.
+    A sheet lies on a sharp edge. The lower side of the edge looks at the upper face of the sheet and is deep
+    below it. From there the part is followed upwards to where it ends. The other face has let that end in by
+    the thickness of the box, less the depth of the triangle, plus the length of the way. The triangle came in
+    there if that is less than `through`: half of the thickness of the box if no face has met the part before,
+    else the depth at the face that has (`taken`). A face that has not also needs the near half of the part.
     """
     thick = 2.0 * face.half
     if head.thin == 0 or deepest <= thick - face.through:

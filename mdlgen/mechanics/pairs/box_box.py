@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from mdlgen.mechanics.bounds import gap_of, rate_of, size, turning
+from mdlgen.mechanics.bounds import UNSEEN, gap_of, rate_of, size, turning
 from mdlgen.mechanics.facing import box_box
 from mdlgen.mechanics.frame import box_of, frame_of, law_of
 from mdlgen.mechanics.point import presses
@@ -17,8 +17,8 @@ KIND = BOX_BOX
 # to have changed sides, as it looks at the middles of their faces. The corner of a box that tilts is deeper
 # than its middle; so it may go half of the way from 1 to 2.
 PRESSED = 1.5
-# How far two boxes may move towards each other between two looks, in the same measure: less than is left.
-UNSEEN = 0.8 * (2.0 - PRESSED)
+# How far two boxes may move towards each other between two looks, in the same measure.
+STRIDE = UNSEEN * (2.0 - PRESSED)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)
@@ -67,7 +67,7 @@ def deepest(bodies, pair):
 @njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)
 def unseen(bodies, pair, shapes):
     """Less than what is left of the thickness beyond `deepest`."""
-    return UNSEEN * min(bodies[pair.a].half[2], bodies[pair.b].half[2])
+    return STRIDE * min(bodies[pair.a].half[2], bodies[pair.b].half[2])
 
 
 @njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)

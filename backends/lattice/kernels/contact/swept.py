@@ -19,7 +19,7 @@ from mdlgen.mechanics.impacts import stored_beyond, turning_back
 from mdlgen.mechanics.mesh import BLOCK
 from mdlgen.mechanics.overlap import impact
 from mdlgen.mechanics.pair import pair_force
-from mdlgen.mechanics.pairs.box_box import UNSEEN
+from mdlgen.mechanics.pairs.box_box import STRIDE
 from mdlgen.mechanics.point import (
     AT,
     BETA,
@@ -214,7 +214,7 @@ def _slow(bodies, own, k, fastest, dt, little):
     """Whether two boxes of two sheets, of their row of LISTED and their stiffness, move too little in a step
     to cross each other unseen, or to make more than `little` of energy where they come to touch."""
     way = dt * (fastest[own.a] + fastest[own.b])
-    if way > UNSEEN * min(bodies[own.a].half[2], bodies[own.b].half[2]):
+    if way > STRIDE * min(bodies[own.a].half[2], bodies[own.b].half[2]):
         return False
     half = 0.5 * way
     return 0.4 * k * half * half * math.sqrt(half) <= little
@@ -229,7 +229,7 @@ def _all_slow(tables, regions, fastest, dt, little):
     for b in tables.nodes:
         most = max(most, fastest[b])
     half = dt * most
-    return 2.0 * half <= UNSEEN * tables.thinnest and 0.4 * stiffest * half * half * math.sqrt(half) <= little
+    return 2.0 * half <= STRIDE * tables.thinnest and 0.4 * stiffest * half * half * math.sqrt(half) <= little
 
 
 @njit(cache=True, error_model="numpy")
