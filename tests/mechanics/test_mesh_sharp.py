@@ -69,7 +69,7 @@ def test_a_sheet_that_is_deep_in_an_edge_stays_on_its_side(tmp_path: Path, angle
     assert pressing > 0.0 and up < 0.0
 
 
-def fall(folder: Path, part: bytes, stiffness: float, boxes: str) -> Result:
+def fall(folder: Path, part: bytes, stiffness: float, boxes: str, solver: str = "lattice") -> Result:
     """A sheet falls across the edge, which is at x = 20 mm."""
     (folder / "part.stl").write_bytes(part)
     text = (
@@ -80,7 +80,7 @@ def fall(folder: Path, part: bytes, stiffness: float, boxes: str) -> Result:
         f"contacts: [{{between: [s, p], stiffness: {stiffness} N/mm^1.5, friction: 0.4}}]\n"
         "run: {duration: 30 ms, step: 0.02 ms}\n"
     )
-    return mdlgen.solve(mdlgen.lower(mdlgen.loads(text, folder=folder)), "lattice")
+    return mdlgen.solve(mdlgen.lower(mdlgen.loads(text, folder=folder)), solver)
 
 
 @pytest.mark.parametrize(("stiffness", "boxes"), [(1.0, "8, 3"), (200.0, "8, 3"), (20.0, "1, 1")])
@@ -95,3 +95,11 @@ def test_a_sheet_falls_on_a_wedge_as_on_a_block(tmp_path: Path, stiffness: float
         assert np.abs(other.position - below.position)[:, : other.model.meshes[0].body].max() < 1e-5
     if stiffness == 1.0:
         assert below.statistics.max_depth[0] > THICK / 2
+
+
+def test_both_solvers_remember_the_face(tmp_path: Path) -> None:
+    """The sheet sinks in by more than half of its thickness. The two integrate in different ways."""
+    fast, slow = (fall(tmp_path, wedge(20.0), 1.0, "8, 3", solver) for solver in ("lattice", "exudyn"))
+    assert fast.usable and slow.usable
+    assert fast.statistics.max_depth[0] > THICK / 2
+    assert np.abs(fast.position - slow.position).max() < 0.02

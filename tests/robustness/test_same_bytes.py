@@ -64,7 +64,7 @@ def written(folder: Path, environment: dict[str, str]) -> dict[str, str]:
 
 @pytest.mark.parametrize("count", [4, 20])
 def test_environments(count: int, tmp_path: Path) -> None:
-    """Four have each folder, locale and seed once, or nearly so."""
+    """Four have each folder, each seed, each number of threads, and four of five locales."""
     assert len(ENVIRONMENTS) == 20
     found = []
     for k, (folder, locale, seed, threads) in enumerate(ENVIRONMENTS[:: 20 // count]):
