@@ -247,21 +247,22 @@ def _peaks(pair: Pair) -> Iterator[Difference]:
         mine = joints.sheet == k
         ways = [(way, mine & (joints.axis == axis)) for axis, way in enumerate(("md", "cd"))]
         bend = LEAST_BEND / max(sheet.size)
-        for kind, message, attribute, unit, least, gap in (
-            ("strain", "max_", "stretch", "", LEAST_STRAIN, stretch),
-            ("strain", "min_", "squeeze", "", LEAST_STRAIN, squeeze),
-            ("curvature", "max_", "curvature", "1/mm", bend, curvature),
-            ("twist", "max", "twist", "1/mm", bend, twist),
+        for kind, message, attribute, unit, least, gap, extreme in (
+            ("strain", "max_", "stretch", "", LEAST_STRAIN, stretch, np.max),
+            ("strain", "min_", "squeeze", "", LEAST_STRAIN, squeeze, np.min),
+            ("curvature", "max_", "curvature", "1/mm", bend, curvature, _size),
+            ("twist", "max", "twist", "1/mm", bend, twist, _size),
         ):
             a, b = (getattr(run, attribute).value for run in (one, two))
             scale = max(float(np.abs(a[mine]).max(initial=0.0)), least)
             for way, rows in ways if kind != "twist" else [("", mine)]:
                 if rows.any():
                     name = f"sheets.{sheet.name}.{kind}.{message}{way}"
-                    plain = abs(_extreme(a[rows]) - _extreme(b[rows])) / scale
+                    plain = abs(float(extreme(a[rows]) - extreme(b[rows]))) / scale
                     yield Difference(name, float(gap[rows].max()) / scale, scale, unit, plain=plain)
 
 
-def _extreme(values: Floats) -> float:
-    """The value that is greatest in size."""
-    return float(values[np.abs(values).argmax()])
+def _size(values: Floats) -> float:
+    """Greatest magnitude of the values. A summary reports it for bending and twist, of either sign: the two
+    sides of a symmetric sheet twist in opposite directions by the same amount."""
+    return float(np.abs(values).max())

@@ -163,6 +163,27 @@ def test_differences_are_what_they_are_said_to_be() -> None:
     assert differences(one, short) == {}
 
 
+def test_which_side_of_a_symmetric_sheet_twists_more_makes_no_difference() -> None:
+    """Both edges twist by the same amount in opposite directions, and round-off decides which is the greater.
+    A summary reports the magnitude, so two such runs agree."""
+    model = small_model()
+
+    def twisted(left: float, right: float) -> Result:
+        result = moving(model)
+        turns = result.rotation.copy()
+        for name, angle in (("note_1_0", left), ("note_1_2", -right)):
+            body = model.bodies.name.index(name)
+            turns[:, body] = [np.cos(angle / 2), np.sin(angle / 2), 0.0, 0.0]
+        return replace(result, rotation=turns)
+
+    one, two = twisted(0.3, 0.3001), twisted(0.3001, 0.3)
+    reported = [run.summary()["sheets"]["note"]["twist"]["max_per_mm"] for run in (one, two)]
+    assert reported[0] == pytest.approx(reported[1], rel=1e-9) and reported[0] > 1e-3
+    twist = differences(one, two)["sheets.note.twist.max"]
+    assert twist.reported < 1e-9  # of the number that is reported
+    assert twist.value == pytest.approx(1e-4 / 0.3001, rel=1e-3)  # of the joints
+
+
 @pytest.mark.parametrize(
     ("last", "before", "judged", "expected"),
     [
