@@ -29,6 +29,16 @@ from mdlgen.backends.lattice.scope import check
 from mdlgen.backends.lattice.statics.rest import rest
 from mdlgen.backends.lattice.symmetry.find import find
 from mdlgen.backends.lattice.symmetry.mirror import halve
+from mdlgen.backends.lattice.watches import (
+    CHECK,
+    DOUBLED,
+    FINER,
+    MOST_REFINED,
+    MOST_REFINED_RIGID,
+    MOVED,
+    MOVED_EARLY,
+    Watches,
+)
 from mdlgen.model.tables import Model
 from mdlgen.model.wider import wider
 from mdlgen.processors import processors
@@ -37,8 +47,6 @@ from mdlgen.results.estimates import NOT_KNOWN, SAME_STEPS, estimated, marked
 from mdlgen.results.result import Result
 from mdlgen.runs.checkpoint import Checkpointer
 
-# How often the step may be halved to meet the tolerance, from the first step on; blocks take little time.
-MOST_REFINED, MOST_REFINED_RIGID = 5, 8
 # Where the step of rigid blocks is chosen, velocities may miss their guess by this part of the speed at a
 # tolerance of 1e-3; else the step is halved. Sheets flutter, and miss it always.
 MISS = 1e-3
@@ -53,10 +61,6 @@ SHORT = 0.25
 
 Report = tuple[float, float, int, int]  # what progress is called with
 
-# Numbers by which states of passes are kept: first those of the first step, halved so many times, or of the
-# step that is given, doubled so many times; then of twice the first step; of a check at a step of its own; of
-# a run at finer steps than were given; of one from a start that is moved, at the last step, and before it.
-DOUBLED, CHECK, FINER, MOVED, MOVED_EARLY = (MOST_REFINED_RIGID + k for k in (1, 2, 3, 4, 5))
 # How often the step was halved when it is first asked whether a motion is chaotic: four runs show whether
 # their differences fall, and half of the way to MOST_REFINED has a fifth of the cost.
 ASKED = 3
@@ -64,28 +68,14 @@ ASKED = 3
 # A step that is given is compared with twice that step where the run has so many of them.
 FEWEST = 4
 
+# Where `run.limit` is not set a search begins no third or later pass that would end after so much wall time
+# [s]. Convention: a designer waits a minute for a result, and may ask for more.
+PATIENCE = 60.0
+# How much longer a pass takes than that at twice its step, at least.
+TWICE = 2.0
+
 # Rules that leave out what a run does not need, each of which a run can do without.
 FOLDING, FACTORS, SYMMETRY, SLEEP = "folding", "factors", "symmetry", "sleep"
-
-
-class Watches:
-    """Who follows the passes of a run, each by its number; all have until the same time."""
-
-    def __init__(self, progress: Progress | None, keep: Checkpointer | None, threads: int, sleeps: bool):
-        self._keep = keep
-        self._of_all = Watch(progress, keep, threads=threads, sleeps=sleeps)
-        self.deadline = Deadline()
-
-    def until(self, deadline: Deadline) -> Watches:
-        """The same, with a time at which all passes end."""
-        self.deadline = deadline
-        self._of_all = self._of_all._replace(deadline=deadline)
-        return self
-
-    def __call__(self, number: int) -> Watch:
-        if self._keep is not None:
-            self._keep.begin(number)
-        return self._of_all._replace(number=number)
 
 
 @PROGRAM.releases
@@ -217,6 +207,11 @@ class Search:
         self._flexible = flexible(model)
         self._runs: list[Result] = []  # the last one first
         self._late = watch.deadline
+        limited = model.run.limit is not None
+        self._patience = self._late if limited else Deadline(clock.perf_counter() + PATIENCE)
+        self._time = (
+            limit_of(model) if limited else f"{PATIENCE:g} s of wall time (set run.limit to allow more)"
+        )
 
     def result(self, together: bool) -> Result:
         """The last run; `together`: two passes at the same time, where both are needed or likely to be."""
@@ -224,18 +219,16 @@ class Search:
         if not together:
             self._runs.append(self._once(first_step(self._model), 0, self._watch(0)))
         elif self._flexible:
-            finer = self._three()
-            if finer is None:
+            done, ready = self._three()
+            if done:
                 return self._done()
-            ready.append(finer)
         else:
             ready.append(self._two())
         for k in range(len(self._runs), 1 + (MOST_REFINED if self._flexible else MOST_REFINED_RIGID)):
             if not ready and self._stops():
                 break
-            if (
-                together and not ready
-            ):  # what estimates need of the runs before, while compiled code is at work
+            if together and not ready:
+                # what estimates need of the runs before, while compiled code is at work
                 Thread(target=_strains, args=(self._runs[:2],), daemon=True).start()
             run = ready.pop() if ready else self._once(0.5 * self._runs[0].step, k, self._watch(k))
             if self._ends(run, k, self._watch(DOUBLED)) or (k == ASKED and self._parts(k)):
@@ -271,9 +264,10 @@ class Search:
             self._runs.append(coarse.result())
             return second
 
-    def _three(self) -> Result | None:
-        """The first pass beside the second one; the third, where it is needed, else None. It is begun beside
-        the second where the first took long, and progress is that of the third then."""
+    def _three(self) -> tuple[bool, list[Result]]:
+        """The first pass beside the second one. Returns whether the search ends with it, and else the third
+        pass where it was begun beside the second, since the first took long; progress is that of the third
+        then."""
         model, h = self._model, first_step(self._model)
         coarse, second, third, doubled = (self._watch(number) for number in (0, 1, 2, DOUBLED))
         beside, first, reports = own(self._system), Event(), SimpleQueue[Report | None]()
@@ -285,7 +279,7 @@ class Search:
             finally:
                 first.set()
             took = self._runs[0].wall_s
-            if took < SHORT or not third.deadline.allows(4.0 * took):
+            if took < SHORT or not self._patience.allows(TWICE * TWICE * took):
                 return None  # what comes after the run has more use for this processor
             followed = third.beside(stop)._replace(progress=lambda *report: reports.put(report))
             return self._once(0.5 * finer, 2, followed, beside)
@@ -314,15 +308,21 @@ class Search:
                 for found in iter(reports.get, None):
                     if third.progress is not None:
                         third.progress(*found)
-                return side.result() or self._once(0.5 * finer, 2, third)
+                run = side.result()
+                return False, [] if run is None else [run]
         side.raises(Stopped)
-        return None
+        return True, []
 
     def _stops(self) -> bool:
-        """Whether a run at half the step would not end in time, and there is one that is complete."""
-        if any(run.ok for run in self._runs):
-            return not self._late.allows(2.0 * self._runs[0].wall_s)
-        return self._late.over
+        """Whether a run at half the step would end too late; without a complete run, whether time is over."""
+        runs = self._runs
+        if len(runs) == 1 and self._late is not self._patience:
+            return False  # nothing is known of the error of a single run
+        if not any(run.ok for run in runs):
+            return self._patience.over
+        took = runs[0].wall_s
+        longer = took / runs[1].wall_s if len(runs) > 1 and runs[1].wall_s > 0.0 else TWICE
+        return not self._patience.allows(max(TWICE, longer) * took)
 
     def _done(self) -> Result:
         """The last run, with which the search ended."""
@@ -331,8 +331,8 @@ class Search:
     def _best(self) -> Result:
         """The finest run that is complete, where the search ended without one within the tolerance; without
         any the last one, or the one that came furthest in the time that there was."""
-        runs, late = self._runs, limit_of(self._model) if self._model.run.limit is not None else ""
-        stopped = late and self._stops()
+        runs, late = self._runs, self._time
+        stopped = self._stops()
         complete = [k for k, run in enumerate(runs) if run.ok]
         if not complete:
             return max(runs, key=lambda run: float(run.time[-1])) if stopped else runs[0]
@@ -356,10 +356,10 @@ class Search:
         """Whether a run from a start that is moved parts from the last run, halved `k` times, by as much as
         half the step changes: no finer step will do. The last run says so then."""
         runs = self._runs[:4]
-        name, late = runs[0].error_estimate_of, self._late
+        name = runs[0].error_estimate_of
         if not all(run.ok for run in runs) or name is None or chaos.falls(runs, name):
             return False
-        if not late.allows(runs[0].wall_s):
+        if not self._patience.allows(runs[0].wall_s):
             return False
         found = chaos.chaos(runs[0], runs[1], self._moved(runs[0].step, k, MOVED_EARLY))
         if found is None or chaos.ALIKE * found.apart < found.step_apart:
@@ -378,7 +378,7 @@ class Search:
         name = best.error_estimate_of
         if not before or name is None or chaos.falls([best, *before[:3]], name):
             return best
-        if not self._late.allows(best.wall_s):
+        if not self._patience.allows(best.wall_s):
             return best
         other = self._moved(best.step, halved, MOVED)
         return replace(best, chaotic=chaos.chaos(best, before[0], other))
