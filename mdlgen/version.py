@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 
 
@@ -11,6 +12,15 @@ def of(package: str) -> str:
     from importlib import metadata  # a hundredth of a second
 
     return metadata.version(package)
+
+
+def if_there(*packages: str) -> dict[str, str]:
+    """The versions of those of some packages that are installed, by name."""
+    found: dict[str, str] = {}
+    for package in packages:
+        with contextlib.suppress(ImportError):
+            found[package] = of(package)
+    return found
 
 
 def version() -> str:

@@ -35,6 +35,8 @@ from mdlgen.backends.exudyn_local.stability import falling
 from mdlgen.backends.exudyn_local.state import SEEN, TOTALS, Coordinates, Work, workspace
 from mdlgen.backends.exudyn_local.step import choose_steps, cost, given_steps
 from mdlgen.backends.exudyn_local.system import MM, MS, Pattern, System, build
+from mdlgen.errors import RefusedError
+from mdlgen.extras import advice
 from mdlgen.model.tables import Model
 from mdlgen.model.wider import wider
 from mdlgen.results import audit
@@ -266,15 +268,18 @@ def _once(
         result = result if unbalanced is None else result.failed(unbalanced)
     result.wall_s, result.build_s = wall, begun - started
     result.step, result.steps = h / MS, recorder.steps
-    result.versions = {"exudyn": exu.config.Version() if hasattr(exu.config, "Version") else exu.__version__}
+    named = exu.config.Version() if hasattr(exu.config, "Version") else exu.__version__
+    result.versions = {"exudyn": named, "code": PROGRAM.code()}
     return result, recorder.left
 
 
 def _exudyn():
     # Exudyn looks for this attribute, unknown to sys: it skips range checks in the compiled module
     sys.exudynFast = True  # type: ignore[attr-defined]
-    import exudyn as exu
-
+    try:
+        import exudyn as exu
+    except ModuleNotFoundError:
+        raise RefusedError(f"the solver exudyn {advice('exudyn')}") from None
     exu.special.userInterface.SuppressAll(True)
     return exu
 

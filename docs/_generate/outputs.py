@@ -94,7 +94,11 @@ SUMMARY: dict[str, tuple[str, str]] = {
         "`doubtful`: whether the error of the run could turn it round",
     ),
     "verdict.events": ("", "jams, double feeds, stubs and large slips in words"),
-    "versions.PACKAGE": ("", "versions of mdlgen, Python, numpy and the solver"),
+    "versions.PACKAGE": (
+        "",
+        "versions of mdlgen, Python, numpy and the solver; `code`: what its machine code was made for, and "
+        "the beginning of its SHA-256",
+    ),
     "sheets.NAME.travel_mm": ("mm", "displacement of the centre of mass, [x, y, z]"),
     "sheets.NAME.speed_mm_per_s": ("mm/s", "velocity of the centre of mass at the end, [x, y, z]"),
     "sheets.NAME.yaw_deg": (

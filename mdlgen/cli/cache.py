@@ -53,6 +53,6 @@ def _check(quiet: bool) -> None:
             typer.echo(f"{error}: numba compiles, some minutes once on a machine")
         else:
             if not quiet:
-                typer.echo(f"{program.path.name} fits")
+                typer.echo(f"{program.path.name} fits: {program.code()}")
     if wrong:
         raise typer.Exit(UNFIT)

@@ -17,7 +17,8 @@ from typer.core import TyperGroup
 
 from mdlgen.cli import completion
 from mdlgen.cli.heard import compiling, slow
-from mdlgen.errors import MdlgenError, SpecError, printable
+from mdlgen.errors import MdlgenError, OutputError, SpecError, printable
+from mdlgen.extras import advice
 
 if TYPE_CHECKING:
     from mdlgen.model.tables import Model
@@ -164,6 +165,9 @@ def reports_errors(command: Callable[..., None]) -> Callable[..., None]:
             say("mdlgen: not enough memory for this; take fewer boxes, or a longer run.print_step")
             raise typer.Exit(SOLVER_FAILED) from None
         except Exception as error:
+            if isinstance(error, ModuleNotFoundError) and (needed := advice(error.name or "")) is not None:
+                say(f"mdlgen: this {needed}")
+                raise typer.Exit(OutputError.exit_code) from None
             if options.get("verbose"):
                 import traceback
 

@@ -4,7 +4,9 @@ A process for each program has numba compile its entries, for the types that the
 without optimisation. The texts of the entries (`inspect_llvm`) are linked into one module, and unused
 functions are removed. Each entry gets a wrapper that takes its arguments as words. LLVM optimises the module
 without vector instructions, because these depend on the machine that it will run on, and divides it into two
-parts.
+parts. Shared libraries for the targets in `emit.SHIPPED` are made of that bitcode, in the same folder.
+`--libraries` makes them again of the bitcode that is there, and `--verify` compares what that gives with what
+is shipped.
 
 It stands above what it makes, so it knows that by name only.
 """
@@ -12,6 +14,7 @@ It stands above what it makes, so it knows that by name only.
 from __future__ import annotations
 
 import argparse
+import hashlib
 import importlib
 import json
 import os
@@ -19,14 +22,19 @@ import re
 import subprocess
 import sys
 import warnings
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 from mdlgen import paths
 from mdlgen.program import file
-from mdlgen.program.emit import SMALL
+from mdlgen.program.emit import SHIPPED, SMALL, Target
 from mdlgen.program.file import Head, Unfit, Variant
 from mdlgen.program.kernel import Kernel, sources_digest
 from mdlgen.program.layout import described, words
+from mdlgen.program.link import linked
+from mdlgen.program.native import emitted
 from mdlgen.program.parts import split
 from mdlgen.program.ship import Program
 
@@ -108,9 +116,15 @@ def main() -> None:
     """Entry point."""
     parser = argparse.ArgumentParser(prog="python -m mdlgen.program.build", description=__doc__)
     parser.add_argument("--check", action="store_true", help="say whether the programs fit; make none")
+    parser.add_argument("--libraries", action="store_true", help="make the libraries again of the bitcode")
+    parser.add_argument(
+        "--verify", action="store_true", help="say whether that gives the same; write nothing"
+    )
     wanted = parser.parse_args()
     if wanted.check:
         sys.exit(_check())
+    if wanted.libraries or wanted.verify:
+        sys.exit(_libraries(wanted.verify))
     surroundings = {
         **os.environ,
         "MDLGEN_NUMBA": "1",
@@ -146,6 +160,28 @@ def _check() -> int:
         try:
             program.head()
             print(f"{program.path.name} fits the kernels")
+        except Unfit as error:
+            print(f"{error}; python -m mdlgen.program.build makes it anew")
+            wrong = 1
+    return wrong
+
+
+def _libraries(verify: bool) -> int:
+    """Makes the libraries of all programs again of their bitcode; `verify`: compares them alone."""
+    wrong = 0
+    for program in programs():
+        path = program.path
+        try:
+            head, parts = file.read(path)
+            if not verify:
+                size = write_libraries(path, head, file.pack(parts)[0], parts)
+                print(f"{path.name} and its libraries: {size / 1e6:.2f} MB")
+                continue
+            for target in SHIPPED:
+                there = file.library(path, target.name)
+                same = there.exists() and there.read_bytes() == library(target, head, path.stem, parts)
+                print(f"{there.name}: {'the same' if same else 'DIFFERS'}")
+                wrong |= not same
         except Unfit as error:
             print(f"{error}; python -m mdlgen.program.build makes it anew")
             wrong = 1
@@ -202,7 +238,7 @@ def write(program: Program, types: Types) -> int:
     if strange := sorted(set(external) - set(SYSTEM)):
         sys.exit(f"{program.path.name}: kernels call what no program may: {', '.join(strange)}")
     parts = split(whole, PARTS)
-    packed, digest = file.pack(parts)
+    packed, code = file.pack(parts)
     versions = {
         "python": sys.version.split()[0],
         "llvmlite": llvmlite.__version__,
@@ -210,9 +246,26 @@ def write(program: Program, types: Types) -> int:
         "numba": importlib.import_module("numba").__version__,
     }
     sizes = tuple(map(len, parts))
-    head = Head(sources_digest(program.rooms), digest, versions, entries, tuple(external), sizes)
-    file.write(program.path, head, packed)
-    return len(packed)
+    head = Head(sources_digest(program.rooms), code, versions, entries, tuple(external), sizes, {})
+    return write_libraries(program.path, head, packed, parts)
+
+
+def write_libraries(path: Path, head: Head, packed: bytes, parts: Sequence[bytes]) -> int:
+    """Writes a program, of which `packed` is the compressed bitcode of its `parts`, and its libraries.
+    Returns how many bytes they have."""
+    made = {target.name: library(target, head, path.stem, parts) for target in SHIPPED}
+    for name, code in made.items():
+        file.library(path, name).write_bytes(code)
+    digests = {name: hashlib.sha256(code).hexdigest() for name, code in made.items()}
+    file.write(path, replace(head, libraries=digests), packed)
+    return path.stat().st_size + sum(map(len, made.values()))
+
+
+def library(target: Target, head: Head, name: str, parts: Sequence[bytes]) -> bytes:
+    """The shared library for a target from the bitcode of a program: the same bytes on every machine with the
+    same llvmlite and ziglang."""
+    codes = emitted(target, parts, range(len(parts)))
+    return linked(target, codes, name, [v.symbol for variants in head.entries.values() for v in variants])
 
 
 def _watcher(found: dict[str, tuple[Any, Kernel]], kernel: Kernel, typeof: Any) -> Any:

@@ -1,7 +1,8 @@
-"""Runs samples by the shipped programs and by what numba compiles: `python -m mdlgen.program.compare`.
+"""Runs samples by the shipped machine code and by what numba compiles: `python -m mdlgen.program.compare`.
+With `--other bitcode` the other one is what LLVM makes here of the shipped bitcode.
 
 A process of each kind runs the same sample in turn, `--repeat` times. Printed are how far the two are apart;
-what is allowed; and the processor time of the shipped program over numba's (medians). Apart are places, at
+what is allowed; and the processor time of the shipped code over the other's (medians). Apart are places, at
 most, as a part of the travel, or Euler parameters; where contacts rattle, the quantity that is apart most for
 its error estimate, in the norm of that. The exit code is 1 where they differ by more, or where one of the
 samples in TIMED takes more than 5 % longer. numba compiles for minutes where it has not kept these kernels.
@@ -93,7 +94,7 @@ class Row:
     apart: float  # as a part of the scale of `of`
     allowed: float
     of: str  # what is apart most for what is allowed
-    ratio: float  # time of the shipped program over numba's
+    ratio: float  # time of the shipped code over the other's
     runs: int  # by each
 
     @property
@@ -118,17 +119,23 @@ class Other(Exception):
     """A process does not run what it is asked to."""
 
 
+# Kinds of code, by how the record of a run (Program.code) begins, and the variables that ask for them.
+KINDS = {"shipped": "shipped for", "bitcode": "made for", "numba": "compiled by numba"}
+ASKED_FOR = {"numba": "MDLGEN_NUMBA", "bitcode": "MDLGEN_BITCODE"}
+
+
 class Process:
     """Runs samples by one kind of code."""
 
-    def __init__(self, numba: bool):
-        self._numba = numba
+    def __init__(self, kind: str):
+        self._kind = kind
         path = os.pathsep.join(sys.path)
+        asked = {variable: str(int(name == kind)) for name, variable in ASKED_FOR.items()}
         self._process = subprocess.Popen(
             [sys.executable, "-c", "from mdlgen.program.compare import answer; answer()"],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            env={**os.environ, "MDLGEN_NUMBA": str(int(numba)), "PYTHONPATH": path},
+            env={**os.environ, **asked, "PYTHONPATH": path},
         )
 
     def run(self, solver: str, name: str, sets: Sequence[str]) -> Run:
@@ -136,9 +143,10 @@ class Process:
         assert self._process.stdin is not None and self._process.stdout is not None
         pickle.dump((solver, name, tuple(sets)), self._process.stdin)
         self._process.stdin.flush()
-        message, by_numba = pickle.load(self._process.stdout)
-        if by_numba != self._numba:
-            raise Other("the programs do not fit: python -m mdlgen.program.build --check")
+        message = pickle.load(self._process.stdout)
+        code = message.result.versions["code"]
+        if not code.startswith(KINDS[self._kind]):
+            raise Other(f"{solver} runs code that is {code}: python -m mdlgen.program.build --check")
         return message
 
     def close(self) -> None:
@@ -147,10 +155,12 @@ class Process:
         self._process.communicate()
 
 
-def compared(solver: str, samples: dict[str, tuple[str, ...]], repeat: int) -> Iterator[Row]:
-    """A row of each sample. Raises Other."""
+def compared(
+    solver: str, samples: dict[str, tuple[str, ...]], repeat: int, other: str = "numba"
+) -> Iterator[Row]:
+    """A row of each sample, run by shipped code and by that of the `other` kind. Raises Other."""
     with contextlib.ExitStack() as stack:
-        both = [Process(numba) for numba in (False, True)]
+        both = [Process(kind) for kind in ("shipped", other)]
         for process in both:
             stack.callback(process.close)
         for name, sets in samples.items():
@@ -225,7 +235,7 @@ def answer() -> None:
         begun = time.process_time()
         result = mdlgen.solve(model, solver)
         took = time.process_time() - begun
-        pickle.dump((Run(result, took), "numba" in sys.modules), stream)
+        pickle.dump(Run(result, took), stream)
         stream.flush()
 
 
@@ -234,11 +244,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m mdlgen.program.compare", description=__doc__)
     parser.add_argument("samples", nargs="*", help="samples; all if left out")
     parser.add_argument("--repeat", type=int, default=1, help="runs of each sample by each kind of code")
+    parser.add_argument("--other", choices=("numba", "bitcode"), default="numba", help="what to compare with")
     wanted = parser.parse_args()
     wrong = False
     for solver, samples in (("lattice", CALM | RATTLING), ("exudyn", EXUDYN)):
         chosen = {name: sets for name, sets in samples.items() if name in (wanted.samples or samples)}
-        for row in compared(solver, chosen, max(1, wanted.repeat)) if chosen else ():
+        for row in compared(solver, chosen, max(1, wanted.repeat), wanted.other) if chosen else ():
             print(row, flush=True)
             wrong |= not row.same or row.slower
     sys.exit(int(wrong))

@@ -1,4 +1,7 @@
-"""A file NAME.program: one line of JSON that says what it is, and LLVM bitcode of its parts, compressed."""
+"""A file NAME.program: one line of JSON that says what it is, and LLVM bitcode of its parts, compressed.
+
+Shared libraries NAME.TARGET.so in the same folder are made from that bitcode. The file has their digests.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,7 @@ from typing import Any
 
 from mdlgen.program.layout import Type
 
-FORMAT = 2
+FORMAT = 3
 MOST_BYTES = 50_000_000
 
 
@@ -40,6 +43,7 @@ class Head:
     entries: dict[str, tuple[Variant, ...]]
     external: tuple[str, ...]  # functions of the system that it calls
     parts: tuple[int, ...]  # bytes of bitcode of each part
+    libraries: dict[str, str]  # SHA-256 of each library, by the name of its target
 
     def line(self) -> bytes:
         """The first line of the file."""
@@ -50,12 +54,18 @@ class Head:
             "versions": self.versions,
             "external": list(self.external),
             "parts": list(self.parts),
+            "libraries": self.libraries,
             "entries": {
                 name: [[v.symbol, list(v.arguments), v.result] for v in variants]
                 for name, variants in self.entries.items()
             },
         }
         return json.dumps(message, separators=(",", ":"), sort_keys=True).encode("ascii") + b"\n"
+
+
+def library(path: Path, target: str) -> Path:
+    """Where the library of a program for a target lies."""
+    return path.with_name(f"{path.stem}.{target}.so")
 
 
 def write(path: Path, head: Head, packed: bytes) -> None:
@@ -107,7 +117,8 @@ def _open(path: Path) -> tuple[Head, bytes]:
             for name, variants in record["entries"].items()
         }
         external, parts = tuple(record["external"]), tuple(int(size) for size in record["parts"])
-        head = Head(str(record["digest"]), str(record["code"]), record["versions"], entries, external, parts)
-        return head, packed
+        libraries = {str(name): str(digest) for name, digest in record["libraries"].items()}
+        digest, code = str(record["digest"]), str(record["code"])
+        return Head(digest, code, record["versions"], entries, external, parts, libraries), packed
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
         raise Unfit(f"{path.name} is damaged") from None

@@ -21,6 +21,8 @@ from threading import RLock
 from typing import TYPE_CHECKING, Any
 
 from mdlgen import paths
+from mdlgen.errors import RefusedError
+from mdlgen.extras import advice
 
 if TYPE_CHECKING:
     from mdlgen.program.ship import Program
@@ -175,8 +177,15 @@ class Intrinsic:
 
 
 def _dispatcher(kernel: Kernel, whole: bool) -> Any:
-    """A dispatcher whose code is kept in our folder; the settings of numba are afterwards as they were."""
-    numba = importlib.import_module("numba")
+    """A dispatcher whose code is kept in our folder; the settings of numba are afterwards as they were.
+
+    Raises RefusedError where numba is not installed."""
+    try:
+        numba = importlib.import_module("numba")
+    except ImportError:
+        why = "; ".join(filter(None, (program.why_not() for program in kernel.programs)))
+        what = f"{kernel.__name__} of the solver has to be compiled"
+        raise RefusedError(f"{what} ({why or 'no program has it'}) and {advice('numba')}") from None
     settings = importlib.import_module("numba.core.config").__dict__  # made at run time
     pieces = importlib.import_module("mdlgen.program.pieces")
     function = kernel.py_func

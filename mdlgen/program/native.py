@@ -1,4 +1,4 @@
-"""A program as machine code: made by LLVM once for a processor, kept, loaded, called."""
+"""A program as machine code: shipped, or made by LLVM once for a processor; kept, loaded, called."""
 
 from __future__ import annotations
 
@@ -17,8 +17,10 @@ from typing import Any
 
 from mdlgen import paths
 from mdlgen.errors import OutputError
+from mdlgen.extras import advice
 from mdlgen.processors import processors
-from mdlgen.program import emit
+from mdlgen.program import emit, file
+from mdlgen.program.emit import Target
 from mdlgen.program.file import Head, Unfit, Variant
 from mdlgen.program.layout import Misfit, Write, part_writers, reader, words
 
@@ -29,52 +31,84 @@ _NOTHING: Any = object()
 PATIENCE = 120.0
 
 
-def load(name: str, head: Head, bitcode: Callable[[], Sequence[bytes]]) -> Machine:
-    """The machine code of a program for this processor; the `bitcode` of its parts is asked for where it is
-    not kept.
+def bitcode_only() -> bool:
+    """Whether machine code is made here, whatever is shipped: MDLGEN_BITCODE is set."""
+    return os.environ.get("MDLGEN_BITCODE", "0") not in ("", "0")
+
+
+def load(path: Path, head: Head) -> Machine:
+    """The machine code of a program for this processor: the library that is shipped for such a one, or else
+    what LLVM makes of the bitcode, or what it made before.
 
     Raises Unfit.
     """
-    import llvmlite
-    import llvmlite.binding as llvm
-
     if ctypes.sizeof(ctypes.c_void_p) != 8 or sys.byteorder != "little":
         raise Unfit("addresses are not of 64 bits here, the low ones first")
-    machine = emit.host()
-    processor, features = llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
-    message = (head.code, llvm.get_process_triple(), processor, features, llvmlite.__version__)
-    key = hashlib.sha256("\n".join((*message, platform.python_version())).encode()).hexdigest()[:24]
+    target = None if bitcode_only() else emit.shipped()
+    digest = head.libraries.get(target or "")
+    shipped = None if target is None or digest is None else _library(file.library(path, target), digest)
+    if target is None or digest is None or shipped is None:
+        return _made(path, head)
+    return Machine(shipped, f"shipped for {target}", digest)
+
+
+def _library(path: Path, digest: str) -> Callable[[str], int] | None:
+    """What gives the addresses in a shared library; None: it is missing or damaged, or the system cannot load
+    it, such as one with another C library."""
+    try:
+        if hashlib.sha256(path.read_bytes()).hexdigest() != digest:
+            LOG.debug("%s is damaged", path)
+            return None
+        library = ctypes.CDLL(str(path))
+    except OSError as error:
+        LOG.debug("%s", error)
+        return None
+    return lambda symbol: ctypes.cast(getattr(library, symbol), ctypes.c_void_p).value or 0
+
+
+def _made(path: Path, head: Head) -> Machine:
+    """The machine code that LLVM makes of a program's bitcode here, or made before. Raises Unfit."""
+    try:
+        import llvmlite
+        import llvmlite.binding as llvm
+    except ImportError:
+        raise Unfit(f"no library of {path.name} runs here; its bitcode {advice('llvmlite')}") from None
+    target = emit.host()
+    message = (head.code, *target, llvmlite.__version__, platform.python_version())
+    key = hashlib.sha256("\n".join(message).encode()).hexdigest()[:24]
     for symbol in head.external:
         if llvm.address_of_symbol(symbol) is None:
             llvm.add_symbol(symbol, _address(symbol))
     folder = paths.cache("programs")
-    count = len(head.parts) if emit.apart() else 1
-    kept = [folder / f"{name}_{key}_{k}.o" if folder else None for k in range(count)]
-    codes = [_kept(path) for path in kept]
+    count = len(head.parts) if target.form == emit.APART else 1
+    kept = [folder / f"{path.stem}_{key}_{k}.o" if folder else None for k in range(count)]
+    codes = [_kept(one) for one in kept]
     if missing := [k for k, code in enumerate(codes) if code is None]:
-        LOG.info("%s is prepared", name)
-        made = emitted(machine, bitcode(), missing)
+        LOG.info("%s is prepared", path.stem)
+        made = emitted(target, file.read(path)[1], missing)
         for k, code in zip(missing, made, strict=True):
             codes[k] = code
             _keep(kept[k], code)
-    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), machine)
-    for code in codes:
+    whole = [code for code in codes if code is not None]
+    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), emit.machine(target))
+    for code in whole:
         engine.add_object_file(llvm.ObjectFileRef.from_data(code))
     engine.finalize_object()
-    return Machine(engine)
+    digest = hashlib.sha256(b"".join(whole)).hexdigest()
+    return Machine(engine.get_function_address, f"made for {target.name}", digest)
 
 
-def emitted(machine: Any, parts: Sequence[bytes], wanted: Sequence[int] = (0,)) -> list[bytes]:
+def emitted(target: Target, parts: Sequence[bytes], wanted: Sequence[int] = (0,)) -> list[bytes]:
     """The `wanted` object files of a program in parts: the first one is made by this process, each other one
     at the same time by one of its own, where there are processors. What another process does not give is
     made here. Raises Unfit."""
     try:
-        every = emit.units(parts)
+        every, machine = emit.units(target, parts), emit.machine(target)
         units = [every[k] for k in wanted]
         if len(units) == 1 or processors() == 1:
             return [emit.emit(machine, unit) for unit in units]
         with contextlib.ExitStack() as stack:
-            others = [stack.enter_context(_elsewhere(unit)) for unit in units[1:]]
+            others = [stack.enter_context(_elsewhere(target, unit)) for unit in units[1:]]
             codes = [emit.emit(machine, units[0])]
             for unit, answer in zip(units[1:], others, strict=True):
                 codes.append(answer() or emit.emit(machine, unit))
@@ -85,13 +119,13 @@ def emitted(machine: Any, parts: Sequence[bytes], wanted: Sequence[int] = (0,)) 
 
 
 @contextlib.contextmanager
-def _elsewhere(part: bytes) -> Iterator[Callable[[], bytes | None]]:
-    """Another process that emits a part; what it is called for waits for its machine code, None: it gave
-    none. It does not outlive the block."""
+def _elsewhere(target: Target, part: bytes) -> Iterator[Callable[[], bytes | None]]:
+    """Starts another process that emits a part for a target. Yields a function that waits for its machine
+    code; None: it gave none. The process does not outlive the block."""
     surroundings = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     try:
         process = subprocess.Popen(
-            [sys.executable, "-P", emit.__file__],
+            [sys.executable, "-P", emit.__file__, *target],
             env=surroundings,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
@@ -156,14 +190,14 @@ def _keep(path: Path | None, code: bytes) -> None:
 
 
 class Machine:
-    """Machine code in this process."""
+    """Machine code in this process: `kind` says what it was made for, `digest` is SHA-256 of it."""
 
-    def __init__(self, engine: Any):
-        self._engine = engine
+    def __init__(self, address: Callable[[str], int], kind: str, digest: str):
+        self._address, self.kind, self.digest = address, kind, digest
 
     def entry(self, name: str, variant: Variant) -> Call:
         """What calls an entry with arguments of some types."""
-        return Call(name, variant, self._engine.get_function_address(variant.symbol))
+        return Call(name, variant, self._address(variant.symbol))
 
 
 class ArgumentWords(threading.local):

@@ -57,13 +57,19 @@ class Program:
                 self._load()
             return self._why
 
+    def code(self) -> str:
+        """Which machine code runs, with the beginning of its digest, for the record of a run."""
+        if self.why_not() is not None or self._machine is None:
+            return "compiled by numba"
+        return f"{self._machine.kind}, {self._machine.digest[:16]}"
+
     def _load(self) -> None:
         if alone():
             self._why = "MDLGEN_NUMBA is set"
             return
         try:
             head = self.head()
-            self._machine = native.load(self.name, head, lambda: file.read(self.path)[1])
+            self._machine = native.load(self.path, head)
             self._head = head
         except Unfit as error:
             self._why = str(error)

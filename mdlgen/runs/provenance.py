@@ -16,8 +16,9 @@ from typing import Any
 import numpy as np
 
 from mdlgen.errors import RefusedError
+from mdlgen.program import emit
 from mdlgen.program.kernel import alone
-from mdlgen.version import of, version
+from mdlgen.version import if_there, version
 
 
 def digest(value: Any) -> str:
@@ -61,24 +62,22 @@ def provenance(packages: tuple[str, ...]) -> dict[str, str]:
     for package in packages:
         found = find_spec(package)
         folder = Path(str(found and found.origin)).parent
-        for source in sorted((*folder.rglob("*.py"), *folder.rglob("*.program"))):
+        for source in sorted((*folder.rglob("*.py"), *folder.rglob("*.program"), *folder.rglob("*.so"))):
             code.update(source.read_bytes())
     return {
         "mdlgen": version(),
         "code": code.hexdigest(),
         "python": platform.python_version(),
         "numpy": np.__version__,
-        "numba": of("numba"),
-        "llvmlite": of("llvmlite"),
         "compiled": "by numba" if alone() else "where the program does not fit",
+        **if_there("numba", "llvmlite"),
     }
 
 
 def processor() -> dict[str, str]:
     """The processor, as another name and value: sums may be rounded otherwise on another one."""
-    import llvmlite.binding as llvm
-
-    return {"processor": f"{platform.machine()} {llvm.get_host_cpu_name()}"}
+    name = emit.processor("model name") or platform.processor()
+    return {"processor": f"{platform.machine()} {name}"}
 
 
 _WORDS = {"model": "a file that the scene names", "code": "the solver's code"}

@@ -79,6 +79,7 @@ MAKE = """
 import tiny.kernels as k
 from mdlgen.program import build
 types = build.watched(k.PROGRAM)
+build.SHIPPED = ()
 k.use()
 build.write(k.PROGRAM, types)
 """
@@ -126,6 +127,7 @@ def package(folder: Path, program: bytes | None) -> Path:
 
 
 def test_a_program_is_called_without_numba(tmp_path: Path, made: bytes) -> None:
+    """Where no library lies beside it: LLVM makes machine code of its bitcode, once."""
     package(tmp_path, made)
     assert answer(python(USE, tmp_path, tmp_path / "cache")) == [FOUND, False, None]
     kept = list((tmp_path / "cache" / "programs").iterdir())

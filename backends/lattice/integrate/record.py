@@ -9,6 +9,7 @@ import numpy as np
 from mdlgen.backends.lattice.arrays import System
 from mdlgen.backends.lattice.integrate.islands import groups
 from mdlgen.backends.lattice.integrate.states import WIDTHS, States
+from mdlgen.backends.lattice.kernels.entries import PROGRAM
 from mdlgen.backends.lattice.kernels.state import (
     ACTS,
     DEPTH_NOW,
@@ -38,7 +39,7 @@ from mdlgen.mechanics.turning import ABOUT_A, ABOUT_B, ALONG, LIMIT, TURNING
 from mdlgen.model.tables import Model
 from mdlgen.results import audit
 from mdlgen.results.result import ContactStatistics, Energy, Result
-from mdlgen.version import of
+from mdlgen.version import if_there
 
 NOW = [FORCE_NOW, *range(TURNING_NOW, TURNING_NOW + TURNING)]  # of the rows of contacts: PRESSES, TURNS
 BEGUN = [FORCE_BEGUN, *range(TURNING_BEGUN, TURNING_BEGUN + TURNING)]
@@ -218,4 +219,4 @@ def _names(model: Model, work: Workspace, group: int) -> tuple[str, ...]:
 
 
 def _versions() -> dict[str, str]:
-    return {name: of(name) for name in ("numba", "llvmlite")}
+    return if_there("numba", "llvmlite") | {"code": PROGRAM.code()}
