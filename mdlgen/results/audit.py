@@ -22,6 +22,8 @@ GAIN, LOSS, LOSS_RIGID = 0.02, 0.05, 0.01
 # How much finer a step is advised where none was given.
 FINER = 4.0
 LEAST = 1e-12  # [N mm]
+# An error of more than this part of its scale is none that a result may have, be it estimated or known.
+MOST = 0.25
 ADVICE = "leave out run.step"  # where one was given
 
 
@@ -56,19 +58,32 @@ def unseen(model: Model, of: Collection[str] | None = None) -> float:
     return model.run.tolerance * weight * float(np.linalg.norm(model.gravity))
 
 
+def made_by_nips(energy: Energy) -> str | None:
+    """What the law of nips made of energy, at any step; None: not more than a run may gain.
+
+    The law is not the gradient of an energy where a hard and a soft roller press deep. Such a run is complete
+    and its steps are fine enough, but its error is not known. Where they make more than MOST of the scale it
+    is no result.
+    """
+    made = -energy.dissipated / energy.scale
+    if made <= GAIN:
+        return None
+    return (
+        f"nips made {made * energy.scale:.3g} N mm of energy, {100 * made:.3g} % of "
+        f"{energy.scale:.3g} N mm, at any step; allowed are {100 * GAIN:g} %; a hard and a soft roller press "
+        "deep: raise the stiffness of the soft one's contact, or lower the preload (see W105)"
+    )
+
+
 def reason(model: Model, energy: Energy, step: float, loss: float | None = None) -> str | None:
     """Why a run at a step [ms] is no result, None where its energies balance.
 
     What is gained may be GAIN of the scale, what is lost `loss` of it (None: any, for an integrator that
     damps).
     """
-    made = -energy.dissipated / energy.scale
-    if made > GAIN:
-        return (
-            f"nips made {made * energy.scale:.3g} N mm of energy, {100 * made:.3g} % of "
-            f"{energy.scale:.3g} N mm; allowed are {100 * GAIN:g} %; that is of a hard and a soft roller "
-            "that press deep: raise the stiffness of the soft one's contact, or lower the preload (see W105)"
-        )
+    nips = made_by_nips(energy)
+    if nips is not None and -energy.dissipated > MOST * energy.scale:
+        return nips
     off = energy.balance_error
     if off <= GAIN and (loss is None or off >= -loss):
         return None

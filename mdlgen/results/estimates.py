@@ -15,6 +15,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from mdlgen.model.nips import facets
+from mdlgen.results.audit import MOST, made_by_nips
 from mdlgen.results.quantities import Difference, differences
 from mdlgen.results.result import INACCURATE, OK
 from mdlgen.results.wording import percent
@@ -35,10 +36,10 @@ SECOND_ORDER = 0.25
 FALLS, GROWS = 1.25, 0.5
 # Times the greater of two differences that do not fall.
 STILL = 4.0
-# An error of more than this part of the scale is not estimated: such differences do not say how large it is.
-# Of trajectories that tolerances judge two runs alone say less: where steps do not resolve a contact, both
-# may be wrong by more than they differ.
-MOST, MOST_OF_TWO = 0.25, 0.02
+# An error of more than MOST of the scale is not estimated: such differences do not say how large it is. Of
+# trajectories that tolerances judge two runs alone say less: where steps do not resolve a contact, both may
+# be wrong by more than they differ.
+MOST_OF_TWO = 0.02
 # Parts of the tolerance below which nothing is estimated. Without contacts: of trajectories; of forces and
 # peaks. With contacts, whose first touch may fall into another step: of trajectories; of forces and peaks.
 # What run.tolerance judges is a trajectory, slides and arms too: a floor above 1 would fail a run by itself.
@@ -273,12 +274,21 @@ def by_finer(result: Result, finer: Result) -> Result:
     )
 
 
+def within(result: Result) -> bool:
+    """Whether the error of a complete run by its step is known to be within `run.tolerance`."""
+    known = result.error_estimate
+    return known is not None and known <= result.model.run.tolerance and not result.error_unknown
+
+
 def marked(result: Result) -> Result:
     """A complete run with its status: OK where its error is known to be within `run.tolerance`, else
-    INACCURATE, with the reason where there is no estimate."""
+    INACCURATE, with the reason where there is no estimate, or where nips made energy."""
     if not result.usable:
         return result
     known = result.error_estimate
+    nips = made_by_nips(result.energy)
+    if nips is not None and not result.error_unknown:
+        result = replace(result, error_unknown=f"{NOT_KNOWN}: {nips}")
     if known is None and not result.error_unknown:
         why = f"{result.error_estimate_of} does not come closer as steps are halved"
         if len(result.coarser) == 1:
@@ -286,8 +296,7 @@ def marked(result: Result) -> Result:
         elif not result.coarser:
             why = "nothing was compared"
         result = replace(result, error_unknown=f"{NOT_KNOWN}: {why}")
-    within = known is not None and known <= result.model.run.tolerance and not result.error_unknown
-    return replace(result, status=OK if within else INACCURATE)
+    return replace(result, status=OK if within(result) else INACCURATE)
 
 
 def accuracy(result: Result) -> str:

@@ -92,5 +92,10 @@ def test_the_message_names_the_sum() -> None:
     assert audit.reason(model, Energy(balance_error=-0.5, scale=0.2), 0.1) is None  # an integrator that damps
     lost = audit.reason(model, Energy(balance_error=-0.5, scale=0.2), 0.1, audit.LOSS)
     assert lost is not None and "0.1 N mm of energy got lost" in lost
+    # what the law of nips makes leaves a result that is marked, up to a quarter of the scale
+    for part, none in ((0.019, True), (0.021, True), (0.24, True), (0.26, False)):
+        nips = Energy(balance_error=0.0, scale=0.2, dissipated=-0.2 * part)
+        assert (audit.made_by_nips(nips) is None) == (part < 0.02)
+        assert (audit.reason(model, nips, 0.1) is None) == none
     found = audit.reason(thrown(), bad, 0.1)
     assert found is not None and found.endswith("give a run.step of 0.025 ms")
