@@ -10,6 +10,7 @@ from dataclasses import replace
 from queue import SimpleQueue
 from threading import Event, Thread
 
+from mdlgen.backends.lattice import watches
 from mdlgen.backends.lattice.arrays import System, build
 from mdlgen.backends.lattice.compared import (
     UNKNOWN,
@@ -29,16 +30,7 @@ from mdlgen.backends.lattice.scope import check
 from mdlgen.backends.lattice.statics.rest import rest
 from mdlgen.backends.lattice.symmetry.find import find
 from mdlgen.backends.lattice.symmetry.mirror import halve
-from mdlgen.backends.lattice.watches import (
-    CHECK,
-    DOUBLED,
-    FINER,
-    MOST_REFINED,
-    MOST_REFINED_RIGID,
-    MOVED,
-    MOVED_EARLY,
-    Watches,
-)
+from mdlgen.backends.lattice.watches import MOST_REFINED, MOST_REFINED_RIGID, Watches
 from mdlgen.model.tables import Model
 from mdlgen.model.wider import wider
 from mdlgen.processors import processors
@@ -68,7 +60,7 @@ ASKED = 3
 # A step that is given is compared with twice that step where the run has so many of them.
 FEWEST = 4
 
-# Where `run.limit` is not set a search begins no third or later pass that would end after so much wall time
+# Where `run.limit` is not set a search begins no pass at half the step that would end after so much wall time
 # [s]. Convention: a designer waits a minute for a result, and may ask for more.
 PATIENCE = 60.0
 # How much longer a pass takes than that at twice its step, at least.
@@ -134,7 +126,7 @@ def solve(
         result = Search(model, system, watch).result(together)
     else:
         anew = FACTORS in without
-        number = 0 if step is None else CHECK
+        number = 0 if step is None else watches.CHECK
         result = _given(model, system, wanted, watch, number, anew, step is None, together)
     result.estimate_s = clock.perf_counter() - begun - result.wall_s
     result.build_s, result.compile_s = build_s, compile_s
@@ -181,7 +173,7 @@ def _given(
             )
         if (few or result.error_unknown.endswith(SAME_STEPS)) and late.allows(2.0 * took):
             finer = 0.5 * model.run.duration / result.steps
-            result = compared_with_finer(result, again(finer / h, system, watch(FINER)))
+            result = compared_with_finer(result, again(finer / h, system, watch(watches.FINER)))
         return marked(in_time(result, late))
 
     few = model.run.duration / wanted < FEWEST
@@ -231,7 +223,7 @@ class Search:
                 # what estimates need of the runs before, while compiled code is at work
                 Thread(target=_strains, args=(self._runs[:2],), daemon=True).start()
             run = ready.pop() if ready else self._once(0.5 * self._runs[0].step, k, self._watch(k))
-            if self._ends(run, k, self._watch(DOUBLED)) or (k == ASKED and self._parts(k)):
+            if self._ends(run, k, self._watch(watches.DOUBLED)) or (k == ASKED and self._parts(k)):
                 return self._done()
         return self._best()
 
@@ -240,7 +232,10 @@ class Search:
     ) -> Result:
         fine = accuracy(self._model) / 1e-3 * 0.25**halved
         miss = 0.0 if self._flexible else MISS * fine
-        return one_pass(of or self._model, self._system if on is None else on, h, seen, miss, MADE * fine)
+        # the finest pass of a search has so many times the steps of the first one
+        most = 2.0 ** (MOST_REFINED if self._flexible else MOST_REFINED_RIGID)
+        on = self._system if on is None else on
+        return one_pass(of or self._model, on, h, seen, miss, MADE * fine, times=most)
 
     def _ends(self, run: Result, k: int, seen: Watch, on: System | None = None) -> bool:
         """Whether the search ends with the run at the first step halved `k` times, which becomes the last
@@ -270,7 +265,7 @@ class Search:
         pass where it was begun beside the second, since the first took long; progress is that of the third
         then."""
         model, h = self._model, first_step(self._model)
-        coarse, second, third, doubled = (self._watch(number) for number in (0, 1, 2, DOUBLED))
+        coarse, second, third, doubled = (self._watch(number) for number in (0, 1, 2, watches.DOUBLED))
         beside, first, reports = own(self._system), Event(), SimpleQueue[Report | None]()
         finer = division(model, 0.5 * division(model, h).step).step
 
@@ -316,12 +311,10 @@ class Search:
 
     def _stops(self) -> bool:
         """Whether a run at half the step would end too late; without a complete run, whether time is over."""
-        runs = self._runs
-        if len(runs) == 1 and self._late is not self._patience:
-            return False  # nothing is known of the error of a single run
-        if not any(run.ok for run in runs):
-            return self._patience.over
+        runs, limited = self._runs, self._late is self._patience
         took = runs[0].wall_s
+        if not any(run.ok for run in runs):  # run.limit ends a pass where it stands
+            return not self._patience.allows(0.0 if limited else TWICE * took)
         longer = took / runs[1].wall_s if len(runs) > 1 and runs[1].wall_s > 0.0 else TWICE
         return not self._patience.allows(max(TWICE, longer) * took)
 
@@ -339,11 +332,17 @@ class Search:
             return max(runs, key=lambda run: float(run.time[-1])) if stopped else runs[0]
         k = complete[0]
         before = [run for run in runs[k + 1 :] if ended(run)]
-        best = compared_with_coarser(runs[k], before, None) if before else estimated(runs[k], [])
+        if before:
+            best = compared_with_coarser(runs[k], before, None)
+        elif len(runs) == 1 and self._late.allows(0.5 * runs[0].wall_s):
+            h, seen = runs[0].step, self._watch(watches.DOUBLED)
+            best = compared_with_coarser(runs[0], [], lambda n: self._once(n * h, -n // 2, seen))
+        else:
+            best = estimated(runs[k], [])
         why = f"no step below {best.step:.3g} ms was tried"
         if stopped:
             why = f"{late} left no time for a finer step"
-            if not before:
+            if not before and best.error_estimate is None and not best.error_unknown:
                 best = replace(best, error_unknown=f"{NOT_KNOWN}: {late} left no time for another run")
         elif k > 0:
             best = replace(
@@ -362,7 +361,7 @@ class Search:
             return False
         if not self._patience.allows(runs[0].wall_s):
             return False
-        found = chaos.chaos(runs[0], runs[1], self._moved(runs[0].step, k, MOVED_EARLY))
+        found = chaos.chaos(runs[0], runs[1], self._moved(runs[0].step, k, watches.MOVED_EARLY))
         if found is None or chaos.ALIKE * found.apart < found.step_apart:
             return False
         why = f"no step below {runs[0].step:.3g} ms was tried"
@@ -381,7 +380,7 @@ class Search:
             return best
         if not self._patience.allows(best.wall_s):
             return best
-        other = self._moved(best.step, halved, MOVED)
+        other = self._moved(best.step, halved, watches.MOVED)
         return replace(best, chaotic=chaos.chaos(best, before[0], other))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import time
 from pathlib import Path
 
@@ -95,15 +96,29 @@ def test_a_search_ends_where_the_motion_is_chaotic(monkeypatch: pytest.MonkeyPat
 
 
 def test_a_search_has_a_time_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Without run.limit a search begins no third pass that would end too late. The second is made in any
-    case, since one pass alone says nothing about its error; a limit that is set counts instead."""
+    """Without run.limit a search begins no finer pass that would end too late; a limit that is set counts
+    instead. A single pass is compared with one at twice its step."""
     monkeypatch.setattr(lattice, "PATIENCE", 1e-3)
     result = mdlgen.solve(case("thrown"), "lattice")
     assert result.status == "inaccurate" and result.chaotic is None
-    assert result.step == pytest.approx(0.5 * lattice.first_step(result.model), rel=1e-2)
+    assert result.step == pytest.approx(lattice.first_step(result.model), rel=1e-2)
+    assert result.error_estimate is not None or result.error_unknown
     assert "0.001 s of wall time (set run.limit to allow more) left no time" in result.search_ended
     longer = mdlgen.solve(case("thrown", "run.limit=600 s"), "lattice")
     assert longer.step < 0.6 * result.step
+
+
+def test_a_pass_that_crawls_ends_early_and_says_which_body_holds_it_up() -> None:
+    """It takes more steps than the finest pass of a search would; only the search ends it."""
+    from mdlgen.backends.lattice.arrays import build
+    from mdlgen.backends.lattice.integrate.passes import one_pass
+
+    model = case("retard", "run.duration=20 ms")
+    whole = one_pass(model, build(model), 0.2)
+    assert whole.ok and whole.steps > 100
+    part = one_pass(model, build(model), 0.2, times=0.5)
+    assert not part.usable and 0.0 < part.time[-1] < 20.0 and 50 < part.steps < 70
+    assert re.match(r"\d+ steps were needed up to [\d.]+ ms, .* velocity of box pile_\d_\d_0", part.status)
 
 
 def test_a_moved_start_strains_no_joint() -> None:

@@ -7,6 +7,7 @@ import numpy as np
 from mdlgen.backends.lattice.arrays import System, partner
 from mdlgen.backends.lattice.integrate.work import flexible
 from mdlgen.backends.lattice.kernels.state import (
+    STEPS,
     STRAIN,
     THROUGH,
     WORST,
@@ -20,7 +21,7 @@ from mdlgen.results import audit
 from mdlgen.results.result import Result
 
 # How a halved run ends, beside those of kernels.integrate.integrate.
-PASSED, OVERLAPPED, LIMITED = -1, -2, -3
+PASSED, OVERLAPPED, LIMITED, CRAWLED = -1, -2, -3, -4
 
 
 def reason_of(
@@ -32,6 +33,12 @@ def reason_of(
     names = model.bodies.name
     if status == LIMITED:
         return limited(model, t)
+    if status == CRAWLED:
+        return (
+            f"{int(counters[STEPS])} steps were needed up to {t:.6g} ms, more than the whole run takes at "
+            f"the finest step of a search; the velocity of box {names[int(counters[WORST])]} converges "
+            "slowly; larger smoothing of its contacts may help"
+        )
     if status == integrate.STOPPED and counters[THROUGH] >= 0:
         one, two = (names[int(system.pairs[end][int(counters[THROUGH])])] for end in "ab")
         return (

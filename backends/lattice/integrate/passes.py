@@ -13,7 +13,15 @@ import numpy as np
 
 from mdlgen.backends.lattice.arrays import System
 from mdlgen.backends.lattice.integrate.beside import Stopped
-from mdlgen.backends.lattice.integrate.ends import LIMITED, OVERLAPPED, PASSED, reason_of, unbalanced, unheld
+from mdlgen.backends.lattice.integrate.ends import (
+    CRAWLED,
+    LIMITED,
+    OVERLAPPED,
+    PASSED,
+    reason_of,
+    unbalanced,
+    unheld,
+)
 from mdlgen.backends.lattice.integrate.helpers import Helpers
 from mdlgen.backends.lattice.integrate.limit import Calls, Cut, Deadline
 from mdlgen.backends.lattice.integrate.looks import Looks
@@ -129,9 +137,11 @@ def one_pass(
     miss: float = 0.0,
     made: float = 0.0,
     anew: bool = False,
+    times: float = math.inf,
 ) -> Result:
     """One run at a step, or the next smaller one that outputs fall on; `miss`, `made`: see run.MISS and
-    run.MADE, 0 for any; `anew`: a new factor for each step. Raises Stopped where `watch` says so."""
+    run.MADE, 0 for any; `anew`: a new factor for each step; `times`: it ends early where it takes more than
+    so many times its number of steps, since they are divided. Raises Stopped where `watch` says so."""
     from mdlgen.backends.lattice.kernels import entries
     from mdlgen.backends.lattice.kernels.integrate import integrate
 
@@ -184,6 +194,8 @@ def one_pass(
                 fresh = False
             if deadline.over and (status != integrate.DONE or left.size > many):
                 return LIMITED, t
+            if status == integrate.DONE and counters[STEPS] > times * outputs * divided.each:
+                return CRAWLED, t
             if status == integrate.WOKEN:
                 sleep.wake(int(counters[WORST]), t, helpers)
                 status, left = integrate.DONE, looks.left(goal, t, dt)
@@ -226,7 +238,7 @@ def one_pass(
             if deadline.over and output + 1 < outputs:
                 status = LIMITED
                 break
-    within = (integrate.LEFT, integrate.DEEP, integrate.STRETCHED, LIMITED)
+    within = (integrate.LEFT, integrate.DEEP, integrate.STRETCHED, LIMITED, CRAWLED)
     if todo and status in within and t > recorder.last:
         recorder.store(t)  # with which its energies balance, or do not
     wall = past + clock.perf_counter() - begun
