@@ -184,8 +184,8 @@ def _dispatcher(kernel: Kernel, whole: bool) -> Any:
         numba = importlib.import_module("numba")
     except ImportError:
         why = "; ".join(filter(None, (program.why_not() for program in kernel.programs)))
-        what = f"{kernel.__name__} of the solver has to be compiled"
-        raise RefusedError(f"{what} ({why or 'no program has it'}) and {advice('numba')}") from None
+        what = f"compiling the kernel {kernel.__name__}, since {why or 'no program has it'},"
+        raise RefusedError(f"{what} {advice('numba')}") from None
     settings = importlib.import_module("numba.core.config").__dict__  # made at run time
     pieces = importlib.import_module("mdlgen.program.pieces")
     function = kernel.py_func

@@ -17,7 +17,6 @@ from typing import Any
 
 from mdlgen import paths
 from mdlgen.errors import OutputError
-from mdlgen.extras import advice
 from mdlgen.processors import processors
 from mdlgen.program import emit, file
 from mdlgen.program.emit import Target
@@ -72,7 +71,7 @@ def _made(path: Path, head: Head) -> Machine:
         import llvmlite
         import llvmlite.binding as llvm
     except ImportError:
-        raise Unfit(f"no library of {path.name} runs here; its bitcode {advice('llvmlite')}") from None
+        raise Unfit(f"no library of {path.name} runs here and llvmlite is not installed") from None
     target = emit.host()
     message = (head.code, *target, llvmlite.__version__, platform.python_version())
     key = hashlib.sha256("\n".join(message).encode()).hexdigest()[:24]
