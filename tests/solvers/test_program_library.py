@@ -108,7 +108,8 @@ def test_without_numba_and_llvmlite_the_message_says_what_to_install(
         """A kernel that no program has."""
 
     with pytest.raises(
-        RefusedError, match=r"nothing .*no program has it.*numba.* pip install 'mdlgen\[compile\]'"
+        RefusedError,
+        match=r"kernel nothing, since no program has it, needs numba.* pip install 'mdlgen\[compile\]'",
     ):
         kernel.njit()(nothing)()
 
