@@ -2,8 +2,22 @@
 
 from __future__ import annotations
 
+from importlib.util import find_spec
+
+from mdlgen.errors import OutputError
+
 # Package -> extra. What a package needs itself is not named here.
 EXTRAS = {"exudyn": "exudyn", "matplotlib": "figures", "numba": "compile", "llvmlite": "compile"}
+
+
+def require(package: str) -> None:
+    """Raises OutputError where a package is not installed, before work that needs it later on."""
+    try:
+        there = find_spec(package) is not None
+    except ValueError:  # None stands among the modules in its place
+        there = False
+    if not there:
+        raise OutputError(f"this {advice(package)}")
 
 
 def advice(missing: str) -> str | None:

@@ -23,7 +23,7 @@ from mdlgen.backends.lattice.compared import (
 from mdlgen.backends.lattice.integrate.beside import Beside, Stopped, own
 from mdlgen.backends.lattice.integrate.ends import limit_of, unbalanced
 from mdlgen.backends.lattice.integrate.limit import Deadline
-from mdlgen.backends.lattice.integrate.passes import FIRST_STEP, Progress, Watch, accuracy, division, one_pass
+from mdlgen.backends.lattice.integrate.passes import Progress, Watch, accuracy, division, first_step, one_pass
 from mdlgen.backends.lattice.integrate.work import arrays, flexible, warm
 from mdlgen.backends.lattice.kernels.entries import PROGRAM
 from mdlgen.backends.lattice.scope import check
@@ -60,8 +60,8 @@ ASKED = 3
 # A step that is given is compared with twice that step where the run has so many of them.
 FEWEST = 4
 
-# Where `run.limit` is not set a search begins no pass at half the step that would end after so much wall time
-# [s]. Convention: a designer waits a minute for a result, and may ask for more.
+# Where `run.limit` is not set a search begins no pass with which all of them would take more wall time than
+# this [s]. Convention: a designer waits a minute for a result, and may ask for more.
 PATIENCE = 60.0
 # How much longer a pass takes than that at twice its step, at least.
 TWICE = 2.0
@@ -199,11 +199,8 @@ class Search:
         self._flexible = flexible(model)
         self._runs: list[Result] = []  # the last one first
         self._late = watch.deadline
-        limited = model.run.limit is not None
-        self._patience = self._late if limited else Deadline(clock.perf_counter() + PATIENCE)
-        self._time = (
-            limit_of(model) if limited else f"{PATIENCE:g} s of wall time (set run.limit to allow more)"
-        )
+        self._limited = model.run.limit is not None
+        self._stopped = False  # since a finer pass would take too long
 
     def result(self, together: bool) -> Result:
         """The last run; `together`: two passes at the same time, where both are needed or likely to be."""
@@ -218,12 +215,13 @@ class Search:
             ready.append(self._two())
         for k in range(len(self._runs), 1 + (MOST_REFINED if self._flexible else MOST_REFINED_RIGID)):
             if not ready and self._stops():
+                self._stopped = True
                 break
             if together and not ready:
                 # what estimates need of the runs before, while compiled code is at work
                 Thread(target=_strains, args=(self._runs[:2],), daemon=True).start()
             run = ready.pop() if ready else self._once(0.5 * self._runs[0].step, k, self._watch(k))
-            if self._ends(run, k, self._watch(watches.DOUBLED)) or (k == ASKED and self._parts(k)):
+            if self._ends(run, k) or (k == ASKED and self._parts(k)):
                 return self._done()
         return self._best()
 
@@ -232,18 +230,18 @@ class Search:
     ) -> Result:
         fine = accuracy(self._model) / 1e-3 * 0.25**halved
         miss = 0.0 if self._flexible else MISS * fine
-        # the finest pass of a search has so many times the steps of the first one
-        most = 2.0 ** (MOST_REFINED if self._flexible else MOST_REFINED_RIGID)
+        # the finest pass of a search has so many times the steps of the first one; a limit of time is enough
+        most = math.inf if self._limited else 2.0 ** (MOST_REFINED if self._flexible else MOST_REFINED_RIGID)
         on = self._system if on is None else on
         return one_pass(of or self._model, on, h, seen, miss, MADE * fine, times=most)
 
-    def _ends(self, run: Result, k: int, seen: Watch, on: System | None = None) -> bool:
+    def _ends(self, run: Result, k: int, told: bool = True) -> bool:
         """Whether the search ends with the run at the first step halved `k` times, which becomes the last
-        one."""
+        one. `told`: progress is that of a coarser run, too, where one is made."""
         before, model = self._runs[:2], self._model
         if run.ok and before[0].ok:
             h = run.step
-            run = compared_with_coarser(run, before, lambda n: self._once(n * h, k - n // 2, seen, on))
+            run = compared_with_coarser(run, before, lambda n: self._coarser(n, h, k, told))
         same = abs(run.time[-1] - before[0].time[-1]) <= SAME_END * model.run.duration
         self._runs.insert(0, run)
         if run.ok and before[0].ok:
@@ -265,7 +263,7 @@ class Search:
         pass where it was begun beside the second, since the first took long; progress is that of the third
         then."""
         model, h = self._model, first_step(self._model)
-        coarse, second, third, doubled = (self._watch(number) for number in (0, 1, 2, watches.DOUBLED))
+        coarse, second, third = (self._watch(number) for number in (0, 1, 2))
         beside, first, reports = own(self._system), Event(), SimpleQueue[Report | None]()
         finer = division(model, 0.5 * division(model, h).step).step
 
@@ -275,7 +273,7 @@ class Search:
             finally:
                 first.set()
             took = self._runs[0].wall_s
-            if took < SHORT or not self._patience.allows(TWICE * TWICE * took):
+            if took < SHORT or not self._allows((TWICE + TWICE * TWICE) * took):
                 return None  # what comes after the run has more use for this processor
             followed = third.beside(stop)._replace(progress=lambda *report: reports.put(report))
             return self._once(0.5 * finer, 2, followed, beside)
@@ -297,7 +295,7 @@ class Search:
             first.wait()
             if not self._runs:
                 side.raises(Stopped)
-            ends = self._ends(run, 1, doubled._replace(progress=None))
+            ends = self._ends(run, 1, told=False)
             if not ends:
                 coarse.leave()  # this processor has no more to do
                 _strains(self._runs)
@@ -309,14 +307,28 @@ class Search:
         side.raises(Stopped)
         return True, []
 
+    def _coarser(self, times: int, h: float, halved: int, told: bool = True) -> Result:
+        """A run at 2 or 4 times the step h, the first one halved so many times, to compare with."""
+        seen = self._watch(watches.DOUBLED if times == 2 else watches.QUADRUPLED)
+        return self._once(times * h, halved - times // 2, seen if told else seen._replace(progress=None))
+
+    def _allows(self, seconds: float) -> bool:
+        """Whether so much more wall time is left. All passes count, also those before a run was resumed."""
+        if self._limited:
+            return self._late.allows(seconds)
+        return sum(run.wall_s for run in self._runs) + seconds <= PATIENCE
+
     def _stops(self) -> bool:
-        """Whether a run at half the step would end too late; without a complete run, whether time is over."""
-        runs, limited = self._runs, self._late is self._patience
-        took = runs[0].wall_s
-        if not any(run.ok for run in runs):  # run.limit ends a pass where it stands
-            return not self._patience.allows(0.0 if limited else TWICE * took)
-        longer = took / runs[1].wall_s if len(runs) > 1 and runs[1].wall_s > 0.0 else TWICE
-        return not self._patience.allows(max(TWICE, longer) * took)
+        """Whether a run at half the step would take too long; without a complete run: `run.limit` is over."""
+        runs = self._runs
+        if self._limited and not any(run.ok for run in runs):
+            return self._late.over
+        # a pass that ended early does not say how long the whole run takes
+        k = next((k for k, run in enumerate(runs) if ended(run)), 0)
+        longer = TWICE
+        if len(runs) > k + 1 and ended(runs[k]) and ended(runs[k + 1]) and runs[k + 1].wall_s > 0.0:
+            longer = max(TWICE, runs[k].wall_s / runs[k + 1].wall_s)
+        return not self._allows(longer * TWICE**k * runs[k].wall_s)
 
     def _done(self) -> Result:
         """The last run, with which the search ended."""
@@ -325,31 +337,29 @@ class Search:
     def _best(self) -> Result:
         """The finest run that is complete, where the search ended without one within the tolerance; without
         any the last one, or the one that came furthest in the time that there was."""
-        runs, late = self._runs, self._time
-        stopped = self._stops()
+        runs, late = self._runs, f"{PATIENCE:g} s of wall time (set run.limit to allow more)"
+        late = limit_of(self._model) if self._limited else late
         complete = [k for k, run in enumerate(runs) if run.ok]
         if not complete:
-            return max(runs, key=lambda run: float(run.time[-1])) if stopped else runs[0]
+            return max(runs, key=lambda run: float(run.time[-1])) if self._stopped else runs[0]
         k = complete[0]
-        before = [run for run in runs[k + 1 :] if ended(run)]
+        best, before = runs[k], [run for run in runs[k + 1 :] if ended(run)]
         if before:
-            best = compared_with_coarser(runs[k], before, None)
-        elif len(runs) == 1 and self._late.allows(0.5 * runs[0].wall_s):
-            h, seen = runs[0].step, self._watch(watches.DOUBLED)
-            best = compared_with_coarser(runs[0], [], lambda n: self._once(n * h, -n // 2, seen))
+            best = compared_with_coarser(best, before, None)
+        elif len(runs) == 1 and self._late.allows(0.5 * best.wall_s):
+            h = best.step
+            best = compared_with_coarser(best, [], lambda n: self._coarser(n, h, 0))
         else:
-            best = estimated(runs[k], [])
-        why = f"no step below {best.step:.3g} ms was tried"
-        if stopped:
-            why = f"{late} left no time for a finer step"
-            if not before and best.error_estimate is None and not best.error_unknown:
-                best = replace(best, error_unknown=f"{NOT_KNOWN}: {late} left no time for another run")
-        elif k > 0:
-            best = replace(
-                best, error_unknown=f"{NOT_KNOWN}: a run at half the step ended early: {runs[0].status}"
-            )
-        elif not before:
+            best = estimated(best, [])
+        tried = f"no step below {best.step:.3g} ms was tried"
+        why = f"{late} left no time for a finer step" if self._stopped else tried
+        if k > 0:
+            unknown = f"{NOT_KNOWN}: a run at half the step ended early: {runs[0].status}"
+            best = replace(best, error_unknown=unknown)
+        elif len(runs) > 1 and not before:
             best = replace(best, error_unknown=f"{UNKNOWN} failed: {runs[1].status}")
+        elif best.error_estimate is None and not best.error_unknown and not before:
+            best = replace(best, error_unknown=f"{NOT_KNOWN}: {late} left no time for another run")
         return marked(self._chaos(replace(best, search_ended=why), before, len(runs) - 1 - k))
 
     def _parts(self, k: int) -> bool:
@@ -359,7 +369,7 @@ class Search:
         name = runs[0].error_estimate_of
         if not all(run.ok for run in runs) or name is None or chaos.falls(runs, name):
             return False
-        if not self._patience.allows(runs[0].wall_s):
+        if not self._allows(runs[0].wall_s):
             return False
         found = chaos.chaos(runs[0], runs[1], self._moved(runs[0].step, k, watches.MOVED_EARLY))
         if found is None or chaos.ALIKE * found.apart < found.step_apart:
@@ -378,7 +388,7 @@ class Search:
         name = best.error_estimate_of
         if not before or name is None or chaos.falls([best, *before[:3]], name):
             return best
-        if not self._patience.allows(best.wall_s):
+        if not self._allows(best.wall_s):
             return best
         other = self._moved(best.step, halved, watches.MOVED)
         return replace(best, chaotic=chaos.chaos(best, before[0], other))
@@ -388,9 +398,3 @@ def _strains(runs: list[Result]) -> None:
     """Works out what estimates need of runs, which keep it."""
     for run in runs:
         _ = run.strains
-
-
-def first_step(model: Model) -> float:
-    """Step to begin with [ms]."""
-    run = model.run
-    return min(FIRST_STEP * math.sqrt(run.tolerance / 1e-3), run.duration / 20)

@@ -9,9 +9,10 @@ from mdlgen.runs.checkpoint import Checkpointer
 # How often the step may be halved to meet the tolerance, from the first step on; blocks take little time.
 MOST_REFINED, MOST_REFINED_RIGID = 5, 8
 # Numbers by which states of passes are kept: first those of the first step, halved so many times, or of the
-# step that is given, doubled so many times; then of twice the first step; of a check at a step of its own; of
-# a run at finer steps than were given; of one from a start that is moved, at the last step, and before it.
-DOUBLED, CHECK, FINER, MOVED, MOVED_EARLY = (MOST_REFINED_RIGID + k for k in (1, 2, 3, 4, 5))
+# step that is given, doubled so many times; then of twice a step of a search, and of four times that; of a
+# check at a step of its own; of a run at finer steps than were given; of one from a start that is moved, at
+# the last step, and before it.
+DOUBLED, CHECK, FINER, MOVED, MOVED_EARLY, QUADRUPLED = (MOST_REFINED_RIGID + k for k in range(1, 7))
 
 
 class Watches:

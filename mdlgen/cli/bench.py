@@ -119,9 +119,11 @@ def bench(
     from mdlgen.bench import page as pages
     from mdlgen.bench.run import bench as run_bench
     from mdlgen.bench.table import markdown
+    from mdlgen.extras import require
     from mdlgen.paths import check_folder
 
     shown = "" if page is None else pages.check_page(suites or ())
+    require("matplotlib")
     check_folder(output)
     heard = (lambda _: None) if quiet else say
     found = run_bench(suites or (), output, solver or (), quick, repeat, heard, peers, beside)

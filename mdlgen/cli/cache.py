@@ -43,11 +43,14 @@ def cache(
 def _check(quiet: bool) -> None:
     from mdlgen.program.build import programs
     from mdlgen.program.file import Unfit
+    from mdlgen.program.kernel import alone
 
     wrong = False
     for program in programs():
         try:
             program.head()
+            if (why := program.why_not()) is not None and not alone():
+                raise Unfit(why)
         except Unfit as error:
             wrong = True
             typer.echo(f"{error}: numba compiles, some minutes once on a machine")

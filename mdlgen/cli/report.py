@@ -9,6 +9,7 @@ import typer
 
 from mdlgen.cli.shell import Pictures, Quiet, Verbose, app, reports_errors, say
 from mdlgen.errors import OutputError, SpecError
+from mdlgen.extras import require
 
 PAGE = "report.html"
 
@@ -60,6 +61,8 @@ def report(
         raise SpecError("--stills are of one run; name one folder")
     if pictures and len(folders) > 1:
         raise SpecError("--pictures are of one run; name one folder")
+    if wanted is not None or pictures:
+        require("matplotlib")
     results = [load(folder) for folder in folders]
     names = _names(folders)
     target = output or (folders[0] / PAGE if len(folders) == 1 else Path("compare.html"))

@@ -32,6 +32,7 @@ from mdlgen.cli.shell import (
     strictly,
 )
 from mdlgen.errors import AccuracyError, RequirementError, SpecError
+from mdlgen.extras import require
 
 if TYPE_CHECKING:
     from mdlgen.model.tables import Model
@@ -127,6 +128,8 @@ def run(
         for text in filter(None, (*map(str, lints(model)), notice(model))):
             say(text)
     drawn = pictures or are_drawn(folder)
+    if drawn:
+        require("matplotlib")
     every = 60.0 if checkpoint is None else checkpoint
     packages = registry.packages(name)
     if resume is not None:
@@ -182,6 +185,7 @@ def _judge(result: Result, summary: dict[str, Any], spec: str, folder: Path) -> 
     A run that ended early: exit code 4. A requirement that is missed: 6, unless the run is inaccurate and the
     miss is within its error. Every other inaccurate run: 5.
     """
+    from mdlgen.results.audit import made_by_nips
     from mdlgen.results.mark import chaotic
 
     if not result.usable:
@@ -198,6 +202,8 @@ def _judge(result: Result, summary: dict[str, Any], spec: str, folder: Path) -> 
         advice = "give a smaller run.step, or leave it out, so that a step is searched"
         if result.model.run.step is None:
             advice = "a larger run.tolerance, a smaller run.step or more damping of the material may help"
+        if made_by_nips(result.energy) is not None:
+            advice = "no step changes that"
         advice = chaotic(result, spec) or advice
         raise AccuracyError(f"{spec}: {summary['mark']}; the files in {folder} hold this result; {advice}")
 

@@ -244,7 +244,7 @@ def summary_text(record: dict[str, Any]) -> str:
     plates = {name: plane for name, plane in record.get("planes", {}).items() if "center_mm" in plane}
     if plates:
         lines += _plates(plates)
-    if record["error_estimate"] is not None:
+    if record["error_estimate"] is not None and not record.get("error_unknown"):
         worst = f" ({record['error_estimate_of']})" if record["error_estimate_of"] else ""
         below = "below " if record.get("error_below") else ""
         lines.append(

@@ -162,11 +162,11 @@ def doubts(
     result: Result, record: Mapping[str, Any], others: Sequence[tuple[Result, Mapping[str, Any]]]
 ) -> dict[str, float]:
     """By how much each value may be wrong: SAFETY_REST times the difference to the first of the runs at other
-    steps, each with its record; of an event the number of times by which they differ. inf where a complete
-    run has no other to compare with and its error is not known; none where that was not asked for."""
+    steps, each with its record; of an event the number of times by which they differ. inf where the error
+    of a complete run is not known; none where no other run was asked for."""
     if not result.usable or not result.model.require:
         return {}
-    if not others:
+    if not others or result.error_unknown:
         unknown = result.status != OK
         return dict.fromkeys(result.model.require, math.inf) if unknown else {}
     found = {}

@@ -18,6 +18,7 @@ import numpy as np
 from mdlgen.errors import RefusedError
 from mdlgen.program import emit
 from mdlgen.program.kernel import alone
+from mdlgen.program.native import bitcode_only
 from mdlgen.version import if_there, version
 
 
@@ -69,14 +70,20 @@ def provenance(packages: tuple[str, ...]) -> dict[str, str]:
         "code": code.hexdigest(),
         "python": platform.python_version(),
         "numpy": np.__version__,
-        "compiled": "by numba" if alone() else "where the program does not fit",
+        "compiled": "by numba" if alone() else _compiled(),
         **if_there("numba", "llvmlite"),
     }
 
 
+def _compiled() -> str:
+    """What machine code the solvers' programs have here."""
+    target = None if bitcode_only() else emit.shipped()
+    return "from bitcode" if target is None else f"for {target}"
+
+
 def processor() -> dict[str, str]:
     """The processor, as another name and value: sums may be rounded otherwise on another one."""
-    name = emit.processor("model name") or platform.processor()
+    name = emit.processor("model name") or emit.processor("CPU part") or platform.processor()
     return {"processor": f"{platform.machine()} {name}"}
 
 

@@ -52,6 +52,10 @@ def test_what_a_scene_is_written_for_needs_no_extra(tmp_path: Path) -> None:
     [
         (("run", "--solver", "exudyn", "-o", "out", *SHORT), "exudyn"),
         (("preview", "-o", "start.png"), "matplotlib"),
+        (
+            ("run", "--pictures", "-o", "out", *SHORT),
+            "matplotlib",
+        ),  # before the run, whose result would be lost
     ],
 )
 def test_a_command_asks_for_the_extra_that_it_needs(

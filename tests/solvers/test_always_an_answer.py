@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import re
 import time
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import mdlgen
 from mdlgen.backends.lattice import run as lattice
+from mdlgen.backends.lattice import watches
 from mdlgen.model.tables import Model
 from mdlgen.results import chaos
 from mdlgen.results.quantities import differences
@@ -95,17 +98,83 @@ def test_a_search_ends_where_the_motion_is_chaotic(monkeypatch: pytest.MonkeyPat
     assert "was tried" in result.search_ended
 
 
-def test_a_search_has_a_time_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Without run.limit a search begins no finer pass that would end too late; a limit that is set counts
-    instead. A single pass is compared with one at twice its step."""
-    monkeypatch.setattr(lattice, "PATIENCE", 1e-3)
+def passes(monkeypatch: pytest.MonkeyPatch, walls: list[float], fails: tuple[int, ...] = ()) -> list[float]:
+    """Steps of the passes of a search from now on, which seem to take such wall times [s] in turn; those in
+    `fails` seem to end early, each later than the one before."""
+    steps: list[float] = []
+    of_one = lattice.one_pass
+
+    def seen(*args: Any, **named: Any) -> Any:
+        result = of_one(*args, **named)
+        k = len(steps)
+        steps.append(result.step)
+        result = replace(result, wall_s=walls[k])
+        if k in fails:
+            kept = {name: getattr(result, name)[: 10 * (k + 1)] for name in ("time", "position", "rotation")}
+            result = replace(result, **kept).failed("it ended early")
+        return result
+
+    monkeypatch.setattr(lattice, "one_pass", seen)
+    return steps
+
+
+@pytest.mark.parametrize(
+    ("walls", "fails", "times", "says"),
+    [
+        # a single pass is compared with one at twice its step
+        ([25.0, 12.0, 6.0], (), (1, 2), "left no time for a finer step"),
+        ([5.0, 11.0, 30.0], (), (1, 0.5, 0.25), "left no time for a finer step"),
+        # the second takes five times as long: the third would take 60 s
+        ([2.4, 12.0, 1.0], (), (1, 0.5), "left no time for a finer step"),
+        # how long one took that ended early says nothing about the next one
+        ([0.1, 4.0, 8.0, 40.0], (0,), (1, 0.5, 0.25, 0.125), "left no time for a finer step"),
+    ],
+)
+def test_a_search_has_a_time_of_its_own(
+    monkeypatch: pytest.MonkeyPatch,
+    walls: list[float],
+    fails: tuple[int, ...],
+    times: tuple[float, ...],
+    says: str,
+) -> None:
+    """Without run.limit a search begins no finer pass with which all would take more than a minute."""
+    monkeypatch.setattr(chaos, "falls", lambda *_: True)  # no further pass from another start
+    steps = passes(monkeypatch, [*walls, *[0.0] * 9], fails)
+    model = case("thrown")
+    result = mdlgen.solve(model, "lattice")
+    first = lattice.first_step(model)
+    assert (
+        result.status == "inaccurate" and says in result.search_ended and "run.limit" in result.search_ended
+    )
+    assert [step / first for step in steps[: len(times)]] == pytest.approx(times, rel=0.02)
+    assert result.step == pytest.approx(min(steps), rel=1e-9)
+    assert result.error_estimate is not None or "at twice the step" in result.error_unknown or len(times) > 1
+
+
+def test_a_finer_pass_that_ended_early_leaves_the_error_unknown(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where the time is over as well. With run.limit the time that it gives counts alone."""
+    monkeypatch.setattr(chaos, "falls", lambda *_: True)
+    steps = passes(monkeypatch, [2.0, 8.0, 50.0, *[0.0] * 9], (2,))
     result = mdlgen.solve(case("thrown"), "lattice")
-    assert result.status == "inaccurate" and result.chaotic is None
-    assert result.step == pytest.approx(lattice.first_step(result.model), rel=1e-2)
-    assert result.error_estimate is not None or result.error_unknown
-    assert "0.001 s of wall time (set run.limit to allow more) left no time" in result.search_ended
+    assert len(steps) == 3 and result.status == "inaccurate"
+    assert "a run at half the step ended early: it ended early" in result.error_unknown
+    monkeypatch.undo()
+    monkeypatch.setattr(lattice, "PATIENCE", 1e-3)
     longer = mdlgen.solve(case("thrown", "run.limit=600 s"), "lattice")
-    assert longer.step < 0.6 * result.step
+    assert longer.step < 0.3 * lattice.first_step(longer.model)
+
+
+def test_runs_at_twice_and_four_times_a_step_keep_their_states_apart() -> None:
+    """A checkpoint of one is none of the other."""
+    numbers = (watches.DOUBLED, watches.QUADRUPLED, watches.CHECK, watches.FINER, watches.MOVED)
+    every = (*numbers, watches.MOVED_EARLY, *range(watches.MOST_REFINED_RIGID + 1))
+    assert len(set(every)) == len(every)
+    search = lattice.Search(case("thrown"), None, lattice.Watches(None, None, 1, True))
+    asked: list[tuple[float, int]] = []
+    search._once = lambda h, halved, seen, *_: asked.append((h, seen.number))
+    search._coarser(2, 0.1, 0)
+    search._coarser(4, 0.1, 0)
+    assert asked == [(0.2, watches.DOUBLED), (0.4, watches.QUADRUPLED)]
 
 
 def test_a_pass_that_crawls_ends_early_and_says_which_body_holds_it_up() -> None:

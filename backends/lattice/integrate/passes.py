@@ -113,6 +113,12 @@ def division(model: Model, wanted: float) -> Division:
     return Division(outputs, each, dt)
 
 
+def first_step(model: Model) -> float:
+    """Step with which a search begins [ms]."""
+    run = model.run
+    return min(FIRST_STEP * math.sqrt(run.tolerance / 1e-3), run.duration / 20)
+
+
 def accuracy(model: Model) -> float:
     """What a step is solved to: a larger tolerance is for what differs from run to run however exact."""
     return min(model.run.tolerance, LOOSEST)
