@@ -65,9 +65,9 @@ def made_by_nips(energy: Energy) -> str | None:
     and its steps are fine enough, but its error is not known. Where they make more than MOST of the scale it
     is no result.
     """
-    made = -energy.dissipated / energy.scale
-    if made <= GAIN:
+    if -energy.dissipated <= GAIN * energy.scale:
         return None
+    made = -energy.dissipated / energy.scale
     return (
         f"nips made {made * energy.scale:.3g} N mm of energy, {100 * made:.3g} % of "
         f"{energy.scale:.3g} N mm, at any step; allowed are {100 * GAIN:g} %; a hard and a soft roller press "
