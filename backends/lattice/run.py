@@ -235,13 +235,13 @@ class Search:
         on = self._system if on is None else on
         return one_pass(of or self._model, on, h, seen, miss, MADE * fine, times=most)
 
-    def _ends(self, run: Result, k: int, told: bool = True) -> bool:
+    def _ends(self, run: Result, k: int, shown: bool = True) -> bool:
         """Whether the search ends with the run at the first step halved `k` times, which becomes the last
-        one. `told`: progress is that of a coarser run, too, where one is made."""
+        one. `shown`: progress is that of a coarser run, too, where one is made."""
         before, model = self._runs[:2], self._model
         if run.ok and before[0].ok:
             h = run.step
-            run = compared_with_coarser(run, before, lambda n: self._coarser(n, h, k, told))
+            run = compared_with_coarser(run, before, lambda n: self._coarser(n, h, k, shown))
         same = abs(run.time[-1] - before[0].time[-1]) <= SAME_END * model.run.duration
         self._runs.insert(0, run)
         if run.ok and before[0].ok:
@@ -295,7 +295,7 @@ class Search:
             first.wait()
             if not self._runs:
                 side.raises(Stopped)
-            ends = self._ends(run, 1, told=False)
+            ends = self._ends(run, 1, shown=False)
             if not ends:
                 coarse.leave()  # this processor has no more to do
                 _strains(self._runs)
@@ -307,10 +307,10 @@ class Search:
         side.raises(Stopped)
         return True, []
 
-    def _coarser(self, times: int, h: float, halved: int, told: bool = True) -> Result:
+    def _coarser(self, times: int, h: float, halved: int, shown: bool = True) -> Result:
         """A run at 2 or 4 times the step h, the first one halved so many times, to compare with."""
         seen = self._watch(watches.DOUBLED if times == 2 else watches.QUADRUPLED)
-        return self._once(times * h, halved - times // 2, seen if told else seen._replace(progress=None))
+        return self._once(times * h, halved - times // 2, seen if shown else seen._replace(progress=None))
 
     def _allows(self, seconds: float) -> bool:
         """Whether so much more wall time is left. All passes count, also those before a run was resumed."""
