@@ -63,7 +63,7 @@ FEWEST = 4
 # Where `run.limit` is not set a search begins no pass with which all of them would take more wall time than
 # this [s]. Convention: a designer waits a minute for a result, and may ask for more.
 PATIENCE = 60.0
-# How much longer a pass takes than that at twice its step, at least.
+# A pass takes at least so much longer than that at twice its step: it has twice as many steps.
 TWICE = 2.0
 
 # Rules that leave out what a run does not need, each of which a run can do without.
@@ -353,13 +353,13 @@ class Search:
             best = estimated(best, [])
         tried = f"no step below {best.step:.3g} ms was tried"
         why = f"{late} left no time for a finer step" if self._stopped else tried
-        if k > 0:
+        unknown = best.error_unknown
+        if k > 0 and not runs[0].status.startswith(late):  # not because run.limit was over
             unknown = f"{NOT_KNOWN}: a run at half the step ended early: {runs[0].status}"
-            best = replace(best, error_unknown=unknown)
-        elif len(runs) > 1 and not before:
-            best = replace(best, error_unknown=f"{UNKNOWN} failed: {runs[1].status}")
-        elif best.error_estimate is None and not best.error_unknown and not before:
-            best = replace(best, error_unknown=f"{NOT_KNOWN}: {late} left no time for another run")
+        elif not before and best.error_estimate is None and not unknown:
+            other = f"{UNKNOWN} failed: {runs[k + 1].status}" if len(runs) > k + 1 else ""
+            unknown = other or f"{NOT_KNOWN}: {late} left no time for another run"
+        best = replace(best, error_unknown=unknown)
         return marked(self._chaos(replace(best, search_ended=why), before, len(runs) - 1 - k))
 
     def _parts(self, k: int) -> bool:

@@ -98,9 +98,14 @@ def test_a_search_ends_where_the_motion_is_chaotic(monkeypatch: pytest.MonkeyPat
     assert "was tried" in result.search_ended
 
 
-def passes(monkeypatch: pytest.MonkeyPatch, walls: list[float], fails: tuple[int, ...] = ()) -> list[float]:
+def passes(
+    monkeypatch: pytest.MonkeyPatch,
+    walls: list[float],
+    fails: tuple[int, ...] = (),
+    reason: str = "it ended early",
+) -> list[float]:
     """Steps of the passes of a search from now on, which seem to take such wall times [s] in turn; those in
-    `fails` seem to end early, each later than the one before."""
+    `fails` seem to end early for that reason, each later than the one before."""
     steps: list[float] = []
     of_one = lattice.one_pass
 
@@ -111,7 +116,7 @@ def passes(monkeypatch: pytest.MonkeyPatch, walls: list[float], fails: tuple[int
         result = replace(result, wall_s=walls[k])
         if k in fails:
             kept = {name: getattr(result, name)[: 10 * (k + 1)] for name in ("time", "position", "rotation")}
-            result = replace(result, **kept).failed("it ended early")
+            result = replace(result, **kept).failed(reason)
         return result
 
     monkeypatch.setattr(lattice, "one_pass", seen)
@@ -162,6 +167,21 @@ def test_a_finer_pass_that_ended_early_leaves_the_error_unknown(monkeypatch: pyt
     monkeypatch.setattr(lattice, "PATIENCE", 1e-3)
     longer = mdlgen.solve(case("thrown", "run.limit=600 s"), "lattice")
     assert longer.step < 0.3 * lattice.first_step(longer.model)
+
+
+def test_a_pass_that_run_limit_cut_says_nothing_about_the_one_before(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The estimate of the finest complete run is kept."""
+    monkeypatch.setattr(chaos, "falls", lambda *_: True)
+    model = case("retard", "run.limit=600 s", "run.duration=10 ms", "run.tolerance=1e-6")
+    limit = "run.limit of 600 s"
+    steps = passes(monkeypatch, [1.0] * 9, (3,), f"{limit} of wall time was over at 5 ms")
+    monkeypatch.setattr(lattice.Search, "_stops", lambda self: len(steps) == 4)
+    result = mdlgen.solve(model, "lattice")
+    assert len(steps) == 4 and steps[3] == min(steps)  # the one that is cut
+    assert result.status == "inaccurate" and result.step == pytest.approx(min(steps[:3]))
+    assert result.search_ended == f"{limit} left no time for a finer step"
+    assert "ended early" not in result.error_unknown
+    assert result.error_estimate is not None or "does not come closer" in result.error_unknown
 
 
 def test_runs_at_twice_and_four_times_a_step_keep_their_states_apart() -> None:
