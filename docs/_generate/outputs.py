@@ -317,7 +317,7 @@ new ones are complete.
 | `summary.json` | the numbers that one reads first |
 | `series.csv` | motion and forces over time |
 | `result.h5` | every body at every stored time, and the Model |
-| `report.html` | the [report](../how-to/read-the-report.md), which needs no network |
+| `report.html` | the [page](../how-to/read-the-report.md): with `--page`, or once `mdlgen view DIR` made it |
 | `report.png`, `strain.png` | with `--pictures` |
 | `checkpoint/` | the state from which `--resume` goes on, while a run is under way |
 

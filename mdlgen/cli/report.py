@@ -10,8 +10,7 @@ import typer
 from mdlgen.cli.shell import Pictures, Quiet, Verbose, app, reports_errors, say
 from mdlgen.errors import OutputError, SpecError
 from mdlgen.extras import require
-
-PAGE = "report.html"
+from mdlgen.report import PAGE
 
 
 @app.command()

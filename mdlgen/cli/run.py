@@ -78,6 +78,12 @@ def run(
             "--keep-partial", help="After Ctrl-C write the results so far into DIR/partial, marked as a part."
         ),
     ] = False,
+    page: Annotated[
+        bool,
+        typer.Option(
+            "--page", help="Write the page, report.html, too. Where DIR has it already, it is written anyway."
+        ),
+    ] = False,
     pictures: Pictures = False,
     sets: Sets = None,
     limits: Raised = None,
@@ -86,9 +92,10 @@ def run(
     quiet: Quiet = False,
     verbose: Verbose = False,
 ) -> None:
-    """Simulate a scene; write its results and report into DIR.
+    """Simulate a scene; write its results into DIR.
 
-    The files are summary.json, series.csv, result.h5 and report.html.
+    The files are summary.json, series.csv and result.h5; mdlgen view DIR
+    makes the page of them and opens it.
 
     Example: mdlgen run samples/transport_4x4.yaml -o out --check-step
 
@@ -113,6 +120,7 @@ def run(
         strictly(model)
     from mdlgen.paths import check_folder
     from mdlgen.processors import processors
+    from mdlgen.report import PAGE
     from mdlgen.report.figures.pictures import are_drawn, pictures_of
     from mdlgen.runs.checkpoint import Checkpointer
 
@@ -127,7 +135,8 @@ def run(
     if not quiet:
         for text in filter(None, (*map(str, lints(model)), notice(model))):
             say(text)
-    drawn = pictures or are_drawn(folder)
+    # a page or a picture that was left beside another result would not be of it
+    paged, drawn = page or (folder / PAGE).exists(), pictures or are_drawn(folder)
     if drawn:
         require("matplotlib")
     every = 60.0 if checkpoint is None else checkpoint
@@ -139,7 +148,7 @@ def run(
     else:
         checkpointer = Checkpointer()
         checkpointer.free.set()
-    Thread(target=_ahead, args=(checkpointer, model, drawn, packages), daemon=True).start()
+    Thread(target=_ahead, args=(checkpointer, model, paged, drawn, packages), daemon=True).start()
     if resume is None and runs.can_resume(folder) and not quiet:
         say(f"{folder} holds a run that was cut off; this one takes its place (--resume {folder} goes on)")
     # a solver may talk on standard output, which is kept for results
@@ -161,19 +170,22 @@ def run(
                 folder.rmdir()
         say(f"{request.spec}: the run failed: {result.status}; there is no state to write into {folder}")
         raise typer.Exit(SOLVER_FAILED)
-    from mdlgen.report.html.page import page
     from mdlgen.report.text import summary_text
     from mdlgen.results.io.store import save
 
     result.source = source_of(request.text, request.sets)
     also = pictures_of(result) if drawn else {}
-    summary = save(result, folder, {**also, "report.html": page([result]).encode("utf-8")})
+    if paged:
+        from mdlgen.report.html.page import page as page_of
+
+        also[PAGE] = page_of([result]).encode("utf-8")
+    summary = save(result, folder, also)
     checkpointer.drop()
     if as_json:
         echo_json(summary)
     elif not quiet:
         typer.echo(summary_text(summary))
-        typer.echo(f"wrote {folder}")
+        typer.echo(f"wrote {folder}; mdlgen view {folder} shows it")
     if request.check_step and result.usable and result.step <= 0.0 and not quiet:
         say("a static run has no step: --check-step compared nothing")
     _judge(result, summary, str(request.spec), folder)
@@ -216,7 +228,9 @@ def _check_single(spec: Path | None, resume: Path | None, others: bool) -> None:
         raise SpecError("--resume takes scene, values, solver and folder from the run that it goes on with")
 
 
-def _ahead(checkpointer: Checkpointer, model: Model, drawn: bool, packages: tuple[str, ...]) -> None:
+def _ahead(
+    checkpointer: Checkpointer, model: Model, paged: bool, drawn: bool, packages: tuple[str, ...]
+) -> None:
     """Does what is needed later on, once compiled code leaves a second core to it: what comes before does
     not."""
     from mdlgen.runs.resume import code
@@ -227,10 +241,14 @@ def _ahead(checkpointer: Checkpointer, model: Model, drawn: bool, packages: tupl
     # what fails here fails again where it is needed, and is reported there
     with contextlib.suppress(Exception):
         from mdlgen.report.figures.pictures import load_drawing
-        from mdlgen.report.html.page import prepare
         from mdlgen.report.text import summary_text  # noqa: F401
+        from mdlgen.results.io.store import prepare
 
         prepare(model)
+        if paged:
+            from mdlgen.report.html import page
+
+            page.prepare(model)
         if drawn:
             load_drawing()
     sys.setswitchinterval(before)

@@ -1,1 +1,3 @@
-""""""
+"""What shows a run: its page, pictures, text and exports."""
+
+PAGE = "report.html"  # of a run, in its folder

@@ -84,7 +84,7 @@ def _parsed(text: str, file: str, limits: Limits) -> Document:
     stack: list[_Open] = []
     count = 0
     try:
-        for event in YAML(typ="rt", pure=True).parse(text):
+        for event in YAML(typ="safe", pure=True).parse(text):
             mark = getattr(event, "start_mark", None)
             place = Place(file, mark.line + 1, mark.column + 1) if mark else Place(file, 1, 1)
             if isinstance(event, (MappingEndEvent, SequenceEndEvent)):

@@ -106,7 +106,7 @@ def test_a_missing_file(mdl: Run) -> None:
     ("call", "message"),
     [
         (("chek", "x"), "mdlgen: No such command 'chek'. Did you mean 'check'"),
-        (("run", "x.yaml", "--nope"), "mdlgen run: No such option: --nope; mdlgen run --help"),
+        (("run", "x.yaml", "--xyzzy"), "mdlgen run: No such option: --xyzzy; mdlgen run --help"),
         (("mdl",), "mdlgen mdl: Missing argument 'SPEC'; mdlgen mdl --help"),
         (("run", "x.yaml", "--checkpoint", "soon"), "mdlgen run: Invalid value for '--checkpoint': "),
     ],

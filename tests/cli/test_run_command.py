@@ -46,10 +46,23 @@ def test_run_writes_all_files(mdl: Run, tmp_path: Path, monkeypatch: pytest.Monk
     assert ended.code == 0
     # lints come first, here of boxes that are too long for their rollers
     assert {line.partition(" ")[0] for line in ended.err.splitlines()} == {"W104"}
-    names = ["report.html", "result.h5", "series.csv", "summary.json"]
+    names = ["result.h5", "series.csv", "summary.json"]
     assert files(tmp_path) == [f"out/transport_4x4/{n}" for n in names]
     assert "travel (70, 0, 0) mm" in ended.out and "talks" not in ended.out
     assert mdl("run", FOUR, *SMALL, "-q", "-o", "quiet").out == ""
+
+
+def test_the_page_is_written_when_asked_for_and_anew_where_there_is_one(
+    mdl: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(registry, "solver", lambda name: Backend(solve=Fake().solve))
+    page = tmp_path / "d" / "report.html"
+    mdl("run", FOUR, *SMALL, "-o", "d")
+    assert not page.exists()
+    mdl("run", FOUR, *SMALL, "-o", "d", "--page")
+    old = page.read_text("utf-8")
+    mdl("run", FOUR, *SMALL, "--set", "name=other", "-o", "d")
+    assert "<title>transport_4x4" in old and "<title>other" in page.read_text("utf-8")
 
 
 def test_pictures_are_drawn_when_asked_for_and_anew_where_there_are_some(
@@ -82,7 +95,7 @@ def test_a_run_that_ends_early_is_written_and_marked(
         return replace(whole, **part, contact_torque=None, contact_friction=None, status=why)
 
     monkeypatch.setattr(registry, "solver", lambda name: Backend(solve=solve))
-    ended = mdl("run", FOUR, *SMALL, "--set", 'require=["no jam"]', "-o", "d")
+    ended = mdl("run", FOUR, *SMALL, "--set", 'require=["no jam"]', "-o", "d", "--page")
     record = json.loads((tmp_path / "d" / "summary.json").read_text())
     mark = f"ended early, at {record['t_end_ms']:.6g} of {record['duration_ms']:g} ms: {why}"
     assert ended.code == 4 and ended.out.splitlines()[0] == mark == record["mark"]
@@ -120,7 +133,7 @@ def test_an_error_that_is_not_known_is_exit_5_and_keeps_the_files(
         return replace(moving(model), error_estimate_of="sheets.note.position", error_unknown=why)
 
     monkeypatch.setattr(registry, "solver", lambda name: Backend(solve=solve))
-    ended = mdl("run", FOUR, *SMALL, "-o", "d")
+    ended = mdl("run", FOUR, *SMALL, "-o", "d", "--page")
     assert ended.code == 5 and f"{why}; the files in d hold this result" in ended.err
     assert f"\n{why}\n" in ended.out and why in (tmp_path / "d" / "report.html").read_text("utf-8")
     assert json.loads((tmp_path / "d" / "summary.json").read_text())["error_unknown"] == why
@@ -148,7 +161,7 @@ def test_a_requirement_is_judged_with_the_error_of_the_run(
     monkeypatch.setattr(registry, "solver", lambda name: Backend(solve=Fake(error=error).solve))
     text = f"sheets.note.travel.z below {limit} mm"
     require = f'require=["{text}"]'
-    ended = mdl("run", FOUR, *SMALL, "--set", require, "-o", "d", "--check-step")
+    ended = mdl("run", FOUR, *SMALL, "--set", require, "-o", "d", "--check-step", "--page")
     assert ended.code == code, ended.err
     assert f"\n{verdict}{text}" in ended.out
     row = json.loads((tmp_path / "d" / "summary.json").read_text())["verdict"]["requirements"][0]

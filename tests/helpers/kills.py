@@ -41,7 +41,7 @@ class Killed(NamedTuple):
 
 
 def start(folder: Path, *args: str) -> subprocess.Popen[bytes]:
-    command = [sys.executable, "-m", "mdlgen", "run", *args, "--pictures", "-q"]
+    command = [sys.executable, "-m", "mdlgen", "run", *args, "--page", "--pictures", "-q"]
     return subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
 
 

@@ -148,7 +148,7 @@ def test_values_have_units_percentages_and_plain_numbers() -> None:
 def test_a_missed_requirement_ends_with_6_and_writes_its_results(tmp_path: Path) -> None:
     scene = tmp_path / "slide.yaml"
     scene.write_text(SLIDE + "require: [travel.x above 1 m, no jam]\n")
-    done = CliRunner().invoke(app, ["run", str(scene), "-o", str(tmp_path / "out")])
+    done = CliRunner().invoke(app, ["run", str(scene), "-o", str(tmp_path / "out"), "--page"])
     assert done.exit_code == 6
     assert "FAIL  travel.x above 1 m" in done.output and "pass  no jam" in done.output
     assert "1 of 2 requirements missed: travel.x above 1 m" in done.output

@@ -10,7 +10,7 @@ NAMES = ("report.png", "strain.png")
 
 
 def are_drawn(folder: Path) -> bool:
-    """Whether `folder` has pictures: one that was left beside another result would not be of it."""
+    """Whether `folder` has pictures."""
     return any((folder / name).exists() for name in NAMES)
 
 

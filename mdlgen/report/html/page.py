@@ -20,7 +20,7 @@ from mdlgen.report.html.environment import environment, library, licences, scrip
 from mdlgen.report.html.labels import labels
 from mdlgen.report.sheets import parts_of_sheets
 from mdlgen.results.result import Result
-from mdlgen.results.strain import histories, sheet_joints
+from mdlgen.results.strain import histories
 
 if TYPE_CHECKING:
     from mdlgen.model.tables import Ints, Model
@@ -68,17 +68,10 @@ def page(results: Sequence[Result], names: Sequence[str] = (), against: Against 
 
 
 def prepare(model: Model) -> None:
-    """Loads what the page and the files beside it are made with, and works out what does not wait for the
-    run."""
-    import h5py  # noqa: F401
-
-    from mdlgen.results import events  # noqa: F401
-    from mdlgen.results.io import store  # noqa: F401
-
+    """Loads what the page is made with, and works out what does not wait for the run."""
     environment().get_template("page.html.j2")
     for read in (library, licences, style, partial(scripts, _SCRIPTS)):
         read()
-    sheet_joints(model)
     lints(model)
 
 

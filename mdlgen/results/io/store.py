@@ -6,7 +6,7 @@ import io
 import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,7 +16,11 @@ from mdlgen.results.estimates import complete
 from mdlgen.results.io import tree
 from mdlgen.results.io.series import csv
 from mdlgen.results.result import ContactStatistics, Result
+from mdlgen.results.strain import sheet_joints
 from mdlgen.results.summary import summary, versions
+
+if TYPE_CHECKING:
+    from mdlgen.model.tables import Model
 
 UNITS = "mm, N, g, ms, rad"
 STATES = ("time", "position", "rotation", "velocity", "spin", "contact_force")
@@ -58,6 +62,15 @@ def save(result: Result, folder: Path, also: Mapping[str, bytes] | None = None) 
         raise OutputError(f"{folder}: cannot make this folder: {error.strerror or error}") from None
     write_together(files)
     return message
+
+
+def prepare(model: Model) -> None:
+    """Loads what the files are made with, and works out what does not wait for the run."""
+    import h5py  # noqa: F401
+
+    from mdlgen.results import events  # noqa: F401
+
+    sheet_joints(model)
 
 
 def hdf5(result: Result) -> bytes:

@@ -82,6 +82,7 @@ def _run(task: Task, case: Case, begun: Callable[[], None] | None) -> dict[str, 
 
 
 def _files(task: Task, case: Case, result: Result) -> dict[str, bytes]:
+    from mdlgen.report import PAGE
     from mdlgen.report.html.page import page
     from mdlgen.results.io.series import csv
     from mdlgen.results.io.store import hdf5
@@ -92,5 +93,5 @@ def _files(task: Task, case: Case, result: Result) -> dict[str, bytes]:
         "summary.json": (json.dumps(summary(result), indent=2, allow_nan=False) + "\n").encode(),
         "series.csv": csv(result).encode(),
         "result.h5": hdf5(result),
-        "report.html": page([result]).encode(),
+        PAGE: page([result]).encode(),
     }

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from mdlgen.paths import templates, write_atomic
+from mdlgen.report import PAGE
 from mdlgen.report.html.environment import environment
 from mdlgen.study.analysis.table import Column
 from mdlgen.study.analysis.table import columns as table
@@ -24,7 +25,7 @@ NAME = "study.html"
 MOST_DRAWN = 5000
 _SCRIPTS = ("drawing.js", "study.js")
 _ELSEWHERE = ("status", "reason", "solver")  # columns that the page has in other places
-_REPORT, _STATES = "report.html", "result.h5"
+_STATES = "result.h5"
 
 
 def page(
@@ -100,7 +101,7 @@ def _column(column: Column, task: Task, count: int) -> dict[str, Any]:
 def _link(folder: Path, row: CaseRow) -> str:
     """To the report of a case that has been kept; "" for others."""
     name = Case(row.index, row.values).name
-    return f"{name}/{_REPORT}" if (folder / name / _REPORT).is_file() else ""
+    return f"{name}/{PAGE}" if (folder / name / PAGE).is_file() else ""
 
 
 def _command(folder: Path, task: Task, row: CaseRow) -> str:
