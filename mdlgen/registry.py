@@ -98,10 +98,10 @@ def solve(
     progress: Progress | None = None,
     check_step: bool = False,
     checkpointer: Checkpointer | None = None,
-    threads: int | None = None,
+    threads: int = 1,
 ) -> Result:
     """Run a Model; see `mdlgen.solve`. `checkpointer` writes states, of a solver that can; `threads` are how
-    many it may use, where it has use for them; left out: as many as the Model says."""
+    many it may use, where it has use for them."""
     from mdlgen.results.estimates import marked
     from mdlgen.results.required import check
 
@@ -110,7 +110,7 @@ def solve(
     options: dict[str, Any] = {}
     if checkpointer is not None and backend.capabilities.resumes:
         options["keep"] = checkpointer
-    if threads is not None and backend.capabilities.threads > 1:
+    if backend.capabilities.threads > 1:
         options["threads"] = threads
     result = backend.solve(model, progress, **options)
     if result.error_estimate is not None or result.error_unknown:

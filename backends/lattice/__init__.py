@@ -27,7 +27,7 @@ def solve(
     step: float | None = None,
     without: tuple[str, ...] = (),
     keep: Checkpointer | None = None,
-    threads: int | None = None,
+    threads: int = 1,
 ) -> Result:
     """Run a Model; see `mdlgen.backends.lattice.run.solve`."""
     from mdlgen.backends.lattice import run

@@ -33,7 +33,6 @@ from mdlgen.backends.lattice.symmetry.mirror import halve
 from mdlgen.backends.lattice.watches import MOST_REFINED, MOST_REFINED_RIGID, Watches
 from mdlgen.model.tables import Model
 from mdlgen.model.wider import wider
-from mdlgen.processors import processors
 from mdlgen.results import chaos
 from mdlgen.results.estimates import NOT_KNOWN, SAME_STEPS, estimated, marked, within
 from mdlgen.results.result import Result
@@ -77,7 +76,7 @@ def solve(
     step: float | None = None,
     without: tuple[str, ...] = (),
     keep: Checkpointer | None = None,
-    threads: int | None = None,
+    threads: int = 1,
 ) -> Result:
     """Run a Model; `progress(time, end, steps, touching)` is called as it goes (times in ms).
 
@@ -89,9 +88,8 @@ def solve(
 
     `without` names rules that are not to be used: FOLDING of equal bushings, keeping of FACTORS over steps,
     SYMMETRY of both sides, SLEEP of sheets at rest. `keep` is given states to go on from, and a run goes on
-    from those that it has, to the same bits. `threads` is how many there may be at the same time, to the same
-    bits as well: each pass has those that the Model asks for, and two passes go on at the same time where
-    there are enough for both; progress is that of the finer one. Left out: those of one pass.
+    from those that it has, to the same bits. `threads` is how many passes may go on at the same time,
+    to the same bits as well: two, of which progress is that of the finer one, or one after the other.
     """
     check(model)
     started = clock.perf_counter()
@@ -115,12 +113,10 @@ def solve(
     wanted = step or model.run.step
     begun = clock.perf_counter()
     deadline = Deadline.of(model)
-    allowed = processors() if threads is None else threads
-    each = min(model.run.threads, allowed) if PROGRAM.loaded else 1
-    watch = Watches(progress, keep, each, SLEEP not in without).until(deadline)
+    watch = Watches(progress, keep, SLEEP not in without).until(deadline)
     # numba's code keeps the lock of Python
-    together = threads is not None and threads >= 2 * each and threads > 1 and PROGRAM.loaded
-    if keep is not None and not (together and threads == 2 * each):
+    together = threads > 1 and PROGRAM.loaded
+    if keep is not None and not (together and threads == 2):
         keep.free.set()
     if wanted is None:
         result = Search(model, system, watch).result(together)

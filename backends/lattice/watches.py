@@ -18,9 +18,9 @@ DOUBLED, CHECK, FINER, MOVED, MOVED_EARLY, QUADRUPLED = (MOST_REFINED_RIGID + k 
 class Watches:
     """Who follows the passes of a run, each by its number; all have until the same time."""
 
-    def __init__(self, progress: Progress | None, keep: Checkpointer | None, threads: int, sleeps: bool):
+    def __init__(self, progress: Progress | None, keep: Checkpointer | None, sleeps: bool):
         self._keep = keep
-        self._of_all = Watch(progress, keep, threads=threads, sleeps=sleeps)
+        self._of_all = Watch(progress, keep, sleeps=sleeps)
         self.deadline = Deadline()
 
     def until(self, deadline: Deadline) -> Watches:

@@ -261,7 +261,7 @@ def _save_part(checkpointer: Checkpointer, folder: Path) -> None:
     from mdlgen.results.io.store import save
 
     if checkpointer.part is None:
-        say("there is no part to checkpointer yet")
+        say("no state is stored yet: there is no part to keep")
         return
     part = checkpointer.part()
     part = part.part(

@@ -43,8 +43,8 @@ class Run(Strict):
     )
     threads: Annotated[int, Field(ge=1)] = Field(
         default=1,
-        description="threads that share the work of each step of several sheets, at most one for each "
-        "processor; the result is the same to the last bit; sweeps take 1 (lattice)",
+        description="without effect, for scenes of older versions; passes of a run go on at the same time "
+        "where there are two processors",
     )
     margin: PositiveLength = Field(
         default=default("5 mm"),

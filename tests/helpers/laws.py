@@ -19,7 +19,6 @@ from mdlgen.mechanics.frame import Box, Cylinder, Frame, Law, Motion, Plate, Vec
 from mdlgen.mechanics.guide import BOTH, INSIDE, OUTSIDE, upper
 from mdlgen.mechanics.mesh_tables import HEAD, Meshes
 from mdlgen.mechanics.overlap import OVERLAP
-from mdlgen.mechanics.point import FACES
 from mdlgen.mechanics.records import LOAD
 from mdlgen.mechanics.rim import PIECE
 from mdlgen.mechanics.shapes import Shapes
@@ -75,7 +74,6 @@ def pair_force(bodies: np.ndarray, pair: np.void, shapes: Shapes, motion: Motion
         spare=np.zeros(1, OVERLAP),
         does=np.zeros(1, np.int64),
         lies=np.zeros(1, np.bool_),
-        beforehand=np.zeros((1, FACES)),
         fastest=np.zeros((2, len(bodies))),
         sticks=sticks(0, 0),
         drift=no_drift(),

@@ -17,7 +17,7 @@ from mdlgen.backends.lattice.search import LISTED
 from mdlgen.mechanics.curve import POINT
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.overlap import OVERLAP
-from mdlgen.mechanics.point import FACES, OUT
+from mdlgen.mechanics.point import OUT
 from mdlgen.mechanics.records import LOAD
 from mdlgen.mechanics.shapes import Shapes
 from mdlgen.model.tables import Floats
@@ -104,7 +104,6 @@ def _middle(bodies: int, pairs: int, motion: Motion) -> Midpoint:
         spare=np.zeros(1, OVERLAP),
         does=np.zeros(1, np.int64),
         lies=np.zeros(1, np.bool_),
-        beforehand=np.zeros((1, FACES)),
         fastest=np.zeros((2, bodies)),
         sticks=sticks(0, 0),
         drift=no_drift(),

@@ -9,12 +9,10 @@ import numpy as np
 import pytest
 from matrices import bare_matrix, exact
 
-from mdlgen.backends.lattice.kernels import parallel
 from mdlgen.backends.lattice.kernels.linear import colouring, coupled, two_colour
 from mdlgen.backends.lattice.kernels.linear.band import PAD
 from mdlgen.backends.lattice.kernels.linear.in_series import in_series
 from mdlgen.backends.lattice.kernels.linear.sheets import eliminate_sheets, factor_sheets
-from mdlgen.backends.lattice.kernels.parallel import Pool
 from mdlgen.backends.lattice.kernels.state import Matrix
 
 pytestmark = pytest.mark.usefixtures("as_python")
@@ -47,7 +45,7 @@ def _bushings() -> np.ndarray:
     return whole
 
 
-def equations(stiff: float, series: bool, shift: float) -> tuple[np.ndarray, Pool, Matrix]:
+def equations(stiff: float, series: bool, shift: float) -> tuple[np.ndarray, Matrix]:
     """Two such sheets, the upper one shifted along the lower one, with a contact at the four corners of each
     overlap, as a whole, and as a step has it, factored."""
     size = 6 * BOXES
@@ -98,18 +96,17 @@ def equations(stiff: float, series: bool, shift: float) -> tuple[np.ndarray, Poo
         motion = SimpleNamespace(x=places, r=turned)
         in_series(bodies, np.arange(2 * BOXES), motion, matrix)
         made.colouring.series[0] = 1
-    pool = parallel.empty(2, 0)
-    assert factor_sheets(pool, matrix, True) and eliminate_sheets(pool, matrix)
+    assert factor_sheets(matrix, True) and eliminate_sheets(matrix)
     assert two_colour.corner_of_first(matrix)
-    return whole + contacts, pool, matrix
+    return whole + contacts, matrix
 
 
 def _left(stiff: float, series: bool, shift: float, most: int) -> float:
     """What is left of a solution after so many iterations, as a part."""
-    whole, pool, matrix = equations(stiff, series, shift)
+    whole, matrix = equations(stiff, series, shift)
     right = np.random.default_rng(3).normal(size=len(whole))
     matrix.res[:] = right
-    two_colour.solve_coloured(pool, matrix, most, 0.0)
+    two_colour.solve_coloured(matrix, most, 0.0)
     missed = matrix.res - (wanted := np.linalg.solve(whole, right))
     return float(np.sqrt(missed @ whole @ missed / (wanted @ whole @ wanted)))
 
@@ -135,7 +132,7 @@ def test_sheets_whose_boxes_do_not_lie_on_each_other_gain_less(shift: float) -> 
 
 def test_what_stands_beside_the_band_leaves_a_mass_in_series() -> None:
     """Of a contact on a box, with the mass of the other one behind it, K m/(K + m) is left of K."""
-    whole, _, matrix = equations(30.0, True, 0.0)
+    whole, matrix = equations(30.0, True, 0.0)
     beside = matrix.couplings.beside
     assert not beside[:BOXES].any()  # the first colour is eliminated as it is
     for n in range(BOXES, 2 * BOXES):

@@ -16,7 +16,7 @@ from mdlgen.checks import lints
 from mdlgen.errors import RefusedError
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.overlap import OVERLAP
-from mdlgen.mechanics.point import FACES, OUT
+from mdlgen.mechanics.point import OUT
 from mdlgen.model import sheet_pairs
 from mdlgen.model.lower import lower
 from mdlgen.model.tables import BOX_BOX
@@ -101,7 +101,6 @@ def test_boxes_that_lean_have_not_crossed_where_a_centre_passes_a_plane():
             spare=np.zeros(1, OVERLAP).view(np.recarray),
             does=np.zeros(1, np.int64),
             lies=np.zeros(1, np.bool_),
-            beforehand=np.zeros((1, FACES)),
             fastest=np.zeros((2, count)),
             sticks=sticks(0, 0),
             drift=no_drift(),

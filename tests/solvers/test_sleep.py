@@ -215,15 +215,6 @@ def test_what_rests_does_not_tremble_while_something_falls(solve: Solve, between
     assert turns and turns[0][0] < 40.0
 
 
-def test_threads_give_the_same_bits(solve: Solve) -> None:
-    one, turns = solve(*FALLING)
-    two, again = solve(*FALLING, "run.threads=2")
-    assert turns == again and len(turns) >= 2
-    assert one.steps == two.steps and one.iterations == two.iterations
-    assert np.array_equal(one.position, two.position)
-    assert np.array_equal(one.contact_force, two.contact_force)
-
-
 def test_results_are_as_long_as_the_run(solve: Solve) -> None:
     """All stored times are there, and finite, with a wake in the middle of two of them."""
     result, turns = solve(*FALLING, "run.print_step=2 ms")

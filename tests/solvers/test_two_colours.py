@@ -6,11 +6,9 @@ import numpy as np
 import pytest
 from matrices import bare_matrix, exact
 
-from mdlgen.backends.lattice.kernels import parallel
 from mdlgen.backends.lattice.kernels.linear import colouring, coupled, two_colour
 from mdlgen.backends.lattice.kernels.linear.band import PAD
 from mdlgen.backends.lattice.kernels.linear.sheets import eliminate_sheets, factor_sheets
-from mdlgen.backends.lattice.kernels.parallel import Pool
 from mdlgen.backends.lattice.kernels.state import Matrix
 
 pytestmark = pytest.mark.usefixtures("as_python")
@@ -18,7 +16,7 @@ pytestmark = pytest.mark.usefixtures("as_python")
 NODES, BORDER = 4, 2  # of a sheet; unknowns of rollers
 
 
-def equations(touch: list[tuple[int, int]], seed: int) -> tuple[np.ndarray, Pool, Matrix]:
+def equations(touch: list[tuple[int, int]], seed: int) -> tuple[np.ndarray, Matrix]:
     """A positive matrix of three sheets, two rollers and the couplings of `touch`, pairs of sheets: the
     whole, and the same as a step has it, factored."""
     rng = np.random.default_rng(seed)
@@ -57,11 +55,10 @@ def equations(touch: list[tuple[int, int]], seed: int) -> tuple[np.ndarray, Pool
             band[n, :, 6 * block : 6 * block + 6] = whole[rows, columns].T
     made = exact(made)
     matrix = bare_matrix(band, made, across, whole[size:, size:].copy(), np.zeros((0, 6, 0)))
-    pool = parallel.empty(3, BORDER)
     colouring.colour(made)
-    assert factor_sheets(pool, matrix, False) and eliminate_sheets(pool, matrix)
+    assert factor_sheets(matrix, False) and eliminate_sheets(matrix)
     assert two_colour.corner_of_first(matrix)
-    return whole, pool, matrix
+    return whole, matrix
 
 
 def solved(matrix: Matrix) -> np.ndarray:
@@ -70,14 +67,14 @@ def solved(matrix: Matrix) -> np.ndarray:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_every_other_sheet_is_solved_with_the_rest_eliminated(seed: int) -> None:
-    whole, pool, matrix = equations([(0, 1), (1, 2)], seed)
+    whole, matrix = equations([(0, 1), (1, 2)], seed)
     colouring = matrix.couplings.colouring
     assert colouring.found[0] == 1 and colouring.of.tolist() == [0, 1, 0]
     assert colouring.begins.tolist() == [0, 2, 6, 8]
     assert colouring.own[:8].tolist() == [0, 1, 0, 1, 2, 3, 2, 3]
     right = np.random.default_rng(seed + 10).normal(size=len(whole))
     matrix.res[:], matrix.resb[:] = right[:-BORDER], right[-BORDER:]
-    two_colour.solve_coloured(pool, matrix, 200, 1e-26)
+    two_colour.solve_coloured(matrix, 200, 1e-26)
     wanted = np.linalg.solve(whole, right)
     assert np.abs(solved(matrix) - wanted).max() < 1e-9 * np.abs(wanted).max()
 
@@ -86,7 +83,7 @@ def test_every_other_sheet_is_solved_with_the_rest_eliminated(seed: int) -> None
 def test_no_more_is_left_of_a_sheet_than_is_enough(seed: int) -> None:
     """And the method ends there: with a tenth of what it began with it goes a few times, with all not once,
     and the second colour stays as it was."""
-    whole, pool, matrix = equations([(0, 1), (1, 2)], seed)
+    whole, matrix = equations([(0, 1), (1, 2)], seed)
     colouring = matrix.couplings.colouring
     right = np.random.default_rng(seed + 10).normal(size=len(whole))
     wanted = np.linalg.solve(whole, right)
@@ -94,7 +91,7 @@ def test_no_more_is_left_of_a_sheet_than_is_enough(seed: int) -> None:
     for enough in (0.0, 1e-4, 1e-2, 1e30):
         matrix.res[:], matrix.resb[:] = right[:-BORDER], right[-BORDER:]
         colouring.enough[:] = enough
-        two_colour.solve_coloured(pool, matrix, 200, 1e-26)
+        two_colour.solve_coloured(matrix, 200, 1e-26)
         missed = solved(matrix) - wanted
         left.append(float(missed @ whole @ missed))
         assert enough == 1e30 or left[-1] <= 10.0 * enough + 1e-16
@@ -104,11 +101,11 @@ def test_no_more_is_left_of_a_sheet_than_is_enough(seed: int) -> None:
 
 
 def test_sheets_that_all_touch_each_other_are_solved_at_once() -> None:
-    whole, pool, matrix = equations([(0, 1), (1, 2), (2, 0)], 1)
+    whole, matrix = equations([(0, 1), (1, 2), (2, 0)], 1)
     assert matrix.couplings.colouring.found[0] == 0
     right = np.random.default_rng(5).normal(size=len(whole))
     matrix.res[:], matrix.resb[:] = right[:-BORDER], right[-BORDER:]
-    coupled.solve_coupled(pool, matrix, coupled.LEFT)
+    coupled.solve_coupled(matrix, coupled.LEFT)
     # as far as an iteration of Newton's method needs it
     left = whole @ solved(matrix) - right
     before = right @ np.linalg.solve(whole, right)

@@ -28,7 +28,7 @@ class Stage(NamedTuple):
 # What a step works out before it reads it. There is room for far more pairs than there are: more than memory.
 SCRATCH = {
     *(f"mid.{name}" for name in ("results", "touched", "rows", "faces", "near", "spare")),
-    *("mid.does", "mid.lies", "mid.beforehand"),
+    *("mid.does", "mid.lies"),
     *(f"mid.sticks.{name}" for name in ("aside", "head", "following")),
     *(
         "matrix.couplings.room",

@@ -22,7 +22,6 @@ from mdlgen.backends.lattice.integrate.ends import (
     unbalanced,
     unheld,
 )
-from mdlgen.backends.lattice.integrate.helpers import Helpers
 from mdlgen.backends.lattice.integrate.limit import Calls, Cut, Deadline
 from mdlgen.backends.lattice.integrate.looks import Looks
 from mdlgen.backends.lattice.integrate.pass_state import PassState, Stage
@@ -31,6 +30,8 @@ from mdlgen.backends.lattice.integrate.sleep import Sleep
 from mdlgen.backends.lattice.integrate.slow import Slow
 from mdlgen.backends.lattice.integrate.widen import begins_again
 from mdlgen.backends.lattice.integrate.work import arrays, control, flexible
+from mdlgen.backends.lattice.kernels import entries
+from mdlgen.backends.lattice.kernels.integrate import integrate
 from mdlgen.backends.lattice.kernels.state import (
     ANEW,
     FASTEST,
@@ -61,15 +62,14 @@ Progress = Callable[[float, float, int, int], None]
 
 class Watch(NamedTuple):
     """Who follows a pass: what is called as it goes, what keeps it and by which number, and what stops it
-    where it goes on at the same time as another one; one of the two is hidden. And how many threads share
-    the work of its steps, whether sheets at rest may sleep, and when the time of the run is over."""
+    where it goes on at the same time as another one; one of the two is hidden. And whether sheets at rest
+    may sleep, and when the time of the run is over."""
 
     progress: Progress | None = None
     keep: Checkpointer | None = None
     number: int = 0
     stop: Event | None = None
     hidden: bool = False
-    threads: int = 1
     sleeps: bool = True
     deadline: Deadline = Deadline()
 
@@ -148,132 +148,172 @@ def one_pass(
     """One run at a step, or the next smaller one that outputs fall on; `miss`, `made`: see run.MISS and
     run.MADE, 0 for any; `anew`: a new factor for each step; `times`: it ends early where it takes more than
     so many times its number of steps, since they are divided. Raises Stopped where `watch` says so."""
-    from mdlgen.backends.lattice.kernels import entries
-    from mdlgen.backends.lattice.kernels.integrate import integrate
+    going = _Pass(model, system, division(model, wanted), watch, times)
+    going.steer(miss, made, anew)
+    going.take_up()
+    going.go()
+    return going.result()
 
-    run = model.run
-    divided = division(model, wanted)
-    outputs, _, dt = divided
-    looks = Looks(run.duration, outputs, divided.each)
-    progress, keep, number, stop, hidden, threads, sleeps, deadline = watch
-    begun = clock.perf_counter()
-    work = arrays(model, system)
-    steering = control(work)
-    counters, energies = steering.counters, steering.energies
-    recorder = Recorder(model, system, work, outputs)
-    overlaps = unheld(model, system)
-    recorder.store(0.0)
-    # the guess of a step is the better the finer it is: what is left of it must fall as fast
-    part = (ROUND_OFF if flexible(model) else ROUND_OFF_RIGID) * min(1.0, (dt / FIRST_STEP) ** 2)
-    tolerance = part * accuracy(model)
-    steering.pace[[MISS_OF, ANEW, MADE_OF]] = miss, float(anew), made
-    steering.pace[FASTEST] = speed(model)
-    status, t, past = integrate.DONE, 0.0, 0.0
-    sleep, stage = Sleep(model, system, work, steering, recorder, sleeps), None
-    del work  # sleep has what is worked on
-    if keep is not None and sleep.lie_down(keep, number):
-        stage = PassState(sleep.work, sleep.steering, recorder, sleep).back(keep, number)
-    if stage is not None:
-        status, t, past = stage.status, stage.t, stage.wall
+
+class _Pass:
+    """A pass under way."""
+
+    def __init__(self, model: Model, system: System, divided: Division, watch: Watch, times: float):
+        self._model, self._system, self._divided, self._watch = model, system, divided, watch
+        self._begun = clock.perf_counter()
+        self._most = times * divided.outputs * divided.each  # steps
+        self._looks = Looks(model.run.duration, divided.outputs, divided.each)
+        work = arrays(model, system)
+        steering = control(work)
+        self._counters, self._energies, self._pace = steering.counters, steering.energies, steering.pace
+        self._recorder = Recorder(model, system, work, divided.outputs)
+        self._overlaps = unheld(model, system)
+        self._recorder.store(0.0)
+        self._sleep = Sleep(model, system, work, steering, self._recorder, watch.sleeps)
+        # the guess of a step is the better the finer it is: what is left of it must fall as fast
+        part = ROUND_OFF if flexible(model) else ROUND_OFF_RIGID
+        self._tolerance = part * min(1.0, (divided.step / FIRST_STEP) ** 2) * accuracy(model)
+        self._status, self._t, self._past = integrate.DONE, 0.0, 0.0
+        self._todo = range(divided.outputs)  # numbers of the outputs that are not reached yet
+        self._calls = Calls(MOST_AT_ONCE)
+        self._slow = Slow(model, steering, None if watch.hidden else watch.progress)
+
+    def steer(self, miss: float, made: float, anew: bool) -> None:
+        self._pace[[MISS_OF, ANEW, MADE_OF]] = miss, float(anew), made
+        self._pace[FASTEST] = speed(self._model)
+
+    def take_up(self) -> None:
+        """Goes on from the state that was kept of this pass, if there is one."""
+        keep, number, sleep = self._watch.keep, self._watch.number, self._sleep
+        if keep is None or not sleep.lie_down(keep, number):
+            return
+        stage = PassState(sleep.work, sleep.steering, self._recorder, sleep).back(keep, number)
+        if stage is None:
+            return
+        self._status, self._t, self._past = stage.status, stage.t, stage.wall
         search = sleep.system.search
         entries.look(sleep.system.pairs, search, search.place.copy())
+        self._todo = range(stage.outputs, 0 if stage.ended else self._divided.outputs)
+        self._show()
 
-    def show() -> None:
-        if keep is not None and not hidden:  # the one beside shows a later part, or a finer one
-            keep.part = partial(_part, recorder, recorder.snapshot(energies), dt, int(counters[STEPS]))
+    def go(self) -> None:
+        """Takes all steps that are left, or as many as can be."""
+        keep, deadline = self._watch.keep, self._watch.deadline
+        with Cut(deadline, lambda: self._sleep.work):
+            for output in self._todo:
+                self._status = self._up_to(output)
+                if self._status != integrate.DONE:
+                    break
+                self._show()
+                if keep is not None and keep.due(self._watch.number) and output + 1 < self._divided.outputs:
+                    self._keep(keep, output + 1, ended=False)
+                if self._watch.progress is not None:
+                    steps, touching = int(self._counters[STEPS]), int(self._counters[TOUCHING])
+                    self._watch.progress(self._t, self._model.run.duration, steps, touching)
+                if deadline.over and output + 1 < self._divided.outputs:
+                    self._status = LIMITED
+                    break
+        within = (integrate.LEFT, integrate.DEEP, integrate.STRETCHED, LIMITED, CRAWLED)
+        if self._todo and self._status in within and self._t > self._recorder.last:
+            self._recorder.store(self._t)  # with which its energies balance, or do not
 
-    calls, slow = Calls(MOST_AT_ONCE), Slow(model, sleep.steering, None if hidden else progress)
+    def _up_to(self, output: int) -> int:
+        """Takes the steps to the end of an output, and stores it; the status."""
+        looks, duration = self._looks, self._model.run.duration
+        begins, stops = output * self._divided.each, looks.stops(output)
+        for goal, before in zip(stops, [begins, *stops], strict=False):
+            status, self._t = self._advance(self._t, goal, goal - before, before == begins)
+            if status != integrate.DONE:
+                return status
+            stored = goal == stops[-1]
+            if stored:
+                self._recorder.store((output + 1) * duration / self._divided.outputs)
+            if looks.due(goal):
+                self._t = looks.time(goal)
+                self._sleep.look(self._t, self._tolerance)
+                status = _seen(self._sleep, self._system, self._overlaps, self._t)
+                if status != integrate.DONE:
+                    if not stored:
+                        self._recorder.store(self._t)
+                    return status
+        return integrate.DONE
 
-    def advance(t: float, goal: int, steps: int, fresh: bool) -> tuple[int, float]:
+    def _advance(self, t: float, goal: int, steps: int, fresh: bool) -> tuple[int, float]:
         """Takes so many steps up to that one; `fresh`: the first one follows a state that was stored."""
-        status, left = integrate.DONE, np.full(steps, dt)
+        sleep, stop, dt = self._sleep, self._watch.stop, self._divided.step
+        left = np.full(steps, dt)
         while left.size:
             if stop is not None and stop.is_set():
                 raise Stopped
-            began, many, since = t, calls.many, clock.perf_counter()
-            status, t = integrate.run(sleep.work, t, left[:many], tolerance, sleep.steering)
+            began, many, since = t, self._calls.many, clock.perf_counter()
+            status, t = integrate.run(sleep.work, t, left[:many], self._tolerance, sleep.steering)
             took = clock.perf_counter() - since
-            calls.took(min(many, left.size), took)
-            slow.tell(t, left[0], took)
+            self._calls.took(min(many, left.size), took)
+            self._slow.tell(t, left[0], took)
             if fresh and t > began:
-                recorder.between()
+                self._recorder.between()
                 fresh = False
-            if deadline.over and (status != integrate.DONE or left.size > many):
+            if self._watch.deadline.over and (status != integrate.DONE or left.size > many):
                 return LIMITED, t
-            if status == integrate.DONE and counters[STEPS] > times * outputs * divided.each:
+            if status == integrate.DONE and self._counters[STEPS] > self._most:
                 return CRAWLED, t
-            if status == integrate.WOKEN:
-                sleep.wake(int(counters[WORST]), t, helpers)
-                status, left = integrate.DONE, looks.left(goal, t, dt)
-            elif status == integrate.LEFT and sleep.widen(helpers):
-                status, left = integrate.DONE, looks.left(goal, t, dt)
-            elif status == integrate.DONE:
+            if status == integrate.DONE:
                 left = left[many:]
+            elif status == integrate.WOKEN:
+                sleep.wake(int(self._counters[WORST]), t)
+                left = self._looks.left(goal, t, dt)
+            elif status == integrate.LEFT and sleep.widen():
+                left = self._looks.left(goal, t, dt)
             else:
-                break
-        return status, t
+                return status, t
+        return integrate.DONE, t
 
-    if stage is not None:
-        show()
-    todo = range(stage.outputs if stage else 0, 0 if stage and stage.ended else outputs)
-    with Helpers(sleep.work, threads) as helpers, Cut(deadline, lambda: sleep.work):
-        for output in todo:
-            begins, stops = output * divided.each, looks.stops(output)
-            for goal, before in zip(stops, [begins, *stops], strict=False):
-                status, t = advance(t, goal, goal - before, before == begins)
-                stored = status == integrate.DONE and goal == stops[-1]
-                if stored:
-                    recorder.store((output + 1) * run.duration / outputs)
-                if status == integrate.DONE and looks.due(goal):
-                    t = looks.time(goal)
-                    sleep.look(t, tolerance, helpers)
-                    status = _seen(sleep, system, overlaps, t)
-                    if status != integrate.DONE and not stored:
-                        recorder.store(t)
-                if status != integrate.DONE:
-                    break
-            if status != integrate.DONE:
-                break
-            show()
-            if keep is not None and keep.due(number) and output + 1 < outputs:
-                wall = past + clock.perf_counter() - begun
-                at = Stage(status, t, output + 1, wall, False)
-                keep.save(number, PassState(sleep.work, sleep.steering, recorder, sleep).arrays(at))
-            if progress is not None:
-                progress(t, run.duration, int(counters[STEPS]), int(counters[TOUCHING]))
-            if deadline.over and output + 1 < outputs:
-                status = LIMITED
-                break
-    within = (integrate.LEFT, integrate.DEEP, integrate.STRETCHED, LIMITED, CRAWLED)
-    if todo and status in within and t > recorder.last:
-        recorder.store(t)  # with which its energies balance, or do not
-    wall = past + clock.perf_counter() - begun
-    if keep is not None and todo and (keep.written or keep.due(number)):
-        at = Stage(status, t, todo.stop, wall, True)
-        keep.save(number, PassState(sleep.work, sleep.steering, recorder, sleep).arrays(at))
-    reason = None
-    if status != integrate.DONE:
-        reason = reason_of(model, sleep.system, status, t, dt, sleep.work.state, counters)
-    result = recorder.result("lattice", reason, energies)
-    result.step, result.steps = dt, int(counters[STEPS])
-    result.rounds, result.wall_s = int(counters[ITERATIONS]), wall
-    if result.ok and not all(np.isfinite(a).all() for a in (result.position, result.velocity, result.spin)):
-        result = result.failed("the state went non-finite")
-    wrong = unbalanced(result)
-    if wrong is None or status not in (
-        integrate.DONE,
-        integrate.LEFT,
-        integrate.DEEP,
-        integrate.STRETCHED,
-    ):
-        return result
-    return result.failed(wrong if result.ok else f"{result.status}; and {wrong}")
+    def _show(self) -> None:
+        """Offers what there is so far; of two passes at the same time the one that is not hidden does."""
+        keep = self._watch.keep
+        if keep is not None and not self._watch.hidden:
+            snapshot, steps = self._recorder.snapshot(self._energies), int(self._counters[STEPS])
+            keep.part = partial(_part, self._recorder, snapshot, self._divided.step, steps)
+
+    def _keep(self, keep: Checkpointer, outputs: int, ended: bool) -> None:
+        """Keeps the state, to go on from."""
+        sleep = self._sleep
+        at = Stage(self._status, self._t, outputs, self._wall(), ended)
+        keep.save(self._watch.number, PassState(sleep.work, sleep.steering, self._recorder, sleep).arrays(at))
+
+    def _wall(self) -> float:
+        return self._past + clock.perf_counter() - self._begun
+
+    def result(self) -> Result:
+        """What the pass found, or why it ended early."""
+        keep, number, status = self._watch.keep, self._watch.number, self._status
+        wall = self._wall()
+        if keep is not None and self._todo and (keep.written or keep.due(number)):
+            self._keep(keep, self._todo.stop, ended=True)
+        dt, sleep, reason = self._divided.step, self._sleep, None
+        if status != integrate.DONE:
+            state = sleep.work.state
+            reason = reason_of(self._model, sleep.system, status, self._t, dt, state, self._counters)
+        result = self._recorder.result("lattice", reason, self._energies)
+        result.step, result.steps = dt, int(self._counters[STEPS])
+        result.rounds, result.wall_s = int(self._counters[ITERATIONS]), wall
+        if result.ok and not all(
+            np.isfinite(a).all() for a in (result.position, result.velocity, result.spin)
+        ):
+            result = result.failed("the state went non-finite")
+        wrong = unbalanced(result)
+        if wrong is None or status not in (
+            integrate.DONE,
+            integrate.LEFT,
+            integrate.DEEP,
+            integrate.STRETCHED,
+        ):
+            return result
+        return result.failed(wrong if result.ok else f"{result.status}; and {wrong}")
 
 
 def _seen(sleep: Sleep, system: System, overlaps: Unheld, t: float) -> int:
-    """DONE, or why a pass cannot go on from its state at the time t."""
-    from mdlgen.backends.lattice.kernels.integrate import integrate
-
+    """integrate.DONE, or why a pass cannot go on from its state at the time t."""
     state, mirror = sleep.work.state, sleep.system.mirror
     passed = mirror.passed(state.x, system.nodes) if mirror is not None else -1
     if passed >= 0:

@@ -28,7 +28,6 @@ from numpy.typing import NDArray
 
 from mdlgen.backends.lattice.arrays import System
 from mdlgen.backends.lattice.integrate.awake import Parts, awake
-from mdlgen.backends.lattice.integrate.helpers import Helpers
 from mdlgen.backends.lattice.integrate.islands import groups
 from mdlgen.backends.lattice.integrate.record import Recorder
 from mdlgen.backends.lattice.integrate.widen import besides, carried_over, marks_of, places, system_of
@@ -90,7 +89,7 @@ class Sleep:
         self._energies = np.zeros((groups(work), 3))
         self._stuck = np.zeros(0, STRETCH)
 
-    def look(self, t: float, tolerance: float, helpers: Helpers) -> None:
+    def look(self, t: float, tolerance: float) -> None:
         """Finds islands, and puts to sleep what has been still for long enough at the time t [ms];
         `tolerance`: of a step."""
         from mdlgen.backends.lattice.kernels.integrate.islands import STILL
@@ -114,26 +113,26 @@ class Sleep:
         awake[one[touched & (one >= 0) & self._parts.moves]] = True
         still = ~np.isin(islands, islands[awake]) & ~self._sheets
         if still.any():
-            self._turn(self._sheets | still, t, helpers)
+            self._turn(self._sheets | still, t)
 
-    def wake(self, body: int, t: float, helpers: Helpers) -> None:
+    def wake(self, body: int, t: float) -> None:
         """Wakes the sheet of a box, and all that sleep and touch it, each other among them."""
         disturbed = self._parts.sheet_of[body]
         self._wait[disturbed] *= 2.0
         islands = self._islands(self.work.kept.rows[:, ACTS] != 0.0)
         woken = (islands == islands[disturbed]) & self._sheets
         self._since[woken], self._counted[woken] = t, self.steering.counters[STEPS]
-        self._turn(self._sheets & ~woken, t, helpers)
+        self._turn(self._sheets & ~woken, t)
 
-    def widen(self, helpers: Helpers) -> bool:
+    def widen(self) -> bool:
         """Chooses pairs with a wider margin, where a body has left its bounds; whether that helps. Raises
         UnhalvedError."""
         model = wider(self._model, self.work.state.x[: len(self._model.bodies.name)])
         if model is not None:
-            self._widen(model, helpers)
+            self._widen(model)
         return model is not None
 
-    def _widen(self, model: Model, helpers: Helpers | None) -> None:
+    def _widen(self, model: Model) -> None:
         """Goes on with the pairs of a Model that has those of this one and more."""
         whole = system_of(model, self._whole)
         at, motion = places(self._whole, whole), self.work.mid.motion
@@ -148,7 +147,7 @@ class Sleep:
         self.system.pairs["beside"][: len(self._chosen)] = self._beside[self._chosen]
         self.work = carried_over(model, self.work, self.system, marks)
         self._recorder.widen(model, whole, self.work.kept)
-        self._follow(helpers)
+        self._recorder.follow(self.work, self._energies)
 
     def _islands(self, touching: NDArray[np.bool_]) -> NDArray[np.int64]:
         """Of each sheet the first one of its island, by contacts that are `touching` (contacts,)."""
@@ -162,7 +161,7 @@ class Sleep:
             if (found == before).all():
                 return found
 
-    def _turn(self, sheets: NDArray[np.bool_], t: float, helpers: Helpers | None) -> None:
+    def _turn(self, sheets: NDArray[np.bool_], t: float) -> None:
         """Lets the `sheets` sleep, and no others, from the state at the time t on."""
         from mdlgen.backends.lattice.kernels import forces
         from mdlgen.backends.lattice.kernels.integrate import room
@@ -197,12 +196,7 @@ class Sleep:
         self.steering.factored[:] = 0.0
 
         self._energies = energies - self._ledger(t)
-        self._follow(helpers)
-
-    def _follow(self, helpers: Helpers | None) -> None:
         self._recorder.follow(self.work, self._energies)
-        if helpers is not None:
-            helpers.follow(self.work)
 
     def _ledger(self, t: float) -> np.ndarray:
         """Kinetic, elastic and potential energy of what is awake, of one side, (groups, 3)."""
@@ -257,12 +251,12 @@ class Sleep:
         if margin < own:
             return False
         if margin > own:
-            self._widen(with_margin(self._model, margin), None)
+            self._widen(with_margin(self._model, margin))
         if not len(self._sheets):
             return True
         found = keep.load(number, {SHEETS: self._sheets}, (SHEETS,))
         if found is not None and found[SHEETS].any():
-            self._turn(found[SHEETS], 0.0, None)
+            self._turn(found[SHEETS], 0.0)
         return True
 
     def restore(self, found: dict[str, Any]) -> None:
@@ -273,4 +267,4 @@ class Sleep:
         for name, array in self.carried().items():
             if name in found:
                 array[...] = found[name]
-        self._follow(None)
+        self._recorder.follow(self.work, self._energies)

@@ -26,7 +26,7 @@ from mdlgen.results.result import Result
 P = ParamSpec("P")
 
 # Arrays of a Midpoint that have a row for each pair; a step fills them before it reads them.
-OF_PAIRS = ("touched", "results", "rows", "faces", "near", "does", "lies", "beforehand")
+OF_PAIRS = ("touched", "results", "rows", "faces", "near", "does", "lies")
 
 
 class UnhalvedError(Exception):
@@ -110,7 +110,7 @@ def besides(whole: System, beside: np.ndarray, at: Ints, motion: Motion) -> np.n
 
 def carried_over(model: Model, work: Workspace, system: System, marks: np.ndarray) -> Workspace:
     """What steps work on with the pairs of this System, all else as it stands."""
-    from mdlgen.backends.lattice.kernels import entries, forces, parallel
+    from mdlgen.backends.lattice.kernels import entries, forces
     from mdlgen.backends.lattice.kernels.integrate import room
 
     _, blank, _ = room.empty(system, forces.WIDE)
@@ -133,6 +133,5 @@ def carried_over(model: Model, work: Workspace, system: System, marks: np.ndarra
         bounds=bounds_of(model),
         search=system.search,
         frozen=room.frozen(system, len(film.cells)),
-        pool=parallel.empty(len(work.matrix.couplings.colouring.spans), system.border),
         film=film,
     )

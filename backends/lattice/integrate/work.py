@@ -85,7 +85,7 @@ def workspace(
     asleep: Asleep,
 ) -> Workspace:
     """What a run works on from a state, with pairs of boxes of two sheets searched for it."""
-    from mdlgen.backends.lattice.kernels import entries, forces, parallel
+    from mdlgen.backends.lattice.kernels import entries, forces
     from mdlgen.backends.lattice.kernels.contact import condensed
     from mdlgen.backends.lattice.kernels.integrate import damped, momentum, room
 
@@ -104,7 +104,6 @@ def workspace(
         search=system.search,
         damped=damped.empty(system),
         frozen=room.frozen(system, len(film.cells)),
-        pool=parallel.empty(len(matrix.couplings.colouring.spans), system.border),
         film=film,
         islands=islands,
         asleep=asleep,
@@ -137,7 +136,6 @@ def warm(model: Model, system: System) -> None:
     from mdlgen.backends.lattice.kernels.integrate import integrate
 
     work = arrays(model, system)
-    entries.help(work, 0)
     integrate.run(work, 0.0, np.zeros(0), 1.0, control(work))
     Recorder(model, system, work).store(0.0)
     entries.PROGRAM.release()  # else the arrays of its last calls stay beside those of the run

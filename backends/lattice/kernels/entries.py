@@ -11,7 +11,6 @@ from mdlgen.backends.lattice.kernels import forces
 from mdlgen.backends.lattice.kernels.contact import search
 from mdlgen.backends.lattice.kernels.integrate.integrate import run
 from mdlgen.backends.lattice.kernels.integrate.observe import ledger
-from mdlgen.backends.lattice.kernels.jobs import help
 from mdlgen.backends.lattice.kernels.statics.balance import equilibrium, stands
 from mdlgen.mechanics import curve, pair
 from mdlgen.mechanics.tree import set_thickness
@@ -60,7 +59,7 @@ PROGRAM = Program(
     Path(__file__).resolve().parents[1] / "lattice.program",
     (LAWS, "mdlgen.backends.lattice.kernels"),
     (
-        *(run, help, ledger, equilibrium, stands, look, remember, overstretched, joint_forces, contacts),
+        *(run, ledger, equilibrium, stands, look, remember, overstretched, joint_forces, contacts),
         set_thickness,
     ),
 )

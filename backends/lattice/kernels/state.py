@@ -99,11 +99,8 @@ class Midpoint(NamedTuple):
     near: Ints  # pairs that may touch
     overlaps: np.ndarray  # of pairs that are searched, mechanics.overlap.OVERLAP
     spare: np.ndarray  # the same of a pair between steps, (1,)
-    does: Ints  # what each near pair of two boxes does (contact.press_job), (pairs,)
+    does: Ints  # what each near pair of two boxes does: CLEAR, PRESSES, BY_SIDES of mechanics.overlap
     lies: np.ndarray  # and whether a face of one lies over the other, (pairs,)
-    beforehand: (
-        Floats  # and its forces, where threads have worked them out, (pairs, FACES of mechanics.point)
-    )
     fastest: Floats  # how fast places of free boxes are at most, MIDDLE and ENDS of a step, (2, bodies)
     sticks: Sticks
     drift: Drift
@@ -161,7 +158,7 @@ class Frozen(NamedTuple):
     rolls: np.ndarray  # whether each is on a body that is an unknown of the border, (room,)
     many: Ints  # (3,) how many points, patches, and patches with corners there are
     lying: Ints  # numbers of the patches that have corners, rising, (patches,)
-    sums: Floats  # what each part of them adds to a slope
+    of_patches: Floats  # (1,) what patches add to the slope where they were evaluated last
     vectors: Floats  # CHANGE to RESIDUAL of the nodes, (6, 6 nodes)
     border: Floats  # the same of the border, (6, border)
     block: Floats  # (1, 6, 6) scratch: what a patch loses as its owner moves against the other box
@@ -182,8 +179,6 @@ ARM_A, ARM_B, KIND, ALONG, NOW, NORMAL, SQUARE = 0, 3, 6, 7, 10, 13, 16
 SPRING, GROWTH, RATE, OVER, BETA = 19, 20, 21, 22, 23
 MU_STATIC, MU_DYNAMIC, STICTION, SLIDING, PRESSING = 24, 25, 26, 27, 28
 START, POINT = 29, 32
-# Points, and patches, of a part of a job.
-EACH, EACH_PATCH = 512, 128
 # What a point is: one that presses and rubs; a damper alone; a couple about its normal, of SPRING at most, of
 # a rolling speed of GROWTH times the angular velocity; a cell of air, whose force has changed by SPRING since
 # the iteration began, and changes by GROWTH along a direction. Alone it would be damped by OVER [N ms/mm].
@@ -342,7 +337,6 @@ class Workspace(NamedTuple):
     search: Any  # lattice.search.Search
     damped: Damped
     frozen: Frozen
-    pool: Any  # parallel.Pool
     film: Film
     islands: Islands
     asleep: Asleep

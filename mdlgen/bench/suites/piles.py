@@ -15,13 +15,12 @@ STEP = 0.1  # [ms]
 DURATION, QUICK = 100.0, 20.0  # [ms]
 GRID = (10, 20)
 LANDING = 20.0  # [ms], in which notes that touch sink into each other by their weights
-COUNTS = {"rest": (5, 20), "lands": (5, 20), "awake": (5, 20), "fed": (5, 20, 100), "shared": (5, 20)}
+COUNTS = {"rest": (5, 20), "lands": (5, 20), "awake": (5, 20), "fed": (5, 20, 100)}
 NAMES = {
     "rest": "at rest",
     "lands": f"at rest, none asleep, first {LANDING:g} ms",
     "awake": "at rest, none asleep",
     "fed": "under a roller",
-    "shared": "under a roller, two threads",
 }
 TALL = 0.1  # of a note [mm]
 # The middle of the roller over the face of the uppermost note [mm]; for a pile at rest it stands still above.
@@ -38,12 +37,12 @@ AIR = "contacts.6.air={viscosity: 18.2 uPa*s}"
 
 
 def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
-    """Piles of 5 to 100 notes of 200 boxes at a step that is given, some with two threads that share it, some
-    in which no sheet sleeps; in Exudyn a small one."""
+    """Piles of 5 to 100 notes of 200 boxes at a step that is given, some in
+    which no sheet sleeps; in Exudyn a small one."""
     duration = QUICK if quick or solver == REFERENCE else DURATION
     found = []
     for kind, counts in COUNTS.items():
-        if (kind in ("shared", "lands", "awake") and solver == REFERENCE) or (kind == "lands" and quick):
+        if (kind in ("lands", "awake") and solver == REFERENCE) or (kind == "lands" and quick):
             continue
         for count in counts[:1] if quick or solver == REFERENCE else counts:
             rests, awake = kind in ("rest", "lands", "awake"), kind in ("lands", "awake")
@@ -58,7 +57,6 @@ def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
                 f"contacts.pick.between=[cassette_{count}, pick]",
                 f"probes.lead.sheet=cassette_{count}",
                 f"run.duration={LANDING if kind == 'lands' else duration:g} ms",
-                *(("run.threads=2",) if kind == "shared" else ()),
                 *(("run.sleep=false",) if awake else ()),
                 "require=[]",
             )

@@ -3,16 +3,9 @@
 from __future__ import annotations
 
 from mdlgen.backends.lattice.kernels.contact.drift import look_ahead
-from mdlgen.backends.lattice.kernels.contact.press_job import (
-    TO_FIND,
-    ask_for,
-    is_known,
-    press_beforehand,
-    pressed,
-)
+from mdlgen.backends.lattice.kernels.contact.overlaps import is_known, pressed
 from mdlgen.backends.lattice.kernels.contact.search import law_of_boxes
 from mdlgen.backends.lattice.kernels.forces import onto, touches
-from mdlgen.backends.lattice.kernels.parallel import HELPERS
 from mdlgen.backends.lattice.kernels.state import (
     DEPTH_NOW,
     FACE_DEPTH,
@@ -75,17 +68,16 @@ def look_at(work, k, a, b, gap):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _two_boxes(work, at, known, out):
-    """What two boxes of two sheets, a near pair, do into `out` and onto the forces; `known`: see press_job,
-    where it was worked out before. Returns BY_SIDES where `out` has their points."""
+def _two_boxes(work, at, out):
+    """What two boxes of two sheets, a near pair, do into `out` and onto the forces. Returns CLEAR, PRESSES,
+    or BY_SIDES where `out` has their points."""
     tables, mid, p = work.tables, work.mid, work.mid.near[at]
-    k, does = p - work.search.first, known
+    k = p - work.search.first
     own = work.search.listed[k]
-    if does == TO_FIND:
-        a, b = frame_of(mid.motion, own.a), frame_of(mid.motion, own.b)
-        if not look_at(work, k, a, b, 0.0):
-            return CLEAR
-        does = BY_SIDES if mid.overlaps[k].state == OTHER else pressed(work, k, a, b, out)
+    a, b = frame_of(mid.motion, own.a), frame_of(mid.motion, own.b)
+    if not look_at(work, k, a, b, 0.0):
+        return CLEAR
+    does = BY_SIDES if mid.overlaps[k].state == OTHER else pressed(work, k, a, b, out)
     if does == BY_SIDES:
         mid.overlaps[k].state = OTHER
         return BY_SIDES if touches(tables, tables.pairs[p], mid.motion, mid.forces, out) else CLEAR
@@ -119,27 +111,15 @@ def near_forces(work, close, h):
     dissipated power)."""
     tables, mid, first = work.tables, work.mid, work.search.first
     near, results = mid.near, mid.results
-    count = row = begins = 0
+    count = row = 0
     lost = 0.0
     look_ahead(work, h)
-    while begins < close and near[begins] < first:
-        begins += 1
-    shared = work.pool.words[HELPERS] > 0
-    if shared:
-        press_beforehand(work, begins, close)
     for at in range(close):
         p, out = near[at], results[row]
         if p < first:
             touching = touches(tables, tables.pairs[p], mid.motion, mid.forces, out)
         else:
-            known = TO_FIND
-            if shared:
-                known = mid.does[at]
-                if known == PRESSES:
-                    out = mid.beforehand[at]
-            else:
-                ask_for(work, at, close)
-            mid.does[at] = _two_boxes(work, at, known, out)
+            mid.does[at] = _two_boxes(work, at, out)
             mid.lies[at] = mid.overlaps[p - first].state == OVERLAPS
             touching = mid.does[at] != CLEAR
         if touching:

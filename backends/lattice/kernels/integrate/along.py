@@ -3,12 +3,10 @@ along it, their forces and the slope of what is made least."""
 
 from __future__ import annotations
 
-from mdlgen.backends.lattice.kernels import parallel
 from mdlgen.backends.lattice.kernels.integrate.air import air_along
 from mdlgen.backends.lattice.kernels.integrate.patches import patches_along, patches_slope, pull_patches
 from mdlgen.backends.lattice.kernels.integrate.points import force_of
 from mdlgen.backends.lattice.kernels.integrate.unknowns import moving, turning_of
-from mdlgen.backends.lattice.kernels.parallel import HALF, begin, finish, take
 from mdlgen.backends.lattice.kernels.state import (
     A_COUPLE,
     AIR,
@@ -16,8 +14,6 @@ from mdlgen.backends.lattice.kernels.state import (
     ARM_A,
     ARM_B,
     DIRECTION,
-    EACH,
-    EACH_PATCH,
     GROWTH,
     KIND,
     NORMAL,
@@ -28,22 +24,6 @@ from mdlgen.backends.lattice.kernels.state import (
 )
 from mdlgen.mechanics.vector import add, cross, dot, scale, sub, three_from, vec
 from mdlgen.program.kernel import BORROWS, njit
-
-# Of Pool.given: the part of a direction.
-PART = 3
-
-
-@njit(cache=True, error_model="numpy", **BORROWS)
-def parts_of(frozen):
-    """How many parts the points make in a job, and points and patches together."""
-    points = (frozen.many[0] + EACH - 1) // EACH
-    return points, points + (frozen.many[2] + EACH_PATCH - 1) // EACH_PATCH
-
-
-@njit(cache=True, error_model="numpy", **BORROWS)
-def _patches_of(frozen, part):
-    """The first of the patches with corners of a part behind those of points, and the first behind them."""
-    return part * EACH_PATCH, min((part + 1) * EACH_PATCH, frozen.many[2])
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -90,36 +70,13 @@ def _along(work, k):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def along_part(work, part):
-    """The same of EACH points of a part, but those on rollers and pressed plates, which share scratch; or of
-    EACH_PATCH patches, with what they add to the slope at its end."""
-    frozen = work.frozen
-    points, _ = parts_of(frozen)
-    if part >= points:
-        low, high = _patches_of(frozen, part - points)
-        frozen.sums[part] = patches_along(work, low, high, work.pool.given[HALF])
-        return
-    for k in range(EACH * part, min(EACH * (part + 1), frozen.many[0])):
-        if not frozen.rolls[k]:
-            _along(work, k)
-
-
-@njit(cache=True, error_model="numpy", **BORROWS)
 def look_along(work, h):
     """All points and patches note how their velocities change along the direction: that of the nodes is in
     global axes in the vectors' OF_DIRECTION. What patches add to the slope at its end is known then."""
-    frozen, pool = work.frozen, work.pool
-    pool.given[HALF] = h
-    _, many = parts_of(frozen)
-    begin(pool, parallel.ALONG, many)
-    part = take(pool)
-    while part >= 0:
-        along_part(work, part)
-        part = take(pool)
-    finish(pool, many)
+    frozen = work.frozen
     for k in range(frozen.many[0]):
-        if frozen.rolls[k]:
-            _along(work, k)
+        _along(work, k)
+    frozen.of_patches[0] = patches_along(work, h)
     if work.film.many[0] > 0:
         air_along(work.film, frozen)
 
@@ -175,16 +132,10 @@ def pull(work, h, part, g, gb):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def slope_part(work, part):
-    """What EACH points of a part, or EACH_PATCH patches, add to the slope."""
-    frozen = work.frozen
-    far, h, total = work.pool.given[PART], work.pool.given[HALF], 0.0
-    points, _ = parts_of(frozen)
-    if part >= points:
-        low, high = _patches_of(frozen, part - points)
-        frozen.sums[part] = patches_slope(work, low, high, h, far)
-        return
-    for k in range(EACH * part, min(EACH * (part + 1), frozen.many[0])):
+def _points_slope(frozen, h, far):
+    """What points add to the slope, without its factor -h."""
+    total = 0.0
+    for k in range(frozen.many[0]):
         q = frozen.points[k]
         way = three_from(q, ALONG)
         if q[KIND] == AIR:
@@ -192,24 +143,14 @@ def slope_part(work, part):
             continue
         f = force_of(q, add(three_from(q, NOW), scale(far, way)), h)
         total += dot(sub(f, three_from(q, START)), way)
-    frozen.sums[part] = total
+    return total
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def slope(work, h, far, looked):
     """What points and patches add to the slope of the function that is made least, along the change looked
     along, at that part of it; `looked`: at its end, where patches have just been looked along."""
-    frozen, pool = work.frozen, work.pool
-    points, every = parts_of(frozen)
-    many = points if looked else every
-    pool.given[PART], pool.given[HALF] = far, h
-    begin(pool, parallel.SLOPE, many)
-    part = take(pool)
-    while part >= 0:
-        slope_part(work, part)
-        part = take(pool)
-    finish(pool, many)
-    total = 0.0
-    for k in range(every):
-        total += frozen.sums[k]
-    return -h * total
+    frozen = work.frozen
+    if not looked:
+        frozen.of_patches[0] = patches_slope(work, h, far)
+    return -h * (_points_slope(frozen, h, far) + frozen.of_patches[0])

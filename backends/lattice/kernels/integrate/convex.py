@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import math
 
-from mdlgen.backends.lattice.kernels import parallel
 from mdlgen.backends.lattice.kernels.contact.condensed import INSIDE, forget
 from mdlgen.backends.lattice.kernels.integrate.along import look_along, pull, slope
 from mdlgen.backends.lattice.kernels.integrate.change import greatest
@@ -35,7 +34,6 @@ from mdlgen.backends.lattice.kernels.linear.in_series import in_series
 from mdlgen.backends.lattice.kernels.linear.product import times
 from mdlgen.backends.lattice.kernels.linear.sheets import eliminate_sheets, factor_sheets
 from mdlgen.backends.lattice.kernels.linear.two_colour import corner_of_first
-from mdlgen.backends.lattice.kernels.parallel import begin, finish, take
 from mdlgen.backends.lattice.kernels.state import (
     AFTER,
     BEFORE,
@@ -110,10 +108,10 @@ def _make_matrix(work, h, lag, renew):
         in_series(tables.bodies, tables.nodes, motion, matrix)
         in_box_axes(tables.nodes, motion.r, couplings.beside, b[:0], matrix.offsets[:1], matrix.slots)
         couplings.colouring.series[0] = 1
-    couplings_in_box_axes(work.pool, tables.nodes, motion.r, couplings)
+    couplings_in_box_axes(tables.nodes, motion.r, couplings)
     in_box_axes(tables.nodes, motion.r, a, b, matrix.offsets[:1], matrix.slots)
     forget(work.condensed)
-    if not factor_sheets(work.pool, matrix, True) or not eliminate_sheets(work.pool, matrix):
+    if not factor_sheets(matrix, True) or not eliminate_sheets(matrix):
         return False
     return corner_of_first(matrix)
 
@@ -173,25 +171,14 @@ def _gradient(work, h, axes, part):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def product_part(work, sheet):
-    """What masses and bushings of a sheet make of the direction."""
-    matrix, vectors = work.matrix, work.frozen.vectors
-    span = matrix.couplings.colouring.spans[sheet]
-    low, high = 6 * span[BEGIN], 6 * span[END]
-    inner = matrix.single_inner[span[BEGIN] : span[END]]
-    times(inner, matrix.offsets, vectors[DIRECTION, low:high], vectors[OF_DIRECTION, low:high])
-
-
-@njit(cache=True, error_model="numpy", **BORROWS)
 def _product(work):
-    """The same of all sheets."""
-    pool, many = work.pool, work.pool.failed.size
-    begin(pool, parallel.PRODUCT, many)
-    sheet = take(pool)
-    while sheet >= 0:
-        product_part(work, sheet)
-        sheet = take(pool)
-    finish(pool, many)
+    """What masses and bushings make of the direction, sheet by sheet."""
+    matrix, vectors = work.matrix, work.frozen.vectors
+    spans = matrix.couplings.colouring.spans
+    for sheet in range(spans.shape[0]):
+        low, high = spans[sheet]
+        x, y = vectors[DIRECTION, 6 * low : 6 * high], vectors[OF_DIRECTION, 6 * low : 6 * high]
+        times(matrix.single_inner[low:high], matrix.offsets, x, y)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -294,7 +281,7 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
         copy(zb, gb)
         counters[SOLVES] += 1
         factored[SPENT] += 0.0 if begins and iteration == 0 else 1.0
-        solve_coupled(work.pool, matrix, LEFT_WITH_AIR if air else LEFT)
+        solve_coupled(matrix, LEFT_WITH_AIR if air else LEFT)
         # conjugate directions, by Polak and Ribiere: they make up for a factor of an earlier state
         square = _dot(g, z) + _dot(gb, zb)
         turn = max(0.0, (square - crossing) / along) if iteration > 0 and not made and along > 0.0 else 0.0

@@ -20,9 +20,7 @@ from mdlgen.backends.lattice.kernels.integrate.momentum import keep
 from mdlgen.backends.lattice.kernels.integrate.tangent import in_box_axes, joints_into, masses
 from mdlgen.backends.lattice.kernels.linear.band import empty as no_band
 from mdlgen.backends.lattice.kernels.linear.band import factor, solve_single
-from mdlgen.backends.lattice.kernels.linear.colouring import BEGIN, END
 from mdlgen.backends.lattice.kernels.linear.dense import copy
-from mdlgen.backends.lattice.kernels.parallel import OVERSHOOT, begin, finish, take
 from mdlgen.backends.lattice.kernels.state import DISSIPATED, Damped
 from mdlgen.mechanics.vector import back, mat, rotate
 from mdlgen.program.kernel import BORROWS, njit
@@ -73,25 +71,14 @@ def _turned(nodes, r, x, inward):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def left_part(work, sheet):
-    """What dampers leave of the momentum of a sheet."""
-    span = work.matrix.couplings.colouring.spans[sheet]
-    low, high = span[BEGIN], span[END]
-    push, left = work.damped.vectors[PUSH, 6 * low : 6 * high], work.damped.vectors[LEFT, 6 * low : 6 * high]
-    copy(left, push)
-    solve_single(work.damped.single[low:high], left, work.damped.short[6 * low : 6 * high])
-
-
-@njit(cache=True, error_model="numpy", **BORROWS)
 def _leave(work):
-    """The same of all sheets."""
-    pool, many = work.pool, work.pool.failed.size
-    begin(pool, OVERSHOOT, many)
-    sheet = take(pool)
-    while sheet >= 0:
-        left_part(work, sheet)
-        sheet = take(pool)
-    finish(pool, many)
+    """What dampers leave of the momentum of all sheets."""
+    spans, damped = work.matrix.couplings.colouring.spans, work.damped
+    copy(damped.vectors[LEFT], damped.vectors[PUSH])
+    for sheet in range(spans.shape[0]):
+        low, high = spans[sheet]
+        first, end = 6 * low, 6 * high
+        solve_single(damped.single[low:high], damped.vectors[LEFT, first:end], damped.short[first:end])
 
 
 @njit(cache=True, error_model="numpy")

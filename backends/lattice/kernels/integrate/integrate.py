@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -84,6 +85,13 @@ HARD_WITH_AIR, EASY_WITH_AIR = 14, 8
 # Two rollers with a sheet between them clear each other by a few micrometres and may graze: a force below
 # this part of the greatest is not counted as the nip still acting.
 GRAZE = 0.05
+
+
+class Last(NamedTuple):
+    """Velocities before a step, which it goes back to where it is taken again."""
+
+    u: np.ndarray  # (nodes, 6)
+    ub: np.ndarray  # (border,)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -172,6 +180,143 @@ def _speed(work, mass):
     return math.sqrt(moving / mass) if mass > 0.0 else 0.0
 
 
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _mass(work):
+    """Of all sheets, with those that sleep [g]."""
+    bodies, mass = work.tables.bodies, 0.0
+    for n in work.tables.nodes:
+        mass += bodies[n].mass
+    for b in work.asleep.bodies:
+        mass += bodies[b].mass
+    return mass
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _share(dt, spans):
+    """The part of the way from the middle of the step before to that of this one that is in this step; 0:
+    there is no step before."""
+    return dt / (dt + spans[LAST_STEP]) if spans[LAST_STEP] > 0.0 else 0.0
+
+
+@njit(cache=True, error_model="numpy")
+def _predict(work, dt, control, last):
+    """Guesses the velocities of a step from those of steps before, `last` of which are kept, and searches for
+    near boxes where some may have come near since. Returns whether there is room for these."""
+    tables, state, mid, search = work.tables, work.state, work.mid, work.search
+    copy(last.u, state.u)
+    copy(last.ub, state.ub)
+    # how far off a guess by a line is tells how fast velocities change, where steps go by that
+    guess_velocities(work, control.history, dt, control.pace[MISS] == 0.0)
+    if control.pace[ANEW] != 0.0:
+        control.factored[STALE] = 1.0
+    if search.regions.size == 0 or not strayed(tables.bodies, search, state.x, state.u, dt):
+        return True
+    forget_overlaps(tables.pairs, mid.overlaps, search.first)
+    if mid.sticks.pairs.size > 0:
+        set_aside(mid.sticks)
+    list_anew(mid.drift)
+    if not look(tables.pairs, search, state.x):
+        return False
+    if mid.sticks.pairs.size > 0:
+        put_back(tables.pairs, mid.sticks, search.first, work.islands, control.energies)
+    return True
+
+
+@njit(cache=True, error_model="numpy")
+def _solve(work, t, dt, tolerance, control, level):
+    """Solves for the velocities of a step that was halved so many times. Returns whether it converged."""
+    pace = control.pace
+    # a halved step's guess is the better, and what it may leave must fall as fast; where sheets lie on each
+    # other iterations do not come as far
+    finer = 0.25**level if work.search.regions.size == 0 else 1.0
+    greatest, pace[FLOOR] = greatest_scale(work.islands), round_off(work, 0.5 * dt)
+    pace[LOOSE] = max(greatest * tolerance * finer, pace[FLOOR])
+    be_strict(work.islands, greatest, pace[LOOSE] / pace[FLOOR])
+    return midpoint(work, t, dt, pace[LOOSE], control)
+
+
+@njit(cache=True, error_model="numpy")
+def _judge(work, t, dt, control, last, stored, allowed):
+    """Looks for what a step that converged may not do. Returns (the pair that is too deep, -1: none is; how
+    much more energy contacts made or lost than they may; whether the step stands: boxes are where pairs were
+    searched for them). `stored`, `allowed`: scratch of each contact."""
+    tables, counters, most = work.tables, control.counters, control.pace[MADE]
+    if work.search.regions.size > 0 and strayed(tables.bodies, work.search, work.state.x, work.state.u, dt):
+        return -1, 0.0, False
+    deep = _deep(tables, work.mid, int(counters[TOUCHING]))
+    if deep >= 0:
+        return deep, 0.0, True
+    least = may_make(work.islands, most, allowed)
+    counts = int(counters[TOUCHING]), int(counters[CLOSE])
+    before = Before(last.u, last.ub, _share(dt, control.history.spans))
+    deep = swept(work, counts, t, dt, (allowed, least), before, stored)
+    return deep, made_too_much(work.islands, stored, allowed) if most > 0.0 else 0.0, True
+
+
+@njit(cache=True, error_model="numpy")
+def _accept(work, t, dt, control, last, first, driven):
+    """Carries a step on, and books what it did; `first`: it is the first one of a call of `run`, where what
+    contacts do as it begins is noted; `driven`: scratch of each group."""
+    tables, state, mid, counters = work.tables, work.state, work.mid, control.counters
+    energies, spans, sheets = control.energies, control.history.spans, work.search.regions.size > 0
+    touching, close = int(counters[TOUCHING]), int(counters[CLOSE])
+    if work.damped.joints.size > 0:
+        overshoot(work, last.u, _share(dt, spans), dt)
+    if work.film.films.size > 0:
+        air_overshoot(work, last.u, _share(dt, spans), dt)
+    measure(work, t + 0.5 * dt, touching)
+    if work.asleep.speeds.size > 0:
+        note_speeds(tables.boxes, work.free.label, state.u, work.asleep)
+        miss(mid.forces, work.asleep, dt)
+    account(work, t, dt, touching, energies, driven)
+    if mid.sticks.pairs.size > 0:
+        end_of_step(work, touching, close, energies)
+    _watch(tables, work.search, mid, touching, t, dt, work.kept, work.asleep)
+    if first:
+        _begun(work.kept.rows, spans[LAST_STEP] / (spans[LAST_STEP] + dt))
+    add_to_history(work, control.history, dt, last.u, last.ub)
+    if sheets:
+        add_step(work, dt)
+    carry(tables, state, t, dt)
+    if work.damped.joints.size > 0:
+        take_off(work, work.damped.off, energies)
+    if work.film.films.size > 0:
+        take_off(work, work.film.off, energies)
+    motion = Motion(state.x, state.r, mid.motion.u, mid.motion.w)
+    remember(tables.bodies, tables.pairs[: work.search.first], tables.shapes, motion)
+    counters[STEPS] += 1
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _next_level(work, level, iterations, missed, made, even):
+    """How often the next step is halved, after one that took so many iterations and missed its guess, and
+    made energy, by these parts of what it may; `even`: the next one may be twice as long."""
+    hard, easy = (HARD_WITH_AIR, EASY_WITH_AIR) if work.film.many[0] > 0 else (HARD, EASY)
+    if (missed > 1.0 or made > 1.0 or iterations > hard) and level < FINEST:
+        return level + 1
+    quiet = missed <= 1.0 / 6.0 and made <= 0.1
+    return level - 1 if level > 0 and quiet and iterations < easy and even else level
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _ends(work, deep, counters):
+    """DONE, or why a run ends with the state that it has; `deep`: see _judge."""
+    tables, state = work.tables, work.state
+    outside = _outside(state.x, work.bounds.low, work.bounds.high)
+    if outside >= 0:
+        counters[WORST] = outside
+        return LEFT
+    if deep >= 0:
+        counters[WORST] = deep
+        return DEEP
+    if tables.points.size > 0:
+        stretched, strain = overstretched(tables.points, tables.joints, state.x, state.r)
+        if stretched >= 0:
+            counters[WORST], counters[STRAIN] = stretched, strain
+            return STRETCHED
+    return DONE
+
+
 @njit(cache=True, error_model="numpy", nogil=True)
 def run(work, t, steps, tolerance, control):
     """Takes the steps `steps` (n,) [ms] from time t. Returns (status, time reached).
@@ -181,78 +326,39 @@ def run(work, t, steps, tolerance, control):
     contacts of an island make or lose more in one step than pace[MADE] of its energy. See integrate.islands.
     Before a step that would move a box that sleeps the status is WOKEN, and the box is counters[WORST].
     """
-    tables, state, mid, rows = work.tables, work.state, work.mid, work.kept.rows
-    bodies, pairs, nodes, search = tables.bodies, tables.pairs, tables.nodes, work.search
-    x, r, u, ub = state.x, state.r, state.u, state.ub
-    counters, energies, pace = control.counters, control.energies, control.pace
-    spans = control.history.spans
-    keep_u, keep_b, guess = u.copy(), ub.copy(), u.copy()
-    mass, stored, allowed, begun = 0.0, np.zeros((rows.shape[0], 2)), np.zeros(rows.shape[0]), t
+    state, rows, counters, pace = work.state, work.kept.rows, control.counters, control.pace
+    last, guess, mass, begun = Last(state.u.copy(), state.ub.copy()), state.u.copy(), _mass(work), t
+    stored, allowed = np.zeros((rows.shape[0], 2)), np.zeros(rows.shape[0])
+    driven = np.zeros(control.energies.shape[0])
     for row in range(rows.shape[0]):
         rows[row, FORCE_BEGUN] = rows[row, FORCE_NOW]
         for i in range(TURNING):
             rows[row, TURNING_BEGUN + i] = rows[row, TURNING_NOW + i]
-    for n in range(nodes.size):
-        mass += bodies[nodes[n]].mass
-    for b in work.asleep.bodies:
-        mass += bodies[b].mass
-    driven = np.zeros(energies.shape[0])
     if counters[STEPS] == 0.0:
         measure(work, t, 0)
     for whole in steps:
         done = 0
         while done < 1 << DEEPEST:
             level = int(pace[LEVEL])
-            size = 1 << (DEEPEST - level)
-            dt = whole / (1 << level)
-            copy(keep_u, u)
-            copy(keep_b, ub)
-            # how far off a guess by a line is tells how fast velocities change, where steps go by that
-            guess_velocities(work, control.history, dt, pace[MISS] == 0.0)
-            copy(guess, u)
-            if pace[ANEW] != 0.0:
-                control.factored[STALE] = 1.0
-            if search.regions.size > 0 and strayed(bodies, search, x, u, dt):
-                forget_overlaps(pairs, mid.overlaps, search.first)
-                if mid.sticks.pairs.size > 0:
-                    set_aside(mid.sticks)
-                list_anew(mid.drift)
-                if not look(pairs, search, x):
-                    return CROWDED, t
-                if mid.sticks.pairs.size > 0:
-                    put_back(pairs, mid.sticks, search.first, work.islands, energies)
-            iterations = counters[ITERATIONS]
-            # a halved step's guess is the better, and what it may leave must fall as fast; where sheets lie
-            # on each other iterations do not come as far
-            finer = 0.25**level if search.regions.size == 0 else 1.0
-            greatest, pace[FLOOR] = greatest_scale(work.islands), round_off(work, 0.5 * dt)
-            pace[LOOSE] = limit = max(greatest * tolerance * finer, pace[FLOOR])
-            be_strict(work.islands, greatest, limit / pace[FLOOR])
-            solved = midpoint(work, t, dt, limit, control)
-            woken = disturbed(bodies, mid.forces, work.asleep, dt) if solved else -1
+            size, dt, iterations = 1 << (DEEPEST - level), whole / (1 << level), counters[ITERATIONS]
+            if not _predict(work, dt, control, last):
+                return CROWDED, t
+            copy(guess, state.u)
+            solved = _solve(work, t, dt, tolerance, control, level)
+            woken = disturbed(work.tables.bodies, work.mid.forces, work.asleep, dt) if solved else -1
             if woken >= 0:
-                copy(u, keep_u)
-                copy(ub, keep_b)
+                copy(state.u, last.u)
+                copy(state.ub, last.ub)
                 counters[WORST] = woken
                 return WOKEN, t
-            missed = missed_guess(work, guess, pace[FLOOR]) if solved else 0.0
-            most = pace[MISS] if pace[MISS] > 0.0 else 1e300
-            if solved and search.regions.size > 0:
-                solved = not strayed(bodies, search, x, u, dt)
-            deep = _deep(tables, mid, int(counters[TOUCHING])) if solved else -1
-            made = 0.0
-            if solved and deep < 0:
-                least = may_make(work.islands, pace[MADE], allowed)
-                counts = int(counters[TOUCHING]), int(counters[CLOSE])
-                # of the way from the middle of the step before, what is in this step
-                inside = dt / (dt + spans[LAST_STEP]) if spans[LAST_STEP] > 0.0 else 0.0
-                before = Before(keep_u, keep_b, inside)
-                deep = swept(work, counts, t, dt, (allowed, least), before, stored)
-                made = made_too_much(work.islands, stored, allowed) if pace[MADE] > 0.0 else 0.0
-            coarse = missed > AGAIN * most or made > AGAIN
-            if not solved or ((coarse or deep >= 0) and level < FINEST):
-                copy(u, keep_u)
-                copy(ub, keep_b)
+            missed, deep, made = 0.0, -1, 0.0
+            if solved:
+                # as a part of what it may miss
+                missed = missed_guess(work, guess, pace[FLOOR]) / (pace[MISS] if pace[MISS] > 0.0 else 1e300)
+                deep, made, solved = _judge(work, t, dt, control, last, stored, allowed)
+            if not solved or ((missed > AGAIN or made > AGAIN or deep >= 0) and level < FINEST):
+                copy(state.u, last.u)
+                copy(state.ub, last.ub)
                 if level == DEEPEST:
                     return STOPPED, t
                 # what is made of energy goes with the step to the power of 5/2, or 3
@@ -261,52 +367,15 @@ def run(work, t, steps, tolerance, control):
                 if not solved:
                     counters[GIVEN_UP] += 1
                     forget(control.history)
-                    list_anew(mid.drift)
+                    list_anew(work.mid.drift)
                 continue
-            if work.damped.joints.size > 0:
-                course = dt / (dt + spans[LAST_STEP]) if spans[LAST_STEP] > 0.0 else 0.0
-                overshoot(work, keep_u, course, dt)
-            if work.film.films.size > 0:
-                course = dt / (dt + spans[LAST_STEP]) if spans[LAST_STEP] > 0.0 else 0.0
-                air_overshoot(work, keep_u, course, dt)
-            measure(work, t + 0.5 * dt, int(counters[TOUCHING]))
-            if work.asleep.speeds.size > 0:
-                note_speeds(tables.boxes, work.free.label, u, work.asleep)
-                miss(mid.forces, work.asleep, dt)
-            account(work, t, dt, int(counters[TOUCHING]), energies, driven)
-            if mid.sticks.pairs.size > 0:
-                end_of_step(work, int(counters[TOUCHING]), int(counters[CLOSE]), energies)
-            _watch(tables, search, mid, int(counters[TOUCHING]), t, dt, work.kept, work.asleep)
-            if t == begun:
-                _begun(rows, spans[LAST_STEP] / (spans[LAST_STEP] + dt))
-            add_to_history(work, control.history, dt, keep_u, keep_b)
-            if search.regions.size > 0:
-                add_step(work, dt)
-            carry(tables, state, t, dt)
-            if work.damped.joints.size > 0:
-                take_off(work, work.damped.off, energies)
-            if work.film.films.size > 0:
-                take_off(work, work.film.off, energies)
-            remember(bodies, pairs[: search.first], tables.shapes, Motion(x, r, mid.motion.u, mid.motion.w))
-            counters[STEPS] += 1
+            _accept(work, t, dt, control, last, t == begun, driven)
             done += size
-            pace[FASTEST] = max(pace[FASTEST], _speed(work, mass))
             t += dt
+            pace[FASTEST] = max(pace[FASTEST], _speed(work, mass))
             iterations = counters[ITERATIONS] - iterations
-            quiet = missed <= most / 6.0 and made <= 0.1
-            air = work.film.many[0] > 0
-            hard, easy = (HARD_WITH_AIR, EASY_WITH_AIR) if air else (HARD, EASY)
-            if (missed > most or made > 1.0 or iterations > hard) and level < FINEST:
-                pace[LEVEL] = level + 1
-            elif level > 0 and quiet and iterations < easy and done % (2 * size) == 0:
-                pace[LEVEL] = level - 1
-            outside = _outside(x, work.bounds.low, work.bounds.high)
-            if deep >= 0 or outside >= 0:
-                counters[WORST] = outside if outside >= 0 else deep
-                return (LEFT if outside >= 0 else DEEP), t
-            if tables.points.size > 0:
-                stretched, strain = overstretched(tables.points, tables.joints, x, r)
-                if stretched >= 0:
-                    counters[WORST], counters[STRAIN] = stretched, strain
-                    return STRETCHED, t
+            pace[LEVEL] = _next_level(work, level, iterations, missed, made, done % (2 * size) == 0)
+            status = _ends(work, deep, counters)
+            if status != DONE:
+                return status, t
     return DONE, t

@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import math
 
-from mdlgen.backends.lattice.kernels.contact.fetch import hint_first
 from mdlgen.backends.lattice.kernels.contact.search import law_of_boxes
 from mdlgen.backends.lattice.kernels.contact.slopes import Numbers, core, hat_left, hat_right, holding
 from mdlgen.backends.lattice.kernels.integrate.tangent import blocks
@@ -37,13 +36,11 @@ from mdlgen.program.kernel import BORROWS, njit
 
 # How far two faces may be open at a corner that may close in an iteration [mm].
 REACH = 0.003
-# How many patches ahead one is asked for.
-AHEAD = 4
 ZERO = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def _pressed(corner, law, rate, h):
+def _pressed(corner, rate, h):
     """Elastic force of a corner that closes at a rate, and its growth with depth."""
     depth = corner[DEPTH_AT_REST] + h * rate
     if depth <= 0.0:
@@ -64,7 +61,7 @@ def _evaluate(q, law, h, far, sticks):
         at = (corner[LENGTHWISE], corner[ACROSS], q.high)
         v = add(rate, cross(spin, at))
         closes = q.side * v[2]
-        spring, _ = _pressed(corner, law, closes, h)
+        spring, _ = _pressed(corner, closes, h)
         normal, x, y = damped(spring, closes, law.beta, law.smoothing), 0.0, 0.0
         if corner[GRIP] > 0.0 and q.ratio > 0.0:
             k_t, stretch = q.ratio * corner[STIFF], sticks[q.pair].now[k]
@@ -115,7 +112,7 @@ def begin_patch(work, q, k, h):
         closes = q.side * v[2]
         corner[LENGTHWISE], corner[ACROSS], corner[STIFF] = p, r, kept.corners[i, KEPT_STIFF]
         corner[DEPTH_AT_REST] = level + lean_p * p + lean_r * r - h * closes
-        spring, _ = _pressed(corner, law, closes, h)
+        spring, _ = _pressed(corner, closes, h)
         corner[GRIP] = damped(spring, closes, law.beta, law.smoothing)
         if q.ratio > 0.0:
             corner[GRIP] *= coefficient(math.sqrt(v[0] * v[0] + v[1] * v[1]), law)
@@ -136,19 +133,17 @@ def _slope_of(work, q, h, far):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 def _lying(frozen, at):
-    """A patch with corners, by its number among these; the one AHEAD of it is asked for."""
-    if at + AHEAD < frozen.many[2]:
-        hint_first(frozen.patches, frozen.lying[at + AHEAD])
+    """A patch with corners, by its number among these."""
     return frozen.patches[frozen.lying[at]]
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def patches_along(work, low, high, h):
-    """Patches with corners, from `low` on, before `high`, note how they move along the direction, and are
-    evaluated at its end; what they add to the slope there."""
+def patches_along(work, h):
+    """Patches with corners note how they move along the direction, and are evaluated at its end; what they
+    add to the slope there, without its factor -h."""
     frozen, r, total = work.frozen, work.mid.motion.r, 0.0
     change = frozen.vectors[OF_DIRECTION]
-    for at in range(low, high):
+    for at in range(frozen.many[2]):
         q = _lying(frozen, at)
         axes = mat(r, q.owner)
         v = w = far = (0.0, 0.0, 0.0)
@@ -166,10 +161,10 @@ def patches_along(work, low, high, h):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def patches_slope(work, low, high, h, far):
-    """What patches add to the slope at that part of the direction."""
+def patches_slope(work, h, far):
+    """What patches add to the slope at that part of the direction, without its factor -h."""
     total = 0.0
-    for at in range(low, high):
+    for at in range(work.frozen.many[2]):
         total += _slope_of(work, _lying(work.frozen, at), h, far)
     return total
 
@@ -288,7 +283,7 @@ def patches_into(work, h, chord):
             at = (corner[LENGTHWISE], corner[ACROSS], q.high)
             v = add(three(q.now), cross(three_from(q.now, 3), at))
             closes = q.side * v[2]
-            spring, growth = _pressed(corner, law, closes, h)
+            spring, growth = _pressed(corner, closes, h)
             slip, rubs = rotate(axes, (v[0], v[1], 0.0)), corner[GRIP] if q.ratio == 0.0 else 0.0
             if spring == 0.0 and corner[GRIP] == 0.0:
                 continue

@@ -15,12 +15,10 @@ from __future__ import annotations
 
 import math
 
-from mdlgen.backends.lattice.kernels import parallel
 from mdlgen.backends.lattice.kernels.contact.between import look_at
-from mdlgen.backends.lattice.kernels.contact.press_job import FIRST_NEAR, NEAR, ask_for, is_known
+from mdlgen.backends.lattice.kernels.contact.overlaps import is_known
 from mdlgen.backends.lattice.kernels.integrate.air import damping_of
 from mdlgen.backends.lattice.kernels.integrate.patches import REACH, begin_patch
-from mdlgen.backends.lattice.kernels.parallel import HALF, begin, chunks, finish, items_of, take
 from mdlgen.backends.lattice.kernels.state import (
     A_COUPLE,
     A_DAMPER,
@@ -205,14 +203,11 @@ def _note_ends(tables, frozen):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def patches_part(work, part):
-    """Makes patches of the near pairs of a part whose overlaps are known (contact.press_job)."""
-    pool, mid, first, frozen = work.pool, work.mid, work.search.first, work.frozen
-    begins, close, h = int(pool.given[FIRST_NEAR]), int(pool.given[NEAR]), pool.given[HALF]
-    low, high = items_of(part, close - begins)
-    for slot in range(low, high):
+def _patches(work, begins, close, h):
+    """Makes patches of the near pairs from `begins` on, which are searched, where overlaps are known."""
+    mid, first, frozen = work.mid, work.search.first, work.frozen
+    for slot in range(close - begins):
         at = begins + slot
-        ask_for(work, at, close)
         k, q = mid.near[at] - first, frozen.patches[slot]
         own = work.search.listed[k]
         q.pair, q.count = k, 0
@@ -222,19 +217,6 @@ def patches_part(work, part):
             begin_patch(work, q, k, h)
         else:
             q.count = TO_FIND_CORNERS
-
-
-@njit(cache=True, error_model="numpy", **BORROWS)
-def _patches(work, begins, close, h):
-    """Makes them of all near pairs that are searched, from `begins` on."""
-    pool, many = work.pool, chunks(close - begins)
-    pool.given[FIRST_NEAR], pool.given[NEAR], pool.given[HALF] = begins, close, h
-    begin(pool, parallel.PATCHES, many)
-    part = take(pool)
-    while part >= 0:
-        patches_part(work, part)
-        part = take(pool)
-    finish(pool, many)
 
 
 @njit(cache=True, error_model="numpy")

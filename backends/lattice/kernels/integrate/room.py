@@ -8,8 +8,6 @@ from mdlgen.backends.lattice.kernels.integrate.mixing import DEPTH, ROWS
 from mdlgen.backends.lattice.kernels.linear.band import empty as no_band
 from mdlgen.backends.lattice.kernels.linear.coupled import couplings
 from mdlgen.backends.lattice.kernels.state import (
-    EACH,
-    EACH_PATCH,
     ENDS_OF_POINT,
     FACE,
     PATCH,
@@ -23,7 +21,7 @@ from mdlgen.backends.lattice.kernels.state import (
 )
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.overlap import OVERLAP
-from mdlgen.mechanics.point import FACES, MOST_POINTS
+from mdlgen.mechanics.point import MOST_POINTS
 from mdlgen.mechanics.stick import STRETCH
 
 
@@ -59,7 +57,6 @@ def empty(system, wide: int) -> tuple[State, Midpoint, Matrix]:
         spare=np.zeros(1, OVERLAP),
         does=np.zeros(len(system.pairs), np.int64),
         lies=np.zeros(len(system.pairs), np.bool_),
-        beforehand=np.zeros((len(system.pairs), FACES)),
         fastest=np.zeros((2, bodies)),
         sticks=sticks(len(system.pairs) - system.search.first, bodies) if sticking else sticks(0, 0),
         drift=drift(system),
@@ -133,7 +130,7 @@ def frozen(system, cells: int) -> Frozen:
         rolls=np.zeros(room, np.bool_),
         many=np.zeros(3, np.int64),
         lying=np.zeros(searched, np.int64),
-        sums=np.zeros(room // EACH + searched // EACH_PATCH + 2),
+        of_patches=np.zeros(1),
         vectors=np.zeros((6, 6 * nodes)),
         border=np.zeros((6, border)),
         block=np.zeros((1, 6, 6)),

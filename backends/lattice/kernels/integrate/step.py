@@ -184,7 +184,48 @@ def _make_factor(work, counts, h, lag, where, chord):
         points_into(work, h, chord)
     in_box_axes(tables.nodes, motion.r, a, matrix.border, matrix.offsets, matrix.slots)
     forget(work.condensed)
-    return factor_sheets(work.pool, matrix, False)
+    return factor_sheets(matrix, False)
+
+
+@njit(cache=True, error_model="numpy")
+def _factor_for(work, counts, h, lag, where, chord, control):
+    """Sees to it that the factor is one of this step, with contacts `where` they are. Returns whether it was
+    made, -1: there is none."""
+    factored = control.factored
+    if factored[MADE_FOR] == 2.0 * h and factored[STALE] == 0.0 and factored[WHERE] == where:
+        return 0
+    control.counters[FACTORS] += 1
+    if not _make_factor(work, counts, h, lag, where, chord):
+        return -1
+    factored[MADE_FOR], factored[STALE], factored[WHERE] = 2.0 * h, 0.0, where
+    return 1
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _treatment(work, count, where, m, air, begins, late, tough):
+    """Where the contacts of an iteration stand, and how many boxes are chosen for those apart from the
+    matrix: as in the iteration before, `where` with m boxes, or where a step `begins` as few in the matrix as
+    can be. All are in it with air, where iterations get `late`, or lately did (`tough`), and where boxes of
+    two sheets touch."""
+    tables, condensed, touched = work.tables, work.condensed, work.mid.touched
+    bodies, pairs, most = tables.bodies, tables.pairs, condensed.chosen.size
+    if air:
+        where = INSIDE
+    elif where != INSIDE and (late or (begins and tough > 0.0)):
+        release(condensed, m)
+        where = INSIDE
+    if begins and not air and tough == 0.0:
+        for fewer in range(where):
+            m = choose(bodies, pairs, touched, count, fewer, condensed, 0, most // 2)
+            if m >= 0:
+                where = fewer
+                break
+            m = 0
+    m = choose(bodies, pairs, touched, count, where, condensed, m, most)
+    while m < 0:
+        where += 1
+        m = choose(bodies, pairs, touched, count, where, condensed, 0, most)
+    return where, m
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -204,10 +245,9 @@ def _done(work, h, counts, totals, counters):
 def midpoint(work, t, dt, tolerance, control):
     """Solves for the velocities at the middle of a step. Returns whether it converged."""
     tables, state, mid, matrix, condensed = work.tables, work.state, work.mid, work.matrix, work.condensed
-    bodies, pairs, nodes = tables.bodies, tables.pairs, tables.nodes
+    nodes = tables.nodes
     factored, counters = control.factored, control.counters
     res, resb = matrix.res, matrix.resb
-    most = condensed.chosen.size
     h = 0.5 * dt
     lag = min(DAMPED * dt, MOST_DAMPED) * h
     before = 1e300
@@ -239,22 +279,7 @@ def midpoint(work, t, dt, tolerance, control):
         _residual(tables, t + h, h, state, mid, res, resb)
         # what is free converges fast, and keeps its angular momentum as well as the iterations end
         limit = tolerance if count > 0 or air else FREE * tolerance
-        if air:
-            where = INSIDE
-        elif where != INSIDE and (iteration == last or (iteration == 0 and factored[TOUGH] > 0.0)):
-            release(condensed, m)
-            where = INSIDE
-        if iteration == 0 and not air:
-            for fewer in range(where if factored[TOUGH] == 0.0 else 0):
-                m = choose(bodies, pairs, mid.touched, count, fewer, condensed, 0, most // 2)
-                if m >= 0:
-                    where = fewer
-                    break
-                m = 0
-        m = choose(bodies, pairs, mid.touched, count, where, condensed, m, most)
-        while m < 0:
-            where += 1
-            m = choose(bodies, pairs, mid.touched, count, where, condensed, 0, most)
+        where, m = _treatment(work, count, where, m, air, iteration == 0, iteration == last, factored[TOUGH])
         counters[ITERATIONS] += 1
         copy(work.free.residual, res)
         # the axes of the boxes as they stand now: half a step before, what is stiff in a box points elsewhere
@@ -267,14 +292,11 @@ def midpoint(work, t, dt, tolerance, control):
             if inner == 0:
                 break
         else:
-            if factored[MADE_FOR] != dt or factored[STALE] != 0.0 or factored[WHERE] != where:
-                counters[FACTORS] += 1
-                chord = MUCH if careful > 0 else LITTLE
-                if where == PLANES:
-                    careful -= 1
-                if not _make_factor(work, (count, close), h, lag, where, chord):
-                    break
-                factored[MADE_FOR], factored[STALE], factored[WHERE] = dt, 0.0, where
+            made = _factor_for(work, (count, close), h, lag, where, MUCH if careful > 0 else LITTLE, control)
+            if made < 0:
+                break
+            if made > 0 and where == PLANES:
+                careful -= 1
             turn_nodes(nodes, condensed.axes, res, True)
             solve(matrix.band, res)
             columns(matrix.band, condensed, m)

@@ -18,7 +18,6 @@ from mdlgen.backends.lattice.kernels.linear.colouring import ONE, TWO, Colouring
 from mdlgen.backends.lattice.kernels.linear.dense import copy
 from mdlgen.backends.lattice.kernels.linear.sheets import solve_sheets
 from mdlgen.backends.lattice.kernels.linear.two_colour import solve_coloured
-from mdlgen.backends.lattice.kernels.parallel import AXES, begin, chunks, finish, items_of, take
 from mdlgen.mechanics.vector import mat, matmul, transpose_matmul
 from mdlgen.program.kernel import BORROWS, njit
 
@@ -62,10 +61,9 @@ def couplings(pairs: int, label: np.ndarray, border: int) -> Couplings:
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def axes_part(nodes, r, couplings, part):
-    """Turns the blocks of some couplings."""
-    low, high = items_of(part, couplings.many[0])
-    for k in range(low, high):
+def couplings_in_box_axes(nodes, r, couplings):
+    """Turns the blocks from global axes to those of their boxes."""
+    for k in range(couplings.many[0]):
         one, two = mat(r, nodes[couplings.ends[k, ONE]]), mat(r, nodes[couplings.ends[k, TWO]])
         block, single = couplings.blocks[k], couplings.single[k]
         for p in range(0, 6, 3):
@@ -79,18 +77,6 @@ def axes_part(nodes, r, couplings, part):
                     for j in range(3):
                         block[q + j, p + i] = turned[3 * i + j]
                         single[ONE, q + j, p + i] = single[TWO, p + i, q + j] = turned[3 * i + j]
-
-
-@njit(cache=True, error_model="numpy", **BORROWS)
-def couplings_in_box_axes(pool, nodes, r, couplings):
-    """Turns the blocks from global axes to those of their boxes."""
-    many = chunks(couplings.many[0])
-    begin(pool, AXES, many)
-    part = take(pool)
-    while part >= 0:
-        axes_part(nodes, r, couplings, part)
-        part = take(pool)
-    finish(pool, many)
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
@@ -116,7 +102,7 @@ def _couple(couplings, p, q):
 
 
 @njit(cache=True, error_model="numpy")
-def solve_coupled(pool, matrix, least):
+def solve_coupled(matrix, least):
     """Solves band, border and couplings in place, as bordered.solve_bordered does without the last; `least`:
     see LEFT."""
     couplings, res, resb = matrix.couplings, matrix.res, matrix.resb
@@ -124,14 +110,14 @@ def solve_coupled(pool, matrix, least):
         solve_bordered(matrix.band, matrix.border, matrix.eliminated, matrix.schur, res, resb)
         return
     if couplings.colouring.found[0] == 1:
-        solve_coloured(pool, matrix, MOST_ITERATIONS, least)
+        solve_coloured(matrix, MOST_ITERATIONS, least)
         return
     many = res.size
     r, z, p, own, q = couplings.room
     copy(r[:many], res)
     copy(r[many:], resb)
     copy(z, r)
-    solve_sheets(pool, matrix)
+    solve_sheets(matrix)
     copy(p, z)
     copy(own, r)  # what band and border make of p
     res[:] = 0.0
@@ -154,7 +140,7 @@ def solve_coupled(pool, matrix, least):
         for i in range(resb.size):
             resb[i] += part * p[many + i]
         copy(z, r)
-        solve_sheets(pool, matrix)
+        solve_sheets(matrix)
         after = _dot(r, z)
         turn, left = after / left, after
         for i in range(r.size):

@@ -1,16 +1,11 @@
-"""The band and its border sheet by sheet: nothing in the band couples two sheets, so threads share them."""
+"""The band and its border sheet by sheet: nothing in the band couples two sheets."""
 
 from __future__ import annotations
 
-from mdlgen.backends.lattice.kernels import parallel
 from mdlgen.backends.lattice.kernels.linear.band import factor, solve
 from mdlgen.backends.lattice.kernels.linear.colouring import BEGIN, END
 from mdlgen.backends.lattice.kernels.linear.dense import cholesky, cholesky_solve, copy
-from mdlgen.backends.lattice.kernels.parallel import begin, finish, take
 from mdlgen.program.kernel import BORROWS, njit
-
-# Of Pool.given: whether masses and bushings are yet to be added.
-INNER = 5
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -30,38 +25,24 @@ def _add_inner(a, inner, offsets):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def factor_part(pool, matrix, sheet):
-    """Factors the band of a sheet."""
-    span = matrix.couplings.colouring.spans[sheet]
-    a = matrix.band[span[BEGIN] : span[END]]
-    if pool.given[INNER] != 0.0:
-        _add_inner(a, matrix.inner[span[BEGIN] : span[END]], matrix.offsets)
-    pool.failed[sheet] = 0 if factor(a) else 1
-
-
-@njit(cache=True, error_model="numpy", **BORROWS)
-def factor_sheets(pool, matrix, inner):
+def factor_sheets(matrix, inner):
     """Cholesky factor of the band in place, as band.factor; `inner`: of its diagonal blocks and the band of
-    masses and bushings together."""
-    many = pool.failed.size
-    pool.given[INNER] = 1.0 if inner else 0.0
-    begin(pool, parallel.FACTOR, many)
-    sheet = take(pool)
-    while sheet >= 0:
-        factor_part(pool, matrix, sheet)
-        sheet = take(pool)
-    finish(pool, many)
-    failed = 0
-    for k in range(many):
-        failed += pool.failed[k]
-    return failed == 0
+    masses and bushings together. Returns False where a sheet's is not positive."""
+    spans, positive = matrix.couplings.colouring.spans, True
+    for sheet in range(spans.shape[0]):
+        low, high = spans[sheet]
+        a = matrix.band[low:high]
+        if inner:
+            _add_inner(a, matrix.inner[low:high], matrix.offsets)
+        positive = factor(a) and positive
+    return positive
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def eliminate_part(pool, matrix, sheet):
-    """Rows of Y = A^-1 B in the columns of a sheet, and what they take off the corner; which numbers of it
-    the rollers reach; its factor in single precision."""
-    span, shares = matrix.couplings.colouring.spans[sheet], pool.shares
+def _eliminate(matrix, sheet):
+    """Rows of Y = A^-1 B in the columns of a sheet; adds to the lower half of `schur` what they take off the
+    corner; which numbers of it the rollers reach; its factor in single precision."""
+    span, taken = matrix.couplings.colouring.spans[sheet], matrix.schur
     reached = matrix.couplings.colouring.reached
     b, y = matrix.border, matrix.eliminated
     start, end = 6 * span[BEGIN], 6 * span[END]
@@ -84,57 +65,35 @@ def eliminate_part(pool, matrix, sheet):
             if first < last:
                 for l in range(reached[sheet, i, BEGIN], reached[sheet, i, END]):
                     v += b[i, l] * y[j, l]
-            shares[sheet, i, j] = v
+            taken[i, j] += v
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def eliminate_sheets(pool, matrix):
+def eliminate_sheets(matrix):
     """As bordered.eliminate, from the factor of the band."""
-    many, corner, d = pool.failed.size, matrix.schur, matrix.corner
-    begin(pool, parallel.ELIMINATE, many)
-    sheet = take(pool)
-    while sheet >= 0:
-        eliminate_part(pool, matrix, sheet)
-        sheet = take(pool)
-    finish(pool, many)
+    corner, d = matrix.schur, matrix.corner
+    corner[:] = 0.0
+    for sheet in range(matrix.couplings.colouring.spans.shape[0]):
+        _eliminate(matrix, sheet)
     for i in range(d.shape[0]):
         for j in range(d.shape[0]):
-            v = 0.0
-            if i >= j:
-                for k in range(many):
-                    v += pool.shares[k, i, j]
-            corner[i, j] = d[i, j] - v
+            corner[i, j] = d[i, j] - corner[i, j]
     return cholesky(corner)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def solve_part(pool, matrix, sheet):
-    """Solves with the band of a sheet, in the second vector of the couplings."""
-    span, b, x = matrix.couplings.colouring.spans[sheet], matrix.border, matrix.couplings.room[1]
-    start, end = 6 * span[BEGIN], 6 * span[END]
-    solve(matrix.band[span[BEGIN] : span[END]], x[start:end])
-    for j in range(b.shape[0]):
-        v = 0.0
-        for l in range(start, end):
-            v += b[j, l] * x[l]
-        pool.shares[sheet, j, 0] = v
-
-
-@njit(cache=True, error_model="numpy", **BORROWS)
-def solve_sheets(pool, matrix):
+def solve_sheets(matrix):
     """As bordered.solve_bordered, in the second vector of the couplings."""
-    many, y = pool.failed.size, matrix.eliminated
-    size = matrix.res.size
+    spans, b, y, size = matrix.couplings.colouring.spans, matrix.border, matrix.eliminated, matrix.res.size
     res, resb = matrix.couplings.room[1, :size], matrix.couplings.room[1, size:]
-    begin(pool, parallel.SOLVE, many)
-    sheet = take(pool)
-    while sheet >= 0:
-        solve_part(pool, matrix, sheet)
-        sheet = take(pool)
-    finish(pool, many)
-    for j in range(resb.size):
-        for k in range(many):
-            resb[j] -= pool.shares[k, j, 0]
+    for sheet in range(spans.shape[0]):
+        low, high = spans[sheet]
+        solve(matrix.band[low:high], res[6 * low : 6 * high])
+        for j in range(resb.size):
+            v = 0.0
+            for l in range(6 * low, 6 * high):
+                v += b[j, l] * res[l]
+            resb[j] -= v
     cholesky_solve(matrix.schur, resb)
     for j in range(resb.size):
         v = resb[j]

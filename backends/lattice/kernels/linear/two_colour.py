@@ -4,24 +4,17 @@ Then no two boxes of one colour are coupled but through their own sheet. What th
 do is eliminated exactly, a solve with their bands each time, and the method of conjugate gradients looks for
 the second colour alone. It needs half the iterations that it needs for both at once, which are no dearer.
 
-All of it is done sheet by sheet, in jobs that threads share: FIRST and BACK solve for what the first colour
-does where the second moves by p, ACROSS has what that does to the second, STEP goes that way, TURN finds the
-next.
+All of it is done sheet by sheet: `_first` solves for what the first colour does where the second moves by p,
+and has what that does to the second, `_step` goes that way, `_turn` finds the next.
 """
 
 from __future__ import annotations
 
-from mdlgen.backends.lattice.kernels import parallel
 from mdlgen.backends.lattice.kernels.linear.band import solve_single
 from mdlgen.backends.lattice.kernels.linear.block import add_product, column, six
 from mdlgen.backends.lattice.kernels.linear.colouring import BEGIN, END, ONE, TWO
 from mdlgen.backends.lattice.kernels.linear.dense import cholesky, cholesky_solve
-from mdlgen.backends.lattice.kernels.parallel import begin, finish, take
 from mdlgen.program.kernel import BORROWS, njit
-
-# Of Pool.given: how far the method goes, how much of the last direction the next one keeps, and whether the
-# first colour starts from the right-hand side.
-LENGTH, KEPT, START = 0, 1, 2
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -98,36 +91,32 @@ def _rows(couplings, size):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def first_part(pool, matrix, sheet):
-    """Solves a sheet of the first colour for what the second does to it, or for the right-hand side; what
-    each sheet does to the rollers."""
-    couplings, b = matrix.couplings, matrix.border
+def _solve_first(matrix, sheet, start):
+    """Solves a sheet of the first colour for what the second does to it; `start`: for the right-hand side."""
+    couplings = matrix.couplings
     _, _, p, _, w = _rows(couplings, matrix.res.size)
-    span, start = couplings.colouring.spans[sheet], pool.given[START] != 0.0
+    span = couplings.colouring.spans[sheet]
     low, high = 6 * span[BEGIN], 6 * span[END]
-    x = p
-    if couplings.colouring.of[sheet] == 0:
-        x = w
-        for l in range(low, high):
-            w[l] = matrix.res[l] if start else 0.0
-        if not start:
-            _across(couplings, sheet, p, w)
-        solve_single(matrix.single_factor[span[BEGIN] : span[END]], w[low:high], couplings.short[low:high])
-    elif start:
-        return
-    for j in range(b.shape[0]):
-        low, high = couplings.colouring.reached[sheet, j]
-        pool.shares[sheet, j, 0] = _dot(b[j, low:high], x[low:high])
+    for l in range(low, high):
+        w[l] = matrix.res[l] if start else 0.0
+    if not start:
+        _across(couplings, sheet, p, w)
+    solve_single(matrix.single_factor[span[BEGIN] : span[END]], w[low:high], couplings.short[low:high])
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def back_part(matrix, sheet):
+def _on_rollers(matrix, sheet, x, sign, rollers):
+    """Adds to the rollers what a sheet does to them where it moves by x, times a sign."""
+    for j in range(rollers.size):
+        low, high = matrix.couplings.colouring.reached[sheet, j]
+        rollers[j] += sign * _dot(matrix.border[j, low:high], x[low:high])
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _back(matrix, sheet, rollers):
     """Takes off a sheet of the first colour what the rollers do to it."""
     couplings, y = matrix.couplings, matrix.eliminated
-    size, span = matrix.res.size, couplings.colouring.spans[sheet]
-    w, rollers = couplings.room[4, :size], couplings.room[4, size:]
-    if couplings.colouring.of[sheet] != 0:
-        return
+    span, w = couplings.colouring.spans[sheet], couplings.room[4, : matrix.res.size]
     for j in range(rollers.size):
         v, reached = rollers[j], couplings.colouring.reached[sheet, j]
         if reached[BEGIN] < reached[END]:
@@ -136,16 +125,14 @@ def back_part(matrix, sheet):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def across_part(pool, matrix, sheet):
+def _second(matrix, sheet, rollers, start):
     """What a sheet of the second colour makes of its move, less what the first colour and the rollers do to
-    it then."""
-    couplings, b, size = matrix.couplings, matrix.border, matrix.res.size
+    it then; returns its product with the move."""
+    couplings, b = matrix.couplings, matrix.border
     colours = couplings.colouring
-    _, q, p, own, w = _rows(couplings, size)
-    rollers, span = couplings.room[4, size:], colours.spans[sheet]
+    _, q, p, own, w = _rows(couplings, matrix.res.size)
+    span = colours.spans[sheet]
     low, high = 6 * span[BEGIN], 6 * span[END]
-    if colours.of[sheet] != 1:
-        return
     for l in range(low, high):
         q[l] = 0.0
     _across(couplings, sheet, w, q)
@@ -155,167 +142,139 @@ def across_part(pool, matrix, sheet):
             q[l] += b[j, l] * far
     for l in range(low, high):
         q[l] = own[l] - q[l]
-    if colours.series[0] == 1 and pool.given[START] == 0.0:
+    if colours.series[0] == 1 and not start:
         _beside(couplings, span, p, q)
-    pool.shares[sheet, 0, 0] = _dot(p[low:high], q[low:high])
+    return _dot(p[low:high], q[low:high])
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def split_part(pool, matrix, sheet):
-    """Begins the method: what is left of the second colour, and its first direction."""
-    couplings, res, size = matrix.couplings, matrix.res, matrix.res.size
-    r, z, p, own, w = _rows(couplings, size)
-    span = couplings.colouring.spans[sheet]
-    low, high = 6 * span[BEGIN], 6 * span[END]
-    if couplings.colouring.of[sheet] != 1:
-        for l in range(low, high):
-            res[l] = w[l]
-        return
-    for l in range(low, high):
-        r[l] = own[l] = z[l]
-        res[l] = 0.0
-    solve_single(matrix.single_factor[span[BEGIN] : span[END]], z[low:high], couplings.short[low:high])
-    for l in range(low, high):
-        p[l] = z[l]
-    pool.shares[sheet, 0, 0] = _dot(r[low:high], z[low:high])
-
-
-@njit(cache=True, error_model="numpy", **BORROWS)
-def step_part(pool, matrix, sheet):
-    """Goes in the direction of the method, and solves for what is left of the second colour."""
-    couplings, res = matrix.couplings, matrix.res
-    r, z, p, _, w = _rows(couplings, res.size)
-    span, part = couplings.colouring.spans[sheet], pool.given[LENGTH]
-    low, high = 6 * span[BEGIN], 6 * span[END]
-    if couplings.colouring.of[sheet] != 1:
-        for l in range(low, high):
-            res[l] -= part * w[l]
-        return
-    for l in range(low, high):
-        r[l] -= part * z[l]
-        res[l] += part * p[l]
-        z[l] = r[l]
-    solve_single(matrix.single_factor[span[BEGIN] : span[END]], z[low:high], couplings.short[low:high])
-    pool.shares[sheet, 0, 0] = _dot(r[low:high], z[low:high])
-
-
-@njit(cache=True, error_model="numpy", **BORROWS)
-def turn_part(pool, matrix, sheet):
-    """The next direction of the method."""
-    couplings = matrix.couplings
-    r, z, p, own, _ = _rows(couplings, matrix.res.size)
-    span, turn = couplings.colouring.spans[sheet], pool.given[KEPT]
-    if couplings.colouring.of[sheet] != 1:
-        return
-    for l in range(6 * span[BEGIN], 6 * span[END]):
-        p[l] = z[l] + turn * p[l]
-        own[l] = r[l] + turn * own[l]
-
-
-@njit(cache=True, error_model="numpy", **BORROWS)
-def part_of(pool, matrix, kind, sheet):
-    """Does the part of a sheet in a job of one of these kinds."""
-    if kind == parallel.FIRST:
-        first_part(pool, matrix, sheet)
-    elif kind == parallel.BACK:
-        back_part(matrix, sheet)
-    elif kind == parallel.ACROSS:
-        across_part(pool, matrix, sheet)
-    elif kind == parallel.SPLIT:
-        split_part(pool, matrix, sheet)
-    elif kind == parallel.STEP:
-        step_part(pool, matrix, sheet)
-    elif kind == parallel.TURN:
-        turn_part(pool, matrix, sheet)
-
-
-@njit(cache=True, error_model="numpy", **BORROWS)
-def _each(pool, matrix, kind):
-    """Does a job."""
-    many = pool.failed.size
-    begin(pool, kind, many)
-    sheet = take(pool)
-    while sheet >= 0:
-        part_of(pool, matrix, kind, sheet)
-        sheet = take(pool)
-    finish(pool, many)
-
-
-@njit(cache=True, error_model="numpy", **BORROWS)
-def _sum(pool, colours):
-    """Of what the sheets of the second colour left."""
+def _first(matrix, rollers, start):
+    """What the first colour and the rollers do where the second moves, or at the right-hand side (`start`),
+    and what that does to the second; returns the product of that with the move. `rollers`: what they begin
+    with."""
+    colours = matrix.couplings.colouring
+    _, _, p, _, w = _rows(matrix.couplings, matrix.res.size)
+    if not start:
+        for sheet in range(colours.of.size):
+            if colours.of[sheet] == 1:
+                _on_rollers(matrix, sheet, p, 1.0, rollers)
+    for sheet in range(colours.of.size):
+        if colours.of[sheet] == 0:
+            _solve_first(matrix, sheet, start)
+            _on_rollers(matrix, sheet, w, -1.0, rollers)
+    if rollers.size > 0:
+        cholesky_solve(colours.corner, rollers)
+        for sheet in range(colours.of.size):
+            if colours.of[sheet] == 0:
+                _back(matrix, sheet, rollers)
     total = 0.0
     for sheet in range(colours.of.size):
         if colours.of[sheet] == 1:
-            total += pool.shares[sheet, 0, 0]
+            total += _second(matrix, sheet, rollers, start)
     return total
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _enough(pool, colours):
-    """Whether what is left of each sheet of the second colour is as little as it may be."""
+def _precondition(matrix, sheet):
+    """Solves a sheet of the second colour for what is left of it; returns the square of that, measured so."""
+    couplings = matrix.couplings
+    r, z, _, _, _ = _rows(couplings, matrix.res.size)
+    span = couplings.colouring.spans[sheet]
+    low, high = 6 * span[BEGIN], 6 * span[END]
+    for l in range(low, high):
+        z[l] = r[l]
+    solve_single(matrix.single_factor[span[BEGIN] : span[END]], z[low:high], couplings.short[low:high])
+    return _dot(r[low:high], z[low:high])
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _split(matrix):
+    """Begins the method: what is left of the second colour, and its first direction. Returns the square of
+    the residual, and whether that of each sheet is as little as it may be."""
+    res, colours = matrix.res, matrix.couplings.colouring
+    r, z, p, own, w = _rows(matrix.couplings, res.size)
+    total, enough = 0.0, True
     for sheet in range(colours.of.size):
-        if colours.of[sheet] == 1 and not pool.shares[sheet, 0, 0] <= colours.enough[sheet]:
-            return False
-    return True
+        low, high = 6 * colours.spans[sheet, BEGIN], 6 * colours.spans[sheet, END]
+        if colours.of[sheet] != 1:
+            for l in range(low, high):
+                res[l] = w[l]
+            continue
+        for l in range(low, high):
+            r[l] = own[l] = z[l]
+            res[l] = 0.0
+        left = _precondition(matrix, sheet)
+        for l in range(low, high):
+            p[l] = z[l]
+        total, enough = total + left, enough and left <= colours.enough[sheet]
+    return total, enough
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _first(pool, matrix, rollers, start):
-    """What the first colour and the rollers do where the second moves, or at the right-hand side, and what
-    that does to the second. `rollers`: what they begin with."""
+def _step(matrix, far):
+    """Goes so far in the direction of the method, and solves for what is left of the second colour. Returns
+    as _split."""
+    res, colours = matrix.res, matrix.couplings.colouring
+    r, z, p, _, w = _rows(matrix.couplings, res.size)
+    total, enough = 0.0, True
+    for sheet in range(colours.of.size):
+        low, high = 6 * colours.spans[sheet, BEGIN], 6 * colours.spans[sheet, END]
+        if colours.of[sheet] != 1:
+            for l in range(low, high):
+                res[l] -= far * w[l]
+            continue
+        for l in range(low, high):
+            r[l] -= far * z[l]
+            res[l] += far * p[l]
+        left = _precondition(matrix, sheet)
+        total, enough = total + left, enough and left <= colours.enough[sheet]
+    return total, enough
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _turn(matrix, turn):
+    """The next direction of the method, which keeps so much of the last one."""
     colours = matrix.couplings.colouring
-    pool.given[START] = 1.0 if start else 0.0
-    _each(pool, matrix, parallel.FIRST)
-    if rollers.size > 0:
-        for j in range(rollers.size):
-            if not start:
-                for sheet in range(colours.of.size):
-                    if colours.of[sheet] == 1:
-                        rollers[j] += pool.shares[sheet, j, 0]
-            for sheet in range(colours.of.size):
-                if colours.of[sheet] == 0:
-                    rollers[j] -= pool.shares[sheet, j, 0]
-        cholesky_solve(colours.corner, rollers)
-        _each(pool, matrix, parallel.BACK)
-    _each(pool, matrix, parallel.ACROSS)
+    r, z, p, own, _ = _rows(matrix.couplings, matrix.res.size)
+    for sheet in range(colours.of.size):
+        if colours.of[sheet] == 1:
+            for l in range(6 * colours.spans[sheet, BEGIN], 6 * colours.spans[sheet, END]):
+                p[l] = z[l] + turn * p[l]
+                own[l] = r[l] + turn * own[l]
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def solve_coloured(pool, matrix, most, least):
+def solve_coloured(matrix, most, least):
     """Solves band, border and couplings in place, where the sheets have two colours.
 
     The method ends after `most` iterations, or where the square of the residual, measured with the
     preconditioner, is `least` of what it was, or in each sheet no more than enough.
     """
     couplings, res, resb = matrix.couplings, matrix.res, matrix.resb
-    colours, size = couplings.colouring, res.size
+    size = res.size
     own, rollers = couplings.room[3], couplings.room[4, size:]
     # the first colour as if the second stood still, and what that does to the second
     for l in range(size):
         own[l] = res[l]
     for j in range(resb.size):
         rollers[j] = resb[j]
-    _first(pool, matrix, rollers, True)
+    _first(matrix, rollers, True)
     for j in range(resb.size):
         resb[j] = rollers[j]
-    _each(pool, matrix, parallel.SPLIT)
-    left = _sum(pool, colours)
+    left, enough = _split(matrix)
     first = left
     for _ in range(most):
-        if not left > least * first or _enough(pool, colours):
+        if not left > least * first or enough:
             break
         # what the first colour does where the second moves by p, and what that does to the second
         for j in range(resb.size):
             rollers[j] = 0.0
-        _first(pool, matrix, rollers, False)
-        along = _sum(pool, colours)
+        along = _first(matrix, rollers, False)
         if not along > 0.0:
             break
-        pool.given[LENGTH] = left / along
+        far = left / along
         for j in range(resb.size):
-            resb[j] -= pool.given[LENGTH] * rollers[j]
-        _each(pool, matrix, parallel.STEP)
-        after = _sum(pool, colours)
-        pool.given[KEPT], left = after / left, after
-        _each(pool, matrix, parallel.TURN)
+            resb[j] -= far * rollers[j]
+        after, enough = _step(matrix, far)
+        _turn(matrix, after / left)
+        left = after
