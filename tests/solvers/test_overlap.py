@@ -100,6 +100,52 @@ def test_pairs_that_can_meet_are_found(part: str, more: str, says: bool) -> None
     assert (len(Overlaps(lower(loads(text))).ahead()) == 1) is says
 
 
+HOLE = """
+name: hole
+materials: {{card: {{E_md: 2750 MPa, E_cd: 2750 MPa}}}}
+sheets:
+  note: {{material: card, size: [40 mm, 20 mm], thickness: 0.6 mm, mass: 0.6 g, boxes: [8, 1]}}
+nips:
+  nip:
+    at: [-6 mm, 0 mm, 0 mm]
+    force: 5 N
+    lower:
+      radius: 11 mm
+      width: 10 mm
+      mass: 8 g
+      drive: {{surface_speed: 1 m/s, direction: +x}}
+      contact: {{stiffness: 300 N/mm^1.5, friction: 0.4}}
+    upper:
+      radius: 9 mm
+      width: {width} mm
+      mass: 7 g
+      press: {{stiffness: 0.1 N/mm}}
+      contact: {{stiffness: 100 N/mm^1.5, friction: 0.9}}
+    contact: {{stiffness: 20 N/mm^1.5, friction: 0.4}}
+planes: {{table: {{center: [0 mm, 0 mm, {top} mm], normal: z, size: [260 mm, 50 mm, 10 mm]}}}}
+contacts: [{{between: [note, table], stiffness: 100 N/mm^1.5, friction: 0.2}}]
+run: {{duration: 40 ms}}
+"""
+
+
+@pytest.mark.parametrize(("width", "top", "hole"), [(10, -5.5, True), (14, -5.5, False), (10, -30.0, False)])
+def test_a_roller_comes_into_the_hole_of_the_one_that_it_presses_on(
+    width: int, top: float, hole: bool
+) -> None:
+    """Once the sheet has left, a soft nip gives way by more than the table is below the sheet. A wider roller
+    does not fit into the hole; where the lower roller is above the table there is none."""
+    made = lower(loads(HOLE.format(width=width, top=top)))
+    overlaps = Overlaps(made)
+    met = {(pair.roller.name.rpartition("_")[2], pair.part.name) for pair in overlaps._watched}
+    assert (("upper", "table") in met) is not hole
+    assert (not [lint for lint in lints(made) if lint.code == "W119"]) is (hole or top < -10)
+    if hole:
+        result = mdlgen.solve(made, "lattice")
+        assert as_asked(result), result.status
+        below = result.position[-1, made.roller("nip_upper").body, 2] - 9.0
+        assert below < top + 5.0 - HAIR
+
+
 @pytest.mark.parametrize(
     "part", [PLANE, LINE.format(side="right"), ARC.format(z=30, begin=45, end=135, side="inside")]
 )

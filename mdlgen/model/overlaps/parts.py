@@ -1,8 +1,9 @@
 """Rollers and the plates, guides and meshes that they have no contact with: whether they come to overlap.
 
-What overlaps where it is given stands in a hole that is not modelled, and is left alone. What is apart there
-and overlaps later, or once springs are in balance, would need a contact, and a run ends. Looked at are pairs
-of which a part moves: a roller on a slide or an arm, a plate on a slide.
+What overlaps where it is given stands in a hole that is not modelled, and is left alone. So is a roller that
+presses on one in such a hole and is not wider: where the nip gives way it comes into the same hole. What is
+apart there and overlaps later, or once springs are in balance, would need a contact, and a run ends. Looked
+at are pairs of which a part moves: a roller on a slide or an arm, a plate on a slide.
 """
 
 from __future__ import annotations
@@ -53,7 +54,11 @@ class Overlaps:
         self._into_part: dict[int, Callable[[Rod], float]] = {}
         self._met = set(zip(model.contacts.part_a, model.contacts.part_b, strict=True))
         self.pairs = [Pair(roller, part, self._given(roller, part)) for roller, part in self._candidates()]
-        self._watched = [pair for pair in self.pairs if pair.start <= HAIR]
+        self._watched = [
+            pair
+            for pair in self.pairs
+            if pair.start <= HAIR and not self._over_a_hole(pair.roller, pair.part)
+        ]
         self._bodies = np.array([[p.roller.body, p.part.body] for p in self._watched], int).reshape(-1, 2)
         # where a pair stood to each other when it was looked at, and how far apart it was
         self._places = np.zeros((len(self._watched), 3))
@@ -67,6 +72,17 @@ class Overlaps:
             for part in parts:
                 if (moves or _press(part) is not None) and (roller.name, part.name) not in self._met:
                     yield roller, part
+
+    def _over_a_hole(self, roller: RollerPart, part: MachinePart) -> bool:
+        """Whether a roller has a contact with one that stands in a hole of the part, and is not wider."""
+        for other in self._model.rollers:
+            nip = {(roller.name, other.name), (other.name, roller.name)} & self._met
+            if not nip or (other.name, part.name) in self._met:
+                continue
+            along = abs(float((other.center - roller.center) @ roller.axis))
+            if along + 0.5 * (roller.width - other.width) <= HAIR and self._given(other, part) > HAIR:
+                return True
+        return False
 
     def _given(self, roller: RollerPart, part: MachinePart) -> float:
         """Overlap where both are given: a spring may have moved one into the other before the run."""
