@@ -10,6 +10,7 @@ import numpy as np
 
 from mdlgen.backends.lattice.integrate.ends import limit_of
 from mdlgen.backends.lattice.integrate.limit import Deadline
+from mdlgen.backends.lattice.kernels.tuning import COMPARED
 from mdlgen.model.tables import Model
 from mdlgen.results import audit
 from mdlgen.results.estimates import NOT_KNOWN, by_finer, estimated, open_yet, unlike
@@ -18,9 +19,6 @@ from mdlgen.results.result import Result
 # Of a run at a step that is given, where one at twice that step is none, or quite another one.
 UNKNOWN = f"{NOT_KNOWN}: a run at twice the step"
 FINER = f"{NOT_KNOWN}: a run at finer steps"
-# States, stored times by bodies, of a run that is only compared with another one: those of a pile of a
-# hundred sheets would take as much memory as half of what its steps work on.
-COMPARED = 1_000_000
 
 
 def thinned(model: Model) -> Model:

@@ -26,11 +26,23 @@ from mdlgen.backends.lattice.integrate.limit import Deadline
 from mdlgen.backends.lattice.integrate.passes import Progress, Watch, accuracy, division, first_step, one_pass
 from mdlgen.backends.lattice.integrate.work import arrays, flexible, warm
 from mdlgen.backends.lattice.kernels.entries import PROGRAM
+from mdlgen.backends.lattice.kernels.tuning import (
+    ASKED,
+    FEWEST_COMPARED,
+    MAY_MAKE,
+    MAY_MISS,
+    MOST_REFINED,
+    MOST_REFINED_RIGID,
+    PATIENCE,
+    SAME_END,
+    SHORT,
+    TWICE,
+)
 from mdlgen.backends.lattice.scope import check
 from mdlgen.backends.lattice.statics.rest import rest
 from mdlgen.backends.lattice.symmetry.find import find
 from mdlgen.backends.lattice.symmetry.mirror import halve
-from mdlgen.backends.lattice.watches import MOST_REFINED, MOST_REFINED_RIGID, Watches
+from mdlgen.backends.lattice.watches import Watches
 from mdlgen.model.tables import Model
 from mdlgen.model.wider import wider
 from mdlgen.results import chaos
@@ -38,32 +50,8 @@ from mdlgen.results.estimates import NOT_KNOWN, SAME_STEPS, estimated, marked, w
 from mdlgen.results.result import Result
 from mdlgen.runs.checkpoint import Checkpointer
 
-# Where the step of rigid blocks is chosen, velocities may miss their guess by this part of the speed at a
-# tolerance of 1e-3; else the step is halved. Sheets flutter, and miss it always.
-MISS = 1e-3
-# Energy that contacts may make or lose in one step by its length alone, as a part of what passes through the
-# run, at a tolerance of 1e-3; else the step is halved.
-MADE = 5e-5
-# Two runs that end early end at the same time where it differs by less than this part of the duration.
-SAME_END = 0.01
-
-# A first pass that takes less than this [s] has a third begun where it is needed alone.
-SHORT = 0.25
-
 Report = tuple[float, float, int, int]  # what progress is called with
 
-# How often the step was halved when it is first asked whether a motion is chaotic: four runs show whether
-# their differences fall, and half of the way to MOST_REFINED has a fifth of the cost.
-ASKED = 3
-
-# A step that is given is compared with twice that step where the run has so many of them.
-FEWEST = 4
-
-# Where `run.limit` is not set a search begins no pass with which all of them would take more wall time than
-# this [s]. Convention: a designer waits a minute for a result, and may ask for more.
-PATIENCE = 60.0
-# A pass takes at least so much longer than that at twice its step: it has twice as many steps.
-TWICE = 2.0
 
 # Rules that leave out what a run does not need, each of which a run can do without.
 FOLDING, FACTORS, SYMMETRY, SLEEP = "folding", "factors", "symmetry", "sleep"
@@ -141,7 +129,7 @@ def _given(
 ) -> Result:
     """A run of that number at a step that is given, `compared` with one at twice that step, or at half of the
     steps that it takes where there is none of so few steps, or both are divided to the same."""
-    made = MADE * accuracy(model) / 1e-3
+    made = MAY_MAKE * accuracy(model) / 1e-3
     h = division(model, wanted).step
     fewer, begun = thinned(model), clock.perf_counter()
 
@@ -172,7 +160,7 @@ def _given(
             result = compared_with_finer(result, again(finer / h, system, watch(watches.FINER)))
         return marked(in_time(result, late))
 
-    few = model.run.duration / wanted < FEWEST
+    few = model.run.duration / wanted < FEWEST_COMPARED
     if not compared:
         return first()
     if not together or few:
@@ -225,11 +213,11 @@ class Search:
         self, h: float, halved: int, seen: Watch, on: System | None = None, of: Model | None = None
     ) -> Result:
         fine = accuracy(self._model) / 1e-3 * 0.25**halved
-        miss = 0.0 if self._flexible else MISS * fine
+        miss = 0.0 if self._flexible else MAY_MISS * fine
         # the finest pass of a search has so many times the steps of the first one; a limit of time is enough
         most = math.inf if self._limited else 2.0 ** (MOST_REFINED if self._flexible else MOST_REFINED_RIGID)
         on = self._system if on is None else on
-        return one_pass(of or self._model, on, h, seen, miss, MADE * fine, times=most)
+        return one_pass(of or self._model, on, h, seen, miss, MAY_MAKE * fine, times=most)
 
     def _ends(self, run: Result, k: int, shown: bool = True) -> bool:
         """Whether the search ends with the run at the first step halved `k` times, which becomes the last

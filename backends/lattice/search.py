@@ -16,11 +16,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mdlgen.backends.lattice.kernels.tuning import ROOM, SKIN
 from mdlgen.mechanics.frame import LAW
 from mdlgen.model.tables import BOX_BOX, Floats, Ints, Model
-
-# Pairs that there is room for, in times those of two flat sheets on each other.
-ROOM = 3.0
 
 REGION = np.dtype(
     [
@@ -61,7 +59,6 @@ class Search(NamedTuple):
 def plan(model: Model, pairs: np.ndarray) -> tuple[np.ndarray, Search, int]:
     """The pairs of a Model with room for those that are searched, the search, and how many different pairs
     there can be."""
-    from mdlgen.backends.lattice.kernels.contact.search import SKIN
 
     rows = np.flatnonzero(model.contacts.kind == BOX_BOX)
     sheets = {s.name: s for s in model.sheets}

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from mdlgen.backends.lattice.integrate.limit import Deadline
 from mdlgen.backends.lattice.integrate.passes import Progress, Watch
+from mdlgen.backends.lattice.kernels.tuning import MOST_REFINED_RIGID
 from mdlgen.runs.checkpoint import Checkpointer
 
-# How often the step may be halved to meet the tolerance, from the first step on; blocks take little time.
-MOST_REFINED, MOST_REFINED_RIGID = 5, 8
 # Numbers by which states of passes are kept: first those of the first step, halved so many times, or of the
 # step that is given, doubled so many times; then of twice a step of a search, and of four times that; of a
 # check at a step of its own; of a run at finer steps than were given; of one from a start that is moved, at

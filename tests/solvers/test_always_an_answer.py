@@ -14,6 +14,8 @@ import pytest
 import mdlgen
 from mdlgen.backends.lattice import run as lattice
 from mdlgen.backends.lattice import watches
+from mdlgen.backends.lattice.kernels import tuning
+from mdlgen.backends.lattice.kernels.tuning import HELD_UP, REPORTED
 from mdlgen.model.tables import Model
 from mdlgen.results import chaos
 from mdlgen.results.quantities import differences
@@ -187,7 +189,7 @@ def test_a_pass_that_run_limit_cut_says_nothing_about_the_one_before(monkeypatch
 def test_runs_at_twice_and_four_times_a_step_keep_their_states_apart() -> None:
     """A checkpoint of one is none of the other."""
     numbers = (watches.DOUBLED, watches.QUADRUPLED, watches.CHECK, watches.FINER, watches.MOVED)
-    every = (*numbers, watches.MOVED_EARLY, *range(watches.MOST_REFINED_RIGID + 1))
+    every = (*numbers, watches.MOVED_EARLY, *range(tuning.MOST_REFINED_RIGID + 1))
     assert len(set(every)) == len(every)
     search = lattice.Search(case("thrown"), None, lattice.Watches(None, None, 1, True))
     asked: list[tuple[float, int]] = []
@@ -254,7 +256,7 @@ def test_a_limit_that_is_not_met_changes_nothing() -> None:
 def test_a_slow_pass_names_its_step_and_the_body_that_holds_it_up(caplog: pytest.LogCaptureFixture) -> None:
     """Only where the step is halved many times; how far it is, in any case."""
     from mdlgen.backends.lattice.arrays import build
-    from mdlgen.backends.lattice.integrate.slow import EVERY, HALVED, Slow
+    from mdlgen.backends.lattice.integrate.slow import Slow
     from mdlgen.backends.lattice.integrate.work import arrays, control
     from mdlgen.backends.lattice.kernels.state import LEVEL, WORST
 
@@ -263,12 +265,12 @@ def test_a_slow_pass_names_its_step_and_the_body_that_holds_it_up(caplog: pytest
     seen: list[float] = []
     slow = Slow(model, steering, lambda at, *_: seen.append(at))
     caplog.set_level("INFO", "mdlgen.slow")
-    slow.tell(1.0, 0.1, 0.5 * EVERY)
+    slow.tell(1.0, 0.1, 0.5 * REPORTED)
     assert not seen
-    slow.tell(2.0, 0.1, EVERY)
+    slow.tell(2.0, 0.1, REPORTED)
     assert seen == [2.0] and not caplog.messages
-    steering.pace[LEVEL], steering.counters[WORST] = HALVED, 3
-    slow.tell(3.0, 0.16, EVERY)
+    steering.pace[LEVEL], steering.counters[WORST] = HELD_UP, 3
+    slow.tell(3.0, 0.16, REPORTED)
     assert seen == [2.0, 3.0]
     body = model.bodies.name[3]
     assert caplog.messages == [f"steps of 0.01 ms at 3 ms: the velocity of {body} converges slowly"]

@@ -12,8 +12,8 @@ import mdlgen
 from mdlgen.backends.lattice import run as lattice
 from mdlgen.backends.lattice.integrate import passes
 from mdlgen.backends.lattice.integrate.passes import Watch
-from mdlgen.backends.lattice.kernels.integrate.step import FAR
 from mdlgen.backends.lattice.kernels.state import MANY, MIDDLE, Workspace
+from mdlgen.backends.lattice.kernels.tuning import FAR
 from mdlgen.backends.lattice.search import many_searched
 from mdlgen.mechanics.frame import Frame
 from mdlgen.mechanics.overlap import APART, OVERLAPS, holds

@@ -9,7 +9,7 @@ import pytest
 
 from mdlgen.backends.lattice.arrays import build
 from mdlgen.backends.lattice.integrate.work import arrays, control
-from mdlgen.backends.lattice.kernels import forces
+from mdlgen.backends.lattice.kernels import forces, tuning
 from mdlgen.backends.lattice.kernels.contact import between
 from mdlgen.backends.lattice.kernels.contact.condensed import INSIDE
 from mdlgen.backends.lattice.kernels.integrate import along, convex, points, points_matrix, step, tangent
@@ -214,16 +214,16 @@ def test_a_direction_is_gone_along_to_where_the_function_is_least(times: float, 
     frozen.vectors[DIRECTION] = -times * matrix.res
     linear, square = convex._direction(work, work.condensed.axes, H)
     begin = -times * float(matrix.res @ matrix.res)
-    part = convex._how_far(work, H, begin, linear, square, convex.LEVEL)
+    part = convex._how_far(work, H, begin, linear, square, tuning.SLOPE_WHOLE)
     slopes = [
         linear + at * square + along.slope(work, H, at, False) for at in (0.0, part, 0.9 * part, 1.1 * part)
     ]
     assert slopes[0] == pytest.approx(begin, rel=1e-9)
-    allowed = convex.LEVEL if part == 1.0 else convex.FLAT
+    allowed = tuning.SLOPE_WHOLE if part == 1.0 else tuning.SLOPE_FOUND
     assert (
         abs(slopes[1]) <= allowed * abs(begin)
         or slopes[2] < 0.0 < slopes[3]
-        or part == 2.0**convex.MOST_DOUBLED
+        or part == 2.0**tuning.SEARCH_DOUBLED
     )
     assert slopes[2] < slopes[1] < slopes[3], "convex"
 

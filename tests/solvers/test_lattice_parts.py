@@ -10,8 +10,8 @@ import pytest
 
 import mdlgen
 from mdlgen.backends.lattice.arrays import System, build
-from mdlgen.backends.lattice.kernels import entries, forces
-from mdlgen.backends.lattice.kernels.integrate import room, step
+from mdlgen.backends.lattice.kernels import entries, forces, tuning
+from mdlgen.backends.lattice.kernels.integrate import room
 from mdlgen.mechanics.bushing import bushing, bushing_pair
 from mdlgen.mechanics.frame import Frame, Motion
 from mdlgen.mechanics.vector import exp_rotation
@@ -107,7 +107,7 @@ def test_what_touches_after_a_step_was_near_before_it() -> None:
         u[:, 3:] = rng.normal(size=(len(u), 3)) * 0.1
         forces.place(system.tables, ahead, 0.0, state, motion)
         begun = Motion(x, r, motion.u, motion.w)
-        close = forces.near_pairs(system.tables, begun, step.FAR, ahead, near)
+        close = forces.near_pairs(system.tables, begun, tuning.FAR, ahead, near)
         listed = set(near[:close].tolist())
         assert close < 0.7 * len(system.pairs)
         still = np.zeros_like(x)

@@ -8,8 +8,9 @@ from test_sleep import FALLING, SCENE
 from test_symmetry import ROLLED
 
 from mdlgen.backends.lattice import run as lattice
-from mdlgen.backends.lattice.integrate.looks import LOOKS, Looks
+from mdlgen.backends.lattice.integrate.looks import Looks
 from mdlgen.backends.lattice.integrate.sleep import Sleep
+from mdlgen.backends.lattice.kernels.tuning import LOOKS
 from mdlgen.model.lower import lower
 from mdlgen.results.result import Result
 from mdlgen.spec.load import loads

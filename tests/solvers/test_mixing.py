@@ -7,7 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from mdlgen.backends.lattice.kernels.integrate.mixing import DEPTH, ROWS, mix
+from mdlgen.backends.lattice.kernels.integrate.mixing import ROWS, mix
+from mdlgen.backends.lattice.kernels.tuning import MIXED
 
 pytestmark = pytest.mark.usefixtures("as_python")
 
@@ -15,7 +16,7 @@ NODES, BORDER = 4, 2
 SIZE = 6 * NODES + BORDER
 
 
-def _left(grows: list[float], iterations: int, depth: int = DEPTH) -> float:
+def _left(grows: list[float], iterations: int, depth: int = MIXED) -> float:
     """How far velocities are from the solution after so many iterations, each of which takes off what a
     linear map makes of it: all but a part of some motions, which are given."""
     rng = np.random.default_rng(5)
@@ -29,8 +30,8 @@ def _left(grows: list[float], iterations: int, depth: int = DEPTH) -> float:
         res=np.zeros(6 * NODES),
         resb=np.zeros(BORDER),
         mixing=np.full((ROWS, SIZE), np.nan),
-        gram=np.zeros((DEPTH, DEPTH)),
-        parts=np.zeros((2, DEPTH)),
+        gram=np.zeros((MIXED, MIXED)),
+        parts=np.zeros((2, MIXED)),
     )
     matrix.mixing[:2] = 0.0
     for iteration in range(iterations):
@@ -50,7 +51,7 @@ def _left(grows: list[float], iterations: int, depth: int = DEPTH) -> float:
 )
 def test_motions_that_come_back_larger_end(grows: list[float]) -> None:
     """One iteration more for each of them, and one for the rest; so many motions are mixed."""
-    assert len(grows) <= DEPTH
+    assert len(grows) <= MIXED
     assert _left(grows, len(grows) + 2) < 1e-4
     assert _left(grows, len(grows) + 2, depth=0) > 0.3
 

@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 from stacks import ran, stack
 
 import mdlgen
+from mdlgen.backends.lattice.kernels import tuning
 from mdlgen.bench.oracles import impact as oracle
 from mdlgen.mechanics.frame import Box, Frame, Law
 from mdlgen.mechanics.point import OUT
@@ -168,7 +169,7 @@ def test_the_search_finds_the_pairs_that_are_near_and_no_other():
             for i, j in own
             for a in range(i, i + 24)
             for b in range(j, j + 24)
-            if np.linalg.norm(x[a] - x[b]) < radius[a] + radius[b] + search.SKIN
+            if np.linalg.norm(x[a] - x[b]) < radius[a] + radius[b] + tuning.SKIN
         }
         assert found == near
         assert len(set(spare["mark"])) == len(found) == len(spare)

@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 from stacks import ran, stack
 
 import mdlgen
+from mdlgen.backends.lattice.kernels import tuning
 from mdlgen.backends.lattice.kernels.integrate.room import sticks
 from mdlgen.backends.lattice.kernels.state import FACE, Midpoint
 from mdlgen.checks import lints
@@ -128,8 +129,8 @@ def test_a_thin_note_that_sleeps_limits_how_far_a_change_may_move_another_one():
     near, h, falls = np.array([system.search.first]), 1.0, np.array([0.0, 0.0, 0.01, 0.0, 0.0, 0.0])
     upright = np.tile(np.eye(3).ravel(), (len(system.bodies), 1))
     # by its own half thickness alone this change would need no look at the pair
-    assert 2.0 * h * falls[2] < sides.CLOSER * 0.05
-    assert sides.part_of_change(tables, near, 1, upright, h, falls) == pytest.approx(sides.CLOSER)
+    assert 2.0 * h * falls[2] < tuning.CLOSER * 0.05
+    assert sides.part_of_change(tables, near, 1, upright, h, falls) == pytest.approx(tuning.CLOSER)
 
 
 def test_notes_in_one_place_end_with_a_reason():

@@ -7,7 +7,7 @@ import pytest
 
 from mdlgen.backends.lattice.arrays import build
 from mdlgen.backends.lattice.integrate.work import arrays, control
-from mdlgen.backends.lattice.kernels import forces
+from mdlgen.backends.lattice.kernels import forces, tuning
 from mdlgen.backends.lattice.kernels.contact import between
 from mdlgen.backends.lattice.kernels.integrate import convex, momentum, tangent
 from mdlgen.backends.lattice.kernels.state import BEFORE, FACTORS, GRADIENT, Control, Workspace
@@ -108,7 +108,7 @@ def test_an_old_factor_alone_would_hold_it(
     monkeypatch.setattr(convex, "CURED", np.inf)
     work, steering = lifted
     change = _solve(work, steering, _momenta(work))
-    assert np.abs(change[:, :3]).max() < convex.FIRST * LIMIT
+    assert np.abs(change[:, :3]).max() < tuning.FIRST_DIRECTION * LIMIT
     assert _slid(work, change) < 0.2
     assert steering.counters[FACTORS] == 1
 
@@ -131,7 +131,7 @@ def test_each_sheet_counts_by_itself(
 
     monkeypatch.setattr(convex, "_gradient", leaves)
     momentum.let_go(work, before.ravel(), np.zeros(0), work.free.lets[BEFORE])
-    assert convex._cured(work, H, axes, 1.0, convex.FIRST * LIMIT) is cured
+    assert convex._cured(work, H, axes, 1.0, tuning.FIRST_DIRECTION * LIMIT) is cured
 
 
 @pytest.mark.parametrize("sheet", [LOW, TOP])

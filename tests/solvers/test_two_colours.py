@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from matrices import bare_matrix, exact
 
+from mdlgen.backends.lattice.kernels import tuning
 from mdlgen.backends.lattice.kernels.linear import colouring, coupled, two_colour
 from mdlgen.backends.lattice.kernels.linear.band import PAD
 from mdlgen.backends.lattice.kernels.linear.sheets import eliminate_sheets, factor_sheets
@@ -105,7 +106,7 @@ def test_sheets_that_all_touch_each_other_are_solved_at_once() -> None:
     assert matrix.couplings.colouring.found[0] == 0
     right = np.random.default_rng(5).normal(size=len(whole))
     matrix.res[:], matrix.resb[:] = right[:-BORDER], right[-BORDER:]
-    coupled.solve_coupled(matrix, coupled.LEFT)
+    coupled.solve_coupled(matrix, tuning.LINEAR_LEFT)
     # as far as an iteration of Newton's method needs it
     left = whole @ solved(matrix) - right
     before = right @ np.linalg.solve(whole, right)

@@ -6,6 +6,7 @@ import numpy as np
 
 from mdlgen.backends.lattice.arrays import System, partner
 from mdlgen.backends.lattice.integrate.work import flexible
+from mdlgen.backends.lattice.kernels import tuning
 from mdlgen.backends.lattice.kernels.state import (
     STEPS,
     STRAIN,
@@ -43,12 +44,12 @@ def reason_of(
         one, two = (names[int(system.pairs[end][int(counters[THROUGH])])] for end in "ab")
         return (
             f"box {one} would pass through box {two} of another sheet at {t:.6g} ms, with steps down to "
-            f"{dt / 2**integrate.DEEPEST:.3g} ms; a stiffer contact between the two would hold it"
+            f"{dt / 2**tuning.HALVINGS_MOST:.3g} ms; a stiffer contact between the two would hold it"
         )
     if status == integrate.STOPPED:
         body = names[int(counters[WORST])]
         return (
-            f"no convergence at {t:.6g} ms with steps down to {dt / 2**integrate.DEEPEST:.3g} ms; "
+            f"no convergence at {t:.6g} ms with steps down to {dt / 2**tuning.HALVINGS_MOST:.3g} ms; "
             f"box {body} moved most; larger smoothing of its contacts may help"
         )
     if status == integrate.DEEP:

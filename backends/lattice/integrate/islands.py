@@ -6,13 +6,10 @@ import numpy as np
 
 from mdlgen.backends.lattice.arrays import System
 from mdlgen.backends.lattice.kernels.state import Islands, Workspace
+from mdlgen.backends.lattice.kernels.tuning import LEAST_WAY
 from mdlgen.mechanics.arm import AXIAL, INERTIA
 from mdlgen.mechanics.frame import RADIUS
 from mdlgen.model.tables import Ints, Model
-
-# Least distance that a part is measured by, relative to the length of a sheet, the radius of a roller or the
-# thickness of a plate: the least that `run.tolerance` is relative to (see results.estimates).
-LEAST_WAY = 0.1
 
 
 def islands(model: Model, system: System) -> Islands:

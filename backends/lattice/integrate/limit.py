@@ -9,12 +9,8 @@ from threading import Event, Thread
 from typing import Any, NamedTuple
 
 from mdlgen.backends.lattice.kernels.state import Workspace
+from mdlgen.backends.lattice.kernels.tuning import CALL, CUT_AGAIN
 from mdlgen.model.tables import Model
-
-# How long a call of compiled code is meant to take [s]: between two the clock is read.
-CALL = 0.25
-# How often bounds are withdrawn of what a pass works on, once the time is over [s].
-AGAIN = 0.05
 
 
 class Deadline(NamedTuple):
@@ -52,7 +48,7 @@ class Cut:
     def _wait(self) -> None:
         if self._ended.wait(max(0.0, self._deadline.at - clock.perf_counter())):
             return
-        while not self._ended.wait(AGAIN):
+        while not self._ended.wait(CUT_AGAIN):
             base = self._work().bounds.low.base
             assert base is not None, "what a pass works on has bounds of its own"
             base[:] = math.inf

@@ -6,9 +6,7 @@ import math
 
 import numpy as np
 
-# How often at most a pass checks whether sheets fall asleep, parts overlap and halves pass their plane: as
-# often as it stores a state by default.
-LOOKS = 200
+from mdlgen.backends.lattice.kernels.tuning import LOOKS
 
 
 class Looks:

@@ -42,20 +42,19 @@ from mdlgen.backends.lattice.kernels.state import (
 )
 from mdlgen.backends.lattice.kernels.state import MADE as MADE_OF
 from mdlgen.backends.lattice.kernels.state import MISS as MISS_OF
+from mdlgen.backends.lattice.kernels.tuning import (
+    FIRST_STEP,
+    LOOSEST,
+    MOST_AT_ONCE,
+    MOST_STEPS,
+    ROUND_OFF,
+    ROUND_OFF_RIGID,
+)
 from mdlgen.errors import SpecError
 from mdlgen.model.overlaps.unheld import Unheld
 from mdlgen.model.tables import Model
 from mdlgen.results.result import Result
 from mdlgen.runs.checkpoint import Checkpointer
-
-# Longest first step at a tolerance of 1e-3 [ms]; it goes with the root of the tolerance.
-FIRST_STEP = 0.2
-# Iterations of a step of that size stop at changes of velocity of this part of tolerance times speed: in
-# scenes with flexible sheets, whose boxes flutter much faster, and of rigid blocks, whose impacts are sharp.
-ROUND_OFF, ROUND_OFF_RIGID = 2.0, 0.02
-LOOSEST = 1e-2  # tolerance that a step is solved to, at most
-# Steps of one run, and those that compiled code takes before it is asked again.
-MOST_STEPS, MOST_AT_ONCE = 1e9, 1000
 
 Progress = Callable[[float, float, int, int], None]
 
@@ -145,8 +144,8 @@ def one_pass(
     anew: bool = False,
     times: float = math.inf,
 ) -> Result:
-    """One run at a step, or the next smaller one that outputs fall on; `miss`, `made`: see run.MISS and
-    run.MADE, 0 for any; `anew`: a new factor for each step; `times`: it ends early where it takes more than
+    """One run at a step, or the next smaller one that outputs fall on; `miss`, `made`: see MAY_MISS and
+    MAY_MAKE, 0 for any; `anew`: a new factor for each step; `times`: it ends early where it takes more than
     so many times its number of steps, since they are divided. Raises Stopped where `watch` says so."""
     going = _Pass(model, system, division(model, wanted), watch, times)
     going.steer(miss, made, anew)

@@ -40,6 +40,7 @@ from mdlgen.backends.lattice.kernels.state import (
     Control,
     Workspace,
 )
+from mdlgen.backends.lattice.kernels.tuning import STILL, STILL_FOR, STILL_STEPS
 from mdlgen.backends.lattice.search import many_searched
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.stick import STRETCH
@@ -47,8 +48,6 @@ from mdlgen.model.tables import Model
 from mdlgen.model.wider import wider, with_margin
 from mdlgen.runs.checkpoint import Checkpointer, State
 
-# How long a sheet is still before it sleeps: a part of the run, and steps at least.
-PART, LEAST_STEPS = 0.05, 20
 # What is carried over by body, from the nodes: velocity and angular momentum at the end of the last step, and
 # velocities in its middle and in those of the two before.
 WIDTHS = {"v": 3, "l": 3, "u": 6, "last": 6, "earlier": 6}
@@ -81,7 +80,7 @@ class Sleep:
         self._parts = Parts(model, system)
         self._sheets = np.zeros(sheets, bool)
         self._since, self._counted = np.zeros(sheets), np.zeros(sheets)
-        self._wait = np.full(sheets, PART * model.run.duration)
+        self._wait = np.full(sheets, STILL_FOR * model.run.duration)
         self._touched = np.zeros(len(model.contacts))
         self._store = {name: np.zeros((bodies if sheets else 0, width)) for name, width in WIDTHS.items()}
         self._chosen = np.arange(system.search.first)
@@ -92,7 +91,6 @@ class Sleep:
     def look(self, t: float, tolerance: float) -> None:
         """Finds islands, and puts to sleep what has been still for long enough at the time t [ms];
         `tolerance`: of a step."""
-        from mdlgen.backends.lattice.kernels.integrate.islands import STILL
 
         if not len(self._sheets):
             return
@@ -107,7 +105,7 @@ class Sleep:
         touched |= self._air
         islands = self._islands(touched)
         awake = self._may & ~self._sheets
-        awake &= (t - self._since < self._wait) | (steps - self._counted < LEAST_STEPS)
+        awake &= (t - self._since < self._wait) | (steps - self._counted < STILL_STEPS)
         one, two = self._parts.sheets
         awake |= ~self._may
         awake[one[touched & (one >= 0) & self._parts.moves]] = True

@@ -6,12 +6,8 @@ import logging
 from collections.abc import Callable
 
 from mdlgen.backends.lattice.kernels.state import LEVEL, STEPS, TOUCHING, WORST, Control
+from mdlgen.backends.lattice.kernels.tuning import HELD_UP, REPORTED
 from mdlgen.model.tables import Model
-
-# Between two stored times a pass reports after so much wall time [s].
-EVERY = 0.5
-# Halvings of the step from which on it names what holds it up: it takes 16 times as long as was meant.
-HALVED = 4
 
 # Who shows the progress of a run listens here; `mdlgen run` does.
 LOG = logging.getLogger("mdlgen.slow")
@@ -30,14 +26,14 @@ class Slow:
     def tell(self, t: float, step: float, took: float) -> None:
         """A call with steps of that length [ms] ended at t [ms], and took so long [s]."""
         self._since += took
-        if self._since < EVERY:
+        if self._since < REPORTED:
             return
         self._since = 0.0
         if self._progress is None:
             return
         self._progress(t, self._model.run.duration, int(self._counters[STEPS]), int(self._counters[TOUCHING]))
         halved = int(self._pace[LEVEL])
-        if halved >= HALVED:
+        if halved >= HELD_UP:
             body = self._model.bodies.name[int(self._counters[WORST])]
             LOG.info(
                 "steps of %.3g ms at %.4g ms: the velocity of %s converges slowly", step / 2**halved, t, body

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from mdlgen.backends.lattice.kernels.tuning import TOGETHER
 from mdlgen.mechanics.frame import Motion
 from mdlgen.model.meshes import carried
 from mdlgen.model.rotations import euler_parameters
 from mdlgen.model.tables import Floats, Model
 
 WIDTHS = {"x": 3, "u": 3, "w": 3, "e": 4}
-TOGETHER = 20_000  # bodies, times states, whose rotations are looked at together
 
 
 class States:

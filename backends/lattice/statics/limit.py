@@ -9,7 +9,7 @@ Coulomb's limit surface, which is convex. So the part of a wrench w that they ho
 the power that friction dissipates in a rigid motion over the power of w (Goyal, Ruina and Papadopoulos
 1991, "Planar sliding with dry friction"). Each twist yields an upper bound of that part, and a wrench on the
 surface. The convex hull of these wrenches is held: a linear program finds how far w reaches in it, a lower
-bound. The dual of the program is the next twist. The search ends where both differ by less than CLOSE.
+bound. The dual of the program is the next twist. The search ends where both differ by less than LIMIT_CLOSE.
 """
 
 from __future__ import annotations
@@ -18,16 +18,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mdlgen.backends.lattice.kernels.tuning import LIMIT_CLOSE, LIMIT_MOST, STEEP
 from mdlgen.model.tables import Floats
-
-# Relative difference of both bounds that ends the search: a tenth of the residual of a balance, 1e-6.
-CLOSE = 1e-7
-# Twists: 20 to 60 are enough for CLOSE.
-MOST = 300
-# A contact that leans by 90 degrees less the angle of friction may hold any force along the plane: its
-# ellipse becomes a parabola. One that is closer to that than this part of the cone's cosine squared counts as
-# a wall, which holds nothing along the plane beyond its own force.
-STEEP = 0.05
 
 
 class Grips(NamedTuple):
@@ -112,7 +104,7 @@ def limit(grips: Grips, wrench: Floats) -> Limit:
         work = float(twist @ wanted)
         if work > 0.0 and (part := scaled.answer(twist)[0] / work) < high:
             high, best = part, twist / work
-    for _ in range(MOST):
+    for _ in range(LIMIT_MOST):
         # the most of `wanted` that lies between the known wrenches and none at all
         columns = np.column_stack([*known, -wanted])
         found = linprog(
@@ -128,7 +120,7 @@ def limit(grips: Grips, wrench: Floats) -> Limit:
         low = max(low, float(found.x[-1]))
         twist = np.asarray(found.eqlin.marginals)
         work = float(twist @ wanted)
-        if abs(work) < 1e-12 or high - low <= CLOSE * high:
+        if abs(work) < 1e-12 or high - low <= LIMIT_CLOSE * high:
             break
         twist = twist / work
         most, answer = scaled.answer(twist)

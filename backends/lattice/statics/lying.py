@@ -18,6 +18,7 @@ import numpy as np
 
 from mdlgen.backends.lattice.arrays import JOINT, System
 from mdlgen.backends.lattice.kernels.state import Midpoint
+from mdlgen.backends.lattice.kernels.tuning import GIVES, NO_FORCE, SLIDES_BEYOND
 from mdlgen.backends.lattice.statics.limit import Limit, limit
 from mdlgen.backends.lattice.statics.pressure import grips
 from mdlgen.mechanics.edge import HOLDS
@@ -25,17 +26,6 @@ from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.records import LOAD
 from mdlgen.model.rotations import matrices, vectors
 from mdlgen.model.tables import BOX_PLANE, GROUND, Floats, Model, PlanePart, SheetPart
-
-# How far what holds a sheet gives way under the load that residuals are measured by [mm].
-GIVES = 1e-4
-# Of that load: a force along the plane below this is none.
-NONE = 1e-6
-# A sheet that turns about a centre further off than this many times the reach of its contacts slides.
-FAR = 10.0
-
-
-# Balances that are found anew for what friction adds at edges, and its change, of the load, that ends them.
-MOST_GRIPS, STEADY = 40, 1e-7
 
 
 class Hold(NamedTuple):
@@ -128,10 +118,10 @@ def slides(
         here = every.at(middle)
         length = here.reach()
         force = float(np.hypot(*pulled[:2]))
-        if force + abs(pulled[2]) / length <= NONE * load:
+        if force + abs(pulled[2]) / length <= NO_FORCE * load:
             continue
         most = limit(here, pulled)
-        if (1.0 - most.part) * (force + abs(pulled[2]) / length) > NONE * load:
+        if (1.0 - most.part) * (force + abs(pulled[2]) / length) > NO_FORCE * load:
             return _gives_way(hold, pulled, most, origin + axes[:, :2] @ middle, length, axes)
     return None
 
@@ -140,7 +130,7 @@ def _gives_way(hold: Hold, pulled: Floats, most: Limit, middle: Floats, length: 
     """How a sheet gives way to a force and a couple about the `middle` (3,) of its contacts."""
     force, couple = float(np.hypot(*pulled[:2])), abs(float(pulled[2]))
     speed, turns = float(np.hypot(*most.twist[:2])), float(most.twist[2])
-    if speed > FAR * length * abs(turns):
+    if speed > SLIDES_BEYOND * length * abs(turns):
         return (
             f"sheet {hold.sheet.name} slides on plane {hold.plane.name}: {force:.3g} N pull it along, "
             f"and friction holds {most.part * force:.3g} N, {most.part:.3g} of it"

@@ -12,16 +12,11 @@ import numpy as np
 
 from mdlgen.backends.lattice.arrays import System
 from mdlgen.backends.lattice.kernels.state import Midpoint
+from mdlgen.backends.lattice.kernels.tuning import NORMALS_ALIKE, PLACES, TRIANGLES
 from mdlgen.backends.lattice.statics.limit import Grips, cone
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.point import AT, COUPLE, FORCE, KIND, MU_STATIC, NORMAL, OUT, POINT, POINTS
 from mdlgen.model.tables import BOX_CYLINDER, Floats, Model, SheetPart
-
-# Places over which the pressure of a sheet is spread, about, and of the side of a triangle of a face: with 8
-# the couple that one square face holds is within 0.3 %.
-PLACES, MOST = 4000, 8
-# Cosine of the angle by which normals of corners of one face differ at most, 1 less this.
-ALIKE = 1e-9
 
 
 class Press:
@@ -85,7 +80,7 @@ def grips(
 
 def _divided(pairs: int) -> int:
     """Into how many parts a side of a triangle is divided, of which a face with four corners has four."""
-    return int(np.clip(np.sqrt(PLACES / (4.0 * max(pairs, 1))), 1, MOST))
+    return int(np.clip(np.sqrt(PLACES / (4.0 * max(pairs, 1))), 1, TRIANGLES))
 
 
 def _same(one: Press, two: Press, k: int) -> bool:
@@ -100,7 +95,10 @@ def _faces(points: Floats) -> list[list[int]]:
     groups: list[list[int]] = []
     for i, point in enumerate(points):
         before = points[groups[-1][-1]] if groups else None
-        if before is not None and before[NORMAL : NORMAL + 3] @ point[NORMAL : NORMAL + 3] > 1.0 - ALIKE:
+        if (
+            before is not None
+            and before[NORMAL : NORMAL + 3] @ point[NORMAL : NORMAL + 3] > 1.0 - NORMALS_ALIKE
+        ):
             groups[-1].append(i)
         else:
             groups.append([i])

@@ -10,6 +10,7 @@ import numpy as np
 from mdlgen.backends.lattice.arrays import System, partner
 from mdlgen.backends.lattice.integrate.islands import groups
 from mdlgen.backends.lattice.integrate.record import Recorder
+from mdlgen.backends.lattice.kernels import tuning
 from mdlgen.backends.lattice.kernels.state import (
     ACTS,
     DEPTH_NOW,
@@ -24,6 +25,14 @@ from mdlgen.backends.lattice.kernels.state import (
     State,
     Workspace,
 )
+from mdlgen.backends.lattice.kernels.tuning import (
+    FEW_ITERATIONS,
+    FIRST_PART,
+    LEAST_PART,
+    MANY_ITERATIONS,
+    REST_MOST,
+    TETHER,
+)
 from mdlgen.backends.lattice.statics import lying, standing
 from mdlgen.mechanics.arm import FORCE_0
 from mdlgen.mechanics.frame import RADIUS, Motion
@@ -35,15 +44,6 @@ from mdlgen.model.overlaps.unheld import Unheld
 from mdlgen.model.parts.kinds import kind_of
 from mdlgen.model.tables import BOX_GUIDE, BOX_PLANE, GROUND, ON_PARTS, Model, SheetPart
 from mdlgen.results.result import Result
-
-FIRST_PART = 1.0  # of the load
-LEAST_PART = 1e-4
-FEW = 30  # iterations up to which a part grows
-MANY = 2000  # iterations after which a part that fails ends the run
-# Iterations after which no other part is begun: a hard sheet bent both ways takes many that do not fail.
-MOST = 200_000
-# Of the stiffest: holds sheets that lie on contacts only along what does not hold them.
-TETHER = 1e-9
 
 
 def rest(model: Model, system: System, work: Workspace) -> Result:
@@ -68,20 +68,20 @@ def rest(model: Model, system: System, work: Workspace) -> Result:
 
     def balanced(level: float, load: float) -> tuple[bool, int, int, float]:
         iterations, worst, left = 0, -1, 0.0
-        for _ in range(lying.MOST_GRIPS):
+        for _ in range(tuning.MOST_GRIPS):
             done, more, worst, left = entries.equilibrium(tables, size, level, load, *held, place, lists)
             iterations += more
             if not done or not grip.acts or level == 0.0:
                 return done, iterations, worst, left
             left = grip.changed(level, x, r, mid) / load
-            if left <= lying.STEADY:
+            if left <= tuning.STEADY:
                 return True, iterations, worst, left
         return False, iterations, worst, left
 
     def falls(level: float) -> int:
         nodes, (border, height) = len(system.nodes), size
         matrix = np.zeros((nodes, 6, height)), np.zeros((border, 6 * nodes)), np.zeros((border, border))
-        if entries.stands(tables, level, held[0], standing.SLOW, place, lists, matrix):
+        if entries.stands(tables, level, held[0], tuning.STANDS, place, lists, matrix):
             return 0
         return standing.falling(*matrix)
 
@@ -120,19 +120,19 @@ def _parts(model: Model, balanced: Callable, load: float, place: tuple) -> str |
     and the last place in balance."""
     level, part, iterations = 0.0, FIRST_PART, 0
     reason = None
-    while level < 1.0 and iterations < MOST:
+    while level < 1.0 and iterations < REST_MOST:
         aim = min(1.0, level + part)
         kept = [array.copy() for array in place]
         found, more, worst, left = balanced(aim, load)
         iterations += more
         if found:
-            level, part, reason = aim, 2 * part if more <= FEW else part, None
+            level, part, reason = aim, 2 * part if more <= FEW_ITERATIONS else part, None
             continue
         reason = _outside(model, place[0]) or _unbalanced(model, level, aim, worst, left * load)
         for array, old in zip(place, kept, strict=True):
             array[:] = old
         part *= 0.25
-        if part < LEAST_PART or iterations > MANY:
+        if part < LEAST_PART or iterations > MANY_ITERATIONS:
             break
     if level < 1.0 and reason is None:
         reason = f"no balance was found above {100 * level:.3g} % of the load in {iterations} iterations"

@@ -7,11 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from mdlgen.backends.lattice.kernels.tuning import STANDING_HALVINGS
 from mdlgen.model.tables import Floats
-
-# A balance that is left so slowly that it grows e-fold in ten seconds stands still [rad/ms].
-SLOW = 1e-4
-PARTS = 10  # halvings between a load at which a balance stands and one at which it does not
 
 
 def falling(band: Floats, border: Floats, corner: Floats) -> int:
@@ -59,7 +56,7 @@ def reason(ways: int, begins: float) -> str:
 def begins(stable: Callable[[float], bool]) -> float:
     """The part of the load above which no balance stands; `stable(level)`: one is found there, and does."""
     low, high = 0.0, 1.0
-    for _ in range(PARTS):
+    for _ in range(STANDING_HALVINGS):
         level = 0.5 * (low + high)
         low, high = (level, high) if stable(level) else (low, level)
     return 0.5 * (low + high)

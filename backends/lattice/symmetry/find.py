@@ -8,16 +8,12 @@ from dataclasses import fields, replace
 import numpy as np
 
 from mdlgen.backends.lattice.arrays import System
+from mdlgen.backends.lattice.kernels.tuning import MOVED, SAME, SAME_FORCE, TURNED
 from mdlgen.backends.lattice.symmetry.mirror import Mirror
-from mdlgen.backends.lattice.symmetry.parts import SAME, off, same, seen_as
+from mdlgen.backends.lattice.symmetry.parts import off, same, seen_as
 from mdlgen.mechanics.frame import Motion
 from mdlgen.model.rotations import matrices
 from mdlgen.model.tables import BOX_BOX, Floats, Ints, Model, SheetPart
-
-# How well both sides must agree in forces that sum up, relative to the largest one.
-SAME_FORCE = 1e-7
-# Motion for the comparison of forces: mm, rad, mm/ms, rad/ms.
-MOVED, TURNED = 1e-3, 1e-2
 
 
 def find(model: Model, system: System) -> Mirror | None:

@@ -9,11 +9,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from mdlgen.backends.lattice.kernels.tuning import SAME
 from mdlgen.backends.lattice.symmetry.mirror import Mirror
 from mdlgen.model.tables import GuidePart, MachinePart, Model, PlanePart, RollerPart
-
-# How well both sides must agree, relative to the largest number that is compared.
-SAME = 1e-9
 
 
 class _Kind(NamedTuple):

@@ -7,17 +7,13 @@ from typing import NamedTuple
 import numpy as np
 
 from mdlgen.backends.lattice.kernels.linear.band import solve_six
+from mdlgen.backends.lattice.kernels.tuning import COLUMNS, FEWEST_APART
 from mdlgen.mechanics.pair import on_fixed_plate
 from mdlgen.model.tables.contacts import BOX_BOX
 from mdlgen.program.kernel import BORROWS, njit
 
 # Where contacts stand: all apart; those with fixed plates in the matrix of the sheet; all of them there.
 APART, PLANES, INSIDE = 0, 1, 2
-# Boxes that may stand apart in any case. With more than stand apart, all contacts stand in a matrix without
-# the growth of friction with the normal force, and steps are halved where friction is high.
-FEWEST = 48
-# Memory for columns of the inverse [bytes].
-COLUMNS = 64e6
 
 # Of Condensed.kept: whether factors may be used again; how many boxes are active; how many stand in W.
 REUSE, ACTIVE, STANDING = 0, 1, 2
@@ -72,7 +68,7 @@ def empty(system, wide: int) -> Condensed:
     nodes, border, pairs = len(system.nodes), system.border, len(system.pairs)
     slots = int(min(nodes, max(8, COLUMNS / (288 * max(nodes, 1)))))
     # above this a factor of the whole matrix is cheaper than one of this system
-    most = int(min(slots, max(FEWEST, (1.5 * nodes * system.reach**2) ** (1 / 3))))
+    most = int(min(slots, max(FEWEST_APART, (1.5 * nodes * system.reach**2) ** (1 / 3))))
     size = 6 * most + border
     return Condensed(
         slot_of=np.full(nodes, -1, np.int64),

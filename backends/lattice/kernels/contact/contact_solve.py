@@ -34,6 +34,14 @@ from mdlgen.backends.lattice.kernels.contact.jacobian import (
 )
 from mdlgen.backends.lattice.kernels.forces import pair_forces, place_box, place_roller
 from mdlgen.backends.lattice.kernels.linear.dense import lu
+from mdlgen.backends.lattice.kernels.tuning import (
+    APART_HALVED,
+    APART_MOST,
+    CHORD,
+    CHORD_CAREFUL,
+    NEARLY,
+    USED_AGAIN,
+)
 from mdlgen.mechanics.arm import AXIAL, DAMPING, INERTIA, STIFFNESS, turn_of, way_of
 from mdlgen.mechanics.driven import clutch
 from mdlgen.mechanics.frame import RADIUS
@@ -42,15 +50,6 @@ from mdlgen.mechanics.point import FORCE_A, FORCE_B, OUT, POINT, POINTS
 from mdlgen.mechanics.vector import back, dot, mat, rotate, vec
 from mdlgen.model.tables.contacts import BOX_BOX
 from mdlgen.program.kernel import BORROWS, njit
-
-MOST_ITERATIONS = 40
-MOST_HALVED = 4
-# How much of the chord a derivative takes (see slopes.core): little first, much where that went astray.
-LITTLE, MUCH = 0.0, 0.7
-# Factors are used again where an iteration left less than this of the squares.
-GOOD = 0.04
-# An iteration that moves less than this times what is strictly wanted is not looked at again here.
-NEAR = 10.0
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -249,8 +248,8 @@ def solve_contacts(work, m, where, h, t, seen, limits):
     if merit <= 1e-2 * strict * strict:
         _apply(condensed, m, res, resb)
         return True
-    chord = LITTLE
-    for _ in range(MOST_ITERATIONS):
+    chord = CHORD
+    for _ in range(APART_MOST):
         same = activate(bodies, pairs, count, condensed)
         acting = condensed.kept[ACTIVE]
         short = 6 * acting + ub.size
@@ -271,21 +270,21 @@ def solve_contacts(work, m, where, h, t, seen, limits):
             z[i] += step[i]
         if not change < 1e30:
             return False
-        done = change <= NEAR * strict
+        done = change <= NEARLY * strict
         before, part = merit, 1.0
-        for halved in range(MOST_HALVED + 1):
+        for halved in range(APART_HALVED + 1):
             if done:
                 break
             count = _evaluate(tables, h, t, state, mid.motion, condensed, m)
             _impulses(tables, xm, h, t, ub, condensed, m, p)
             merit = _gap(condensed, m, many)
-            if merit <= before * (1.0 - 0.1 * part) or merit <= strict * strict or halved == MOST_HALVED:
+            if merit <= before * (1.0 - 0.1 * part) or merit <= strict * strict or halved == APART_HALVED:
                 break
             part *= 0.5
             for i in range(many):
                 z[i] -= part * step[i]
-        chord = MUCH if part < 0.2 else LITTLE
-        if merit > GOOD * before:
+        chord = CHORD_CAREFUL if part < 0.2 else CHORD
+        if merit > USED_AGAIN * before:
             condensed.kept[REUSE] = 0
         if done or (part == 1.0 and merit <= limit * limit):
             _apply(condensed, m, res, resb)

@@ -14,15 +14,9 @@ import math
 
 from mdlgen.backends.lattice.kernels.forces import near_of_model, near_of_search
 from mdlgen.backends.lattice.kernels.state import MANY, MARGIN, SLACK
+from mdlgen.backends.lattice.kernels.tuning import MOVED_UP_TO, SPARE, SPARE_PART
 from mdlgen.mechanics.overlap import MOVED
 from mdlgen.program.kernel import BORROWS, njit
-
-# The part of what boxes may move that two sheets may move together until the next look. A look sees to it
-# that twice that is left: a step may be taken again from its state, the other way.
-LEFT = 1.0 / 3.0
-# How much nearer pairs may come before they are listed anew [mm], where a step takes no more of it than the
-# other part.
-SPARE, SLOW = 0.01, 0.2
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -48,7 +42,7 @@ def look_ahead(work, h):
             sheet = drift.ends[k, end]
             if sheet >= 0:
                 was, now = was + drift.moved[sheet], now + h * drift.rates[sheet]
-        if not was + now - drift.looked[k] <= LEFT * MOVED * regions[k].least:
+        if not was + now - drift.looked[k] <= MOVED_UP_TO * MOVED * regions[k].least:
             drift.looked[k] = was - now
             drift.looks[k] += 1
 
@@ -73,7 +67,7 @@ def list_near(work, margin, h, found):
         # it moves as far again in the step as to its middle
         was = max(was, moved + 3.0 * h * rate - drift.list_moved[k])
     if not was <= may[SLACK] or margin > may[MARGIN]:
-        spare = SPARE if 3.0 * h * fastest <= SLOW * SPARE else 0.0
+        spare = SPARE if 3.0 * h * fastest <= SPARE_PART * SPARE else 0.0
         may[MARGIN], may[SLACK] = margin, spare if spare > 0.0 else -1.0
         may[MANY] = near_of_search(tables, motion, margin + spare, 2.0 * h, drift.listed)
         for k in range(regions.size):

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from mdlgen.backends.lattice.kernels.contact.drift import LEFT
 from mdlgen.backends.lattice.kernels.contact.search import law_of_boxes
+from mdlgen.backends.lattice.kernels.tuning import MOVED_UP_TO
 from mdlgen.mechanics.overlap import APART, CLEAR, MOVED, OVERLAPS, holds, press
 from mdlgen.mechanics.stick import press_sticking
 from mdlgen.program.kernel import BORROWS, njit
@@ -17,7 +17,7 @@ def is_known(work, k, a, b):
         return False
     if kept.look == looks[own.region]:
         return True
-    if not holds(kept, a, b, 2.0 * LEFT * MOVED * work.search.regions[own.region].least):
+    if not holds(kept, a, b, 2.0 * MOVED_UP_TO * MOVED * work.search.regions[own.region].least):
         return False
     kept.look = looks[own.region]
     return True

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from mdlgen.backends.lattice.kernels.tuning import SKIN
 from mdlgen.mechanics.frame import (
     LAW,
     LAW_BETA,
@@ -17,7 +18,6 @@ from mdlgen.mechanics.frame import (
 from mdlgen.model.tables import BOX_BOX
 from mdlgen.program.kernel import njit
 
-SKIN = 2.0  # mm
 EMPTY = -1  # kind of a pair that is none
 
 

@@ -10,11 +10,9 @@ from __future__ import annotations
 import math
 
 from mdlgen.backends.lattice.kernels.state import FACE_DEPTH, FACE_POINTS, MIDDLE
+from mdlgen.backends.lattice.kernels.tuning import CLOSER
 from mdlgen.mechanics.vector import back, mat, sub, transpose_matmul, vec
 from mdlgen.program.kernel import njit
-
-# What two boxes may come closer in one iteration, in half thicknesses of the thinner one.
-CLOSER = 0.5
 
 
 @njit(cache=True, error_model="numpy")

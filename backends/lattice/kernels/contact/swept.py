@@ -11,6 +11,7 @@ import numpy as np
 from mdlgen.backends.lattice.kernels.contact.search import law_of_boxes
 from mdlgen.backends.lattice.kernels.forces import place_box, place_roller
 from mdlgen.backends.lattice.kernels.state import ENDS, FACE_FORCE, FACE_POINTS, FORCE_NOW, MIDDLE, OWN_REACH
+from mdlgen.backends.lattice.kernels.tuning import SWEPT_LITTLE, SWEPT_MOST
 from mdlgen.mechanics.arm import turn_of, way_of
 from mdlgen.mechanics.bounds import fastest_place
 from mdlgen.mechanics.crossing import above, buried, closing, deepest, solid, unseen
@@ -44,10 +45,6 @@ from mdlgen.mechanics.vector import add, dot, mat, scale, sub, three, three_from
 from mdlgen.model.tables import BOX_CYLINDER, BOX_PLANE
 from mdlgen.program.kernel import BORROWS, njit
 
-# Pairs that would have to be looked at more often in a step want a smaller one.
-MOST_LOOKS = 64
-# Contacts of which each makes less than this part of the energy that may be made are not looked at.
-LITTLE = 1e-3
 # What contacts do beyond what is known of the middle of a step [N mm]: energy that they store, either way,
 # and that their damping misses; in the end MISSES has both.
 STORES, MISSES = 0, 1
@@ -158,11 +155,11 @@ def _faces_make_little(work, dt, least):
 def _made(work, count, dt, slower, may, rows):
     """Adds to `rows` (contacts, STORES and MISSES) the energy that contacts store in a step beyond the work
     done on them, and what their damping should have taken and did not. `slower`: see _changed; `may`: of each
-    contact, and the least. Boxes of two sheets that cannot make LITTLE of it together are left out."""
+    contact, and the least. Boxes of two sheets that cannot make SWEPT_LITTLE of it together are left out."""
     bodies, pairs, state, mid = work.tables.bodies, work.tables.pairs, work.state, work.mid
     touched, motion, ends, search = mid.touched, mid.motion, mid.fastest[ENDS], work.search
     listed, first = work.tables.listed, search.first
-    allowed, share = may[0], LITTLE / max(1, count)
+    allowed, share = may[0], SWEPT_LITTLE / max(1, count)
     every = _faces_make_little(work, dt, share * may[1])
     for k in range(count):
         faces = touched[k] >= first and mid.faces[k, FACE_POINTS] == 0.0
@@ -255,7 +252,7 @@ def swept(work, counts, t, dt, may, slower, rows):
             _fastest_at_ends(tables, state, slower, mid.fastest)
         _made(work, count, dt, slower, may, rows)
     known = 0
-    little = LITTLE * least if asked else 1e300
+    little = SWEPT_LITTLE * least if asked else 1e300
     regions, first = work.search.regions, work.search.first
     slow = _all_slow(tables, regions, mid.fastest[MIDDLE], dt, little)
     for at in range(close):
@@ -267,7 +264,7 @@ def swept(work, counts, t, dt, may, slower, rows):
         if near[at] >= first:
             own = listed[near[at] - first]
             region = regions[own.region]
-            little = LITTLE * allowed[region.row] if asked else 1e300
+            little = SWEPT_LITTLE * allowed[region.row] if asked else 1e300
             if _slow(bodies, own, region.k, mid.fastest[MIDDLE], dt, little):
                 continue
         pair = pairs[near[at]]
@@ -279,12 +276,12 @@ def swept(work, counts, t, dt, may, slower, rows):
         enters = False
         if asked and not touches:
             half = 0.5 * way
-            enters = 0.4 * pair.k * half * half * math.sqrt(half) > LITTLE * allowed[pair.row]
+            enters = 0.4 * pair.k * half * half * math.sqrt(half) > SWEPT_LITTLE * allowed[pair.row]
             enters = enters and _hits(bodies, pair, work.kept.rows)
             enters = enters and not _clear(bodies, pair, x, r, way)
         if way <= band and side == 0 and not inside and not enters:
             continue
-        if way > MOST_LOOKS * band:
+        if way > SWEPT_MOST * band:
             return near[at]
         if not made:
             made = True

@@ -19,15 +19,11 @@ from mdlgen.backends.lattice.kernels.state import (
     GROWTH,
     PRESSURES,
 )
+from mdlgen.backends.lattice.kernels.tuning import AIR_LEFT, AIR_MOST, CELL_ALONE
 from mdlgen.mechanics.film import factor, solve, times
 from mdlgen.mechanics.film_pairs import clear_films, close_rates, cover_pair, link_films, may_have_air
 from mdlgen.mechanics.vector import add, back, cross, dot, mat, rotate, scale, sub, three, three_from, vec
 from mdlgen.program.kernel import BORROWS, njit
-
-# A cell alone is so many times as stiff as its neighbours make it where they have no pressure.
-ALONE = 2.0
-# The ends of a step: iterations at most, and what they leave of the residual, squared.
-MOST_ITERATIONS, ENOUGH = 60, 1e-12
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -95,7 +91,7 @@ def air_forces(work):
 @njit(cache=True, error_model="numpy", **BORROWS)
 def damping_of(film, i):
     """What a cell alone damps, as it stands in the factored matrix [N ms/mm]."""
-    return ALONE * film.cells[i].area * film.cells[i].area / film.flow[i, 0]
+    return CELL_ALONE * film.cells[i].area * film.cells[i].area / film.flow[i, 0]
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -249,7 +245,7 @@ def air_overshoot(work, before, ahead, dt):
     _closes(work, end, push, r, h)
     _precondition(work, end, h)
     left = first = 0.0
-    for iteration in range(MOST_ITERATIONS + 1):
+    for iteration in range(AIR_MOST + 1):
         for i in range(q.size):
             q[i] = r[i]
         for k in range(film.films.size):
@@ -260,7 +256,7 @@ def air_overshoot(work, before, ahead, dt):
             first = after
         turn = after / left if iteration > 0 else 0.0
         left = after
-        if not left > ENOUGH * first or iteration == MOST_ITERATIONS:
+        if not left > AIR_LEFT * first or iteration == AIR_MOST:
             break
         for i in range(p.size):
             p[i] = q[i] + turn * p[i]

@@ -28,7 +28,7 @@ from mdlgen.backends.lattice.kernels.integrate.tangent import (
     turn_nodes,
 )
 from mdlgen.backends.lattice.kernels.linear.colouring import BEGIN, END, colour
-from mdlgen.backends.lattice.kernels.linear.coupled import LEFT, couplings_in_box_axes, solve_coupled
+from mdlgen.backends.lattice.kernels.linear.coupled import couplings_in_box_axes, solve_coupled
 from mdlgen.backends.lattice.kernels.linear.dense import copy
 from mdlgen.backends.lattice.kernels.linear.in_series import in_series
 from mdlgen.backends.lattice.kernels.linear.product import times
@@ -51,38 +51,25 @@ from mdlgen.backends.lattice.kernels.state import (
     STALE,
     WHERE,
 )
+from mdlgen.backends.lattice.kernels.tuning import (
+    AIR_FINE,
+    CONVEX_CHORD,
+    CONVEX_FACTOR_WORTH,
+    CONVEX_MOST,
+    CONVEX_MOST_WITH_AIR,
+    CONVEX_ROUGH,
+    CURED,
+    FACTOR_SERVES,
+    FIRST_DIRECTION,
+    LINEAR_LEFT,
+    LINEAR_LEFT_WITH_AIR,
+    SEARCH_DOUBLED,
+    SEARCH_LOOKS,
+    SLOPE_FOUND,
+    SLOPE_WHOLE,
+    SOLVED,
+)
 from mdlgen.program.kernel import BORROWS, njit
-
-MOST_ITERATIONS = 25
-# Cells of air have much in common that the matrix does not know: it takes more of them, and exact searches.
-MOST_WITH_AIR = 80
-# The matrix has of air what each cell does alone, so much of a direction is wrong anyhow: then a linear solve
-# leaves more (see coupled.LEFT).
-LEFT_WITH_AIR = 1e-2
-# What closes against air is slow beside all else: an iteration leaves this part of what the step may.
-FINE = 0.02
-# What an iteration of Newton's method leaves, in times what the step's own iterations may leave.
-ROUGH = 0.3
-# A linear solve leaves this part of what the step may, in the root mean square over a sheet, where that comes
-# before the end that it has by itself: in what rests a residual is little from the start. What is left stays
-# in the next step's residual: a pile at rest costs least with this part.
-SOLVED = 0.01
-# A direction is gone along wholly where the slope at its end is less than this part of that at its begin, and
-# else to where it is less than the other part.
-LEVEL, FLAT = 0.25, 0.1
-MOST_LOOKS, MOST_DOUBLED = 12, 4
-# A first direction that is gone along wholly is enough for one of the step's own iterations where it moves by
-# less than so many times what the step may leave: beyond, more of them take less than another evaluation.
-FIRST = 10.0
-# A factor may have contacts that held a sheet in an earlier state and no longer do: a change is then too
-# small. So where what is left of its momentum would move a sheet by more than FIRST if nothing held it, a
-# change must leave less than this part of it, or the factor is made anew.
-CURED = 0.5
-# A factor is worth so many iterations (see integrate.step). One that has served so many solves beyond one for
-# each step is made anew: what would be saved by that is not known, and has been spent by then.
-WORTH, SPEND = 4.0, 8.0
-# How much of the chord a factor takes (see slopes.steepness): little, since each direction is searched.
-LEAST = 0.05
 
 
 @njit(cache=True, error_model="numpy")
@@ -102,7 +89,7 @@ def _make_matrix(work, h, lag, renew):
                 a[n, c, r] = 0.0
     b[:] = 0.0
     copy(d, matrix.own)
-    points_into(work, h, LEAST)
+    points_into(work, h, CONVEX_CHORD)
     couplings = matrix.couplings
     if colour(couplings) and work.film.many[0] > 0:
         in_series(tables.bodies, tables.nodes, motion, matrix)
@@ -119,12 +106,12 @@ def _make_matrix(work, h, lag, renew):
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _how_far(work, h, falls, linear, square, level):
     """The part of a direction to go along. falls: the slope where it begins; linear + part square: what
-    masses and bushings have of it there; level: see LEVEL."""
+    masses and bushings have of it there; level: see SLOPE_WHOLE."""
     low, high, at_low = 0.0, 1.0, falls
     at_high = linear + square + slope(work, h, 1.0, True)
     if abs(at_high) <= level * abs(falls):
         return 1.0
-    for _ in range(MOST_DOUBLED):
+    for _ in range(SEARCH_DOUBLED):
         if at_high >= 0.0:
             break
         low, at_low = high, at_high
@@ -133,11 +120,11 @@ def _how_far(work, h, falls, linear, square, level):
     if at_high <= 0.0:
         return high
     part = high
-    for _ in range(MOST_LOOKS):
+    for _ in range(SEARCH_LOOKS):
         part = low - at_low * (high - low) / (at_high - at_low)
         part = min(max(part, low + 0.05 * (high - low)), high - 0.05 * (high - low))
         found = linear + part * square + slope(work, h, part, False)
-        if abs(found) <= FLAT * abs(falls):
+        if abs(found) <= SLOPE_FOUND * abs(falls):
             break
         if found > 0.0:
             high, at_high = part, found
@@ -247,18 +234,18 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
     before, along, part, gathered = 1e300, 0.0, 0.0, False
     iteration, converged, renewed = 0, False, False
     air = work.film.many[0] > 0
-    least = FIRST * limit
+    least = FIRST_DIRECTION * limit
     doubtful = False
     if not air:
         moves = let_go(work, work.free.residual, frozen.border[RESIDUAL], work.free.lets[BEFORE])
         doubtful = moves > least
     if air:
-        limit *= FINE
+        limit *= AIR_FINE
     _say_enough(work, limit)
     begins = renew
-    if begins and factored[SPENT] >= SPEND and not air:
+    if begins and factored[SPENT] >= FACTOR_SERVES and not air:
         factored[STALE] = 1.0
-    for iteration in range(MOST_WITH_AIR if air else MOST_ITERATIONS):
+    for iteration in range(CONVEX_MOST_WITH_AIR if air else CONVEX_MOST):
         if iteration == 0:
             copy(g, z)
             copy(gb, zb)
@@ -281,7 +268,7 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
         copy(zb, gb)
         counters[SOLVES] += 1
         factored[SPENT] += 0.0 if begins and iteration == 0 else 1.0
-        solve_coupled(matrix, LEFT_WITH_AIR if air else LEFT)
+        solve_coupled(matrix, LINEAR_LEFT_WITH_AIR if air else LINEAR_LEFT)
         # conjugate directions, by Polak and Ribiere: they make up for a factor of an earlier state
         square = _dot(g, z) + _dot(gb, zb)
         turn = max(0.0, (square - crossing) / along) if iteration > 0 and not made and along > 0.0 else 0.0
@@ -309,7 +296,7 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
             factored[STALE] = 1.0
             continue
         linear, square = _direction(work, axes, h)
-        part = _how_far(work, h, falls, linear, square, 0.0 if air else LEVEL)
+        part = _how_far(work, h, falls, linear, square, 0.0 if air else SLOPE_WHOLE)
         for i in range(p.size):
             of_change[i] += part * frozen.vectors[OF_DIRECTION, i]
             change[i] += part * p[i]
@@ -317,10 +304,10 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
             changeb[i] += part * pb[i]
         # a part of a direction may be small while what is left is not: it counts as a whole
         rate = moved / before
-        first = not whole and iteration == 0 and part == 1.0 and moved <= FIRST * limit
-        converged = first or moved <= ROUGH * limit
+        first = not whole and iteration == 0 and part == 1.0 and moved <= FIRST_DIRECTION * limit
+        converged = first or moved <= CONVEX_ROUGH * limit
         if before < 1e299 and part == 1.0 and rate < 0.5:
-            converged = converged or moved * rate / (1.0 - rate) <= ROUGH * limit
+            converged = converged or moved * rate / (1.0 - rate) <= CONVEX_ROUGH * limit
         if converged and doubtful and not renewed and not _cured(work, h, axes, part, least):
             converged, part, before, factored[STALE] = False, 0.0, 1e300, 1.0
             continue
@@ -329,7 +316,10 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
         if (
             before < 1e299
             and not (air and renewed)
-            and (rate >= 0.7 or math.log(ROUGH * limit / moved) < WORTH * math.log(max(rate, 1e-6)))
+            and (
+                rate >= 0.7
+                or math.log(CONVEX_ROUGH * limit / moved) < CONVEX_FACTOR_WORTH * math.log(max(rate, 1e-6))
+            )
         ):
             factored[STALE] = 1.0
         before = moved

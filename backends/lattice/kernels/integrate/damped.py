@@ -22,11 +22,10 @@ from mdlgen.backends.lattice.kernels.linear.band import empty as no_band
 from mdlgen.backends.lattice.kernels.linear.band import factor, solve_single
 from mdlgen.backends.lattice.kernels.linear.dense import copy
 from mdlgen.backends.lattice.kernels.state import DISSIPATED, Damped
+from mdlgen.backends.lattice.kernels.tuning import DAMPERS_LAST
 from mdlgen.mechanics.vector import back, mat, rotate
 from mdlgen.program.kernel import BORROWS, njit
 
-# Steps for which a factor is good: a sheet bends little in so many.
-LASTS = 50
 MADE_FOR, AGE = 0, 1  # of Damped.made
 # Rows of Damped.vectors: the momentum that lacks of a straight course, in box axes, and of that what the
 # dampers leave.
@@ -90,7 +89,7 @@ def overshoot(work, before, ahead, dt):
     push, left, end = work.damped.vectors[PUSH], work.damped.vectors[LEFT], work.damped.place
     x, v, l, u = work.state.x, work.state.v, work.state.l, work.state.u
     xm, rm = work.mid.motion.x, work.mid.motion.r
-    if made[MADE_FOR] != dt or made[AGE] >= LASTS:
+    if made[MADE_FOR] != dt or made[AGE] >= DAMPERS_LAST:
         masses(bodies, nodes, rm, band)
         joints_into(work.tables, joints, 0.5 * dt, 0.0, xm, rm, band, work.matrix.slots)
         border = np.zeros((0, 6 * nodes.size))

@@ -19,12 +19,8 @@ from mdlgen.backends.lattice.kernels.state import (
     OWN_SIZE,
     PARABOLA,
 )
+from mdlgen.backends.lattice.kernels.tuning import REMEMBERED, SMOOTH
 from mdlgen.program.kernel import BORROWS, njit
-
-# What a step counts, as a part of the one after it.
-REMEMBERED = 0.5
-# What a parabola misses is less than this part of what the others do, as squares, or it was by chance.
-SMOOTH = 0.5
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)

@@ -62,6 +62,16 @@ from mdlgen.backends.lattice.kernels.state import (
     TURNING_NOW,
     WORST,
 )
+from mdlgen.backends.lattice.kernels.tuning import (
+    EASY,
+    EASY_WITH_AIR,
+    FINEST,
+    GRAZE,
+    HALVINGS_MOST,
+    HARD,
+    HARD_WITH_AIR,
+    TAKEN_AGAIN,
+)
 from mdlgen.mechanics.crossing import deepest
 from mdlgen.mechanics.curve import overstretched
 from mdlgen.mechanics.frame import Motion
@@ -72,19 +82,6 @@ from mdlgen.mechanics.turning import TURNING, turning
 from mdlgen.program.kernel import BORROWS, njit
 
 DONE, STOPPED, LEFT, DEEP, STRETCHED, CROWDED, WOKEN = 0, 1, 2, 3, 4, 5, 6
-# How often a step may be halved.
-DEEPEST = 14
-# How often at most for accuracy, and how much more than wanted a step may miss before it is taken again.
-FINEST, AGAIN = 12, 4.0
-# Steps that take more iterations than the one are halved, and doubled again where they take less than the
-# other.
-HARD, EASY = 8, 5
-# With air a step takes as many where it is a hundred times as short: friction and the normal forces that it
-# wedges go back and forth there, and a film passes that on at any step.
-HARD_WITH_AIR, EASY_WITH_AIR = 14, 8
-# Two rollers with a sheet between them clear each other by a few micrometres and may graze: a force below
-# this part of the greatest is not counted as the nip still acting.
-GRAZE = 0.05
 
 
 class Last(NamedTuple):
@@ -321,9 +318,10 @@ def _ends(work, deep, counters):
 def run(work, t, steps, tolerance, control):
     """Takes the steps `steps` (n,) [ms] from time t. Returns (status, time reached).
 
-    A step is halved, up to DEEPEST times, where it does not converge, or where the velocities miss their
-    guess by more than pace[MISS]. `tolerance` and that are relative to the speed of each island. Nor may the
-    contacts of an island make or lose more in one step than pace[MADE] of its energy. See integrate.islands.
+    A step is halved, up to HALVINGS_MOST times, where it does not converge, or where the velocities miss
+    their guess by more than pace[MISS]. `tolerance` and that are relative to the speed of each island. Nor
+    may the contacts of an island make or lose more in one step than pace[MADE] of its energy. See
+    integrate.islands.
     Before a step that would move a box that sleeps the status is WOKEN, and the box is counters[WORST].
     """
     state, rows, counters, pace = work.state, work.kept.rows, control.counters, control.pace
@@ -338,9 +336,9 @@ def run(work, t, steps, tolerance, control):
         measure(work, t, 0)
     for whole in steps:
         done = 0
-        while done < 1 << DEEPEST:
+        while done < 1 << HALVINGS_MOST:
             level = int(pace[LEVEL])
-            size, dt, iterations = 1 << (DEEPEST - level), whole / (1 << level), counters[ITERATIONS]
+            size, dt, iterations = 1 << (HALVINGS_MOST - level), whole / (1 << level), counters[ITERATIONS]
             if not _predict(work, dt, control, last):
                 return CROWDED, t
             copy(guess, state.u)
@@ -356,14 +354,17 @@ def run(work, t, steps, tolerance, control):
                 # as a part of what it may miss
                 missed = missed_guess(work, guess, pace[FLOOR]) / (pace[MISS] if pace[MISS] > 0.0 else 1e300)
                 deep, made, solved = _judge(work, t, dt, control, last, stored, allowed)
-            if not solved or ((missed > AGAIN or made > AGAIN or deep >= 0) and level < FINEST):
+            if not solved or ((missed > TAKEN_AGAIN or made > TAKEN_AGAIN or deep >= 0) and level < FINEST):
                 copy(state.u, last.u)
                 copy(state.ub, last.ub)
-                if level == DEEPEST:
+                if level == HALVINGS_MOST:
                     return STOPPED, t
                 # what is made of energy goes with the step to the power of 5/2, or 3
-                halvings = math.ceil(math.log2(made) / 2.5) if made > AGAIN else 1
-                pace[LEVEL] = min(level + max(1, halvings), DEEPEST if level >= FINEST else FINEST)
+                halvings = math.ceil(math.log2(made) / 2.5) if made > TAKEN_AGAIN else 1
+                pace[LEVEL] = min(
+                    level + max(1, halvings),
+                    HALVINGS_MOST if level >= FINEST else FINEST,
+                )
                 if not solved:
                     counters[GIVEN_UP] += 1
                     forget(control.history)

@@ -20,20 +20,13 @@ from mdlgen.backends.lattice.kernels.state import (
     OWN_INERTIA,
     OWN_MASS,
 )
+from mdlgen.backends.lattice.kernels.tuning import EPSILON, FOLLOWED, STILL, UNITS
 from mdlgen.mechanics.arm import AXIAL, INERTIA, way_of
 from mdlgen.mechanics.driven import prescribed
 from mdlgen.mechanics.frame import RADIUS
 from mdlgen.mechanics.point import STORED
 from mdlgen.mechanics.vector import back, dot, mat, three_from, vec
 from mdlgen.program.kernel import BORROWS, njit
-
-# Where sheets may lie on each other, iterations follow a part down to 1/SLOW of its least speed, and leave
-# STILL of it at least: the midpoint rule damps nothing, so what they leave in a pile at rest would ring on.
-SLOW, STILL = 10.0, 0.005
-# Velocities are not resolved below so many units in the last place of a box's coordinates over half of the
-# step: a relative place is a sum of two coordinates and two arms, each of them rounded twice.
-UNITS = 8.0
-EPSILON = 2.220446049250313e-16  # of a double
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -144,7 +137,7 @@ def measure(work, t, count):
             energy[top[part]] += energy[part]
     if work.search.regions.size > 0:
         for part in range(top.size):
-            low = max(STILL * least[part], min(SLOW * speed[part], least[part]))
+            low = max(STILL * least[part], min(FOLLOWED * speed[part], least[part]))
             scale[part] = max(speed[part], low)
 
 

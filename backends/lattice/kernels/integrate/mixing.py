@@ -13,20 +13,13 @@ from __future__ import annotations
 import math
 
 from mdlgen.backends.lattice.kernels.linear.dense import cholesky, cholesky_solve
+from mdlgen.backends.lattice.kernels.tuning import ALIKE, LEAST_MIXED, MIXED, MOST_MIXED, TURNING_COUNTS
 from mdlgen.program.kernel import BORROWS, njit
 
-# Iterations that are mixed, beside the present one.
-DEPTH = 5
-# One alone is mixed within these bounds.
-LEAST_MIXED, MOST_MIXED = -5.0, 0.9
-# What turning counts in the mixing of changes [mm^2].
-TURNS = 10.0
-# What is so much alike, as a part of a change squared, is not distinguished from round-off.
-ALIKE = 1e-10
 # Rows of Matrix.mixing: the change and the velocities of the iteration before, and how changes and velocities
 # differed from one to the next.
 FOUND, BEFORE, DIFFERENCES = 0, 1, 2
-ROWS = DIFFERENCES + 2 * DEPTH
+ROWS = DIFFERENCES + 2 * MIXED
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, **BORROWS)
@@ -39,7 +32,7 @@ def _dot(a, b, turning):
         turns += a[i + 3] * b[i + 3] + a[i + 4] * b[i + 4] + a[i + 5] * b[i + 5]
     for i in range(turning, a.size):
         shifts += a[i] * b[i]
-    return shifts + TURNS * turns
+    return shifts + TURNING_COUNTS * turns
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -54,7 +47,7 @@ def _note(matrix, state, last):
     """Keeps the change and the velocities, and how they differ from those of the iteration before."""
     res, resb, mixing, u, ub = matrix.res, matrix.resb, matrix.mixing, state.u, state.ub
     found, before, size = mixing[FOUND], mixing[BEFORE], res.size
-    less, moved = mixing[DIFFERENCES + last], mixing[DIFFERENCES + DEPTH + last]
+    less, moved = mixing[DIFFERENCES + last], mixing[DIFFERENCES + MIXED + last]
     for i in range(size):
         _renew(found, less, i, res[i])
         _renew(before, moved, i, u[i // 6, i % 6])
@@ -71,28 +64,28 @@ def mix(matrix, state, many, depth):
     gram, (parts, scales) = matrix.gram, matrix.parts
     size, kept = res.size, min(many, depth)
     # before the first there is nothing: the row is filled again before it is used
-    _note(matrix, state, (many - 1) % DEPTH)
+    _note(matrix, state, (many - 1) % MIXED)
     if kept == 0:
         return
     gram[:] = 0.0
-    for i in range(DEPTH):
+    for i in range(MIXED):
         gram[i, i] = 1.0
         parts[i] = 0.0
     for i in range(kept):
-        own = mixing[DIFFERENCES + (many - 1 - i) % DEPTH]
+        own = mixing[DIFFERENCES + (many - 1 - i) % MIXED]
         square = _dot(own, own, size)
         scales[i] = 1.0 / math.sqrt(square) if square > 0.0 else 0.0
         parts[i] = scales[i] * _dot(own, mixing[FOUND], size)
         gram[i, i] += ALIKE
         for j in range(i):
-            other = mixing[DIFFERENCES + (many - 1 - j) % DEPTH]
+            other = mixing[DIFFERENCES + (many - 1 - j) % MIXED]
             gram[i, j] = scales[i] * scales[j] * _dot(own, other, size)
     if not cholesky(gram):
         return
     cholesky_solve(gram, parts)
     for k in range(kept):
-        row = DIFFERENCES + (many - 1 - k) % DEPTH
-        part, less, moved = scales[k] * parts[k], mixing[row], mixing[row + DEPTH]
+        row = DIFFERENCES + (many - 1 - k) % MIXED
+        part, less, moved = scales[k] * parts[k], mixing[row], mixing[row + MIXED]
         if depth == 1:
             part = min(max(part, LEAST_MIXED), MOST_MIXED)
         for i in range(size):

@@ -26,6 +26,7 @@ from mdlgen.backends.lattice.kernels.state import (
     OF_DIRECTION,
     STIFF,
 )
+from mdlgen.backends.lattice.kernels.tuning import REACH
 from mdlgen.mechanics.frame import frame_of
 from mdlgen.mechanics.laws import damped, friction_over_speed
 from mdlgen.mechanics.overlap import OVERLAPS, moves, plane_of
@@ -34,8 +35,6 @@ from mdlgen.mechanics.stick import coefficient
 from mdlgen.mechanics.vector import add, back, cross, mat, rotate, scale, sub, three, three_from, vec
 from mdlgen.program.kernel import BORROWS, njit
 
-# How far two faces may be open at a corner that may close in an iteration [mm].
-REACH = 0.003
 ZERO = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 

@@ -18,7 +18,7 @@ import math
 from mdlgen.backends.lattice.kernels.contact.between import look_at
 from mdlgen.backends.lattice.kernels.contact.overlaps import is_known
 from mdlgen.backends.lattice.kernels.integrate.air import damping_of
-from mdlgen.backends.lattice.kernels.integrate.patches import REACH, begin_patch
+from mdlgen.backends.lattice.kernels.integrate.patches import begin_patch
 from mdlgen.backends.lattice.kernels.state import (
     A_COUPLE,
     A_DAMPER,
@@ -43,6 +43,7 @@ from mdlgen.backends.lattice.kernels.state import (
     START,
     STICTION,
 )
+from mdlgen.backends.lattice.kernels.tuning import REACH
 from mdlgen.mechanics import point as law_point
 from mdlgen.mechanics.frame import LAW_SMOOTHING, frame_of, law_of
 from mdlgen.mechanics.laws import damped, friction_over_speed, sign_step

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mdlgen.backends.lattice.kernels.integrate.mixing import DEPTH, ROWS
+from mdlgen.backends.lattice.kernels.integrate.mixing import ROWS
 from mdlgen.backends.lattice.kernels.linear.band import empty as no_band
 from mdlgen.backends.lattice.kernels.linear.coupled import couplings
 from mdlgen.backends.lattice.kernels.state import (
@@ -19,6 +19,7 @@ from mdlgen.backends.lattice.kernels.state import (
     State,
     Sticks,
 )
+from mdlgen.backends.lattice.kernels.tuning import MIXED
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.overlap import OVERLAP
 from mdlgen.mechanics.point import MOST_POINTS
@@ -73,8 +74,8 @@ def empty(system, wide: int) -> tuple[State, Midpoint, Matrix]:
         unknowns=np.zeros(4, np.int64),
         couplings=couplings(len(system.pairs) - system.search.first, system.sheets, border),
         mixing=np.zeros((ROWS, 6 * nodes + border)),
-        gram=np.zeros((DEPTH, DEPTH)),
-        parts=np.zeros((2, DEPTH)),
+        gram=np.zeros((MIXED, MIXED)),
+        parts=np.zeros((2, MIXED)),
         offsets=system.offsets,
         slots=np.arange(system.reach + 1),
         inner_slots=np.searchsorted(system.offsets, np.arange(system.reach + 1)),

@@ -46,7 +46,7 @@ from mdlgen.backends.lattice.kernels.integrate.change import (
     take_off,
 )
 from mdlgen.backends.lattice.kernels.integrate.convex import solve_convex
-from mdlgen.backends.lattice.kernels.integrate.mixing import DEPTH, mix
+from mdlgen.backends.lattice.kernels.integrate.mixing import mix
 from mdlgen.backends.lattice.kernels.integrate.momentum import keep
 from mdlgen.backends.lattice.kernels.integrate.points import gather
 from mdlgen.backends.lattice.kernels.integrate.points_matrix import points_into
@@ -72,6 +72,22 @@ from mdlgen.backends.lattice.kernels.state import (
     TOUGH,
     WHERE,
 )
+from mdlgen.backends.lattice.kernels.tuning import (
+    CAREFUL_ABOVE,
+    CONTACT_ROUGH,
+    CONVEX_AFTER,
+    CONVEX_FOR,
+    FACTOR_WORTH,
+    FAR,
+    FREE,
+    LAG,
+    LAG_MOST,
+    MIXED,
+    NEWTON_MOST,
+    PLATE_CHORD,
+    PLATE_CHORD_CAREFUL,
+    SAME_FORCES,
+)
 from mdlgen.mechanics.arm import (
     AXIAL,
     DAMPING,
@@ -84,29 +100,6 @@ from mdlgen.mechanics.arm import (
 )
 from mdlgen.mechanics.vector import back, dot, mat, rotate, three, three_from, vec
 from mdlgen.program.kernel import BORROWS, njit
-
-# Newton iterations of one step before it is given up.
-MOST_ITERATIONS = 40
-FAR = 0.05  # mm: pairs that are closer than this, and what moves in a step, are looked at in it
-# A new factor, and columns for each box that touches, cost as much as this many iterations: it is made where
-# more of them are still to come at the rate of the last two.
-WORTH = 3.0
-FREE = 1e-5
-# Contacts are solved for to this many times the step's own limit in an iteration.
-ROUGH = 100.0
-# Damping of joints, as a part of h for 1 ms of a step, and at most.
-DAMPED, MOST_DAMPED = 1.0, 0.3
-# Forces of sheets on sheets are those before an iteration that changed less than this part of the limit that
-# holds where they move.
-SAME = 1e-3
-# Where contacts stand in the matrix, each iteration is a convex problem, which is solved to its end after so
-# many. In scenes of sheets on sheets as many iterations with contacts apart from the matrix, or with those of
-# fixed plates alone in it, are enough: then all stand in it, for so many steps.
-SHORTLY, MEMORY = 8, 200.0
-# How much of the chord a matrix has of contacts with fixed plates (see slopes.steepness): little converges
-# fast, much does not cross to the other side of what is flat, after an iteration that left more than the part
-# ONWARD of the change before.
-LITTLE, MUCH, ONWARD = 0.05, 0.7, 0.9
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -249,9 +242,9 @@ def midpoint(work, t, dt, tolerance, control):
     factored, counters = control.factored, control.counters
     res, resb = matrix.res, matrix.resb
     h = 0.5 * dt
-    lag = min(DAMPED * dt, MOST_DAMPED) * h
+    lag = min(LAG * dt, LAG_MOST) * h
     before = 1e300
-    careful, last = 0, SHORTLY if work.search.regions.size > 0 else MOST_ITERATIONS
+    careful, last = 0, CONVEX_AFTER if work.search.regions.size > 0 else NEWTON_MOST
     counters[THROUGH] = -1.0
     close, where, m = 0, int(factored[WHERE]), 0
     margin, moved, sheets = FAR, 0.0, work.search.regions.size > 0
@@ -259,7 +252,7 @@ def midpoint(work, t, dt, tolerance, control):
     lasting = sheets and tables.loads.size == 0 and mid.sticks.pairs.size == 0
     mid.sticks.half[0] = h
     inner, alike, air = 0, 0, False
-    for iteration in range(MOST_ITERATIONS):
+    for iteration in range(NEWTON_MOST):
         place(tables, h, t + h, state, mid.motion)
         if iteration == 0 or margin < dt * moved:
             # what the guess did not know of may move further than it said
@@ -287,12 +280,20 @@ def midpoint(work, t, dt, tolerance, control):
         if where == INSIDE:
             turn_nodes(nodes, condensed.axes, res, True)
             renew = iteration == 0 or factored[WHERE] != INSIDE
-            whole = air or iteration >= SHORTLY
+            whole = air or iteration >= CONVEX_AFTER
             inner = solve_convex(work, t + h, h, lag, (count, close), limit, control, renew, whole)
             if inner == 0:
                 break
         else:
-            made = _factor_for(work, (count, close), h, lag, where, MUCH if careful > 0 else LITTLE, control)
+            made = _factor_for(
+                work,
+                (count, close),
+                h,
+                lag,
+                where,
+                PLATE_CHORD_CAREFUL if careful > 0 else PLATE_CHORD,
+                control,
+            )
             if made < 0:
                 break
             if made > 0 and where == PLANES:
@@ -300,7 +301,9 @@ def midpoint(work, t, dt, tolerance, control):
             turn_nodes(nodes, condensed.axes, res, True)
             solve(matrix.band, res)
             columns(matrix.band, condensed, m)
-            if not solve_contacts(work, m, where, h, t + h, (close, count), (ROUGH * limit, 0.3 * limit)):
+            if not solve_contacts(
+                work, m, where, h, t + h, (close, count), (CONTACT_ROUGH * limit, 0.3 * limit)
+            ):
                 if not sheets:
                     break
                 # as a convex problem, with all contacts in the matrix, the iteration has a solution
@@ -316,7 +319,7 @@ def midpoint(work, t, dt, tolerance, control):
                 found = max(found, 2.0 * limit)
             # without air, steps that do not resolve contacts would end where they are halved otherwise: more
             # are mixed where a step goes back and forth between states that friction wedges
-            mix(matrix, state, alike, DEPTH if air or alike > SHORTLY else 1 if alike > 1 else 0)
+            mix(matrix, state, alike, MIXED if air or alike > CONVEX_AFTER else 1 if alike > 1 else 0)
             alike += 1
         keep(tables, mid.touched, count, work.film, work.free, (mid.motion.x, mid.motion.r), res)
         part = part_of_change(tables, mid.near, close, mid.motion.r, h, res)
@@ -336,18 +339,20 @@ def midpoint(work, t, dt, tolerance, control):
         if dt * moved <= margin and (change <= limit or (falls and change * rate / (1.0 - rate) <= limit)):
             # forces change much with what the last iteration changed: friction, over its smoothing speed
             place(tables, h, t + h, state, mid.motion)
-            if not lasting or change > SAME * control.pace[LOOSE]:
+            if not lasting or change > SAME_FORCES * control.pace[LOOSE]:
                 mid.forces[:] = 0.0
                 count, rubbed = _contact_forces(work, close, h, False)
             release(condensed, m)
-            factored[TOUGH] = MEMORY if iteration >= last else max(factored[TOUGH] - 1.0, 0.0)
+            factored[TOUGH] = CONVEX_FOR if iteration >= last else max(factored[TOUGH] - 1.0, 0.0)
             return _done(work, h, (count, close), (rubbed, power), counters)
-        slow = before < 1e299 and (rate >= 1.0 or math.log(limit / change) < (WORTH + m) * math.log(rate))
+        slow = before < 1e299 and (
+            rate >= 1.0 or math.log(limit / change) < (FACTOR_WORTH + m) * math.log(rate)
+        )
         if slow and (where != INSIDE or inner == 1):
             factored[STALE] = 1.0
-        if before < 1e299 and rate > ONWARD:
+        if before < 1e299 and rate > CAREFUL_ABOVE:
             careful = 2
         before = change
-    factored[MADE_FOR], factored[TOUGH] = 0.0, MEMORY if sheets else 0.0
+    factored[MADE_FOR], factored[TOUGH] = 0.0, CONVEX_FOR if sheets else 0.0
     release(condensed, m)
     return False

@@ -18,14 +18,9 @@ from mdlgen.backends.lattice.kernels.linear.colouring import ONE, TWO, Colouring
 from mdlgen.backends.lattice.kernels.linear.dense import copy
 from mdlgen.backends.lattice.kernels.linear.sheets import solve_sheets
 from mdlgen.backends.lattice.kernels.linear.two_colour import solve_coloured
+from mdlgen.backends.lattice.kernels.tuning import LINEAR_MOST
 from mdlgen.mechanics.vector import mat, matmul, transpose_matmul
 from mdlgen.program.kernel import BORROWS, njit
-
-MOST_ITERATIONS = 200
-# What may be left of the square of the residual, measured with the preconditioner: an iteration of Newton's
-# method leaves more itself where contacts open and close, so less costs iterations here and saves none there.
-# The method goes on after it, and loses no momentum to it (see momentum.keep).
-LEFT = 1e-3
 
 
 class Couplings(NamedTuple):
@@ -104,13 +99,13 @@ def _couple(couplings, p, q):
 @njit(cache=True, error_model="numpy")
 def solve_coupled(matrix, least):
     """Solves band, border and couplings in place, as bordered.solve_bordered does without the last; `least`:
-    see LEFT."""
+    see LINEAR_LEFT."""
     couplings, res, resb = matrix.couplings, matrix.res, matrix.resb
     if couplings.many[0] == 0:
         solve_bordered(matrix.band, matrix.border, matrix.eliminated, matrix.schur, res, resb)
         return
     if couplings.colouring.found[0] == 1:
-        solve_coloured(matrix, MOST_ITERATIONS, least)
+        solve_coloured(matrix, LINEAR_MOST, least)
         return
     many = res.size
     r, z, p, own, q = couplings.room
@@ -124,7 +119,7 @@ def solve_coupled(matrix, least):
     resb[:] = 0.0
     left = _dot(r, z)
     first = left
-    for _ in range(MOST_ITERATIONS):
+    for _ in range(LINEAR_MOST):
         if not left > least * first:
             break
         copy(q, own)

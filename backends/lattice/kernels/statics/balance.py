@@ -18,22 +18,23 @@ from mdlgen.backends.lattice.kernels.linear.bordered import eliminate, solve_bor
 from mdlgen.backends.lattice.kernels.linear.dense import copy
 from mdlgen.backends.lattice.kernels.statics.chain import follow, link, opening
 from mdlgen.backends.lattice.kernels.statics.stiffness import contacts_into, rollers_into, sheets_into
+from mdlgen.backends.lattice.kernels.tuning import (
+    BALANCE_MOST,
+    BALANCE_STILL,
+    BALANCE_TRIES,
+    EPSILON,
+    FIRST_SHIFT,
+    LEAST_SHIFT,
+    MOST_SHIFT,
+    MOST_TURN,
+    NO_WAY_BACK,
+    NOISE,
+    REST,
+    REST_AT_LEAST,
+)
 from mdlgen.mechanics.arm import FORCE_0, INERTIA, STIFFNESS
 from mdlgen.mechanics.frame import Motion
 from mdlgen.program.kernel import njit
-
-MOST_ITERATIONS = 100
-MOST_TRIES = 12  # of the length of one step
-MOST_TURN = 0.3  # rad: what a step may turn one box against the next
-REST = 1e-9  # residual that ends the iterations, relative to the load
-GOOD = 1e-6  # residual that is good enough where it falls no more
-STILL = 1e-8  # rad, and parts of a box: a step that ends the iterations where round-off hides the residual
-# Parts of the stiffest that are added to the diagonal where the matrix is not positive.
-LEAST_SHIFT, FIRST_SHIFT, MOST_SHIFT = 1e-12, 1e-10, 1e6
-# Of the entries of a stiffness: what round-off makes of its sums, times their number.
-NOISE = 1e-13
-_EPS = 2.2e-16
-_LOST = 1e30  # N, and parts of a box: what a run does not come back from
 
 
 @njit(cache=True, error_model="numpy")
@@ -175,13 +176,13 @@ def equilibrium(tables, size, level, load, least, reach, place, lists):
     for k in range(x.shape[0]):
         for i in range(3):
             far = max(far, abs(x[k, i]))
-    noise = 16.0 * _EPS * hard * far
+    noise = 16.0 * EPSILON * hard * far
     worst, at, count = _residual(tables, level, place, lists, blank, rest)
     best, since, shift = worst, 0, least
-    for iteration in range(MOST_ITERATIONS):
+    for iteration in range(BALANCE_MOST):
         if worst <= REST * load:
             return True, iteration, at, worst / load
-        if not worst < _LOST:
+        if not worst < NO_WAY_BACK:
             return False, iteration, at, worst / load
         sheets_into(bodies, joints, points, loads, level, gaps, x, r, a)
         rollers_into(bodies, b, d)
@@ -190,20 +191,20 @@ def equilibrium(tables, size, level, load, least, reach, place, lists):
         if shift < 0.0:
             return False, iteration, at, worst / load
         part, moved = _longest(bodies, joints, nodes, step, reach)
-        if not moved < _LOST:
+        if not moved < NO_WAY_BACK:
             return False, iteration, at, worst / load
         copy(x0, x)
         copy(r0, r)
         copy(s0, s)
         falls = _along(rest, step)
-        for _ in range(MOST_TRIES):
+        for _ in range(BALANCE_TRIES):
             follow(tables, links, part, step, before, place, room, gaps)
             worst, at, count = _residual(tables, level, place, lists, blank, rest)
             still_falls = _along(rest, step)
             if part * moved < 1e-6 or still_falls > -0.5 * falls:
                 break
             part *= min(0.7, max(0.1, falls / (falls - still_falls)))
-        if shift <= least and part * moved <= STILL and worst <= noise:
+        if shift <= least and part * moved <= BALANCE_STILL and worst <= noise:
             return True, iteration + 1, at, worst / load
         shift *= 0.1
         shift = max(shift if shift >= LEAST_SHIFT else 0.0, least)
@@ -211,9 +212,9 @@ def equilibrium(tables, size, level, load, least, reach, place, lists):
             best, since = worst, 0
         else:
             since += 1
-            if since >= 3 and worst <= GOOD * load:
+            if since >= 3 and worst <= REST_AT_LEAST * load:
                 return True, iteration + 1, at, worst / load
-    return worst <= GOOD * load, MOST_ITERATIONS, at, worst / load
+    return worst <= REST_AT_LEAST * load, BALANCE_MOST, at, worst / load
 
 
 @njit(cache=True, error_model="numpy")

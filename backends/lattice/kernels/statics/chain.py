@@ -8,6 +8,7 @@ says, and stand where their joints have the gaps that it says: a chain stays a c
 from __future__ import annotations
 
 from mdlgen.backends.lattice.kernels.linear.band import factor, solve
+from mdlgen.backends.lattice.kernels.tuning import HANGS_ON_NOTHING
 from mdlgen.mechanics.vector import (
     add,
     cross,
@@ -22,8 +23,6 @@ from mdlgen.mechanics.vector import (
 )
 from mdlgen.program.kernel import njit
 
-_LOOSE = 1e-12  # holds what hangs on nothing, where `follow` shares what the joints ask for
-
 
 @njit(cache=True, error_model="numpy")
 def link(bodies, joints, ground, a):
@@ -31,7 +30,7 @@ def link(bodies, joints, ground, a):
     a[:] = 0.0
     for n in range(a.shape[0]):
         for i in range(6):
-            a[n, i, i] = _LOOSE
+            a[n, i, i] = HANGS_ON_NOTHING
     for j in range(joints.size):
         na, nb = bodies[joints[j].a if joints[j].a >= 0 else ground].node, bodies[joints[j].b].node
         for i in range(3):

@@ -10,6 +10,7 @@ import math
 import numpy as np
 
 from mdlgen.backends.lattice.kernels.linear.dense import copy
+from mdlgen.backends.lattice.kernels.tuning import DIFFERENCE
 from mdlgen.mechanics.arm import STIFFNESS
 from mdlgen.mechanics.curve import curve_spring
 from mdlgen.mechanics.pair import pair_force
@@ -32,8 +33,6 @@ from mdlgen.mechanics.vector import (
     vec,
 )
 from mdlgen.program.kernel import njit
-
-_SMALL = 1e-6  # mm, rad: differences of contact forces
 
 
 @njit(cache=True, error_model="numpy")
@@ -236,7 +235,7 @@ def contacts_into(tables, touched, count, motion, a, b, d):
             copy(keep[:3], x[body])
             copy(keep[3:], r[body])
             for side in range(2):
-                _move(x, r, body, bodies[body].way, c % 7, _SMALL if side == 0 else -_SMALL)
+                _move(x, r, body, bodies[body].way, c % 7, DIFFERENCE if side == 0 else -DIFFERENCE)
                 out[:] = 0.0
                 pair_force(bodies, pair, shapes, motion, out)
                 copy(x[body], keep[:3])
@@ -246,7 +245,7 @@ def contacts_into(tables, touched, count, motion, a, b, d):
                     copy(g[side, 7 * end : 7 * end + 6], out[6 * end : 6 * end + 6])
                     g[side, 7 * end + 6] = dot(three(out[6 * end :]), three(way))
             for i in range(14):
-                own[c, i] = (g[1, i] - g[0, i]) / (2.0 * _SMALL)
+                own[c, i] = (g[1, i] - g[0, i]) / (2.0 * DIFFERENCE)
         for c in range(14):
             for i in range(14):
                 if index[c] < 0 or index[i] < 0:
