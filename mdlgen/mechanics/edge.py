@@ -5,7 +5,7 @@ lines. A point of a sheet is u inside of the end and h below the face.
 
 Two contacts belong to an end. In the one the edge presses into the broad face of a box, which slides over it
 (`line`): its normal is that of the box's face, as over a small roller, and its depth that of a cylinder of
-the edge's radius r about an axis r inside of both faces; where a free side of the sheet is on the round, its
+the edge's radius r about an axis r inside of both faces; where the free side behind comes to the round, its
 depth is that of the cylinder in the corner there (`into_corner`), which rolls off it. In the other an outer
 side of a sheet stands against the end (`stub`): of the rounded section, with the angle a of the round's
 normal to that of the face at the depth h, cos a = 1 - h/r,
@@ -66,6 +66,20 @@ def leaning(sine):
     """How much of the law of the edge acts at a slope of the box, 0 to 1."""
     s = min(max((sine - LEVEL) / (LEANING - LEVEL), 0.0), 1.0)
     return s * s * (3.0 - 2.0 * s)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def hands_over(a, exposed, inside, way):
+    """Within how many radii of the end of a plate the corners of a face begin to hand over to its edge. The
+    middle of box a is so far `inside` of the end, `way` looks out of it. An outer side ahead has 1: the edge
+    takes it by how far it is on the round (`_passes`). Else it is 2: on the round the edge has it alone.
+    """
+    if inside <= 0.0:
+        return 2.0
+    one = a.r[0] * way[0] + a.r[3] * way[1] + a.r[6] * way[2]
+    two = a.r[1] * way[0] + a.r[4] * way[1] + a.r[7] * way[2]
+    p, along = (0, one) if abs(one) > abs(two) else (1, two)
+    return 1.0 if exposed & (1 << (2 * p + (1 if along > 0.0 else 0))) != 0 else 2.0
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -188,26 +202,24 @@ def stub(out, a, half, p, sign, end, plate, b, law):
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def _passes(c, half, inner_low, inner_high):
-    """How much of the edge a box of a sheet has that it meets at c: all but near a neighbour, which takes
-    over there."""
-    weight = 1.0
-    for side in range(2):
-        left, inner = (half - c, inner_high) if side == 0 else (half + c, inner_low)
-        if inner:
-            weight *= min(max(0.5 + left / (4.0 * SHARED * half), 0.0), 1.0)
-    return weight
+def _passes(left, inner, half, radius):
+    """How much of the edge a box has that it meets so far inside of a side: all but near it, where the next
+    box takes over (`inner`), or where a free side ahead comes to the round."""
+    if inner:
+        return min(max(0.5 + left / (4.0 * SHARED * half), 0.0), 1.0)
+    return min(max(left / max(radius, 1e-3 * half), 0.0), 1.0)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def into_corner(face, side):
-    """How deep a point is in a quarter of a plane, and the growth of that with both: it is `face` deep below
-    the one face of it, and `side` beyond the other, a free side. Outside of both it is below zero by the
+def into_corner(face, side, thick):
+    """How deep a point is in the end of a layer, and the growth of that with both: it is `face` inside of the
+    one face of it, which is `thick`, and `side` inside of its end. Outside of both it is below zero by the
     distance from the corner; inside it is what is less, and passes from one to the other without a jump
     (Holder's mean of power -NORM)."""
-    if face <= 0.0 and side <= 0.0:
-        far = math.sqrt(face * face + side * side)
-        return (-far, -face / far, -side / far) if far > 0.0 else (0.0, 1.0, 0.0)
+    if side <= 0.0 and (face <= 0.0 or face > thick):
+        beyond = face if face <= 0.0 else face - thick
+        far = math.sqrt(beyond * beyond + side * side)
+        return (-far, -beyond / far, -side / far) if far > 0.0 else (0.0, 1.0, 0.0)
     if face <= 0.0 or side >= 1e3 * face:
         return face, 1.0, 0.0
     if side <= 0.0 or face >= 1e3 * side:
@@ -228,6 +240,7 @@ def _pressed(out, a, box, face, edge, end, b, law, grip):
     half, exposed = box
     q, sign = face
     axis, radius = edge
+    sheet = exposed != 15
     p, r = (q + 1) % 3, (q + 2) % 3
     normal = scale(sign, (a.r[q], a.r[3 + q], a.r[6 + q]))
     lean = dot(normal, end.out)
@@ -239,6 +252,10 @@ def _pressed(out, a, box, face, edge, end, b, law, grip):
         p, r = r, p
     if abs(way[p]) < 0.1:
         return
+    # of a sheet that leaves the end: whether its low or high side across the edge is a free one behind
+    behind = dot((a.r[r], a.r[3 + r], a.r[6 + r]), end.out)
+    low_behind = sheet and exposed & (1 << (2 * r)) != 0 and behind > 0.0
+    high_behind = sheet and exposed & (2 << (2 * r)) != 0 and behind < 0.0
     first, last = -end.length, end.length
     for side in range(2):
         i = p if side == 0 else r
@@ -246,9 +263,10 @@ def _pressed(out, a, box, face, edge, end, b, law, grip):
         low = i == 2 or exposed & (1 << (2 * i)) != 0
         high = i == 2 or exposed & (2 << (2 * i)) != 0
         more = 0.0 if side == 0 else 2.0 * SHARED * half[i]
-        # a free side across the edge is on the round as far as that goes
-        free = 0.0 if side == 0 else radius
-        least, most = -half[i] - (free if low else more), half[i] + (free if high else more)
+        least, most = -half[i] - (0.0 if low else more), half[i] + (0.0 if high else more)
+        if side == 1:  # what is behind is on the round as far as that goes
+            least -= radius if low_behind else 0.0
+            most += radius if high_behind else 0.0
         if abs(way[i]) < 1e-12:
             if place[i] < least or place[i] > most:
                 return
@@ -264,21 +282,23 @@ def _pressed(out, a, box, face, edge, end, b, law, grip):
     for station in range(2):
         s = 0.5 * (first + last) + (station - 0.5) * _GAUSS * (last - first)
         at = add(place, scale(s, way))
-        face = sign * at[q] + half[q]
-        low, high = EVER if inner_low else half[r] + at[r], EVER if inner_high else half[r] - at[r]
-        side, inward = (low, 1.0) if low < high else (high, -1.0)
-        if face - 2.0 * half[q] > side:
+        inside, low, high = sign * at[q] + half[q], half[r] + at[r], half[r] - at[r]
+        free = min(EVER if inner_low else low, EVER if inner_high else high)
+        if inside - 2.0 * half[q] > max(free, 0.0):
             # the edge is beyond the box, and nearer to its free side: that side came in over the plate's face
             continue
-        depth, through, beside = into_corner(face, side)
+        left = low if low_behind else high if high_behind else EVER
+        depth, through, beside = into_corner(inside, left, 2.0 * half[q])
         depth += radius
         if depth <= 0.0:
             continue
-        spring = share * _passes(at[r], half[r], inner_low, inner_high) * depth * math.sqrt(depth)
+        weight = 1.0 if low_behind else _passes(low, inner_low, half[r], radius)
+        weight *= 1.0 if high_behind else _passes(high, inner_high, half[r], radius)
+        spring = share * weight * depth * math.sqrt(depth)
         if spring <= 0.0:
             continue
         steep = math.sqrt(through * through + beside * beside)
-        across = scale(inward, (a.r[r], a.r[3 + r], a.r[6 + r]))
+        across = scale(1.0 if low_behind else -1.0, (a.r[r], a.r[3 + r], a.r[6 + r]))
         onto = scale(1.0 / steep, add(scale(through, normal), scale(beside, across)))
         # where the round would touch
         point = add(a.x, add(rotate(a.r, at), scale(-radius, onto)))

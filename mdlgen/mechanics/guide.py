@@ -20,7 +20,7 @@ import math
 import numpy as np
 
 from mdlgen.mechanics.contact import box_sector, clip, face_corners, outer
-from mdlgen.mechanics.edge import HOLDS, UPPER, held, leaning
+from mdlgen.mechanics.edge import HOLDS, UPPER, hands_over, held, leaning
 from mdlgen.mechanics.frame import ARC_ANGLE, ARC_MIDDLE, ARC_RADIUS, Cylinder, Sector, scaled
 from mdlgen.mechanics.plate import box_ends, box_flat, corner_areas, facing
 from mdlgen.mechanics.point import Load, push
@@ -137,9 +137,10 @@ def _hollow(out, a, box, b, plate, look, tilted, law):
     """The face of box a that looks at the hollow face of an arc: `look` and its normal `tilted` (into the
     box), in box and guide's axes."""
     shape, half_b, top, ends, edge = plate.shape, plate.half, plate.top, plate.ends, plate.edge
-    rb = b.r
+    half, exposed = box
+    rb, middle = b.r, back(b.r, sub(a.x, b.x))
     points = np.empty((12, 3))
-    area = face_corners(points, a, box.half, look, b)
+    area = face_corners(points, a, half, look, b)
     count = _covered(points, shape, half_b)
     if count < 3:
         return
@@ -161,10 +162,11 @@ def _hollow(out, a, box, b, plate, look, tilted, law):
                 continue
             beyond = _beyond(j, shape)
             lean = dot(tilted, beyond)
-            part = 2.0 - max(-dot(point, beyond), 0.0) / max(edge[UPPER], 1e-300)
+            over = hands_over(a, exposed, -dot(middle, beyond), rotate(rb, beyond))
+            part = over - max(-dot(point, beyond), 0.0) / max(edge[UPPER], 1e-300)
             if lean > 0.0 and part > 0.0:
                 weight *= 1.0 - leaning(lean) * min(part, 1.0)
-                part = max(part - 1.0, 0.0)
+                part = max(part - over + 1.0, 0.0)
                 way = add(scale(1.0 - part, way), scale(part, tilted))
         way = scale(1.0 / math.sqrt(dot(way, way)), way)
         depth *= min(1.0, dot(way, normal))

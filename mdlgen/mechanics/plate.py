@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 from mdlgen.mechanics.contact import clip, face_corner, face_corners, looking, outer
-from mdlgen.mechanics.edge import HOLDS, LOWER, UPPER, end_of, held, leaning, line, stub
+from mdlgen.mechanics.edge import HOLDS, LOWER, UPPER, end_of, hands_over, held, leaning, line, stub
 from mdlgen.mechanics.frame import ARC_RADIUS, Frame
 from mdlgen.mechanics.point import Load, push
 from mdlgen.mechanics.vector import add, back, cross, dot, rotate, scale, sub, vec
@@ -140,6 +140,13 @@ def box_flat(out, a, box, b, plate, covered, law):
             count = 0
         share = law.k / (area if covered else over)
         inward = back(rb, facing(look, ra))
+        x, z = (rb[0], rb[3], rb[6]), (rb[2], rb[5], rb[8])
+        overs = (
+            hands_over(a, box.exposed, half_b[0] - at[0], x),
+            hands_over(a, box.exposed, half_b[0] + at[0], scale(-1.0, x)),
+            hands_over(a, box.exposed, half_b[1] - at[2], z),
+            hands_over(a, box.exposed, half_b[1] + at[2], scale(-1.0, z)),
+        )
         if not covered and ends != 0:
             share *= _drawn(points, count, half_b, ends, radius)
         for i in range(count):
@@ -148,7 +155,7 @@ def box_flat(out, a, box, b, plate, covered, law):
                 continue
             weight, way = share * areas[i], normal
             if ends != 0:
-                weight, way = _near_end(points[i], half_b, ends, radius, inward, normal, weight)
+                weight, way = _near_end(points[i], half_b, ends, overs, radius, inward, normal, weight)
                 depth *= sign * way[1]
                 way = held(way, normal, edge[HOLDS] * law.mu_static)
             spring = weight * depth * math.sqrt(depth)
@@ -181,9 +188,9 @@ def _drawn(points, count, half_b, ends, radius):
 
 
 @njit(cache=True, error_model="numpy")
-def _near_end(point, half_b, ends, radius, inward, normal, share):
+def _near_end(point, half_b, ends, overs, radius, inward, normal, share):
     """(part of k, normal) of a corner of what lies over the plate: at a free end beyond which the box slopes
-    down the edge takes over, from two radii before the end to one, with the normal of the box's face."""
+    down the edge takes over, with the normal of the box's face. overs: see edge.hands_over, for each end."""
     weight, way = share, normal
     for i in range(4):
         if ends & (1 << i) == 0:
@@ -192,11 +199,12 @@ def _near_end(point, half_b, ends, radius, inward, normal, share):
         lean = sign * (inward[0] if i < 2 else inward[2])
         if lean <= 0.0:
             continue
-        part = 2.0 - max(_inset(point, i, half_b), 0.0) / max(radius, 1e-300)
+        over = overs[i]
+        part = over - max(_inset(point, i, half_b), 0.0) / max(radius, 1e-300)
         if part <= 0.0:
             continue
         weight *= 1.0 - leaning(lean) * min(part, 1.0)
-        part = max(part - 1.0, 0.0)
+        part = max(part - over + 1.0, 0.0)
         way = add(scale(1.0 - part, way), scale(part, inward))
     size = math.sqrt(dot(way, way))
     return weight, scale(1.0 / size, way)
