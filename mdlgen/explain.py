@@ -90,7 +90,8 @@ SCENE = {
         "A roller and a plane, a guide or a mesh are in each other's way, and no contact holds them apart. "
         "A run in which they, apart at its start, come to overlap by more than 0.05 mm ends with both names. "
         "Give the two a contact. What overlaps from the start, as a roller that looks out of a hole in a "
-        "plate, is not counted, nor is a roller that presses on that one and is not wider."
+        "plate, is not counted, nor is a roller that presses on that one from above it and is no wider and "
+        "no larger."
     ),
     "W120": (
         "At the start two sheets are nearer to each other than half of the thickness of the thinner one, or "

@@ -1,9 +1,10 @@
 """Rollers and the plates, guides and meshes that they have no contact with: whether they come to overlap.
 
 What overlaps where it is given stands in a hole that is not modelled, and is left alone. So is a roller that
-presses on one in such a hole and is not wider: where the nip gives way it comes into the same hole. What is
-apart there and overlaps later, or once springs are in balance, would need a contact, and a run ends. Looked
-at are pairs of which a part moves: a roller on a slide or an arm, a plate on a slide.
+presses on one in such a hole, right below it, and is no wider and no larger: where the nip gives way it comes
+into the same hole. What is apart there and overlaps later, or once springs are in balance, would need a
+contact, and a run ends. Looked at are pairs of which a part moves: a roller on a slide or an arm, a plate on
+a slide.
 """
 
 from __future__ import annotations
@@ -74,13 +75,20 @@ class Overlaps:
                     yield roller, part
 
     def _over_a_hole(self, roller: RollerPart, part: MachinePart) -> bool:
-        """Whether a roller has a contact with one that stands in a hole of the part, and is not wider."""
+        """Whether a roller is pressed on one that stands in a hole of the part, right below it, and is no
+        wider and no larger."""
+        press = roller.press
+        if press is None or _press(part) is not None:
+            return False
         for other in self._model.rollers:
             nip = {(roller.name, other.name), (other.name, roller.name)} & self._met
-            if not nip or (other.name, part.name) in self._met:
+            if not nip or (other.name, part.name) in self._met or other.radius < roller.radius:
                 continue
-            along = abs(float((other.center - roller.center) @ roller.axis))
-            if along + 0.5 * (roller.width - other.width) <= HAIR and self._given(other, part) > HAIR:
+            gap = other.center - roller.center
+            along, ahead = float(gap @ roller.axis), float(gap @ press.direction)
+            aside = float(np.linalg.norm(gap - along * roller.axis - ahead * press.direction))
+            narrow = abs(along) + 0.5 * (roller.width - other.width) <= HAIR
+            if ahead > 0.0 and aside <= HAIR and narrow and self._given(other, part) > HAIR:
                 return True
         return False
 
