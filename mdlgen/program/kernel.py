@@ -145,24 +145,22 @@ class Kernel:
         return self.piece._numba_type_
 
 
-def intrinsic(function: Callable[..., Any], plain: Callable[..., Any] | None = None) -> Intrinsic:
+def intrinsic(function: Callable[..., Any], plain: Callable[..., Any]) -> Intrinsic:
     """Makes an Intrinsic of a function, which is as for `numba.extending.intrinsic`; `plain` does the same in
     Python."""
     return Intrinsic(function, plain)
 
 
 class Intrinsic:
-    """What kernels call that LLVM knows and Python does not: atomic operations, vectors."""
+    """What kernels call that LLVM knows and Python does not, as vectors."""
 
-    def __init__(self, function: Callable[..., Any], plain: Callable[..., Any] | None):
+    def __init__(self, function: Callable[..., Any], plain: Callable[..., Any]):
         functools.update_wrapper(self, function)
         self._function, self._plain = function, plain
         self._made: Any = None
 
     def __call__(self, *args: Any) -> Any:
-        """What it does in Python; where that is not known no kernel that runs as Python may come here."""
-        if self._plain is None:
-            raise NotImplementedError(f"{self._function.__name__} is for compiled code only")
+        """What it does in Python."""
         return self._plain(*args)
 
     @property

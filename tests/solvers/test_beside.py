@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from typing import Any
 
+import numpy as np
 import pytest
 from asked import as_asked
 from machines import MACHINE
@@ -14,7 +15,7 @@ import mdlgen
 from mdlgen.backends.lattice import run as lattice
 from mdlgen.backends.lattice.integrate.beside import Stopped
 from mdlgen.backends.lattice.kernels.entries import PROGRAM
-from mdlgen.errors import OutputError
+from mdlgen.errors import OutputError, SpecError
 from mdlgen.model.tables import Model
 from mdlgen.paths import samples
 from mdlgen.results.io.store import hdf5
@@ -191,3 +192,17 @@ def test_a_processor_is_free_where_no_pass_takes_it(
     lattice.solve(model_of("transport_tilted"), keep=keep, threads=threads)
     assert seen[0] is at_the_start
     assert keep.free.is_set()
+
+
+@pytest.mark.parametrize("threads", ["0", "-1", "1.5", "true"])
+def test_run_threads_of_older_scenes_is_a_number_still(threads: str) -> None:
+    with pytest.raises(SpecError, match=r"run\.threads"):
+        mdlgen.load(samples() / "pile.yaml", [f"run.threads={threads}"])
+
+
+def test_run_threads_has_no_effect() -> None:
+    one, two = (
+        lattice.solve(mdlgen.lower(mdlgen.load(samples() / "stack.yaml", [*GIVEN, f"run.threads={n}"])))
+        for n in (1, 2)
+    )
+    assert np.array_equal(one.position, two.position) and one.steps == two.steps

@@ -386,10 +386,15 @@ def test_a_sheet_that_falls_says_so() -> None:
 def test_small_parts_that_all_balance_end_too(monkeypatch: pytest.MonkeyPatch) -> None:
     """Parts that take many iterations do not grow; the cap is on all of them."""
     monkeypatch.setattr(static, "FIRST_PART", 0.01)
-    monkeypatch.setattr(static, "MOST", 10 * static.FEW)
+    monkeypatch.setattr(static, "REST_MOST", 10 * static.FEW_ITERATIONS)
     made = model("cantilever", "sheets.note.boxes=[1,2]")
-    reason = static._parts(made, lambda level, load: (True, static.FEW + 1, 0, 0.0), 1.0, (np.zeros(3),))
-    assert reason == f"no balance was found above 10 % of the load in {10 * (static.FEW + 1)} iterations"
+    reason = static._parts(
+        made, lambda level, load: (True, static.FEW_ITERATIONS + 1, 0, 0.0), 1.0, (np.zeros(3),)
+    )
+    assert (
+        reason
+        == f"no balance was found above 10 % of the load in {10 * (static.FEW_ITERATIONS + 1)} iterations"
+    )
 
 
 def test_driven_rollers_are_refused_and_others_are_not() -> None:

@@ -91,7 +91,6 @@ class Sleep:
     def look(self, t: float, tolerance: float) -> None:
         """Finds islands, and puts to sleep what has been still for long enough at the time t [ms];
         `tolerance`: of a step."""
-
         if not len(self._sheets):
             return
         asleep, rows = self.work.asleep, self.work.kept.rows

@@ -132,8 +132,8 @@ class Matrix(NamedTuple):
     unknowns: Ints  # (4,) scratch: which unknowns these are
     couplings: Any  # coupled.Couplings
     mixing: Floats  # changes and velocities of iterations (mixing.ROWS, 6 nodes + border)
-    gram: Floats  # (DEPTH, DEPTH) scratch: products of how the changes differed
-    parts: Floats  # (2, DEPTH) scratch: how much of each is mixed, and its scale
+    gram: Floats  # (MIXED, MIXED) scratch: products of how the changes differed
+    parts: Floats  # (2, MIXED) scratch: how much of each is mixed, and its scale
     # masses and bushings alone, in box axes, where contacts stand in the band: of each column the blocks of
     # `offsets` alone, (nodes, 6, 6 offsets)
     inner: Floats
@@ -155,7 +155,6 @@ class Frozen(NamedTuple):
     patches: np.ndarray  # PATCH
     pair: Ints  # of each point, (room,)
     ends: np.ndarray  # ENDS_OF_POINT of each
-    rolls: np.ndarray  # whether each is on a body that is an unknown of the border, (room,)
     many: Ints  # (3,) how many points, patches, and patches with corners there are
     lying: Ints  # numbers of the patches that have corners, rising, (patches,)
     of_patches: Floats  # (1,) what patches add to the slope where they were evaluated last

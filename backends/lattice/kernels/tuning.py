@@ -75,8 +75,8 @@ LAG, LAG_MOST = 1.0, 0.3
 CONTACT_ROUGH = 100.0
 
 # Convention: in scenes of sheets on sheets so many iterations with contacts apart from the matrix, or with
-# those of fixed plates alone in it, are enough; then all stand in it, and after so many again a convex
-# problem is solved to its end.
+# those of fixed plates alone in it, are enough; then all stand in it. From so many iterations of a step on a
+# convex problem is solved to its end, and more changes are mixed.
 CONVEX_AFTER = 8
 
 # Convention: for so many steps all contacts stand in the matrix then.
@@ -395,5 +395,5 @@ SAME = 1e-9
 # Convention: and in forces that sum up.
 SAME_FORCE = 1e-7
 
-# [mm], [rad] Convention: motion for the comparison of forces.
+# [mm], [rad], and per ms. Convention: motion for the comparison of forces.
 MOVED, TURNED = 1e-3, 1e-2

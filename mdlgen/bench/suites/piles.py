@@ -37,8 +37,8 @@ AIR = "contacts.6.air={viscosity: 18.2 uPa*s}"
 
 
 def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
-    """Piles of 5 to 100 notes of 200 boxes at a step that is given, some in
-    which no sheet sleeps; in Exudyn a small one."""
+    """Piles of 5 to 100 notes of 200 boxes at a step that is given, some in which no sheet sleeps; in Exudyn
+    a small one."""
     duration = QUICK if quick or solver == REFERENCE else DURATION
     found = []
     for kind, counts in COUNTS.items():

@@ -90,7 +90,7 @@ class RunSettings:
     tolerance: float
     print_step: float
     symmetry: bool  # a scene that is its own mirror image may be halved
-    threads: int = 1  # that share the work of a step
+    threads: int = 1  # of scenes of older versions; it has no effect
     sleep: bool = True  # sheets that rest may be left out
     limit: float | None = None  # wall time after which a run ends with what there is; None: none
     margin: float | None = None  # that pairs are chosen with at first [mm]; None: of an older file

@@ -187,20 +187,18 @@ def _of_air(frozen, film, pair, p, motion):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _note_ends(tables, frozen):
-    """Notes the bodies and nodes of each point, and whether one of them is an unknown of the border."""
+    """Notes the bodies and nodes of each point."""
     bodies, pairs, listed, last = tables.bodies, tables.pairs, tables.listed, -1
-    first, a, b, one, two, rolls = pairs.size - listed.size, 0, 0, -1, -1, False
+    first, a, b, one, two = pairs.size - listed.size, 0, 0, -1, -1
     for k in range(frozen.many[0]):
         p, ends = frozen.pair[k], frozen.ends[k]
         if p != last:
             if p >= first:
-                a, b, rolls = int(listed[p - first].a), int(listed[p - first].b), False
+                a, b = int(listed[p - first].a), int(listed[p - first].b)
             else:
                 a, b = pairs[p].a, pairs[p].b
-                rolls = max(bodies[a].slide, bodies[a].spin, bodies[b].slide, bodies[b].spin) >= 0
             one, two, last = bodies[a].node, bodies[b].node, p
         ends.a, ends.b, ends.one, ends.two = a, b, one, two
-        frozen.rolls[k] = rolls
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)

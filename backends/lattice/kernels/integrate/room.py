@@ -128,7 +128,6 @@ def frozen(system, cells: int) -> Frozen:
         patches=np.zeros(searched, PATCH),
         pair=np.zeros(room, np.int64),
         ends=np.zeros(room, ENDS_OF_POINT),
-        rolls=np.zeros(room, np.bool_),
         many=np.zeros(3, np.int64),
         lying=np.zeros(searched, np.int64),
         of_patches=np.zeros(1),
