@@ -388,13 +388,9 @@ def test_small_parts_that_all_balance_end_too(monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setattr(static, "FIRST_PART", 0.01)
     monkeypatch.setattr(static, "REST_MOST", 10 * static.FEW_ITERATIONS)
     made = model("cantilever", "sheets.note.boxes=[1,2]")
-    reason = static._parts(
-        made, lambda level, load: (True, static.FEW_ITERATIONS + 1, 0, 0.0), 1.0, (np.zeros(3),)
-    )
-    assert (
-        reason
-        == f"no balance was found above 10 % of the load in {10 * (static.FEW_ITERATIONS + 1)} iterations"
-    )
+    many = static.FEW_ITERATIONS + 1
+    reason = static._parts(made, lambda level, load: (True, many, 0, 0.0), 1.0, (np.zeros(3),))
+    assert reason == f"no balance was found above 10 % of the load in {10 * many} iterations"
 
 
 def test_driven_rollers_are_refused_and_others_are_not() -> None:
