@@ -1,8 +1,9 @@
 """Every number of the solver that is not physics, with its unit, its meaning and its origin.
 
 An origin is one of three. Derived: it follows, and the comment says from what. Measured: what is named shows
-it. Convention: a choice; what it is chosen between is said where that is known. Numbers without a unit are
-parts or counts. `tests/solvers/test_tuning.py` sees to it that no other file has any.
+it, or showed it at an earlier state. Convention: a choice; what it is chosen between is said where that is
+known. Numbers without a unit are parts or counts. `tests/solvers/test_tuning.py` sees to it that no other
+file has any.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ MAY_MAKE = 5e-5
 # less than the other.
 HARD, EASY = 8, 5
 
-# Measured on `feeder` with air (bench piles): a step takes as many where it is a hundred times as short,
+# Convention: with air a step takes as many where it is a hundred times as short,
 # since friction and the normal forces that it wedges go back and forth there, and a film passes that on at
 # any step.
 HARD_WITH_AIR, EASY_WITH_AIR = 14, 8
@@ -67,8 +68,7 @@ FREE = 1e-5
 # the limit that holds where they move.
 SAME_FORCES = 1e-3
 
-# Convention: numerical damping of joints, as a part of half a step for 1 ms of it, and at most. A
-# vibration with a ratio of 0.0045 has 0.0049 at a chosen step.
+# Convention: numerical damping of joints, as a part of half a step for 1 ms of it, and at most.
 LAG, LAG_MOST = 1.0, 0.3
 
 # Convention: contacts are solved for to this many times the step's own limit in an iteration.
@@ -110,7 +110,7 @@ ALIKE = 1e-10
 # Convention: iterations, before it counts as not at its end.
 CONVEX_MOST = 25
 
-# Measured on `landing`: cells of air have much in common that the matrix does not know, so it takes more
+# Convention: cells of air have much in common that the matrix does not know, so it takes more
 # of them, and exact searches.
 CONVEX_MOST_WITH_AIR = 80
 
@@ -120,7 +120,7 @@ CONVEX_ROUGH = 0.3
 # Convention: what closes against air is slow beside all else: it leaves this part of what the step may.
 AIR_FINE = 0.02
 
-# Measured on a pile at rest, which costs least with this part (bench piles): a linear solve leaves this
+# Measured at an earlier state, on a pile at rest, which cost least with this part: a linear solve leaves this
 # part of what the step may, in the root mean square over a sheet, where that comes before the end that it
 # has by itself. What is left stays in the next step's residual.
 SOLVED = 0.01
@@ -152,7 +152,7 @@ REACH = 0.003
 # Convention: conjugate gradients of a linear solve.
 LINEAR_MOST = 200
 
-# Measured on piles: what may be left of the square of the residual, measured with the preconditioner. An
+# Convention: what may be left of the square of the residual, measured with the preconditioner. An
 # iteration of Newton's method leaves more itself where contacts open and close, so less costs iterations
 # here and saves none there. The method goes on after it, and loses no momentum to it (see momentum.keep).
 LINEAR_LEFT = 1e-3
@@ -160,7 +160,7 @@ LINEAR_LEFT = 1e-3
 # Convention: the matrix has of air what each cell does alone, so much of a direction is wrong anyhow.
 LINEAR_LEFT_WITH_AIR = 1e-2
 
-# Derived: a cell alone is so many times as stiff as its neighbours make it where they have no pressure.
+# Convention: a cell alone is so many times as stiff as its neighbours make it where they have no pressure.
 CELL_ALONE = 2.0
 
 # Convention: the air at the end of a step: iterations at most, and what they leave of the residual,
@@ -189,12 +189,12 @@ FEWEST_APART = 48
 COLUMNS = 64e6
 
 # -- Factors that serve many steps
-# Measured on `transport_4x4` (bench skip): a new factor, and columns for each box that touches, cost as
+# Convention: a new factor, and columns for each box that touches, cost as
 # much as this many iterations: it is made where more of them are still to come at the rate of the last
 # two.
 FACTOR_WORTH = 3.0
 
-# Measured on piles: the same where all contacts stand in it.
+# Convention: the same where all contacts stand in it.
 CONVEX_FACTOR_WORTH = 4.0
 
 # Convention: one that has served so many solves beyond one for each step is made anew: what would be saved
@@ -269,7 +269,7 @@ SAME_END = 0.01
 # [s] Convention: a first pass that takes less has a third begun where it is needed alone.
 SHORT = 0.25
 
-# Derived: how often the step was halved when it is first asked whether a motion is chaotic: four runs show
+# Convention: how often the step was halved when it is first asked whether a motion is chaotic: four runs show
 # whether their differences fall, and half of the way to MOST_REFINED has a fifth of the cost.
 ASKED = 3
 
@@ -381,8 +381,8 @@ SLIDES_BEYOND = 10.0
 # that ends them.
 MOST_GRIPS, STEADY = 40, 1e-7
 
-# Measured: places over which the pressure of a sheet is spread, about, and of the side of a triangle of a
-# face: with 8 the couple that one square face holds is within 0.3 %.
+# Measured at an earlier state: places over which the pressure of a sheet is spread, about, and of the side
+# of a triangle of a face: with 8 the couple that one square face holds is within 0.3 %.
 PLACES, TRIANGLES = 4000, 8
 
 # Convention: cosine of the angle by which normals of corners of one face differ at most, 1 less this.
