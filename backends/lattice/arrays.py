@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from mdlgen.backends.lattice.bristles import bristles_of
 from mdlgen.backends.lattice.kernels.state import (
     OWN,
     OWN_INERTIA,
@@ -73,6 +74,7 @@ PAIR = np.dtype(
         ("mark", "i8"),  # its place among the marks of pairs that have touched
         *CONTACT,
         ("sticking", "f8"),  # of two boxes: k_t for 1 of k [mm^0.5], 0: friction does not stick
+        ("held", "i8"),  # its place among Tables.held, from 1 on; 0: no bristle holds it
     ]
 )
 # A body is seen in the plane normal . x = at; its axes are those of the other one seen there, times `signs`.
@@ -97,6 +99,8 @@ class System(NamedTuple):
     mirror: Mirror | None  # the plane that halves it, None: this is the whole
     search: Search  # of boxes of two sheets that are near each other
     marks: int  # how many pairs there can be
+    bristles: np.ndarray  # as of Tables
+    held: np.ndarray
     shapes: Shapes
 
     @property
@@ -137,6 +141,8 @@ class System(NamedTuple):
             thinnest=thinnest_of(self.bodies, self.search.regions),
             points=self.points,
             images=self.images,
+            bristles=self.bristles,
+            held=self.held,
             shapes=self.shapes,
         )
 
@@ -166,6 +172,7 @@ def build(model: Model, fold: bool = True) -> System:
     bodies, nodes, border = _bodies(model)
     joints, folded = _joints(model, fold)
     listed, found = _pairs(model)
+    bristles, held = bristles_of(model, bodies, listed)
     pairs, search, marks = plan(model, listed)
     for name in ("shared", "k", "law", "sticking"):
         search.regions[name] = found[name]
@@ -185,6 +192,8 @@ def build(model: Model, fold: bool = True) -> System:
         mirror=None,
         search=search,
         marks=marks,
+        bristles=bristles,
+        held=held,
         shapes=shape_tables(model),
     )
 

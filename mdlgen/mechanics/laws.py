@@ -31,6 +31,18 @@ def damped(spring, rate, beta, v_n):
     return spring * (1.0 + beta * sign_step(rate, v_n))
 
 
+@njit(cache=True, error_model="numpy", forceinline=True)
+def coefficient(v, mu_s, mu_d, v_s, v_d):
+    """Coefficient of friction at a speed along the faces: mu_s up to v_s, mu_d from v_d on, the cubic STEP
+    between."""
+    if v <= v_s:
+        return mu_s
+    if v >= v_d:
+        return mu_d
+    x = (v - v_s) / (v_d - v_s)
+    return mu_s + (mu_d - mu_s) * x * x * (3.0 - 2.0 * x)
+
+
 @njit(cache=True, error_model="numpy")
 def friction_over_speed(v, mu_s, mu_d, v_s, v_d):
     """mu(v)/v of the regularised Coulomb law (Eq. 12), finite at v = 0.
@@ -40,7 +52,11 @@ def friction_over_speed(v, mu_s, mu_d, v_s, v_d):
     if v <= v_s:
         x = v / v_s
         return mu_s * 0.5 * (3.0 - x * x) / v_s
-    if v >= v_d:
-        return mu_d / v
-    x = (v - v_s) / (v_d - v_s)
-    return (mu_s + (mu_d - mu_s) * x * x * (3.0 - 2.0 * x)) / v
+    return coefficient(v, mu_s, mu_d, v_s, v_d) / v
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def held_over_speed(v, hold, mu):
+    """Friction for 1 of the normal force, over a speed, of what a spring holds: `hold`, from its limit mu on
+    mu/v (see mechanics.bristle)."""
+    return hold if hold * v <= mu else mu / v

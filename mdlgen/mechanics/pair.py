@@ -25,7 +25,7 @@ on_plate = by_kind(__name__, "ON_PLATE", otherwise=False, inline=True)
 _force, _plate = by_kind(__name__, "force", inline=True), by_kind(__name__, "plate", inline=True)
 _notes = by_kind(__name__, "NOTES", otherwise=False, inline=True)
 _noted = by_kind(__name__, "noted", inline=True)
-_rolling = by_kind(__name__, "rolling", otherwise=((0.0, 0.0, 0.0), 0.0))
+rolls = by_kind(__name__, "rolling", otherwise=((0.0, 0.0, 0.0), 0.0))
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -45,7 +45,7 @@ def pair_force(bodies, pair, shapes, motion, out):
     it touches."""
     touches = _force(bodies, pair, shapes, motion, out)
     if pair.law[LAW_ROLLING] > 0.0 and out[PRESSING] > 0.0:
-        axis, curved = _rolling(bodies, pair, shapes, motion)
+        axis, curved = rolls(bodies, pair, shapes, motion)
         if curved > 0.0:
             one, two = vec(motion.w, pair.a), vec(motion.w, pair.b)
             resist_rolling(out, one, two, axis, 1.0 / curved, pair.law[LAW_ROLLING], pair.law[LAW_SMOOTHING])

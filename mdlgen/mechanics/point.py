@@ -33,21 +33,26 @@ import math
 from typing import NamedTuple
 
 from mdlgen.mechanics.frame import Vector
-from mdlgen.mechanics.laws import damped, friction_over_speed, sign_step
-from mdlgen.mechanics.vector import add, cross, dot, scale, sub
+from mdlgen.mechanics.laws import coefficient, damped, friction_over_speed, held_over_speed, sign_step
+from mdlgen.mechanics.vector import add, cross, dot, scale, sub, three_from
 from mdlgen.program.kernel import BORROWS, CALLED, FUSED, njit
 
 # Columns of what a pair adds up: force and torque on the first body and on the second, three each; the force
 # along normals, stored energy, dissipated power, the greatest depth. A longer one has how many points follow.
 FORCE_A, TORQUE_A, FORCE_B, TORQUE_B = 0, 3, 6, 9
 PRESSING, STORED, DISSIPATED, DEPTH = 12, 13, 14, 15
-OUT = 16
-POINTS = 16
+# What a law is given there, of a pair that a spring holds along its faces (see mechanics.bristle): what it
+# holds for 1 of the normal force and of the speed, 0: none does; a velocity and an angular velocity, and the
+# place about which: the field that is added to the slip.
+HOLDS, OFFSET, TWIST, ABOUT = 16, 17, 20, 23
+OUT = 26
+POINTS = 26
 # Of two faces without their points (POINTS is 0): friction along them by its size, and the most it can be.
-RUBBING, GRIP, FACES = 17, 18, 19
+RUBBING, GRIP, FACES = 27, 28, 29
 # Of each point, from OUT + 1 on: the place, the normal to the first body, the elastic force and its growth
 # with depth, the normal force, the rate that damps it, the slip velocity, the share of damping, both
-# coefficients of friction, and what it is.
+# coefficients of friction, and what it is. Where a spring holds, the slip has its field added to it, and both
+# coefficients are that of the slip alone.
 AT, NORMAL, SPRING, GROWTH, FORCE, RATE, SLIP, BETA, MU_STATIC, MU_DYNAMIC = 0, 3, 6, 7, 8, 9, 10, 13, 14, 15
 KIND = 16
 ALONE, OF_NIP, COUPLE = 0.0, 1.0, 2.0
@@ -56,7 +61,8 @@ LINE, WAY = 17, 20
 OVER = 23  # the speed over which its damping is whole
 # Of a COUPLE: that at a high speed, its radius, the rolling speed and its axis.
 MOST_COUPLE, RADIUS, ROLLING, AXIS = 6, 7, 9, 17
-POINT = 24
+HOLD = 24  # of what presses: as HOLDS of its pair
+POINT = 25
 NEVER = 1e30  # over such a speed nothing is damped
 MOST_POINTS = 64  # of one pair: an oblique face under a roller has up to 48, a corner more, and a couple
 
@@ -148,7 +154,15 @@ def _push(out, point, normal, losses, load, a, b, law):
     slip = sub(slip, scale(dot(slip, square), square))
     speed = math.sqrt(dot(slip, slip))
     force = damped(spring, rate, law.beta, over)
-    drag = force * friction_over_speed(speed, law.mu_static, law.mu_dynamic, law.stiction, law.sliding)
+    mu_static, mu_dynamic, hold = law.mu_static, law.mu_dynamic, out[HOLDS]
+    if hold > 0.0:
+        mu_static = mu_dynamic = coefficient(speed, mu_static, mu_dynamic, law.stiction, law.sliding)
+        moves, slip = slip, add(slip, _field(out, point, square))
+        drag = force * held_over_speed(math.sqrt(dot(slip, slip)), hold, mu_static)
+        taken = drag * dot(moves, slip)
+    else:
+        drag = force * friction_over_speed(speed, mu_static, mu_dynamic, law.stiction, law.sliding)
+        taken = drag * speed * speed
     f = sub(scale(force, normal), scale(drag, slip))
     ta, tb = cross(ra, f), cross(rb, f)
     for i in range(3):
@@ -159,7 +173,7 @@ def _push(out, point, normal, losses, load, a, b, law):
     out[PRESSING] += force
     out[STORED] += energy
     # what its own way takes off it: over all points of a nip that is not below zero
-    out[DISSIPATED] += (force - spring) * own + drag * speed * speed
+    out[DISSIPATED] += (force - spring) * own + taken
     out[DEPTH] = max(out[DEPTH], depth)
     if out.size <= OUT or out[POINTS] >= MOST_POINTS:
         return 0
@@ -169,13 +183,22 @@ def _push(out, point, normal, losses, load, a, b, law):
         out[at + AT + i] = point[i]
         out[at + NORMAL + i] = normal[i]
         out[at + SLIP + i] = slip[i]
-    out[at + BETA], out[at + MU_STATIC], out[at + MU_DYNAMIC] = law.beta, law.mu_static, law.mu_dynamic
+    out[at + BETA], out[at + MU_STATIC], out[at + MU_DYNAMIC] = law.beta, mu_static, mu_dynamic
+    out[at + HOLD] = hold
     out[at + SPRING] = spring
     # F z^1.5 has stored 2/5 F z, an elastic foundation 3/5 F z: this is 3/2 F/z, and F/z
     out[at + GROWTH] = 0.6 * spring * spring / energy if energy > 0.0 else 0.0
     out[at + FORCE] = force
     out[at + RATE], out[at + OVER] = rate, over
     return at
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def _field(out, point, square):
+    """What is added to the slip of a point of a pair that a spring holds, `square` to that direction."""
+    arm = sub(point, three_from(out, ABOUT))
+    field = add(three_from(out, OFFSET), cross(three_from(out, TWIST), arm))
+    return sub(field, scale(dot(field, square), square))
 
 
 @njit(cache=True, error_model="numpy", forceinline=True, **BORROWS)

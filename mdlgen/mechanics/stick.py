@@ -26,7 +26,7 @@ import math
 
 import numpy as np
 
-from mdlgen.mechanics.laws import damped
+from mdlgen.mechanics.laws import coefficient, damped
 from mdlgen.mechanics.overlap import BY_SIDES, CLEAR, MOST_CORNERS, PRESSES, STIFF, moves, plane_of
 from mdlgen.mechanics.point import (
     DEPTH,
@@ -60,14 +60,10 @@ STRETCH = np.dtype(
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def coefficient(speed, law):
-    """Coefficient of friction at a speed along the faces."""
-    if speed <= law.stiction:
-        return law.mu_static
-    if speed >= law.sliding:
-        return law.mu_dynamic
-    x = (speed - law.stiction) / (law.sliding - law.stiction)
-    return law.mu_static + (law.mu_dynamic - law.mu_static) * x * x * (3.0 - 2.0 * x)
+def limit_of(v_p, v_r, law):
+    """What friction holds for 1 of the normal force, at a velocity along the faces."""
+    speed = math.sqrt(v_p * v_p + v_r * v_r)
+    return coefficient(speed, law.mu_static, law.mu_dynamic, law.stiction, law.sliding)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -138,7 +134,7 @@ def press_sticking(out, kept, stuck, a, b, law, ratio, h):
         k_t = ratio * kept.corners[corner, STIFF]
         z_p, z_r = stuck.now[corner, 0] + 2.0 * h * v[0], stuck.now[corner, 1] + 2.0 * h * v[1]
         size = math.sqrt(z_p * z_p + z_r * z_r)
-        limit = coefficient(math.sqrt(v[0] * v[0] + v[1] * v[1]), law) * normal
+        limit = limit_of(v[0], v[1], law) * normal
         if k_t * size > limit:
             part = limit / (k_t * size)
             z_p, z_r, size = part * z_p, part * z_r, part * size

@@ -8,10 +8,11 @@ from __future__ import annotations
 import math
 
 from mdlgen.mechanics.frame import law_of
-from mdlgen.mechanics.laws import friction_over_speed
+from mdlgen.mechanics.laws import friction_over_speed, held_over_speed
 from mdlgen.mechanics.point import (
     COUPLE,
     FORCE,
+    HOLD,
     KIND,
     MU_DYNAMIC,
     MU_STATIC,
@@ -50,7 +51,10 @@ def turning(bodies, pair, out, rows, row, first):
             continue
         slip, normal = three_from(out, at + SLIP), three_from(out, at + NORMAL)
         speed, static = math.sqrt(dot(slip, slip)), out[at + MU_STATIC]
-        grip = friction_over_speed(speed, static, out[at + MU_DYNAMIC], law.stiction, law.sliding)
+        if out[at + HOLD] > 0.0:
+            grip = held_over_speed(speed, out[at + HOLD], static)
+        else:
+            grip = friction_over_speed(speed, static, out[at + MU_DYNAMIC], law.stiction, law.sliding)
         along = dot(slip, cross(axis, normal)) if rolls else speed
         rows[row, first + ALONG] += out[at + FORCE] * grip * along
         rows[row, first + LIMIT] += out[at + FORCE] * static

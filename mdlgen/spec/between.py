@@ -78,9 +78,6 @@ def _modelled(scene: Scene, index: int, names: tuple[str, str], part: MachinePar
     path, (a, b) = ("contacts", index, "between"), names
     if scene.contacts[index].air is not None and (message := _without_air(scene, names)):
         raise fail(message, ("contacts", index, "air"))
-    if scene.contacts[index].friction.sticking is not None and not (a in scene.sheets and b in scene.sheets):
-        message = f"friction that sticks is not modelled between {a} and {b}: it is between two sheets"
-        raise fail(message, ("contacts", index, "friction", "sticking"))
     if a in scene.sheets:
         wrong = part.unlike_sheets(b, scene.contacts[index]) if part is not None else None
         if wrong is not None:

@@ -14,6 +14,7 @@ from mdlgen.backends.lattice.kernels.forces import WIDE
 from mdlgen.backends.lattice.kernels.integrate.room import sticks
 from mdlgen.backends.lattice.kernels.state import FACE, OWN, Drift, Midpoint, Tables
 from mdlgen.backends.lattice.search import LISTED
+from mdlgen.mechanics.bristle import BRISTLE, HELD
 from mdlgen.mechanics.curve import POINT
 from mdlgen.mechanics.frame import Box, Cylinder, Frame, Law, Motion, Plate, Vector
 from mdlgen.mechanics.guide import BOTH, INSIDE, OUTSIDE, upper
@@ -58,6 +59,8 @@ def pair_force(bodies: np.ndarray, pair: np.void, shapes: Shapes, motion: Motion
         thinnest=1e300,
         points=np.zeros(0, POINT),
         images=np.zeros(0, IMAGE),
+        bristles=np.zeros(0, BRISTLE),
+        held=np.zeros(0, HELD),
         shapes=shapes,
     )
     mid = Midpoint(

@@ -14,6 +14,7 @@ from mdlgen.backends.lattice.kernels.forces import WIDE
 from mdlgen.backends.lattice.kernels.integrate.room import sticks
 from mdlgen.backends.lattice.kernels.state import FACE, OWN, Midpoint, Tables
 from mdlgen.backends.lattice.search import LISTED
+from mdlgen.mechanics.bristle import BRISTLE, HELD
 from mdlgen.mechanics.curve import POINT
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.overlap import OVERLAP
@@ -85,6 +86,8 @@ def _tables(bodies: np.ndarray, pairs: np.ndarray, shapes: Shapes) -> Tables:
         thinnest=1e300,
         points=np.zeros(0, POINT),
         images=np.zeros(0, IMAGE),
+        bristles=np.zeros(0, BRISTLE),
+        held=np.zeros(0, HELD),
         shapes=shapes,
     )
 

@@ -262,16 +262,6 @@ def test_what_does_not_stick_is_said_in_one_line() -> None:
         loads(slope(5.0, "{static: 0.3, dynamic: 0.3, sticking: 0 N/mm}"))
     with pytest.raises(SpecError, match=r"contacts\.0\.friction\.sticking: '0.5 um'"):
         loads(slope(5.0, "{static: 0.3, dynamic: 0.3, sticking: 0.5 um}"))
-    table = "planes: {table: {center: [0 mm, 0 mm, -50 mm], normal: z, size: [227 mm, 300 mm, 10 mm]}}\n"
-    on_table = (
-        slope(5.0)
-        .replace("between: [low, top]", "between: [top, table]")
-        .replace("contacts:", table + "contacts:")
-    )
-    with pytest.raises(
-        SpecError, match="sticks is not modelled between top and table: it is between two sheets"
-    ):
-        loads(on_table)
     model = lower(loads(slope(5.0)))
     assert model.contacts.sticking.tolist() == [K_T]
     for output in ("motionview", "motionsolve", "msolve"):

@@ -45,7 +45,8 @@ class PassState:
     the one before, which a pass that has ended does not need."""
 
     def __init__(self, work: Workspace, control: Control, recorder: Recorder, sleep: Sleep):
-        few = (control, work.search.place, work.tables.pairs["beside"][: work.search.first])
+        beside = work.tables.pairs["beside"][: work.search.first]
+        few = (control, work.search.place, beside, work.tables.bristles)
         self._state = dict(_leaves("state", work.state)) | dict(_leaves("few", few))
         carried = {"mid": work.mid, "matrix": work.matrix, "condensed": work.condensed, "free": work.free}
         carried["islands"] = work.islands

@@ -16,7 +16,7 @@ part STILL of the speed that iterations may leave, a tenth of the run's toleranc
 fastest. A sheet that woke waits twice as long.
 
 Sheets with air on them do not sleep, since a film closes slowly. Nor does an island of which a sheet hangs on
-something, or touches a part that moves.
+something, or touches a part that moves, nor any sheet of a scene where sheets stick on other parts.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mdlgen.backends.lattice.arrays import System
+from mdlgen.backends.lattice.bristles import moved
 from mdlgen.backends.lattice.integrate.awake import Parts, awake
 from mdlgen.backends.lattice.integrate.islands import groups
 from mdlgen.backends.lattice.integrate.record import Recorder
@@ -75,7 +76,8 @@ class Sleep:
         sheets, bodies = len(work.asleep.speeds), len(system.bodies)
         self._may = np.zeros(sheets, bool)
         self._air = model.contacts.air_viscosity > 0.0
-        if sheets and sleeps and model.run.sleep and not self._air.any():
+        sleeps = sleeps and model.run.sleep and not len(system.bristles)
+        if sheets and sleeps and not self._air.any():
             self._may[: len(work.free.loose)] = work.free.loose
         self._parts = Parts(model, system)
         self._sheets = np.zeros(sheets, bool)
@@ -137,6 +139,7 @@ class Sleep:
         state = self.work.state
         self._beside = besides(whole, self._beside, at, Motion(state.x, state.r, motion.u, motion.w))
         marks = marks_of(self.work.kept.marks, self._model, model)
+        whole = whole._replace(bristles=moved(self._whole.bristles, whole.bristles))
         self._model, self._whole, self._parts = model, whole, Parts(model, whole)
         self.system, self._chosen = whole, np.arange(whole.search.first)
         if self._sheets.any():

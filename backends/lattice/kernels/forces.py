@@ -11,7 +11,20 @@ from mdlgen.mechanics.driven import SENSE, clutch, prescribed, turned
 from mdlgen.mechanics.frame import Frame
 from mdlgen.mechanics.pair import near, pair_force
 from mdlgen.mechanics.pairs.box_box import near as near_boxes
-from mdlgen.mechanics.point import DISSIPATED, FORCE_A, FORCE_B, MOST_POINTS, OUT, POINT, POINTS, STORED
+from mdlgen.mechanics.point import (
+    ABOUT,
+    DISSIPATED,
+    FORCE_A,
+    FORCE_B,
+    HOLDS,
+    MOST_POINTS,
+    OFFSET,
+    OUT,
+    POINT,
+    POINTS,
+    STORED,
+    TWIST,
+)
 from mdlgen.mechanics.vector import (
     add,
     cross,
@@ -201,8 +214,14 @@ def onto(f, pair, out):
 @njit(cache=True, error_model="numpy", **BORROWS)
 def touches(tables, pair, motion, f, out):
     """What one pair does into `out`, and onto f. Returns whether it touches."""
-    for i in range(OUT + 1):
+    for i in range(HOLDS + 1):
         out[i] = 0.0
+    out[POINTS] = 0.0
+    if pair.held > 0:
+        own = tables.held[pair.held - 1]
+        out[HOLDS] = own.holds
+        for i in range(3):
+            out[OFFSET + i], out[TWIST + i], out[ABOUT + i] = own.offset[i], own.twist[i], own.about[i]
     if not pair_force(tables.bodies, pair, tables.shapes, motion, out):
         return False
     onto(f, pair, out)

@@ -33,6 +33,8 @@ class Tables(NamedTuple):
     thinnest: float  # half thickness of the thinnest box of sheets that may touch each other [mm]
     points: np.ndarray  # of curves
     images: np.ndarray  # mirrored boxes
+    bristles: np.ndarray  # of contact patches where friction sticks, mechanics.bristle.BRISTLE
+    held: np.ndarray  # the pairs in these, mechanics.bristle.HELD
     shapes: Any  # mechanics.shapes.Shapes
 
 
@@ -177,7 +179,7 @@ CHANGE, OF_CHANGE, GRADIENT, DIRECTION, OF_DIRECTION, RESIDUAL = 0, 1, 2, 3, 4, 
 ARM_A, ARM_B, KIND, ALONG, NOW, NORMAL, SQUARE = 0, 3, 6, 7, 10, 13, 16
 SPRING, GROWTH, RATE, OVER, BETA = 19, 20, 21, 22, 23
 MU_STATIC, MU_DYNAMIC, STICTION, SLIDING, PRESSING = 24, 25, 26, 27, 28
-START, POINT = 29, 32
+START, HOLD, FIELD, POINT = 29, 32, 33, 36
 # What a point is: one that presses and rubs; a damper alone; a couple about its normal, of SPRING at most, of
 # a rolling speed of GROWTH times the angular velocity; a cell of air, whose force has changed by SPRING since
 # the iteration began, and changes by GROWTH along a direction. Alone it would be damped by OVER [N ms/mm].

@@ -8,6 +8,7 @@ from dataclasses import fields, replace
 import numpy as np
 
 from mdlgen.backends.lattice.arrays import System
+from mdlgen.backends.lattice.bristles import cuts
 from mdlgen.backends.lattice.kernels.tuning import MOVED, SAME, SAME_FORCE, TURNED
 from mdlgen.backends.lattice.symmetry.mirror import Mirror
 from mdlgen.backends.lattice.symmetry.parts import off, same, seen_as
@@ -18,7 +19,8 @@ from mdlgen.model.tables import BOX_BOX, Floats, Ints, Model, SheetPart
 
 def find(model: Model, system: System) -> Mirror | None:
     """The plane, or None: there is none, or nothing touches. What is free keeps its momentum to round-off,
-    which one side alone would not. Scenes with air between sheets are not halved.
+    which one side alone would not. Scenes with air between sheets are not halved,
+    nor are those where a sheet sticks on a roller that the plane cuts.
 
     It goes through the middle of the sheets, between boxes, along one of their edges. Everything is compared:
     bodies, what holds and drives them, contacts, loads, and the forces of the joints of a random state.
@@ -31,6 +33,8 @@ def find(model: Model, system: System) -> Mirror | None:
         normal = model.sheets[0].rotation[:, axis]
         mirror = _plane(model, normal, float(normal @ model.sheets[0].center))
         mirror = mirror and _contacts(model, mirror)
+        if mirror is not None and cuts(system.bristles, mirror.image):
+            continue
         if mirror is not None and _loads(model, mirror) and _joints(model, system, mirror):
             return mirror
     return None

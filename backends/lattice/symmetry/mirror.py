@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mdlgen.backends.lattice.arrays import IMAGE, System, offsets
+from mdlgen.backends.lattice.bristles import halved
 from mdlgen.backends.lattice.kernels.state import TURNS
 from mdlgen.mechanics.turning import ABOUT_A, ALONG
 from mdlgen.model.tables import Floats, Ints
@@ -123,10 +124,13 @@ def halve(system: System, mirror: Mirror) -> System:
     near[system.search.first :] = True  # room, see search
     pairs = system.pairs[near].copy()
     pairs["k"][(own[a] & own[b])[near]] *= 0.5
+    bristles, held = halved(system.bristles, system.held, pairs, near, own)
     return system._replace(
         bodies=bodies,
         joints=joints,
         pairs=pairs,
+        bristles=bristles,
+        held=held,
         loads=system.loads[~gone[system.loads["body"]]],
         nodes=nodes,
         sheets=system.sheets[left],

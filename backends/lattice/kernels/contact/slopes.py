@@ -6,11 +6,13 @@ import math
 from typing import NamedTuple
 
 from mdlgen.mechanics.frame import LAW_SLIDING, LAW_SMOOTHING, LAW_STICTION
+from mdlgen.mechanics.laws import coefficient, held_over_speed
 from mdlgen.mechanics.point import (
     ALONE,
     BETA,
     FORCE,
     GROWTH,
+    HOLD,
     KIND,
     MOST_COUPLE,
     MU_DYNAMIC,
@@ -89,7 +91,8 @@ def couple_growth(out, at, h, law, chord):
 class Numbers(NamedTuple):
     """Of one contact point what its slopes follow from: the elastic force and its growth with depth, the
     normal force that friction counts by, the rate that damps it and the speed over which it does, the share
-    of damping, both coefficients of friction and their speeds; `alone`: its own rate damps it."""
+    of damping, both coefficients of friction and their speeds, what a spring holds by (see laws), 0: none
+    does; `alone`: its own rate damps it."""
 
     spring: float
     growth: float
@@ -101,6 +104,7 @@ class Numbers(NamedTuple):
     mu_dynamic: float
     stiction: float
     sliding: float
+    hold: float
     alone: bool
 
 
@@ -119,6 +123,7 @@ def numbers_of(out, at, law):
         out[at + MU_DYNAMIC],
         law[LAW_STICTION],
         law[LAW_SLIDING],
+        out[at + HOLD],
         out[at + KIND] == ALONE,
     )
 
@@ -132,7 +137,7 @@ def core(numbers, n, square, slip, h, chord, whole):
     n: the normal; square: the direction that friction acts square to, which is the normal, or a nip's;
     `whole`: with the growth of friction with the normal force, which is not symmetric.
     """
-    spring, growth, force, rate, v_n, beta, mu_static, mu_dynamic, v_s, v_d, alone = numbers
+    spring, growth, force, rate, v_n, beta, mu_static, mu_dynamic, v_s, v_d, hold, alone = numbers
     y = rate / v_n
     sign = 0.5 * y * (3.0 - y * y) if abs(y) < 1.0 else math.copysign(1.0, y)
     damping = h * spring * beta * steepness(y, v_n, chord)
@@ -143,16 +148,15 @@ def core(numbers, n, square, slip, h, chord, whole):
     speed = math.sqrt(slip[0] * slip[0] + slip[1] * slip[1] + slip[2] * slip[2])
     secant = tangent = 0.0
     if force > 0.0 and (mu_static > 0.0 or mu_dynamic > 0.0):
-        if speed < v_s:
+        if hold > 0.0:
+            secant = held_over_speed(speed, hold, mu_static)
+            tangent = hold if secant == hold else 0.0
+        elif speed < v_s:
             z = speed / v_s
             secant = 0.5 * mu_static * (3.0 - z * z) / v_s
             tangent = 1.5 * mu_static * (1.0 - z * z) / v_s
         else:
-            mu = mu_dynamic
-            if speed < v_d:
-                z = (speed - v_s) / (v_d - v_s)
-                mu = mu_static + (mu_dynamic - mu_static) * z * z * (3.0 - 2.0 * z)
-            secant = mu / speed
+            secant = coefficient(speed, mu_static, mu_dynamic, v_s, v_d) / speed
         secant, tangent = h * force * secant, h * force * max(tangent, chord * secant)
     i = 1.0 / speed if speed > 0.0 else 0.0
     d = (slip[0] * i, slip[1] * i, slip[2] * i)

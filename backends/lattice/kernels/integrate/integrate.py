@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mdlgen.backends.lattice.kernels.contact.between import faces_into, forget_overlaps
+from mdlgen.backends.lattice.kernels.contact.bristles import end_patches
 from mdlgen.backends.lattice.kernels.contact.drift import add_step, list_anew
 from mdlgen.backends.lattice.kernels.contact.search import look, mark_of, strayed
 from mdlgen.backends.lattice.kernels.contact.sticking import end_of_step, put_back, set_aside
@@ -268,6 +269,8 @@ def _accept(work, t, dt, control, last, first, driven):
     account(work, t, dt, touching, energies, driven)
     if mid.sticks.pairs.size > 0:
         end_of_step(work, touching, close, energies)
+    if tables.held.size > 0:
+        end_patches(work, touching, 0.5 * dt, energies)
     _watch(tables, work.search, mid, touching, t, dt, work.kept, work.asleep)
     if first:
         _begun(work.kept.rows, spans[LAST_STEP] / (spans[LAST_STEP] + dt))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mdlgen.backends.lattice.kernels.contact.between import faces_into, forces_at
+from mdlgen.backends.lattice.kernels.contact.bristles import lay_bristles, patch_energies
 from mdlgen.backends.lattice.kernels.contact.sticking import energy_into
 from mdlgen.backends.lattice.kernels.forces import joint_forces, near_pairs
 from mdlgen.backends.lattice.kernels.state import (
@@ -16,6 +17,7 @@ from mdlgen.backends.lattice.kernels.state import (
     SHEET,
     TURNING_NOW,
 )
+from mdlgen.backends.lattice.kernels.tuning import EPSILON
 from mdlgen.mechanics.arm import AXIAL, FORCE_0, INERTIA, STIFFNESS, hung, way_of
 from mdlgen.mechanics.driven import prescribed
 from mdlgen.mechanics.frame import Motion
@@ -87,6 +89,10 @@ def ledger(work, t, energies, rows):
         joints = tables.joints[tables.runs[k, 0] : tables.runs[k, 1]]
         stored, _, _ = joint_forces(joints, tables.points, motion, f)
         energies[islands.group[tables.runs[k, SHEET]], ELASTIC] += stored
+    if tables.held.size > 0:
+        # as in a step of no length: what holds is the spring as it is, whatever moves now
+        lay_bristles(tables, motion, EPSILON)
+        patch_energies(tables, groups, energies)
     close = near_pairs(tables, motion, 0.0, 0.0, mid.near)
     count, _ = forces_at(tables, mid, first, motion, close)
     energy_into(mid.sticks, tables.listed, regions, groups, energies)

@@ -31,7 +31,7 @@ from mdlgen.mechanics.frame import frame_of
 from mdlgen.mechanics.laws import damped, friction_over_speed
 from mdlgen.mechanics.overlap import OVERLAPS, moves, plane_of
 from mdlgen.mechanics.overlap import STIFF as KEPT_STIFF
-from mdlgen.mechanics.stick import coefficient
+from mdlgen.mechanics.stick import limit_of
 from mdlgen.mechanics.vector import add, back, cross, mat, rotate, scale, sub, three, three_from, vec
 from mdlgen.program.kernel import BORROWS, njit
 
@@ -114,7 +114,7 @@ def begin_patch(work, q, k, h):
         spring, _ = _pressed(corner, closes, h)
         corner[GRIP] = damped(spring, closes, law.beta, law.smoothing)
         if q.ratio > 0.0:
-            corner[GRIP] *= coefficient(math.sqrt(v[0] * v[0] + v[1] * v[1]), law)
+            corner[GRIP] *= limit_of(v[0], v[1], law)
     _evaluate(q, law, h, 0.0, work.mid.sticks.pairs)
     for i in range(6):
         q.begun[i] = q.does[i]
@@ -297,6 +297,7 @@ def patches_into(work, h, chord):
                 law.mu_dynamic,
                 law.stiction,
                 law.sliding,
+                0.0,
                 True,
             )
             t, _, _ = core(numbers, n, n, slip, h, chord, False)

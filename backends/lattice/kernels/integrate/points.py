@@ -28,7 +28,9 @@ from mdlgen.backends.lattice.kernels.state import (
     ARM_A,
     ARM_B,
     BETA,
+    FIELD,
     GROWTH,
+    HOLD,
     KIND,
     MU_DYNAMIC,
     MU_STATIC,
@@ -46,7 +48,7 @@ from mdlgen.backends.lattice.kernels.state import (
 from mdlgen.backends.lattice.kernels.tuning import REACH
 from mdlgen.mechanics import point as law_point
 from mdlgen.mechanics.frame import LAW_SMOOTHING, frame_of, law_of
-from mdlgen.mechanics.laws import damped, friction_over_speed, sign_step
+from mdlgen.mechanics.laws import damped, friction_over_speed, held_over_speed, sign_step
 from mdlgen.mechanics.overlap import BY_SIDES
 from mdlgen.mechanics.pair import on_fixed_plate
 from mdlgen.mechanics.vector import add, cross, dot, scale, sub, three, three_from
@@ -58,13 +60,14 @@ TO_FIND_CORNERS = -1
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def law_at(q, v, h):
-    """Elastic force of a point and its growth with depth, its normal force, rate and slip velocity, at the
-    velocity v of the first body against the second."""
+    """Elastic force of a point and its growth with depth, its normal force, rate and slip velocity, with what
+    a bristle adds to that, at the velocity v of the first body against the second."""
     n, square = three_from(q, NORMAL), three_from(q, SQUARE)
     rate = -dot(v, n)
     spring = max(q[SPRING] + q[GROWTH] * h * (rate - q[RATE]), 0.0)
     normal = damped(spring, rate, q[BETA], q[OVER])
-    return spring, q[GROWTH], normal, rate, sub(v, scale(dot(v, square), square))
+    slip = sub(v, scale(dot(v, square), square))
+    return spring, q[GROWTH], normal, rate, add(slip, three_from(q, FIELD))
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -81,7 +84,10 @@ def force_of(q, v, h):
     if q[PRESSING] <= 0.0:
         return scale(normal, n)
     speed = math.sqrt(dot(slip, slip))
-    over = friction_over_speed(speed, q[MU_STATIC], q[MU_DYNAMIC], q[STICTION], q[SLIDING])
+    if q[HOLD] > 0.0:
+        over = held_over_speed(speed, q[HOLD], q[MU_STATIC])
+    else:
+        over = friction_over_speed(speed, q[MU_STATIC], q[MU_DYNAMIC], q[STICTION], q[SLIDING])
     return sub(scale(normal, n), scale(q[PRESSING] * over, slip))
 
 
@@ -96,11 +102,11 @@ def _begin(frozen, p, where, normal, a, b):
     v = sub(add(a.v, cross(a.w, arm)), add(b.v, cross(b.w, far)))
     for i in range(3):
         q[NORMAL + i] = q[SQUARE + i] = normal[i]
-        q[ARM_A + i], q[ARM_B + i], q[NOW + i], q[ALONG + i] = arm[i], far[i], v[i], 0.0
+        q[ARM_A + i], q[ARM_B + i], q[NOW + i], q[ALONG + i], q[FIELD + i] = arm[i], far[i], v[i], 0.0, 0.0
     q[RATE] = -dot(v, normal)
     q[SPRING] = q[GROWTH] = q[PRESSING] = 0.0
     q[KIND], q[BETA], q[OVER] = A_PRESSURE, 0.0, 1.0
-    q[MU_STATIC] = q[MU_DYNAMIC] = 0.0
+    q[MU_STATIC] = q[MU_DYNAMIC] = q[HOLD] = 0.0
     q[STICTION] = q[SLIDING] = 1.0
     frozen.pair[many] = p
     frozen.many[0] = many + 1
@@ -153,6 +159,11 @@ def _of_law(frozen, p, pair, out, h, motion):
                 q[SQUARE + i] = out[at + law_point.WAY + i]
         q[MU_STATIC], q[MU_DYNAMIC] = out[at + law_point.MU_STATIC], out[at + law_point.MU_DYNAMIC]
         q[STICTION], q[SLIDING], q[PRESSING] = law.stiction, law.sliding, force
+        q[HOLD] = out[at + law_point.HOLD]
+        if q[HOLD] > 0.0:
+            _, _, _, _, slip = law_at(q, three_from(q, NOW), h)
+            for i in range(3):
+                q[FIELD + i] = out[at + law_point.SLIP + i] - slip[i]
         _started(q, h)
         if alone or out[at + law_point.BETA] == 0.0 or out[at + law_point.OVER] == law_point.NEVER:
             continue

@@ -17,6 +17,7 @@ from mdlgen.backends.lattice.kernels.state import (
     ARM_B,
     BETA,
     GROWTH,
+    HOLD,
     KIND,
     MU_DYNAMIC,
     MU_STATIC,
@@ -135,6 +136,7 @@ def points_into(work, h, chord):
                 q[MU_DYNAMIC],
                 q[STICTION],
                 q[SLIDING],
+                q[HOLD],
                 True,
             )
             t, _, _ = core(numbers, n, three_from(q, SQUARE), slip, h, chord, False)

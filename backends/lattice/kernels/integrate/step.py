@@ -15,6 +15,7 @@ from __future__ import annotations
 import math
 
 from mdlgen.backends.lattice.kernels.contact.between import near_forces
+from mdlgen.backends.lattice.kernels.contact.bristles import lay_bristles, weigh_patches
 from mdlgen.backends.lattice.kernels.contact.condensed import (
     APART,
     INSIDE,
@@ -249,7 +250,8 @@ def midpoint(work, t, dt, tolerance, control):
     close, where, m = 0, int(factored[WHERE]), 0
     margin, moved, sheets = FAR, 0.0, work.search.regions.size > 0
     # loads add to the forces, by which the drives' power is counted; what sticks is where the step ends
-    lasting = sheets and tables.loads.size == 0 and mid.sticks.pairs.size == 0
+    sticks = tables.held.size > 0
+    lasting = sheets and tables.loads.size == 0 and mid.sticks.pairs.size == 0 and not sticks
     mid.sticks.half[0] = h
     inner, alike, air = 0, 0, False
     for iteration in range(NEWTON_MOST):
@@ -264,8 +266,12 @@ def midpoint(work, t, dt, tolerance, control):
         mid.forces[:] = 0.0
         joint_forces_of_sheets(tables, mid.motion, mid.forces, lag, mid.spent)
         known = iteration > 0 and where == APART and condensed.looked[UP_TO_DATE] == 1
-        known = known and not sheets
+        known = known and not sheets and not sticks
+        if sticks:
+            lay_bristles(tables, mid.motion, h)
         count, rubbed = _contact_forces(work, close, h, known)
+        if sticks:
+            weigh_patches(tables, mid, count)
         power = other_forces(tables, 1.0, mid.motion, mid.forces)
         _weights(tables, mid.forces)
         clutch_torques(tables, t + h, state.ub, mid.forces)
@@ -340,6 +346,7 @@ def midpoint(work, t, dt, tolerance, control):
             # forces change much with what the last iteration changed: friction, over its smoothing speed
             place(tables, h, t + h, state, mid.motion)
             if not lasting or change > SAME_FORCES * control.pace[LOOSE]:
+                # bristles hold as in the equations that were solved: what is laid stays
                 mid.forces[:] = 0.0
                 count, rubbed = _contact_forces(work, close, h, False)
             release(condensed, m)
