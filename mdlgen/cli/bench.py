@@ -96,6 +96,9 @@ def bench(
             "--finer/--no-finer", help="campaign: compare one scene in ten with an eighth of its step."
         ),
     ] = True,
+    sticking: Annotated[
+        bool, typer.Option("--sticking", help="campaign: friction sticks in every second contact.")
+    ] = False,
     as_json: Json = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
@@ -113,7 +116,7 @@ def bench(
     if CAMPAIGN in (suites or ()):
         _check_alone(suites or (), bool(quick or peers or beside or len(solver or ()) > 1))
         chosen = {"only": only or (), "kinds": kind or (), "solver": (solver or [AUTO])[0]}
-        options = {**chosen, "workers": workers, "finer": finer}
+        options = {**chosen, "workers": workers, "finer": finer, "sticking": sticking}
         _campaign(count, seed, output, options, page, as_json, quiet)
         return
     from mdlgen.bench import page as pages

@@ -34,9 +34,10 @@ class Friction(Strict):
     )
     sticking: Annotated[float, quantity("N/mm", 0.0, open_low=True)] | None = Field(
         default=None,
-        description="of two sheets: stiffness along the faces of one pair that sticks. What friction holds "
-        "then gives way by force/stiffness and does not creep, and slides from the limit mu N on; the pair "
-        "shares it as it shares k. Where left out friction rises over the slip speed alone",
+        description="stiffness along the faces of what sticks: of one pair of boxes of two sheets, of a sheet "
+        "and a roller, of one box and another part. What friction holds then yields by force/stiffness, does "
+        "not creep, and slides from the limit mu N on. Where left out friction rises over the slip speed "
+        "alone",
     )
 
     @model_validator(mode="before")

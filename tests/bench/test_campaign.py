@@ -55,6 +55,18 @@ def test_seed_and_number_decide_a_scene(kind: str) -> None:
     assert drawn(SEED, 6, kind).text != scene.text != drawn(SEED + 1, 5, kind).text
 
 
+@pytest.mark.parametrize("kind", ["channel", "nips", "stack"])
+def test_friction_sticks_in_every_second_contact_of_the_same_scene(kind: str) -> None:
+    plain, sticks = drawn(SEED, 5, kind), drawn(SEED, 5, kind, sticking=True)
+    one, two = plain.model().contacts, sticks.model().contacts
+    assert np.array_equal(one.stiffness, two.stiffness) and np.array_equal(one.mu_static, two.mu_static)
+    assert not one.sticking.any() and (two.sticking[two.sticking > 0.0] >= RANGES["sticking"].low).all()
+    entries, given = (
+        text.count(word) for text, word in ((plain.text, "friction:"), (sticks.text, "sticking:"))
+    )
+    assert given == (entries + 1) // 2
+
+
 def test_kinds_have_their_shares() -> None:
     """Within four standard deviations of a binomial distribution."""
     count = 1000

@@ -33,6 +33,7 @@ RANGES = {
     "friction": Range(0.1, 1.2, "", "coefficient of friction", even=True),
     "restitution": Range(0.1, 0.8, "", "coefficient of restitution", even=True),
     "smoothing": Range(1.0, 20.0, "mm/s", "smoothing speed, at most 5 % of a driven surface's speed"),
+    "sticking": Range(5.0, 500.0, "N/mm", "with `--sticking`, stiffness along the faces"),
     "duration": Range(20.0, 250.0, "ms", "duration"),
 }
 

@@ -19,9 +19,10 @@ class Campaign:
     machine: dict[str, Any] = field(default_factory=dict)
     versions: dict[str, str] = field(default_factory=dict)
     rows: list[CampaignRow] = field(default_factory=list)
+    sticking: bool = False  # in every second contact
 
     def json(self) -> dict[str, Any]:
         """The content of campaign.json."""
-        head = {"seed": self.seed, "count": self.count, "limit_s": self.limit}
+        head = {"seed": self.seed, "count": self.count, "limit_s": self.limit, "sticking": self.sticking}
         machine = {"machine": self.machine, "versions": self.versions}
         return {**head, **machine, "counts": counts(self.rows).json(), "rows": [r.json() for r in self.rows]}

@@ -62,7 +62,9 @@ def page(found: Campaign) -> str:
 def _head(found: Campaign) -> list[str]:
     versions = ", ".join(f"{name} {number}" for name, number in found.versions.items())
     cpu = found.machine.get("cpu", "")
-    return [f"Seed {found.seed}, {len(found.rows)} scenes; {cpu}, one core for each scene; {versions}."]
+    sticks = ", friction that sticks in every second contact" if found.sticking else ""
+    scenes = f"{len(found.rows)} scenes{sticks}"
+    return [f"Seed {found.seed}, {scenes}; {cpu}, one core for each scene; {versions}."]
 
 
 def _body(found: Campaign) -> list[str]:

@@ -38,12 +38,14 @@ def campaign(
     limit: float = LIMIT,
     solver: str = "auto",
     finer: bool = True,
+    sticking: bool = False,
     say: Say = lambda text: None,
 ) -> Campaign:
     """Run the scenes 1 to `count` of a seed, or the numbers in `only`. `kinds` selects some of them.
 
     `workers` processes run one scene each at a time (None: one for each processor), for at most `limit` [s]
-    of processor time. One scene in ten is compared with finer steps, unless `finer` is false. Writes
+    of processor time. One scene in ten is compared with finer steps, unless `finer` is false. With `sticking`
+    friction sticks in every second contact. Writes
     campaign.json and campaign.md into `folder`, and into `folder`/scenes the scenes that have no result or an
     inaccurate one, or that `only` names. Raises SpecError for a solver or a kind that there is not,
     OutputError for files that cannot be written.
@@ -60,15 +62,18 @@ def campaign(
         (folder / "scenes").mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise OutputError(f"{folder}: cannot make this folder: {error.strerror or error}") from None
-    found = Campaign(seed, len(numbers), limit, dict(machine()), versions())
-    tasks = [Task(seed, number, finer and number % TENTH == 0, solver, limit=limit) for number in numbers]
+    found = Campaign(seed, len(numbers), limit, dict(machine()), versions(), sticking=sticking)
+    tasks = [
+        Task(seed, number, finer and number % TENTH == 0, solver, limit=limit, sticking=sticking)
+        for number in numbers
+    ]
     try:
         with Workers(workers or processors(), solver) as pool:
             for row in pool.rows(tasks):
                 found.rows.append(row)
                 say(_progress(row, len(found.rows), len(numbers)))
                 if only or row.status != OK:
-                    _write_scene(seed, row, folder / "scenes")
+                    _write_scene(seed, row, sticking, folder / "scenes")
                 if len(found.rows) % OFTEN == 0:
                     write(found, folder)
     finally:  # an interrupted campaign keeps its rows
@@ -93,9 +98,9 @@ def _progress(row: CampaignRow, done: int, count: int) -> str:
     return f"{done}/{count} {row.kind} {row.number}, {row.boxes} boxes: {row.status}{mark}{took}{why}"
 
 
-def _write_scene(seed: int, row: CampaignRow, folder: Path) -> None:
+def _write_scene(seed: int, row: CampaignRow, sticking: bool, folder: Path) -> None:
     try:
-        scene = drawn(seed, row.number)
+        scene = drawn(seed, row.number, sticking=sticking)
     except MdlgenError:  # none of its draws is accepted, which its row says
         assert row.status == NONE
         return

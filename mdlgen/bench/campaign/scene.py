@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from mdlgen import paths
 from mdlgen.bench.campaign.draw import Data, Draw
@@ -54,12 +55,13 @@ class DrawnScene:
             return lower(loads(self.text, self.name, folder=file.parent))
 
 
-def drawn(seed: int, number: int, kind: str = "") -> DrawnScene:
+def drawn(seed: int, number: int, kind: str = "", sticking: bool = False) -> DrawnScene:
     """The scene of that number, of a kind that is drawn where it is not given; one that the spec rejects is
-    drawn again. Raises SpecError where all of TRIES draws are rejected."""
+    drawn again. `sticking`: the same scene with friction that sticks in every second contact. Raises
+    SpecError where all of TRIES draws are rejected."""
     rejected: list[str] = []
     while True:
-        scene = _once(seed, number, kind, len(rejected), tuple(rejected))
+        scene = _once(seed, number, kind, sticking, tuple(rejected))
         try:
             scene.model()
         except MdlgenError as error:
@@ -70,20 +72,39 @@ def drawn(seed: int, number: int, kind: str = "") -> DrawnScene:
         return scene
 
 
-def _once(seed: int, number: int, kind: str, again: int, rejected: tuple[str, ...]) -> DrawnScene:
-    """Draws a scene. Each repeated draw (`again`) has its own random numbers."""
+def _once(seed: int, number: int, kind: str, sticking: bool, rejected: tuple[str, ...]) -> DrawnScene:
+    """Draws a scene. Each repeated draw has its own random numbers."""
     from mdlgen.spec.source import text_of_data
 
     own = list(KINDS).index(kind) + 1 if kind else 0
-    draw = Draw([seed, number, again, own])
+    draw = Draw([seed, number, len(rejected), own])
     kind = kind or list(KINDS)[draw.weighted([share for share, _ in KINDS.values()])]
     made = dict(KINDS[kind][1](draw))
+    if sticking:
+        _stick(draw, made)
     name = f"{kind}_{seed}_{number}"
     files = {_own(path, name): text for path, text in made.pop("files", {}).items()}
     for mesh in made.get("meshes", {}).values():
         mesh["file"] = _own(mesh["file"], name)
     data: Data = {"name": name, **{key: made[key] for key in ORDER if key in made}}
     return DrawnScene(seed, number, kind, text_of_data(data), files, rejected)
+
+
+def _stick(draw: Draw, made: Data) -> None:
+    """Gives the friction of every second contact, from the first on, a stiffness along the faces."""
+    for contact in list(_with_friction(made))[::2]:
+        mu = contact["friction"]
+        both = mu if isinstance(mu, dict) else {"static": mu, "dynamic": mu}
+        contact["friction"] = {**both, "sticking": draw.text("sticking")}
+
+
+def _with_friction(node: Any) -> Iterator[Data]:
+    """The entries that have a friction: contacts, and those of nips and piles. A sector
+    of a rim has factors."""
+    if isinstance(node, dict) and "friction" in node and isinstance(node.get("stiffness"), str):
+        yield node
+    for item in node.values() if isinstance(node, dict) else node if isinstance(node, list) else ():
+        yield from _with_friction(item)
 
 
 def _own(path: str, name: str) -> str:

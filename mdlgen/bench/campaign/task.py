@@ -18,6 +18,7 @@ class Task:
     solver: str = "auto"
     kind: str = ""  # empty: drawn
     limit: float = 60.0  # of processor time of its run [s]; its finer runs have FINER times that
+    sticking: bool = False  # friction sticks in half of its contacts
     compile: bool = False  # prepares the solver alone
 
 

@@ -52,7 +52,7 @@ def perform(task: Task) -> Iterator[Begun | CampaignRow]:
 
     _allow(STARTING)  # the limit of the scene before may be near
     try:
-        scene = drawn(task.seed, task.number, task.kind)
+        scene = drawn(task.seed, task.number, task.kind, task.sticking)
         model = scene.model()
     except MdlgenError as error:
         reason = f"rejected at check: {error}"
