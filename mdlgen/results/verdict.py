@@ -103,7 +103,8 @@ def outcomes_of(record: Mapping[str, Any]) -> list[Outcome]:
 
 
 def _notable(events: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-    """Those that a reader sees in any case. A jam or a wait at a roller says why a sheet slips there."""
+    """Those that a reader sees in any case, creep last: jams are worth more of the few lines that a terminal
+    has. A jam or a wait at a roller says why a sheet slips there."""
     held = [event for event in events if event["kind"] in ("jam", "wait")]
 
     def explained(slip: Mapping[str, Any]) -> bool:
@@ -120,7 +121,7 @@ def _notable(events: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
         large = LARGE_SLIP < abs(event.get("part_of_surface_speed") or 0.0) <= 1.0
         return large and not explained(event)
 
-    return [event for event in events if listed(event)]
+    return sorted(filter(listed, events), key=lambda event: event["kind"] == "creep")
 
 
 def in_words(event: Mapping[str, Any]) -> str:

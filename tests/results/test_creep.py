@@ -19,6 +19,7 @@ from mdlgen.report.html.happened import happened
 from mdlgen.report.text import summary_text
 from mdlgen.results.held import WAIT
 from mdlgen.results.result import Result
+from mdlgen.results.verdict import verdict
 from mdlgen.spec.load import load, loads
 
 Event = dict[str, Any]
@@ -248,6 +249,20 @@ def test_it_can_be_required_away() -> None:
     result = solved(HANGING, "require=[no creep, no creep at back, no creep at card]")
     assert [outcome.passed for outcome in result.verdict] == [False, False, False]
     assert solved(SLOPE, *LEVEL, "require=[no creep]").verdict[0].passed
+
+
+def test_what_a_machine_does_wrong_stands_before_creep() -> None:
+    result = solved(HANGING)
+    jam = {
+        "kind": "jam",
+        "sheet": "card",
+        "roller": "back",
+        "time_ms": 200.0,
+        "held_by": [],
+        "duration_ms": 60.0,
+    }
+    lines = verdict(result, {"events": [*creeps(result), jam]})["events"]
+    assert lines[0] == "jam of card at back from 200 ms" and "creeps by" in lines[1]
 
 
 def test_the_lint_of_a_stopped_nip_has_how_long_it_stands() -> None:
