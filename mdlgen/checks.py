@@ -7,7 +7,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from mdlgen.lints import air, contacts, cost, damping, idle, missing, parameters, planes, sheets, start, ways
+from mdlgen.lints import (
+    air,
+    contacts,
+    cost,
+    creep,
+    damping,
+    idle,
+    missing,
+    parameters,
+    planes,
+    sheets,
+    start,
+    ways,
+)
 from mdlgen.lints.lint import Lint
 from mdlgen.model.once import Once
 from mdlgen.model.tables import Model
@@ -54,4 +67,6 @@ CHECKS: tuple[Callable[[Model], Iterator[Lint]], ...] = (
     planes.crosswise,
     air.no_gas,
     air.still,
+    creep.on_slope,
+    creep.stopped,
 )

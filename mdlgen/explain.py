@@ -185,6 +185,22 @@ SCENE = {
         "The air between two sheets pushes them while its gap changes. A static analysis looks for a state "
         "in which nothing moves, so that its air does nothing."
     ),
+    "W138": (
+        "Friction without `sticking` rises from 0 at rest to mu N at the stiction velocity v_s (Eq. 12; the "
+        "smoothing where it is left out). So a sheet on a slope creeps at the speed v at which friction "
+        "carries its weight: tan(slope)/mu = x (3 - x^2)/2 with x = v/v_s. The lint comes where v times the "
+        "duration is more than run.tolerance times a tenth of the sheet's length, and nothing but this plane "
+        "and other sheets is in reach. friction.sticking holds it; a lower smoothing makes it slower."
+    ),
+    "W139": (
+        "Friction without `sticking` is 0 at rest, so that a stopped nip does not hold a sheet: it creeps "
+        "under its weight, at 0.35 of the smoothing speed where that is half of what friction can hold. The "
+        "load is not known before the run; the line has the way for half. It comes where the drive stands "
+        "for more than a tenth of the run, by its speed or its profile, a sheet may come to the part, and "
+        "that way is more than run.tolerance times the way of the fastest driven surface that the sheet has "
+        "a contact with, or times a tenth of the sheet's length where that is more. After the run an event "
+        "`creep` says what was held, and how far it crept. friction.sticking holds it."
+    ),
 }
 
 TEXT = {

@@ -93,7 +93,7 @@ SUMMARY: dict[str, tuple[str, str]] = {
         "`requirement`, `passed`, `value`, `unit`, `margin` (below zero: what is missing) of each; "
         "`doubtful`: whether the error of the run could turn it round",
     ),
-    "verdict.events": ("", "jams, double feeds, stubs and large slips in words"),
+    "verdict.events": ("", "jams, double feeds, stubs, creep where friction holds and large slips in words"),
     "versions.PACKAGE": (
         "",
         "versions of mdlgen, Python, numpy and the solver; `code`: what its machine code was made for, and "

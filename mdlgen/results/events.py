@@ -1,5 +1,5 @@
 """What happens to sheets: at rollers entering and leaving, slip, gaps, waits, jams, double feeds; at the ends
-of plates stubs.
+of plates stubs; where friction holds them creep.
 
 All of it is read from the stored states, so times are those of stored states (`run.print_step`).
 """
@@ -14,6 +14,7 @@ import numpy as np
 from mdlgen.model.rotations import turns
 from mdlgen.model.tables import Floats, Model, RollerPart
 from mdlgen.results.contact_line import contact_line
+from mdlgen.results.creep import creeps
 from mdlgen.results.held import holds
 from mdlgen.results.stacked import stacked
 from mdlgen.results.stays import SHORT, Stay, intervals, stays_at_meshes, stays_of
@@ -23,19 +24,19 @@ from mdlgen.units import PER_SECOND
 if TYPE_CHECKING:
     from mdlgen.results.result import Result
 
-KINDS = ("enter", "leave", "slip", "gap", "wait", "jam", "double_feed", "stub")
+KINDS = ("enter", "leave", "slip", "gap", "wait", "jam", "double_feed", "stub", "creep")
 # A sheet that is slower than this [mm/ms] stands: smoothed friction lets what waits under a force creep.
 # One that is slower than this part of another one is held back while that one is fed.
 STANDS, HELD_PART = 0.01, 0.1
 
 
 def events(result: Result) -> list[dict[str, Any]]:
-    """Every event as an object with `time_ms`, `kind`, `sheet`, `roller` (of a stub `part`) and numbers, by
-    time.
+    """Every event as an object with `time_ms`, `kind`, `sheet`, `roller` (of a stub `part`, of a creep
+    `held_by`) and numbers, by time.
 
     Kinds: `enter` and `leave`; `slip`, one for each stay of a sheet at a roller; `gap`, where a sheet enters
     a roller that another one was at before; `wait`; `jam`; `double_feed`; `stub`, where the end of a
-    plate stops a sheet. A sheet that touches at the start
+    plate stops a sheet; `creep`, where regularised friction holds one. A sheet that touches at the start
     enters at 0. docs/reference/events.md says what the numbers are.
     """
     if len(result.time) < 2:
@@ -46,12 +47,13 @@ def events(result: Result) -> list[dict[str, Any]]:
     found += _gaps(result, stays)
     found += _double_feeds(result, [*stays, *_beyond(result, stays, together)])
     found += _stubs(result)
+    found += _creeps(result)
     order = {"leave": 0, "enter": 1}
     return sorted(found, key=lambda e: (e["time_ms"], order.get(e["kind"], 2), _place(e), e["sheet"]))
 
 
 def _place(event: dict[str, Any]) -> str:
-    return event["roller"] if "roller" in event else event["part"]
+    return event.get("roller") or event.get("part") or event["held_by"][0]
 
 
 def _stubs(result: Result) -> list[dict[str, Any]]:
@@ -68,6 +70,22 @@ def _stubs(result: Result) -> list[dict[str, Any]]:
             }
             at = {"time_ms": float(result.time[first]), "kind": "stub"}
             found.append(at | {"sheet": stop.sheet, "part": stop.part} | numbers)
+    return found
+
+
+def _creeps(result: Result) -> list[dict[str, Any]]:
+    """Where friction that does not stick holds a sheet."""
+    contacts, found = result.model.contacts, []
+    for creep in creeps(result):
+        at = {"time_ms": float(result.time[creep.first]), "kind": "creep"}
+        numbers = {
+            "duration_ms": float(result.time[creep.last] - result.time[creep.first]),
+            "creep_mm": creep.distance,
+            "smoothing_mm_per_s": float(contacts.smoothing[creep.row]) * PER_SECOND,
+            "stiction_velocity_mm_per_s": float(contacts.stiction_velocity[creep.row]) * PER_SECOND,
+        }
+        sheet = result.model.sheets[creep.sheet].name
+        found.append(at | {"sheet": sheet, "held_by": list(creep.held_by)} | numbers)
     return found
 
 

@@ -42,7 +42,7 @@ def holds(result: Result, stay: Stay, together: np.ndarray | None) -> list[Hold]
     and one that touches a rim that has not turned once yet may wait for another sector of it: they wait.
     """
     roller, line, time = stay.roller, stay.line, result.time
-    if not roller.speed or _is_fixed(result, stay.sheet):
+    if not roller.speed or is_fixed(result, stay.sheet):
         return []
     surface, fast = (np.linalg.norm(rate, axis=1) for rate in (line.roller, line.sheet))
     turns = surface > JAM_PART * abs(roller.speed) * roller.radius
@@ -67,7 +67,7 @@ def holds(result: Result, stay: Stay, together: np.ndarray | None) -> list[Hold]
     return found
 
 
-def _is_fixed(result: Result, sheet: int) -> bool:
+def is_fixed(result: Result, sheet: int) -> bool:
     """Whether the scene itself holds a sheet."""
     model, part = result.model, result.model.sheets[sheet]
     return part.clamp is not None or any(anchor.sheet == sheet for anchor in model.supports)
@@ -100,7 +100,7 @@ def _below_another(result: Result, stay: Stay, at: np.ndarray, together: np.ndar
 def _rim_to_come(result: Result, stay: Stay, at: np.ndarray) -> bool:
     """Whether the sheet touches a driven roller with a rim that turns less than once in some states."""
     time = result.time[at]
-    for row, name in _partners(result, stay.sheet):
+    for row, name in partners(result, stay.sheet):
         roller = next((r for r in result.model.rollers if r.name == name), None)
         if roller is None or roller.rim is None or not roller.speed:
             continue
@@ -115,7 +115,7 @@ def _held_by(result: Result, stay: Stay, at: np.ndarray) -> tuple[str, ...]:
     """What the sheet touches in most of some states but what drives it the same way."""
     ahead = stay.line.roller[np.isin(stay.at, at)].mean(axis=0)
     found: dict[str, float] = {}
-    for row, name in _partners(result, stay.sheet):
+    for row, name in partners(result, stay.sheet):
         force = result.contact_force[at, row]
         if name == stay.roller.name or np.count_nonzero(force > 0.0) < 0.5 * len(at):
             continue
@@ -128,7 +128,7 @@ def _held_by(result: Result, stay: Stay, at: np.ndarray) -> tuple[str, ...]:
     return tuple(sorted(found, key=lambda name: (-found[name], name)))
 
 
-def _partners(result: Result, sheet: int) -> list[tuple[int, str]]:
+def partners(result: Result, sheet: int) -> list[tuple[int, str]]:
     """Rows of the contacts of a sheet, and what each is with."""
     name, table = result.model.sheets[sheet].name, result.model.contacts
     ends = enumerate(zip(table.part_a, table.part_b, strict=True))

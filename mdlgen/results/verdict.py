@@ -37,7 +37,7 @@ UNITS = {
     "_w": "W",
 }
 # Events that a reader sees whether or not they are required away.
-NOTABLE = ("jam", "double_feed", "stub")
+NOTABLE = ("jam", "double_feed", "stub", "creep")
 # A slip of more than this part of the surface's speed, over a whole stay, is named, too; one of more than all
 # of it is that of a roller which holds back.
 LARGE_SLIP = 0.2
@@ -103,7 +103,8 @@ def outcomes_of(record: Mapping[str, Any]) -> list[Outcome]:
 
 
 def _notable(events: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-    """Those that a reader sees in any case. A jam or a wait at a roller says why a sheet slips there."""
+    """Those that a reader sees in any case, creep last: jams are worth more of the few lines that a terminal
+    has. A jam or a wait at a roller says why a sheet slips there."""
     held = [event for event in events if event["kind"] in ("jam", "wait")]
 
     def explained(slip: Mapping[str, Any]) -> bool:
@@ -120,11 +121,13 @@ def _notable(events: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
         large = LARGE_SLIP < abs(event.get("part_of_surface_speed") or 0.0) <= 1.0
         return large and not explained(event)
 
-    return [event for event in events if listed(event)]
+    return sorted(filter(listed, events), key=lambda event: event["kind"] == "creep")
 
 
 def in_words(event: Mapping[str, Any]) -> str:
     """An event as a person says it."""
+    if event["kind"] == "creep":
+        return f"{event['sheet']} {creep_in_words(event)}"
     kind = str(event["kind"]).replace("_", " ")
     where = event.get("roller") or event.get("part")
     who = f"{event['sheet']} and {event['other']}" if "other" in event else str(event["sheet"])
@@ -138,6 +141,16 @@ def in_words(event: Mapping[str, Any]) -> str:
     if "way_mm" in event:
         text += f", the slower one goes {event['way_mm']:.3g} mm"
     return text
+
+
+def creep_in_words(event: Mapping[str, Any]) -> str:
+    """What a sheet that friction holds does, where and why; `friction.sticking` of the contact avoids it."""
+    smoothing, stiction = event["smoothing_mm_per_s"], event["stiction_velocity_mm_per_s"]
+    speed = f"{'smoothing' if smoothing == stiction else 'stiction velocity'} {stiction:.3g} mm/s"
+    return (
+        f"is held by friction at {', '.join(event['held_by'])} for {event['duration_ms']:.3g} ms and creeps "
+        f"by {event['creep_mm']:.2g} mm: {speed}; sticking holds it"
+    )
 
 
 def judge(result: Result, record: Mapping[str, Any]) -> list[Outcome]:

@@ -6,14 +6,16 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from mdlgen.report.html.wording import shown
+from mdlgen.results.verdict import creep_in_words
 
 
 def happened(events: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Rows of a table by time: `time_ms`, `kind`, `places` (rollers, or the part of a stub) and `text`."""
+    """Rows of a table by time: `time_ms`, `kind`, `places` and `text`; places are rollers, the part of a
+    stub, or what holds a sheet that creeps."""
     rows: dict[tuple[str, ...], dict[str, Any]] = {}
     for event in events:
         kind, text = str(event["kind"]).replace("_", " "), _WORDS.get(event["kind"], _other)(event)
-        place = str(event.get("roller") or event.get("part") or "")
+        place = str(event.get("roller") or event.get("part") or ", ".join(event.get("held_by", ())))
         # what is alike as it is shown: both sides of a machine
         key = shown(event["time_ms"]), kind, text
         row = rows.setdefault(key, {"time_ms": event["time_ms"], "kind": kind, "places": [], "text": text})
@@ -68,7 +70,11 @@ def _other(event: Mapping[str, Any]) -> str:
     return f"{event['sheet']}: {', '.join(numbers)}"
 
 
+def _creeps(event: Mapping[str, Any]) -> str:
+    return f"{event['sheet']} {creep_in_words(event)}"
+
+
 _WORDS = {
     "enter": _moves, "leave": _moves, "slip": _slips, "wait": _waits, "jam": _waits, "gap": _gap,
-    "double_feed": _feeds, "stub": _stub,
+    "double_feed": _feeds, "stub": _stub, "creep": _creeps,
 }  # fmt: skip
