@@ -29,8 +29,8 @@ import math
 from typing import NamedTuple
 
 from mdlgen.mechanics.frame import ARC_RADIUS, Vector
-from mdlgen.mechanics.point import Load, push
-from mdlgen.mechanics.vector import add, back, dot, local, rotate, scale, sub
+from mdlgen.mechanics.point import Load, push, turn
+from mdlgen.mechanics.vector import add, back, cross, dot, local, rotate, scale, sub
 from mdlgen.program.kernel import BORROWS, njit
 
 NORM = 12.0
@@ -66,6 +66,13 @@ def leaning(sine):
     """How much of the law of the edge acts at a slope of the box, 0 to 1."""
     s = min(max((sine - LEVEL) / (LEANING - LEVEL), 0.0), 1.0)
     return s * s * (3.0 - 2.0 * s)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def leaning_growth(sine):
+    """Growth of `leaning` with the sine."""
+    s = min(max((sine - LEVEL) / (LEANING - LEVEL), 0.0), 1.0)
+    return 6.0 * s * (1.0 - s) / (LEANING - LEVEL)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -304,6 +311,8 @@ def _pressed(out, a, box, face, edge, end, b, law, grip):
         point = add(a.x, add(rotate(a.r, at), scale(-radius, onto)))
         load = Load(spring * steep, depth, 0.4 * spring * depth)
         push(out, point, held(onto, end.up, grip), load, a, b, law)
+        # the part that the edge has of k grows as the box turns
+        turn(out, scale(-load.energy * leaning_growth(lean) / part, cross(normal, end.out)))
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)

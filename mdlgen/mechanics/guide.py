@@ -20,11 +20,11 @@ import math
 import numpy as np
 
 from mdlgen.mechanics.contact import box_sector, clip, face_corners, outer
-from mdlgen.mechanics.edge import HOLDS, UPPER, hands_over, held, leaning
+from mdlgen.mechanics.edge import HOLDS, UPPER, hands_over, held, leaning, leaning_growth
 from mdlgen.mechanics.frame import ARC_ANGLE, ARC_MIDDLE, ARC_RADIUS, Cylinder, Sector, scaled
 from mdlgen.mechanics.plate import box_ends, box_flat, corner_areas, facing
-from mdlgen.mechanics.point import Load, push
-from mdlgen.mechanics.vector import add, back, dot, rotate, scale, sub
+from mdlgen.mechanics.point import STORED, Load, push, turn
+from mdlgen.mechanics.vector import add, back, cross, dot, rotate, scale, sub
 from mdlgen.program.kernel import CALLED, OWNS, njit
 
 # Cosine of the angle of a sheet to a plate beyond which the sheet's middle plane does not tell the side.
@@ -117,15 +117,19 @@ def box_guide(out, a, box, b, plate, law):
     look = outer(back(ra, rotate(rb, normal)), box.exposed)
     tilted = back(rb, facing(look, ra))
     if sign < 0.0:
-        part = 1.0
+        part, slope, stored = 1.0, zero, out[STORED]
         for i in range(2):
             if ends & (1 << i) != 0:
-                part -= leaning(dot(tilted, _beyond(i, shape)))
+                beyond = _beyond(i, shape)
+                lean = dot(tilted, beyond)
+                part, slope = part - leaning(lean), sub(slope, scale(leaning_growth(lean), beyond))
         to = rotate(rb, (math.cos(shape[ARC_MIDDLE]), math.sin(shape[ARC_MIDDLE]), 0.0))
         if part > 0.0:
             bend = Cylinder((rb[2], rb[5], rb[8]), radius - top + thick, 2.0 * half_b[1])
             own = scaled(law, part, 1.0, law.beta)
             box_sector(out, a, box, b, bend, Sector(to, shape[ARC_ANGLE], zero, False), own)
+            # the part that the round has of k changes as the box turns
+            turn(out, rotate(rb, scale((stored - out[STORED]) / part, cross(tilted, slope))))
     else:
         _hollow(out, a, box, b, plate, look, tilted, law)
     if ends != 0:
@@ -156,7 +160,7 @@ def _hollow(out, a, box, b, plate, look, tilted, law):
             continue
         away = math.sqrt(point[0] * point[0] + point[1] * point[1])
         normal = (-point[0] / away, -point[1] / away, 0.0)
-        weight, way = share * areas[i], normal
+        weight, way, slope = share * areas[i], normal, (0.0, 0.0, 0.0)
         for j in range(2):
             if ends & (1 << j) == 0:
                 continue
@@ -165,7 +169,10 @@ def _hollow(out, a, box, b, plate, look, tilted, law):
             over = hands_over(a, exposed, -dot(middle, beyond), rotate(rb, beyond))
             part = over - max(-dot(point, beyond), 0.0) / max(edge[UPPER], 1e-300)
             if lean > 0.0 and part > 0.0:
-                weight *= 1.0 - leaning(lean) * min(part, 1.0)
+                left = 1.0 - leaning(lean) * min(part, 1.0)
+                more = -weight * leaning_growth(lean) * min(part, 1.0)
+                slope = add(scale(left, slope), scale(more, beyond))
+                weight *= left
                 part = max(part - over + 1.0, 0.0)
                 way = add(scale(1.0 - part, way), scale(part, tilted))
         way = scale(1.0 / math.sqrt(dot(way, way)), way)
@@ -177,3 +184,5 @@ def _hollow(out, a, box, b, plate, look, tilted, law):
         where = add(b.x, rotate(rb, point))
         energy = 0.4 * spring * depth
         push(out, where, rotate(rb, way), Load(spring, depth, energy), a, b, law)
+        if ends != 0:  # the part that the face has of k falls as the box turns
+            turn(out, rotate(rb, scale(-0.4 * depth * depth * math.sqrt(depth), cross(tilted, slope))))

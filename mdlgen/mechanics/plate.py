@@ -13,9 +13,20 @@ import math
 import numpy as np
 
 from mdlgen.mechanics.contact import clip, face_corner, face_corners, looking, outer
-from mdlgen.mechanics.edge import HOLDS, LOWER, UPPER, end_of, hands_over, held, leaning, line, stub
+from mdlgen.mechanics.edge import (
+    HOLDS,
+    LOWER,
+    UPPER,
+    end_of,
+    hands_over,
+    held,
+    leaning,
+    leaning_growth,
+    line,
+    stub,
+)
 from mdlgen.mechanics.frame import ARC_RADIUS, Frame
-from mdlgen.mechanics.point import Load, push
+from mdlgen.mechanics.point import Load, push, turn
 from mdlgen.mechanics.vector import add, back, cross, dot, rotate, scale, sub, vec
 from mdlgen.program.kernel import BORROWS, CALLED, OWNS, njit
 
@@ -153,9 +164,9 @@ def box_flat(out, a, box, b, plate, covered, law):
             depth = sign * (top - points[i, 1]) if sign > 0.0 else points[i, 1] - bottom
             if depth <= 0.0 or depth > thick:
                 continue
-            weight, way = share * areas[i], normal
+            weight, way, slope = share * areas[i], normal, (0.0, 0.0, 0.0)
             if ends != 0:
-                weight, way = _near_end(points[i], half_b, ends, overs, radius, inward, normal, weight)
+                weight, way, slope = _near_end(points[i], half_b, ends, overs, radius, inward, normal, weight)
                 depth *= sign * way[1]
                 way = held(way, normal, edge[HOLDS] * law.mu_static)
             spring = weight * depth * math.sqrt(depth)
@@ -163,6 +174,8 @@ def box_flat(out, a, box, b, plate, covered, law):
                 continue
             point = add(b.x, rotate(rb, (points[i, 0], points[i, 1], points[i, 2])))
             push(out, point, rotate(rb, way), Load(spring, depth, 0.4 * spring * depth), a, b, law)
+            if ends != 0:  # the part that the face has of k falls as the box turns
+                turn(out, rotate(rb, scale(-0.4 * depth * depth * math.sqrt(depth), cross(inward, slope))))
     if ends != 0:
         box_ends(out, a, box, b, plate, law)
 
@@ -189,9 +202,10 @@ def _drawn(points, count, half_b, ends, radius):
 
 @njit(cache=True, error_model="numpy")
 def _near_end(point, half_b, ends, overs, radius, inward, normal, share):
-    """(part of k, normal) of a corner of what lies over the plate: at a free end beyond which the box slopes
-    down the edge takes over, with the normal of the box's face. overs: see edge.hands_over, for each end."""
-    weight, way = share, normal
+    """(part of k, normal, growth of the part with the normal of the box's face) of a corner of what lies over
+    the plate: at a free end beyond which the box slopes down the edge takes over, with the normal of the
+    box's face. overs: see edge.hands_over, for each end."""
+    weight, way, slope = share, normal, (0.0, 0.0, 0.0)
     for i in range(4):
         if ends & (1 << i) == 0:
             continue
@@ -203,11 +217,14 @@ def _near_end(point, half_b, ends, overs, radius, inward, normal, share):
         part = over - max(_inset(point, i, half_b), 0.0) / max(radius, 1e-300)
         if part <= 0.0:
             continue
-        weight *= 1.0 - leaning(lean) * min(part, 1.0)
+        left = 1.0 - leaning(lean) * min(part, 1.0)
+        more = -weight * leaning_growth(lean) * min(part, 1.0) * sign
+        slope = add(scale(left, slope), (more, 0.0, 0.0) if i < 2 else (0.0, 0.0, more))
+        weight *= left
         part = max(part - over + 1.0, 0.0)
         way = add(scale(1.0 - part, way), scale(part, inward))
     size = math.sqrt(dot(way, way))
-    return weight, scale(1.0 / size, way)
+    return weight, scale(1.0 / size, way), slope
 
 
 @njit(cache=True, error_model="numpy", **CALLED)

@@ -107,3 +107,17 @@ def test_the_corner_on_the_round_is_pushed_along_the_line_to_its_axis(angle: flo
     assert force / np.linalg.norm(force) == pytest.approx(line, abs=1e-9)
     assert np.linalg.norm(force) == pytest.approx(68.0 * depth**1.5, rel=1e-9)
     assert force == pytest.approx(leaving.slope(middle, turned)[:3], abs=1e-4 * np.linalg.norm(force))
+
+
+@pytest.mark.parametrize("tilt", [2.5, 4.0, 5.5])
+@pytest.mark.parametrize("radius", [0.1, 0.5, 2.69])
+def test_a_slope_at_which_the_face_passes_to_the_edge_has_its_torque(radius: float, tilt: float) -> None:
+    """From sines of 0.03 to 0.1 the part of k that the face has passes to the edge. A torque goes with that:
+    without it a sheet of 192 boxes that fell on an edge of 1.4 mm made 22 % of its energy. It was off by up
+    to 3.7 mm of arm here."""
+    leaving = Leaving(radius)
+    whole = np.linalg.norm(leaving.does(*leaving.at(tilt, 4.0, 0.05))[:3])
+    for left in np.linspace(18.0, 6.0, 13):
+        place = leaving.at(tilt, left, 0.05)
+        torque, slope = leaving.does(*place)[3:6], leaving.slope(*place)[3:]
+        assert torque == pytest.approx(slope, abs=(0.02 + 0.05 * radius) * whole)
