@@ -11,7 +11,8 @@ from mdlgen.model.tables import BOX_BOX, BOX_CYLINDER, BOX_MESH, Ints, Model
 def bristles_of(model: Model, bodies: np.ndarray, pairs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """BRISTLE of each patch, HELD of each pair of boxes and parts that is in one; notes these in `pairs`.
 
-    A sheet has one patch with a roller, or a mesh on one. Else each pair has its own. All are without force.
+    A sheet has one patch with a roller, or a mesh on one. Each other pair has a patch of its own. All begin
+    without force.
     """
     sticking = model.contacts.sticking[pairs["row"]]
     sticks = (sticking > 0.0) & (pairs["kind"] != BOX_BOX)
@@ -34,8 +35,8 @@ def bristles_of(model: Model, bodies: np.ndarray, pairs: np.ndarray) -> tuple[np
 
 
 def cuts(bristles: np.ndarray, image: Ints) -> bool:
-    """Whether a plane in which bodies have these images cuts a patch of a sheet on a roller. Its half would
-    turn with the sheet, which the whole does not."""
+    """Tests whether a plane in which bodies have these images cuts a patch of a sheet on a roller. Half of
+    the patch would turn with the sheet, which the whole does not."""
     rolls = (bristles["axis"] != 0.0).any(axis=1)
     return bool((rolls & (image[bristles["b"]] == bristles["b"])).any())
 
@@ -54,7 +55,7 @@ def halved(
 
 
 def begin(bristles: np.ndarray) -> None:
-    """Takes what a run has left off them."""
+    """Resets them for a new run."""
     for name in ("stretch", "turn", "centre", "normal", "force", "eases", "rate", "energy"):
         bristles[name] = 0.0
 

@@ -1,29 +1,31 @@
 """Friction that sticks, of a sheet or a roller on what is no sheet: one spring for each contact patch.
 
-A patch is all that a sheet has with one roller, or one body has with another one. Along its faces a spring of
-stiffness k_t holds the two, whatever boxes of the sheet are in the patch now. Its stretch is a rigid field:
-z at the middle of the patch, and a turn phi about its normal,
+A patch is everything that a sheet has in contact with one roller, or one body with another body. Along its
+faces a spring of stiffness k_t, the bristle, holds the two bodies, whatever boxes of the sheet are in the
+patch. Its stretch is a rigid field, of the first body against the second: z at the middle c of the patch, and
+a turn phi about its normal n,
 
-    z(x) = z + phi n x (x - c),
+    z(x) = z + phi n x (x - c).
 
-the first body's against the second. A point that presses with N_i has the part N_i/N of k_t. In a step of
-2 h with the slip velocity v_i in its middle
+A point that presses with N_i has the part N_i/N of k_t. In a step of 2 h with the slip velocity v_i in its
+middle
 
-    f_i = -k_t N_i/N z_i,    z_i = (z(x_i) + 2 h v_i)/(1 + 2 h r), brought back to |f_i| <= mu N_i.
+    f_i = -k_t N_i/N z_i,    z_i = (z(x_i) + 2 h v_i)/(1 + 2 h r), scaled back to |f_i| <= mu N_i.
 
-As in mechanics.stick that is the return mapping of Coulomb friction, with the force of the end of the step.
-Then the field changes by that which is next to what the z_i have changed by, weighted by N_i. It stores
-k_t (z^2 + phi^2 sum(N_i |x_i - c|^2)/N)/2, and no field stores more than the z_i do; so what it does not take
-over is dissipated.
+As in mechanics.stick this is the return mapping of Coulomb friction, with the force at the end of the step.
+After the step the field changes by the rigid motion that fits the changes of all z_i best, with the weights
+N_i. The bristle stores k_t (z^2 + phi^2 sum(N_i |x_i - c|^2)/N)/2. No rigid field stores more than the z_i
+do, and the difference is dissipated.
 
-What rolls lets go of the stretch: material with none comes in at V, the speed of both surfaces through the
-patch. By Carter (Johnson, Contact Mechanics, section 8.3) a force F creeps over a patch of length 2a by
+Rolling removes stretch: new material enters the patch without any, at V, the mean speed of both surfaces
+through the patch. A force F creeps over a patch of length 2a by Carter's curve (Johnson, Contact Mechanics,
+section 8.3),
 
     xi = 2 mu N/(k_t a) (1 - sqrt(1 - F/(mu N))),
 
-the slip for 1 of V; so r = V xi k_t/F. For two cylinders of a material, of width L, k_t = pi E* L/2 gives
-his mu a/R (1 - ...): then N = pi E* L a^2/(4 R). Little forces creep by F/(k_t a), as a brush does. Here
-a = sqrt(2 R z) is that of a round of radius R which is pressed in by z.
+relative to V. Hence r = V xi k_t/F. Two cylinders of one material and width L have his result with
+k_t = pi E* L/2, since then N = pi E* L a^2/(4 R) makes it mu a/R (1 - sqrt(...)). A small force creeps by
+F/(k_t a), as the bristles of a brush do. a = sqrt(2 R z), for a round of radius R that is pressed in by z.
 """
 
 from __future__ import annotations
@@ -62,12 +64,9 @@ BRISTLE = np.dtype(
         ("turn", "f8"),  # phi [rad]
         ("centre", "f8", 3),  # c from the centre of the second body, global [mm]
         ("normal", "f8", 3),  # to the first body
-        ("force", "f8"),  # N where it was evaluated last, 0: nothing touches [N]
-        (
-            "eases",
-            "f8",
-        ),  # r for 1 of the speed V through the patch, by what it held as the step began [1/mm],
-        ("rate", "f8"),  # and r where it was evaluated last [1/ms]
+        ("force", "f8"),  # N of the last evaluation, 0: nothing touches [N]
+        ("eases", "f8"),  # r/V, by the force at the begin of the step [1/mm]
+        ("rate", "f8"),  # r of the last evaluation [1/ms]
         ("energy", "f8"),  # [N mm]
         # sums over points: N; N by the change of z; N x; N n; mu N; N v, the speed through the patch; the
         # greatest depth, and 1/R there; then N by the moment of that change, and by the square of the arm
@@ -76,7 +75,7 @@ BRISTLE = np.dtype(
 )
 N, NZ, NX, NN, MU_N, NV, DEEPEST, CURVED, MOMENT, ARMS = 0, 1, 4, 7, 10, 11, 12, 13, 14, 15
 
-# What a pair is given of the bristle of its patch, see the columns of mechanics.point.
+# Input of a pair of bodies from the bristle of its patch; see the columns of mechanics.point.
 HELD = np.dtype(
     [
         ("bristle", "i8"),
@@ -92,7 +91,7 @@ HELD = np.dtype(
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def lay(held, bristle, motion, a, b, h):
-    """What the pair of bodies a and b is given of its bristle in a step of 2 h [ms]."""
+    """Sets the input of the pair of bodies a and b for a step of 2 h [ms]."""
     if bristle.force <= 0.0:
         held.holds = 0.0
         return
@@ -115,8 +114,8 @@ def lay(held, bristle, motion, a, b, h):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def _change(held, out, at, h):
-    """By how much the stretch of a point has changed [mm]: what holds it now, over its part of k_t, is that
-    after the step."""
+    """Returns the change of the stretch of a point in the step [mm]. The stretch after it is the force over
+    the point's part of k_t."""
     slip, hold = three_from(out, at + SLIP), out[at + HOLD]
     if hold <= 0.0:
         return (0.0, 0.0, 0.0)
@@ -158,7 +157,7 @@ def weigh(bristle, out, motion, a, b, roller, axis, curved):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def weighed(bristle):
-    """Takes over N and r."""
+    """Updates N and r from the sums."""
     sums = bristle.sums
     bristle.force = sums[N]
     bristle.rate = bristle.eases * abs(sums[NV]) / sums[N] if sums[N] > 0.0 else 0.0
@@ -187,8 +186,8 @@ def gather(bristle, held, out, motion, h):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def middle_of(bristle):
-    """c and n of the points that were added, and the change of z there; returns False where nothing
-    presses."""
+    """Moves the field to the middle of the points that were added, and changes z there. Returns False where
+    no point presses."""
     sums = bristle.sums
     if sums[N] <= 0.0:
         return False
@@ -204,7 +203,7 @@ def middle_of(bristle):
         aside = (dot(aside, cross(axis, normal)), dot(aside, axis), 0.0)
         z = add(z, add(aside, change))
     else:
-        # as the faces turn, it turns with them
+        # the stretch stays in the face as that turns
         size = math.sqrt(dot(z, z))
         z = sub(z, scale(dot(z, normal), normal))
         left = math.sqrt(dot(z, z))
@@ -235,7 +234,7 @@ def turn_of(bristle, held, out, motion, h):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def end(bristle):
-    """Takes over the field that a step ends with. Returns by how much more it stores than before [N mm]."""
+    """Ends a step: changes phi, and stores energy and r/V. Returns the change of the energy [N mm]."""
     sums, before = bristle.sums, bristle.energy
     z = three(bristle.stretch)
     squares = dot(z, z)
@@ -251,8 +250,8 @@ def end(bristle):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def let_go(bristle):
-    """A patch that nothing presses on any more. Returns the energy that its spring had."""
+def release(bristle):
+    """Resets the bristle of a patch that no point presses on. Returns the energy that it had [N mm]."""
     energy = bristle.energy
     bristle.force = bristle.energy = bristle.turn = bristle.eases = bristle.rate = 0.0
     for i in range(3):

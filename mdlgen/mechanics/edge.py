@@ -244,9 +244,7 @@ def _pressed(out, a, box, face, edge, end, b, law, grip):
     face: (q, sign), its normal into the box is `sign` times the box's axis q; edge: (a point of the axis of
     its round, its radius); grip: what friction holds, as in `held`.
     """
-    half, exposed = box
-    q, sign = face
-    axis, radius = edge
+    (half, exposed), (q, sign), (axis, radius) = box, face, edge
     sheet = exposed != 15
     p, r = (q + 1) % 3, (q + 2) % 3
     normal = scale(sign, (a.r[q], a.r[3 + q], a.r[6 + q]))

@@ -1,8 +1,7 @@
-"""Bristles of contact patches: what the pairs of a step are given of them, and what the step leaves.
+"""Bristles of contact patches: the input of pairs in an iteration, and the end of a step.
 
-A step begins with the field that the last one left (mechanics.bristle), and iterations leave that as it is.
-The normal force of a patch, of which each point has its part, and the speed through it are those of the
-iteration before.
+A step begins with the fields of stretch that the last step left (mechanics.bristle). Iterations do not change
+them. The normal force of a patch, and the speed through it, are those of the iteration before.
 """
 
 from __future__ import annotations
@@ -15,8 +14,8 @@ from mdlgen.mechanics.bristle import (
     end,
     gather,
     lay,
-    let_go,
     middle_of,
+    release,
     turn_of,
     weigh,
     weighed,
@@ -29,7 +28,7 @@ from mdlgen.program.kernel import BORROWS, njit
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def lay_bristles(tables, motion, h):
-    """Gives all pairs that a bristle holds what that does in a step of 2 h [ms]."""
+    """Sets the input of all pairs that a bristle holds, for a step of 2 h [ms]."""
     pairs, bristles, held = tables.pairs, tables.bristles, tables.held
     for k in range(held.size):
         pair = pairs[held[k].pair]
@@ -44,7 +43,8 @@ def _cleared(bristles):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def weigh_patches(tables, mid, count):
-    """Takes the normal forces of all patches as they are now; `count`: how many pairs touch."""
+    """Updates the normal forces of all patches, and the speeds through them; `count`: how many pairs
+    touch."""
     bodies, bristles, held = tables.bodies, tables.bristles, tables.held
     _cleared(bristles)
     for k in range(count):
@@ -61,8 +61,8 @@ def weigh_patches(tables, mid, count):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def end_patches(work, count, h, energies):
-    """Takes over the fields that a step of 2 h ends with; `count`: how many pairs touch in its middle. What
-    springs store is taken off what is dissipated: energies (groups, 4)."""
+    """Ends a step of 2 h: changes all fields; `count`: how many pairs touch in its middle. The work of
+    friction counts as dissipated, and the energy that bristles store is subtracted: energies (groups, 4)."""
     tables, mid, groups = work.tables, work.mid, work.islands.group_of_row
     bodies, pairs, bristles, held = tables.bodies, tables.pairs, tables.bristles, tables.held
     _cleared(bristles)
@@ -78,7 +78,7 @@ def end_patches(work, count, h, energies):
         bristle.sums[CURVED] = curved
     for k in range(bristles.size):
         if not middle_of(bristles[k]) and bristles[k].energy > 0.0:
-            energies[groups[bristles[k].row], DISSIPATED] += let_go(bristles[k])
+            energies[groups[bristles[k].row], DISSIPATED] += release(bristles[k])
     for k in range(count):
         pair = pairs[mid.touched[k]]
         if pair.held > 0:
@@ -93,7 +93,6 @@ def end_patches(work, count, h, energies):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def patch_energies(tables, groups, energies):
-    """Adds what all bristles store between steps to energies (groups, 3) [N mm]; `groups`: of each
-    contact."""
+    """Adds the energy of all bristles to energies (groups, 3) [N mm]; `groups`: of each contact."""
     for k in range(tables.bristles.size):
         energies[groups[tables.bristles[k].row], ELASTIC] += tables.bristles[k].energy
