@@ -32,8 +32,8 @@ def spread(*overrides: str) -> dict[str, float]:
 
 
 def alike(**of: tuple[float, float]) -> dict[str, float]:
-    """Radii of spread [mm] at which rollers of (radius [mm], stiffness) reach alike: sqrt(2 r z) is one for all,
-    the geometric mean of what their own radii ask for. z goes with k^(-2/3)."""
+    """Radii of spread [mm] at which rollers of (radius [mm], stiffness) reach alike: sqrt(2 r z) is the same
+    of all, the geometric mean of what their own radii ask for. z goes with k^(-2/3)."""
     reach = math.prod(math.sqrt(r * k ** (-2 / 3)) for r, k in of.values()) ** (1 / len(of))
     return {name: reach**2 * k ** (2 / 3) for name, (_, k) in of.items()}
 
