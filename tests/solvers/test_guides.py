@@ -136,9 +136,7 @@ def test_a_box_on_a_round_face_has_the_law_of_a_pair(angle):
 
 
 def test_two_round_faces_that_meet_count_as_one():
-    """One sector, and the two halves of it, under a box that lies across where they meet.
-
-    The depth is z (1 - (u/c)^2) at a distance u from the middle of the box, c^2 = 2 r z. Of the force, its
+    """One sector, and the two halves of it, under a box that lies across where they meet. The depth is z (1 - (u/c)^2) at a distance u from the middle of the box, c^2 = 2 r z. Of the force, its
     integral, the half that begins at u has 1/2 - 3/4 (v - v^3/3) with v = u/c.
     """
     radius, depth = 20.0, 0.01
