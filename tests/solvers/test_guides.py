@@ -136,9 +136,8 @@ def test_a_box_on_a_round_face_has_the_law_of_a_pair(angle):
 
 
 def test_two_round_faces_that_meet_count_as_one():
-    """One sector, and the two halves of it, under a box that lies across where they meet. The depth is z (1 - (u/c)^2) at a distance u from the middle of the box, c^2 = 2 r z. Of the force, its
-    integral, the half that begins at u has 1/2 - 3/4 (v - v^3/3) with v = u/c.
-    """
+    """One sector, and its two halves, under a box that lies across where they meet. The depth is z (1 - v^2)
+    at v = u/c from its middle, c^2 = 2 r z: the half from u on has 1/2 - 3/4 (v - v^3/3) of the integral."""
     radius, depth = 20.0, 0.01
     for shift in (-0.02, -0.01, 0.0, 0.01, 0.02):
         away = radius + HALF[1] - depth
