@@ -62,8 +62,8 @@ def check_resumes(name: str, reason: str, wish: str) -> None:
         why = f" ({reason})" if reason else ""
         others = [other for other in SOLVERS if solver(other).capabilities.resumes]
         raise RefusedError(
-            f"{wish}: {name} runs this scene{why}, whose accelerations and factors stay inside of it, so "
-            f"that no run of it goes on to the same bits; {', '.join(others)} keeps them"
+            f"{wish}: {name} runs this scene{why}, and cannot store all of its state, so its runs cannot be "
+            f"resumed; {', '.join(others)} can: give --solver {others[0]}"
         )
 
 

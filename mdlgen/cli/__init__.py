@@ -1,4 +1,4 @@
-"""The command line: the only room that prints, exits or draws progress. What it does stands elsewhere."""
+"""The command line: the only package that prints, exits or draws progress. What it does stands elsewhere."""
 
 from __future__ import annotations
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import time
 from dataclasses import replace
 from typing import Any
 
 import pytest
+import ran
 from typer.testing import CliRunner
 
 import mdlgen
@@ -15,6 +17,7 @@ from mdlgen.cli import app
 from mdlgen.explain import explain
 from mdlgen.lints.cost import cost, duration
 from mdlgen.model.lower import lower
+from mdlgen.model.tables import Model
 from mdlgen.paths import samples
 from mdlgen.spec.load import load
 
@@ -103,47 +106,45 @@ def test_the_value_that_makes_a_run_long(sample: str, value: str, where: str) ->
     assert (hit.code, hit.where) == ("W134", where)
 
 
-# what is run here ends within a second
-@pytest.mark.parametrize(
-    "sample", ["transport_4x4", "channel", "pick", "stack", "feeder_window", "verify/slide"]
+# transient samples that end within a few seconds
+SHORT = (
+    *("channel", "feeder_window", "guide_joint", "peel", "pick", "spring_plate", "stack"),
+    *("transport_4x2", "transport_4x4", "transport_nips"),
+    *("verify/drop", "verify/flip", "verify/incline", "verify/slide"),
 )
-def test_steps_are_as_predicted_within_a_factor_of_two(sample: str) -> None:
+# the search for a step halves it once more, or twice, where the estimate is just above the tolerance
+HALVED_MORE = ("transport_4x2", "transport_nips", "verify/drop")
+
+
+@pytest.mark.parametrize("sample", SHORT)
+def test_steps_are_as_predicted_mostly_within_a_factor_of_two(sample: str) -> None:
     model = lower(load(samples() / f"{sample}.yaml"))
-    answer, result = cost(model), mdlgen.solve(model)
-    assert answer is not None and result.ok
-    assert answer.steps / 2 < result.steps < 2 * answer.steps
-
-
-# Processor time of mdlgen.solve(model, "lattice") on one core of some 3 GHz [s], the least of three.
-TOOK = {
-    "channel": 0.1,
-    "feeder": 15.4,
-    "feeder_one": 4.4,
-    "feeder_window": 0.143,
-    "guide_joint": 0.365,
-    "peel": 0.352,
-    "pick": 0.183,
-    "retard_pad": 3.4,
-    "spring_plate": 0.934,
-    "stack": 0.076,
-    "tilt_correction": 3.1,
-    "transport_4x2": 0.651,
-    "transport_4x4": 0.202,
-    "transport_nips": 0.199,
-    "transport_tilted": 3.4,
-    "verify/drop": 0.178,
-    "verify/flip": 0.046,
-    "verify/incline": 0.044,
-    "verify/slide": 0.046,
-}
-
-
-@pytest.mark.parametrize("sample", TOOK)
-def test_the_time_is_as_predicted_within_a_factor_of_two(sample: str) -> None:
-    """As it was measured once: a test that measures fails on a busy machine."""
-    answer = cost(lower(load(samples() / f"{sample}.yaml")))
+    answer, result = cost(model), ran.solved(model, "lattice")
     assert answer is not None
-    assert TOOK[sample] / 2 < answer.seconds < 2 * TOOK[sample]
+    within = 4.0 if sample in HALVED_MORE else 2.0
+    assert answer.steps / 2 < result.steps < within * answer.steps
+
+
+def test_time_grows_with_the_boxes_as_predicted_within_a_factor_of_two() -> None:
+    """Processor time of this machine, whatever its speed, at one step: of the second half of a run, so that
+    what each run takes as it begins does not count."""
+    grown, said = [], []
+    for boxes in ("[10,20]", "[20,40]"):
+        times, costs = [], []
+        for end in (10, 20):
+            sets = [f"sheets.note.boxes={boxes}", "run.step=0.02 ms", f"run.duration={end} ms"]
+            model = lower(load(samples() / "transport_4x4.yaml", sets))
+            times.append(min(_took(model) for _ in range(2)))
+            costs.append(cost(model))
+        grown.append(times[1] - times[0])
+        said.append(costs[1].seconds - costs[0].seconds)
+    assert said[1] / said[0] / 2 < grown[1] / grown[0] < 2 * said[1] / said[0]
+
+
+def _took(model: Model) -> float:
+    began = time.process_time()
+    assert mdlgen.solve(model, "lattice").usable
+    return time.process_time() - began
 
 
 def test_a_cost_grows_with_boxes_pairs_and_duration() -> None:

@@ -54,6 +54,11 @@ def test_sample_runs(name, solver):
     # the reference solver runs long ones once, and says why nothing was compared
     assert as_asked(result) if solver == "exudyn" else summary["status"] == "ok"
     assert np.isfinite(result.position).all()
+    static = result.model.run.analysis == "static"
+    assert result.time[-1] == pytest.approx(0.0 if static else result.model.run.duration, rel=1e-9)
+    if solver == "auto":
+        # no energy comes from nowhere; what a search for a step allows is 1 % of where sheets are
+        assert abs(summary["energy"]["balance_error"]) < 5e-3
 
 
 @pytest.mark.parametrize("name", [*QUICK, *TRANSPORT, *FEEDER, *STUDIED])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ from mdlgen.model.lower import lower
 from mdlgen.model.overlaps.parts import HAIR
 from mdlgen.model.overlaps.sheets import SheetOverlaps
 from mdlgen.model.tables import Model
+from mdlgen.results.result import Result
 from mdlgen.spec.load import loads
 
 SOLVERS = ["lattice", "exudyn"]
@@ -133,49 +135,83 @@ def test_what_was_looked_at_before_changes_nothing() -> None:
 
 # -- runs
 
+FALL = 9.81e-3  # g [mm/ms^2]
+# Between two states that are searched for overlaps [ms]: of lattice every second step of 0.1 ms in these
+# scenes, of Exudyn those that are stored.
+LOOKED = {"lattice": 0.2, "exudyn": 1.0}
+
+
+def ends(result: Result, one: str, two: str) -> float:
+    """The depth of the overlap [mm] in the reason of a run that ended with it, which has just this text."""
+    names = ", ".join(part.split()[1] for part in (one, two))
+    reason = (
+        rf"{one} and {two} overlap by (\S+) mm at {result.time[-1]:.6g} ms, and no contact holds them apart; "
+        rf"give a contact between \[{names}\]"
+    )
+    found = re.fullmatch(reason, result.status)
+    assert not result.usable and found, result.status
+    return float(found[1])
+
 
 @pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize("top", [0.15, 1.0])
 def test_a_sheet_that_falls_through_another_ends_its_run_with_both_names(solver: str, top: float) -> None:
     result = mdlgen.solve(two(top), solver)
-    assert not as_asked(result)
-    assert "sheet low and sheet top overlap by" in result.status
-    assert "give a contact between [low, top]" in result.status
+    deep = ends(result, "sheet low", "sheet top")
     # by half of the thickness, free from a height above it: to the next stored time
-    fall = np.sqrt(2.0 * (top - 0.15 + 0.05) / 9.81e-3)
-    assert fall < result.time[-1] < fall + 2.0
+    fall = np.sqrt(2.0 * (top - 0.15 + 0.05) / FALL)
+    assert fall < result.time[-1] < fall + LOOKED[solver] + 1e-6
+    # the shortest way out, up or down; what carries the lower one is pressed by 4e-5 mm
+    apart = top - 0.5 * FALL * result.time[-1] ** 2 - 0.05
+    assert deep == pytest.approx(0.1 - abs(apart), abs=1.5e-4)
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_sheets_in_one_place_end_the_run(solver: str) -> None:
+    """At the first state that is looked at, by the thickness of a sheet."""
     result = mdlgen.solve(two(0.05), solver)
-    assert "sheet low and sheet top overlap by 0." in result.status
+    assert ends(result, "sheet low", "sheet top") == pytest.approx(0.1, abs=1e-4)
+    assert result.time[-1] <= 0.1
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_a_sheet_that_falls_through_a_plate_ends_its_run(solver: str) -> None:
+    """Its middle plane is HAIR below the face."""
     result = mdlgen.solve(two(0.05, aside=100.0), solver)
-    assert "sheet top and plane table overlap by" in result.status
-    fall = np.sqrt(2.0 * (HAIR + 0.05) / 9.81e-3)
-    assert fall < result.time[-1] < fall + 2.0
+    deep = ends(result, "sheet top", "plane table")
+    fall = np.sqrt(2.0 * (HAIR + 0.05) / FALL)
+    assert fall < result.time[-1] < fall + LOOKED[solver] + 1e-6
+    assert deep == pytest.approx(0.5 * FALL * result.time[-1] ** 2 - 0.05, abs=1e-4)
 
 
 @pytest.mark.parametrize(
-    ("more", "what"),
-    [(ROLLER.format(z=-9.2), "roller r"), (GUIDE.format(z=-1.2), "guide g")],
+    ("more", "what", "height", "thick"),
+    [
+        # a place of a box 0.2 mm beside the axis of the roller, whose top is at -1.2 mm
+        (ROLLER.format(z=-9.2), "roller r", 8.0 - 9.2 - 0.2**2 / 16.0 - HAIR, 0.0),
+        # onto the back of a plate that is 1 mm thick: its face is the lower one
+        (GUIDE.format(z=-1.2), "guide g", -0.2, 1.0),
+    ],
 )
-def test_rollers_and_guides_are_noticed_too(more: str, what: str) -> None:
-    """Both sheets fall on a part below them, where there is no table."""
+def test_rollers_and_guides_are_noticed_too(more: str, what: str, height: float, thick: float) -> None:
+    """Both sheets fall on a part below them, where there is no table: the middle plane of the lower one, from
+    0.05 mm, to a height."""
     moved = TWO.format(top=0.15, low=0.05, aside=0.2, more=more, contacts=EACH_OTHER, time=40).replace(
         "center: [0 mm, 0 mm, -5 mm]", "center: [0 mm, 0 mm, -50 mm]"
     )
     result = mdlgen.solve(lower(loads(moved)))
-    assert f"sheet low and {what} overlap by" in result.status
+    deep = ends(result, "sheet low", what)
+    fall = np.sqrt(2.0 * (0.05 - height) / FALL)
+    assert fall < result.time[-1] < fall + LOOKED["lattice"] + 1e-6
+    further = height - (0.05 - 0.5 * FALL * result.time[-1] ** 2)
+    assert deep == pytest.approx(thick - further if thick else HAIR + further, abs=1e-3)
 
 
 def test_a_sheet_in_a_hole_from_the_start_is_left_alone() -> None:
+    """It falls freely through the table that it is in."""
     result = mdlgen.solve(two(-3.0, aside=100.0, low=0.05, time=5))
-    assert as_asked(result)
+    assert as_asked(result), result.status
+    assert result.position[-1, 24:48, 2] == pytest.approx(np.full(24, -3.0 - 0.5 * FALL * 5.0**2), abs=1e-9)
     assert [code for code, _ in codes(two(-3.0, aside=100.0))] == ["W121"]
 
 
@@ -192,5 +228,13 @@ def test_a_run_says_at_once_which_contacts_are_missing(
 
 
 def test_sheets_with_contacts_run_on() -> None:
+    """To their rest: each contact bears what lies above it, (m g / (24 k))^(2/3) deep on each of 24 boxes."""
     result = mdlgen.solve(two(contacts=EACH_OTHER))
     assert as_asked(result), result.status
+    low, top = result.position[-1, :48, 2].reshape(2, 24).mean(axis=1)
+    weight = 0.2 * FALL / 24  # of a box [N]
+    assert 0.05 - low == pytest.approx((2.0 * weight / 300.0) ** (2 / 3), rel=1e-3)
+    # they lie on each other with all but 0.2 mm of 60 and 0.3 mm of 40
+    covered = 59.8 / 60.0 * 39.7 / 40.0
+    assert 0.1 - (top - low) == pytest.approx((weight / (300.0 * covered)) ** (2 / 3), rel=2e-3)
+    assert np.abs(result.velocity[-1, :48]).max() < 1e-4

@@ -141,7 +141,7 @@ def _parts(model: Model, balanced: Callable, load: float, place: tuple) -> str |
 
 def _unbalanced(model: Model, level: float, aim: float, worst: int, force: float) -> str:
     """Why a part of the load has no balance."""
-    loose = ", and friction holds nothing at rest" if len(model.pairs) else ""
+    loose = "; at rest friction holds sheets on fixed planes alone" if len(model.pairs) else ""
     return (
         f"no balance was found above {100 * level:.3g} % of the load: at {100 * aim:.3g} % {force:.3g} N are "
         f"left on {model.bodies.name[worst]}{loose}"
