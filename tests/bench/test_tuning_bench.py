@@ -7,6 +7,7 @@ import ast
 import json
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -72,7 +73,7 @@ def test_a_count_stays_a_count() -> None:
 def test_numbers_in_functions_are_read_from_the_table(monkeypatch: pytest.MonkeyPatch) -> None:
     tree = varied.varying(MODULE, {"CLOSER": 0, "TRIANGLES": 1}, {"TRIANGLES"})
     monkeypatch.setattr(varied, "TABLE", np.array([0.25, 3.0]))
-    scope = {varied.NAME: varied.TABLE}
+    scope: dict[str, Any] = {varied.NAME: varied.TABLE}
     exec(compile(tree, "module", "exec"), scope)
     kernel, options = scope["kernel"]
     assert options == {"error_model": "numpy"}, "code that holds an address is not cached"

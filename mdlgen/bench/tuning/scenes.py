@@ -103,16 +103,16 @@ run: {duration: 15 ms}
 """
 
 SCENES = (
-    TuningScene("transport", "the sample `transport_4x4`", _sample("transport_4x4"), 4.0, 0.05),
-    TuningScene("flat", "a sheet falls flat on a plane", _drawn("fall_flat", 3), 15.0, 0.05),
+    TuningScene("transport", "the sample `transport_4x4`", _sample("transport_4x4"), 2.0, 0.05),
+    TuningScene("flat", "a sheet falls flat on a plane", _drawn("fall_flat", 3), 12.0, 0.1),
     TuningScene("tilted", "a tilted sheet falls on a plane", _drawn("fall_tilted", 1), 10.0, None),
-    TuningScene("mesh", "a sheet falls on a mesh", _drawn("fall_mesh", 2), 10.0, 0.05),
+    TuningScene("mesh", "a sheet falls on a mesh", _drawn("fall_mesh", 2), 25.0, 0.2),
     TuningScene("arm", "a nip with its roller on an arm", _drawn("nip_arm", 2), 5.0, 0.05),
-    TuningScene("channel", "the sample `channel`", _sample("channel"), 8.0, None),
-    TuningScene("stack", "three sheets on a table", _text(STACK), 10.0, 0.1),
-    TuningScene("sticking", "sheets slide, friction sticks", _drawn("slide", 3, True), 15.0, 0.05),
-    TuningScene("air", "the sample `landing`, air between two sheets", _sample("landing"), 8.0, 0.1),
-    TuningScene("retard", "the sample `retard_pad`", _sample("retard_pad"), 4.0, 0.05),
+    TuningScene("channel", "the sample `channel`", _sample("channel"), 2.0, None),
+    TuningScene("stack", "three sheets on a table", _text(STACK), 3.0, 0.1),
+    TuningScene("sticking", "sheets slide, friction sticks", _drawn("slide", 3, True), 5.0, 0.1),
+    TuningScene("air", "the sample `landing`, air between two sheets", _sample("landing"), 5.0, 0.1),
+    TuningScene("retard", "the sample `retard_pad`", _sample("retard_pad"), 2.0, 0.05),
     TuningScene("at rest", "a sheet rests on two planes, static", _text(AT_REST), None, None),
-    TuningScene("block", "a rigid block falls and slides", _text(BLOCK), 15.0, None),
+    TuningScene("block", "a rigid block falls and slides", _text(BLOCK), 8.0, None),
 )

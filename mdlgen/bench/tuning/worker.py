@@ -1,7 +1,7 @@
 """The process that runs the scenes with one number changed after the other.
 
-It compiles the solver once and then runs each scene in a copy of itself (a fork). So a crash, a hang or what
-a run leaves behind concerns one scene. It writes pickled references and rows to standard output.
+It compiles the solver once and then runs the scenes of each row in a copy of itself (a fork). So a crash or a
+hang concerns one scene, and a change one row. It writes pickled references and rows to standard output.
 """
 
 from __future__ import annotations
@@ -11,7 +11,8 @@ import os
 import pickle
 import signal
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -70,17 +71,33 @@ def compared(scene: str, travel: float, before: Found, now: Found | str) -> Outc
     )
 
 
-def apart(work: Callable[[], Found], limit: float) -> Found | str:
-    """What `work` returns in a copy of this process, or why it returns nothing; `limit` is of processor
-    time [s]."""
+Work = tuple[Callable[[], Found], float]  # what runs, and its limit of processor time [s]
+
+
+def apart(works: Sequence[Work]) -> list[Found | str]:
+    """What each of `works` returns in a copy of this process, or why it returns nothing. A copy that ends
+    early is followed by another one for what is left."""
+    answers: list[Found | str] = []
+    while len(answers) < len(works):
+        left = works[len(answers) :]
+        got, reason = _copy(left)
+        answers += got if len(got) == len(left) else [*got, reason]
+    return answers
+
+
+def _copy(works: Sequence[Work]) -> tuple[list[Found | str], str]:
+    """The answers of one copy, and why it ended before the last one."""
     context = multiprocessing.get_context("fork")
     receives, sends = context.Pipe(duplex=False)
-    process = context.Process(target=_answer, args=(work, limit, sends))
+    process = context.Process(target=_answer, args=(works, sends))
     process.start()
     sends.close()
-    late = not receives.poll(WALL * limit)
+    answers: list[Found | str] = []
     try:
-        return CUT if late else receives.recv()
+        for _, limit in works:
+            if not receives.poll(WALL * limit):
+                return answers, CUT
+            answers.append(receives.recv())
     except EOFError:
         process.join()
     finally:
@@ -89,18 +106,21 @@ def apart(work: Callable[[], Found], limit: float) -> Found | str:
         receives.close()
     code = process.exitcode or 0
     if code == -signal.SIGPROF:
-        return CUT
-    return f"the process crashed: {signal.Signals(-code).name}" if code < 0 else f"ended with code {code}"
+        return answers, CUT
+    ended = f"the process crashed: {signal.Signals(-code).name}" if code < 0 else f"ended with code {code}"
+    return answers, ended
 
 
-def _answer(work: Callable[[], Found], limit: float, sends: Any) -> None:
-    # without a handler this signal ends a process, also inside compiled code
-    signal.setitimer(signal.ITIMER_PROF, limit)
-    try:
-        answer: Found | str = work()
-    except Exception as error:
-        answer = f"{type(error).__name__}: {error}"[:200]
-    sends.send(answer)
+def _answer(works: Sequence[Work], sends: Any) -> None:
+    for work, limit in works:
+        # without a handler this signal ends a process, also inside compiled code
+        signal.setitimer(signal.ITIMER_PROF, limit)
+        try:
+            answer: Found | str = work()
+        except Exception as error:
+            answer = f"{type(error).__name__}: {error}"[:200]
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
+        sends.send(answer)
 
 
 class Bench:
@@ -112,12 +132,14 @@ class Bench:
         self._meanings = {scene.name: scene.meaning for scene in scenes}
         self._before: dict[str, tuple[Found, float]] = {}
 
-    def references(self, limit: float) -> Iterator[Reference]:
+    def references(self, limit: float) -> list[Reference]:
         """Compiles what the scenes call, and runs each twice more. Raises RuntimeError where both runs
         differ."""
-        for name, model in self._models.items():
+        for name in self._models:
             self._run(name)
-            one, two = (apart(lambda name=name: self._run(name), limit) for _ in range(2))
+        works = [(partial(self._run, name), limit) for name in self._models]
+        found = []
+        for (name, model), one, two in zip(self._models.items(), apart(works), apart(works), strict=True):
             if isinstance(one, str) or isinstance(two, str):
                 raise RuntimeError(f"{name}: {one if isinstance(one, str) else two}")
             way = np.linalg.norm(one.states[1][-1] - model.bodies.position, axis=-1)
@@ -126,17 +148,22 @@ class Bench:
                 raise RuntimeError(f"{name}: two runs differ")
             self._before[name] = (one, travel)
             counts = one.steps, one.iterations
-            yield Reference(name, self._meanings[name], one.status, one.ended, *counts, travel, one.cpu_s)
+            found.append(
+                Reference(name, self._meanings[name], one.status, one.ended, *counts, travel, one.cpu_s)
+            )
+        return found
 
     def row(self, number: Number, factor: float) -> TuningRow:
         """All scenes with one number changed."""
         value = number.times(factor)
-        outcomes = []
-        for name, (before, travel) in self._before.items():
-            limit = max(LEAST, TIMES * before.cpu_s)
-            now = apart(lambda name=name: self._run(name, (self._places[number.name], value)), limit)
-            outcomes.append(compared(name, travel, before, now))
-        return TuningRow(number.name, factor, value, tuple(outcomes))
+        change = self._places[number.name], value
+        works = [
+            (partial(self._run, name, change), max(LEAST, TIMES * before.cpu_s))
+            for name, (before, _) in self._before.items()
+        ]
+        both = zip(self._before.items(), apart(works), strict=True)
+        outcomes = tuple(compared(name, travel, before, now) for (name, (before, travel)), now in both)
+        return TuningRow(number.name, factor, value, outcomes)
 
     def _run(self, name: str, change: tuple[int, float] | None = None) -> Found:
         from mdlgen import registry
