@@ -35,10 +35,9 @@ COLUMNS = """The columns:
 A count stays a whole number. Doubling may move a part above 1, where it has no meaning any more.
 """
 
-UNSEEN = """Some of these act only in longer runs or on larger scenes: what has the unit s or bytes counts
-wall time or memory, and `MOST_STEPS`, `COMPARED`, `TOGETHER` and `MANY_ITERATIONS` limit what no short run
-reaches. That such a number changes nothing here does not show that it can go.
-"""
+UNSEEN = """Some of these numbers act only in longer runs or on larger scenes. A number in s or bytes limits
+wall time or memory. Others limit steps, states or iterations that no short run reaches. So a number of this
+list is not yet shown to be useless."""
 
 
 def table(found: Tuning) -> str:

@@ -96,7 +96,7 @@ def _copy(works: Sequence[Work]) -> tuple[list[Found | str], str]:
     try:
         for _, limit in works:
             if not receives.poll(WALL * limit):
-                return answers, CUT
+                return answers, f"no answer within {WALL * limit:g} s of wall time"
             answers.append(receives.recv())
     except EOFError:
         process.join()
