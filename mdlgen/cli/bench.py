@@ -22,7 +22,7 @@ from mdlgen.cli.shell import (
 )
 from mdlgen.errors import AccuracyError, SpecError
 
-CAMPAIGN, AUTO = "campaign", "auto"
+CAMPAIGN, TUNING, AUTO = "campaign", "tuning", "auto"
 
 
 @app.command()
@@ -33,7 +33,8 @@ def bench(
         typer.Argument(
             metavar="SUITE ...",
             help="transport, elastica, impact, friction, flight, scaling, skip, feeder, piles, stability, "
-            "validation: all if left out; or campaign, scenes drawn at random.",
+            "validation: all if left out; or campaign, scenes drawn at random; or tuning, the numbers of the "
+            "solver lattice halved and doubled.",
             autocompletion=completion.suites,
         ),
     ] = None,
@@ -73,7 +74,7 @@ def bench(
         typer.Option(
             "--page",
             metavar="FILE",
-            help="Write the page of one suite too: stability, validation or campaign.",
+            help="Write the page of one suite too: stability, validation, campaign or tuning.",
         ),
     ] = None,
     count: Annotated[int, typer.Option("--count", min=1, help="campaign: how many scenes.")] = 100,
@@ -112,9 +113,19 @@ def bench(
     Example: mdlgen bench stability --repeat 1 --page samples/stability.md
 
     Example: mdlgen bench campaign --count 1000 --seed 1
+
+    Example: mdlgen bench tuning -o out/tuning
     """
+    if TUNING in (suites or ()):
+        _check_alone(TUNING, suites or ())
+        if quick or peers or beside or solver or only or kind or workers or sticking:
+            raise SpecError("tuning takes the options -o, --page, --json, --quiet and --verbose alone")
+        _tuning(output, page, as_json, quiet)
+        return
     if CAMPAIGN in (suites or ()):
-        _check_alone(suites or (), bool(quick or peers or beside or len(solver or ()) > 1))
+        _check_alone(CAMPAIGN, suites or ())
+        if quick or peers or beside or len(solver or ()) > 1:
+            raise SpecError("campaign takes one --solver, and none of --quick, --peers and --beside")
         chosen = {"only": only or (), "kinds": kind or (), "solver": (solver or [AUTO])[0]}
         options = {**chosen, "workers": workers, "finer": finer, "sticking": sticking}
         _campaign(count, seed, output, options, page, as_json, quiet)
@@ -148,12 +159,29 @@ def bench(
         raise typer.Exit(SOLVER_FAILED)
 
 
-def _check_alone(suites: Sequence[str], others: bool) -> None:
-    """Raises SpecError where a campaign is asked for with other suites or with their options."""
-    if list(suites) != [CAMPAIGN]:
-        raise SpecError("campaign runs alone: mdlgen bench campaign")
-    if others:
-        raise SpecError("campaign takes one --solver, and none of --quick, --peers and --beside")
+def _check_alone(name: str, suites: Sequence[str]) -> None:
+    """Raises SpecError where this suite is asked for with other ones."""
+    if list(suites) != [name]:
+        raise SpecError(f"{name} runs alone: mdlgen bench {name}")
+
+
+def _tuning(output: Path, page: Path | None, as_json: bool, quiet: bool) -> None:
+    """Halves and doubles each number of the solver lattice."""
+    from mdlgen.bench.tuning import report
+    from mdlgen.bench.tuning.run import tuning
+    from mdlgen.paths import check_folder
+
+    check_folder(output)
+    found = tuning(output, (lambda _: None) if quiet else say)
+    if as_json:
+        echo_json(found.json())
+    elif not quiet:
+        typer.echo(report.table(found), nl=False)
+        typer.echo(f"wrote {output}")
+    if page is not None:
+        paths.write_atomic(page, report.page(found))
+        if not quiet:
+            say(f"wrote {page}")
 
 
 def _campaign(

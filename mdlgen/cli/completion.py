@@ -55,7 +55,7 @@ def codes(incomplete: str) -> list[str]:
 def suites(incomplete: str) -> list[str]:
     from mdlgen.bench.suites import SUITES
 
-    return _of((*SUITES, "campaign"), incomplete)
+    return _of((*SUITES, "campaign", "tuning"), incomplete)
 
 
 def methods(incomplete: str) -> list[str]:

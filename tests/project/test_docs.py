@@ -147,7 +147,7 @@ def test_the_commands_of_the_readme_print_what_it_says(
 
 # Commands in examples that need what a test has not at hand; each is run by another file of tests.
 ELSEWHERE = {
-    "bench": "test_bench.py, test_validation.py, test_campaign.py",
+    "bench": "test_bench.py, test_validation.py, test_campaign.py, test_tuning_bench.py",
     "cache": "test_packaging.py",
     "live": "tests/live",
     "run --resume": "test_keep.py",
