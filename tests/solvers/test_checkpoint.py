@@ -76,6 +76,15 @@ SLEEPY = (
 )
 MORE = {
     "sticking": (STUCK, ["sheets.note_2.velocity=[3000 mm/s, 500 mm/s, 0 mm/s]", *SHORT]),
+    # of the nips of a halved scene, while the note enters one
+    "bristles": (
+        MACHINE,
+        [
+            "contacts.*.friction={static: 0.5, dynamic: 0.4, sticking: 40 N/mm}",
+            "run.step=0.1 ms",
+            "run.print_step=0.1 ms",
+        ],
+    ),
     # a pile that falls asleep, and wakes as another note falls on it; with friction that sticks
     "asleep": (SLEEPY, []),
     "one way": (FORTH_AND_BACK, [*OVERRUN, *SHORT]),

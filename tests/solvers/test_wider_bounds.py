@@ -78,6 +78,10 @@ SCENES = {
     "rolled": ROLLED.replace("THICK", "0.1"),
     "pile": PILE.replace("FRICTION", "0.3"),
     "sticking": PILE.replace("FRICTION", "{static: 0.3, dynamic: 0.3, sticking: 50 N/mm}"),
+    # sheets stick on planes, too, and none of them sleeps
+    "bristles": PILE.replace("FRICTION", "0.3").replace(
+        "friction: 0.3}", "friction: {static: 0.3, dynamic: 0.3, sticking: 50 N/mm}}"
+    ),
     "air": PILE.replace("friction: FRICTION", "friction: 0.3, air: {viscosity: 18.2 uPa*s}"),
 }
 
@@ -131,7 +135,7 @@ def test_a_step_that_is_searched(threads: int) -> None:
     np.testing.assert_array_equal(found.position, every.position)
 
 
-@pytest.mark.parametrize("name", ["pushed", "rolled", "sticking"])
+@pytest.mark.parametrize("name", ["pushed", "rolled", "sticking", "bristles"])
 def test_a_run_that_was_cut_off_goes_on_with_the_margin_that_it_had(name: str, tmp_path: Path) -> None:
     model = mdlgen.lower(loads(SCENES[name], name))
     whole = lattice.solve(model)

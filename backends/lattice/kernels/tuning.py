@@ -20,7 +20,7 @@ MOST_REFINED, MOST_REFINED_RIGID = 5, 8
 # Convention: how often a step may be halved, down to a 16,000th.
 HALVINGS_MOST = 14
 
-# Convention: how often at most for accuracy alone.
+# Convention: how often at most for accuracy alone. Not more than HALVINGS_MOST, which counts the rest.
 FINEST = 12
 
 # Convention: a step is taken again where it misses its guess, or makes energy, so many times as much as it
