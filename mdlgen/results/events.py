@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 KINDS = ("enter", "leave", "slip", "gap", "wait", "jam", "double_feed", "stub", "creep")
 # A sheet that is slower than this [mm/ms] stands: smoothed friction lets what waits under a force creep.
-# One that is slower than this part of another one is held back while that one is fed.
+# One that is slower than this part of another one at the same roller is held back while that one is fed.
 STANDS, HELD_PART = 0.01, 0.1
 
 
@@ -204,8 +204,15 @@ def _reach(result: Result, sheet: int, at: int, way: Floats) -> tuple[float, flo
 
 def _double_feeds(result: Result, stays: list[Stay]) -> list[dict[str, Any]]:
     """Two sheets at one roller, or at two that face each other, at once and at one place along them, that
-    both go on, by more than a thickness; one event for rollers that face each other."""
+    both go on, by more than a thickness; one event for rollers that face each other.
+
+    Two that creep below a third, as those of a high pile do while the upper one is fed, are held back.
+    """
     nips = _nips(result.model)
+    fastest = {nip: np.zeros(len(result.time)) for nip in nips.values()}
+    for stay in stays:
+        there = fastest[nips[stay.roller.name]]
+        there[stay.at] = np.maximum(there[stay.at], np.linalg.norm(stay.line.sheet, axis=1))
     feeds: dict[tuple[int, int, int], tuple[Stay, Stay, Floats]] = {}
     for k, one in enumerate(stays):
         for other in stays[k + 1 :]:
@@ -221,7 +228,8 @@ def _double_feeds(result: Result, stays: list[Stay]) -> list[dict[str, Any]]:
             go = _both_go(one.line.sheet[mine], other.line.sheet[theirs])
             speed[at] = np.maximum(speed[at], np.where(high > low, go, 0.0))
     found: list[dict[str, Any]] = []
-    for one, other, speed in feeds.values():
+    for (nip, _, _), (one, other, speed) in feeds.items():
+        speed[speed <= HELD_PART * fastest[nip]] = 0.0
         for first, last in intervals(result.time, speed > 0.0, SHORT):
             both = slice(first, last + 1)
             way = float(np.trapezoid(speed[both], result.time[both]))
