@@ -204,7 +204,9 @@ def recover(folder: Path) -> None:
             if left.lstat().st_mtime < late:
                 left.unlink()
     except OSError as error:
-        raise OutputError(f"{note}: cannot be followed: {error.strerror or error}") from None
+        raise OutputError(
+            f"{note}: the renaming that it lists cannot be completed: {error.strerror or error}"
+        ) from None
 
 
 def _follow(note: Path) -> None:
@@ -219,7 +221,9 @@ def _follow(note: Path) -> None:
     except (ValueError, AttributeError, TypeError, RecursionError):
         moves, right = [], False
     if not right:
-        raise OutputError(f"{note}: is not a note of files to be renamed; look at it, and remove it")
+        raise OutputError(
+            f"{note}: is not the list of files to rename that an interrupted command leaves; remove it"
+        )
     for old, new in moves:
         with contextlib.suppress(FileNotFoundError):  # renamed before
             os.replace(old, new)

@@ -152,7 +152,7 @@ def optimize(
     output, text, notices = _places(output, text, folder)
     if spec is None:
         raise SpecError(
-            "name a scene, mdlgen optimize SPEC, or a search to go on with, mdlgen optimize --resume DIR"
+            "name a scene, mdlgen optimize SPEC, or a search to continue, mdlgen optimize --resume DIR"
         )
     registry.check_solver(solver)
     if text is not None and str(text) == "-":

@@ -129,9 +129,9 @@ def run(
     name, why = registry.chosen(request.solver, model)
     if request.solver == "auto" and why and not quiet:
         say(f"{name} runs this scene ({why})")
-    for asked, wish in ((keep_partial, "--keep-partial"), (checkpoint is not None, "--checkpoint")):
+    for asked, option in ((keep_partial, "--keep-partial"), (checkpoint is not None, "--checkpoint")):
         if asked:
-            registry.check_resumes(name, why, wish)
+            registry.check_resumes(name, why, option)
     if not quiet:
         for text in filter(None, (*map(str, lints(model)), notice(model))):
             say(text)
@@ -221,11 +221,11 @@ def _judge(result: Result, summary: dict[str, Any], spec: str, folder: Path) -> 
 
 
 def _check_single(spec: Path | None, resume: Path | None, others: bool) -> None:
-    """Raises SpecError unless exactly one of a scene and a run to go on with is named."""
+    """Raises SpecError unless exactly one of a scene and a run to continue is named."""
     if (spec is None) == (resume is None):
-        raise SpecError("name a scene, mdlgen run SPEC, or a run to go on with, mdlgen run --resume DIR")
+        raise SpecError("name a scene, mdlgen run SPEC, or a run to continue, mdlgen run --resume DIR")
     if resume is not None and others:
-        raise SpecError("--resume takes scene, values, solver and folder from the run that it goes on with")
+        raise SpecError("--resume takes scene, values, solver and folder from the run that it continues")
 
 
 def _ahead(
@@ -261,7 +261,7 @@ def _save_part(checkpointer: Checkpointer, folder: Path) -> None:
     from mdlgen.results.io.store import save
 
     if checkpointer.part is None:
-        say("no state is stored yet: there is no part to keep")
+        say("the run was interrupted before its first stored state: --keep-partial has nothing to write")
         return
     part = checkpointer.part()
     part = part.part(

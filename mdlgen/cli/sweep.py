@@ -141,9 +141,7 @@ def sweep(
     from mdlgen.study.design.task import task
 
     if spec is None:
-        raise SpecError(
-            "name a scene, mdlgen sweep SPEC, or a sweep to go on with, mdlgen sweep --resume DIR"
-        )
+        raise SpecError("name a scene, mdlgen sweep SPEC, or a sweep to continue, mdlgen sweep --resume DIR")
     if scheduler is not None and workers is not None:
         raise SpecError("--workers are processes of this machine; those of a cluster are started with it")
     registry.check_solver(solver)

@@ -64,7 +64,7 @@ def of_pattern(text: str, pattern: str) -> Control:
     paths = met(data, words, Place("scene", 1, 1))
     found = [control_of(path, _at(data, path), SEVERAL) for path in paths if path[0] not in _TEXTS]
     if not found or None in found:
-        raise SpecError(f"{pattern[:80]!r} meets what is no number with its unit")
+        raise SpecError(f"{pattern[:80]!r} matches a value that is no number with a unit")
     first = next(control for control in found if control is not None)
     return replace(first, path=".".join(words), label=".".join(words[1:]) or words[0])
 

@@ -126,7 +126,7 @@ class Session:
         changed = dict(self.turned)
         for path, text in values.items():
             if path not in known:
-                raise SpecError(f"{path[:80]!r} is no value that can be turned")
+                raise SpecError(f"{path[:80]!r} is no value that can be changed here")
             if text is not None and not (isinstance(text, str) and 0 < len(text) <= LONGEST):
                 raise SpecError(f"{path}: a value is a text of at most {LONGEST} characters")
             if text is None or printable(text).strip() == known[path]["text"]:
@@ -150,7 +150,7 @@ class Session:
         """Puts the turned values into the file. Raises SpecError where the scene would be wrong, or the file
         is not the one that is shown, OutputError where it cannot be written."""
         if read(self.file) != self.text:
-            raise SpecError(f"{self.file} has been edited meanwhile; look at it first")
+            raise SpecError(f"{self.file} has been edited meanwhile; check it first")
         text = with_values(self.text, str(self.file), self.turned)
         loads(text, str(self.file), (), self.file.parent)
         write_atomic(self.file, text)

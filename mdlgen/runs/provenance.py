@@ -98,4 +98,6 @@ def check_same(folder: Path, there: Mapping[str, Any], now: Mapping[str, str]) -
     for name, value in now.items():
         if there.get(name) != value:
             what = _WORDS.get(name, f"{name} ({str(there.get(name))[:60]}, now {value})")
-            raise RefusedError(f"{folder}: cannot go on to the same bits: {what} has changed; run it anew")
+            raise RefusedError(
+                f"{folder}: cannot continue with the same bits: {what} has changed; start the run again"
+            )

@@ -73,7 +73,7 @@ def code(packages: tuple[str, ...]) -> dict[str, str]:
 
 
 def can_resume(folder: Path) -> bool:
-    """Whether there is a run in `folder` to go on with."""
+    """Whether there is a run in `folder` to continue."""
     return (folder / FOLDER / FILE).is_file()
 
 
@@ -85,7 +85,7 @@ def resumed(folder: Path) -> tuple[RunRequest, dict[str, Any]]:
     recover(place)
     if not can_resume(folder):
         raise OutputError(
-            f"{folder}: holds no run to go on with; a run of lattice leaves one when it is cut off "
+            f"{folder}: holds no run to continue; a run of lattice leaves one when it is cut off "
             "after --checkpoint seconds"
         )
     try:

@@ -187,7 +187,7 @@ class _Written:
         if isinstance(press, dict):
             down = [-v if side == "upper" else v for v in self.normal]
             own = {"direction": [v + 0.0 for v in down], **press}
-            preload = self._preload(side, own, down)
+            preload = self._preload_of(side, own, down)
             given["press"] = {**own, "preload": preload} if preload else own
         return given
 
@@ -225,9 +225,13 @@ class _Written:
         stiffness = _good(way.get("stiffness") if isinstance(way, dict) else None, "N/mm^1.5")
         return f"({self.force}/{stiffness})^(2/3)" if self.force and stiffness else None
 
-    def _preload(self, side: str, press: dict[str, Any], down: list[float]) -> str | None:
-        """What the spring has where the rollers just touch: the force, less the weight, and less what it
-        gains on the way from there to the sheet's place between them."""
+    def _preload_of(self, side: str, press: dict[str, Any], down: list[float]) -> str | None:
+        """The formula of `press.preload`: the spring force where the rollers just touch [N].
+
+        This is not `force`, which each roller has on the sheet: from that the weight is taken, and what the
+        spring gains on the way from there to the sheet's place between them. From here on, in Scene, Model,
+        texts and solvers, only the preload is known.
+        """
         found, between = self.force, self._between()
         if found is None:
             return None

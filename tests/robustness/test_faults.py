@@ -164,7 +164,7 @@ def test_what_a_killed_process_left_is_removed_when_it_is_old(tmp_path: Path) ->
 def test_a_note_of_someone_else_is_not_followed(tmp_path: Path, note: str) -> None:
     write(tmp_path, OLD)
     (tmp_path / NOTE).write_text(note)
-    with pytest.raises(OutputError, match="is not a note"):
+    with pytest.raises(OutputError, match="is not the list of files"):
         write(tmp_path, NEW)
     assert held(tmp_path) == OLD
 

@@ -369,7 +369,7 @@ class TestCommand:
             ([INCLINE, *OVER, "--scheduler", "tcp://a:1", "--workers", "2"], 2, "--workers are processes"),
             ([INCLINE, *OVER, "--sample", "lhs", "4"], 2, FRICTION),
             (["nowhere.yaml", *OVER], 3, "nowhere.yaml"),
-            (["--resume", "nowhere"], 3, "holds no study to go on with"),
+            (["--resume", "nowhere"], 3, "holds no study to continue"),
             (["--resume", "nowhere", "--measure", "steps"], 2, "takes scene, values, measures"),
         ],
     )

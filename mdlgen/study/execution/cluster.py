@@ -101,7 +101,7 @@ class Cluster:
             if isinstance(there, ImportError):
                 raise RefusedError(f"{worker}: this worker cannot import mdlgen ({there})"[:300])
             if isinstance(there, BaseException):
-                raise OutputError(f"{worker}: does not tell its versions ({there})"[:300])
+                raise OutputError(f"{worker}: does not report its versions ({there})"[:300])
             if message := differences(there, self._here):
                 raise RefusedError(f"{worker}: this worker has {message}; install the same on all")
 

@@ -105,7 +105,7 @@ def read(folder: Path) -> tuple[Asked, dict[int, CaseRow]]:
 def _read(path: Path) -> tuple[Asked, dict[int, CaseRow], int]:
     """As `read`, and how many bytes are whole lines; what was lost is not there, and will be run again."""
     if not path.is_file():
-        raise OutputError(f"{path.parent}: holds no study to go on with; mdlgen sweep SPEC -o DIR begins one")
+        raise OutputError(f"{path.parent}: holds no study to continue; mdlgen sweep SPEC -o DIR begins one")
     data = read_at_most(path, MOST_BYTES, named=True)
     whole = data.rfind(b"\n") + 1
     rows: dict[int, CaseRow] = {}
@@ -124,7 +124,7 @@ def _read(path: Path) -> tuple[Asked, dict[int, CaseRow], int]:
         if row.kind != LOST:
             rows[row.index] = row
     if asked is None:
-        raise OutputError(f"{path}: was cut off before it began; remove it, and run the study anew")
+        raise OutputError(f"{path}: was cut off before it began; remove it, and start the study again")
     return asked, rows, whole
 
 
