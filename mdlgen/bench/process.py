@@ -7,6 +7,7 @@ import pickle
 import signal
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 from mdlgen.bench.child import Job
@@ -15,6 +16,19 @@ from mdlgen.bench.row import Outcome
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 # A process takes this long to import a solver and load its compiled code, beyond the run itself [s].
 STARTING = 30.0
+
+
+def sender() -> Callable[[object], None]:
+    """Returns a function that pickles messages to standard output. All other output of this process goes to
+    standard error from now on."""
+    answers = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)
+
+    def send(message: object) -> None:
+        pickle.dump(message, answers)
+        answers.flush()
+
+    return send
 
 
 def run(task: Job, checkout: Path | None = None) -> Outcome:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from types import ModuleType
 from typing import Annotated, Any
 
 import typer
@@ -165,14 +166,10 @@ def _check_alone(name: str, suites: Sequence[str]) -> None:
         raise SpecError(f"{name} runs alone: mdlgen bench {name}")
 
 
-def _tuning(output: Path, page: Path | None, as_json: bool, quiet: bool) -> None:
-    """Halves and doubles each number of the solver lattice."""
-    from mdlgen.bench.tuning import report
-    from mdlgen.bench.tuning.run import tuning
-    from mdlgen.paths import check_folder
-
-    check_folder(output)
-    found = tuning(output, (lambda _: None) if quiet else say)
+def _shown(
+    found: Any, report: ModuleType, output: Path, page: Path | None, as_json: bool, quiet: bool
+) -> None:
+    """Prints the result of a suite that runs alone, and writes its page. `report` has `table` and `page`."""
     if as_json:
         echo_json(found.json())
     elif not quiet:
@@ -182,6 +179,17 @@ def _tuning(output: Path, page: Path | None, as_json: bool, quiet: bool) -> None
         paths.write_atomic(page, report.page(found))
         if not quiet:
             say(f"wrote {page}")
+
+
+def _tuning(output: Path, page: Path | None, as_json: bool, quiet: bool) -> None:
+    """Halves and doubles each number of the solver lattice."""
+    from mdlgen.bench.tuning import report
+    from mdlgen.bench.tuning.run import tuning
+    from mdlgen.paths import check_folder
+
+    check_folder(output)
+    found = tuning(output, (lambda _: None) if quiet else say)
+    _shown(found, report, output, page, as_json, quiet)
 
 
 def _campaign(
@@ -204,15 +212,7 @@ def _campaign(
     check_folder(output)
     heard = (lambda _: None) if quiet else say
     found = campaign(count, seed, output, say=heard, **options)
-    if as_json:
-        echo_json(found.json())
-    elif not quiet:
-        typer.echo(report.table(found), nl=False)
-        typer.echo(f"wrote {output}")
-    if page is not None:
-        paths.write_atomic(page, report.page(found))
-        if not quiet:
-            say(f"wrote {page}")
+    _shown(found, report, output, page, as_json, quiet)
     made = counts(found.rows)
     if made.wrong:
         raise AccuracyError(f"{made.wrong} quantities are above {FAR:g} times their estimate")

@@ -18,6 +18,7 @@ from mdlgen.results.result import Result
 from mdlgen.spec.load import loads
 
 G = 9.81e-3  # [mm/ms^2]
+FRICTION = "{static: 0.4, dynamic: 0.4, sticking: 40 N/mm}"
 
 
 def solved(text: str, *sets: str) -> Result:
@@ -169,7 +170,6 @@ def test_a_block_that_is_turned_about_the_normal_turns_back() -> None:
 
 def rolling(force: float, run: str = "duration: 100 ms, step: 0.1 ms") -> str:
     """A note that a driven roller pulls against a force [N]; the roller above turns freely."""
-    friction = "{static: 0.4, dynamic: 0.4, sticking: 40 N/mm}"
     return f"""
 name: creep
 gravity: [0 m/s^2, 0 m/s^2, 0 m/s^2]
@@ -185,8 +185,8 @@ rollers:
     {{center: [0 mm, 0 mm, 8.09 mm], axis: y, radius: 8 mm, width: 30 mm, mass: 2 g,
     press: {{direction: -z, stiffness: 0.5 N/mm, preload: 2 N, damping_ratio: 0.3}}}}
 contacts:
-  - {{between: [n, a], stiffness: 300 N/mm^1.5, friction: {friction}, restitution: 0.3, smoothing: 5 mm/s}}
-  - {{between: [n, b], stiffness: 300 N/mm^1.5, friction: {friction}, restitution: 0.3, smoothing: 5 mm/s}}
+  - {{between: [n, a], stiffness: 300 N/mm^1.5, friction: {FRICTION}, restitution: 0.3, smoothing: 5 mm/s}}
+  - {{between: [n, b], stiffness: 300 N/mm^1.5, friction: {FRICTION}, restitution: 0.3, smoothing: 5 mm/s}}
 loads: [{{sheet: n, edge: x_min, force: [{-force} N, 0 N, 0 N]}}]
 run: {{{run}, margin: 60 mm}}
 """
@@ -296,3 +296,102 @@ def test_a_scene_that_is_halved_sticks_as_the_whole_does() -> None:
     assert half.halved and not whole.halved
     assert np.abs(half.position - whole.position)[..., 0].max() < 1e-4
     assert half.energy.dissipated == pytest.approx(whole.energy.dissipated, rel=1e-2, abs=1e-3)
+
+
+def test_what_passes_a_nip_changes_its_creep_by_nothing() -> None:
+    """Boxes of different lengths, and another restitution."""
+    widths = ", ".join("1" if k % 3 else "2.5" for k in range(40))
+    slips = [
+        slip_of(solved(text, *sets))[0]
+        for text, sets in (
+            (rolling(0.5), ()),
+            (rolling(0.5), (f"sheets.n.grading={{x: [{widths}]}}",)),
+            (rolling(0.5).replace("restitution: 0.3", "restitution: 0.9"), ()),
+        )
+    ]
+    assert slips == pytest.approx([slips[0]] * 3, rel=1e-3)
+
+
+@pytest.mark.parametrize("resistance", [0.1, 0.2])
+def test_a_roller_that_another_one_drives_creeps_as_carter_has_it(resistance) -> None:
+    """It is held back by the couple f N R of rolling resistance, R = 1/(1/10 + 1/6)."""
+    text = f"""
+name: rollers
+gravity: [0 m/s^2, 0 m/s^2, 0 m/s^2]
+materials: {{p: {{E_md: 3000 MPa, E_cd: 3000 MPa}}}}
+sheets:
+  n: {{material: p, size: [10 mm, 10 mm], thickness: 0.2 mm, mass: 1 g, boxes: [1, 1],
+    center: [99 mm, 0 mm, 0 mm]}}
+rollers:
+  a:
+    {{center: [0 mm, 0 mm, 0 mm], axis: y, radius: 10 mm, width: 20 mm, mass: 20 g,
+    drive: {{speed: 100 rad/s, ramp: 5 ms}}}}
+  b:
+    {{center: [0 mm, 0 mm, 15.98 mm], axis: y, radius: 6 mm, width: 20 mm, mass: 5 g,
+    press: {{direction: -z, stiffness: 0.5 N/mm, preload: 3 N, damping_ratio: 0.3}}}}
+contacts:
+  - between: [a, b]
+    stiffness: 400 N/mm^1.5
+    friction: {{static: 0.4, dynamic: 0.4, sticking: 60 N/mm}}
+    smoothing: 5 mm/s
+    rolling_resistance: {resistance}
+  - {{between: [n, a], stiffness: 400 N/mm^1.5, friction: 0.3, smoothing: 5 mm/s}}
+run: {{duration: 80 ms, step: 0.05 ms}}
+"""
+    result = solved(text)
+    late = result.time > 50.0
+    bodies = {roller.name: roller.body for roller in result.model.rollers}
+    one, two = (abs(result.spin[late, bodies[name], 1].mean()) for name in "ab")
+    nip = result.contact_force[late].sum(axis=1).mean()
+    deep, curved = (nip / 400.0) ** (2.0 / 3.0), 1.0 / 10.0 + 1.0 / 6.0
+    # surfaces meet halfway in the overlap
+    fast, slow = one * (10.0 - 0.5 * deep), two * (6.0 - 0.5 * deep)
+    pull, half = resistance * nip / curved / 6.0, math.sqrt(2.0 * deep / curved)
+    exact = 2.0 * 0.4 * nip / (60.0 * half) * (1.0 - math.sqrt(1.0 - pull / (0.4 * nip)))
+    assert (fast - slow) / (0.5 * (fast + slow)) == pytest.approx(exact, rel=1e-2)
+
+
+@pytest.mark.parametrize("restitution", [0.3, 0.9])
+def test_a_card_stays_half_over_a_round_edge(restitution) -> None:
+    """Its weight leans by 8 deg of 21.8. It sags over the end at first."""
+    lean = math.radians(8.0)
+    result = solved(f"""
+name: edge
+gravity: [{G * math.sin(lean) * 1e3!r} m/s^2, 0 m/s^2, {-G * math.cos(lean) * 1e3!r} m/s^2]
+materials: {{p: {{E_md: 3000 MPa, E_cd: 3000 MPa, D_md: 3 N*mm, D_cd: 3 N*mm, damping: {{ratio: 0.3}}}}}}
+sheets:
+  n: {{material: p, size: [60 mm, 20 mm], thickness: 0.3 mm, mass: 2 g, boxes: [12, 2],
+    center: [-8 mm, 0 mm, 0.15 mm]}}
+planes: {{t: {{center: [-60 mm, 0 mm, -5 mm], normal: z, size: [120 mm, 60 mm, 10 mm], edge_radius: 2 mm}}}}
+contacts:
+  - {{between: [n, t], stiffness: 300 N/mm^1.5, friction: {FRICTION}, restitution: {restitution}}}
+run: {{duration: 400 ms, step: 0.1 ms}}
+""")
+    x = middle(result)[:, 0]
+    assert abs(x[-1] - x[0]) < 0.01
+    assert abs(x[-1] - x[result.time >= 300.0][0]) < 1e-4
+
+
+@pytest.mark.parametrize("lean", [10.0, 30.0])
+def test_a_strip_in_a_hollow_guide_stays_or_slides(lean) -> None:
+    """The angle of friction is 21.8 deg."""
+    down = math.radians(lean)
+    result = solved(f"""
+name: arc
+gravity: [{G * math.sin(down) * 1e3!r} m/s^2, 0 m/s^2, {-G * math.cos(down) * 1e3!r} m/s^2]
+materials: {{p: {{E_md: 3000 MPa, E_cd: 3000 MPa, D_md: 2 N*mm, D_cd: 2 N*mm, damping: {{ratio: 0.3}}}}}}
+sheets:
+  n: {{material: p, size: [14 mm, 20 mm], thickness: 0.2 mm, mass: 1 g, boxes: [4, 2],
+    center: [0 mm, 0 mm, 0.16 mm]}}
+guides:
+  g:
+    arc: {{center: [0 mm, 0 mm, 500 mm], axis: -y, radius: 500 mm, from: -100 deg, to: -80 deg, side: inside}}
+    width: 40 mm
+contacts:
+  - {{between: [n, g], stiffness: 300 N/mm^1.5, friction: {FRICTION}, restitution: 0.3}}
+run: {{duration: 300 ms, step: 0.1 ms, margin: 30 mm}}
+""")
+    x = middle(result)[:, 0]
+    late = result.time >= 150.0
+    assert (np.ptp(x[late]) < 1e-6) == (lean < 21.8)
+    assert (x[-1] > 20.0) == (lean > 21.8)

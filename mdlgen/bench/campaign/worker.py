@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import contextlib
 import math
-import os
 import pickle
 import sys
 import time
@@ -18,7 +17,7 @@ from typing import TYPE_CHECKING
 
 from mdlgen.bench.campaign.row import INACCURATE, NONE, OK, CampaignRow
 from mdlgen.bench.campaign.task import FINER, Begun, Task
-from mdlgen.bench.process import STARTING
+from mdlgen.bench.process import STARTING, sender
 from mdlgen.errors import MdlgenError
 
 if TYPE_CHECKING:
@@ -28,13 +27,7 @@ if TYPE_CHECKING:
 
 def main() -> None:
     """Entry point of `python -m mdlgen.bench.campaign.worker`."""
-    answers = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)
-
-    def send(message: object) -> None:
-        pickle.dump(message, answers)
-        answers.flush()
-
+    send = sender()
     with contextlib.suppress(EOFError, OSError):
         while True:
             task: Task = pickle.load(sys.stdin.buffer)

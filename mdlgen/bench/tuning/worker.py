@@ -7,8 +7,6 @@ hang concerns one scene, and a change one row. It writes pickled references and 
 from __future__ import annotations
 
 import multiprocessing
-import os
-import pickle
 import signal
 import time
 from collections.abc import Callable, Sequence
@@ -17,6 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from mdlgen.bench.process import sender
 from mdlgen.bench.tuning.numbers import Number, numbers
 from mdlgen.bench.tuning.row import CUT, Outcome, Reference, TuningRow
 from mdlgen.bench.tuning.scenes import SCENES, TuningScene
@@ -181,13 +180,7 @@ REFERENCE = 60.0
 
 def main() -> None:
     """Entry point of `python -m mdlgen.bench.tuning.worker`."""
-    answers = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)
-
-    def send(message: object) -> None:
-        pickle.dump(message, answers)
-        answers.flush()
-
+    send = sender()
     every = numbers()
     bench = Bench(install(every))
     for reference in bench.references(REFERENCE):
