@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from mdlgen.backends.exudyn_local.films import LAG, entries_of
+from mdlgen.backends.exudyn_local.patches import masses
 from mdlgen.backends.exudyn_local.place import owners
 from mdlgen.backends.exudyn_local.recorder import Recorder
 from mdlgen.backends.exudyn_local.shipped import air_slopes, begin_air, forces, jacobian, lay_air
@@ -83,6 +84,10 @@ def assemble(exu, model: Model, system: System, pattern: Pattern, work: Work, re
                 node = mbs.AddNode(Node1D(referenceCoordinates=[0.0], initialVelocities=[rate]))
                 mbs.AddObject(Mass1D(mass=mass, nodeNumber=node))
                 nodes.append(node)
+    for mass in masses(system.stick).tolist():
+        node = mbs.AddNode(Node1D(referenceCoordinates=[0.0]))
+        mbs.AddObject(Mass1D(mass=mass, nodeNumber=node))
+        nodes.append(node)
     cells = system.film.cells.size
     if cells:
         begin_air(system.tables, Coordinates(q, v, 0.0), work.motion)

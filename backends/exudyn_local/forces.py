@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mdlgen.backends.exudyn_local.air import air_forces
+from mdlgen.backends.exudyn_local.bristles import held_forces
 from mdlgen.backends.exudyn_local.place import place_all, spread
 from mdlgen.mechanics.arm import (
     DAMPING,
@@ -133,8 +134,10 @@ def forces(tables, at, level, work):
         bush_forces(tables, tables.bushings[i], q, motion, f)
     touching = 0
     for i in range(pairs.size):
-        if pair_forces(tables, pairs[i], q, motion, f, out):
+        if tables.stick.patch_of[i] < 0 and pair_forces(tables, pairs[i], q, motion, f, out):
             touching += 1
+    if tables.stick.pairs.size > 0:
+        touching += held_forces(tables, at, motion, f)
     for i in range(loads.size):
         load_forces(bodies, loads[i], q, motion.r, f, level)
     air_forces(tables, at, motion, f)

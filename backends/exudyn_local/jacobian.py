@@ -1,10 +1,11 @@
 """The jacobian of the forces of a System, by difference quotients of its elements: blocks of bushings, pairs,
-slides, clutches and loads."""
+slides, clutches, loads, and contact patches."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from mdlgen.backends.exudyn_local.bristles import held_element, release, weigh_patches
 from mdlgen.backends.exudyn_local.forces import bush_forces, load_forces, pair_forces, slide_force
 from mdlgen.backends.exudyn_local.place import place_all, place_body
 from mdlgen.mechanics.driven import SENSE, clutch
@@ -31,6 +32,8 @@ def _element(tables, block_start, element, at, level, work):
         return True
     element -= blocks
     if element < pairs.size:
+        if tables.stick.patch_of[element] >= 0:
+            return held_element(tables, element, at, motion, f)
         return pair_forces(tables, pairs[element], q, motion, f, out)
     element -= pairs.size
     for body in range(bodies.size - 1):
@@ -45,7 +48,10 @@ def _element(tables, block_start, element, at, level, work):
                 f[bodies[body].spin] += clutch(bodies[body], v[bodies[body].spin], t).torque
                 return True
             element -= 1
-    load_forces(bodies, tables.loads[element], q, motion.r, f, level)
+    if element < tables.loads.size:
+        load_forces(bodies, tables.loads[element], q, motion.r, f, level)
+        return True
+    release(tables, element - tables.loads.size, v, f)
     return True
 
 
@@ -59,6 +65,8 @@ def jacobian(tables, elements, at, level, by, central, owner, work, data):
     bodies, (motion, _out, f), (by_q, by_v) = tables.bodies, work, by
     q, v = at.q, at.v
     place_all(bodies, at, motion)
+    if tables.stick.pairs.size > 0:
+        weigh_patches(tables, at, motion)
     data[:] = 0.0
     step = 1e30
     if by_q != 0.0:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from mdlgen.backends.exudyn_local.air import air_forces
+from mdlgen.backends.exudyn_local.bristles import held_energy, held_forces
 from mdlgen.backends.exudyn_local.forces import INSTANT, bush_forces, pair_forces
 from mdlgen.backends.exudyn_local.place import place_all
-from mdlgen.backends.exudyn_local.state import DRIVING, ELASTIC, KINETIC, LOST, POTENTIAL, WIDE
+from mdlgen.backends.exudyn_local.state import DRIVING, ELASTIC, HELD, KINETIC, LOST, POTENTIAL, WIDE
 from mdlgen.mechanics.arm import (
     AXIAL,
     DAMPING,
@@ -38,6 +39,21 @@ from mdlgen.mechanics.vector import (
     vec,
 )
 from mdlgen.program.kernel import njit
+
+
+@njit(cache=True, error_model="numpy")
+def _seen(bodies, pair, t, out, pair_out, i):
+    """What a pair does, in `out` with its points, into its row of `pair_out`; returns the power that it takes
+    from prescribed turns."""
+    row, power = pair_out[i], 0.0
+    for k in range(OUT):
+        row[k] = out[k]
+    turning(bodies, pair, out, pair_out, i, OUT)
+    for body, torque_at in ((pair.a, TORQUE_A), (pair.b, TORQUE_B)):
+        if bodies[body].first < 0 and bodies[body].spin < 0:
+            about = dot(three_from(row, torque_at), three(bodies[body].axis))
+            power += about * prescribed(bodies[body], t)
+    return power
 
 
 @njit(cache=True, error_model="numpy")
@@ -84,18 +100,18 @@ def ledger(tables, at, work, pair_out, totals):
         lost += power
     whole = np.zeros(WIDE)
     for i in range(pairs.size):
-        if not pair_forces(tables, pairs[i], q, motion, f, whole):
-            continue
-        row = pair_out[i]
-        for k in range(OUT):
-            row[k] = whole[k]
-        turning(bodies, pairs[i], whole, pair_out, i, OUT)
-        elastic += row[STORED]
-        lost += row[DISSIPATED]
-        for body, torque_at in ((pairs[i].a, TORQUE_A), (pairs[i].b, TORQUE_B)):
-            if bodies[body].first < 0 and bodies[body].spin < 0:
-                about = dot(three_from(row, torque_at), three(bodies[body].axis))
-                driven -= about * prescribed(bodies[body], t)
+        if tables.stick.patch_of[i] < 0 and pair_forces(tables, pairs[i], q, motion, f, whole):
+            driven -= _seen(bodies, pairs[i], t, whole, pair_out, i)
+            elastic += whole[STORED]
+            lost += whole[DISSIPATED]
+    held = 0.0
+    if tables.stick.pairs.size > 0:
+        for row in range(held_forces(tables, at, motion, f)):
+            i, out = tables.stick.touched[row], tables.stick.rows[row]
+            driven -= _seen(bodies, pairs[i], t, out, pair_out, i)
+            elastic += out[STORED]
+            lost += out[DISSIPATED]
+        held = held_energy(tables, v)
     for i in range(loads.size):
         load = loads[i]
         body = load.body
@@ -103,5 +119,5 @@ def ledger(tables, at, work, pair_out, totals):
         rate = add(vec(u, body), cross(vec(w, body), arm))
         driven += dot(three(load.force), rate) + dot(three(load.moment), vec(w, body))
     lost += air_forces(tables, at, motion, f)
-    totals[KINETIC], totals[ELASTIC], totals[POTENTIAL] = kinetic, elastic, potential
-    totals[LOST], totals[DRIVING] = lost, driven
+    totals[KINETIC], totals[ELASTIC], totals[POTENTIAL] = kinetic, elastic + held, potential
+    totals[LOST], totals[DRIVING], totals[HELD] = lost, driven, held

@@ -136,6 +136,7 @@ def set_owners(bodies, owner):
 
 def owners(system: System) -> Ints:
     """Body of each coordinate."""
-    owner = np.empty(system.free, np.int64)
+    # coordinates of patches and of air are of no body; the ground, the last one, stays where it is
+    owner = np.full(system.free, len(system.bodies) - 1, np.int64)
     set_owners(system.bodies, owner)
     return owner

@@ -12,6 +12,7 @@ from mdlgen.backends.exudyn_local.shipped import begin, ledger, overstretched, p
 from mdlgen.backends.exudyn_local.state import (
     DRIVING,
     ELASTIC,
+    HELD,
     KINETIC,
     LOST,
     POTENTIAL,
@@ -135,6 +136,8 @@ class Recorder:
         now = self._totals.tolist()
         step, self.time = t - self.time, t
         self._lost += 0.5 * step * (before[LOST] + now[LOST])
+        if self._first is not None:
+            self._lost -= now[HELD] - before[HELD]  # the springs of patches have taken that
         self._driven += 0.5 * step * (before[DRIVING] + now[DRIVING])
         self._through += 0.5 * step * (abs(before[DRIVING]) + abs(now[DRIVING]))
         self._most = max(self._most, now[KINETIC] + now[ELASTIC])

@@ -235,6 +235,7 @@ def _once(
     at `until`, of `time.perf_counter` [s]. With it the places of all bodies (bodies, 3) [mm] where one has
     left its bounds."""
     started = clock.perf_counter()
+    system.stick.lag[0] = h
     recorder = Recorder(model, system, progress, until)
     assembly = assemble(exu, model, system, pattern, work, recorder)
     static = model.run.analysis == "static"

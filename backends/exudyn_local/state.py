@@ -14,10 +14,12 @@ from mdlgen.model.tables import Floats
 
 if TYPE_CHECKING:
     from mdlgen.backends.exudyn_local.films import Film
+    from mdlgen.backends.exudyn_local.patches import Sticking
     from mdlgen.backends.exudyn_local.system import System
 
-# Of the energies at a state [J, W]: kinetic, elastic, potential, dissipated power, power of drives and loads.
-KINETIC, ELASTIC, POTENTIAL, LOST, DRIVING, TOTALS = 0, 1, 2, 3, 4, 5
+# Of the energies at a state [J, W]: kinetic, elastic, potential, dissipated power, power of drives and loads;
+# and what the springs of patches store, also among the elastic ones, out of what counts as dissipated power.
+KINETIC, ELASTIC, POTENTIAL, LOST, DRIVING, HELD, TOTALS = 0, 1, 2, 3, 4, 5, 6
 # What is seen of a pair at a state: what it does, and what it turns; and with its points.
 SEEN, WIDE = OUT + TURNING, OUT + 1 + POINT * MOST_POINTS
 
@@ -33,6 +35,7 @@ class Tables(NamedTuple):
     loads: np.ndarray
     gravity: Floats
     film: Film
+    stick: Sticking
 
 
 class Coordinates(NamedTuple):

@@ -1,8 +1,9 @@
 """The Model as arrays in SI units, in the order in which the solver numbers its coordinates.
 
 A free box has seven coordinates (position, Euler parameters); a free roller one for its spin; a pressed
-roller or plate one for its slide; a cell of air between sheets one for its pressure, see air.py. Everything
-else is prescribed. Row -1 of the body arrays is the ground.
+roller or plate one for its slide; a contact patch where friction sticks four for its stretch, see
+bristles.py; a cell of air between sheets one for its pressure, see air.py. Everything else is prescribed. Row
+-1 of the body arrays is the ground.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mdlgen.backends.exudyn_local.films import Film, film_of
+from mdlgen.backends.exudyn_local.patches import FIELD, Sticking, sticking_of
 from mdlgen.backends.exudyn_local.state import Tables
 from mdlgen.errors import RefusedError
 from mdlgen.mechanics.curve import curve_points
@@ -52,7 +54,8 @@ PAIR = np.dtype([*BODIES, *CONTACT])
 
 
 class Elements(NamedTuple):
-    """What the jacobian is a sum of: blocks of bushings between bodies, pairs, slides, clutches, loads."""
+    """What the jacobian is a sum of: blocks of bushings between bodies, pairs, slides, clutches, loads, and
+    patches."""
 
     block_start: Ints  # bushings of block i: block_start[i] ... block_start[i + 1] - 1
     dofs: Ints  # coordinates of each element, concatenated
@@ -74,6 +77,7 @@ class System(NamedTuple):
     points: np.ndarray  # of the curves that bushings follow, mechanics.curve.POINT [Pa]
     shapes: Shapes  # [m]
     film: Film
+    stick: Sticking
 
     @property
     def tables(self) -> Tables:
@@ -87,6 +91,7 @@ class System(NamedTuple):
             loads=self.loads,
             gravity=self.gravity,
             film=self.film,
+            stick=self.stick,
         )
 
 
@@ -116,15 +121,18 @@ def build(model: Model) -> tuple[System, Pattern]:
     check(model)
     moving = model.run.analysis == "transient"
     bodies, free = _bodies(model, moving)
+    pairs = pack_pairs(model, PAIR, np.arange(len(model.pairs)), SI)
+    stick = sticking_of(model, bodies, pairs, free, SI)
+    free += FIELD * len(stick.patches)
     film = film_of(model, free, SI)
     free += len(film.cells)
     bushings, blocks = _bushings(model)
-    pairs = pack_pairs(model, PAIR, np.arange(len(model.pairs)), SI)
     loads = pack_loads(model, SI)
-    elements, pattern = _pattern(_couplings(bodies, bushings, blocks, pairs, loads), blocks, free)
+    elements, pattern = _pattern(_couplings(bodies, bushings, blocks, pairs, loads, stick), blocks, free)
     points = curve_points(model.curves, SI.mpa)
     shapes = shape_tables(model, MM)
-    system = System(bodies, bushings, pairs, loads, gravity(model, SI), elements, free, points, shapes, film)
+    weight = gravity(model, SI)
+    system = System(bodies, bushings, pairs, loads, weight, elements, free, points, shapes, film, stick)
     return system, pattern
 
 
@@ -157,7 +165,12 @@ def _bushings(model: Model) -> tuple[np.ndarray, list[int]]:
 
 
 def _couplings(
-    bodies: np.ndarray, bushings: np.ndarray, blocks: list[int], pairs: np.ndarray, loads: np.ndarray
+    bodies: np.ndarray,
+    bushings: np.ndarray,
+    blocks: list[int],
+    pairs: np.ndarray,
+    loads: np.ndarray,
+    stick: Sticking,
 ) -> list[list[int]]:
     """Coordinates that each element couples."""
 
@@ -166,11 +179,17 @@ def _couplings(
         box = list(range(row["first"], row["first"] + 7)) if row["first"] >= 0 else []
         return box + [int(row[name]) for name in ("slide", "spin") if row[name] >= 0]
 
+    def field(patch: int) -> list[int]:
+        first = int(stick.first[0]) + FIELD * patch
+        return list(range(first, first + FIELD)) if patch >= 0 else []
+
     elements = [of(bushings["a"][b]) + of(bushings["b"][b]) for b in blocks[:-1]]
-    elements += [of(a) + of(b) for a, b in zip(pairs["a"], pairs["b"], strict=True)]
+    ends = zip(pairs["a"], pairs["b"], stick.patch_of.tolist(), strict=True)
+    elements += [of(a) + of(b) + field(patch) for a, b, patch in ends]
     elements += [[int(s)] for s in bodies["slide"] if s >= 0]
     elements += [[int(s)] for s in bodies["spin"][bodies["clutch"][:, 0] != 0.0]]
-    return elements + [of(body) for body in loads["body"]]
+    elements += [of(body) for body in loads["body"]]
+    return elements + [field(patch) for patch in range(len(stick.patches))]
 
 
 def _pattern(couplings: list[list[int]], blocks: list[int], free: int) -> tuple[Elements, Pattern]:

@@ -1,36 +1,26 @@
-"""Contact patches where friction sticks, and the pairs in each: see mechanics.bristle."""
+"""Bristles of the contact patches where friction sticks: see mechanics.bristle."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from mdlgen.mechanics.bristle import BRISTLE, HELD
-from mdlgen.model.tables import BOX_BOX, BOX_CYLINDER, BOX_MESH, Ints, Model
+from mdlgen.mechanics.patch import patches_of
+from mdlgen.model.tables import Ints, Model
 
 
 def bristles_of(model: Model, bodies: np.ndarray, pairs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """BRISTLE of each patch, HELD of each pair of boxes and parts that is in one; notes these in `pairs`.
 
-    A sheet has one patch with a roller, or a mesh on one. Each other pair has a patch of its own. All begin
-    without force.
+    All begin without force.
     """
-    sticking = model.contacts.sticking[pairs["row"]]
-    sticks = (sticking > 0.0) & (pairs["kind"] != BOX_BOX)
+    patches = patches_of(model, bodies, pairs, pairs["row"])
     pairs["held"] = 0
-    pairs["held"][sticks] = 1 + np.arange(sticks.sum())
-    own, k_t = pairs[sticks], sticking[sticks]
-    turns = (own["kind"] == BOX_CYLINDER) | ((own["kind"] == BOX_MESH) & (bodies["carries"][own["b"]] == 1))
-    sheet_of = np.arange(len(bodies))
-    for sheet in model.sheets:
-        sheet_of[sheet.first : sheet.first + sheet.count] = sheet.first
-    first = np.where(turns, sheet_of[own["a"]], own["a"])
-    keys = np.stack([own["row"], first, own["b"]], axis=1)
-    _, chosen, numbers = np.unique(keys, axis=0, return_index=True, return_inverse=True)
-    bristles, held = np.zeros(len(chosen), BRISTLE), np.zeros(len(own), HELD)
-    bristles["row"], bristles["a"], bristles["b"] = keys[chosen].T
-    bristles["k"] = k_t[chosen]
-    bristles["axis"] = np.where(turns[chosen, None], bodies["axis"][own["b"][chosen]], 0.0)
-    held["bristle"], held["pair"] = numbers.reshape(-1), np.flatnonzero(sticks)
+    pairs["held"][patches.pairs] = 1 + np.arange(len(patches.pairs))
+    bristles, held = np.zeros(len(patches.k), BRISTLE), np.zeros(len(patches.pairs), HELD)
+    for name in ("row", "a", "b", "k", "axis"):
+        bristles[name] = getattr(patches, name)
+    held["bristle"], held["pair"] = patches.patch, patches.pairs
     return bristles, held
 
 
