@@ -88,10 +88,14 @@ def test_the_sag_comes_to_the_elastica_on_finer_grids() -> None:
 
 
 def test_a_sheet_with_more_over_the_edge_than_on_the_table_falls() -> None:
-    """At any part of its weight: it turns about the edge, and its other end leaves the table."""
+    """At any part of its weight: it turns about the edge, and its other end leaves the table.
+
+    Which box is left with the most at the last part, the other end or the one at the edge, is a matter of
+    rounding.
+    """
     result = hangs(130, 200)
     assert not result.usable
-    assert re.fullmatch(rf"{NOTHING} \S+ N are left on n_0_0; {HELD}", result.status), result.status
+    assert re.fullmatch(rf"{NOTHING} \S+ N are left on n_(0|14)_0; {HELD}", result.status), result.status
 
 
 @pytest.mark.parametrize(("out", "stands"), [(97, True), (103, False)])
