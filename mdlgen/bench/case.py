@@ -53,12 +53,22 @@ class Run:
 
         return lower(load(samples() / f"{self.sample}.yaml", self.sets))
 
+    def text(self) -> str:
+        """The scene as it stands in its file."""
+        from mdlgen.paths import samples
+
+        return (samples() / f"{self.sample}.yaml").read_bytes().decode("utf-8")
+
     def command(self, solver: str) -> str:
         """The command that repeats it."""
         if self.without:  # which is no choice of a user's
             return f"mdlgen bench skip --solver {solver}"
         sets = [word for item in self.sets for word in ("--set", item)]
         return shlex.join(["mdlgen", "run", f"samples/{self.sample}.yaml", "--solver", solver, *sets])
+
+
+# A scene of a moment that has every kind of force: compiles a solver before the first clock starts.
+WARM = Run("transport_4x4", ("run.duration=0.1 ms",), 0.05)
 
 
 @dataclass(frozen=True)
@@ -81,6 +91,7 @@ class BenchCase:
     repeats: bool = True  # whether the wall time is what it is about
     limit: float = 300.0  # [s] for one run; a solver that takes longer is stopped, and that is its result
     group: str = ""  # heading of the suite's page that it stands under
+    warm: bool = False  # whether the solver runs something else first, so that loading it does not count
 
     def at(self, step: float | None) -> BenchCase:
         """The same case at another step [ms]."""

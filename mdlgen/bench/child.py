@@ -12,11 +12,12 @@ import pickle
 import signal
 import statistics
 import sys
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from mdlgen.bench.case import BenchCase
+from mdlgen.bench.case import WARM, BenchCase
 from mdlgen.bench.row import OK, Outcome
 from mdlgen.errors import MdlgenError
 
@@ -50,7 +51,13 @@ def perform(task: Job) -> Outcome:
         solve: Callable[..., Result] = registry.solver(task.solver).solve
         # only a solver that can do without a rule is asked to
         without = {"without": task.case.run.without} if task.case.run.without else {}
-        results = [solve(model, **without) for _ in range(max(1, task.repeats))]
+        if task.case.warm:
+            solve(WARM.model())
+        results, times = [], []
+        for _ in range(max(1, task.repeats)):
+            began = time.process_time()
+            results.append(solve(model, **without))
+            times.append(time.process_time() - began)
     except MdlgenError as error:
         return Outcome(f"refused: {error}")
     last = results[-1]
@@ -75,6 +82,7 @@ def perform(task: Job) -> Outcome:
         repeats=len(results),
         estimate=last.error_estimate,
         unknown=last.error_unknown,
+        cpu=statistics.median(times),
     )
 
 

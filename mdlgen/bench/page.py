@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
+from mdlgen.bench.numerals import number, time
 from mdlgen.bench.row import FAILED, OK, BenchRow
-from mdlgen.bench.table import number, time
 from mdlgen.errors import SpecError, printable
 
 if TYPE_CHECKING:

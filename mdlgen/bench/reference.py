@@ -24,7 +24,7 @@ SHARED_CODE = ("mdlgen.mechanics", "mdlgen.model")
 def file_of(reference: Reference, module: str, folder: Path) -> Path:
     """Where the states of a reference are kept: a name by the content of scene, solver and code."""
     run = reference.run
-    digest = hashlib.sha256((paths.samples() / f"{run.sample}.yaml").read_bytes())
+    digest = hashlib.sha256(run.text().encode())
     digest.update(repr((run.sets, run.without, reference.solver)).encode())
     for room in (module, *SHARED_CODE):
         for source in _sources(room):

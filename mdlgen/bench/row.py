@@ -28,6 +28,7 @@ class Outcome:
     estimating: float | None = None  # what the runs for it took beside the wall time, median [s]
     unknown: str = ""  # why its error may be of any size, where the solver says so
     iterations: int | None = None  # of Newton, a linear solve each, where the solver counts them
+    cpu: float | None = None  # processor time of all passes of a run, median [s]
 
 
 @dataclass(frozen=True)
@@ -61,6 +62,7 @@ class BenchRow:
     unit: str = ""
     source: str = ""
     because: str = ""
+    cpu_s: float | None = None
 
     def json(self) -> dict[str, Any]:
         """Plain data; numbers that are not finite are left out. `rounds` is an older name of `iterations`."""
@@ -117,4 +119,5 @@ def _row(
         unit=finding.unit,
         source=finding.source,
         because=finding.because,
+        cpu_s=outcome.cpu,
     )

@@ -10,7 +10,7 @@ from typing import Any
 
 from mdlgen import paths, registry
 from mdlgen.bench import process
-from mdlgen.bench.case import BenchCase, Reference, Run
+from mdlgen.bench.case import WARM, BenchCase, Reference
 from mdlgen.bench.child import Job
 from mdlgen.bench.machine import machine, versions
 from mdlgen.bench.peers import MISSING, PEERS, installed
@@ -21,8 +21,6 @@ from mdlgen.bench.suites import SUITES, cases
 from mdlgen.errors import OutputError, SpecError
 
 Say = Callable[[str], None]
-# A scene of a moment that has every kind of force: compiles a solver before the first clock starts.
-WARM = Run("transport_4x4", ("run.duration=0.1 ms",), 0.05)
 # What the name of a solver of another state of mdlgen ends with.
 BESIDE = ", beside"
 # A reference is finer than what is measured; it may take this long [s].

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from mdlgen.bench import core_table
 from mdlgen.bench.fits import fits
+from mdlgen.bench.numerals import number, time
 from mdlgen.bench.row import OK, BenchRow
 from mdlgen.errors import printable
 
@@ -29,12 +31,13 @@ def markdown(found: Bench) -> str:
     ]
     for suite in dict.fromkeys(row.suite for row in found.rows):
         rows = [row for row in found.rows if row.suite == suite]
-        parts += [f"## {suite}", _table(rows), _reasons(rows), f"To repeat one: `{rows[0].command}`"]
+        parts += [f"## {suite}", _table(suite, rows), _reasons(rows), f"To repeat one: `{rows[0].command}`"]
     return "\n\n".join(part for part in [*parts, *_together(found)] if part) + "\n"
 
 
-def _table(rows: list[BenchRow]) -> str:
-    lines = [HEAD, ("---",) * len(HEAD), *(_cells(row) for row in rows)]
+def _table(suite: str, rows: list[BenchRow]) -> str:
+    head, cells = (core_table.HEAD, core_table.cells) if suite == core_table.SUITE else (HEAD, _cells)
+    lines = [head, ("---",) * len(head), *map(cells, rows)]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
@@ -89,17 +92,3 @@ def _together(found: Bench) -> list[str]:
     counts = {status: sum(row.status == status for row in found.rows) for status in ("ok", "failed", "wrong")}
     summed = ", ".join(f"{count} {status}" for status, count in counts.items())
     return ["## Together", "\n".join(lines), f"{len(found.rows)} rows: {summed}."]
-
-
-def number(value: float | None) -> str:
-    return "" if value is None else f"{value:.3g}"
-
-
-def time(seconds: float | None) -> str:
-    """Three figures in the unit that reads best."""
-    if seconds is None:
-        return ""
-    for unit, size in (("s", 1.0), ("ms", 1e-3), ("us", 1e-6)):
-        if seconds >= size:
-            return f"{seconds / size:.3g} {unit}"
-    return f"{seconds * 1e9:.3g} ns"

@@ -34,8 +34,8 @@ def bench(
         typer.Argument(
             metavar="SUITE ...",
             help="transport, elastica, impact, friction, flight, scaling, skip, feeder, piles, stability, "
-            "validation: all if left out; or campaign, scenes drawn at random; or tuning, the numbers of the "
-            "solver lattice halved and doubled.",
+            "validation, core: all if left out; or campaign, scenes drawn at random; or tuning, the numbers "
+            "of the solver lattice halved and doubled.",
             autocompletion=completion.suites,
         ),
     ] = None,
@@ -116,6 +116,8 @@ def bench(
     Example: mdlgen bench campaign --count 1000 --seed 1
 
     Example: mdlgen bench tuning -o out/tuning
+
+    Example: mdlgen bench core --solver lattice --beside ../before
     """
     if TUNING in (suites or ()):
         _check_alone(TUNING, suites or ())

@@ -109,6 +109,9 @@ class Result:
     step: float = 0.0  # [ms]
     steps: int = 0
     rounds: int | None = None  # an older name of `iterations`, which files keep
+    # of all steps, where the solver counts them: "factors" that were made, "solves" with frozen contacts, and
+    # steps that were "given_up" since they did not converge; no file keeps them
+    counts: dict[str, int] = field(default_factory=dict)
     wall_s: float = 0.0
     estimate_s: float = 0.0  # of runs at other steps, from which the error is estimated
     build_s: float = 0.0

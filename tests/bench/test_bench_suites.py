@@ -10,6 +10,7 @@ import pytest
 from asked import as_asked
 
 import mdlgen
+from mdlgen.bench.campaign.drawn_run import DrawnRun
 from mdlgen.bench.case import BenchCase, Finding, Run
 from mdlgen.bench.fits import EQUAL_ERROR, fits, wall_at
 from mdlgen.bench.row import Outcome, rows
@@ -32,7 +33,10 @@ def test_every_case_is_a_scene_with_a_command_that_repeats_it(suite):
         for case in made[:: max(1, len(made) // 12)]:
             case.run.model()
             command = case.run.command(solver)
-            assert command.startswith(f"mdlgen run samples/{case.run.sample}.yaml --solver {solver}")
+            begins = f"mdlgen run samples/{case.run.sample}.yaml --solver {solver}"
+            if isinstance(case.run, DrawnRun):
+                begins = f"mdlgen bench campaign --seed 1 --only {case.run.number} --solver {solver}"
+            assert command.startswith(begins)
 
 
 def test_the_reference_of_the_transport_is_ten_times_finer_than_what_is_measured():

@@ -34,8 +34,11 @@ from mdlgen.backends.lattice.kernels import entries
 from mdlgen.backends.lattice.kernels.integrate import integrate
 from mdlgen.backends.lattice.kernels.state import (
     ANEW,
+    FACTORS,
     FASTEST,
+    GIVEN_UP,
     ITERATIONS,
+    SOLVES,
     STEPS,
     TOUCHING,
     WORST,
@@ -57,6 +60,8 @@ from mdlgen.results.result import Result
 from mdlgen.runs.checkpoint import Checkpointer
 
 Progress = Callable[[float, float, int, int], None]
+# Of Result.counts.
+COUNTED = {"factors": FACTORS, "solves": SOLVES, "given_up": GIVEN_UP}
 
 
 class Watch(NamedTuple):
@@ -296,6 +301,7 @@ class _Pass:
         result = self._recorder.result("lattice", reason, self._energies)
         result.step, result.steps = dt, int(self._counters[STEPS])
         result.rounds, result.wall_s = int(self._counters[ITERATIONS]), wall
+        result.counts = {name: int(self._counters[column]) for name, column in COUNTED.items()}
         if result.ok and not all(
             np.isfinite(a).all() for a in (result.position, result.velocity, result.spin)
         ):

@@ -12,7 +12,7 @@ from mdlgen.bench.campaign.found import Campaign
 from mdlgen.bench.campaign.kinds import KINDS
 from mdlgen.bench.campaign.row import INACCURATE, NONE, CampaignRow
 from mdlgen.bench.campaign.sheets import SHARES, STOCKS
-from mdlgen.bench.table import time
+from mdlgen.bench.numerals import time
 from mdlgen.errors import printable
 
 # Numbers of scenes that a line lists.

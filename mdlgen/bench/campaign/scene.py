@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -43,16 +43,16 @@ class DrawnScene:
         paths.write_atomic(folder / f"{self.name}.yaml", self.text)
         return folder / f"{self.name}.yaml"
 
-    def model(self) -> Model:
-        """The scene, lowered. Raises SpecError."""
+    def model(self, overrides: Iterable[str] = ()) -> Model:
+        """The scene, lowered; `overrides` as of `--set`. Raises SpecError."""
         from mdlgen.model.lower import lower
         from mdlgen.spec.load import loads
 
         if not self.files:
-            return lower(loads(self.text, self.name))
+            return lower(loads(self.text, self.name, overrides))
         with tempfile.TemporaryDirectory() as folder:
             file = self.write(Path(folder))
-            return lower(loads(self.text, self.name, folder=file.parent))
+            return lower(loads(self.text, self.name, overrides, file.parent))
 
 
 def drawn(seed: int, number: int, kind: str = "", sticking: bool = False) -> DrawnScene:

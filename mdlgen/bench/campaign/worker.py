@@ -120,7 +120,7 @@ def _solve(model: Model, solver: str) -> Result:
 def _compile(solver: str) -> None:
     """Loads the compiled code of a solver before the first measurement."""
     from mdlgen import registry
-    from mdlgen.bench.run import WARM
+    from mdlgen.bench.case import WARM
 
     with contextlib.suppress(MdlgenError):
         registry.solve(WARM.model(), solver)

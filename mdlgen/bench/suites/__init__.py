@@ -10,7 +10,7 @@ from mdlgen.registry import AUTO
 
 SUITES = (
     *("transport", "elastica", "impact", "friction", "flight", "scaling", "skip", "feeder", "piles"),
-    *("stability", "validation"),
+    *("stability", "validation", "core"),
 )
 
 

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from mdlgen.model.tables import Model
 
 SEED = 1
+ONE_WAY = "rollers.pick.one_way={direction: -1, torque: 1 N*mm}"
 
 
 @dataclass(frozen=True)
@@ -81,11 +82,17 @@ materials: {{{_PAPER}}}
 sheets:
   note: {{material: paper, size: [60 mm, 20 mm], thickness: 0.1 mm, mass: 0.1 g, boxes: [8, 2],
     center: [0 mm, 0 mm, 0.05 mm]}}
+  held: {{material: paper, size: [60 mm, 20 mm], thickness: 0.1 mm, mass: 0.1 g, boxes: [8, 2],
+    center: [0 mm, 100 mm, 0 mm], clamp: {{edge: x_min}}}}
+  leans: {{material: paper, size: [60 mm, 40 mm], thickness: 0.1 mm, mass: 0.2 g, boxes: [3, 2],
+    center: [150 mm, 0 mm, 1.07 mm], rotation: [0 deg, 11.5 deg, 0 deg]}}
 planes:
+  slope: {{center: [150 mm, 0 mm, 0 mm], normal: [0.2, 0, 0.98], size: [100 mm, 100 mm, 2 mm]}}
   plane_1: {{center: [-25 mm, 0 mm, -5 mm], normal: z, size: [20 mm, 40 mm, 10 mm]}}
   plane_2: {{center: [25 mm, 0 mm, -5 mm], normal: z, size: [20 mm, 40 mm, 10 mm]}}
 contacts:
-  - {{between: [note, "*"], {_LAW}}}
+  - {{between: [note, "plane_*"], {_LAW}}}
+  - {{between: [leans, slope], {_LAW}}}
 run: {{analysis: static}}
 """
 
@@ -109,10 +116,12 @@ SCENES = (
     TuningScene("mesh", "a sheet falls on a mesh", _drawn("fall_mesh", 2), 25.0, 0.2),
     TuningScene("arm", "a nip with its roller on an arm", _drawn("nip_arm", 2), 5.0, 0.05),
     TuningScene("channel", "the sample `channel`", _sample("channel"), 2.0, None),
-    TuningScene("stack", "three sheets on a table", _text(STACK), 3.0, 0.1),
+    TuningScene("stack", "three sheets on a table, asleep at the end", _text(STACK), 20.0, 0.1),
     TuningScene("sticking", "sheets slide, friction sticks", _drawn("slide", 3, True), 5.0, 0.1),
     TuningScene("air", "the sample `landing`, air between two sheets", _sample("landing"), 5.0, 0.1),
-    TuningScene("retard", "the sample `retard_pad`", _sample("retard_pad"), 2.0, 0.05),
-    TuningScene("at rest", "a sheet rests on two planes, static", _text(AT_REST), None, None),
+    TuningScene(
+        "retard", "`retard_pad`, the pick roller overruns", _sample("retard_pad", ONE_WAY), 10.0, 0.05
+    ),
+    TuningScene("at rest", "sheets held, on two planes and on a slope", _text(AT_REST), None, None),
     TuningScene("block", "a rigid block falls and slides", _text(BLOCK), 8.0, None),
 )
