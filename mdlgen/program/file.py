@@ -16,7 +16,7 @@ from typing import Any
 
 from mdlgen.program.layout import Type
 
-FORMAT = 3
+FORMAT = 4
 MOST_BYTES = 50_000_000
 
 
@@ -37,7 +37,8 @@ class Variant:
 class Head:
     """What a program is."""
 
-    digest: str  # of the kernels that it was made from
+    digest: str  # of the kernels that it was made from, and of their statements alone (program.kernel)
+    statements: str
     code: str  # SHA-256 of what follows the head
     versions: dict[str, str]  # of what made it
     entries: dict[str, tuple[Variant, ...]]
@@ -50,6 +51,7 @@ class Head:
         message: dict[str, Any] = {
             "format": FORMAT,
             "digest": self.digest,
+            "statements": self.statements,
             "code": self.code,
             "versions": self.versions,
             "external": list(self.external),
@@ -118,7 +120,8 @@ def _open(path: Path) -> tuple[Head, bytes]:
         }
         external, parts = tuple(record["external"]), tuple(int(size) for size in record["parts"])
         libraries = {str(name): str(digest) for name, digest in record["libraries"].items()}
-        digest, code = str(record["digest"]), str(record["code"])
-        return Head(digest, code, record["versions"], entries, external, parts, libraries), packed
+        digest, statements, code = (str(record[name]) for name in ("digest", "statements", "code"))
+        versions = record["versions"]
+        return Head(digest, statements, code, versions, entries, external, parts, libraries), packed
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
         raise Unfit(f"{path.name} is damaged") from None

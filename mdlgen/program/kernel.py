@@ -5,6 +5,7 @@ numba is imported where a kernel that no program has is called from Python, and 
 
 from __future__ import annotations
 
+import ast
 import dis
 import functools
 import hashlib
@@ -343,15 +344,40 @@ def _with_kernels(files: Iterable[Path]) -> list[Path]:
 def sources_digest(rooms: tuple[str, ...]) -> str:
     """SHA-256 of all kernels of some packages: their sources, however lines end, the texts of those that
     no file has, and the numbers of other modules that they name."""
+    return _digest(rooms, lambda path: path.read_bytes().replace(b"\r\n", b"\n"))
+
+
+@functools.cache
+def statements_digest(rooms: tuple[str, ...]) -> str:
+    """SHA-256 of the same without comments, docstrings and layout, from which no code is made.
+
+    It takes 0.3 s where the other takes 5 ms, so it is asked for only where the other one differs.
+    """
+    return _digest(rooms, lambda path: _statements(path.read_text("utf-8")).encode())
+
+
+def _digest(rooms: tuple[str, ...], text: Callable[[Path], bytes]) -> str:
     found = hashlib.sha256()
     for room in rooms:
         for name, path in kernel_sources(room).items():
             module = importlib.import_module(name)
             found.update(f"{name}\n".encode())
-            found.update(path.read_bytes().replace(b"\r\n", b"\n"))
+            found.update(text(path))
             for line in _numbers(module):
                 found.update(line.encode())
     return found.hexdigest()
+
+
+def _statements(source: str) -> str:
+    """A module without comments, docstrings and layout."""
+    tree = ast.parse(source)
+    for node in ast.walk(tree):
+        if (
+            isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef))
+            and ast.get_docstring(node) is not None
+        ):
+            node.body[0] = ast.Pass()
+    return ast.unparse(tree)
 
 
 def _numbers(module: Any) -> Iterator[str]:

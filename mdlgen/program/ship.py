@@ -10,7 +10,7 @@ from typing import Any, ParamSpec, TypeVar
 
 from mdlgen.program import file, native
 from mdlgen.program.file import Unfit
-from mdlgen.program.kernel import Kernel, alone, sources_digest
+from mdlgen.program.kernel import Kernel, alone, sources_digest, statements_digest
 from mdlgen.program.layout import Misfit
 
 _lock = RLock()
@@ -46,7 +46,7 @@ class Program:
     def head(self) -> file.Head:
         """What the file says, if it was made from these kernels. Raises Unfit."""
         head = file.read_head(self.path)
-        if head.digest != sources_digest(self.rooms):
+        if head.digest != sources_digest(self.rooms) and head.statements != statements_digest(self.rooms):
             raise Unfit(f"{self.path.name} was made from other kernels")
         return head
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from inspect import signature
+from pathlib import Path
 from types import ModuleType
 
 import pytest
@@ -11,7 +12,7 @@ from mdlgen.mechanics import pair
 from mdlgen.mechanics.by_kind import KINDS
 from mdlgen.mechanics.solved import WITH_LAW
 from mdlgen.model.tables import contacts
-from mdlgen.program.kernel import LAWS, Kernel, sources_digest
+from mdlgen.program.kernel import LAWS, Kernel, sources_digest, statements_digest
 
 
 def named(kind: ModuleType) -> str:
@@ -40,6 +41,26 @@ def test_what_chooses_among_kinds_counts_in_the_digest_of_sources(monkeypatch: p
     before = digest((LAWS,))
     monkeypatch.setattr(pair.near, "text", pair.near.text.replace("kind == 0", "kind == 10"))
     assert digest((LAWS,)) != before
+
+
+def test_comments_and_docstrings_are_no_statements(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A program fits kernels whose comments alone are new; any other change makes it unfit."""
+    digest, read = statements_digest.__wrapped__, Path.read_text
+
+    def after(old: str, new: str) -> str:
+        def changed(path: Path, *args: str) -> str:
+            text = read(path, *args)
+            assert path.name != "laws.py" or old in text
+            return text.replace(old, new, 1) if path.name == "laws.py" else text
+
+        monkeypatch.setattr(Path, "read_text", changed)
+        return digest((LAWS,))
+
+    before = digest((LAWS,))
+    assert after('"""', '"""Once more. ') == before
+    assert after('):\n    """', '):\n    """Once more. ') == before
+    assert after("\n\n\n@njit", "\n\n\n# Another one.\n@njit") == before
+    assert after("0.5 *", "0.6 *") != before
 
 
 @pytest.mark.parametrize("kind", KINDS.values(), ids=named)

@@ -143,13 +143,14 @@ def test_a_program_that_does_not_fit_is_compiled_by_numba(tmp_path: Path, made: 
     head, _, code = made.partition(b"\n")
     bitcode = b"BC\xc0\xde" + bytes(2000)
     packed, digest = file.pack([bitcode])
+    unlike = {"digest": "0" * 64, "statements": "0" * 64}
     alike = {**json.loads(head), "code": digest, "parts": [len(bitcode)]}
     program = {
         "cut": made[:-100],
         "changed": made[:-50] + bytes([made[-50] ^ 1]) + made[-49:],
         "foreign": b"\x89PNG\r\n\x1a\n" + bytes(100),
         "empty": b"",
-        "other kernels": json.dumps({**json.loads(head), "digest": "0" * 64}).encode() + b"\n" + code,
+        "other kernels": json.dumps({**json.loads(head), **unlike}).encode() + b"\n" + code,
         "of a later LLVM": json.dumps(alike).encode() + b"\n" + packed,
     }[harm]
     package(tmp_path, program)
