@@ -123,7 +123,7 @@ def build(model: Model) -> tuple[System, Pattern]:
     loads = pack_loads(model, SI)
     elements, pattern = _pattern(_couplings(bodies, bushings, blocks, pairs, loads), blocks, free)
     points = curve_points(model.curves, SI.mpa)
-    shapes = shape_tables(model, MM)
+    shapes = shape_tables(model, SI)
     system = System(bodies, bushings, pairs, loads, gravity(model, SI), elements, free, points, shapes, film)
     return system, pattern
 
