@@ -45,7 +45,7 @@ def refuse_measured(model: Model, who: str) -> None:
     if frictions is None:
         return
     for row in range(len(table)):
-        what = _what(frictions, row)
+        what = measured(frictions, row)
         if what is not None:
             raise RefusedError(
                 f"{who}: the contact of {table.part_a[row]} and {table.part_b[row]} has {what}, which "
@@ -54,7 +54,8 @@ def refuse_measured(model: Model, who: str) -> None:
             )
 
 
-def _what(frictions: Frictions, row: int) -> str | None:
+def measured(frictions: Frictions, row: int) -> str | None:
+    """What friction of a contact, a row, is more than two coefficients and their speeds; None: nothing."""
     found = (
         (frictions.direction[row].max() > 1.0, "friction by direction"),
         (frictions.face[row].max() > 1.0, "friction by face"),

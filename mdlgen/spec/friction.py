@@ -196,8 +196,10 @@ class Friction(Strict):
     def _with(self, static: float, dynamic: float) -> Friction:
         slow, fast = self.stiction_velocity, self.friction_velocity
         if self.speed is not None:
-            slow, fast = self.speed[0][0], self.speed[-1][0]
+            slow, fast = float(self.speed[0][0]), float(self.speed[-1][0])
         given = set(self.model_fields_set)
+        # plain numbers: a formula stands where it was given
+        static, dynamic = float(static), float(dynamic)
         found = with_values(
             self, static=static, dynamic=dynamic, stiction_velocity=slow, friction_velocity=fast
         )

@@ -30,6 +30,18 @@ def slides(friction: object, solver: str = "lattice", **over: Any) -> Result:
     return result
 
 
+def on_a_slope(angle: float, axis: int) -> dict[str, Any]:
+    """Gravity of a slope [rad] down along an axis, and the block at rest on it, as deep as it presses."""
+    down = [0.0, 0.0, -9.81 * math.cos(angle)]
+    down[axis] = 9.81 * math.sin(angle)
+    sunk = (10.0 * G * math.cos(angle) / 1000.0) ** (2 / 3)
+    return {
+        "gravity": [f"{g!r} m/s^2" for g in down],
+        "sheets__block__velocity": ["0 m/s", "0 m/s", "0 m/s"],
+        "sheets__block__center": ["-400 mm", "0 mm", f"{5.0 - sunk!r} mm"],
+    }
+
+
 def lost(result: Result) -> float:
     """Speed [mm/ms]."""
     return float(np.linalg.norm(result.velocity[0, 0]) - np.linalg.norm(result.velocity[-1, 0]))
@@ -106,13 +118,8 @@ def test_a_large_block_has_the_mean_of_what_scatters(solver: str) -> None:
 def test_friction_that_sticks_holds_by_the_face(turn: float) -> None:
     """On a slope of 0.3 a block stays on its front, of 0.4, and slides on its back, of 0.2."""
     slope = math.atan(0.3)
-    gravity = [f"{9.81 * math.sin(slope)!r} m/s^2", "0 m/s^2", f"{-9.81 * math.cos(slope)!r} m/s^2"]
-    over: dict[str, Any] = {
-        "sheets__block__rotation": [f"{turn} deg", "0 deg", "0 deg"],
-        "sheets__block__velocity": ["0 m/s", "0 m/s", "0 m/s"],
-    }
-    friction = {"front": 0.4, "back": 0.2, "sticking": "40 N/mm"}
-    result = slides(friction, gravity=gravity, **over)
+    over = {"sheets__block__rotation": [f"{turn} deg", "0 deg", "0 deg"], **on_a_slope(slope, 0)}
+    result = slides({"front": 0.4, "back": 0.2, "sticking": "40 N/mm"}, **over)
     moved = float(result.position[-1, 0, 0] - result.position[0, 0, 0])
     if turn == 180.0:
         assert moved == pytest.approx(0.0, abs=0.01)
@@ -124,9 +131,7 @@ def test_a_held_block_creeps_as_its_own_direction_has_it() -> None:
     """At 60 % of the limit along CD, which holds more: over v_s/m, by Eq. 12."""
     part, mu_md, mu_cd = 0.6, 0.2, 0.5
     slope = math.atan(part * mu_cd)
-    gravity = ["0 m/s^2", f"{9.81 * math.sin(slope)!r} m/s^2", f"{-9.81 * math.cos(slope)!r} m/s^2"]
-    over: dict[str, Any] = {"sheets__block__velocity": ["0 m/s", "0 m/s", "0 m/s"], "gravity": gravity}
-    result = slides([mu_md, mu_cd], **over)
+    result = slides([mu_md, mu_cd], **on_a_slope(slope, 1))
     creep = 2.0 * 1e-3 * mu_md / mu_cd * math.sin(math.asin(part) / 3.0)
     assert result.velocity[-1, 0, 1] == pytest.approx(creep, rel=1e-2)
 
