@@ -35,7 +35,7 @@ CLASSES = {
     "DogEar": "mdlgen.spec.shape",
     "Drive": "mdlgen.spec.machine",
     "Fold": "mdlgen.spec.shape",
-    "Friction": "mdlgen.spec.contact",
+    "Friction": "mdlgen.spec.friction",
     "Graded": "mdlgen.spec.grading",
     "Grading": "mdlgen.spec.grading",
     "Guide": "mdlgen.spec.guide",

@@ -12,8 +12,8 @@ from mdlgen.spec.action import Load as _Load
 from mdlgen.spec.action import Probe as _Probe
 from mdlgen.spec.action import Support as _Support
 from mdlgen.spec.contact import Contact as _Contact
-from mdlgen.spec.contact import Friction as _Friction
 from mdlgen.spec.curve import Curve as _Curve
+from mdlgen.spec.friction import Friction as _Friction
 from mdlgen.spec.grading import Graded as _Graded
 from mdlgen.spec.grading import Grading as _Grading
 from mdlgen.spec.guide import Arc as _Arc
@@ -99,7 +99,7 @@ class Contact(_Contact):
         between: Sequence[str | Sequence[str]] = ...,
         stiffness: str = ...,
         restitution: float | str = ...,
-        friction: float | str | _Friction | Mapping[str, Any] = ...,
+        friction: float | str | Sequence[float | str] | _Friction | Mapping[str, Any] = ...,
         smoothing: str | None = ...,
         rolling_resistance: float | str = ...,
         air: Mapping[str, Any] | None = ...,
@@ -171,11 +171,21 @@ class Friction(_Friction):
     def __init__(
         self,
         *,
-        static: float | str,
-        dynamic: float | str,
+        static: float | str = ...,
+        dynamic: float | str = ...,
         stiction_velocity: str | None = ...,
         friction_velocity: str | None = ...,
+        stribeck_velocity: str | None = ...,
+        md: float | str | None = ...,
+        cd: float | str | None = ...,
+        front: float | str | None = ...,
+        back: float | str | None = ...,
+        speed: Sequence[Sequence[str | float]] | None = ...,
+        pressure: Mapping[str, Any] | None = ...,
+        scatter: Mapping[str, Any] | None = ...,
         sticking: str | None = ...,
+        kinetic: float | str = ...,
+        mu: float | str = ...,
     ) -> None: ...
 
 class Graded(_Graded):

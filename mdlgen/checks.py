@@ -13,6 +13,7 @@ from mdlgen.lints import (
     cost,
     creep,
     damping,
+    friction,
     idle,
     missing,
     parameters,
@@ -69,4 +70,5 @@ CHECKS: tuple[Callable[[Model], Iterator[Lint]], ...] = (
     air.still,
     creep.on_slope,
     creep.stopped,
+    friction.coarse_scatter,
 )

@@ -201,6 +201,12 @@ SCENE = {
         "a contact with, or times a tenth of the sheet's length where that is more. After the run an event "
         "`creep` says what was held, and how far it crept. friction.sticking holds it."
     ),
+    "W140": (
+        "Friction that scatters has a correlation length, over which it changes. A box has the mean over its "
+        "face. One that is larger than that length has hardly any scatter: a sheet of such boxes behaves as "
+        "if its friction were the same everywhere, but for what the whole sheet has more or less than the "
+        "mean. Boxes of half the length have nearly all of it."
+    ),
 }
 
 TEXT = {

@@ -130,7 +130,7 @@ def build(model: Model) -> tuple[System, Pattern]:
     loads = pack_loads(model, SI)
     elements, pattern = _pattern(_couplings(bodies, bushings, blocks, pairs, loads, stick), blocks, free)
     points = curve_points(model.curves, SI.mpa)
-    shapes = shape_tables(model, MM)
+    shapes = shape_tables(model, SI)
     weight = gravity(model, SI)
     system = System(bodies, bushings, pairs, loads, weight, elements, free, points, shapes, film, stick)
     return system, pattern

@@ -12,8 +12,8 @@ from markdown import NOTE, sentence, table
 from pydantic import BaseModel, WithJsonSchema
 from pydantic.fields import FieldInfo
 
-from mdlgen.spec.contact import Friction
 from mdlgen.spec.curve import Curve
+from mdlgen.spec.friction import Friction
 from mdlgen.spec.grading import Graded
 from mdlgen.spec.quantities import Default, one_or_two, quantity, ratio
 from mdlgen.spec.scene import Scene
@@ -32,7 +32,7 @@ A scene is a YAML or JSON file. This page lists each key with its unit, its defa
 """
 # what may stand in place of a mapping
 _SHORT: dict[type[BaseModel], str] = {
-    Friction: "number, or mapping",
+    Friction: "number, list [md, cd], or mapping",
     Curve: "list of points, or mapping",
     Graded: "list of lengths, or mapping",
 }
@@ -92,7 +92,7 @@ def _section(path: str, model: type[BaseModel]) -> str:
     words = "\n\n".join(
         " ".join(part.split()) for part in (model.__doc__ or "").split("\n\n") if part.strip()
     )
-    either = [key for way in _either(model) for key in way["required"]]
+    either = list(dict.fromkeys(key for way in _either(model) for key in way["required"]))
     rows = [
         (
             f"`{key}`",
@@ -107,12 +107,12 @@ def _section(path: str, model: type[BaseModel]) -> str:
 
 
 def _either(model: type[BaseModel]) -> list[dict[str, Any]]:
-    """Keys of which exactly one is required, as the JSON schema says it."""
+    """Keys of which one is required, as the JSON schema says it."""
     change = model.model_config.get("json_schema_extra")
     schema: dict[str, Any] = {}
     if callable(change):
         change(schema)  # pyright: ignore[reportCallIssue]
-    return schema.get("oneOf", [])
+    return schema.get("oneOf", schema.get("anyOf", []))
 
 
 def _linked(text: str, annotation: Any) -> str:

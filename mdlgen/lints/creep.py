@@ -11,6 +11,7 @@ import numpy as np
 from mdlgen.lints.lint import Lint
 from mdlgen.lints.ways import NEAR
 from mdlgen.model.creep import judged_by, slip_part
+from mdlgen.model.frictions import measured
 from mdlgen.model.parts.roller import FLAT
 from mdlgen.model.sheet_corners import corners_of_boxes
 from mdlgen.model.tables import (
@@ -199,6 +200,11 @@ def _over(model: Model, row: int) -> str:
 def _remedy(model: Model, row: int) -> str:
     table = model.contacts
     static, dynamic = float(table.mu_static[row]), float(table.mu_dynamic[row])
+    if table.frictions is not None:
+        if (table.frictions.direction[row] != 1.0).any():
+            return "give a lower smoothing"
+        if measured(table.frictions, row) is not None:
+            return f"add sticking: {STIFF} to the friction, which holds it, or give a lower smoothing"
     return (
         f"give friction: {{static: {static:g}, dynamic: {dynamic:g}, sticking: {STIFF}}}, which holds it, or "
         "a lower smoothing"

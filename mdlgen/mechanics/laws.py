@@ -44,6 +44,25 @@ def coefficient(v, mu_s, mu_d, v_s, v_d):
 
 
 @njit(cache=True, error_model="numpy")
+def of_table(v, curve, first, many):
+    """A coefficient at a speed by a table, `many` times (speed, coefficient, slope) from curve[first] on: the
+    cubic through two points with their slopes, which without slopes is the STEP of `coefficient`; beyond the
+    ends as there."""
+    last = first + 3 * (many - 1)
+    if v >= curve[last]:
+        return curve[last + 1]
+    at = first
+    while at + 3 < last and v >= curve[at + 3]:
+        at += 3
+    low, high = curve[at], curve[at + 3]
+    value = coefficient(v, curve[at + 1], curve[at + 4], low, high)
+    if v <= low:
+        return value
+    x = (v - low) / (high - low)
+    return value + (v - low) * (1.0 - x) * ((1.0 - x) * curve[at + 2] - x * curve[at + 5])
+
+
+@njit(cache=True, error_model="numpy")
 def friction_over_speed(v, mu_s, mu_d, v_s, v_d):
     """mu(v)/v of the regularised Coulomb law (Eq. 12), finite at v = 0.
 

@@ -8,17 +8,20 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mdlgen.mechanics.arm import AXIAL, arm
 from mdlgen.mechanics.curve import follow
 from mdlgen.mechanics.driven import drive
 from mdlgen.mechanics.frame import LAW_DYNAMIC, LAW_STATIC
 from mdlgen.mechanics.laws import damping_share
+from mdlgen.mechanics.measured import FACES, FRICTION, MORE_CD, MORE_MD, POWER, REFERENCE
 from mdlgen.mechanics.mesh_tables import mesh_numbers
 from mdlgen.mechanics.records import LOAD
 from mdlgen.mechanics.rim import rim
 from mdlgen.model.rotations import matrices
-from mdlgen.model.tables import GROUND, Floats, Ints, Model, Press
+from mdlgen.model.scatter import scatter_of
+from mdlgen.model.tables import GROUND, Floats, Frictions, Ints, Model, Press
 
 
 class Units(NamedTuple):
@@ -131,6 +134,9 @@ def pack_pairs(model: Model, layout: np.dtype, chosen: Ints, units: Units = OWN)
     mesh, other = mesh_numbers(model)
     pairs["a"], pairs["b"], pairs["mesh"] = model.pairs.a[chosen], other[chosen], mesh[chosen]
     pairs["law"][:, [LAW_STATIC, LAW_DYNAMIC]] *= model.pair_friction[chosen, None]
+    scatter = scatter_of(model)
+    if scatter is not None:
+        pairs["law"][:, [LAW_STATIC, LAW_DYNAMIC]] *= scatter[chosen, None]
     return pairs
 
 
@@ -145,7 +151,33 @@ def pack_laws(model: Model, layout: np.dtype, chosen: Ints, units: Units = OWN) 
     speeds = (v * units.speed for v in (rows.stiction_velocity, rows.friction_velocity, rows.smoothing))
     for column, values in enumerate((beta, rows.mu_static, rows.mu_dynamic, *speeds, rows.rolling)):
         pairs["law"][:, column] = values[chosen]
+    if rows.frictions is not None:
+        pairs["measured"] = np.where(in_rows(rows.frictions), np.arange(1, len(rows) + 1), 0)[chosen]
+        # a table of speeds is all that mu goes with the speed by
+        tabled = rows.frictions.points[chosen] > 0
+        pairs["law"][tabled, LAW_DYNAMIC] = pairs["law"][tabled, LAW_STATIC]
     return pairs
+
+
+def in_rows(frictions: Frictions) -> NDArray[np.bool_]:
+    """Whether the laws of a contact have more to read than its coefficients, (contacts,)."""
+    factors = np.concatenate([frictions.direction, frictions.face], axis=1)
+    return (factors != 1.0).any(axis=1) | (frictions.points > 0) | (frictions.pressure[:, 1] != 0.0)
+
+
+def pack_frictions(model: Model, units: Units = OWN) -> Floats:
+    """Rows as in mechanics.measured, one for each contact; none where no friction is measured."""
+    frictions = model.contacts.frictions
+    if frictions is None:
+        return np.zeros((0, FRICTION))
+    found = np.zeros((len(model.contacts), FRICTION))
+    found[:, MORE_MD : MORE_CD + 1] = np.sqrt(frictions.direction - 1.0)
+    scale = np.array([units.speed, 1.0, 1.0 / units.speed])
+    points = (frictions.speed * scale).reshape(len(found), -1)
+    found[:, FACES:REFERENCE] = np.concatenate([frictions.face, frictions.points[:, None], points], axis=1)
+    found[:, REFERENCE] = frictions.pressure[:, 0] * units.mpa
+    found[:, POWER] = frictions.pressure[:, 1]
+    return found
 
 
 def pack_loads(model: Model, units: Units = OWN) -> np.ndarray:

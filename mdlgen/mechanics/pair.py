@@ -12,9 +12,10 @@ import numpy as np
 from mdlgen.mechanics.by_kind import KINDS, by_kind
 from mdlgen.mechanics.edge import stands
 from mdlgen.mechanics.frame import ARC_RADIUS, LAW_ROLLING, LAW_SMOOTHING, box_of, held_frame
-from mdlgen.mechanics.point import PRESSING, resist_rolling
+from mdlgen.mechanics.measured import MEASURED, by_pressure, lay_measured
+from mdlgen.mechanics.point import FORCE_A, HOLDS, OUT, POINTS, PRESSING, resist_rolling
 from mdlgen.mechanics.vector import back, dot, sub, three, vec
-from mdlgen.program.kernel import BORROWS, njit
+from mdlgen.program.kernel import BORROWS, CALLED, njit
 
 # Kinds of contacts that have a law.
 WITH_LAW = frozenset(KINDS)
@@ -39,11 +40,28 @@ def before_an_end(pair: np.void) -> bool:
     return int(pair["kind"]) in _ON_PLATES and int(pair["beside"]) != 0
 
 
+@njit(cache=True, error_model="numpy", **BORROWS, **CALLED)
+def _press_again(half, row, out):
+    """Takes the pressure on a box's face from what its pair does, which is then taken out again."""
+    by_pressure(out, row, out[PRESSING] / (4.0 * half[0] * half[1]))
+    for i in range(FORCE_A, HOLDS):
+        out[i] = 0.0
+    if out.size > OUT:
+        out[POINTS] = 0.0
+
+
 @njit(cache=True, error_model="numpy", **BORROWS)
 def pair_force(bodies, pair, shapes, motion, out):
     """One contact pair into `out`, which must be zero (see mechanics.point for its columns). Returns whether
     it touches."""
+    out[MEASURED] = 0.0
+    if pair.measured > 0:
+        lay_measured(out, shapes.frictions[pair.measured - 1], motion.r, pair.a)
     touches = _force(bodies, pair, shapes, motion, out)
+    while touches and out[MEASURED] > 1.0:
+        # the normal force, which friction goes with, is known now
+        _press_again(bodies[pair.a].half, shapes.frictions[pair.measured - 1], out)
+        touches = _force(bodies, pair, shapes, motion, out)
     if pair.law[LAW_ROLLING] > 0.0 and out[PRESSING] > 0.0:
         axis, curved = rolls(bodies, pair, shapes, motion)
         if curved > 0.0:

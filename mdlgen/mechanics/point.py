@@ -34,6 +34,7 @@ from typing import NamedTuple
 
 from mdlgen.mechanics.frame import Vector
 from mdlgen.mechanics.laws import coefficient, damped, friction_over_speed, held_over_speed, sign_step
+from mdlgen.mechanics.measured import END, MEASURED, factor_of, stretched
 from mdlgen.mechanics.vector import add, cross, dot, scale, sub, three_from
 from mdlgen.program.kernel import BORROWS, CALLED, FUSED, njit
 
@@ -43,16 +44,17 @@ FORCE_A, TORQUE_A, FORCE_B, TORQUE_B = 0, 3, 6, 9
 PRESSING, STORED, DISSIPATED, DEPTH = 12, 13, 14, 15
 # What a law is given there, of a pair that a spring holds along its faces (see mechanics.bristle): what it
 # holds for 1 of the normal force and of the speed, 0: none does; a velocity and an angular velocity, and the
-# place about which: the field that is added to the slip.
+# place about which: the field that is added to the slip. Then its friction, where that is measured (see
+# mechanics.measured).
 HOLDS, OFFSET, TWIST, ABOUT = 16, 17, 20, 23
-OUT = 26
-POINTS = 26
+OUT = POINTS = END
 # Of two faces without their points (POINTS is 0): friction along them by its size, and the most it can be.
-RUBBING, GRIP, FACES = 27, 28, 29
+RUBBING, GRIP, FACES = OUT + 1, OUT + 2, OUT + 3
 # Of each point, from OUT + 1 on: the place, the normal to the first body, the elastic force and its growth
 # with depth, the normal force, the rate that damps it, the slip velocity, the share of damping, both
 # coefficients of friction, and what it is. Where a spring holds, the slip has its field added to it, and both
-# coefficients are that of the slip alone.
+# coefficients are that of the slip alone. Where friction is measured, the slip is w of mechanics.measured,
+# and both coefficients have its factors.
 AT, NORMAL, SPRING, GROWTH, FORCE, RATE, SLIP, BETA, MU_STATIC, MU_DYNAMIC = 0, 3, 6, 7, 8, 9, 10, 13, 14, 15
 KIND = 16
 ALONE, OF_NIP, COUPLE = 0.0, 1.0, 2.0
@@ -152,9 +154,15 @@ def _push(out, point, normal, losses, load, a, b, law):
     slip = sub(add(a.v, cross(a.w, ra)), add(b.v, cross(b.w, rb)))
     own = -dot(slip, normal)
     slip = sub(slip, scale(dot(slip, square), square))
+    measured = out[MEASURED] > 0.0
+    if measured:
+        slip = stretched(out, slip, square)
     speed = math.sqrt(dot(slip, slip))
     force = damped(spring, rate, law.beta, over)
     mu_static, mu_dynamic, hold = law.mu_static, law.mu_dynamic, out[HOLDS]
+    if measured:
+        factor = factor_of(out, speed, normal, (a.r[2], a.r[5], a.r[8]))
+        mu_static, mu_dynamic = factor * mu_static, factor * mu_dynamic
     if hold > 0.0:
         mu_static = mu_dynamic = coefficient(speed, mu_static, mu_dynamic, law.stiction, law.sliding)
         moves, slip = slip, add(slip, _field(out, point, square))
@@ -163,7 +171,8 @@ def _push(out, point, normal, losses, load, a, b, law):
     else:
         drag = force * friction_over_speed(speed, mu_static, mu_dynamic, law.stiction, law.sliding)
         taken = drag * speed * speed
-    f = sub(scale(force, normal), scale(drag, slip))
+    pull = stretched(out, slip, square) if measured else slip
+    f = sub(scale(force, normal), scale(drag, pull))
     ta, tb = cross(ra, f), cross(rb, f)
     for i in range(3):
         out[FORCE_A + i] += f[i]

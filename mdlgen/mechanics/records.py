@@ -53,6 +53,7 @@ CONTACT = [
     ("spread", "f8"),  # radius of the round that a roller's force is spread as, 0: its own
     ("k", "f8"),
     ("law", "f8", LAW),  # columns as in mechanics.frame
+    ("measured", "i8"),  # row of Shapes.frictions, from 1 on; 0: the law's numbers are all there is
 ]
 
 LOAD = np.dtype([("body", "i8"), ("local", "f8", 3), ("force", "f8", 3), ("moment", "f8", 3)])

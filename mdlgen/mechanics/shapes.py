@@ -1,21 +1,28 @@
-"""Shapes that take more than a body's record: meshes, and rims in sectors."""
+"""What takes more than a record of a body or of a pair: meshes, rims in sectors, friction as measured."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+
+from mdlgen.mechanics.measured import FRICTION
 from mdlgen.mechanics.mesh_tables import Meshes, mesh_tables
+from mdlgen.mechanics.pack import OWN, Units, pack_frictions
 from mdlgen.mechanics.rim import rim_table
 from mdlgen.model.tables import Floats, Model
 
+NONE = np.zeros((0, FRICTION))
+
 
 class Shapes(NamedTuple):
-    """The meshes and the rims of a Model for compiled code."""
+    """The meshes, the rims and the measured frictions of a Model for compiled code."""
 
     meshes: Meshes
     rims: Floats  # as in mechanics.rim, (pieces, PIECE)
+    frictions: Floats = NONE  # as in mechanics.measured, one for each contact or none, (contacts, FRICTION)
 
 
-def shape_tables(model: Model, mm: float = 1.0) -> Shapes:
-    """Of a Model; `mm` is a millimetre in the solver's unit."""
-    return Shapes(mesh_tables(model, mm), rim_table(model, mm))
+def shape_tables(model: Model, units: Units = OWN) -> Shapes:
+    """Of a Model, in a solver's units."""
+    return Shapes(mesh_tables(model, units.mm), rim_table(model, units.mm), pack_frictions(model, units))

@@ -9,6 +9,7 @@ import math
 
 from mdlgen.mechanics.frame import law_of
 from mdlgen.mechanics.laws import friction_over_speed, held_over_speed
+from mdlgen.mechanics.measured import along_slip, is_stretched
 from mdlgen.mechanics.point import (
     COUPLE,
     FORCE,
@@ -17,12 +18,14 @@ from mdlgen.mechanics.point import (
     MU_DYNAMIC,
     MU_STATIC,
     NORMAL,
+    OF_NIP,
     OUT,
     POINT,
     POINTS,
     SLIP,
     TORQUE_A,
     TORQUE_B,
+    WAY,
 )
 from mdlgen.mechanics.vector import cross, dot, three, three_from
 from mdlgen.program.kernel import BORROWS, njit
@@ -44,7 +47,7 @@ def turning(bodies, pair, out, rows, row, first):
     rows[row, first + ABOUT_A] += dot(three_from(out, TORQUE_A), one)
     rows[row, first + ABOUT_B] += dot(three_from(out, TORQUE_B), two)
     axis, law = two if dot(two, two) > 0.0 else one, law_of(pair)
-    rolls = dot(axis, axis) > 0.0
+    rolls, stretch = dot(axis, axis) > 0.0, is_stretched(out)
     for k in range(int(out[POINTS])):
         at = OUT + 1 + POINT * k
         if out[at + KIND] == COUPLE:
@@ -55,6 +58,10 @@ def turning(bodies, pair, out, rows, row, first):
             grip = held_over_speed(speed, out[at + HOLD], static)
         else:
             grip = friction_over_speed(speed, static, out[at + MU_DYNAMIC], law.stiction, law.sliding)
+        if stretch:
+            square = three_from(out, at + WAY) if out[at + KIND] == OF_NIP else normal
+            slip, more = along_slip(out, slip, square)
+            speed, static = more * speed, more * static
         along = dot(slip, cross(axis, normal)) if rolls else speed
         rows[row, first + ALONG] += out[at + FORCE] * grip * along
         rows[row, first + LIMIT] += out[at + FORCE] * static

@@ -13,6 +13,7 @@ from mdlgen.model import grid, naming
 from mdlgen.model.curves import lower_curves
 from mdlgen.model.ends import with_ends
 from mdlgen.model.external import external_pairs, lower_externals
+from mdlgen.model.frictions import lower_frictions
 from mdlgen.model.lowering.anchors import anchor, find_tension, lower_loads
 from mdlgen.model.lowering.cells import Cells, cells, zone_parts
 from mdlgen.model.lowering.joints import Joints, find_joints
@@ -229,6 +230,7 @@ def _contacts(scene: Scene) -> Contacts:
         with_sheet |= dict.fromkeys(getattr(scene, kind.table), kind.with_sheet)
         with_roller |= dict.fromkeys(getattr(scene, kind.table), kind.with_roller)
     kinds = [(with_roller if a in scene.rollers else with_sheet)[b] for _, a, b in rows]
+    stiction = np.array([speed[i].stiction for i, _, _ in rows], dtype=float)
     return Contacts(
         entry=np.array([i for i, _, _ in rows], dtype=np.int64),
         part_a=tuple(a for _, a, _ in rows),
@@ -238,7 +240,7 @@ def _contacts(scene: Scene) -> Contacts:
         restitution=column(lambda c: c.restitution),
         mu_static=column(lambda c: c.friction.static),
         mu_dynamic=column(lambda c: c.friction.dynamic),
-        stiction_velocity=np.array([speed[i].stiction for i, _, _ in rows], dtype=float),
+        stiction_velocity=stiction,
         friction_velocity=np.array([speed[i].friction for i, _, _ in rows], dtype=float),
         smoothing=np.array([speed[i].smoothing for i, _, _ in rows], dtype=float),
         rolling=column(lambda c: c.rolling_resistance),
@@ -248,6 +250,7 @@ def _contacts(scene: Scene) -> Contacts:
         air_roughness=column(lambda c: c.air.roughness if c.air else 0.0),
         sticking=column(lambda c: c.friction.sticking or 0.0),
         name=tuple(scene.contacts[i].name or "" for i, _, _ in rows) if named else (),
+        frictions=lower_frictions([scene.contacts[i].friction for i, _, _ in rows], stiction),
     )
 
 

@@ -12,6 +12,7 @@ from pydantic_core import PydanticCustomError
 
 from mdlgen.errors import did_you_mean
 from mdlgen.spec.machine_part import MachinePart, not_modelled
+from mdlgen.spec.measured import unlike_measured
 from mdlgen.spec.strict import fail
 
 if TYPE_CHECKING:
@@ -78,6 +79,8 @@ def _modelled(scene: Scene, index: int, names: tuple[str, str], part: MachinePar
     path, (a, b) = ("contacts", index, "between"), names
     if scene.contacts[index].air is not None and (message := _without_air(scene, names)):
         raise fail(message, ("contacts", index, "air"))
+    if (unlike := unlike_measured(scene, index, names)) is not None:
+        raise fail(unlike[1], ("contacts", index, "friction", unlike[0]))
     if a in scene.sheets:
         wrong = part.unlike_sheets(b, scene.contacts[index]) if part is not None else None
         if wrong is not None:

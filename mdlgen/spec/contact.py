@@ -2,69 +2,16 @@
 
 from __future__ import annotations
 
-import re
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
 from mdlgen.spec.fields import Name, SpeedScale
-from mdlgen.spec.parameter import is_formula
-from mdlgen.spec.quantities import default, of_percent, quantity, ratio
+from mdlgen.spec.friction import Friction
+from mdlgen.spec.quantities import default, quantity, ratio
 from mdlgen.spec.strict import Strict, fail
 
-Coefficient = Annotated[float, ratio(0.0, 1e3)]
 Share = Annotated[float, ratio(0.0, 1.0)]
-
-
-class Friction(Strict):
-    """Coulomb friction, regularised: the coefficient rises over the slip speed (Eq. 12).
-
-    A plain number is both coefficients; the speeds follow the contact's `smoothing` where left out.
-    """
-
-    static: Coefficient = Field(description="coefficient at the stiction velocity")
-    dynamic: Coefficient = Field(description="coefficient from the friction velocity on")
-    stiction_velocity: SpeedScale | None = Field(
-        default=None, description="slip speed at which friction is static; the smoothing where left out"
-    )
-    friction_velocity: SpeedScale | None = Field(
-        default=None,
-        description="slip speed from which on friction is dynamic; where left out the stiction velocity, or "
-        "1.5 times that where the two coefficients differ",
-    )
-    sticking: Annotated[float, quantity("N/mm", 0.0, open_low=True)] | None = Field(
-        default=None,
-        description="stiffness along the faces of what sticks: of one pair of boxes of two sheets, of a "
-        "sheet and a roller, of one box and another part. What friction holds then yields by "
-        "force/stiffness, does not creep, and slides from the limit mu N on. Where left out friction rises "
-        "over the slip speed alone",
-    )
-
-    @model_validator(mode="before")
-    @classmethod
-    def _number(cls, value: Any) -> Any:
-        value = of_percent(value)
-        if isinstance(value, str) and is_formula(value):
-            return {"static": value, "dynamic": value}
-        if isinstance(value, (int, float)) and not isinstance(value, bool):
-            return {"static": value, "dynamic": value}
-        if not isinstance(value, (dict, Friction)):
-            comma = re.fullmatch(r"[0-9]+,[0-9]+( *%)?", str(value))
-            meant = (
-                f"; write {str(value).replace(',', '.')}"
-                if comma
-                else "; give a number, or static and dynamic"
-            )
-            raise fail(f"{value!r} is not a friction{meant}"[:200])
-        return value
-
-    def speeds(self, smoothing: float) -> tuple[float, float]:
-        """(stiction velocity, friction velocity) [mm/ms]; where left out the first is the smoothing and the
-        second the same, or half as much again where the two coefficients differ."""
-        slow = self.stiction_velocity if self.stiction_velocity is not None else smoothing
-        if self.friction_velocity is not None:
-            return slow, self.friction_velocity
-        return slow, slow if self.static == self.dynamic else 1.5 * slow
 
 
 class Air(Strict):
@@ -93,13 +40,14 @@ def _is_side(value: Any) -> bool:
 
 
 def _number_or_both(schema: dict[str, Any]) -> None:
-    """A coefficient, or a mapping of two, in the JSON schema."""
+    """A coefficient, one for each of MD and CD, or a mapping, in the JSON schema."""
     both = {"$ref": schema.pop("$ref")}
-    schema["anyOf"] = [
+    one = [
         {"type": "number", "minimum": 0.0, "maximum": 1e3, "examples": [0.5]},
         {"type": "string", "description": "a percentage or a formula", "examples": ["50 %"]},
-        both,
     ]
+    two = {"type": "array", "minItems": 2, "maxItems": 2, "items": {"anyOf": one}}
+    schema["anyOf"] = [*one, two, both]
 
 
 Side = str | tuple[str, ...]
@@ -120,7 +68,8 @@ class Contact(Strict):
     )
     restitution: Share = Field(default=0.5, description="coefficient of restitution c_R (Eq. 11)")
     friction: Friction = Field(
-        description="coefficient of friction mu (Eq. 12): a number, or a mapping; 0 where there is none",
+        description="coefficient of friction mu (Eq. 12): a number, [md, cd], or a mapping; 0 where there is "
+        "none",
         json_schema_extra=_number_or_both,
     )
     smoothing: SpeedScale | None = Field(

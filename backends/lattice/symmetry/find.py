@@ -19,7 +19,7 @@ from mdlgen.model.tables import BOX_BOX, Floats, Ints, Model, SheetPart
 
 def find(model: Model, system: System) -> Mirror | None:
     """The plane, or None: there is none, or nothing touches. What is free keeps its momentum to round-off,
-    which one side alone would not. Scenes with air between sheets are not halved,
+    which one side alone would not. Scenes with air between sheets or measured friction are not halved,
     nor are those where a sheet sticks on a roller that the plane cuts.
 
     It goes through the middle of the sheets, between boxes, along one of their edges. Everything is compared:
@@ -29,6 +29,8 @@ def find(model: Model, system: System) -> Mirror | None:
         return None
     if (model.contacts.air_viscosity > 0.0).any():
         return None  # air presses across the plane
+    if model.contacts.frictions is not None:
+        return None  # a field that scatters has no image
     for axis in (1, 0):
         normal = model.sheets[0].rotation[:, axis]
         mirror = _plane(model, normal, float(normal @ model.sheets[0].center))
@@ -101,7 +103,7 @@ def _sides(mirror: Mirror, model: Model) -> bool:
 
 
 # columns of Contacts that say which contact it is, not how it acts
-_NO_LAW = ("entry", "part_a", "part_b", "name")
+_NO_LAW = ("entry", "part_a", "part_b", "name", "frictions")
 
 
 def _contacts(model: Model, mirror: Mirror) -> Mirror | None:

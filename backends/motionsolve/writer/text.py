@@ -13,6 +13,7 @@ from mdlgen.backends.motionsolve.writer.parts.kinds import WRITTEN
 from mdlgen.backends.motionsolve.writer.views import deck_view
 from mdlgen.errors import SpecError
 from mdlgen.model.external import refuse_externals
+from mdlgen.model.frictions import refuse_measured
 from mdlgen.model.sheet_pairs import refuse_searched
 from mdlgen.model.sticking import refuse_sticking
 from mdlgen.model.tables import Model
@@ -24,6 +25,7 @@ def check(model: Model) -> None:
     """Raises RefusedError by name for what the deck cannot represent."""
     refuse_externals(model, "MotionSolve deck")
     refuse_sticking(model, "MotionSolve deck")
+    refuse_measured(model, "MotionSolve deck")
     refuse_searched(model, "MotionSolve deck")
     refuse_unwritten(model, WRITTEN, "MotionSolve deck")
     refuse_compressed(model, "MotionSolve deck")

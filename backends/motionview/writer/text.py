@@ -18,6 +18,7 @@ from mdlgen.backends.motionview.writer.system import system_view
 from mdlgen.backends.motionview.writer.views import scene_view
 from mdlgen.errors import SpecError
 from mdlgen.model.external import refuse_externals
+from mdlgen.model.frictions import refuse_measured
 from mdlgen.model.sheet_pairs import refuse_searched
 from mdlgen.model.sticking import refuse_sticking
 from mdlgen.model.tables import Model
@@ -37,6 +38,7 @@ def check(model: Model) -> None:
 def check_sheets(model: Model) -> None:
     """Raises RefusedError by name for what the text of the sheets cannot represent."""
     refuse_sticking(model, "MotionView text")
+    refuse_measured(model, "MotionView text")
     refuse_searched(model, "MotionView text")
     refuse_air(model, "MotionView text")
     refuse_unwritten(model, WRITTEN, "MotionView text")

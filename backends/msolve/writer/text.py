@@ -16,6 +16,7 @@ from mdlgen.backends.msolve.writer.parts.kinds import MACHINE, WRITTEN
 from mdlgen.backends.msolve.writer.units import acceleration, per_thousand, row
 from mdlgen.errors import SpecError
 from mdlgen.model.external import refuse_externals
+from mdlgen.model.frictions import refuse_measured
 from mdlgen.model.parameters.run import longest_step
 from mdlgen.model.sheet_pairs import refuse_searched
 from mdlgen.model.sticking import refuse_sticking
@@ -31,6 +32,7 @@ def check(model: Model) -> None:
     who = "MotionSolve script"
     refuse_externals(model, who)
     refuse_sticking(model, who)
+    refuse_measured(model, who)
     refuse_searched(model, who)
     refuse_unwritten(model, WRITTEN, who)
     refuse_compressed(model, who)

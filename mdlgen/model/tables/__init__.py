@@ -31,6 +31,8 @@ from mdlgen.model.tables.contacts import ON_PLATES as ON_PLATES
 from mdlgen.model.tables.contacts import Contacts as Contacts
 from mdlgen.model.tables.contacts import ExternalPairs as ExternalPairs
 from mdlgen.model.tables.contacts import Pairs as Pairs
+from mdlgen.model.tables.frictions import MOST_SPEEDS as MOST_SPEEDS
+from mdlgen.model.tables.frictions import Frictions as Frictions
 from mdlgen.model.tables.machine import ArmPart as ArmPart
 from mdlgen.model.tables.machine import ExternalPart as ExternalPart
 from mdlgen.model.tables.machine import GuidePart as GuidePart

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from mdlgen.geometry.arrays import Floats as Floats
 from mdlgen.geometry.arrays import Ints as Ints
 from mdlgen.model.tables.bodies import Frozen
+from mdlgen.model.tables.frictions import Frictions
 
 # kinds of contact
 BOX_CYLINDER, BOX_PLANE, CYLINDER_CYLINDER, EXTERNAL, BOX_GUIDE, BOX_BOX, BOX_MESH = 0, 1, 2, 3, 4, 5, 6
@@ -43,6 +44,7 @@ class Contacts(Frozen):
     air_roughness: Floats  # [mm]
     sticking: Floats  # of two sheets: stiffness along the faces of one pair that sticks [N/mm]; 0: none
     name: tuple[str, ...] = ()  # of the entries that have one, "" of others; none where no entry has
+    frictions: Frictions | None = None  # as measured; None: the coefficients are all there is
 
     def __len__(self) -> int:
         return len(self.part_a)

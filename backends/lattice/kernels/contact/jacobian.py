@@ -5,6 +5,7 @@ from __future__ import annotations
 from mdlgen.backends.lattice.kernels.contact.condensed import ACTIVE
 from mdlgen.backends.lattice.kernels.contact.slopes import (
     core,
+    core_stretched,
     couple_growth,
     hat_left,
     hat_right,
@@ -14,8 +15,9 @@ from mdlgen.backends.lattice.kernels.contact.slopes import (
 from mdlgen.backends.lattice.kernels.linear.dense import lu_solve_transposed
 from mdlgen.mechanics.arm import turn_of, way_of
 from mdlgen.mechanics.driven import clutch
+from mdlgen.mechanics.measured import STRETCH, is_stretched
 from mdlgen.mechanics.point import AT, AXIS, COUPLE, KIND, LINE, NORMAL, OF_NIP, OUT, POINT, POINTS, SLIP, WAY
-from mdlgen.mechanics.vector import add, back, cross, mat, scale, sub, three, three_from, vec
+from mdlgen.mechanics.vector import add, back, cross, dot, mat, scale, sub, three, three_from, vec
 from mdlgen.program.kernel import BORROWS, njit
 
 
@@ -97,6 +99,7 @@ def _pair_growth(pair, out, axes, h, motion, chord, growth):
     for i in range(6):
         for j in range(6):
             growth[i, j] = 0.0
+    stretch = is_stretched(out)
     for point in range(int(out[POINTS])):
         at = OUT + 1 + POINT * point
         if out[at + KIND] == COUPLE:
@@ -106,13 +109,20 @@ def _pair_growth(pair, out, axes, h, motion, chord, growth):
         normal = back(axes, three_from(out, at + NORMAL))
         slip = back(axes, three_from(out, at + SLIP))
         square = back(axes, three_from(out, at + WAY)) if out[at + KIND] == OF_NIP else normal
-        t, damping, phi = core(numbers_of(out, at, pair.law), normal, square, slip, h, chord, True)
+        numbers, pull = numbers_of(out, at, pair.law), slip
+        if stretch:
+            g = back(axes, three_from(out, STRETCH))
+            g = sub(g, scale(dot(g, square), square))
+            t, damping, phi = core_stretched(numbers, normal, square, slip, g, h, chord, True)
+            pull = add(slip, scale(dot(g, slip), g))
+        else:
+            t, damping, phi = core(numbers, normal, square, slip, h, chord, True)
         arm = back(axes, sub(three_from(out, at + AT), vec(x, pair.a)))
         _point_growth(growth, t, arm)
         if damping != 0.0:
             line = back(axes, sub(three_from(out, at + LINE), vec(x, pair.a)))
             way = back(axes, three_from(out, at + WAY))
-            force = scale(damping, sub(normal, scale(phi, slip)))
+            force = scale(damping, sub(normal, scale(phi, pull)))
             # as the face turns so does the way along which a passing sheet closes; a roller's own turning
             # is across it wherever the line is
             passing = sub(

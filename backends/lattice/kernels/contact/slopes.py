@@ -23,7 +23,7 @@ from mdlgen.mechanics.point import (
     ROLLING,
     SPRING,
 )
-from mdlgen.mechanics.vector import scale
+from mdlgen.mechanics.vector import add, dot, scale
 from mdlgen.program.kernel import BORROWS, njit
 
 
@@ -128,24 +128,10 @@ def numbers_of(out, at, law):
     )
 
 
-@njit(cache=True, error_model="numpy", **BORROWS)
-def core(numbers, n, square, slip, h, chord, whole):
-    """What the force of one contact point loses as the relative velocity grows, times h: a 3 x 3 matrix for
-    the velocity at the point, and, where a nip damps it (0 else), what its normal force loses as the contact
-    line closes, with its friction per slip velocity for 1 of that force.
-
-    n: the normal; square: the direction that friction acts square to, which is the normal, or a nip's;
-    `whole`: with the growth of friction with the normal force, which is not symmetric.
-    """
-    spring, growth, force, rate, v_n, beta, mu_static, mu_dynamic, v_s, v_d, hold, alone = numbers
-    y = rate / v_n
-    sign = 0.5 * y * (3.0 - y * y) if abs(y) < 1.0 else math.copysign(1.0, y)
-    damping = h * spring * beta * steepness(y, v_n, chord)
-    normal = h * h * growth * (1.0 + beta * sign)
-    if alone:
-        normal += damping
-        damping = 0.0
-    speed = math.sqrt(slip[0] * slip[0] + slip[1] * slip[1] + slip[2] * slip[2])
+@njit(cache=True, error_model="numpy", forceinline=True)
+def rubbing(numbers, speed, h, chord):
+    """Growth of a point's friction with the slip velocity, across that and along it, times h."""
+    _spring, _growth, force, _rate, _v_n, _beta, mu_static, mu_dynamic, v_s, v_d, hold, _alone = numbers
     secant = tangent = 0.0
     if force > 0.0 and (mu_static > 0.0 or mu_dynamic > 0.0):
         if hold > 0.0:
@@ -158,6 +144,28 @@ def core(numbers, n, square, slip, h, chord, whole):
         else:
             secant = coefficient(speed, mu_static, mu_dynamic, v_s, v_d) / speed
         secant, tangent = h * force * secant, h * force * max(tangent, chord * secant)
+    return secant, tangent
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def core(numbers, n, square, slip, h, chord, whole):
+    """What the force of one contact point loses as the relative velocity grows, times h: a 3 x 3 matrix for
+    the velocity at the point, and, where a nip damps it (0 else), what its normal force loses as the contact
+    line closes, with its friction per slip velocity for 1 of that force.
+
+    n: the normal; square: the direction that friction acts square to, which is the normal, or a nip's;
+    `whole`: with the growth of friction with the normal force, which is not symmetric.
+    """
+    spring, growth, force, rate, v_n, beta, _s, _d, _v_s, _v_d, _hold, alone = numbers
+    y = rate / v_n
+    sign = 0.5 * y * (3.0 - y * y) if abs(y) < 1.0 else math.copysign(1.0, y)
+    damping = h * spring * beta * steepness(y, v_n, chord)
+    normal = h * h * growth * (1.0 + beta * sign)
+    if alone:
+        normal += damping
+        damping = 0.0
+    speed = math.sqrt(slip[0] * slip[0] + slip[1] * slip[1] + slip[2] * slip[2])
+    secant, tangent = rubbing(numbers, speed, h, chord)
     i = 1.0 / speed if speed > 0.0 else 0.0
     d = (slip[0] * i, slip[1] * i, slip[2] * i)
     less = tangent - secant
@@ -202,4 +210,39 @@ def holding(t, pulled, limit, k_t, n, h, chord):
         t[6] - across[6] + along[6],
         t[7] - across[7] + along[7],
         t[8] + growth - across[8] + along[8],
+    )
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def core_stretched(numbers, n, square, w, g, h, chord, whole):
+    """As `core` where friction goes with the direction of the sheet (mechanics.measured): w is the stretched
+    slip velocity, and g the stretch along the faces. With f = -phi A w, and A = P + g g^T, friction loses
+    A K A, where K is what it loses as w grows."""
+    speed = math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
+    secant, tangent = rubbing(numbers, speed, h, chord)
+    i = 1.0 / speed if speed > 0.0 else 0.0
+    pull = add(w, scale(dot(g, w), g))
+    d, more = scale(i, pull), 2.0 + dot(g, g)
+    spring, growth, force, rate, over, beta, _s, _d, v_s, v_d, hold, alone = numbers
+    smooth = Numbers(spring, growth, force, rate, over, beta, 0.0, 0.0, v_s, v_d, hold, alone)
+    t, damping, _ = core(smooth, n, square, w, h, chord, whole)
+    phi = secant / (h * force) if whole and force > 0.0 else 0.0
+    # without friction core is normal n n^T
+    drag = scale(-phi * (t[0] + t[4] + t[8]), pull)
+    across, along = outer(scale(secant, square), square), outer(scale(secant * more, g), g)
+    less, grows = outer(scale(tangent - secant, d), d), outer(drag, n)
+    return (
+        (
+            t[0] + secant - across[0] + along[0] + less[0] + grows[0],
+            t[1] - across[1] + along[1] + less[1] + grows[1],
+            t[2] - across[2] + along[2] + less[2] + grows[2],
+            t[3] - across[3] + along[3] + less[3] + grows[3],
+            t[4] + secant - across[4] + along[4] + less[4] + grows[4],
+            t[5] - across[5] + along[5] + less[5] + grows[5],
+            t[6] - across[6] + along[6] + less[6] + grows[6],
+            t[7] - across[7] + along[7] + less[7] + grows[7],
+            t[8] + secant - across[8] + along[8] + less[8] + grows[8],
+        ),
+        damping,
+        phi,
     )

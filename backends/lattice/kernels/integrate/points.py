@@ -44,11 +44,13 @@ from mdlgen.backends.lattice.kernels.state import (
     SQUARE,
     START,
     STICTION,
+    STRETCHED,
 )
 from mdlgen.backends.lattice.kernels.tuning import REACH
 from mdlgen.mechanics import point as law_point
 from mdlgen.mechanics.frame import LAW_SMOOTHING, frame_of, law_of
 from mdlgen.mechanics.laws import damped, friction_over_speed, held_over_speed, sign_step
+from mdlgen.mechanics.measured import STRETCH, is_stretched
 from mdlgen.mechanics.overlap import BY_SIDES
 from mdlgen.mechanics.pair import on_fixed_plate
 from mdlgen.mechanics.vector import add, cross, dot, scale, sub, three, three_from
@@ -61,13 +63,16 @@ TO_FIND_CORNERS = -1
 @njit(cache=True, error_model="numpy", **BORROWS)
 def law_at(q, v, h):
     """Elastic force of a point and its growth with depth, its normal force, rate and slip velocity, with what
-    a bristle adds to that, at the velocity v of the first body against the second."""
+    a bristle adds to that, or the stretch of STRETCHED friction, at the velocity v of the first body against
+    the second."""
     n, square = three_from(q, NORMAL), three_from(q, SQUARE)
     rate = -dot(v, n)
     spring = max(q[SPRING] + q[GROWTH] * h * (rate - q[RATE]), 0.0)
     normal = damped(spring, rate, q[BETA], q[OVER])
-    slip = sub(v, scale(dot(v, square), square))
-    return spring, q[GROWTH], normal, rate, add(slip, three_from(q, FIELD))
+    slip, field = sub(v, scale(dot(v, square), square)), three_from(q, FIELD)
+    if q[HOLD] < 0.0:
+        field = scale(dot(field, slip), field)
+    return spring, q[GROWTH], normal, rate, add(slip, field)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -88,6 +93,9 @@ def force_of(q, v, h):
         over = held_over_speed(speed, q[HOLD], q[MU_STATIC])
     else:
         over = friction_over_speed(speed, q[MU_STATIC], q[MU_DYNAMIC], q[STICTION], q[SLIDING])
+    if q[HOLD] < 0.0:
+        stretch = three_from(q, FIELD)
+        slip = add(slip, scale(dot(stretch, slip), stretch))
     return sub(scale(normal, n), scale(q[PRESSING] * over, slip))
 
 
@@ -160,6 +168,13 @@ def _of_law(frozen, p, pair, out, h, motion):
         q[MU_STATIC], q[MU_DYNAMIC] = out[at + law_point.MU_STATIC], out[at + law_point.MU_DYNAMIC]
         q[STICTION], q[SLIDING], q[PRESSING] = law.stiction, law.sliding, force
         q[HOLD] = out[at + law_point.HOLD]
+        if is_stretched(out):
+            square = three_from(q, SQUARE)
+            stretch = three_from(out, STRETCH)
+            stretch = sub(stretch, scale(dot(stretch, square), square))
+            q[HOLD] = STRETCHED
+            for i in range(3):
+                q[FIELD + i] = stretch[i]
         if q[HOLD] > 0.0:
             _, _, _, _, slip = law_at(q, three_from(q, NOW), h)
             for i in range(3):

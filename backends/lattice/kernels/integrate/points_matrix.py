@@ -3,7 +3,7 @@ matrix."""
 
 from __future__ import annotations
 
-from mdlgen.backends.lattice.kernels.contact.slopes import Numbers, core, outer, steepness
+from mdlgen.backends.lattice.kernels.contact.slopes import Numbers, core, core_stretched, outer, steepness
 from mdlgen.backends.lattice.kernels.integrate.patches import ZERO, patches_into
 from mdlgen.backends.lattice.kernels.integrate.points import law_at
 from mdlgen.backends.lattice.kernels.integrate.tangent import blocks
@@ -16,6 +16,7 @@ from mdlgen.backends.lattice.kernels.state import (
     ARM_A,
     ARM_B,
     BETA,
+    FIELD,
     GROWTH,
     HOLD,
     KIND,
@@ -139,5 +140,9 @@ def points_into(work, h, chord):
                 q[HOLD],
                 True,
             )
-            t, _, _ = core(numbers, n, three_from(q, SQUARE), slip, h, chord, False)
+            square = three_from(q, SQUARE)
+            if q[HOLD] < 0.0:
+                t, _, _ = core_stretched(numbers, n, square, slip, three_from(q, FIELD), h, chord, False)
+            else:
+                t, _, _ = core(numbers, n, square, slip, h, chord, False)
             _point_into(bodies, ends, q, x, t, coupled, matrix)

@@ -8,9 +8,18 @@ wrong is a finding.
 from __future__ import annotations
 
 from mdlgen.bench.case import BenchCase
-from mdlgen.bench.suites.validation import belts, bending, edges, plates, rigid, rolling, swinging
+from mdlgen.bench.suites.validation import (
+    belts,
+    bending,
+    edges,
+    plates,
+    rigid,
+    rolling,
+    rubbing,
+    swinging,
+)
 
-GROUPS = (bending, plates, swinging, belts, rolling, rigid, edges)
+GROUPS = (bending, plates, swinging, belts, rolling, rigid, rubbing, edges)
 
 
 def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:

@@ -1,0 +1,91 @@
+"""Friction as it is measured: by the direction of the sheet, its face, the speed and the pressure.
+
+By direction friction has a potential of dissipation, for 1 of the normal force. With v the slip velocity
+along the faces and A = diag(m_MD, m_CD) in the axes of the sheet,
+
+    Phi(v) = integral of mu(s) from 0 to |A v|,    f = -dPhi/dv = -mu(|w|)/|w| A w,    w = A v.
+
+mu is the law over the speed that all friction has (Eq. 12, mechanics.laws). The limit of f is the ellipse
+with the half axes mu m_MD and mu m_CD, the slip is along its normal, and f takes mu |w| of power, which is
+never below 0. The lesser of m_MD and m_CD is 1: mu is that of the direction that holds less, and no direction
+rises over more than the stiction velocity. So A = P + g g^T: P takes off what is not along the faces, and g,
+the `stretch`, is the direction that holds more, along the faces, times sqrt(m - 1).
+
+All else are factors to mu: that of the face which touches; mu(v)/mu(v_s) of a table; (p/p_0)^n, where p is
+the normal force of the pair over the area of the box's face (mechanics.pair).
+"""
+
+from __future__ import annotations
+
+import math
+
+from mdlgen.mechanics.laws import of_table
+from mdlgen.mechanics.vector import add, dot, scale, sub, three_from
+from mdlgen.model.tables.frictions import MOST_SPEEDS
+from mdlgen.program.kernel import BORROWS, njit
+
+# Columns of what a pair adds up (mechanics.point) that pair_force gives a law, the first one in any case:
+# whether friction is measured, 1, and 2 where mu goes with a pressure that is yet to be found; the stretch;
+# the factors of the sheet's front and back; how many rows the table of speeds has, 0: none, and the table.
+FIRST = 26
+MEASURED, STRETCH, FRONT, BACK, MANY, TABLE = FIRST, FIRST + 1, FIRST + 4, FIRST + 5, FIRST + 6, FIRST + 7
+END = TABLE + 3 * MOST_SPEEDS
+
+# Columns of a row of mechanics.shapes.Shapes.frictions, of a contact: sqrt(m - 1) along MD and along CD; as
+# above, from FRONT to the end of TABLE; p_0 and n.
+MORE_MD, MORE_CD, FACES, REFERENCE, POWER = 0, 1, 2, 5 + 3 * MOST_SPEEDS, 6 + 3 * MOST_SPEEDS
+FRICTION = 7 + 3 * MOST_SPEEDS
+
+# How far p/p_0 is followed either way: beyond it the power law would have mu grow without a limit as p goes
+# to 0, and no measurement goes over more than three decades.
+DECADES = 1e3
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def lay_measured(out, row, r, box):
+    """Gives a law the friction `row` of a pair whose first body is `box`, turned as r (n, 9) says."""
+    out[MEASURED] = 2.0 if row[POWER] != 0.0 else 1.0
+    for i in range(3):
+        out[STRETCH + i] = row[MORE_MD] * r[box, 3 * i] + row[MORE_CD] * r[box, 3 * i + 1]
+    for i in range(END - FRONT):
+        out[FRONT + i] = row[FACES + i]
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def by_pressure(out, row, pressure):
+    """Multiplies what a law is given by that of the pressure, once."""
+    share = min(max(pressure / row[REFERENCE], 1.0 / DECADES), DECADES)
+    factor = share ** row[POWER]
+    out[MEASURED], out[FRONT], out[BACK] = 1.0, factor * out[FRONT], factor * out[BACK]
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def stretched(out, v, square):
+    """A v of a velocity that is `square` to that direction."""
+    g = three_from(out, STRETCH)
+    g = sub(g, scale(dot(g, square), square))
+    return add(v, scale(dot(g, v), g))
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def factor_of(out, speed, normal, upright):
+    """What mu is times at a speed |w|. normal: to the sheet; upright: the normal of its front."""
+    factor = out[BACK] if dot(normal, upright) > 0.0 else out[FRONT]
+    if out[MANY] > 0.0:
+        factor *= of_table(speed, out, TABLE, int(out[MANY]))
+    return factor
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def is_stretched(out):
+    """Whether friction goes with the direction."""
+    g = three_from(out, STRETCH)
+    return out[MEASURED] > 0.0 and dot(g, g) > 0.0
+
+
+@njit(cache=True, error_model="numpy", **BORROWS)
+def along_slip(out, w, square):
+    """(A w, |A w|/|w|): the direction of friction, and its size in times that of mu."""
+    pull = stretched(out, w, square)
+    squares = dot(w, w)
+    return pull, math.sqrt(dot(pull, pull) / squares) if squares > 0.0 else 1.0
