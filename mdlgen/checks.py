@@ -20,6 +20,7 @@ from mdlgen.lints import (
     sheets,
     start,
     ways,
+    yielding,
 )
 from mdlgen.lints.lint import Lint
 from mdlgen.model.once import Once
@@ -69,4 +70,6 @@ CHECKS: tuple[Callable[[Model], Iterator[Lint]], ...] = (
     air.still,
     creep.on_slope,
     creep.stopped,
+    yielding.coarse,
+    yielding.bent_beyond,
 )

@@ -33,6 +33,7 @@ class Tables(NamedTuple):
     loads: np.ndarray
     gravity: Floats
     film: Film
+    hinges: np.ndarray  # mechanics.plastic.HINGE, of the bushings that yield
 
 
 class Coordinates(NamedTuple):

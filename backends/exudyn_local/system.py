@@ -17,6 +17,7 @@ from mdlgen.backends.exudyn_local.state import Tables
 from mdlgen.errors import RefusedError
 from mdlgen.mechanics.curve import curve_points
 from mdlgen.mechanics.pack import Units, gravity, number, pack_bodies, pack_bushings, pack_loads, pack_pairs
+from mdlgen.mechanics.plastic import HINGE
 from mdlgen.mechanics.records import (
     BODIES,
     CONSTANTS,
@@ -47,7 +48,8 @@ BODY = np.dtype(
         *OF_BODY,
     ]
 )
-BUSHING = np.dtype([*ENDS_OF_JOINT, *FRAMES, *CONSTANTS, *CURVE])
+# and the number of its hinge, -1: it is elastic
+BUSHING = np.dtype([*ENDS_OF_JOINT, *FRAMES, *CONSTANTS, *CURVE, ("hinge", "i8")])
 PAIR = np.dtype([*BODIES, *CONTACT])
 
 
@@ -74,6 +76,7 @@ class System(NamedTuple):
     points: np.ndarray  # of the curves that bushings follow, mechanics.curve.POINT [Pa]
     shapes: Shapes  # [m]
     film: Film
+    hinges: np.ndarray  # mechanics.plastic.HINGE, in the order of Model.plastic [rad, N m]
 
     @property
     def tables(self) -> Tables:
@@ -87,6 +90,7 @@ class System(NamedTuple):
             loads=self.loads,
             gravity=self.gravity,
             film=self.film,
+            hinges=self.hinges,
         )
 
 
@@ -124,7 +128,9 @@ def build(model: Model) -> tuple[System, Pattern]:
     elements, pattern = _pattern(_couplings(bodies, bushings, blocks, pairs, loads), blocks, free)
     points = curve_points(model.curves, SI.mpa)
     shapes = shape_tables(model, MM)
-    system = System(bodies, bushings, pairs, loads, gravity(model, SI), elements, free, points, shapes, film)
+    hinges = _hinges(model, bushings)
+    parts = bodies, bushings, pairs, loads, gravity(model, SI), elements, free, points, shapes, film
+    system = System(*parts, hinges)
     return system, pattern
 
 
@@ -154,6 +160,20 @@ def _bushings(model: Model) -> tuple[np.ndarray, list[int]]:
     changed = (np.diff(bushings["a"]) != 0) | (np.diff(bushings["b"]) != 0)
     starts = [0, *(np.flatnonzero(changed) + 1).tolist()] if len(bushings) else []
     return bushings, [*starts, len(bushings)]
+
+
+def _hinges(model: Model, bushings: np.ndarray) -> np.ndarray:
+    """One for each bushing that yields, whose numbers are noted in these."""
+    table = model.plastic
+    hinges = np.zeros(len(table), HINGE)
+    place = np.empty(len(bushings), np.int64)
+    place[bushings["row"]] = np.arange(len(bushings))
+    hinges["joint"], hinges["axis"] = place[table.bushing], table.axis
+    bushings["hinge"] = -1
+    bushings["hinge"][hinges["joint"]] = np.arange(len(hinges))
+    hinges["k"] = bushings["k"][hinges["joint"], 3 + hinges["axis"]]
+    hinges["moment"], hinges["hardening"] = table.moment * MM, table.hardening * MM
+    return hinges
 
 
 def _couplings(

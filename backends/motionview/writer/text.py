@@ -21,6 +21,7 @@ from mdlgen.model.external import refuse_externals
 from mdlgen.model.sheet_pairs import refuse_searched
 from mdlgen.model.sticking import refuse_sticking
 from mdlgen.model.tables import Model
+from mdlgen.model.yielding import refuse_yield
 
 TARGETS = ("2021", "2025")
 """Versions of MotionView whose form of Contact is written. Which one changed it is not known."""
@@ -37,6 +38,7 @@ def check(model: Model) -> None:
 def check_sheets(model: Model) -> None:
     """Raises RefusedError by name for what the text of the sheets cannot represent."""
     refuse_sticking(model, "MotionView text")
+    refuse_yield(model, "MotionView text")
     refuse_searched(model, "MotionView text")
     refuse_air(model, "MotionView text")
     refuse_unwritten(model, WRITTEN, "MotionView text")
