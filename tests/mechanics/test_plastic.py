@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -15,14 +17,14 @@ K, YIELD = 1.7, 0.06  # N mm/rad, rad: where it begins to yield
 STEPS = 400
 
 
-def hinge(share: float) -> np.void:
+def hinge(share: float) -> Any:
     """One whose moment grows by `share` of K beyond YIELD."""
     made = np.zeros(1, HINGE)
     made["k"], made["moment"], made["hardening"] = K, K * YIELD, K * share / (1.0 - share)
     return made.view(np.recarray)[0]
 
 
-def bent(of: np.void, *turns: float) -> float:
+def bent(of: Any, *turns: float) -> float:
     """Takes it from turn to turn [rad], each in equal steps. Returns the moment at the end [N mm]."""
     at = float(of.begun)
     for turn in turns:

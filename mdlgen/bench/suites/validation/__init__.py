@@ -8,9 +8,9 @@ wrong is a finding.
 from __future__ import annotations
 
 from mdlgen.bench.case import BenchCase
-from mdlgen.bench.suites.validation import belts, bending, edges, plates, rigid, rolling, swinging
+from mdlgen.bench.suites.validation import belts, bending, edges, plates, rigid, rolling, swinging, yielding
 
-GROUPS = (bending, plates, swinging, belts, rolling, rigid, edges)
+GROUPS = (bending, plates, swinging, yielding, belts, rolling, rigid, edges)
 
 
 def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
