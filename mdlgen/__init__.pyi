@@ -165,6 +165,7 @@ class Fold(_Fold):
         at: str,
         angle: str,
         stiffness: float = ...,
+        crease: str | None = ...,
     ) -> None: ...
 
 class Friction(_Friction):
@@ -256,6 +257,7 @@ class Material(_Material):
         D_twist: str | None = ...,
         G: str | None = ...,
         damping: _Damping | Mapping[str, Any] = ...,
+        **more: Any,
     ) -> None: ...
 
 class Mesh(_Mesh):

@@ -21,6 +21,7 @@ from mdlgen.lints import (
     sheets,
     start,
     ways,
+    yielding,
 )
 from mdlgen.lints.lint import Lint
 from mdlgen.model.once import Once
@@ -71,4 +72,6 @@ CHECKS: tuple[Callable[[Model], Iterator[Lint]], ...] = (
     creep.on_slope,
     creep.stopped,
     friction.coarse_scatter,
+    yielding.coarse,
+    yielding.bent_beyond,
 )

@@ -207,6 +207,16 @@ SCENE = {
         "if its friction were the same everywhere, but for what the whole sheet has more or less than the "
         "mean. Boxes of half the length have nearly all of it."
     ),
+    "W145": (
+        "A sheet bends between its boxes alone. A bend of the curvature kappa turns it by kappa L from one "
+        "box of the length L to the next. From 0.5 rad on the chain of boxes is more than 1 % shorter than "
+        "the arc. `grading` makes boxes finer where the sheet is bent most."
+    ),
+    "W146": (
+        "A sheet that follows a roller bends to the roller's radius and half of its own thickness. Where "
+        "that is below the inverse of the yield curvature, it keeps the curvature (1 - h)(kappa - kappa_y) "
+        "as it leaves, with the hardening h."
+    ),
 }
 
 TEXT = {

@@ -151,8 +151,14 @@ _TOKEN = re.compile(
 )
 
 
+# `0.05 1/mm`: one number whose unit begins with a 1
+_PER = re.compile(rf"\s*{_NUMBER}\s+1\s*/\s*{UNIT_TEXT}\s*", re.ASCII)
+
+
 def is_formula(text: str, parameters: Mapping[str, object]) -> bool:
     """Whether a text is meant as a formula, not as one number with its unit."""
+    if _PER.fullmatch(text):
+        return False
     at, words, signs, values, before = 0, [], "", 0, ""
     text = text.rstrip()
     while at < len(text):

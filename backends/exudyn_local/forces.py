@@ -19,6 +19,7 @@ from mdlgen.mechanics.curve import curve_excess, middle_and_gap
 from mdlgen.mechanics.driven import SENSE, clutch
 from mdlgen.mechanics.frame import Frame
 from mdlgen.mechanics.pair import pair_force
+from mdlgen.mechanics.plastic import bending, couple, flowed, settle, stored
 from mdlgen.mechanics.point import (
     FORCE_A,
     FORCE_B,
@@ -72,7 +73,39 @@ def bush_forces(tables, bush, q, motion, f):
         spread(bodies, a, q, (-force[0], -force[1], -force[2]), torque_a, f)
         spread(bodies, b, q, force, torque_b, f)
         energy += more
+    if bush.hinge >= 0:
+        energy += _hinge_force(tables, tables.hinges[bush.hinge], (a, fa), (b, fb), q, f)
     return energy, power
+
+
+@njit(cache=True, error_model="numpy")
+def _hinge_force(tables, hinge, one, two, q, f):
+    """What a hinge adds to its bushing between two (body, frame), as a step ends; returns the energy."""
+    t = bending(one[1], two[1], hinge.axis)
+    p = flowed(hinge, t)
+    torque = couple(one[1], two[1], hinge.axis, hinge.k * p)
+    none = (0.0, 0.0, 0.0)
+    spread(tables.bodies, one[0], q, none, scale(-1.0, torque), f)
+    spread(tables.bodies, two[0], q, none, torque, f)
+    return stored(hinge, t, p)
+
+
+@njit(cache=True, error_model="numpy")
+def end_hinges(tables, at, motion, starts):
+    """Changes the plastic rotations of all hinges as a step ends at a state; `starts`: a run starts, nothing
+    has changed yet. Returns what that dissipates [J]."""
+    place_all(tables.bodies, at, motion)
+    lost = 0.0
+    for k in range(tables.hinges.size):
+        hinge = tables.hinges[k]
+        bush = tables.bushings[hinge.joint]
+        fa = matmul(mat(motion.r, bush.a), nine(bush.fa))
+        fb = matmul(mat(motion.r, bush.b), nine(bush.fb))
+        t = bending(fa, fb, hinge.axis)
+        if not starts:
+            lost += settle(hinge, hinge.begun, t)
+        hinge.begun = t
+    return lost
 
 
 @njit(cache=True, error_model="numpy")

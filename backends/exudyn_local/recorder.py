@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from mdlgen.backends.exudyn_local.shipped import begin, ledger, overstretched, passed, set_limits
+from mdlgen.backends.exudyn_local.shipped import begin, end_hinges, ledger, overstretched, passed, set_limits
 from mdlgen.backends.exudyn_local.state import (
     DRIVING,
     ELASTIC,
@@ -57,6 +57,8 @@ class Recorder:
         self._pairs = np.zeros((len(system.pairs), SEEN))
         self._totals = np.zeros(TOTALS)
         system.pairs["beside"] = 0  # a run before this one may have left its own
+        for name in ("plastic", "begun", "lost"):
+            system.hinges[name] = 0.0
         self._touched = np.zeros(len(system.pairs), bool)
         rows = len(model.contacts)
         self._max_depth, self._max_force = np.zeros(rows), np.zeros(rows)
@@ -64,7 +66,7 @@ class Recorder:
         self._in_contact, self._last = np.zeros(rows), np.zeros(rows)
         self._acting = np.zeros(rows, bool)
         self._force = np.zeros(rows)  # of the state last observed; a failed static run observes none [N]
-        self._stored: dict[str, list] = {name: [] for name in ("t", "x", "e", "u", "w", "f", "turning")}
+        self._stored: dict[str, list] = {name: [] for name in ("t", "x", "e", "u", "w", "f", "turning", "p")}
         self._first: list[float] | None = None  # energies at the start [J]
         self._lost = self._driven = 0.0
         self._through = self._most = 0.0
@@ -132,6 +134,8 @@ class Recorder:
         before = self._totals.tolist()
         self._pairs[:] = 0.0
         at = Coordinates(self._q, self._v, t)
+        if self.system.hinges.size:
+            self._lost += end_hinges(self._tables, at, self._work.motion, self._first is None)
         ledger(self._tables, at, self._work, self._pairs, self._totals)
         now = self._totals.tolist()
         step, self.time = t - self.time, t
@@ -187,6 +191,7 @@ class Recorder:
         turning = np.zeros((len(self._force), TURNING))  # [N m, N]
         np.add.at(turning, self.model.pairs.contact, self._pairs[:, OUT:])
         self._stored["turning"].append(turning)
+        self._stored["p"].append(self.system.hinges["plastic"].copy())
         self.reason = self.reason or self._unheld.found(x[:-1] / MM, r[:-1], t / MS)
 
     def _watch(self, t: float, step: float) -> None:
@@ -250,6 +255,7 @@ class Recorder:
             contact_force=array("f", rows),
             contact_torque=turning[..., [ABOUT_A, ABOUT_B]] / MM,
             contact_friction=turning[..., [ALONG, LIMIT]],
+            plastic=array("p", len(self.system.hinges)) if self.system.hinges.size else None,
             statistics=ContactStatistics(
                 max_depth=self._max_depth / MM,
                 mean_depth=(self._max_depth if static else self._sum_depth / contact_time) / MM,
@@ -287,6 +293,7 @@ class Recorder:
             driven=self._driven * to_nmm,
             balance_error=self._off(self._totals.tolist()) * to_nmm / scale if self.steps else 0.0,
             scale=scale,
+            plastic=float(self.system.hinges["lost"].sum()) * to_nmm if self.system.hinges.size else None,
         )
 
 

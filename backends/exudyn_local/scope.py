@@ -6,6 +6,7 @@ from mdlgen.model.external import refuse_externals
 from mdlgen.model.sheet_pairs import refuse_searched
 from mdlgen.model.sticking import refuse_sticking
 from mdlgen.model.tables import BOX_BOX, Model
+from mdlgen.model.yielding import refuse_static_yield
 
 
 def check(model: Model) -> None:
@@ -13,3 +14,4 @@ def check(model: Model) -> None:
     refuse_externals(model, "Exudyn")
     refuse_sticking(model, "Exudyn", kinds=(BOX_BOX,))
     refuse_searched(model, "Exudyn")
+    refuse_static_yield(model, "Exudyn")

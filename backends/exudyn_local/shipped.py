@@ -9,7 +9,7 @@ from pathlib import Path
 
 from mdlgen.backends.exudyn_local.air import air_slopes, begin_air, lay_air
 from mdlgen.backends.exudyn_local.between import passed, set_limits
-from mdlgen.backends.exudyn_local.forces import forces
+from mdlgen.backends.exudyn_local.forces import end_hinges, forces
 from mdlgen.backends.exudyn_local.jacobian import jacobian
 from mdlgen.backends.exudyn_local.ledger import ledger
 from mdlgen.backends.exudyn_local.place import place_all, set_owners
@@ -39,6 +39,6 @@ PROGRAM = Program(
     (LAWS, "mdlgen.backends.exudyn_local"),
     (
         *(forces, jacobian, air_slopes, ledger, begin, begin_air, lay_air),
-        *(overstretched, passed, set_limits, set_owners, set_thickness),
+        *(end_hinges, overstretched, passed, set_limits, set_owners, set_thickness),
     ),
 )

@@ -25,6 +25,7 @@ from mdlgen.backends.exudyn_local.shipped import (
     PROGRAM,
     air_slopes,
     begin_air,
+    end_hinges,
     forces,
     jacobian,
     lay_air,
@@ -298,6 +299,8 @@ def _compile(system: System, pattern: Pattern, work: Work) -> None:
         begin_air(tables, at, work.motion)
         lay_air(tables, at, 0.0, work.motion)
         air_slopes(tables, at, 1.0, work.motion, *entries_of(system.film))
+    if system.hinges.size:
+        end_hinges(tables, at, work.motion, True)
     passed(system.bodies, system.pairs, system.shapes, q, v, q, v, 0.0, 0.0)
 
 

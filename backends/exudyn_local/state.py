@@ -36,6 +36,7 @@ class Tables(NamedTuple):
     gravity: Floats
     film: Film
     stick: Sticking
+    hinges: np.ndarray  # mechanics.plastic.HINGE, of the bushings that yield
 
 
 class Coordinates(NamedTuple):

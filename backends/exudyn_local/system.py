@@ -19,6 +19,7 @@ from mdlgen.backends.exudyn_local.state import Tables
 from mdlgen.errors import RefusedError
 from mdlgen.mechanics.curve import curve_points
 from mdlgen.mechanics.pack import Units, gravity, number, pack_bodies, pack_bushings, pack_loads, pack_pairs
+from mdlgen.mechanics.plastic import HINGE
 from mdlgen.mechanics.records import (
     BODIES,
     CONSTANTS,
@@ -49,7 +50,8 @@ BODY = np.dtype(
         *OF_BODY,
     ]
 )
-BUSHING = np.dtype([*ENDS_OF_JOINT, *FRAMES, *CONSTANTS, *CURVE])
+# and the number of its hinge, -1: it is elastic
+BUSHING = np.dtype([*ENDS_OF_JOINT, *FRAMES, *CONSTANTS, *CURVE, ("hinge", "i8")])
 PAIR = np.dtype([*BODIES, *CONTACT])
 
 
@@ -78,6 +80,7 @@ class System(NamedTuple):
     shapes: Shapes  # [m]
     film: Film
     stick: Sticking
+    hinges: np.ndarray  # mechanics.plastic.HINGE, in the order of Model.plastic [rad, N m]
 
     @property
     def tables(self) -> Tables:
@@ -92,6 +95,7 @@ class System(NamedTuple):
             gravity=self.gravity,
             film=self.film,
             stick=self.stick,
+            hinges=self.hinges,
         )
 
 
@@ -131,8 +135,9 @@ def build(model: Model) -> tuple[System, Pattern]:
     elements, pattern = _pattern(_couplings(bodies, bushings, blocks, pairs, loads, stick), blocks, free)
     points = curve_points(model.curves, SI.mpa)
     shapes = shape_tables(model, SI)
-    weight = gravity(model, SI)
-    system = System(bodies, bushings, pairs, loads, weight, elements, free, points, shapes, film, stick)
+    hinges = _hinges(model, bushings)
+    parts = bodies, bushings, pairs, loads, gravity(model, SI), elements, free, points, shapes, film
+    system = System(*parts, stick, hinges)
     return system, pattern
 
 
@@ -162,6 +167,20 @@ def _bushings(model: Model) -> tuple[np.ndarray, list[int]]:
     changed = (np.diff(bushings["a"]) != 0) | (np.diff(bushings["b"]) != 0)
     starts = [0, *(np.flatnonzero(changed) + 1).tolist()] if len(bushings) else []
     return bushings, [*starts, len(bushings)]
+
+
+def _hinges(model: Model, bushings: np.ndarray) -> np.ndarray:
+    """One for each bushing that yields, whose numbers are noted in these."""
+    table = model.plastic
+    hinges = np.zeros(len(table), HINGE)
+    place = np.empty(len(bushings), np.int64)
+    place[bushings["row"]] = np.arange(len(bushings))
+    hinges["joint"], hinges["axis"] = place[table.bushing], table.axis
+    bushings["hinge"] = -1
+    bushings["hinge"][hinges["joint"]] = np.arange(len(hinges))
+    hinges["k"] = bushings["k"][hinges["joint"], 3 + hinges["axis"]]
+    hinges["moment"], hinges["hardening"] = table.moment * MM, table.hardening * MM
+    return hinges
 
 
 def _couplings(

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from mdlgen.backends.lattice.bristles import bristles_of
+from mdlgen.backends.lattice.hinges import Yielding, yielding
 from mdlgen.backends.lattice.kernels.state import (
     OWN,
     OWN_INERTIA,
@@ -101,6 +102,7 @@ class System(NamedTuple):
     marks: int  # how many pairs there can be
     bristles: np.ndarray  # as of Tables
     held: np.ndarray
+    yields: Yielding
     shapes: Shapes
 
     @property
@@ -143,6 +145,7 @@ class System(NamedTuple):
             images=self.images,
             bristles=self.bristles,
             held=self.held,
+            hinges=self.yields.hinges,
             shapes=self.shapes,
         )
 
@@ -170,7 +173,7 @@ def thinnest_of(bodies: np.ndarray, regions: np.ndarray) -> float:
 def build(model: Model, fold: bool = True) -> System:
     """Arrays of a Model; `fold`: equal bushings side by side as one joint."""
     bodies, nodes, border = _bodies(model)
-    joints, folded = _joints(model, fold)
+    joints, of = _joints(model, fold)
     listed, found = _pairs(model)
     bristles, held = bristles_of(model, bodies, listed)
     pairs, search, marks = plan(model, listed)
@@ -186,7 +189,7 @@ def build(model: Model, fold: bool = True) -> System:
         sheets=np.searchsorted([s.first for s in model.sheets], nodes, side="right") - 1,
         offsets=offsets(bodies, joints),
         border=border,
-        folded=folded,
+        folded=len(of) - len(joints),
         points=curve_points(model.curves),
         images=np.zeros(0, IMAGE),
         mirror=None,
@@ -194,6 +197,7 @@ def build(model: Model, fold: bool = True) -> System:
         marks=marks,
         bristles=bristles,
         held=held,
+        yields=yielding(model, joints, of),
         shapes=shape_tables(model),
     )
 
@@ -212,24 +216,25 @@ def _bodies(model: Model) -> tuple[np.ndarray, Ints, int]:
     return bodies, np.array(nodes, dtype=np.int64), border
 
 
-def _joints(model: Model, fold: bool) -> tuple[np.ndarray, int]:
-    """Bushings as joints; two equal linear ones between the same bodies become one, exactly."""
+def _joints(model: Model, fold: bool) -> tuple[np.ndarray, Ints]:
+    """Bushings as joints, and the joint of each; two equal linear ones between the same bodies become one,
+    exactly."""
     table = model.bushings
     single = pack_bushings(model, JOINT, np.arange(len(table)))
     for k, sheet in enumerate(model.sheets):
         if sheet.damping_times is not None:
             own = (table.sheet == k) & (table.kind != SUPPORT)
             single["time"][own] = min(sheet.damping_times)
-    joints = _fold(single) if fold else single
+    joints, of = _fold(single) if fold else (single, np.arange(len(single)))
     own = np.eye(3).ravel()
     for name in ("fa", "fb"):
         joints[name][np.abs(joints[name] - own).max(axis=1) < 1e-14] = own
     joints["plain"] = ((joints["fa"] == own) & (joints["fb"] == own)).all(axis=1)
-    return joints, len(single) - len(joints)
+    return joints, of
 
 
-def _fold(single: np.ndarray) -> np.ndarray:
-    """One joint for each two that are alike, in the place of the first."""
+def _fold(single: np.ndarray) -> tuple[np.ndarray, Ints]:
+    """One joint for each two that are alike, in the place of the first; and the joint of each."""
     ends = np.stack([single["a"], single["b"]])
     order = np.lexsort(ends)
     one, two = order[:-1], order[1:]
@@ -240,7 +245,11 @@ def _fold(single: np.ndarray) -> np.ndarray:
             chosen.append(k)
     joints = single.copy()
     joints[one[chosen]] = _folded(single[one[chosen]], single[two[chosen]])
-    return np.delete(joints, two[chosen])
+    left = np.ones(len(joints), bool)
+    left[two[chosen]] = False
+    of = np.cumsum(left) - 1
+    of[two[chosen]] = of[one[chosen]]
+    return joints[left], of
 
 
 def _alike(one: np.ndarray, two: np.ndarray) -> np.ndarray:

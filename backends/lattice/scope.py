@@ -7,6 +7,7 @@ from mdlgen.mechanics.solved import refuse_unsolved
 from mdlgen.model.external import refuse_externals
 from mdlgen.model.meshes import check_balance
 from mdlgen.model.tables import BOX_BOX, Model
+from mdlgen.model.yielding import refuse_static_yield
 
 
 def check(model: Model) -> None:
@@ -14,6 +15,7 @@ def check(model: Model) -> None:
     refuse_externals(model, "lattice")
     refuse_unsolved(model, "lattice")
     check_balance(model)
+    refuse_static_yield(model, "lattice")
     if model.run.analysis == "static" and any(roller.speed for roller in model.rollers):
         # a driven roller rubs on what it touches, and the friction of rest is none
         raise RefusedError(

@@ -59,6 +59,10 @@ SUMMARY: dict[str, tuple[str, str]] = {
     "energy.elastic": ("N mm", "elastic energy at the end, of joints, contacts and springs"),
     "energy.dissipated": ("N mm", "energy taken by damping, friction and restitution"),
     "energy.numerical": ("N mm", "energy taken by the numerical damping of the integrator; null with exudyn"),
+    "energy.plastic": (
+        "N mm",
+        "the part of `energy.dissipated` that sheets took as they yielded; null where none can",
+    ),
     "energy.driven": ("N mm", "work of drives and loads"),
     "energy.balance_error": (
         "",
@@ -72,7 +76,8 @@ SUMMARY: dict[str, tuple[str, str]] = {
     ),
     "energy.other_losses": (
         "N mm",
-        "the rest of all that was dissipated: by dampers of joints, presses and normal forces, in contacts "
+        "the rest of all that was dissipated but by yielding: by dampers of joints, presses and normal "
+        "forces, in contacts "
         "of sheets with each other and of meshes, and between stored states",
     ),
     "energy.drives": ("N mm", "what the drives gave by their torques, over the stored states"),
@@ -128,6 +133,29 @@ SUMMARY: dict[str, tuple[str, str]] = {
     "sheets.NAME.strain.min_cd": ("", "the same along CD"),
     "sheets.NAME.strain.margin": ("", "least distance to the end of a measured curve, as a part of it"),
     "sheets.NAME.strain.margin_joint": ("", "joint with that distance"),
+    "sheets.NAME.residual": (
+        "",
+        "the bend that the sheet keeps at the end without moment; null where its material has no `yield`",
+    ),
+    "sheets.NAME.residual.curvature_per_mm": (
+        "1/mm",
+        "greatest one of a joint, positive towards the normal of the sheet",
+    ),
+    "sheets.NAME.residual.strain": ("", "strain of the faces of the sheet with that curvature"),
+    "sheets.NAME.residual.along": ("", "`md` or `cd`: direction that is bent there"),
+    "sheets.NAME.residual.at_mm": ("mm", "its place on the sheet, [x, y] from its centre"),
+    "sheets.NAME.residual.joint": ("", "its joint"),
+    "sheets.NAME.residual.fold.angle_deg": (
+        "deg",
+        "greatest mean angle that the joints of one line across the sheet keep",
+    ),
+    "sheets.NAME.residual.fold.along": ("", "`md` or `cd`: direction that is folded"),
+    "sheets.NAME.residual.fold.at_mm": ("mm", "where along it, from the centre of the sheet"),
+    "sheets.NAME.residual.curl_md_per_mm": (
+        "1/mm",
+        "mean curvature along MD; its inverse: radius of the curl",
+    ),
+    "sheets.NAME.residual.curl_cd_per_mm": ("1/mm", "the same along CD"),
     "sheets.NAME.curvature": ("", "null for a sheet without joints"),
     "sheets.NAME.curvature.max_md_per_mm": ("1/mm", "greatest curvature along MD, without sign"),
     "sheets.NAME.curvature.max_cd_per_mm": ("1/mm", "greatest curvature along CD, without sign"),

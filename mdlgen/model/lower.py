@@ -20,6 +20,7 @@ from mdlgen.model.lowering.joints import Joints, find_joints
 from mdlgen.model.lowering.pairs import find_pairs
 from mdlgen.model.lowering.stiffness import between, coefficients, derived, extent
 from mdlgen.model.lowering.supports import joined, support_bushings
+from mdlgen.model.lowering.yielding import together, yielding
 from mdlgen.model.meshes import loaded
 from mdlgen.model.nips import spreads
 from mdlgen.model.parameters.given import parameters, unfollowed
@@ -38,9 +39,11 @@ from mdlgen.model.tables import (
     Floats,
     MachinePart,
     Model,
+    Plastic,
     RollerPart,
     RunSettings,
     SheetPart,
+    no_plastic,
 )
 from mdlgen.spec.scene import Scene
 from mdlgen.spec.smoothing import following, speeds
@@ -89,7 +92,7 @@ def _lower(scene: Scene) -> Model:
         for k, item in enumerate(scene.supports)
     )
     held = support_bushings(scene.supports, supports, sheets, bodies)
-    joints, extents = _joints(scene, sheets, boxes)
+    joints, extents, plastic = _joints(scene, sheets, boxes)
     bushings = joined([*joints, *held])
     none = np.zeros(sum(len(table) for table in held))  # of supports
     long, wide = (np.concatenate([*(each[k] for each in extents), none]) for k in range(2))
@@ -140,6 +143,7 @@ def _lower(scene: Scene) -> Model:
         require=scene.require,
         author=scene.author or "",
         revision=scene.revision or "",
+        plastic=plastic,
     )
 
 
@@ -208,6 +212,7 @@ def _sheets(scene: Scene) -> tuple[tuple[SheetPart, ...], list[Cells]]:
                 in_plane=material.k_tz is not None,
                 rotation_damping=material.damping.kind,
                 damping_times=material.damping.times,
+                yields=None if material.yield_ is None else material.yield_.curvatures,
                 derived=derived(sheet, material),
             )
         )
@@ -316,14 +321,14 @@ def _bodies(
 
 def _joints(
     scene: Scene, sheets: tuple[SheetPart, ...], boxes: list[Cells]
-) -> tuple[list[Bushings], list[tuple[Floats, Floats]]]:
-    """Bushings by sheet and kind, and the length and section of each."""
-    tables, extents = [], []
+) -> tuple[list[Bushings], list[tuple[Floats, Floats]], Plastic]:
+    """Bushings by sheet and kind, the length and section of each, and those that yield."""
+    tables, extents, plastic, many = [], [], [no_plastic()], 0
     for number, (sheet, box) in enumerate(zip(sheets, boxes, strict=True)):
         spec = scene.sheets[sheet.name]
         for joints in find_joints(sheet):
             count = len(joints.name)
-            of = between(box, joints.one, joints.two, joints.along_x, _soft(sheet, joints))
+            of = between(box, joints.one, joints.two, joints.along_x, *_creases(sheet, joints))
             origin, axes, rest = _where(sheet, joints)
             k, c = coefficients(spec, scene.materials[spec.material], of, joints.along_x)
             if sheet.twist:
@@ -346,13 +351,20 @@ def _joints(
             )
             tables.append(made)
             extents.append(extent(spec, of, joints.along_x))
-    return tables, extents
+            found = yielding(spec, scene.materials[spec.material], joints, of, many)
+            plastic += [] if found is None else [found]
+            many += count
+    return tables, extents, together(plastic)
 
 
-def _soft(sheet: SheetPart, joints: Joints) -> Floats:
-    """Bending stiffness of joints on creases, in times that of the sheet."""
-    factors = [crease.stiffness for crease in sheet.bend.creases] if sheet.bend is not None else []
-    return np.array([*factors, 1.0])[joint_creases(sheet, joints)]
+def _creases(sheet: SheetPart, joints: Joints) -> tuple[Floats, Floats]:
+    """Of each joint, as it is on a crease or on none: bending stiffness relative to that of the sheet, and
+    stiffness of the crease per length."""
+    creases = sheet.bend.creases if sheet.bend is not None else ()
+    factors = [crease.stiffness for crease in creases]
+    own = [np.inf if crease.per_length is None else crease.per_length for crease in creases]
+    on = joint_creases(sheet, joints)
+    return np.array([*factors, 1.0])[on], np.array([*own, np.inf])[on]
 
 
 def _where(sheet: SheetPart, joints: Joints) -> tuple[Floats, Floats, Floats]:

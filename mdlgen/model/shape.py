@@ -43,7 +43,7 @@ def bend(sheet: Sheet) -> Bend | None:
     axis = "xy".index(shape.along)
     lines = np.array(sheet.lines[axis])
     creases = tuple(
-        Crease(f"fold_{k}", None, (0.0, 0.0), (line, line), f.angle, f.stiffness)
+        Crease(f"fold_{k}", None, (0.0, 0.0), (line, line), f.angle, f.stiffness, f.crease)
         for k, f in enumerate(shape.folds)
         for line in [int(np.argmin(np.abs(lines - f.at)))]
     )

@@ -160,7 +160,7 @@ def _at_least(estimate: Estimate, least: float) -> Estimate:
 def _alike(name: str) -> str:
     """All peaks of joints are alike; else what has the same kind of part and the same last word."""
     head, _, rest = name.partition(".")
-    peak = any(f".{kind}." in name for kind in ("strain", "curvature", "twist"))
+    peak = any(f".{kind}." in name for kind in ("strain", "curvature", "twist", "residual"))
     return f"{head}.peaks" if peak else f"{head}.{rest.rpartition('.')[2]}"
 
 

@@ -15,6 +15,7 @@ quantity's scale, which never is zero; what its motion is small against is state
 | `contacts.A.B.force` | mean over stored times of the difference | mean force [N] |
 | `contacts.A.B.max_force`, `.mean_force`, `.max_penetration`, `.mean_penetration` | difference, of all steps, and not less than that over stored times, at any of them or in the mean | the value, at least a hundredth of the greatest of all contacts [N], [mm] |
 | `sheets.S.strain.max_md` (`min_md`, `max_cd`, `min_cd`), `.curvature.max_md` (`max_cd`), `.twist.max` | greatest difference of any joint at any stored time | the greatest of the sheet in size, at least 1e-6; 1e-3 over its length for bending and twist [1/mm] |
+| `sheets.S.residual.curvature`, of one that may yield | the same of what its joints keep | the greatest at the end, at least 1e-3 over its length [1/mm] |
 
 `run.tolerance` judges positions and orientations by these scales; slides and angles by theirs, but not less than
 the greatest travel or tenth of a length of any sheet, which is what positions of the scene are relative to.
@@ -29,8 +30,9 @@ from functools import cached_property
 import numpy as np
 
 from mdlgen.model.tables import Floats, Ints, PlanePart, RollerPart
+from mdlgen.results.residual import left
 from mdlgen.results.result import Result
-from mdlgen.results.strain import apart
+from mdlgen.results.strain import apart, sheet_joints
 
 # Stored times that differ by less than this part of the run are the same; they differ by round-off.
 SAME_TIME = 1e-9
@@ -59,7 +61,7 @@ class Difference:
     def kind(self) -> str:
         """What it is of: `strain`, `curvature`, `twist`, `contacts.max_force`, `rollers.slide`, ..."""
         head, *_, one, two = self.name.split(".")
-        return one if one in ("strain", "curvature", "twist") else f"{head}.{two}"
+        return one if one in ("strain", "curvature", "twist", "residual") else f"{head}.{two}"
 
     @property
     def reported(self) -> float:
@@ -100,7 +102,7 @@ def differences(result: Result, other: Result, judged: bool = False) -> dict[str
         return {}
     parts = [_sheets(pair), _pressed(pair)]
     if not judged:
-        parts += [_speeds(pair), _probes(pair), _contacts(pair), _peaks(pair)]
+        parts += [_speeds(pair), _probes(pair), _contacts(pair), _peaks(pair), _residual(pair)]
     return {found.name: found for part in parts for found in part}
 
 
@@ -262,7 +264,22 @@ def _peaks(pair: Pair) -> Iterator[Difference]:
                     yield Difference(name, float(gap[rows].max()) / scale, scale, unit, plain=plain)
 
 
+def _residual(pair: Pair) -> Iterator[Difference]:
+    """Of what sheets keep that have yielded: the greatest difference of any joint at any stored time."""
+    one, two = left(pair.result), left(pair.other)
+    if one is None or two is None:
+        return
+    joints = sheet_joints(pair.result.model)
+    for k, sheet in enumerate(pair.result.model.sheets):
+        mine = joints.sheet == k
+        scale = max(float(np.abs(one[-1:, mine]).max(initial=0.0)), LEAST_BEND / max(sheet.size))
+        gap = np.abs(one[pair.here][:, mine] - two[pair.there][:, mine]).max(initial=0.0)
+        plain = abs(_size(one[-1:, mine]) - _size(two[-1:, mine])) / scale
+        name = f"sheets.{sheet.name}.residual.curvature"
+        yield Difference(name, float(gap) / scale, scale, "1/mm", plain=plain)
+
+
 def _size(values: Floats) -> float:
     """Greatest magnitude of the values. A summary reports it for bending and twist, of either sign: the two
     sides of a symmetric sheet twist in opposite directions by the same amount."""
-    return float(np.abs(values).max())
+    return float(np.abs(values).max(initial=0.0))

@@ -65,6 +65,8 @@ class Energy:
     numerical: float | None = None
     # parts that may ever touch each other have a balance of their own: those of the worst one, none: all
     of: tuple[str, ...] = ()
+    # the part of `dissipated` that yielding took; None: nothing in the scene yields
+    plastic: float | None = None
 
 
 @dataclass(frozen=True)
@@ -104,6 +106,8 @@ class Result:
     # friction along the surface of its roller as that turns, without one its size, and the most that it can
     # be, mu_static times the normal force [N], (t, rows, 2), RUBS and GRIPS
     contact_friction: Floats | None = None
+    # plastic rotation of each row of Model.plastic [rad], (t, rows); None: nothing in the scene yields
+    plastic: Floats | None = None
     touched: int = 0  # pairs that touched at any step
     energy: Energy = field(default_factory=Energy)
     step: float = 0.0  # [ms]

@@ -15,6 +15,7 @@ from mdlgen.results.compare import travel
 from mdlgen.results.estimates import complete
 from mdlgen.results.losses import driven, kinetic
 from mdlgen.results.mark import chaotic, mark
+from mdlgen.results.residual import of_sheet
 from mdlgen.results.result import Result
 from mdlgen.results.summary_of_parts import of_part
 from mdlgen.results.tension import Tension
@@ -72,6 +73,7 @@ def summary(result: Result, without: Collection[str] = ()) -> dict[str, Any]:
             "elastic": energy.elastic,
             "dissipated": energy.dissipated,
             "numerical": energy.numerical,
+            "plastic": energy.plastic,
             "driven": energy.driven,
             "balance_error": energy.balance_error,
             "scale": energy.scale,
@@ -175,6 +177,7 @@ def _sheet(result: Result, index: int, bearing: bool) -> dict[str, Any]:
         "boxes": sheet.count,
         "bushings": int(np.sum(result.model.bushings.sheet == index)),
         **(_bearing(result, index) if bearing else {}),
+        "residual": of_sheet(result, index),
         "energy": _energy__sheet(result, index),
     }
 
@@ -196,7 +199,7 @@ def _accounts(result: Result) -> dict[str, float | None]:
                 inertia = roller.loaded_inertia
                 rates = result.spin[[0, -1], roller.body] @ roller.axis
                 own += 0.5 * inertia * float(rates[1] ** 2 - rates[0] ** 2)
-    lost = result.energy.dissipated + (result.energy.numerical or 0.0)
+    lost = result.energy.dissipated + (result.energy.numerical or 0.0) - (result.energy.plastic or 0.0)
     numbers = (rubbed, lost - rubbed, given, result.energy.driven + own - given)
     return dict(zip(names, numbers, strict=True))
 

@@ -10,6 +10,7 @@ from pydantic import Field, model_validator
 from mdlgen.spec.curve import Curve
 from mdlgen.spec.fields import Frequency, LossFactors, Modulus, Plate, Ratio, Times, Torsion
 from mdlgen.spec.strict import Strict, fail
+from mdlgen.spec.yielding import Yield
 
 RATIO = 0.12  # the paper's zeta (Table 2)
 
@@ -131,6 +132,12 @@ class Material(Strict):
         description="shear modulus in the plane, with layout plate; 0.387 sqrt(E_md E_cd) where left out",
     )
     damping: Damping = Field(default_factory=Damping, description="damping of the joints")
+    yield_: Yield | None = Field(
+        default=None,
+        alias="yield",
+        description="bending beyond which the sheet keeps a part of its curvature; always elastic where left "
+        "out",
+    )
 
     @model_validator(mode="after")
     def _stretching(self) -> Material:

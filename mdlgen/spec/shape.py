@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from mdlgen.spec.fields import Angle, Length, Size2
+from mdlgen.spec.fields import Angle, CreaseStiffness, Length, Size2
 from mdlgen.spec.strict import Strict, fail
 
 Direction = Literal["x", "y"]
@@ -31,11 +31,20 @@ class Fold(Strict):
         description="angle by which the sheet turns there, towards its z axis; -170 to 170 deg"
     )
     stiffness: Annotated[float, Field(ge=1e-3, le=10)] = Field(
-        default=1.0, description="factor to the bending stiffness of the sheet, for the crease"
+        default=1.0,
+        description="factor to the bending stiffness of the joints on the line, whose effect depends on the "
+        "grid; `crease` does not",
+    )
+    crease: CreaseStiffness | None = Field(
+        default=None,
+        description="stiffness of the crease per length: moment per width over the angle by which it opens, "
+        "in series with the sheet on both sides; in place of stiffness",
     )
 
     @model_validator(mode="after")
     def _within(self) -> Fold:
+        if self.stiffness != 1.0 and self.crease is not None:
+            raise fail("stiffness and crease are both given; give one of them", within=("crease",))
         if not 0.0 < abs(self.angle) <= math.radians(170.0) * (1 + 1e-12):
             raise fail(f"angle {math.degrees(self.angle):g} deg; allowed -170 to 170 deg, not 0")
         return self

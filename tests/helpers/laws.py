@@ -20,6 +20,7 @@ from mdlgen.mechanics.frame import Box, Cylinder, Frame, Law, Motion, Plate, Vec
 from mdlgen.mechanics.guide import BOTH, INSIDE, OUTSIDE, upper
 from mdlgen.mechanics.mesh_tables import HEAD, Meshes
 from mdlgen.mechanics.overlap import OVERLAP
+from mdlgen.mechanics.plastic import HINGE
 from mdlgen.mechanics.records import LOAD
 from mdlgen.mechanics.rim import PIECE
 from mdlgen.mechanics.shapes import Shapes
@@ -61,6 +62,7 @@ def pair_force(bodies: np.ndarray, pair: np.void, shapes: Shapes, motion: Motion
         images=np.zeros(0, IMAGE),
         bristles=np.zeros(0, BRISTLE),
         held=np.zeros(0, HELD),
+        hinges=np.zeros(0, HINGE),
         shapes=shapes,
     )
     mid = Midpoint(

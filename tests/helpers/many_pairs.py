@@ -18,6 +18,7 @@ from mdlgen.mechanics.bristle import BRISTLE, HELD
 from mdlgen.mechanics.curve import POINT
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.overlap import OVERLAP
+from mdlgen.mechanics.plastic import HINGE
 from mdlgen.mechanics.point import OUT
 from mdlgen.mechanics.records import LOAD
 from mdlgen.mechanics.shapes import Shapes
@@ -88,6 +89,7 @@ def _tables(bodies: np.ndarray, pairs: np.ndarray, shapes: Shapes) -> Tables:
         images=np.zeros(0, IMAGE),
         bristles=np.zeros(0, BRISTLE),
         held=np.zeros(0, HELD),
+        hinges=np.zeros(0, HINGE),
         shapes=shapes,
     )
 

@@ -49,6 +49,24 @@ def test_each_note_of_a_stack_carries_what_lies_on_it() -> None:
     assert 0.0 < energy.elastic + energy.kinetic + energy.dissipated <= G * fallen * (1 + 1e-2)
 
 
+def test_a_strip_stays_folded_where_a_rod_bent_it() -> None:
+    """By the sum of what its joints keep; its wings swing about that. The elastic one swings about 0."""
+
+    def opened(result: Result) -> np.ndarray:
+        """Angle of the normals of the end boxes [deg]."""
+        w, _, y, _ = result.rotation[:, [0, result.model.sheets[0].n_x - 1]].T
+        return np.diff(np.degrees(2.0 * np.arctan2(y, w)), axis=0)[0]
+
+    folded, elastic = solved("crease"), solved("crease", "materials.eur10.yield=null")
+    kept = -np.degrees(30.0 * folded.summary()["sheets"]["strip"]["residual"]["curl_md_per_mm"])
+    assert 30.0 < kept < 45.0
+    late = folded.time > 7.0
+    swing = opened(folded)[late]
+    assert swing.min() > 0.0 and 0.5 * (swing.min() + swing.max()) == pytest.approx(kept, abs=5.0)
+    assert opened(elastic)[elastic.time > 7.0].min() < -30.0
+    assert folded.energy.plastic == pytest.approx(0.268, rel=0.02)
+
+
 def test_a_roller_feeds_the_top_note_off_a_pile() -> None:
     """By the path of its surface, of which the ramp takes 5 ms. Each of the others slips on the next at less
     than the 1 mm/s over which friction changes its sign, since friction holds them."""

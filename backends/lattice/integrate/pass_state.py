@@ -46,7 +46,7 @@ class PassState:
 
     def __init__(self, work: Workspace, control: Control, recorder: Recorder, sleep: Sleep):
         beside = work.tables.pairs["beside"][: work.search.first]
-        few = (control, work.search.place, beside, work.tables.bristles)
+        few = (control, work.search.place, beside, work.tables.bristles, work.tables.hinges)
         self._state = dict(_leaves("state", work.state)) | dict(_leaves("few", few))
         carried = {"mid": work.mid, "matrix": work.matrix, "condensed": work.condensed, "free": work.free}
         carried["islands"] = work.islands

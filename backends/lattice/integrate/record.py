@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mdlgen.backends.lattice.arrays import System
+from mdlgen.backends.lattice.hinges import plastic_rows
 from mdlgen.backends.lattice.integrate.islands import groups
 from mdlgen.backends.lattice.integrate.states import WIDTHS, States
 from mdlgen.backends.lattice.kernels.entries import PROGRAM
@@ -66,6 +67,7 @@ class Recorder:
         self._asleep = np.zeros((groups(work), 3))
         self._states = States(model, system.mirror, outputs + 1)
         self._forces: list[np.ndarray] = []
+        self._plastic: list[np.ndarray] = []  # see hinges.plastic_rows; of elastic scenes none
         self._times: list[float] = []
         self._energies = np.zeros((2, groups(work), 3))  # first and last
         self._most = np.zeros(groups(work))
@@ -102,6 +104,8 @@ class Recorder:
         # forces in the middle of the last step, where the rule has them, until the next one shows what they
         # are at its end; at the start as it begins
         self._forces.append(self.kept.rows[:, NOW])
+        if len(self.model.plastic):
+            self._plastic.append(plastic_rows(self.system.yields))
 
     @property
     def last(self) -> float:
@@ -116,6 +120,7 @@ class Recorder:
         """All that it has stored, and what the compiled code added up."""
         return {
             **self._states.all(),
+            **({"p": self._rotations(len(self._times))} if len(self.model.plastic) else {}),
             "f": np.array(self._forces).reshape(len(self._times), len(self.model.contacts), len(NOW)),
             "times": np.array(self._times),
             "energies": np.concatenate([self._energies.ravel(), self._most]),
@@ -127,10 +132,15 @@ class Recorder:
         """Goes back to what `arrays` gave."""
         self._states.restore({name: arrays[name] for name in WIDTHS})
         self._forces = list(arrays["f"])
+        self._plastic = list(arrays.get("p", ()))
         self._times = arrays["times"].tolist()
         energies, self._most = np.split(arrays["energies"], (self._energies.size,))
         self._energies[:] = energies.reshape(self._energies.shape)
         self.kept.rows[:], self.kept.marks[:] = arrays["rows"], arrays["marks"]
+
+    def _rotations(self, times: int) -> np.ndarray:
+        """Plastic rotations at the first so many times, and the energy that they took, (times, rows + 1)."""
+        return np.array(self._plastic[:times]).reshape(times, len(self.model.plastic) + 1)
 
     def snapshot(self, work: np.ndarray) -> Snapshot:
         """How far it is now; it stays as it is while the run goes on."""
@@ -163,6 +173,11 @@ class Recorder:
         inside = np.where(rows[:, TIME] > 0, rows[:, TIME], 1.0)
         forces = np.array(self._forces[: snapshot.times])
         forces = forces if mirror is None else mirror.acts(forces)
+        energy = _balance(snapshot, self.work)
+        plastic = None
+        if len(snapshot.model.plastic):
+            rotations = self._rotations(snapshot.times)
+            plastic, energy.plastic = rotations[:, :-1], float(rotations[-1, -1])
         return Result(
             model=snapshot.model,
             solver=solver,
@@ -182,8 +197,9 @@ class Recorder:
                 mean_force=rows[:, FORCE_TIME] / inside,
                 last_force_at=np.where(rows[:, ACTS] != 0, np.nan, rows[:, ENDED]),
             ),
+            plastic=plastic,
             touched=touched,
-            energy=_balance(snapshot, self.work),
+            energy=energy,
             versions=_versions(),
             halved=mirror is not None,
         )

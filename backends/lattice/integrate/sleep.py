@@ -77,6 +77,7 @@ class Sleep:
         self._may = np.zeros(sheets, bool)
         self._air = model.contacts.air_viscosity > 0.0
         sleeps = sleeps and model.run.sleep and not len(system.bristles)
+        sleeps = sleeps and not len(system.yields.hinges)
         if sheets and sleeps and not self._air.any():
             self._may[: len(work.free.loose)] = work.free.loose
         self._parts = Parts(model, system)
@@ -140,6 +141,7 @@ class Sleep:
         self._beside = besides(whole, self._beside, at, Motion(state.x, state.r, motion.u, motion.w))
         marks = marks_of(self.work.kept.marks, self._model, model)
         whole = whole._replace(bristles=moved(self._whole.bristles, whole.bristles))
+        whole = whole._replace(yields=self._whole.yields)
         self._model, self._whole, self._parts = model, whole, Parts(model, whole)
         self.system, self._chosen = whole, np.arange(whole.search.first)
         if self._sheets.any():

@@ -6,6 +6,7 @@ import numpy as np
 
 from mdlgen.backends.lattice.arrays import System
 from mdlgen.backends.lattice.bristles import begin
+from mdlgen.backends.lattice.hinges import begin as begin_hinges
 from mdlgen.backends.lattice.integrate.films import films
 from mdlgen.backends.lattice.integrate.islands import groups, islands
 from mdlgen.backends.lattice.integrate.record import Recorder
@@ -61,6 +62,7 @@ def arrays(model: Model, system: System) -> Workspace:
     state, mid, matrix = start(model, system)
     system.pairs["beside"][: system.search.first] = 0
     begin(system.bristles)
+    begin_hinges(system.yields.hinges)
     contacts = len(model.contacts)
     kept = Kept(np.zeros((contacts, ROW)), np.zeros(system.marks, bool))
     sheets = len(model.sheets)

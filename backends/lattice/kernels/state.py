@@ -35,6 +35,7 @@ class Tables(NamedTuple):
     images: np.ndarray  # mirrored boxes
     bristles: np.ndarray  # of contact patches where friction sticks, mechanics.bristle.BRISTLE
     held: np.ndarray  # the pairs in these, mechanics.bristle.HELD
+    hinges: np.ndarray  # joints that yield, mechanics.plastic.HINGE
     shapes: Any  # mechanics.shapes.Shapes
 
 

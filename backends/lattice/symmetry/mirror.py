@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from mdlgen.backends.lattice.arrays import IMAGE, System, offsets
 from mdlgen.backends.lattice.bristles import halved
+from mdlgen.backends.lattice.hinges import halved as halved_hinges
 from mdlgen.backends.lattice.kernels.state import TURNS
 from mdlgen.mechanics.turning import ABOUT_A, ALONG
 from mdlgen.model.tables import Floats, Ints
@@ -131,6 +132,7 @@ def halve(system: System, mirror: Mirror) -> System:
         pairs=pairs,
         bristles=bristles,
         held=held,
+        yields=halved_hinges(system.yields, system.joints, kept, mirror.image, gone[ends[0]] | gone[ends[1]]),
         loads=system.loads[~gone[system.loads["body"]]],
         nodes=nodes,
         sheets=system.sheets[left],

@@ -17,6 +17,7 @@ from mdlgen.model.frictions import refuse_measured
 from mdlgen.model.sheet_pairs import refuse_searched
 from mdlgen.model.sticking import refuse_sticking
 from mdlgen.model.tables import Model
+from mdlgen.model.yielding import refuse_yield
 
 _BUFFERED = 4096  # pieces of text that are joined at once: a large deck has millions
 
@@ -26,6 +27,7 @@ def check(model: Model) -> None:
     refuse_externals(model, "MotionSolve deck")
     refuse_sticking(model, "MotionSolve deck")
     refuse_measured(model, "MotionSolve deck")
+    refuse_yield(model, "MotionSolve deck")
     refuse_searched(model, "MotionSolve deck")
     refuse_unwritten(model, WRITTEN, "MotionSolve deck")
     refuse_compressed(model, "MotionSolve deck")

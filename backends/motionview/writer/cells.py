@@ -32,7 +32,7 @@ def differences(sheet: SheetPart) -> Differences:
     hinges, owners = [], []
     for _, kinds, members in joint_classes(sheet):
         made = [
-            HingeView(c.name, c.along_x, cells[c.one], cells[c.two], _crease(sheet, c.crease)) for c in kinds
+            HingeView(c.name, c.along_x, cells[c.one], cells[c.two], *_crease(sheet, c.crease)) for c in kinds
         ]
         hinges += made
         own = [f"ds_{sheet.name}_joints.real_%s_{c.name}.value" for c in made]
@@ -40,8 +40,12 @@ def differences(sheet: SheetPart) -> Differences:
     return Differences(cells, hinges, [lengths[k] for k in of.tolist()], owners)
 
 
-def _crease(sheet: SheetPart, index: int) -> str | None:
-    return sheet.bend.creases[index].name if sheet.bend is not None and index >= 0 else None
+def _crease(sheet: SheetPart, index: int) -> tuple[str | None, str | None]:
+    """Name of the crease by a factor, and of that by a stiffness per length."""
+    if sheet.bend is None or index < 0:
+        return None, None
+    crease = sheet.bend.creases[index]
+    return (crease.name, None) if crease.per_length is None else (None, crease.name)
 
 
 def _cell(sheet: SheetPart, boxes: BoxClass) -> CellView:

@@ -100,7 +100,8 @@ class HingeView(NamedTuple):
     along_x: bool
     one: CellView
     two: CellView
-    crease: str | None
+    crease: str | None  # that makes them softer by a factor
+    line: str | None  # that has a stiffness per length
 
 
 class Bush(NamedTuple):

@@ -22,6 +22,7 @@ from mdlgen.model.frictions import refuse_measured
 from mdlgen.model.sheet_pairs import refuse_searched
 from mdlgen.model.sticking import refuse_sticking
 from mdlgen.model.tables import Model
+from mdlgen.model.yielding import refuse_yield
 
 TARGETS = ("2021", "2025")
 """Versions of MotionView whose form of Contact is written. Which one changed it is not known."""
@@ -39,6 +40,7 @@ def check_sheets(model: Model) -> None:
     """Raises RefusedError by name for what the text of the sheets cannot represent."""
     refuse_sticking(model, "MotionView text")
     refuse_measured(model, "MotionView text")
+    refuse_yield(model, "MotionView text")
     refuse_searched(model, "MotionView text")
     refuse_air(model, "MotionView text")
     refuse_unwritten(model, WRITTEN, "MotionView text")

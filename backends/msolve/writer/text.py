@@ -21,6 +21,7 @@ from mdlgen.model.parameters.run import longest_step
 from mdlgen.model.sheet_pairs import refuse_searched
 from mdlgen.model.sticking import refuse_sticking
 from mdlgen.model.tables import Model
+from mdlgen.model.yielding import refuse_yield
 
 # The smallest step that MotionView writes [s]; a smaller largest step needs a smaller one.
 _H_MIN, _STEPS = 1e-6, 100.0
@@ -33,6 +34,7 @@ def check(model: Model) -> None:
     refuse_externals(model, who)
     refuse_sticking(model, who)
     refuse_measured(model, who)
+    refuse_yield(model, who)
     refuse_searched(model, who)
     refuse_unwritten(model, WRITTEN, who)
     refuse_compressed(model, who)

@@ -32,11 +32,12 @@ class Between:
     m: Floats  # [g]
     membrane: Floats  # stiffness in times that of the sheet outside its zones
     bending: Floats
+    crease: Floats  # stiffness of a crease per length [N mm/rad per mm], inf: none
 
 
-def between(boxes: Cells, one: Ints, two: Ints, along_x: bool, soft: Floats) -> Between:
-    """The joints between boxes `one` and `two`, next to each other along x, or along y; `soft` is the bending
-    stiffness of creases in times that of the sheet."""
+def between(boxes: Cells, one: Ints, two: Ints, along_x: bool, soft: Floats, crease: Floats) -> Between:
+    """The joints between boxes `one` and `two`, next to each other along x, or along y. Of creases: `soft` is
+    the bending stiffness relative to that of the sheet, `crease` the stiffness per length, see Between."""
     lengths = boxes.d_x if along_x else boxes.d_y
     a, b = lengths[one], lengths[two]
     length = 0.5 * (a + b)
@@ -51,6 +52,7 @@ def between(boxes: Cells, one: Ints, two: Ints, along_x: bool, soft: Floats) -> 
         m=0.5 * (boxes.m[one] + boxes.m[two]),
         membrane=series(boxes.membrane),
         bending=soft * series(boxes.bending),
+        crease=crease,
     )
 
 
@@ -66,7 +68,7 @@ def plain(sheet: Sheet) -> Between:
     """A joint between two boxes of mean length outside all zones."""
     d_x, d_y = sheet.pitch
     m = sheet.mass / (sheet.boxes[0] * sheet.boxes[1])  # Eq. 2
-    columns = (d_x, d_y, sheet.thickness, m, 1.0, 1.0)
+    columns = (d_x, d_y, sheet.thickness, m, 1.0, 1.0, np.inf)
     return Between(*(np.array([value]) for value in columns))
 
 
@@ -83,6 +85,10 @@ def coefficients(sheet: Sheet, material: Material, of: Between, along_x: bool) -
     d_md, d_cd = material.plates(s)
     k_tx = of.bending * _hinge(material.k_tx, d_cd, shape, mean, parts)
     k_ty = of.bending * _hinge(material.k_ty, d_md, 1.0 / shape, 1.0 / mean, parts)
+    if along_x:
+        k_ty = _creased(k_ty, of.crease, of.d_y / parts)
+    else:
+        k_tx = _creased(k_tx, of.crease, of.d_x / parts)
     even = np.ones_like(k_x)
     k_tz = material.k_tz * even if material.k_tz is not None else 20.0 * np.maximum(k_tx, k_ty)
     twist = plate.twisting(sheet, material)
@@ -127,6 +133,11 @@ def _hinge(given: float | None, plate: float | None, shape: Floats, mean: float,
         return given * (shape / mean)
     assert plate is not None, "what is no hinge is a plate"
     return plate * shape / parts
+
+
+def _creased(k: Floats, crease: Floats, width: Floats) -> Floats:
+    """The stiffness k in bending in series with a crease of a stiffness per length, on a bushing's width."""
+    return k / (1.0 + k / (crease * width))
 
 
 def _damping(k: Floats, of: Between, parts: int, material: Material) -> Floats:

@@ -11,7 +11,7 @@ OF_USER = "parameters"  # data set of those that the user named
 FRICTION = {"mu_s": "static", "mu_d": "dynamic", "v_s": "stiction_velocity", "v_d": "friction_velocity"}
 # Internal units as parameters have them.
 _UNITS = (
-    *("mm", "N", "1", "MPa", "N/mm", "N*mm", "N*mm/rad", "N/mm^1.5", "g", "g/mm^3", "g*mm^2"),
+    *("mm", "N", "1", "MPa", "N/mm", "N*mm", "N*mm/rad", "N*mm/rad/mm", "N/mm^1.5", "g", "g/mm^3", "g*mm^2"),
     *("N*mm*ms/rad", "ms", "1/ms", "mm/ms", "rad/ms", "mm/ms^2", "rad"),
 )
 

@@ -7,6 +7,7 @@ from mdlgen.model.parameters.names import NAMED_AXES
 from mdlgen.model.tables import Parameter
 from mdlgen.spec.material import Damping
 from mdlgen.spec.scene import Scene
+from mdlgen.spec.shape import Fold
 
 
 def sheet_rows(scene: Scene, name: str) -> list[Parameter]:
@@ -135,9 +136,13 @@ def shape_rows(scene: Scene, name: str) -> list[Parameter]:
     for kind, items in (("folds", shape.folds), ("dog_ears", shape.dog_ears)):
         for k, item in enumerate(items):
             at, what = (*path, kind, k), "fold" if kind == "folds" else "ear"
+            stiff = ("soft", f"Stiffness of the crease of {what} {k}", item.stiffness, "1", "stiffness")
+            if isinstance(item, Fold) and item.crease is not None:
+                label = f"Stiffness of the crease of {what} {k} per length (N/rad)"
+                stiff = ("crease", label, item.crease, "N*mm/rad/mm", "crease")
             for member, label, value, unit, key in (
                 ("angle", f"Angle of {what} {k} (deg)", item.angle, "rad", "angle"),
-                ("soft", f"Stiffness of the crease of {what} {k}", item.stiffness, "1", "stiffness"),
+                stiff,
             ):
                 rows.append(Parameter(group, f"{what}_{k}_{member}", label, value, unit, (*at, key)))
     return rows

@@ -68,6 +68,24 @@ class Bushings(Frozen):
 
 
 @dataclass(frozen=True)
+class Plastic(Frozen):
+    """Bushings that yield in bending, see mechanics.plastic: one row each."""
+
+    bushing: Ints  # (n,)
+    axis: Ints  # of its frame that the sheet bends about: 0: x (along CD), 1: y (along MD), (n,)
+    moment: Floats  # up to which it is elastic [N mm], (n,)
+    hardening: Floats  # growth of the moment with the plastic rotation [N mm/rad], (n,)
+
+    def __len__(self) -> int:
+        return len(self.bushing)
+
+
+def no_plastic() -> Plastic:
+    """Of a Model in which nothing yields."""
+    return Plastic(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0), np.zeros(0))
+
+
+@dataclass(frozen=True)
 class Curves(Frozen):
     """Measured stress-strain curves, and the bushings that follow one along an axis of their own.
 

@@ -41,6 +41,7 @@ class Crease:
     line: tuple[int, int]  # a fold is on this line along its direction; an ear turns about where both cross
     angle: float  # [rad]
     stiffness: float  # of its joints in bending, in times that of the sheet
+    per_length: float | None = None  # stiffness of the crease itself [N mm/rad per mm]; None: `stiffness`
 
 
 @dataclass(frozen=True)
@@ -114,6 +115,7 @@ class SheetPart(Frozen):
     rotation_damping: str  # inertia or paper, with a ratio (Eq. 7); time: Kelvin and Voigt's
     derived: dict[str, float]
     damping_times: tuple[float, float] | None = None  # of MD and CD [ms]; None: by a ratio
+    yields: tuple[float, float] | None = None  # curvatures along MD and CD [1/mm]; None: it is elastic
 
     @property
     def count(self) -> int:

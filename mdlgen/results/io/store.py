@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 
 UNITS = "mm, N, g, ms, rad"
 STATES = ("time", "position", "rotation", "velocity", "spin", "contact_force")
-TURNS = ("contact_torque", "contact_friction")  # which files of older versions do not have
+# which files of older versions do not have, or those of scenes in which nothing yields
+TURNS = ("contact_torque", "contact_friction", "plastic")
 # of a Result, beside its states: what the tables of the file hold
 STORED = (
     "model", "solver", "status", "touched", "energy", "step", "steps", "rounds", "halved", "error_estimate",

@@ -17,7 +17,7 @@ from mdlgen.verify.tables import Table, table
 
 # From the Model's unit to that of the text.
 FACTORS = {
-    **dict.fromkeys(("mm", "N", "1", "MPa", "N/mm", "N*mm", "N*mm/rad", "N/mm^1.5"), 1.0),
+    **dict.fromkeys(("mm", "N", "1", "MPa", "N/mm", "N*mm", "N*mm/rad", "N*mm/rad/mm", "N/mm^1.5"), 1.0),
     "g": KG,
     "g/mm^3": KG,
     "g*mm^2": KG,

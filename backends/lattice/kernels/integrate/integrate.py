@@ -18,6 +18,7 @@ from mdlgen.backends.lattice.kernels.integrate.air import air_overshoot
 from mdlgen.backends.lattice.kernels.integrate.carry import carry
 from mdlgen.backends.lattice.kernels.integrate.damped import overshoot, take_off
 from mdlgen.backends.lattice.kernels.integrate.guess import add_to_history, forget, guess_velocities
+from mdlgen.backends.lattice.kernels.integrate.hinges import end_hinges
 from mdlgen.backends.lattice.kernels.integrate.islands import (
     be_strict,
     greatest_scale,
@@ -271,6 +272,8 @@ def _accept(work, t, dt, control, last, first, driven):
         end_of_step(work, touching, close, energies)
     if tables.held.size > 0:
         end_patches(work, touching, 0.5 * dt, energies)
+    if tables.hinges.size > 0:
+        end_hinges(work, energies)
     _watch(tables, work.search, mid, touching, t, dt, work.kept, work.asleep)
     if first:
         _begun(work.kept.rows, spans[LAST_STEP] / (spans[LAST_STEP] + dt))

@@ -6,6 +6,7 @@ from mdlgen.backends.lattice.kernels.contact.between import faces_into, forces_a
 from mdlgen.backends.lattice.kernels.contact.bristles import lay_bristles, patch_energies
 from mdlgen.backends.lattice.kernels.contact.sticking import energy_into
 from mdlgen.backends.lattice.kernels.forces import joint_forces, near_pairs
+from mdlgen.backends.lattice.kernels.integrate.hinges import hinge_energies
 from mdlgen.backends.lattice.kernels.state import (
     DEPTH_NOW,
     ELASTIC,
@@ -89,6 +90,8 @@ def ledger(work, t, energies, rows):
         joints = tables.joints[tables.runs[k, 0] : tables.runs[k, 1]]
         stored, _, _ = joint_forces(joints, tables.points, motion, f)
         energies[islands.group[tables.runs[k, SHEET]], ELASTIC] += stored
+    if tables.hinges.size > 0:
+        hinge_energies(tables, islands.group, r, energies)
     if tables.held.size > 0:
         # as in a step of no length: what holds is the spring as it is, whatever moves now
         lay_bristles(tables, motion, EPSILON)

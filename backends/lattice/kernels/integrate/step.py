@@ -47,6 +47,7 @@ from mdlgen.backends.lattice.kernels.integrate.change import (
     take_off,
 )
 from mdlgen.backends.lattice.kernels.integrate.convex import solve_convex
+from mdlgen.backends.lattice.kernels.integrate.hinges import begin_hinges, hinge_forces, hinges_into
 from mdlgen.backends.lattice.kernels.integrate.mixing import mix
 from mdlgen.backends.lattice.kernels.integrate.momentum import keep
 from mdlgen.backends.lattice.kernels.integrate.points import gather
@@ -173,6 +174,8 @@ def _make_factor(work, counts, h, lag, where, chord):
     a = matrix.band
     masses(tables.bodies, tables.nodes, motion.r, a)
     joints_into(tables, tables.joints, h, lag, motion.x, motion.r, a, matrix.slots)
+    if tables.hinges.size > 0:
+        hinges_into(tables, h, motion.r, a, matrix.slots)
     if where == PLANES:
         gather(work, counts, h, True)
         points_into(work, h, chord)
@@ -254,6 +257,8 @@ def midpoint(work, t, dt, tolerance, control):
     lasting = sheets and tables.loads.size == 0 and mid.sticks.pairs.size == 0 and not sticks
     mid.sticks.half[0] = h
     inner, alike, air = 0, 0, False
+    if tables.hinges.size > 0:
+        begin_hinges(tables, state.r)
     for iteration in range(NEWTON_MOST):
         place(tables, h, t + h, state, mid.motion)
         if iteration == 0 or margin < dt * moved:
@@ -265,6 +270,8 @@ def midpoint(work, t, dt, tolerance, control):
             air = lay(work, h)
         mid.forces[:] = 0.0
         joint_forces_of_sheets(tables, mid.motion, mid.forces, lag, mid.spent)
+        if tables.hinges.size > 0:
+            hinge_forces(tables, mid.motion.r, mid.forces)
         known = iteration > 0 and where == APART and condensed.looked[UP_TO_DATE] == 1
         known = known and not sheets and not sticks
         if sticks:

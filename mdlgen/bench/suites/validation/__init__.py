@@ -17,9 +17,10 @@ from mdlgen.bench.suites.validation import (
     rolling,
     rubbing,
     swinging,
+    yielding,
 )
 
-GROUPS = (bending, plates, swinging, belts, rolling, rigid, rubbing, edges)
+GROUPS = (bending, plates, swinging, yielding, belts, rolling, rigid, rubbing, edges)
 
 
 def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
