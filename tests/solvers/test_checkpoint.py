@@ -38,8 +38,8 @@ from mdlgen.spec.load import loads
 SCENES = {
     "transport_4x4": ["sheets.note.boxes=[3,5]", "run.duration=8 ms", "run.tolerance=0.01"],
     "transport_tilted": ["sheets.note.boxes=[3,5]", "run.duration=4 ms", "run.step=0.1 ms"],
-    "channel": ["run.duration=4 ms", "run.step=0.05 ms"],
-    "verify/flip": ["run.duration=20 ms", "run.step=0.1 ms"],
+    "channel": ["run.duration=3 ms", "run.step=0.05 ms"],
+    "verify/flip": ["run.duration=8 ms", "run.step=0.1 ms"],
     "verify/drop": ["run.duration=110 ms", "run.step=0.05 ms", "run.print_step=2 ms"],
     # the uppermost note slides by 36 mm, so that other boxes of two sheets meet than at the start
     "stack": [
@@ -50,18 +50,18 @@ SCENES = {
     # air between sheets
     "pile": [
         "piles.cassette.contact.air={viscosity: 18.2 uPa*s}",
-        *("run.duration=6 ms", "run.step=0.1 ms", "run.print_step=0.2 ms"),
+        *("run.duration=4 ms", "run.step=0.1 ms", "run.print_step=0.2 ms"),
     ],
     # meshes; rims, an arm and a slide; two notes with all of these and a profile; measured curves
     "pick": ["run.duration=12 ms", "run.step=0.1 ms", "run.print_step=0.4 ms"],
-    "peel": ["run.duration=6 ms", "run.step=0.1 ms", "run.print_step=0.2 ms"],
+    "peel": ["run.duration=4 ms", "run.step=0.1 ms", "run.print_step=0.2 ms"],
     "feeder": [
         "sheets.note_1.boxes=[6,2]",
         "sheets.note_2.boxes=[4,2]",
         "run.duration=2 ms",
         "run.print_step=0.05 ms",
     ],
-    "snatch": ["run.duration=4 ms", "run.step=0.1 ms", "run.print_step=0.1 ms"],
+    "snatch": ["run.duration=3 ms", "run.step=0.1 ms", "run.print_step=0.1 ms"],
 }
 SHORT = ["run.duration=12 ms", "run.step=0.1 ms", "run.print_step=0.4 ms"]
 # the uppermost note slides, the others stick
@@ -114,7 +114,7 @@ def test_two_passes_at_once_go_on_to_the_same_bits(name: str, tmp_path: Path) ->
 def test_passes_are_known_by_their_steps(threads: tuple[int, int], tmp_path: Path) -> None:
     """One at a time or two, begun in another order, go on with each other's states."""
     model = mdlgen.lower(
-        mdlgen.load(samples() / "transport_4x4.yaml", ["sheets.note.boxes=[3,5]", "run.duration=9 ms"])
+        mdlgen.load(samples() / "transport_4x4.yaml", ["sheets.note.boxes=[3,5]", "run.duration=6 ms"])
     )
     whole = lattice.solve(model)
     provenance: Callable[[], dict[str, str]] | None = written_with

@@ -41,6 +41,7 @@ PIECES = {
     ("pile", "exudyn"): ("run.duration=1 ms",),
     # what tests/solvers/test_spring_plate.py and tests/solvers/test_roller_plate.py look at in Exudyn, too
     ("spring_plate", "exudyn"): ("run.duration=15 ms",),
+    ("peel", "exudyn"): ("run.duration=5 ms",),  # all of it before a release: tests/solvers/test_arms.py
     ("pick", "exudyn"): ("run.tolerance=0.01",),
     # the Model of transport_4x4 (tests/model/test_nips.py), which it runs as a whole below
     ("transport_nips", "exudyn"): ("run.duration=5 ms",),
