@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from pathlib import Path
 
@@ -17,14 +18,21 @@ def written_with() -> dict[str, str]:
 
 
 class Cutting(Checkpointer):
-    """Keeps a state at every stored time, and cuts off after some."""
+    """Keeps a state at every stored time, or the last `most` of these, and cuts off after some."""
 
-    def __init__(self, folder: Path, provenance: Callable[[], dict[str, str]] | None, after: int):
+    def __init__(
+        self,
+        folder: Path,
+        provenance: Callable[[], dict[str, str]] | None,
+        after: int,
+        most: float = math.inf,
+    ):
         super().__init__(folder, 0.0, provenance)
-        self.left = after
+        self.left, self._most = after, most
 
     def save(self, number: int, state: State) -> None:
-        super().save(number, state)
+        if self.left <= self._most:
+            super().save(number, state)
         self.left -= 1
         if self.left == 0:
             raise Cut

@@ -5,13 +5,12 @@ from __future__ import annotations
 import json
 import os
 import re
-import subprocess
-import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import pytest
+from forked import Commands, Ended
 from solids import ascii_stl, binary, brick, obj
 
 import mdlgen
@@ -26,41 +25,11 @@ CURVE = "E_md: 3530 MPa"
 ONE = binary(*brick(4.0, 6.0, 10.0))
 
 
-# A process begins with the greatest memory of the one that it was started from: that one is small.
-MEASURED = """
-import resource, subprocess, sys
-code = subprocess.run([sys.executable, "-m", "mdlgen", *sys.argv[1:]]).returncode
-used = resource.getrusage(resource.RUSAGE_CHILDREN)
-open("used", "w").write(f"{code} {used.ru_utime + used.ru_stime} {used.ru_maxrss}")
-"""
-
-
-class Ended(NamedTuple):
-    code: int
-    out: str
-    err: str
-    cpu: float  # [s]
-    memory: float  # greatest [MB]
-
-
-def process(folder: Path, *args: str) -> Ended:
-    """A command in a process of its own."""
-    files = [folder / "stdout", folder / "stderr"]
-    with files[0].open("w") as out, files[1].open("w") as err:
-        subprocess.run(
-            [sys.executable, "-c", MEASURED, *args],
-            cwd=folder,
-            stdin=subprocess.DEVNULL,
-            stdout=out,
-            stderr=err,
-            check=True,
-        )
-    code, cpu, memory = (float(word) for word in (folder / "used").read_text().split())
-    (folder / "used").unlink()
-    message = [f.read_text("utf-8") for f in files]
-    for file in files:
-        file.unlink()
-    return Ended(int(code), *message, cpu, memory / 1024)
+@pytest.fixture(scope="module")
+def commands(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Commands]:
+    made = Commands(tmp_path_factory.mktemp("printed"))
+    yield made
+    made.close()
 
 
 def changed(old: str, new: str) -> str:
@@ -140,19 +109,19 @@ def lay(folder: Path) -> None:
 
 
 @pytest.fixture(scope="module")
-def usual(tmp_path_factory: pytest.TempPathFactory) -> Ended:
+def usual(tmp_path_factory: pytest.TempPathFactory, commands: Commands) -> Ended:
     """What a good scene takes."""
-    return process(tmp_path_factory.mktemp("usual"), "check", str(SAMPLE), "-q")
+    return commands.run(tmp_path_factory.mktemp("usual"), "check", str(SAMPLE), "-q")
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs named pipes")
 @pytest.mark.parametrize("attack", ATTACKS)
-def test_known_attacks(tmp_path: Path, attack: str, usual: Ended) -> None:
+def test_known_attacks(tmp_path: Path, attack: str, usual: Ended, commands: Commands) -> None:
     folder = tmp_path / "scene"
     lay(folder)
     (folder / "bad.yaml").write_text(ATTACKS[attack], "utf-8")
     before = sorted(p.name for p in folder.iterdir())
-    ended = process(folder, "mdl", "bad.yaml")
+    ended = commands.run(folder, "mdl", "bad.yaml")
     assert (ended.code, ended.out) == (2, "")
     assert re.fullmatch(r"bad\.yaml:\d+:\d+: [^\n]+\n", ended.err), ended.err
     assert sorted(p.name for p in folder.iterdir()) == before
@@ -161,17 +130,17 @@ def test_known_attacks(tmp_path: Path, attack: str, usual: Ended) -> None:
     assert ended.memory < 300.0
 
 
-def test_many_values(tmp_path: Path, usual: Ended) -> None:
+def test_many_values(tmp_path: Path, usual: Ended, commands: Commands) -> None:
     (tmp_path / "bad.yaml").write_text("a: [" + "1," * 900_000 + "]")
-    ended = process(tmp_path, "check", "bad.yaml")
+    ended = commands.run(tmp_path, "check", "bad.yaml")
     assert ended.code == 2 and "--limit values=50001" in ended.err
     assert ended.cpu < 8.0 * usual.cpu
     assert ended.memory < 300.0
 
 
-def test_a_device_has_no_end(tmp_path: Path) -> None:
+def test_a_device_has_no_end(tmp_path: Path, commands: Commands) -> None:
     for command in ("check", "lint"):
-        ended = process(tmp_path, command, "/dev/zero")
+        ended = commands.run(tmp_path, command, "/dev/zero")
         assert ended.code in (2, 3) and len(ended.err.splitlines()) == 1
         assert "larger than" in ended.err
         assert ended.memory < 500.0

@@ -50,7 +50,7 @@ sheets:
 rollers:
   bob: {center: [4 mm, 3 mm, -60 mm], axis: y, radius: 20 mm, width: 20 mm, mass: 10 g,
     arm: {pivot: [0 mm, 0 mm, 0 mm], mass: 20 g}}
-run: {duration: 1200 ms, print_step: 1 ms, prune: false}
+run: {duration: 600 ms, print_step: 1 ms, prune: false}
 """)
 SOLVERS = ("lattice", "exudyn")
 G = 9.81e-3  # mm/ms^2
@@ -118,7 +118,6 @@ def test_a_sprung_arm_swings_about_its_balance(solver: str) -> None:
         "gravity=[0 m/s^2, 0 m/s^2, 0 m/s^2]",
         "rollers.bob.arm.torque=3 N*mm",
         "rollers.bob.arm.stiffness=20 N*mm/rad",
-        "run.duration=700 ms",
     )
     result = solved(made, solver)
     rate = np.sqrt(20.0 / made.roller("bob").swung_inertia)
@@ -188,6 +187,7 @@ def test_a_slide_presses_with_its_preload(solver: str) -> None:
                 "slide",
                 (
                     "gravity=[0 m/s^2, 0 m/s^2, 0 m/s^2]",
+                    "run.duration=20 ms",
                     "contacts.0.stiffness=3000 N/mm^1.5",
                     "contacts.1.stiffness=3000 N/mm^1.5",
                     "rollers.skim={center: [0 mm, 0 mm, 5.05 mm], axis: y, radius: 5 mm, "
@@ -219,7 +219,7 @@ def test_both_solvers_agree_about_an_arm(overrides: tuple[str, ...]) -> None:
 def test_a_note_waits_for_the_rubber_and_is_pulled_away() -> None:
     """The sample: rim, arm and slide together; the pull takes over before the rubber has passed."""
     made = lower(load(samples() / "peel.yaml"))
-    one, two = (solved(made, solver) for solver in SOLVERS)
+    one = solved(made, "lattice")
     moved = one.sheet_motion(0)[0][:, 0] - 16.0
     # the rim's angle under the note is 270 deg less what the roller has turned
     at = 270.0 - np.degrees(made.roller("feed").turned(one.time))
@@ -230,6 +230,11 @@ def test_a_note_waits_for_the_rubber_and_is_pulled_away() -> None:
     pulled = one.time > 50.0
     assert speed[pulled].mean() == pytest.approx(7.5 * 0.16, rel=0.01)
     assert force(one, "pull_idler")[pulled].mean() == pytest.approx(15.0, rel=0.06)
+
+
+def test_both_solvers_agree_about_a_note_that_waits_for_the_rubber() -> None:
+    made = lower(load(samples() / "peel.yaml"))
+    one, two = (solved(made, solver) for solver in SOLVERS)
     assert compare(two, one).relative < 0.01
 
 

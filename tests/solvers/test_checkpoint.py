@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import os
 import signal
@@ -16,6 +17,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from asked import as_asked
+from called import Ended, runner
 from cutting import Cut, Cutting, written_with
 from machines import MACHINE, OVERRUN
 from nip import FORTH_AND_BACK
@@ -38,8 +40,8 @@ from mdlgen.spec.load import loads
 SCENES = {
     "transport_4x4": ["sheets.note.boxes=[3,5]", "run.duration=8 ms", "run.tolerance=0.01"],
     "transport_tilted": ["sheets.note.boxes=[3,5]", "run.duration=4 ms", "run.step=0.1 ms"],
-    "channel": ["run.duration=4 ms", "run.step=0.05 ms"],
-    "verify/flip": ["run.duration=20 ms", "run.step=0.1 ms"],
+    "channel": ["run.duration=3 ms", "run.step=0.05 ms"],
+    "verify/flip": ["run.duration=8 ms", "run.step=0.1 ms"],
     "verify/drop": ["run.duration=110 ms", "run.step=0.05 ms", "run.print_step=2 ms"],
     # the uppermost note slides by 36 mm, so that other boxes of two sheets meet than at the start
     "stack": [
@@ -50,11 +52,11 @@ SCENES = {
     # air between sheets
     "pile": [
         "piles.cassette.contact.air={viscosity: 18.2 uPa*s}",
-        *("run.duration=6 ms", "run.step=0.1 ms", "run.print_step=0.2 ms"),
+        *("run.duration=4 ms", "run.step=0.1 ms", "run.print_step=0.2 ms"),
     ],
     # meshes; rims, an arm and a slide; two notes with all of these and a profile; measured curves
     "pick": ["run.duration=12 ms", "run.step=0.1 ms", "run.print_step=0.4 ms"],
-    "peel": ["run.duration=6 ms", "run.step=0.1 ms", "run.print_step=0.2 ms"],
+    "peel": ["run.duration=4 ms", "run.step=0.1 ms", "run.print_step=0.2 ms"],
     "feeder": [
         "sheets.note_1.boxes=[6,2]",
         "sheets.note_2.boxes=[4,2]",
@@ -63,7 +65,7 @@ SCENES = {
     ],
     # while a sheet yields, of a halved scene
     "crease": ["run.duration=1 ms", "run.step=0.02 ms", "run.print_step=0.05 ms"],
-    "snatch": ["run.duration=4 ms", "run.step=0.1 ms", "run.print_step=0.1 ms"],
+    "snatch": ["run.duration=3 ms", "run.step=0.1 ms", "run.print_step=0.1 ms"],
 }
 SHORT = ["run.duration=12 ms", "run.step=0.1 ms", "run.print_step=0.4 ms"]
 # the uppermost note slides, the others stick
@@ -116,7 +118,7 @@ def test_two_passes_at_once_go_on_to_the_same_bits(name: str, tmp_path: Path) ->
 def test_passes_are_known_by_their_steps(threads: tuple[int, int], tmp_path: Path) -> None:
     """One at a time or two, begun in another order, go on with each other's states."""
     model = mdlgen.lower(
-        mdlgen.load(samples() / "transport_4x4.yaml", ["sheets.note.boxes=[3,5]", "run.duration=9 ms"])
+        mdlgen.load(samples() / "transport_4x4.yaml", ["sheets.note.boxes=[3,5]", "run.duration=6 ms"])
     )
     whole = lattice.solve(model)
     provenance: Callable[[], dict[str, str]] | None = written_with
@@ -144,7 +146,8 @@ def goes_on(name: str, tmp_path: Path, threads: int) -> None:
     provenance: Callable[[], dict[str, str]] | None = written_with
     while True:
         try:
-            keep = Cutting(tmp_path / "c", provenance, 8 + 5 * cuts)
+            # what is written before the last two takes time alone
+            keep = Cutting(tmp_path / "c", provenance, 8 + 5 * cuts, most=2)
             result = lattice.solve(model, keep=keep, threads=threads)
             break
         except Cut:
@@ -330,32 +333,40 @@ def test_resume(cut: tuple[Path, int, str, float], tmp_path: Path) -> None:
     assert np.array_equal(part["position"], all_of_it["position"][: len(part["time"])])
 
 
-def ended(folder: Path, *args: str) -> tuple[int, str]:
-    process = command(folder, *args)
-    out, err = process.communicate()
-    assert out == "" and len(err.splitlines()) == 1, (out, err)
-    return process.returncode, err
+@pytest.fixture
+def mdlgen_run(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> Callable[..., Ended]:
+    """The command in this process, in the test's own folder."""
+    return functools.partial(runner(capsys, tmp_path, monkeypatch), "run")
 
 
-def test_what_cannot_go_on_is_refused_by_name(tmp_path: Path) -> None:
-    assert ended(tmp_path, "--resume", "none")[0] == 3
-    assert ended(tmp_path)[0] == 2
-    assert ended(tmp_path, *LONG, "--resume", "d")[0] == 2
-    code, err = ended(tmp_path, *LONG, "--solver", "exudyn", "--checkpoint", "1")
+def test_what_cannot_go_on_is_refused_by_name(mdlgen_run: Callable[..., Ended]) -> None:
+    def refused(*args: str) -> tuple[int, str]:
+        code, out, err = mdlgen_run(*args)
+        assert out == "" and len(err.splitlines()) == 1, (out, err)
+        return code, err
+
+    assert refused("--resume", "none")[0] == 3
+    assert refused()[0] == 2
+    assert refused(*LONG, "--resume", "d")[0] == 2
+    code, err = refused(*LONG, "--solver", "exudyn", "--checkpoint", "1")
     assert code == 2
     assert "exudyn runs this scene" in err and "cannot be resumed; lattice can: give --solver lattice" in err
-    assert ended(tmp_path, *LONG, "--solver", "exudyn", "--keep-partial")[0] == 2
+    assert refused(*LONG, "--solver", "exudyn", "--keep-partial")[0] == 2
 
 
-def test_a_run_that_fails_leaves_nothing_to_go_on_with(tmp_path: Path) -> None:
+def test_a_run_that_fails_leaves_nothing_to_go_on_with(
+    tmp_path: Path, mdlgen_run: Callable[..., Ended]
+) -> None:
     # the block falls through a floor that is too soft
     drop = str(samples() / "verify" / "drop.yaml")
     sets = [word for value in SCENES["verify/drop"] for word in ("--set", value)]
     sets += ["--set", "contacts.0.stiffness=1e-3 N/mm^1.5", "--set", "run.duration=140 ms"]
-    process = command(tmp_path, drop, *sets, "-o", "d", "--checkpoint", "0")
-    lint, reason = process.communicate()[1].splitlines()
+    code, _, err = mdlgen_run(drop, *sets, "-o", "d", "--checkpoint", "0")
+    lint, reason = err.splitlines()
     assert lint.startswith("W133 contacts.0.stiffness")  # a lint said so
-    assert process.returncode == 4 and "ended early, at " in reason
+    assert code == 4 and "ended early, at " in reason
     assert not (tmp_path / "d" / "checkpoint").exists() and (tmp_path / "d" / "summary.json").exists()
 
 

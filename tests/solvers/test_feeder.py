@@ -54,7 +54,7 @@ def test_the_note_waits_for_the_rubber() -> None:
 def test_the_note_is_drawn_out_to_the_end() -> None:
     """The pulling pair has it from about 376 ms on at 400 mm/s, against what holds its rear; a nip that drove
     its boxes would throw them out (docs/theory/contact.md)."""
-    result = run("feeder_one", "run.step=0.0625 ms", "run.print_step=2 ms", "run.tolerance=0.01")
+    result = run("feeder_one", *COARSE, "run.duration=545 ms", "run.print_step=2 ms", "run.tolerance=0.01")
     went = place(result, 0, 540.0) - place(result, 0, 460.0)
     assert went == pytest.approx(0.4 * 80.0, rel=0.01)
     assert abs(result.energy.balance_error) < 2e-3

@@ -43,11 +43,12 @@ def block() -> Spec:
     """A spinning block of one box that falls on a plane, turned."""
     spec = parse((samples() / "verify" / "drop.yaml").read_text("utf-8"), "d").data
     spec["sheets"]["block"] |= {
+        "center": ["0 mm", "0 mm", "8 mm"],
         "rotation": ["5 deg", "3 deg", "20 deg"],
         "spin": ["9 rad/s", "2 rad/s", "4 rad/s"],
     }
     spec["planes"]["floor"]["size"] = ["500 mm", "500 mm", "10 mm"]
-    spec["run"] = {"duration": "104 ms", "step": "20 us", "print_step": "4 ms"}
+    spec["run"] = {"duration": "24 ms", "step": "20 us", "print_step": "1 ms"}
     return spec
 
 

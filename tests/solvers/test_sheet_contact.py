@@ -215,7 +215,11 @@ def test_blocks_that_meet_off_centre_keep_their_angular_momentum():
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_a_block_rests_on_a_block_on_a_plane(solver):
     made = blocks(
-        gravity=-9.81, low=5.0, top=15.0, restitution=0.2, run="{duration: 60 ms, print_step: 1 ms}"
+        gravity=-9.81,
+        low=5.0,
+        top=15.0,
+        restitution=0.2,
+        run="{duration: 60 ms, print_step: 1 ms, step: 0.02 ms}",
     )
     result = ran(made, solver)
     g = 9.81e-3

@@ -143,7 +143,7 @@ def test_a_run_that_was_cut_off_goes_on_with_the_margin_that_it_had(name: str, t
     cuts = 0
     while True:
         try:
-            result = lattice.solve(model, keep=Cutting(tmp_path / "c", provenance, 8 + 5 * cuts))
+            result = lattice.solve(model, keep=Cutting(tmp_path / "c", provenance, 8 + 5 * cuts**2, most=2))
             break
         except Cut:
             cuts += 1
