@@ -111,7 +111,9 @@ def test_the_energy_of_a_clutch_closes_as_the_step_falls() -> None:
 
 
 def test_a_driven_roller_begins_with_its_shaft() -> None:
-    made = model("rollers.motor.drive={speed: 50 rad/s}", f"rollers.motor.one_way={WAY % 1}")
+    made = model(
+        "rollers.motor.drive={speed: 50 rad/s}", f"rollers.motor.one_way={WAY % 1}", "run.duration=1 ms"
+    )
     for solver in SOLVERS:
         assert spin(solved(made, solver), "motor")[0] == 0.05
 

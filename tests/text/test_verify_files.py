@@ -78,7 +78,9 @@ def test_a_change_of_any_number_of_a_deck_is_caught(tmp_path: Path, monkeypatch:
             ok = False
         assert not ok, f"{change.old} -> {change.new} in {change.where}"
         tried += 1
-    assert tried >= 40
+        if tried == 40:  # as many as of a text for each seed
+            break
+    assert tried == 40
 
 
 ENTITY_NUMBERS = (
