@@ -19,7 +19,7 @@ from mdlgen.mechanics.curve import curve_excess, middle_and_gap
 from mdlgen.mechanics.driven import SENSE, clutch
 from mdlgen.mechanics.frame import Frame
 from mdlgen.mechanics.pair import pair_force
-from mdlgen.mechanics.plastic import bending, couple, flowed, settle, stored
+from mdlgen.mechanics.plastic import accept, bending, couple, flowed, stored
 from mdlgen.mechanics.point import (
     FORCE_A,
     FORCE_B,
@@ -103,7 +103,7 @@ def end_hinges(tables, at, motion, starts):
         fb = matmul(mat(motion.r, bush.b), nine(bush.fb))
         t = bending(fa, fb, hinge.axis)
         if not starts:
-            lost += settle(hinge, hinge.begun, t)
+            lost += accept(hinge, hinge.begun, t)
         hinge.begun = t
     return lost
 

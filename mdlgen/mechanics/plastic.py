@@ -88,7 +88,7 @@ def yields(hinge, t):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def settle(hinge, begun, t):
+def accept(hinge, begun, t):
     """Ends a step from the rotation `begun` to t: changes p. Returns what it dissipates [N mm]."""
     after = flowed(hinge, t)
     change = after - hinge.plastic

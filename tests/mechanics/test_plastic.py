@@ -29,7 +29,7 @@ def bent(of: Any, *turns: float) -> float:
     at = float(of.begun)
     for turn in turns:
         for now in np.linspace(at, turn, STEPS + 1)[1:].tolist():
-            plastic.settle(of, at, now)
+            plastic.accept(of, at, now)
             at = now
     of.begun = at
     return K * (at - float(of.plastic))
@@ -85,7 +85,7 @@ def test_work_is_stored_or_dissipated() -> None:
         of.begun = at
         p = plastic.in_the_middle(of, 0.5 * (at + turn))
         work += K * (0.5 * (at + turn) - p) * (turn - at)
-        assert plastic.settle(of, at, turn) >= -1e-15  # round-off where it stands at the yield moment
+        assert plastic.accept(of, at, turn) >= -1e-15  # round-off where it stands at the yield moment
         at = turn
     stored = 0.5 * K * at**2 + plastic.stored(of, at, float(of.plastic))
     assert work == pytest.approx(stored + float(of.lost), rel=1e-12)

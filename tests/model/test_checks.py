@@ -21,7 +21,9 @@ def found(sample: str, *overrides: str) -> list[Lint]:
 
 @pytest.mark.parametrize("path", SAMPLES, ids=lambda p: p.stem)
 def test_no_false_alarm_on_a_sample(path: Path) -> None:
-    assert lints(lower(load(path))) == []
+    # the rod of one sample is there to bend a sheet beyond its yield curvature
+    expected = ["W146"] if path.stem == "crease" else []
+    assert [lint.code for lint in lints(lower(load(path)))] == expected
 
 
 CASES = [

@@ -42,6 +42,8 @@ PIECES = {
     # what tests/solvers/test_spring_plate.py and tests/solvers/test_roller_plate.py look at in Exudyn, too
     ("spring_plate", "exudyn"): ("run.duration=15 ms",),
     ("peel", "exudyn"): ("run.duration=5 ms",),  # all of it before a release: tests/solvers/test_arms.py
+    # while the rod bends the strip; tests/solvers/test_yield.py compares both solvers
+    ("crease", "exudyn"): ("sheets.strip.boxes=[10,1]", "run.duration=1 ms", "run.tolerance=0.01"),
     ("pick", "exudyn"): ("run.tolerance=0.01",),
     # the Model of transport_4x4 (tests/model/test_nips.py), which it runs as a whole below
     ("transport_nips", "exudyn"): ("run.duration=5 ms",),

@@ -15,6 +15,7 @@ from mdlgen.paths import samples
 from mdlgen.results.io.store import hdf5
 from mdlgen.results.residual import left
 from mdlgen.results.result import Result
+from mdlgen.results.strain import sheet_joints
 from mdlgen.spec.load import load
 
 CASES = {case.name: case for case in yielding.cases(False)}
@@ -104,13 +105,18 @@ def test_what_does_not_yield_has_the_same_bits_as_without_the_key() -> None:
 
 
 def test_one_half_keeps_what_the_whole_keeps() -> None:
-    half, whole = (solved("crease", *SHORT, f"run.symmetry={on}") for on in ("true", "false"))
+    fine = ("sheets.strip.boxes=[10,2]", "run.duration=1 ms", "run.step=0.005 ms", "run.print_step=0.1 ms")
+    half, whole = (solved("crease", *fine, f"run.symmetry={on}") for on in ("true", "false"))
     assert half.halved and not whole.halved
     one, two = left(half), left(whole)
     assert one is not None and two is not None
-    # iterations of the two leave other residuals, each within the tolerance of 1e-3
+    # steps are halved at other places in the two: at 0.02 ms they differ by 3e-3, five times as much
     assert np.abs(one - two).max() < 1e-3 * np.abs(two).max()
-    assert half.energy.plastic == pytest.approx(whole.energy.plastic, rel=1e-3)
+    assert half.energy.plastic == pytest.approx(whole.energy.plastic, rel=2e-3)
+    # both sides keep the same, joint by joint
+    joints = sheet_joints(half.model)
+    order = [np.lexsort((joints.at[:, 0], way * joints.at[:, 1])) for way in (1.0, -1.0)]
+    assert np.array_equal(one[:, order[0]], one[:, order[1]])
 
 
 def test_wider_bounds_keep_the_fold() -> None:

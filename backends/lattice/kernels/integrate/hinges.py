@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from mdlgen.backends.lattice.kernels.integrate.tangent import blocks
 from mdlgen.backends.lattice.kernels.state import DISSIPATED, ELASTIC, SHEET
-from mdlgen.mechanics.plastic import bending, couple, in_the_middle, settle, stored, yields
+from mdlgen.mechanics.plastic import accept, bending, couple, in_the_middle, stored, yields
 from mdlgen.mechanics.vector import dot, mat, matmul, nine, scale, sub, three
 from mdlgen.program.kernel import BORROWS, njit
 
@@ -65,7 +65,7 @@ def end_hinges(work, energies):
     for k in range(tables.hinges.size):
         hinge = tables.hinges[k]
         _, _, fa, fb = _frames(tables.joints[hinge.joint], work.mid.motion.r)
-        lost = settle(hinge, hinge.begun, 2.0 * bending(fa, fb, hinge.axis) - hinge.begun)
+        lost = accept(hinge, hinge.begun, 2.0 * bending(fa, fb, hinge.axis) - hinge.begun)
         if lost != 0.0:
             part = 1.0 if tables.joints[hinge.joint].mirrored == 0 else 0.5
             energies[group[_sheet_of(tables.runs, hinge.joint)], DISSIPATED] += part * lost
