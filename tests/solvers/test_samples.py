@@ -38,6 +38,8 @@ PIECES = {
     ("verify/drop", "exudyn"): ("run.duration=150 ms",),
     ("verify/incline", "exudyn"): ("run.duration=100 ms",),
     ("verify/slide", "exudyn"): ("run.duration=100 ms",),
+    # tests/solvers/test_measured_friction.py looks at such blocks in Exudyn, too
+    ("verify/aslant", "exudyn"): ("run.duration=20 ms",),
     ("pile", "exudyn"): ("run.duration=1 ms",),
     # what tests/solvers/test_spring_plate.py and tests/solvers/test_roller_plate.py look at in Exudyn, too
     ("spring_plate", "exudyn"): ("run.duration=15 ms",),

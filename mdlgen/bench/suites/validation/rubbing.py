@@ -34,7 +34,7 @@ def cases(quick: bool) -> list[BenchCase]:
 
 
 def _slide(name: str, friction: str, measure, *sets: str) -> BenchCase:
-    start = (f"contacts.0.friction={friction}", *sets, "run.duration=200 ms")
+    start = (f"contacts.0.friction={friction}", *sets, "run.duration=40 ms")
     return row(GROUP, name, Run("verify/slide", start), measure)
 
 
