@@ -201,6 +201,10 @@ SCENE = {
         "a contact with, or times a tenth of the sheet's length where that is more. After the run an event "
         "`creep` says what was held, and how far it crept. friction.sticking holds it."
     ),
+    "W140": (
+        "Poisson's effect couples joints along x with joints along y. A sheet of one row of boxes has joints "
+        "along one of them only, and bends and stretches as a strip does, whatever poisson is."
+    ),
 }
 
 TEXT = {

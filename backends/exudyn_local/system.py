@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from mdlgen.backends.exudyn_local.films import Film, film_of
 from mdlgen.backends.exudyn_local.state import Tables
 from mdlgen.errors import RefusedError
+from mdlgen.mechanics.corner import corners_of
 from mdlgen.mechanics.curve import curve_points
 from mdlgen.mechanics.pack import Units, gravity, number, pack_bodies, pack_bushings, pack_loads, pack_pairs
 from mdlgen.mechanics.records import (
@@ -52,7 +53,8 @@ PAIR = np.dtype([*BODIES, *CONTACT])
 
 
 class Elements(NamedTuple):
-    """What the jacobian is a sum of: blocks of bushings between bodies, pairs, slides, clutches, loads."""
+    """What the jacobian is a sum of: blocks of bushings between bodies, corners, pairs, slides, clutches,
+    loads."""
 
     block_start: Ints  # bushings of block i: block_start[i] ... block_start[i + 1] - 1
     dofs: Ints  # coordinates of each element, concatenated
@@ -74,6 +76,7 @@ class System(NamedTuple):
     points: np.ndarray  # of the curves that bushings follow, mechanics.curve.POINT [Pa]
     shapes: Shapes  # [m]
     film: Film
+    corners: np.ndarray  # mechanics.corner.CORNER
 
     @property
     def tables(self) -> Tables:
@@ -87,6 +90,7 @@ class System(NamedTuple):
             loads=self.loads,
             gravity=self.gravity,
             film=self.film,
+            corners=self.corners,
         )
 
 
@@ -121,10 +125,24 @@ def build(model: Model) -> tuple[System, Pattern]:
     bushings, blocks = _bushings(model)
     pairs = pack_pairs(model, PAIR, np.arange(len(model.pairs)), SI)
     loads = pack_loads(model, SI)
-    elements, pattern = _pattern(_couplings(bodies, bushings, blocks, pairs, loads), blocks, free)
+    corners = corners_of(model, bushings["row"], SI)
+    couplings = _couplings(bodies, (bushings, blocks, corners), pairs, loads)
+    elements, pattern = _pattern(couplings, blocks, free)
     points = curve_points(model.curves, SI.mpa)
     shapes = shape_tables(model, MM)
-    system = System(bodies, bushings, pairs, loads, gravity(model, SI), elements, free, points, shapes, film)
+    system = System(
+        bodies=bodies,
+        bushings=bushings,
+        pairs=pairs,
+        loads=loads,
+        gravity=gravity(model, SI),
+        elements=elements,
+        free=free,
+        points=points,
+        shapes=shapes,
+        film=film,
+        corners=corners,
+    )
     return system, pattern
 
 
@@ -157,9 +175,13 @@ def _bushings(model: Model) -> tuple[np.ndarray, list[int]]:
 
 
 def _couplings(
-    bodies: np.ndarray, bushings: np.ndarray, blocks: list[int], pairs: np.ndarray, loads: np.ndarray
+    bodies: np.ndarray,
+    sheets: tuple[np.ndarray, list[int], np.ndarray],
+    pairs: np.ndarray,
+    loads: np.ndarray,
 ) -> list[list[int]]:
-    """Coordinates that each element couples."""
+    """Coordinates that each element couples; `sheets`: bushings, where blocks of them begin, and corners."""
+    bushings, blocks, corners = sheets
 
     def of(body: int) -> list[int]:
         row = bodies[body]
@@ -167,6 +189,10 @@ def _couplings(
         return box + [int(row[name]) for name in ("slide", "spin") if row[name] >= 0]
 
     elements = [of(bushings["a"][b]) + of(bushings["b"][b]) for b in blocks[:-1]]
+    for corner in corners:
+        own = bushings[corner["joint"][corner["joint"] >= 0]]
+        there = np.unique([own["a"], own["b"]])
+        elements.append([dof for body in there[there >= 0] for dof in of(body)])
     elements += [of(a) + of(b) for a, b in zip(pairs["a"], pairs["b"], strict=True)]
     elements += [[int(s)] for s in bodies["slide"] if s >= 0]
     elements += [[int(s)] for s in bodies["spin"][bodies["clutch"][:, 0] != 0.0]]

@@ -17,6 +17,7 @@ from mdlgen.model.lowering.anchors import anchor, find_tension, lower_loads
 from mdlgen.model.lowering.cells import Cells, cells, zone_parts
 from mdlgen.model.lowering.joints import Joints, find_joints
 from mdlgen.model.lowering.pairs import find_pairs
+from mdlgen.model.lowering.poisson import couple
 from mdlgen.model.lowering.stiffness import between, coefficients, derived, extent
 from mdlgen.model.lowering.supports import joined, support_bushings
 from mdlgen.model.meshes import loaded
@@ -89,7 +90,7 @@ def _lower(scene: Scene) -> Model:
     )
     held = support_bushings(scene.supports, supports, sheets, bodies)
     joints, extents = _joints(scene, sheets, boxes)
-    bushings = joined([*joints, *held])
+    bushings, corners = couple(scene, sheets, bodies, joined([*joints, *held]))
     none = np.zeros(sum(len(table) for table in held))  # of supports
     long, wide = (np.concatenate([*(each[k] for each in extents), none]) for k in range(2))
     naming.check_unique("bodies", bodies.name)
@@ -139,6 +140,7 @@ def _lower(scene: Scene) -> Model:
         require=scene.require,
         author=scene.author or "",
         revision=scene.revision or "",
+        corners=corners,
     )
 
 

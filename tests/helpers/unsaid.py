@@ -2,4 +2,7 @@
 
 from __future__ import annotations
 
-UNSAID: dict[str, tuple[str, ...]] = {"landing": ("contacts.landing.air=null",)}
+UNSAID: dict[str, tuple[str, ...]] = {
+    "landing": ("contacts.landing.air=null",),
+    "saddle": ("materials.film.poisson=0",),
+}

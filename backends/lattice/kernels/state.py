@@ -36,6 +36,7 @@ class Tables(NamedTuple):
     bristles: np.ndarray  # of contact patches where friction sticks, mechanics.bristle.BRISTLE
     held: np.ndarray  # the pairs in these, mechanics.bristle.HELD
     shapes: Any  # mechanics.shapes.Shapes
+    corners: np.ndarray  # mechanics.corner.CORNER
 
 
 SHEET = 2  # column of Tables.runs

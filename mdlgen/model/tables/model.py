@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TypeVar
 
 from mdlgen.geometry.arrays import Floats as Floats
 from mdlgen.geometry.arrays import Ints as Ints
-from mdlgen.model.tables.bodies import Bodies, Bushings, Curves, Frozen
+from mdlgen.model.tables.bodies import Bodies, Bushings, Corners, Curves, Frozen, no_corners
 from mdlgen.model.tables.contacts import Contacts, ExternalPairs, Pairs
 from mdlgen.model.tables.machine import (
     ExternalPart,
@@ -124,6 +124,7 @@ class Model(Frozen):
     require: tuple[str, ...] = ()  # what a run is judged by, see spec.require
     author: str = ""  # of the design, for the head of the page
     revision: str = ""
+    corners: Corners = field(default_factory=no_corners)  # Poisson's effect of plates
 
     def __repr__(self) -> str:
         kinds = ("sheets", "rollers", "planes", "guides", "meshes", "bushings", "contacts")

@@ -8,9 +8,18 @@ wrong is a finding.
 from __future__ import annotations
 
 from mdlgen.bench.case import BenchCase
-from mdlgen.bench.suites.validation import belts, bending, edges, plates, rigid, rolling, swinging
+from mdlgen.bench.suites.validation import (
+    belts,
+    bending,
+    edges,
+    plates,
+    poisson,
+    rigid,
+    rolling,
+    swinging,
+)
 
-GROUPS = (bending, plates, swinging, belts, rolling, rigid, edges)
+GROUPS = (bending, plates, poisson, swinging, belts, rolling, rigid, edges)
 
 
 def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
