@@ -256,6 +256,7 @@ class Material(_Material):
         D_cd: str | None = ...,
         D_twist: str | None = ...,
         G: str | None = ...,
+        poisson: float | str | None = ...,
         damping: _Damping | Mapping[str, Any] = ...,
         **more: Any,
     ) -> None: ...

@@ -43,6 +43,7 @@ CHECKS: tuple[Callable[[Model], Iterator[Lint]], ...] = (
     sheets.modulus,
     sheets.aspect,
     sheets.idle_in_plane,
+    sheets.idle_poisson,
     sheets.idle_clamp,
     contacts.coarse_boxes,
     contacts.deep_nip,

@@ -207,6 +207,10 @@ SCENE = {
         "if its friction were the same everywhere, but for what the whole sheet has more or less than the "
         "mean. Boxes of half the length have nearly all of it."
     ),
+    "W141": (
+        "Poisson's effect couples joints along x with joints along y. A sheet of one row of boxes has joints "
+        "along one of them only, and bends and stretches as a strip does, whatever poisson is."
+    ),
     "W145": (
         "A sheet bends between its boxes alone. A bend of the curvature kappa turns it by kappa L from one "
         "box of the length L to the next. From 0.5 rad on the chain of boxes is more than 1 % shorter than "

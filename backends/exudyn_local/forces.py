@@ -15,6 +15,7 @@ from mdlgen.mechanics.arm import (
     way_of,
 )
 from mdlgen.mechanics.bushing import bushing
+from mdlgen.mechanics.corner import bodies_of, corner_forces
 from mdlgen.mechanics.curve import curve_excess, middle_and_gap
 from mdlgen.mechanics.driven import SENSE, clutch
 from mdlgen.mechanics.frame import Frame
@@ -109,6 +110,19 @@ def end_hinges(tables, at, motion, starts):
 
 
 @njit(cache=True, error_model="numpy")
+def corner_at(tables, corner, q, work):
+    """One corner; returns (stored energy, dissipated power)."""
+    wrench, there = work.wrench, work.there
+    energy, power = corner_forces(tables.bushings, corner, work.motion, wrench)
+    wrench[-1] = 0.0  # the ground
+    for k in range(bodies_of(tables.bushings, corner, there)):
+        own = wrench[there[k]]
+        spread(tables.bodies, there[k], q, (own[0], own[1], own[2]), (own[3], own[4], own[5]), work.forces)
+        own[:] = 0.0
+    return energy, power
+
+
+@njit(cache=True, error_model="numpy")
 def pair_forces(tables, pair, q, motion, f, out):
     """One contact pair into `out`; returns whether it touches."""
     out[:] = 0.0
@@ -150,7 +164,7 @@ def forces(tables, at, level, work):
     """Generalised forces into those of `work`; `level` scales gravity and loads. Returns the number of
     touching pairs."""
     bodies, pairs, loads, gravity = tables.bodies, tables.pairs, tables.loads, tables.gravity
-    motion, out, f = work
+    motion, out, f = work.motion, work.out, work.forces
     q, v, t = at
     place_all(bodies, at, motion)
     f[:] = 0.0
@@ -165,6 +179,8 @@ def forces(tables, at, level, work):
             f[bodies[body].spin] += clutch(bodies[body], v[bodies[body].spin], t).torque
     for i in range(tables.bushings.size):
         bush_forces(tables, tables.bushings[i], q, motion, f)
+    for i in range(tables.corners.size):
+        corner_at(tables, tables.corners[i], q, work)
     touching = 0
     for i in range(pairs.size):
         if tables.stick.patch_of[i] < 0 and pair_forces(tables, pairs[i], q, motion, f, out):

@@ -1,12 +1,18 @@
-"""The jacobian of the forces of a System, by difference quotients of its elements: blocks of bushings, pairs,
-slides, clutches, loads, and contact patches."""
+"""The jacobian of the forces of a System, by difference quotients of its elements: blocks of bushings,
+corners, pairs, slides, clutches, loads, and contact patches."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from mdlgen.backends.exudyn_local.bristles import held_element, release, weigh_patches
-from mdlgen.backends.exudyn_local.forces import bush_forces, load_forces, pair_forces, slide_force
+from mdlgen.backends.exudyn_local.forces import (
+    bush_forces,
+    corner_at,
+    load_forces,
+    pair_forces,
+    slide_force,
+)
 from mdlgen.backends.exudyn_local.place import place_all, place_body
 from mdlgen.mechanics.driven import SENSE, clutch
 from mdlgen.program.kernel import njit
@@ -23,7 +29,7 @@ def _element(tables, block_start, element, at, level, work):
     """Generalised forces of one element, added to those of `work`. Returns False where a pair does not
     touch."""
     bodies, pairs = tables.bodies, tables.pairs
-    motion, out, f = work
+    motion, out, f = work.motion, work.out, work.forces
     q, v, t = at
     blocks = block_start.size - 1
     if element < blocks:
@@ -31,6 +37,10 @@ def _element(tables, block_start, element, at, level, work):
             bush_forces(tables, tables.bushings[i], q, motion, f)
         return True
     element -= blocks
+    if element < tables.corners.size:
+        corner_at(tables, tables.corners[element], q, work)
+        return True
+    element -= tables.corners.size
     if element < pairs.size:
         if tables.stick.patch_of[element] >= 0:
             return held_element(tables, element, at, motion, f)
@@ -62,7 +72,7 @@ def jacobian(tables, elements, at, level, by, central, owner, work, data):
     One quotient per coordinate gives both parts: q and v are moved together in the ratio wanted.
     """
     block_start, dofs, dof_start, slots, slot_start = elements
-    bodies, (motion, _out, f), (by_q, by_v) = tables.bodies, work, by
+    bodies, motion, f, (by_q, by_v) = tables.bodies, work.motion, work.forces, by
     q, v = at.q, at.v
     place_all(bodies, at, motion)
     if tables.stick.pairs.size > 0:

@@ -6,7 +6,7 @@ import numpy as np
 
 from mdlgen.backends.exudyn_local.air import air_forces
 from mdlgen.backends.exudyn_local.bristles import held_energy, held_forces
-from mdlgen.backends.exudyn_local.forces import INSTANT, bush_forces, pair_forces
+from mdlgen.backends.exudyn_local.forces import INSTANT, bush_forces, corner_at, pair_forces
 from mdlgen.backends.exudyn_local.place import place_all
 from mdlgen.backends.exudyn_local.state import DRIVING, ELASTIC, HELD, KINETIC, LOST, POTENTIAL, WIDE
 from mdlgen.mechanics.arm import (
@@ -96,6 +96,10 @@ def ledger(tables, at, work, pair_out, totals):
             driven += torque * shaft
     for i in range(tables.bushings.size):
         energy, power = bush_forces(tables, tables.bushings[i], q, motion, f)
+        elastic += energy
+        lost += power
+    for i in range(tables.corners.size):
+        energy, power = corner_at(tables, tables.corners[i], q, work)
         elastic += energy
         lost += power
     whole = np.zeros(WIDE)

@@ -10,7 +10,7 @@ from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.point import MOST_POINTS, OUT, POINT
 from mdlgen.mechanics.shapes import Shapes
 from mdlgen.mechanics.turning import TURNING
-from mdlgen.model.tables import Floats
+from mdlgen.model.tables import Floats, Ints
 
 if TYPE_CHECKING:
     from mdlgen.backends.exudyn_local.films import Film
@@ -37,6 +37,7 @@ class Tables(NamedTuple):
     film: Film
     stick: Sticking
     hinges: np.ndarray  # mechanics.plastic.HINGE, of the bushings that yield
+    corners: np.ndarray
 
 
 class Coordinates(NamedTuple):
@@ -48,15 +49,18 @@ class Coordinates(NamedTuple):
 
 
 class Work(NamedTuple):
-    """Arrays to work in: the motion of all bodies, what a pair does, generalised forces."""
+    """Arrays to work in: the motion of all bodies, what a pair does, generalised forces; what a corner does,
+    and to which bodies."""
 
     motion: Motion
     out: Floats  # (OUT,)
     forces: Floats  # (free,)
+    wrench: Floats  # (bodies, 6), zero but within a corner
+    there: Ints  # (4,)
 
 
 def workspace(system: System) -> Work:
     """Such arrays for a System, all zero."""
     n = len(system.bodies)
     motion = Motion(np.zeros((n, 3)), np.zeros((n, 9)), np.zeros((n, 3)), np.zeros((n, 3)))
-    return Work(motion, np.zeros(OUT), np.zeros(max(1, system.free)))
+    return Work(motion, np.zeros(OUT), np.zeros(max(1, system.free)), np.zeros((n, 6)), np.zeros(4, np.int64))

@@ -17,6 +17,7 @@ from mdlgen.backends.exudyn_local.films import Film, film_of
 from mdlgen.backends.exudyn_local.patches import FIELD, Sticking, sticking_of
 from mdlgen.backends.exudyn_local.state import Tables
 from mdlgen.errors import RefusedError
+from mdlgen.mechanics.corner import corners_of
 from mdlgen.mechanics.curve import curve_points
 from mdlgen.mechanics.pack import Units, gravity, number, pack_bodies, pack_bushings, pack_loads, pack_pairs
 from mdlgen.mechanics.plastic import HINGE
@@ -56,8 +57,8 @@ PAIR = np.dtype([*BODIES, *CONTACT])
 
 
 class Elements(NamedTuple):
-    """What the jacobian is a sum of: blocks of bushings between bodies, pairs, slides, clutches, loads, and
-    patches."""
+    """What the jacobian is a sum of: blocks of bushings between bodies, corners, pairs, slides, clutches,
+    loads, and patches."""
 
     block_start: Ints  # bushings of block i: block_start[i] ... block_start[i + 1] - 1
     dofs: Ints  # coordinates of each element, concatenated
@@ -81,6 +82,7 @@ class System(NamedTuple):
     film: Film
     stick: Sticking
     hinges: np.ndarray  # mechanics.plastic.HINGE, in the order of Model.plastic [rad, N m]
+    corners: np.ndarray  # mechanics.corner.CORNER
 
     @property
     def tables(self) -> Tables:
@@ -96,6 +98,7 @@ class System(NamedTuple):
             film=self.film,
             stick=self.stick,
             hinges=self.hinges,
+            corners=self.corners,
         )
 
 
@@ -132,12 +135,26 @@ def build(model: Model) -> tuple[System, Pattern]:
     free += len(film.cells)
     bushings, blocks = _bushings(model)
     loads = pack_loads(model, SI)
-    elements, pattern = _pattern(_couplings(bodies, bushings, blocks, pairs, loads, stick), blocks, free)
+    corners = corners_of(model, bushings["row"], SI)
+    couplings = _couplings(bodies, (bushings, blocks, corners), pairs, loads, stick)
+    elements, pattern = _pattern(couplings, blocks, free)
     points = curve_points(model.curves, SI.mpa)
     shapes = shape_tables(model, SI)
-    hinges = _hinges(model, bushings)
-    parts = bodies, bushings, pairs, loads, gravity(model, SI), elements, free, points, shapes, film
-    system = System(*parts, stick, hinges)
+    system = System(
+        bodies=bodies,
+        bushings=bushings,
+        pairs=pairs,
+        loads=loads,
+        gravity=gravity(model, SI),
+        elements=elements,
+        free=free,
+        points=points,
+        shapes=shapes,
+        film=film,
+        stick=stick,
+        hinges=_hinges(model, bushings),
+        corners=corners,
+    )
     return system, pattern
 
 
@@ -185,13 +202,13 @@ def _hinges(model: Model, bushings: np.ndarray) -> np.ndarray:
 
 def _couplings(
     bodies: np.ndarray,
-    bushings: np.ndarray,
-    blocks: list[int],
+    sheets: tuple[np.ndarray, list[int], np.ndarray],
     pairs: np.ndarray,
     loads: np.ndarray,
     stick: Sticking,
 ) -> list[list[int]]:
-    """Coordinates that each element couples."""
+    """Coordinates that each element couples; `sheets`: bushings, where blocks of them begin, and corners."""
+    bushings, blocks, corners = sheets
 
     def of(body: int) -> list[int]:
         row = bodies[body]
@@ -203,6 +220,10 @@ def _couplings(
         return list(range(first, first + FIELD)) if patch >= 0 else []
 
     elements = [of(bushings["a"][b]) + of(bushings["b"][b]) for b in blocks[:-1]]
+    for corner in corners:
+        own = bushings[corner["joint"][corner["joint"] >= 0]]
+        there = np.unique([own["a"], own["b"]])
+        elements.append([dof for body in there[there >= 0] for dof in of(body)])
     ends = zip(pairs["a"], pairs["b"], stick.patch_of.tolist(), strict=True)
     elements += [of(a) + of(b) + field(patch) for a, b, patch in ends]
     elements += [[int(s)] for s in bodies["slide"] if s >= 0]

@@ -23,6 +23,7 @@ from mdlgen.backends.lattice.kernels.state import (
     Tables,
 )
 from mdlgen.backends.lattice.search import Search, plan
+from mdlgen.mechanics.corner import corners_of
 from mdlgen.mechanics.curve import curve_points
 from mdlgen.mechanics.pack import (
     gravity,
@@ -104,6 +105,7 @@ class System(NamedTuple):
     held: np.ndarray
     yields: Yielding
     shapes: Shapes
+    corners: np.ndarray  # mechanics.corner.CORNER
 
     @property
     def reach(self) -> int:
@@ -126,6 +128,13 @@ class System(NamedTuple):
         ends = np.append(begins, len(of))[1:]
         return np.stack([begins, ends, of[begins]], axis=1)
 
+    def _corners(self) -> np.ndarray:
+        """The corners with the runs that their joints are in."""
+        corners, runs = self.corners.copy(), self.runs
+        for k in range(len(runs)):
+            corners["run"][corners["sheet"] == runs[len(runs) - 1 - k, 2]] = len(runs) - 1 - k
+        return corners
+
     @property
     def tables(self) -> Tables:
         """What compiled code takes first."""
@@ -147,6 +156,7 @@ class System(NamedTuple):
             held=self.held,
             hinges=self.yields.hinges,
             shapes=self.shapes,
+            corners=self._corners(),
         )
 
 
@@ -176,6 +186,7 @@ def build(model: Model, fold: bool = True) -> System:
     joints, of = _joints(model, fold)
     listed, found = _pairs(model)
     bristles, held = bristles_of(model, bodies, listed)
+    corners = corners_of(model, joints["row"])
     pairs, search, marks = plan(model, listed)
     for name in ("shared", "k", "law", "sticking"):
         search.regions[name] = found[name]
@@ -187,7 +198,7 @@ def build(model: Model, fold: bool = True) -> System:
         gravity=gravity(model),
         nodes=nodes,
         sheets=np.searchsorted([s.first for s in model.sheets], nodes, side="right") - 1,
-        offsets=offsets(bodies, joints),
+        offsets=offsets(bodies, joints, corners),
         border=border,
         folded=len(of) - len(joints),
         points=curve_points(model.curves),
@@ -199,6 +210,7 @@ def build(model: Model, fold: bool = True) -> System:
         held=held,
         yields=yielding(model, joints, of),
         shapes=shape_tables(model),
+        corners=corners,
     )
 
 
@@ -294,8 +306,14 @@ def partner(model: Model, pair: Any) -> int:
     )
 
 
-def offsets(bodies: np.ndarray, joints: np.ndarray) -> Ints:
-    """How many nodes apart two may be that a joint couples, from 0 on."""
-    a, b = bodies["node"][joints["a"]], bodies["node"][joints["b"]]
+def offsets(bodies: np.ndarray, joints: np.ndarray, corners: np.ndarray) -> Ints:
+    """How many nodes apart two may be that a joint or a corner couples, from 0 on."""
+    ends = [np.stack([joints["a"], joints["b"]])]
+    for i in (0, 1):
+        for j in (2, 3):
+            one, two = corners["joint"][:, i], corners["joint"][:, j]
+            one, two = one[(one >= 0) & (two >= 0)], two[(one >= 0) & (two >= 0)]
+            ends += [np.stack([joints[p][one], joints[q][two]]) for p in "ab" for q in "ab"]
+    a, b = bodies["node"][np.concatenate(ends, axis=1)]
     both = (a >= 0) & (b >= 0)
     return np.unique(np.append(np.abs(a - b)[both], 0)).astype(np.int64)

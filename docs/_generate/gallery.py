@@ -20,7 +20,7 @@ GROUPS = {
         *("stack", "pile", "landing", "spring_plate", "retard_pad", "feeder_window", "feeder", "feeder_one"),
         *("peel", "pick"),
     ),
-    "Material": ("cantilever", "snatch", "crease"),
+    "Material": ("cantilever", "saddle", "snatch", "crease"),
     "Closed forms": tuple(f"verify/{n}" for n in ("drop", "slide", "aslant", "incline", "tension")),
     "Closed forms, bent and turned": tuple(f"verify/{n}" for n in ("hanging", "rollup", "flip")),
 }

@@ -63,6 +63,18 @@ def idle_in_plane(model: Model) -> Iterator[Lint]:
             )
 
 
+def idle_poisson(model: Model) -> Iterator[Lint]:
+    coupled = set(model.corners.sheet.tolist())
+    for number, sheet in enumerate(model.sheets):
+        if "nu_md" in sheet.derived and number not in coupled:
+            yield Lint(
+                "W141",
+                f"sheets.{sheet.name}.boxes",
+                f"poisson does not act on {sheet.n_x} x {sheet.n_y} boxes: one row is a strip, free across",
+                "take two boxes or more along x and along y, or leave poisson out",
+            )
+
+
 def idle_clamp(model: Model) -> Iterator[Lint]:
     touched = set(model.contacts.part_a)
     for sheet in model.sheets:

@@ -18,6 +18,7 @@ from mdlgen.model.lowering.anchors import anchor, find_tension, lower_loads
 from mdlgen.model.lowering.cells import Cells, cells, zone_parts
 from mdlgen.model.lowering.joints import Joints, find_joints
 from mdlgen.model.lowering.pairs import find_pairs
+from mdlgen.model.lowering.poisson import couple
 from mdlgen.model.lowering.stiffness import between, coefficients, derived, extent
 from mdlgen.model.lowering.supports import joined, support_bushings
 from mdlgen.model.lowering.yielding import together, yielding
@@ -93,7 +94,7 @@ def _lower(scene: Scene) -> Model:
     )
     held = support_bushings(scene.supports, supports, sheets, bodies)
     joints, extents, plastic = _joints(scene, sheets, boxes)
-    bushings = joined([*joints, *held])
+    bushings, corners = couple(scene, sheets, bodies, joined([*joints, *held]))
     none = np.zeros(sum(len(table) for table in held))  # of supports
     long, wide = (np.concatenate([*(each[k] for each in extents), none]) for k in range(2))
     naming.check_unique("bodies", bodies.name)
@@ -144,6 +145,7 @@ def _lower(scene: Scene) -> Model:
         author=scene.author or "",
         revision=scene.revision or "",
         plastic=plastic,
+        corners=corners,
     )
 
 

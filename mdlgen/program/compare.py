@@ -36,6 +36,7 @@ CALM: dict[str, tuple[str, ...]] = {
     "transport_nips": (),
     "stack": (),
     "cantilever": (),
+    "saddle": (),
     "snatch": (),
     "verify/drop": ("run.duration=60 ms",),
     "verify/flip": (),

@@ -143,7 +143,10 @@ def _plate(values: dict[str, float]) -> list[str | Rows]:
         named = [f"{symbol}_{name}" for name in names]
         record = [f"{values[name]:.5g}" for name in named]
         rows.append([symbol, *record[:2], UNITS[symbol], *record[2:], UNITS[f"{symbol}t"]])
-    return [f"  plate: G {values['G']:.5g} MPa, D_twist {values['D_twist']:.5g} {UNITS['D']}", rows]
+    own = f"G {values['G']:.5g} MPa, D_twist {values['D_twist']:.5g} {UNITS['D']}"
+    if "nu_md" in values:
+        own += f", nu_md {values['nu_md']:.4g}, nu_cd {values['nu_cd']:.4g}; all values are those of strips"
+    return [f"  plate: {own}", rows]
 
 
 def _bending(values: dict[str, float]) -> list[str | Rows]:

@@ -90,6 +90,7 @@ def _along(result: Result, index: int, axis: int) -> Tension | None:
     starts = np.flatnonzero(np.concatenate([[True], line[1:] != line[:-1]]))
     law = _Law(model, joints, mine, axis)
     moves = _Moves(model, sheet, joints, mine, axis)
+    coupling = _Coupling(model, joints, index, mine, axis, starts) if index in model.corners.sheet else None
     force, before = np.empty((len(result.time), len(starts))), None
     frames = max(1, _CHUNK // len(mine))
     for start in range(0, len(result.time), frames):
@@ -101,6 +102,8 @@ def _along(result: Result, index: int, axis: int) -> Tension | None:
             more, less = more - chord, less - chord
         pull = law.springs(more, less) + law.damping * parting
         force[part] = np.add.reduceat(pull, starts, axis=1)
+        if coupling is not None:
+            force[part] += coupling.pull(result, part)
     far = float(np.abs(result.position[:, sheet.first : sheet.first + sheet.count]).max())
     least = _ROUNDINGS * np.finfo(float).eps * (far + max(sheet.size))
     force[np.abs(force) < least * np.add.reduceat(law.stiffness, starts)] = 0.0
@@ -152,6 +155,35 @@ class _Law:
             stress = sum(curve_stress(self._curves, number, per * side) for side in sides)
             force[:, own] = self._curves.area[row] * np.where(two_of, 1.0, 0.5) * stress
         return force
+
+
+class _Coupling:
+    """What joints across the way pull along it by Poisson's effect (see mechanics.corner)."""
+
+    def __init__(self, model: Model, joints: SheetJoints, index: int, mine: Ints, axis: int, starts: Ints):
+        self._other = np.flatnonzero((joints.sheet == index) & (joints.axis == 1 - axis))
+        self._axis, self._length = 1 - axis, joints.length[self._other]
+        self._moves = _Moves(model, model.sheets[index], joints, self._other, 1 - axis)
+        place, across = (np.full(len(model.bushings) + 1, -1) for _ in range(2))
+        place[joints.bushing[mine]] = np.searchsorted(starts, np.arange(len(mine)), side="right") - 1
+        across[joints.bushing[self._other]] = np.arange(len(self._other))
+        way = np.zeros(len(model.bushings) + 1)
+        way[joints.bushing] = joints.way
+        corners = model.corners
+        self._springs, self._dampers = np.zeros((2, len(starts), len(self._other)))
+        for n in range(4):
+            pair = (corners.joint[:, n // 2], corners.joint[:, 2 + n % 2])
+            own, far = place[pair[axis]], across[pair[1 - axis]]
+            met = (own >= 0) & (far >= 0)
+            sign = way[pair[0]] * way[pair[1]]
+            for table, values in ((self._springs, corners.stretch), (self._dampers, corners.stretch_damping)):
+                np.add.at(table, (own[met], far[met]), (sign * values[:, n])[met])
+
+    def pull(self, result: Result, part: slice) -> Floats:
+        """At some stored states [N], (t, sections)."""
+        more, less = stretched(result, part, self._other, self._axis)
+        opens, _ = self._moves.rates(result, part)
+        return 0.5 * self._length * (more + less) @ self._springs.T + opens @ self._dampers.T
 
 
 def curve_stress(curves: Curves, number: int, strain: Floats) -> Floats:

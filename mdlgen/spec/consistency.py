@@ -6,6 +6,8 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import TYPE_CHECKING
 
+from pydantic_core import PydanticCustomError
+
 from mdlgen.spec.action import OnSheet
 from mdlgen.spec.between import known
 from mdlgen.spec.nip import names_of as rollers_of
@@ -105,6 +107,25 @@ def _check_material(scene: Scene, name: str) -> None:
             "membrane stiffness across the joint; leave G out or change the layout",
             ("materials", sheet.material, "G"),
         )
+
+    if material.poisson and sheet.layout != "plate":
+        raise fail(
+            f"sheet {name}: poisson acts with layout plate only: {sheet.layout} does not couple joints along "
+            "x and along y; leave poisson out or change the layout",
+            ("materials", sheet.material, "poisson"),
+        )
+    if material.poisson:
+        md, cd = material.strips(sheet.thickness, sheet.pitch[0] / sheet.pitch[1])
+        if not md > 0.0 or not cd > 0.0:
+            raise fail(
+                f"sheet {name}: poisson needs a bending stiffness along x and y above 0",
+                ("materials", sheet.material, "poisson"),
+            )
+        try:
+            material.bound("D", md, cd)
+        except PydanticCustomError as error:
+            text = str((error.context or {})["text"])
+            raise fail(f"sheet {name}: {text}", ("materials", sheet.material, "poisson")) from None
 
 
 def _check_clutch(scene: Scene, name: str) -> None:

@@ -131,6 +131,13 @@ class Material(Strict):
         default=None,
         description="shear modulus in the plane, with layout plate; 0.387 sqrt(E_md E_cd) where left out",
     )
+    poisson: Ratio | None = Field(
+        default=None,
+        description="Poisson's ratio nu_md with layout plate: contraction along y over elongation along x of "
+        "a strip pulled along x, and the same of curvatures; nu_cd is nu_md E_cd/E_md. Moduli and bending "
+        "stiffness that are given are those of strips: a plate that is held across has E/(1 - nu_md nu_cd). "
+        "Below sqrt(E_md/E_cd) and sqrt(D_md/D_cd); none where left out",
+    )
     damping: Damping = Field(default_factory=Damping, description="damping of the joints")
     yield_: Yield | None = Field(
         default=None,
@@ -163,6 +170,45 @@ class Material(Strict):
             if len(given) > 1:
                 raise fail(f"bending along {way}: both {hinge} and {plate} are given; give one of them")
         return self
+
+    @model_validator(mode="after")
+    def _contraction(self) -> Material:
+        if not self.poisson:
+            return self
+        for name in ("curve_md", "curve_cd"):
+            if getattr(self, name) is not None:
+                raise fail(
+                    f"poisson and {name} are both given: what couples MD and CD is linear; give "
+                    f"E_{name[-2:]} in place of {name}, or leave poisson out",
+                    within=("poisson",),
+                )
+        if self.yield_ is not None:
+            raise fail(
+                "poisson and yield are both given: bending that yields along MD and CD is not coupled; leave "
+                "one of them out",
+                within=("poisson",),
+            )
+        self.bound("E", *self.moduli)
+        return self
+
+    def bound(self, name: str, md: float, cd: float) -> None:
+        """Raises where Poisson's ratio leaves some strain without energy, with these values of `name`."""
+        most = math.sqrt(md / cd)
+        if self.poisson is not None and not self.poisson < most:
+            raise fail(
+                f"poisson: {float(self.poisson):g} is too large; allowed is less than "
+                f"sqrt({name}_md/{name}_cd) = {most:.4g}, with which some strain would take no energy",
+                within=("poisson",),
+            )
+
+    def strips(self, thickness: float, shape: float) -> tuple[float, float]:
+        """Bending stiffness per width (D_md, D_cd) [N mm] of strips, also where hinges are given: of a joint
+        whose length along x is `shape` times the one along y."""
+        md, cd = self.plates(thickness)
+        cd = cd if self.k_tx is None else self.k_tx / shape
+        md = md if self.k_ty is None else self.k_ty * shape
+        assert cd is not None and md is not None, "what is no hinge is a plate"
+        return md, cd
 
     def plates(self, thickness: float) -> tuple[float | None, float | None]:
         """Bending stiffness per width (D_md, D_cd) [N mm]; None where a hinge stiffness is given, and where

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from mdlgen.backends.lattice.arrays import System, offsets
 from mdlgen.backends.lattice.search import with_room
+from mdlgen.mechanics.corner import renumbered
 from mdlgen.model.tables import Ints, Model
 
 
@@ -57,7 +58,9 @@ def awake(system: System, parts: Parts, asleep: NDArray[np.bool_]) -> tuple[Syst
     bodies["node"] = -1
     bodies["node"][nodes] = np.arange(len(nodes))
     free = [np.where(system.joints[end] >= 0, bodies["node"][system.joints[end]], -1) >= 0 for end in "ab"]
-    joints = system.joints[free[0] | free[1]].copy()
+    own = free[0] | free[1]
+    joints = system.joints[own].copy()
+    corners = renumbered(system.corners[~asleep[system.corners["sheet"]]], np.cumsum(own) - 1)
     search = system.search
     chosen = np.flatnonzero(~lasting[system.pairs["row"][: search.first]])
     regions = ~lasting[search.regions["row"]]
@@ -75,7 +78,8 @@ def awake(system: System, parts: Parts, asleep: NDArray[np.bool_]) -> tuple[Syst
             loads=system.loads[~sleeps[system.loads["body"]]],
             nodes=nodes,
             sheets=system.sheets[left],
-            offsets=offsets(bodies, joints),
+            offsets=offsets(bodies, joints, corners),
+            corners=corners,
             search=search._replace(
                 regions=search.regions[regions],
                 room=search.room[regions],

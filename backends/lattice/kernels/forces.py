@@ -6,6 +6,7 @@ from mdlgen.backends.lattice.kernels.image import reflect, reflect_rates
 from mdlgen.backends.lattice.kernels.state import LOST, NUMERICAL, OWN_MASS
 from mdlgen.mechanics.arm import moved, way_of
 from mdlgen.mechanics.bushing import bushing_pair
+from mdlgen.mechanics.corner import corner_forces
 from mdlgen.mechanics.curve import curve_excess
 from mdlgen.mechanics.driven import SENSE, clutch, prescribed, turned
 from mdlgen.mechanics.frame import Frame
@@ -161,13 +162,17 @@ def joint_forces(joints, points, motion, f, lag=0.0):
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def joint_forces_of_sheets(tables, motion, f, lag, spent):
-    """Adds the forces of all joints as joint_forces does. What each of tables.runs dissipates, and how much
-    of that is due to `lag`, goes into spent (runs, 2)."""
+    """Adds the forces of all joints as joint_forces does, and those of corners. What each of tables.runs
+    dissipates, and how much of that is due to `lag`, goes into spent (runs, 2)."""
     runs = tables.runs
     for k in range(runs.shape[0]):
         own = tables.joints[runs[k, 0] : runs[k, 1]]
         _stored, lost, numerical = joint_forces(own, tables.points, motion, f, lag)
         spent[k, LOST], spent[k, NUMERICAL] = lost, numerical
+    corners = tables.corners
+    for k in range(corners.size):
+        _stored, lost = corner_forces(tables.joints, corners[k], motion, f)
+        spent[corners[k].run, LOST] += lost
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)

@@ -37,6 +37,7 @@ class Tables(NamedTuple):
     held: np.ndarray  # the pairs in these, mechanics.bristle.HELD
     hinges: np.ndarray  # joints that yield, mechanics.plastic.HINGE
     shapes: Any  # mechanics.shapes.Shapes
+    corners: np.ndarray  # mechanics.corner.CORNER
 
 
 SHEET = 2  # column of Tables.runs

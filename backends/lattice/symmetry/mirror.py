@@ -136,7 +136,7 @@ def halve(system: System, mirror: Mirror) -> System:
         loads=system.loads[~gone[system.loads["body"]]],
         nodes=nodes,
         sheets=system.sheets[left],
-        offsets=offsets(bodies, joints),
+        offsets=offsets(bodies, joints, system.corners),
         border=border,
         images=images,
         search=system.search._replace(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from mdlgen.altair.air import refuse_air
 from mdlgen.altair.parts import refuse_unwritten
+from mdlgen.altair.poisson import refuse_poisson
 from mdlgen.altair.rolling import refuse_rolling
 from mdlgen.altair.springs import refuse_compressed
 from mdlgen.backends.motionsolve.writer import gate
@@ -33,6 +34,7 @@ def check(model: Model) -> None:
     refuse_compressed(model, "MotionSolve deck")
     refuse_rolling(model, "MotionSolve deck")
     refuse_air(model, "MotionSolve deck")
+    refuse_poisson(model, "MotionSolve deck")
 
 
 def emit(model: Model) -> str:

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from mdlgen.altair.air import refuse_air
 from mdlgen.altair.parts import refuse_unwritten
+from mdlgen.altair.poisson import refuse_poisson
 from mdlgen.altair.rolling import refuse_rolling
 from mdlgen.altair.springs import refuse_compressed
 from mdlgen.backends.motionview.writer import gate
@@ -43,6 +44,7 @@ def check_sheets(model: Model) -> None:
     refuse_yield(model, "MotionView text")
     refuse_searched(model, "MotionView text")
     refuse_air(model, "MotionView text")
+    refuse_poisson(model, "MotionView text")
     refuse_unwritten(model, WRITTEN, "MotionView text")
 
 

@@ -6,6 +6,7 @@ from typing import Any
 
 from mdlgen.altair.air import refuse_air
 from mdlgen.altair.parts import refuse_unwritten
+from mdlgen.altair.poisson import refuse_poisson
 from mdlgen.altair.rolling import refuse_rolling
 from mdlgen.altair.springs import refuse_compressed
 from mdlgen.altair.statics import static_method
@@ -40,6 +41,7 @@ def check(model: Model) -> None:
     refuse_compressed(model, who)
     refuse_rolling(model, who)
     refuse_air(model, who)
+    refuse_poisson(model, who)
 
 
 def tables(model: Model) -> dict[str, Any]:

@@ -8,8 +8,8 @@ A joint of length l and width w (the side that its two boxes share) gets
     about w     D w / l               bending
     about z     E s w^3 / (12 l)      bending in the plane: that of the strip of width w itself
 
-so bending, in the plane or out of it, membrane, shear and twist are those of the plate on any grid; Poisson's
-effect is not represented. Across z a joint is stiff, as in Eq. 4.
+so bending, in the plane or out of it, membrane, shear and twist are those of the plate on any grid. Across z
+a joint is stiff, as in Eq. 4. Poisson's effect is in lowering.poisson.
 
 Half of the twist's energy is in the joints along x, half in those along y. Over the outer half of the boxes
 at a free edge only the joints along that edge are left: there they have the whole of it. So in twist a joint
@@ -48,11 +48,7 @@ def twisting(sheet: Sheet, material: Material) -> float | None:
     if material.D_twist is not None or sheet.layout != "plate":
         return material.D_twist
     shape = sheet.pitch[0] / sheet.pitch[1]
-    md, cd = material.plates(sheet.thickness)
-    cd = cd if material.k_tx is None else material.k_tx / shape
-    md = md if material.k_ty is None else material.k_ty * shape
-    assert cd is not None and md is not None, "what is no hinge is a plate"
-    return SHEAR_RATIO * math.sqrt(md * cd)
+    return SHEAR_RATIO * math.sqrt(math.prod(material.strips(sheet.thickness, shape)))
 
 
 def tributary(strip: Ints, cells: int, held_min: bool, held_max: bool) -> Floats:

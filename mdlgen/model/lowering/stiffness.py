@@ -170,7 +170,8 @@ def derived(sheet: Sheet, material: Material) -> dict[str, float]:
     k_x, k_ty and k_tz are those of the joints along x, k_y and k_tx those of the joints along y; layout plate
     adds the others as k_y_shear, k_tx_twist and k_x_shear, k_ty_twist, k_tz_y, and the G [MPa] and D_twist
     [N mm] that they follow from. Joints in the rows and columns at free edges have k_tx_twist_edge and
-    k_ty_twist_edge in place of k_tx_twist and k_ty_twist. Damping by time adds tau_md and tau_cd [ms].
+    k_ty_twist_edge in place of k_tx_twist and k_ty_twist. Damping by time adds tau_md and tau_cd [ms],
+    poisson nu_md and nu_cd. Stiffnesses are those of strips, which lowering.poisson makes those of a plate.
     """
     of = plain(sheet)
     own, shared = {True: ("x", "ty", "tz"), False: ("y", "tx")}, ("z",)
@@ -194,6 +195,9 @@ def derived(sheet: Sheet, material: Material) -> dict[str, float]:
         values |= dict(zip(("tau_md", "tau_cd"), material.damping.times, strict=True))
     if sheet.layout != "plate":
         return values
+    if material.poisson:
+        md, cd = material.moduli
+        values |= {"nu_md": material.poisson, "nu_cd": material.poisson * cd / md}
     twist = plate.twisting(sheet, material)
     assert twist is not None, "a plate has one"
     held = "" if sheet.clamp is None else sheet.clamp.edge

@@ -13,9 +13,11 @@ from mdlgen.model.tables.bodies import JOINT_Y as JOINT_Y
 from mdlgen.model.tables.bodies import SUPPORT as SUPPORT
 from mdlgen.model.tables.bodies import Bodies as Bodies
 from mdlgen.model.tables.bodies import Bushings as Bushings
+from mdlgen.model.tables.bodies import Corners as Corners
 from mdlgen.model.tables.bodies import Curves as Curves
 from mdlgen.model.tables.bodies import Frozen as Frozen
 from mdlgen.model.tables.bodies import Plastic as Plastic
+from mdlgen.model.tables.bodies import no_corners as no_corners
 from mdlgen.model.tables.bodies import no_plastic as no_plastic
 from mdlgen.model.tables.contacts import BOX_BOX as BOX_BOX
 from mdlgen.model.tables.contacts import BOX_CYLINDER as BOX_CYLINDER

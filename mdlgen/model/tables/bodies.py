@@ -86,6 +86,31 @@ def no_plastic() -> Plastic:
 
 
 @dataclass(frozen=True)
+class Corners(Frozen):
+    """Poisson's effect: couplings of the bushings around corners where four boxes meet, or two and a clamp.
+
+    Columns of coefficients are those of mechanics.corner.CORNER: of the first bushing along x with the first
+    and the second one along y, then of the second one along x.
+    """
+
+    joint: Ints  # bushings: two along x, two along y, -1: none, (n, 4)
+    bend: Floats  # [N mm/rad], (n, 4)
+    stretch: Floats  # [N/mm], (n, 4)
+    bend_damping: Floats  # [N mm ms/rad], (n, 4)
+    stretch_damping: Floats  # [N ms/mm], (n, 4)
+    sheet: Ints  # index of the sheet, (n,)
+
+    def __len__(self) -> int:
+        return len(self.joint)
+
+
+def no_corners() -> Corners:
+    """The table of a Model without Poisson's effect."""
+    none = np.zeros((0, 4))
+    return Corners(np.zeros((0, 4), np.int64), none, none, none, none, np.zeros(0, np.int64))
+
+
+@dataclass(frozen=True)
 class Curves(Frozen):
     """Measured stress-strain curves, and the bushings that follow one along an axis of their own.
 

@@ -9,7 +9,16 @@ from typing import TypeVar
 
 from mdlgen.geometry.arrays import Floats as Floats
 from mdlgen.geometry.arrays import Ints as Ints
-from mdlgen.model.tables.bodies import Bodies, Bushings, Curves, Frozen, Plastic, no_plastic
+from mdlgen.model.tables.bodies import (
+    Bodies,
+    Bushings,
+    Corners,
+    Curves,
+    Frozen,
+    Plastic,
+    no_corners,
+    no_plastic,
+)
 from mdlgen.model.tables.contacts import Contacts, ExternalPairs, Pairs
 from mdlgen.model.tables.machine import (
     ExternalPart,
@@ -125,6 +134,7 @@ class Model(Frozen):
     author: str = ""  # of the design, for the head of the page
     revision: str = ""
     plastic: Plastic = field(default_factory=no_plastic)
+    corners: Corners = field(default_factory=no_corners)  # Poisson's effect of plates
 
     def __repr__(self) -> str:
         kinds = ("sheets", "rollers", "planes", "guides", "meshes", "bushings", "contacts")

@@ -17,6 +17,7 @@ import math
 from mdlgen.backends.lattice.kernels.contact.condensed import INSIDE, forget
 from mdlgen.backends.lattice.kernels.integrate.along import look_along, pull, slope
 from mdlgen.backends.lattice.kernels.integrate.change import greatest
+from mdlgen.backends.lattice.kernels.integrate.corners import corners_into
 from mdlgen.backends.lattice.kernels.integrate.hinges import hinges_into
 from mdlgen.backends.lattice.kernels.integrate.momentum import let_go
 from mdlgen.backends.lattice.kernels.integrate.points import gather
@@ -84,6 +85,7 @@ def _make_matrix(work, h, lag, renew):
         joints_into(tables, tables.joints, h, lag, motion.x, motion.r, matrix.inner, matrix.inner_slots)
         if tables.hinges.size > 0:
             hinges_into(tables, h, motion.r, matrix.inner, matrix.inner_slots)
+        corners_into(tables, h, motion.x, motion.r, matrix.inner, matrix.inner_slots)
         in_box_axes(tables.nodes, motion.r, matrix.inner, b, matrix.offsets, matrix.inner_slots)
         copy(matrix.single_inner, matrix.inner)
     for n in range(a.shape[0]):  # points fill the diagonal blocks alone

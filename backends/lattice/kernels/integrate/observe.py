@@ -20,6 +20,7 @@ from mdlgen.backends.lattice.kernels.state import (
 )
 from mdlgen.backends.lattice.kernels.tuning import EPSILON
 from mdlgen.mechanics.arm import AXIAL, FORCE_0, INERTIA, STIFFNESS, hung, way_of
+from mdlgen.mechanics.corner import corner_forces
 from mdlgen.mechanics.driven import prescribed
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.point import DEPTH, PRESSING, STORED
@@ -92,6 +93,9 @@ def ledger(work, t, energies, rows):
         energies[islands.group[tables.runs[k, SHEET]], ELASTIC] += stored
     if tables.hinges.size > 0:
         hinge_energies(tables, islands.group, r, energies)
+    for k in range(tables.corners.size):
+        stored, _ = corner_forces(tables.joints, tables.corners[k], motion, f)
+        energies[islands.group[tables.corners[k].sheet], ELASTIC] += stored
     if tables.held.size > 0:
         # as in a step of no length: what holds is the spring as it is, whatever moves now
         lay_bristles(tables, motion, EPSILON)

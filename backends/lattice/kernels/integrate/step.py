@@ -47,6 +47,7 @@ from mdlgen.backends.lattice.kernels.integrate.change import (
     take_off,
 )
 from mdlgen.backends.lattice.kernels.integrate.convex import solve_convex
+from mdlgen.backends.lattice.kernels.integrate.corners import corners_into
 from mdlgen.backends.lattice.kernels.integrate.hinges import begin_hinges, hinge_forces, hinges_into
 from mdlgen.backends.lattice.kernels.integrate.mixing import mix
 from mdlgen.backends.lattice.kernels.integrate.momentum import keep
@@ -176,6 +177,7 @@ def _make_factor(work, counts, h, lag, where, chord):
     joints_into(tables, tables.joints, h, lag, motion.x, motion.r, a, matrix.slots)
     if tables.hinges.size > 0:
         hinges_into(tables, h, motion.r, a, matrix.slots)
+    corners_into(tables, h, motion.x, motion.r, a, matrix.slots)
     if where == PLANES:
         gather(work, counts, h, True)
         points_into(work, h, chord)

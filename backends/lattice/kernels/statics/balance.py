@@ -17,7 +17,12 @@ from mdlgen.backends.lattice.kernels.linear.band import factor
 from mdlgen.backends.lattice.kernels.linear.bordered import eliminate, solve_bordered
 from mdlgen.backends.lattice.kernels.linear.dense import copy
 from mdlgen.backends.lattice.kernels.statics.chain import follow, link, opening
-from mdlgen.backends.lattice.kernels.statics.stiffness import contacts_into, rollers_into, sheets_into
+from mdlgen.backends.lattice.kernels.statics.stiffness import (
+    contacts_into,
+    corners_into,
+    rollers_into,
+    sheets_into,
+)
 from mdlgen.backends.lattice.kernels.tuning import (
     BALANCE_MOST,
     BALANCE_STILL,
@@ -33,6 +38,7 @@ from mdlgen.backends.lattice.kernels.tuning import (
     REST_AT_LEAST,
 )
 from mdlgen.mechanics.arm import FORCE_0, INERTIA, STIFFNESS
+from mdlgen.mechanics.corner import corner_forces
 from mdlgen.mechanics.frame import Motion
 from mdlgen.program.kernel import njit
 
@@ -49,6 +55,8 @@ def _residual(tables, level, place, lists, blank, rest):
     motion = Motion(x, r, still, still)
     f[:] = 0.0
     joint_forces(tables.joints, tables.points, motion, f)
+    for k in range(tables.corners.size):
+        corner_forces(tables.joints, tables.corners[k], motion, f)
     close = near_pairs(tables, motion, 0.0, 0.0, near)
     count, _, _ = pair_forces(tables, near, close, motion, f, touched, results)
     other_forces(tables, level, motion, f)
@@ -185,6 +193,8 @@ def equilibrium(tables, size, level, load, least, reach, place, lists):
         if not worst < NO_WAY_BACK:
             return False, iteration, at, worst / load
         sheets_into(bodies, joints, points, loads, level, gaps, x, r, a)
+        if tables.corners.size > 0:
+            corners_into(tables, Motion(x, r, still, still), blank[1], a)
         rollers_into(bodies, b, d)
         contacts_into(tables, touched, count, Motion(x, r, still, still), a, b, d)
         shift = _newton(matrix, plain, shift, load, rest, step)
@@ -244,6 +254,8 @@ def stands(tables, level, least, slow, place, lists, matrix):
     rest = (np.zeros(size), np.zeros(d.shape[0]))
     _, _, count = _residual(tables, level, place, lists, (still, f), rest)
     sheets_into(bodies, joints, points, loads, level, gaps, x, r, a)
+    if tables.corners.size > 0:
+        corners_into(tables, Motion(x, r, still, still), f, a)
     rollers_into(bodies, b, d)
     contacts_into(tables, touched, count, Motion(x, r, still, still), a, b, d)
     ease = twist = 0.0

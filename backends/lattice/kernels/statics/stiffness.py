@@ -12,6 +12,7 @@ import numpy as np
 from mdlgen.backends.lattice.kernels.linear.dense import copy
 from mdlgen.backends.lattice.kernels.tuning import DIFFERENCE
 from mdlgen.mechanics.arm import STIFFNESS
+from mdlgen.mechanics.corner import bodies_of, corner_forces
 from mdlgen.mechanics.curve import curve_spring
 from mdlgen.mechanics.pair import pair_force
 from mdlgen.mechanics.point import OUT
@@ -210,6 +211,37 @@ def _move(x, r, b, way, c, amount):
         m = matmul(exp_rotation(scale(amount, _unit(c - 3))), mat(r, b))
         for i in range(9):
             r[b, i] = m[i]
+
+
+@njit(cache=True, error_model="numpy")
+def corners_into(tables, motion, f, a):
+    """Adds Poisson's effect to the band a: minus the differences of the forces of corners, made symmetric.
+    `motion` is at rest; its places come back as they were. `f` (bodies, 6) is scratch."""
+    bodies, joints, corners, (x, r, _u, _w) = tables.bodies, tables.joints, tables.corners, motion
+    own, keep, there = np.empty((24, 24)), np.empty(12), np.empty(4, np.int64)
+    for k in range(corners.size):
+        many = bodies_of(joints, corners[k], there)
+        own[:] = 0.0
+        for n in range(6 * many):
+            body = there[n // 6]
+            if bodies[body].node < 0:
+                continue
+            copy(keep[:3], x[body])
+            copy(keep[3:], r[body])
+            for side in (1.0, -1.0):
+                _move(x, r, body, bodies[body].way, n % 6, side * DIFFERENCE)
+                f[:] = 0.0
+                corner_forces(joints, corners[k], motion, f)
+                copy(x[body], keep[:3])
+                copy(r[body], keep[3:])
+                for l in range(6 * many):
+                    own[n, l] -= side * f[there[l // 6], l % 6] / (2.0 * DIFFERENCE)
+        for n in range(6 * many):
+            one = bodies[there[n // 6]].node
+            for l in range(6 * many):
+                two = bodies[there[l // 6]].node
+                if one >= 0 and two >= one:
+                    a[one, n % 6, 6 * (two - one) + l % 6] += 0.5 * (own[n, l] + own[l, n])
 
 
 @njit(cache=True, error_model="numpy")

@@ -13,6 +13,7 @@ from mdlgen.bench.suites.validation import (
     bending,
     edges,
     plates,
+    poisson,
     rigid,
     rolling,
     rubbing,
@@ -20,7 +21,7 @@ from mdlgen.bench.suites.validation import (
     yielding,
 )
 
-GROUPS = (bending, plates, swinging, yielding, belts, rolling, rigid, rubbing, edges)
+GROUPS = (bending, plates, poisson, swinging, yielding, belts, rolling, rigid, rubbing, edges)
 
 
 def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
