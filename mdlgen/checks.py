@@ -11,6 +11,7 @@ from mdlgen.lints import (
     air,
     contacts,
     cost,
+    covers,
     creep,
     damping,
     idle,
@@ -69,4 +70,8 @@ CHECKS: tuple[Callable[[Model], Iterator[Lint]], ...] = (
     air.still,
     creep.on_slope,
     creep.stopped,
+    covers.hardness,
+    covers.strain,
+    covers.wide,
+    covers.through,
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mdlgen.altair.air import refuse_air
+from mdlgen.altair.covers import refuse_covers
 from mdlgen.altair.parts import refuse_unwritten
 from mdlgen.altair.rolling import refuse_rolling
 from mdlgen.altair.springs import refuse_compressed
@@ -24,6 +25,7 @@ def check(model: Model) -> None:
     """Raises RefusedError by name for what the deck cannot represent."""
     refuse_externals(model, "MotionSolve deck")
     refuse_sticking(model, "MotionSolve deck")
+    refuse_covers(model, "MotionSolve deck")
     refuse_searched(model, "MotionSolve deck")
     refuse_unwritten(model, WRITTEN, "MotionSolve deck")
     refuse_compressed(model, "MotionSolve deck")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from mdlgen.altair.air import refuse_air
+from mdlgen.altair.covers import refuse_covers
 from mdlgen.altair.parts import refuse_unwritten
 from mdlgen.altair.rolling import refuse_rolling
 from mdlgen.altair.springs import refuse_compressed
@@ -37,6 +38,7 @@ def check(model: Model) -> None:
 def check_sheets(model: Model) -> None:
     """Raises RefusedError by name for what the text of the sheets cannot represent."""
     refuse_sticking(model, "MotionView text")
+    refuse_covers(model, "MotionView text")
     refuse_searched(model, "MotionView text")
     refuse_air(model, "MotionView text")
     refuse_unwritten(model, WRITTEN, "MotionView text")

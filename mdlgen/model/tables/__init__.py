@@ -32,6 +32,7 @@ from mdlgen.model.tables.contacts import Contacts as Contacts
 from mdlgen.model.tables.contacts import ExternalPairs as ExternalPairs
 from mdlgen.model.tables.contacts import Pairs as Pairs
 from mdlgen.model.tables.machine import ArmPart as ArmPart
+from mdlgen.model.tables.machine import CoverPart as CoverPart
 from mdlgen.model.tables.machine import ExternalPart as ExternalPart
 from mdlgen.model.tables.machine import GuidePart as GuidePart
 from mdlgen.model.tables.machine import MachinePart as MachinePart
