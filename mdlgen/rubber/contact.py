@@ -122,7 +122,8 @@ def loaded(covers: tuple[Layer, ...], curvature: float, load: float) -> Squeezed
     """The nip under a line load [N/mm]; None: it would be wider than WIDEST allows."""
     from scipy.optimize import brentq
 
-    widest = WIDEST / max(curvature, *(1.0 / cover.radius for cover in covers))
+    own = 1.0 / covers[0].radius
+    widest = WIDEST / max(own, curvature - own)  # of the smaller radius
 
     def short(log: float) -> float:
         half = math.exp(log)
