@@ -101,7 +101,7 @@ def test_lints_of_covers():
     codes = {
         "W140": (f"{COVER}.hardness=15 ShA", "nips.feed.force=3 N"),
         "W141": (f"{COVER}.hardness=20 ShA", f"{COVER}.poisson=0.2", f"{COVER}.thickness=1 mm"),
-        "W142": ("nips.feed.force=60 N",),
+        "W142": ("nips.feed.force=60 N", f"{COVER}.hardness=25 ShA"),
         "W143": ("nips.feed.contact={friction: 0.3}",),
     }
     clean = {lint.code for lint in lints(mdlgen.lower(scene()))}
