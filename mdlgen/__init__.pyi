@@ -387,6 +387,7 @@ class Roller(_Roller):
         press: _Press | Mapping[str, Any] | None = ...,
         arm: _Arm | Mapping[str, Any] | None = ...,
         rim: _Rim | Mapping[str, Any] | None = ...,
+        cover: Mapping[str, Any] | None = ...,
         repeat: _Repeat | Mapping[str, Any] | None = ...,
         mirror: _Mirror | Mapping[str, Any] | None = ...,
     ) -> None: ...

@@ -11,6 +11,7 @@ from mdlgen.lints import (
     air,
     contacts,
     cost,
+    covers,
     creep,
     damping,
     friction,
@@ -75,4 +76,8 @@ CHECKS: tuple[Callable[[Model], Iterator[Lint]], ...] = (
     friction.coarse_scatter,
     yielding.coarse,
     yielding.bent_beyond,
+    covers.hardness,
+    covers.strain,
+    covers.wide,
+    covers.through,
 )

@@ -221,6 +221,29 @@ SCENE = {
         "that is below the inverse of the yield curvature, it keeps the curvature (1 - h)(kappa - kappa_y) "
         "as it leaves, with the hardening h."
     ),
+    "W147": (
+        "Young's modulus of a cover follows from its hardness by Gent's relation (1958), which holds from 20 "
+        "to 80 degrees of Shore A. Below, the foot of the durometer touches the rubber; above, its needle "
+        "hardly moves. Another published relation, Ruess' lg E = 0.0235 S - 0.6403 from 30 to 60 degrees, "
+        "has 2 % more at 30, 18 % more at 40 and 63 % more at 60. Give a measured `modulus` where the nip "
+        "has to be right."
+    ),
+    "W148": (
+        "The nip of a cover is computed with Hooke's law for small strains. Rubber that is pressed together "
+        "by 20 % is 27 % stiffer than that (neo-Hookean law: stress G (1/l^2 - l) at a length l, in place of "
+        "3 G (1 - l)). So the nip is narrower and the indentation less than stated."
+    ),
+    "W149": (
+        "The formulas take the surfaces in a nip for parabolas, x^2/(2R). At a half-width of 0.3 R that is "
+        "2.3 % off the round, and the pressure no longer acts along one direction."
+    ),
+    "W150": (
+        "A soft cover lets the hard roller in by more than the sheet is thick. Then the contact of the two "
+        "rollers with each other acts as well as that of each with the sheet, and the spring carries both. A "
+        "nip adds that to its preload, so that the sheet has the force of the nip; a press of your own does "
+        "not. In reality the sheet alone is between them: torque and friction of the rollers on each other "
+        "are too much here."
+    ),
 }
 
 TEXT = {

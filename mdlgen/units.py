@@ -42,8 +42,13 @@ _NAMES: dict[str, Unit] = {
     for name, factor in table.items()
 }
 
-# Known where a unit is due, and no names of units in a formula, where W is a width.
-_POWERS_OF_DRIVES = {"W": Unit(1.0, (2.0, 1.0, -3.0, 0.0)), "mW": Unit(1e-3, (2.0, 1.0, -3.0, 0.0))}
+# Known where a unit is due, and no names of units in a formula, where W is a width: the power of a drive, and
+# degrees of hardness on the scale Shore A.
+_NO_NAMES = {
+    "W": Unit(1.0, (2.0, 1.0, -3.0, 0.0)),
+    "mW": Unit(1e-3, (2.0, 1.0, -3.0, 0.0)),
+    "ShA": Unit(1.0, (0.0, 0.0, 0.0, 0.0)),
+}
 
 _NUMBER = r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(.*?)\s*")
@@ -94,12 +99,12 @@ def parse_unit(text: str) -> Unit:
     factor, dimension = 1.0, (0.0, 0.0, 0.0, 0.0)
     for sign, word in re.findall(r"(^|[*/·])([^*/·]*)", _powers(text)):
         match = _FACTOR.fullmatch(word.strip())
-        known = match and (match[1] == "1" or match[1] in _NAMES or match[1] in _POWERS_OF_DRIVES)
+        known = match and (match[1] == "1" or match[1] in _NAMES or match[1] in _NO_NAMES)
         if not match or not known:
             raise UnknownUnit(f"unknown unit {word.strip()!r} in {text!r}{_meant(word)}")
         if match[1] == "1":
             continue
-        unit = _NAMES.get(match[1]) or _POWERS_OF_DRIVES[match[1]]
+        unit = _NAMES.get(match[1]) or _NO_NAMES[match[1]]
         power = float(match[2] or 1) * (-1.0 if sign == "/" else 1.0)
         if abs(power) > 8:
             raise ValueError(f"exponent {match[2]} in {text!r} has no physical use")

@@ -13,7 +13,7 @@ PICTURES = ROOT / "docs" / "pictures" / "samples"
 GROUPS = {
     "Transport of a note": (
         *("transport_4x4", "transport_nips", "transport_4x2", "transport_tilted"),
-        "tilt_correction",
+        *("tilt_correction", "rubber_nip"),
     ),
     "Channels and guides": ("channel", "guide_joint"),
     "Stacks and feeders": (

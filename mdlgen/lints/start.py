@@ -11,7 +11,9 @@ from mdlgen.model.parts.roller import FLAT
 from mdlgen.model.sheet_corners import corners
 from mdlgen.model.tables import (
     BOX_BOX,
+    MachinePart,
     Model,
+    RollerPart,
     SheetPart,
 )
 
@@ -29,8 +31,14 @@ def interference(model: Model) -> Iterator[Lint]:
         elif number in WITH_SHEET:
             kind, sheet, part = WITH_SHEET[number], sheets[one], parts[other]
             depth = kind.depth_at_start(model, sheet, part)
-            if deep(depth, sheet):
+            if deep(depth, sheet) and not _gives_way(part, depth):
                 yield _deep_start(model, row, kind.place(part), part.name, depth, sheet)
+
+
+def _gives_way(part: MachinePart, depth: float) -> bool:
+    """Whether a part has a cover that is pressed in no deeper than in its nip."""
+    cover = part.cover if isinstance(part, RollerPart) else None
+    return cover is not None and depth <= 1.01 * cover.depth
 
 
 def _deep_start(model: Model, row: int, where: str, part: str, depth: float, sheet: SheetPart) -> Lint:

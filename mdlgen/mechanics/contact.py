@@ -123,7 +123,8 @@ def face_corner(corner, a, half, facing, b):
 
 @njit(cache=True, error_model="numpy", **BORROWS, **CALLED)
 def cylinder_cylinder(out, a, one, b, two, law):
-    """Two parallel Cylinders; k is shared by the part of the narrower one's width that they meet on."""
+    """Two parallel Cylinders; k is shared by the part of the narrower one's width that they meet on. The
+    force stands in the middle of the overlap, or aside where a cover lets one run ahead (model.covers)."""
     gap = sub(a.x, b.x)
     offset = dot(gap, two.axis)
     across = sub(gap, scale(offset, two.axis))
@@ -136,5 +137,11 @@ def cylinder_cylinder(out, a, one, b, two, law):
     share = (high - low) / min(one.width, two.width)
     normal = scale(1.0 / distance, across)
     spring = share * law.k * depth * math.sqrt(depth)
-    point = add(b.x, add(scale(0.5 * (low + high), two.axis), scale(two.radius - 0.5 * depth, normal)))
+    point = add(
+        b.x,
+        add(
+            scale(0.5 * (low + high), two.axis),
+            scale(two.radius - (0.5 + law.lever + law.bend * depth) * depth, normal),
+        ),
+    )
     push(out, point, normal, Load(spring, depth, 0.4 * spring * depth), a, b, law)

@@ -16,7 +16,8 @@ Floats = Any  # an array of float64; laws do not ask which
 
 
 # Columns of the law of a pair record: numbers as of Law, and the coefficient of rolling resistance.
-LAW_BETA, LAW_STATIC, LAW_DYNAMIC, LAW_STICTION, LAW_SLIDING, LAW_SMOOTHING, LAW_ROLLING, LAW = range(8)
+LAW_BETA, LAW_STATIC, LAW_DYNAMIC, LAW_STICTION, LAW_SLIDING, LAW_SMOOTHING, LAW_ROLLING = range(7)
+LAW_LEVER, LAW_BEND, LAW = 7, 8, 9
 
 # Of what a body record has of a cylinder (`size`), and of an arc (`arc`, `Plate.shape`): its radius, 0 of a
 # straight guide, the angle of its middle, and half of the angle that it goes over.
@@ -90,8 +91,10 @@ class Plate(NamedTuple):
 class Law(NamedTuple):
     """Numbers of a contact: stiffness k (Eq. 10), whether boxes share it (`share: width`), the share of
     damping beta (Eq. 11), coefficients of friction (Eq. 12), the speeds at which friction has its static and
-    its dynamic one, that at which damping is whole, and the radius of the round that a roller's force is
-    spread as, 0: the roller's (see mechanics.contact)."""
+    its dynamic one, that at which damping is whole, the radius of the round that a roller's force is spread
+    as, 0: the roller's (see mechanics.contact), and how far friction stands beyond its surface, which is
+    lever z + bend z^2 at a depth z: on a cover what rolls goes faster, or slower, than the core (see
+    model.covers)."""
 
     k: float
     shared: bool
@@ -102,6 +105,8 @@ class Law(NamedTuple):
     sliding: float
     smoothing: float
     spread: float = 0.0
+    lever: float = 0.0
+    bend: float = 0.0
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -148,6 +153,8 @@ def law_of(pair):
         row[LAW_SLIDING],
         row[LAW_SMOOTHING],
         pair.spread,
+        row[LAW_LEVER],
+        row[LAW_BEND],
     )
 
 
@@ -164,4 +171,6 @@ def scaled(law, stiffness, friction, beta):
         law.sliding,
         law.smoothing,
         law.spread,
+        law.lever,
+        law.bend,
     )

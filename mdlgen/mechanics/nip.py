@@ -247,6 +247,7 @@ def _line(out, face, a, half, b, seen, law, u, weight):
     middle_t, apart = 0.5 * (left + right), 0.5 * GAUSS * (right - left)
     low_zeta = of - math.sqrt((middle_t - apart) ** 2 + off * off)
     high_zeta = of - math.sqrt((middle_t + apart) ** 2 + off * off)
+    further = 1.0 + law.lever + law.bend * (radius - e)
     factor, turned = 1.0, 0.0
     if spread and (left > -reach or right < reach):
         factor, turned = _part_of_nip(left, right, reach, of, off)
@@ -270,8 +271,9 @@ def _line(out, face, a, half, b, seen, law, u, weight):
         distance = math.sqrt(t * t + off * off)
         slant = distance * math.sqrt(1.0 + turned * turned)
         normal = add(scale((t + turned * off) / slant, across), scale((off - turned * t) / slant, way))
-        # on the normal's line, as far from the axis as the roller's own surface: it rolls at omega R
-        beyond = (radius - e) * distance / off if spread else radius - distance
+        # on the normal's line, as far from the axis as the roller's own surface: it rolls at omega R, on a
+        # cover at omega (R + lever z + bend z^2)
+        beyond = further * (radius - e) * distance / off if spread else further * (radius - distance)
         at = add(add(line, scale(t, across)), scale(beyond, normal))
         if spread:
             nip = Nip(line, add(line, scale(center, across)), square if seen.flush else way, pressed)

@@ -19,6 +19,7 @@ from mdlgen.mechanics.measured import FACES, FRICTION, MORE_CD, MORE_MD, POWER, 
 from mdlgen.mechanics.mesh_tables import mesh_numbers
 from mdlgen.mechanics.records import LOAD
 from mdlgen.mechanics.rim import rim
+from mdlgen.model.covers import levers
 from mdlgen.model.rotations import matrices
 from mdlgen.model.scatter import scatter_of
 from mdlgen.model.tables import GROUND, Floats, Frictions, Ints, Model, Press
@@ -149,7 +150,9 @@ def pack_laws(model: Model, layout: np.dtype, chosen: Ints, units: Units = OWN) 
     pairs["k"], pairs["spread"] = rows.stiffness[chosen] * units.hertz, rows.spread[chosen] * units.mm
     beta = damping_share.py_func(rows.restitution)  # compiled code is for a solver alone to load
     speeds = (v * units.speed for v in (rows.stiction_velocity, rows.friction_velocity, rows.smoothing))
-    for column, values in enumerate((beta, rows.mu_static, rows.mu_dynamic, *speeds, rows.rolling)):
+    lever, bend = levers(model)
+    columns = (beta, rows.mu_static, rows.mu_dynamic, *speeds, rows.rolling, lever, bend * units.per_mm)
+    for column, values in enumerate(columns):
         pairs["law"][:, column] = values[chosen]
     if rows.frictions is not None:
         pairs["measured"] = np.where(in_rows(rows.frictions), np.arange(1, len(rows) + 1), 0)[chosen]

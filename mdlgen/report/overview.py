@@ -10,6 +10,7 @@ import numpy as np
 from mdlgen.checks import lints
 from mdlgen.lints.cost import cost
 from mdlgen.lints.smoothing import smoothings
+from mdlgen.model.covers import covered
 from mdlgen.model.parts.kind import Kind
 from mdlgen.model.parts.kinds import KINDS
 from mdlgen.model.tables import Model, SheetPart
@@ -39,10 +40,34 @@ def overview(model: Model) -> dict[str, Any]:
             "margin_mm": model.pairs.margin,
             "external": len(model.external_pairs),
         },
+        **({"covers": found} if (found := covers(model)) else {}),
         "smoothing": smoothings(model),
         "cost": None if (of := cost(model)) is None else asdict(of),
         "lints": [asdict(lint) for lint in lints(model)],
     }
+
+
+def covers(model: Model) -> dict[str, dict[str, Any]]:
+    """What covers of rollers come to, by roller: modulus, nip under its force, stiffness of the contacts."""
+    found: dict[str, dict[str, Any]] = {}
+    for roller in model.rollers:
+        cover = roller.cover
+        if cover is None:
+            continue
+        found[roller.name] = {
+            "modulus_mpa": cover.modulus,
+            "facing": cover.other,
+            "force_n": cover.force,
+            "nip_width_mm": 2.0 * cover.half,
+            "depth_mm": cover.depth,
+            "pressure_mpa": cover.pressure,
+            "speed_ratio": 1.0 + cover.gain,
+            "stiffness_n_per_mm_1_5": cover.force / cover.depth**1.5,
+            "force_misfit": cover.misfit,
+            "speed_misfit": cover.gain_misfit,
+            "said": covered(cover),
+        }
+    return found
 
 
 def _parts(kind: Kind[Any], parts: tuple[Any, ...]) -> int | dict[str, Any]:

@@ -62,6 +62,7 @@ def overview_parts(record: dict[str, Any]) -> list[str | Rows]:
         f"contact: {record['contacts']} pairs of parts; {pairs['possible']} pairs of bodies possible, "
         f"{pairs['kept']} kept{_searched(pairs)} (margin {pairs['margin_mm']:g} mm)",
         *smoothing_lines(record["smoothing"]),
+        *(f"{name}: {said}" for name, of in record.get("covers", {}).items() for said in of["said"]),
     ]
     for name, mesh in record["meshes"].items():
         size = " x ".join(f"{v:.4g}" for v in mesh["size_mm"])

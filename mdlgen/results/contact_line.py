@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mdlgen.model.covers import speed_ratio
 from mdlgen.model.rotations import turns
-from mdlgen.model.tables import Floats, Ints, RollerPart
+from mdlgen.model.tables import BOX_CYLINDER, Floats, Ints, RollerPart
 
 if TYPE_CHECKING:
     from mdlgen.results.result import Result
@@ -54,6 +55,15 @@ def contact_line(result: Result, boxes: Ints, roller: RollerPart, at: Ints) -> C
     return ContactLine(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(ContactLine)))
 
 
+def surface_ratio(result: Result, roller: RollerPart, at: Ints) -> Floats:
+    """Speed of what rolls on a roller with a cover over that of its undeformed surface, by the force that all
+    sheets have on it, (t,)."""
+    assert roller.cover is not None, "asked only of one with a cover"
+    table = result.model.contacts
+    rows = [row for row in np.flatnonzero(table.kind == BOX_CYLINDER) if table.part_b[row] == roller.name]
+    return np.asarray(speed_ratio(roller.cover, result.contact_force[np.ix_(at, rows)].sum(axis=1)))
+
+
 def _contact_line(result: Result, boxes: Ints, roller: RollerPart, at: Ints) -> ContactLine:
     half, radius, axis = result.model.bodies.half[boxes], roller.radius, roller.axis
     center = result.position[at, roller.body][:, None]  # (t, 1, 3)
@@ -91,6 +101,8 @@ def _contact_line(result: Result, boxes: Ints, roller: RollerPart, at: Ints) -> 
 
     own = np.cross(result.spin[np.ix_(at, boxes)], point - place) + result.velocity[np.ix_(at, boxes)]
     rim = np.cross(result.spin[at, roller.body][:, None], point - center)
+    if roller.cover is not None:
+        rim = rim * surface_ratio(result, roller, at)[:, None, None]
     rim += result.velocity[at, roller.body][:, None]
     main = int(np.argmax(np.abs(axis)))
     ends = [center[..., main] + side * axis[main] for side in (begin, end)]

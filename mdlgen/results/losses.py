@@ -28,7 +28,7 @@ from mdlgen.model.tables import (
     MachinePart,
     RollerPart,
 )
-from mdlgen.results.contact_line import of_row
+from mdlgen.results.contact_line import of_row, surface_ratio
 from mdlgen.results.result import ON_B, RUBS
 from mdlgen.results.torques import drive_power
 
@@ -119,12 +119,15 @@ def _on_roller(result: Result, row: int) -> Floats:
     # along the surface as it turns about the axis
     size = np.linalg.norm(line.roller, axis=1)
     way = np.sign(spin)[:, None] * line.roller / np.maximum(size, STANDS)[:, None]
+    radius = np.full(len(at), roller.radius)
+    if roller.cover is not None:  # friction has the lever of its speed
+        radius = radius * surface_ratio(result, roller, at)
     across = slip - (slip @ roller.axis)[:, None] * roller.axis
     friction, torque = result.contact_friction[at, row, RUBS], result.contact_torque[at, row, ON_B]
     turned = size > STANDS
     signed = np.einsum("ti,ti->t", slip, way)
     rubbed = np.where(turned, friction * signed, np.abs(friction) * np.linalg.norm(across, axis=1))
-    rolled = -(torque - friction * roller.radius) * spin if roller.rim is None else np.zeros(len(at))
+    rolled = -(torque - friction * radius) * spin if roller.rim is None else np.zeros(len(at))
     return np.where(line.share > 0.0, rubbed, 0.0) + rolled
 
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from mdlgen.model.covers import speed_ratio, under
 from mdlgen.model.tables import Floats, MachinePart, PlanePart, RollerPart
 from mdlgen.results.drag import drags
 from mdlgen.results.losses import driven
@@ -121,6 +122,24 @@ def _roller(result: Result, roller: RollerPart) -> dict[str, Any]:
         # nan, a contact that still acts, wins: the roller is not free then
         "free_of_counterpart_at_ms": np.max(result.statistics.last_force_at[on_rollers], initial=0.0),
         **_turning(result, roller),
+        **_nip(result, roller, rows),
+    }
+
+
+def _nip(result: Result, roller: RollerPart, rows: dict[int, str]) -> dict[str, Any]:
+    """Of a roller with a cover: width of its nip, by the layer, and speed ratio of the run, under the mean of
+    its force over the stored times at which a sheet, or the other roller, is in the nip."""
+    if roller.cover is None:
+        return {}
+    sheets = {s.name for s in result.model.sheets}
+    chosen = [k for k, other in rows.items() if other in sheets] or list(rows)
+    force = result.contact_force[:, chosen].sum(axis=1)
+    mean = float(force[force > 0.0].mean()) if (force > 0.0).any() else 0.0
+    nip = under(result.model, roller, mean)
+    return {
+        "mean_nip_force_n": mean,
+        "nip_width_mm": None if nip is None else 2.0 * nip.half,
+        "speed_ratio": float(speed_ratio(roller.cover, mean)),
     }
 
 

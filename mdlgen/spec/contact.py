@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field, ValidatorFunctionWrapHandler, WrapValidator, model_validator
+from pydantic_core import PydanticCustomError
 
 from mdlgen.spec.fields import Name, SpeedScale
 from mdlgen.spec.friction import Friction
@@ -52,6 +56,36 @@ def _number_or_both(schema: dict[str, Any]) -> None:
 
 Side = str | tuple[str, ...]
 
+# Whether a scene that is read has a roller with a cover, of which a stiffness may follow.
+_COVERED: ContextVar[bool] = ContextVar("covered", default=False)
+
+
+@contextmanager
+def of_covers(data: Any) -> Iterator[None]:
+    """While a scene of such plain data is read, contacts may leave their stiffness out if a roller there has
+    a cover."""
+    rollers = data.get("rollers") if isinstance(data, dict) else None
+    parts = rollers.values() if isinstance(rollers, dict) else ()
+    token = _COVERED.set(any(isinstance(part, dict) and part.get("cover") is not None for part in parts))
+    try:
+        yield
+    finally:
+        _COVERED.reset(token)
+
+
+def _left_out() -> Any:
+    """Until the scene fills it in."""
+    return None
+
+
+def _or_of_a_cover(value: Any, inner: ValidatorFunctionWrapHandler) -> Any:
+    """A stiffness; None, which a scene fills in, where it may follow from a cover."""
+    if value is not None:
+        return inner(value)
+    if _COVERED.get():
+        return None
+    raise PydanticCustomError("missing", "Field required")
+
 
 class Contact(Strict):
     """Normal force k z^1.5 with restitution (Eqs. 9-11) and friction, for each pair of parts named."""
@@ -63,8 +97,11 @@ class Contact(Strict):
         description="two sides, each a name, a pattern as 'motor_*' or a list of them; each part of one side "
         "has this contact with each part of the other"
     )
-    stiffness: Annotated[float, quantity("N/mm^1.5", 0.0, open_low=True)] = Field(
-        description="k of one pair (Eq. 10)"
+    stiffness: Annotated[float, quantity("N/mm^1.5", 0.0, open_low=True), WrapValidator(_or_of_a_cover)] = (
+        Field(
+            default_factory=_left_out,
+            description="k of one pair (Eq. 10); where left out it follows from the cover of a roller",
+        )
     )
     restitution: Share = Field(default=0.5, description="coefficient of restitution c_R (Eq. 11)")
     friction: Friction = Field(

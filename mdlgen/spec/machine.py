@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 
+from mdlgen.spec.cover import Cover
 from mdlgen.spec.fields import (
     Direction,
     LengthOrZero,
@@ -177,6 +178,7 @@ class Roller(MachinePart):
     press: Press | None = Field(default=None, description="slide and spring; without it the axis is fixed")
     arm: Arm | None = Field(default=None, description="an arm that carries it in place of a fixed axis")
     rim: Rim | None = Field(default=None, description="sectors of the rim that are unlike the rest")
+    cover: Cover | None = Field(default=None, description="a cover of rubber or foam on the whole round")
     repeat: Repeat | None = Field(default=None, description="a row of such rollers")
     mirror: Mirror | None = Field(default=None, description="a second one, its mirror image")
 
@@ -195,6 +197,20 @@ class Roller(MachinePart):
     def _plain(self) -> Roller:
         """The same with its radius alone."""
         return self if self.diameter is None else with_values(self, diameter=None)
+
+    @model_validator(mode="after")
+    def _cover(self) -> Roller:
+        if self.cover is None:
+            return self
+        if self.rim is not None:
+            raise fail("a roller with a rim of sectors has no cover: the one or the other", within=("cover",))
+        if self.cover.thickness >= self.radius:
+            raise fail(
+                f"{self.cover.thickness:g} mm is not below the radius, {self.radius:g} mm, which is that of "
+                "the cover's outside",
+                within=("cover", "thickness"),
+            )
+        return self
 
     @model_validator(mode="after")
     def _arm(self) -> Roller:

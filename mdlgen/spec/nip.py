@@ -9,6 +9,7 @@ from typing import Annotated, Any
 from pydantic import Field
 from pydantic_core import PydanticCustomError
 
+from mdlgen.spec import nip_cover
 from mdlgen.spec.alternatives import others
 from mdlgen.spec.fields import Direction, Name, Position, read_direction
 from mdlgen.spec.parameter import Computed
@@ -183,6 +184,7 @@ class _Written:
         """A roller without its nip's own keys, in its place, its press with the preload."""
         given = {k: v for k, v in self.nip[side].items() if k not in ("name", "contact")}
         given = {"axis": self.nip.get("axis", "y"), "center": self._center(side)} | given
+        given = nip_cover.with_force(given, self.nip.get("force"))
         press = self.sides[side].get("press")
         if isinstance(press, dict):
             down = [-v if side == "upper" else v for v in self.normal]
@@ -222,7 +224,11 @@ class _Written:
     def _depth(self, side: str) -> str | None:
         """How deep the roller presses into the sheet: F = k d^1.5 (Eq. 10)."""
         way = self.ways[side]
-        stiffness = _good(way.get("stiffness") if isinstance(way, dict) else None, "N/mm^1.5")
+        given = way.get("stiffness") if isinstance(way, dict) else None
+        if given is None and isinstance(way, dict):
+            one, other = (self.sides[name] for name in (side, *(s for s in SIDES if s != side)))
+            given = nip_cover.stiffness(one, other, self.nip.get("force"))
+        stiffness = _good(given, "N/mm^1.5")
         return f"({self.force}/{stiffness})^(2/3)" if self.force and stiffness else None
 
     def _preload_of(self, side: str, press: dict[str, Any], down: list[float]) -> str | None:
@@ -237,6 +243,10 @@ class _Written:
             return None
         meeting = self.fill(self.nip.get("contact"), "contacts")
         if between and isinstance(meeting, dict):
+            if meeting.get("stiffness") is None:
+                low, high = (self.sides[side] for side in SIDES)
+                follows = nip_cover.stiffness(low, high, self.nip.get("force"), both=True)
+                meeting = {**meeting, "stiffness": follows}
             stiffness, own = (_good(given.get("stiffness"), unit) for given, unit in
                               ((press, "N/mm"), (meeting, "N/mm^1.5")))  # fmt: skip
             if stiffness is None or own is None:

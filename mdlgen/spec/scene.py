@@ -25,7 +25,8 @@ from mdlgen.spec.action import Load, Probe, Support
 from mdlgen.spec.beside import PYTHON, holding, named_from
 from mdlgen.spec.between import find_pairs
 from mdlgen.spec.consistency import check_counts, check_names, checks
-from mdlgen.spec.contact import Contact
+from mdlgen.spec.contact import Contact, of_covers
+from mdlgen.spec.covered import with_stiffness
 from mdlgen.spec.document import Document
 from mdlgen.spec.dump import in_plain_data, said
 from mdlgen.spec.fields import Acceleration, Name, Words
@@ -266,7 +267,9 @@ class Scene(Strict):
         origins = context.get("origins", {})
         plain = {**value, "parameters": parameters.given} if parameters.given else value
         with of_scene(parameters):
-            scene = handler(written_out(plain, origins))
+            written = written_out(plain, origins)
+            with of_covers(written):
+                scene = handler(written)
         scene._amounts, scene._ranges = parameters.amounts, parameters.ranges
         scene._contacts_made = sum(
             key[0] == "contacts" and len(key) == 2 and path[0] in ("nips", "piles")
@@ -299,6 +302,8 @@ class Scene(Strict):
         if errors or wrong:
             raise fail_all([*errors, *wrong])
         with_rates(self, pairs)
+        if any(roller.cover is not None for roller in self.rollers.values()):
+            with_stiffness(self, pairs)
         self._formulas = dict(formulas_of(self))
         for name in type(self).model_fields if self._formulas else ():
             vars(self)[name] = without_formulas(getattr(self, name))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from mdlgen.altair.air import refuse_air
+from mdlgen.altair.covers import refuse_covers
 from mdlgen.altair.parts import refuse_unwritten
 from mdlgen.altair.poisson import refuse_poisson
 from mdlgen.altair.rolling import refuse_rolling
@@ -36,6 +37,7 @@ def check(model: Model) -> None:
     refuse_sticking(model, who)
     refuse_measured(model, who)
     refuse_yield(model, who)
+    refuse_covers(model, who)
     refuse_searched(model, who)
     refuse_unwritten(model, WRITTEN, who)
     refuse_compressed(model, who)

@@ -8,6 +8,7 @@ import numpy as np
 
 from mdlgen.geometry.arrays import Floats
 from mdlgen.geometry.solids import BOX, CORNERS, Solid, cylinder, slice_
+from mdlgen.model.covers import covered, lower_cover
 from mdlgen.model.frames import frame
 from mdlgen.model.parameters.machine import center_rows, spring_rows, start_row
 from mdlgen.model.parameters.names import NAMED_AXES
@@ -67,6 +68,7 @@ class _Rollers(Kind[RollerPart]):
                     press=roller_press(scene, name, before) if roller.press else None,
                     rim=lower_rim(roller),
                     arm=_arm(roller) if roller.arm else None,
+                    cover=lower_cover(scene, name),
                 )
             )
         return tuple(parts)
@@ -229,6 +231,8 @@ class _Rollers(Kind[RollerPart]):
             facts.append(f"on an arm of {part.arm.mass:.4g} g, spring torque {part.arm.torque:.4g} N mm")
         if part.rim is not None:
             facts.append(f"rim of {len(part.rim)} sectors")
+        if part.cover is not None:
+            facts += covered(part.cover)
         return facts
 
 

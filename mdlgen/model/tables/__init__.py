@@ -38,6 +38,7 @@ from mdlgen.model.tables.contacts import Pairs as Pairs
 from mdlgen.model.tables.frictions import MOST_SPEEDS as MOST_SPEEDS
 from mdlgen.model.tables.frictions import Frictions as Frictions
 from mdlgen.model.tables.machine import ArmPart as ArmPart
+from mdlgen.model.tables.machine import CoverPart as CoverPart
 from mdlgen.model.tables.machine import ExternalPart as ExternalPart
 from mdlgen.model.tables.machine import GuidePart as GuidePart
 from mdlgen.model.tables.machine import MachinePart as MachinePart

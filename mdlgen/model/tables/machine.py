@@ -72,6 +72,26 @@ class RimPart(Frozen):
 
 
 @dataclass(frozen=True)
+class CoverPart:
+    """A cover of rubber or foam on a roller, and the nip that it makes under one force (see model.covers)."""
+
+    thickness: float  # [mm]
+    modulus: float  # Young's [MPa]
+    poisson: float
+    hardness: float | None  # degrees of Shore A that the modulus follows from
+    other: str  # the roller that faces it, "": a flat face
+    force: float  # [N]
+    width: float  # of the nip along the axis [mm]
+    half: float  # half-width of the nip across it [mm]
+    pressure: float  # the greatest [MPa]
+    depth: float  # by which the other surface is pressed into the cover [mm]
+    gain: float  # v/(omega R) - 1 of a sheet on it
+    bend: float  # of the gain that a run has, (gain - bend) u + bend u^2, u the depth over that at the force
+    misfit: float  # of the law k z^1.5 from half to twice the force, in times the force of the layer
+    gain_misfit: float  # greatest error of the law of the gain there
+
+
+@dataclass(frozen=True)
 class MachinePart(Frozen):
     """A part of the machine that has a body, of any kind."""
 
@@ -105,6 +125,7 @@ class RollerPart(MachinePart):
     carried: tuple[float, float] = (0.0, 0.0)  # mass [g] and inertia about the axis [g mm^2] of what is on it
     rim: RimPart | None = None
     arm: ArmPart | None = None
+    cover: CoverPart | None = None
 
     @property
     def loaded_mass(self) -> float:
