@@ -236,6 +236,8 @@ def summary_text(record: dict[str, Any]) -> str:
         )
         if sheet["strain"] is not None:
             lines.append(f"  {_bearing(sheet)}")
+        if sheet.get("residual") is not None:
+            lines.append(f"  {_residual(sheet['residual'])}")
         if sheet.get("tension") is not None:
             lines.append(f"  {_tension(sheet['tension'])}")
     for name, probe in record["probes"].items():
@@ -278,6 +280,15 @@ def _bearing(sheet: dict[str, Any]) -> str:
     if "margin" in strain:
         line += f"; {strain['margin']:.0%} left to the curve's end ({strain['margin_joint']})"
     return line
+
+
+def _residual(left: dict[str, Any]) -> str:
+    """The bend that a sheet keeps, where it may yield."""
+    fold = left["fold"]
+    return (
+        f"keeps a curvature of up to {left['curvature_per_mm']:.3g} 1/mm ({left['joint']}) and folds up to "
+        f"{fold['angle_deg']:.3g} deg ({fold['along'].upper()}, {fold['at_mm']:.3g} mm from the centre)"
+    )
 
 
 def _tension(tension: dict[str, Any]) -> str:

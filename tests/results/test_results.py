@@ -97,7 +97,7 @@ class TestSummary:
         }
         assert set(record["sheets"]["note"]) == {
             "travel_mm", "speed_mm_per_s", "yaw_deg", "way_mm", "mean_speed_mm_per_s", "skew_deg",
-            "boxes", "bushings", "strain", "curvature", "twist", "tension", "energy",
+            "boxes", "bushings", "strain", "curvature", "twist", "tension", "residual", "energy",
         }  # fmt: skip
         assert set(record["probes"]["lead"]) == {"displacement_mm", "speed_mm_per_s"}
 
