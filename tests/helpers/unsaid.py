@@ -2,4 +2,9 @@
 
 from __future__ import annotations
 
-UNSAID: dict[str, tuple[str, ...]] = {"landing": ("contacts.landing.air=null",)}
+_MU = ("contacts.0.friction=0.25",)
+# by what a sample is called: its path below samples/, and its file
+UNSAID: dict[str, tuple[str, ...]] = {
+    "landing": ("contacts.landing.air=null",),
+    **dict.fromkeys(("verify/aslant", "aslant"), _MU),
+}
