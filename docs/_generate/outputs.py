@@ -239,6 +239,15 @@ SUMMARY: dict[str, tuple[str, str]] = {
         }.items()
     },
     "rollers.NAME.energy.driven_n_mm": ("N mm", "what its drive gave; null of a free roller"),
+    "rollers.NAME.mean_nip_force_n": (
+        "N",
+        "of one with a cover: mean of the force of sheets on it, or of the other roller, while it acts",
+    ),
+    "rollers.NAME.nip_width_mm": ("mm", "width of its nip under that force"),
+    "rollers.NAME.speed_ratio": (
+        "",
+        "speed of a sheet on it over that of its undeformed surface, under that force",
+    ),
     "rollers.NAME.arm_deg": ("deg", "turn of its arm at the end since it was given, about the roller's axis"),
     "rollers.NAME.max_arm_deg": ("deg", "the greatest of the stored times"),
     "rollers.NAME.min_arm_deg": ("deg", "the least of the stored times"),
