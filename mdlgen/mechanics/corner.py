@@ -117,15 +117,15 @@ def pushed(joint, x, r, along_x, moment, brake, pull, f):
 def corner_forces(joints, corner, motion, f):
     """Adds to f (bodies, 6; the last row is the ground) what a corner does. Returns (stored energy,
     dissipated power)."""
-    rows = corner.joint
+    around = corner.joint
     none = (0.0, 0.0, 0.0, 0.0)
-    x1 = measured(joints[rows[0]], motion, True) if rows[0] >= 0 else none
-    x2 = measured(joints[rows[1]], motion, True) if rows[1] >= 0 else none
-    y1 = measured(joints[rows[2]], motion, False) if rows[2] >= 0 else none
-    y2 = measured(joints[rows[3]], motion, False) if rows[3] >= 0 else none
+    x1 = measured(joints[around[0]], motion, True) if around[0] >= 0 else none
+    x2 = measured(joints[around[1]], motion, True) if around[1] >= 0 else none
+    y1 = measured(joints[around[2]], motion, False) if around[2] >= 0 else none
+    y2 = measured(joints[around[3]], motion, False) if around[3] >= 0 else none
     stored = lost = 0.0
     for n in range(4):
-        if rows[n] < 0:
+        if around[n] < 0:
             continue
         if n < 2:
             k, l, own, one, two = 2 * n, 2 * n + 1, x1 if n == 0 else x2, y1, y2
@@ -137,7 +137,7 @@ def corner_forces(joints, corner, motion, f):
         drag = corner.stretch_damping[k] * one[3] + corner.stretch_damping[l] * two[3]
         stored += 0.5 * (moment * own[0] + spring * own[1])
         lost += brake * own[2] + drag * own[3]
-        pushed(joints[rows[n]], motion.x, motion.r, n < 2, moment, brake, spring + drag, f)
+        pushed(joints[around[n]], motion.x, motion.r, n < 2, moment, brake, spring + drag, f)
     return stored, lost
 
 

@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 import mdlgen
+from mdlgen.backends.lattice.arrays import build
+from mdlgen.backends.lattice.integrate.awake import Parts, awake
 from mdlgen.bench.momentum import momentum
 from mdlgen.model.lower import lower
 from mdlgen.model.tables import Model
@@ -85,7 +87,8 @@ run: {{analysis: static}}
     assert across(result, 1) == pytest.approx(NU, rel=5e-3)
     tension = tension_of(result, 0)
     assert tension is not None and tension.axis == 0
-    assert tension.force[-1] == pytest.approx(2.0, rel=1e-6)
+    # joints pull along themselves, and next to the clamp they turn in the plane by some 1e-3 rad
+    assert tension.force[-1] == pytest.approx(2.0, rel=1e-5)
 
 
 SPIN = ", spin: [200 rad/s, 90 rad/s, 50 rad/s], shape: {curl: {radius: 60 mm, along: y}, start: flat}"
@@ -96,8 +99,8 @@ def test_a_free_plate_keeps_energy_and_momentum(poisson: float) -> None:
     """Bent across by its curl, it springs open while it turns; no damping, and none lost to round-off."""
     model = plate("[6, 4]", SPIN, "duration: 3 ms, step: 0.01 ms", ", damping: {ratio: 0}", poisson)
     result = solved(model, "lattice")
-    energy = result.energy
-    assert abs(energy.balance_error) < 1e-3
+    # the midpoint rule keeps what is of second order: a step of 0.01 ms leaves some 1e-5
+    assert abs(result.energy.balance_error) < 2e-4
     linear, angular = momentum(result)
     assert np.abs(linear - linear[0]).max() < 1e-9 * np.abs(angular).max()
     assert np.abs(angular - angular[0]).max() < 1e-8 * np.abs(angular[0]).max()
@@ -107,4 +110,24 @@ def test_both_solvers_find_the_same_motion() -> None:
     model = plate("[4, 3]", SPIN, "duration: 2 ms, tolerance: 1e-3", ", damping: {time: 0.05 ms}")
     one, two = (solved(model, solver) for solver in ("lattice", "exudyn"))
     moved = np.abs(one.position[-1] - one.position[0]).max()
-    assert np.abs(one.position[-1] - two.position[-1]).max() < 2e-3 * moved
+    assert np.abs(one.position[-1] - two.position[-1]).max() < 1e-3 * moved
+
+
+def test_what_is_awake_keeps_its_corners() -> None:
+    """Of two sheets one sleeps: the corners of the other one name the same bushings, in fewer joints."""
+    text = "{material: p, size: [60 mm, 40 mm], thickness: 0.5 mm, mass: 2 g, boxes: [3, 3], layout: plate"
+    model = lower(
+        loads(f"""
+name: two
+materials: {{p: {{E_md: {E} MPa, E_cd: {E} MPa, D_md: 20 N*mm, D_cd: 20 N*mm, poisson: 0.3}}}}
+sheets: {{a: {text}}}, b: {text}, center: [0 mm, 0 mm, 0.5 mm]}}}}
+contacts: [{{between: [a, b], stiffness: 100 N/mm^1.5, friction: 0.3}}]
+""")
+    )
+    system = build(model)
+    half, _ = awake(system, Parts(model, system), np.array([True, False]))
+    mine = system.corners[system.corners["sheet"] == 1]
+    assert len(half.corners) == len(mine) == 4
+    rows = half.joints["row"][half.corners["joint"]]
+    assert (rows == system.joints["row"][mine["joint"]]).all()
+    assert (half.tables.corners["run"] == 0).all() and (half.tables.runs[0, 2] == 1)

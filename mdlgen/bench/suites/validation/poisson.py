@@ -126,7 +126,7 @@ def contracts(name: str, result: Result, _: Result | None) -> list[Finding]:
     """What the middle third does along x, and across it."""
     joints, measured = sheet_joints(result.model), histories(result, np.array([len(result.time) - 1]))
     assert measured is not None, "a sheet of many boxes has joints"
-    _, stretch, bend = measured
+    stretch, bend = measured[1:]
     values = (bend if name == "bent" else stretch)[0]
     middle = np.abs(joints.at[:, 0]) < LONG[0] / 6
     along, across = (float(values[middle & (joints.axis == axis)].mean()) for axis in (0, 1))
