@@ -22,6 +22,7 @@ BACKEND = Backend(
             ("landing.yaml", _SHORT),
             ("cantilever.yaml", _FEW),
             ("verify/tension.yaml", ()),
+            ("crease.yaml", (*_SHORT, "sheets.strip.boxes=[4, 2]")),
         ),
     ),
 )

@@ -30,9 +30,10 @@ from typing import Any
 
 from mdlgen import paths
 from mdlgen.program import file
+from mdlgen.program.digests import sources_digest, statements_digest
 from mdlgen.program.emit import SHIPPED, SMALL, Target
 from mdlgen.program.file import Head, Unfit, Variant
-from mdlgen.program.kernel import Kernel, sources_digest, statements_digest
+from mdlgen.program.kernel import Kernel
 from mdlgen.program.layout import described, words
 from mdlgen.program.link import linked
 from mdlgen.program.native import emitted

@@ -37,7 +37,7 @@ class Variant:
 class Head:
     """What a program is."""
 
-    digest: str  # of the kernels that it was made from, and of their statements alone (program.kernel)
+    digest: str  # of the kernels that it was made from, and of their statements alone (program.digests)
     statements: str
     code: str  # SHA-256 of what follows the head
     versions: dict[str, str]  # of what made it

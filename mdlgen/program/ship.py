@@ -9,8 +9,9 @@ from threading import RLock
 from typing import Any, ParamSpec, TypeVar
 
 from mdlgen.program import file, native
+from mdlgen.program.digests import sources_digest, statements_digest
 from mdlgen.program.file import Unfit
-from mdlgen.program.kernel import Kernel, alone, sources_digest, statements_digest
+from mdlgen.program.kernel import Kernel, alone
 from mdlgen.program.layout import Misfit
 
 _lock = RLock()

@@ -12,7 +12,8 @@ from mdlgen.mechanics import pair
 from mdlgen.mechanics.by_kind import KINDS
 from mdlgen.mechanics.solved import WITH_LAW
 from mdlgen.model.tables import contacts
-from mdlgen.program.kernel import LAWS, Kernel, sources_digest, statements_digest
+from mdlgen.program.digests import sources_digest, statements_digest
+from mdlgen.program.kernel import LAWS, Kernel
 
 
 def named(kind: ModuleType) -> str:
