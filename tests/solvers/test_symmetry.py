@@ -186,6 +186,18 @@ def test_what_is_not_symmetric_is_solved_whole(sets: tuple[str, ...]) -> None:
     assert find(other, build(other)) is None
 
 
+def test_a_free_roller_that_is_cut_along_its_axis_is_solved_whole() -> None:
+    """Friction of one side alone would turn it. A stopped one does not turn."""
+    from mdlgen.backends.lattice.arrays import build
+    from mdlgen.backends.lattice.symmetry.find import find
+
+    flat = ["sheets.strip.boxes=[12, 1]", "materials.eur10.yield=null"]
+    free = mdlgen.lower(mdlgen.load(samples() / "crease.yaml", flat))
+    assert find(free, build(free)) is None
+    stopped = mdlgen.lower(mdlgen.load(samples() / "crease.yaml", [*flat, "rollers.rod.drive={speed: 0 rad/s}"]))
+    assert find(stopped, build(stopped)) is not None
+
+
 def test_a_measured_curve_across_the_plane() -> None:
     """A joint that follows a curve has its energy halved, too."""
     curve = "[[0, 0 MPa], [0.005, 15 MPa], [0.02, 30 MPa]]"

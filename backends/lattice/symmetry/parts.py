@@ -52,7 +52,9 @@ def _roller(mirror: Mirror, model: Model, one: RollerPart, two: RollerPart) -> b
     way = -float(mirror.seen(one.axis) @ two.axis)  # a turn is seen the other way round
     # an arm in the plane is not cut, and angles that are counted the other way are not compared
     whole = (one.arm is None or one is not two) and (one.rim is None or way > 0.0)
-    if abs(abs(way) - 1.0) > SAME or not whole:
+    # friction of one side alone would turn a free roller that is cut along its axis
+    cut = one is two and way < 0.0 and one.speed is None
+    if abs(abs(way) - 1.0) > SAME or not whole or cut:
         return False
     return _turning(one, float(np.sign(way)), mirror) == _turning(two, 1.0, None)
 
