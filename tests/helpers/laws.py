@@ -15,6 +15,7 @@ from mdlgen.backends.lattice.kernels.integrate.room import sticks
 from mdlgen.backends.lattice.kernels.state import FACE, OWN, Drift, Midpoint, Tables
 from mdlgen.backends.lattice.search import LISTED
 from mdlgen.mechanics.bristle import BRISTLE, HELD
+from mdlgen.mechanics.corner import CORNER
 from mdlgen.mechanics.curve import POINT
 from mdlgen.mechanics.frame import Box, Cylinder, Frame, Law, Motion, Plate, Vector
 from mdlgen.mechanics.guide import BOTH, INSIDE, OUTSIDE, upper
@@ -63,6 +64,7 @@ def pair_force(bodies: np.ndarray, pair: np.void, shapes: Shapes, motion: Motion
         bristles=np.zeros(0, BRISTLE),
         held=np.zeros(0, HELD),
         hinges=np.zeros(0, HINGE),
+        corners=np.zeros(0, CORNER),
         shapes=shapes,
     )
     mid = Midpoint(
@@ -178,7 +180,7 @@ def _press(
     pair = np.zeros(1, PAIR)[0]
     pair["kind"], pair["a"], pair["b"] = kind, 0, 1
     pair["k"], pair["shared"], pair["spread"] = law.k, law.shared, law.spread
-    pair["law"] = (*law[2:8], 0.0)
+    pair["law"] = (*law[2:8], 0.0, law.lever, law.bend)
     for name, value in more.items():
         pair[name] = value
     ground = Frame((0.0, 0.0, 0.0), tuple(np.eye(3).ravel()), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))

@@ -15,6 +15,7 @@ from mdlgen.backends.lattice.kernels.integrate.room import sticks
 from mdlgen.backends.lattice.kernels.state import FACE, OWN, Midpoint, Tables
 from mdlgen.backends.lattice.search import LISTED
 from mdlgen.mechanics.bristle import BRISTLE, HELD
+from mdlgen.mechanics.corner import CORNER
 from mdlgen.mechanics.curve import POINT
 from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.overlap import OVERLAP
@@ -90,6 +91,7 @@ def _tables(bodies: np.ndarray, pairs: np.ndarray, shapes: Shapes) -> Tables:
         bristles=np.zeros(0, BRISTLE),
         held=np.zeros(0, HELD),
         hinges=np.zeros(0, HINGE),
+        corners=np.zeros(0, CORNER),
         shapes=shapes,
     )
 

@@ -107,7 +107,9 @@ def law(random: np.random.Generator, kind: int) -> tuple[np.ndarray, np.ndarray]
     bodies, pairs = records(COUNT)
     pairs["kind"], pairs["k"], pairs["shared"] = kind, K, 1
     beta, mu = random.choice([0.0, 0.6], COUNT), random.choice([0.0, 0.4], COUNT)
-    pairs["law"] = np.stack([beta, mu, 0.7 * mu, *np.tile([[0.02], [0.04], [0.03], [0.0]], COUNT)], axis=1)
+    pairs["law"] = np.stack(
+        [beta, mu, 0.7 * mu, *np.tile([[0.02], [0.04], [0.03], [0.0], [0.0], [0.0]], COUNT)], axis=1
+    )
     return bodies, pairs
 
 

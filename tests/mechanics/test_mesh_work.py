@@ -21,7 +21,7 @@ from mdlgen.spec.load import loads
 
 STEPS = 1500  # of a way: half of them change no sum by more than a tenth of what is allowed
 HALF = (6.0, 4.0, 2.0)
-NO_LOSSES = (0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0)  # columns as in mechanics.frame
+NO_LOSSES = (0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0)  # columns as in mechanics.frame
 # Places on a brick of 40 x 30 x 6 mm, and on a lobe of the radius 7.5 mm with two flats; and from where the
 # block comes there.
 DOWN, ALONG = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)

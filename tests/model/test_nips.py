@@ -34,7 +34,7 @@ def plain(model: Model) -> dict[str, np.ndarray]:
     contacts = {
         f.name: np.array(getattr(rows, f.name))[order]
         for f in dataclasses.fields(rows)
-        if f.name not in ("entry", "part_a", "part_b", "share", "name")
+        if f.name not in ("entry", "part_a", "part_b", "share", "name", "frictions")
     }
     kept = sorted(
         (int(a), int(b), rows.part_a[c], rows.part_b[c])

@@ -194,7 +194,9 @@ def test_a_free_roller_that_is_cut_along_its_axis_is_solved_whole() -> None:
     flat = ["sheets.strip.boxes=[12, 1]", "materials.eur10.yield=null"]
     free = mdlgen.lower(mdlgen.load(samples() / "crease.yaml", flat))
     assert find(free, build(free)) is None
-    stopped = mdlgen.lower(mdlgen.load(samples() / "crease.yaml", [*flat, "rollers.rod.drive={speed: 0 rad/s}"]))
+    stopped = mdlgen.lower(
+        mdlgen.load(samples() / "crease.yaml", [*flat, "rollers.rod.drive={speed: 0 rad/s}"])
+    )
     assert find(stopped, build(stopped)) is not None
 
 

@@ -123,7 +123,7 @@ def add_loads(deck: Deck, model: Model) -> None:
     arms = (table.rotation[loads.body] @ loads.local[:, :, None])[:, :, 0]
     at = triples(table.position[loads.body] + arms)
     for row, body in enumerate(loads.body.tolist()):
-        name, label = f"frc_{row}", f"Load {row} on {table.label[body]}"
+        name, label = f"frc_{row}", f"Load {loads.entry[row]} on {table.label[body]}"
         marker = deck.marker(f"{name}.i", f"{label}-Marker I", body_id(body), at[row])
         fx, fy, fz = numbers(loads.force[row])
         tx, ty, tz = numbers(loads.moment[row])
