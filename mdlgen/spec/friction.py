@@ -214,8 +214,9 @@ class Friction(Strict):
             follows = {"static", "dynamic"}
             if self.speed is not None:
                 follows |= {"stiction_velocity", "friction_velocity"}
-            data = {key: value for key, value in data.items() if key not in follows}
-        return data
+            return {key: value for key, value in data.items() if key not in follows}
+        # of no friction, too, which a dump without defaults would leave empty
+        return {"static": 0.0, "dynamic": 0.0, **data}
 
     @property
     def measured(self) -> bool:

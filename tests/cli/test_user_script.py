@@ -45,7 +45,7 @@ def test_strict_types_find_nothing_in_a_users_script_and_each_mistake(tmp_path: 
     for good, bad in (
         ("diameter=", "diametre="),
         ('ramp="2 ms"', "ramp=2"),
-        ("friction=0.8", "friction=[0.8]"),
+        ("friction=0.8", "friction={0.8}"),
         ('sheet.units["travel"]', "sheet.travels"),
     ):
         assert good in text

@@ -148,8 +148,9 @@ def test_the_schema_knows_them() -> None:
 def test_the_json_schema_knows_the_short_forms() -> None:
     schema = json_schema()
     models = schema["$defs"]
-    number, text, both = models["Contact"]["properties"]["friction"]["anyOf"]
+    number, text, two, both = models["Contact"]["properties"]["friction"]["anyOf"]
     assert (number["type"], text["type"], both) == ("number", "string", {"$ref": "#/$defs/Friction"})
+    assert two["items"]["anyOf"] == [number, text]
     # of a nip the preload follows from its force
     press = models["Nip"]["properties"]["upper"]["properties"]["press"]["anyOf"][0]
     assert "preload" in press["properties"] and not {"preload", "direction"} & set(press["required"])
