@@ -7,7 +7,7 @@ import numpy as np
 from mdlgen.model.tables import BOX_CYLINDER, CYLINDER_CYLINDER, CoverPart, Floats, Model, RollerPart
 from mdlgen.rubber.contact import Squeezed, loaded
 from mdlgen.rubber.layer import Layer
-from mdlgen.spec.covered import nip_of, stiffness_of
+from mdlgen.spec.covered import meets, nip_of, stiffness_of
 from mdlgen.spec.scene import Scene
 
 # Loads, in times that of the nip, between which the misfit of the laws is stated.
@@ -15,11 +15,11 @@ LOW, HIGH = 0.5, 2.0
 
 
 def lower_cover(scene: Scene, name: str) -> CoverPart | None:
-    """The cover of a roller, in its nip."""
-    cover = scene.rollers[name].cover
-    if cover is None:
+    """The cover of a roller, in its nip; None: it has none, or is in no contact."""
+    cover, pairs = scene.rollers[name].cover, list(scene.contact_pairs())
+    if cover is None or not meets(name, pairs):
         return None
-    found = nip_of(scene, name, scene.contact_pairs())
+    found = nip_of(scene, name, pairs)
     own, k = found.nip.covers[0], stiffness_of(found)
     ends = [(share, nip.covers[0]) for share in (LOW, HIGH) if (nip := found.at(share)) is not None]
     u, gain, depth, share = (np.array(v) for v in zip(

@@ -39,6 +39,11 @@ class CoveredNip(NamedTuple):
         return loaded(self.covers, self.curvature, share * self.force / self.width)
 
 
+def meets(name: str, pairs: Iterable[Pair]) -> bool:
+    """Tests whether a roller is in any contact. A cover that nothing meets has no nip, and needs no force."""
+    return any(name in (one, two) for _, one, two in pairs)
+
+
 def nip_of(scene: Scene, name: str, pairs: Iterable[Pair]) -> CoveredNip:
     """The nip of a roller with a cover. Raises the error where its force is not known, or it is too wide."""
     roller, other = scene.rollers[name], _facing(scene, name, pairs)
@@ -104,7 +109,7 @@ def with_stiffness(scene: Scene, pairs: Iterable[Pair]) -> None:
     pairs, errors = list(pairs), []
     found: dict[str, CoveredNip] = {}
     for name, roller in scene.rollers.items():
-        if roller.cover is not None:
+        if roller.cover is not None and meets(name, pairs):
             try:
                 found[name] = nip_of(scene, name, pairs)
             except PydanticCustomError as error:

@@ -108,3 +108,13 @@ def test_lints_of_covers():
     assert not clean
     for code, sets in codes.items():
         assert code in {lint.code for lint in lints(mdlgen.lower(scene(*sets)))}, code
+
+
+def test_a_cover_that_nothing_meets_needs_no_force():
+    """It has no nip, and nothing is said of it."""
+    far = (
+        "{center: [0 mm, 0 mm, 300 mm], axis: y, radius: 8 mm, width: 20 mm, mass: 3 g,"
+        " cover: {thickness: 2 mm, hardness: 60 ShA, poisson: 0.45}}"
+    )
+    model = mdlgen.lower(scene(f"rollers={{far: {far}}}"))
+    assert model.roller("far").cover is None and model.roller("feed_lower").cover is not None
