@@ -158,7 +158,11 @@ class Expression:
 
     def on(self, arithmetic: Arithmetic, lookup: Lookup) -> Any:
         """What it comes to on an arithmetic; raises what that raises, and _Missing, see `value`."""
-        return _Evaluation(self, arithmetic, lookup).of(self.tree)
+        return self.part(self.tree, arithmetic, lookup)
+
+    def part(self, node: ast.expr, arithmetic: Arithmetic, lookup: Lookup) -> Any:
+        """What a part of its tree comes to; as `on`."""
+        return _Evaluation(self, arithmetic, lookup).of(node)
 
 
 class _Evaluation:

@@ -142,7 +142,7 @@ GRAMMAR = Grammar(
     depth=MOST_DEPTH,
 )
 PI = Amount(math.pi, NONE)
-_ON = _Units()
+ON = _Units()
 
 _NUMBER = r"(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
 _TOKEN = re.compile(
@@ -217,7 +217,7 @@ def evaluated(text: str, parameters: Mapping[str, Amount]) -> Amount:
         )
 
     try:
-        found = expression.on(_ON, named)
+        found = expression.on(ON, named)
     except ZeroDivisionError:
         raise ValueError(f"{shown}: a division by zero") from None
     except (OverflowError, ValueError) as error:

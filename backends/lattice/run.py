@@ -94,7 +94,7 @@ def solve(
         return result
     warm(model, system)
     compile_s = clock.perf_counter() - compiled
-    mirror = None if SYMMETRY in without else find(model, system)
+    mirror = None if SYMMETRY in without or model.reactions else find(model, system)
     if mirror is not None:
         system = halve(system, mirror)
     build_s = clock.perf_counter() - started - compile_s

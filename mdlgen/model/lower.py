@@ -28,6 +28,7 @@ from mdlgen.model.parameters.given import parameters, unfollowed
 from mdlgen.model.parts.kinds import KINDS, kind_of
 from mdlgen.model.press.before import Before
 from mdlgen.model.press.faces import Bow, Face, Facets
+from mdlgen.model.reactions import lower_reactions
 from mdlgen.model.rotations import matrices
 from mdlgen.model.shape import bend, box_rotations, joint_creases, joint_frames, joint_turns, placed
 from mdlgen.model.tables import (
@@ -146,6 +147,7 @@ def _lower(scene: Scene) -> Model:
         revision=scene.revision or "",
         plastic=plastic,
         corners=corners,
+        reactions=lower_reactions(scene),
     )
 
 

@@ -133,6 +133,8 @@ class Result:
     checks: bool = False  # whether it was asked for to check a run at twice its step
     estimates: dict[str, Estimate] = field(default_factory=dict)  # see `results.estimates.complete`
     coarser: tuple[Result, ...] = field(default=(), repr=False)  # runs from which these follow, then none
+    # what sensors saw and rules did, in the order of time, as events have it
+    reactions: tuple[dict[str, Any], ...] = ()
     halved: bool = False  # one side was solved, the other is its mirror image
     versions: dict[str, str] = field(default_factory=dict)
     ran_at: str = ""  # date and time at which the run ended, ISO 8601 in UTC; empty: not known

@@ -12,6 +12,7 @@ from mdlgen.spec.action import OnSheet
 from mdlgen.spec.between import known
 from mdlgen.spec.nip import names_of as rollers_of
 from mdlgen.spec.pile import names_of as sheets_of
+from mdlgen.spec.reacting import checks as reacting
 from mdlgen.spec.require import requirement
 from mdlgen.spec.strict import fail
 from mdlgen.units import exact_quantity
@@ -40,6 +41,7 @@ def checks(scene: Scene) -> Iterator[Callable[[], None]]:
 
     for k in range(len(scene.require)):
         yield partial(_check_requirement, scene, k)
+    yield from reacting(scene)
 
 
 def _check_requirement(scene: Scene, k: int) -> None:
@@ -149,7 +151,7 @@ def check_counts(scene: Scene) -> None:
 
 def check_names(scene: Scene) -> None:
     seen: dict[str, str] = {}
-    for kind in ("sheets", *scene.machine_tables(), "parts", "probes"):
+    for kind in ("sheets", *scene.machine_tables(), "parts", "probes", "sensors"):
         for name in getattr(scene, kind):
             other = seen.setdefault(name.lower(), f"{kind}.{name}")
             if other != f"{kind}.{name}":

@@ -52,7 +52,9 @@ from mdlgen.spec.parameter import (
 from mdlgen.spec.part import Part
 from mdlgen.spec.pile import Pile
 from mdlgen.spec.quantities import default
+from mdlgen.spec.rule import Rule
 from mdlgen.spec.run import Run
+from mdlgen.spec.sensor import Sensor
 from mdlgen.spec.sheet import Sheet
 from mdlgen.spec.shorthand import Defaults, written_out
 from mdlgen.spec.source import Source, text_of, text_of_data
@@ -137,6 +139,12 @@ class Scene(Strict):
     )
     supports: tuple[Support, ...] = Field(
         default=(), strict=False, description="points of sheets that are held"
+    )
+    sensors: dict[Name, Sensor] = Field(
+        default_factory=dict, description="what sees whether a sheet is at a place, by name"
+    )
+    rules: tuple[Rule, ...] = Field(
+        default=(), strict=False, description="what the machine does when a condition comes true"
     )
     _limits: Limits = PrivateAttr(default=DEFAULT)
     _source: Source = PrivateAttr(default_factory=Source)

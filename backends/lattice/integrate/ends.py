@@ -22,7 +22,7 @@ from mdlgen.results import audit
 from mdlgen.results.result import Result
 
 # How a halved run ends, beside those of kernels.integrate.integrate.
-PASSED, OVERLAPPED, LIMITED, CRAWLED = -1, -2, -3, -4
+PASSED, OVERLAPPED, LIMITED, CRAWLED, RUNAWAY = -1, -2, -3, -4, -5
 
 
 def reason_of(

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from mdlgen.backends.lattice.integrate.reacting import Reacting
 from mdlgen.backends.lattice.integrate.record import Recorder
 from mdlgen.backends.lattice.integrate.sleep import Sleep
 from mdlgen.backends.lattice.kernels.state import MANY, Control, Workspace
@@ -25,6 +26,7 @@ class Stage(NamedTuple):
     ended: bool
 
 
+REACTING = "reacting"  # sensors and rules, in a checkpoint
 # What a step works out before it reads it. There is room for far more pairs than there are: more than memory.
 SCRATCH = {
     *(f"mid.{name}" for name in ("results", "touched", "rows", "faces", "near", "spare")),
@@ -44,7 +46,14 @@ class PassState:
     """Writes and reads a pass: the state, what it counts and is steered by, and what a step takes over from
     the one before, which a pass that has ended does not need."""
 
-    def __init__(self, work: Workspace, control: Control, recorder: Recorder, sleep: Sleep):
+    def __init__(
+        self,
+        work: Workspace,
+        control: Control,
+        recorder: Recorder,
+        sleep: Sleep,
+        reacting: Reacting | None = None,
+    ):
         beside = work.tables.pairs["beside"][: work.search.first]
         few = (control, work.search.place, beside, work.tables.bristles, work.tables.hinges)
         self._state = dict(_leaves("state", work.state)) | dict(_leaves("few", few))
@@ -52,6 +61,7 @@ class PassState:
         carried["islands"] = work.islands
         carried["damped"] = work.damped[1:]
         self._recorder, self._sleep, self._search = recorder, sleep, work.search
+        self._reacting = reacting
         every = dict(leaf for name, value in carried.items() for leaf in _leaves(name, value))
         self._work = {name: array for name, array in every.items() if name not in SCRATCH}
 
@@ -78,6 +88,7 @@ class PassState:
             **work,
             **stored,
             **self._sleep.carried(),
+            **({} if self._reacting is None else {REACTING: self._reacting.carried()}),
             "stage": np.array(stage, dtype=float),
         }
 
@@ -88,6 +99,8 @@ class PassState:
         like = {f"stored.{name}": array for name, array in (stored | fixed).items()}
         asleep = self._sleep.carried()
         like |= asleep | {name: array[:0] for name, array in asleep.items() if array.dtype.names}
+        if self._reacting is not None:
+            like[REACTING] = np.zeros(0, np.uint8)
         with_room = {name: self._work[name][:0] for name in self._rows()}
         found = keep.load(number, {**self._state, **self._work, **with_room, **like, "stage": np.zeros(5)})
         if found is None:
@@ -96,6 +109,8 @@ class PassState:
             status, t, outputs, wall, ended = found.pop("stage").tolist()
             self._recorder.restore({name: found.pop(f"stored.{name}") for name in stored})
             self._sleep.restore(found)
+            if self._reacting is not None:
+                self._reacting.restore(found.pop(REACTING))
             for name, array in (self._state if ended else {**self._state, **self._work}).items():
                 rows = len(found[name]) if name in with_room else None
                 if array[:rows].shape != found[name].shape:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time as clock
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from threading import Event
 from typing import NamedTuple
@@ -18,6 +19,7 @@ from mdlgen.backends.lattice.integrate.ends import (
     LIMITED,
     OVERLAPPED,
     PASSED,
+    RUNAWAY,
     reason_of,
     unbalanced,
     unheld,
@@ -25,6 +27,7 @@ from mdlgen.backends.lattice.integrate.ends import (
 from mdlgen.backends.lattice.integrate.limit import Calls, Cut, Deadline
 from mdlgen.backends.lattice.integrate.looks import Looks
 from mdlgen.backends.lattice.integrate.pass_state import PassState, Stage
+from mdlgen.backends.lattice.integrate.reacting import Reacting
 from mdlgen.backends.lattice.integrate.record import Recorder, Snapshot
 from mdlgen.backends.lattice.integrate.sleep import Sleep
 from mdlgen.backends.lattice.integrate.slow import Slow
@@ -134,6 +137,9 @@ def speed(model: Model) -> float:
     drives = [abs(r.speed) * r.radius for r in model.rollers if r.speed is not None]
     starts = [float(np.linalg.norm(s.velocity)) for s in model.sheets]
     own = [max(s.size) / 10 / model.run.duration for s in model.sheets]
+    radius = {r.name: r.radius for r in model.rollers}
+    orders = [order for rule in model.reactions.rules for order in rule.orders if order.kind == "speed"]
+    drives += [abs(order.value) * radius[order.name] for order in orders]
     known = max(*drives, *starts, 0.0)
     return max(known, max(own, default=0.0) * (0.1 if known > 0.0 else 1.0))
 
@@ -181,6 +187,7 @@ class _Pass:
         self._todo = range(divided.outputs)  # numbers of the outputs that are not reached yet
         self._calls = Calls(MOST_AT_ONCE)
         self._slow = Slow(model, steering, None if watch.hidden else watch.progress)
+        self._reacting = Reacting(model, self._sleep, speed(model)) if model.reactions else None
 
     def steer(self, miss: float, made: float, anew: bool) -> None:
         self._pace[[MISS_OF, ANEW, MADE_OF]] = miss, float(anew), made
@@ -191,7 +198,7 @@ class _Pass:
         keep, number, sleep = self._watch.keep, self._watch.number, self._sleep
         if keep is None or not sleep.lie_down(keep, number):
             return
-        stage = PassState(sleep.work, sleep.steering, self._recorder, sleep).back(keep, number)
+        stage = self._state().back(keep, number)
         if stage is None:
             return
         self._status, self._t, self._past = stage.status, stage.t, stage.wall
@@ -203,6 +210,10 @@ class _Pass:
     def go(self) -> None:
         """Takes all steps that are left, or as many as can be."""
         keep, deadline = self._watch.keep, self._watch.deadline
+        if self._reacting is not None and self._t == 0.0 and self._status == integrate.DONE:
+            self._status = self._reacting.look(0.0, self._divided.step)
+        if self._status != integrate.DONE:
+            return
         with Cut(deadline, lambda: self._sleep.work):
             for output in self._todo:
                 self._status = self._up_to(output)
@@ -214,6 +225,9 @@ class _Pass:
                 if self._watch.progress is not None:
                     steps, touching = int(self._counters[STEPS]), int(self._counters[TOUCHING])
                     self._watch.progress(self._t, self._model.run.duration, steps, touching)
+                if self._reacting is not None and self._reacting.machine.ended:
+                    self._shorten()
+                    break
                 if deadline.over and output + 1 < self._divided.outputs:
                     self._status = LIMITED
                     break
@@ -250,9 +264,12 @@ class _Pass:
             if stop is not None and stop.is_set():
                 raise Stopped
             began, many, since = t, self._calls.many, clock.perf_counter()
-            status, t = integrate.run(sleep.work, t, left[:many], self._tolerance, sleep.steering)
+            now = left[:many]
+            if self._reacting is not None:
+                now = self._reacting.steps(t, now, dt)
+            status, t = integrate.run(sleep.work, t, now, self._tolerance, sleep.steering)
             took = clock.perf_counter() - since
-            self._calls.took(min(many, left.size), took)
+            self._calls.took(now.size, took)
             self._slow.tell(t, left[0], took)
             if fresh and t > began:
                 self._recorder.between()
@@ -261,8 +278,10 @@ class _Pass:
                 return LIMITED, t
             if status == integrate.DONE and self._counters[STEPS] > self._most:
                 return CRAWLED, t
+            if status == integrate.DONE and self._reacting is not None:
+                status = self._reacting.look(t, dt)
             if status == integrate.DONE:
-                left = left[many:]
+                left = left[now.size :] if now[0] == left[0] else self._looks.left(goal, t, dt)
             elif status == integrate.WOKEN:
                 sleep.wake(int(self._counters[WORST]), t)
                 left = self._looks.left(goal, t, dt)
@@ -271,6 +290,11 @@ class _Pass:
             else:
                 return status, t
         return integrate.DONE, t
+
+    def _shorten(self) -> None:
+        """A rule ended the run at the time that was stored last."""
+        self._model = replace(self._model, run=replace(self._model.run, duration=self._recorder.last))
+        self._recorder.model = replace(self._recorder.model, run=self._model.run)
 
     def _show(self) -> None:
         """Offers what there is so far; of two passes at the same time the one that is not hidden does."""
@@ -281,9 +305,12 @@ class _Pass:
 
     def _keep(self, keep: Checkpointer, outputs: int, ended: bool) -> None:
         """Keeps the state, to go on from."""
-        sleep = self._sleep
         at = Stage(self._status, self._t, outputs, self._wall(), ended)
-        keep.save(self._watch.number, PassState(sleep.work, sleep.steering, self._recorder, sleep).arrays(at))
+        keep.save(self._watch.number, self._state().arrays(at))
+
+    def _state(self) -> PassState:
+        sleep = self._sleep
+        return PassState(sleep.work, sleep.steering, self._recorder, sleep, self._reacting)
 
     def _wall(self) -> float:
         return self._past + clock.perf_counter() - self._begun
@@ -297,10 +324,15 @@ class _Pass:
         dt, sleep, reason = self._divided.step, self._sleep, None
         if status != integrate.DONE:
             state = sleep.work.state
-            reason = reason_of(self._model, sleep.system, status, self._t, dt, state, self._counters)
+            if status == RUNAWAY and self._reacting is not None:
+                reason = self._reacting.runaway
+            else:
+                reason = reason_of(self._model, sleep.system, status, self._t, dt, state, self._counters)
         result = self._recorder.result("lattice", reason, self._energies)
         result.step, result.steps = dt, int(self._counters[STEPS])
         result.rounds, result.wall_s = int(self._counters[ITERATIONS]), wall
+        if self._reacting is not None:
+            result.reactions = tuple(self._reacting.machine.log)
         result.counts = {name: int(self._counters[column]) for name, column in COUNTED.items()}
         if result.ok and not all(
             np.isfinite(a).all() for a in (result.position, result.velocity, result.spin)

@@ -57,6 +57,11 @@ from mdlgen.model.tables.model import Model as Model
 from mdlgen.model.tables.model import Parameter as Parameter
 from mdlgen.model.tables.model import RunSettings as RunSettings
 from mdlgen.model.tables.model import Tension as Tension
+from mdlgen.model.tables.reactions import Order as Order
+from mdlgen.model.tables.reactions import Reactions as Reactions
+from mdlgen.model.tables.reactions import RulePart as RulePart
+from mdlgen.model.tables.reactions import SensorPart as SensorPart
+from mdlgen.model.tables.reactions import no_reactions as no_reactions
 from mdlgen.model.tables.sheets import Bend as Bend
 from mdlgen.model.tables.sheets import Clamp as Clamp
 from mdlgen.model.tables.sheets import Crease as Crease

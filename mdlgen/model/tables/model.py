@@ -29,6 +29,7 @@ from mdlgen.model.tables.machine import (
     Press,
     RollerPart,
 )
+from mdlgen.model.tables.reactions import Reactions, no_reactions
 from mdlgen.model.tables.sheets import SheetPart
 
 P = TypeVar("P")
@@ -135,6 +136,7 @@ class Model(Frozen):
     revision: str = ""
     plastic: Plastic = field(default_factory=no_plastic)
     corners: Corners = field(default_factory=no_corners)  # Poisson's effect of plates
+    reactions: Reactions = field(default_factory=no_reactions)
 
     def __repr__(self) -> str:
         kinds = ("sheets", "rollers", "planes", "guides", "meshes", "bushings", "contacts")

@@ -30,7 +30,7 @@ TURNS = ("contact_torque", "contact_friction", "plastic")
 STORED = (
     "model", "solver", "status", "touched", "energy", "step", "steps", "rounds", "halved", "error_estimate",
     "error_estimate_of", "error_below", "error_unknown", "search_ended", "chaotic", "doubts", "estimates",
-    "versions", "source",
+    "versions", "source", "reactions",
 )  # fmt: skip
 TOOK = ("wall_s", "estimate_s", "build_s", "compile_s")  # which differ from run to run
 STATISTICS = ("max_depth", "mean_depth", "max_force", "mean_force", "last_force_at")

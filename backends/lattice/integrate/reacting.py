@@ -1,0 +1,93 @@
+"""A pass whose machine reacts: its steps end where its sensors and rules ask for it, and orders are carried
+out there."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+
+from mdlgen.backends.lattice.integrate.ends import RUNAWAY
+from mdlgen.backends.lattice.integrate.sleep import Sleep
+from mdlgen.backends.lattice.kernels.integrate.integrate import DONE
+from mdlgen.backends.lattice.kernels.state import DRIVEN, THROUGH_DRIVES
+from mdlgen.model.tables import Floats, Model
+from mdlgen.reactions.commands import Commands, Units
+from mdlgen.reactions.machine import SOON, Machine, RunawayError
+from mdlgen.reactions.sensing import Poses
+
+
+class Reacting:
+    """The machine of a Model along one pass."""
+
+    def __init__(self, model: Model, sleep: Sleep, slowest: float):
+        """`slowest`: see Machine."""
+        self.machine = Machine(model, slowest)
+        self._sleep, self._commands = sleep, Commands(model, Units())
+        self._boxes = np.zeros(len(sleep.work.tables.bodies), bool)
+        for sheet in model.sheets:
+            self._boxes[sheet.first : sheet.first + sheet.count] = True
+        self.runaway = ""  # why a pass ended
+        self._told: np.ndarray | None = None  # the records that have all orders
+
+    def steps(self, t: float, left: Floats, step: float) -> Floats:
+        """Of the steps that are `left` [ms] from the time t on those to take before the machine looks again:
+        whole ones, or a part of the first; `step`: a whole one."""
+        self._tell()
+        until = self.machine.ahead(t, step, self._poses()) - t
+        whole = int(np.searchsorted(np.cumsum(left), until + SOON * step, side="right"))
+        return left[:whole] if whole else np.array([until])
+
+    def look(self, t: float, step: float) -> int:
+        """Sees what happens at the time t, and carries out what follows: integrate.DONE, or RUNAWAY."""
+        try:
+            orders = self.machine.look(t, step, self._poses())
+        except RunawayError as error:
+            self.runaway = str(error)
+            return RUNAWAY
+        for order in orders:
+            if order.kind == "end":
+                continue
+            bodies = self._sleep.work.tables.bodies
+            grown = self._commands.order(order, t, bodies)
+            if grown:
+                self._book(self._commands.body(order.name), grown)
+        return DONE
+
+    def _book(self, body: int, grown: float) -> None:
+        """The work of what changes the force of a spring: its potential energy changes at once."""
+        work = self._sleep.work
+        gained = -grown * float(work.state.s[work.tables.bodies["slide"][body]])
+        energies = self._sleep.steering.energies[work.islands.group[work.islands.part[body]]]
+        energies[DRIVEN] += gained
+        energies[THROUGH_DRIVES] += abs(gained)
+
+    def _tell(self) -> None:
+        """Sheets that fall asleep or wake, and pairs of a wider margin, come with records of their own."""
+        bodies = self._sleep.work.tables.bodies
+        if bodies is not self._told:
+            self._commands.tell(bodies)
+            self._told = bodies
+
+    def _poses(self) -> Poses:
+        """Of all bodies, with the velocities in the middle of the last step."""
+        work = self._sleep.work
+        state, motion, nodes = work.state, work.mid.motion, self._sleep.system.nodes
+        u, w = motion.u.copy(), motion.w.copy()
+        u[self._boxes] = w[self._boxes] = 0.0  # but for what is awake
+        u[nodes], w[nodes] = state.u[:, :3], state.u[:, 3:]
+        return Poses(state.x, state.r, u, w)
+
+    # -- checkpoints
+
+    def carried(self) -> np.ndarray:
+        """All that it goes on from, as bytes."""
+        text = json.dumps({"machine": self.machine.kept(), "commands": self._commands.kept()})
+        return np.frombuffer(text.encode("ascii"), dtype=np.uint8)
+
+    def restore(self, kept: np.ndarray) -> None:
+        """Goes back to what `carried` gave."""
+        found = json.loads(kept.tobytes())
+        self.machine.restore(found["machine"])
+        self._commands.restore(found["commands"])
+        self._told = None

@@ -1,0 +1,60 @@
+"""Sensors and rules: what a machine sees of its sheets, and what it does then."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from mdlgen.geometry.arrays import Floats as Floats
+from mdlgen.geometry.arrays import Ints as Ints
+from mdlgen.model.tables.bodies import Frozen
+
+
+@dataclass(frozen=True)
+class SensorPart(Frozen):
+    """A sensor: it sees what is on the way `way` from any point between both `ends`."""
+
+    name: str
+    kind: str  # beam, point or line
+    ends: Floats  # of a beam and a point twice the same one [mm], (2, 3)
+    way: Floats  # where it looks to, as far as it sees [mm], (3,)
+    hysteresis: float  # [mm]
+    sheets: Ints  # numbers of the sheets that it sees
+
+
+@dataclass(frozen=True)
+class Order(Frozen):
+    """One thing that a rule does."""
+
+    kind: str  # speed, press, torque, go, end
+    name: str  # of the part, or of the state; empty: none
+    value: float  # a speed about the axis [rad/ms], a force [N], a torque [N mm]
+    ramp: float  # time that it takes [ms]
+
+
+@dataclass(frozen=True)
+class RulePart(Frozen):
+    """A rule, see the spec."""
+
+    when: str
+    after: float  # [ms]
+    once: bool
+    states: tuple[str, ...]  # in which it holds; empty: all
+    orders: tuple[Order, ...]
+
+
+@dataclass(frozen=True)
+class Reactions(Frozen):
+    """All sensors and rules, by name and as they are listed."""
+
+    sensors: tuple[SensorPart, ...] = ()
+    rules: tuple[RulePart, ...] = ()
+    amounts: tuple[tuple[str, float, tuple[float, float, float, float]], ...] = ()  # parameters, dimensions
+    begins: str = ""  # the state in which the machine begins; empty: it has none
+
+    def __bool__(self) -> bool:
+        return bool(self.sensors or self.rules)
+
+
+def no_reactions() -> Reactions:
+    """Of a machine that does not see and goes by itself."""
+    return Reactions()

@@ -1,0 +1,360 @@
+"""A machine along a run: when its sensors have to be looked at, what they see, which rules act, and on what.
+
+A solver asks `ahead` up to which time it may step, and tells by `look` where it is then. Steps end where a
+sensor's edge, or a condition over places, is foreseen from the velocities as they are: off by a h^2 / 2 of an
+acceleration a, second order in the step h. What was not foreseen is found within the step that passed it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from mdlgen.conditions import CLOCK, OF_SENSOR, condition
+from mdlgen.formulas import Amount
+from mdlgen.model.tables import Model, Order
+from mdlgen.reactions.known import of_states
+from mdlgen.reactions.sensing import FAR, Eye, Poses, between
+from mdlgen.units import PER_SECOND
+
+# What is that much of a step ahead is there: times are found to a part of that (convention; the time of an
+# event is wrong by less than this part of what the step does to it).
+SOON = 1e-3
+# A sheet is not looked at while it would take it twice as long to reach a sensor, at the speed of what is
+# fastest (convention: what speeds up to twice of that meanwhile is found within a step).
+SAFE = 2.0
+HALVINGS = 24  # of a step, to a time within it: to 6e-8 of it
+# Times that rules at one time may set off each other: more go in a circle (convention).
+MOST_AT_ONCE = 100
+CLOCKED = 64  # times ahead at which a condition of times alone is looked at (convention)
+
+
+class RunawayError(Exception):
+    """Rules set off each other at one time, without an end."""
+
+
+class _Edge(NamedTuple):
+    """That a sensor's light changes: which one, when [ms], and the poses of the sheet there."""
+
+    eye: int
+    sheet: int
+    time: float
+    poses: Poses
+
+
+@dataclass
+class Sight:
+    """What a sensor knows. Times in ms, nan: not yet."""
+
+    covered: bool = False
+    count: int = 0
+    since: float = math.nan  # time of its last change
+    gap: float = math.nan
+    speed: float = math.nan
+    skew: float = math.nan
+    position: float = math.nan
+    looks: float = 0.0  # when it is looked at next
+
+    def known(self, t: float) -> dict[str, Amount | float]:
+        values = {
+            "count": float(self.count),
+            "since": t - self.since,
+            **{name: getattr(self, name) for name in ("gap", "speed", "skew", "position")},
+        }
+        found: dict[str, Amount | float] = {"covered": float(self.covered), "clear": float(not self.covered)}
+        for name, value in values.items():
+            dimension = OF_SENSOR[name]
+            assert dimension is not None, "they are numbers"
+            found[name] = Amount(value, dimension)
+        return found
+
+
+@dataclass
+class _Stage:
+    """All that changes along a run."""
+
+    sights: list[Sight]
+    true: list[bool]  # whether each rule held where it was looked at last
+    fired: list[int]  # how often each acted
+    state: str
+    pending: list[tuple[float, int]] = field(default_factory=list)  # times [ms] and rules that are due then
+    ended: bool = False
+
+
+class Machine:
+    """Sensors and rules of a Model along one pass of a run."""
+
+    def __init__(self, model: Model, slowest: float):
+        """`slowest`: a speed that sheets are looked for with at least [mm/ms]."""
+        table = model.reactions
+        self._model, self._slowest = model, slowest
+        self._eyes = [Eye(model, sensor) for sensor in table.sensors]
+        self._number = {sensor.name: k for k, sensor in enumerate(table.sensors)}
+        self._rules = table.rules
+        self._conditions = [condition(rule.when) for rule in table.rules]
+        self._amounts = {name: Amount(value, dimension) for name, value, dimension in table.amounts}
+        self._amounts["pi"] = Amount(math.pi, (0.0, 0.0, 0.0, 0.0))
+        self._of_states = of_states(model)
+        named = [set(c.expression.names) for c in self._conditions]
+        self._moving = [k for k, names in enumerate(named) if names & self._of_states.keys()]
+        clocked = [any(n == CLOCK or n.endswith(".since") for n in names) for names in named]
+        self._clocked = [k for k, timed in enumerate(clocked) if timed and k not in self._moving]
+        count = len(self._rules)
+        self._stage = _Stage([Sight() for _ in self._eyes], [False] * count, [0] * count, table.begins)
+        self._before: tuple[float, Poses] | None = None
+        self.log: list[dict[str, Any]] = []
+
+    @property
+    def ended(self) -> bool:
+        """Whether a rule ended the run."""
+        return self._stage.ended
+
+    # -- when to look
+
+    def ahead(self, t: float, step: float, poses: Poses) -> float:
+        """Up to which time from t on steps of a length may be taken before it looks again [ms]: at least to a
+        part of one."""
+        stage, until = self._stage, math.inf
+        if stage.pending:
+            until = min(time for time, _ in stage.pending)
+        for k, eye in enumerate(self._eyes):
+            sight = stage.sights[k]
+            if sight.looks <= t + step:
+                sight.looks = self._next(eye, sight, t, step, poses)
+            until = min(until, sight.looks)
+        if self._moving:
+            until = min(until, t + step)
+            at = self._first(lambda ahead: self._changed(self._moving, t + ahead, poses.after(ahead)), step)
+            until = min(until, t + at)
+        if self._clocked:
+            until = min(until, self._next_time(t, step, poses))
+        return max(until, t + SOON * step)
+
+    def _next(self, eye: Eye, sight: Sight, t: float, step: float, poses: Poses) -> float:
+        """When a sensor is looked at next: where it changes within the step, at its end where it is near, or
+        as soon as a sheet can be there."""
+        off = self._off(eye, poses)
+        if off == FAR and not eye.sheets:
+            return math.inf
+        away = abs(off - (eye.hysteresis if sight.covered else 0.0))
+        free = away / (SAFE * max(self._fastest(eye, poses), self._slowest, 1e-12))
+        if free > step:
+            return t + free
+        if not self._rules:
+            return t + step  # nothing acts at that time; it is found within the step
+        return t + self._first(lambda ahead: self._changes(eye, sight, poses.after(ahead)), step)
+
+    def _first(self, changed: Callable[[float], bool], step: float) -> float:
+        """How far ahead [ms] something changes; the step, where it does not change in that."""
+        if not changed(step):
+            return step
+        low, high = 0.0, step
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            low, high = (low, middle) if changed(middle) else (middle, high)
+        return high
+
+    def _off(self, eye: Eye, poses: Poses) -> float:
+        return min((float(eye.off(k, poses.of(eye.boxes[k])).min()) for k in eye.sheets), default=FAR)
+
+    def _changes(self, eye: Eye, sight: Sight, poses: Poses) -> bool:
+        off = self._off(eye, poses)
+        return (off < eye.hysteresis if sight.covered else off <= 0.0) != sight.covered
+
+    def _fastest(self, eye: Eye, poses: Poses) -> float:
+        """Speed of what a sensor sees, at most [mm/ms]."""
+        most = 0.0
+        for boxes in eye.boxes.values():
+            half = self._model.bodies.half[boxes]
+            turns = np.linalg.norm(poses.w[boxes], axis=1) * np.linalg.norm(half, axis=1)
+            most = max(most, float((np.linalg.norm(poses.u[boxes], axis=1) + turns).max()))
+        return most
+
+    def _next_time(self, t: float, step: float, poses: Poses) -> float:
+        """When a condition of times alone changes next, or as far ahead as that was looked for."""
+        for k in range(CLOCKED):
+            first = t + k * step
+
+            def changed(ahead: float, first: float = first) -> bool:
+                return self._changed(self._clocked, first + ahead, poses)
+
+            if changed(step):
+                return first + self._first(changed, step)
+        return t + CLOCKED * step
+
+    # -- what happens
+
+    def look(self, t: float, step: float, poses: Poses) -> list[Order]:
+        """What is to be done at the time t [ms], where a solver is with steps of that length.
+
+        Raises RunawayError.
+        """
+        stage = self._stage
+        for edge in self._edges(t, step, poses):
+            self._see(edge)
+        orders: list[Order] = []
+        soon = SOON * step
+        for _ in range(MOST_AT_ONCE):
+            if self._rules:
+                self._judge(t, poses.after(soon), soon)
+            due = sorted(entry for entry in stage.pending if entry[0] <= t + soon)
+            if not due:
+                self._before = (t, poses.copy()) if self._eyes else None
+                return orders
+            stage.pending = [entry for entry in stage.pending if entry[0] > t + soon]
+            for _time, rule in due:
+                orders += self._act(rule, t)
+        numbers = sorted({rule for _, rule in stage.pending})
+        raise RunawayError(
+            f"rules.{', rules.'.join(map(str, numbers))} set off each other at {t:.6g} ms without an end"
+        )
+
+    def _edges(self, t: float, step: float, poses: Poses) -> list[_Edge]:
+        """The sensors that change at the time t, or changed in the step that ends there."""
+        found = []
+        for k, eye in enumerate(self._eyes):
+            sight = self._stage.sights[k]
+            if sight.looks > t + SOON * step:
+                continue
+            if self._changes(eye, sight, poses):
+                found.append(self._within(k, t, poses))
+            elif self._changes(eye, sight, ahead := poses.after(SOON * step)) and self._rules:
+                found.append(self._edge(k, t, ahead))
+        return found
+
+    def _within(self, k: int, t: float, poses: Poses) -> _Edge:
+        """An edge at the end of a step, or in it."""
+        eye, sight = self._eyes[k], self._stage.sights[k]
+        if self._before is None or self._before[0] >= t or self._changes(eye, sight, self._before[1]):
+            return self._edge(k, t, poses)
+        began, first = self._before
+        long = t - began
+
+        def at(ahead: float) -> Poses:
+            return between(first, poses, ahead / long, long)
+
+        time = self._first(lambda ahead: self._changes(eye, sight, at(ahead)), long)
+        return self._edge(k, began + time, at(time))
+
+    def _edge(self, k: int, time: float, poses: Poses) -> _Edge:
+        eye = self._eyes[k]
+        near = min(eye.sheets, key=lambda sheet: float(eye.off(sheet, poses.of(eye.boxes[sheet])).min()))
+        return _Edge(k, near, time, poses)
+
+    def _see(self, edge: _Edge) -> None:
+        """Takes over what a sensor sees, and notes it."""
+        eye, sight = self._eyes[edge.eye], self._stage.sights[edge.eye]
+        by = eye.passing(edge.sheet, edge.poses.of(eye.boxes[edge.sheet]))
+        since = edge.time - sight.since
+        sight.covered = not sight.covered
+        sight.speed, sight.skew, sight.position = by
+        numbers: dict[str, Any] = {"speed_mm_per_s": by.speed * PER_SECOND}
+        if sight.covered:
+            sight.count += 1
+            sight.gap = since * by.speed
+            numbers |= {"skew_deg": math.degrees(by.skew), "position_mm": by.position, "count": sight.count}
+            numbers |= {"gap_ms": _number(since), "gap_mm": _number(sight.gap)}
+        else:
+            numbers["covered_ms"] = _number(since)
+        sight.since = edge.time
+        kind = "covered" if sight.covered else "cleared"
+        sheet = self._model.sheets[edge.sheet].name
+        self.log.append({"time_ms": edge.time, "kind": kind, "sensor": eye.name, "sheet": sheet} | numbers)
+
+    def _judge(self, t: float, poses: Poses, soon: float) -> None:
+        """Lets the rules that come true be due."""
+        stage, known = self._stage, self._known(t + soon, poses)
+        for k, rule in enumerate(self._rules):
+            holds = (not rule.states or stage.state in rule.states) and self._conditions[k].holds(known)
+            if holds and not stage.true[k] and not (rule.once and self._set_off(k)):
+                stage.pending.append((t + rule.after, k))
+            stage.true[k] = holds
+
+    def _set_off(self, rule: int) -> bool:
+        return self._stage.fired[rule] > 0 or any(k == rule for _, k in self._stage.pending)
+
+    def _act(self, rule: int, t: float) -> list[Order]:
+        """What a rule does at the time t; states are its own matter."""
+        stage, orders = self._stage, self._rules[rule].orders
+        stage.fired[rule] += 1
+        for order in orders:
+            if order.kind == "go":
+                stage.state = order.name
+                stage.true = [
+                    held and (not r.states or stage.state in r.states)
+                    for held, r in zip(stage.true, self._rules, strict=True)
+                ]
+            elif order.kind == "end":
+                stage.ended = True
+        does = ", ".join(in_words(order) for order in orders)
+        row = {"time_ms": t, "kind": "rule", "rule": rule, "when": self._rules[rule].when, "does": does}
+        self.log.append(row)
+        return [order for order in orders if order.kind != "go"]
+
+    def _changed(self, rules: Sequence[int], t: float, poses: Poses) -> bool:
+        """Whether one of these rules would hold, or not hold, as it does not, or does, now."""
+        stage, known = self._stage, self._known(t, poses)
+        return any(
+            self._conditions[k].holds(known) != stage.true[k]
+            for k in rules
+            if not self._rules[k].states or stage.state in self._rules[k].states
+        )
+
+    def _known(self, t: float, poses: Poses) -> Callable[[str], Amount | float]:
+        """What conditions know at a time, by name."""
+
+        def value(name: str) -> Amount | float:
+            if name == CLOCK:
+                return Amount(t, (0.0, 0.0, 1.0, 0.0))
+            if name in self._amounts:
+                return self._amounts[name]
+            if name in self._of_states:
+                return self._of_states[name](poses)
+            sensor, _, word = name.partition(".")
+            return self._stage.sights[self._number[sensor]].known(t)[word]
+
+        return value
+
+    # -- runs that are gone on with
+
+    def kept(self) -> dict[str, Any]:
+        """All that it goes on from, as plain values."""
+        stage = self._stage
+        before = None if self._before is None else [self._before[0], *(a.tolist() for a in self._before[1])]
+        return {
+            "sights": [vars(sight) for sight in stage.sights],
+            **{name: getattr(stage, name) for name in ("true", "fired", "state", "ended")},
+            "pending": [list(entry) for entry in stage.pending],
+            "before": before,
+            "log": self.log,
+        }
+
+    def restore(self, kept: dict[str, Any]) -> None:
+        """Goes back to what `kept` gave."""
+        stage, before = self._stage, kept["before"]
+        stage.sights = [Sight(**sight) for sight in kept["sights"]]
+        for name in ("true", "fired", "state", "ended"):
+            setattr(stage, name, kept[name])
+        stage.pending = [(time, rule) for time, rule in kept["pending"]]
+        self._before = None if before is None else (before[0], Poses(*map(np.array, before[1:])))
+        self.log = list(kept["log"])
+
+
+def in_words(order: Order) -> str:
+    """What an order asks for, as a person says it."""
+    if order.kind == "speed":
+        ramp = f" in {order.ramp:g} ms" if order.ramp else ""
+        return f"{order.name} to {order.value * PER_SECOND:.6g} rad/s{ramp}"
+    if order.kind == "press":
+        return f"{order.name} pressed by {order.value:.6g} N"
+    if order.kind == "torque":
+        return f"arm of {order.name} to {order.value:.6g} N*mm"
+    return f"go to {order.name}" if order.kind == "go" else "end"
+
+
+def _number(value: float) -> float | None:
+    return value if math.isfinite(value) else None

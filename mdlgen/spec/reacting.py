@@ -1,0 +1,141 @@
+"""What sensors and rules of a scene name, and what is wrong where there is no such thing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import TYPE_CHECKING
+
+from mdlgen.conditions import CLOCK, OF_ROLLER, OF_SENSOR, OF_SHEET, TIME, check, condition
+from mdlgen.formulas import Dimension
+from mdlgen.spec.between import known, matching
+from mdlgen.spec.nip import names_of
+from mdlgen.spec.strict import fail
+
+if TYPE_CHECKING:
+    from mdlgen.spec.scene import Scene
+
+MOST_RULES, MOST_SENSORS = 200, 100  # convention: far above what a machine has
+
+
+def words(scene: Scene) -> dict[str, Dimension | None]:
+    """The names that a condition may have, but for parameters, and the dimension of each; None: yes or no."""
+    found: dict[str, Dimension | None] = {CLOCK: TIME}
+    for names, of in (
+        (scene.sensors, OF_SENSOR),
+        ((*scene.sheets, *scene.probes), OF_SHEET),
+        (scene.rollers, OF_ROLLER),
+    ):
+        found |= {f"{name}.{word}": dimension for name in names for word, dimension in of.items()}
+    return found
+
+
+def states(scene: Scene) -> tuple[str, ...]:
+    """The states that the rules name, the first one first."""
+    return tuple(
+        dict.fromkeys(
+            name for rule in scene.rules for name in (*rule.in_, *((rule.do.go,) if rule.do.go else ()))
+        )
+    )
+
+
+def seen(scene: Scene, name: str) -> list[str]:
+    """The sheets that a sensor sees."""
+    found: list[str] = []
+    for k, pattern in enumerate(scene.sensors[name].sees):
+        found += matching(pattern, scene.sheets, ("sensors", name, "sees", k))
+    return list(dict.fromkeys(found))
+
+
+def driven(scene: Scene, pattern: str, path: tuple[str | int, ...]) -> list[str]:
+    """The driven rollers that a command means: by name, by pattern, or those of a nip."""
+    if pattern in scene.nips:
+        nip = scene.nips[pattern]
+        names = list(names_of(pattern, {"lower": nip.lower, "upper": nip.upper}))
+    else:
+        names = matching(pattern, scene.rollers, path)
+    found = [name for name in names if scene.rollers[name].drive is not None]
+    if not found:
+        others = ", ".join(n for n, roller in scene.rollers.items() if roller.drive is not None)
+        raise fail(f"{pattern} has no drive; those that have one are: {others[:200] or 'none'}", path)
+    return found
+
+
+def pressed(scene: Scene, pattern: str, path: tuple[str | int, ...]) -> list[str]:
+    """The rollers and planes with a press that a command means."""
+    having = {n: p for n, p in (scene.rollers | scene.planes).items() if p.press is not None}
+    return matching(pattern, having, path)
+
+
+def on_arms(scene: Scene, pattern: str, path: tuple[str | int, ...]) -> list[str]:
+    """The rollers on an arm that a command means."""
+    return matching(pattern, {n: r for n, r in scene.rollers.items() if r.arm is not None}, path)
+
+
+# who each kind of command is for
+COMMANDED: dict[str, Callable[[Scene, str, tuple[str | int, ...]], list[str]]] = {
+    "speed": driven,
+    "press": pressed,
+    "torque": on_arms,
+}
+
+
+def checks(scene: Scene) -> Iterator[Callable[[], None]]:
+    """What is to be looked at one by one, so that each mistake is reported."""
+    for count, most, key in (
+        (len(scene.sensors), MOST_SENSORS, "sensors"),
+        (len(scene.rules), MOST_RULES, "rules"),
+    ):
+        if count > most:
+            raise fail(f"{count} {key}; allowed are {most}", (key,))
+    for name in scene.sensors:
+        yield partial(_sensor, scene, name)
+    if not scene.rules:
+        return
+    if scene.run.analysis == "static":
+        raise fail("rules act over time, and a static analysis has none; leave them out", ("rules",))
+    named = words(scene)
+    for k in range(len(scene.rules)):
+        yield partial(_condition, scene, k, named)
+        yield partial(_action, scene, k)
+
+
+def _sensor(scene: Scene, name: str) -> None:
+    seen(scene, name)
+
+
+def _condition(scene: Scene, k: int, named: dict[str, Dimension | None]) -> None:
+    rule = scene.rules[k]
+    try:
+        check(condition(rule.when), named, scene.amounts)
+    except ValueError as error:
+        raise fail(str(error), ("rules", k, "when")) from None
+
+
+def _action(scene: Scene, k: int) -> None:
+    rule, path = scene.rules[k], ("rules", k, "do")
+    for kind, of in COMMANDED.items():
+        for pattern, given in getattr(rule.do, kind).items():
+            names = of(scene, pattern, (*path, kind, pattern))
+            if kind == "speed" and given.surface_speed is not None:
+                for name in names:
+                    _turns(scene, name, (*path, kind, pattern))
+    if rule.do.go is not None and not any(rule.do.go in other.in_ for other in scene.rules):
+        named = [name for other in scene.rules for name in other.in_]
+        known(rule.do.go, dict.fromkeys(named), "state of a rule's `in`", (*path, "go"))
+
+
+def _turns(scene: Scene, name: str, path: tuple[str | int, ...]) -> None:
+    """Raises the error for a drive without a sense of its own, in which a surface's speed would be."""
+    if sense(scene, name) == 0.0:
+        message = f"{name} stands by its own drive, so that surface_speed has no sense; give speed"
+        raise fail(message, path)
+
+
+def sense(scene: Scene, name: str) -> float:
+    """1 or -1: the sense in which a drive turns by itself about its axis; 0: it stands."""
+    drive = scene.rollers[name].drive
+    assert drive is not None, "driven() gives driven ones"
+    rates = [rate for _, rate in drive.profile] if drive.profile is not None else [drive.speed or 0.0]
+    fastest = max(rates, key=abs)
+    return float(fastest > 0.0) - float(fastest < 0.0)

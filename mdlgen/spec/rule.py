@@ -1,0 +1,101 @@
+"""Rules: what a machine does when a condition comes true."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, ConfigDict, Field, model_validator
+
+from mdlgen.conditions import condition
+from mdlgen.spec.fields import Name, TimeOrZero
+from mdlgen.spec.machine import AngularSpeed
+from mdlgen.spec.quantities import default, quantity
+from mdlgen.spec.strict import Strict, fail
+
+
+def _short(key: str):
+    """A command that is written as its value alone."""
+
+    def read(value: Any) -> Any:
+        return value if isinstance(value, dict) else {key: value}
+
+    return BeforeValidator(read)
+
+
+def _names(value: Any) -> Any:
+    return (value,) if isinstance(value, str) else value
+
+
+class ToSpeed(Strict):
+    """A speed that a drive goes to."""
+
+    speed: AngularSpeed | None = Field(
+        default=None, description="angular speed about the roller's axis (right-hand rule)"
+    )
+    surface_speed: Annotated[float, quantity("mm/s", 0.0)] | None = Field(
+        default=None,
+        description="in place of speed: that of the surface, in the sense in which the drive turns by itself",
+    )
+    ramp: TimeOrZero = Field(default=default("0 ms"), description="time that it takes, linear")
+
+    @model_validator(mode="after")
+    def _one(self) -> ToSpeed:
+        if (self.speed is None) == (self.surface_speed is None):
+            raise fail("give exactly one of speed and surface_speed")
+        return self
+
+
+class Action(Strict):
+    """What a rule does: any of these, at once."""
+
+    speed: dict[str, Annotated[ToSpeed, _short("speed")]] = Field(
+        default_factory=dict,
+        description="drives by roller, pattern or nip, and the speed that each goes to: {entry: 0 rad/s} or "
+        "{entry: {surface_speed: 300 mm/s, ramp: 5 ms}}",
+    )
+    press: dict[str, Annotated[float, quantity("N")]] = Field(
+        default_factory=dict,
+        description="rollers or planes with `press`, and the force of the spring where it touches: "
+        "below 0 N it lifts",
+    )
+    torque: dict[str, Annotated[float, quantity("N*mm")]] = Field(
+        default_factory=dict,
+        description="rollers on an arm, and the torque of the arm's spring in its place at the start",
+    )
+    go: Name | None = Field(default=None, description="state that the machine goes to, see `in`")
+    end: bool = Field(default=False, description="true: the run ends well, at the next stored time")
+
+    @model_validator(mode="after")
+    def _something(self) -> Action:
+        if not (self.speed or self.press or self.torque or self.go or self.end):
+            raise fail("a rule has to do something: speed, press, torque, go or end")
+        return self
+
+
+class Rule(Strict):
+    """Does something each time a condition comes true. What is true as the run begins comes true then."""
+
+    model_config = ConfigDict(populate_by_name=True)
+
+    when: str = Field(
+        description="a condition: exit covered, count(exit) == 3, gap(entry) < 20 mm, time > 30 ms, "
+        "note.x > 120 mm, with and, or, not"
+    )
+    after: TimeOrZero = Field(default=default("0 ms"), description="time from then until it acts")
+    once: bool = Field(default=False, description="true: only the first time")
+    in_: Annotated[tuple[Name, ...], BeforeValidator(_names)] = Field(
+        default=(),
+        strict=False,
+        alias="in",
+        description="state or states of the machine in which the rule holds; all if left out. The machine "
+        "begins in the first state that the list of rules names",
+    )
+    do: Action = Field(description="what it does")
+
+    @model_validator(mode="after")
+    def _reads(self) -> Rule:
+        try:
+            condition(self.when)
+        except ValueError as error:
+            raise fail(str(error), within=("when",)) from None
+        return self
