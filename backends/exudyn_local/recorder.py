@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time as clock
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,6 +23,7 @@ from mdlgen.backends.exudyn_local.state import (
     workspace,
 )
 from mdlgen.backends.exudyn_local.system import MM, MS, PER_MM, System
+from mdlgen.mechanics.frame import Motion
 from mdlgen.mechanics.pair import before_an_end
 from mdlgen.mechanics.point import DEPTH, OUT, PRESSING
 from mdlgen.mechanics.turning import ABOUT_A, ABOUT_B, ALONG, LIMIT, TURNING
@@ -31,7 +33,11 @@ from mdlgen.model.overlaps.unheld import Unheld
 from mdlgen.model.rotations import euler_parameters
 from mdlgen.model.tables import Model
 from mdlgen.results import audit
+from mdlgen.reactions.machine import SOON
 from mdlgen.results.result import ContactStatistics, Energy, Result
+
+if TYPE_CHECKING:
+    from mdlgen.backends.exudyn_local.reacting import Reacting
 
 # Two rollers with a sheet between them clear each other by a few micrometres and may graze.
 GRAZE = 0.05
@@ -75,6 +81,9 @@ class Recorder:
         self._last_stored = -1
         self._deepest = np.empty(len(system.pairs))
         self._unheld = Unheld(model)
+        self._reacting: Reacting | None = None
+        self.parted = self._parts = False
+        self.finished = False  # a rule ended the run, at a stored time
 
     def plan(self, h: float) -> None:
         """Which times are stored: the print times, at the first step that reaches them, and the end."""
@@ -110,7 +119,31 @@ class Recorder:
             self._store(t)
         if self.progress is not None and self.steps % 20 == 0:
             self.progress(t / MS, self.model.run.duration, self.steps, self.touching)
-        return self.reason is None
+        if self._reacting is not None and self.reason is None:
+            happened = self._reacting.look(t)
+            self.parted = self._parts and (happened or self._reacting.until(t) < t + step * (1.0 - SOON))
+            self.finished = self._reacting.machine.ended and self._last_stored == self.steps
+        return self.reason is None and not self.parted and not self.finished
+
+    def watch(self, reacting: Reacting, parts: bool) -> None:
+        """From now on a machine reacts after each step; `parts`: the solver is to end where it asks for it."""
+        self._reacting, self._parts, self.parted = reacting, parts, False
+
+    def book(self, times: float, slide: int) -> None:
+        """The work of what changed the force of a spring: so many newtons times where it is."""
+        work = times * float(self._q[slide])
+        self._driven += work
+        self._through += abs(work)
+
+    def renew(self, t: float) -> None:
+        """What drives and springs do changed at a time: energies and powers are those from then on."""
+        at = Coordinates(self._q, self._v, t)
+        ledger(self._tables, at, self._work, np.zeros_like(self._pairs), self._totals)
+
+    @property
+    def motion(self) -> Motion:
+        """Places and velocities of all bodies as the last step ended, in SI units."""
+        return self._work.motion
 
     @property
     def touching(self) -> int:

@@ -19,6 +19,7 @@ import numpy as np
 from mdlgen.backends.exudyn_local.assemble import Assembly, assemble
 from mdlgen.backends.exudyn_local.films import entries_of
 from mdlgen.backends.exudyn_local.place import owners
+from mdlgen.backends.exudyn_local.reacting import Reacting, in_parts
 from mdlgen.backends.exudyn_local.recorder import Recorder
 from mdlgen.backends.exudyn_local.scope import check
 from mdlgen.backends.exudyn_local.shipped import (
@@ -244,8 +245,13 @@ def _once(
         recorder.plan(h)
         assembly.mbs.SetPostStepUserFunction(recorder.after_step)
         recorder.store(assembly.q, assembly.v, 0.0)
+    reacting = Reacting(model, system, recorder, h) if model.reactions and not static else None
     begun = clock.perf_counter()
-    reason = _run(exu, assembly, model, count, h, recorder.touching > 0)
+    try:
+        reason = _run(exu, assembly, model, count, h, recorder, reacting)
+    finally:
+        if reacting is not None:
+            reacting.undo()
     wall = clock.perf_counter() - begun
     data = assembly.mbs.systemData
     q, v = np.array(data.GetODE2Coordinates()), np.array(data.GetODE2Coordinates_t())
@@ -256,6 +262,9 @@ def _once(
     reason = recorder.reason or reason
     if reason is None and not (np.isfinite(q).all() and np.isfinite(v).all()):
         reason = "the state went non-finite"
+    if recorder.finished:
+        model = replace(model, run=replace(model.run, duration=recorder.time / MS))
+        recorder.model = model
     # the reached time is kept by our own step function, not by the solver's flag
     if reason is None and not static and recorder.time < model.run.duration * MS * (1 - 1e-9):
         reason = f"stopped at {recorder.time / MS:.6g} ms, before the end at {model.run.duration:g} ms"
@@ -265,6 +274,8 @@ def _once(
         which = "one direction" if ways == 1 else f"{ways} directions"
         reason = f"{UNSTABLE}: it falls in {which}; a small load aside leads to one that stands"
     result = recorder.result("exudyn", reason)
+    if reacting is not None:
+        result.reactions = tuple(reacting.machine.log)
     if result.ok and not static:
         unbalanced = _unbalanced_energy(model, result, recorder, h)
         result = result if unbalanced is None else result.failed(unbalanced)
@@ -337,14 +348,18 @@ def _settings(exu, count: int, end: float, touching: bool):
     return s
 
 
-def _run(exu, assembly: Assembly, model: Model, count: int, h: float, touching: bool) -> str | None:
+def _run(
+    exu, assembly: Assembly, model: Model, count: int, h: float, recorder: Recorder, reacting: Reacting | None
+) -> str | None:
     """Runs; returns the reason of a failure, or None."""
     if assembly.system.free == 0:
         return "nothing in this scene can move"
-    settings = _settings(exu, count, count * h, touching)
+    settings = _settings(exu, count, count * h, recorder.touching > 0)
     mbs = assembly.mbs
     try:
         run = mbs.SolveStatic if model.run.analysis == "static" else mbs.SolveDynamic
+        if reacting is not None:
+            return None if in_parts(run, mbs, settings, exu, reacting, recorder) else "Exudyn stopped before the end"
         done = run(settings)
     except Exception as error:  # Exudyn raises its own kinds for a Newton that does not converge
         if isinstance(error, KeyboardInterrupt):

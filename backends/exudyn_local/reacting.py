@@ -1,0 +1,87 @@
+"""A run whose machine reacts: it is made in parts, which end where sensors and rules ask for it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from mdlgen.backends.exudyn_local.recorder import Recorder
+from mdlgen.backends.exudyn_local.system import MM, MS, System
+from mdlgen.model.tables import Model
+from mdlgen.reactions.commands import JUMP, Commands, Units
+from mdlgen.reactions.machine import SOON, Machine, RunawayError
+from mdlgen.reactions.sensing import Poses
+
+# When a jump of a speed is over, in its time (convention).
+AFTER = 2.0
+
+
+class Reacting:
+    """The machine of a Model along one run; it writes into the records of the System, and back at its end."""
+
+    def __init__(self, model: Model, system: System, recorder: Recorder, h: float):
+        """`h`: the step [s]."""
+        self._h, self._system, self._recorder = h, system, recorder
+        self.machine = Machine(model, 0.0)
+        self._commands = Commands(model, Units(length=MM, time=MS))
+        self._bodies = system.bodies.copy()
+
+    def until(self, t: float) -> float:
+        """Up to which time from t on the next step may go [s]."""
+        return self.machine.ahead(t / MS, self._h / MS, self._poses()) * MS
+
+    def look(self, t: float) -> bool:
+        """Carries out what is to be done at a time [s]; whether something was. Raises RunawayError."""
+        orders = self.machine.look(t / MS, self._h / MS, self._poses())
+        told = [order for order in orders if order.kind != "end"]
+        for order in told:
+            grown = self._commands.order(order, t / MS, self._system.bodies)
+            if grown:
+                self._recorder.book(-grown, int(self._system.bodies["slide"][self._commands.body(order.name)]))
+        if told:
+            self._recorder.renew(t + AFTER * JUMP * MS)
+        return bool(orders)
+
+    def undo(self) -> None:
+        """Leaves the System as it was, for another run."""
+        self._system.bodies[:] = self._bodies
+
+    def _poses(self) -> Poses:
+        x, r, u, w = self._recorder.motion
+        return Poses(x[:-1] / MM, r[:-1], u[:-1] * MS / MM, w[:-1] * MS)
+
+
+def in_parts(run: Any, mbs: Any, settings: Any, exu: Any, reacting: Reacting, recorder: Recorder) -> bool:
+    """Runs Exudyn's dynamic solver from one event to the next, `settings` being those of the whole run;
+    whether it came to its end. A part begins with the accelerations that the one before ended with."""
+    times = settings.timeIntegration
+    count, end = times.numberOfSteps, times.endTime
+    h, t = end / count, 0.0
+    data, initial = mbs.systemData, exu.ConfigurationType.Initial
+    try:
+        reacting.look(0.0)
+        while t < end * (1.0 - 1e-12) and not recorder.finished:
+            until = reacting.until(t)
+            grid = (np.floor(t / h + SOON) + 1.0) * h
+            if until < grid - SOON * h:
+                times.startTime, times.endTime, times.numberOfSteps = t, until, 1
+            elif grid < t + h * (1.0 - SOON):
+                times.startTime, times.endTime, times.numberOfSteps = t, min(grid, end), 1
+            else:
+                left = max(1, round((end - t) / h))
+                times.startTime, times.endTime, times.numberOfSteps = t, end, left
+            times.minimumStepSize = min(times.minimumStepSize, 1e-3 * (times.endTime - t) / times.numberOfSteps)
+            recorder.watch(reacting, times.numberOfSteps > 1)
+            done = run(settings)
+            if recorder.reason is not None or not (done or recorder.parted or recorder.finished):
+                return False
+            t = recorder.time
+            data.SetSystemState(data.GetSystemState(), initial)
+            data.SetTime(t, initial)
+            times.generalizedAlpha.computeInitialAccelerations = False
+            times.generalizedAlpha.resetAccelerations = False
+    except RunawayError as error:
+        recorder.reason = str(error)
+        return False
+    return True
