@@ -19,6 +19,7 @@ from mdlgen.lints import (
     missing,
     parameters,
     planes,
+    reactions,
     sheets,
     start,
     ways,
@@ -80,4 +81,7 @@ CHECKS: tuple[Callable[[Model], Iterator[Lint]], ...] = (
     covers.strain,
     covers.wide,
     covers.through,
+    reactions.sees_nothing,
+    reactions.never,
+    reactions.fights,
 )

@@ -244,6 +244,19 @@ SCENE = {
         "not. In reality the sheet alone is between them: torque and friction of the rollers on each other "
         "are too much here."
     ),
+    "W165": (
+        "A rule acts when its condition comes true. This one cannot: the machine never comes to a state "
+        "named in its `in`, its sensor never sees a sheet, or the time is beyond the run."
+    ),
+    "W166": (
+        "Two rules with one condition and one delay tell the same part two things. The rules act in the "
+        "order of the list, so the later one is what the part does."
+    ),
+    "W167": (
+        "A sheet is followed as far as its speed and the drives can take it in the run, with a margin. It does "
+        "not come to this sensor. A beam has to cross the sheet's middle surface; a point or a line sees as "
+        "far as its `reach`, 5 mm where that is left out."
+    ),
 }
 
 TEXT = {

@@ -38,7 +38,9 @@ class Reacting:
         for order in told:
             grown = self._commands.order(order, t / MS, self._system.bodies)
             if grown:
-                self._recorder.book(-grown, int(self._system.bodies["slide"][self._commands.body(order.name)]))
+                self._recorder.book(
+                    -grown, int(self._system.bodies["slide"][self._commands.body(order.name)])
+                )
         if told:
             self._recorder.renew(t + AFTER * JUMP * MS)
         return bool(orders)
@@ -71,7 +73,9 @@ def in_parts(run: Any, mbs: Any, settings: Any, exu: Any, reacting: Reacting, re
             else:
                 left = max(1, round((end - t) / h))
                 times.startTime, times.endTime, times.numberOfSteps = t, end, left
-            times.minimumStepSize = min(times.minimumStepSize, 1e-3 * (times.endTime - t) / times.numberOfSteps)
+            times.minimumStepSize = min(
+                times.minimumStepSize, 1e-3 * (times.endTime - t) / times.numberOfSteps
+            )
             recorder.watch(reacting, times.numberOfSteps > 1)
             done = run(settings)
             if recorder.reason is not None or not (done or recorder.parted or recorder.finished):

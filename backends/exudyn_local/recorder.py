@@ -32,8 +32,8 @@ from mdlgen.model.meshes import carried
 from mdlgen.model.overlaps.unheld import Unheld
 from mdlgen.model.rotations import euler_parameters
 from mdlgen.model.tables import Model
-from mdlgen.results import audit
 from mdlgen.reactions.machine import SOON
+from mdlgen.results import audit
 from mdlgen.results.result import ContactStatistics, Energy, Result
 
 if TYPE_CHECKING:
@@ -126,7 +126,7 @@ class Recorder:
         return self.reason is None and not self.parted and not self.finished
 
     def watch(self, reacting: Reacting, parts: bool) -> None:
-        """From now on a machine reacts after each step; `parts`: the solver is to end where it asks for it."""
+        """From now on a machine reacts after each step; `parts`: the solver is to end where that asks for it."""
         self._reacting, self._parts, self.parted = reacting, parts, False
 
     def book(self, times: float, slide: int) -> None:

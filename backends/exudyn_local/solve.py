@@ -359,7 +359,11 @@ def _run(
     try:
         run = mbs.SolveStatic if model.run.analysis == "static" else mbs.SolveDynamic
         if reacting is not None:
-            return None if in_parts(run, mbs, settings, exu, reacting, recorder) else "Exudyn stopped before the end"
+            return (
+                None
+                if in_parts(run, mbs, settings, exu, reacting, recorder)
+                else "Exudyn stopped before the end"
+            )
         done = run(settings)
     except Exception as error:  # Exudyn raises its own kinds for a Newton that does not converge
         if isinstance(error, KeyboardInterrupt):

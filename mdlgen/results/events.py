@@ -1,7 +1,8 @@
 """What happens to sheets: at rollers entering and leaving, slip, gaps, waits, jams, double feeds; at the ends
 of plates stubs; where friction holds them creep.
 
-All of it is read from the stored states, so times are those of stored states (`run.print_step`).
+All of it is read from the stored states, so times are those of stored states (`run.print_step`); but what
+sensors saw and rules did, which is noted as it happens.
 """
 
 from __future__ import annotations
@@ -24,7 +25,10 @@ from mdlgen.units import PER_SECOND
 if TYPE_CHECKING:
     from mdlgen.results.result import Result
 
-KINDS = ("enter", "leave", "slip", "gap", "wait", "jam", "double_feed", "stub", "creep")
+KINDS = (
+    *("enter", "leave", "slip", "gap", "wait", "jam", "double_feed", "stub", "creep"),
+    *("covered", "cleared", "rule"),
+)
 # A sheet that is slower than this [mm/ms] stands: smoothed friction lets what waits under a force creep.
 # One that is slower than this part of another one at the same roller is held back while that one is fed.
 STANDS, HELD_PART = 0.01, 0.1
@@ -32,11 +36,12 @@ STANDS, HELD_PART = 0.01, 0.1
 
 def events(result: Result) -> list[dict[str, Any]]:
     """Every event as an object with `time_ms`, `kind`, `sheet`, `roller` (of a stub `part`, of a creep
-    `held_by`) and numbers, by time.
+    `held_by`, of what a sensor sees `sensor`; of a rule neither, but `rule`) and numbers, by time.
 
     Kinds: `enter` and `leave`; `slip`, one for each stay of a sheet at a roller; `gap`, where a sheet enters
     a roller that another one was at before; `wait`; `jam`; `double_feed`; `stub`, where the end of a
-    plate stops a sheet; `creep`, where regularised friction holds one. A sheet that touches at the start
+    plate stops a sheet; `creep`, where regularised friction holds one; `covered` and `cleared`, of a sensor;
+    `rule`, as one acts. A sheet that touches at the start
     enters at 0. docs/reference/events.md says what the numbers are.
     """
     if len(result.time) < 2:
@@ -48,12 +53,15 @@ def events(result: Result) -> list[dict[str, Any]]:
     found += _double_feeds(result, [*stays, *_beyond(result, stays, together)])
     found += _stubs(result)
     found += _creeps(result)
+    found += result.reactions
     order = {"leave": 0, "enter": 1}
-    return sorted(found, key=lambda e: (e["time_ms"], order.get(e["kind"], 2), _place(e), e["sheet"]))
+    return sorted(found, key=lambda e: (e["time_ms"], order.get(e["kind"], 2), _place(e), e.get("sheet", "")))
 
 
 def _place(event: dict[str, Any]) -> str:
-    return event.get("roller") or event.get("part") or event["held_by"][0]
+    if "held_by" in event and "roller" not in event:
+        return event["held_by"][0]
+    return event.get("roller") or event.get("part") or event.get("sensor") or ""
 
 
 def _stubs(result: Result) -> list[dict[str, Any]]:

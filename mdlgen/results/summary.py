@@ -17,6 +17,7 @@ from mdlgen.results.losses import driven, kinetic
 from mdlgen.results.mark import chaotic, mark
 from mdlgen.results.residual import of_sheet
 from mdlgen.results.result import Result
+from mdlgen.results.sensors import of_sensors
 from mdlgen.results.summary_of_parts import of_part
 from mdlgen.results.tension import Tension
 from mdlgen.results.torques import (
@@ -83,6 +84,7 @@ def summary(result: Result, without: Collection[str] = ()) -> dict[str, Any]:
         "sheets": {s.name: _sheet(result, k, "bearing" not in without) for k, s in enumerate(model.sheets)},
         **{k.table: {p.name: of_part(result, p) for p in model.parts_of(k.part)} for k in KINDS},
         "probes": {p.name: _probe(result, k) for k, p in enumerate(model.probes)},
+        **({"sensors": of_sensors(result)} if model.reactions.sensors else {}),
         "versions": versions(result),
     }
     judges = not {"verdict", "events", "bearing"} & set(without) and len(result.time) > 0

@@ -15,6 +15,7 @@ from mdlgen.model.tables import Floats, PlanePart, RollerPart
 from mdlgen.results.drag import drags
 from mdlgen.results.estimates import SAFETY_REST
 from mdlgen.results.result import OK
+from mdlgen.results.sensors import MEASURES
 from mdlgen.results.slide import slide
 from mdlgen.results.torques import contact_torque, drive_power, drive_torque, grips
 from mdlgen.results.way import way_of
@@ -128,8 +129,10 @@ def in_words(event: Mapping[str, Any]) -> str:
     """An event as a person says it."""
     if event["kind"] == "creep":
         return f"{event['sheet']} {creep_in_words(event)}"
+    if event["kind"] == "rule":
+        return f"rule {event['rule']} ({event['when']}): {event['does']} at {event['time_ms']:.4g} ms"
     kind = str(event["kind"]).replace("_", " ")
-    where = event.get("roller") or event.get("part")
+    where = event.get("roller") or event.get("part") or event.get("sensor")
     who = f"{event['sheet']} and {event['other']}" if "other" in event else str(event["sheet"])
     text = f"{kind} of {who}" + (f" at {where}" if where else "")
     if event["kind"] == "slip":
@@ -202,13 +205,16 @@ def _with_doubt(found: Outcome, result: Result) -> Outcome:
 def _event(wanted: Requirement, record: Mapping[str, Any]) -> Outcome:
     count = 0
     for event in record["events"]:
-        parts = {event.get(key) for key in ("sheet", "roller", "other", "part")} | {*event.get("held_by", ())}
+        keys = ("sheet", "roller", "other", "part", "sensor")
+        parts = {event.get(key) for key in keys} | {*event.get("held_by", ())}
         count += event["kind"] == wanted.event and (wanted.part is None or wanted.part in parts)
     return Outcome(wanted.text, count == 0, float(count), "", None)
 
 
 def _limit(result: Result, record: Mapping[str, Any], wanted: Requirement) -> Outcome:
     assert wanted.measure is not None, "a requirement without an event has a measure"
+    if wanted.sensor is not None:
+        return _at_sensor(record, wanted, wanted.sensor)
     each = wanted.measure.partition(".")[0] not in record
     names = list(record["sheets"]) if each else [None]
     rows = []
@@ -224,6 +230,25 @@ def _limit(result: Result, record: Mapping[str, Any], wanted: Requirement) -> Ou
     return Outcome(
         wanted.text, margin >= 0.0, value / per, shown, margin / per, of if len(names) > 1 else None
     )
+
+
+def _at_sensor(record: Mapping[str, Any], wanted: Requirement, sensor: str) -> Outcome:
+    """Of what each sheet did as it went by a sensor; where none did, or no two, nothing is known."""
+    name = MEASURES[wanted.measure or ""]
+    unit = next(unit for end, unit in UNITS.items() if name.endswith(end))
+    own = parse_unit(unit)
+    if not same(own.dimension, wanted.dimension):
+        raise ValueError(
+            f"{wanted.measure} at {sensor} is in {unit}, the limit {wanted.unit or 'has no unit'}"
+        )
+    passed = [row for row in record["sensors"][sensor]["passed"] if row[name] is not None]
+    value, margin = _worst(np.array([own.factor * row[name] for row in passed]), wanted)
+    if value is None or margin is None:
+        return Outcome(wanted.text, False, None, wanted.unit, None)
+    per = parse_unit(wanted.unit).factor
+    worst = min(passed, key=lambda row: abs(own.factor * row[name] - value))["sheet"]
+    of = worst if len(passed) > 1 else None
+    return Outcome(wanted.text, margin >= 0.0, value / per, wanted.unit, margin / per, of)
 
 
 def _worst(values: Floats, wanted: Requirement) -> tuple[float | None, float | None]:

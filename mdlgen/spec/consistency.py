@@ -51,8 +51,10 @@ def _check_requirement(scene: Scene, k: int) -> None:
     except ValueError as error:
         raise fail(str(error), path) from None
     if wanted.part is not None:
-        parts = [*scene.sheets, *scene.machine]
+        parts = [*scene.sheets, *scene.machine, *scene.sensors]
         known(wanted.part, parts, "part", path)
+    if wanted.sensor is not None:
+        known(wanted.sensor, scene.sensors, "sensor", path)
 
 
 def _check_nip(scene: Scene, name: str) -> None:

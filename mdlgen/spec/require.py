@@ -2,6 +2,7 @@
 
 no EVENT [at PART]
 MEASURE below VALUE | above VALUE | within VALUE [of VALUE] | from VALUE to VALUE    [at TIME | throughout]
+gap | speed | skew | position  at SENSOR  below VALUE | ..
 """
 
 from __future__ import annotations
@@ -13,15 +14,22 @@ from dataclasses import dataclass
 from mdlgen.errors import did_you_mean
 from mdlgen.units import parse_number, parse_quantity, parse_unit, same
 
-EVENTS = ("enter", "leave", "slip", "gap", "wait", "jam", "double_feed", "stub", "creep")
+EVENTS = (
+    *("enter", "leave", "slip", "gap", "wait", "jam", "double_feed", "stub", "creep"),
+    *("covered", "cleared", "rule"),
+)
+# of each sheet that goes by a sensor
+AT_SENSORS = ("gap", "speed", "skew", "position")
 FORMS = (
     "no EVENT [at PART], MEASURE below VALUE, MEASURE above VALUE, MEASURE within VALUE [of VALUE], "
-    "MEASURE from VALUE to VALUE, with at TIME or throughout behind the last four"
+    "MEASURE from VALUE to VALUE, with at TIME or throughout behind the last four; and gap, speed, skew or "
+    "position at SENSOR before below, above, within, from"
 )
 MOST = 200  # characters of one
 _NO = re.compile(r"no\s+(\S+)(?:\s+at\s+(\S+))?", re.ASCII)
 _LIMIT = re.compile(
-    r"([A-Za-z_][\w.]*)\s+(below|above|within|from)\s+(.+?)(?:\s+(throughout)|\s+at\s+(.+?))?", re.ASCII
+    r"([A-Za-z_][\w.]*)(?:\s+at\s+([A-Za-z]\w*))?\s+(below|above|within|from)\s+(.+?)(?:\s+(throughout)|\s+at\s+(.+?))?",
+    re.ASCII,
 )
 _NONE = (0.0, 0.0, 0.0, 0.0)
 
@@ -33,6 +41,7 @@ class Requirement:
     text: str
     event: str | None = None
     part: str | None = None  # at which the event must not be, None: anywhere
+    sensor: str | None = None  # at which each sheet is measured
     measure: str | None = None  # dotted name in the summary, without its unit
     low: float = -math.inf  # in the internal units
     high: float = math.inf
@@ -58,11 +67,17 @@ def requirement(text: str) -> Requirement:
     found = _LIMIT.fullmatch(text)
     if not found:
         raise ValueError(f"{text[:80]!r} is not understood; the forms are {FORMS}")
-    measure, how, values, always, time = found.groups()
+    measure, sensor, how, values, always, time = found.groups()
+    if sensor is not None and (measure not in AT_SENSORS or always or time):
+        raise ValueError(
+            f"{text[:80]!r} is not understood; of sheets that go by a sensor there are "
+            f"{', '.join(AT_SENSORS)}, as gap at exit from 20 mm to 30 mm, without a time"
+        )
     low, high, unit = _limits(how, values)
     return Requirement(
         text=text,
         measure=measure,
+        sensor=sensor,
         low=low,
         high=high,
         unit=unit,

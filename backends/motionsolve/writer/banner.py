@@ -6,6 +6,7 @@ from itertools import groupby
 
 from mdlgen.altair.edges import edge_note
 from mdlgen.altair.margin import margin_note
+from mdlgen.altair.reactions import sensor_note
 from mdlgen.altair.recorded import MOST_SUMMED, unrecorded
 from mdlgen.backends.motionsolve.writer.rows import Deck
 from mdlgen.backends.motionsolve.writer.units import number
@@ -36,6 +37,7 @@ def banner(model: Model, deck: Deck) -> list[str]:
         lines += FRAME
     lines += _curves(model)
     lines += _contacts(model)
+    lines += sensor_note(model)
     lines += ["", "Not yet read by a real MotionSolve; look at these first if it complains :"]
     return lines + [f"  {form}" for form in unverified(model, deck)]
 

@@ -6,6 +6,7 @@ from mdlgen.altair.air import refuse_air
 from mdlgen.altair.covers import refuse_covers
 from mdlgen.altair.parts import refuse_unwritten
 from mdlgen.altair.poisson import refuse_poisson
+from mdlgen.altair.reactions import refuse_rules
 from mdlgen.altair.rolling import refuse_rolling
 from mdlgen.altair.springs import refuse_compressed
 from mdlgen.backends.motionsolve.writer import gate
@@ -31,6 +32,7 @@ def check(model: Model) -> None:
     refuse_measured(model, "MotionSolve deck")
     refuse_yield(model, "MotionSolve deck")
     refuse_covers(model, "MotionSolve deck")
+    refuse_rules(model, "MotionSolve deck")
     refuse_searched(model, "MotionSolve deck")
     refuse_unwritten(model, WRITTEN, "MotionSolve deck")
     refuse_compressed(model, "MotionSolve deck")

@@ -7,6 +7,7 @@ import math
 from mdlgen.altair.curves import TEXT_BEYOND
 from mdlgen.altair.edges import edge_note
 from mdlgen.altair.margin import margin_note
+from mdlgen.altair.reactions import sensor_note
 from mdlgen.backends.motionview.writer import script
 from mdlgen.backends.motionview.writer.forms import unverified
 from mdlgen.backends.motionview.writer.scene_rows import SceneView
@@ -71,7 +72,7 @@ def sheet_lines(model: Model, scene: SceneView) -> list[str]:
             f"Sheet : {sheet.name}, {part.n_x} x {part.n_y} boxes, {part.layout}, {part.grid} grid, "
             f"{joints} bushings; its values are in ds_{sheet.name}"
         )
-    return [*lines, *(FRAME if len(model.bushings) else ())]
+    return [*lines, *sensor_note(model), *(FRAME if len(model.bushings) else ())]
 
 
 def curve_lines(model: Model) -> list[str]:

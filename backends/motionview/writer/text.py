@@ -8,6 +8,7 @@ from mdlgen.altair.air import refuse_air
 from mdlgen.altair.covers import refuse_covers
 from mdlgen.altair.parts import refuse_unwritten
 from mdlgen.altair.poisson import refuse_poisson
+from mdlgen.altair.reactions import refuse_rules
 from mdlgen.altair.rolling import refuse_rolling
 from mdlgen.altair.springs import refuse_compressed
 from mdlgen.backends.motionview.writer import gate
@@ -44,6 +45,7 @@ def check_sheets(model: Model) -> None:
     refuse_measured(model, "MotionView text")
     refuse_yield(model, "MotionView text")
     refuse_covers(model, "MotionView text")
+    refuse_rules(model, "MotionView text")
     refuse_searched(model, "MotionView text")
     refuse_air(model, "MotionView text")
     refuse_poisson(model, "MotionView text")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from mdlgen.altair.edges import edge_note
 from mdlgen.altair.margin import margin_note
+from mdlgen.altair.reactions import sensor_note
 from mdlgen.altair.recorded import MOST_SUMMED, unrecorded
 from mdlgen.model.tables import Model
 
@@ -34,7 +35,7 @@ def banner(model: Model) -> list[str]:
         for sheet in model.sheets
         if sheet.surface
     ]
-    return lines
+    return [*lines, *sensor_note(model)]
 
 
 def _contacts(model: Model) -> list[str]:

@@ -15,7 +15,12 @@ def happened(events: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     rows: dict[tuple[str, ...], dict[str, Any]] = {}
     for event in events:
         kind, text = str(event["kind"]).replace("_", " "), _WORDS.get(event["kind"], _other)(event)
-        place = str(event.get("roller") or event.get("part") or ", ".join(event.get("held_by", ())))
+        place = str(
+            event.get("roller")
+            or event.get("part")
+            or event.get("sensor")
+            or ", ".join(event.get("held_by", ()))
+        )
         # what is alike as it is shown: both sides of a machine
         key = shown(event["time_ms"]), kind, text
         row = rows.setdefault(key, {"time_ms": event["time_ms"], "kind": kind, "places": [], "text": text})
@@ -74,7 +79,22 @@ def _creeps(event: Mapping[str, Any]) -> str:
     return f"{event['sheet']} {creep_in_words(event)}"
 
 
+def _sees(event: Mapping[str, Any]) -> str:
+    text = f"{event['sheet']} at {shown(event['speed_mm_per_s'])} mm/s"
+    if event["kind"] == "cleared":
+        return f"{text} has gone" + (
+            "" if event["covered_ms"] is None else f", after {shown(event['covered_ms'])} ms"
+        )
+    text += f", skew {shown(event['skew_deg'])} deg"
+    return text if event["gap_mm"] is None else f"{text}, {shown(event['gap_mm'])} mm behind the one before"
+
+
+def _rule(event: Mapping[str, Any]) -> str:
+    return f"rule {event['rule']}, {event['when']}: {event['does']}"
+
+
 _WORDS = {
     "enter": _moves, "leave": _moves, "slip": _slips, "wait": _waits, "jam": _waits, "gap": _gap,
     "double_feed": _feeds, "stub": _stub, "creep": _creeps,
+    "covered": _sees, "cleared": _sees, "rule": _rule,
 }  # fmt: skip

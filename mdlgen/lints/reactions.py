@@ -1,0 +1,115 @@
+"""Lints of sensors and rules: what sees nothing, what never acts, what is told two things at once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+
+import numpy as np
+
+from mdlgen.conditions import CLOCK, Condition, condition
+from mdlgen.formulas import Amount
+from mdlgen.lints.lint import Lint
+from mdlgen.model.tables import Model, RulePart, SensorPart
+
+_TIMES = 1001  # at which a condition of time alone is looked at (convention)
+
+
+def sees_nothing(model: Model) -> Iterator[Lint]:
+    """Sensors that no sheet can come to, as far as the bounds go from which contacts were chosen."""
+    for sensor in model.reactions.sensors:
+        if not _reached(model, sensor):
+            yield Lint(
+                "W167",
+                f"sensors.{sensor.name}",
+                "no sheet that it sees comes there in this run",
+                "move it into the way of the sheet, or let it see further",
+            )
+
+
+def never(model: Model) -> Iterator[Lint]:
+    """Rules that can never act."""
+    table = model.reactions
+    reached, blind = _states(model), {s.name for s in table.sensors if not _reached(model, s)}
+    for k, rule in enumerate(table.rules):
+        of = condition(rule.when)
+        named = {name.partition(".")[0] for name in of.expression.names if "." in name}
+        why = remedy = ""
+        if rule.states and not reached & set(rule.states):
+            why, remedy = f"the machine never comes to {_either(rule.states)}", "let a rule go there"
+        elif _covers(of) and named & blind and named <= blind:
+            why, remedy = f"{_either(tuple(sorted(named)))} never sees a sheet", "move the sensor"
+        elif not _in_time(model, of):
+            why, remedy = "it is true at no time of this run", "run longer, or change it"
+        if why:
+            yield Lint("W165", f"rules.{k}.when", f"{rule.when}: this rule never acts, since {why}", remedy)
+
+
+def fights(model: Model) -> Iterator[Lint]:
+    """Rules that tell one part two things at one time."""
+    for (one, first), (two, second) in combinations(enumerate(model.reactions.rules), 2):
+        if first.when != second.when or first.after != second.after or not _together(first, second):
+            continue
+        told = {(order.kind, order.name): order.value for order in first.orders}
+        for order in second.orders:
+            if told.get((order.kind, order.name), order.value) != order.value:
+                yield Lint(
+                    "W166",
+                    f"rules.{two}.do.{order.kind}.{order.name}",
+                    f"rules.{one} does something else with {order.name} at the same time; this one comes last",
+                    "leave one of them out, or give them other conditions",
+                )
+
+
+def _reached(model: Model, sensor: SensorPart) -> bool:
+    """Whether the box about what a sensor sees meets that in which any box of its sheets may be."""
+    corners = np.concatenate([sensor.ends, sensor.ends + sensor.way])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    for k in sensor.sheets:
+        sheet = model.sheets[int(k)]
+        boxes = slice(sheet.first, sheet.first + sheet.count)
+        reach = np.linalg.norm(model.bodies.half[boxes], axis=1)[:, None]
+        below, above = model.pairs.low[boxes] - reach, model.pairs.high[boxes] + reach
+        if ((below <= high) & (above >= low)).all(axis=1).any():
+            return True
+    return False
+
+
+def _states(model: Model) -> set[str]:
+    """The states that rules can lead to, from the first one on."""
+    found = {model.reactions.begins}
+    while True:
+        more = {
+            order.name
+            for rule in model.reactions.rules
+            if not rule.states or found & set(rule.states)
+            for order in rule.orders
+            if order.kind == "go"
+        }
+        if more <= found:
+            return found
+        found |= more
+
+
+def _covers(of: Condition) -> bool:
+    """Whether all that a condition names is of sensors that have to be covered first."""
+    words = {name.partition(".")[2] for name in of.expression.names}
+    return bool(words) and words <= {"covered", "gap", "speed", "skew", "position", "since"}
+
+
+def _in_time(model: Model, of: Condition) -> bool:
+    """Whether a condition of time alone is true in the run; one of anything else may be."""
+    amounts = {name: Amount(value, dimension) for name, value, dimension in model.reactions.amounts}
+    if not set(of.expression.names) <= {CLOCK, *amounts}:
+        return True
+    times = np.linspace(0.0, model.run.duration, _TIMES).tolist()
+    unit = (0.0, 0.0, 1.0, 0.0)
+    return any(of.holds(lambda name, t=t: Amount(t, unit) if name == CLOCK else amounts[name]) for t in times)
+
+
+def _together(one: RulePart, two: RulePart) -> bool:
+    return not one.states or not two.states or bool(set(one.states) & set(two.states))
+
+
+def _either(names: tuple[str, ...]) -> str:
+    return " or ".join(names)
