@@ -126,7 +126,7 @@ class Recorder:
         return self.reason is None and not self.parted and not self.finished
 
     def watch(self, reacting: Reacting, parts: bool) -> None:
-        """From now on a machine reacts after each step; `parts`: the solver is to end where that asks for it."""
+        """From now on a machine reacts after each step; `parts`: the solver ends where that asks for it."""
         self._reacting, self._parts, self.parted = reacting, parts, False
 
     def book(self, times: float, slide: int) -> None:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from itertools import combinations
 
 import numpy as np
 
-from mdlgen.conditions import CLOCK, Condition, condition
+from mdlgen.conditions import CLOCK, OF_SENSOR, Condition, condition
 from mdlgen.formulas import Amount
 from mdlgen.lints.lint import Lint
 from mdlgen.model.tables import Model, RulePart, SensorPart
@@ -37,7 +38,7 @@ def never(model: Model) -> Iterator[Lint]:
         why = remedy = ""
         if rule.states and not reached & set(rule.states):
             why, remedy = f"the machine never comes to {_either(rule.states)}", "let a rule go there"
-        elif _covers(of) and named & blind and named <= blind:
+        elif named and named <= blind and not _blindly(of):
             why, remedy = f"{_either(tuple(sorted(named)))} never sees a sheet", "move the sensor"
         elif not _in_time(model, of):
             why, remedy = "it is true at no time of this run", "run longer, or change it"
@@ -56,7 +57,7 @@ def fights(model: Model) -> Iterator[Lint]:
                 yield Lint(
                     "W166",
                     f"rules.{two}.do.{order.kind}.{order.name}",
-                    f"rules.{one} does something else with {order.name} at the same time; this one comes last",
+                    f"rules.{one} tells {order.name} something else at the same time; this one comes last",
                     "leave one of them out, or give them other conditions",
                 )
 
@@ -91,10 +92,18 @@ def _states(model: Model) -> set[str]:
         found |= more
 
 
-def _covers(of: Condition) -> bool:
-    """Whether all that a condition names is of sensors that have to be covered first."""
-    words = {name.partition(".")[2] for name in of.expression.names}
-    return bool(words) and words <= {"covered", "gap", "speed", "skew", "position", "since"}
+def _blindly(of: Condition) -> bool:
+    """Whether a condition of sensors holds, or may hold, while none has seen a sheet."""
+    if any("." not in name for name in of.expression.names):
+        return True
+
+    def unseen(name: str) -> Amount | float:
+        dimension = OF_SENSOR[name.partition(".")[2]]
+        if dimension is None:
+            return float(name.endswith(".clear"))
+        return Amount(0.0 if name.endswith(".count") else math.nan, dimension)
+
+    return of.holds(unseen)
 
 
 def _in_time(model: Model, of: Condition) -> bool:
