@@ -254,7 +254,7 @@ SCENE = {
     ),
     "W167": (
         "A sheet is followed as far as its speed and the drives can take it in the run, with a margin. It "
-        "does not come to this sensor. A beam has to cross the sheet's middle surface; a point or a line sees as "
+        "does not come to this sensor. A beam has to cross the middle surface; a point or a line sees as "
         "far as its `reach`, 5 mm where that is left out."
     ),
 }
