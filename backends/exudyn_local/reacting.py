@@ -82,6 +82,8 @@ def in_parts(run: Any, mbs: Any, settings: Any, exu: Any, reacting: Reacting, re
                 return False
             t = recorder.time
             data.SetSystemState(data.GetSystemState(), initial)
+            # which the state above leaves at zero: half a step of acceleration would be lost
+            data.SetODE2Coordinates_tt(data.GetODE2Coordinates_tt(), initial)
             data.SetTime(t, initial)
             times.generalizedAlpha.computeInitialAccelerations = False
             times.generalizedAlpha.resetAccelerations = False

@@ -40,6 +40,7 @@ CALM: dict[str, tuple[str, ...]] = {
     "snatch": (),
     "crease": (),
     "rubber_nip": (),
+    "register": (),
     "verify/aslant": (),
     "verify/drop": ("run.duration=60 ms",),
     "verify/flip": (),

@@ -24,13 +24,15 @@ from mdlgen.units import PER_SECOND
 # What is that much of a step ahead is there: times are found to a part of that (convention; the time of an
 # event is wrong by less than this part of what the step does to it).
 SOON = 1e-3
-# A sheet is not looked at while it would take it twice as long to reach a sensor, at the speed of what is
-# fastest (convention: what speeds up to twice of that meanwhile is found within a step).
+# A sheet is not looked at while it would not reach a sensor at twice the speed of what is fastest, and twice
+# the acceleration of gravity (convention: what is faster yet is found within the steps that passed it).
 SAFE = 2.0
 HALVINGS = 24  # of a step, to a time within it: to 6e-8 of it
 # Times that rules at one time may set off each other: more go in a circle (convention).
 MOST_AT_ONCE = 100
-CLOCKED = 64  # times ahead at which a condition of times alone is looked at (convention)
+# Steps ahead at most to which a condition of times alone is looked at, and in which a sensor is not looked at
+# (convention: a look costs as much as a small step, so a part of it then).
+AHEAD = 64
 
 
 class RunawayError(Exception):
@@ -92,6 +94,7 @@ class Machine:
         """`slowest`: a speed that sheets are looked for with at least [mm/ms]."""
         table = model.reactions
         self._model, self._slowest = model, slowest
+        self._gravity = float(np.linalg.norm(model.gravity))
         self._eyes = [Eye(model, sensor) for sensor in table.sensors]
         self._number = {sensor.name: k for k, sensor in enumerate(table.sensors)}
         self._rules = table.rules
@@ -141,12 +144,18 @@ class Machine:
         if off == FAR and not eye.sheets:
             return math.inf
         away = abs(off - (eye.hysteresis if sight.covered else 0.0))
-        free = away / (SAFE * max(self._fastest(eye, poses), self._slowest, 1e-12))
+        free = self._free(away, max(self._fastest(eye, poses), self._slowest))
         if free > step:
-            return t + free
+            return t + min(free, AHEAD * step)
         if not self._rules:
             return t + step  # nothing acts at that time; it is found within the step
         return t + self._first(lambda ahead: self._changes(eye, sight, poses.after(ahead)), step)
+
+    def _free(self, away: float, speed: float) -> float:
+        """Time in which a sheet does not come from a distance at a speed [mm, mm/ms] to a sensor [ms]."""
+        v, a = SAFE * speed, SAFE * self._gravity
+        root = math.sqrt(v * v + 2.0 * a * away)
+        return 2.0 * away / (v + root) if root > 0.0 else math.inf
 
     def _first(self, changed: Callable[[float], bool], step: float) -> float:
         """How far ahead [ms] something changes; the step, where it does not change in that."""
@@ -176,7 +185,7 @@ class Machine:
 
     def _next_time(self, t: float, step: float, poses: Poses) -> float:
         """When a condition of times alone changes next, or as far ahead as that was looked for."""
-        for k in range(CLOCKED):
+        for k in range(AHEAD):
             first = t + k * step
 
             def changed(ahead: float, first: float = first) -> bool:
@@ -184,7 +193,7 @@ class Machine:
 
             if changed(step):
                 return first + self._first(changed, step)
-        return t + CLOCKED * step
+        return t + AHEAD * step
 
     # -- what happens
 
@@ -197,6 +206,7 @@ class Machine:
         for edge in self._edges(t, step, poses):
             self._see(edge)
         orders: list[Order] = []
+        acted: set[int] = set()
         soon = SOON * step
         for _ in range(MOST_AT_ONCE):
             if self._rules:
@@ -206,12 +216,11 @@ class Machine:
                 self._before = (t, poses.copy()) if self._eyes else None
                 return orders
             stage.pending = [entry for entry in stage.pending if entry[0] > t + soon]
+            acted |= {rule for _, rule in due}
             for _time, rule in due:
                 orders += self._act(rule, t)
-        numbers = sorted({rule for _, rule in stage.pending})
-        raise RunawayError(
-            f"rules.{', rules.'.join(map(str, numbers))} set off each other at {t:.6g} ms without an end"
-        )
+        names = " and ".join(f"rules.{rule}" for rule in sorted(acted))
+        raise RunawayError(f"{names} set off each other at {t:.6g} ms without an end")
 
     def _edges(self, t: float, step: float, poses: Poses) -> list[_Edge]:
         """The sensors that change at the time t, or changed in the step that ends there."""

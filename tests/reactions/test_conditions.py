@@ -1,0 +1,72 @@
+"""Conditions of rules: what they say, what they compare, and what is wrong with others."""
+
+from __future__ import annotations
+
+import math
+import re
+
+import pytest
+
+from mdlgen.conditions import LENGTH, SPEED, TIME, Amount, check, condition
+from mdlgen.formulas import NONE
+
+WORDS = {
+    "eye.covered": None,
+    "eye.clear": None,
+    "eye.count": NONE,
+    "eye.gap": LENGTH,
+    "time": TIME,
+    "note.x": LENGTH,
+}
+VALUES = {
+    "eye.covered": 1.0,
+    "eye.clear": 0.0,
+    "eye.count": Amount(3.0, NONE),
+    "eye.gap": Amount(math.nan, LENGTH),
+    "time": Amount(30.0, TIME),
+    "note.x": Amount(12.0, LENGTH),
+    "v": Amount(0.5, SPEED),
+}
+
+
+@pytest.mark.parametrize(
+    ("text", "holds"),
+    [
+        ("eye covered", True),
+        ("covered(eye) and not eye clear", True),
+        ("eye clear or count(eye) == 3", True),
+        ("count( eye ) != 3", False),
+        ("time > 0.02 s", True),
+        ("time > 31 ms or note.x < 1 cm", False),
+        ("note.x - 2 mm == v*20 ms", True),
+        ("gap(eye) < 20 mm", False),  # not known yet
+        ("gap(eye) >= 20 mm", False),
+        ("10 mm/(note.x - 12 mm) > 1", False),  # a division by zero
+    ],
+)
+def test_a_condition_says_what_it_says(text: str, holds: bool) -> None:
+    found = condition(text)
+    check(found, WORDS, {"v": Amount(0.5, SPEED)})
+    assert found.holds(VALUES.__getitem__) == holds
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("eie covered", "there is no 'eie'; did you mean 'eye'?"),
+        ("eye.counts > 2", "eye has no 'counts'; did you mean 'count'?"),
+        ("gap(eye) < 20 ms", "compares mm with s"),
+        ("count(eye) > 2 mm", "compares no unit with mm"),
+        ("count(eye)", "is a number, not true or false"),
+        ("time > 3 ms and gap(eye)", "is a number, not true or false"),
+        ("eye covered + 1 > 0", "what is covered is yes or no"),
+        ("eye covered and", "is not an expression"),
+        ("__import__('os')", "is not"),
+        ("speeds > 3", "there is no 'speeds'"),
+        ("(" * 60 + "time" + ")" * 60 + " > 1 ms and " * 400, "longer than"),
+    ],
+)
+def test_what_is_wrong_is_said_in_one_line(text: str, says: str) -> None:
+    with pytest.raises(ValueError, match=re.escape(says)) as raised:
+        check(condition(text), WORDS, {"v": Amount(0.5, SPEED)})
+    assert "\n" not in str(raised.value)

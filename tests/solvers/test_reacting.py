@@ -1,0 +1,114 @@
+"""Machines that react, in both solvers: times of edges by closed forms, orders that are carried out when they are
+due, runs that a rule ends, and that go on from a checkpoint as they would have."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from reacting import falling, wheel
+
+import mdlgen
+from mdlgen.backends.exudyn_local.solve import solve as exudyn
+from mdlgen.backends.lattice.run import solve as lattice
+from mdlgen.runs.checkpoint import Checkpointer
+
+SOLVERS = pytest.mark.parametrize("solver", [lattice, exudyn], ids=["lattice", "exudyn"])
+STOP = {"when": "eye covered", "after": "3 ms", "do": {"speed": {"w": {"speed": "0 rad/s", "ramp": "4 ms"}}}}
+
+
+def at(result, kind: str = "covered") -> list[float]:
+    return [row["time_ms"] for row in result.reactions if row["kind"] == kind]
+
+
+@SOLVERS
+def test_edges_are_where_a_falling_note_is(solver) -> None:
+    # x = a t^2 / 2; the trailing edge is 60 mm behind, and clears 0.01 mm later (hysteresis)
+    h, model = 0.5, falling([], run={"duration": "320 ms"})
+    result = solver(model, step=h)
+    exact = [math.sqrt(2.0 * way / 0.002) for way in (10.0, 40.0)]
+    # between the ends of a step a line stands for the parabola: off by a h^2 / 8, over the speed
+    for times, ways in ((at(result), (10.0, 40.0)), (at(result, "cleared"), (70.01, 100.01))):
+        for time, way in zip(times, ways, strict=True):
+            speed = math.sqrt(2.0 * 0.002 * way)
+            assert abs(time - speed / 0.002) <= 0.002 * h * h / 8.0 / speed + 1e-6
+    row = next(row for row in result.reactions if row["sensor"] == "far")
+    assert row["speed_mm_per_s"] == pytest.approx(2.0 * exact[1], rel=0.01)
+
+
+@SOLVERS
+def test_a_sensor_changes_nothing(solver) -> None:
+    model = falling([])
+    blind = replace(model, reactions=type(model.reactions)())
+    seen, unseen = solver(model, step=1.0), solver(blind, step=1.0)
+    assert np.array_equal(seen.position, unseen.position)
+    assert not unseen.reactions
+
+
+@SOLVERS
+def test_a_drive_is_told_when_it_is_due(solver) -> None:
+    result = solver(wheel([STOP]), step=0.5)
+    edge = math.sqrt(2.0 * 10.0 / 0.002)
+    told = at(result, "rule")[0]
+    assert told == pytest.approx(edge + 3.0, abs=1e-3)
+    omega = result.spin[:, 1] @ result.model.rollers[0].axis
+    expected = np.interp(result.time, [told, told + 4.0], [0.1, 0.0])
+    assert omega == pytest.approx(expected, abs=1e-9)
+    assert abs(result.energy.balance_error) < 1e-9
+
+
+@SOLVERS
+def test_events_do_not_hang_on_the_times_that_are_stored(solver) -> None:
+    few, many = (
+        solver(replace(m, run=replace(m.run, print_step=p)), step=0.5)
+        for m, p in ((wheel([STOP]), 125.0), (wheel([STOP]), 2.5))
+    )
+    assert at(few) == pytest.approx(at(many), rel=1e-12)
+    assert at(few, "rule") == pytest.approx(at(many, "rule"), rel=1e-12)
+
+
+@SOLVERS
+def test_a_rule_ends_a_run_well(solver) -> None:
+    result = solver(falling([{"when": "far covered", "after": "1 ms", "do": {"end": True}}]))
+    assert result.ok
+    assert result.time[-1] == pytest.approx(math.ceil((200.0 + 1.0) / 1.25) * 1.25)
+    assert result.model.run.duration == pytest.approx(result.time[-1])
+    assert result.error_estimate is not None
+
+
+def test_both_solvers_see_the_same_within_the_estimate() -> None:
+    model = mdlgen.lower(
+        mdlgen.load(
+            "samples/register.yaml", ["sheets.note.boxes=[5,2]", "run.duration=36 ms", "run.tolerance=0.01"]
+        )
+    )
+    one, two = lattice(model), exudyn(model)
+    kinds = [row["kind"] for row in one.reactions]
+    assert [row["kind"] for row in two.reactions] == kinds == ["covered", "rule"]
+    apart = [abs(a["time_ms"] - b["time_ms"]) for a, b in zip(one.reactions, two.reactions, strict=True)]
+    # the note goes at 1.4 mm/ms; what it is relative to is its travel
+    allowed = (one.error_estimate + two.error_estimate) * 40.0 / 1.4
+    assert max(apart) < allowed
+
+
+def test_a_run_that_is_gone_on_with_reacts_as_it_would_have(tmp_path) -> None:
+    model = wheel([STOP, {"when": "far covered", "do": {"speed": {"w": "7 rad/s"}}}])
+    whole = lattice(model, step=0.5)
+
+    class Enough(Exception):
+        pass
+
+    def stopped(t: float, *_: object) -> None:
+        if t > 103.5:  # the drive slows down
+            raise Enough
+
+    (tmp_path / "kept").mkdir()
+    keep = Checkpointer(tmp_path / "kept", every=0.0)
+    with pytest.raises(Enough):
+        lattice(model, step=0.5, progress=stopped, keep=keep)
+    on = lattice(model, step=0.5, keep=Checkpointer(tmp_path / "kept", every=0.0))
+    assert on.reactions == whole.reactions
+    assert np.array_equal(on.position, whole.position)
+    assert np.array_equal(on.spin, whole.spin)
