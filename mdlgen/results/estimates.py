@@ -109,7 +109,7 @@ def _safety(of: Difference) -> float:
 
 def _floor(of: Difference, touching: bool, runs: Sequence[Result]) -> float:
     result = runs[0]
-    if of.judged is not None or of.kind in ("probes.displacement", "rollers.omega"):
+    if of.judged is not None or of.kind in ("probes.displacement", "rollers.omega", "sensors.times"):
         bends = any(sheet.count > 1 for sheet in result.model.sheets)
         # of one that checks another the difference itself is asked for
         flutters = FLUTTERING_OF_TWO if len(runs) == 2 and not result.checks else FLUTTERING

@@ -12,6 +12,7 @@ quantity's scale, which never is zero; what its motion is small against is state
 | `rollers.R.angle`, of an arm | RMS over stored times | range of the angle, at least what moves the roller by a tenth of its radius [rad] |
 | `rollers.R.omega`, of one that may turn | RMS over stored times | greatest speed, at least a tenth of a radian in the run [rad/ms] |
 | `probes.P.displacement` | RMS over stored times of the distance | greatest displacement, at least a tenth of the sheet's length [mm] |
+| `sensors.S.times` | greatest difference of a time at which it is covered or cleared; 1 where one run has more of them | the duration [ms] |
 | `contacts.A.B.force` | mean over stored times of the difference | mean force [N] |
 | `contacts.A.B.max_force`, `.mean_force`, `.max_penetration`, `.mean_penetration` | difference, of all steps, and not less than that over stored times, at any of them or in the mean | the value, at least a hundredth of the greatest of all contacts [N], [mm] |
 | `sheets.S.strain.max_md` (`min_md`, `max_cd`, `min_cd`), `.curvature.max_md` (`max_cd`), `.twist.max` | greatest difference of any joint at any stored time | the greatest of the sheet in size, at least 1e-6; 1e-3 over its length for bending and twist [1/mm] |
@@ -102,7 +103,14 @@ def differences(result: Result, other: Result, judged: bool = False) -> dict[str
         return {}
     parts = [_sheets(pair), _pressed(pair)]
     if not judged:
-        parts += [_speeds(pair), _probes(pair), _contacts(pair), _peaks(pair), _residual(pair)]
+        parts += [
+            _speeds(pair),
+            _probes(pair),
+            _contacts(pair),
+            _peaks(pair),
+            _residual(pair),
+            _sensors(pair),
+        ]
     return {found.name: found for part in parts for found in part}
 
 
@@ -190,6 +198,18 @@ def _speeds(pair: Pair) -> Iterator[Difference]:
             scale = max(float(np.abs(one).max()), TENTH / max(result.model.run.duration, LEAST))
             gap = one[pair.here] - two[pair.there]
             yield Difference(f"rollers.{roller.name}.omega", _rms(gap) / scale, scale, "rad/ms")
+
+
+def _sensors(pair: Pair) -> Iterator[Difference]:
+    """Times at which sensors changed; all of the run where they changed another number of times."""
+    scale = max(pair.result.model.run.duration, LEAST)
+    for sensor in pair.result.model.reactions.sensors:
+        one, two = (
+            np.array([row["time_ms"] for row in run.reactions if row.get("sensor") == sensor.name])
+            for run in (pair.result, pair.other)
+        )
+        apart = float(np.abs(one - two).max(initial=0.0)) / scale if len(one) == len(two) else 1.0
+        yield Difference(f"sensors.{sensor.name}.times", apart, scale, "ms")
 
 
 def _probes(pair: Pair) -> Iterator[Difference]:

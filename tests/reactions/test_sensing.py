@@ -88,7 +88,7 @@ def test_a_line_sees_what_crosses_it_and_no_more(boxes: tuple[int, int]) -> None
 def test_a_sensor_sees_as_far_as_it_reaches() -> None:
     own, start = eye((4, 3), point=mm(0.0, 0.0, -3.0), direction="z", reach="4 mm")
     for z, seen in ((0.5, True), (1.5, False), (-3.5, False), (-2.5, True)):
-        poses = start._replace(x=start.x + [0.0, 0.0, z])
+        poses = start._replace(x=start.x + np.array([0.0, 0.0, z]))
         assert (float(own.off(0, poses).min()) < 0.0) == seen
 
 

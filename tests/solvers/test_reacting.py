@@ -1,5 +1,5 @@
-"""Machines that react, in both solvers: times of edges by closed forms, orders that are carried out when they are
-due, runs that a rule ends, and that go on from a checkpoint as they would have."""
+"""Machines that react, in both solvers: times of edges by closed forms, orders that are carried out when they
+are due, runs that a rule ends, and that go on from a checkpoint as they would have."""
 
 from __future__ import annotations
 

@@ -46,7 +46,7 @@ PIECES = {
     ("peel", "exudyn"): ("run.duration=5 ms",),  # all of it before a release: tests/solvers/test_arms.py
     # while the rod bends the strip; tests/solvers/test_yield.py compares both solvers
     ("crease", "exudyn"): ("sheets.strip.boxes=[10,1]", "run.duration=1 ms", "run.tolerance=0.01"),
-    # to where the eye has seen the note and the nips stop; tests/solvers/test_reacting.py looks at both solvers
+    # to where the nips stop; tests/solvers/test_reacting.py looks at both solvers
     ("register", "exudyn"): ("sheets.note.boxes=[5,2]", "run.duration=34 ms", "run.tolerance=0.02"),
     ("pick", "exudyn"): ("run.tolerance=0.01",),
     # the Model of transport_4x4 (tests/model/test_nips.py), which it runs as a whole below

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from mdlgen.model.parts.kinds import KINDS
 from mdlgen.paths import templates
 from mdlgen.report.html.happened import happened
+from mdlgen.report.html.logic import logic
 from mdlgen.report.html.wording import percent, shown
 
 if TYPE_CHECKING:
@@ -54,5 +55,5 @@ def environment() -> Environment:
 
     made = templating.environment("report", autoescape=True)
     made.globals["machine"] = [kind.table for kind in KINDS]
-    made.filters |= {"shown": shown, "percent": percent, "happened": happened}
+    made.filters |= {"shown": shown, "percent": percent, "happened": happened, "logic": logic}
     return made
