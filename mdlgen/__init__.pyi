@@ -434,6 +434,8 @@ class Scene(_Scene):
         probes: Mapping[str, _Probe | Mapping[str, Any]] = ...,
         require: Sequence[str] = ...,
         supports: Sequence[_Support | Mapping[str, Any]] = ...,
+        sensors: Mapping[str, Mapping[str, Any]] = ...,
+        rules: Sequence[Mapping[str, Any]] = ...,
     ) -> None: ...
     def with_(self, changes: Mapping[str, Any] | None = None, **more: Any) -> Scene: ...
 

@@ -34,14 +34,14 @@ class Reacting:
     def look(self, t: float) -> bool:
         """Carries out what is to be done at a time [s]; whether something was. Raises RunawayError."""
         orders = self.machine.look(t / MS, self._h / MS, self._poses())
-        told = [order for order in orders if order.kind != "end"]
-        for order in told:
+        ordered = [order for order in orders if order.kind != "end"]
+        for order in ordered:
             grown = self._commands.order(order, t / MS, self._system.bodies)
             if grown:
                 self._recorder.book(
                     -grown, int(self._system.bodies["slide"][self._commands.body(order.name)])
                 )
-        if told:
+        if ordered:
             self._recorder.renew(t + AFTER * JUMP * MS)
         return bool(orders)
 

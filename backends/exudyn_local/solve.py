@@ -22,6 +22,7 @@ from mdlgen.backends.exudyn_local.place import owners
 from mdlgen.backends.exudyn_local.reacting import Reacting, in_parts
 from mdlgen.backends.exudyn_local.recorder import Recorder
 from mdlgen.backends.exudyn_local.scope import check
+from mdlgen.backends.exudyn_local.settings import settings_of
 from mdlgen.backends.exudyn_local.shipped import (
     PROGRAM,
     air_slopes,
@@ -45,10 +46,6 @@ from mdlgen.results import audit
 from mdlgen.results.estimates import NOT_KNOWN, by_finer, estimated, marked, open_yet
 from mdlgen.results.result import Result
 
-# Spectral radius of the generalised-alpha rule: 1 would keep the noise of contact changes, 0 damps most.
-SPECTRAL_RADIUS = 0.6
-# Newton's tolerance: the default 1e-10 lies below the round-off of stiff bushings (k eps |x|).
-NEWTON_TOLERANCE = 1e-8
 # Steps in which the load of a static run grows; more where the balance that they lead to does not stand.
 LOAD_STEPS = (20, 200)
 UNSTABLE = "the balance is unstable"
@@ -59,10 +56,6 @@ ESTIMATED, REFINED = 6.0, 30.0
 MOST_REFINED = 5
 # A step that is given is compared with twice that step where a run has so many of them, else with half.
 FEWEST = 4
-# Relative to the load of one step; what counts is our own check of the residual at the end.
-STATIC_TOLERANCE = 1e-8
-# A step may shrink to this part of the wanted one before the run fails.
-SMALLEST_STEP = 1e-3
 
 Progress = Callable[[float, float, int, int], None]
 
@@ -315,46 +308,13 @@ def _compile(system: System, pattern: Pattern, work: Work) -> None:
     passed(system.bodies, system.pairs, system.shapes, q, v, q, v, 0.0, 0.0)
 
 
-def _settings(exu, count: int, end: float, touching: bool):
-    """Exudyn's settings for `count` steps to `end` [s], or of the load of a static run, where `end` is 0."""
-    s = exu.SimulationSettings()
-    s.solution.file.write = False
-    s.linearSolver.solverType = exu.LinearSolverType.EigenSparse
-    s.parallel.numberOfThreads = 1
-    static = s.staticSolver
-    static.newton.absoluteTolerance = NEWTON_TOLERANCE
-    static.newton.relativeTolerance = STATIC_TOLERANCE
-    static.newton.maxIterations = 40
-    static.numberOfLoadSteps = count
-    static.verboseMode = 0
-    if end == 0.0:
-        return s
-    t = s.timeIntegration
-    t.newton.useModifiedNewton = True
-    t.newton.absoluteTolerance = t.newton.relativeTolerance = NEWTON_TOLERANCE
-    t.newton.maxIterations = 12
-    t.verboseMode = 0
-    t.numberOfSteps = count
-    t.endTime = end
-    t.generalizedAlpha.spectralRadius = SPECTRAL_RADIUS
-    # Accelerations at the start are wanted for accuracy; but in contact the stiff damping makes them so
-    # large for a moment that Newton would start far away. Such scenes start at rest in their nips.
-    t.generalizedAlpha.computeInitialAccelerations = not touching
-    t.adaptiveStep = True  # a step that does not converge is repeated at half the size
-    t.adaptiveStepDecrease = 0.5
-    t.adaptiveStepIncrease = 2.0
-    t.adaptiveStepRecoverySteps = 1
-    t.minimumStepSize = end / count * SMALLEST_STEP
-    return s
-
-
 def _run(
     exu, assembly: Assembly, model: Model, count: int, h: float, recorder: Recorder, reacting: Reacting | None
 ) -> str | None:
     """Runs; returns the reason of a failure, or None."""
     if assembly.system.free == 0:
         return "nothing in this scene can move"
-    settings = _settings(exu, count, count * h, recorder.touching > 0)
+    settings = settings_of(exu, count, count * h, recorder.touching > 0)
     mbs = assembly.mbs
     try:
         run = mbs.SolveStatic if model.run.analysis == "static" else mbs.SolveDynamic

@@ -282,6 +282,13 @@ SUMMARY: dict[str, tuple[str, str]] = {
     },
     "probes.NAME.displacement_mm": ("mm", "displacement at the end, [x, y, z]"),
     "probes.NAME.speed_mm_per_s": ("mm/s", "velocity at the end, [x, y, z]"),
+    "sensors.NAME.count": ("", "how often a sensor was covered"),
+    "sensors.NAME.covered": ("", "whether it is covered at the end"),
+    "sensors.NAME.passed": (
+        "",
+        "each sheet that went by, with times in ms; see "
+        "[let a machine react](../how-to/let-a-machine-react.md)",
+    ),
 }
 SERIES: dict[str, tuple[str, str]] = {
     "time_ms": ("ms", "stored times, `run.print_step` apart"),

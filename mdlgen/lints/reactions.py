@@ -1,4 +1,4 @@
-"""Lints of sensors and rules: what sees nothing, what never acts, what is told two things at once."""
+"""Lints of sensors and rules: what sees nothing, what never acts, what is ordered two things at once."""
 
 from __future__ import annotations
 
@@ -51,9 +51,9 @@ def fights(model: Model) -> Iterator[Lint]:
     for (one, first), (two, second) in combinations(enumerate(model.reactions.rules), 2):
         if first.when != second.when or first.after != second.after or not _together(first, second):
             continue
-        told = {(order.kind, order.name): order.value for order in first.orders}
+        ordered = {(order.kind, order.name): order.value for order in first.orders}
         for order in second.orders:
-            if told.get((order.kind, order.name), order.value) != order.value:
+            if ordered.get((order.kind, order.name), order.value) != order.value:
                 yield Lint(
                     "W166",
                     f"rules.{two}.do.{order.kind}.{order.name}",

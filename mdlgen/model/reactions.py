@@ -8,6 +8,7 @@ from mdlgen.model.tables import Order, Reactions, RulePart, SensorPart
 from mdlgen.spec.reacting import COMMANDED, seen, sense, states
 from mdlgen.spec.rule import Rule
 from mdlgen.spec.scene import Scene
+from mdlgen.spec.sensor import REACH
 
 
 def lower_reactions(scene: Scene) -> Reactions:
@@ -32,7 +33,7 @@ def _sensor(scene: Scene, name: str, numbers: dict[str, int]) -> SensorPart:
         assert sensor.direction is not None, "the spec asks for it"
         kind = "line" if sensor.line is not None else "point"
         ends = np.array(sensor.line if sensor.line is not None else (sensor.point, sensor.point))
-        way = sensor.reach * np.array(sensor.direction)
+        way = (REACH if sensor.reach is None else sensor.reach) * np.array(sensor.direction)
     sheets = np.array(sorted(numbers[sheet] for sheet in seen(scene, name)), dtype=np.int64)
     return SensorPart(name, kind, ends, way, sensor.hysteresis, sheets)
 

@@ -23,12 +23,12 @@ class Units(NamedTuple):
 
 
 class Commands:
-    """What a Model's drives and springs were told so far, by body."""
+    """What a Model's drives and springs were ordered so far, by body."""
 
     def __init__(self, model: Model, units: Units):
         self._units = units
         self._parts = {part.name: part for part in (*model.rollers, *model.planes)}
-        self._told: dict[int, dict[str, Any]] = {}  # fields of the records of bodies
+        self._ordered: dict[int, dict[str, Any]] = {}  # fields of the records of bodies
         self._preload: dict[int, float] = {}  # [N]
 
     def order(self, order: Order, t: float, bodies: np.ndarray) -> float:
@@ -36,9 +36,9 @@ class Commands:
         or the torque, of a spring grew in its place at the start, in the solver's units."""
         part: Any = self._parts[order.name]
         row: Any = bodies[part.body]
-        told, grown = self._told.setdefault(part.body, {}), 0.0
+        ordered, grown = self._ordered.setdefault(part.body, {}), 0.0
         if order.kind == "speed":
-            told["corners"], told["drive"] = self._speed(row, order, t)
+            ordered["corners"], ordered["drive"] = self._speed(row, order, t)
         else:
             press = row["press"].copy()
             if order.kind == "torque":
@@ -47,15 +47,15 @@ class Commands:
                 grown = order.value - self._preload.get(part.body, float(part.press.preload))
                 self._preload[part.body] = order.value
             press[FORCE_0] += grown
-            told["press"] = press
-        for name, value in told.items():
+            ordered["press"] = press
+        for name, value in ordered.items():
             row[name] = value
         return grown
 
-    def tell(self, bodies: np.ndarray) -> None:
-        """Writes all that was told into other records of the same bodies."""
-        for body, told in self._told.items():
-            for name, value in told.items():
+    def write(self, bodies: np.ndarray) -> None:
+        """Writes all that was ordered into other records of the same bodies."""
+        for body, ordered in self._ordered.items():
+            for name, value in ordered.items():
                 bodies[name][body] = value
 
     def body(self, name: str) -> int:
@@ -64,15 +64,15 @@ class Commands:
 
     def kept(self) -> dict[str, Any]:
         """All that it goes on from, as plain values."""
-        told = {
+        ordered = {
             str(body): {name: np.asarray(value).tolist() for name, value in fields.items()}
-            for body, fields in self._told.items()
+            for body, fields in self._ordered.items()
         }
-        return {"told": told, "preload": {str(body): force for body, force in self._preload.items()}}
+        return {"ordered": ordered, "preload": {str(body): force for body, force in self._preload.items()}}
 
     def restore(self, kept: dict[str, Any]) -> None:
         """Goes back to what `kept` gave."""
-        self._told = {int(body): dict(fields) for body, fields in kept["told"].items()}
+        self._ordered = {int(body): dict(fields) for body, fields in kept["ordered"].items()}
         self._preload = {int(body): force for body, force in kept["preload"].items()}
 
     def _speed(self, row: Any, order: Order, t: float) -> tuple[int, np.ndarray]:

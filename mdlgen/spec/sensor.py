@@ -11,6 +11,7 @@ from mdlgen.spec.fields import Direction, Position, PositiveLength, one_of
 from mdlgen.spec.quantities import default, quantity
 from mdlgen.spec.strict import Strict, fail
 
+REACH = 5.0  # of a point and a line that say none [mm] (convention: guides of a channel are 2 to 4 mm apart)
 # A line along its own direction of view sees nothing: sine of the angle between the two.
 _ALONG = 1e-3
 
@@ -43,8 +44,8 @@ class Sensor(Strict):
         default=None, strict=False, description="both ends of a line from which it looks along `direction`"
     )
     direction: Direction | None = Field(default=None, description="where a point or a line looks to")
-    reach: PositiveLength = Field(
-        default=default("5 mm"), description="how far a point or a line sees along `direction`"
+    reach: PositiveLength | None = Field(
+        default=None, description="how far a point or a line sees along `direction`; 5 mm if left out"
     )
     hysteresis: Annotated[float, quantity("mm", 0.001)] = Field(
         default=default("0.01 mm"),
@@ -63,7 +64,7 @@ class Sensor(Strict):
             raise fail(f"give exactly one of beam, point and line, not {' and '.join(given) or 'none'}")
         if self.beam is not None:
             for name in ("direction", "reach"):
-                if name in self.model_fields_set:
+                if getattr(self, name) is not None:
                     raise fail(f"a beam has no {name}: its ends say where it goes", within=(name,))
             if not math.dist(*self.beam) > 0.0:
                 raise fail("both ends of the beam are at one place", within=("beam",))

@@ -31,13 +31,13 @@ def followed(
     """The machine, with what it ordered and the times at which it looked."""
     machine = machine or Machine(model, SPEED)
     t, orders, looked = 0.0, [], []
-    told = machine.look(t, step, poses(model, t, acceleration))
-    orders += [(t, order) for order in told]
+    ordered = machine.look(t, step, poses(model, t, acceleration))
+    orders += [(t, order) for order in ordered]
     while t < end:
         t = min(machine.ahead(t, step, poses(model, t, acceleration)), end)
-        told = machine.look(t, step, poses(model, t, acceleration))
+        ordered = machine.look(t, step, poses(model, t, acceleration))
         looked.append(t)
-        orders += [(t, order) for order in told]
+        orders += [(t, order) for order in ordered]
     return machine, orders, looked
 
 

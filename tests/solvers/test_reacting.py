@@ -51,10 +51,10 @@ def test_a_sensor_changes_nothing(solver) -> None:
 def test_a_drive_is_told_when_it_is_due(solver) -> None:
     result = solver(wheel([STOP]), step=0.5)
     edge = math.sqrt(2.0 * 10.0 / 0.002)
-    told = at(result, "rule")[0]
-    assert told == pytest.approx(edge + 3.0, abs=1e-3)
+    ordered = at(result, "rule")[0]
+    assert ordered == pytest.approx(edge + 3.0, abs=1e-3)
     omega = result.spin[:, 1] @ result.model.rollers[0].axis
-    expected = np.interp(result.time, [told, told + 4.0], [0.1, 0.0])
+    expected = np.interp(result.time, [ordered, ordered + 4.0], [0.1, 0.0])
     assert omega == pytest.approx(expected, abs=1e-9)
     assert abs(result.energy.balance_error) < 1e-9
 

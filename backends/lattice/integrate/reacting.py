@@ -28,12 +28,12 @@ class Reacting:
         for sheet in model.sheets:
             self._boxes[sheet.first : sheet.first + sheet.count] = True
         self.runaway = ""  # why a pass ended
-        self._told: np.ndarray | None = None  # the records that have all orders
+        self._ordered: np.ndarray | None = None  # the records that have all orders
 
     def steps(self, t: float, left: Floats, step: float) -> Floats:
         """Of the steps that are `left` [ms] from the time t on those to take before the machine looks again:
         whole ones, or a part of the first; `step`: a whole one."""
-        self._tell()
+        self._write()
         until = self.machine.ahead(t, step, self._poses()) - t
         whole = int(np.searchsorted(np.cumsum(left), until + SOON * step, side="right"))
         return left[:whole] if whole else np.array([until])
@@ -62,12 +62,12 @@ class Reacting:
         energies[DRIVEN] += gained
         energies[THROUGH_DRIVES] += abs(gained)
 
-    def _tell(self) -> None:
+    def _write(self) -> None:
         """Sheets that fall asleep or wake, and pairs of a wider margin, come with records of their own."""
         bodies = self._sleep.work.tables.bodies
-        if bodies is not self._told:
-            self._commands.tell(bodies)
-            self._told = bodies
+        if bodies is not self._ordered:
+            self._commands.write(bodies)
+            self._ordered = bodies
 
     def _poses(self) -> Poses:
         """Of all bodies, with the velocities in the middle of the last step."""
@@ -90,4 +90,4 @@ class Reacting:
         found = json.loads(kept.tobytes())
         self.machine.restore(found["machine"])
         self._commands.restore(found["commands"])
-        self._told = None
+        self._ordered = None

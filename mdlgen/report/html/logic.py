@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 # Of the drawing, in its own units (convention).
-WIDE, LEFT, HIGH, FOOT = 1000.0, 150.0, 24.0, 22.0
+WIDE, LEFT, HIGH, AXIS = 1000.0, 150.0, 24.0, 22.0
 
 
 def logic(summary: Mapping[str, Any]) -> dict[str, Any] | None:
@@ -41,7 +41,7 @@ def logic(summary: Mapping[str, Any]) -> dict[str, Any] | None:
     below = HIGH * len(rows)
     return {
         "width": WIDE,
-        "height": below + (HIGH if marks else 0.0) + FOOT,
+        "height": below + (HIGH if marks else 0.0) + AXIS,
         "bar": HIGH,
         "left": LEFT,
         "axis": below + (HIGH if marks else 0.0),

@@ -1,0 +1,131 @@
+"""How sensors and rules are written, and the line for what is wrong with one."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import pytest
+
+import mdlgen
+from mdlgen.checks import lints
+from mdlgen.errors import RefusedError, SpecError
+
+REGISTER = "samples/register.yaml"
+STILL = "sensors.eye.beam"
+
+
+def scene(**changes: Any) -> mdlgen.Scene:
+    return mdlgen.load(REGISTER).with_(changes)
+
+
+def rule(**more: Any) -> dict[str, Any]:
+    return {"when": "eye covered", "do": {"end": True}, **more}
+
+
+def test_a_scene_with_rules_reads_back_as_it_is_written() -> None:
+    one = mdlgen.load(REGISTER)
+    data = one.model_dump(mode="json", exclude_none=True)
+    assert mdlgen.Scene(**data).rules == one.rules
+    assert mdlgen.Scene(**data).sensors == one.sensors
+
+
+def test_a_command_means_a_name_a_pattern_or_a_nip() -> None:
+    def ordered(name: str) -> list[str]:
+        model = mdlgen.lower(scene(rules=[rule(do={"speed": {name: "5 rad/s"}})]))
+        return [order.name for order in model.reactions.rules[0].orders]
+
+    assert ordered("motor_1_left") == ["motor_1_left"]
+    assert ordered("motor_*_left") == ["motor_1_left", "motor_2_left"]
+    assert ordered("*_1_left") == ["motor_1_left"]  # the counter roller has no drive
+    assert ordered("nip_1_left") == ["motor_1_left"]
+
+
+def test_a_surface_goes_in_the_sense_of_its_own_drive() -> None:
+    command = {"speed": {"motor_1_left": {"surface_speed": "750 mm/s", "ramp": "2 ms"}}}
+    order = mdlgen.lower(scene(rules=[rule(do=command)])).reactions.rules[0].orders[0]
+    assert order.value == pytest.approx(0.1) and order.ramp == 2.0
+    turned = {"rules": [rule(do=command)], "parameters.speed": "-1400 mm/s"}
+    assert mdlgen.lower(mdlgen.load(REGISTER).with_(turned)).reactions.rules[0].orders[0].value == -0.1
+
+
+@pytest.mark.parametrize(
+    ("changes", "line"),
+    [
+        ({"sensors.eye": {}}, "sensors.eye: give exactly one of beam, point and line, not none"),
+        (
+            {"sensors.eye": {"point": ["0 mm"] * 3}},
+            "sensors.eye: a point needs a direction in which it looks, as direction: z",
+        ),
+        ({STILL: [["1 mm", "0 mm", "0 mm"]] * 2}, "both ends of the beam are at one place"),
+        ({STILL: ["1 mm"]}, "expected two points"),
+        (
+            {"sensors.eye": {"line": [["0 mm"] * 3, ["0 mm", "5 mm", "0 mm"]], "direction": "y"}},
+            "sensors.eye.direction: the line looks along itself, where it sees nothing",
+        ),
+        ({"sensors.eye.sees": ["card*"]}, "sensors.eye.sees.0: there is no part 'card*'"),
+        (
+            {"sensors.eye.hysteresis": "0 mm"},
+            "sensors.eye.hysteresis: 0 mm is outside what is allowed: at least 0.001 mm",
+        ),
+        ({"rules": [rule(when="eye coverd")]}, "rules.0.when: 'eye coverd'"),
+        ({"rules": [rule(when="gap(eye) < 3 ms")]}, "rules.0.when: 'gap(eye) < 3 ms': compares mm with s"),
+        ({"rules": [rule(do={})]}, "rules.0.do: a rule has to do something"),
+        (
+            {"rules": [rule(do={"speed": {"counter_1_left": "1 rad/s"}})]},
+            "counter_1_left has no drive; those that have one are: motor_1_left",
+        ),
+        ({"rules": [rule(do={"speed": {"motr": "1 rad/s"}})]}, "there is no part 'motr'"),
+        (
+            {"rules": [rule(do={"speed": {"motor_1_left": {}}})]},
+            "give exactly one of speed and surface_speed",
+        ),
+        ({"rules": [rule(do={"press": {"motor_1_left": "1 N"}})]}, "there is no part 'motor_1_left'"),
+        ({"rules": [rule(do={"go": "there"})]}, "rules.0.do.go: there is no state of a rule's `in` 'there'"),
+        ({"rules": [rule()], "run.analysis": "static"}, "rules: rules act over time"),
+        ({"rules": [rule()] * 201}, "rules: 201 rules; allowed are 200"),
+        ({"require": ["gap at ear below 3 mm"]}, "require.0: there is no sensor 'ear'; there are: eye"),
+        ({"require": ["yaw at eye below 3 deg"]}, "of sheets that go by a sensor there are gap, speed"),
+    ],
+)
+def test_what_is_wrong_is_said_where_it_stands(changes: dict[str, Any], line: str) -> None:
+    with pytest.raises(SpecError) as raised:
+        scene(**changes)
+    assert line in str(raised.value)
+    assert "\n" not in raised.value.message
+
+
+@pytest.mark.parametrize("output", ["motionview", "motionsolve", "msolve"])
+def test_texts_refuse_rules_and_name_sensors(output: str) -> None:
+    model = mdlgen.lower(mdlgen.load(REGISTER))
+    with pytest.raises(
+        RefusedError, match=re.escape("rules.0 (when eye covered) acts on what the sheets do")
+    ):
+        mdlgen.emit(model, output)
+    text = mdlgen.emit(mdlgen.lower(scene(rules=[])), output)
+    assert "sensors, which act on nothing (eye)" in text
+
+
+@pytest.mark.parametrize(
+    ("changes", "codes"),
+    [
+        ({}, set()),
+        ({STILL: [["900 mm", "0 mm", "-5 mm"], ["900 mm", "0 mm", "5 mm"]]}, {"W165", "W167"}),
+        ({"rules": [rule(when="time > 200 ms")]}, {"W165"}),
+        ({"rules": [rule(when="not eye covered")]}, set()),
+        ({"rules": [rule(**{"in": "a"}), rule(**{"in": "b"})]}, {"W165"}),
+        ({"rules": [rule(**{"in": "a", "do": {"go": "b"}}), rule(**{"in": "b"})]}, set()),
+        (
+            {
+                "rules": [
+                    rule(do={"speed": {"motor_1_left": "1 rad/s"}}),
+                    rule(do={"speed": {"motor_*_left": "2 rad/s"}}),
+                ]
+            },
+            {"W166"},
+        ),
+    ],
+)
+def test_lints(changes: dict[str, Any], codes: set[str]) -> None:
+    found = {lint.code for lint in lints(mdlgen.lower(scene(**changes)))}
+    assert found & {"W165", "W166", "W167"} == codes
