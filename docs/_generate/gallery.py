@@ -17,7 +17,7 @@ GROUPS = {
     ),
     "Channels and guides": ("channel", "guide_joint"),
     "Stacks and feeders": (
-        *("stack", "pile", "landing", "spring_plate", "retard_pad", "feeder_window", "feeder", "feeder_one"),
+        *("stack", "pile", "landing", "spring_plate", "retard_pad", "retard", "stall", "feeder_window", "feeder", "feeder_one"),
         *("peel", "pick"),
     ),
     "Material": ("cantilever", "saddle", "snatch", "crease"),

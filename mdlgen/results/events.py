@@ -1,5 +1,5 @@
 """What happens to sheets: at rollers entering and leaving, slip, gaps, waits, jams, double feeds; at the ends
-of plates stubs; where friction holds them creep.
+of plates stubs; where friction holds them creep. And what happens to motors and torque limiters.
 
 All of it is read from the stored states, so times are those of stored states (`run.print_step`).
 """
@@ -16,6 +16,7 @@ from mdlgen.model.tables import Floats, Model, RollerPart
 from mdlgen.results.contact_line import contact_line
 from mdlgen.results.creep import creeps
 from mdlgen.results.held import holds
+from mdlgen.results.motors import motor_events
 from mdlgen.results.stacked import stacked
 from mdlgen.results.stays import SHORT, Stay, intervals, stays_at_meshes, stays_of
 from mdlgen.results.stubs import stops
@@ -24,7 +25,10 @@ from mdlgen.units import PER_SECOND
 if TYPE_CHECKING:
     from mdlgen.results.result import Result
 
-KINDS = ("enter", "leave", "slip", "gap", "wait", "jam", "double_feed", "stub", "creep")
+KINDS = (
+    *("enter", "leave", "slip", "gap", "wait", "jam", "double_feed", "stub", "creep"),
+    *("stall", "lost_steps", "limiter_slips"),
+)
 # A sheet that is slower than this [mm/ms] stands: smoothed friction lets what waits under a force creep.
 # One that is slower than this part of another one at the same roller is held back while that one is fed.
 STANDS, HELD_PART = 0.01, 0.1
@@ -36,7 +40,8 @@ def events(result: Result) -> list[dict[str, Any]]:
 
     Kinds: `enter` and `leave`; `slip`, one for each stay of a sheet at a roller; `gap`, where a sheet enters
     a roller that another one was at before; `wait`; `jam`; `double_feed`; `stub`, where the end of a
-    plate stops a sheet; `creep`, where regularised friction holds one. A sheet that touches at the start
+    plate stops a sheet; `creep`, where regularised friction holds one; without a sheet `stall`, `lost_steps`
+    and `limiter_slips` of a roller. A sheet that touches at the start
     enters at 0. docs/reference/events.md says what the numbers are.
     """
     if len(result.time) < 2:
@@ -48,8 +53,9 @@ def events(result: Result) -> list[dict[str, Any]]:
     found += _double_feeds(result, [*stays, *_beyond(result, stays, together)])
     found += _stubs(result)
     found += _creeps(result)
+    found += motor_events(result)
     order = {"leave": 0, "enter": 1}
-    return sorted(found, key=lambda e: (e["time_ms"], order.get(e["kind"], 2), _place(e), e["sheet"]))
+    return sorted(found, key=lambda e: (e["time_ms"], order.get(e["kind"], 2), _place(e), e.get("sheet", "")))
 
 
 def _place(event: dict[str, Any]) -> str:

@@ -8,6 +8,7 @@ import numpy as np
 
 from mdlgen.geometry.arrays import Floats
 from mdlgen.geometry.solids import BOX, CORNERS, Solid, cylinder, slice_
+from mdlgen.model.axles import turning
 from mdlgen.model.covers import covered, lower_cover
 from mdlgen.model.frames import frame
 from mdlgen.model.parameters.machine import center_rows, spring_rows, start_row
@@ -31,7 +32,7 @@ from mdlgen.model.tables import (
     RollerPart,
     SheetPart,
 )
-from mdlgen.spec.machine import Drive, Roller
+from mdlgen.spec.machine import Roller
 from mdlgen.spec.scene import Scene
 from mdlgen.units import PER_SECOND
 
@@ -46,8 +47,10 @@ class _Rollers(Kind[RollerPart]):
 
     def lower(self, scene: Scene, before: Before, first: int) -> tuple[RollerPart, ...]:
         parts = []
-        for index, name in enumerate(sorted(scene.rollers)):
+        order = {name: index for index, name in enumerate(sorted(scene.rollers))}
+        for name, index in order.items():
             roller = scene.rollers[name]
+            turns = turning(scene, name)
             axial = 0.5 * roller.mass * roller.radius**2
             transverse = roller.mass * (3 * roller.radius**2 + roller.width**2) / 12
             parts.append(
@@ -61,14 +64,17 @@ class _Rollers(Kind[RollerPart]):
                     mass=roller.mass,
                     inertia_axial=axial,
                     inertia_transverse=transverse,
-                    speed=_speed(roller.drive) if roller.drive else None,
-                    ramp=roller.drive.ramp if roller.drive else 0.0,
-                    profile=np.array(roller.drive.profile) if roller.drive and roller.drive.profile else None,
+                    speed=turns.speed,
+                    ramp=turns.ramp,
+                    profile=turns.profile,
                     one_way=OneWay(**dict(roller.one_way)) if roller.one_way else None,
                     press=roller_press(scene, name, before) if roller.press else None,
                     rim=lower_rim(roller),
                     arm=_arm(roller) if roller.arm else None,
                     cover=lower_cover(scene, name),
+                    axle=turns.axle,
+                    leader=-1 if turns.leader is None else first + order[turns.leader],
+                    ratio=turns.ratio,
                 )
             )
         return tuple(parts)
@@ -257,14 +263,6 @@ def _drawn(roller: RollerPart) -> list[Drawn]:
 def swing(roller: RollerPart) -> Floats:
     """How far a roller on an arm may go either way, by its radius in any direction across its axis [mm]."""
     return roller.reach * np.sqrt(np.maximum(0, 1 - roller.axis**2))
-
-
-def _speed(drive: Drive) -> float:
-    """The speed of a drive, of a profile the greatest in size [rad/ms]."""
-    if drive.profile is not None:
-        return max((speed for _, speed in drive.profile), key=abs)
-    assert drive.speed is not None, "the spec has one of the two"
-    return drive.speed
 
 
 def _arm(roller: Roller) -> ArmPart:

@@ -9,6 +9,7 @@ import numpy as np
 
 from mdlgen.geometry.arrays import Floats as Floats
 from mdlgen.geometry.arrays import Ints as Ints
+from mdlgen.model.tables.axle import AxlePart
 from mdlgen.model.tables.bodies import Frozen
 
 
@@ -126,6 +127,9 @@ class RollerPart(MachinePart):
     rim: RimPart | None = None
     arm: ArmPart | None = None
     cover: CoverPart | None = None
+    axle: AxlePart | None = None  # with a motor: the speed is the one that it aims at; a limiter: its shaft's
+    leader: int = -1  # body of the roller that leads its shaft, -1: it turns by itself, or leads
+    ratio: float = 1.0  # its turns for one of that
 
     @property
     def loaded_mass(self) -> float:
@@ -160,8 +164,18 @@ class RollerPart(MachinePart):
 
     @property
     def turns(self) -> bool:
-        """Whether its spin is unknown: a free one, or one with a clutch."""
-        return self.speed is None or self.one_way is not None
+        """Whether its spin is unknown: a free one, or one with a clutch, a motor or a limiter."""
+        return self.speed is None or self.one_way is not None or self.axle is not None
+
+    @property
+    def begins_turning(self) -> bool:
+        """Whether it begins with the speed of the shaft that a clutch or a limiter couples it to."""
+        return self.speed is not None and self.turns and not self.motor
+
+    @property
+    def motor(self) -> bool:
+        """Whether a motor turns it, whose torque is limited."""
+        return self.axle is not None and self.axle.motor
 
     @property
     def corners(self) -> Floats:
