@@ -155,6 +155,7 @@ class Drive(_Drive):
         direction: Literal["x", "y", "z", "-x", "-y", "-z", "+x", "+y", "+z"] | Sequence[float] | None = ...,
         ramp: str = ...,
         profile: Sequence[Sequence[str]] | None = ...,
+        motor: Mapping[str, Any] | None = ...,
     ) -> None: ...
 
 class Fold(_Fold):
@@ -384,6 +385,8 @@ class Roller(_Roller):
         mass: str = ...,
         drive: _Drive | Mapping[str, Any] | None = ...,
         one_way: _OneWay | Mapping[str, Any] | None = ...,
+        limiter: Mapping[str, Any] | None = ...,
+        bearing: Mapping[str, Any] | None = ...,
         press: _Press | Mapping[str, Any] | None = ...,
         arm: _Arm | Mapping[str, Any] | None = ...,
         rim: _Rim | Mapping[str, Any] | None = ...,
@@ -421,6 +424,7 @@ class Scene(_Scene):
         parameters: Mapping[str, str | float | Mapping[str, Any]] = ...,
         materials: Mapping[str, _Material | Mapping[str, Any]] = ...,
         rollers: Mapping[str, _Roller | Mapping[str, Any]] = ...,
+        shafts: Mapping[str, Mapping[str, Any]] = ...,
         nips: Mapping[str, _Nip | Mapping[str, Any]] = ...,
         piles: Mapping[str, Mapping[str, Any]] = ...,
         planes: Mapping[str, _Plane | Mapping[str, Any]] = ...,
