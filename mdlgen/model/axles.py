@@ -52,9 +52,9 @@ def _on_shaft(called: str, shaft: Shaft, name: str) -> Turning:
     """A roller of a shaft that turns freely or by a motor."""
     leader = min(shaft.rollers)
     own = shaft.rollers[leader]
+    found = _target(shaft.drive, shaft.rollers[name]) if shaft.drive is not None else Turning()
     if name != leader:
-        return Turning(leader=leader, ratio=shaft.rollers[name] / own)
-    found = _target(shaft.drive, own) if shaft.drive is not None else Turning()
+        return found._replace(leader=leader, ratio=shaft.rollers[name] / own)
     motor = shaft.drive.motor if shaft.drive is not None else None
     axle = _axle(motor, None, shaft.bearing, 1.0 / own, shaft.inertia, called)
     return found._replace(axle=axle)

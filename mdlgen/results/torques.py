@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mdlgen.model.tables import Floats, RollerPart
-from mdlgen.results.motors import axle_torque, spin
+from mdlgen.results.motors import axle_torque, shaft, spin
 from mdlgen.results.result import GRIPS, RUBS
 
 if TYPE_CHECKING:
@@ -64,12 +64,12 @@ def contact_torque(result: Result, roller: RollerPart) -> Floats | None:
 
 def drive_torque(result: Result, roller: RollerPart) -> Floats | None:
     """What its drive turns a roller with about its axis [N mm], (t,), 0 of a free one."""
-    if roller.speed is None:
+    if roller.axle is not None:
+        return axle_torque(result, roller)
+    if roller.speed is None or roller.leader >= 0:
         return np.zeros(len(result.time))
     if roller.one_way is not None:
         return _clutch(result, roller)
-    if roller.axle is not None:
-        return axle_torque(result, roller)
     contacts = contact_torque(result, roller)
     if contacts is None:
         return None
@@ -80,11 +80,9 @@ def drive_power(result: Result, roller: RollerPart) -> Floats | None:
     """What its drive gives a roller [W], (t,): its torque times the speed of its shaft, in N mm/ms; of a
     motor behind its gear."""
     torque = drive_torque(result, roller)
-    if torque is None or roller.speed is None:
-        return torque
-    if roller.motor:
-        return torque * spin(result, roller)
-    return torque * roller.prescribed(result.time)
+    if torque is None:
+        return None
+    return torque * (spin(result, roller) if roller.motor else shaft(result, roller))
 
 
 def grips(result: Result, roller: RollerPart) -> list[Grip]:

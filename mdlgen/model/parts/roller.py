@@ -32,6 +32,7 @@ from mdlgen.model.tables import (
     RollerPart,
     SheetPart,
 )
+from mdlgen.model.tables.axle import CONTROLLED, LIMITER, OPEN, STEPPER
 from mdlgen.spec.machine import Roller
 from mdlgen.spec.scene import Scene
 from mdlgen.units import PER_SECOND
@@ -217,7 +218,9 @@ class _Rollers(Kind[RollerPart]):
 
     def facts(self, model: Model, part: RollerPart) -> list[str]:
         facts = [f"radius {part.radius:.4g} mm, width {part.width:.4g} mm, {part.mass:.4g} g"]
-        if part.speed is None:
+        if part.axle is not None or part.leader >= 0:
+            facts += _turned(part)
+        elif part.speed is None:
             facts.append("turns freely")
         elif part.profile is not None:
             facts.append(f"driven by a profile, {PER_SECOND * part.speed:.4g} rad/s at most")
@@ -240,6 +243,27 @@ class _Rollers(Kind[RollerPart]):
         if part.cover is not None:
             facts += covered(part.cover)
         return facts
+
+
+def _turned(part: RollerPart) -> list[str]:
+    """What a motor, a limiter, a bearing or a shaft turns a roller with."""
+    if part.leader >= 0:
+        return [f"turns {part.ratio:.4g} times for each turn of the roller that leads its shaft"]
+    axle, found = part.axle, []
+    assert axle is not None, "it has an axle, or follows one"
+    if axle.shaft:
+        found.append(f"leads the shaft {axle.shaft}")
+    if axle.motor:
+        word = {OPEN: "motor", CONTROLLED: "motor with speed control", STEPPER: "stepper"}[axle.kind]
+        line = f", no load {PER_SECOND * axle.no_load:.4g} rad/s" if axle.no_load else ""
+        found.append(f"{word}, {axle.stall:.4g} N mm at rest{line}")
+    elif axle.kind == LIMITER:
+        aims = 0.0 if part.speed is None else part.speed
+        held = f"a shaft of {PER_SECOND * aims:.4g} rad/s" if aims else "a shaft that stands"
+        found.append(f"torque limiter of {axle.limit:.4g} N mm to {held}")
+    if axle.friction or axle.drag:
+        found.append(f"bearing takes {axle.friction:.4g} N mm, {axle.drag:.4g} N mm ms/rad")
+    return found
 
 
 def _drawn(roller: RollerPart) -> list[Drawn]:

@@ -127,7 +127,7 @@ class RollerPart(MachinePart):
     rim: RimPart | None = None
     arm: ArmPart | None = None
     cover: CoverPart | None = None
-    axle: AxlePart | None = None  # with a motor: the speed is the one that it aims at; a limiter: its shaft's
+    axle: AxlePart | None = None  # with a motor, and behind it: the speed is the one that it aims at
     leader: int = -1  # body of the roller that leads its shaft, -1: it turns by itself, or leads
     ratio: float = 1.0  # its turns for one of that
 
@@ -164,13 +164,15 @@ class RollerPart(MachinePart):
 
     @property
     def turns(self) -> bool:
-        """Whether its spin is unknown: a free one, or one with a clutch, a motor or a limiter."""
-        return self.speed is None or self.one_way is not None or self.axle is not None
+        """Whether its spin is unknown: it is free, has a clutch, a motor or a limiter, or follows another one
+        on its shaft."""
+        coupled = self.one_way is not None or self.axle is not None or self.leader >= 0
+        return self.speed is None or coupled
 
     @property
     def begins_turning(self) -> bool:
         """Whether it begins with the speed of the shaft that a clutch or a limiter couples it to."""
-        return self.speed is not None and self.turns and not self.motor
+        return self.speed is not None and self.turns and not self.motor and self.leader < 0
 
     @property
     def motor(self) -> bool:
