@@ -170,7 +170,10 @@ class Motor(Strict):
     @property
     def stall(self) -> float:
         """Torque at rest [N mm]."""
-        return self.torque if self.table is None and self.torque is not None else (self.table or ())[0][1]
+        if self.table is not None:
+            return self.table[0][1]
+        assert self.torque is not None, "it has one of the two"
+        return self.torque
 
     @property
     def no_load(self) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 
 from mdlgen.geometry.arrays import Floats as Floats
 from mdlgen.geometry.arrays import Ints as Ints
-from mdlgen.model.tables.axle import AxlePart
+from mdlgen.model.tables.axle import FREE, AxlePart
 from mdlgen.model.tables.bodies import Frozen
 
 
@@ -168,6 +168,13 @@ class RollerPart(MachinePart):
         on its shaft."""
         coupled = self.one_way is not None or self.axle is not None or self.leader >= 0
         return self.speed is None or coupled
+
+    @property
+    def driven(self) -> bool:
+        """Whether a drive, a motor or a limiter has a torque on it: not of one that follows another one on a
+        shaft, whose torque that one has."""
+        limited = self.axle is not None and self.axle.kind != FREE
+        return self.leader < 0 and (self.speed is not None or limited)
 
     @property
     def begins_turning(self) -> bool:
