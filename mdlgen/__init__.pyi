@@ -28,6 +28,11 @@ from mdlgen.spec.machine import Roller as _Roller
 from mdlgen.spec.material import Damping as _Damping
 from mdlgen.spec.material import Material as _Material
 from mdlgen.spec.mesh import Mesh as _Mesh
+from mdlgen.spec.motor import Bearing as _Bearing
+from mdlgen.spec.motor import Control as _Control
+from mdlgen.spec.motor import Limiter as _Limiter
+from mdlgen.spec.motor import Motor as _Motor
+from mdlgen.spec.motor import Steps as _Steps
 from mdlgen.spec.nip import Nip as _Nip
 from mdlgen.spec.part import Part as _Part
 from mdlgen.spec.rim import Rim as _Rim
@@ -36,6 +41,7 @@ from mdlgen.spec.rows import Mirror as _Mirror
 from mdlgen.spec.rows import Repeat as _Repeat
 from mdlgen.spec.run import Run as _Run
 from mdlgen.spec.scene import Scene as _Scene
+from mdlgen.spec.shaft import Shaft as _Shaft
 from mdlgen.spec.shape import Curl as _Curl
 from mdlgen.spec.shape import DogEar as _DogEar
 from mdlgen.spec.shape import Fold as _Fold
@@ -83,6 +89,15 @@ class Arm(_Arm):
         damping: str = ...,
     ) -> None: ...
 
+class Bearing(_Bearing):
+    def __init__(
+        self,
+        *,
+        torque: str = ...,
+        drag: str = ...,
+        creep: str = ...,
+    ) -> None: ...
+
 class Clamp(_Clamp):
     def __init__(
         self,
@@ -104,6 +119,15 @@ class Contact(_Contact):
         rolling_resistance: float | str = ...,
         air: Mapping[str, Any] | None = ...,
         share: Literal["width", "pair"] = ...,
+    ) -> None: ...
+
+class Control(_Control):
+    def __init__(
+        self,
+        *,
+        proportional: str,
+        integral: str = ...,
+        limit: str | None = ...,
     ) -> None: ...
 
 class Curl(_Curl):
@@ -155,6 +179,7 @@ class Drive(_Drive):
         direction: Literal["x", "y", "z", "-x", "-y", "-z", "+x", "+y", "+z"] | Sequence[float] | None = ...,
         ramp: str = ...,
         profile: Sequence[Sequence[str]] | None = ...,
+        motor: _Motor | Mapping[str, Any] | None = ...,
     ) -> None: ...
 
 class Fold(_Fold):
@@ -217,6 +242,14 @@ class Guide(_Guide):
         thickness: str = ...,
         mass: str = ...,
         edge_radius: str | None = ...,
+    ) -> None: ...
+
+class Limiter(_Limiter):
+    def __init__(
+        self,
+        *,
+        torque: str,
+        creep: str = ...,
     ) -> None: ...
 
 class Line(_Line):
@@ -283,6 +316,20 @@ class Mirror(_Mirror):
         across: Literal["x", "y", "z"],
         at: str = ...,
         names: Sequence[str] = ...,
+    ) -> None: ...
+
+class Motor(_Motor):
+    def __init__(
+        self,
+        *,
+        torque: str | None = ...,
+        speed: str | None = ...,
+        table: Sequence[Sequence[str]] | None = ...,
+        inertia: str = ...,
+        gear: float | str = ...,
+        voltage: Sequence[Sequence[str | float]] | None = ...,
+        control: _Control | Mapping[str, Any] | None = ...,
+        steps: _Steps | Mapping[str, Any] | None = ...,
     ) -> None: ...
 
 class Nip(_Nip):
@@ -384,6 +431,8 @@ class Roller(_Roller):
         mass: str = ...,
         drive: _Drive | Mapping[str, Any] | None = ...,
         one_way: _OneWay | Mapping[str, Any] | None = ...,
+        limiter: _Limiter | Mapping[str, Any] | None = ...,
+        bearing: _Bearing | Mapping[str, Any] | None = ...,
         press: _Press | Mapping[str, Any] | None = ...,
         arm: _Arm | Mapping[str, Any] | None = ...,
         rim: _Rim | Mapping[str, Any] | None = ...,
@@ -421,6 +470,7 @@ class Scene(_Scene):
         parameters: Mapping[str, str | float | Mapping[str, Any]] = ...,
         materials: Mapping[str, _Material | Mapping[str, Any]] = ...,
         rollers: Mapping[str, _Roller | Mapping[str, Any]] = ...,
+        shafts: Mapping[str, _Shaft | Mapping[str, Any]] = ...,
         nips: Mapping[str, _Nip | Mapping[str, Any]] = ...,
         piles: Mapping[str, Mapping[str, Any]] = ...,
         planes: Mapping[str, _Plane | Mapping[str, Any]] = ...,
@@ -449,6 +499,16 @@ class Sector(_Sector):
         stiffness: float = ...,
         restitution: float | None = ...,
         **more: Any,
+    ) -> None: ...
+
+class Shaft(_Shaft):
+    def __init__(
+        self,
+        *,
+        rollers: Mapping[str, float | str],
+        drive: _Drive | Mapping[str, Any] | None = ...,
+        inertia: str = ...,
+        bearing: _Bearing | Mapping[str, Any] | None = ...,
     ) -> None: ...
 
 class Shape(_Shape):
@@ -484,6 +544,14 @@ class Sheet(_Sheet):
         spin: Sequence[str] = ...,
         clamp: _Clamp | Mapping[str, Any] | None = ...,
         surface: bool = ...,
+    ) -> None: ...
+
+class Steps(_Steps):
+    def __init__(
+        self,
+        *,
+        per_turn: int = ...,
+        damping: str = ...,
     ) -> None: ...
 
 class Support(_Support):

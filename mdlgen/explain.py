@@ -257,6 +257,30 @@ SCENE = {
         "does not come to this sensor. A beam has to cross the middle surface; a point or a line sees as "
         "far as its `reach`, 5 mm where that is left out."
     ),
+    "W160": (
+        "A motor has less torque at rest than its bearing, or friction in its nips, can take from it. By the "
+        "bearing alone it never turns. By the nips it stalls where a sheet is held, and the sheet does not "
+        "slip. Friction of a nip is its static coefficient times the preload of its spring times the radius. "
+        "Give a stronger motor, or a gear, unless that is meant as a protection."
+    ),
+    "W161": (
+        "A torque limiter slips where its torque is less than friction of the nip can take. Above it the "
+        "sheet slips on the roller, and the limiter never does: a retard roller then holds a sheet back by "
+        "friction, which changes with the force of the nip. Give less torque, or press harder."
+    ),
+    "W162": (
+        "A stepper that is at rest follows steps at once up to the speed at which the kinetic energy against "
+        "its field is what takes it over the top of its torque: J v^2/2 = 2 T/p, p periods of the torque per "
+        "radian. Faster steps need a ramp."
+    ),
+    "W163": (
+        "A shaft couples rollers, so that one that is held loads the others. With one roller alone it is the "
+        "axle of that. Name the others below `rollers`, or give the roller itself drive and bearing."
+    ),
+    "W164": (
+        "A motor has no torque at its no-load speed. One that aims at that speed, or beyond it, never gets "
+        "there under load; a stepper falls out of step. Aim lower, or change motor or gear."
+    ),
 }
 
 TEXT = {

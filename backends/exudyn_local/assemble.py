@@ -15,6 +15,7 @@ from mdlgen.backends.exudyn_local.shipped import air_slopes, begin_air, forces, 
 from mdlgen.backends.exudyn_local.state import Coordinates, Work
 from mdlgen.backends.exudyn_local.system import EULER, MM, MS, Pattern, System
 from mdlgen.mechanics.arm import AXIAL, INERTIA
+from mdlgen.mechanics.records import FOLLOWER
 from mdlgen.model.tables import Model
 
 
@@ -48,11 +49,11 @@ def assemble(exu, model: Model, system: System, pattern: Pattern, work: Work, re
     nodes = []
     free = system.free
     q, v = np.zeros(max(1, free)), np.zeros(max(1, free))
-    # a roller with a clutch begins with its shaft
+    # a roller with a clutch or a limiter begins with its shaft
     starts = {
         int(system.bodies["spin"][r.body]): float(r.prescribed(0.0)) / MS
         for r in model.rollers
-        if r.one_way is not None and r.speed is not None
+        if r.begins_turning
     }
     for body in range(len(bodies.name)):
         row = system.bodies[body]
@@ -78,7 +79,7 @@ def assemble(exu, model: Model, system: System, pattern: Pattern, work: Work, re
             nodes.append(node)
             continue
         for coordinate, mass in ((row["slide"], row["press"][INERTIA]), (row["spin"], row["press"][AXIAL])):
-            if coordinate >= 0:
+            if coordinate >= 0 and row["coupled"] != FOLLOWER:  # else it has the node of the one that leads
                 rate = starts.get(coordinate, 0.0)
                 v[coordinate] = rate
                 node = mbs.AddNode(Node1D(referenceCoordinates=[0.0], initialVelocities=[rate]))

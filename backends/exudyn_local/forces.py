@@ -14,10 +14,11 @@ from mdlgen.mechanics.arm import (
     torque_of,
     way_of,
 )
+from mdlgen.mechanics.axle import acting
 from mdlgen.mechanics.bushing import bushing
 from mdlgen.mechanics.corner import bodies_of, corner_forces
 from mdlgen.mechanics.curve import curve_excess, middle_and_gap
-from mdlgen.mechanics.driven import SENSE, clutch
+from mdlgen.mechanics.driven import SENSE, turned
 from mdlgen.mechanics.frame import Frame
 from mdlgen.mechanics.pair import pair_force
 from mdlgen.mechanics.plastic import accept, bending, couple, flowed, stored
@@ -160,12 +161,19 @@ def load_forces(bodies, load, q, r, f, level):
 
 
 @njit(cache=True, error_model="numpy")
+def axle_force(tables, body, at):
+    """Torque of a clutch, a motor, a limiter or a bearing on a roller."""
+    k, own = tables.bodies[body].spin, tables.bodies[body]
+    return acting(tables.shapes.axles, own, turned(own, at.t) - at.q[k], at.v[k], at.t, 0.0).torque
+
+
+@njit(cache=True, error_model="numpy")
 def forces(tables, at, level, work):
     """Generalised forces into those of `work`; `level` scales gravity and loads. Returns the number of
     touching pairs."""
     bodies, pairs, loads, gravity = tables.bodies, tables.pairs, tables.loads, tables.gravity
     motion, out, f = work.motion, work.out, work.forces
-    q, v, t = at
+    q = at.q
     place_all(bodies, at, motion)
     f[:] = 0.0
     for body in range(bodies.size - 1):
@@ -176,7 +184,7 @@ def forces(tables, at, level, work):
         if bodies[body].slide >= 0:
             slide_force(tables, body, at, f, level)
         if bodies[body].clutch[SENSE] != 0.0:
-            f[bodies[body].spin] += clutch(bodies[body], v[bodies[body].spin], t).torque
+            f[bodies[body].spin] += axle_force(tables, body, at)
     for i in range(tables.bushings.size):
         bush_forces(tables, tables.bushings[i], q, motion, f)
     for i in range(tables.corners.size):

@@ -7,14 +7,15 @@ import numpy as np
 
 from mdlgen.backends.exudyn_local.bristles import held_element, release, weigh_patches
 from mdlgen.backends.exudyn_local.forces import (
+    axle_force,
     bush_forces,
     corner_at,
     load_forces,
     pair_forces,
     slide_force,
 )
-from mdlgen.backends.exudyn_local.place import place_all, place_body
-from mdlgen.mechanics.driven import SENSE, clutch
+from mdlgen.backends.exudyn_local.place import place_all, place_owner
+from mdlgen.mechanics.driven import SENSE
 from mdlgen.program.kernel import njit
 
 # Perturbations of the difference quotients: positions and Euler parameters, velocities [SI]. A static run
@@ -30,7 +31,7 @@ def _element(tables, block_start, element, at, level, work):
     touch."""
     bodies, pairs = tables.bodies, tables.pairs
     motion, out, f = work.motion, work.out, work.forces
-    q, v, t = at
+    q, v = at.q, at.v
     blocks = block_start.size - 1
     if element < blocks:
         for i in range(block_start[element], block_start[element + 1]):
@@ -55,7 +56,7 @@ def _element(tables, block_start, element, at, level, work):
     for body in range(bodies.size - 1):
         if bodies[body].clutch[SENSE] != 0.0:
             if element == 0:
-                f[bodies[body].spin] += clutch(bodies[body], v[bodies[body].spin], t).torque
+                f[bodies[body].spin] += axle_force(tables, body, at)
                 return True
             element -= 1
     if element < tables.loads.size:
@@ -104,7 +105,7 @@ def jacobian(tables, elements, at, level, by, central, owner, work, data):
             if central:
                 q[dof] -= step * by_q
                 v[dof] -= step * by_v
-                place_body(bodies, body, at, motion)
+                place_owner(bodies, body, at, motion)
                 for i in range(begin, end):
                     f[dofs[i]] = 0.0
                 _element(tables, block_start, element, at, level, work)
@@ -113,11 +114,11 @@ def jacobian(tables, elements, at, level, by, central, owner, work, data):
                 q[dof], v[dof] = kept_q, kept_v
             q[dof] += step * by_q
             v[dof] += step * by_v
-            place_body(bodies, body, at, motion)
+            place_owner(bodies, body, at, motion)
             for i in range(begin, end):
                 f[dofs[i]] = 0.0
             _element(tables, block_start, element, at, level, work)
             q[dof], v[dof] = kept_q, kept_v
-            place_body(bodies, body, at, motion)
+            place_owner(bodies, body, at, motion)
             for i in range(count):
                 data[slots[slot + i * count + j]] -= (f[dofs[begin + i]] - base[i]) / width

@@ -18,7 +18,8 @@ from mdlgen.mechanics.arm import (
     hung,
     speeding,
 )
-from mdlgen.mechanics.driven import clutch, prescribed
+from mdlgen.mechanics.axle import acting
+from mdlgen.mechanics.driven import prescribed, turned
 from mdlgen.mechanics.point import (
     DISSIPATED,
     OUT,
@@ -91,9 +92,10 @@ def ledger(tables, at, work, pair_out, totals):
         if bodies[body].spin >= 0:
             spun = v[bodies[body].spin]
             kinetic += 0.5 * bodies[body].press[AXIAL] * spun**2
-            torque, _, shaft = clutch(bodies[body], spun, t)
-            lost += torque * (shaft - spun)
-            driven += torque * shaft
+            behind = turned(bodies[body], t) - q[bodies[body].spin]
+            does = acting(tables.shapes.axles, bodies[body], behind, spun, t, 0.0)
+            lost += does.lost
+            driven += does.given
     for i in range(tables.bushings.size):
         energy, power = bush_forces(tables, tables.bushings[i], q, motion, f)
         elastic += energy

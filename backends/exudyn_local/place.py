@@ -5,13 +5,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from mdlgen.backends.exudyn_local.system import EULER, System
+from mdlgen.backends.exudyn_local.system import EULER, MS, System
 from mdlgen.mechanics.arm import (
     moved,
     turn_of,
     way_of,
 )
 from mdlgen.mechanics.driven import prescribed, turned
+from mdlgen.mechanics.records import ALONE
 from mdlgen.mechanics.vector import (
     dot,
     exp_rotation,
@@ -21,7 +22,7 @@ from mdlgen.mechanics.vector import (
     three,
     vec,
 )
-from mdlgen.model.tables import Ints
+from mdlgen.model.tables import Ints, Model
 from mdlgen.program.kernel import njit
 
 
@@ -65,24 +66,34 @@ def place_body(bodies, body, at, motion):
         for i in range(3):
             x[body, i] = place[i]
             u[body, i] += v[k] * way[i]
-    spin = bodies[body].spin
+    spin, ratio = bodies[body].spin, bodies[body].ratio
     if bodies[body].rims > 0:
-        angle = q[spin] if spin >= 0 else turned(bodies[body], t)
+        angle = ratio * q[spin] if spin >= 0 else turned(bodies[body], t)
         if bodies[body].swings == 2:
             angle += q[k]
         m = matmul(exp_rotation(scale(angle, three(bodies[body].axis))), mat(r, body))
         for i in range(9):
             r[body, i] = m[i]
-    rate = v[spin] if spin >= 0 else prescribed(bodies[body], t)
+    rate = ratio * v[spin] if spin >= 0 else prescribed(bodies[body], t)
     if bodies[body].swings == 2:
         rate += v[k]
     for i in range(3):
         w[body, i] += rate * bodies[body].axis[i]
     if bodies[body].carries != 0:  # a mesh shows how far the roller has turned
-        angle = q[spin] if spin >= 0 else turned(bodies[body], t)
+        angle = ratio * q[spin] if spin >= 0 else turned(bodies[body], t)
         m = matmul(exp_rotation(scale(angle, three(bodies[body].axis))), mat(r, body))
         for i in range(9):
             r[body, i] = m[i]
+
+
+@njit(cache=True, error_model="numpy")
+def place_owner(bodies, body, at, motion):
+    """As place_body, and of a roller on a shaft all that turn with it."""
+    place_body(bodies, body, at, motion)
+    if bodies[body].coupled != ALONE:
+        for other in range(bodies.size - 1):
+            if other != body and bodies[other].spin == bodies[body].spin:
+                place_body(bodies, other, at, motion)
 
 
 @njit(cache=True, error_model="numpy")
@@ -117,7 +128,20 @@ def spread(bodies, body, q, force, torque, f):
         at = moved(bodies[body], (ref[0], ref[1], ref[2]), q[bodies[body].slide])
         f[bodies[body].slide] += dot(force, way_of(bodies[body], at)) + dot(torque, turn_of(bodies[body]))
     if bodies[body].spin >= 0:
-        f[bodies[body].spin] += dot(torque, three(bodies[body].axis))
+        f[bodies[body].spin] += bodies[body].ratio * dot(torque, three(bodies[body].axis))
+
+
+def lags(model: Model, system: System, q: np.ndarray, t: float) -> np.ndarray:
+    """By what angles rollers with an axle are behind their shafts, in their order [rad], (axles,)."""
+    found = []
+    for roller in model.rollers:
+        if roller.axle is not None:
+            shaft = 0.0
+            if roller.speed is not None:
+                shaft = float(roller.turned(np.array([t / MS]))[0])
+            at = int(system.bodies["spin"][roller.body])
+            found.append(shaft - q[at] if at >= 0 else 0.0)
+    return np.array(found)
 
 
 @njit(cache=True, error_model="numpy")

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mdlgen.backends.exudyn_local.place import lags
 from mdlgen.backends.exudyn_local.shipped import begin, end_hinges, ledger, overstretched, passed, set_limits
 from mdlgen.backends.exudyn_local.state import (
     DRIVING,
@@ -72,7 +73,9 @@ class Recorder:
         self._in_contact, self._last = np.zeros(rows), np.zeros(rows)
         self._acting = np.zeros(rows, bool)
         self._force = np.zeros(rows)  # of the state last observed; a failed static run observes none [N]
-        self._stored: dict[str, list] = {name: [] for name in ("t", "x", "e", "u", "w", "f", "turning", "p")}
+        self._stored: dict[str, list] = {
+            name: [] for name in ("t", "x", "e", "u", "w", "f", "turning", "p", "b")
+        }
         self._first: list[float] | None = None  # energies at the start [J]
         self._lost = self._driven = 0.0
         self._through = self._most = 0.0
@@ -225,6 +228,7 @@ class Recorder:
         np.add.at(turning, self.model.pairs.contact, self._pairs[:, OUT:])
         self._stored["turning"].append(turning)
         self._stored["p"].append(self.system.hinges["plastic"].copy())
+        self._stored["b"].append(lags(self.model, self.system, self._q, t))
         self.reason = self.reason or self._unheld.found(x[:-1] / MM, r[:-1], t / MS)
 
     def _watch(self, t: float, step: float) -> None:
@@ -288,6 +292,7 @@ class Recorder:
             contact_force=array("f", rows),
             contact_torque=turning[..., [ABOUT_A, ABOUT_B]] / MM,
             contact_friction=turning[..., [ALONG, LIMIT]],
+            behind=array("b", len(held["b"][0])) if times and len(held["b"][0]) else None,
             plastic=array("p", len(self.system.hinges)) if self.system.hinges.size else None,
             statistics=ContactStatistics(
                 max_depth=self._max_depth / MM,

@@ -9,6 +9,7 @@ from mdlgen.backends.exudyn_local.shipped import jacobian
 from mdlgen.backends.exudyn_local.state import Coordinates, Work
 from mdlgen.backends.exudyn_local.system import Pattern, System
 from mdlgen.mechanics.arm import AXIAL, INERTIA
+from mdlgen.mechanics.records import FOLLOWER
 from mdlgen.model.tables import Floats
 
 # A balance that is left so slowly that it grows e-fold in a second stands still [rad/s].
@@ -76,7 +77,7 @@ def _moves(system: System, q: Floats):
             for axis in range(3):  # about the box's own axes
                 column([(n + 3 + i, float(turn[axis, i])) for i in range(4)], float(body["inertia"][axis]))
         for name, inertia in (("slide", body["press"][INERTIA]), ("spin", body["press"][AXIAL])):
-            if body[name] >= 0:
+            if body[name] >= 0 and (name == "slide" or body["coupled"] != FOLLOWER):
                 column([(int(body[name]), 1.0)], float(inertia))
     shape = (system.free, len(mass))
     return csc_matrix((values, (rows, columns)), shape=shape), np.array(mass)

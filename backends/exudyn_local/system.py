@@ -215,6 +215,10 @@ def _couplings(
         box = list(range(row["first"], row["first"] + 7)) if row["first"] >= 0 else []
         return box + [int(row[name]) for name in ("slide", "spin") if row[name] >= 0]
 
+    def both(one: int, two: int) -> list[int]:
+        """Two rollers of one shaft have the same coordinate."""
+        return list(dict.fromkeys(of(one) + of(two)))
+
     def field(patch: int) -> list[int]:
         first = int(stick.first[0]) + FIELD * patch
         return list(range(first, first + FIELD)) if patch >= 0 else []
@@ -225,7 +229,7 @@ def _couplings(
         there = np.unique([own["a"], own["b"]])
         elements.append([dof for body in there[there >= 0] for dof in of(body)])
     ends = zip(pairs["a"], pairs["b"], stick.patch_of.tolist(), strict=True)
-    elements += [of(a) + of(b) + field(patch) for a, b, patch in ends]
+    elements += [both(a, b) + field(patch) for a, b, patch in ends]
     elements += [[int(s)] for s in bodies["slide"] if s >= 0]
     elements += [[int(s)] for s in bodies["spin"][bodies["clutch"][:, 0] != 0.0]]
     elements += [of(body) for body in loads["body"]]

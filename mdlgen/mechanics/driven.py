@@ -31,7 +31,11 @@ class Clutch(NamedTuple):
 def drive(row: np.void, roller: RollerPart, time: float = 1.0, torque: float = 1.0) -> None:
     """Fills the fields of DRIVE and CLUTCH of a body record for a roller; `time` is a millisecond in the
     solver's units, `torque` a newton millimetre."""
+    if roller.leader >= 0:
+        return  # it turns with the one that leads
     corners = roller.corners * (time, 1.0 / time)
+    if not len(corners) and roller.axle is not None:
+        corners = np.zeros((1, 2))  # the shaft of a limiter that ground holds
     row["corners"] = len(corners)
     row["drive"][: corners.size] = corners.ravel()
     if roller.one_way is not None:

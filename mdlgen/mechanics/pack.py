@@ -11,13 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mdlgen.mechanics.arm import AXIAL, arm
+from mdlgen.mechanics.axle import AXLE
 from mdlgen.mechanics.curve import follow
 from mdlgen.mechanics.driven import drive
 from mdlgen.mechanics.frame import LAW_DYNAMIC, LAW_STATIC
 from mdlgen.mechanics.laws import damping_share
 from mdlgen.mechanics.measured import FACES, FRICTION, MORE_CD, MORE_MD, POWER, REFERENCE
 from mdlgen.mechanics.mesh_tables import mesh_numbers
-from mdlgen.mechanics.records import LOAD
+from mdlgen.mechanics.records import FOLLOWER, LEADER, LOAD
 from mdlgen.mechanics.rim import rim
 from mdlgen.model.covers import levers
 from mdlgen.model.rotations import matrices
@@ -54,7 +55,7 @@ def pack_bodies(model: Model, layout: np.dtype, units: Units = OWN, driven: bool
     bodies["inertia"][:count] = table.inertia * g * mm**2
     bodies["half"][:count] = table.half * mm
     bodies["exposed"][:count] = table.exposed @ np.array([1, 2, 4, 8])
-    bodies["size"] = 1.0
+    bodies["size"] = bodies["ratio"] = 1.0
     for part in model.machine:
         if part.round is not None:
             bodies["size"][part.body] = [mm * length for length in part.round]
@@ -69,6 +70,7 @@ def pack_bodies(model: Model, layout: np.dtype, units: Units = OWN, driven: bool
             drive(row, roller, units.ms, mm)
         piece = rim(row, roller, piece)
         arm(row, roller, mm, g, units.ms)
+    _turn_together(model, bodies, g * mm**2, driven)
     for plate, spring in model.plates:
         _press(bodies[plate.body], spring, plate.sliding_mass, units)
     for guide in model.guides:
@@ -93,6 +95,25 @@ def _press(row: np.void, spring: Press, mass: float, units: Units) -> None:
     row["press"][:AXIAL] = (stiffness, damping, force, mass * units.g)
 
 
+def _turn_together(model: Model, bodies: np.ndarray, inertia: float, driven: bool) -> None:
+    """Numbers the axles of rollers, and gives those that lead the inertia of all that turns with them;
+    `inertia` is 1 g mm^2 in the solver's units."""
+    axles = 0
+    for roller in model.rollers:
+        row = bodies[roller.body]
+        if roller.axle is not None:
+            row["press"][AXIAL] += roller.axle.inertia * inertia
+            if driven:
+                row["clutch"] = (AXLE, axles, 1.0)
+            axles += 1
+    for roller in model.rollers:
+        if roller.leader >= 0 and driven:
+            row, leads = bodies[roller.body], bodies[roller.leader]
+            leads["press"][AXIAL] += roller.ratio**2 * row["press"][AXIAL]
+            leads["coupled"], row["coupled"], row["ratio"] = LEADER, FOLLOWER, roller.ratio
+            row["press"][AXIAL] = 0.0
+
+
 def number(model: Model, bodies: np.ndarray, first: int, turning: bool = True) -> int:
     """Numbers the unknowns of rollers and plates from `first` on in the fields `slide` and `spin` (-1: none),
     and returns the next number; `turning`: free rollers have one."""
@@ -101,7 +122,9 @@ def number(model: Model, bodies: np.ndarray, first: int, turning: bool = True) -
         row = bodies[roller.body]
         if roller.press is not None or roller.arm is not None:
             row["slide"], first = first, first + 1
-        if turning and roller.turns:
+        if turning and roller.leader >= 0:  # which has a number: it is the first of its shaft by name
+            row["spin"] = bodies["spin"][roller.leader]
+        elif turning and roller.turns:
             row["spin"], first = first, first + 1
     for plate, _ in model.plates:
         bodies["slide"][plate.body], first = first, first + 1

@@ -34,7 +34,11 @@ OF_BODY = [
     ("side", "i8"),  # of a guide, that may be touched: as in mechanics.guide
     *ENDS,
     *DRIVE,
+    ("coupled", "i8"),  # of a roller on a shaft: ALONE, LEADER, FOLLOWER
+    ("ratio", "f8"),  # and its turns for one of the roller that leads, 1: it leads or is alone
 ]
+# A roller whose spin is its own; one that leads a shaft, and has the inertia of all; one that follows it.
+ALONE, LEADER, FOLLOWER = 0, 1, 2
 
 # Of a joint: its bodies, and arms in body axes.
 ENDS_OF_JOINT = [("a", "i8"), ("b", "i8"), ("ra", "f8", 3), ("rb", "f8", 3)]

@@ -111,6 +111,12 @@ def nips(model: Model) -> Iterator[tuple[int, SheetPart, RollerPart]]:
         yield int(row), sheets[model.contacts.part_a[row]], rollers[model.contacts.part_b[row]]
 
 
+def faced(model: Model, roller: RollerPart, sheet: SheetPart) -> list[RollerPart]:
+    """Rollers between which and this one the sheet may be."""
+    thick = float(sheet.thick.max())
+    return [other for other in model.rollers if other is not roller and _face(roller, other, thick)]
+
+
 def facets(model: Model) -> Iterator[tuple[SheetPart, RollerPart, float]]:
     """(sheet, roller, length of a box [mm]) of every such pair whose flat boxes cannot follow the roller."""
     for _, sheet, roller in nips(model):

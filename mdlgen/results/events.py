@@ -1,5 +1,5 @@
 """What happens to sheets: at rollers entering and leaving, slip, gaps, waits, jams, double feeds; at the ends
-of plates stubs; where friction holds them creep.
+of plates stubs; where friction holds them creep. And what happens to motors and torque limiters.
 
 All of it is read from the stored states, so times are those of stored states (`run.print_step`); but what
 sensors saw and rules did, which is noted as it happens.
@@ -17,6 +17,7 @@ from mdlgen.model.tables import Floats, Model, RollerPart
 from mdlgen.results.contact_line import contact_line
 from mdlgen.results.creep import creeps
 from mdlgen.results.held import holds
+from mdlgen.results.motors import motor_events
 from mdlgen.results.stacked import stacked
 from mdlgen.results.stays import SHORT, Stay, intervals, stays_at_meshes, stays_of
 from mdlgen.results.stubs import stops
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 KINDS = (
     *("enter", "leave", "slip", "gap", "wait", "jam", "double_feed", "stub", "creep"),
     *("covered", "cleared", "rule"),
+    *("stall", "lost_steps", "limiter_slips"),
 )
 # A sheet that is slower than this [mm/ms] stands: smoothed friction lets what waits under a force creep.
 # One that is slower than this part of another one at the same roller is held back while that one is fed.
@@ -41,7 +43,8 @@ def events(result: Result) -> list[dict[str, Any]]:
     Kinds: `enter` and `leave`; `slip`, one for each stay of a sheet at a roller; `gap`, where a sheet enters
     a roller that another one was at before; `wait`; `jam`; `double_feed`; `stub`, where the end of a
     plate stops a sheet; `creep`, where regularised friction holds one; `covered` and `cleared`, of a sensor;
-    `rule`, as one acts. A sheet that touches at the start
+    without a sheet `rule`, as one acts, and `stall`, `lost_steps` and `limiter_slips` of a roller. A sheet
+    that touches at the start
     enters at 0. docs/reference/events.md says what the numbers are.
     """
     if len(result.time) < 2:
@@ -54,6 +57,7 @@ def events(result: Result) -> list[dict[str, Any]]:
     found += _stubs(result)
     found += _creeps(result)
     found += result.reactions
+    found += motor_events(result)
     order = {"leave": 0, "enter": 1}
     return sorted(found, key=lambda e: (e["time_ms"], order.get(e["kind"], 2), _place(e), e.get("sheet", "")))
 

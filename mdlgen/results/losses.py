@@ -90,7 +90,7 @@ def losses(result: Result) -> Losses | None:
 
 def driven(result: Result, roller: RollerPart) -> Floats | None:
     """Energy that a drive has given since the start [N mm], (t,); None of a roller without one."""
-    power = drive_power(result, roller) if roller.speed is not None else None
+    power = drive_power(result, roller) if roller.driven else None
     return None if power is None else summed(result, power)
 
 

@@ -108,6 +108,9 @@ class Result:
     contact_friction: Floats | None = None
     # plastic rotation of each row of Model.plastic [rad], (t, rows); None: nothing in the scene yields
     plastic: Floats | None = None
+    # of each roller with an axle, by what angle it is behind its shaft, or what speed control has for that
+    # [rad], (t, axles); None: no roller has a motor, a limiter or a bearing
+    behind: Floats | None = None
     touched: int = 0  # pairs that touched at any step
     energy: Energy = field(default_factory=Energy)
     step: float = 0.0  # [ms]

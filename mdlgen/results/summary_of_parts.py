@@ -12,6 +12,7 @@ from mdlgen.model.covers import speed_ratio, under
 from mdlgen.model.tables import Floats, MachinePart, PlanePart, RollerPart
 from mdlgen.results.drag import drags
 from mdlgen.results.losses import driven
+from mdlgen.results.motors import motor_record
 from mdlgen.results.result import Result
 from mdlgen.results.slide import slide
 from mdlgen.results.swing import swing
@@ -156,6 +157,8 @@ def _turning(result: Result, roller: RollerPart) -> dict[str, Any]:
         if values is not None and len(values):
             numbers = (float(values[-1]), peak(values), over_time(result, values))
         record |= {f"{of}{name}_{unit}": v for of, v in zip(("", "max_", "mean_"), numbers, strict=True)}
+    if roller.axle is not None:
+        record |= motor_record(result, roller)
     return {**record, "traction": {grip.other: _traction(grip) for grip in grips(result, roller)}}
 
 

@@ -3,7 +3,8 @@
 Signs are those of a turn about the roller's axis as it is given. What contacts do to a roller is the sum over
 its contacts, and those of meshes on it, of friction and rolling resistance. A drive gives what is left of
 the roller's inertia times its angular acceleration: M = I dw/dt - contacts, and M times the speed of its
-shaft as power. A roller that is free has no drive; one with a clutch is driven through that.
+shaft as power. A roller that is free has no drive; one with a clutch or a limiter is driven through that, and
+one with a motor by its law (results.motors). The motor of a shaft counts at the roller that leads it.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mdlgen.model.tables import Floats, RollerPart
+from mdlgen.results.motors import axle_torque, shaft, spin
 from mdlgen.results.result import GRIPS, RUBS
 
 if TYPE_CHECKING:
@@ -62,7 +64,9 @@ def contact_torque(result: Result, roller: RollerPart) -> Floats | None:
 
 def drive_torque(result: Result, roller: RollerPart) -> Floats | None:
     """What its drive turns a roller with about its axis [N mm], (t,), 0 of a free one."""
-    if roller.speed is None:
+    if roller.axle is not None:
+        return axle_torque(result, roller)
+    if roller.speed is None or roller.leader >= 0:
         return np.zeros(len(result.time))
     if roller.one_way is not None:
         return _clutch(result, roller)
@@ -73,11 +77,12 @@ def drive_torque(result: Result, roller: RollerPart) -> Floats | None:
 
 
 def drive_power(result: Result, roller: RollerPart) -> Floats | None:
-    """What its drive gives a roller [W], (t,): its torque times the speed of its shaft, in N mm/ms."""
+    """What its drive gives a roller [W], (t,): its torque times the speed of its shaft, in N mm/ms; of a
+    motor behind its gear."""
     torque = drive_torque(result, roller)
-    if torque is None or roller.speed is None:
-        return torque
-    return torque * roller.prescribed(result.time)
+    if torque is None:
+        return None
+    return torque * (spin(result, roller) if roller.motor else shaft(result, roller))
 
 
 def grips(result: Result, roller: RollerPart) -> list[Grip]:

@@ -38,7 +38,7 @@ UNITS = {
     "_w": "W",
 }
 # Events that a reader sees whether or not they are required away.
-NOTABLE = ("jam", "double_feed", "stub", "creep")
+NOTABLE = ("jam", "double_feed", "stub", "creep", "stall", "lost_steps")
 # A slip of more than this part of the surface's speed, over a whole stay, is named, too; one of more than all
 # of it is that of a roller which holds back.
 LARGE_SLIP = 0.2
@@ -131,6 +131,8 @@ def in_words(event: Mapping[str, Any]) -> str:
         return f"{event['sheet']} {creep_in_words(event)}"
     if event["kind"] == "rule":
         return f"rule {event['rule']} ({event['when']}): {event['does']} at {event['time_ms']:.4g} ms"
+    if "sheet" not in event:
+        return motor_in_words(event)
     kind = str(event["kind"]).replace("_", " ")
     where = event.get("roller") or event.get("part") or event.get("sensor")
     who = f"{event['sheet']} and {event['other']}" if "other" in event else str(event["sheet"])
@@ -144,6 +146,16 @@ def in_words(event: Mapping[str, Any]) -> str:
     if "way_mm" in event:
         text += f", the slower one goes {event['way_mm']:.3g} mm"
     return text
+
+
+def motor_in_words(event: Mapping[str, Any]) -> str:
+    """What happens to a motor or a torque limiter."""
+    at = f"at {event['roller']} from {event['time_ms']:.4g} ms"
+    if event["kind"] == "lost_steps":
+        return f"stepper {at} loses {event['steps']} steps"
+    if event["kind"] == "stall":
+        return f"motor {at} stalls for {event['duration_ms']:.4g} ms with {event['torque_n_mm']:.4g} N mm"
+    return f"limiter {at} slips for {event['duration_ms']:.4g} ms by {event['slip_rad']:.3g} rad"
 
 
 def creep_in_words(event: Mapping[str, Any]) -> str:

@@ -14,6 +14,7 @@ from mdlgen.spec.nip import names_of as rollers_of
 from mdlgen.spec.pile import names_of as sheets_of
 from mdlgen.spec.reacting import checks as reacting
 from mdlgen.spec.require import requirement
+from mdlgen.spec.shaft import check_shaft
 from mdlgen.spec.strict import fail
 from mdlgen.units import exact_quantity
 
@@ -31,6 +32,8 @@ def checks(scene: Scene) -> Iterator[Callable[[], None]]:
             yield partial(_on_sheet, scene, item, (kind, key))
     for name in scene.rollers:
         yield partial(_check_clutch, scene, name)
+    for name in scene.shafts:
+        yield partial(check_shaft, scene, name)
     for name in scene.nips:
         yield partial(_check_nip, scene, name)
     for name in scene.piles:
@@ -138,6 +141,16 @@ def _check_clutch(scene: Scene, name: str) -> None:
             f"roller {name}: one_way acts by speed, and a static analysis has none; leave it out",
             ("rollers", name, "one_way"),
         )
+    roller = scene.rollers[name]
+    acts = {"limiter": roller.limiter, "bearing": roller.bearing}
+    acts["drive"] = roller.drive.motor if roller.drive is not None else None
+    for key, given in acts.items():
+        if given is not None and scene.run.analysis == "static":
+            word = "a motor" if key == "drive" else key
+            raise fail(
+                f"roller {name}: {word} acts by speed, and a static analysis has none; leave it out",
+                ("rollers", name, key),
+            )
 
 
 def check_counts(scene: Scene) -> None:

@@ -23,6 +23,7 @@ from mdlgen.spec.fields import (
 )
 from mdlgen.spec.guide import check_edge
 from mdlgen.spec.machine_part import PARALLEL, MachinePart, cosine, not_modelled, on_its_end
+from mdlgen.spec.motor import Bearing, Limiter, Motor
 from mdlgen.spec.quantities import combined, default, quantity, reading
 from mdlgen.spec.rim import Rim
 from mdlgen.spec.rows import Mirror, Repeat
@@ -43,7 +44,8 @@ Corner = Annotated[tuple[TimeOrZero, AngularSpeed], BeforeValidator(_corner)]
 
 
 class Drive(Strict):
-    """Prescribed speed about the roller's axis: reached by a linear ramp, or a profile in time."""
+    """Speed about the roller's axis: reached by a linear ramp, or a profile in time. It is prescribed, or the
+    target of a motor with a limited torque."""
 
     speed: AngularSpeed | None = Field(
         default=None, description="angular speed about the axis (right-hand rule)"
@@ -62,10 +64,24 @@ class Drive(Strict):
         description="in place of speed and ramp: [time, speed] of each corner, times increasing; linear "
         f"between corners, constant before the first and after the last; 2 to {MOST_CORNERS}",
     )
+    motor: Motor | None = Field(
+        default=None,
+        description="a motor that has to reach that speed; one without control or steps has the speed at "
+        "which its torque is that of the load, and takes no speed, surface_speed or profile",
+    )
 
     @model_validator(mode="after")
     def _one_law(self) -> Drive:
         given = [n for n in ("speed", "surface_speed", "profile") if getattr(self, n) is not None]
+        if self.motor is not None and self.motor.open:
+            if given or self.direction is not None or self.ramp != 0.0:
+                word = (given or ["direction" if self.direction is not None else "ramp"])[0]
+                raise fail(
+                    f"{word} goes with a motor that has control or steps: this one runs by its voltage; "
+                    "leave it out, or give motor.control",
+                    within=(word,),
+                )
+            return self
         if len(given) != 1:
             raise fail("give exactly one of speed and profile, or surface_speed with direction")
         if (self.direction is None) != (self.surface_speed is None):
@@ -175,6 +191,13 @@ class Roller(MachinePart):
     one_way: OneWay | None = Field(
         default=None, description="a one-way clutch between the roller and its drive, or ground without one"
     )
+    limiter: Limiter | None = Field(
+        default=None, description="a torque limiter between the roller and its drive, or ground without one"
+    )
+    bearing: Bearing | None = Field(
+        default=None,
+        description="friction and drag of its bearing, of a roller that turns freely or by a motor",
+    )
     press: Press | None = Field(default=None, description="slide and spring; without it the axis is fixed")
     arm: Arm | None = Field(default=None, description="an arm that carries it in place of a fixed axis")
     rim: Rim | None = Field(default=None, description="sectors of the rim that are unlike the rest")
@@ -219,10 +242,36 @@ class Roller(MachinePart):
         if self.press is not None or self.one_way is not None:
             word = "press" if self.press is not None else "one_way"
             raise fail(f"a roller on an arm has no {word}: the one or the other")
+        if self.limiter is not None or self.bearing is not None:
+            word = "limiter" if self.limiter is not None else "bearing"
+            raise fail(f"a {word} of a roller on an arm is not modelled; leave one out", within=(word,))
+        if self.drive is not None and self.drive.motor is not None:
+            message = "a motor of a roller on an arm is not modelled; leave motor or arm out"
+            raise fail(message, within=("drive", "motor"))
         gap = [c - p for c, p in zip(self.center, self.arm.pivot, strict=True)]
         along = sum(g * a for g, a in zip(gap, self.axis, strict=True))
         if math.dist(gap, [along * a for a in self.axis]) < 1e-6 * self.radius:
             raise fail("arm.pivot is on the roller's own axis; an arm needs a length", within=("arm",))
+        return self
+
+    @model_validator(mode="after")
+    def _turned(self) -> Roller:
+        motor = self.drive is not None and self.drive.motor is not None
+        if self.one_way is not None and (self.limiter is not None or motor or self.bearing is not None):
+            word = "motor" if motor else "limiter" if self.limiter is not None else "bearing"
+            raise fail(f"a roller with a one_way clutch has no {word}: the one or the other")
+        if self.limiter is not None and motor:
+            raise fail(
+                "a limiter behind a motor is not modelled: give the drive a prescribed speed, or leave the "
+                "limiter out",
+                within=("limiter",),
+            )
+        if self.bearing is not None and self.drive is not None and not motor and self.limiter is None:
+            raise fail(
+                "a drive of prescribed speed turns the roller whatever its bearing takes; leave bearing out, "
+                "or give the drive a motor",
+                within=("bearing",),
+            )
         return self
 
     def unlike_roller(self, names: tuple[str, str], roller: Roller) -> str | None:

@@ -17,6 +17,7 @@ from mdlgen.units import parse_number, parse_quantity, parse_unit, same
 EVENTS = (
     *("enter", "leave", "slip", "gap", "wait", "jam", "double_feed", "stub", "creep"),
     *("covered", "cleared", "rule"),
+    *("stall", "lost_steps", "limiter_slips"),
 )
 # of each sheet that goes by a sensor
 AT_SENSORS = ("gap", "speed", "skew", "position")

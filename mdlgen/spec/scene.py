@@ -55,6 +55,7 @@ from mdlgen.spec.quantities import default
 from mdlgen.spec.rule import Rule
 from mdlgen.spec.run import Run
 from mdlgen.spec.sensor import Sensor
+from mdlgen.spec.shaft import Shaft
 from mdlgen.spec.sheet import Sheet
 from mdlgen.spec.shorthand import Defaults, written_out
 from mdlgen.spec.source import Source, text_of, text_of_data
@@ -98,6 +99,9 @@ class Scene(Strict):
     )
     sheets: dict[Name, Sheet] = Field(min_length=1, description="sheets by name, one at least")
     rollers: dict[Name, Roller] = Field(default_factory=dict, description="rollers by name")
+    shafts: dict[Name, Shaft] = Field(
+        default_factory=dict, description="shafts that turn several rollers together, by name"
+    )
     nips: dict[Name, Nip] = Field(
         default_factory=dict,
         description="pairs of rollers that grip a sheet, placed in balance with their contacts, by name",

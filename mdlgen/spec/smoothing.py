@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
-    from mdlgen.spec.machine import Roller
+    from mdlgen.spec.machine import Drive, Roller
     from mdlgen.spec.scene import Scene
     from mdlgen.spec.sheet import Sheet
 
@@ -69,8 +69,27 @@ def surface_speed(roller: Roller) -> float:
     drive = roller.drive
     if drive is None:
         return 0.0
+    return _fastest_of(drive) * _reach(roller)
+
+
+def _fastest_of(drive: Drive) -> float:
+    """Greatest speed that a drive prescribes or aims at [rad/ms], of a motor that has no target its no-load
+    speed."""
+    if drive.motor is not None and drive.motor.open:
+        return abs(drive.motor.no_load) / drive.motor.gear
     rates = [rate for _, rate in drive.profile] if drive.profile is not None else [drive.speed or 0.0]
-    return max(abs(rate) for rate in rates) * _reach(roller)
+    return max(abs(rate) for rate in rates)
+
+
+def _on_shafts(scene: Scene) -> float:
+    """How fast the surface of a roller on a shaft moves at most [mm/ms]."""
+    speeds = [
+        abs(ratio) * _fastest_of(shaft.drive) * _reach(scene.rollers[name])
+        for shaft in scene.shafts.values()
+        if shaft.drive is not None
+        for name, ratio in shaft.rollers.items()
+    ]
+    return max(speeds, default=0.0)
 
 
 def _reach(roller: Roller) -> float:
@@ -85,7 +104,7 @@ def _start_speed(sheet: Sheet) -> float:
 
 def _fastest(scene: Scene) -> float:
     surfaces = [surface_speed(roller) for roller in scene.rollers.values()]
-    return max([*surfaces, *(_start_speed(sheet) for sheet in scene.sheets.values())])
+    return max([_on_shafts(scene), *surfaces, *(_start_speed(sheet) for sheet in scene.sheets.values())])
 
 
 def formulas(scene: Scene) -> dict[tuple[str | int, ...], str]:
@@ -111,7 +130,7 @@ def _formula(scene: Scene) -> str:
             own.append(f"abs({rate})*({radius or f'{roller.radius!r} mm'})")
         else:
             rest = max(rest, surface_speed(roller))
-    rest = max(rest, *map(_start_speed, scene.sheets.values()))
+    rest = max(rest, _on_shafts(scene), *map(_start_speed, scene.sheets.values()))
     if not own:
         return ""
     speeds = [*dict.fromkeys(own), *([f"{rest * 1e3!r} mm/s"] if rest else [])]

@@ -9,6 +9,7 @@ from mdlgen.backends.lattice.kernels.state import Islands, Workspace
 from mdlgen.backends.lattice.kernels.tuning import LEAST_WAY
 from mdlgen.mechanics.arm import AXIAL, INERTIA
 from mdlgen.mechanics.frame import RADIUS
+from mdlgen.mechanics.records import FOLLOWER
 from mdlgen.model.tables import Ints, Model
 
 
@@ -33,7 +34,9 @@ def islands(model: Model, system: System) -> Islands:
         body = bodies[b]
         radius = float(body["size"][RADIUS])
         size[k] = radius if radius > 0.0 else 2.0 * float(body["half"][2])
-        if body["spin"] >= 0:
+        if body["coupled"] == FOLLOWER:  # all of a shaft are one part
+            part[b] = of_border[body["spin"]]
+        elif body["spin"] >= 0:
             of_border[body["spin"]], answers[k] = k, True
             mass[k] += body["press"][AXIAL] / radius**2
         if body["slide"] >= 0:

@@ -68,6 +68,8 @@ class Recorder:
         self._states = States(model, system.mirror, outputs + 1)
         self._forces: list[np.ndarray] = []
         self._plastic: list[np.ndarray] = []  # see hinges.plastic_rows; of elastic scenes none
+        self._behind: list[np.ndarray] = []  # see Result.behind
+        self._axles = [system.bodies["spin"][r.body] for r in model.rollers if r.axle is not None]
         self._times: list[float] = []
         self._energies = np.zeros((2, groups(work), 3))  # first and last
         self._most = np.zeros(groups(work))
@@ -106,6 +108,8 @@ class Recorder:
         self._forces.append(self.kept.rows[:, NOW])
         if len(self.model.plastic):
             self._plastic.append(plastic_rows(self.system.yields))
+        if self._axles:
+            self._behind.append(state.s[self._axles])
 
     @property
     def last(self) -> float:
@@ -121,6 +125,7 @@ class Recorder:
         return {
             **self._states.all(),
             **({"p": self._rotations(len(self._times))} if len(self.model.plastic) else {}),
+            **({"b": self._lags(len(self._times))} if self._axles else {}),
             "f": np.array(self._forces).reshape(len(self._times), len(self.model.contacts), len(NOW)),
             "times": np.array(self._times),
             "energies": np.concatenate([self._energies.ravel(), self._most]),
@@ -133,6 +138,7 @@ class Recorder:
         self._states.restore({name: arrays[name] for name in WIDTHS})
         self._forces = list(arrays["f"])
         self._plastic = list(arrays.get("p", ()))
+        self._behind = list(arrays.get("b", ()))
         self._times = arrays["times"].tolist()
         energies, self._most = np.split(arrays["energies"], (self._energies.size,))
         self._energies[:] = energies.reshape(self._energies.shape)
@@ -141,6 +147,10 @@ class Recorder:
     def _rotations(self, times: int) -> np.ndarray:
         """Plastic rotations at the first so many times, and the energy that they took, (times, rows + 1)."""
         return np.array(self._plastic[:times]).reshape(times, len(self.model.plastic) + 1)
+
+    def _lags(self, times: int) -> np.ndarray:
+        """By what angles rollers are behind their shafts at the first so many times, (times, axles)."""
+        return np.array(self._behind[:times]).reshape(times, len(self._axles))
 
     def snapshot(self, work: np.ndarray) -> Snapshot:
         """How far it is now; it stays as it is while the run goes on."""
@@ -198,6 +208,7 @@ class Recorder:
                 last_force_at=np.where(rows[:, ACTS] != 0, np.nan, rows[:, ENDED]),
             ),
             plastic=plastic,
+            behind=self._lags(snapshot.times) if self._axles else None,
             touched=touched,
             energy=energy,
             versions=_versions(),

@@ -47,11 +47,14 @@ def start(model: Model, system: System) -> tuple[State, Midpoint, Matrix]:
     state.l[:] = np.einsum("nij,nj->ni", turn, bodies.inertia[nodes] * own)
     state.u[:, :3], state.u[:, 3:] = state.v, spin
     for roller in model.rollers:
-        if roller.one_way is not None and roller.speed is not None:  # it begins with its shaft
+        if roller.begins_turning:  # with its shaft
             at = system.bodies["spin"][roller.body]
             if at < 0:
                 continue  # left out, see mirror
             state.vb[at] = state.ub[at] = roller.prescribed(0.0)
+        if roller.motor and roller.axle is not None:
+            at = system.bodies["spin"][roller.body]
+            state.s[at] = roller.axle.begins_behind(float(roller.prescribed(0.0)))
     return state, mid, matrix
 
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 from mdlgen.backends.lattice.kernels.image import reflect, reflect_rates
 from mdlgen.backends.lattice.kernels.state import LOST, NUMERICAL, OWN_MASS
 from mdlgen.mechanics.arm import moved, way_of
+from mdlgen.mechanics.axle import acting
 from mdlgen.mechanics.bushing import bushing_pair
 from mdlgen.mechanics.corner import corner_forces
 from mdlgen.mechanics.curve import curve_excess
-from mdlgen.mechanics.driven import SENSE, clutch, prescribed, turned
+from mdlgen.mechanics.driven import SENSE, prescribed, turned
 from mdlgen.mechanics.frame import Frame
 from mdlgen.mechanics.pair import near, pair_force
 from mdlgen.mechanics.pairs.box_box import near as near_boxes
@@ -101,7 +102,7 @@ def place(tables, h, t, state, motion):
     for b in tables.moving:
         body = bodies[b]
         rate = ub[body.slide] if body.slide >= 0 else 0.0
-        turning = ub[body.spin] if body.spin >= 0 else 0.0
+        turning = body.ratio * ub[body.spin] if body.spin >= 0 else 0.0
         place_roller(body, b, h, t, rate, turning, x, r, motion)
     reflect(images, motion.x, motion.r)
     reflect_rates(images, motion.u, motion.w)
@@ -275,12 +276,15 @@ def pair_forces_again(tables, near, close, known, motion, f, touched, results):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def clutch_torques(tables, t, ub, f):
-    """Adds the torques of clutches on the rollers that turn at the rates ub, at a time."""
-    bodies = tables.bodies
+def clutch_torques(tables, t, h, state, f):
+    """Adds the torques of clutches, motors, limiters and bearings on the rollers that turn at the rates of a
+    state, at a time h after it."""
+    bodies, axles = tables.bodies, tables.shapes.axles
+    s, ub = state.s, state.ub
     for b in tables.moving:
         if bodies[b].clutch[SENSE] != 0.0:
-            torque, _, _ = clutch(bodies[b], ub[bodies[b].spin], t)
+            at = bodies[b].spin
+            torque = acting(axles, bodies[b], s[at], ub[at], t, h).torque
             for i in range(3):
                 f[b, 3 + i] += torque * bodies[b].axis[i]
 

@@ -19,9 +19,9 @@ from mdlgen.model.tables import BOX_BOX, Floats, Ints, Model, SheetPart
 
 def find(model: Model, system: System) -> Mirror | None:
     """The plane, or None: there is none, or nothing touches. What is free keeps its momentum to round-off,
-    which one side alone would not. Scenes with air between sheets or measured friction are not halved,
-    nor are those where a sheet sticks on a roller that the plane cuts, or with Poisson's effect, which
-    couples boxes on both sides of the plane.
+    which one side alone would not. Scenes with air between sheets, measured friction, motors, limiters or
+    shafts are not halved, nor are those where a sheet sticks on a roller that the plane cuts, or with
+    Poisson's effect, which couples boxes on both sides of the plane.
 
     It goes through the middle of the sheets, between boxes, along one of their edges. Everything is compared:
     bodies, what holds and drives them, contacts, loads, and the forces of the joints of a random state.
@@ -32,6 +32,8 @@ def find(model: Model, system: System) -> Mirror | None:
         return None  # air presses across the plane
     if model.contacts.frictions is not None:
         return None  # a field that scatters has no image
+    if any(roller.axle is not None or roller.leader >= 0 for roller in model.rollers):
+        return None  # a motor, a limiter or a shaft may have parts on both sides
     for axis in (1, 0):
         normal = model.sheets[0].rotation[:, axis]
         mirror = _plane(model, normal, float(normal @ model.sheets[0].center))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mdlgen.altair.air import refuse_air
+from mdlgen.altair.axles import refuse_axles
 from mdlgen.altair.covers import refuse_covers
 from mdlgen.altair.parts import refuse_unwritten
 from mdlgen.altair.poisson import refuse_poisson
@@ -28,6 +29,7 @@ _BUFFERED = 4096  # pieces of text that are joined at once: a large deck has mil
 def check(model: Model) -> None:
     """Raises RefusedError by name for what the deck cannot represent."""
     refuse_externals(model, "MotionSolve deck")
+    refuse_axles(model, "MotionSolve deck")
     refuse_sticking(model, "MotionSolve deck")
     refuse_measured(model, "MotionSolve deck")
     refuse_yield(model, "MotionSolve deck")

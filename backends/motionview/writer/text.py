@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from mdlgen.altair.air import refuse_air
+from mdlgen.altair.axles import refuse_axles
 from mdlgen.altair.covers import refuse_covers
 from mdlgen.altair.parts import refuse_unwritten
 from mdlgen.altair.poisson import refuse_poisson
@@ -34,6 +35,7 @@ TARGETS = ("2021", "2025")
 def check(model: Model) -> None:
     """Raises RefusedError by name for what the text cannot represent."""
     refuse_externals(model, "MotionView text of the whole scene")
+    refuse_axles(model, "MotionView text")
     check_sheets(model)
     refuse_compressed(model, "MotionView text")
     refuse_rolling(model, "MotionView text")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from mdlgen.altair.air import refuse_air
+from mdlgen.altair.axles import refuse_axles
 from mdlgen.altair.covers import refuse_covers
 from mdlgen.altair.parts import refuse_unwritten
 from mdlgen.altair.poisson import refuse_poisson
@@ -35,6 +36,7 @@ def check(model: Model) -> None:
     """Raises RefusedError by name for what the script cannot represent."""
     who = "MotionSolve script"
     refuse_externals(model, who)
+    refuse_axles(model, who)
     refuse_sticking(model, who)
     refuse_measured(model, who)
     refuse_yield(model, who)

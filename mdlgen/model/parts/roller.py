@@ -8,6 +8,7 @@ import numpy as np
 
 from mdlgen.geometry.arrays import Floats
 from mdlgen.geometry.solids import BOX, CORNERS, Solid, cylinder, slice_
+from mdlgen.model.axles import turning
 from mdlgen.model.covers import covered, lower_cover
 from mdlgen.model.frames import frame
 from mdlgen.model.parameters.machine import center_rows, spring_rows, start_row
@@ -31,7 +32,8 @@ from mdlgen.model.tables import (
     RollerPart,
     SheetPart,
 )
-from mdlgen.spec.machine import Drive, Roller
+from mdlgen.model.tables.axle import CONTROLLED, LIMITER, OPEN, STEPPER
+from mdlgen.spec.machine import Roller
 from mdlgen.spec.scene import Scene
 from mdlgen.units import PER_SECOND
 
@@ -46,8 +48,10 @@ class _Rollers(Kind[RollerPart]):
 
     def lower(self, scene: Scene, before: Before, first: int) -> tuple[RollerPart, ...]:
         parts = []
-        for index, name in enumerate(sorted(scene.rollers)):
+        order = {name: index for index, name in enumerate(sorted(scene.rollers))}
+        for name, index in order.items():
             roller = scene.rollers[name]
+            turns = turning(scene, name)
             axial = 0.5 * roller.mass * roller.radius**2
             transverse = roller.mass * (3 * roller.radius**2 + roller.width**2) / 12
             parts.append(
@@ -61,14 +65,17 @@ class _Rollers(Kind[RollerPart]):
                     mass=roller.mass,
                     inertia_axial=axial,
                     inertia_transverse=transverse,
-                    speed=_speed(roller.drive) if roller.drive else None,
-                    ramp=roller.drive.ramp if roller.drive else 0.0,
-                    profile=np.array(roller.drive.profile) if roller.drive and roller.drive.profile else None,
+                    speed=turns.speed,
+                    ramp=turns.ramp,
+                    profile=turns.profile,
                     one_way=OneWay(**dict(roller.one_way)) if roller.one_way else None,
                     press=roller_press(scene, name, before) if roller.press else None,
                     rim=lower_rim(roller),
                     arm=_arm(roller) if roller.arm else None,
                     cover=lower_cover(scene, name),
+                    axle=turns.axle,
+                    leader=-1 if turns.leader is None else first + order[turns.leader],
+                    ratio=turns.ratio,
                 )
             )
         return tuple(parts)
@@ -211,7 +218,9 @@ class _Rollers(Kind[RollerPart]):
 
     def facts(self, model: Model, part: RollerPart) -> list[str]:
         facts = [f"radius {part.radius:.4g} mm, width {part.width:.4g} mm, {part.mass:.4g} g"]
-        if part.speed is None:
+        if part.axle is not None or part.leader >= 0:
+            facts += _turned(part)
+        elif part.speed is None:
             facts.append("turns freely")
         elif part.profile is not None:
             facts.append(f"driven by a profile, {PER_SECOND * part.speed:.4g} rad/s at most")
@@ -236,6 +245,27 @@ class _Rollers(Kind[RollerPart]):
         return facts
 
 
+def _turned(part: RollerPart) -> list[str]:
+    """What a motor, a limiter, a bearing or a shaft turns a roller with."""
+    if part.leader >= 0:
+        return [f"turns {part.ratio:.4g} times for each turn of the roller that leads its shaft"]
+    axle, found = part.axle, []
+    assert axle is not None, "it has an axle, or follows one"
+    if axle.shaft:
+        found.append(f"leads the shaft {axle.shaft}")
+    if axle.motor:
+        word = {OPEN: "motor", CONTROLLED: "motor with speed control", STEPPER: "stepper"}[axle.kind]
+        line = f", no load {PER_SECOND * axle.no_load:.4g} rad/s" if axle.no_load else ""
+        found.append(f"{word}, {axle.stall:.4g} N mm at rest{line}")
+    elif axle.kind == LIMITER:
+        aims = 0.0 if part.speed is None else part.speed
+        held = f"a shaft of {PER_SECOND * aims:.4g} rad/s" if aims else "a shaft that stands"
+        found.append(f"torque limiter of {axle.limit:.4g} N mm to {held}")
+    if axle.friction or axle.drag:
+        found.append(f"bearing takes {axle.friction:.4g} N mm, {axle.drag:.4g} N mm ms/rad")
+    return found
+
+
 def _drawn(roller: RollerPart) -> list[Drawn]:
     half, radius, rim = roller.width / 2, roller.radius, roller.rim
     if rim is None:
@@ -257,14 +287,6 @@ def _drawn(roller: RollerPart) -> list[Drawn]:
 def swing(roller: RollerPart) -> Floats:
     """How far a roller on an arm may go either way, by its radius in any direction across its axis [mm]."""
     return roller.reach * np.sqrt(np.maximum(0, 1 - roller.axis**2))
-
-
-def _speed(drive: Drive) -> float:
-    """The speed of a drive, of a profile the greatest in size [rad/ms]."""
-    if drive.profile is not None:
-        return max((speed for _, speed in drive.profile), key=abs)
-    assert drive.speed is not None, "the spec has one of the two"
-    return drive.speed
 
 
 def _arm(roller: Roller) -> ArmPart:

@@ -7,6 +7,7 @@ GROUND (-1) stands for the fixed world.
 
 from mdlgen.geometry.arrays import Floats as Floats
 from mdlgen.geometry.arrays import Ints as Ints
+from mdlgen.model.tables.axle import AxlePart as AxlePart
 from mdlgen.model.tables.bodies import CLAMP as CLAMP
 from mdlgen.model.tables.bodies import JOINT_X as JOINT_X
 from mdlgen.model.tables.bodies import JOINT_Y as JOINT_Y

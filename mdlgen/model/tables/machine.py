@@ -9,6 +9,7 @@ import numpy as np
 
 from mdlgen.geometry.arrays import Floats as Floats
 from mdlgen.geometry.arrays import Ints as Ints
+from mdlgen.model.tables.axle import FREE, AxlePart
 from mdlgen.model.tables.bodies import Frozen
 
 
@@ -126,6 +127,9 @@ class RollerPart(MachinePart):
     rim: RimPart | None = None
     arm: ArmPart | None = None
     cover: CoverPart | None = None
+    axle: AxlePart | None = None  # with a motor, and behind it: the speed is the one that it aims at
+    leader: int = -1  # body of the roller that leads its shaft, -1: it turns by itself, or leads
+    ratio: float = 1.0  # its turns for one of that
 
     @property
     def loaded_mass(self) -> float:
@@ -160,8 +164,27 @@ class RollerPart(MachinePart):
 
     @property
     def turns(self) -> bool:
-        """Whether its spin is unknown: a free one, or one with a clutch."""
-        return self.speed is None or self.one_way is not None
+        """Whether its spin is unknown: it is free, has a clutch, a motor or a limiter, or follows another one
+        on its shaft."""
+        coupled = self.one_way is not None or self.axle is not None or self.leader >= 0
+        return self.speed is None or coupled
+
+    @property
+    def driven(self) -> bool:
+        """Whether a drive, a motor or a limiter has a torque on it: not of one that follows another one on a
+        shaft, whose torque that one has."""
+        limited = self.axle is not None and self.axle.kind != FREE
+        return self.leader < 0 and (self.speed is not None or limited)
+
+    @property
+    def begins_turning(self) -> bool:
+        """Whether it begins with the speed of the shaft that a clutch or a limiter couples it to."""
+        return self.speed is not None and self.turns and not self.motor and self.leader < 0
+
+    @property
+    def motor(self) -> bool:
+        """Whether a motor turns it, whose torque is limited."""
+        return self.axle is not None and self.axle.motor
 
     @property
     def corners(self) -> Floats:

@@ -54,7 +54,7 @@ def _rollers(what: str) -> Callable[[Result], Lines]:
 
 def _driven(what: str) -> Callable[[Result], Lines]:
     def lines(result: Result) -> Lines:
-        driven = [roller.name for roller in result.model.rollers if roller.speed is not None]
+        driven = [roller.name for roller in result.model.rollers if roller.driven]
         found = result.rollers
         return {name: getattr(found[name], what) for name in driven if name in found}
 

@@ -157,7 +157,7 @@ def _drives(result: Result, thin: Ints) -> list[Panel]:
     sheets = {sheet.name for sheet in result.model.sheets}
     for roller in result.model.rollers:
         for panel, found in ((torque, drive_torque), (power, drive_power)):
-            values = found(result, roller) if roller.speed is not None else None
+            values = found(result, roller) if roller.driven else None
             if values is not None:
                 panel.lines.append(Line(roller.name, result.time[thin], values[thin]))
         for grip in grips(result, roller):

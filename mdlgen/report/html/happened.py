@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from mdlgen.report.html.wording import shown
-from mdlgen.results.verdict import creep_in_words
+from mdlgen.results.verdict import creep_in_words, motor_in_words
 
 
 def happened(events: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
@@ -97,4 +97,5 @@ _WORDS = {
     "enter": _moves, "leave": _moves, "slip": _slips, "wait": _waits, "jam": _waits, "gap": _gap,
     "double_feed": _feeds, "stub": _stub, "creep": _creeps,
     "covered": _sees, "cleared": _sees, "rule": _rule,
+    "stall": motor_in_words, "lost_steps": motor_in_words, "limiter_slips": motor_in_words,
 }  # fmt: skip

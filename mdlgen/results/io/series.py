@@ -91,7 +91,7 @@ def _motion(name: str, place: Floats, rate: Floats) -> dict[str, Floats]:
 def _turning(result: Result, roller: RollerPart) -> dict[str, Floats]:
     """Torque and power of its drive, where it has one, and what its contacts turn it with."""
     found = {"contact_torque_n_mm": contact_torque(result, roller)}
-    if roller.speed is not None:
+    if roller.driven:
         found = {"torque_n_mm": drive_torque(result, roller), "power_w": drive_power(result, roller), **found}
     known = {f"{roller.name}.{name}": values for name, values in found.items() if values is not None}
     return known | {f"{roller.name}.{grip.other}.tangential_n": grip.along for grip in grips(result, roller)}

@@ -43,10 +43,11 @@ from mdlgen.backends.lattice.kernels.tuning import (
     USED_AGAIN,
 )
 from mdlgen.mechanics.arm import AXIAL, DAMPING, INERTIA, STIFFNESS, turn_of, way_of
-from mdlgen.mechanics.driven import clutch
+from mdlgen.mechanics.axle import acting
 from mdlgen.mechanics.frame import RADIUS
 from mdlgen.mechanics.pair import on_fixed_plate
 from mdlgen.mechanics.point import FORCE_A, FORCE_B, OUT, POINT, POINTS
+from mdlgen.mechanics.records import FOLLOWER
 from mdlgen.mechanics.vector import back, dot, mat, rotate, vec
 from mdlgen.model.tables.contacts import BOX_BOX
 from mdlgen.program.kernel import BORROWS, njit
@@ -93,10 +94,10 @@ def _take(tables, mid, many, condensed, m):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def _impulses(tables, xm, h, t, ub, condensed, m, p):
-    """Forces times h, in box axes and along the freedoms of rollers at xm, into p; of clutches at t and the
-    rates ub + z."""
-    bodies, nodes, f = tables.bodies, tables.nodes, condensed.forces
+def _impulses(tables, xm, h, t, state, condensed, m, p):
+    """Forces times h, in box axes and along the freedoms of rollers at xm, into p; of clutches and motors at
+    t and the rates ub + z."""
+    bodies, nodes, f, axles = tables.bodies, tables.nodes, condensed.forces, tables.shapes.axles
     for i in range(m):
         b = nodes[condensed.chosen[i]]
         axes = mat(condensed.axes, b)
@@ -112,7 +113,11 @@ def _impulses(tables, xm, h, t, ub, condensed, m, p):
         if spin >= 0:
             axis = bodies[b].axis
             about = f[b, 3] * axis[0] + f[b, 4] * axis[1] + f[b, 5] * axis[2]
-            p[6 * m + spin] = h * (about + clutch(bodies[b], ub[spin] + condensed.z[6 * m + spin], t).torque)
+            if bodies[b].coupled == FOLLOWER:  # it stands behind the one that leads
+                p[6 * m + spin] += h * bodies[b].ratio * about
+                continue
+            rate = state.ub[spin] + condensed.z[6 * m + spin]
+            p[6 * m + spin] = h * (about + acting(axles, bodies[b], state.s[spin], rate, t, h).torque)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -136,7 +141,7 @@ def _begin(work, h, m):
             own[slide] = 1.0 / (p[INERTIA] + h * p[DAMPING] + h * h * p[STIFFNESS])
             way = way_of(bodies[b], vec(x, b))
             measure[6 * m + slide] = times * math.sqrt(dot(way, way))
-        if spin >= 0:
+        if spin >= 0 and bodies[b].coupled != FOLLOWER:
             own[spin] = 1.0 / p[AXIAL]
             measure[6 * m + spin] = times * bodies[b].size[RADIUS]
     for i in range(ub.size):
@@ -169,7 +174,7 @@ def _evaluate(tables, h, t, state, motion, condensed, m):
         if bodies[b].slide >= 0:
             rate = ub[bodies[b].slide] + z[6 * m + bodies[b].slide]
         if bodies[b].spin >= 0:
-            turning = ub[bodies[b].spin] + z[6 * m + bodies[b].spin]
+            turning = bodies[b].ratio * (ub[bodies[b].spin] + z[6 * m + bodies[b].spin])
         place_roller(bodies[b], b, h, t, rate, turning, x, r, motion)
     count, _stored, _lost = pair_forces(
         tables,
@@ -241,7 +246,7 @@ def solve_contacts(work, m, where, h, t, seen, limits):
     _mine(bodies, pairs, mid.near[:near], where, condensed)
     _begin(work, h, m)
     count = _take(tables, mid, touching, condensed, m)
-    _impulses(tables, xm, h, t, ub, condensed, m, condensed.p0)
+    _impulses(tables, xm, h, t, state, condensed, m, condensed.p0)
     for i in range(many):
         p[i] = used[i] = condensed.p0[i]
     merit = _gap(condensed, m, many)
@@ -251,16 +256,16 @@ def solve_contacts(work, m, where, h, t, seen, limits):
     chord = CHORD
     for _ in range(APART_MOST):
         same = activate(bodies, pairs, count, condensed)
-        acting = condensed.kept[ACTIVE]
-        short = 6 * acting + ub.size
+        active = condensed.kept[ACTIVE]
+        short = 6 * active + ub.size
         if not (same and condensed.kept[REUSE] == 1):
-            gradient(tables, h, mid.motion, count, condensed, acting, short, chord)
-            clutches(bodies, h, t, ub, condensed, m, acting)
-            newton_matrix(condensed, acting, short)
+            gradient(tables, h, mid.motion, count, condensed, active, short, chord)
+            clutches(tables, h, t, state, condensed, m, active)
+            newton_matrix(condensed, active, short)
             if not lu(condensed.jac, condensed.swaps, short):
                 return False
         condensed.kept[REUSE] = 1
-        newton(condensed, m, acting, short)
+        newton(condensed, m, active, short)
         # impulses as this step takes them, linear: with them the sheet moves as the chosen boxes do
         for i in range(boxes):
             used[i] = p[i] - condensed.push[i]
@@ -276,7 +281,7 @@ def solve_contacts(work, m, where, h, t, seen, limits):
             if done:
                 break
             count = _evaluate(tables, h, t, state, mid.motion, condensed, m)
-            _impulses(tables, xm, h, t, ub, condensed, m, p)
+            _impulses(tables, xm, h, t, state, condensed, m, p)
             merit = _gap(condensed, m, many)
             if merit <= before * (1.0 - 0.1 * part) or merit <= strict * strict or halved == APART_HALVED:
                 break

@@ -14,9 +14,10 @@ from mdlgen.backends.lattice.kernels.contact.slopes import (
 )
 from mdlgen.backends.lattice.kernels.linear.dense import lu_solve_transposed
 from mdlgen.mechanics.arm import turn_of, way_of
-from mdlgen.mechanics.driven import clutch
+from mdlgen.mechanics.axle import acting
 from mdlgen.mechanics.measured import STRETCH, is_stretched
 from mdlgen.mechanics.point import AT, AXIS, COUPLE, KIND, LINE, NORMAL, OF_NIP, OUT, POINT, POINTS, SLIP, WAY
+from mdlgen.mechanics.records import FOLLOWER
 from mdlgen.mechanics.vector import add, back, cross, dot, mat, scale, sub, three, three_from, vec
 from mdlgen.program.kernel import BORROWS, njit
 
@@ -61,7 +62,7 @@ def _rollers(body, x, arm, axes, sign, first, direction, index, found):
         index[found] = first + body.slide
         found += 1
     if body.spin >= 0:
-        axis = back(axes, three(body.axis))
+        axis = back(axes, scale(body.ratio, three(body.axis)))
         swing = cross(arm, axis)
         for c in range(3):
             direction[found, c], direction[found, 3 + c] = sign * swing[c], sign * axis[c]
@@ -176,13 +177,14 @@ def gradient(tables, h, motion, count, condensed, acting, many, chord):
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def clutches(bodies, h, t, ub, condensed, m, acting):
-    """Adds what the impulses of clutches lose as their rollers turn faster."""
+def clutches(tables, h, t, state, condensed, m, active):
+    """Adds what the impulses of clutches and motors lose as their rollers turn faster."""
+    bodies, axles = tables.bodies, tables.shapes.axles
     for b in condensed.rollers:
         spin = bodies[b].spin
-        if spin >= 0:
-            at = 6 * acting + spin
-            condensed.growth[at, at] += h * clutch(bodies[b], ub[spin] + condensed.z[6 * m + spin], t).growth
+        if spin >= 0 and bodies[b].coupled != FOLLOWER:
+            at, rate = 6 * active + spin, state.ub[spin] + condensed.z[6 * m + spin]
+            condensed.growth[at, at] += h * acting(axles, bodies[b], state.s[spin], rate, t, h).growth
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, boundscheck=False, **BORROWS)

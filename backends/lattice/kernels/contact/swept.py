@@ -76,7 +76,7 @@ def _place(tables, state, b, h, t, motion):
     if body.slide < 0 and body.axis[0] == 0.0 and body.axis[1] == 0.0 and body.axis[2] == 0.0:
         return
     rate = ub[body.slide] if body.slide >= 0 else 0.0
-    turning = ub[body.spin] if body.spin >= 0 else 0.0
+    turning = body.ratio * ub[body.spin] if body.spin >= 0 else 0.0
     place_roller(body, b, h, t + h, rate, turning, x, r, motion)
 
 
@@ -114,7 +114,8 @@ def _changed(body, b, state, mid, slower):
         faster = state.ub[body.slide] - slower.ub[body.slide]
         rate, spin = scale(faster, way_of(body, vec(mid.motion.x, b))), scale(faster, turn_of(body))
     if body.spin >= 0:
-        spin = add(spin, scale(state.ub[body.spin] - slower.ub[body.spin], three(body.axis)))
+        faster = body.ratio * (state.ub[body.spin] - slower.ub[body.spin])
+        spin = add(spin, scale(faster, three(body.axis)))
     return rate, spin
 
 

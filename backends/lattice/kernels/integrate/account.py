@@ -20,7 +20,8 @@ from mdlgen.backends.lattice.kernels.state import (
     THROUGH_DRIVES,
 )
 from mdlgen.mechanics.arm import AXIAL, DAMPING, speeding
-from mdlgen.mechanics.driven import SENSE, clutch, prescribed
+from mdlgen.mechanics.axle import acting
+from mdlgen.mechanics.driven import SENSE, prescribed
 from mdlgen.mechanics.point import DISSIPATED as OF_PAIR
 from mdlgen.mechanics.point import TORQUE_A, TORQUE_B
 from mdlgen.mechanics.vector import add, cross, dot, mat, rotate, three, three_from, vec
@@ -71,7 +72,7 @@ def account(work, t, dt, count, energies, driven):
     that moved either way, and what numerical damping of joints had of it. `count`: how many pairs touch;
     driven (groups,): scratch."""
     tables, mid, state, islands = work.tables, work.mid, work.state, work.islands
-    bodies, f, ub, vb = tables.bodies, mid.forces, state.ub, state.vb
+    bodies, axles, f, ub, vb = tables.bodies, tables.shapes.axles, mid.forces, state.ub, state.vb
     driven[:] = 0.0
     for k in range(tables.runs.shape[0]):
         group = islands.group[tables.runs[k, SHEET]]
@@ -88,11 +89,12 @@ def account(work, t, dt, count, energies, driven):
         group = islands.group[islands.part[b]]
         lost = 0.0
         if bodies[b].clutch[SENSE] != 0.0:
-            spin, before = ub[bodies[b].spin], vb[bodies[b].spin]
-            torque, _, shaft = clutch(bodies[b], spin, t + 0.5 * dt)
-            lost += torque * (shaft - spin)
-            driven[group] += torque * shaft
-            ahead, after = 2.0 * spin - before, spun(bodies[b], spin, before, t, dt)
+            at = bodies[b].spin
+            spin, before = ub[at], vb[at]
+            does = acting(axles, bodies[b], state.s[at], spin, t + 0.5 * dt, 0.5 * dt)
+            lost += does.lost
+            driven[group] += does.given
+            ahead, after = 2.0 * spin - before, spun(axles, bodies[b], state.s[at], spin, before, t, dt)
             lost += 0.5 * bodies[b].press[AXIAL] * (ahead * ahead - after * after) / dt
         elif bodies[b].corners > 0 and (islands.answers[islands.part[b]] or not several):
             rate, axis = prescribed(bodies[b], t + 0.5 * dt), bodies[b].axis

@@ -6,31 +6,34 @@ from mdlgen.backends.lattice.kernels.forces import turn_roller
 from mdlgen.backends.lattice.kernels.image import reflect
 from mdlgen.backends.lattice.kernels.state import OWN_INERTIA
 from mdlgen.mechanics.arm import AXIAL, moved
-from mdlgen.mechanics.driven import clutch, prescribed
+from mdlgen.mechanics.axle import AXLE, acting, behind_at_end
+from mdlgen.mechanics.driven import SENSE, prescribed
+from mdlgen.mechanics.records import FOLLOWER
 from mdlgen.mechanics.vector import back, exp_rotation, mat, matmul, rotate, three_from, vec
 from mdlgen.program.kernel import BORROWS, njit
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
-def spun(body, u, v, t, dt):
+def spun(axles, body, s, u, v, t, dt):
     """Spin of a roller at the end of a step from t, from those at its middle and its beginning: 2 u - v, but
-    for a clutch that is stiff for the step.
+    for a clutch, a motor or a bearing that is stiff for the step. s: as of `acting`.
 
     The rule would let it ring about what it takes. What a step adds against the shaft is left out there, in
     the measure of how much stiffer than the roller's inertia the clutch is.
     """
     h = 0.5 * dt
-    stiff = h * clutch(body, u, t + h).growth / body.press[AXIAL]
+    does = acting(axles, body, s, u, t + h, h)
+    stiff = h * does.damps / body.press[AXIAL]
     if stiff == 0.0:
         return 2.0 * u - v
-    added = u - prescribed(body, t + h) - v + prescribed(body, t)
+    added = u - does.pulls * prescribed(body, t + h) - v + does.pulls * prescribed(body, t)
     return 2.0 * u - v - added * stiff * stiff / (1.0 + stiff * stiff)
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
 def carry(tables, state, t, dt):
     """From the middle to the end of a step."""
-    bodies, nodes, images = tables.bodies, tables.nodes, tables.images
+    bodies, nodes, images, axles = tables.bodies, tables.nodes, tables.images, tables.shapes.axles
     x, r, v, l, s, vb, u, ub = state
     for n in range(nodes.size):
         b = nodes[n]
@@ -49,7 +52,9 @@ def carry(tables, state, t, dt):
     for k in tables.moving:
         slide, spin_at = bodies[k].slide, bodies[k].spin
         if bodies[k].rims > 0 or bodies[k].carries != 0:
-            turning = ub[spin_at] if spin_at >= 0 else ub[slide] if bodies[k].swings == 2 else 0.0
+            turning = ub[slide] if bodies[k].swings == 2 else 0.0
+            if spin_at >= 0:
+                turning = bodies[k].ratio * ub[spin_at]
             turn_roller(bodies[k], k, dt, t + dt, turning, r, r)
         if slide >= 0:
             s[slide] += dt * ub[slide]
@@ -57,5 +62,8 @@ def carry(tables, state, t, dt):
             for i in range(3):
                 x[k, i] = at[i]
             vb[slide] = 2.0 * ub[slide] - vb[slide]
-        if spin_at >= 0:
-            vb[spin_at] = spun(bodies[k], ub[spin_at], vb[spin_at], t, dt)
+        if spin_at >= 0 and bodies[k].coupled != FOLLOWER:
+            turns = spun(axles, bodies[k], s[spin_at], ub[spin_at], vb[spin_at], t, dt)
+            vb[spin_at] = turns
+            if bodies[k].clutch[SENSE] == AXLE:
+                s[spin_at] = behind_at_end(axles, bodies[k], s[spin_at], ub[spin_at], turns, t, dt)

@@ -34,7 +34,7 @@ def greatest(work, res, resb, control):
             way = way_of(body, vec(motion.x, k))
             moved = math.sqrt(dot(way, way)) * abs(resb[body.slide])
         if body.spin >= 0:
-            moved = max(moved, body.size[RADIUS] * abs(resb[body.spin]))
+            moved = max(moved, body.size[RADIUS] * abs(body.ratio * resb[body.spin]))
         if moved > floor:
             change = max(change, strict[islands.part[k]] * moved)
     return change

@@ -25,6 +25,7 @@ from mdlgen.mechanics.arm import AXIAL, INERTIA, way_of
 from mdlgen.mechanics.driven import prescribed
 from mdlgen.mechanics.frame import RADIUS
 from mdlgen.mechanics.point import STORED
+from mdlgen.mechanics.records import FOLLOWER
 from mdlgen.mechanics.vector import back, dot, mat, three_from, vec
 from mdlgen.program.kernel import BORROWS, njit
 
@@ -59,7 +60,7 @@ def _speeds_of_moving(work, t):
     bodies, x, ub, islands = work.tables.bodies, work.mid.motion.x, work.state.ub, work.islands
     for b in work.tables.moving:
         body, part = bodies[b], islands.part[b]
-        turns = ub[body.spin] if body.spin >= 0 else prescribed(body, t)
+        turns = body.ratio * ub[body.spin] if body.spin >= 0 else prescribed(body, t)
         speed = abs(turns) * body.size[RADIUS]
         if body.spin >= 0:
             islands.energy[part] += 0.5 * body.press[AXIAL] * turns * turns
@@ -67,7 +68,7 @@ def _speeds_of_moving(work, t):
             way, rate = way_of(body, vec(x, b)), ub[body.slide]
             speed += abs(rate) * math.sqrt(dot(way, way))
             islands.energy[part] += 0.5 * body.press[INERTIA] * rate * rate
-        islands.speed[part] = speed
+        islands.speed[part] = max(islands.speed[part], speed) if body.coupled == FOLLOWER else speed
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)

@@ -76,6 +76,7 @@ def ledger(work, t, energies, rows):
         if spin_at >= 0:
             rate = vb[spin_at]
             kinetic += 0.5 * p[AXIAL] * rate * rate
+            rate *= bodies[b].ratio
         else:
             rate = prescribed(bodies[b], t)
         if bodies[b].swings == 2:

@@ -101,6 +101,7 @@ from mdlgen.mechanics.arm import (
     turn_of,
     way_of,
 )
+from mdlgen.mechanics.records import FOLLOWER
 from mdlgen.mechanics.vector import back, dot, mat, rotate, three, three_from, vec
 from mdlgen.program.kernel import BORROWS, njit
 
@@ -133,7 +134,10 @@ def _residual(tables, t, h, state, mid, res, resb):
         if spin_at >= 0:
             axis = bodies[k].axis
             about = f[k, 3] * axis[0] + f[k, 4] * axis[1] + f[k, 5] * axis[2]
-            resb[spin_at] = p[AXIAL] * (ub[spin_at] - vb[spin_at]) - h * about
+            if bodies[k].coupled != FOLLOWER:  # the one that leads stands before those that follow
+                resb[spin_at] = p[AXIAL] * (ub[spin_at] - vb[spin_at]) - h * about
+            else:
+                resb[spin_at] -= h * bodies[k].ratio * about
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)
@@ -283,7 +287,7 @@ def midpoint(work, t, dt, tolerance, control):
             weigh_patches(tables, mid, count)
         power = other_forces(tables, 1.0, mid.motion, mid.forces)
         _weights(tables, mid.forces)
-        clutch_torques(tables, t + h, state.ub, mid.forces)
+        clutch_torques(tables, t + h, h, state, mid.forces)
         _residual(tables, t + h, h, state, mid, res, resb)
         # what is free converges fast, and keeps its angular momentum as well as the iterations end
         limit = tolerance if count > 0 or air else FREE * tolerance

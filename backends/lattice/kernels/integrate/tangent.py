@@ -9,8 +9,9 @@ from __future__ import annotations
 
 from mdlgen.backends.lattice.kernels.contact.slopes import hat_left, hat_right
 from mdlgen.mechanics.arm import AXIAL, DAMPING, INERTIA, STIFFNESS
+from mdlgen.mechanics.axle import acting
 from mdlgen.mechanics.curve import curve_spring
-from mdlgen.mechanics.driven import clutch
+from mdlgen.mechanics.records import FOLLOWER
 from mdlgen.mechanics.vector import (
     add,
     back,
@@ -152,16 +153,18 @@ def joints_into(tables, joints, h, lag, x, r, a, slots):
 
 
 @njit(cache=True, error_model="numpy")
-def rollers_into(tables, h, t, ub, d):
-    """Sets the corner to the rollers' own: masses, springs and dampers of slides, clutches at t."""
-    bodies = tables.bodies
+def rollers_into(tables, h, t, state, d):
+    """Sets the corner to the rollers' own: masses, springs and dampers of slides, clutches and motors at t,
+    which is h after the state."""
+    bodies, axles = tables.bodies, tables.shapes.axles
     d[:] = 0.0
     for k in tables.moving:
         p = bodies[k].press
         if bodies[k].slide >= 0:
             d[bodies[k].slide, bodies[k].slide] = p[INERTIA] + h * p[DAMPING] + h * h * p[STIFFNESS]
-        if bodies[k].spin >= 0:
-            d[bodies[k].spin, bodies[k].spin] = p[AXIAL] + h * clutch(bodies[k], ub[bodies[k].spin], t).growth
+        at = bodies[k].spin
+        if at >= 0 and bodies[k].coupled != FOLLOWER:
+            d[at, at] = p[AXIAL] + h * acting(axles, bodies[k], state.s[at], state.ub[at], t, h).growth
 
 
 @njit(cache=True, error_model="numpy", **BORROWS)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from mdlgen.mechanics.arm import turn_of, way_of
-from mdlgen.mechanics.vector import add, cross, dot, three
+from mdlgen.mechanics.vector import add, cross, dot, scale, three
 from mdlgen.program.kernel import BORROWS, njit
 
 
@@ -18,7 +18,7 @@ def moving(body, arm, x, sign, direction, index, count):
         index[count] = body.slide
         count += 1
     if body.spin >= 0:
-        turn = cross(three(body.axis), arm)
+        turn = cross(scale(body.ratio, three(body.axis)), arm)
         for i in range(3):
             direction[count, i] = sign * turn[i]
         index[count] = body.spin
@@ -32,7 +32,7 @@ def turning_of(bodies, pair, which, axis):
     body against the second about an axis."""
     body, sign = bodies[pair.a if which < 2 else pair.b], 1.0 if which < 2 else -1.0
     if which % 2 == 0:
-        return body.spin, sign * dot(three(body.axis), axis)
+        return body.spin, sign * body.ratio * dot(three(body.axis), axis)
     if body.swings != 2:
         return -1, 0.0
     return body.slide, sign * dot(turn_of(body), axis)

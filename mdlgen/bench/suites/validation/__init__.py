@@ -11,6 +11,7 @@ from mdlgen.bench.case import BenchCase
 from mdlgen.bench.suites.validation import (
     belts,
     bending,
+    driving,
     edges,
     plates,
     poisson,
@@ -21,7 +22,7 @@ from mdlgen.bench.suites.validation import (
     yielding,
 )
 
-GROUPS = (bending, plates, poisson, swinging, yielding, belts, rolling, rigid, rubbing, edges)
+GROUPS = (bending, plates, poisson, swinging, yielding, belts, rolling, rigid, rubbing, edges, driving)
 
 
 def cases(solver: str, reference: str, quick: bool) -> list[BenchCase]:
