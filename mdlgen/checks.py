@@ -15,6 +15,7 @@ from mdlgen.lints import (
     creep,
     damping,
     friction,
+    gates,
     idle,
     missing,
     parameters,
@@ -80,4 +81,9 @@ CHECKS: tuple[Callable[[Model], Iterator[Lint]], ...] = (
     covers.strain,
     covers.wide,
     covers.through,
+    gates.sweeps,
+    gates.unused,
+    gates.late,
+    gates.unbalanced,
+    gates.soft,
 )

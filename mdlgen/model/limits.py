@@ -1,3 +1,4 @@
 """Limits of a scene that records of a solver have room for."""
 
 from mdlgen.spec.machine import MOST_CORNERS as MOST_CORNERS
+from mdlgen.spec.moving import MOST_PLACES as MOST_PLACES

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from mdlgen.altair.air import refuse_air
 from mdlgen.altair.covers import refuse_covers
+from mdlgen.altair.moving import refuse_moving
 from mdlgen.altair.parts import refuse_unwritten
 from mdlgen.altair.poisson import refuse_poisson
 from mdlgen.altair.rolling import refuse_rolling
@@ -31,6 +32,7 @@ def check(model: Model) -> None:
     refuse_measured(model, "MotionSolve deck")
     refuse_yield(model, "MotionSolve deck")
     refuse_covers(model, "MotionSolve deck")
+    refuse_moving(model, "MotionSolve deck")
     refuse_searched(model, "MotionSolve deck")
     refuse_unwritten(model, WRITTEN, "MotionSolve deck")
     refuse_compressed(model, "MotionSolve deck")

@@ -6,6 +6,7 @@ from typing import Any
 
 from mdlgen.altair.air import refuse_air
 from mdlgen.altair.covers import refuse_covers
+from mdlgen.altair.moving import refuse_moving
 from mdlgen.altair.parts import refuse_unwritten
 from mdlgen.altair.poisson import refuse_poisson
 from mdlgen.altair.rolling import refuse_rolling
@@ -38,6 +39,7 @@ def check(model: Model) -> None:
     refuse_measured(model, who)
     refuse_yield(model, who)
     refuse_covers(model, who)
+    refuse_moving(model, who)
     refuse_searched(model, who)
     refuse_unwritten(model, WRITTEN, who)
     refuse_compressed(model, who)

@@ -57,6 +57,8 @@ from mdlgen.model.tables.model import Model as Model
 from mdlgen.model.tables.model import Parameter as Parameter
 from mdlgen.model.tables.model import RunSettings as RunSettings
 from mdlgen.model.tables.model import Tension as Tension
+from mdlgen.model.tables.moving import MovingPart as MovingPart
+from mdlgen.model.tables.moving import StopsPart as StopsPart
 from mdlgen.model.tables.sheets import Bend as Bend
 from mdlgen.model.tables.sheets import Clamp as Clamp
 from mdlgen.model.tables.sheets import Crease as Crease

@@ -233,7 +233,7 @@ def solve_convex(work, t, h, lag, counts, limit, control, renew, whole):
     change[:] = 0.0
     of_change[:] = 0.0
     changeb[:] = 0.0
-    rollers_into(tables, h, t, work.state.ub, matrix.own)
+    rollers_into(tables, h, t, work.state, matrix.own)
     copy(frozen.vectors[RESIDUAL], z)
     copy(frozen.border[RESIDUAL], zb)
     before, along, part, gathered = 1e300, 0.0, 0.0, False

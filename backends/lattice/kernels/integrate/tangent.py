@@ -11,6 +11,7 @@ from mdlgen.backends.lattice.kernels.contact.slopes import hat_left, hat_right
 from mdlgen.mechanics.arm import AXIAL, DAMPING, INERTIA, STIFFNESS
 from mdlgen.mechanics.curve import curve_spring
 from mdlgen.mechanics.driven import clutch
+from mdlgen.mechanics.gate import stop
 from mdlgen.mechanics.vector import (
     add,
     back,
@@ -152,14 +153,17 @@ def joints_into(tables, joints, h, lag, x, r, a, slots):
 
 
 @njit(cache=True, error_model="numpy")
-def rollers_into(tables, h, t, ub, d):
-    """Sets the corner to the rollers' own: masses, springs and dampers of slides, clutches at t."""
-    bodies = tables.bodies
+def rollers_into(tables, h, t, state, d):
+    """Sets the corner to the rollers' own: masses, springs, dampers and stops of slides, clutches at t."""
+    bodies, ub, s = tables.bodies, state.ub, state.s
     d[:] = 0.0
     for k in tables.moving:
         p = bodies[k].press
         if bodies[k].slide >= 0:
-            d[bodies[k].slide, bodies[k].slide] = p[INERTIA] + h * p[DAMPING] + h * h * p[STIFFNESS]
+            slide = bodies[k].slide
+            d[slide, slide] = p[INERTIA] + h * p[DAMPING] + h * h * p[STIFFNESS]
+            ends = stop(bodies[k], s[slide] + h * ub[slide], ub[slide])
+            d[slide, slide] += h * ends.by_rate + h * h * ends.by_place
         if bodies[k].spin >= 0:
             d[bodies[k].spin, bodies[k].spin] = p[AXIAL] + h * clutch(bodies[k], ub[bodies[k].spin], t).growth
 
