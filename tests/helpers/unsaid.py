@@ -6,6 +6,7 @@ _MU = ("contacts.0.friction=0.25",)
 # by what a sample is called: its path below samples/, and its file
 UNSAID: dict[str, tuple[str, ...]] = {
     "landing": ("contacts.landing.air=null",),
+    "diverter": ("guides.gate.pivot=null",),
     "crease": ("materials.eur10.yield=null",),
     "saddle": ("materials.film.poisson=0",),
     "rubber_nip": ("nips.feed.lower.cover=null", "nips.feed.lower.contact.stiffness=1000 N/mm^1.5"),

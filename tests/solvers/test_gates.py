@@ -128,7 +128,7 @@ def test_a_block_slides_off_a_plane_that_tilts_beyond_the_angle_of_friction(mu: 
     # from there on it slides with g (sin - mu cos); the plane stands at 20 deg from 400 ms on
     expected = G * (math.sin(math.radians(20.0)) - mu * math.cos(math.radians(20.0)))
     late = result.time > 420.0
-    assert np.gradient(speed, result.time)[late][:-1] == pytest.approx(expected, rel=0.02)
+    assert np.gradient(speed, result.time)[late][:-2] == pytest.approx(expected, rel=1e-3)
 
 
 CARRY = (
@@ -200,21 +200,21 @@ def test_a_sheet_that_lies_on_a_flap_opens_it_by_torque_over_stiffness(solver: s
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_a_stop_returns_a_flap_with_its_restitution(solver: str):
     text = HEAD.replace("-9.81", "0") + GUIDE + FLOOR.replace("PLATE", "flap")
-    text += "run: {duration: 60 ms, step: 0.05 ms, print_step: 0.5 ms, prune: false}\n"
+    text += "run: {duration: 110 ms, step: 0.05 ms, print_step: 0.5 ms, prune: false}\n"
     # a constant torque turns it from 0 to the stop at 0.05 rad, and on its way back brakes it
     hit = model(
         text,
         "guides.flap.pivot.stiffness=0 N*mm/rad",
-        "guides.flap.pivot.torque=2 N*mm",
+        "guides.flap.pivot.torque=0.1 N*mm",
         "guides.flap.pivot.stops={low: 0 rad, high: 0.05 rad, stiffness: 20000 N*mm/rad, restitution: 0.6}",
         "sheets.block.center=[30 mm, 0 mm, 200 mm]",
     )
     result = solved(hit, solver)
-    turned, acceleration = angle(result), 2.0 / 4800.0
+    turned, acceleration = angle(result), 0.1 / 4800.0
     # at the stop after sqrt(2 way / a), then back by e^2 of the way
     first = math.sqrt(2.0 * 0.05 / acceleration)
-    after = result.time > first + 2.0
-    until = result.time < first + 1.9 * 0.6 * first
+    after = result.time > first + 3.0
+    until = result.time < first + 1.1 * 0.6 * first
     assert turned.max() == pytest.approx(0.05, abs=0.003)
     assert 0.05 - turned[after & until].min() == pytest.approx(0.36 * 0.05, rel=0.05)
     assert abs(result.energy.balance_error) < 5e-3
